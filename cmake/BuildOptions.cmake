@@ -1,0 +1,13 @@
+# What every Taktwerk target is compiled with.
+# -ffp-contract=off: the same machine must give the same set-points to the last bit on every x86-64 (recordings replay).
+add_library(taktwerk_build_options INTERFACE)
+target_compile_features(taktwerk_build_options INTERFACE cxx_std_20)
+target_compile_options(taktwerk_build_options INTERFACE
+  -ffp-contract=off -fno-math-errno -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor)
+if(TAKTWERK_TESTS)
+  target_compile_options(taktwerk_build_options INTERFACE -Werror)
+endif()
+if(TAKTWERK_SANITIZE)
+  target_compile_options(taktwerk_build_options INTERFACE -fsanitize=${TAKTWERK_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(taktwerk_build_options INTERFACE -fsanitize=${TAKTWERK_SANITIZE})
+endif()

@@ -1,0 +1,20 @@
+# Every library Taktwerk uses is a Debian package; packaging/apt-packages.txt is the one list of them.
+find_package(Threads REQUIRED)
+find_package(fmt REQUIRED)
+find_package(Eigen3 REQUIRED)
+find_package(yaml-cpp REQUIRED)       # 0.7: the target is `yaml-cpp`, without a namespace
+find_package(CLI11 REQUIRED)
+if(TAKTWERK_TESTS)
+  find_package(GTest REQUIRED)
+endif()
+if(TAKTWERK_BENCH)
+  find_package(benchmark REQUIRED)
+endif()
+
+# LCM: Debian's 1.3.1 brings no CMake package and its pkg-config file misses a dependency, so it is found by hand.
+find_path(LCM_INCLUDE_DIR lcm/lcm-cpp.hpp REQUIRED)
+find_library(LCM_LIBRARY lcm REQUIRED)
+find_program(LCM_GEN lcm-gen REQUIRED)
+add_library(lcm_imported INTERFACE)
+target_include_directories(lcm_imported SYSTEM INTERFACE "${LCM_INCLUDE_DIR}")
+target_link_libraries(lcm_imported INTERFACE "${LCM_LIBRARY}")

@@ -1,0 +1,102 @@
+#pragma once
+// What a slave type is: identity, mailbox, sync managers, PDOs, dictionary, DC. One description serves the master (what it
+// expects and configures) and the simulator (what it plays). Filled from a drive YAML by config/, later also from SII and
+// ESI. Plain data; not real-time.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/time.hpp"
+
+namespace taktwerk::ecat {
+
+struct Identity {
+    std::uint32_t vendor = 0, product = 0, revision = 0, serial = 0;
+    friend bool operator==(const Identity&, const Identity&) = default;
+};
+
+/// CoE basic data types (ETG.1000.6); `bits` of an object follows from it.
+enum class DataType : std::uint8_t { BOOL, I8, I16, I32, I64, U8, U16, U32, U64, REAL32, REAL64, STRING };
+[[nodiscard]] std::uint8_t bit_size(DataType type) noexcept;  ///< STRING: 0
+[[nodiscard]] bool is_signed(DataType type) noexcept;
+
+enum class Access : std::uint8_t { ro, rw, wo };
+enum class Mappable : std::uint8_t { no, rx, tx, both };
+
+struct ObjectEntry {
+    std::uint16_t index = 0;
+    std::uint8_t sub = 0;
+    std::string name;
+    DataType type = DataType::U32;
+    Access access = Access::rw;
+    Mappable mappable = Mappable::no;
+    std::int64_t value = 0;  ///< default
+    std::optional<std::int64_t> minimum, maximum;
+    std::string text;        ///< default of a STRING
+};
+
+/// index 0 = a gap of `bits`.
+struct PdoEntry {
+    std::uint16_t index = 0;
+    std::uint8_t sub = 0;
+    std::uint8_t bits = 0;
+    friend bool operator==(const PdoEntry&, const PdoEntry&) = default;
+};
+
+struct PdoDescription {
+    std::uint16_t index = 0;         ///< 16xxh/17xxh Rx, 1Axxh/1Bxxh Tx
+    bool fixed = false;              ///< its entries cannot be changed
+    std::vector<PdoEntry> entries;   ///< default mapping
+};
+
+enum class SmUse : std::uint8_t { mailbox_out, mailbox_in, outputs, inputs };
+
+struct SyncManagerDescription {
+    SmUse use = SmUse::outputs;
+    std::uint16_t start = 0;
+    std::uint16_t size = 0;          ///< mailboxes and slaves without CoE; process data of a CoE slave: computed from the PDOs
+    std::uint8_t control = 0;        ///< usual: 26h mailbox out, 22h mailbox in, 64h outputs (watchdog), 20h inputs
+};
+
+struct DcDescription {
+    bool supported = false;
+    bool required = false;           ///< SYNC0 must run before SAFEOP (SV33-E: DC SYNC0 only, sheet 1.3)
+    bool clock_64bit = true;
+    Duration minimum_cycle{};        ///< 0 = not stated
+    Duration cycle_multiple{};       ///< the cycle must be a multiple of it; 0 = any
+};
+
+struct MailboxDescription {
+    bool coe = true;
+    bool complete_access = false;
+    bool sdo_info = false;
+    std::uint8_t max_pending = 4;    ///< messages the slave buffers (SV33-E manual 6.2.8.4)
+};
+
+/// Per direction, what CoE lets the master assign and map.
+struct PdoRules {
+    std::uint8_t max_assigned = 1;      ///< 1C12h:00 / 1C13h:00
+    std::uint8_t max_entries = 10;      ///< entries per mapping object
+    std::uint16_t max_bytes = 1486;
+};
+
+struct DeviceDescription {
+    std::string name;                        ///< "sv33-e"
+    std::string device_name;                 ///< 1008h
+    Identity identity;                       ///< vendor and product are compared exactly
+    std::vector<Identity> also_accepted;     ///< manuals contradict themselves: further vendor/product pairs
+    bool revision_exact = false;
+    std::optional<MailboxDescription> mailbox;  ///< none: a plain terminal, configured from SII alone
+    std::vector<SyncManagerDescription> sync_managers;  ///< in SM order
+    std::vector<PdoDescription> rx_pdos, tx_pdos;
+    std::vector<std::uint16_t> rx_assigned, tx_assigned;  ///< factory 1C12h / 1C13h
+    PdoRules rx_rules, tx_rules;
+    std::vector<ObjectEntry> objects;        ///< without 1018h, 16xxh.., 1C00h..: those follow from the fields above
+    DcDescription dc;
+    std::uint8_t fmmus = 8, sync_manager_count = 8;
+    std::uint16_t process_ram = 0x1000;      ///< bytes from 1000h
+};
+
+}  // namespace taktwerk::ecat

@@ -1,0 +1,113 @@
+#pragma once
+// The EtherCAT master as the floors above see it: a cyclic side (real-time) and a service side (everything acyclic).
+//
+//   service side   step(now): bring-up, recovery, SDO as resumable scripts. One thread, not real-time.
+//   cyclic side    receive(now) / send(now): process data, then at most K acyclic datagrams. Real-time safe.
+//   before cycles  pump(now): moves acyclic datagrams only; for whoever has no cycle running yet.
+//
+// In virtual time the same three are called in a fixed order from one thread. Source: reference/ETG.1000, DESIGN 7.
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/alarm.hpp"
+#include "core/process_image.hpp"
+#include "core/result.hpp"
+#include "core/time.hpp"
+#include "ecat/bus_config.hpp"
+#include "ecat/transport/transport.hpp"
+
+namespace taktwerk::ecat {
+
+enum class AlState : std::uint8_t { unknown = 0, init = 1, preop = 2, boot = 3, safeop = 4, op = 8 };
+[[nodiscard]] std::string_view name(AlState state) noexcept;
+
+/// What the cycle knows about a slave's process data. Trivially copyable.
+struct SlaveHealth {
+    AlState al_state = AlState::unknown;
+    bool al_error = false;
+    std::uint16_t al_status_code = 0;
+    bool fresh = false;             ///< its inputs were exchanged in the last receive(), with the right working counter
+    std::uint32_t age = 0;          ///< cycles since they were
+    Instant latched{};              ///< when its inputs were latched (SYNC0 instant, or frame time); of the last fresh exchange
+};
+
+/// Counters since start; never reset by the master.
+struct BusStatistics {
+    std::uint64_t frames_sent = 0, frames_received = 0, frames_lost = 0, frames_late = 0, frames_rejected = 0;
+    std::uint64_t working_counter_errors = 0, send_errors = 0;
+    std::uint32_t lost_in_a_row = 0;
+    std::int64_t dc_difference_ns = 0;  ///< worst 092Ch seen in the last service round
+    Duration round_trip{};              ///< of the last answered cyclic frame
+};
+
+/// An SDO request in flight. Obtained from upload()/download(); polled from the service side.
+using SdoTicket = std::uint32_t;
+struct SdoResult {
+    std::vector<std::byte> data;  ///< of an upload
+};
+
+class Master {
+public:
+    /// `transport` outlives the master. The configuration has passed check().
+    Master(Transport& transport, BusConfig config);
+    ~Master();
+    Master(const Master&) = delete;
+    Master& operator=(const Master&) = delete;
+
+    // --- service side -------------------------------------------------------------------------------------------------
+    enum class Phase : std::uint8_t { idle, scanning, preop, configuring, safeop, operational, failed, stopping, stopped };
+
+    /// Starts the bring-up towards OP. It ends in `operational` or `failed` (see failure()).
+    void start();
+    /// Takes the bus down in order (OP -> SAFEOP -> INIT). Axes must be disabled before.
+    void stop();
+    /// Runs the scripts as far as answers are there.
+    void step(Instant now);
+    [[nodiscard]] Phase phase() const noexcept;
+    /// One line for the operator: "slave 2 'y' PREOP -> SAFEOP: writing 1C12h".
+    [[nodiscard]] std::string progress() const;
+    /// Why the bring-up failed, with slave, state, code and text, and what to try.
+    [[nodiscard]] const Error& failure() const;
+
+    [[nodiscard]] SdoTicket upload(std::size_t slave, std::uint16_t index, std::uint8_t sub);
+    [[nodiscard]] SdoTicket download(std::size_t slave, std::uint16_t index, std::uint8_t sub, std::span<const std::byte> data);
+    /// Nothing while it is in flight; afterwards the result, once.
+    [[nodiscard]] std::optional<Result<SdoResult>> poll(SdoTicket ticket);
+
+    // --- resolved once, after `configuring` -----------------------------------------------------------------------------
+    [[nodiscard]] std::size_t slave_count() const noexcept;          ///< configured slaves, in configuration order
+    [[nodiscard]] const SlaveConfig& slave(std::size_t index) const;
+    [[nodiscard]] Result<Signal> input(std::size_t slave, std::uint16_t object, std::uint8_t sub) const;
+    [[nodiscard]] Result<Signal> output(std::size_t slave, std::uint16_t object, std::uint8_t sub) const;
+    [[nodiscard]] bool maps_output(std::size_t slave, std::uint16_t object, std::uint8_t sub) const noexcept;
+    [[nodiscard]] bool maps_input(std::size_t slave, std::uint16_t object, std::uint8_t sub) const noexcept;
+
+    // --- cyclic side, real-time safe --------------------------------------------------------------------------------------
+    void pump(Instant now) noexcept;
+    void receive(Instant now) noexcept;
+    void send(Instant now) noexcept;
+    [[nodiscard]] std::span<const std::byte> inputs() const noexcept;
+    [[nodiscard]] std::span<std::byte> outputs() noexcept;
+    [[nodiscard]] const SlaveHealth& health(std::size_t slave) const noexcept;
+    [[nodiscard]] const BusStatistics& statistics() const noexcept;
+    /// When the drives will apply the outputs that the next send() carries: the next SYNC0, or the send itself without DC.
+    [[nodiscard]] Instant outputs_effective(std::size_t slave, Instant send_time) const noexcept;
+    /// Called by send() with each frame as it goes out, and by receive() with each as it came in: recorder, pcap. May be null.
+    void set_tap(void (*tap)(void* context, std::span<const std::byte> frame, Instant at, bool outgoing) noexcept, void* context) noexcept;
+
+    static std::span<const AlarmInfo> alarms() noexcept;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace taktwerk::ecat

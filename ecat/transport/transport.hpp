@@ -1,0 +1,31 @@
+#pragma once
+// Moves whole Ethernet frames with time stamps. Knows nothing of datagrams. Implementations: raw_socket.hpp (AF_PACKET),
+// loopback.hpp (in-process, to simulated slaves).
+
+#include <cstddef>
+#include <optional>
+#include <span>
+
+#include "core/time.hpp"
+#include "ecat/wire/frame.hpp"
+
+namespace taktwerk::ecat {
+
+struct ReceivedFrame {
+    std::size_t size = 0;  ///< bytes written to the caller's buffer
+    Instant at{};          ///< when it arrived (kernel stamp where there is one)
+};
+
+class Transport {
+public:
+    virtual ~Transport() = default;
+    /// Sends one frame without FCS. False when the link did not take it (down, full): the caller counts it. Real-time safe.
+    virtual bool send(std::span<const std::byte> frame, Instant now) noexcept = 0;
+    /// One frame that has arrived by `now`, or nothing. Never blocks. Real-time safe.
+    virtual std::optional<ReceivedFrame> receive(std::span<std::byte> buffer, Instant now) noexcept = 0;
+    [[nodiscard]] virtual MacAddress mac() const noexcept = 0;
+    /// False: no carrier. Cheap, real-time safe.
+    [[nodiscard]] virtual bool link_up() const noexcept = 0;
+};
+
+}  // namespace taktwerk::ecat
