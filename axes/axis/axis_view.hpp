@@ -1,0 +1,77 @@
+#pragma once
+// What everyone else sees of an axis: one value per axis and cycle. Blocks read it by command id; snapshot and HMI copy it.
+// Trivially copyable, so a slower task can latch it.
+
+#include <array>
+#include <cstdint>
+#include <type_traits>
+
+#include "axes/axis/command.hpp"
+#include "axes/axis/types.hpp"
+#include "axes/port/drive_port.hpp"
+#include "core/time.hpp"
+
+namespace taktwerk::axes {
+
+/// Which limit held the velocity down in this cycle: the answer to "why is it so slow".
+enum class VelocityLimiter : std::uint8_t { none, command, axis_limit, manual_speed, override_factor, software_limit, stopping };
+
+struct AxisView {
+    AxisState state = AxisState::Disabled;
+    Owner owner = Owner::none;
+    bool powered = false;          ///< operation enabled and the dwell after it has passed: motion is accepted
+    bool homed = false;
+    bool simulated = false;
+    bool online = false;           ///< feedback is fresh enough
+    bool in_position = false;      ///< actual inside the in-position window of the set-point, standstill
+    bool warning = false;
+    std::uint16_t error = 0;       ///< alarm id while in ErrorStop (or ErrorId of the last error); 0 = none
+    std::uint16_t drive_error = 0; ///< drive's own number (603Fh); 0 = none
+
+    // u, u/s, u/s2, u/s3, fraction of rated torque
+    double set_position = 0, set_velocity = 0, set_acceleration = 0, set_jerk = 0;
+    double actual_position = 0, actual_velocity = 0, actual_torque = 0;
+    double following_error = 0;    ///< set-point in effect at the latch, minus actual
+    double target_position = 0;
+    VelocityLimiter limiter = VelocityLimiter::none;
+
+    PowerState drive_state = PowerState::unknown;
+    DriveMode drive_mode = DriveMode::none;
+    std::uint16_t status_word = 0;
+    bool negative_limit_switch = false, positive_limit_switch = false, home_switch = false;
+
+    // commands
+    CommandId active = 0;
+    bool active_in_target = false;
+    std::uint8_t queued_count = 0;
+    std::array<CommandId, 8> queued{};
+    struct Finished {
+        CommandId id = 0;
+        Outcome outcome = Outcome::done;
+        ErrorId error = ErrorId::none;
+    };
+    std::array<Finished, 16> ledger{};   ///< ring; newest at (ledger_next - 1)
+    std::uint8_t ledger_next = 0;
+    CommandId last_id = 0;               ///< highest id given out
+
+    /// Bounded (a few dozen compares).
+    [[nodiscard]] constexpr CommandStatus status(CommandId id, ErrorId* error_out = nullptr) const noexcept {
+        if (id == 0) return CommandStatus::unknown;
+        if (id == active) return active_in_target ? CommandStatus::in_target : CommandStatus::active;
+        for (std::uint8_t i = 0; i < queued_count; ++i)
+            if (queued[i] == id) return CommandStatus::queued;
+        for (const auto& entry : ledger) {
+            if (entry.id != id) continue;
+            if (error_out) *error_out = entry.error;
+            switch (entry.outcome) {
+                case Outcome::done: return CommandStatus::done;
+                case Outcome::aborted: return CommandStatus::aborted;
+                case Outcome::error: return CommandStatus::error;
+            }
+        }
+        return CommandStatus::unknown;
+    }
+};
+static_assert(std::is_trivially_copyable_v<AxisView>);
+
+}  // namespace taktwerk::axes

@@ -1,0 +1,42 @@
+#pragma once
+// What a motion block is handed: the time, the axis views of this scan, and the way to submit. No pointer is kept in a block.
+
+#include <cstdint>
+#include <span>
+
+#include "axes/axis/axis_view.hpp"
+#include "axes/axis/command.hpp"
+#include "core/cycle_context.hpp"
+
+namespace taktwerk::axes {
+
+/// Where submitted requests go: straight to the axes (base task) or into a task's latch (slower tasks). One per task.
+/// Every function answers at once and is real-time safe.
+class AxisRequests {
+public:
+    virtual Submitted submit(AxisRef axis, const AxisCommand& command, Owner owner) noexcept = 0;
+    /// MC_Power's level. Called each scan by whoever holds it; the strongest wish wins: two holders are an error (power_conflict).
+    virtual ErrorId power(AxisRef axis, bool enable, bool positive, bool negative, Owner owner) noexcept = 0;
+    virtual ErrorId reset(AxisRef axis, Owner owner) noexcept = 0;
+    virtual ErrorId set_position(AxisRef axis, double position, bool relative, Owner owner) noexcept = 0;
+    /// MC_Stop's Execute fell: the lock goes when the axis stands.
+    virtual void release_stop(AxisRef axis, CommandId id, Owner owner) noexcept = 0;
+    /// Keeps a jog alive; without it the axis stops after its lease.
+    virtual ErrorId renew_jog(AxisRef axis, CommandId id, double velocity, Owner owner) noexcept = 0;
+
+protected:
+    ~AxisRequests() = default;
+};
+
+struct MotionContext : CycleContext {
+    std::span<const AxisView> axes;
+    AxisRequests* requests = nullptr;
+    Owner owner = Owner::program;
+
+    /// nullptr for an invalid handle: blocks answer with ErrorId::invalid_axis.
+    [[nodiscard]] const AxisView* view(AxisRef axis) const noexcept {
+        return axis.index < axes.size() ? &axes[axis.index] : nullptr;
+    }
+};
+
+}  // namespace taktwerk::axes

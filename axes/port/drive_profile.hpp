@@ -1,0 +1,64 @@
+#pragma once
+// What a drive type means to an axis: modes, homing, units, timing, quirks, alarms. Filled from a drive YAML by config/.
+// The bus half of the same YAML is ecat::DeviceDescription. Plain data.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "axes/port/drive_port.hpp"
+#include "core/time.hpp"
+
+namespace taktwerk::axes {
+
+/// A deviation from CiA 402, chosen by name in YAML; each has a doc line here, code behind it and a test.
+enum class Quirk : std::uint8_t {
+    fault_low_nibble_f,         ///< Fault reads x0xx1111 like Fault Reaction (SE-808X 3.2.2.2): bit 3 alone decides
+    fault_reset_needs_disable,  ///< drop enable before the reset edge (SV33-E 5.1)
+    limit_stop_is_warning,      ///< overtravel stops with position lock while Operation enabled (SV33-E A.220/A.221)
+    no_remote_bit,              ///< statusword bit 9 is unsupported (SE-808X 3.2.2.2)
+    no_internal_limit_bit,      ///< statusword bit 11 is unsupported (SE-808X 3.2.2.2)
+    csp_bits_12_13_reserved,    ///< no "following" and "following error" bits in CSP (SE-808X 3.2.6)
+    disable_may_coast,          ///< Shutdown / Disable voltage may cut power at once: ramp to zero before (SV33-E 3.4.1)
+};
+inline constexpr std::size_t quirk_count = 7;
+
+struct DriveAlarmText {
+    std::uint16_t code = 0;      ///< 603Fh
+    std::uint32_t detail = 0;    ///< value of the further object that tells apart; 0 = code alone
+    std::string panel;           ///< what the drive's own display shows: "E.200.0"
+    std::string english, chinese, cause, remedy;
+    bool resettable = true;
+    bool warning = false;
+};
+
+struct DriveProfile {
+    std::string name;                        ///< "sv33-e"
+    std::string vendor, title;               ///< for people
+    std::vector<DriveMode> modes;
+    std::vector<std::int8_t> homing_methods; ///< 6098h values the drive documents
+    double velocity_counts_per_unit = 1.0;   ///< 606Ch/60FFh raw = counts/s * this
+    double torque_rated_raw = 1000.0;        ///< 6077h/6071h raw value of rated torque
+    std::uint8_t position_bits = 32;
+    std::uint8_t probes = 0;
+    bool motor_has_encoder = true;
+    Duration minimum_cycle_csp{};
+    Duration enable_delay{}, mode_change_delay{}, enable_timeout = std::chrono::seconds{2};
+    bool mode_change_at_standstill = false;
+    std::uint16_t object_offset = 0x0800, pdo_offset = 0x40;  ///< per further axis of a multi-axis drive
+    std::uint8_t axes = 1;
+    std::uint8_t input_bit_negative_limit = 0, input_bit_positive_limit = 1, input_bit_home = 2;  ///< in 60FDh
+    std::vector<Quirk> quirks;
+    std::uint16_t alarm_detail_index = 0;    ///< object that tells ambiguous 603Fh apart (P21.08 = 2021h:09); 0 = none
+    std::uint8_t alarm_detail_sub = 0;
+    std::vector<DriveAlarmText> alarms;
+    std::vector<std::string> assumed;        ///< what the manual leaves open and we took, in words
+
+    [[nodiscard]] bool has(Quirk quirk) const noexcept {
+        for (const auto q : quirks)
+            if (q == quirk) return true;
+        return false;
+    }
+};
+
+}  // namespace taktwerk::axes
