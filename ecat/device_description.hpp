@@ -9,13 +9,9 @@
 #include <vector>
 
 #include "core/time.hpp"
+#include "ecat/wire/identity.hpp"
 
 namespace taktwerk::ecat {
-
-struct Identity {
-    std::uint32_t vendor = 0, product = 0, revision = 0, serial = 0;
-    friend bool operator==(const Identity&, const Identity&) = default;
-};
 
 /// CoE basic data types (ETG.1000.6); `bits` of an object follows from it.
 enum class DataType : std::uint8_t { BOOL, I8, I16, I32, I64, U8, U16, U32, U64, REAL32, REAL64, STRING };

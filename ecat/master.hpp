@@ -23,11 +23,9 @@
 #include "core/time.hpp"
 #include "ecat/bus_config.hpp"
 #include "ecat/transport/transport.hpp"
+#include "ecat/wire/al_status.hpp"
 
 namespace taktwerk::ecat {
-
-enum class AlState : std::uint8_t { unknown = 0, init = 1, preop = 2, boot = 3, safeop = 4, op = 8 };
-[[nodiscard]] std::string_view name(AlState state) noexcept;
 
 /// What the cycle knows about a slave's process data. Trivially copyable.
 struct SlaveHealth {
