@@ -1,0 +1,27 @@
+#pragma once
+// The mechanics behind a simulated drive: motor, load, travel and switches. SI units at the motor shaft; positions along the
+// travel in counts of the drive (0 = where the machine's own zero is, unknown to the drive until it homes).
+
+#include <cstdint>
+#include <limits>
+
+namespace taktwerk::axes::sim {
+
+struct PlantConfig {
+    std::int64_t counts_per_revolution = 10000;
+    double inertia = 2e-4;             ///< kg m2, motor and load together
+    double viscous_friction = 1e-3;    ///< N m s/rad
+    double coulomb_friction = 0.05;    ///< N m
+    double load_torque = 0;            ///< N m, constant (gravity); positive pushes to negative
+    double rated_torque = 1.27;        ///< N m: 1.0 of the port
+    double maximum_torque = 3.0;       ///< in rated torques
+    // travel, in counts; infinite = none
+    double start = 0;
+    double negative_stop = -std::numeric_limits<double>::infinity();
+    double positive_stop = std::numeric_limits<double>::infinity();
+    double negative_limit = -std::numeric_limits<double>::infinity();  ///< switch active below
+    double positive_limit = std::numeric_limits<double>::infinity();   ///< switch active above
+    double home_from = 1, home_to = 0;                                 ///< switch active in between; from > to = no switch
+};
+
+}  // namespace taktwerk::axes::sim

@@ -1,0 +1,83 @@
+#pragma once
+// One machine and its cycle (DESIGN 3). Built from plain structs; knows no YAML and no LCM.
+//
+//   build -> bring_up() until up -> arm() -> cycle(...) each period; service(now) beside it, from another thread or between
+//   cycles. In virtual time one thread calls them in a fixed order (runtime/runner.hpp).
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "core/result.hpp"
+#include "core/time.hpp"
+#include "ecat/transport/transport.hpp"
+#include "runtime/machine_config.hpp"
+#include "runtime/operator_command.hpp"
+#include "runtime/snapshot.hpp"
+
+namespace taktwerk::runtime {
+
+/// What the caller knows about this wake-up.
+struct CycleTick {
+    Instant scheduled{};          ///< the grid point
+    Instant woken{};              ///< when the thread really ran
+    std::uint32_t missed = 0;     ///< grid points skipped since the last cycle
+};
+
+/// An alarm in words, for people. Made outside the cycle.
+struct AlarmText {
+    std::string source;           ///< "axis x", "slave 2 'y_drive'", "machine"
+    std::string name, english, chinese, cause, remedy;
+    std::string reaction, reset;
+};
+
+class Machine {
+public:
+    /// Checks everything, loads the programs, takes all memory. `transport` outlives the machine. All problems at once.
+    static std::variant<std::unique_ptr<Machine>, std::vector<Error>> build(MachineConfig config, ecat::Transport& transport);
+    ~Machine();
+    Machine(const Machine&) = delete;
+    Machine& operator=(const Machine&) = delete;
+
+    // --- service side (one thread, not real-time) -----------------------------------------------------------------------
+    void start_bus();
+    /// Bus scripts, drive services, slow work. Call often (each millisecond or after each virtual cycle).
+    void service(Instant now);
+    /// After the bus is operational: signals resolved, image layout known. Once. Then cycle() may run programs.
+    [[nodiscard]] Result<void> arm();
+    [[nodiscard]] bool bus_operational() const noexcept;
+    [[nodiscard]] std::optional<Error> bus_failure() const;
+    [[nodiscard]] std::string bus_progress() const;
+
+    // --- cycle (one thread, real-time safe after arm()) ------------------------------------------------------------------
+    void cycle(const CycleTick& tick) noexcept;
+    /// Before arm(): acyclic frames only.
+    void pump(Instant now) noexcept;
+
+    // --- between the two ---------------------------------------------------------------------------------------------------
+    /// Service side: queue a command for the next cycle. False: inbox full (answer queue_full).
+    bool submit(const OperatorCommand& command) noexcept;
+    /// Service side: the next answer of the cycle, if any.
+    std::optional<CommandAnswer> next_answer() noexcept;
+    /// Service side (one reader): the newest snapshot; nullptr before the first cycle.
+    const Snapshot* latest() noexcept;
+    /// Levels, not queued: set by signal handlers. Real-time safe, async-signal-safe.
+    void request_shutdown() noexcept;
+    [[nodiscard]] MachinePhase phase() const noexcept;
+
+    [[nodiscard]] const MachineConfig& config() const noexcept;
+    [[nodiscard]] const MachineLayout& layout() const noexcept;
+    [[nodiscard]] AlarmText describe(const AlarmFact& fact) const;
+    [[nodiscard]] const ecat::Master& bus() const noexcept;
+    [[nodiscard]] ecat::Master& bus() noexcept;
+
+private:
+    struct Impl;
+    explicit Machine(std::unique_ptr<Impl> impl);
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace taktwerk::runtime

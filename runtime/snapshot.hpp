@@ -1,0 +1,92 @@
+#pragma once
+// The one copy of the machine's state that leaves the cycle: HMI, command line, trace, recorder all read this. Buffers are
+// sized when the machine is built; copying allocates nothing.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "axes/axis/axis_view.hpp"
+#include "core/alarm.hpp"
+#include "core/time.hpp"
+#include "ecat/master.hpp"
+#include "programs/api/program.hpp"
+#include "runtime/machine_config.hpp"
+
+namespace taktwerk::runtime {
+
+enum class MachinePhase : std::uint8_t { starting, running, stopping, stopped, failed };
+enum class ProgramState : std::uint8_t { stopped, running, fault };
+
+/// An alarm that is standing or waits for acknowledgement.
+struct ActiveAlarm {
+    AlarmFact fact;
+    Instant since{};
+    std::uint32_t count = 0;      ///< times raised since it was last clear
+    bool standing = false;        ///< the condition still holds
+    bool acknowledged = false;
+    Reaction reaction = Reaction::none;
+};
+
+/// Steps of DESIGN 3, for statistics.
+enum class Step : std::uint8_t { receive, inbox, decode, update, supervise, tasks, plan, encode, send, snapshot, total };
+inline constexpr std::size_t step_count = 11;
+[[nodiscard]] std::string_view name(Step step) noexcept;
+
+struct CycleStatistics {
+    std::uint64_t cycles = 0, overruns = 0, missed_ticks = 0;
+    Duration lateness{}, lateness_max{};          ///< of the wake-up
+    Duration compute{}, compute_max{};            ///< steps 1 to 10
+    std::uint64_t snapshots_dropped = 0, commands_refused = 0;
+};
+
+struct TaskStatistics {
+    std::uint64_t releases = 0, overruns = 0;
+    Duration run{}, run_max{};
+};
+
+struct Snapshot {
+    std::uint64_t cycle = 0;
+    Instant at{};                          ///< scan time of that cycle
+    MachinePhase phase = MachinePhase::starting;
+    Mode mode = Mode::manual;
+    bool emergency_stop = false;           ///< pressed (or its wire is broken)
+    bool simulated = false;
+    ecat::Master::Phase bus_phase = ecat::Master::Phase::idle;
+    ecat::BusStatistics bus;
+    CycleStatistics statistics;
+    std::vector<ecat::SlaveHealth> slaves;
+    std::vector<axes::AxisView> axes;
+    std::vector<std::int64_t> inputs, outputs;    ///< one per I/O point, in configuration order of that direction
+    std::vector<double> parameters;
+    std::vector<double> variables;                ///< monitored variables of all programs
+    std::vector<ProgramState> programs;
+    std::vector<TaskStatistics> tasks;
+    std::vector<ActiveAlarm> alarms;              ///< capacity fixed; the first alarm_count are valid, newest last
+    std::size_t alarm_count = 0;
+};
+
+/// Names and units that go with a snapshot; fixed when the machine is built.
+struct MachineLayout {
+    struct Variable {
+        std::string program, name, unit, doc;
+        VariableType type = VariableType::real;
+    };
+    struct ParameterInfo {
+        std::string program, name, unit, doc;
+        double minimum = 0, maximum = 0, value = 0;
+    };
+    struct AxisInfo {
+        std::string name, unit;
+        bool disabled = false, simulated = false;
+        double jog_slow = 0, jog_fast = 0;        ///< u/s
+    };
+    std::string machine;
+    Duration cycle{};
+    std::vector<AxisInfo> axes;
+    std::vector<std::string> slaves, inputs, outputs, programs, tasks;
+    std::vector<Variable> variables;
+    std::vector<ParameterInfo> parameters;
+};
+
+}  // namespace taktwerk::runtime
