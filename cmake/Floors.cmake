@@ -1,10 +1,13 @@
-# One CMake target per folder, named after its path; a floor links only lower ones (checked by tests/floors_unit).
+# One CMake target per folder, named after its path; a folder links only its own floor or lower ones
+# (tests/architecture reads the include lines and these lists).
 #
 #   taktwerk_library(ecat/wire  DEPENDS core)          -> target taktwerk_ecat_wire from ecat/wire/*.cpp
 #   taktwerk_tests(ecat/wire    DEPENDS ecat/wire)     -> one binary per kind: ecat_wire_unit, ecat_wire_property, ...
 #
 # Sources are globbed (CONFIGURE_DEPENDS): adding a file needs no edit here.
+# A dependency is a folder ("ecat/wire") or a target ("fmt::fmt", yaml-cpp); a folder may be listed before its target exists.
 
+set(TAKTWERK_FLOORS core ecat modbus axes fb_library programs runtime hmi_bridge config apps)
 set(TAKTWERK_TEST_KINDS unit property machine conformance)
 
 function(taktwerk_target_name folder out)
@@ -14,11 +17,10 @@ endfunction()
 
 function(taktwerk_link target visibility)
   foreach(dependency IN LISTS ARGN)
-    if(TARGET ${dependency} OR dependency MATCHES "::")
-      target_link_libraries(${target} ${visibility} ${dependency})
-    elseif(EXISTS "${PROJECT_SOURCE_DIR}/${dependency}" AND IS_DIRECTORY "${PROJECT_SOURCE_DIR}/${dependency}")
+    string(REGEX REPLACE "/.*" "" floor "${dependency}")
+    if(floor IN_LIST TAKTWERK_FLOORS)
       taktwerk_target_name(${dependency} name)
-      target_link_libraries(${target} ${visibility} ${name})
+      target_link_libraries(${target} ${visibility} $<TARGET_NAME_IF_EXISTS:${name}>)
     else()
       target_link_libraries(${target} ${visibility} ${dependency})
     endif()
@@ -30,16 +32,29 @@ function(taktwerk_library folder)
   taktwerk_target_name(${folder} target)
   file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/${folder}/*.cpp")
   if(sources)
+    set(visibility PUBLIC)
     add_library(${target} STATIC ${sources})
-    target_include_directories(${target} PUBLIC "${PROJECT_SOURCE_DIR}")
-    target_link_libraries(${target} PUBLIC taktwerk_build_options)
-    taktwerk_link(${target} PUBLIC ${ARG_DEPENDS})
   else()
+    set(visibility INTERFACE)  # headers only, so far
     add_library(${target} INTERFACE)
-    target_include_directories(${target} INTERFACE "${PROJECT_SOURCE_DIR}")
-    target_link_libraries(${target} INTERFACE taktwerk_build_options)
-    taktwerk_link(${target} INTERFACE ${ARG_DEPENDS})
   endif()
+  target_include_directories(${target} ${visibility} "${PROJECT_SOURCE_DIR}")
+  target_link_libraries(${target} ${visibility} taktwerk_build_options)
+  taktwerk_link(${target} ${visibility} ${ARG_DEPENDS})
+  string(REPLACE ";" " " line "${folder};${ARG_DEPENDS}")
+  set_property(GLOBAL APPEND PROPERTY TAKTWERK_FOLDERS "${line}")
+endfunction()
+
+# Every folder target so far, for whoever wants them all (benchmarks, header check).
+function(taktwerk_all_targets out)
+  get_property(lines GLOBAL PROPERTY TAKTWERK_FOLDERS)
+  set(targets "")
+  foreach(line IN LISTS lines)
+    string(REGEX REPLACE " .*" "" folder "${line}")
+    taktwerk_target_name(${folder} target)
+    list(APPEND targets ${target})
+  endforeach()
+  set(${out} "${targets}" PARENT_SCOPE)
 endfunction()
 
 # tests/<folder>/*_<kind>.cpp -> binary <folder>_<kind> with CTest label <kind>.
