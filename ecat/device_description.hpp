@@ -15,8 +15,20 @@ namespace taktwerk::ecat {
 
 /// CoE basic data types (ETG.1000.6); `bits` of an object follows from it.
 enum class DataType : std::uint8_t { BOOL, I8, I16, I32, I64, U8, U16, U32, U64, REAL32, REAL64, STRING };
-[[nodiscard]] std::uint8_t bit_size(DataType type) noexcept;  ///< STRING: 0
-[[nodiscard]] bool is_signed(DataType type) noexcept;
+[[nodiscard]] constexpr std::uint8_t bit_size(DataType type) noexcept {  ///< STRING: 0
+    switch (type) {
+        case DataType::BOOL: return 1;
+        case DataType::I8: case DataType::U8: return 8;
+        case DataType::I16: case DataType::U16: return 16;
+        case DataType::I32: case DataType::U32: case DataType::REAL32: return 32;
+        case DataType::I64: case DataType::U64: case DataType::REAL64: return 64;
+        case DataType::STRING: break;
+    }
+    return 0;
+}
+[[nodiscard]] constexpr bool is_signed(DataType type) noexcept {
+    return type == DataType::I8 || type == DataType::I16 || type == DataType::I32 || type == DataType::I64;
+}
 
 enum class Access : std::uint8_t { ro, rw, wo };
 enum class Mappable : std::uint8_t { no, rx, tx, both };
