@@ -127,8 +127,7 @@ Violations check_floor_order(const std::vector<SourceFile>& files) {
             const auto level = level_of(other);
             if (include.quoted && (include.path.find('/') == std::string::npos || include.path.front() == '.'))
                 violations.push_back(at(file, include.line) + "\"" + include.path + "\" is not written from the repository root");
-            if (include.quoted && other == "tests")
-                violations.push_back(at(file, include.line) + "includes " + include.path + ", a test");
+            if (include.quoted && other == "tests") violations.push_back(at(file, include.line) + "includes " + include.path + ", a test");
             if (!level || other == floor) continue;
             if (*level > *own) violations.push_back(at(file, include.line) + "includes " + include.path + ", a higher floor");
             if (*level == *own) violations.push_back(at(file, include.line) + "includes " + include.path + ", a sibling floor");
@@ -146,7 +145,8 @@ Violations check_owned_includes(const std::vector<SourceFile>& files) {
                 if (!std::regex_search(include.path, rule.include) || in_any(file.path, rule.owners)) continue;
                 std::string owners;
                 for (const auto& owner : rule.owners) owners += (owners.empty() ? "" : ", ") + owner + "/";
-                violations.push_back(at(file, include.line) + "includes " + include.path + "; only " + owners + " may include " + rule.what);
+                violations.push_back(at(file, include.line) + "includes " + include.path + "; only " + owners + " may include " +
+                                     rule.what);
             }
     return violations;
 }
@@ -200,7 +200,8 @@ Violations check_determinism(const std::vector<SourceFile>& files) {
         std::string line;
         for (std::size_t number = 1; std::getline(code, line); ++number)
             for (const auto& rule : banned)
-                if (!in_any(file.path, rule.allowed_in) && std::regex_search(line, rule.call)) violations.push_back(at(file, number) + rule.why);
+                if (!in_any(file.path, rule.allowed_in) && std::regex_search(line, rule.call))
+                    violations.push_back(at(file, number) + rule.why);
     }
     return violations;
 }

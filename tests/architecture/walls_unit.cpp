@@ -15,7 +15,6 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::IsEmpty;
 
 const std::vector<SourceFile>& tree() {
     static const std::vector<SourceFile> files = [] {
@@ -44,9 +43,9 @@ std::string one_a_line(const Violations& violations) {
     return text;
 }
 
-#define EXPECT_NO_VIOLATIONS(call)                    \
-    do {                                              \
-        const auto found = (call);                    \
+#define EXPECT_NO_VIOLATIONS(call)                       \
+    do {                                                 \
+        const auto found = (call);                       \
         EXPECT_TRUE(found.empty()) << one_a_line(found); \
     } while (false)
 
@@ -69,7 +68,8 @@ TEST(Tree, EveryFolderWithSourcesHasAReadme) {
     for (const auto& file : tree()) folders.insert(folder_of(file.path));
     Violations missing;
     for (const auto& folder : folders)
-        if (!std::filesystem::exists(std::filesystem::path(TAKTWERK_SOURCE_DIR) / folder / "README.md")) missing.push_back(folder + "/README.md");
+        if (!std::filesystem::exists(std::filesystem::path(TAKTWERK_SOURCE_DIR) / folder / "README.md"))
+            missing.push_back(folder + "/README.md");
     EXPECT_TRUE(missing.empty()) << one_a_line(missing);
 }
 
@@ -97,7 +97,8 @@ TEST(FloorOrder, TheTwoBusesNeverIncludeEachOther) {
 
 TEST(FloorOrder, IncludesAreWrittenFromTheRootAndNeverNameTests) {
     EXPECT_THAT(check_floor_order({{"core/a.cpp", "#include \"a.hpp\"\n#include \"../core/b.hpp\"\n#include \"tests/c.hpp\"\n"}}),
-                ElementsAre(HasSubstr(":1: \"a.hpp\" is not written from"), HasSubstr(":2: \"../core/b.hpp\" is not"), HasSubstr(":3: includes tests/")));
+                ElementsAre(HasSubstr(":1: \"a.hpp\" is not written from"), HasSubstr(":2: \"../core/b.hpp\" is not"),
+                            HasSubstr(":3: includes tests/")));
 }
 
 TEST(FloorOrder, AnIncludeInACommentDoesNotCount) {
@@ -144,7 +145,8 @@ const FolderGraph small_graph = parse_folder_graph(
     "ecat ecat/transport ecat/coe core\n");
 
 TEST(FolderLinks, AFolderIncludesWhatItLinksDirectlyOrThroughOthers) {
-    EXPECT_NO_VIOLATIONS(check_folder_links({{"ecat/transport/raw.cpp", "#include \"ecat/wire/frame.hpp\"\n#include \"core/time.hpp\"\n"}}, small_graph));
+    EXPECT_NO_VIOLATIONS(
+        check_folder_links({{"ecat/transport/raw.cpp", "#include \"ecat/wire/frame.hpp\"\n#include \"core/time.hpp\"\n"}}, small_graph));
 }
 
 TEST(FolderLinks, AFolderThatIsNotLinkedIsRefused) {
@@ -163,8 +165,9 @@ TEST(FolderLinks, HeadersAtTheTopOfAFloorAreVocabularyAsFarAsTheirOwnIncludesAll
 
 TEST(FolderGraphRules, LoopsHigherFloorsAndUnknownFoldersAreRefused) {
     EXPECT_NO_VIOLATIONS(check_folder_graph(small_graph));
-    EXPECT_THAT(check_folder_graph(parse_folder_graph("core axes/axis\naxes/axis core\n")),
-                testing::IsSupersetOf({HasSubstr("core links axes/axis, not a lower floor"), HasSubstr("core links itself through others")}));
+    EXPECT_THAT(
+        check_folder_graph(parse_folder_graph("core axes/axis\naxes/axis core\n")),
+        testing::IsSupersetOf({HasSubstr("core links axes/axis, not a lower floor"), HasSubstr("core links itself through others")}));
     EXPECT_THAT(check_folder_graph(parse_folder_graph("modbus ecat\necat\n")), ElementsAre(HasSubstr("not a lower floor")));
     EXPECT_THAT(check_folder_graph(parse_folder_graph("ecat/wire core\n")), ElementsAre(HasSubstr("core, which is no folder target")));
 }
@@ -176,8 +179,8 @@ TEST(Determinism, ClocksSleepsAndRandomNumbersAreRefusedOnTheControlSide) {
                     {"ecat/c.cpp", "gettimeofday(&tv, nullptr);\nusleep(10);\n"},
                     {"core/d.cpp", "int x = rand();\nstd::random_device seed;\n"},
                 }),
-                ElementsAre(HasSubstr("axes/axis/a.cpp:1"), HasSubstr("runtime/b.cpp:2"), HasSubstr("ecat/c.cpp:1"), HasSubstr("ecat/c.cpp:2"),
-                            HasSubstr("core/d.cpp:1"), HasSubstr("core/d.cpp:2")));
+                ElementsAre(HasSubstr("axes/axis/a.cpp:1"), HasSubstr("runtime/b.cpp:2"), HasSubstr("ecat/c.cpp:1"),
+                            HasSubstr("ecat/c.cpp:2"), HasSubstr("core/d.cpp:1"), HasSubstr("core/d.cpp:2")));
 }
 
 TEST(Determinism, CoreOwnsTheClockAndTheBridgeStampsMessages) {
@@ -189,8 +192,9 @@ TEST(Determinism, CoreOwnsTheClockAndTheBridgeStampsMessages) {
 }
 
 TEST(Names, WordsThatBelongToNobodyAreRefused) {
-    EXPECT_THAT(check_names({{"core/utils.hpp", ""}, {"axes/common/x.cpp", ""}, {"runtime/task_manager.cpp", ""}, {"core/command.hpp", ""}}),
-                testing::SizeIs(3));
+    EXPECT_THAT(
+        check_names({{"core/utils.hpp", ""}, {"axes/common/x.cpp", ""}, {"runtime/task_manager.cpp", ""}, {"core/command.hpp", ""}}),
+        testing::SizeIs(3));
 }
 
 TEST(SourceText, StringsAndDigitSeparatorsDoNotHideCode) {
