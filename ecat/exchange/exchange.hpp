@@ -12,7 +12,8 @@
 //
 // An answer counts only if it has exactly the datagrams that were sent: command, index, address, length and order. (Slaves
 // increment ADP of AP and B commands; there only the offset is compared.) Each frame has a generation; its bytes are spread
-// over the datagrams' 8-bit indices, so that a frame of two datagrams is told from the 65535 before it.
+// over the datagrams' 8-bit indices, so that a frame of two datagrams is told from the 65535 before it. The index of a frame
+// that got lost is not used again for a full round.
 // Source: reference/ethercat-masters.md 2.4, F1 (a master that matched by index alone mistook late frames for fresh ones).
 
 #include <array>
@@ -78,8 +79,11 @@ public:
 
     /// Takes everything that has arrived by `now` and matches it. Returns how many frames were answered.
     std::size_t receive(Instant now) noexcept;
-    /// Frames sent at `now - timeout` or earlier and still unanswered become lost.
+    /// Frames sent at `now - timeout` or earlier and still unanswered become lost. One that came back untouched by any slave
+    /// (an echo, or a cable without slaves) is then answered as it is, with working counters 0.
     void expire(Instant now, Duration timeout) noexcept;
+    /// The same for one frame, whatever its age.
+    void expire(SlotId id) noexcept;
 
     [[nodiscard]] SlotState state(SlotId id) const noexcept;
     [[nodiscard]] FrameKind kind(SlotId id) const noexcept;
@@ -110,12 +114,16 @@ private:
     [[nodiscard]] Slot* find(SlotId id) const noexcept;
     bool match(std::span<const std::byte> frame, Instant at) noexcept;
     void give_up(Slot& slot) noexcept;
+    void expire(Slot& slot) noexcept;
+    void next_generation() noexcept;
 
     /// What became of the last frame that carried an index, to tell late from foreign answers.
-    enum class Past : std::uint8_t { never, in_flight, answered, lost };
+    enum class Past : std::uint8_t { never, in_flight, answered, lost, quarantined };
+
+    static constexpr std::size_t frames_per_receive = 64;  ///< bounds the cycle when the wire is flooded
 
     Transport& transport_;
-    MacAddress source_;
+    MacAddress source_;  ///< the transport's, without the locally-administered bit that slave controllers set
     std::unique_ptr<std::array<Slot, slot_count>> slots_;
     std::unique_ptr<Buffer> scratch_;
     std::array<Past, 256> past_{};
