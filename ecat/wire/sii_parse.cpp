@@ -1,0 +1,216 @@
+#include <algorithm>
+
+#include "core/bytes.hpp"
+#include "ecat/wire/sii.hpp"
+
+namespace taktwerk::ecat {
+
+namespace {
+
+constexpr std::size_t header_bytes = 2 * sii_word::categories;
+
+/// Word at a word address; 0 beyond the image.
+std::uint16_t word(std::span<const std::byte> image, std::size_t address) noexcept {
+    return 2 * address + 2 <= image.size() ? load_le<std::uint16_t>(image, 2 * address) : std::uint16_t{0};
+}
+
+std::uint32_t dword(std::span<const std::byte> image, std::size_t address) noexcept {
+    return word(image, address) | (static_cast<std::uint32_t>(word(image, address + 1)) << 16);
+}
+
+SiiMailbox mailbox(std::span<const std::byte> image, std::size_t address) noexcept { return {word(image, address), word(image, address + 1)}; }
+
+std::uint8_t byte_at(std::span<const std::byte> data, std::size_t offset) noexcept {
+    return offset < data.size() ? static_cast<std::uint8_t>(data[offset]) : std::uint8_t{0};
+}
+
+void note(Sii& sii, SiiDefect defect) {
+    if (!sii.has(defect)) sii.defects.push_back(defect);
+}
+
+void take_strings(Sii& sii, std::span<const std::byte> data) {
+    if (data.empty()) return note(sii, SiiDefect::bad_strings);
+    const std::size_t count = static_cast<std::size_t>(data[0]);
+    std::size_t at = 1;
+    for (std::size_t i = 0; i < count; ++i) {
+        if (at >= data.size()) return note(sii, SiiDefect::bad_strings);
+        const std::size_t length = static_cast<std::size_t>(data[at++]);
+        const std::size_t there = std::min(length, data.size() - at);
+        std::string text;
+        text.reserve(there);
+        for (const auto byte : data.subspan(at, there)) text.push_back(static_cast<char>(byte));
+        sii.strings.push_back(std::move(text));
+        if (there < length) return note(sii, SiiDefect::bad_strings);
+        at += length;
+    }
+}
+
+void take_general(Sii& sii, std::span<const std::byte> data) {
+    if (data.size() < 18) note(sii, SiiDefect::bad_general);  // byte 17 is the last one used below
+    SiiGeneral general;
+    general.group = byte_at(data, 0);
+    general.image = byte_at(data, 1);
+    general.order = byte_at(data, 2);
+    general.name = byte_at(data, 3);
+    general.coe_details = byte_at(data, 5);
+    general.foe_details = byte_at(data, 6);
+    general.eoe_details = byte_at(data, 7);
+    general.flags = byte_at(data, 11);
+    general.ebus_current = static_cast<std::int16_t>(byte_at(data, 12) | (byte_at(data, 13) << 8));
+    general.physical_ports = static_cast<std::uint16_t>(byte_at(data, 16) | (byte_at(data, 17) << 8));
+    sii.general = general;
+}
+
+void take_sync_managers(Sii& sii, std::span<const std::byte> data) {
+    if (data.size() % 8 != 0) note(sii, SiiDefect::bad_sync_managers);
+    for (; data.size() >= 8; data = data.subspan(8)) {
+        SiiSyncManager sm;
+        sm.start = load_le<std::uint16_t>(data, 0);
+        sm.length = load_le<std::uint16_t>(data, 2);
+        sm.control = static_cast<std::uint8_t>(data[4]);
+        sm.status = static_cast<std::uint8_t>(data[5]);
+        sm.enable = static_cast<std::uint8_t>(data[6]);
+        sm.use = static_cast<SiiSyncManagerUse>(data[7]);
+        sii.sync_managers.push_back(sm);
+    }
+}
+
+void take_pdos(Sii& sii, std::vector<SiiPdo>& pdos, std::span<const std::byte> data) {
+    while (!data.empty()) {
+        if (data.size() < 8) return note(sii, SiiDefect::bad_pdo);
+        SiiPdo pdo;
+        pdo.index = load_le<std::uint16_t>(data, 0);
+        const std::size_t count = static_cast<std::size_t>(data[2]);
+        pdo.sync_manager = static_cast<std::uint8_t>(data[3]);
+        pdo.synchronization = static_cast<std::uint8_t>(data[4]);
+        pdo.name = static_cast<std::uint8_t>(data[5]);
+        pdo.flags = load_le<std::uint16_t>(data, 6);
+        data = data.subspan(8);
+        const std::size_t there = std::min(count, data.size() / 8);
+        pdo.entries.reserve(there);
+        for (std::size_t i = 0; i < there; ++i, data = data.subspan(8)) {
+            SiiPdoEntry entry;
+            entry.index = load_le<std::uint16_t>(data, 0);
+            entry.sub = static_cast<std::uint8_t>(data[2]);
+            entry.name = static_cast<std::uint8_t>(data[3]);
+            entry.data_type = static_cast<std::uint8_t>(data[4]);
+            entry.bits = static_cast<std::uint8_t>(data[5]);
+            entry.flags = load_le<std::uint16_t>(data, 6);
+            pdo.entries.push_back(entry);
+        }
+        pdos.push_back(std::move(pdo));
+        if (there < count) return note(sii, SiiDefect::bad_pdo);
+    }
+}
+
+void take_category(Sii& sii, std::uint16_t type, std::span<const std::byte> data) {
+    switch (type) {
+        case sii_category::nop: break;
+        case sii_category::strings: take_strings(sii, data); break;
+        case sii_category::general: take_general(sii, data); break;
+        case sii_category::fmmu:
+            // Filled to a whole word with FFh or 00h; the filling reads as unused.
+            for (const auto byte : data) sii.fmmus.push_back(byte == std::byte{0xFF} ? SiiFmmuUse::unused : static_cast<SiiFmmuUse>(byte));
+            break;
+        case sii_category::sync_manager: take_sync_managers(sii, data); break;
+        case sii_category::tx_pdo: take_pdos(sii, sii.tx_pdos, data); break;
+        case sii_category::rx_pdo: take_pdos(sii, sii.rx_pdos, data); break;
+        default: sii.skipped.push_back(type); break;
+    }
+}
+
+bool is_blank(std::span<const std::byte> image) noexcept {
+    return std::all_of(image.begin(), image.end(), [](std::byte b) { return b == std::byte{0}; }) ||
+           std::all_of(image.begin(), image.end(), [](std::byte b) { return b == std::byte{0xFF}; });
+}
+
+}  // namespace
+
+std::string_view text(SiiDefect defect) noexcept {
+    switch (defect) {
+        case SiiDefect::empty: return "the EEPROM is empty";
+        case SiiDefect::truncated_header: return "the EEPROM is shorter than its 64-word header";
+        case SiiDefect::bad_checksum: return "the checksum of words 0..6 is wrong";
+        case SiiDefect::truncated_category: return "a category reaches beyond the EEPROM";
+        case SiiDefect::no_end: return "the end marker is missing";
+        case SiiDefect::bad_strings: return "the string table is shorter than it says";
+        case SiiDefect::bad_general: return "the general category is too short";
+        case SiiDefect::bad_sync_managers: return "the sync manager category is not a multiple of 8 bytes";
+        case SiiDefect::bad_pdo: return "a PDO category is shorter than its entries";
+    }
+    return "unknown defect";
+}
+
+std::size_t SiiPdo::bits() const noexcept {
+    std::size_t sum = 0;
+    for (const auto& entry : entries) sum += entry.bits;
+    return sum;
+}
+
+bool Sii::has(SiiDefect defect) const noexcept { return std::find(defects.begin(), defects.end(), defect) != defects.end(); }
+
+std::string_view Sii::string(std::uint8_t number) const noexcept {
+    return number != 0 && number <= strings.size() ? std::string_view{strings[number - 1u]} : std::string_view{};
+}
+
+std::uint8_t sii_checksum(std::span<const std::byte> image) noexcept {
+    std::uint8_t crc = 0xFF;
+    for (const auto byte : image.first(14)) {
+        crc = static_cast<std::uint8_t>(crc ^ static_cast<std::uint8_t>(byte));
+        for (int bit = 0; bit < 8; ++bit) crc = static_cast<std::uint8_t>((crc & 0x80u) != 0 ? (crc << 1) ^ 0x07 : crc << 1);
+    }
+    return crc;
+}
+
+Sii parse_sii(std::span<const std::byte> image) {
+    Sii sii;
+    if (is_blank(image)) {  // also no bytes at all
+        sii.version = 0;
+        sii.defects.push_back(SiiDefect::empty);
+        return sii;
+    }
+    if (image.size() < header_bytes) note(sii, SiiDefect::truncated_header);
+    sii.pdi_control = word(image, sii_word::pdi_control);
+    sii.pdi_configuration = word(image, sii_word::pdi_configuration);
+    sii.sync_pulse_length = word(image, sii_word::sync_pulse_length);
+    sii.pdi_configuration_extended = word(image, sii_word::pdi_configuration_extended);
+    sii.alias = word(image, sii_word::alias);
+    sii.identity.vendor = dword(image, sii_word::vendor);
+    sii.identity.product = dword(image, sii_word::product);
+    sii.identity.revision = dword(image, sii_word::revision);
+    sii.identity.serial = dword(image, sii_word::serial);
+    sii.boot_mailbox_out = mailbox(image, sii_word::boot_mailbox_out);
+    sii.boot_mailbox_in = mailbox(image, sii_word::boot_mailbox_in);
+    sii.mailbox_out = mailbox(image, sii_word::mailbox_out);
+    sii.mailbox_in = mailbox(image, sii_word::mailbox_in);
+    sii.mailbox_protocols = word(image, sii_word::mailbox_protocols);
+    sii.size_code = word(image, sii_word::size);
+    sii.version = word(image, sii_word::version);
+    if (image.size() >= 16 && sii_checksum(image) != static_cast<std::uint8_t>(word(image, sii_word::checksum) & 0xFFu))
+        note(sii, SiiDefect::bad_checksum);
+
+    for (std::size_t at = header_bytes;;) {
+        if (at + 2 > image.size()) {
+            note(sii, SiiDefect::no_end);
+            break;
+        }
+        const auto type = load_le<std::uint16_t>(image, at);
+        if (type == sii_category::end) break;
+        if (at + 4 > image.size()) {
+            note(sii, SiiDefect::truncated_category);
+            break;
+        }
+        const std::size_t bytes = 2 * static_cast<std::size_t>(load_le<std::uint16_t>(image, at + 2));
+        at += 4;
+        const std::size_t there = std::min(bytes, image.size() - at);
+        take_category(sii, type, image.subspan(at, there));
+        if (there < bytes) {
+            note(sii, SiiDefect::truncated_category);
+            break;
+        }
+        at += bytes;
+    }
+    return sii;
+}
+
+}  // namespace taktwerk::ecat
