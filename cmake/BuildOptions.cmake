@@ -6,6 +6,8 @@ target_compile_options(taktwerk_build_options INTERFACE
   -ffp-contract=off -fno-math-errno -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor)
 if(TAKTWERK_TESTS)
   target_compile_options(taktwerk_build_options INTERFACE -Werror)
+  # A span or array read out of bounds ends the test at once, in every preset that builds tests.
+  target_compile_definitions(taktwerk_build_options INTERFACE _GLIBCXX_ASSERTIONS)
 endif()
 if(TAKTWERK_SANITIZE)
   target_compile_options(taktwerk_build_options INTERFACE -fsanitize=${TAKTWERK_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
