@@ -109,7 +109,7 @@ void take_category(Sii& sii, std::uint16_t type, std::span<const std::byte> data
         case sii_category::strings: take_strings(sii, data); break;
         case sii_category::general: take_general(sii, data); break;
         case sii_category::fmmu:
-            // Filled to a whole word with FFh or 00h; the filling reads as unused.
+            while (!data.empty() && data.back() == std::byte{0xFF}) data = data.first(data.size() - 1);  // fills the last word
             for (const auto byte : data) sii.fmmus.push_back(byte == std::byte{0xFF} ? SiiFmmuUse::unused : static_cast<SiiFmmuUse>(byte));
             break;
         case sii_category::sync_manager: take_sync_managers(sii, data); break;

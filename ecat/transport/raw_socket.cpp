@@ -1,0 +1,186 @@
+#include "ecat/transport/raw_socket.hpp"
+
+#include <fmt/format.h>
+#include <linux/if_packet.h>
+#include <net/if.h>
+#include <net/if_arp.h>
+#include <netinet/in.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstddef>
+#include <cstring>
+#include <utility>
+
+#ifndef PACKET_IGNORE_OUTGOING  // Linux 4.20; older headers lack it
+#define PACKET_IGNORE_OUTGOING 23
+#endif
+
+namespace taktwerk::ecat {
+
+namespace {
+
+class Descriptor {
+public:
+    explicit Descriptor(int number) noexcept : number_(number) {}
+    ~Descriptor() {
+        if (number_ >= 0) ::close(number_);
+    }
+    Descriptor(Descriptor&& other) noexcept : number_(other.release()) {}
+    Descriptor(const Descriptor&) = delete;
+    Descriptor& operator=(const Descriptor&) = delete;
+    Descriptor& operator=(Descriptor&& other) noexcept {
+        std::swap(number_, other.number_);
+        return *this;
+    }
+    [[nodiscard]] int get() const noexcept { return number_; }
+    int release() noexcept { return std::exchange(number_, -1); }
+
+private:
+    int number_;
+};
+
+Error error(std::string_view code, std::string_view interface, std::string what, std::string remedy) {
+    return Error{std::string{code}, fmt::format("network interface {}", interface), std::move(what), std::move(remedy)};
+}
+
+Error socket_error(std::string_view interface, std::string_view call) {
+    return error("transport.socket", interface, fmt::format("{} failed: {}", call, std::strerror(errno)), "");
+}
+
+std::string other_interfaces() {
+    std::string names;
+    auto* list = ::if_nameindex();
+    if (list == nullptr) return names;
+    for (auto* entry = list; entry->if_index != 0; ++entry) {
+        if (std::string_view{entry->if_name} == "lo") continue;
+        if (!names.empty()) names += ", ";
+        names += entry->if_name;
+    }
+    ::if_freenameindex(list);
+    return names;
+}
+
+ifreq request(std::string_view interface) noexcept {
+    ifreq ifr{};
+    std::copy_n(interface.begin(), std::min<std::size_t>(interface.size(), IFNAMSIZ - 1), ifr.ifr_name);
+    return ifr;
+}
+
+/// Abstract Unix sockets are per network namespace, as interfaces are, and vanish with their process.
+Result<int> lock_interface(std::string_view interface) {
+    Descriptor lock{::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)};
+    if (lock.get() < 0) return socket_error(interface, "creating the lock");
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    const auto name = fmt::format("taktwerk.nic.{}", interface);
+    std::copy(name.begin(), name.end(), address.sun_path + 1);
+    const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
+    if (::bind(lock.get(), reinterpret_cast<const sockaddr*>(&address), size) == 0 && ::listen(lock.get(), 1) == 0) return lock.release();
+    if (errno != EADDRINUSE) return socket_error(interface, "taking the lock");
+
+    // The holder's process id: the kernel knows who listens.
+    ucred holder{};
+    socklen_t holder_size = sizeof holder;
+    const Descriptor asker{::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)};
+    const bool known = ::connect(asker.get(), reinterpret_cast<const sockaddr*>(&address), size) == 0 &&
+                       ::getsockopt(asker.get(), SOL_SOCKET, SO_PEERCRED, &holder, &holder_size) == 0 && holder.pid > 0;
+    return error("transport.in_use", interface,
+                 known ? fmt::format("another Taktwerk is the master on it (process {})", holder.pid)
+                       : std::string{"another Taktwerk is the master on it (its process id is not visible from here)"},
+                 "end that process, or use another interface");
+}
+
+}  // namespace
+
+Result<std::unique_ptr<RawSocketTransport>> RawSocketTransport::open(std::string_view interface, const RawSocketOptions& options) {
+    const auto index = interface.empty() || interface.size() >= IFNAMSIZ ? 0u : ::if_nametoindex(std::string{interface}.c_str());
+    if (index == 0) {
+        const auto others = other_interfaces();
+        return error("transport.no_such_interface", interface, "there is no network interface of this name",
+                     others.empty() ? std::string{"no other interface exists in this network namespace"} : fmt::format("use one of: {}", others));
+    }
+
+    // Flags and hardware address can be asked without privilege: their errors come first.
+    const Descriptor control{::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)};
+    auto ifr = request(interface);
+    if (::ioctl(control.get(), SIOCGIFHWADDR, &ifr) != 0) return socket_error(interface, "reading the hardware address");
+    if (ifr.ifr_hwaddr.sa_family != ARPHRD_ETHER)
+        return error("transport.not_ethernet", interface, "it is not an Ethernet interface", "use a wired Ethernet port");
+    MacAddress mac{};
+    std::memcpy(mac.data(), ifr.ifr_hwaddr.sa_data, mac.size());
+    ifr = request(interface);
+    if (::ioctl(control.get(), SIOCGIFFLAGS, &ifr) != 0) return socket_error(interface, "reading the flags");
+    if ((ifr.ifr_flags & IFF_UP) == 0)
+        return error("transport.interface_down", interface, "it is switched off", fmt::format("switch it on: ip link set {} up", interface));
+
+    // Protocol 0: nothing is received until it is bound to this interface.
+    Descriptor socket{::socket(AF_PACKET, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
+    if (socket.get() < 0) {
+        if (errno == EPERM || errno == EACCES)
+            return error("transport.no_privilege", interface, "raw Ethernet frames need the privilege CAP_NET_RAW",
+                         "run as root, or give it once: setcap cap_net_raw,cap_sys_nice,cap_ipc_lock+ep on the taktwerk binary");
+        return socket_error(interface, "opening a packet socket");
+    }
+
+    Descriptor lock{-1};
+    if (options.exclusive) {
+        auto taken = lock_interface(interface);
+        if (!taken) return std::move(taken).error();
+        lock = Descriptor{*taken};
+    }
+
+    const int on = 1;
+    const bool sees_own_frames = ::setsockopt(socket.get(), SOL_PACKET, PACKET_IGNORE_OUTGOING, &on, sizeof on) != 0;
+    if (options.skip_queueing) (void)::setsockopt(socket.get(), SOL_PACKET, PACKET_QDISC_BYPASS, &on, sizeof on);
+    (void)::setsockopt(socket.get(), SOL_SOCKET, SO_PRIORITY, &options.priority, sizeof options.priority);
+
+    sockaddr_ll address{};
+    address.sll_family = AF_PACKET;
+    address.sll_protocol = htons(ethertype);
+    address.sll_ifindex = static_cast<int>(index);
+    if (::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) return socket_error(interface, "binding the packet socket");
+
+    std::unique_ptr<RawSocketTransport> transport{
+        new RawSocketTransport{std::string{interface}, socket.release(), lock.release(), mac, sees_own_frames}};
+    transport->refresh();
+    return transport;
+}
+
+RawSocketTransport::RawSocketTransport(std::string interface, int socket, int lock, const MacAddress& mac, bool sees_own_frames) noexcept
+    : interface_(std::move(interface)), socket_(socket), lock_(lock), mac_(mac), sees_own_frames_(sees_own_frames) {}
+
+RawSocketTransport::~RawSocketTransport() {
+    ::close(socket_);
+    if (lock_ >= 0) ::close(lock_);
+}
+
+bool RawSocketTransport::send(std::span<const std::byte> frame, Instant) noexcept {
+    return ::send(socket_, frame.data(), frame.size(), MSG_DONTWAIT) == static_cast<ssize_t>(frame.size());
+}
+
+std::optional<ReceivedFrame> RawSocketTransport::receive(std::span<std::byte> buffer, Instant now) noexcept {
+    constexpr int own_frames_skipped = 16;  // at most so many are between two answers
+    for (int i = 0; i < own_frames_skipped; ++i) {
+        sockaddr_ll from{};
+        socklen_t from_size = sizeof from;
+        const auto size = ::recvfrom(socket_, buffer.data(), buffer.size(), MSG_DONTWAIT, reinterpret_cast<sockaddr*>(&from), &from_size);
+        if (size <= 0) return std::nullopt;
+        if (sees_own_frames_ && from.sll_pkttype == PACKET_OUTGOING) continue;
+        return ReceivedFrame{static_cast<std::size_t>(size), now};
+    }
+    return std::nullopt;
+}
+
+void RawSocketTransport::refresh() noexcept {
+    auto ifr = request(interface_);
+    const bool answered = ::ioctl(socket_, SIOCGIFFLAGS, &ifr) == 0;
+    constexpr short both = IFF_UP | IFF_RUNNING;
+    link_up_.store(answered && (ifr.ifr_flags & both) == both, std::memory_order_relaxed);
+}
+
+}  // namespace taktwerk::ecat
