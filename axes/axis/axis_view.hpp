@@ -34,6 +34,7 @@ struct AxisView {
     double following_error = 0;    ///< set-point in effect at the latch, minus actual
     double target_position = 0;
     VelocityLimiter limiter = VelocityLimiter::none;
+    double manual_slow = 0, manual_fast = 0;  ///< u/s, > 0: the configured jogging speeds (ManualSpeeds, resolved); constant
 
     PowerState drive_state = PowerState::unknown;
     DriveMode drive_mode = DriveMode::none;
