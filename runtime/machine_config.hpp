@@ -104,8 +104,18 @@ enum class Supervision : std::uint8_t {
     relaxed,  ///< network and host without real time: misses are counted, limits are 100 times wider
 };
 
+/// Something that happens to the simulated machine at a given machine time: for demos, rehearsals and tests.
+struct SimulationEvent {
+    enum class Kind : std::uint8_t { input, drive_fault, main_power, slave_power, jam };
+    Duration at{};                      ///< since start of the run
+    Kind kind = Kind::input;
+    std::string target;                 ///< input point (input), axis (drive_fault, main_power, jam), slave (slave_power)
+    std::int64_t value = 0;             ///< input value; 603Fh code; 1 = power on / free, 0 = power off / jammed
+};
+
 struct SimulationConfig {
     Supervision supervision = Supervision::strict;
+    std::vector<SimulationEvent> events;
 };
 
 struct MachineConfig {

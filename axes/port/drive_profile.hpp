@@ -45,6 +45,7 @@ struct DriveProfile {
     Duration minimum_cycle_csp{};
     Duration enable_delay{}, mode_change_delay{}, enable_timeout = std::chrono::seconds{2};
     bool mode_change_at_standstill = false;
+    bool csp_interpolates = true;            ///< reaches a CSP target one cycle after the SYNC0 that brought it
     std::uint16_t object_offset = 0x0800, pdo_offset = 0x40;  ///< per further axis of a multi-axis drive
     std::uint8_t axes = 1;
     std::uint8_t input_bit_negative_limit = 0, input_bit_positive_limit = 1, input_bit_home = 2;  ///< in 60FDh

@@ -31,8 +31,10 @@ std::int64_t saturate(double value, const Signal& signal) noexcept {
 
 }  // namespace
 
-Cia402Drive::Cia402Drive(ecat::Master& bus, std::size_t slave, std::uint8_t axis, std::shared_ptr<const DriveProfile> profile)
-    : bus_(bus), slave_(slave), axis_(axis), profile_(std::move(profile)), fault_quirk_(profile_->has(Quirk::fault_low_nibble_f)) {
+Cia402Drive::Cia402Drive(ecat::Master& bus, std::size_t slave, std::uint8_t axis, std::shared_ptr<const DriveProfile> profile,
+                         Duration cycle)
+    : bus_(bus), slave_(slave), axis_(axis), profile_(std::move(profile)),
+      interpolation_(profile_->csp_interpolates ? cycle : Duration{}), fault_quirk_(profile_->has(Quirk::fault_low_nibble_f)) {
     auto& c = capabilities_;
     for (const auto mode : profile_->modes) c.modes = static_cast<std::uint16_t>(c.modes | (1u << static_cast<unsigned>(mode)));
     c.drive_homing = !profile_->homing_methods.empty() && c.has(DriveMode::homing);
@@ -256,7 +258,9 @@ void Cia402Drive::step(Instant) {
     detail_answer_.store((static_cast<std::uint64_t>(detail_asked_) << 32) | detail, std::memory_order_release);
 }
 
-Instant Cia402Drive::setpoint_effective(Instant send_time) const noexcept { return bus_.outputs_effective(slave_, send_time); }
+Instant Cia402Drive::setpoint_effective(Instant send_time) const noexcept {
+    return bus_.outputs_effective(slave_, send_time) + interpolation_;
+}
 
 std::uint16_t Cia402Drive::fault_reset_word() noexcept {
     const auto phase = reset_cycle_++ % (reset_low_cycles + reset_high_cycles + reset_wait_cycles);

@@ -20,8 +20,9 @@ namespace taktwerk::axes::cia402 {
 
 class Cia402Drive final : public DrivePort {
 public:
-    /// `bus` outlives the drive. `slave` is the index in the bus configuration, `axis` the 0-based axis on that slave.
-    Cia402Drive(ecat::Master& bus, std::size_t slave, std::uint8_t axis, std::shared_ptr<const DriveProfile> profile);
+    /// `bus` outlives the drive. `slave` is the index in the bus configuration, `axis` the 0-based axis on that slave,
+    /// `cycle` the bus cycle (the drive interpolates over it).
+    Cia402Drive(ecat::Master& bus, std::size_t slave, std::uint8_t axis, std::shared_ptr<const DriveProfile> profile, Duration cycle);
 
     /// Finds the mapped objects; call once the bus has laid out its process image. Errors name the missing object and the
     /// PDO that should carry it.
@@ -57,6 +58,7 @@ private:
     std::size_t slave_;
     std::uint8_t axis_;
     std::shared_ptr<const DriveProfile> profile_;
+    Duration interpolation_;
     bool fault_quirk_;
     Outputs out_;
     Inputs in_;

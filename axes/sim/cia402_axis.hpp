@@ -1,0 +1,131 @@
+#pragma once
+// One axis of a simulated CiA 402 drive: power state machine, CSP, CSV, CST and homing, alarms, in front of a servo loop and a
+// plant. It answers because it computes. Knows no bus: axes/sim/cia402_device.hpp copies objects in and out.
+// Sources: CiA 402-2; what differs per drive is in Personality, with the manual's section in the drive sheets.
+
+#include <cstdint>
+
+#include "axes/sim/homing_run.hpp"
+#include "axes/sim/plant.hpp"
+#include "axes/sim/servo_loop.hpp"
+#include "core/time.hpp"
+
+namespace taktwerk::axes::sim {
+
+enum class FaultStop : std::uint8_t {
+    coast,  ///< power stage off at once (SE-808X 605Eh = 0)
+    ramp,   ///< decelerates, then off
+};
+
+/// How this drive type behaves where CiA 402 leaves room.
+struct Personality {
+    std::int64_t counts_per_revolution = 10000;
+    double velocity_counts_per_unit = 1.0;      ///< raw 606Ch/60FFh = counts/s * this
+    double torque_rated_raw = 1000.0;
+    bool absolute_encoder = false;              ///< keeps its coordinate over a power cycle
+    bool fault_pattern_f = false;               ///< Fault shows as x0xx1111
+    bool remote_bit = true;                     ///< bit 9 set in OP
+    bool internal_limit_bit = true;
+    bool csp_following_bits = true;             ///< bits 12 and 13 in CSP
+    bool home_found_bit_15 = false;
+    bool reset_needs_disable = false;           ///< fault reset only with enable dropped
+    bool limit_stop_is_warning = false;         ///< overtravel: stop with position lock, warning, still enabled
+    bool quick_stop_leaves = true;              ///< after the quick stop: Switch On Disabled by itself
+    FaultStop fault_stop = FaultStop::ramp;
+    double quick_stop_deceleration = 0;         ///< counts/s2; 0 = torque limit
+    double following_error_limit = 0;           ///< counts; 0 = no check
+    double maximum_velocity = 0;                ///< counts/s; CSP increments beyond 3 times that are counted; 0 = no check
+    std::uint16_t following_error_code = 0x8611;
+    std::uint16_t increment_code = 0x0424;
+    std::uint16_t undervoltage_code = 0x3220;
+    std::uint16_t communication_code = 0x7500;
+    std::uint16_t negative_limit_code = 0x5444, positive_limit_code = 0x5443;
+};
+
+/// Objects that the master writes.
+struct AxisInputs {
+    std::uint16_t control = 0;
+    std::int64_t mode = 0;
+    std::int64_t target_position = 0, target_velocity = 0, target_torque = 0;
+    std::int64_t velocity_offset = 0, torque_offset = 0;
+    HomingSettings homing;
+    std::int64_t home_offset = 0;
+};
+
+/// Objects that the drive answers.
+struct AxisOutputs {
+    std::uint16_t status = 0;
+    std::int64_t mode = 0;
+    std::int64_t position = 0, velocity = 0, torque = 0, following_error = 0, demand = 0;
+    std::uint16_t error_code = 0;
+    std::uint32_t digital_inputs = 0;
+};
+
+class Cia402Axis {
+public:
+    enum class State : std::uint8_t { not_ready, disabled, ready, switched_on, enabled, quick_stop, fault_reaction, fault };
+
+    Cia402Axis(const PlantConfig& plant, const Personality& personality);
+
+    void power_on(Instant now) noexcept;
+    /// Physics up to `now`.
+    void advance(Instant now) noexcept;
+    /// Newest outputs in, answers out; `cycle` is the time until the next exchange (SYNC0 cycle).
+    void exchange(const AxisInputs& in, Duration cycle, AxisOutputs& out) noexcept;
+    /// The bus left OP or fell silent.
+    void communication_lost() noexcept;
+    void operational(bool op) noexcept { operational_ = op; }
+
+    // --- the outside world -----------------------------------------------------------------------------------------------
+    /// An alarm of the drive; `resettable` false needs a power cycle. It stays until it is reset.
+    void raise(std::uint16_t code, bool resettable = true) noexcept;
+    void main_power(bool on) noexcept;
+    void jam(bool jammed) noexcept { plant_.jam(jammed); }
+
+    [[nodiscard]] const Plant& plant() const noexcept { return plant_; }
+    [[nodiscard]] State state() const noexcept { return state_; }
+    /// Largest CSP target step between two exchanges while enabled, counts. What a jump of the master would show in.
+    [[nodiscard]] double largest_increment() const noexcept { return largest_increment_; }
+
+private:
+    void command(const AxisInputs& in) noexcept;
+    void enter(State state) noexcept;
+    void select_mode(const AxisInputs& in) noexcept;
+    void take_targets(const AxisInputs& in, Duration cycle) noexcept;
+    void take_position_target(const AxisInputs& in, double seconds) noexcept;
+    void inner_step() noexcept;
+    void stop_step(double dt, double deceleration) noexcept;
+    void homing_finished() noexcept;
+    [[nodiscard]] double actual() const noexcept { return plant_.position() - zero_; }
+    [[nodiscard]] double quantised() const noexcept;
+    [[nodiscard]] SwitchStates switches() const noexcept;
+    [[nodiscard]] double torque_limit() const noexcept { return plant_.config().rated_torque * plant_.config().maximum_torque; }
+    [[nodiscard]] bool energised() const noexcept {
+        return state_ == State::enabled || state_ == State::quick_stop ||
+               (state_ == State::fault_reaction && personality_.fault_stop == FaultStop::ramp);
+    }
+    void fill(AxisOutputs& out) const noexcept;
+    [[nodiscard]] std::uint16_t status_word() const noexcept;
+
+    Personality personality_;
+    Plant plant_;
+    ServoLoop loop_;
+    HomingRun homing_;
+    State state_ = State::not_ready;
+    Instant now_{};
+    double zero_ = 0;                 ///< plant position at which the drive counts 0
+    std::int64_t mode_ = 0;
+    Demand demand_;
+    double demand_step_ = 0;          ///< counts per second towards the newest target
+    double target_ = 0;               ///< newest CSP target, plant coordinates
+    std::int64_t steps_left_ = 0;     ///< inner steps until the target is reached
+    double torque_ = 0, torque_demand_ = 0, velocity_demand_ = 0;
+    std::uint16_t last_control_ = 0, error_code_ = 0;
+    bool error_resettable_ = true, main_power_ = true, operational_ = false, homed_ = false, warning_ = false;
+    bool homing_attained_ = false, homing_error_ = false;
+    std::int64_t home_offset_ = 0;
+    std::uint32_t strikes_ = 0;
+    double largest_increment_ = 0;
+};
+
+}  // namespace taktwerk::axes::sim

@@ -1,0 +1,117 @@
+#include "axes/sim/cia402_device.hpp"
+
+namespace taktwerk::axes::sim {
+
+namespace {
+
+using ecat::sim::Entry;
+
+std::int64_t value(const Entry* entry) noexcept { return entry ? entry->get() : 0; }
+void put(Entry* entry, std::int64_t v) noexcept {
+    if (entry) entry->set(v);
+}
+
+}  // namespace
+
+Personality personality_of(const DriveProfile& profile, std::int64_t counts_per_revolution) {
+    Personality p;
+    p.counts_per_revolution = counts_per_revolution;
+    p.velocity_counts_per_unit = profile.velocity_counts_per_unit;
+    p.torque_rated_raw = profile.torque_rated_raw;
+    p.remote_bit = !profile.has(Quirk::no_remote_bit);
+    p.internal_limit_bit = !profile.has(Quirk::no_internal_limit_bit);
+    p.csp_following_bits = !profile.has(Quirk::csp_bits_12_13_reserved);
+    p.fault_pattern_f = profile.has(Quirk::fault_low_nibble_f);
+    p.reset_needs_disable = profile.has(Quirk::fault_reset_needs_disable);
+    p.limit_stop_is_warning = profile.has(Quirk::limit_stop_is_warning);
+    return p;
+}
+
+Cia402Device::Cia402Device(const DriveProfile& profile, const std::vector<AxisSetup>& axes)
+    : object_offset_(profile.object_offset), detail_index_(profile.alarm_detail_index), detail_sub_(profile.alarm_detail_sub),
+      alarms_(profile.alarms), minimum_cycle_(profile.minimum_cycle_csp) {
+    for (const auto& setup : axes) axes_.push_back({std::make_unique<Cia402Axis>(setup.plant, setup.personality), {}});
+}
+
+void Cia402Device::power_on(ecat::sim::ObjectDictionary& dictionary, Instant now) {
+    for (std::size_t i = 0; i < axes_.size(); ++i) {
+        const auto at = [&](unsigned index, std::uint8_t sub = 0) {
+            return dictionary.find(static_cast<std::uint16_t>(index + i * object_offset_), sub);
+        };
+        axes_[i].objects = {at(0x6040), at(0x6060), at(0x607A), at(0x60FF), at(0x6071), at(0x60B1), at(0x60B2),
+                            at(0x6098), at(0x6099, 1), at(0x6099, 2), at(0x609A), at(0x607C),
+                            at(0x6041), at(0x6061), at(0x6064), at(0x606C), at(0x6077), at(0x60F4), at(0x6062), at(0x603F), at(0x60FD)};
+        axes_[i].model->power_on(now);
+    }
+    alarm_detail_ = detail_index_ ? dictionary.find(detail_index_, detail_sub_) : nullptr;
+    operational_ = false;
+    exchange(now);  // the inputs show the truth from the first SAFEOP cycle on
+}
+
+std::uint16_t Cia402Device::refuse(ecat::sim::EsmState from, ecat::sim::EsmState to, const ecat::sim::SyncSettings& settings) {
+    if (settings.sync0_active) cycle_ = settings.sync0_cycle;
+    // 0036h: invalid SYNC0 cycle time (ETG.1000.6 table of AL status codes).
+    if (to == ecat::sim::EsmState::safeop && from == ecat::sim::EsmState::preop && settings.sync0_active && settings.sync0_cycle < minimum_cycle_)
+        return 0x0036;
+    return 0;
+}
+
+void Cia402Device::entered(ecat::sim::EsmState state, Instant) {
+    const bool op = state == ecat::sim::EsmState::op;
+    for (auto& axis : axes_) {
+        if (operational_ && !op) axis.model->communication_lost();
+        axis.model->operational(op);
+    }
+    operational_ = op;
+}
+
+void Cia402Device::outputs_lost(Instant) {
+    for (auto& axis : axes_) axis.model->communication_lost();
+    operational_ = false;
+}
+
+void Cia402Device::advance(Instant now) {
+    for (auto& axis : axes_) axis.model->advance(now);
+}
+
+void Cia402Device::exchange(Instant) {
+    for (auto& axis : axes_) {
+        const auto& o = axis.objects;
+        AxisInputs in;
+        if (operational_) {  // outputs are valid in OP only
+            in.control = static_cast<std::uint16_t>(value(o.control));
+            in.mode = value(o.mode);
+            in.target_position = value(o.target_position);
+            in.target_velocity = value(o.target_velocity);
+            in.target_torque = value(o.target_torque);
+            in.velocity_offset = value(o.velocity_offset);
+            in.torque_offset = value(o.torque_offset);
+        }
+        in.homing = {value(o.homing_method), static_cast<double>(value(o.homing_fast)), static_cast<double>(value(o.homing_slow)),
+                     static_cast<double>(value(o.homing_acceleration))};
+        in.home_offset = value(o.home_offset);
+        AxisOutputs out;
+        axis.model->exchange(in, cycle_, out);
+        put(o.status, out.status);
+        put(o.mode_display, out.mode);
+        put(o.position, out.position);
+        put(o.velocity, out.velocity);
+        put(o.torque, out.torque);
+        put(o.following_error, out.following_error);
+        put(o.demand, out.demand);
+        put(o.error_code, out.error_code);
+        put(o.digital_inputs, out.digital_inputs);
+        if (alarm_detail_) {
+            std::int64_t detail = 0;
+            if (out.error_code)
+                for (const auto& row : alarms_)
+                    if (row.code == out.error_code) {
+                        detail = row.detail;
+                        break;
+                    }
+            alarm_detail_->set(detail);
+        }
+    }
+}
+
+}  // namespace taktwerk::axes::sim

@@ -1,0 +1,60 @@
+#pragma once
+// A simulated CiA 402 drive as a device on the simulated bus: one to many axes behind one slave controller. Copies the
+// dictionary's objects to and from axes/sim/cia402_axis.hpp at each exchange.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "axes/port/drive_profile.hpp"
+#include "axes/sim/cia402_axis.hpp"
+#include "ecat/sim/device_model.hpp"
+#include "ecat/sim/object_dictionary.hpp"
+
+namespace taktwerk::axes::sim {
+
+/// What the profile says of the drive's behaviour; the rest of Personality keeps its defaults.
+[[nodiscard]] Personality personality_of(const DriveProfile& profile, std::int64_t counts_per_revolution);
+
+class Cia402Device final : public ecat::sim::DeviceModel {
+public:
+    struct AxisSetup {
+        PlantConfig plant;
+        Personality personality;
+    };
+    Cia402Device(const DriveProfile& profile, const std::vector<AxisSetup>& axes);
+
+    void power_on(ecat::sim::ObjectDictionary& dictionary, Instant now) override;
+    std::uint16_t refuse(ecat::sim::EsmState from, ecat::sim::EsmState to, const ecat::sim::SyncSettings& settings) override;
+    void entered(ecat::sim::EsmState state, Instant now) override;
+    void exchange(Instant now) override;
+    void advance(Instant now) override;
+    void outputs_lost(Instant now) override;
+
+    [[nodiscard]] Cia402Axis& axis(std::size_t index) { return *axes_[index].model; }
+    [[nodiscard]] std::size_t axis_count() const noexcept { return axes_.size(); }
+
+private:
+    using Entry = ecat::sim::Entry;
+    struct Objects {
+        Entry *control, *mode, *target_position, *target_velocity, *target_torque, *velocity_offset, *torque_offset;
+        Entry *homing_method, *homing_fast, *homing_slow, *homing_acceleration, *home_offset;
+        Entry *status, *mode_display, *position, *velocity, *torque, *following_error, *demand, *error_code, *digital_inputs;
+    };
+    struct OneAxis {
+        std::unique_ptr<Cia402Axis> model;
+        Objects objects{};
+    };
+    std::vector<OneAxis> axes_;
+    std::uint16_t object_offset_;
+    Entry* alarm_detail_ = nullptr;
+    std::uint16_t detail_index_;
+    std::uint8_t detail_sub_;
+    std::vector<DriveAlarmText> alarms_;
+    Duration minimum_cycle_;
+    Duration cycle_{std::chrono::milliseconds{1}};
+    bool operational_ = false;
+};
+
+}  // namespace taktwerk::axes::sim

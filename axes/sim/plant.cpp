@@ -1,0 +1,41 @@
+#include "axes/sim/plant.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace taktwerk::axes::sim {
+
+Plant::Plant(const PlantConfig& config) noexcept
+    : config_(config),
+      rad_per_count_(2.0 * std::numbers::pi / static_cast<double>(config.counts_per_revolution)),
+      position_(config.start) {}
+
+void Plant::step(double dt, double torque) noexcept {
+    if (jammed_) {
+        velocity_ = 0;
+        return;
+    }
+    const double omega = velocity_ * rad_per_count_;
+    const double driving = torque - config_.load_torque - config_.viscous_friction * omega;
+    double next = 0;
+    if (velocity_ == 0 && std::abs(driving) <= config_.coulomb_friction) {
+        next = 0;  // sticks
+    } else {
+        const double direction = velocity_ != 0 ? (velocity_ > 0 ? 1.0 : -1.0) : (driving > 0 ? 1.0 : -1.0);
+        const double net = driving - direction * config_.coulomb_friction;
+        next = velocity_ + net / config_.inertia / rad_per_count_ * dt;
+        // Friction stops a motion, it never reverses one: within the step that crosses zero the axis stands.
+        if (velocity_ != 0 && (next > 0) != (velocity_ > 0) && std::abs(driving) <= config_.coulomb_friction) next = 0;
+    }
+    velocity_ = next;
+    position_ += velocity_ * dt;
+    if (position_ < config_.negative_stop) {
+        position_ = config_.negative_stop;
+        if (velocity_ < 0) velocity_ = 0;
+    } else if (position_ > config_.positive_stop) {
+        position_ = config_.positive_stop;
+        if (velocity_ > 0) velocity_ = 0;
+    }
+}
+
+}  // namespace taktwerk::axes::sim

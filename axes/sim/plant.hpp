@@ -1,0 +1,34 @@
+#pragma once
+// Motor and load of a simulated axis: torque in, position out. Semi-implicit Euler at a fixed inner step, so that results do
+// not depend on when somebody looks. Allocation-free.
+
+#include "axes/sim/plant_config.hpp"
+
+namespace taktwerk::axes::sim {
+
+class Plant {
+public:
+    explicit Plant(const PlantConfig& config) noexcept;
+
+    /// One inner step of `dt` seconds with `torque` N m at the shaft (0 = motor free).
+    void step(double dt, double torque) noexcept;
+
+    [[nodiscard]] double position() const noexcept { return position_; }  ///< counts, machine coordinates
+    [[nodiscard]] double velocity() const noexcept { return velocity_; }  ///< counts/s
+    [[nodiscard]] bool negative_limit() const noexcept { return position_ <= config_.negative_limit; }
+    [[nodiscard]] bool positive_limit() const noexcept { return position_ >= config_.positive_limit; }
+    [[nodiscard]] bool home_switch() const noexcept { return position_ >= config_.home_from && position_ <= config_.home_to; }
+    [[nodiscard]] const PlantConfig& config() const noexcept { return config_; }
+    /// A jammed mechanism does not move whatever the torque.
+    void jam(bool jammed) noexcept { jammed_ = jammed; }
+    /// Torque that accelerates the load by `counts_per_s2`, without friction: what a tuned drive feeds forward.
+    [[nodiscard]] double torque_for(double counts_per_s2) const noexcept { return counts_per_s2 * rad_per_count_ * config_.inertia; }
+
+private:
+    PlantConfig config_;
+    double rad_per_count_;
+    double position_, velocity_ = 0;
+    bool jammed_ = false;
+};
+
+}  // namespace taktwerk::axes::sim

@@ -1,0 +1,40 @@
+#pragma once
+// The control loops inside a simulated drive: position P with velocity feed-forward, velocity PI with acceleration
+// feed-forward, torque limit. Gains are those of a plainly tuned servo; they give a small, honest following error.
+
+#include "axes/sim/plant.hpp"
+
+namespace taktwerk::axes::sim {
+
+struct Demand {
+    double position = 0;      ///< counts
+    double velocity = 0;      ///< counts/s
+    double acceleration = 0;  ///< counts/s2
+};
+
+class ServoLoop {
+public:
+    static constexpr double position_gain = 80.0;    ///< 1/s
+    static constexpr double velocity_gain = 500.0;   ///< 1/s
+    static constexpr double integral_gain = 12000.0; ///< 1/s2
+
+    /// Torque for one inner step, limited to +- limit N m. `measured` is the quantised encoder position.
+    [[nodiscard]] double position_control(const Plant& plant, const Demand& demand, double measured, double limit, double dt) noexcept {
+        const double wanted = demand.velocity + position_gain * (demand.position - measured);
+        return velocity_control(plant, wanted, demand.acceleration, limit, dt);
+    }
+    [[nodiscard]] double velocity_control(const Plant& plant, double wanted, double acceleration, double limit, double dt) noexcept {
+        const double error = wanted - plant.velocity();
+        const double raw = plant.torque_for(acceleration + velocity_gain * error) + integral_;
+        if (raw > limit) return limit;
+        if (raw < -limit) return -limit;
+        integral_ += plant.torque_for(integral_gain * error) * dt;  // only while unlimited: no wind-up
+        return raw;
+    }
+    void reset() noexcept { integral_ = 0; }
+
+private:
+    double integral_ = 0;
+};
+
+}  // namespace taktwerk::axes::sim

@@ -1,0 +1,301 @@
+// The simulated axis against the manuals' state machines and homing tables, driven by its objects alone.
+
+#include "axes/sim/cia402_axis.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace taktwerk::axes::sim {
+namespace {
+
+using namespace std::chrono_literals;
+
+PlantConfig table() {
+    PlantConfig plant;
+    plant.counts_per_revolution = 10000;
+    plant.negative_limit = -50000;
+    plant.positive_limit = 50000;
+    plant.home_from = 0;
+    plant.home_to = 5000;
+    return plant;
+}
+
+/// Exchanges each millisecond, as a master with a 1 ms cycle does.
+struct Bench {
+    Cia402Axis axis;
+    AxisInputs in;
+    AxisOutputs out;
+    Instant now{};
+
+    explicit Bench(PlantConfig plant = table(), Personality personality = {}) : axis(plant, personality) {
+        axis.power_on(now);
+        axis.operational(true);
+        in.mode = 8;
+        cycle();
+    }
+    void cycle() {
+        now += 1ms;
+        axis.advance(now);
+        axis.exchange(in, 1ms, out);
+    }
+    void run(int cycles) {
+        for (int i = 0; i < cycles; ++i) cycle();
+    }
+    void command(std::uint16_t word, int cycles = 3) {
+        in.control = word;
+        run(cycles);
+    }
+    void enable() {
+        command(6);
+        command(7);
+        in.target_position = out.position;
+        command(15);
+    }
+    [[nodiscard]] unsigned state() const { return out.status & 0x6Fu; }
+};
+
+// SV33-E manual 3.4.1: 6 -> 7 -> 15 through Ready (21h), Switched On (23h), Operation Enabled (27h).
+TEST(SimulatedAxis, EnablesBy6Then7Then15) {
+    Bench b;
+    EXPECT_EQ(b.out.status & 0x4Fu, 0x40u);
+    b.command(6);
+    EXPECT_EQ(b.state(), 0x21u);
+    b.command(7);
+    EXPECT_EQ(b.state(), 0x23u);
+    b.command(15);
+    EXPECT_EQ(b.state(), 0x27u);
+}
+
+TEST(SimulatedAxis, DoesNotSkipStates) {
+    Bench b;
+    b.command(15);
+    EXPECT_EQ(b.out.status & 0x4Fu, 0x40u);
+}
+
+TEST(SimulatedAxis, FollowsTargetsWithASmallHonestFollowingError) {
+    Bench b;
+    b.enable();
+    std::int64_t worst = 0;
+    for (int i = 0; i < 500; ++i) {  // 50 counts each ms: 5 turns/s
+        b.in.target_position += 50;
+        b.cycle();
+        worst = std::max(worst, std::abs(b.out.following_error));
+    }
+    EXPECT_GT(worst, 0);
+    EXPECT_LT(worst, 2000);
+    b.run(200);
+    EXPECT_NEAR(static_cast<double>(b.out.position), 25000.0, 3.0);
+    EXPECT_TRUE(b.out.status & (1u << 10));
+}
+
+TEST(SimulatedAxis, AFaultFallsThroughReactionAndIsResetByTheEdgeOfBit7) {
+    Bench b;
+    b.enable();
+    b.axis.raise(0x3130);
+    b.run(100);
+    EXPECT_EQ(b.out.status & 0x4Fu, 0x08u);
+    EXPECT_EQ(b.out.error_code, 0x3130);
+
+    b.command(0x0006);
+    EXPECT_EQ(b.out.status & 0x4Fu, 0x08u) << "no way out without a reset";
+    b.command(0x0080);
+    EXPECT_EQ(b.out.status & 0x4Fu, 0x40u);
+    EXPECT_EQ(b.out.error_code, 0);
+    b.command(0x0086);
+    EXPECT_EQ(b.out.status & 0x4Fu, 0x40u) << "while bit 7 stands nothing else is taken";
+    b.command(0x0006);
+    EXPECT_EQ(b.state(), 0x21u);
+}
+
+// SV33-E manual 5.1: "for faults first remove servo enable, then reset".
+TEST(SimulatedAxis, ResetWithEnableStillSetIsIgnoredWhereTheDriveWantsItDropped) {
+    Personality p;
+    p.reset_needs_disable = true;
+    Bench b{table(), p};
+    b.enable();
+    b.axis.raise(0x3130);
+    b.run(100);
+    b.command(0x008F);
+    EXPECT_EQ(b.out.status & 0x4Fu, 0x08u);
+    b.command(0x0000);
+    b.command(0x0080);
+    EXPECT_EQ(b.out.status & 0x4Fu, 0x40u);
+}
+
+TEST(SimulatedAxis, AFaultThatNeedsAPowerCycleStays) {
+    Bench b;
+    b.axis.raise(0x2312, false);  // SV33-E E.210 hardware over-current: not resettable
+    b.command(0x0000);
+    b.command(0x0080);
+    EXPECT_EQ(b.out.status & 0x4Fu, 0x08u);
+    b.axis.power_on(b.now);
+    b.command(0x0000);
+    EXPECT_EQ(b.out.status & 0x4Fu, 0x40u);
+}
+
+TEST(SimulatedAxis, AJammedLoadTripsTheFollowingErrorAlarm) {
+    Personality p;
+    p.following_error_limit = 2000;
+    Bench b{table(), p};
+    b.enable();
+    b.axis.jam(true);
+    for (int i = 0; i < 100; ++i) {
+        b.in.target_position += 50;
+        b.cycle();
+    }
+    EXPECT_EQ(b.out.error_code, 0x8611);  // SV33-E E.423, SE-808X position error too large
+}
+
+// SV33-E manual 5.4, E.424: a target that leaps several times trips; one leap does not.
+TEST(SimulatedAxis, LeapingTargetsTripAfterThreeStrikes) {
+    Personality p;
+    p.maximum_velocity = 500000;  // counts/s: 500 counts a cycle, leaps beyond 1500 count
+    Bench b{table(), p};
+    b.enable();
+    b.in.target_position += 1600;
+    b.cycle();
+    b.run(20);
+    EXPECT_EQ(b.out.error_code, 0);
+    for (int i = 0; i < 3; ++i) {
+        b.in.target_position += 1600;
+        b.cycle();
+    }
+    EXPECT_EQ(b.out.error_code, 0x0424);
+}
+
+TEST(SimulatedAxis, LosingTheBusWhileEnabledIsAnAlarm) {
+    Personality p;
+    p.communication_code = 0x0D26;  // SV33-E E.D26
+    Bench b{table(), p};
+    b.enable();
+    b.axis.communication_lost();
+    b.run(50);
+    EXPECT_EQ(b.out.error_code, 0x0D26);
+}
+
+TEST(SimulatedAxis, LosingMainPowerIsUndervoltageAndCannotBeResetBeforeItReturns) {
+    Bench b;
+    b.enable();
+    b.axis.main_power(false);
+    b.run(100);
+    EXPECT_EQ(b.out.error_code, 0x3220);
+    EXPECT_FALSE(b.out.status & (1u << 4));
+    b.command(0x0000);
+    b.command(0x0080);
+    EXPECT_EQ(b.out.status & 0x4Fu, 0x08u);
+    b.axis.main_power(true);
+    b.command(0x0000);
+    b.command(0x0080);
+    EXPECT_EQ(b.out.status & 0x4Fu, 0x40u);
+}
+
+// SV33-E manual 3.1.4 / CiA 402: overtravel as a warning holds the position and leaves only the way back.
+TEST(SimulatedAxis, OvertravelAsWarningHoldsAndAllowsRetreat) {
+    Personality p;
+    p.limit_stop_is_warning = true;
+    auto plant = table();
+    plant.start = 49000;
+    Bench b{plant, p};
+    b.enable();
+    for (int i = 0; i < 200; ++i) {
+        b.in.target_position += 20;
+        b.cycle();
+    }
+    EXPECT_EQ(b.out.error_code, 0x5443);
+    EXPECT_TRUE(b.out.status & (1u << 7));
+    EXPECT_EQ(b.state(), 0x27u);
+    b.in.target_position = b.out.position;
+    for (int i = 0; i < 200; ++i) {
+        b.in.target_position -= 20;
+        b.cycle();
+    }
+    EXPECT_EQ(b.out.error_code, 0);
+    EXPECT_FALSE(b.out.digital_inputs & 2u);
+}
+
+struct HomingCase {
+    int method;
+    double start;
+    double expected_edge;   // machine coordinate of the reference
+    bool first_forward;     // which way it sets out
+};
+
+// Expected edges and first directions by hand from the table of SV33-E manual 3.4.3(9) / SE-808X manual 3.2.7, for a travel with
+// limits at -50000 / +50000 and a home switch active from 0 to 5000.
+class Homing : public ::testing::TestWithParam<HomingCase> {};
+
+TEST_P(Homing, EndsAtTheEdgeOfTheTableAndSetsOutTheRightWay) {
+    const auto& c = GetParam();
+    auto plant = table();
+    plant.start = c.start;
+    Bench b{plant};
+    b.in.homing = {c.method, 40000, 4000, 400000};
+    b.in.home_offset = 700;
+    b.enable();
+    b.in.mode = 6;
+    b.run(3);
+    ASSERT_EQ(b.out.mode, 6);
+    const double before = b.axis.plant().position();
+    b.in.control = 0x1F;
+    b.run(60);
+    EXPECT_EQ(b.axis.plant().position() > before, c.first_forward);
+    for (int i = 0; i < 20000 && !(b.out.status & (1u << 12)); ++i) b.cycle();
+    b.run(100);
+
+    ASSERT_TRUE(b.out.status & (1u << 12)) << "attained";
+    EXPECT_TRUE(b.out.status & (1u << 10));
+    EXPECT_FALSE(b.out.status & (1u << 13));
+    // The edge has the coordinate of 607Ch: the actual position tells where the edge was taken. One inner step at 4000 counts/s is
+    // half a count, at 40000 counts/s five.
+    const double edge = b.axis.plant().position() - static_cast<double>(b.out.position) + 700;
+    EXPECT_NEAR(edge, c.expected_edge, 8.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods17To22, Homing,
+                         ::testing::Values(HomingCase{17, 0, -50000, false}, HomingCase{17, -50500, -50000, true},
+                                           HomingCase{18, 0, 50000, true}, HomingCase{18, 50500, 50000, false},
+                                           HomingCase{19, -20000, 0, true}, HomingCase{19, 2500, 0, false},
+                                           HomingCase{20, -2000, 0, true}, HomingCase{20, 2500, 0, false},
+                                           HomingCase{21, 20000, 5000, false}, HomingCase{21, 2500, 5000, true},
+                                           HomingCase{22, 7000, 5000, false}, HomingCase{22, 2500, 5000, true}));
+
+TEST(HomingRun, AnUnknownMethodIsAHomingError) {
+    Bench b;
+    b.in.homing = {15, 40000, 4000, 400000};  // SV33-E: 15 is reserved
+    b.enable();
+    b.in.mode = 6;
+    b.run(3);
+    b.command(0x1F);
+    EXPECT_TRUE(b.out.status & (1u << 13));
+    EXPECT_FALSE(b.out.status & (1u << 12));
+}
+
+TEST(HomingRun, ALimitOnTheWayToTheHomeSwitchIsAHomingErrorAndTheAxisStops) {
+    auto plant = table();
+    plant.start = 20000;  // right of the switch, method 19 searches forward
+    Bench b{plant};
+    b.in.homing = {19, 40000, 4000, 400000};
+    b.enable();
+    b.in.mode = 6;
+    b.run(3);
+    b.command(0x1F, 3000);
+    EXPECT_TRUE(b.out.status & (1u << 13));
+    EXPECT_NEAR(b.axis.plant().velocity(), 0, 1.0);
+    EXPECT_LT(b.axis.plant().position(), 54000);
+}
+
+TEST(SimulatedAxis, AModeSwitchNeverMovesTheMotor) {
+    Bench b;
+    b.enable();
+    b.in.target_position = 100;
+    b.run(50);
+    const double before = b.axis.plant().position();
+    b.in.mode = 6;
+    b.in.target_position = 30000;  // garbage in the target while homing is selected
+    b.run(20);
+    EXPECT_NEAR(b.axis.plant().position(), before, 2.0);
+}
+
+}  // namespace
+}  // namespace taktwerk::axes::sim
