@@ -1,0 +1,29 @@
+#pragma once
+// How the machine's state goes out and commands come in. Plain data; config/ fills it.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/result.hpp"
+#include "core/time.hpp"
+
+namespace taktwerk::hmi {
+
+enum class LcmCommands : std::uint8_t {
+    disabled,  ///< only the local socket commands (default)
+    local,     ///< also over LCM with ttl=0: every process of this host may command
+};
+
+struct HmiConfig {
+    bool lcm = true;                                                ///< publish the state over LCM
+    std::string lcm_url = "udpm://239.255.76.67:7667?ttl=0";
+    bool lcm_required = false;                                      ///< refuse to run without a working LCM
+    LcmCommands lcm_commands = LcmCommands::disabled;
+    double rate_hz = 50;                                            ///< of the state messages, 1..1000
+    std::string socket;                                             ///< Unix socket of the command line; empty: /run/taktwerk/<machine>.sock or $XDG_RUNTIME_DIR
+};
+
+[[nodiscard]] std::vector<Error> check(const HmiConfig& config);
+
+}  // namespace taktwerk::hmi
