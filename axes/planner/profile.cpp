@@ -1,0 +1,86 @@
+#include "axes/planner/profile.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace taktwerk::axes {
+
+namespace {
+
+MotionState travel(const MotionState& from, double jerk, double t) noexcept {
+    return {from.position + t * (from.velocity + t * (from.acceleration / 2 + t * (jerk / 6))),
+            from.velocity + t * (from.acceleration + t * (jerk / 2)), from.acceleration + t * jerk};
+}
+
+}  // namespace
+
+Profile::Profile(const MotionState& state) noexcept
+    : start_{state.position, state.velocity, 0}, end_{state.position, state.velocity, 0} {}
+
+Profile::Profile(const MotionState& start, std::span<const Stretch> forward, std::span<const Stretch> backward,
+                 const MotionState& end) noexcept
+    : start_{start}, end_{end} {
+    MotionState state = start;
+    for (const Stretch& s : forward) {
+        if (!(s.duration > 0) || count_ == max_pieces) continue;
+        state.acceleration = s.acceleration;
+        pieces_[static_cast<std::size_t>(count_++)] = {duration_ + s.duration, duration_, s.jerk, state};
+        state = travel(state, s.jerk, s.duration);
+        duration_ += s.duration;
+    }
+
+    const int first_backward = count_;
+    for (const Stretch& s : backward) {
+        if (!(s.duration > 0) || count_ == max_pieces) continue;
+        duration_ += s.duration;
+        // Until the chain is walked back below, the anchor holds what that walk needs.
+        pieces_[static_cast<std::size_t>(count_++)] = {duration_, s.duration, s.jerk, {0, 0, s.acceleration + s.duration * s.jerk}};
+    }
+    state = end;
+    for (int i = count_ - 1; i >= first_backward; --i) {
+        Piece& piece = pieces_[static_cast<std::size_t>(i)];
+        const double length = piece.anchor_time;
+        // The last piece without a jerk limit still ends with its own acceleration; with one it ends exactly at the target's.
+        if (i != count_ - 1 || piece.jerk == 0) state.acceleration = piece.anchor.acceleration;
+        piece.anchor = state;
+        piece.anchor_time = piece.end_time;
+        state = travel(state, piece.jerk, -length);
+    }
+}
+
+MotionState Profile::on_piece(int i, double t) const noexcept {
+    const Piece& piece = pieces_[static_cast<std::size_t>(i)];
+    return travel(piece.anchor, piece.jerk, t - piece.anchor_time);
+}
+
+MotionState Profile::at(double t) const noexcept {
+    if (t >= duration_) return {end_.position + end_.velocity * (t - duration_), end_.velocity, end_.acceleration};
+    if (!(t > 0)) return start_;
+    int i = 0;
+    while (t >= pieces_[static_cast<std::size_t>(i)].end_time) ++i;
+    return on_piece(i, t);
+}
+
+double Profile::jerk_at(double t) const noexcept {
+    if (!(t < duration_)) return 0;
+    int i = 0;
+    while (t >= pieces_[static_cast<std::size_t>(i)].end_time) ++i;
+    return pieces_[static_cast<std::size_t>(i)].jerk;
+}
+
+double Profile::max_speed() const noexcept {
+    double speed = std::max(std::abs(start_.velocity), std::abs(end_.velocity));
+    for (int i = 0; i < count_; ++i) {
+        const double begin = piece_begin(i);
+        const double end = piece_end(i);
+        speed = std::max(speed, std::abs(on_piece(i, end).velocity));
+        const Piece& piece = pieces_[static_cast<std::size_t>(i)];
+        if (piece.jerk == 0) continue;
+        const double top = piece.anchor_time - piece.anchor.acceleration / piece.jerk;  // where the acceleration is 0
+        if (top > begin && top < end) speed = std::max(speed, std::abs(on_piece(i, top).velocity));
+    }
+    return speed;
+}
+
+}  // namespace taktwerk::axes

@@ -1,0 +1,77 @@
+#pragma once
+// A planned motion: a few pieces of constant jerk, evaluated exactly at any time. Plan on events, sample per cycle.
+
+#include <array>
+#include <span>
+
+#include "axes/planner/motion.hpp"
+
+namespace taktwerk::axes {
+
+/// One piece of motion: `acceleration` at its beginning, then constant `jerk` for `duration`. s, u/s2, u/s3.
+/// Without a jerk limit the acceleration jumps from one stretch to the next; otherwise it continues.
+struct Stretch {
+    double duration = 0;
+    double acceleration = 0;
+    double jerk = 0;
+};
+
+/// A motion from a start state to an end state. A value: trivially copyable, allocates nothing, real-time safe.
+///
+/// The pieces towards the end count back from the end state, so position, velocity and acceleration arrive at the target to
+/// the last bit; start and target meet somewhere inside with an error of a few units in the last place.
+class Profile {
+public:
+    /// Two to brake into the limits and seven for each of the two legs of a reversal.
+    static constexpr int max_pieces = 16;
+
+    /// Stands still at position 0.
+    Profile() noexcept = default;
+
+    /// Moves on with `state` from time 0, at its velocity, without acceleration.
+    explicit Profile(const MotionState& state) noexcept;
+
+    /// From `start` through `forward` (counted from the start) and then `backward` (counted back from `end`). Together at most
+    /// max_pieces; what does not fit, or lasts no time, is left out. The two must meet: that is the planner's business.
+    Profile(const MotionState& start, std::span<const Stretch> forward, std::span<const Stretch> backward,
+            const MotionState& end) noexcept;
+
+    /// The state `t` seconds after the start. At or before 0: the start state. From duration() on: the end state, moving on with
+    /// its velocity (a move to a position holds its target exactly).
+    [[nodiscard]] MotionState at(double t) const noexcept;
+
+    /// s, >= 0.
+    [[nodiscard]] double duration() const noexcept { return duration_; }
+    [[nodiscard]] const MotionState& start() const noexcept { return start_; }
+    [[nodiscard]] const MotionState& end() const noexcept { return end_; }
+
+    /// The jerk at `t`, from the right; 0 from duration() on. u/s3.
+    [[nodiscard]] double jerk_at(double t) const noexcept;
+
+    /// The largest |velocity| on the way. u/s.
+    [[nodiscard]] double max_speed() const noexcept;
+
+    [[nodiscard]] int piece_count() const noexcept { return count_; }
+    /// When piece i begins and ends, i in [0, piece_count()). s.
+    [[nodiscard]] double piece_begin(int i) const noexcept { return i == 0 ? 0.0 : pieces_[static_cast<std::size_t>(i - 1)].end_time; }
+    [[nodiscard]] double piece_end(int i) const noexcept { return pieces_[static_cast<std::size_t>(i)].end_time; }
+    [[nodiscard]] double piece_jerk(int i) const noexcept { return pieces_[static_cast<std::size_t>(i)].jerk; }
+    /// State on piece i at time t (meant for its begin and end, where without a jerk limit the neighbour's acceleration differs).
+    [[nodiscard]] MotionState on_piece(int i, double t) const noexcept;
+
+private:
+    struct Piece {
+        double end_time = 0;     // s since the start
+        double anchor_time = 0;  // where `anchor` is known exactly: the piece's begin or its end
+        double jerk = 0;
+        MotionState anchor;
+    };
+
+    std::array<Piece, max_pieces> pieces_{};
+    int count_ = 0;
+    double duration_ = 0;
+    MotionState start_;
+    MotionState end_;
+};
+
+}  // namespace taktwerk::axes
