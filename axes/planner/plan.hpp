@@ -24,8 +24,8 @@ enum class PlanError : std::uint8_t {
 
 /// What the planner accepts. Inside these bounds no plan fails.
 struct PlanBounds {
-    static constexpr double largest = 1e18;          ///< any number handed in, in its unit
-    static constexpr double smallest_limit = 1e-18;  ///< any limit, in its unit
+    static constexpr double largest = 1e30;          ///< any number handed in, in its unit
+    static constexpr double smallest_limit = 1e-30;  ///< any limit, in its unit
 };
 
 /// With an error the profile moves on from the start position at the start velocity: not a motion to run.

@@ -242,8 +242,8 @@ TEST(PlanErrors, BadInputIsRefusedAndTheProfileStaysFinite) {
     EXPECT_EQ(plan_to_position({nan, 0, 0}, 1, good).error, PlanError::invalid_input);
     EXPECT_EQ(plan_to_position({}, nan, good).error, PlanError::invalid_input);
     EXPECT_EQ(plan_to_position({}, unlimited, good).error, PlanError::invalid_input);
-    EXPECT_EQ(plan_to_position({}, 1e19, good).error, PlanError::out_of_bounds);
-    EXPECT_EQ(plan_to_position({}, 1, {1, 1, 1e-19, 1}).error, PlanError::out_of_bounds);
+    EXPECT_EQ(plan_to_position({}, 1e31, good).error, PlanError::out_of_bounds);
+    EXPECT_EQ(plan_to_position({}, 1, {1, 1, 1e-31, 1}).error, PlanError::out_of_bounds);
     EXPECT_EQ(plan_to_velocity({}, 1.5, good).error, PlanError::out_of_bounds);
     EXPECT_EQ(plan_to_position({3, 0, 0}, unlimited, good).profile.at(1).position, 3);
 }
