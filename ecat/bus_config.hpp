@@ -43,6 +43,7 @@ struct SlaveConfig {
     bool dc = false;                   ///< run SYNC0 on it
     Duration sync0_shift{};            ///< SYNC0 after the start of the bus cycle; 0 = the master's default
     Duration sm_watchdog{};            ///< 0 = three cycles, at least 10 ms
+    std::string sync_unit;             ///< slaves of the same name share one datagram and working counter; empty: its own
 };
 
 struct BusConfig {
