@@ -1,0 +1,92 @@
+#pragma once
+// MC_Reset and MC_SetPosition: PLCopen Part 1 v2.0, 3.31, 3.17. Real-time safe.
+
+#include <array>
+#include <string_view>
+
+#include "fb_library/motion/execute_block.hpp"
+
+namespace taktwerk::fb {
+
+/// Done once the axis has left ErrorStop; Error with reset_failed when it has not within `patience`: the cause is still there.
+/// Outside ErrorStop it is Done at once (it may still acknowledge a warning of the drive). It never touches other blocks' outputs.
+struct MC_Reset : ExecuteBlock<MC_Reset> {
+    AxisRef Axis{};
+    bool Execute = false;
+
+    bool Done = false, Busy = false, Error = false;
+    ErrorId ErrorID{};
+
+    Instant started{};  ///< not a pin
+
+    /// Longer than any drive of ours takes to acknowledge a fault.
+    static constexpr Duration patience = std::chrono::seconds{5};
+
+    static constexpr std::string_view summary = "Clears the axis' errors: from ErrorStop to Standstill or Disabled.";
+    static consteval auto pins() {
+        return std::array{in_out<&Self::Axis>("", "axis acted on"),
+                          in<&Self::Execute>("", "a rising edge starts"),
+                          out<&Self::Done>("", "the axis is not in ErrorStop (any more)"),
+                          out<&Self::Busy>("", "not finished"),
+                          out<&Self::Error>("", "refused, or the cause is still there"),
+                          out<&Self::ErrorID>("", "why")};
+    }
+
+private:
+    friend ExecuteBlock<MC_Reset>;
+    void start(const MotionContext& ctx) noexcept {
+        if (ctx.view(Axis) == nullptr) return core_.refuse(ErrorId::invalid_axis);
+        if (const ErrorId error = ctx.requests->reset(Axis, ctx.owner); error != ErrorId::none) return core_.refuse(error);
+        core_.start(Axis);
+        started = ctx.now;
+    }
+    void follow(const MotionContext& ctx) noexcept {
+        const axes::AxisView* view = ctx.view(core_.axis());
+        if (view == nullptr) return core_.refuse(ErrorId::invalid_axis);
+        if (view->state != axes::AxisState::ErrorStop) return core_.finish();
+        if (ctx.now - started >= patience) core_.refuse(ErrorId::reset_failed);
+    }
+};
+
+/// Done in the call after the edge, when the views show the new coordinates. ExecutionMode mcQueued is not supported so far.
+struct MC_SetPosition : ExecuteBlock<MC_SetPosition> {
+    AxisRef Axis{};
+    bool Execute = false;
+    double Position = 0;
+    bool Relative = false;
+    MC_ExecutionMode ExecutionMode = mcImmediately;
+
+    bool Done = false, Busy = false, Error = false;
+    ErrorId ErrorID{};
+
+    std::uint64_t start_cycle = 0;  ///< not a pin
+
+    static constexpr std::string_view summary = "Shifts the axis' coordinates: set and actual position alike, without motion.";
+    static consteval auto pins() {
+        return std::array{in_out<&Self::Axis>("", "axis acted on"),
+                          in<&Self::Execute>("", "a rising edge starts"),
+                          in<&Self::Position>("u", "the actual position's new value; with Relative added to it"),
+                          in<&Self::Relative>("", "Position is a distance"),
+                          in<&Self::ExecutionMode>("", "mcQueued is not supported so far and gives Error"),
+                          out<&Self::Done>("", "the position has its new value"),
+                          out<&Self::Busy>("", "not finished"),
+                          out<&Self::Error>("", "refused"),
+                          out<&Self::ErrorID>("", "why")};
+    }
+
+private:
+    friend ExecuteBlock<MC_SetPosition>;
+    void start(const MotionContext& ctx) noexcept {
+        if (ctx.view(Axis) == nullptr) return core_.refuse(ErrorId::invalid_axis);
+        if (ExecutionMode != mcImmediately) return core_.refuse(ErrorId::not_supported);
+        const ErrorId error = ctx.requests->set_position(Axis, Position, Relative, ctx.owner);
+        if (error != ErrorId::none) return core_.refuse(error);
+        core_.start(Axis);
+        start_cycle = ctx.cycle;
+    }
+    void follow(const MotionContext& ctx) noexcept {
+        if (ctx.cycle != start_cycle) core_.finish();
+    }
+};
+
+}  // namespace taktwerk::fb

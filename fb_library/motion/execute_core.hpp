@@ -1,0 +1,115 @@
+#pragma once
+// The lifecycle of Execute blocks, once for all: PLCopen Part 1 v2.0, 2.4.1 (figures 7 and 8). Real-time safe.
+//
+//   * A rising Execute starts; the inputs are taken in that call only (the command's value is the latch, with its axis).
+//   * Busy from the edge until the outcome; Active while the command controls the axis.
+//   * Done, CommandAborted, Error: one of them, until Execute falls, and in any case for one call.
+//   * A falling Execute changes nothing in the motion. A new edge while Busy starts anew; the former command's outcome is not shown.
+//   * A new edge that is refused shows Error; what the axis was doing before goes on (an instance's error does not touch the axis).
+//   * A new instance compares with FALSE: Execute TRUE in its first call is an edge.
+//   * ContinuousUpdate is not supported so far: TRUE at the edge is refused with not_supported, never silently ignored.
+
+#include <cstdint>
+
+#include "axes/axis/motion_context.hpp"
+
+namespace taktwerk::fb {
+
+/// What completes a command.
+enum class Completion : std::uint8_t {
+    done,       ///< Done, and the block is finished
+    in_target,  ///< Inxxx follows "set value = commanded value" while the block stays Busy and Active
+    done_held,  ///< MC_Stop: Done at standstill, although the command may stay active on the axis
+};
+
+class ExecuteCore {
+public:
+    enum class Edge : std::uint8_t { none, rising, falling };
+
+    /// First thing in each call.
+    constexpr Edge begin(bool execute) noexcept {
+        const Edge edge = execute == execute_ ? Edge::none : execute ? Edge::rising : Edge::falling;
+        execute_ = execute;
+        if (!execute && finished()) phase_ = Phase::idle;
+        return edge;
+    }
+
+    /// Gives the command to the axis; the answer comes at once.
+    void submit(const axes::MotionContext& ctx, axes::AxisRef axis, const axes::AxisCommand& command) noexcept {
+        if (ctx.view(axis) == nullptr) return refuse(axes::ErrorId::invalid_axis);
+        const axes::Submitted answer = ctx.requests->submit(axis, command, ctx.owner);
+        if (answer.error != axes::ErrorId::none) return refuse(answer.error);
+        axis_ = axis;
+        command_ = answer.id;
+        phase_ = Phase::waiting;
+    }
+
+    /// Reads what became of the command. An id that the view has not seen yet is on its way (a slower task's view is older
+    /// than its request); one that it has forgotten was aborted long ago.
+    void follow(const axes::MotionContext& ctx, Completion completion) noexcept {
+        if (!running()) return;
+        const axes::AxisView* view = ctx.view(axis_);
+        if (view == nullptr) return refuse(axes::ErrorId::invalid_axis);
+        using Status = axes::CommandStatus;
+        axes::ErrorId error = axes::ErrorId::none;
+        switch (view->status(command_, &error)) {
+            case Status::unknown: phase_ = static_cast<std::int32_t>(command_ - view->last_id) > 0 ? Phase::waiting : Phase::aborted; break;
+            case Status::queued: phase_ = Phase::waiting; break;
+            case Status::active: phase_ = Phase::active; break;
+            case Status::in_target:
+                phase_ = completion == Completion::done_held ? Phase::done : completion == Completion::in_target ? Phase::in_target : Phase::active;
+                break;
+            // A block without a Done pin has not completed: a buffered successor took over.
+            case Status::done: phase_ = completion == Completion::in_target ? Phase::aborted : Phase::done; break;
+            case Status::aborted: phase_ = Phase::aborted; break;
+            case Status::error: refuse(error != axes::ErrorId::none ? error : axes::ErrorId::aborted_by_axis_error); break;
+        }
+    }
+
+    // For blocks whose work is no axis command.
+    constexpr void start(axes::AxisRef axis) noexcept {
+        axis_ = axis;
+        command_ = 0;
+        phase_ = Phase::waiting;
+    }
+    constexpr void finish() noexcept { phase_ = Phase::done; }
+    constexpr void refuse(axes::ErrorId error) noexcept {
+        phase_ = Phase::error;
+        error_ = error;
+    }
+
+    /// After a reboot: command ids mean nothing any more. Execute keeps its memory, so that nothing starts by itself.
+    constexpr void warm_start() noexcept {
+        if (running()) phase_ = Phase::aborted;
+        command_ = 0;
+    }
+
+    [[nodiscard]] constexpr bool running() const noexcept { return phase_ >= Phase::waiting && phase_ <= Phase::in_target; }
+    [[nodiscard]] constexpr bool finished() const noexcept { return phase_ >= Phase::done; }
+    /// The axis and command of the last accepted start; 0 = none.
+    [[nodiscard]] constexpr axes::AxisRef axis() const noexcept { return axis_; }
+    [[nodiscard]] constexpr axes::CommandId command() const noexcept { return command_; }
+
+    /// Sets whichever of the standard's outputs the block has.
+    template <class Block>
+    constexpr void publish(Block& block) const noexcept {
+        if constexpr (requires { block.Done; }) block.Done = phase_ == Phase::done;
+        if constexpr (requires { Block::in_target_pin; }) block.*Block::in_target_pin = phase_ == Phase::in_target;
+        if constexpr (requires { block.Busy; }) block.Busy = running();
+        if constexpr (requires { block.Active; }) block.Active = phase_ == Phase::active || phase_ == Phase::in_target;
+        if constexpr (requires { block.CommandAborted; }) block.CommandAborted = phase_ == Phase::aborted;
+        block.Error = phase_ == Phase::error;
+        block.ErrorID = phase_ == Phase::error ? error_ : axes::ErrorId::none;
+    }
+
+private:
+    enum class Phase : std::uint8_t { idle, waiting, active, in_target, done, aborted, error };
+
+    axes::CommandId command_ = 0;
+    axes::AxisRef axis_{};
+    axes::ErrorId error_ = axes::ErrorId::none;
+    Phase phase_ = Phase::idle;
+    bool execute_ = false;
+};
+
+}  // namespace taktwerk::fb

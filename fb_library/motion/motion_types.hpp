@@ -1,0 +1,53 @@
+#pragma once
+// Types of motion pins: the axis floor's words under the names a program uses, and their descriptions for the pin tables.
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "axes/axis/motion_context.hpp"
+#include "fb_library/pins/pin.hpp"
+
+namespace taktwerk::fb {
+
+using axes::AxisRef;
+using axes::ErrorId;
+using axes::MotionContext;
+
+using axes::MC_BufferMode;
+using enum axes::MC_BufferMode;
+using axes::MC_Direction;
+using enum axes::MC_Direction;
+
+/// PLCopen Part 1 v2.0, 3.17. mcQueued is not supported so far.
+enum MC_ExecutionMode : std::uint8_t { mcImmediately, mcQueued };
+
+/// The modes of TwinCAT's MC_Jog, in its order.
+enum MC_JogMode : std::uint8_t {
+    mcJogStandardSlow,   ///< the axis' configured slow manual velocity; the block's dynamics are ignored
+    mcJogStandardFast,   ///< the same with the fast one
+    mcJogContinuous,     ///< the block's dynamics, as long as the input is TRUE
+    mcJogInching,        ///< Position as a distance, once per press
+    mcJogInchingModulo,  ///< not supported so far
+};
+
+namespace detail {
+inline constexpr std::array<std::string_view, 6> buffer_mode_names{"mcAborting",         "mcBuffered",     "mcBlendingLow",
+                                                                   "mcBlendingPrevious", "mcBlendingNext", "mcBlendingHigh"};
+inline constexpr std::array<std::string_view, 4> direction_names{"mcPositiveDirection", "mcShortestWay", "mcNegativeDirection",
+                                                                 "mcCurrentDirection"};
+inline constexpr std::array<std::string_view, 2> execution_mode_names{"mcImmediately", "mcQueued"};
+inline constexpr std::array<std::string_view, 5> jog_mode_names{"mcJogStandardSlow", "mcJogStandardFast", "mcJogContinuous", "mcJogInching",
+                                                                "mcJogInchingModulo"};
+}  // namespace detail
+
+template <> struct PinTypeOf<AxisRef> { static constexpr PinType value{PinKind::AXIS_REF, "AXIS_REF"}; };
+template <> struct PinTypeOf<ErrorId> { static constexpr PinType value{PinKind::WORD, "WORD"}; };
+template <> struct PinTypeOf<MC_BufferMode> { static constexpr PinType value{PinKind::ENUM, "MC_BUFFER_MODE", detail::buffer_mode_names}; };
+template <> struct PinTypeOf<MC_Direction> { static constexpr PinType value{PinKind::ENUM, "MC_DIRECTION", detail::direction_names}; };
+template <> struct PinTypeOf<MC_ExecutionMode> {
+    static constexpr PinType value{PinKind::ENUM, "MC_EXECUTION_MODE", detail::execution_mode_names};
+};
+template <> struct PinTypeOf<MC_JogMode> { static constexpr PinType value{PinKind::ENUM, "MC_JOG_MODE", detail::jog_mode_names}; };
+
+}  // namespace taktwerk::fb

@@ -1,0 +1,140 @@
+#pragma once
+// Pins of function blocks as data. A block writes its table once, from member pointers:
+//
+//     static consteval auto pins() { return std::array{in<&Self::PT>("s", "delay time"), out<&Self::Q>("", "delayed IN")}; }
+//
+// Name, type, size and offset come from the member, so a name stands once. Everything here is a constant: no run time, no
+// allocation. (`pins()` is a function because the class is complete only inside function bodies; offsets need that.)
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "core/time.hpp"
+
+namespace taktwerk::fb {
+
+/// IEC 61131-3 ed. 3 elementary types (6.4.2), plus an axis handle and enumerations.
+enum class PinKind : std::uint8_t {
+    BOOL, SINT, INT, DINT, LINT, USINT, UINT, UDINT, ULINT, REAL, LREAL, WORD,
+    TIME,      ///< int64 nanoseconds: never wraps in the life of a machine (292 years)
+    AXIS_REF,  ///< axes::AxisRef, a handle
+    ENUM,      ///< unsigned 8 bit; PinType::values names the numbers 0, 1, ...
+};
+
+struct PinType {
+    PinKind kind = PinKind::BOOL;
+    std::string_view name;                          ///< as the standard spells it: "LREAL", "MC_BUFFER_MODE"
+    std::span<const std::string_view> values = {};  ///< ENUM only
+};
+
+enum class PinDirection : std::uint8_t { in, out, in_out };
+
+struct Pin {
+    std::string_view name;
+    PinDirection direction = PinDirection::in;
+    PinType type;
+    std::size_t offset = 0, size = 0;  ///< bytes, within the block
+    std::string_view unit;             ///< "" = none; u = the axis' configured unit
+    std::string_view doc;
+};
+
+/// Specialised for each C++ type that may be a pin: `static constexpr PinType value`.
+template <class T>
+struct PinTypeOf;
+
+template <> struct PinTypeOf<bool> { static constexpr PinType value{PinKind::BOOL, "BOOL"}; };
+template <> struct PinTypeOf<std::int8_t> { static constexpr PinType value{PinKind::SINT, "SINT"}; };
+template <> struct PinTypeOf<std::int16_t> { static constexpr PinType value{PinKind::INT, "INT"}; };
+template <> struct PinTypeOf<std::int32_t> { static constexpr PinType value{PinKind::DINT, "DINT"}; };
+template <> struct PinTypeOf<std::int64_t> { static constexpr PinType value{PinKind::LINT, "LINT"}; };
+template <> struct PinTypeOf<std::uint8_t> { static constexpr PinType value{PinKind::USINT, "USINT"}; };
+template <> struct PinTypeOf<std::uint16_t> { static constexpr PinType value{PinKind::UINT, "UINT"}; };
+template <> struct PinTypeOf<std::uint32_t> { static constexpr PinType value{PinKind::UDINT, "UDINT"}; };
+template <> struct PinTypeOf<std::uint64_t> { static constexpr PinType value{PinKind::ULINT, "ULINT"}; };
+template <> struct PinTypeOf<float> { static constexpr PinType value{PinKind::REAL, "REAL"}; };
+template <> struct PinTypeOf<double> { static constexpr PinType value{PinKind::LREAL, "LREAL"}; };
+template <> struct PinTypeOf<Duration> { static constexpr PinType value{PinKind::TIME, "TIME"}; };
+
+namespace detail {
+
+template <class Pointer>
+struct MemberOf;
+template <class C, class T>
+struct MemberOf<T C::*> {
+    using Class = C;
+    using Type = T;
+};
+
+/// The last name in what the compiler calls this function: "... [with auto M = &ns::Block::Execute; ...]" (g++),
+/// "... [M = &ns::Block::Execute]" (clang++).
+template <auto M>
+consteval std::string_view member_name() {
+    constexpr std::string_view text = __PRETTY_FUNCTION__;
+    constexpr auto begin = text.find("M = ");
+    constexpr auto end = text.find_first_of(";])", begin);
+    constexpr auto colons = text.substr(0, end).rfind("::");
+    static_assert(begin != std::string_view::npos && colons != std::string_view::npos, "unknown compiler spelling");
+    return text.substr(colons + 2, end - colons - 2);
+}
+
+/// The name of T without namespaces and template arguments.
+template <class T>
+consteval std::string_view type_name() {
+    constexpr std::string_view text = __PRETTY_FUNCTION__;
+    constexpr auto begin = text.find("T = ") + 4;
+    constexpr auto end = text.find_first_of(";]<", begin);
+    constexpr auto whole = text.substr(begin, end - begin);
+    constexpr auto colons = whole.rfind("::");
+    return colons == std::string_view::npos ? whole : whole.substr(colons + 2);
+}
+
+/// offsetof for a member pointer, as a constant: the member is looked for among the slots of an array laid over the object.
+template <auto M>
+consteval std::size_t offset_of() {
+    using C = typename MemberOf<decltype(M)>::Class;
+    using T = typename MemberOf<decltype(M)>::Type;
+    union Overlay {
+        C object;
+        T slots[sizeof(C) / sizeof(T) + 1];
+        constexpr Overlay() : object{} {}
+    };
+    constexpr Overlay overlay{};
+    for (std::size_t i = 0; i <= sizeof(C) / sizeof(T); ++i)
+        if (&overlay.slots[i] == &(overlay.object.*M)) return i * sizeof(T);
+    throw "a pin's offset is no multiple of its size";  // not a constant: the build stops here
+}
+
+template <auto M>
+consteval Pin pin(PinDirection direction, std::string_view unit, std::string_view doc) {
+    using T = typename MemberOf<decltype(M)>::Type;
+    return {member_name<M>(), direction, PinTypeOf<T>::value, offset_of<M>(), sizeof(T), unit, doc};
+}
+
+}  // namespace detail
+
+template <auto Member>
+consteval Pin in(std::string_view unit, std::string_view doc) {
+    return detail::pin<Member>(PinDirection::in, unit, doc);
+}
+template <auto Member>
+consteval Pin out(std::string_view unit, std::string_view doc) {
+    return detail::pin<Member>(PinDirection::out, unit, doc);
+}
+template <auto Member>
+consteval Pin in_out(std::string_view unit, std::string_view doc) {
+    return detail::pin<Member>(PinDirection::in_out, unit, doc);
+}
+
+/// A block's name is its type's name, unless it says otherwise (`static constexpr std::string_view block_name`).
+template <class Block>
+consteval std::string_view block_name() {
+    if constexpr (requires { Block::block_name; })
+        return Block::block_name;
+    else
+        return detail::type_name<Block>();
+}
+
+}  // namespace taktwerk::fb
