@@ -1,0 +1,168 @@
+// The raw socket on a veth pair in a network namespace of the test's own. Skipped where that is not permitted.
+#include "ecat/transport/raw_socket.hpp"
+
+#include <gmock/gmock.h>
+#include <linux/capability.h>
+#include <sched.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <thread>
+
+namespace taktwerk::ecat {
+namespace {
+
+using ::testing::HasSubstr;
+using namespace std::chrono_literals;
+
+bool run(const std::string& command) { return std::system((command + " >/dev/null 2>&1").c_str()) == 0; }
+
+/// Leaves the machine's network for an empty one: as root, or as root of a user namespace of our own.
+bool enter_own_network() {
+    if (::unshare(CLONE_NEWNET) == 0) return true;
+    const auto uid = ::getuid();
+    const auto gid = ::getgid();
+    if (::unshare(CLONE_NEWUSER | CLONE_NEWNET) != 0) return false;
+    std::ofstream{"/proc/self/setgroups"} << "deny";
+    std::ofstream{"/proc/self/uid_map"} << "0 " << uid << " 1";
+    std::ofstream{"/proc/self/gid_map"} << "0 " << gid << " 1";
+    return true;
+}
+
+/// One namespace for all tests of this binary; made at the first test.
+const std::string& network() {
+    static const std::string problem = [] {
+        if (!enter_own_network()) return std::string{"network namespaces are not permitted here"};
+        if (!run("ip link add ecat0 address 02:00:00:00:00:01 type veth peer name ecat1 address 02:00:00:00:00:02"))
+            return std::string{"veth pairs are not permitted here, or `ip` is missing"};
+        // Without IPv6 nothing but the test's frames is on the pair.
+        run("sysctl -w net.ipv6.conf.ecat0.disable_ipv6=1 net.ipv6.conf.ecat1.disable_ipv6=1");
+        run("ip link set lo up");
+        return std::string{};
+    }();
+    return problem;
+}
+
+class RawSocket : public ::testing::Test {
+protected:
+    void SetUp() override {
+        if (!network().empty()) GTEST_SKIP() << network();
+        ASSERT_TRUE(run("ip link set ecat0 up") && run("ip link set ecat1 up"));
+    }
+    const Instant now{1s};
+    std::array<std::byte, max_frame_size> buffer{};
+
+    static std::vector<std::byte> frame(std::uint16_t type = ethertype) {
+        std::vector<std::byte> bytes(60, std::byte{0x5A});
+        for (std::size_t i = 0; i < 6; ++i) bytes[i] = std::byte{0xFF};
+        bytes[12] = static_cast<std::byte>(type >> 8);
+        bytes[13] = static_cast<std::byte>(type & 0xFF);
+        return bytes;
+    }
+    /// A veth pair delivers in another context of the kernel: wait for the event, at most a second.
+    std::optional<ReceivedFrame> wait_for_frame(RawSocketTransport& transport) {
+        for (int i = 0; i < 1000; ++i) {
+            if (auto received = transport.receive(buffer, now)) return received;
+            std::this_thread::sleep_for(1ms);
+        }
+        return std::nullopt;
+    }
+};
+
+TEST_F(RawSocket, FrameCrossesTheCableAndTheSenderDoesNotHearItself) {
+    auto master = RawSocketTransport::open("ecat0");
+    auto slave = RawSocketTransport::open("ecat1");
+    ASSERT_TRUE(master.ok()) << master.error().text();
+    ASSERT_TRUE(slave.ok()) << slave.error().text();
+    EXPECT_EQ((*master)->mac(), (MacAddress{2, 0, 0, 0, 0, 1}));
+    EXPECT_FALSE((*slave)->receive(buffer, now)) << "nothing sent yet, and no waiting";
+
+    ASSERT_TRUE((*master)->send(frame(), now));
+
+    const auto received = wait_for_frame(**slave);
+    ASSERT_TRUE(received);
+    EXPECT_EQ(received->size, 60u);
+    EXPECT_EQ(received->at, now);
+    EXPECT_TRUE(std::equal(buffer.begin(), buffer.begin() + 60, frame().begin()));
+    EXPECT_FALSE((*master)->receive(buffer, now));
+}
+
+TEST_F(RawSocket, OtherEtherTypesAreNotReceived) {
+    auto master = RawSocketTransport::open("ecat0");
+    auto slave = RawSocketTransport::open("ecat1");
+    ASSERT_TRUE(master.ok() && slave.ok());
+    ASSERT_TRUE((*master)->send(frame(0x88B5), now));
+    ASSERT_TRUE((*master)->send(frame(), now));
+    ASSERT_TRUE(wait_for_frame(**slave));
+    EXPECT_EQ(buffer[13], std::byte{0xA4});
+    EXPECT_FALSE((*slave)->receive(buffer, now));
+}
+
+TEST_F(RawSocket, SecondMasterOnAnInterfaceIsRefusedWithTheFirstOnesProcessId) {
+    auto first = RawSocketTransport::open("ecat0");
+    ASSERT_TRUE(first.ok()) << first.error().text();
+    {
+        const auto second = RawSocketTransport::open("ecat0");
+        ASSERT_FALSE(second.ok());
+        EXPECT_EQ(second.error().code, "transport.in_use");
+        EXPECT_THAT(second.error().what, HasSubstr("process " + std::to_string(::getpid())));
+    }
+    EXPECT_TRUE(RawSocketTransport::open("ecat0", {.exclusive = false}).ok()) << "a listener may";
+    *first = nullptr;
+    EXPECT_TRUE(RawSocketTransport::open("ecat0").ok()) << "free again";
+}
+
+TEST_F(RawSocket, LinkStateFollowsTheCableWhenRefreshed) {
+    auto master = RawSocketTransport::open("ecat0");
+    ASSERT_TRUE(master.ok()) << master.error().text();
+    const auto follows = [&](bool up) {  // the kernel reports carrier a moment later
+        for (int i = 0; i < 1000 && (*master)->link_up() != up; ++i) {
+            (*master)->refresh();
+            std::this_thread::sleep_for(1ms);
+        }
+        return (*master)->link_up() == up;
+    };
+    EXPECT_TRUE(follows(true));
+    ASSERT_TRUE(run("ip link set ecat1 down"));
+    EXPECT_TRUE(follows(false));
+}
+
+TEST_F(RawSocket, ErrorsSayWhatToDo) {
+    const auto missing = RawSocketTransport::open("ecat7");
+    ASSERT_FALSE(missing.ok());
+    EXPECT_EQ(missing.error().code, "transport.no_such_interface");
+    EXPECT_THAT(missing.error().text(), HasSubstr("ecat7"));
+    EXPECT_THAT(missing.error().remedy, HasSubstr("ecat0"));
+    EXPECT_EQ(RawSocketTransport::open("").error().code, "transport.no_such_interface");
+    EXPECT_EQ(RawSocketTransport::open("a_name_longer_than_sixteen").error().code, "transport.no_such_interface");
+    EXPECT_EQ(RawSocketTransport::open("lo").error().code, "transport.not_ethernet");
+
+    ASSERT_TRUE(run("ip link set ecat0 down"));
+    const auto down = RawSocketTransport::open("ecat0");
+    ASSERT_FALSE(down.ok());
+    EXPECT_EQ(down.error().code, "transport.interface_down");
+    EXPECT_THAT(down.error().remedy, HasSubstr("ip link set ecat0 up"));
+}
+
+TEST_F(RawSocket, MissingPrivilegeIsNamedWithTheCommandThatGivesIt) {
+    __user_cap_header_struct header{_LINUX_CAPABILITY_VERSION_3, 0};
+    std::array<__user_cap_data_struct, 2> before{}, without{};
+    ASSERT_EQ(::syscall(SYS_capget, &header, before.data()), 0);
+    without = before;
+    without[0].effective &= ~(1u << CAP_NET_RAW);
+    ASSERT_EQ(::syscall(SYS_capset, &header, without.data()), 0);
+
+    const auto refused = RawSocketTransport::open("ecat0");
+
+    ASSERT_EQ(::syscall(SYS_capset, &header, before.data()), 0);
+    ASSERT_FALSE(refused.ok());
+    EXPECT_EQ(refused.error().code, "transport.no_privilege");
+    EXPECT_THAT(refused.error().remedy, HasSubstr("setcap cap_net_raw"));
+    EXPECT_TRUE(RawSocketTransport::open("ecat0").ok()) << "the refused one left no lock behind";
+}
+
+}  // namespace
+}  // namespace taktwerk::ecat
