@@ -1,0 +1,177 @@
+#include "ecat/exchange/acyclic_channel.hpp"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "core/bytes.hpp"
+#include "tests/ecat/exchange/echo_slaves.hpp"
+
+namespace taktwerk::ecat {
+namespace {
+
+using namespace std::chrono_literals;
+
+class AcyclicChannelTest : public ::testing::Test {
+protected:
+    test::EchoSlaves slaves;
+    LoopbackTransport transport{slaves};
+    Exchange exchange{transport};
+    AcyclicChannel channel{exchange, 20ms};
+    Instant now{1s};
+
+    std::size_t cycle(std::size_t max_datagrams = 4) {
+        exchange.receive(now);
+        channel.collect(now);
+        const auto packed = channel.pack(now, max_datagrams);
+        now += 1ms;
+        return packed;
+    }
+    EntryId read(std::uint16_t ado, std::size_t size = 2) {
+        const auto id = channel.submit(Command::FPRD, Address::physical(0x1001, ado), size);
+        EXPECT_TRUE(id);
+        return *id;
+    }
+};
+
+TEST_F(AcyclicChannelTest, RequestGoesOutAndItsAnswerComesBack) {
+    const auto data = std::vector<std::byte>{std::byte{1}, std::byte{2}};
+    const auto id = channel.submit(Command::BRW, Address::physical(0, 0x0120), data);
+    ASSERT_TRUE(id);
+    EXPECT_FALSE(channel.poll(*id));
+
+    EXPECT_EQ(cycle(), 1u);
+    EXPECT_FALSE(channel.poll(*id)) << "under way";
+    EXPECT_EQ(cycle(), 0u);
+
+    const auto answer = channel.poll(*id);
+    ASSERT_TRUE(answer);
+    EXPECT_FALSE(answer->lost);
+    EXPECT_EQ(answer->wkc, 2);
+    EXPECT_EQ(answer->slaves_passed, 2);
+    ASSERT_EQ(answer->data.size(), 2u);
+    EXPECT_EQ(answer->data[1], std::byte{0x82});
+    channel.release(*id);
+    EXPECT_EQ(channel.in_use(), 0u);
+}
+
+TEST_F(AcyclicChannelTest, NoMoreThanTheGrantedDatagramsLeaveInOneCycleInOrderOfSubmission) {
+    std::vector<EntryId> ids;
+    for (std::uint16_t i = 0; i < 6; ++i) ids.push_back(read(static_cast<std::uint16_t>(0x0100 + i)));
+
+    EXPECT_EQ(cycle(4), 4u);
+    EXPECT_EQ(cycle(4), 2u);
+    cycle();
+
+    for (const auto id : ids) EXPECT_TRUE(channel.poll(id));
+    std::vector<std::uint16_t> order;
+    for (const auto& frame : slaves.seen) {
+        FrameReader reader{frame};
+        while (const auto datagram = reader.next()) order.push_back(datagram->address.ado());
+    }
+    EXPECT_EQ(order, (std::vector<std::uint16_t>{0x0100, 0x0101, 0x0102, 0x0103, 0x0104, 0x0105}));
+}
+
+TEST_F(AcyclicChannelTest, RequestThatDoesNotFitWaitsAndNothingOvertakesIt) {
+    read(0x0100);
+    const auto large = read(0x1000, max_datagram_data);
+    const auto small = read(0x0102);
+    EXPECT_EQ(cycle(), 1u);
+    EXPECT_EQ(cycle(), 1u);
+    EXPECT_EQ(cycle(), 1u);
+    cycle();
+    ASSERT_TRUE(channel.poll(large));
+    EXPECT_EQ(channel.poll(large)->data.size(), max_datagram_data);
+    EXPECT_TRUE(channel.poll(small));
+}
+
+TEST_F(AcyclicChannelTest, UnansweredRequestIsLostAfterTheTimeout) {
+    transport.faults.drop_requests = 1;
+    const auto id = read(0x0130);
+    cycle();
+    for (int i = 0; i < 19; ++i) {
+        EXPECT_FALSE(channel.poll(id)) << i;
+        cycle();
+    }
+    cycle();
+    const auto answer = channel.poll(id);
+    ASSERT_TRUE(answer);
+    EXPECT_TRUE(answer->lost);
+    EXPECT_TRUE(answer->data.empty());
+    EXPECT_EQ(exchange.statistics().lost, 1u);
+}
+
+TEST_F(AcyclicChannelTest, RequestIsLostAtOnceWhenTheLinkDoesNotTakeIt) {
+    transport.faults.link_down = true;
+    const auto id = read(0x0130);
+    EXPECT_EQ(cycle(), 0u);
+    ASSERT_TRUE(channel.poll(id));
+    EXPECT_TRUE(channel.poll(id)->lost);
+}
+
+TEST_F(AcyclicChannelTest, EntryReleasedUnderWayIsFreeOnlyAfterItsAnswer) {
+    const auto waiting = read(0x0100);
+    channel.release(waiting);
+    EXPECT_EQ(channel.in_use(), 0u);
+
+    const auto flying = read(0x0102);
+    cycle();
+    channel.release(flying);
+    EXPECT_EQ(channel.in_use(), 1u);
+    EXPECT_TRUE(channel.poll(flying)->lost);
+    cycle();
+    EXPECT_EQ(channel.in_use(), 0u);
+}
+
+TEST_F(AcyclicChannelTest, ThirtyTwoEntriesAreTakenAndTheNextIsRefused) {
+    std::vector<EntryId> ids;
+    for (std::size_t i = 0; i < AcyclicChannel::entry_count; ++i) ids.push_back(read(0x0130));
+    EXPECT_FALSE(channel.submit(Command::FPRD, {}, std::size_t{2}));
+    channel.release(ids[7]);
+    EXPECT_TRUE(channel.submit(Command::FPRD, {}, std::size_t{2}));
+    EXPECT_TRUE(channel.poll(ids[7])->lost) << "a stale id is not the new request";
+    EXPECT_FALSE(channel.submit(Command::FPRD, {}, max_datagram_data + 1));
+}
+
+TEST_F(AcyclicChannelTest, NothingIsSentWhenNothingWaits) {
+    EXPECT_EQ(cycle(), 0u);
+    EXPECT_EQ(exchange.statistics().sent, 0u);
+    read(0x0130);
+    EXPECT_EQ(cycle(0), 0u) << "no grant";
+    EXPECT_EQ(exchange.statistics().sent, 0u);
+}
+
+// One service thread and one cycle thread: each answer belongs to its request. (The thread sanitizer watches.)
+TEST_F(AcyclicChannelTest, ServiceAndCycleShareTheEntriesWithoutLocks) {
+    std::atomic<bool> done{false};
+    std::thread service{[&] {
+        for (std::uint32_t i = 0; i < 2000; ++i) {
+            std::array<std::byte, 4> data{};
+            store_le<std::uint32_t>(data, 0, i & 0x7F7F7F7Fu);
+            const auto id = channel.submit(Command::FPRW, Address::physical(0x1001, 0x0F80), data);
+            if (!id) continue;
+            if (i % 7 == 0) {  // changes its mind
+                channel.release(*id);
+                continue;
+            }
+            std::optional<AcyclicAnswer> answer;
+            while (!(answer = channel.poll(*id))) std::this_thread::yield();
+            EXPECT_FALSE(answer->lost);
+            if (!answer->lost) {
+                EXPECT_EQ(load_le<std::uint32_t>(answer->data), (i & 0x7F7F7F7Fu) | 0x80808080u);
+            }
+            channel.release(*id);
+        }
+        done = true;
+    }};
+    while (!done) {
+        cycle();
+        std::this_thread::yield();
+    }
+    service.join();
+    for (int i = 0; i < 3; ++i) cycle();
+    EXPECT_EQ(channel.in_use(), 0u);
+}
+
+}  // namespace
+}  // namespace taktwerk::ecat
