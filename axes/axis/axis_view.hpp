@@ -27,6 +27,8 @@ struct AxisView {
     bool warning = false;
     std::uint16_t error = 0;       ///< alarm id while in ErrorStop (or ErrorId of the last error); 0 = none
     std::uint16_t drive_error = 0; ///< drive's own number (603Fh); 0 = none
+    bool resetting = false;        ///< a reset waits for the drive or for standstill
+    ErrorId reset_error = ErrorId::none;  ///< what the last reset came to, once it is over
 
     // u, u/s, u/s2, u/s3, fraction of rated torque
     double set_position = 0, set_velocity = 0, set_acceleration = 0, set_jerk = 0;

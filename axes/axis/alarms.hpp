@@ -1,0 +1,142 @@
+#pragma once
+// Every condition an axis announces: its words, how it goes away, and what the machine does about it. The one place that decides
+// reactions of axes. The drive's own alarm texts come from its profile; `drive_fault` carries their number.
+
+#include <array>
+#include <string_view>
+
+#include "core/alarm.hpp"
+
+namespace taktwerk::axes {
+
+enum class AxisAlarm : AlarmId {
+    following_error = 0x3001,
+    drive_fault = 0x3002,
+    drive_power_lost = 0x3003,
+    axis_feedback_lost = 0x3004,
+    enable_timeout = 0x3005,
+    software_limit_reached = 0x3006,
+    negative_limit_switch = 0x3007,
+    positive_limit_switch = 0x3008,
+    homing_failed = 0x3009,
+    homing_timeout = 0x300A,
+    jog_lease_expired = 0x300B,
+    drive_unknown_state = 0x300C,
+    drive_mode_mismatch = 0x300D,
+    drive_warning = 0x300E,
+    emergency_stop = 0x300F,
+    stopped_by_machine = 0x3010,
+    planner_refused = 0x3011,
+};
+inline constexpr std::size_t axis_alarm_count = 17;
+
+[[nodiscard]] constexpr AlarmId id(AxisAlarm alarm) noexcept { return static_cast<AlarmId>(alarm); }
+
+inline constexpr std::array<AlarmInfo, axis_alarm_count> axis_alarms{{
+    {id(AxisAlarm::following_error), "following_error",
+     "Following error {a} u is beyond the window of {b} u", "跟随误差 {a} u 超出允许窗口 {b} u",
+     "The axis is blocked or overloaded, the acceleration is too high for the drive, or the drive's loops are badly tuned",
+     "Free the axis, check load and brake, lower acceleration and jerk or tune the drive; then reset",
+     ResetRule::reset, Reaction::stop_axis, "The drive's own following error monitor (6065h) decides"},
+    {id(AxisAlarm::drive_fault), "drive_fault",
+     "The drive reports fault 0x{a:x} (detail {b})", "驱动器报告故障 0x{a:x}(详细代码 {b})",
+     "See the drive's alarm list for this number",
+     "Remove the cause named by the drive's alarm text, then reset",
+     ResetRule::reset, Reaction::stop_axis, "The drive has stopped by its fault reaction (605Eh)"},
+    {id(AxisAlarm::drive_power_lost), "drive_power_lost",
+     "The drive left 'operation enabled' by itself (state {a})", "驱动器自行退出“运行使能”状态(状态 {a})",
+     "Main power or the safety input (STO) went off, or somebody disabled the drive from its panel",
+     "Restore main power and the safety circuit, then reset and enable again",
+     ResetRule::reset, Reaction::stop_axis, "The drive has cut its power stage; the axis coasts or the brake holds"},
+    {id(AxisAlarm::axis_feedback_lost), "axis_feedback_lost",
+     "No fresh actual values for {a} cycles (limit {b})", "已有 {a} 个周期未收到新的实际值(上限 {b})",
+     "The slave left the bus, frames are lost, or its working counter is wrong",
+     "Check cable, supply and state of the slave; when it is back in operation, reset",
+     ResetRule::reset, Reaction::stop_axis, "The drive's communication watchdog and its reaction (605Ah, 6007h) stop it"},
+    {id(AxisAlarm::enable_timeout), "enable_timeout",
+     "The drive did not enable within {a} s (drive state {b})", "驱动器在 {a} 秒内未能使能(驱动器状态 {b})",
+     "Main power is missing, the safety input (STO) is open, or the drive waits for something else",
+     "Check main power, safety circuit and the drive's panel; then reset",
+     ResetRule::reset, Reaction::stop_axis, "The drive stays without power"},
+    {id(AxisAlarm::software_limit_reached), "software_limit_reached",
+     "Motion at velocity ends at the software limit {b} u (now at {a} u)", "速度运动将在软件限位 {b} u 处停止(当前位置 {a} u)",
+     "A velocity command ran until the end of the permitted range",
+     "Reset, then move away from the limit; end velocity motions earlier",
+     ResetRule::reset, Reaction::stop_axis, "The drive's communication watchdog stops it; software limits are in the master only"},
+    {id(AxisAlarm::negative_limit_switch), "negative_limit_switch",
+     "The negative limit switch was reached at {a} u", "在 {a} u 处触发负向限位开关",
+     "The axis moved past its permitted range, or the switch or its wiring is defective",
+     "Reset, then move in positive direction; check homing and software limits",
+     ResetRule::reset, Reaction::stop_axis, "The drive's own limit switch function stops it where it is wired to the drive"},
+    {id(AxisAlarm::positive_limit_switch), "positive_limit_switch",
+     "The positive limit switch was reached at {a} u", "在 {a} u 处触发正向限位开关",
+     "The axis moved past its permitted range, or the switch or its wiring is defective",
+     "Reset, then move in negative direction; check homing and software limits",
+     ResetRule::reset, Reaction::stop_axis, "The drive's own limit switch function stops it where it is wired to the drive"},
+    {id(AxisAlarm::homing_failed), "homing_failed",
+     "Homing failed at step {a} (drive error 0x{b:x})", "回零失败,步骤 {a}(驱动器错误 0x{b:x})",
+     "The home switch was not found between the limits, or the drive refused its homing method",
+     "Check switches, homing method and direction; then reset and home again",
+     ResetRule::reset, Reaction::stop_axis, "The drive's communication watchdog stops it"},
+    {id(AxisAlarm::homing_timeout), "homing_timeout",
+     "Homing took longer than {a} s", "回零时间超过 {a} 秒",
+     "The switch is farther away than expected, or the homing velocity or the timeout is too low",
+     "Check switch and velocities or raise homing.timeout; then reset and home again",
+     ResetRule::reset, Reaction::stop_axis, "The drive's communication watchdog stops it"},
+    {id(AxisAlarm::jog_lease_expired), "jog_lease_expired",
+     "Jogging stopped: no renewal for {a} s", "点动已停止:{a} 秒内未收到续期",
+     "The client that jogs has gone, hangs, or its connection is too slow",
+     "Jog again; if it repeats, check the connection or raise jog_lease",
+     ResetRule::acknowledge, Reaction::warn, "The drive's communication watchdog stops it"},
+    {id(AxisAlarm::drive_unknown_state), "drive_unknown_state",
+     "The status word 0x{a:x} fits no power state", "状态字 0x{a:x} 不对应任何功率状态",
+     "The drive profile does not match the drive, or the process data are mapped wrongly",
+     "Check profile, mapping and firmware; then reset",
+     ResetRule::reset, Reaction::power_off, "The drive's communication watchdog stops it"},
+    {id(AxisAlarm::drive_mode_mismatch), "drive_mode_mismatch",
+     "The drive is in mode {a} instead of {b}", "驱动器处于模式 {a},而不是 {b}",
+     "Mode of operation was changed at the drive, by a parameter or by another master",
+     "Check start-up list and panel settings; then reset",
+     ResetRule::reset, Reaction::power_off, "The drive goes on in its own mode until its communication watchdog stops it"},
+    {id(AxisAlarm::drive_warning), "drive_warning",
+     "The drive warns: 0x{a:x}", "驱动器警告:0x{a:x}",
+     "See the drive's alarm list for this number",
+     "Follow the drive's alarm text before the warning becomes a fault",
+     ResetRule::self_clearing, Reaction::warn, ""},
+    {id(AxisAlarm::emergency_stop), "emergency_stop",
+     "Stopped by the emergency stop input", "由急停输入停止",
+     "The emergency stop was pressed or its circuit is open",
+     "Remove the danger, release the emergency stop, then reset",
+     ResetRule::reset, Reaction::stop_axis, "The safety circuit in hardware cuts the power"},
+    {id(AxisAlarm::stopped_by_machine), "stopped_by_machine",
+     "Stopped because of another part of the machine (alarm 0x{a:x})", "因机器其他部分而停止(报警 0x{a:x})",
+     "The alarm named stops the whole machine",
+     "Remove the cause of that alarm, then reset",
+     ResetRule::reset, Reaction::stop_axis, "The drive's communication watchdog stops it"},
+    {id(AxisAlarm::planner_refused), "planner_refused",
+     "No motion could be planned from {a} u at {b} u/s", "无法从 {a} u、速度 {b} u/s 处规划运动",
+     "A number in limits or command is beyond what can be calculated with",
+     "Check the limits of the axis; report this, it should not happen",
+     ResetRule::reset, Reaction::power_off, "The drive's communication watchdog stops it"},
+}};
+
+namespace alarm_check {
+consteval bool sound() {
+    AlarmId last = 0;
+    for (const auto& alarm : axis_alarms) {
+        if (alarm.id <= last || alarm.id < 0x3000 || alarm.id > 0x3FFF) return false;  // rising: no id twice
+        if (alarm.name.empty() || alarm.english.empty() || alarm.chinese.empty() || alarm.cause.empty() || alarm.remedy.empty()) return false;
+        if (alarm.reaction >= Reaction::stop_axis && (alarm.reset != ResetRule::reset || alarm.master_gone.empty())) return false;
+        last = alarm.id;
+    }
+    return true;
+}
+static_assert(sound());
+}  // namespace alarm_check
+
+[[nodiscard]] constexpr Reaction reaction(AxisAlarm alarm) noexcept {
+    const auto* info = find_alarm(axis_alarms, id(alarm));
+    return info ? info->reaction : Reaction::power_off;
+}
+
+}  // namespace taktwerk::axes

@@ -1,0 +1,188 @@
+// What comes from the drive and what goes to it. See axis.hpp for the order of the calls.
+
+#include "axes/axis/axis.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace taktwerk::axes {
+
+namespace {
+
+std::uint32_t stale_cycles(const AxisConfig& config, const DriveCapabilities& drive, Duration cycle) {
+    const auto polls = cycle > Duration::zero() ? std::max<std::int64_t>(1, drive.feedback_period / cycle) : 1;
+    return static_cast<std::uint32_t>(config.stale_limit * polls);
+}
+
+}  // namespace
+
+Axis::Axis(AxisConfig config, DrivePort& port, Duration cycle, std::uint16_t index)
+    : config_(std::move(config)),
+      port_(port),
+      stale_limit_(stale_cycles(config_, port.capabilities(), cycle)),
+      endless_(std::isinf(config_.limits.position_min) && std::isinf(config_.limits.position_max)),
+      units_(config_.gearing),
+      power_(port.capabilities().enable_delay, config_.enable_timeout),
+      alarms_(index) {
+    view_.simulated = config_.simulated;
+    const auto& manual = config_.manual;
+    view_.manual_slow = manual.slow > 0 ? manual.slow : 0.05 * config_.limits.velocity;
+    view_.manual_fast = manual.fast > 0 ? manual.fast : 0.25 * config_.limits.velocity;
+    publish();
+}
+
+bool Axis::drive_faulted() const noexcept {
+    return feedback_.fault || feedback_.power == PowerState::fault || feedback_.power == PowerState::fault_reaction;
+}
+
+bool Axis::drive_stands() const noexcept {
+    return std::abs(feedback_.velocity) <= config_.windows.standstill_velocity * std::abs(units_.counts_per_unit());
+}
+
+void Axis::update(Instant now) noexcept {
+    now_ = now;
+    power_calls_ = 0;
+    read_feedback();
+    if (!config_.disabled) watch_drive();
+    run_power();
+    watch_following_error();
+    run_reset();
+    publish();
+}
+
+void Axis::read_feedback() noexcept {
+    feedback_ = port_.decode(now_);
+    if (!feedback_.online && !port_.capabilities().absolute_encoder) homed_ = false;  // it may come back with another zero
+    if (!feedback_.fresh) {
+        if (stale_ < 0xFFFFFFFF) ++stale_;
+        return;
+    }
+    stale_ = 0;
+    actual_counts_ = feedback_.position;
+    if (!seeded_) {
+        seeded_ = true;
+        setpoint_.place(actual_local());
+    }
+    // Switches are wired to the drive's sense of direction.
+    const bool inverted = config_.gearing.inverted;
+    negative_switch_ = feedback_.has_inputs && (inverted ? feedback_.positive_limit : feedback_.negative_limit);
+    positive_switch_ = feedback_.has_inputs && (inverted ? feedback_.negative_limit : feedback_.positive_limit);
+}
+
+void Axis::watch_drive() noexcept {
+    const bool asked = power_.phase() != PowerSequence::Phase::off;
+    if (seeded_ && asked && !online())
+        fail(AxisAlarm::axis_feedback_lost, static_cast<double>(stale_), static_cast<double>(stale_limit_));
+    if (!feedback_.fresh || !online()) return;
+
+    if (feedback_.warning) fail(AxisAlarm::drive_warning, feedback_.error_code);
+    else alarms_.clear(AxisAlarm::drive_warning);
+
+    if (drive_faulted()) fail(AxisAlarm::drive_fault, feedback_.error_code, port_.alarm().detail);
+    else if (asked && feedback_.power == PowerState::unknown) fail(AxisAlarm::drive_unknown_state, feedback_.status_word);
+    else if (power_.on() && !drive_homing_.busy() && feedback_.mode != DriveMode::cyclic_position)
+        fail(AxisAlarm::drive_mode_mismatch, static_cast<double>(feedback_.mode), static_cast<double>(DriveMode::cyclic_position));
+}
+
+bool Axis::power_wanted() const noexcept {
+    using Phase = PowerSequence::Phase;
+    if (config_.disabled) return false;
+    const bool drive_on = power_.phase() == Phase::on || power_.phase() == Phase::settling;
+    switch (state_) {
+        case AxisState::Disabled: return power_wish_ && !power_dropping_ && emergency_ == EmergencyStop::none;
+        case AxisState::ErrorStop: return drive_on && (moves() || (power_wish_ && !off_after_error_));
+        default: return true;  // these states end in Disabled before power goes
+    }
+}
+
+void Axis::run_power() noexcept {
+    const auto event = power_.step({.wanted = power_wanted(),
+                                    .aligned = aligned_,
+                                    .online = online(),
+                                    .mode_confirmed = feedback_.mode == DriveMode::cyclic_position || drive_homing_.busy(),
+                                    .drive = feedback_.power,
+                                    .now = now_});
+    if (power_.phase() == PowerSequence::Phase::off) power_dropping_ = false;
+    switch (event) {
+        case PowerSequence::Event::ready: fire(AxisEvent::powered); break;
+        case PowerSequence::Event::timeout:
+            fail(AxisAlarm::enable_timeout, to_seconds(config_.enable_timeout), static_cast<double>(feedback_.power));
+            break;
+        case PowerSequence::Event::lost:
+            abort_homing();
+            // A fault has its own alarm, and in ErrorStop the power may go for reasons already announced.
+            if (state_ != AxisState::ErrorStop) fail(AxisAlarm::drive_power_lost, static_cast<double>(feedback_.power));
+            break;
+        case PowerSequence::Event::none:
+        case PowerSequence::Event::off: break;
+    }
+}
+
+void Axis::watch_following_error() noexcept {
+    const bool follows = power_.follows_actual() || drive_homing_.busy();
+    if (follows) {
+        view_.following_error = 0;
+        following_timer_.clear();
+        in_window_ = false;
+        return;
+    }
+    if (!feedback_.fresh) return;
+    view_.following_error = history_.error_at(feedback_.latched, feedback_.position) / units_.counts_per_unit();
+    const bool exceeded = following_timer_.exceeded(view_.following_error, feedback_.latched, config_.following);
+    if (exceeded && state_ != AxisState::ErrorStop) fail(AxisAlarm::following_error, view_.following_error, config_.following.window);
+
+    const bool inside = setpoint_.at_rest() && std::abs(setpoint_.state().position - actual_local()) <= config_.windows.in_position;
+    if (inside && !in_window_) in_window_since_ = now_;
+    in_window_ = inside;
+}
+
+void Axis::encode(Instant now) noexcept {
+    command_ = {};
+    command_.power = power_.request();
+    command_.reset_fault = resetting_ && drive_faulted();
+    command_.mode = drive_homing_.mode();
+    command_.start_homing = drive_homing_.start_level();
+    const auto& state = setpoint_.state();
+    command_.position = seeded_ ? units_.counts(state.position) : feedback_.position;
+    command_.velocity = state.velocity * units_.counts_per_unit();
+    port_.encode(command_, now);
+
+    if (power_.follows_actual() || drive_homing_.busy()) history_.clear();
+    else history_.record(port_.setpoint_effective(now), command_.position);
+}
+
+void Axis::publish() noexcept {
+    view_.state = state_;
+    view_.owner = owner_;
+    view_.powered = power_.on() && state_ != AxisState::Disabled;
+    view_.homed = homed_;
+    view_.online = online();
+    view_.in_position = in_window_ && now_ - in_window_since_ >= config_.windows.in_position_time;
+    view_.warning = feedback_.warning;
+    view_.error = error_;
+    view_.drive_error = feedback_.error_code;
+    view_.resetting = resetting_;
+    view_.reset_error = reset_error_;
+
+    const auto& set = setpoint_.state();
+    view_.set_position = units_.to_program(set.position);
+    view_.set_velocity = set.velocity;
+    view_.set_acceleration = set.acceleration;
+    view_.set_jerk = setpoint_.jerk();
+    view_.actual_position = units_.to_program(actual_local());
+    view_.actual_velocity = feedback_.velocity / units_.counts_per_unit();
+    view_.actual_torque = config_.gearing.inverted ? -feedback_.torque : feedback_.torque;
+    view_.target_position = units_.to_program(goal_.kind == Goal::Kind::position ? goal_.value : setpoint_.end().position);
+    view_.limiter = setpoint_.at_rest() ? VelocityLimiter::none : goal_.limiter;
+
+    view_.drive_state = feedback_.power;
+    view_.drive_mode = feedback_.mode;
+    view_.status_word = feedback_.status_word;
+    view_.negative_limit_switch = negative_switch_;
+    view_.positive_limit_switch = positive_switch_;
+    view_.home_switch = feedback_.home_switch;
+    queue_.publish(view_);
+}
+
+}  // namespace taktwerk::axes

@@ -1,0 +1,214 @@
+#pragma once
+// Axis: what a program moves. One drive port below, one view and one set of requests above; in between units, limits, the state
+// machine of PLCopen, the command queue, power, homing, following error and control authority.
+//
+// One cycle, on the cycle thread, everything real-time safe (no allocation, no lock, no exception):
+//     axis.update(now)          step 4: feedback, drive's state, following error
+//     axis.supervise(now)       step 5: emergency stop, leases; then fetch_alarm() until it says no
+//     axis.submit(...), ...     step 6: requests, validated and answered at once
+//     axis.plan(now, period)    step 7: next set-point, one period of motion time on
+//     axis.encode(now)          step 8: command to the port
+// view() is up to date after each of them.
+//
+// Decisions the standard leaves open (see README.md for all): dynamics above the limits are clamped; power off in motion ramps down
+// first (state Stopping), then Disabled; a second MC_Stop while the first is held is refused; MC_Home only from Standstill; a jog is a
+// discrete motion; a move into a direction that is not permitted is refused.
+
+#include <cstdint>
+#include <span>
+
+#include "axes/axis/alarm_board.hpp"
+#include "axes/axis/axis_config.hpp"
+#include "axes/axis/axis_view.hpp"
+#include "axes/axis/command.hpp"
+#include "axes/axis/command_check.hpp"
+#include "axes/axis/command_queue.hpp"
+#include "axes/axis/following_error.hpp"
+#include "axes/axis/power_sequence.hpp"
+#include "axes/axis/setpoint_generator.hpp"
+#include "axes/axis/state_machine.hpp"
+#include "axes/axis/units.hpp"
+#include "axes/homing/drive_homing.hpp"
+#include "axes/homing/switch_homing.hpp"
+#include "axes/port/drive_port.hpp"
+
+namespace taktwerk::axes {
+
+/// Mode of the machine as far as it concerns an axis: who owns it by default, and how fast it may be.
+///   automatic  program; the axis' limit     manual  operator; manual.fast     setup  operator; manual.setup_velocity
+enum class OperatingMode : std::uint8_t { automatic, manual, setup };
+
+/// A level, never queued: given in each cycle in which it changes, holds until taken back.
+enum class EmergencyStop : std::uint8_t { none, stop, stop_and_power_off };
+
+class Axis {
+public:
+    /// `config` must have passed check(); `port` must live longer. `cycle` is the period of the axis' sync unit. Not real-time.
+    Axis(AxisConfig config, DrivePort& port, Duration cycle, std::uint16_t index = 0);
+
+    [[nodiscard]] const AxisConfig& config() const noexcept { return config_; }
+    [[nodiscard]] const AxisView& view() const noexcept { return view_; }
+    /// What the port was told last: for traces and tests.
+    [[nodiscard]] const DriveCommand& drive_command() const noexcept { return command_; }
+
+    // --- the cycle -----------------------------------------------------------------------------------------------------
+    void update(Instant now) noexcept;
+    void supervise(Instant now) noexcept;
+    void plan(Instant now, Duration period) noexcept;
+    void encode(Instant now) noexcept;
+
+    // --- the machine's hand ----------------------------------------------------------------------------------------------
+    /// Alarms since the last call, oldest first; false when there is none. For each, the machine carries out reactions that reach beyond
+    /// this axis (stop_machine, power_off); the axis has carried out its own.
+    [[nodiscard]] bool fetch_alarm(AlarmFact& fact) noexcept { return alarms_.fetch(fact); }
+    /// Those that hold now.
+    [[nodiscard]] std::span<const AlarmFact> active_alarms() const noexcept { return alarms_.active(); }
+    /// Acknowledges what needs no reset (jog_lease_expired).
+    void acknowledge_alarms() noexcept { alarms_.clear(AxisAlarm::jog_lease_expired); }
+    /// Stops in ErrorStop because of something elsewhere; `reason` is the other alarm. With `then_power_off` power goes when it stands.
+    /// An axis that is Disabled and stays so is left alone.
+    void stop_for_error(AlarmId reason, bool then_power_off) noexcept;
+    void demand_emergency_stop(EmergencyStop level) noexcept { emergency_ = level; }
+    /// Stops without an error, for ending the run: commands are aborted, power goes off when the axis stands. power() ends it.
+    void shut_down() noexcept;
+    /// Changes owner and speed cap; stops the axis first when it moves.
+    void set_mode(OperatingMode mode) noexcept;
+    /// The new owner has the axis at once, but it stops before it takes motion. Returning it gives it to the mode's default owner.
+    void take_control(Owner owner) noexcept;
+    void release_control(Owner owner) noexcept;
+
+    // --- requests (AxisRequests of motion_context.hpp, for one axis) -----------------------------------------------------
+    Submitted submit(const AxisCommand& command, Owner owner) noexcept;
+    ErrorId power(bool enable, bool positive, bool negative, Owner owner) noexcept;
+    /// Any party may reset: it moves nothing. Outside ErrorStop it acknowledges. Takes as long as the drive needs: see AxisView::resetting.
+    ErrorId reset(Owner owner) noexcept;
+    ErrorId set_position(double position, bool relative, Owner owner) noexcept;
+    void release_stop(CommandId id, Owner owner) noexcept;
+    ErrorId renew_jog(CommandId id, double velocity, Owner owner) noexcept;
+
+private:
+    /// What the set-point is on its way to. `value`: local position u, or velocity u/s.
+    struct Goal {
+        enum class Kind : std::uint8_t { rest, position, velocity, stop } kind = Kind::rest;
+        double value = 0;
+        MotionLimits limits;
+        VelocityLimiter limiter = VelocityLimiter::none;
+    };
+
+    // axis.cpp
+    void read_feedback() noexcept;
+    void watch_drive() noexcept;
+    void run_power() noexcept;
+    [[nodiscard]] bool power_wanted() const noexcept;
+    void watch_following_error() noexcept;
+    void publish() noexcept;
+    [[nodiscard]] double actual_local() const noexcept { return units_.local(actual_counts_); }
+    [[nodiscard]] bool online() const noexcept { return seeded_ && feedback_.online && stale_ <= stale_limit_; }
+    [[nodiscard]] bool drive_faulted() const noexcept;
+    [[nodiscard]] bool drive_stands() const noexcept;
+    [[nodiscard]] bool moves() const noexcept { return !setpoint_.at_rest() || drive_homing_.busy(); }
+
+    // axis_states.cpp
+    bool fire(AxisEvent event) noexcept;
+    void fail(AxisAlarm alarm, double a = 0, double b = 0) noexcept;
+    void enter_error_stop(AlarmId reason, bool then_power_off, bool keep_motion) noexcept;
+    void stop_on_own_account(bool then_power_off) noexcept;
+    void switch_off() noexcept;
+    void run_reset() noexcept;
+    void end_reset(AxisEvent event) noexcept;
+    void watch_jog_lease() noexcept;
+    void leave_stopping() noexcept;
+
+    // axis_requests.cpp
+    [[nodiscard]] bool may(Owner owner) noexcept;
+    [[nodiscard]] ErrorId refuse(const AxisCommand& command) const noexcept;
+    [[nodiscard]] ErrorId refuse_state(const AxisCommand& command) const noexcept;
+    [[nodiscard]] ErrorId refuse_target(const AxisCommand& command, bool starts_now) const noexcept;
+    [[nodiscard]] bool waits(const AxisCommand& command) const noexcept;
+    [[nodiscard]] bool permitted(double direction) const noexcept;
+    [[nodiscard]] bool software_limits_hold() const noexcept { return homed_; }
+    [[nodiscard]] double velocity_cap() const noexcept;
+
+    // axis_motion.cpp
+    void follow_actual(Duration period) noexcept;
+    [[nodiscard]] double signed_velocity(const AxisCommand& command) const noexcept;
+    void begin_command() noexcept;
+    ErrorId set_goal(const AcceptedCommand& accepted) noexcept;
+    void aim(Goal::Kind kind, double value, const MotionLimits& limits, VelocityLimiter limiter) noexcept;
+    void aim_at_velocity(double velocity, const MotionLimits& dynamics) noexcept;
+    void run_goal(double late) noexcept;
+    void guard(const MotionState& before, Duration period) noexcept;
+    bool guard_switches() noexcept;
+    bool guard_software_limits(const MotionState& before) noexcept;
+    void complete() noexcept;
+    bool complete_active() noexcept;
+    void start_waiting(double late) noexcept;
+    void keep_close_to_anchor() noexcept;
+
+    // axis_homing.cpp
+    ErrorId begin_homing(const AxisCommand& command) noexcept;
+    void step_homing() noexcept;
+    void end_homing(std::int64_t reference) noexcept;
+    void abort_homing() noexcept;
+
+    AxisConfig config_;
+    DrivePort& port_;
+    std::uint32_t stale_limit_;
+    bool endless_;
+    Instant now_{};
+
+    // from below
+    DriveFeedback feedback_;
+    bool seeded_ = false;           // an actual position has arrived
+    std::uint32_t stale_ = 0;       // cycles since the last one
+    std::int64_t actual_counts_ = 0;
+    bool negative_switch_ = false, positive_switch_ = false;
+
+    // motion
+    AxisUnits units_;
+    SetpointGenerator setpoint_;
+    Goal goal_;
+    bool begin_pending_ = false;    // the active command has not been turned into a goal yet
+    bool goal_pending_ = false;     // the goal has no profile yet
+    bool aligned_ = false;
+    SetpointHistory history_;
+    FollowingErrorTimer following_timer_;
+    Instant in_window_since_{};
+    bool in_window_ = false;
+
+    // states and commands
+    AxisState state_ = AxisState::Disabled;
+    CommandQueue queue_;
+    PowerSequence power_;
+    AlarmBoard alarms_;
+    bool power_wish_ = false, permit_positive_ = true, permit_negative_ = true;
+    std::uint8_t power_calls_ = 0;  // in this cycle
+    bool off_when_stopped_ = false; // Stopping on the way to Disabled
+    bool power_dropping_ = false;   // Disabled, but the drive has not let go yet
+    bool off_after_error_ = false;  // ErrorStop whose reaction is power off
+    CommandId stop_lock_ = 0;       // MC_Stop whose Execute is still TRUE
+    bool resetting_ = false;
+    Instant reset_since_{};
+    ErrorId reset_error_ = ErrorId::none;
+    std::uint16_t error_ = 0;
+    EmergencyStop emergency_ = EmergencyStop::none;
+
+    // authority
+    OperatingMode mode_ = OperatingMode::automatic;
+    Owner owner_ = Owner::program;
+
+    // jog
+    Instant jog_renewed_{};
+    bool jog_expired_ = false;
+
+    // homing
+    DriveHoming drive_homing_;
+    SwitchHoming switch_homing_;
+    double home_coordinate_ = 0;    // u, of the reference
+    bool homed_ = false;
+
+    AxisView view_;
+    DriveCommand command_;
+};
+
+}  // namespace taktwerk::axes

@@ -1,0 +1,89 @@
+#include "axes/axis/axis_config.hpp"
+
+#include <cmath>
+#include <string_view>
+
+namespace taktwerk::axes {
+
+namespace {
+
+class Problems {
+public:
+    explicit Problems(const std::string& axis) : prefix_("axes." + (axis.empty() ? std::string("?") : axis) + ".") {}
+
+    void add(std::string_view field, std::string what, std::string remedy) {
+        found.push_back({"axis.invalid_config", prefix_ + std::string(field), std::move(what), std::move(remedy)});
+    }
+    void positive(std::string_view field, double value, std::string_view unit) {
+        if (!(value > 0) || std::isinf(value)) add(field, "must be a finite number above 0", "Give a value in " + std::string(unit));
+    }
+    void not_negative(std::string_view field, double value, std::string_view meaning_of_zero) {
+        if (!(value >= 0)) add(field, "must not be negative", "Give a value above 0, or 0 for " + std::string(meaning_of_zero));
+    }
+    std::vector<Error> found;
+
+private:
+    std::string prefix_;
+};
+
+void check_gearing(Problems& problems, const Gearing& gearing) {
+    const auto count = [&](std::string_view field, std::int64_t value) {
+        constexpr std::int64_t most = 1LL << 31;  // products of two stay inside 64 bit
+        if (value < 1 || value > most) problems.add(field, "must be a whole number from 1 to 2147483648", "Give the number from the data sheet");
+    };
+    count("gearing.counts_per_revolution", gearing.counts_per_revolution);
+    count("gearing.motor_revolutions", gearing.motor_revolutions);
+    count("gearing.load_revolutions", gearing.load_revolutions);
+    if (!(gearing.feed > 0) || std::isinf(gearing.feed))
+        problems.add("gearing.feed", "must be a finite number above 0", "Give the way per load revolution; use `inverted` to change the sense");
+}
+
+void check_limits(Problems& problems, const AxisLimits& limits) {
+    problems.positive("limits.velocity", limits.velocity, "u/s");
+    problems.positive("limits.acceleration", limits.acceleration, "u/s2");
+    problems.positive("limits.deceleration", limits.deceleration, "u/s2");
+    if (!(limits.jerk > 0)) problems.add("limits.jerk", "must be above 0", "Give a value in u/s3, or infinity for none");
+    problems.not_negative("limits.stop_deceleration", limits.stop_deceleration, "the same as deceleration");
+    problems.not_negative("limits.stop_jerk", limits.stop_jerk, "the same as jerk");
+    if (std::isinf(limits.stop_deceleration)) problems.add("limits.stop_deceleration", "must be finite", "Give a value in u/s2");
+    if (!(limits.position_min < limits.position_max))
+        problems.add("limits.position_min", "must be below limits.position_max", "Exchange the two, or leave both out");
+}
+
+void check_homing(Problems& problems, const HomingConfig& homing) {
+    if (homing.kind == HomingKind::none || homing.kind == HomingKind::set_here) return;
+    if (homing.timeout <= Duration::zero()) problems.add("homing.timeout", "must be above 0", "Give the longest time homing may take, such as 60 s");
+    if (homing.kind != HomingKind::home_switch) return;
+    problems.positive("homing.search_velocity", homing.search_velocity, "u/s (the sense is homing.negative)");
+    problems.positive("homing.latch_velocity", homing.latch_velocity, "u/s");
+    problems.positive("homing.acceleration", homing.acceleration, "u/s2");
+    if (homing.latch_velocity > homing.search_velocity)
+        problems.add("homing.latch_velocity", "is above homing.search_velocity", "The edge is taken slowly: give a smaller value");
+}
+
+}  // namespace
+
+std::vector<Error> check(const AxisConfig& config) {
+    Problems problems(config.name);
+    if (config.name.empty()) problems.add("name", "is empty", "Give the axis a name");
+    check_gearing(problems, config.gearing);
+    check_limits(problems, config.limits);
+    check_homing(problems, config.homing);
+    problems.not_negative("defaults.acceleration", config.defaults.acceleration, "the limit");
+    problems.not_negative("defaults.deceleration", config.defaults.deceleration, "the limit");
+    problems.not_negative("defaults.jerk", config.defaults.jerk, "the limit");
+    if (!(config.following.window > 0)) problems.add("following.window", "must be above 0", "Give the largest permitted following error in u");
+    if (config.following.time < Duration::zero()) problems.add("following.time", "must not be negative", "Give a time such as 10 ms");
+    if (!(config.windows.in_position > 0)) problems.add("windows.in_position", "must be above 0", "Give the window in u");
+    problems.not_negative("windows.standstill_velocity", config.windows.standstill_velocity, "exact standstill");
+    problems.not_negative("manual.slow", config.manual.slow, "5 % of the velocity limit");
+    problems.not_negative("manual.fast", config.manual.fast, "25 % of the velocity limit");
+    problems.not_negative("manual.setup_velocity", config.manual.setup_velocity, "manual.slow");
+    if (config.queue_depth < 1 || config.queue_depth > 8) problems.add("queue_depth", "must be from 1 to 8", "Leave it out for 4");
+    if (config.stale_limit < 1) problems.add("stale_limit", "must be at least 1 cycle", "Leave it out for 3");
+    if (config.jog_lease <= Duration::zero()) problems.add("jog_lease", "must be above 0", "Leave it out for 200 ms");
+    if (config.enable_timeout <= Duration::zero()) problems.add("enable_timeout", "must be above 0", "Leave it out for 3 s");
+    return std::move(problems.found);
+}
+
+}  // namespace taktwerk::axes

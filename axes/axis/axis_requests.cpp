@@ -1,0 +1,202 @@
+// What others ask of the axis: checked and answered in the same call.
+
+#include <cmath>
+#include <limits>
+
+#include "axes/axis/axis.hpp"
+
+namespace taktwerk::axes {
+
+bool Axis::may(Owner owner) noexcept {
+    if (owner_ == Owner::none) owner_ = owner;  // nobody's axis goes to the first who asks
+    return owner == owner_;
+}
+
+double Axis::velocity_cap() const noexcept {
+    const auto& manual = config_.manual;
+    const double slow = manual.slow > 0 ? manual.slow : 0.05 * config_.limits.velocity;
+    const double fast = manual.fast > 0 ? manual.fast : 0.25 * config_.limits.velocity;
+    switch (mode_) {
+        case OperatingMode::automatic: return std::numeric_limits<double>::infinity();
+        case OperatingMode::manual: return fast;
+        case OperatingMode::setup: return manual.setup_velocity > 0 ? manual.setup_velocity : slow;
+    }
+    return slow;
+}
+
+bool Axis::permitted(double direction) const noexcept {
+    if (direction > 0) return permit_positive_ && !positive_switch_;
+    if (direction < 0) return permit_negative_ && !negative_switch_;
+    return true;
+}
+
+bool Axis::waits(const AxisCommand& command) const noexcept {
+    return command.buffer_mode == mcBuffered && (queue_.has_active() || state_ == AxisState::Stopping);
+}
+
+ErrorId Axis::refuse_state(const AxisCommand& command) const noexcept {
+    if (state_ == AxisState::Disabled) return ErrorId::not_powered;
+    if (state_ == AxisState::ErrorStop) return ErrorId::in_error_stop;
+    if (emergency_ != EmergencyStop::none) return ErrorId::interlocked;
+    const bool stopping = state_ == AxisState::Stopping;
+    if (waits(command)) {
+        const bool behind_stop = queue_.active().command.kind == CommandKind::stop || stop_lock_ != 0;
+        if (stopping && (!behind_stop || off_when_stopped_)) return ErrorId::state_forbids;
+        return queue_.waiting() < config_.queue_depth ? ErrorId::none : ErrorId::queue_full;
+    }
+    // A stop whose Execute has fallen may be followed by another; one that is held locks the axis.
+    if (stopping && command.kind == CommandKind::stop)
+        return stop_lock_ == 0 && !off_when_stopped_ ? ErrorId::none : ErrorId::state_forbids;
+    return next_state(state_, event_of(command.kind)) ? ErrorId::none : ErrorId::state_forbids;
+}
+
+ErrorId Axis::refuse_target(const AxisCommand& command, bool starts_now) const noexcept {
+    double target = 0;  // program coordinate
+    const double here = units_.to_program(setpoint_.state().position);
+    switch (command.kind) {
+        case CommandKind::move_absolute:
+            if (config_.require_homed && !homed_) return ErrorId::not_homed;
+            target = command.position;
+            break;
+        case CommandKind::move_relative:
+            if (!starts_now) return ErrorId::none;  // it is checked where it begins
+            target = here + command.position;
+            break;
+        case CommandKind::move_velocity:
+        case CommandKind::jog: {
+            if (!starts_now) return ErrorId::none;
+            const double way = signed_velocity(command);
+            if (!permitted(way)) return ErrorId::interlocked;
+            const bool outward = (way > 0 && here >= config_.limits.position_max) || (way < 0 && here <= config_.limits.position_min);
+            return software_limits_hold() && outward ? ErrorId::beyond_software_limit : ErrorId::none;
+        }
+        case CommandKind::home:
+            if (config_.homing.kind == HomingKind::none) return ErrorId::not_supported;
+            if (config_.homing.kind == HomingKind::drive && !port_.capabilities().drive_homing) return ErrorId::not_supported;
+            return ErrorId::none;
+        case CommandKind::none:
+        case CommandKind::halt:
+        case CommandKind::stop: return ErrorId::none;
+    }
+    if (software_limits_hold() && (target > config_.limits.position_max || target < config_.limits.position_min))
+        return ErrorId::beyond_software_limit;
+    return !starts_now || permitted(target - here) ? ErrorId::none : ErrorId::interlocked;
+}
+
+ErrorId Axis::refuse(const AxisCommand& command) const noexcept {
+    if (const auto error = check_numbers(command); error != ErrorId::none) return error;
+    if (const auto error = refuse_state(command); error != ErrorId::none) return error;
+    return refuse_target(command, !waits(command));
+}
+
+Submitted Axis::submit(const AxisCommand& command, Owner owner) noexcept {
+    if (!may(owner)) return {0, ErrorId::owned_by_other};
+    if (const auto error = refuse(command); error != ErrorId::none) return {0, error};
+
+    const AcceptedCommand accepted{queue_.next_id(), owner, command};
+    if (waits(command)) {
+        queue_.push(accepted);
+    } else {
+        queue_.finish_active(Outcome::aborted);
+        queue_.finish_waiting(Outcome::aborted);
+        abort_homing();
+        queue_.activate(accepted);
+        if (state_ != AxisState::Stopping) fire(event_of(command.kind));
+        if (command.kind == CommandKind::stop) stop_lock_ = accepted.id;
+        begin_pending_ = true;
+    }
+    if (command.kind == CommandKind::jog) {
+        jog_renewed_ = now_;
+        jog_expired_ = false;
+        alarms_.clear(AxisAlarm::jog_lease_expired);
+    }
+    publish();
+    return {accepted.id, ErrorId::none};
+}
+
+ErrorId Axis::power(bool enable, bool positive, bool negative, Owner owner) noexcept {
+    if (!may(owner)) return ErrorId::owned_by_other;
+    if (++power_calls_ > 1) return ErrorId::power_conflict;
+    if (enable && config_.disabled) return ErrorId::drive_not_ready;
+    permit_positive_ = positive;
+    permit_negative_ = negative;
+    if (!enable && power_wish_) {
+        shut_down();
+        return ErrorId::none;
+    }
+    power_wish_ = enable;
+    return enable && emergency_ != EmergencyStop::none ? ErrorId::interlocked : ErrorId::none;
+}
+
+ErrorId Axis::reset(Owner) noexcept {
+    acknowledge_alarms();
+    if (state_ != AxisState::ErrorStop) return ErrorId::none;
+    if (emergency_ != EmergencyStop::none) return ErrorId::interlocked;
+    if (!resetting_) reset_since_ = now_;
+    resetting_ = true;
+    reset_error_ = ErrorId::none;
+    publish();
+    return ErrorId::none;
+}
+
+ErrorId Axis::set_position(double position, bool relative, Owner owner) noexcept {
+    if (!may(owner)) return ErrorId::owned_by_other;
+    if (!std::isfinite(position)) return ErrorId::invalid_position;
+    if (!online()) return ErrorId::drive_not_ready;
+    if (state_ == AxisState::Homing) return ErrorId::state_forbids;
+    units_.shift_by(relative ? position : position - units_.to_program(actual_local()));
+    // The number commanded stays and means the shifted coordinates (P1-200).
+    const auto& active = queue_.active();
+    if (active.command.kind == CommandKind::move_absolute && goal_.kind == Goal::Kind::position && !begin_pending_) {
+        goal_.value = units_.to_local(active.command.position);
+        goal_pending_ = true;
+    }
+    publish();
+    return ErrorId::none;
+}
+
+void Axis::release_stop(CommandId id, Owner) noexcept {
+    if (id == 0 || id != stop_lock_) return;
+    stop_lock_ = 0;
+    const bool stands = !moves() && !begin_pending_ && !goal_pending_;
+    if (state_ == AxisState::Stopping && stands) leave_stopping();
+    publish();
+}
+
+ErrorId Axis::renew_jog(CommandId id, double velocity, Owner owner) noexcept {
+    if (!may(owner)) return ErrorId::owned_by_other;
+    auto& active = queue_.active();
+    if (id == 0 || id != active.id || active.command.kind != CommandKind::jog || jog_expired_) return ErrorId::state_forbids;
+    if (!std::isfinite(velocity)) return ErrorId::invalid_velocity;
+    if (!permitted(velocity)) return ErrorId::interlocked;
+    jog_renewed_ = now_;
+    if (velocity != active.command.velocity) {
+        active.command.velocity = velocity;
+        begin_pending_ = true;
+    }
+    return ErrorId::none;
+}
+
+void Axis::set_mode(OperatingMode mode) noexcept {
+    if (mode == mode_) return;
+    mode_ = mode;
+    if (state_ != AxisState::Disabled && state_ != AxisState::ErrorStop && moves()) stop_on_own_account(false);
+    release_control(owner_);
+}
+
+void Axis::take_control(Owner owner) noexcept {
+    if (owner == owner_) return;
+    owner_ = owner;
+    permit_positive_ = permit_negative_ = true;
+    const bool commanded = queue_.has_active() || queue_.waiting() > 0 || stop_lock_ != 0 || moves();
+    if (commanded && state_ != AxisState::Disabled && state_ != AxisState::ErrorStop) stop_on_own_account(off_when_stopped_);
+    publish();
+}
+
+void Axis::release_control(Owner owner) noexcept {
+    if (owner != owner_) return;
+    take_control(mode_ == OperatingMode::automatic ? Owner::program : Owner::operator_panel);
+    publish();
+}
+
+}  // namespace taktwerk::axes

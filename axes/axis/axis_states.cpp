@@ -1,0 +1,149 @@
+// How the axis gets into and out of ErrorStop, Stopping and Disabled.
+
+#include <chrono>
+
+#include "axes/axis/axis.hpp"
+
+namespace taktwerk::axes {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Duration reset_patience = 2s;  // a drive that still reports its fault after this long will not be reset
+
+}  // namespace
+
+bool Axis::fire(AxisEvent event) noexcept {
+    const auto to = next_state(state_, event);
+    if (to) state_ = *to;
+    return to.has_value();
+}
+
+void Axis::fail(AxisAlarm alarm, double a, double b) noexcept {
+    if (!alarms_.raise(alarm, a, b)) return;
+    const auto how = reaction(alarm);
+    if (how < Reaction::stop_axis) return;
+    // The way to a software limit is planned to end exactly there; a stop on its own account might be softer and pass it.
+    enter_error_stop(id(alarm), how == Reaction::power_off, alarm == AxisAlarm::software_limit_reached);
+}
+
+void Axis::stop_for_error(AlarmId reason, bool then_power_off) noexcept {
+    const bool stays_off = state_ == AxisState::Disabled && !power_wish_;
+    if (!stays_off && alarms_.raise(AxisAlarm::stopped_by_machine, reason, 0)) {
+        enter_error_stop(id(AxisAlarm::stopped_by_machine), then_power_off, false);
+        publish();
+    } else if (then_power_off && state_ == AxisState::ErrorStop) {
+        off_after_error_ = true;
+    }
+}
+
+void Axis::enter_error_stop(AlarmId reason, bool then_power_off, bool keep_motion) noexcept {
+    off_after_error_ = off_after_error_ || then_power_off;
+    if (state_ == AxisState::ErrorStop) return;  // it stops already; the first error is the one shown
+    error_ = reason;
+    reset_error_ = ErrorId::none;
+    fire(AxisEvent::axis_error);
+    queue_.finish_active(Outcome::error, static_cast<ErrorId>(reason));
+    queue_.finish_waiting(Outcome::error, ErrorId::aborted_by_axis_error);
+    stop_lock_ = 0;
+    off_when_stopped_ = begin_pending_ = false;
+    abort_homing();
+    if (!keep_motion) aim(Goal::Kind::stop, 0, stop_limits(config_.limits), VelocityLimiter::stopping);
+}
+
+void Axis::stop_on_own_account(bool then_power_off) noexcept {
+    queue_.finish_active(Outcome::aborted);
+    queue_.finish_waiting(Outcome::aborted);
+    stop_lock_ = 0;
+    begin_pending_ = false;
+    off_when_stopped_ = off_when_stopped_ || then_power_off;
+    abort_homing();
+    if (state_ != AxisState::Stopping) fire(AxisEvent::stop);
+    aim(Goal::Kind::stop, 0, full_limits(config_.limits), VelocityLimiter::stopping);
+}
+
+void Axis::switch_off() noexcept {
+    queue_.finish_active(Outcome::aborted);
+    queue_.finish_waiting(Outcome::aborted);
+    stop_lock_ = 0;
+    off_when_stopped_ = begin_pending_ = false;
+    power_dropping_ = true;
+    goal_ = {};
+    fire(AxisEvent::power_off);
+}
+
+void Axis::shut_down() noexcept {
+    power_wish_ = false;
+    if (state_ == AxisState::Disabled || state_ == AxisState::ErrorStop) return;  // power_wanted() sees the wish
+    if (moves()) stop_on_own_account(true);
+    else switch_off();
+    publish();
+}
+
+void Axis::leave_stopping() noexcept {
+    if (off_when_stopped_) {
+        switch_off();
+        return;
+    }
+    if (stop_lock_ != 0) return;
+    fire(AxisEvent::stop_finished);
+    goal_ = {};
+    if (queue_.waiting() > 0) start_waiting(0);
+}
+
+void Axis::supervise(Instant now) noexcept {
+    now_ = now;
+    if (emergency_ != EmergencyStop::none) {
+        const bool stays_off = state_ == AxisState::Disabled && !power_wish_ && power_.phase() == PowerSequence::Phase::off;
+        if (!stays_off) fail(AxisAlarm::emergency_stop);
+        if (emergency_ == EmergencyStop::stop_and_power_off) off_after_error_ = state_ == AxisState::ErrorStop;
+    }
+    watch_jog_lease();
+    publish();
+}
+
+void Axis::watch_jog_lease() noexcept {
+    const auto& active = queue_.active();
+    if (active.command.kind != CommandKind::jog || jog_expired_ || now_ - jog_renewed_ < config_.jog_lease) return;
+    jog_expired_ = true;
+    fail(AxisAlarm::jog_lease_expired, to_seconds(config_.jog_lease));
+    begin_pending_ = false;
+    aim_at_velocity(0, dynamics_of(active.command, config_.limits, config_.defaults));
+}
+
+void Axis::run_reset() noexcept {
+    if (!resetting_) return;
+    if (state_ != AxisState::ErrorStop) {
+        resetting_ = false;
+        return;
+    }
+    const bool cause_present = !online() || drive_faulted() || emergency_ != EmergencyStop::none;
+    if (!moves() && !cause_present) {
+        if (power_.on() && power_wish_ && !off_after_error_) {
+            end_reset(AxisEvent::reset_powered);
+            return;
+        }
+        if (power_.phase() == PowerSequence::Phase::off) {
+            end_reset(AxisEvent::reset_unpowered);
+            return;
+        }
+        // Power is on its way off (note 3 or 4 holds when it is there).
+    }
+    if (now_ - reset_since_ >= reset_patience) {
+        resetting_ = false;
+        reset_error_ = ErrorId::reset_failed;
+    }
+}
+
+void Axis::end_reset(AxisEvent event) noexcept {
+    resetting_ = false;
+    reset_error_ = ErrorId::none;
+    error_ = 0;
+    off_after_error_ = false;
+    goal_ = {};
+    alarms_.clear_all_but(AxisAlarm::drive_warning);
+    fire(event);
+}
+
+}  // namespace taktwerk::axes

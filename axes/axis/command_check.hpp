@@ -1,0 +1,100 @@
+#pragma once
+// What can be said about a command without knowing where the axis is: are its numbers usable, and with which dynamics does it run.
+//
+// Velocity, acceleration, deceleration and jerk above the axis' limits are clamped to them, and the view's `limiter` says so; 0 means the
+// axis' default (velocity excepted); negative or not finite is an error. Real-time safe.
+
+#include <algorithm>
+#include <cmath>
+
+#include "axes/axis/axis_config.hpp"
+#include "axes/axis/axis_view.hpp"
+#include "axes/axis/command.hpp"
+#include "axes/axis/state_machine.hpp"
+#include "axes/planner/motion.hpp"
+
+namespace taktwerk::axes {
+
+[[nodiscard]] constexpr AxisEvent event_of(CommandKind kind) noexcept {
+    switch (kind) {
+        case CommandKind::move_velocity: return AxisEvent::continuous;
+        case CommandKind::stop: return AxisEvent::stop;
+        case CommandKind::home: return AxisEvent::home;
+        case CommandKind::none:
+        case CommandKind::move_absolute:
+        case CommandKind::move_relative:
+        case CommandKind::halt:
+        case CommandKind::jog: break;
+    }
+    return AxisEvent::discrete;  // a jog ends by itself in Standstill, like a Halt
+}
+
+[[nodiscard]] inline ErrorId check_numbers(const AxisCommand& command) noexcept {
+    for (const double value : {command.acceleration, command.deceleration, command.jerk})
+        if (!(value >= 0) || std::isinf(value)) return ErrorId::invalid_dynamics;
+    switch (command.kind) {
+        case CommandKind::none: return ErrorId::invalid_parameter;
+        case CommandKind::move_absolute:
+        case CommandKind::move_relative:
+            if (!std::isfinite(command.position)) return ErrorId::invalid_position;
+            if (!(command.velocity > 0) || std::isinf(command.velocity)) return ErrorId::invalid_velocity;
+            break;
+        case CommandKind::move_velocity:
+            if (!std::isfinite(command.velocity)) return ErrorId::invalid_velocity;
+            if (command.direction == mcShortestWay) return ErrorId::invalid_direction;
+            break;
+        case CommandKind::jog:
+            if (!std::isfinite(command.velocity) || command.velocity == 0) return ErrorId::invalid_velocity;
+            break;
+        case CommandKind::home:  // NaN: Position is not given, the configured offset holds
+            if (std::isinf(command.position)) return ErrorId::invalid_position;
+            break;
+        case CommandKind::halt:
+        case CommandKind::stop: break;
+    }
+    if (command.buffer_mode != mcAborting && command.buffer_mode != mcBuffered) return ErrorId::buffer_mode_not_supported;
+    if (command.buffer_mode == mcBuffered && (command.kind == CommandKind::stop || command.kind == CommandKind::jog))
+        return ErrorId::buffer_mode_not_supported;  // PLCopen table 4: MC_Stop cannot be buffered
+    return ErrorId::none;
+}
+
+/// For errors and emergency stop.
+[[nodiscard]] inline MotionLimits stop_limits(const AxisLimits& limits) noexcept {
+    return {limits.velocity, limits.acceleration, limits.stop_deceleration > 0 ? limits.stop_deceleration : limits.deceleration,
+            limits.stop_jerk > 0 ? limits.stop_jerk : limits.jerk};
+}
+
+[[nodiscard]] inline MotionLimits full_limits(const AxisLimits& limits) noexcept {
+    return {limits.velocity, limits.acceleration, limits.deceleration, limits.jerk};
+}
+
+/// `value` as commanded, else the default, else the limit; never above the limit.
+[[nodiscard]] inline double choose(double value, double fallback, double limit) noexcept {
+    return std::min(value > 0 ? value : (fallback > 0 ? fallback : limit), limit);
+}
+
+/// Dynamics of a command; its velocity is the limit's where the kind has none.
+[[nodiscard]] inline MotionLimits dynamics_of(const AxisCommand& command, const AxisLimits& limits, const AxisDefaults& defaults) noexcept {
+    // A stop may be as hard as the axis' own stop, which may be harder than its ordinary deceleration.
+    const bool stop = command.kind == CommandKind::stop;
+    const auto hardest = stop_limits(limits);
+    const double deceleration = stop ? std::max(limits.deceleration, hardest.deceleration) : limits.deceleration;
+    const double jerk = stop ? std::max(limits.jerk, hardest.jerk) : limits.jerk;
+    const double default_deceleration = defaults.deceleration > 0 ? defaults.deceleration : limits.deceleration;
+    const double default_jerk = defaults.jerk > 0 ? defaults.jerk : limits.jerk;
+    return {limits.velocity, choose(command.acceleration, defaults.acceleration, limits.acceleration),
+            choose(command.deceleration, default_deceleration, deceleration), choose(command.jerk, default_jerk, jerk)};
+}
+
+/// Speed (>= 0) that `wanted` (>= 0) is allowed to have, and what held it down.
+struct AllowedSpeed {
+    double speed = 0;
+    VelocityLimiter limiter = VelocityLimiter::command;
+};
+[[nodiscard]] inline AllowedSpeed allowed_speed(double wanted, double axis_limit, double mode_cap) noexcept {
+    if (wanted <= axis_limit && wanted <= mode_cap) return {wanted, VelocityLimiter::command};
+    if (mode_cap < axis_limit) return {mode_cap, VelocityLimiter::manual_speed};
+    return {axis_limit, VelocityLimiter::axis_limit};
+}
+
+}  // namespace taktwerk::axes

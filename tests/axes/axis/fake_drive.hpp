@@ -1,0 +1,159 @@
+#pragma once
+// A drive small enough to check by eye: it follows its set-point exactly, `dead_cycles` late, and knows power, faults, switches and a homing.
+// It notes what would be felt at a real motor: the largest step of the set-point while it was enabled.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <deque>
+#include <limits>
+
+#include "axes/port/drive_port.hpp"
+
+namespace taktwerk::axes::test {
+
+class FakeDrive final : public DrivePort {
+public:
+    explicit FakeDrive(Duration period) : cycle(period) {
+        caps.modes = 0xFFFF;
+        caps.drive_homing = true;
+        caps.digital_inputs = true;
+    }
+
+    // what a test turns
+    Duration cycle;
+    int dead_cycles = 1;        ///< from sending a set-point to its effect
+    int latch_age = 1;          ///< how many cycles old the actual values are when they arrive
+    int power_delay = 3;        ///< cycles per step of the power state machine
+    bool silent = false;        ///< no fresh feedback
+    bool offline = false;
+    bool refuses_power = false;
+    std::uint16_t fault_code = 0;
+    bool warning = false;
+    bool blocked = false;       ///< the motor does not move
+    std::int64_t lag = 0;       ///< counts the motor stays behind
+    double coasting = 0;        ///< counts per cycle while without power
+    bool switches = false;
+    std::int64_t home_low = 0, home_high = 0;  ///< home switch on between
+    std::int64_t negative_end = std::numeric_limits<std::int64_t>::min(), positive_end = std::numeric_limits<std::int64_t>::max();
+    std::int64_t homing_speed = 5, homing_place = -2000;
+    bool homing_fails = false, homing_hangs = false;
+    DriveMode forced_mode = DriveMode::none;
+    DriveCapabilities caps;
+
+    // what a test reads
+    double position = 0;        ///< of the motor, counts; what homing sets to zero is `zero`
+    std::int64_t zero = 0;
+    std::int64_t largest_step = 0;  ///< of the set-point while enabled in cyclic position, counts
+    PowerState power = PowerState::disabled;
+    DriveCommand last;
+
+    [[nodiscard]] const DriveCapabilities& capabilities() const noexcept override { return caps; }
+    [[nodiscard]] Instant setpoint_effective(Instant send) const noexcept override { return send + dead_cycles * cycle; }
+    [[nodiscard]] DriveAlarm alarm() const noexcept override { return {}; }
+
+    void encode(const DriveCommand& command, Instant now) noexcept override {
+        const bool obeys = power == PowerState::enabled && command.mode == DriveMode::cyclic_position && mode_ == DriveMode::cyclic_position;
+        const auto target = command.position + zero;
+        // The first target counts against where the motor is: a drive that switches on would jump there.
+        const std::int64_t from = obeyed_ ? last_target_ : std::llround(position);
+        if (obeys) largest_step = std::max<std::int64_t>(largest_step, std::abs(target - from));
+        obeyed_ = obeys;
+        last_target_ = target;
+        sent_.push_back({setpoint_effective(now), target});
+        if (sent_.size() > 64) sent_.pop_front();
+        last = command;
+    }
+
+    const DriveFeedback& decode(Instant now) noexcept override {
+        step_power();
+        step_mode();
+        step_motor(now);
+        if (silent || offline) {
+            feedback_.fresh = false;
+            feedback_.online = !offline;
+            ++feedback_.age;
+            return feedback_;
+        }
+        feedback_.fresh = feedback_.online = true;
+        feedback_.age = 0;
+        feedback_.latched = now - latch_age * cycle;
+        feedback_.power = power;
+        feedback_.mode = forced_mode == DriveMode::none ? mode_ : forced_mode;
+        feedback_.fault = power == PowerState::fault;
+        feedback_.warning = warning;
+        feedback_.error_code = fault_code;
+        feedback_.position = std::llround(position) - zero;
+        feedback_.velocity = velocity_;
+        feedback_.homing_attained = attained_;
+        feedback_.homing_error = homing_error_;
+        feedback_.has_inputs = switches;
+        feedback_.home_switch = position >= static_cast<double>(home_low) && position <= static_cast<double>(home_high) && switches;
+        feedback_.negative_limit = position <= static_cast<double>(negative_end);
+        feedback_.positive_limit = position >= static_cast<double>(positive_end);
+        return feedback_;
+    }
+
+private:
+    void step_power() {
+        if (fault_code != 0) power = PowerState::fault;
+        else if (power == PowerState::fault) {
+            if (last.reset_fault) power = PowerState::disabled;
+        } else if (last.power == PowerRequest::off || refuses_power) {
+            power = PowerState::disabled;
+            ticks_ = 0;
+        } else if (power != PowerState::enabled && ++ticks_ >= power_delay) {
+            ticks_ = 0;
+            power = power == PowerState::disabled ? PowerState::ready : power == PowerState::ready ? PowerState::switched_on : PowerState::enabled;
+        }
+    }
+    void step_mode() {
+        if (last.mode == mode_) mode_ticks_ = 0;
+        else if (++mode_ticks_ >= 2) mode_ = last.mode;
+    }
+    void step_motor(Instant now) {
+        const double before = position;
+        if (power != PowerState::enabled) position += coasting;
+        else if (mode_ == DriveMode::homing) step_homing();
+        else if (!blocked) position = static_cast<double>(target_at(now - latch_age * cycle) - lag);
+        if (mode_ != DriveMode::homing) attained_ = homing_error_ = false;
+        velocity_ = (position - before) / to_seconds(cycle);
+    }
+    void step_homing() {
+        if (!last.start_homing || attained_ || homing_error_ || homing_hangs) return;
+        const std::int64_t way = homing_place - std::llround(position);
+        position += static_cast<double>(std::clamp<std::int64_t>(way, -homing_speed, homing_speed));
+        if (std::llround(position) != homing_place) return;
+        if (homing_fails) homing_error_ = true;
+        else {
+            attained_ = true;
+            zero = homing_place;
+        }
+    }
+    /// Linear between the set-points, as a drive interpolates.
+    [[nodiscard]] std::int64_t target_at(Instant t) const {
+        if (sent_.empty() || t <= sent_.front().effective) return sent_.empty() ? 0 : sent_.front().target;
+        for (std::size_t i = 1; i < sent_.size(); ++i) {
+            const auto& a = sent_[i - 1];
+            const auto& b = sent_[i];
+            if (t > b.effective) continue;
+            const double part = to_seconds(t - a.effective) / to_seconds(b.effective - a.effective);
+            return a.target + std::llround(part * static_cast<double>(b.target - a.target));
+        }
+        return sent_.back().target;
+    }
+
+    struct Sent {
+        Instant effective{};
+        std::int64_t target = 0;
+    };
+    std::deque<Sent> sent_;
+    DriveFeedback feedback_;
+    DriveMode mode_ = DriveMode::cyclic_position;
+    int ticks_ = 0, mode_ticks_ = 0;
+    bool attained_ = false, homing_error_ = false, obeyed_ = false;
+    std::int64_t last_target_ = 0;
+    double velocity_ = 0;
+};
+
+}  // namespace taktwerk::axes::test
