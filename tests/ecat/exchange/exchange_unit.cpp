@@ -144,7 +144,7 @@ TEST_F(ExchangeTest, LateAnswerOfAGivenUpFrameIsCountedAndDropped) {
 // index has come round.
 TEST_F(ExchangeTest, LateAnswerIsNotTakenForANewerFrameAfterTheIndexWrapped) {
     transport.faults.delay_answers = 1;
-    transport.faults.delay = 255ms + 500us;  // arrives while the 256th frame after it is the newest
+    transport.faults.delay = 256ms - 5us;  // arrives just before the answer to the 256th frame after it
     const auto old = send_status();
     later(1ms);
     exchange.release(old);
