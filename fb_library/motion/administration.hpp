@@ -8,7 +8,7 @@
 
 namespace taktwerk::fb {
 
-/// Done once the axis has left ErrorStop; Error with reset_failed when it has not within `patience`: the cause is still there.
+/// Done once the axis has left ErrorStop; Error when the axis has given up, or has not answered within `patience`: the cause is still there.
 /// Outside ErrorStop it is Done at once (it may still acknowledge a warning of the drive). It never touches other blocks' outputs.
 struct MC_Reset : ExecuteBlock<MC_Reset> {
     AxisRef Axis{};
@@ -17,10 +17,11 @@ struct MC_Reset : ExecuteBlock<MC_Reset> {
     bool Done = false, Busy = false, Error = false;
     ErrorId ErrorID{};
 
-    Instant started{};  ///< not a pin
+    Instant started{};          ///< not a pin
+    bool seen_resetting = false;  ///< not a pin
 
-    /// Longer than any drive of ours takes to acknowledge a fault.
-    static constexpr Duration patience = std::chrono::seconds{5};
+    /// Longer than an axis waits for its drive to acknowledge.
+    static constexpr Duration patience = std::chrono::seconds{10};
 
     static constexpr std::string_view summary = "Clears the axis' errors: from ErrorStop to Standstill or Disabled.";
     static consteval auto pins() {
@@ -39,11 +40,16 @@ private:
         if (const ErrorId error = ctx.requests->reset(Axis, ctx.owner); error != ErrorId::none) return core_.refuse(error);
         core_.start(Axis);
         started = ctx.now;
+        seen_resetting = false;
     }
     void follow(const MotionContext& ctx) noexcept {
         const axes::AxisView* view = ctx.view(core_.axis());
         if (view == nullptr) return core_.refuse(ErrorId::invalid_axis);
         if (view->state != axes::AxisState::ErrorStop) return core_.finish();
+        // Only what the axis says after it has begun: its last answer may still stand in the view.
+        const bool given_up = seen_resetting && !view->resetting;
+        seen_resetting = view->resetting;
+        if (given_up) return core_.refuse(view->reset_error != ErrorId::none ? view->reset_error : ErrorId::reset_failed);
         if (ctx.now - started >= patience) core_.refuse(ErrorId::reset_failed);
     }
 };

@@ -27,8 +27,9 @@ struct ExecuteBlock {
     }
 
     void warm_start(Instant) noexcept {
-        core_.warm_start();
-        core_.publish(static_cast<Block&>(*this));
+        Block& block = static_cast<Block&>(*this);
+        core_.warm_start(requires { block.CommandAborted; });
+        core_.publish(block);
     }
 
 protected:

@@ -79,8 +79,9 @@ public:
     }
 
     /// After a reboot: command ids mean nothing any more. Execute keeps its memory, so that nothing starts by itself.
-    constexpr void warm_start() noexcept {
-        if (running()) phase_ = Phase::aborted;
+    constexpr void warm_start(bool has_command_aborted) noexcept {
+        if (running() && has_command_aborted) phase_ = Phase::aborted;
+        else if (running()) refuse(axes::ErrorId::aborted_by_axis_error);
         command_ = 0;
     }
 

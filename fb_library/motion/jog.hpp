@@ -66,7 +66,7 @@ struct MC_Jog {
         core.publish(*this);
     }
     void warm_start(Instant) noexcept {
-        core.warm_start();
+        core.warm_start(true);
         core.publish(*this);
     }
 

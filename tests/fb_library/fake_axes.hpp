@@ -1,0 +1,125 @@
+#pragma once
+// Axes as blocks see them, played by hand: the test says when a command ends and how. The views handed out are those of the scan's
+// begin, as on a real machine: what is submitted in a scan shows in the next one.
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "axes/axis/motion_context.hpp"
+
+namespace taktwerk::fb {
+
+class FakeAxes final : public axes::AxisRequests {
+public:
+    struct Call {
+        std::string what;  ///< "submit", "power", "reset", ...
+        axes::AxisRef axis{};
+        axes::AxisCommand command{};
+        axes::CommandId id = 0;
+        bool enable = false, positive = false, negative = false, relative = false;
+        double value = 0;
+        axes::Owner owner = axes::Owner::none;
+    };
+
+    explicit FakeAxes(std::size_t count = 2) : now_axes(count), seen(count) {
+        for (auto& axis : now_axes) {
+            axis.state = axes::AxisState::Standstill;
+            axis.powered = axis.online = true;
+            axis.manual_slow = 5;
+            axis.manual_fast = 25;
+        }
+        next_scan();
+    }
+
+    axes::AxisView& axis(std::size_t i = 0) { return now_axes[i]; }
+
+    /// The running command ends; a waiting one takes over.
+    void finish(axes::Outcome outcome, axes::ErrorId error = axes::ErrorId::none, std::size_t i = 0) {
+        auto& a = now_axes[i];
+        if (a.active != 0) end(a, a.active, outcome, error);
+        a.active = 0;
+        a.active_in_target = false;
+        if (a.queued_count > 0) {
+            a.active = a.queued[0];
+            std::copy(a.queued.begin() + 1, a.queued.end(), a.queued.begin());
+            --a.queued_count;
+        }
+    }
+    /// Some other block's command takes the axis.
+    void take_over(std::size_t i = 0) {
+        begin(now_axes[i], false);
+        now_axes[i].active_in_target = false;
+    }
+
+    /// Time goes on by one period; the views are taken anew.
+    void next_scan(Duration period = std::chrono::milliseconds{1}) {
+        context.now += period;
+        context.period = period;
+        ++context.cycle;
+        seen = now_axes;
+        context.axes = seen;
+        context.requests = this;
+    }
+
+    // AxisRequests
+    axes::Submitted submit(axes::AxisRef ref, const axes::AxisCommand& command, axes::Owner owner) noexcept override {
+        axes::Submitted answer{0, refuse_with};
+        if (refuse_with == axes::ErrorId::none) answer.id = begin(now_axes[ref.index], command.buffer_mode != axes::mcAborting);
+        calls.push_back({.what = "submit", .axis = ref, .command = command, .id = answer.id, .owner = owner});
+        return answer;
+    }
+    axes::ErrorId power(axes::AxisRef ref, bool enable, bool positive, bool negative, axes::Owner owner) noexcept override {
+        calls.push_back({.what = "power", .axis = ref, .enable = enable, .positive = positive, .negative = negative, .owner = owner});
+        return refuse_with;
+    }
+    axes::ErrorId reset(axes::AxisRef ref, axes::Owner owner) noexcept override {
+        calls.push_back({.what = "reset", .axis = ref, .owner = owner});
+        return refuse_with;
+    }
+    axes::ErrorId set_position(axes::AxisRef ref, double position, bool relative, axes::Owner owner) noexcept override {
+        calls.push_back({.what = "set_position", .axis = ref, .relative = relative, .value = position, .owner = owner});
+        return refuse_with;
+    }
+    void release_stop(axes::AxisRef ref, axes::CommandId id, axes::Owner owner) noexcept override {
+        calls.push_back({.what = "release_stop", .axis = ref, .id = id, .owner = owner});
+    }
+    axes::ErrorId renew_jog(axes::AxisRef ref, axes::CommandId id, double velocity, axes::Owner owner) noexcept override {
+        calls.push_back({.what = "renew_jog", .axis = ref, .id = id, .value = velocity, .owner = owner});
+        return refuse_renewal_with;
+    }
+
+    [[nodiscard]] std::vector<Call> calls_of(const std::string& what) const {
+        std::vector<Call> found;
+        for (const auto& call : calls)
+            if (call.what == what) found.push_back(call);
+        return found;
+    }
+
+    std::vector<Call> calls;
+    axes::ErrorId refuse_with = axes::ErrorId::none, refuse_renewal_with = axes::ErrorId::none;
+    axes::MotionContext context;
+
+private:
+    static void end(axes::AxisView& a, axes::CommandId id, axes::Outcome outcome, axes::ErrorId error) {
+        a.ledger[a.ledger_next] = {id, outcome, error};
+        a.ledger_next = static_cast<std::uint8_t>((a.ledger_next + 1) % a.ledger.size());
+    }
+    static axes::CommandId begin(axes::AxisView& a, bool buffered) {
+        const axes::CommandId id = ++a.last_id;
+        if (buffered && a.active != 0) {
+            a.queued[a.queued_count++] = id;
+            return id;
+        }
+        if (a.active != 0) end(a, a.active, axes::Outcome::aborted, axes::ErrorId::none);
+        for (std::uint8_t i = 0; i < a.queued_count; ++i) end(a, a.queued[i], axes::Outcome::aborted, axes::ErrorId::none);
+        a.queued_count = 0;
+        a.active = id;
+        a.active_in_target = false;
+        return id;
+    }
+
+    std::vector<axes::AxisView> now_axes, seen;
+};
+
+}  // namespace taktwerk::fb
