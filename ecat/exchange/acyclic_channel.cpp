@@ -25,7 +25,9 @@ struct AcyclicChannel::Flight {
 };
 
 AcyclicChannel::AcyclicChannel(Exchange& exchange, Duration timeout)
-    : exchange_(exchange), timeout_(timeout), entries_(std::make_unique<std::array<Entry, entry_count>>()),
+    : exchange_(exchange),
+      timeout_(timeout),
+      entries_(std::make_unique<std::array<Entry, entry_count>>()),
       flights_(std::make_unique<std::array<Flight, max_frames>>()) {}
 
 AcyclicChannel::~AcyclicChannel() = default;
@@ -69,9 +71,14 @@ std::optional<AcyclicAnswer> AcyclicChannel::poll(EntryId id) const noexcept {
     const auto* entry = find(id);
     if (entry == nullptr) return AcyclicAnswer{.lost = true, .wkc = 0, .slaves_passed = 0, .data = {}};
     switch (entry->state.load(std::memory_order_acquire)) {
-        case State::done: return AcyclicAnswer{false, entry->wkc, entry->passed, std::span<const std::byte>{entry->data}.first(entry->size)};
-        case State::filling: case State::submitted: case State::in_flight: return std::nullopt;
-        case State::lost: case State::free: case State::abandoned: break;
+        case State::done:
+            return AcyclicAnswer{false, entry->wkc, entry->passed, std::span<const std::byte>{entry->data}.first(entry->size)};
+        case State::filling:
+        case State::submitted:
+        case State::in_flight: return std::nullopt;
+        case State::lost:
+        case State::free:
+        case State::abandoned: break;
     }
     return AcyclicAnswer{.lost = true, .wkc = 0, .slaves_passed = 0, .data = {}};
 }
@@ -88,15 +95,15 @@ void AcyclicChannel::release(EntryId id) noexcept {
 }
 
 std::size_t AcyclicChannel::in_use() const noexcept {
-    return static_cast<std::size_t>(std::count_if(entries_->begin(), entries_->end(), [](const Entry& entry) {
-        return entry.state.load(std::memory_order_acquire) != State::free;
-    }));
+    return static_cast<std::size_t>(std::count_if(
+        entries_->begin(), entries_->end(), [](const Entry& entry) { return entry.state.load(std::memory_order_acquire) != State::free; }));
 }
 
 void AcyclicChannel::finish(std::size_t number, State outcome) noexcept {
     auto& entry = (*entries_)[number];
     auto seen = State::in_flight;
-    if (!entry.state.compare_exchange_strong(seen, outcome, std::memory_order_acq_rel)) entry.state.store(State::free, std::memory_order_release);
+    if (!entry.state.compare_exchange_strong(seen, outcome, std::memory_order_acq_rel))
+        entry.state.store(State::free, std::memory_order_release);
 }
 
 std::size_t AcyclicChannel::pack(Instant now, std::size_t max_datagrams) noexcept {

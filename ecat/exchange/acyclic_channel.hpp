@@ -30,7 +30,7 @@ struct EntryId {
 
 /// How a request ended.
 struct AcyclicAnswer {
-    bool lost = false;                ///< no answer within the timeout, or the link did not take the frame
+    bool lost = false;  ///< no answer within the timeout, or the link did not take the frame
     std::uint16_t wkc = 0;
     std::uint16_t slaves_passed = 0;  ///< AP and B commands: how many slaves the datagram passed
     std::span<const std::byte> data;  ///< valid until release(); empty when lost
@@ -39,7 +39,7 @@ struct AcyclicAnswer {
 class AcyclicChannel {
 public:
     static constexpr std::size_t entry_count = 32;
-    static constexpr std::size_t max_frames = 4;             ///< frames under way at the same time
+    static constexpr std::size_t max_frames = 4;  ///< frames under way at the same time
     static constexpr std::size_t max_datagrams_a_frame = 16;
 
     /// `exchange` outlives the channel. Allocates here. `timeout`: after it a frame's requests are lost.

@@ -11,8 +11,13 @@ namespace {
 /// Slaves increment ADP of these as the datagram passes.
 bool counts_slaves(Command command) noexcept {
     switch (command) {
-        case Command::APRD: case Command::APWR: case Command::APRW: case Command::ARMW:
-        case Command::BRD: case Command::BWR: case Command::BRW: return true;
+        case Command::APRD:
+        case Command::APWR:
+        case Command::APRW:
+        case Command::ARMW:
+        case Command::BRD:
+        case Command::BWR:
+        case Command::BRW: return true;
         default: return false;
     }
 }
@@ -47,7 +52,10 @@ struct Exchange::Slot {
 };
 
 Exchange::Exchange(Transport& transport)
-    : transport_(transport), source_(transport.mac()), slots_(std::make_unique<std::array<Slot, slot_count>>()), scratch_(std::make_unique<Buffer>()) {
+    : transport_(transport),
+      source_(transport.mac()),
+      slots_(std::make_unique<std::array<Slot, slot_count>>()),
+      scratch_(std::make_unique<Buffer>()) {
     source_[0] = static_cast<std::uint8_t>(source_[0] & ~0x02u);
 }
 
@@ -138,7 +146,8 @@ bool Exchange::Slot::fits_answer(FrameReader& reader, Datagram datagram) noexcep
         const auto head = std::span<const std::byte>{bytes}.subspan(layout[i].header, datagram_header_size);
         const auto command = static_cast<Command>(head[0]);
         const Address asked{load_le<std::uint32_t>(head, 2)};
-        if (datagram.command != command || datagram.index != static_cast<std::uint8_t>(head[1]) || datagram.data.size() != layout[i].size) return false;
+        if (datagram.command != command || datagram.index != static_cast<std::uint8_t>(head[1]) || datagram.data.size() != layout[i].size)
+            return false;
         if (counts_slaves(command) ? datagram.address.ado() != asked.ado() : datagram.address != asked) return false;
         layout[i].passed = counts_slaves(command) ? static_cast<std::uint16_t>(datagram.address.adp() - asked.adp()) : std::uint16_t{0};
         const auto next = reader.next();
@@ -156,9 +165,8 @@ bool Exchange::match(std::span<const std::byte> frame, Instant at) noexcept {
         return false;
     }
     auto& past = past_[first->index];
-    const auto slot = std::find_if(slots_->begin(), slots_->end(), [&](const Slot& s) {
-        return s.state == SlotState::sent && first_index(s.generation) == first->index;
-    });
+    const auto slot = std::find_if(slots_->begin(), slots_->end(),
+                                   [&](const Slot& s) { return s.state == SlotState::sent && first_index(s.generation) == first->index; });
     if (slot == slots_->end()) {
         if (past == Past::lost || past == Past::quarantined) {
             ++statistics_.late;
@@ -174,7 +182,8 @@ bool Exchange::match(std::span<const std::byte> frame, Instant at) noexcept {
         ++statistics_.rejected;
         return false;
     }
-    if (frame.size() >= slot->size && std::equal(slot->bytes.begin(), slot->bytes.begin() + static_cast<std::ptrdiff_t>(slot->size), frame.begin())) {
+    if (frame.size() >= slot->size &&
+        std::equal(slot->bytes.begin(), slot->bytes.begin() + static_cast<std::ptrdiff_t>(slot->size), frame.begin())) {
         ++statistics_.echoes;
         slot->echoed = true;
         slot->arrived_at = at;

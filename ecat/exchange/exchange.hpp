@@ -48,13 +48,13 @@ struct DatagramRef {
 /// Counters since construction.
 struct ExchangeStatistics {
     std::uint64_t sent = 0;
-    std::uint64_t received = 0;    ///< answers that matched
-    std::uint64_t lost = 0;        ///< expired or released without an answer
-    std::uint64_t late = 0;        ///< answers to frames already given up
-    std::uint64_t duplicate = 0;   ///< answers to frames already answered
-    std::uint64_t rejected = 0;    ///< not EtherCAT, mangled, or never sent by us
-    std::uint64_t echoes = 0;      ///< our own frame, not touched by any slave
-    std::uint64_t send_errors = 0; ///< the link did not take a frame
+    std::uint64_t received = 0;     ///< answers that matched
+    std::uint64_t lost = 0;         ///< expired or released without an answer
+    std::uint64_t late = 0;         ///< answers to frames already given up
+    std::uint64_t duplicate = 0;    ///< answers to frames already answered
+    std::uint64_t rejected = 0;     ///< not EtherCAT, mangled, or never sent by us
+    std::uint64_t echoes = 0;       ///< our own frame, not touched by any slave
+    std::uint64_t send_errors = 0;  ///< the link did not take a frame
 };
 
 class Exchange {

@@ -24,7 +24,8 @@ LoopbackTransport::Slot* LoopbackTransport::earliest() noexcept {
     Slot* first = nullptr;
     for (auto& slot : slots_) {
         if (slot.size == 0) continue;
-        if (first == nullptr || slot.arrival < first->arrival || (slot.arrival == first->arrival && slot.order < first->order)) first = &slot;
+        if (first == nullptr || slot.arrival < first->arrival || (slot.arrival == first->arrival && slot.order < first->order))
+            first = &slot;
     }
     return first;
 }

@@ -27,14 +27,14 @@ public:
 
 /// Disturbances a test switches on. Each counter counts down with the frames it hits; 0 = off.
 struct FaultPlan {
-    std::uint32_t drop_requests = 0;   ///< lost before the slaves saw them
-    std::uint32_t drop_answers = 0;    ///< the slaves acted, the answer is lost
-    std::uint32_t delay_answers = 0;   ///< the next answers arrive `delay` later
+    std::uint32_t drop_requests = 0;  ///< lost before the slaves saw them
+    std::uint32_t drop_answers = 0;   ///< the slaves acted, the answer is lost
+    std::uint32_t delay_answers = 0;  ///< the next answers arrive `delay` later
     Duration delay{};
     std::uint32_t duplicate_answers = 0;
-    std::uint32_t corrupt_answers = 0; ///< one bit flips: number `corrupt_bit` of the frame, modulo its size
+    std::uint32_t corrupt_answers = 0;  ///< one bit flips: number `corrupt_bit` of the frame, modulo its size
     std::uint32_t corrupt_bit = 0;
-    bool link_down = false;            ///< send() refuses, nothing arrives
+    bool link_down = false;  ///< send() refuses, nothing arrives
 };
 
 class LoopbackTransport final : public Transport {

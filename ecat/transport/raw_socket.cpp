@@ -101,8 +101,9 @@ Result<std::unique_ptr<RawSocketTransport>> RawSocketTransport::open(std::string
     const auto index = interface.empty() || interface.size() >= IFNAMSIZ ? 0u : ::if_nametoindex(std::string{interface}.c_str());
     if (index == 0) {
         const auto others = other_interfaces();
-        return error("transport.no_such_interface", interface, "there is no network interface of this name",
-                     others.empty() ? std::string{"no other interface exists in this network namespace"} : fmt::format("use one of: {}", others));
+        return error(
+            "transport.no_such_interface", interface, "there is no network interface of this name",
+            others.empty() ? std::string{"no other interface exists in this network namespace"} : fmt::format("use one of: {}", others));
     }
 
     // Flags and hardware address can be asked without privilege: their errors come first.
@@ -116,7 +117,8 @@ Result<std::unique_ptr<RawSocketTransport>> RawSocketTransport::open(std::string
     ifr = request(interface);
     if (::ioctl(control.get(), SIOCGIFFLAGS, &ifr) != 0) return socket_error(interface, "reading the flags");
     if ((ifr.ifr_flags & IFF_UP) == 0)
-        return error("transport.interface_down", interface, "it is switched off", fmt::format("switch it on: ip link set {} up", interface));
+        return error("transport.interface_down", interface, "it is switched off",
+                     fmt::format("switch it on: ip link set {} up", interface));
 
     // Protocol 0: nothing is received until it is bound to this interface.
     Descriptor socket{::socket(AF_PACKET, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
@@ -143,7 +145,8 @@ Result<std::unique_ptr<RawSocketTransport>> RawSocketTransport::open(std::string
     address.sll_family = AF_PACKET;
     address.sll_protocol = htons(ethertype);
     address.sll_ifindex = static_cast<int>(index);
-    if (::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) return socket_error(interface, "binding the packet socket");
+    if (::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+        return socket_error(interface, "binding the packet socket");
 
     std::unique_ptr<RawSocketTransport> transport{
         new RawSocketTransport{std::string{interface}, socket.release(), lock.release(), mac, sees_own_frames}};

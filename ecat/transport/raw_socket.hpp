@@ -20,9 +20,9 @@
 namespace taktwerk::ecat {
 
 struct RawSocketOptions {
-    int priority = 7;          ///< SO_PRIORITY: 0..6 without privilege, 7 needs CAP_NET_ADMIN; refused values are ignored
-    bool skip_queueing = true; ///< PACKET_QDISC_BYPASS: straight to the driver. False: through tc, e.g. to shape a test
-    bool exclusive = true;     ///< take the interface's lock; false only for a listener beside the master
+    int priority = 7;           ///< SO_PRIORITY: 0..6 without privilege, 7 needs CAP_NET_ADMIN; refused values are ignored
+    bool skip_queueing = true;  ///< PACKET_QDISC_BYPASS: straight to the driver. False: through tc, e.g. to shape a test
+    bool exclusive = true;      ///< take the interface's lock; false only for a listener beside the master
 };
 
 class RawSocketTransport final : public Transport {

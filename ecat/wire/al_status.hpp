@@ -13,11 +13,11 @@ enum class AlState : std::uint8_t { unknown = 0, init = 1, preop = 2, boot = 3, 
 /// "INIT", "PREOP", ...; "unknown" for any other value.
 [[nodiscard]] std::string_view name(AlState state) noexcept;
 
-inline constexpr std::uint16_t al_state_mask = 0x000F;          ///< state bits of 0120h and 0130h
-inline constexpr std::uint16_t al_control_acknowledge = 0x0010; ///< 0120h: acknowledges the error indication
-inline constexpr std::uint16_t al_control_request_id = 0x0020;  ///< 0120h: asks for the device id in 0134h
-inline constexpr std::uint16_t al_status_error = 0x0010;        ///< 0130h: a transition failed, 0134h says why
-inline constexpr std::uint16_t al_status_id_valid = 0x0020;     ///< 0130h: 0134h holds the device id
+inline constexpr std::uint16_t al_state_mask = 0x000F;           ///< state bits of 0120h and 0130h
+inline constexpr std::uint16_t al_control_acknowledge = 0x0010;  ///< 0120h: acknowledges the error indication
+inline constexpr std::uint16_t al_control_request_id = 0x0020;   ///< 0120h: asks for the device id in 0134h
+inline constexpr std::uint16_t al_status_error = 0x0010;         ///< 0130h: a transition failed, 0134h says why
+inline constexpr std::uint16_t al_status_id_valid = 0x0020;      ///< 0130h: 0134h holds the device id
 
 /// State part of AL status; `unknown` for values the standard does not define.
 [[nodiscard]] constexpr AlState al_state(std::uint16_t al_status) noexcept {

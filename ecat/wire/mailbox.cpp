@@ -48,7 +48,12 @@ std::optional<MailboxMessage> parse_mailbox(std::span<const std::byte> mailbox) 
 
 bool finish_mailbox(std::span<std::byte> mailbox, MailboxType type, std::uint8_t counter, std::size_t payload_size) noexcept {
     if (mailbox.size() < mailbox_header_size || payload_size > mailbox.size() - mailbox_header_size || payload_size > 0xFFFF) return false;
-    encode(MailboxHeader{.length = static_cast<std::uint16_t>(payload_size), .address = 0, .channel = 0, .priority = 0, .type = type, .counter = counter},
+    encode(MailboxHeader{.length = static_cast<std::uint16_t>(payload_size),
+                         .address = 0,
+                         .channel = 0,
+                         .priority = 0,
+                         .type = type,
+                         .counter = counter},
            mailbox.first<mailbox_header_size>());
     const auto rest = mailbox.subspan(mailbox_header_size + payload_size);
     std::fill(rest.begin(), rest.end(), std::byte{0});

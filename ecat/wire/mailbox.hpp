@@ -20,7 +20,7 @@ struct MailboxHeader {
     std::uint8_t channel = 0;   ///< 0..63, reserved for the future
     std::uint8_t priority = 0;  ///< 0..3
     MailboxType type = MailboxType::error;
-    std::uint8_t counter = 0;   ///< 1..7; 0 = the slave does not check it
+    std::uint8_t counter = 0;  ///< 1..7; 0 = the slave does not check it
     friend bool operator==(const MailboxHeader&, const MailboxHeader&) = default;
 };
 
@@ -46,8 +46,16 @@ bool finish_mailbox(std::span<std::byte> mailbox, MailboxType type, std::uint8_t
 
 /// Why a slave refused a mailbox message (payload of MailboxType::error).
 enum class MailboxErrorDetail : std::uint16_t {
-    none = 0, syntax = 1, unsupported_protocol = 2, invalid_channel = 3, service_not_supported = 4, invalid_header = 5,
-    size_too_short = 6, no_more_memory = 7, invalid_size = 8, service_in_work = 9,
+    none = 0,
+    syntax = 1,
+    unsupported_protocol = 2,
+    invalid_channel = 3,
+    service_not_supported = 4,
+    invalid_header = 5,
+    size_too_short = 6,
+    no_more_memory = 7,
+    invalid_size = 8,
+    service_in_work = 9,
 };
 [[nodiscard]] std::string_view text(MailboxErrorDetail detail) noexcept;
 

@@ -13,7 +13,14 @@
 namespace taktwerk::ecat {
 
 enum class CoeService : std::uint8_t {
-    emergency = 1, sdo_request = 2, sdo_response = 3, tx_pdo = 4, rx_pdo = 5, tx_pdo_request = 6, rx_pdo_request = 7, sdo_info = 8,
+    emergency = 1,
+    sdo_request = 2,
+    sdo_response = 3,
+    tx_pdo = 4,
+    rx_pdo = 5,
+    tx_pdo_request = 6,
+    rx_pdo_request = 7,
+    sdo_info = 8,
 };
 inline constexpr std::size_t coe_header_size = 2;
 inline constexpr std::size_t sdo_initiate_size = 10;       ///< CoE header, command, index, subindex, 4 bytes
@@ -24,22 +31,29 @@ inline constexpr std::size_t sdo_segment_minimum = 7;      ///< a shorter segmen
 [[nodiscard]] std::optional<CoeService> coe_service(std::span<const std::byte> payload) noexcept;
 
 enum class SdoKind : std::uint8_t {
-    download_request, download_response, download_segment_request, download_segment_response,
-    upload_request, upload_response, upload_segment_request, upload_segment_response, abort,
+    download_request,
+    download_response,
+    download_segment_request,
+    download_segment_response,
+    upload_request,
+    upload_response,
+    upload_segment_request,
+    upload_segment_response,
+    abort,
 };
 
 /// One SDO message in both directions; fields that its kind does not have stay at their defaults.
 struct SdoMessage {
     SdoKind kind = SdoKind::abort;
-    std::uint16_t index = 0;           ///< initiate and abort
+    std::uint16_t index = 0;  ///< initiate and abort
     std::uint8_t sub = 0;
-    bool complete_access = false;      ///< initiate
-    bool expedited = false;            ///< initiate with data
-    bool toggle = false;               ///< segments
-    bool last = false;                 ///< segments with data
-    std::uint32_t complete_size = 0;   ///< download request, upload response: bytes of the whole value
-    std::uint32_t abort_code = 0;      ///< abort
-    std::span<const std::byte> data;   ///< what this message carries; more follows in segments when shorter than complete_size
+    bool complete_access = false;     ///< initiate
+    bool expedited = false;           ///< initiate with data
+    bool toggle = false;              ///< segments
+    bool last = false;                ///< segments with data
+    std::uint32_t complete_size = 0;  ///< download request, upload response: bytes of the whole value
+    std::uint32_t abort_code = 0;     ///< abort
+    std::span<const std::byte> data;  ///< what this message carries; more follows in segments when shorter than complete_size
 };
 
 /// Any bytes are safe. Nothing for other CoE services, unknown commands and truncated messages.
@@ -54,7 +68,8 @@ std::size_t encode_download_request(std::span<std::byte> out, std::uint16_t inde
 std::size_t encode_upload_response(std::span<std::byte> out, std::uint16_t index, std::uint8_t sub, std::span<const std::byte> data,
                                    bool complete_access = false) noexcept;
 /// Server: the value was taken.
-std::size_t encode_download_response(std::span<std::byte> out, std::uint16_t index, std::uint8_t sub, bool complete_access = false) noexcept;
+std::size_t encode_download_response(std::span<std::byte> out, std::uint16_t index, std::uint8_t sub,
+                                     bool complete_access = false) noexcept;
 
 /// Client: asks for the next segment. The first has toggle false.
 std::size_t encode_upload_segment_request(std::span<std::byte> out, bool toggle) noexcept;
@@ -110,9 +125,9 @@ struct SdoAbortInfo {
 
 /// What a slave sends unasked when it enters a fault. May arrive between a request and its answer.
 struct Emergency {
-    std::uint16_t code = 0;               ///< CiA error code, as in 603Fh; 0000h error gone
-    std::uint8_t error_register = 0;      ///< 1001h
-    std::array<std::byte, 5> data{};      ///< vendor's
+    std::uint16_t code = 0;           ///< CiA error code, as in 603Fh; 0000h error gone
+    std::uint8_t error_register = 0;  ///< 1001h
+    std::array<std::byte, 5> data{};  ///< vendor's
     friend bool operator==(const Emergency&, const Emergency&) = default;
 };
 inline constexpr std::size_t emergency_size = coe_header_size + 8;

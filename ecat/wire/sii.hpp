@@ -38,8 +38,8 @@ inline constexpr std::uint16_t aoe = 1u << 0, eoe = 1u << 1, coe = 1u << 2, foe 
 
 /// Bits of SiiGeneral::coe_details.
 namespace sii_coe {
-inline constexpr std::uint8_t sdo = 1u << 0, sdo_info = 1u << 1, pdo_assign = 1u << 2, pdo_configuration = 1u << 3, upload_at_startup = 1u << 4,
-                              complete_access = 1u << 5;
+inline constexpr std::uint8_t sdo = 1u << 0, sdo_info = 1u << 1, pdo_assign = 1u << 2, pdo_configuration = 1u << 3,
+                              upload_at_startup = 1u << 4, complete_access = 1u << 5;
 }  // namespace sii_coe
 
 struct SiiMailbox {
@@ -51,9 +51,9 @@ struct SiiMailbox {
 struct SiiGeneral {
     std::uint8_t group = 0, image = 0, order = 0, name = 0;
     std::uint8_t coe_details = 0, foe_details = 0, eoe_details = 0;
-    std::uint8_t flags = 0;              ///< b0 SAFEOP refused in start-up, b1 LRW not supported
-    std::int16_t ebus_current = 0;       ///< mA; negative: supplies
-    std::uint16_t physical_ports = 0;    ///< 4 bits a port: 1 MII, 3 EBUS
+    std::uint8_t flags = 0;            ///< b0 SAFEOP refused in start-up, b1 LRW not supported
+    std::int16_t ebus_current = 0;     ///< mA; negative: supplies
+    std::uint16_t physical_ports = 0;  ///< 4 bits a port: 1 MII, 3 EBUS
     friend bool operator==(const SiiGeneral&, const SiiGeneral&) = default;
 };
 
@@ -69,9 +69,9 @@ struct SiiSyncManager {
 };
 
 struct SiiPdoEntry {
-    std::uint16_t index = 0;      ///< 0 = gap
+    std::uint16_t index = 0;  ///< 0 = gap
     std::uint8_t sub = 0, name = 0;
-    std::uint8_t data_type = 0;   ///< CoE type number
+    std::uint8_t data_type = 0;  ///< CoE type number
     std::uint8_t bits = 0;
     std::uint16_t flags = 0;
     friend bool operator==(const SiiPdoEntry&, const SiiPdoEntry&) = default;
@@ -82,7 +82,7 @@ struct SiiPdo {
     std::uint16_t index = 0;
     std::uint8_t sync_manager = not_assigned;
     std::uint8_t synchronization = 0, name = 0;
-    std::uint16_t flags = 0;      ///< b0 mandatory, b4 fixed content
+    std::uint16_t flags = 0;  ///< b0 mandatory, b4 fixed content
     std::vector<SiiPdoEntry> entries;
     [[nodiscard]] std::size_t bits() const noexcept;
     friend bool operator==(const SiiPdo&, const SiiPdo&) = default;
@@ -96,7 +96,9 @@ enum class SiiDefect : std::uint8_t {
     truncated_category,  ///< a category reaches beyond the image; the part that is there was read
     no_end,              ///< the image ends without the end marker
     bad_strings,         ///< the string table does not hold as many strings as it says
-    bad_general, bad_sync_managers, bad_pdo,  ///< the category's length does not fit its content
+    bad_general,
+    bad_sync_managers,
+    bad_pdo,  ///< the category's length does not fit its content
 };
 [[nodiscard]] std::string_view text(SiiDefect defect) noexcept;
 
@@ -106,17 +108,17 @@ struct Sii {
     std::uint16_t alias = 0;
     Identity identity;
     SiiMailbox boot_mailbox_out, boot_mailbox_in;
-    SiiMailbox mailbox_out, mailbox_in;   ///< out: master to slave
+    SiiMailbox mailbox_out, mailbox_in;  ///< out: master to slave
     std::uint16_t mailbox_protocols = 0;
-    std::uint16_t size_code = 0;          ///< EEPROM size in kbit - 1
+    std::uint16_t size_code = 0;  ///< EEPROM size in kbit - 1
     std::uint16_t version = 1;
-    std::vector<std::string> strings;     ///< string n stands at n - 1
+    std::vector<std::string> strings;  ///< string n stands at n - 1
     std::optional<SiiGeneral> general;
-    std::vector<SiiFmmuUse> fmmus;        ///< in FMMU order
+    std::vector<SiiFmmuUse> fmmus;  ///< in FMMU order
     std::vector<SiiSyncManager> sync_managers;
-    std::vector<SiiPdo> tx_pdos, rx_pdos; ///< tx: slave to master
-    std::vector<std::uint16_t> skipped;   ///< types of the categories that are not read here
-    std::vector<SiiDefect> defects;       ///< of a parsed image
+    std::vector<SiiPdo> tx_pdos, rx_pdos;  ///< tx: slave to master
+    std::vector<std::uint16_t> skipped;    ///< types of the categories that are not read here
+    std::vector<SiiDefect> defects;        ///< of a parsed image
 
     [[nodiscard]] bool has(SiiDefect defect) const noexcept;
     /// String `number` (1-based); empty for 0 and for numbers beyond the table.

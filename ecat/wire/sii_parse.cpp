@@ -18,7 +18,9 @@ std::uint32_t dword(std::span<const std::byte> image, std::size_t address) noexc
     return word(image, address) | (static_cast<std::uint32_t>(word(image, address + 1)) << 16);
 }
 
-SiiMailbox mailbox(std::span<const std::byte> image, std::size_t address) noexcept { return {word(image, address), word(image, address + 1)}; }
+SiiMailbox mailbox(std::span<const std::byte> image, std::size_t address) noexcept {
+    return {word(image, address), word(image, address + 1)};
+}
 
 std::uint8_t byte_at(std::span<const std::byte> data, std::size_t offset) noexcept {
     return offset < data.size() ? static_cast<std::uint8_t>(data[offset]) : std::uint8_t{0};

@@ -21,6 +21,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     std::vector<std::byte> out(sdo_initiate_size + sdo->data.size());
     const auto written = encode_upload_response(out, sdo->index, sdo->sub, sdo->data, sdo->complete_access);
     const auto again = parse_sdo(std::span<const std::byte>{out}.first(written));
-    if (!again || again->index != sdo->index || !std::equal(again->data.begin(), again->data.end(), sdo->data.begin(), sdo->data.end())) std::abort();
+    if (!again || again->index != sdo->index || !std::equal(again->data.begin(), again->data.end(), sdo->data.begin(), sdo->data.end()))
+        std::abort();
     return 0;
 }

@@ -13,9 +13,9 @@ namespace taktwerk::ecat::test {
 
 class EchoSlaves final : public FrameSink {
 public:
-    std::uint16_t count = 2;               ///< slaves on the cable
+    std::uint16_t count = 2;  ///< slaves on the cable
     Duration flight = std::chrono::microseconds{10};
-    bool sets_mac_bit = true;              ///< real controllers do; some emulators do not
+    bool sets_mac_bit = true;                          ///< real controllers do; some emulators do not
     std::function<void(std::span<std::byte>)> tamper;  ///< last change to the answer
     std::vector<std::vector<std::byte>> seen;          ///< frames as they came from the master
     Instant advanced{};
@@ -29,8 +29,13 @@ public:
         FrameEditor editor{frame};
         while (auto datagram = editor.next()) {
             switch (datagram->command) {
-                case Command::APRD: case Command::APWR: case Command::APRW: case Command::ARMW:
-                case Command::BRD: case Command::BWR: case Command::BRW:
+                case Command::APRD:
+                case Command::APWR:
+                case Command::APRW:
+                case Command::ARMW:
+                case Command::BRD:
+                case Command::BWR:
+                case Command::BRW:
                     store_le<std::uint16_t>(datagram->header, 2, static_cast<std::uint16_t>(datagram->address.adp() + count));
                     break;
                 default: break;

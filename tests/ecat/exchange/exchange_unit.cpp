@@ -89,11 +89,26 @@ TEST_F(ExchangeTest, WrongCommandIndexAddressLengthOrStructureIsRejected) {
     EXPECT_EQ(state_after([](auto f) { f[first] = std::byte{5}; }), SlotState::sent) << "FPWR instead of FPRD";
     EXPECT_EQ(state_after([](auto f) { f[first + 2] = std::byte{0x02}; }), SlotState::sent) << "another station";
     EXPECT_EQ(state_after([](auto f) { f[first + 4] = std::byte{0x34}; }), SlotState::sent) << "another register";
-    EXPECT_EQ(state_after([](auto f) { f[first + 6] = std::byte{1}; f[14] = std::byte{13}; }), SlotState::sent) << "one byte less";
-    EXPECT_EQ(state_after([](auto f) { f[first + 7] = std::byte{0x80}; f[14] = std::byte{14 + 12}; }), SlotState::sent) << "a datagram more";
+    EXPECT_EQ(state_after([](auto f) {
+                  f[first + 6] = std::byte{1};
+                  f[14] = std::byte{13};
+              }),
+              SlotState::sent)
+        << "one byte less";
+    EXPECT_EQ(state_after([](auto f) {
+                  f[first + 7] = std::byte{0x80};
+                  f[14] = std::byte{14 + 12};
+              }),
+              SlotState::sent)
+        << "a datagram more";
     EXPECT_EQ(state_after([](auto f) { f[14] = std::byte{16}; }), SlotState::sent) << "bytes behind the last datagram";
     EXPECT_EQ(state_after([](auto f) { f[first + 1] = std::byte{200}; }), SlotState::sent) << "an index never sent";
-    EXPECT_EQ(state_after([](auto f) { f[12] = std::byte{8}; f[13] = std::byte{0}; }), SlotState::sent) << "not EtherCAT";
+    EXPECT_EQ(state_after([](auto f) {
+                  f[12] = std::byte{8};
+                  f[13] = std::byte{0};
+              }),
+              SlotState::sent)
+        << "not EtherCAT";
     EXPECT_EQ(exchange.statistics().rejected, 8u);
     EXPECT_EQ(exchange.statistics().received, 0u);
 }
@@ -274,10 +289,12 @@ TEST_F(ExchangeTest, TapSeesEachFrameOutAndIn) {
     struct Seen {
         int out = 0, in = 0;
     } seen;
-    exchange.set_tap([](void* context, std::span<const std::byte> frame, Instant, bool outgoing) noexcept {
-        auto& counts = *static_cast<Seen*>(context);
-        if (frame.size() >= min_frame_size) ++(outgoing ? counts.out : counts.in);
-    }, &seen);
+    exchange.set_tap(
+        [](void* context, std::span<const std::byte> frame, Instant, bool outgoing) noexcept {
+            auto& counts = *static_cast<Seen*>(context);
+            if (frame.size() >= min_frame_size) ++(outgoing ? counts.out : counts.in);
+        },
+        &seen);
     send_status();
     later(1ms);
     EXPECT_EQ(seen.out, 1);

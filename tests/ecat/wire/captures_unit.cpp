@@ -73,9 +73,11 @@ TEST_P(Capture, EveryDatagramParsesAndEncodesToTheSameBytes) {
 
 // Numbers of EtherCAT frames as counted by tshark ("-Y ecat").
 INSTANTIATE_TEST_SUITE_P(Files, Capture,
-                         ::testing::Values(std::pair{"replay-dc.pcapng", std::size_t{3604}}, std::pair{"replay-ek1100-el2828-el2889.pcapng", std::size_t{3578}},
+                         ::testing::Values(std::pair{"replay-dc.pcapng", std::size_t{3604}},
+                                           std::pair{"replay-ek1100-el2828-el2889.pcapng", std::size_t{3578}},
                                            std::pair{"replay-ek1914-segmented-upload.pcapng", std::size_t{964}},
-                                           std::pair{"soem-dual-lan9252.pcapng", std::size_t{1776}}, std::pair{"soem-sdinfo-akd.pcapng", std::size_t{6759}}));
+                                           std::pair{"soem-dual-lan9252.pcapng", std::size_t{1776}},
+                                           std::pair{"soem-sdinfo-akd.pcapng", std::size_t{6759}}));
 
 // An EK1914 answers 1008h:00, its device name.
 TEST(CaptureSdo, RealSlavesAnswerIsUnderstood) {

@@ -53,9 +53,11 @@ TEST(FrameBuilder, SetsMoreFollowsOnAllButTheLastDatagram) {
     store_le<std::uint32_t>(data, 0, 0x04030201);
 
     // 12 + 8 + 12 + 4 = 36 = 24h; first length field 8008h.
+    // clang-format off
     auto expected = frame_with(bytes_of({0x24, 0x10,
         0x0E, 0x01, 0x01, 0x10, 0x10, 0x09, 0x08, 0x80, 0x00, 0x00, 0, 0, 0, 0, 0, 0, 0, 0, 0x00, 0x00,
         0x0C, 0x02, 0x00, 0x00, 0x01, 0x00, 0x04, 0x00, 0x00, 0x00, 1, 2, 3, 4, 0x00, 0x00}));
+    // clang-format on
     expected.resize(60);
     EXPECT_EQ(copy_of(builder.finish()), expected);
     EXPECT_EQ(builder.datagrams(), 2u);
@@ -92,9 +94,11 @@ TEST(Address, OfAPositionIsCountedDownSoThatTheSlaveSeesZero) {
 }
 
 TEST(FrameReader, GivesEachDatagramWithItsFields) {
+    // clang-format off
     const auto frame = frame_with(bytes_of({0x22, 0x10,
         0x04, 0x05, 0x01, 0x10, 0x30, 0x01, 0x02, 0x80, 0x34, 0x12, 0x08, 0x00, 0x01, 0x00,
         0x0A, 0x06, 0x00, 0x00, 0x01, 0x00, 0x08, 0x40, 0x00, 0x00, 1, 2, 3, 4, 5, 6, 7, 8, 0x03, 0x02}));
+    // clang-format on
     FrameReader reader{frame};
 
     const auto first = reader.next();
@@ -166,9 +170,11 @@ TEST(FrameReader, IgnoresReservedBitsAsControllersDo) {
 }
 
 TEST(FrameReader, StaysInsideTheFrameForAnyTruncationAndAnyFlippedByte) {
+    // clang-format off
     const auto good = frame_with(bytes_of({0x22, 0x10,
         0x04, 0x05, 0x01, 0x10, 0x30, 0x01, 0x02, 0x80, 0x34, 0x12, 0x08, 0x00, 0x01, 0x00,
         0x0A, 0x06, 0x00, 0x00, 0x01, 0x00, 0x08, 0x00, 0x00, 0x00, 1, 2, 3, 4, 5, 6, 7, 8, 0x03, 0x02}));
+    // clang-format on
     const auto inside = [](std::span<const std::byte> frame) {
         FrameReader reader{frame};
         while (const auto datagram = reader.next()) {
@@ -176,7 +182,8 @@ TEST(FrameReader, StaysInsideTheFrameForAnyTruncationAndAnyFlippedByte) {
             EXPECT_LE(datagram->wkc.data() + datagram->wkc.size(), frame.data() + frame.size());
         }
     };
-    for (std::size_t size = 0; size <= good.size(); ++size) inside(std::vector<std::byte>(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size)));
+    for (std::size_t size = 0; size <= good.size(); ++size)
+        inside(std::vector<std::byte>(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size)));
     std::mt19937 random{1};
     for (int i = 0; i < 20000; ++i) {
         auto bad = good;
@@ -196,7 +203,8 @@ TEST(FrameEditor, ChangesTheFrameInPlace) {
     datagram->data[0] = std::byte{0x08};
     store_le<std::uint16_t>(datagram->wkc, 0, 1);
 
-    EXPECT_EQ(frame, frame_with(bytes_of({0x0E, 0x10, 0x07, 0x07, 0x01, 0x00, 0x30, 0x01, 0x02, 0x00, 0x00, 0x00, 0x08, 0x00, 0x01, 0x00})));
+    EXPECT_EQ(frame,
+              frame_with(bytes_of({0x0E, 0x10, 0x07, 0x07, 0x01, 0x00, 0x30, 0x01, 0x02, 0x00, 0x00, 0x00, 0x08, 0x00, 0x01, 0x00})));
     EXPECT_FALSE(editor.next());
     EXPECT_EQ(editor.error(), FrameError::none);
 }

@@ -78,8 +78,10 @@ TEST_F(Sdo, UploadRequest) {
 
 // CiA 301: 4Fh, 4Bh, 47h, 43h for 1, 2, 3, 4 bytes.
 TEST_F(Sdo, ExpeditedUploadResponseSaysHowManyBytesCount) {
-    EXPECT_EQ(written(encode_upload_response(buffer, 0x6061, 0, bytes_of({8}))), bytes_of({0x00, 0x30, 0x4F, 0x61, 0x60, 0x00, 8, 0, 0, 0}));
-    EXPECT_EQ(written(encode_upload_response(buffer, 0x6041, 0, bytes_of({0x37, 0x16}))), bytes_of({0x00, 0x30, 0x4B, 0x41, 0x60, 0x00, 0x37, 0x16, 0, 0}));
+    EXPECT_EQ(written(encode_upload_response(buffer, 0x6061, 0, bytes_of({8}))),
+              bytes_of({0x00, 0x30, 0x4F, 0x61, 0x60, 0x00, 8, 0, 0, 0}));
+    EXPECT_EQ(written(encode_upload_response(buffer, 0x6041, 0, bytes_of({0x37, 0x16}))),
+              bytes_of({0x00, 0x30, 0x4B, 0x41, 0x60, 0x00, 0x37, 0x16, 0, 0}));
     EXPECT_EQ(written(encode_upload_response(buffer, 0x2000, 2, bytes_of({1, 2, 3})))[2], std::byte{0x47});
     const auto message = written(encode_upload_response(buffer, 0x1018, 1, bytes_of({0xFB, 0x07, 0, 0})));
     EXPECT_EQ(message, bytes_of({0x00, 0x30, 0x43, 0x18, 0x10, 0x01, 0xFB, 0x07, 0, 0}));
@@ -174,10 +176,10 @@ TEST_F(Sdo, AbortNamesObjectAndCode) {
 }
 
 TEST_F(Sdo, AbortTextsCoverTheStandardsTable) {
-    for (const auto code : {0x05030000u, 0x05040000u, 0x05040001u, 0x05040005u, 0x06010000u, 0x06010001u, 0x06010002u, 0x06010003u, 0x06010004u,
-                            0x06010005u, 0x06010006u, 0x06020000u, 0x06040041u, 0x06040042u, 0x06040043u, 0x06040047u, 0x06060000u, 0x06070010u,
-                            0x06070012u, 0x06070013u, 0x06090011u, 0x06090030u, 0x06090031u, 0x06090032u, 0x06090036u, 0x08000000u, 0x08000020u,
-                            0x08000021u, 0x08000022u, 0x08000023u})
+    for (const auto code :
+         {0x05030000u, 0x05040000u, 0x05040001u, 0x05040005u, 0x06010000u, 0x06010001u, 0x06010002u, 0x06010003u, 0x06010004u, 0x06010005u,
+          0x06010006u, 0x06020000u, 0x06040041u, 0x06040042u, 0x06040043u, 0x06040047u, 0x06060000u, 0x06070010u, 0x06070012u, 0x06070013u,
+          0x06090011u, 0x06090030u, 0x06090031u, 0x06090032u, 0x06090036u, 0x08000000u, 0x08000020u, 0x08000021u, 0x08000022u, 0x08000023u})
         EXPECT_NE(sdo_abort_text(code), "unknown abort code") << std::hex << code;
 }
 

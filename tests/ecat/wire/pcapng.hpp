@@ -18,7 +18,7 @@ namespace taktwerk::ecat::test {
 /// Recorded traffic and EEPROM images lie beside the source tree of a developer's machine, not in it.
 inline std::filesystem::path captures_folder() { return std::filesystem::path{TAKTWERK_SOURCE_DIR}.parent_path() / "shared" / "captures"; }
 
-#define TAKTWERK_SKIP_WITHOUT_CAPTURES()                                   \
+#define TAKTWERK_SKIP_WITHOUT_CAPTURES()                                           \
     if (!std::filesystem::is_directory(::taktwerk::ecat::test::captures_folder())) \
     GTEST_SKIP() << "no recorded traffic at " << ::taktwerk::ecat::test::captures_folder()
 

@@ -13,8 +13,15 @@ using test::bytes_of;
 using test::copy_of;
 
 TEST(Fmmu, EncodesToItsSixteenRegisterBytes) {
-    const Fmmu outputs{.logical_start = 0x00012345, .length = 19, .logical_start_bit = 3, .logical_stop_bit = 5,
-                       .physical_start = 0x1800, .physical_start_bit = 1, .read = false, .write = true, .active = true};
+    const Fmmu outputs{.logical_start = 0x00012345,
+                       .length = 19,
+                       .logical_start_bit = 3,
+                       .logical_stop_bit = 5,
+                       .physical_start = 0x1800,
+                       .physical_start_bit = 1,
+                       .read = false,
+                       .write = true,
+                       .active = true};
     std::array<std::byte, Fmmu::size> registers;
     registers.fill(std::byte{0xEE});
 
@@ -34,7 +41,8 @@ TEST(Fmmu, OfZeroesIsOff) {
 }
 
 TEST(SyncManager, EncodesToItsEightRegisterBytes) {
-    const SyncManager mailbox_out{.start = 0x1000, .length = 0x0080, .control = SyncManager::usual_mailbox_out, .status = 0, .activate = 1, .pdi_control = 0};
+    const SyncManager mailbox_out{
+        .start = 0x1000, .length = 0x0080, .control = SyncManager::usual_mailbox_out, .status = 0, .activate = 1, .pdi_control = 0};
     std::array<std::byte, SyncManager::size> registers{};
 
     encode(mailbox_out, registers);
@@ -44,7 +52,9 @@ TEST(SyncManager, EncodesToItsEightRegisterBytes) {
 }
 
 TEST(SyncManager, UsualControlBytesSayModeAndDirection) {
-    const auto with = [](std::uint8_t control) { return SyncManager{.start = 0, .length = 0, .control = control, .status = 0, .activate = 0, .pdi_control = 0}; };
+    const auto with = [](std::uint8_t control) {
+        return SyncManager{.start = 0, .length = 0, .control = control, .status = 0, .activate = 0, .pdi_control = 0};
+    };
     EXPECT_TRUE(with(0x26).is_mailbox());
     EXPECT_TRUE(with(0x26).is_written_by_master());
     EXPECT_TRUE(with(0x22).is_mailbox());
@@ -90,10 +100,11 @@ TEST(AlState, IgnoresTheOtherBitsOfAlStatus) {
 }
 
 TEST(AlStatusCodes, CoverTheStandardsTable) {
-    for (const int code : {0x0001, 0x0002, 0x0003, 0x0004, 0x0006, 0x0011, 0x0012, 0x0013, 0x0014, 0x0015, 0x0016, 0x0017, 0x0018, 0x0019, 0x001A,
-                           0x001B, 0x001C, 0x001D, 0x001E, 0x001F, 0x0020, 0x0021, 0x0022, 0x0023, 0x0024, 0x0025, 0x0026, 0x0027, 0x0028, 0x0029,
-                           0x002A, 0x002B, 0x002C, 0x002D, 0x002E, 0x0030, 0x0031, 0x0032, 0x0033, 0x0034, 0x0035, 0x0036, 0x0037, 0x0041, 0x0042,
-                           0x0043, 0x0044, 0x0045, 0x004F, 0x0050, 0x0051, 0x0052, 0x0060, 0x0061, 0x0070, 0x0080, 0x0081, 0x0082, 0x0083, 0x00F0})
+    for (const int code :
+         {0x0001, 0x0002, 0x0003, 0x0004, 0x0006, 0x0011, 0x0012, 0x0013, 0x0014, 0x0015, 0x0016, 0x0017, 0x0018, 0x0019, 0x001A,
+          0x001B, 0x001C, 0x001D, 0x001E, 0x001F, 0x0020, 0x0021, 0x0022, 0x0023, 0x0024, 0x0025, 0x0026, 0x0027, 0x0028, 0x0029,
+          0x002A, 0x002B, 0x002C, 0x002D, 0x002E, 0x0030, 0x0031, 0x0032, 0x0033, 0x0034, 0x0035, 0x0036, 0x0037, 0x0041, 0x0042,
+          0x0043, 0x0044, 0x0045, 0x004F, 0x0050, 0x0051, 0x0052, 0x0060, 0x0061, 0x0070, 0x0080, 0x0081, 0x0082, 0x0083, 0x00F0})
         EXPECT_EQ(al_status_info(static_cast<std::uint16_t>(code)).code, code) << std::hex << code;
     EXPECT_EQ(al_status_info(0x001B).text, "sync manager watchdog");
     EXPECT_EQ(al_status_info(0x8123).code, 0xFFFF);

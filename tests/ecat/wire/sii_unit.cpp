@@ -129,7 +129,8 @@ TEST(Sii, ImageCutInACategoryGivesWhatIsThere) {
 TEST(Sii, PdoThatClaimsMoreEntriesThanThereAreKeepsThoseThere) {
     Sii sii;
     sii.identity.vendor = 1;
-    sii.tx_pdos = {{.index = 0x1A00, .sync_manager = 3, .synchronization = 0, .name = 0, .flags = 0, .entries = {{0x6041, 0, 0, 6, 16, 0}}}};
+    sii.tx_pdos = {
+        {.index = 0x1A00, .sync_manager = 3, .synchronization = 0, .name = 0, .flags = 0, .entries = {{0x6041, 0, 0, 6, 16, 0}}}};
     auto image = build_sii(sii);
     image[2 * sii_word::categories + 4 + 2] = std::byte{200};  // number of entries
     const auto read = parse_sii(image);
@@ -140,7 +141,8 @@ TEST(Sii, PdoThatClaimsMoreEntriesThanThereAreKeepsThoseThere) {
 
 TEST(Sii, AnyTruncationAndAnyDamageIsSurvived) {
     const auto good = build_sii(drive());
-    for (std::size_t size = 0; size < 700; ++size) (void)parse_sii(std::vector<std::byte>(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size)));
+    for (std::size_t size = 0; size < 700; ++size)
+        (void)parse_sii(std::vector<std::byte>(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size)));
     std::mt19937 random{3};
     for (int i = 0; i < 3000; ++i) {
         auto bad = std::vector<std::byte>(good.begin(), good.begin() + 512);
