@@ -29,6 +29,9 @@ public:
     /// Power is on: dictionary values are at their defaults (or what non-volatile memory holds). Resolve objects here.
     virtual void power_on(ObjectDictionary& dictionary, Instant now) = 0;
 
+    /// The control supply is gone: no more exchange() until the next power_on(); advance() goes on (a motor coasts).
+    virtual void power_off(Instant now) { (void)now; }
+
     /// AL status code with which the application refuses the transition; 0 accepts. The controller has checked SM settings.
     virtual std::uint16_t refuse(EsmState from, EsmState to, const SyncSettings& settings) {
         (void)from, (void)to, (void)settings;

@@ -1,0 +1,191 @@
+#include "ecat/sim/al_state_machine.hpp"
+
+#include <algorithm>
+
+#include "ecat/wire/al_status.hpp"
+
+namespace taktwerk::ecat::sim {
+
+namespace {
+
+// AL status codes (ETG.1000.6 table 11; texts in ecat/wire/al_status.cpp).
+constexpr std::uint16_t invalid_state_change = 0x0011, unknown_state = 0x0012, no_bootstrap = 0x0013, invalid_mailbox = 0x0016;
+constexpr std::uint16_t invalid_outputs = 0x001D, invalid_inputs = 0x001E, no_sync = 0x002D, invalid_sync0_cycle = 0x0036;
+
+int rank(EsmState state) noexcept {
+    switch (state) {
+        case EsmState::init: return 0;
+        case EsmState::boot: case EsmState::preop: return 1;
+        case EsmState::safeop: return 2;
+        case EsmState::op: return 3;
+    }
+    return 0;
+}
+
+std::optional<unsigned> first_of(const DeviceDescription& description, SmUse use) {
+    for (std::size_t n = 0; n < description.sync_managers.size(); ++n)
+        if (description.sync_managers[n].use == use) return static_cast<unsigned>(n);
+    return std::nullopt;
+}
+
+}  // namespace
+
+AlStateMachine::AlStateMachine(const DeviceDescription& description, SlaveController& controller, DeviceModel& model, CoeServer* coe,
+                               ProcessData* process_data)
+    : description_(description), controller_(controller), model_(model), coe_(coe), process_data_(process_data),
+      outputs_sm_(first_of(description, SmUse::outputs)), inputs_sm_(first_of(description, SmUse::inputs)) {}
+
+void AlStateMachine::power_on(Instant now) {
+    state_ = EsmState::init;
+    error_ = false;
+    if (coe_ != nullptr) coe_->stop();
+    lock_process_data(true);
+    show(0);
+    model_.entered(state_, now);
+}
+
+void AlStateMachine::refuse_state(EsmState to, std::uint16_t code) {
+    refusals_.erase(std::remove_if(refusals_.begin(), refusals_.end(), [&](const Refusal& r) { return r.to == to; }), refusals_.end());
+    if (code != 0) refusals_.push_back({to, code});
+}
+
+void AlStateMachine::show(std::uint16_t code) {
+    controller_.set_al_status(static_cast<std::uint16_t>(static_cast<unsigned>(state_) | (error_ ? al_status_error : 0u)), code);
+}
+
+void AlStateMachine::refuse(std::uint16_t code) {
+    error_ = true;
+    show(code);
+}
+
+void AlStateMachine::request(std::uint16_t al_control, Instant now) {
+    const auto wanted = al_state(al_control);
+    if (error_) {
+        // Until the master has acknowledged, only the way to INIT is open.
+        if ((al_control & al_control_acknowledge) == 0 && wanted != AlState::init) return;
+        error_ = false;
+        show(0);
+    }
+    if (wanted == AlState::unknown) return refuse(unknown_state);
+    if (wanted == AlState::boot) return refuse(no_bootstrap);
+    const auto to = static_cast<EsmState>(wanted);
+    if (to == state_) return show(0);
+    if (rank(to) < rank(state_)) return move_to(to, now);
+    if (rank(to) > rank(state_) + 1) return refuse(invalid_state_change);
+    if (const auto code = check_upwards(to); code != 0) return refuse(code);
+    move_to(to, now);
+}
+
+void AlStateMachine::fall_to_safeop(std::uint16_t code, Instant now) {
+    if (state_ != EsmState::op) return;
+    error_ = true;
+    state_ = EsmState::safeop;
+    show(code);
+    model_.entered(state_, now);
+}
+
+void AlStateMachine::move_to(EsmState to, Instant now) {
+    const EsmState from = state_;
+    state_ = to;
+    if (from == EsmState::init && coe_ != nullptr) {
+        // Whatever was written to the mailboxes before nobody will read.
+        controller_.lock_sync_manager(coe_->out_sm(), false);
+        controller_.lock_sync_manager(coe_->in_sm(), false);
+        coe_->start();
+    }
+    if (rank(to) <= 1) lock_process_data(true);
+    if (from == EsmState::preop && to == EsmState::safeop) lock_process_data(false);
+    if (to == EsmState::op && controller_.watchdog_configured()) controller_.start_watchdog(now);
+    if (from == EsmState::op) controller_.stop_watchdog();
+    if (to == EsmState::init && coe_ != nullptr) coe_->stop();
+    show(0);
+    model_.entered(to, now);
+}
+
+void AlStateMachine::lock_process_data(bool locked) {
+    if (outputs_sm_) controller_.lock_sync_manager(*outputs_sm_, locked);
+    if (inputs_sm_) controller_.lock_sync_manager(*inputs_sm_, locked);
+}
+
+std::uint16_t AlStateMachine::check_upwards(EsmState to) {
+    std::uint16_t code = 0;
+    if (to == EsmState::preop && coe_ != nullptr) code = check_mailbox();
+    if (to == EsmState::safeop) code = check_process_data();
+    if (code == 0 && to != EsmState::preop) code = check_dc();
+    if (code != 0) return code;
+    for (const auto& refusal : refusals_)
+        if (refusal.to == to) return refusal.code;
+    return model_.refuse(state_, to, sync_settings());
+}
+
+std::uint16_t AlStateMachine::check_mailbox() const {
+    const auto good = [&](unsigned n, std::uint8_t direction) {
+        if (n >= description_.sync_managers.size()) return false;
+        const SyncManager& sm = controller_.sync_manager(n);
+        const auto& wanted = description_.sync_managers[n];
+        return sm.enabled() && sm.is_mailbox() && (sm.control & SyncManager::direction_mask) == direction && sm.start == wanted.start &&
+               sm.length == wanted.size;
+    };
+    return good(coe_->out_sm(), SyncManager::master_writes) && good(coe_->in_sm(), 0) ? std::uint16_t{0} : invalid_mailbox;
+}
+
+std::uint16_t AlStateMachine::check_process_data() {
+    std::uint16_t output_bytes = 0, input_bytes = 0;
+    if (process_data_ != nullptr) {
+        if (const auto code = process_data_->resolve(); code != 0) return code;
+        output_bytes = process_data_->output_bytes();
+        input_bytes = process_data_->input_bytes();
+    } else {
+        if (outputs_sm_) output_bytes = description_.sync_managers[*outputs_sm_].size;
+        if (inputs_sm_) input_bytes = description_.sync_managers[*inputs_sm_].size;
+    }
+    const auto start_of = [&](const std::optional<unsigned>& n) { return description_.sync_managers[*n].start; };
+    if (outputs_sm_ && !process_sm_fits(*outputs_sm_, output_bytes, start_of(outputs_sm_), SyncManager::master_writes)) return invalid_outputs;
+    if (inputs_sm_ && !process_sm_fits(*inputs_sm_, input_bytes, start_of(inputs_sm_), 0)) return invalid_inputs;
+    return 0;
+}
+
+bool AlStateMachine::process_sm_fits(unsigned n, std::uint16_t bytes, std::uint16_t start, std::uint8_t direction) const {
+    const SyncManager& sm = controller_.sync_manager(n);
+    if (bytes == 0) return !sm.enabled() || sm.length == 0;
+    if (!sm.enabled() || sm.length != bytes) return false;
+    if ((sm.control & SyncManager::mode_mask) != SyncManager::mode_buffered || (sm.control & SyncManager::direction_mask) != direction) return false;
+    if (start != 0 && sm.start != start) return false;
+    // Three buffers lie one after the other; only slaves with an application use all of them.
+    const unsigned buffers = description_.mailbox ? 3 : 1;
+    const auto area_end = [&](const SyncManager& m, unsigned copies) { return std::uint32_t{m.start} + std::uint32_t{m.length} * copies; };
+    if (sm.start < reg::process_ram || area_end(sm, buffers) > std::uint32_t{reg::process_ram} + description_.process_ram) return false;
+    for (unsigned other = 0; other < controller_.settings().sync_managers; ++other) {
+        const SyncManager& m = controller_.sync_manager(other);
+        if (other == n || !m.enabled() || m.length == 0) continue;
+        if (m.start < area_end(sm, buffers) && sm.start < area_end(m, m.is_mailbox() ? 1 : buffers)) return false;
+    }
+    return true;
+}
+
+std::uint16_t AlStateMachine::check_dc() const {
+    const Sync0& sync0 = controller_.sync0();
+    if (!sync0.active()) return description_.dc.required ? no_sync : std::uint16_t{0};
+    if (!sync0.runs()) return no_sync;  // the start time was in the past, or there is no cycle: no pulse will come
+    const Duration cycle = sync0.cycle();
+    const DcDescription& dc = description_.dc;
+    if (cycle < dc.minimum_cycle) return invalid_sync0_cycle;
+    if (dc.cycle_multiple > Duration::zero() && cycle % dc.cycle_multiple != Duration::zero()) return invalid_sync0_cycle;
+    return 0;
+}
+
+SyncSettings AlStateMachine::sync_settings() const {
+    SyncSettings settings;
+    settings.sync0_active = controller_.sync0().runs();
+    settings.sync0_cycle = controller_.sync0().cycle();
+    if (process_data_ != nullptr) {
+        settings.output_bytes = process_data_->output_bytes();
+        settings.input_bytes = process_data_->input_bytes();
+    } else {
+        if (outputs_sm_) settings.output_bytes = description_.sync_managers[*outputs_sm_].size;
+        if (inputs_sm_) settings.input_bytes = description_.sync_managers[*inputs_sm_].size;
+    }
+    return settings;
+}
+
+}  // namespace taktwerk::ecat::sim

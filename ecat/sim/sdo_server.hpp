@@ -1,0 +1,53 @@
+#pragma once
+// The SDO server: one request payload in, one response payload out. Expedited, normal and segmented transfers in both
+// directions; no complete access. Source: ETG.1000.6 5.6.2, SV33-E manual 6.2.8.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/time.hpp"
+#include "ecat/device_description.hpp"
+#include "ecat/sim/device_model.hpp"
+#include "ecat/sim/object_dictionary.hpp"
+#include "ecat/wire/sdo.hpp"
+
+namespace taktwerk::ecat::sim {
+
+class SdoServer {
+public:
+    SdoServer(const DeviceDescription& description, ObjectDictionary& dictionary, DeviceModel& model);
+
+    /// Forgets a transfer in progress.
+    void reset() noexcept;
+    /// `request` and `out` without the mailbox header, `out` as long as the mailbox allows. Bytes written to `out`; 0: nothing to answer.
+    [[nodiscard]] std::size_t serve(std::span<const std::byte> request, std::span<std::byte> out, EsmState state, Instant now) noexcept;
+
+private:
+    enum class Transfer : std::uint8_t { none, upload, download };
+
+    std::size_t upload(const SdoMessage& request, std::span<std::byte> out) noexcept;
+    std::size_t upload_segment(const SdoMessage& request, std::span<std::byte> out) noexcept;
+    std::size_t download(const SdoMessage& request, bool size_given, std::span<std::byte> out, EsmState state, Instant now) noexcept;
+    std::size_t download_segment(const SdoMessage& request, std::span<std::byte> out, EsmState state, Instant now) noexcept;
+    std::size_t abort(std::span<std::byte> out, std::uint16_t index, std::uint8_t sub, std::uint32_t code) noexcept;
+    /// Abort code of finding the entry; 0: it is there.
+    [[nodiscard]] std::uint32_t locate(std::uint16_t index, std::uint8_t sub, Entry*& entry) noexcept;
+    /// Abort code of writing `data`; 0: written.
+    [[nodiscard]] std::uint32_t store(Entry& entry, std::span<const std::byte> data, EsmState state, Instant now) noexcept;
+    [[nodiscard]] std::span<const std::byte> value_of(const Entry& entry) noexcept;
+
+    static constexpr std::size_t largest_value = 4096;
+
+    const DeviceDescription& description_;
+    ObjectDictionary& dictionary_;
+    DeviceModel& model_;
+    Transfer transfer_ = Transfer::none;
+    std::uint16_t index_ = 0;
+    std::uint8_t sub_ = 0;
+    bool toggle_ = false;
+    std::vector<std::byte> value_;  // of a segmented transfer
+    std::size_t done_ = 0, total_ = 0;
+};
+
+}  // namespace taktwerk::ecat::sim

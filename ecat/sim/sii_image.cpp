@@ -1,0 +1,108 @@
+#include "ecat/sim/sii_image.hpp"
+
+#include <algorithm>
+
+#include "ecat/wire/sii.hpp"
+
+namespace taktwerk::ecat::sim {
+
+namespace {
+
+/// CoE type numbers (ETG.1000.6 table 64).
+std::uint8_t type_number(DataType type) noexcept {
+    switch (type) {
+        case DataType::BOOL: return 0x01;
+        case DataType::I8: return 0x02;
+        case DataType::I16: return 0x03;
+        case DataType::I32: return 0x04;
+        case DataType::U8: return 0x05;
+        case DataType::U16: return 0x06;
+        case DataType::U32: return 0x07;
+        case DataType::REAL32: return 0x08;
+        case DataType::STRING: return 0x09;
+        case DataType::REAL64: return 0x11;
+        case DataType::I64: return 0x15;
+        case DataType::U64: return 0x1B;
+    }
+    return 0;
+}
+
+SiiPdo pdo_of(const DeviceDescription& description, const PdoDescription& pdo, const std::vector<std::uint16_t>& assigned, SmUse use, Sii& sii) {
+    constexpr std::uint16_t fixed_content = 1u << 4;
+    SiiPdo out;
+    out.index = pdo.index;
+    out.flags = pdo.fixed ? fixed_content : std::uint16_t{0};
+    for (std::size_t n = 0; n < description.sync_managers.size(); ++n)
+        if (description.sync_managers[n].use == use && std::find(assigned.begin(), assigned.end(), pdo.index) != assigned.end()) {
+            out.sync_manager = static_cast<std::uint8_t>(n);
+            break;
+        }
+    for (const auto& entry : pdo.entries) {
+        SiiPdoEntry e;
+        e.index = entry.index;
+        e.sub = entry.sub;
+        e.bits = entry.bits;
+        e.data_type = entry.index == 0 ? 0 : type_number(entry.bits == 1 ? DataType::BOOL : entry.bits <= 8 ? DataType::U8 : entry.bits <= 16 ? DataType::U16 : DataType::U32);
+        for (const auto& object : description.objects)
+            if (entry.index != 0 && object.index == entry.index && object.sub == entry.sub) {
+                e.data_type = type_number(object.type);
+                e.name = sii.add_string(object.name);
+            }
+        out.entries.push_back(e);
+    }
+    return out;
+}
+
+std::uint16_t default_bytes(const std::vector<PdoDescription>& pdos, const std::vector<std::uint16_t>& assigned) {
+    std::size_t bits = 0;
+    for (const auto& pdo : pdos)
+        if (std::find(assigned.begin(), assigned.end(), pdo.index) != assigned.end())
+            for (const auto& entry : pdo.entries) bits += entry.bits;
+    return static_cast<std::uint16_t>((bits + 7) / 8);
+}
+
+}  // namespace
+
+std::vector<std::byte> sii_image(const DeviceDescription& description, std::uint16_t alias) {
+    Sii sii;
+    // PDI 08h: 16-bit microcontroller, 04h: digital I/O; high byte 0Ch: SYNC and latch unit (SV33-E manual 6.2.6.2 reads 0C08h).
+    sii.pdi_control = static_cast<std::uint16_t>((description.mailbox ? 0x08 : 0x04) | (description.dc.supported ? 0x0C00 : 0));
+    sii.pdi_configuration = description.mailbox ? 0x6608 : 0;
+    sii.sync_pulse_length = description.dc.supported ? 0x01F4 : 0;
+    sii.alias = alias;
+    sii.identity = description.identity;
+    sii.size_code = 0x000F;
+
+    SiiGeneral general;
+    general.order = sii.add_string(description.name);
+    general.name = sii.add_string(description.device_name.empty() ? description.name : description.device_name);
+    general.physical_ports = 0x0011;
+    if (description.mailbox && description.mailbox->coe) {
+        sii.mailbox_protocols = sii_protocol::coe;
+        general.coe_details = sii_coe::sdo | sii_coe::pdo_assign | sii_coe::pdo_configuration;
+        if (description.mailbox->sdo_info) general.coe_details |= sii_coe::sdo_info;
+        if (description.mailbox->complete_access) general.coe_details |= sii_coe::complete_access;
+    }
+    sii.general = general;
+
+    for (const auto& sm : description.sync_managers) {
+        SiiSyncManager out;
+        out.start = sm.start;
+        out.length = sm.size;
+        out.control = sm.control;
+        out.use = static_cast<SiiSyncManagerUse>(static_cast<std::uint8_t>(sm.use) + 1);
+        if (sm.use == SmUse::mailbox_out) sii.mailbox_out = {sm.start, sm.size};
+        if (sm.use == SmUse::mailbox_in) sii.mailbox_in = {sm.start, sm.size};
+        if (sm.use == SmUse::outputs && sm.size == 0) out.length = default_bytes(description.rx_pdos, description.rx_assigned);
+        if (sm.use == SmUse::inputs && sm.size == 0) out.length = default_bytes(description.tx_pdos, description.tx_assigned);
+        if (sm.use == SmUse::outputs) sii.fmmus.push_back(SiiFmmuUse::outputs);
+        if (sm.use == SmUse::inputs) sii.fmmus.push_back(SiiFmmuUse::inputs);
+        sii.sync_managers.push_back(out);
+    }
+    if (description.mailbox) sii.fmmus.push_back(SiiFmmuUse::mailbox_status);
+    for (const auto& pdo : description.rx_pdos) sii.rx_pdos.push_back(pdo_of(description, pdo, description.rx_assigned, SmUse::outputs, sii));
+    for (const auto& pdo : description.tx_pdos) sii.tx_pdos.push_back(pdo_of(description, pdo, description.tx_assigned, SmUse::inputs, sii));
+    return build_sii(sii);
+}
+
+}  // namespace taktwerk::ecat::sim

@@ -1,0 +1,14 @@
+#pragma once
+// The EEPROM content of a simulated slave, made from what its description says. Not real-time.
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "ecat/device_description.hpp"
+
+namespace taktwerk::ecat::sim {
+
+[[nodiscard]] std::vector<std::byte> sii_image(const DeviceDescription& description, std::uint16_t alias);
+
+}  // namespace taktwerk::ecat::sim

@@ -1,0 +1,90 @@
+#pragma once
+// One simulated slave: the controller (hardware), the firmware on it (states, mailbox, process data) and the device model
+// behind it. Made from a DeviceDescription; lives in machine time. Cyclic path allocation-free.
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "core/time.hpp"
+#include "ecat/device_description.hpp"
+#include "ecat/sim/al_state_machine.hpp"
+#include "ecat/sim/coe_server.hpp"
+#include "ecat/sim/device_model.hpp"
+#include "ecat/sim/object_dictionary.hpp"
+#include "ecat/sim/process_data.hpp"
+#include "ecat/sim/slave_controller.hpp"
+
+namespace taktwerk::ecat::sim {
+
+struct SlaveOptions {
+    std::string name{};                   ///< for messages; empty: the description's
+    std::uint16_t alias = 0;              ///< SII word 4
+    double drift_ppm = 0;                 ///< of the DC quartz; positive: fast
+    Duration clock_start{};               ///< local time at power-on
+    Duration transition_time = std::chrono::microseconds{200};   ///< AL control written -> AL status changed
+    Duration response_delay = std::chrono::microseconds{200};    ///< mailbox request taken -> answer ready
+    Duration eeprom_read_time = std::chrono::microseconds{100};
+    Duration eeprom_write_time = std::chrono::milliseconds{2};
+};
+
+class SimSlave {
+public:
+    SimSlave(std::shared_ptr<const DeviceDescription> description, std::unique_ptr<DeviceModel> model, SlaveOptions options);
+
+    void power_on(Instant now);
+    void power_off(Instant now);
+    [[nodiscard]] bool powered() const noexcept { return powered_; }
+
+    // --- for the network, real-time safe ------------------------------------------------------------------------------------
+    /// A frame passes; `at` is when it arrives here.
+    void process(std::span<MutableDatagram> datagrams, Instant at) noexcept;
+    /// The frame is through; `port1`: when it came back there, nothing when it was turned around here.
+    void frame_returned(std::optional<Instant> port1) noexcept;
+    [[nodiscard]] Instant next_event() const noexcept { return next_event_; }
+    /// Does what is due at `now`.
+    void fire(Instant now) noexcept;
+    /// Brings the device model to `now`.
+    void settle(Instant now) noexcept;
+
+    // --- for tests and for whoever plays with the machine ---------------------------------------------------------------------
+    [[nodiscard]] EsmState state() const noexcept { return al_.state(); }
+    [[nodiscard]] SlaveController& controller() noexcept { return controller_; }
+    [[nodiscard]] const DeviceDescription& description() const noexcept { return *description_; }
+    [[nodiscard]] DeviceModel& model() noexcept { return *model_; }
+    /// Slaves without mailbox have an empty one.
+    [[nodiscard]] ObjectDictionary& dictionary() noexcept { return dictionary_; }
+    [[nodiscard]] const SlaveOptions& options() const noexcept { return options_; }
+    /// The mailbox neither takes nor answers anything until it is released.
+    void stick_mailbox(bool stuck) noexcept;
+    /// Entering `to` from below fails with this AL status code until it is 0 again.
+    void refuse_state(EsmState to, std::uint16_t al_status_code) { al_.refuse_state(to, al_status_code); }
+    /// SYNC0 pulses in OP that found no new outputs.
+    [[nodiscard]] std::uint32_t missed_outputs() const noexcept { return missed_outputs_; }
+
+private:
+    void handle_events(Instant now) noexcept;
+    void exchange(Instant now) noexcept;
+    void latch_raw_inputs() noexcept;
+    void schedule() noexcept;
+
+    std::shared_ptr<const DeviceDescription> description_;
+    std::unique_ptr<DeviceModel> model_;
+    SlaveOptions options_;
+    SlaveController controller_;
+    ObjectDictionary dictionary_;
+    ProcessData process_data_;
+    std::optional<CoeServer> coe_;
+    AlStateMachine al_;
+    Entry* missed_entry_ = nullptr;  // 1C32h:0Bh
+    bool powered_ = false;
+    bool outputs_valid_ = false;     // outputs arrived since SAFEOP was entered
+    Instant al_due_ = never;
+    Instant settled_{};
+    Instant next_event_ = never;
+    std::uint32_t missed_outputs_ = 0;
+};
+
+}  // namespace taktwerk::ecat::sim

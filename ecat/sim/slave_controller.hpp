@@ -1,0 +1,163 @@
+#pragma once
+// The hardware of a simulated slave: an EtherCAT slave controller as the bus sees it (registers, FMMUs, sync managers, DC,
+// EEPROM interface, watchdogs) and as the application behind it sees it (the `application side` below). It knows nothing of
+// states, objects or drives. Datagrams change it only through execute(); machine time only through fire().
+// Real-time safe except construction and power_on(). Source: ETG.1000.4, SV33-E manual 6.2.4.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/time.hpp"
+#include "ecat/sim/dc_clock.hpp"
+#include "ecat/sim/eeprom_interface.hpp"
+#include "ecat/sim/sync0.hpp"
+#include "ecat/wire/frame.hpp"
+#include "ecat/wire/registers.hpp"
+
+namespace taktwerk::ecat::sim {
+
+inline constexpr Instant never = Instant::max();
+
+struct ControllerSettings {
+    std::uint8_t fmmus = 8, sync_managers = 8;  ///< 1..16 each
+    std::uint16_t process_ram = 0x1000;         ///< bytes from 1000h
+    bool dc = true, dc_64bit = true;
+    bool second_port = true;
+};
+
+/// What happened since the application last asked.
+namespace event {
+inline constexpr unsigned al_control = 1u << 0;       ///< 0120h was written
+inline constexpr unsigned outputs = 1u << 1;          ///< a buffered sync manager got new data
+inline constexpr unsigned mailbox_written = 1u << 2;
+inline constexpr unsigned mailbox_read = 1u << 3;
+inline constexpr unsigned repeat_request = 1u << 4;
+inline constexpr unsigned inputs_read = 1u << 5;      ///< a buffered sync manager was read
+inline constexpr unsigned watchdog = 1u << 6;         ///< the SM watchdog ran out
+inline constexpr unsigned sync0 = 1u << 7;
+}  // namespace event
+
+class SlaveController {
+public:
+    SlaveController(const ControllerSettings& settings, EepromInterface eeprom);
+
+    /// Registers at their reset values, EEPROM words loaded, the DC quartz running from `local` with `drift_ppb`.
+    void power_on(Instant now, std::int64_t local, std::int32_t drift_ppb);
+
+    // --- bus side --------------------------------------------------------------------------------------------------------
+    /// One datagram passes; `at` is when the start of its frame arrived here.
+    void execute(MutableDatagram& datagram, Instant at) noexcept;
+    /// The frame came back through port 1, or was turned around here. Completes the receive time latch.
+    void frame_returned(std::optional<Instant> port1) noexcept;
+    /// Which ports have a neighbour: port 0 towards the master, port 1 away from it.
+    void set_links(bool port0, bool port1) noexcept;
+    /// The master forced port 1 shut (0101h).
+    [[nodiscard]] bool port1_forced_closed() const noexcept;
+
+    // --- time --------------------------------------------------------------------------------------------------------------
+    [[nodiscard]] Instant next_event() const noexcept;
+    /// Does what is due at `now` (EEPROM, watchdog, SYNC0) and reports it as events.
+    void fire(Instant now) noexcept;
+
+    // --- application side ---------------------------------------------------------------------------------------------------
+    [[nodiscard]] unsigned take_events() noexcept { return std::exchange(events_, 0u); }
+    [[nodiscard]] std::uint16_t al_control() const noexcept { return read16(reg::al_control); }
+    void set_al_status(std::uint16_t status, std::uint16_t code) noexcept;
+    [[nodiscard]] const SyncManager& sync_manager(unsigned n) const noexcept { return units_[n].sm; }
+    /// PDI control bit 0: the application locks a sync manager; the bus then gets no access to its memory.
+    void lock_sync_manager(unsigned n, bool locked) noexcept;
+    /// Mailbox from the master: its bytes while full, empty span else. empty_mailbox() frees it.
+    [[nodiscard]] std::span<const std::byte> full_mailbox(unsigned n) const noexcept;
+    void empty_mailbox(unsigned n) noexcept;
+    [[nodiscard]] bool mailbox_full(unsigned n) const noexcept { return units_[n].full; }
+    /// Puts a message into a mailbox to the master; false while the last one was not read.
+    bool fill_mailbox(unsigned n, std::span<const std::byte> message) noexcept;
+    [[nodiscard]] bool repeat_requested(unsigned n) const noexcept;  ///< request differs from acknowledge
+    void acknowledge_repeat(unsigned n) noexcept;
+    /// The newest complete outputs of a buffered sync manager.
+    [[nodiscard]] std::span<const std::byte> outputs(unsigned n) const noexcept;
+    /// Outputs that arrived since the last call.
+    [[nodiscard]] bool take_fresh(unsigned n) noexcept { return std::exchange(units_[n].fresh, false); }
+    void clear_outputs(unsigned n) noexcept;
+    [[nodiscard]] std::span<std::byte> inputs(unsigned n) noexcept;
+    /// Restarts the SM watchdog, as the first outputs do.
+    void start_watchdog(Instant now) noexcept;
+    void stop_watchdog() noexcept;
+    [[nodiscard]] bool watchdog_configured() const noexcept;
+
+    [[nodiscard]] const Sync0& sync0() const noexcept { return sync0_; }
+    [[nodiscard]] DcClock& clock() noexcept { return clock_; }
+    [[nodiscard]] EepromInterface& eeprom() noexcept { return eeprom_; }
+    [[nodiscard]] const ControllerSettings& settings() const noexcept { return settings_; }
+    [[nodiscard]] std::uint16_t station_address() const noexcept { return read16(reg::station_address); }
+
+    /// What a register or memory byte holds, for tests; time-dependent registers as last refreshed.
+    [[nodiscard]] std::byte peek(std::uint16_t address) const noexcept { return memory_[address]; }
+
+private:
+    struct Unit {
+        SyncManager sm;
+        bool full = false;    // mailbox
+        bool opened = false;  // the first byte was touched, the last not yet
+        bool fresh = false;   // buffered, outputs not yet taken by the application
+        [[nodiscard]] bool governs(std::uint32_t address) const noexcept {
+            return sm.enabled() && address >= sm.start && address < std::uint32_t{sm.start} + sm.length;
+        }
+    };
+
+    // slave_controller.cpp
+    bool read(std::uint32_t address, std::span<std::byte> out, Instant at) noexcept;
+    bool write(std::uint32_t address, std::span<const std::byte> in, Instant at) noexcept;
+    void exchange_physical(MutableDatagram& datagram, bool addressed, Instant at) noexcept;
+    void add_to_counter(MutableDatagram& datagram, unsigned increment) noexcept;
+
+    // slave_controller_fmmu.cpp
+    void exchange_logical(MutableDatagram& datagram, Instant at) noexcept;
+    bool map_write(const Fmmu& fmmu, std::uint32_t logical, std::span<const std::byte> data, Instant at) noexcept;
+    bool map_read(const Fmmu& fmmu, std::uint32_t logical, std::span<std::byte> data, Instant at) noexcept;
+
+    // slave_controller_memory.cpp: sync managers
+    bool read_memory(std::uint32_t address, std::span<std::byte> out) noexcept;
+    bool write_memory(std::uint32_t address, std::span<const std::byte> in, Instant at) noexcept;
+    bool governed_read(unsigned n, std::uint32_t address, std::span<std::byte> out) noexcept;
+    bool governed_write(unsigned n, std::uint32_t address, std::span<const std::byte> in, Instant at) noexcept;
+    [[nodiscard]] std::optional<unsigned> governor(std::uint32_t address) const noexcept;
+    [[nodiscard]] std::size_t ungoverned_run(std::uint32_t address, std::size_t size) const noexcept;
+    void write_sync_manager_registers(std::uint32_t address, std::span<const std::byte> in) noexcept;
+    void show_sync_manager(unsigned n) noexcept;
+    void reset_unit(unsigned n) noexcept;
+
+    // slave_controller_registers.cpp
+    bool read_registers(std::uint32_t address, std::span<std::byte> out, Instant at) noexcept;
+    bool write_registers(std::uint32_t address, std::span<const std::byte> in, Instant at) noexcept;
+    void write_dc(std::uint32_t address, std::span<const std::byte> in, Instant at) noexcept;
+    void write_eeprom(std::uint32_t address, std::span<const std::byte> in, Instant at) noexcept;
+    void show_eeprom() noexcept;
+    void load_configuration_words() noexcept;
+    void set_event_request(std::uint16_t bits, bool on) noexcept;
+    [[nodiscard]] Duration watchdog_time() const noexcept;
+
+    [[nodiscard]] std::uint16_t read16(std::uint16_t address) const noexcept;
+    void write16(std::uint16_t address, std::uint16_t value) noexcept;
+
+    ControllerSettings settings_;
+    EepromInterface eeprom_;
+    std::vector<std::byte> memory_;        // registers and process RAM as the bus sees them
+    std::vector<std::byte> application_;   // buffered outputs as the application sees them, same addresses
+    std::array<Unit, 16> units_{};
+    std::array<Fmmu, 16> fmmus_{};
+    DcClock clock_;
+    Sync0 sync0_;
+    Instant latched_at_{};
+    bool latch_pending_ = false;
+    Instant watchdog_deadline_ = never;
+    Instant sync0_due_ = never;
+    unsigned events_ = 0;
+};
+
+}  // namespace taktwerk::ecat::sim

@@ -1,0 +1,241 @@
+// Registers 0000h..0FFFh: what the bus may write, and what a write sets off.
+
+#include <algorithm>
+
+#include "core/bytes.hpp"
+#include "ecat/sim/slave_controller.hpp"
+
+namespace taktwerk::ecat::sim {
+
+namespace {
+
+struct Range {
+    std::uint32_t first, size;
+};
+
+/// Plain read/write registers: a write is stored, nothing else happens at once.
+constexpr Range stored[] = {
+    {reg::station_address, 2}, {reg::write_register_enable, 2}, {reg::write_enable, 2}, {reg::dl_control, 4},
+    {reg::physical_rw_offset, 2}, {reg::al_control, 2}, {reg::ecat_event_mask, 2}, {reg::watchdog_divider, 2},
+    {reg::pdi_watchdog_time, 2}, {reg::sm_watchdog_time, 2}, {reg::eeprom_configuration, 2}, {reg::gp_outputs, 8}, {reg::user_ram, 128},
+};
+/// The DC unit's; they exist only where the controller has one.
+constexpr Range stored_dc[] = {
+    {reg::dc_system_offset, 8}, {reg::dc_system_delay, 4}, {reg::dc_speed_start, 2}, {reg::dc_difference_filter, 2},
+    {reg::dc_cyclic_control, 2}, {reg::dc_start_time, 8}, {reg::dc_sync0_cycle, 4}, {reg::dc_sync1_cycle, 4}, {reg::dc_latch0_control, 2},
+};
+
+constexpr std::uint32_t dc_unit_end = 0x0A00;
+
+constexpr bool overlaps(std::uint32_t address, std::size_t size, std::uint32_t first, std::uint32_t length) noexcept {
+    return address < first + length && first < address + size;
+}
+
+// Bits of 0210h.
+constexpr std::uint16_t request_dl_status = 1u << 2, request_al_status = 1u << 3;
+
+}  // namespace
+
+void SlaveController::power_on(Instant now, std::int64_t local, std::int32_t drift_ppb) {
+    std::fill(memory_.begin(), memory_.end(), std::byte{0});
+    std::fill(application_.begin(), application_.end(), std::byte{0});
+    units_ = {};
+    fmmus_ = {};
+    sync0_ = Sync0{};
+    sync0_due_ = watchdog_deadline_ = never;
+    latch_pending_ = false;
+    events_ = 0;
+    clock_.power_on(now, local, drift_ppb);
+
+    memory_[reg::type] = std::byte{0x11};  // ET1100-like
+    memory_[reg::fmmu_count] = static_cast<std::byte>(settings_.fmmus);
+    memory_[reg::sync_manager_count] = static_cast<std::byte>(settings_.sync_managers);
+    memory_[reg::ram_size] = static_cast<std::byte>(settings_.process_ram / 1024);
+    memory_[reg::port_descriptor] = settings_.second_port ? std::byte{0x0F} : std::byte{0x03};  // MII ports
+    write16(reg::features, static_cast<std::uint16_t>((settings_.dc ? feature::dc : 0) | (settings_.dc && settings_.dc_64bit ? feature::dc_64bit : 0) |
+                                                      feature::separate_fcs_count));
+    write16(reg::dl_control, 0x0001);
+    write16(reg::al_control, 1);
+    write16(reg::al_status, 1);
+    write16(reg::watchdog_divider, reg::watchdog_divider_default);
+    write16(reg::pdi_watchdog_time, 1000);
+    write16(reg::sm_watchdog_time, 1000);
+    if (settings_.dc) {
+        write16(reg::dc_speed_start, 0x1000);
+        write16(reg::dc_difference_filter, 0x0C04);
+    }
+    eeprom_.power_on();
+    if (eeprom_.checksum_ok()) load_configuration_words();
+    show_eeprom();
+}
+
+void SlaveController::load_configuration_words() noexcept {
+    write16(reg::pdi_control, eeprom_.word(0));
+    write16(reg::pdi_configuration, eeprom_.word(1));
+    if (settings_.dc) write16(reg::dc_pulse_length, eeprom_.word(2));
+    write16(reg::pdi_configuration_extended, eeprom_.word(3));
+    write16(reg::station_alias, eeprom_.word(4));
+    write16(reg::dl_status, static_cast<std::uint16_t>(read16(reg::dl_status) | dl_pdi_operational));
+}
+
+void SlaveController::set_links(bool port0, bool port1) noexcept {
+    // Ports 2 and 3 do not exist: their loops are closed.
+    std::uint16_t status = static_cast<std::uint16_t>((read16(reg::dl_status) & 0x0003u) | 0x5000u);
+    const auto port = [&](unsigned p, bool link) {
+        const unsigned bits = link ? (1u << (4 + p)) | (1u << (9 + 2 * p)) : 1u << (8 + 2 * p);
+        status = static_cast<std::uint16_t>(status | bits);
+    };
+    port(0, port0);
+    port(1, port1);
+    if (status != read16(reg::dl_status)) set_event_request(request_dl_status, true);
+    write16(reg::dl_status, status);
+}
+
+bool SlaveController::port1_forced_closed() const noexcept {
+    return ((static_cast<unsigned>(memory_[reg::dl_control_loops]) >> 2) & 3u) == 3u;
+}
+
+void SlaveController::set_al_status(std::uint16_t status, std::uint16_t code) noexcept {
+    if (status != read16(reg::al_status)) set_event_request(request_al_status, true);
+    write16(reg::al_status, status);
+    write16(reg::al_status_code, code);
+}
+
+void SlaveController::set_event_request(std::uint16_t bits, bool on) noexcept {
+    const auto request = read16(reg::ecat_event_request);
+    write16(reg::ecat_event_request, static_cast<std::uint16_t>(on ? request | bits : request & ~bits));
+}
+
+bool SlaveController::read_registers(std::uint32_t address, std::span<std::byte> out, Instant at) noexcept {
+    // A controller without DC unit does not count these: a FRMW's working counter shows who keeps the time.
+    if (!settings_.dc && address >= reg::dc_system_time && address + out.size() <= dc_unit_end) return false;
+    if (settings_.dc && overlaps(address, out.size(), reg::dc_system_time, 0x20)) {
+        store_le<std::int64_t>(memory_, reg::dc_system_time, clock_.system(at));
+        store_le<std::uint32_t>(memory_, reg::dc_difference, clock_.difference_register());
+    }
+    const std::size_t run = std::min<std::size_t>(out.size(), reg::process_ram - address);
+    std::copy_n(memory_.begin() + address, run, out.begin());
+    if (run < out.size()) (void)read_memory(reg::process_ram, out.subspan(run));
+    if (overlaps(address, run, reg::al_status, 2)) set_event_request(request_al_status, false);
+    if (overlaps(address, run, reg::dl_status, 2)) set_event_request(request_dl_status, false);
+    return true;
+}
+
+bool SlaveController::write_registers(std::uint32_t address, std::span<const std::byte> in, Instant at) noexcept {
+    if (!settings_.dc && address >= reg::dc_system_time && address + in.size() <= dc_unit_end) return false;
+    if (address + in.size() > reg::process_ram) {
+        (void)write_memory(reg::process_ram, in.subspan(reg::process_ram - address), at);
+        in = in.first(reg::process_ram - address);
+    }
+    const auto store = [&](std::span<const Range> ranges) {
+        for (const Range& range : ranges)
+            for (std::uint32_t a = std::max(address, range.first); a < std::min<std::size_t>(address + in.size(), range.first + range.size); ++a)
+                memory_[a] = in[a - address];
+    };
+    const auto hits = [&](std::uint32_t first, std::uint32_t size) { return overlaps(address, in.size(), first, size); };
+
+    if (address >= 0x0900 && address < dc_unit_end) {
+        if (settings_.dc) store(stored_dc);
+        write_dc(address, in, at);
+        return true;
+    }
+    store(stored);
+    if (hits(reg::al_control, 1)) events_ |= event::al_control;
+    if (hits(reg::rx_errors, 12)) std::fill_n(memory_.begin() + reg::rx_errors, 12, std::byte{0});
+    if (hits(reg::processing_unit_errors, 1)) memory_[reg::processing_unit_errors] = std::byte{0};
+    if (hits(reg::pdi_errors, 2)) std::fill_n(memory_.begin() + reg::pdi_errors, 2, std::byte{0});
+    if (hits(reg::lost_links, 4)) std::fill_n(memory_.begin() + reg::lost_links, 4, std::byte{0});
+    if (hits(reg::sm_watchdog_count, 2)) std::fill_n(memory_.begin() + reg::sm_watchdog_count, 2, std::byte{0});
+    if ((hits(reg::sm_watchdog_time, 2) || hits(reg::watchdog_divider, 2)) && watchdog_deadline_ != never) start_watchdog(at);
+    if (hits(reg::eeprom_control, 14)) write_eeprom(address, in, at);
+    for (std::uint32_t n = 0; n < settings_.fmmus; ++n) {
+        const std::uint32_t base = reg::fmmu_at(n);
+        if (!hits(base, Fmmu::size)) continue;
+        for (std::uint32_t a = std::max(address, base); a < std::min<std::size_t>(address + in.size(), base + Fmmu::size); ++a)
+            memory_[a] = in[a - address];
+        fmmus_[n] = decode_fmmu(std::span<const std::byte>{memory_}.subspan(base).first<Fmmu::size>());
+    }
+    if (hits(reg::sync_manager, 16 * SyncManager::size)) {
+        const std::uint32_t skip = address < reg::sync_manager ? reg::sync_manager - address : 0;
+        write_sync_manager_registers(address + skip, in.subspan(skip));
+    }
+    return true;
+}
+
+void SlaveController::write_dc(std::uint32_t address, std::span<const std::byte> in, Instant at) noexcept {
+    const auto hits = [&](std::uint32_t first, std::uint32_t size) { return overlaps(address, in.size(), first, size); };
+    if (hits(reg::dc_receive_times, 1)) {
+        latched_at_ = at;
+        latch_pending_ = true;
+    }
+    if (!settings_.dc) return;
+    if (address == reg::dc_system_time && in.size() >= 8) clock_.correct(load_le<std::int64_t>(in), at);
+    else if (address == reg::dc_system_time && in.size() >= 4) clock_.correct_low32(load_le<std::uint32_t>(in), at);
+    if (hits(reg::dc_system_offset, 8)) clock_.set_offset(load_le<std::int64_t>(memory_, reg::dc_system_offset));
+    if (hits(reg::dc_system_delay, 4)) clock_.set_delay(load_le<std::uint32_t>(memory_, reg::dc_system_delay));
+    if (hits(reg::dc_speed_start, 2)) clock_.reset_control(at);
+    // The cyclic unit belongs to whom 0980h says: bit 0 set, the application keeps it and 0981h does nothing.
+    if (hits(reg::dc_activation, 1) && (memory_[reg::dc_cyclic_control] & std::byte{1}) == std::byte{0}) {
+        constexpr unsigned needed = dc_activate::cyclic | dc_activate::sync0;
+        const bool on = (static_cast<unsigned>(memory_[reg::dc_activation]) & needed) == needed;
+        if (!on) sync0_.deactivate();
+        else if (!sync0_.active())
+            sync0_.activate(load_le<std::int64_t>(memory_, reg::dc_start_time), load_le<std::uint32_t>(memory_, reg::dc_sync0_cycle), clock_, at);
+    }
+    sync0_due_ = sync0_.due(clock_).value_or(never);  // whatever was written may have moved it
+}
+
+void SlaveController::frame_returned(std::optional<Instant> port1) noexcept {
+    if (!latch_pending_) return;
+    latch_pending_ = false;
+    const std::int64_t unit = clock_.local(latched_at_);
+    store_le<std::uint32_t>(memory_, reg::dc_receive_times, static_cast<std::uint32_t>(unit));
+    if (port1) store_le<std::uint32_t>(memory_, reg::dc_receive_times + 4, static_cast<std::uint32_t>(clock_.local(*port1)));
+    if (settings_.dc) store_le<std::int64_t>(memory_, reg::dc_receive_time_unit, unit);
+}
+
+void SlaveController::write_eeprom(std::uint32_t address, std::span<const std::byte> in, Instant at) noexcept {
+    // While the application owns the EEPROM (0500h bit 0) the master's commands go nowhere; while busy, too.
+    if ((memory_[reg::eeprom_configuration] & std::byte{1}) != std::byte{0} || eeprom_.busy()) return;
+    for (std::uint32_t a = std::max<std::uint32_t>(address, reg::eeprom_address); a < std::min<std::size_t>(address + in.size(), reg::eeprom_data + 8); ++a)
+        memory_[a] = in[a - address];
+    eeprom_.address_written(load_le<std::uint32_t>(memory_, reg::eeprom_address));
+    eeprom_.data_written(load_le<std::uint16_t>(memory_, reg::eeprom_data));
+    if (overlaps(address, in.size(), reg::eeprom_control, 2)) {
+        const auto byte = [&](std::uint32_t a) {
+            return a >= address && a < address + in.size() ? static_cast<unsigned>(in[a - address]) : 0u;
+        };
+        eeprom_.control_written(static_cast<std::uint16_t>(byte(reg::eeprom_control) | (byte(reg::eeprom_control + 1u) << 8)), at);
+        write16(reg::eeprom_control, eeprom_.status());
+    }
+}
+
+void SlaveController::show_eeprom() noexcept {
+    write16(reg::eeprom_control, eeprom_.status());
+    const auto data = eeprom_.data();
+    std::copy(data.begin(), data.end(), memory_.begin() + reg::eeprom_data);
+}
+
+Duration SlaveController::watchdog_time() const noexcept {
+    constexpr std::int64_t tick_ns = 40;  // 25 MHz
+    return Duration{tick_ns * (std::int64_t{read16(reg::watchdog_divider)} + 2) * read16(reg::sm_watchdog_time)};
+}
+
+bool SlaveController::watchdog_configured() const noexcept {
+    if (read16(reg::sm_watchdog_time) == 0) return false;
+    for (unsigned n = 0; n < settings_.sync_managers; ++n) {
+        const auto& sm = units_[n].sm;
+        if (sm.enabled() && sm.length > 0 && (sm.control & SyncManager::watchdog_trigger) != 0) return true;
+    }
+    return false;
+}
+
+void SlaveController::start_watchdog(Instant now) noexcept {
+    const Duration time = watchdog_time();
+    watchdog_deadline_ = time > Duration::zero() ? now + time : never;
+    write16(reg::sm_watchdog_status, 1);
+}
+
+void SlaveController::stop_watchdog() noexcept { watchdog_deadline_ = never; }
+
+}  // namespace taktwerk::ecat::sim

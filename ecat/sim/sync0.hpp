@@ -1,0 +1,49 @@
+#pragma once
+// The SYNC0 generator of a slave controller: pulse k stands at start + k * cycle of the slave's own system time. Real-time
+// safe. Source: ETG.1000.4 (0980h..09A7h).
+
+#include <cstdint>
+#include <optional>
+
+#include "core/time.hpp"
+#include "ecat/sim/dc_clock.hpp"
+
+namespace taktwerk::ecat::sim {
+
+class Sync0 {
+public:
+    /// 0981h was written with SYNC0 on. A start that lies in the past is never reached: the controller waits for the clock
+    /// to come around, and so does a master that read the time too early.
+    void activate(std::int64_t start, std::uint32_t cycle, const DcClock& clock, Instant now) noexcept {
+        active_ = true;
+        cycle_ = cycle;
+        next_ = start;
+        waiting_ = start > clock.system(now);
+        pulses_ = 0;
+    }
+    void deactivate() noexcept { active_ = waiting_ = false; }
+
+    [[nodiscard]] bool active() const noexcept { return active_; }
+    /// Pulses come or will come. False when inactive, when the start was missed, and after the only pulse of a cycle of 0.
+    [[nodiscard]] bool runs() const noexcept { return active_ && waiting_; }
+    [[nodiscard]] Duration cycle() const noexcept { return Duration{cycle_}; }
+    [[nodiscard]] std::int64_t next_system() const noexcept { return next_; }
+    [[nodiscard]] std::uint64_t pulses() const noexcept { return pulses_; }
+    [[nodiscard]] std::optional<Instant> due(const DcClock& clock) const noexcept {
+        if (!runs()) return std::nullopt;
+        return clock.when_system(next_);
+    }
+    void fire() noexcept {
+        ++pulses_;
+        next_ += cycle_;
+        waiting_ = cycle_ != 0;
+    }
+
+private:
+    bool active_ = false, waiting_ = false;
+    std::uint32_t cycle_ = 0;
+    std::int64_t next_ = 0;
+    std::uint64_t pulses_ = 0;
+};
+
+}  // namespace taktwerk::ecat::sim
