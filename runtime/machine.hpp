@@ -12,11 +12,13 @@
 #include <vector>
 
 #include "core/result.hpp"
+#include "core/stopwatch.hpp"
 #include "core/time.hpp"
 #include "ecat/transport/transport.hpp"
 #include "runtime/machine_config.hpp"
 #include "runtime/operator_command.hpp"
 #include "runtime/snapshot.hpp"
+#include "runtime/trace_ring.hpp"
 
 namespace taktwerk::runtime {
 
@@ -44,6 +46,8 @@ public:
 
     // --- service side (one thread, not real-time) -----------------------------------------------------------------------
     void start_bus();
+    /// Takes the bus down in order. After phase() is `stopped`; service() and cycle() go on until the bus says stopped.
+    void stop_bus();
     /// Bus scripts, drive services, slow work. Call often (each millisecond or after each virtual cycle).
     void service(Instant now);
     /// After the bus is operational: signals resolved, image layout known. Once. Then cycle() may run programs.
@@ -56,6 +60,11 @@ public:
     void cycle(const CycleTick& tick) noexcept;
     /// Before arm(): acyclic frames only.
     void pump(Instant now) noexcept;
+    /// Runs the slower tasks that were released: called after each cycle in virtual time.
+    void run_slow_tasks() noexcept;
+    /// The slower tasks, for threads of their own in real time: task `index` runs if it was released. True when it did.
+    [[nodiscard]] std::size_t slow_task_count() const noexcept;
+    bool run_slow_task(std::size_t index) noexcept;
 
     // --- between the two ---------------------------------------------------------------------------------------------------
     /// Service side: queue a command for the next cycle. False: inbox full (answer queue_full).
@@ -67,6 +76,10 @@ public:
     /// Levels, not queued: set by signal handlers. Real-time safe, async-signal-safe.
     void request_shutdown() noexcept;
     [[nodiscard]] MachinePhase phase() const noexcept;
+    /// Before arm(): each cycle becomes a row of `columns()`; `rows` is how far a reader may fall behind.
+    TraceRing& enable_trace(std::size_t rows);
+    /// Times per step (Step order), for benchmarks and the monitor. Read by the cycle thread, or when it stands.
+    [[nodiscard]] const StepStatistics<step_count - 1>& step_statistics() const noexcept;
 
     [[nodiscard]] const MachineConfig& config() const noexcept;
     [[nodiscard]] const MachineLayout& layout() const noexcept;

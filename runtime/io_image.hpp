@@ -1,0 +1,46 @@
+#pragma once
+// The machine's named points: signals resolved once, values read and written once per cycle as plain integers.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/process_image.hpp"
+#include "core/result.hpp"
+#include "ecat/master.hpp"
+#include "runtime/machine_config.hpp"
+
+namespace taktwerk::runtime {
+
+class IoImage {
+public:
+    explicit IoImage(const std::vector<IoPoint>& points);
+
+    /// Once the bus has laid out its process image.
+    [[nodiscard]] Result<void> resolve(const ecat::Master& bus);
+
+    /// Process image -> input values (step 3). Points of a slave that was not exchanged keep their values. Real-time safe.
+    void read(std::span<const std::byte> image) noexcept;
+    /// Output values -> process image (step 8). Real-time safe.
+    void write(std::span<std::byte> image) const noexcept;
+    /// Every output to its configured safe value.
+    void make_safe() noexcept;
+
+    [[nodiscard]] std::vector<std::int64_t>& inputs() noexcept { return inputs_; }
+    [[nodiscard]] std::vector<std::int64_t>& outputs() noexcept { return outputs_; }
+
+    /// Index among the points of that direction, in configuration order; -1 when there is none.
+    [[nodiscard]] int find(IoDirection direction, std::string_view name) const noexcept;
+    [[nodiscard]] const IoPoint& point(IoDirection direction, std::size_t index) const noexcept;
+    [[nodiscard]] std::vector<std::string> names(IoDirection direction) const;
+
+private:
+    struct Point {
+        IoPoint config;
+        Signal signal;
+    };
+    std::vector<Point> input_points_, output_points_;
+    std::vector<std::int64_t> inputs_, outputs_;
+};
+
+}  // namespace taktwerk::runtime

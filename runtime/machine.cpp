@@ -1,0 +1,419 @@
+#include "runtime/machine.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "axes/drives/cia402/homing_startup.hpp"
+#include "axes/sim/virtual_drive.hpp"
+#include "runtime/machine_impl.hpp"
+
+namespace taktwerk::runtime {
+
+namespace {
+
+constexpr std::size_t inbox_size = 64;
+constexpr auto no_slave = std::numeric_limits<std::size_t>::max();
+
+constexpr std::array<std::string_view, step_count> step_names{"receive", "inbox", "decode", "update",   "supervise", "tasks",
+                                                              "plan",    "encode", "send",  "snapshot", "total"};
+
+/// What the axes need of the bus beyond what the file says: SDOs of drive homing, and no slave for an axis that is simulated.
+ecat::BusConfig bus_of(const MachineConfig& config) {
+    auto bus = config.bus;
+    bus.cycle = config.cycle;
+    for (const auto& binding : config.axes) {
+        if (binding.slave.empty() || !binding.profile || binding.axis.disabled) continue;
+        for (auto& slave : bus.slaves) {
+            if (slave.name != binding.slave) continue;
+            const auto more = axes::cia402::homing_startup(binding.axis, *binding.profile, binding.drive_axis);
+            slave.startup.insert(slave.startup.end(), more.begin(), more.end());
+        }
+    }
+    std::erase_if(bus.slaves, [&](const ecat::SlaveConfig& slave) {
+        bool bound = false, all_simulated = true;
+        for (const auto& binding : config.axes) {
+            if (binding.slave != slave.name) continue;
+            bound = true;
+            all_simulated = all_simulated && binding.axis.simulated;
+        }
+        return bound && all_simulated;
+    });
+    return bus;
+}
+
+}  // namespace
+
+std::string_view name(Step step) noexcept { return step_names[static_cast<std::size_t>(step)]; }
+
+Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, std::vector<Error>& errors)
+    : config(std::move(machine)), bus(transport, bus_of(config)), io(config.io), mode(config.start_mode), inbox(inbox_size),
+      answers(inbox_size * 2), snapshots(), steps([] {
+          std::array<std::string_view, step_count - 1> names{};
+          std::copy_n(step_names.begin(), names.size(), names.begin());
+          return names;
+      }()) {
+    axes.reserve(config.axes.size());
+    for (std::size_t i = 0; i < config.axes.size(); ++i) {
+        const auto& binding = config.axes[i];
+        std::size_t slave = no_slave;
+        for (std::size_t s = 0; s < bus.slave_count(); ++s)
+            if (!binding.slave.empty() && bus.slave(s).name == binding.slave) slave = s;
+        axis_slave.push_back(slave);
+        if (slave == no_slave) {
+            ports.push_back(std::make_unique<axes::sim::VirtualDrive>(config.cycle));
+        } else {
+            auto drive = std::make_unique<axes::cia402::Cia402Drive>(bus, slave, binding.drive_axis, binding.profile, config.cycle);
+            drives.push_back(drive.get());
+            ports.push_back(std::move(drive));
+        }
+        auto axis_config = binding.axis;
+        axis_config.stale_limit = static_cast<std::uint16_t>(std::min<std::uint32_t>(limit(axis_config.stale_limit), 60000));
+        axes.emplace_back(axis_config, *ports.back(), config.cycle, static_cast<std::uint16_t>(i));
+        views.push_back(axes.back().view());
+    }
+    operator_power.resize(axes.size());
+    requests.bind(axes, views);
+    if (!config.emergency_stop.input.empty()) estop_input = io.find(IoDirection::input, config.emergency_stop.input);
+
+    host = std::make_unique<ProgramHost>(config, io, errors);
+    program_states.assign(config.programs.size(), ProgramState::stopped);
+    first_scan.assign(config.programs.size(), 0);
+    handshakes = std::make_unique<std::atomic<Handshake>[]>(config.programs.size());
+    std::vector<bool> has_base(config.programs.size(), false);
+    for (const auto& task : host->tasks())
+        if (task.config.divisor == 1) has_base[task.program] = true;
+    for (std::size_t i = 0; i < host->tasks().size(); ++i) {
+        const auto& task = host->tasks()[i];
+        if (task.config.divisor == 1) {
+            base_tasks.push_back(i);
+            continue;
+        }
+        std::vector<ProgramHost::Variable> variables;
+        if (!has_base[task.program])
+            for (const auto& variable : host->variables())
+                if (variable.program == task.program) variables.push_back(variable);
+        slow_tasks.push_back(std::make_unique<SlowTask>(task, host->programs()[task.program].instance.get(), std::move(variables), axes.size(),
+                                                        io.inputs().size(), io.outputs().size(), host->parameters().size()));
+    }
+    task_overruns.assign(slow_tasks.size(), 0);
+    task_statistics.resize(host->tasks().size());
+
+    layout.machine = config.name;
+    layout.cycle = config.cycle;
+    for (std::size_t i = 0; i < axes.size(); ++i)
+        layout.axes.push_back({config.axes[i].axis.name, config.axes[i].axis.unit, config.axes[i].axis.disabled, axis_slave[i] == no_slave,
+                               views[i].manual_slow, views[i].manual_fast});
+    for (std::size_t s = 0; s < bus.slave_count(); ++s) layout.slaves.push_back(bus.slave(s).name);
+    layout.inputs = io.names(IoDirection::input);
+    layout.outputs = io.names(IoDirection::output);
+    host->describe(layout);
+}
+
+Result<void> Machine::Impl::arm() {
+    for (auto* drive : drives)
+        if (auto ok = drive->resolve(); !ok) return ok;
+    if (auto ok = io.resolve(bus); !ok) return ok;
+
+    Snapshot prototype;
+    prototype.slaves.resize(bus.slave_count());
+    prototype.axes.resize(axes.size());
+    prototype.inputs.resize(io.inputs().size());
+    prototype.outputs.resize(io.outputs().size());
+    prototype.parameters.resize(host->parameters().size());
+    prototype.variables.resize(host->variables().size());
+    prototype.programs.resize(config.programs.size());
+    prototype.tasks.resize(task_statistics.size());
+    prototype.alarms.resize(AlarmLog::capacity);
+    prototype.simulated = config.bus.interface.empty();
+    for (int i = 0; i < 3; ++i) {  // each of the three buffers gets its full size once
+        snapshots.back() = prototype;
+        snapshots.publish();
+        (void)snapshots.read();
+    }
+    const auto operating = mode == Mode::automatic ? axes::OperatingMode::automatic
+                           : mode == Mode::setup   ? axes::OperatingMode::setup
+                                                   : axes::OperatingMode::manual;
+    for (auto& axis : axes) axis.set_mode(operating);
+    if (mode == Mode::automatic)
+        for (std::size_t p = 0; p < config.programs.size(); ++p)
+            if (config.programs[p].autostart) start_program(p);
+    phase.store(MachinePhase::running, std::memory_order_release);
+    armed.store(true, std::memory_order_release);
+    return {};
+}
+
+void Machine::Impl::cycle(const CycleTick& tick) noexcept {
+    const Stopwatch whole;
+    const bool runs = armed.load(std::memory_order_acquire);
+    if (runs) now = tick.scheduled;
+    const bool at_tick = config.send == SendMode::at_tick;
+    steps.begin();
+
+    bus.receive(tick.scheduled);
+    if (at_tick) bus.send(tick.scheduled);  // what the cycle before has computed, always at the same instant
+    steps.done(static_cast<std::size_t>(Step::receive));
+
+    if (runs) {
+        drain_inbox(now);
+        steps.done(static_cast<std::size_t>(Step::inbox));
+
+        io.read(bus.inputs());
+        steps.done(static_cast<std::size_t>(Step::decode));
+
+        for (std::size_t i = 0; i < axes.size(); ++i) axes[i].update(now);
+        steps.done(static_cast<std::size_t>(Step::update));
+
+        supervise(now, tick);
+        steps.done(static_cast<std::size_t>(Step::supervise));
+
+        for (std::size_t i = 0; i < axes.size(); ++i) views[i] = axes[i].view();
+        renew_operator_power();
+        run_tasks();
+        steps.done(static_cast<std::size_t>(Step::tasks));
+
+        for (auto& axis : axes) axis.plan(now, config.cycle);
+        steps.done(static_cast<std::size_t>(Step::plan));
+
+        const Instant send_time = at_tick ? now + config.cycle : now;
+        for (auto& axis : axes) axis.encode(send_time);
+        io.write(bus.outputs());
+        steps.done(static_cast<std::size_t>(Step::encode));
+    }
+
+    if (!at_tick) bus.send(tick.scheduled);
+    steps.done(static_cast<std::size_t>(Step::send));
+
+    if (runs) {
+        statistics.cycles = ++cycles;
+        statistics.missed_ticks += tick.missed;
+        if (tick.missed > 0) ++statistics.overruns;
+        statistics.lateness = tick.woken - tick.scheduled;
+        statistics.lateness_max = std::max(statistics.lateness_max, statistics.lateness);
+        take_snapshot();
+        if (trace) take_trace();
+    }
+    steps.done(static_cast<std::size_t>(Step::snapshot));
+    steps.end();
+    statistics.compute = Stopwatch{whole}.lap();
+    statistics.compute_max = std::max(statistics.compute_max, statistics.compute);
+}
+
+void Machine::Impl::program_failed(std::size_t program) noexcept { stop_program(program, ProgramState::fault); }
+
+void Machine::Impl::run_base_task(const ProgramHost::Task& task) noexcept {
+    auto& program = host->programs()[task.program];
+    TaskContext context;
+    context.now = now;
+    context.period = config.cycle;
+    context.cycle = cycles;
+    context.axes = views;
+    context.requests = &requests;
+    context.owner = axes::Owner::program;
+    context.inputs = io.inputs();
+    context.outputs = io.outputs();
+    context.parameters = host->parameters();
+    context.alarms = program.alarms;
+    context.first_scan = first_scan[task.program] != 0;
+    try {
+        task.function(program.instance.get(), context);
+        program.alarms = context.alarms;
+    } catch (...) {  // a program is foreign code: what it throws ends here, and the axes stop
+        program_failed(task.program);
+    }
+}
+
+void Machine::Impl::run_slow_releases() noexcept {
+    for (std::size_t i = 0; i < slow_tasks.size(); ++i) {
+        auto& task = *slow_tasks[i];
+        const auto program = task.program();
+        const bool runs = program_states[program] == ProgramState::running;
+        if (runs) task.renew(requests);
+        if (!task.due(cycles)) continue;
+        auto& numbers = task_statistics[base_tasks.size() + i];
+        if (!task.finished()) {
+            ++numbers.overruns;
+            if (task_overruns[i] < 0xFFFF) ++task_overruns[i];
+            continue;
+        }
+        task_overruns[i] = 0;
+        if (task.threw()) {
+            program_failed(program);
+            task.forget();
+            continue;
+        }
+        if (!runs) {
+            task.forget();
+            continue;
+        }
+        task.apply(requests, io.outputs(), host->programs()[program].alarms);
+        numbers.run = task.last_run();
+        numbers.run_max = std::max(numbers.run_max, numbers.run);
+        ++numbers.releases;
+        CycleContext context;
+        context.now = now;
+        context.period = config.cycle;
+        context.cycle = cycles;
+        task.release(context, views, io.inputs(), io.outputs(), host->parameters(), numbers.releases == 1);
+    }
+}
+
+void Machine::Impl::run_tasks() noexcept {
+    for (std::size_t p = 0; p < program_states.size(); ++p) {
+        auto expected = Handshake::started;
+        if (handshakes[p].compare_exchange_strong(expected, Handshake::none, std::memory_order_acquire)) {
+            program_states[p] = ProgramState::running;
+            first_scan[p] = 1;
+        }
+    }
+    run_slow_releases();
+    for (std::size_t i = 0; i < base_tasks.size(); ++i) {
+        const auto& task = host->tasks()[base_tasks[i]];
+        if (program_states[task.program] != ProgramState::running) continue;
+        const Stopwatch watch;
+        run_base_task(task);
+        auto& numbers = task_statistics[i];
+        numbers.run = Stopwatch{watch}.lap();
+        numbers.run_max = std::max(numbers.run_max, numbers.run);
+        ++numbers.releases;
+    }
+    for (std::size_t p = 0; p < program_states.size(); ++p)
+        if (program_states[p] == ProgramState::running) first_scan[p] = 0;
+}
+
+void Machine::Impl::take_snapshot() noexcept {
+    auto& s = snapshots.back();
+    s.cycle = cycles;
+    s.at = now;
+    s.phase = phase.load(std::memory_order_relaxed);
+    s.mode = mode;
+    s.emergency_stop = emergency;
+    s.simulated = config.bus.interface.empty();
+    s.bus_phase = bus.phase();
+    s.bus = bus.statistics();
+    s.statistics = statistics;
+    for (std::size_t i = 0; i < s.slaves.size(); ++i) s.slaves[i] = bus.health(i);
+    for (std::size_t i = 0; i < axes.size(); ++i) s.axes[i] = axes[i].view();
+    std::copy(io.inputs().begin(), io.inputs().end(), s.inputs.begin());
+    std::copy(io.outputs().begin(), io.outputs().end(), s.outputs.begin());
+    std::copy(host->parameters().begin(), host->parameters().end(), s.parameters.begin());
+    const auto& variables = host->variables();
+    std::size_t slow_value = 0;
+    for (std::size_t i = 0; i < variables.size(); ++i) s.variables[i] = ProgramHost::read(variables[i]);
+    for (const auto& task : slow_tasks) {  // a program without a base task: as its last finished run left them
+        const auto values = task->variables();
+        if (values.empty()) continue;
+        slow_value = 0;
+        for (std::size_t i = 0; i < variables.size() && slow_value < values.size(); ++i)
+            if (variables[i].program == task->program()) s.variables[i] = values[slow_value++];
+    }
+    std::copy(program_states.begin(), program_states.end(), s.programs.begin());
+    std::copy(task_statistics.begin(), task_statistics.end(), s.tasks.begin());
+    const auto alarms = log.alarms();
+    s.alarm_count = alarms.size();
+    std::copy(alarms.begin(), alarms.end(), s.alarms.begin());
+    snapshots.publish();
+}
+
+std::vector<std::string> Machine::Impl::trace_columns() const {
+    std::vector<std::string> columns{"time_s", "emergency_stop", "alarms"};
+    for (const auto& axis : layout.axes)
+        for (const char* what : {"state", "set_position", "set_velocity", "set_acceleration", "set_jerk", "actual_position", "actual_velocity",
+                                 "actual_torque", "following_error", "drive_state", "homed", "error"})
+            columns.push_back(axis.name + "." + what);
+    for (const auto& input : layout.inputs) columns.push_back("in." + input);
+    for (const auto& output : layout.outputs) columns.push_back("out." + output);
+    for (const auto& variable : layout.variables) columns.push_back(variable.program + "." + variable.name);
+    return columns;
+}
+
+void Machine::Impl::take_trace() noexcept {
+    auto row = trace->begin();
+    if (row.empty()) {
+        ++statistics.snapshots_dropped;
+        return;
+    }
+    std::size_t n = 0;
+    const auto put = [&](double value) { row[n++] = value; };
+    put(to_seconds(now.time_since_epoch()));
+    put(emergency ? 1 : 0);
+    put(static_cast<double>(log.alarms().size()));
+    for (const auto& axis : axes) {
+        const auto& v = axis.view();
+        put(static_cast<double>(v.state));
+        put(v.set_position);
+        put(v.set_velocity);
+        put(v.set_acceleration);
+        put(v.set_jerk);
+        put(v.actual_position);
+        put(v.actual_velocity);
+        put(v.actual_torque);
+        put(v.following_error);
+        put(static_cast<double>(v.drive_state));
+        put(v.homed ? 1 : 0);
+        put(v.error);
+    }
+    for (const auto value : io.inputs()) put(static_cast<double>(value));
+    for (const auto value : io.outputs()) put(static_cast<double>(value));
+    for (const auto& variable : host->variables()) put(ProgramHost::read(variable));
+    trace->commit();
+}
+
+// --- the public face --------------------------------------------------------------------------------------------------------
+
+Machine::Machine(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Machine::~Machine() = default;
+
+std::variant<std::unique_ptr<Machine>, std::vector<Error>> Machine::build(MachineConfig config, ecat::Transport& transport) {
+    auto errors = check(config);
+    if (!errors.empty()) return errors;
+    auto impl = std::make_unique<Impl>(std::move(config), transport, errors);
+    if (!errors.empty()) return errors;
+    return std::unique_ptr<Machine>(new Machine(std::move(impl)));
+}
+
+void Machine::start_bus() { impl_->bus.start(); }
+void Machine::stop_bus() { impl_->bus.stop(); }
+void Machine::service(Instant now) {
+    impl_->bus.step(now);
+    for (auto& port : impl_->ports) port->step(now);
+    impl_->service_programs();
+}
+Result<void> Machine::arm() { return impl_->arm(); }
+bool Machine::bus_operational() const noexcept { return impl_->bus.phase() == ecat::Master::Phase::operational; }
+std::optional<Error> Machine::bus_failure() const {
+    if (impl_->bus.phase() == ecat::Master::Phase::failed) return impl_->bus.failure();
+    return std::nullopt;
+}
+std::string Machine::bus_progress() const { return impl_->bus.progress(); }
+void Machine::cycle(const CycleTick& tick) noexcept { impl_->cycle(tick); }
+void Machine::pump(Instant now) noexcept { impl_->bus.pump(now); }
+void Machine::run_slow_tasks() noexcept {
+    for (auto& task : impl_->slow_tasks) task->run_if_released();
+}
+std::size_t Machine::slow_task_count() const noexcept { return impl_->slow_tasks.size(); }
+bool Machine::run_slow_task(std::size_t index) noexcept { return impl_->slow_tasks[index]->run_if_released(); }
+bool Machine::submit(const OperatorCommand& command) noexcept { return impl_->inbox.try_push(command); }
+std::optional<CommandAnswer> Machine::next_answer() noexcept {
+    CommandAnswer answer;
+    if (!impl_->answers.try_pop(answer)) return std::nullopt;
+    return answer;
+}
+const Snapshot* Machine::latest() noexcept {
+    const auto reading = impl_->snapshots.read();
+    return reading.value->cycle > 0 ? reading.value : nullptr;
+}
+void Machine::request_shutdown() noexcept { impl_->shutdown_wanted.store(true, std::memory_order_relaxed); }
+MachinePhase Machine::phase() const noexcept { return impl_->phase.load(std::memory_order_acquire); }
+TraceRing& Machine::enable_trace(std::size_t rows) {
+    impl_->trace = std::make_unique<TraceRing>(impl_->trace_columns(), rows);
+    return *impl_->trace;
+}
+const StepStatistics<step_count - 1>& Machine::step_statistics() const noexcept { return impl_->steps; }
+const MachineConfig& Machine::config() const noexcept { return impl_->config; }
+const MachineLayout& Machine::layout() const noexcept { return impl_->layout; }
+const ecat::Master& Machine::bus() const noexcept { return impl_->bus; }
+ecat::Master& Machine::bus() noexcept { return impl_->bus; }
+
+}  // namespace taktwerk::runtime

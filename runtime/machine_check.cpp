@@ -1,0 +1,160 @@
+// Problems between the floors of one configuration: names that do not meet, cycles a drive cannot keep, stops that take too long.
+
+#include <cmath>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "core/nearest_name.hpp"
+#include "runtime/machine_config.hpp"
+
+namespace taktwerk::runtime {
+
+namespace {
+
+/// Seconds a jerk-limited stop from full speed takes, braking alone: the trapezoid of acceleration, or the triangle when the
+/// deceleration is not reached.
+double stop_seconds(const axes::AxisLimits& limits) {
+    const double d = limits.stop_deceleration > 0 ? limits.stop_deceleration : limits.deceleration;
+    const double j = limits.stop_jerk > 0 ? limits.stop_jerk : limits.jerk;
+    if (std::isinf(j)) return limits.velocity / d;
+    if (limits.velocity >= d * d / j) return limits.velocity / d + d / j;
+    return 2 * std::sqrt(limits.velocity / j);
+}
+
+class Problems {
+public:
+    explicit Problems(std::vector<Error>& errors) : errors_(errors) {}
+    void add(std::string code, std::string subject, std::string what, std::string remedy) {
+        errors_.push_back({std::move(code), std::move(subject), std::move(what), std::move(remedy)});
+    }
+    void unknown(std::string code, std::string subject, std::string_view kind, std::string_view name, const std::vector<std::string>& known) {
+        const auto near = nearest_name(name, known);
+        std::string list;
+        for (const auto& n : known) list += (list.empty() ? "" : ", ") + n;
+        add(std::move(code), std::move(subject), fmt::format("there is no {} '{}' (there is: {})", kind, name, list.empty() ? "none" : list),
+            near.empty() ? "correct the name" : fmt::format("did you mean '{}'?", near));
+    }
+    template <class Names>
+    void duplicates(const Names& names, std::string_view what) {
+        std::set<std::string> seen;
+        for (const auto& n : names) {
+            if (n.empty()) add("config.name_missing", std::string(what), "a name is empty", "give it a name");
+            else if (!seen.insert(n).second) add("config.duplicate_name", fmt::format("{}.{}", what, n), "the name is used twice", "rename one of them");
+        }
+    }
+
+private:
+    std::vector<Error>& errors_;
+};
+
+}  // namespace
+
+std::vector<Error> check(const MachineConfig& config) {
+    std::vector<Error> errors;
+    Problems problems{errors};
+    using namespace std::chrono_literals;
+
+    if (config.cycle < 100us || config.cycle > 100ms)
+        problems.add("machine.cycle", "cycle", fmt::format("a cycle of {} us is outside 100 us to 100 ms", config.cycle / 1us), "choose for instance 1 ms");
+
+    std::vector<std::string> slaves, axis_names, inputs, outputs, programs;
+    for (const auto& slave : config.bus.slaves) slaves.push_back(slave.name);
+    for (const auto& axis : config.axes) axis_names.push_back(axis.axis.name);
+    for (const auto& point : config.io) (point.direction == IoDirection::input ? inputs : outputs).push_back(point.name);
+    for (const auto& program : config.programs) programs.push_back(program.name);
+    problems.duplicates(axis_names, "axes");
+    problems.duplicates(inputs, "io.inputs");
+    problems.duplicates(outputs, "io.outputs");
+    problems.duplicates(programs, "programs");
+
+    if (!slaves.empty() || !config.bus.interface.empty()) {
+        auto bus = config.bus;
+        bus.cycle = config.cycle;
+        for (auto& error : ecat::check(bus)) errors.push_back(std::move(error));
+    }
+
+    std::set<std::pair<std::string, int>> taken;
+    for (const auto& binding : config.axes) {
+        const auto subject = fmt::format("axes.{}", binding.axis.name);
+        for (auto& error : axes::check(binding.axis)) errors.push_back(std::move(error));
+        if (binding.slave.empty()) {
+            if (binding.axis.homing.kind != axes::HomingKind::none && binding.axis.homing.kind != axes::HomingKind::set_here)
+                problems.add("axis.homing", subject + ".homing", "a virtual axis (without `slave`) has no switches", "use `kind: set_here`");
+            continue;
+        }
+        bool found = false;
+        for (const auto& name : slaves) found = found || name == binding.slave;
+        if (!found) problems.unknown("axis.unknown_slave", subject + ".slave", "slave", binding.slave, slaves);
+        if (!taken.insert({binding.slave, binding.drive_axis}).second)
+            problems.add("axis.drive_axis_taken", subject + ".drive_axis",
+                         fmt::format("axis {} of slave '{}' already belongs to another axis", binding.drive_axis + 1, binding.slave),
+                         "give each axis its own drive axis");
+        if (!binding.profile) {
+            problems.add("axis.no_profile", subject + ".slave", fmt::format("slave '{}' has no drive profile", binding.slave),
+                         "give the slave a `profile:`; a terminal cannot carry an axis");
+            continue;
+        }
+        const auto& profile = *binding.profile;
+        if (binding.drive_axis >= profile.axes)
+            problems.add("axis.drive_axis", subject + ".drive_axis", fmt::format("{} has {} axes", profile.name, profile.axes),
+                         fmt::format("choose 0 to {}", profile.axes - 1));
+        if (config.cycle < profile.minimum_cycle_csp)
+            problems.add("axis.cycle_too_short", "cycle", fmt::format("{} (axis {}) needs at least {} us in cyclic synchronous position mode",
+                                                                      profile.name, binding.axis.name, profile.minimum_cycle_csp / 1us),
+                         "lengthen `cycle`");
+        if (binding.axis.homing.kind == axes::HomingKind::drive && !binding.axis.simulated) {
+            bool documented = false;
+            std::string list;
+            for (const auto method : profile.homing_methods) {
+                documented = documented || method == binding.axis.homing.method;
+                list += fmt::format("{}{}", list.empty() ? "" : ", ", method);
+            }
+            if (!documented)
+                problems.add("axis.homing_method", subject + ".homing.method",
+                             fmt::format("{} does not document homing method {}", profile.name, binding.axis.homing.method),
+                             fmt::format("choose one of {}", list));
+        }
+        if (!config.emergency_stop.input.empty()) {
+            const double needs = stop_seconds(binding.axis.limits), has = to_seconds(config.emergency_stop.power_off_after);
+            if (needs > has)
+                problems.add("machine.emergency_stop_time", subject + ".limits",
+                             fmt::format("stopping from {} {}/s takes {:.2f} s, but power goes off {:.2f} s after an emergency stop",
+                                         binding.axis.limits.velocity, binding.axis.unit, needs, has),
+                             "raise `stop_deceleration` and `stop_jerk`, or `emergency_stop.power_off_after` (as the safety relay allows)");
+        }
+    }
+
+    for (const auto& point : config.io) {
+        bool found = false;
+        for (const auto& name : slaves) found = found || name == point.slave;
+        const auto subject = fmt::format("io.{}.{}", point.direction == IoDirection::input ? "inputs" : "outputs", point.name);
+        if (!found) problems.unknown("io.unknown_slave", subject + ".slave", "slave", point.slave, slaves);
+    }
+    for (const auto& task : config.tasks) {
+        bool found = false;
+        for (const auto& name : programs) found = found || name == task.program;
+        if (!found) problems.unknown("task.unknown_program", "tasks." + task.name, "program", task.program, programs);
+        if (task.divisor == 0) problems.add("task.divisor", fmt::format("programs.{}.tasks.{}", task.program, task.name), "a divisor of 0 never runs", "use 1 or more");
+    }
+    if (!config.emergency_stop.input.empty()) {
+        bool found = false;
+        for (const auto& name : inputs) found = found || name == config.emergency_stop.input;
+        if (!found) problems.unknown("machine.emergency_stop_input", "emergency_stop.input", "input", config.emergency_stop.input, inputs);
+    }
+    for (const auto& event : config.simulation.events) {
+        using Kind = SimulationEvent::Kind;
+        const auto& known = event.kind == Kind::input ? inputs : event.kind == Kind::slave_power ? slaves : axis_names;
+        bool found = false;
+        for (const auto& name : known) found = found || name == event.target;
+        if (!found) problems.unknown("simulation.unknown_target", "simulation.events", "target", event.target, known);
+    }
+    if (config.start_mode != Mode::automatic)
+        for (const auto& program : config.programs)
+            if (program.autostart)
+                problems.add("program.autostart", fmt::format("programs.{}.autostart", program.name), "programs start only in automatic mode",
+                             "set `start_mode: automatic`, or start it by hand");
+    return errors;
+}
+
+}  // namespace taktwerk::runtime

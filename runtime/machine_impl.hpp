@@ -1,0 +1,158 @@
+#pragma once
+// The parts of a machine and how they hang together. Private to runtime/machine*.cpp.
+
+#include <atomic>
+#include <memory>
+#include <vector>
+
+#include "axes/axis/axis.hpp"
+#include "axes/axis/direct_requests.hpp"
+#include "axes/drives/cia402/cia402_drive.hpp"
+#include "axes/port/drive_port.hpp"
+#include "core/latest_value.hpp"
+#include "core/spsc_ring.hpp"
+#include "core/stopwatch.hpp"
+#include "ecat/master.hpp"
+#include "runtime/alarm_log.hpp"
+#include "runtime/alarms.hpp"
+#include "runtime/io_image.hpp"
+#include "runtime/machine.hpp"
+#include "runtime/program_host.hpp"
+#include "runtime/slow_task.hpp"
+
+namespace taktwerk::runtime {
+
+/// Requests of base tasks and operators: straight to the axes, and the views of this scan follow at once.
+class MachineRequests final : public axes::AxisRequests {
+public:
+    void bind(std::span<axes::Axis> axes, std::span<axes::AxisView> views) noexcept {
+        direct_ = axes::DirectRequests{axes};
+        axes_ = axes;
+        views_ = views;
+    }
+    axes::Submitted submit(axes::AxisRef axis, const axes::AxisCommand& command, axes::Owner owner) noexcept override {
+        const auto answer = direct_.submit(axis, command, owner);
+        refresh(axis);
+        return answer;
+    }
+    axes::ErrorId power(axes::AxisRef axis, bool enable, bool positive, bool negative, axes::Owner owner) noexcept override {
+        return direct_.power(axis, enable, positive, negative, owner);
+    }
+    axes::ErrorId reset(axes::AxisRef axis, axes::Owner owner) noexcept override {
+        const auto answer = direct_.reset(axis, owner);
+        refresh(axis);
+        return answer;
+    }
+    axes::ErrorId set_position(axes::AxisRef axis, double position, bool relative, axes::Owner owner) noexcept override {
+        const auto answer = direct_.set_position(axis, position, relative, owner);
+        refresh(axis);
+        return answer;
+    }
+    void release_stop(axes::AxisRef axis, axes::CommandId id, axes::Owner owner) noexcept override {
+        direct_.release_stop(axis, id, owner);
+        refresh(axis);
+    }
+    axes::ErrorId renew_jog(axes::AxisRef axis, axes::CommandId id, double velocity, axes::Owner owner) noexcept override {
+        return direct_.renew_jog(axis, id, velocity, owner);
+    }
+
+private:
+    void refresh(axes::AxisRef axis) noexcept {
+        if (axis.index < axes_.size()) views_[axis.index] = axes_[axis.index].view();
+    }
+    axes::DirectRequests direct_;
+    std::span<axes::Axis> axes_;
+    std::span<axes::AxisView> views_;
+};
+
+struct Machine::Impl {
+    Impl(MachineConfig machine, ecat::Transport& transport, std::vector<Error>& errors);
+
+    // machine.cpp
+    void cycle(const CycleTick& tick) noexcept;
+    void run_tasks() noexcept;
+    void run_base_task(const ProgramHost::Task& task) noexcept;
+    void run_slow_releases() noexcept;
+    void program_failed(std::size_t program) noexcept;
+    void take_snapshot() noexcept;
+    void take_trace() noexcept;
+    std::vector<std::string> trace_columns() const;
+    Result<void> arm();
+
+    // machine_commands.cpp
+    void drain_inbox(Instant now) noexcept;
+    void answer(const OperatorCommand& command, Answer answer, axes::ErrorId error = axes::ErrorId::none) noexcept;
+    void execute(const OperatorCommand& command) noexcept;
+    void execute_axis(const OperatorCommand& command, std::size_t axis) noexcept;
+    void execute_program(const OperatorCommand& command) noexcept;
+    void jog(const OperatorCommand& command, std::size_t axis) noexcept;
+    void submit_axis(const OperatorCommand& command, std::size_t axis, const axes::AxisCommand& wanted) noexcept;
+    void set_mode(Mode wanted) noexcept;
+    void start_program(std::size_t program) noexcept;
+    void stop_program(std::size_t program, ProgramState state) noexcept;
+    void renew_operator_power() noexcept;
+    void service_programs();
+
+    // machine_supervision.cpp
+    void supervise(Instant now, const CycleTick& tick) noexcept;
+    void raise_bus_alarms() noexcept;
+    void raise(MachineAlarm alarm, AlarmSource source, std::uint16_t index, double a, double b) noexcept;
+    void raise_fact(const AlarmFact& fact, std::span<const AlarmInfo> table) noexcept;
+    void react() noexcept;
+    void run_shutdown(Instant now) noexcept;
+    [[nodiscard]] std::uint32_t limit(std::uint32_t strict) const noexcept {
+        return config.simulation.supervision == Supervision::relaxed ? strict * 100 : strict;
+    }
+
+    struct AxisPower {
+        bool held = false;          // an operator holds the power wish
+        axes::CommandId jog = 0;
+        axes::Owner owner = axes::Owner::operator_panel;
+    };
+
+    MachineConfig config;
+    ecat::Master bus;
+    IoImage io;
+    MachineLayout layout;
+    std::vector<std::unique_ptr<axes::DrivePort>> ports;
+    std::vector<axes::cia402::Cia402Drive*> drives;   // those of `ports` that are on the bus
+    std::vector<axes::Axis> axes;
+    std::vector<axes::AxisView> views;                // of this scan; what programs and the snapshot read
+    std::vector<std::size_t> axis_slave;              // index in the bus configuration; npos for virtual axes
+    std::vector<AxisPower> operator_power;
+    MachineRequests requests;
+    std::unique_ptr<ProgramHost> host;
+    std::vector<std::unique_ptr<SlowTask>> slow_tasks;
+    std::vector<std::size_t> base_tasks;              // indices into host->tasks()
+    std::vector<ProgramState> program_states;
+    std::vector<std::uint8_t> first_scan;             // per program
+    std::vector<std::uint16_t> task_overruns;         // in a row, per slow task
+    AlarmLog log;
+    Mode mode;
+    int estop_input = -1;
+
+    SpscRing<OperatorCommand> inbox;
+    SpscRing<CommandAnswer> answers;
+    LatestValue<Snapshot> snapshots;
+    std::unique_ptr<TraceRing> trace;
+
+    // cycle state
+    std::uint64_t cycles = 0;
+    Instant now{};
+    bool emergency = false;
+    std::uint32_t overruns_in_a_row = 0;
+    CycleStatistics statistics;
+    std::vector<TaskStatistics> task_statistics;
+    StepStatistics<step_count - 1> steps;
+    std::atomic<bool> shutdown_wanted{false};
+    std::atomic<MachinePhase> phase{MachinePhase::starting};
+    Instant shutdown_since{};
+    bool shutting_down = false;
+    std::atomic<bool> armed{false};  // arm() runs on the service side while cycles already run
+
+    /// start() and stop() of a program run on the service side: the cycle asks, the service answers.
+    enum class Handshake : std::uint8_t { none, start_asked, started, stop_asked };
+    std::unique_ptr<std::atomic<Handshake>[]> handshakes;
+};
+
+}  // namespace taktwerk::runtime

@@ -1,0 +1,127 @@
+// Words for alarms, made outside the cycle.
+
+#include <cmath>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "axes/axis/alarms.hpp"
+#include "ecat/alarms.hpp"
+#include "runtime/machine_impl.hpp"
+
+namespace taktwerk::runtime {
+
+namespace {
+
+std::string number(double value, bool hex) {
+    if (hex) return fmt::format("{:X}", static_cast<std::uint32_t>(value));
+    if (value == std::floor(value) && std::abs(value) < 1e15) return fmt::format("{}", static_cast<std::int64_t>(value));
+    return fmt::format("{:.6g}", value);
+}
+
+/// {a}, {b} and {a:x}, {b:x} in a text of an alarm table.
+std::string fill(std::string_view text, double a, double b) {
+    std::string out;
+    for (std::size_t i = 0; i < text.size();) {
+        const auto rest = text.substr(i);
+        const bool plain = rest.starts_with("{a}") || rest.starts_with("{b}");
+        const bool hex = rest.starts_with("{a:x}") || rest.starts_with("{b:x}");
+        if (plain || hex) {
+            out += number(rest[1] == 'a' ? a : b, hex);
+            i += plain ? 3 : 5;
+        } else {
+            out += text[i++];
+        }
+    }
+    return out;
+}
+
+std::string_view text(Reaction reaction) {
+    switch (reaction) {
+        case Reaction::none: return "none";
+        case Reaction::warn: return "warning";
+        case Reaction::stop_axis: return "the axis stops";
+        case Reaction::stop_machine: return "all axes stop";
+        case Reaction::power_off: return "all axes stop, power goes off";
+    }
+    return "";
+}
+
+std::string_view text(ResetRule rule) {
+    switch (rule) {
+        case ResetRule::self_clearing: return "goes with its cause";
+        case ResetRule::acknowledge: return "acknowledge";
+        case ResetRule::reset: return "reset";
+        case ResetRule::restart: return "power cycle or restart";
+    }
+    return "";
+}
+
+}  // namespace
+
+AlarmText Machine::describe(const AlarmFact& fact) const {
+    const auto& m = *impl_;
+    AlarmText out;
+    switch (fact.source) {
+        case AlarmSource::axis: out.source = fact.index < m.layout.axes.size() ? "axis " + m.layout.axes[fact.index].name : "axis ?"; break;
+        case AlarmSource::slave:
+            out.source = fact.index < m.layout.slaves.size() ? fmt::format("slave '{}'", m.layout.slaves[fact.index]) : "slave ?";
+            break;
+        case AlarmSource::program: out.source = fact.index < m.layout.programs.size() ? "program " + m.layout.programs[fact.index] : "program ?"; break;
+        case AlarmSource::task:
+            out.source = fact.index < m.slow_tasks.size() ? "task " + m.slow_tasks[fact.index]->config().program + "." + m.slow_tasks[fact.index]->config().name
+                                                          : "task ?";
+            break;
+        case AlarmSource::bus: out.source = "bus"; break;
+        case AlarmSource::machine:
+        case AlarmSource::io:
+        case AlarmSource::hmi: out.source = "machine"; break;
+    }
+
+    if (fact.source == AlarmSource::program && fact.id >= 0x5000 && fact.id < 0x5040 && fact.index < m.host->programs().size()) {
+        const auto& declared = m.host->programs()[fact.index].alarm_texts[fact.id - 0x5000u];
+        out.name = fmt::format("program_alarm_{}", fact.id - 0x5000);
+        out.english = declared.english;
+        out.chinese = declared.chinese;
+        out.remedy = declared.remedy;
+        out.reaction = text(declared.reaction);
+        out.reset = text(ResetRule::self_clearing);
+        return out;
+    }
+    const AlarmInfo* info = nullptr;
+    for (const std::span<const AlarmInfo> table : {std::span<const AlarmInfo>(machine_alarms), std::span<const AlarmInfo>(axes::axis_alarms),
+                                                   std::span<const AlarmInfo>(ecat::bus_alarms)})
+        if (!info) info = find_alarm(table, fact.id);
+    if (!info) {
+        out.name = fmt::format("alarm_{:04x}", fact.id);
+        return out;
+    }
+    out.name = info->name;
+    out.english = fill(info->english, fact.a, fact.b);
+    out.chinese = fill(info->chinese, fact.a, fact.b);
+    out.cause = info->cause;
+    out.remedy = info->remedy;
+    out.reaction = text(info->reaction);
+    out.reset = text(info->reset);
+
+    // A drive's own alarm has its words in the profile.
+    const bool of_drive = fact.id == axes::id(axes::AxisAlarm::drive_fault) || fact.id == axes::id(axes::AxisAlarm::drive_warning);
+    if (of_drive && fact.index < m.config.axes.size() && m.config.axes[fact.index].profile) {
+        const axes::DriveAlarmText* found = nullptr;
+        for (const auto& row : m.config.axes[fact.index].profile->alarms) {
+            if (row.code != static_cast<std::uint16_t>(fact.a)) continue;
+            if (!found || row.detail == static_cast<std::uint32_t>(fact.b)) found = &row;
+        }
+        if (found) {
+            const std::string panel = found->panel.empty() ? "" : found->panel + " ";
+            out.english += fmt::format(": {}{}", panel, found->english);
+            out.chinese += fmt::format(":{}{}", panel, found->chinese);
+            if (!found->cause.empty()) out.cause = found->cause;
+            if (!found->remedy.empty()) out.remedy = found->remedy;
+            if (!found->resettable) out.reset = text(ResetRule::restart);
+        }
+    }
+    return out;
+}
+
+}  // namespace taktwerk::runtime

@@ -1,0 +1,171 @@
+#include "runtime/program_host.hpp"
+
+#include <exception>
+
+#include <fmt/format.h>
+
+#include "core/nearest_name.hpp"
+
+namespace taktwerk::runtime {
+
+/// Answers a program's declarations from the configuration and notes every problem.
+class ProgramHost::Collector final : public Declaration {
+public:
+    Collector(ProgramHost& host, const MachineConfig& config, const IoImage& io, std::size_t program, std::vector<Error>& errors)
+        : host_(host), config_(config), io_(io), program_(program), errors_(errors) {}
+
+    AxisRef axis(std::string_view name) override {
+        std::vector<std::string> names;
+        for (std::size_t i = 0; i < config_.axes.size(); ++i) {
+            if (config_.axes[i].axis.name == name) return AxisRef{static_cast<std::uint16_t>(i)};
+            names.push_back(config_.axes[i].axis.name);
+        }
+        unknown("program.unknown_axis", "axis", name, names, "axes");
+        return {};
+    }
+    Input<bool> input(std::string_view name) override { return {point(IoDirection::input, name)}; }
+    Output<bool> output(std::string_view name) override { return {point(IoDirection::output, name)}; }
+    Input<std::int64_t> input_word(std::string_view name) override { return {point(IoDirection::input, name)}; }
+    Output<std::int64_t> output_word(std::string_view name) override { return {point(IoDirection::output, name)}; }
+
+    Parameter parameter(std::string_view name, const ParameterSpec& spec) override {
+        const auto& program = config_.programs[program_];
+        double value = spec.value;
+        if (!(spec.minimum <= spec.value && spec.value <= spec.maximum))
+            problem("program.parameter_range", fmt::format("parameter '{}' has default {} outside its own range {} to {}", name, spec.value,
+                                                           spec.minimum, spec.maximum), "correct the declaration in the program");
+        for (const auto& set : program.parameters) {
+            if (set.name != name) continue;
+            if (!(spec.minimum <= set.value && set.value <= spec.maximum))
+                problem("program.parameter_range", fmt::format("parameter '{}' = {} {} is outside {} to {}", name, set.value, spec.unit,
+                                                               spec.minimum, spec.maximum), "choose a value inside the range");
+            else value = set.value;
+        }
+        host_.parameters_.push_back(value);
+        host_.parameter_info_.push_back({program.name, std::string(name), std::string(spec.unit), std::string(spec.doc), spec.minimum, spec.maximum, value});
+        parameter_names_.emplace_back(name);
+        return {static_cast<std::uint16_t>(host_.parameters_.size() - 1)};
+    }
+
+    void alarm(std::uint8_t number, Reaction reaction, std::string_view english, std::string_view chinese, std::string_view remedy) override {
+        if (number >= 64) {
+            problem("program.alarm_number", fmt::format("alarm number {} is beyond 63", number), "use 0 to 63");
+            return;
+        }
+        host_.programs_[program_].alarm_texts[number] = {true, reaction, std::string(english), std::string(chinese), std::string(remedy)};
+    }
+
+    /// After declare(): configured names that the program does not know.
+    void check_configuration() {
+        const auto& program = config_.programs[program_];
+        for (const auto& set : program.parameters) {
+            bool known = false;
+            for (const auto& name : parameter_names_) known = known || name == set.name;
+            if (!known) unknown("program.unknown_parameter", "parameter", set.name, parameter_names_, "its parameters");
+        }
+        for (const auto& task : config_.tasks) {
+            if (task.program != program.name) continue;
+            bool known = false;
+            for (const auto& name : task_names_) known = known || name == task.name;
+            if (!known) unknown("program.unknown_task", "task", task.name, task_names_, "the program's tasks");
+        }
+    }
+
+protected:
+    void add(std::string_view name, VariableType type, const void* address, std::string_view unit, std::string_view doc) override {
+        host_.variables_.push_back({type, address, program_});
+        host_.variable_info_.push_back({config_.programs[program_].name, std::string(name), std::string(unit), std::string(doc), type});
+    }
+    void add_task(std::string_view name, TaskFunction function) override {
+        task_names_.emplace_back(name);
+        TaskConfig config;  // a task that the configuration does not mention runs in each cycle
+        config.name = std::string(name);
+        config.program = config_.programs[program_].name;
+        for (const auto& task : config_.tasks)
+            if (task.program == config.program && task.name == name) config = task;
+        host_.tasks_.push_back({config, program_, function});
+    }
+
+private:
+    std::uint16_t point(IoDirection direction, std::string_view name) {
+        const int index = io_.find(direction, name);
+        if (index >= 0) return static_cast<std::uint16_t>(index);
+        unknown(direction == IoDirection::input ? "program.unknown_input" : "program.unknown_output",
+                direction == IoDirection::input ? "input" : "output", name, io_.names(direction),
+                direction == IoDirection::input ? "io.inputs" : "io.outputs");
+        return 0xFFFF;
+    }
+    void problem(std::string code, std::string what, std::string remedy) {
+        errors_.push_back({std::move(code), fmt::format("program '{}'", config_.programs[program_].name), std::move(what), std::move(remedy)});
+    }
+    void unknown(std::string code, std::string_view kind, std::string_view name, const std::vector<std::string>& known, std::string_view where) {
+        const auto near = nearest_name(name, known);
+        std::string list;
+        for (const auto& n : known) list += (list.empty() ? "" : ", ") + n;
+        problem(std::move(code), fmt::format("there is no {} '{}'; {} has: {}", kind, name, where, list.empty() ? "nothing" : list),
+                near.empty() ? fmt::format("add it to {}, or correct the name", where) : fmt::format("did you mean '{}'?", near));
+    }
+
+    ProgramHost& host_;
+    const MachineConfig& config_;
+    const IoImage& io_;
+    std::size_t program_;
+    std::vector<Error>& errors_;
+    std::vector<std::string> parameter_names_, task_names_;
+};
+
+ProgramHost::ProgramHost(const MachineConfig& config, const IoImage& io, std::vector<Error>& errors) {
+    for (std::size_t i = 0; i < config.programs.size(); ++i) {
+        const auto& program = config.programs[i];
+        programs_.push_back({program, ProgramLibrary::Instance{nullptr, {}}, 0, std::vector<AlarmDeclared>(64), {}});
+        auto library = program.entry ? ProgramLibrary::linked(program.entry()) : ProgramLibrary::open(program.library);
+        if (!library) {
+            auto error = library.error();
+            error.subject = fmt::format("program '{}' ({})", program.name, error.subject);
+            errors.push_back(std::move(error));
+            continue;
+        }
+        auto instance = library->create();
+        libraries_.push_back(std::move(*library));
+        if (!instance) {
+            errors.push_back(instance.error());
+            continue;
+        }
+        programs_.back().instance = std::move(*instance);
+        Collector collector{*this, config, io, i, errors};
+        try {
+            programs_.back().instance->declare(collector);
+            collector.check_configuration();
+        } catch (const std::exception& e) {
+            errors.push_back({"program.declare", fmt::format("program '{}'", program.name), fmt::format("declare() threw: {}", e.what()), "mend the program"});
+        } catch (...) {
+            errors.push_back({"program.declare", fmt::format("program '{}'", program.name), "declare() threw something that is no std::exception", "mend the program"});
+        }
+    }
+}
+
+ProgramHost::~ProgramHost() {
+    programs_.clear();  // their code is in the libraries
+}
+
+void ProgramHost::describe(MachineLayout& layout) const {
+    for (const auto& program : programs_) layout.programs.push_back(program.config.name);
+    for (const auto& task : tasks_) layout.tasks.push_back(task.config.program + "." + task.config.name);
+    layout.variables = variable_info_;
+    layout.parameters = parameter_info_;
+}
+
+double ProgramHost::read(const Variable& variable) noexcept {
+    switch (variable.type) {
+        case VariableType::boolean: return *static_cast<const bool*>(variable.address) ? 1.0 : 0.0;
+        case VariableType::int32: return *static_cast<const std::int32_t*>(variable.address);
+        case VariableType::int64: return static_cast<double>(*static_cast<const std::int64_t*>(variable.address));
+        case VariableType::uint16: return *static_cast<const std::uint16_t*>(variable.address);
+        case VariableType::uint32: return *static_cast<const std::uint32_t*>(variable.address);
+        case VariableType::real: return *static_cast<const double*>(variable.address);
+        case VariableType::duration: return to_seconds(*static_cast<const Duration*>(variable.address));
+    }
+    return 0;
+}
+
+}  // namespace taktwerk::runtime

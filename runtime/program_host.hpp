@@ -1,0 +1,69 @@
+#pragma once
+// The programs of a machine: loaded, their declarations checked against the configuration, their tasks ready to be called.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/result.hpp"
+#include "programs/api/program.hpp"
+#include "runtime/io_image.hpp"
+#include "runtime/machine_config.hpp"
+#include "runtime/program_library.hpp"
+#include "runtime/snapshot.hpp"
+
+namespace taktwerk::runtime {
+
+class ProgramHost {
+public:
+    struct Task {
+        TaskConfig config;
+        std::size_t program = 0;
+        Declaration::TaskFunction function = nullptr;
+    };
+    struct Variable {
+        VariableType type = VariableType::real;
+        const void* address = nullptr;
+        std::size_t program = 0;
+    };
+    struct AlarmDeclared {
+        bool declared = false;
+        Reaction reaction = Reaction::none;
+        std::string english, chinese, remedy;
+    };
+    struct Loaded {
+        ProgramConfig config;
+        ProgramLibrary::Instance instance;
+        std::uint64_t alarms = 0;                        ///< those that hold, set by its scans
+        std::vector<AlarmDeclared> alarm_texts;          ///< 64
+        std::string fault;                               ///< why it stopped by itself; set with state fault
+    };
+
+    /// Loads and declares everything; problems are added to `errors` (all of them). `io` gives the point names.
+    ProgramHost(const MachineConfig& config, const IoImage& io, std::vector<Error>& errors);
+    ~ProgramHost();
+
+    [[nodiscard]] std::vector<Loaded>& programs() noexcept { return programs_; }
+    [[nodiscard]] const std::vector<Loaded>& programs() const noexcept { return programs_; }
+    [[nodiscard]] const std::vector<Task>& tasks() const noexcept { return tasks_; }
+    [[nodiscard]] const std::vector<Variable>& variables() const noexcept { return variables_; }
+    [[nodiscard]] std::vector<double>& parameters() noexcept { return parameters_; }
+    /// Adds names, units and documentation of variables, parameters, programs and tasks.
+    void describe(MachineLayout& layout) const;
+    [[nodiscard]] const MachineLayout::ParameterInfo& parameter(std::size_t index) const { return parameter_info_[index]; }
+
+    /// Value of a monitored variable. Real-time safe.
+    [[nodiscard]] static double read(const Variable& variable) noexcept;
+
+private:
+    class Collector;
+    std::vector<ProgramLibrary> libraries_;  // outlive the instances: destroyed after them
+    std::vector<Loaded> programs_;
+    std::vector<Task> tasks_;
+    std::vector<Variable> variables_;
+    std::vector<MachineLayout::Variable> variable_info_;
+    std::vector<double> parameters_;
+    std::vector<MachineLayout::ParameterInfo> parameter_info_;
+};
+
+}  // namespace taktwerk::runtime

@@ -1,0 +1,70 @@
+#include "runtime/program_library.hpp"
+
+#include <dlfcn.h>
+#include <sys/stat.h>
+
+#include <exception>
+
+#include <fmt/format.h>
+
+namespace taktwerk::runtime {
+
+namespace {
+
+Result<void> check_entry(const ProgramEntry* entry, const std::string& subject) {
+    if (!entry || entry->magic != program_magic || entry->entry_size != sizeof(ProgramEntry))
+        return Error{"program.foreign", subject, "its entry is not one of a Taktwerk program of this kind",
+                     "build it against this SDK and put TAKTWERK_PROGRAM(YourClass) into one source file"};
+    if (entry->abi_hash != abi_hash())
+        return Error{"program.abi", subject,
+                     fmt::format("it was built with SDK {} (ABI {:016x}), this runtime is {} (ABI {:016x})", entry->sdk_version,
+                                 entry->abi_hash, sdk_version, abi_hash()),
+                     "rebuild the program with the SDK of this runtime"};
+    return {};
+}
+
+}  // namespace
+
+Result<ProgramLibrary> ProgramLibrary::open(const std::string& path) {
+    struct stat info {};
+    if (::stat(path.c_str(), &info) != 0)
+        return Error{"program.missing", path, "there is no such file", "build the program, or correct `library:`"};
+    if (!S_ISREG(info.st_mode)) return Error{"program.missing", path, "it is not a file", "correct `library:`"};
+    // dlopen searches names without a slash in system folders: a program is a file, not a library name.
+    const std::string file = path.find('/') == std::string::npos ? "./" + path : path;
+    void* raw = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (!raw) {
+        const char* why = ::dlerror();
+        return Error{"program.not_loadable", path, fmt::format("it cannot be loaded: {}", why ? why : "unknown reason"),
+                     "build it as a shared object for this machine, linking only the SDK"};
+    }
+    std::shared_ptr<void> handle{raw, [](void* p) { ::dlclose(p); }};
+    using Entry = const ProgramEntry* (*)();
+    auto function = reinterpret_cast<Entry>(::dlsym(raw, program_entry_symbol));
+    if (!function)
+        return Error{"program.no_entry", path, fmt::format("it exports no `{}`: it is some other shared object", program_entry_symbol),
+                     "put TAKTWERK_PROGRAM(YourClass) into one source file of the program"};
+    const ProgramEntry* entry = function();
+    if (auto ok = check_entry(entry, path); !ok) return ok.error();
+    return ProgramLibrary{std::move(handle), entry};
+}
+
+Result<ProgramLibrary> ProgramLibrary::linked(const ProgramEntry* entry) {
+    if (auto ok = check_entry(entry, "linked program"); !ok) return ok.error();
+    return ProgramLibrary{nullptr, entry};
+}
+
+Result<ProgramLibrary::Instance> ProgramLibrary::create() const {
+    const auto failed = [&](const char* what) {
+        return Error{"program.constructor", entry_->name, fmt::format("its constructor threw: {}", what), "mend the program"};
+    };
+    try {
+        return Instance{entry_->create(), Deleter{entry_->destroy}};
+    } catch (const std::exception& e) {
+        return failed(e.what());
+    } catch (...) {
+        return failed("something that is no std::exception");
+    }
+}
+
+}  // namespace taktwerk::runtime

@@ -1,0 +1,38 @@
+#pragma once
+// Loading a program from a shared object, with an answer for everything that can be wrong with it. Not real-time.
+
+#include <memory>
+#include <string>
+
+#include "core/result.hpp"
+#include "programs/api/entry.hpp"
+
+namespace taktwerk::runtime {
+
+/// Keeps the library loaded while it lives.
+class ProgramLibrary {
+public:
+    /// Errors: no such file, not a shared object, unresolved symbols, no entry symbol, foreign magic, other ABI.
+    static Result<ProgramLibrary> open(const std::string& path);
+    /// A program linked into this executable.
+    static Result<ProgramLibrary> linked(const ProgramEntry* entry);
+
+    [[nodiscard]] const ProgramEntry& entry() const noexcept { return *entry_; }
+
+    struct Deleter {
+        void (*destroy)(Program*) = nullptr;
+        void operator()(Program* program) const noexcept {
+            if (program && destroy) destroy(program);
+        }
+    };
+    using Instance = std::unique_ptr<Program, Deleter>;
+    /// The constructor of the program runs here; an exception of it becomes an Error.
+    [[nodiscard]] Result<Instance> create() const;
+
+private:
+    ProgramLibrary(std::shared_ptr<void> handle, const ProgramEntry* entry) : handle_(std::move(handle)), entry_(entry) {}
+    std::shared_ptr<void> handle_;
+    const ProgramEntry* entry_;
+};
+
+}  // namespace taktwerk::runtime

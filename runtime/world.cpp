@@ -1,0 +1,153 @@
+#include "runtime/world.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace taktwerk::runtime {
+
+namespace {
+
+axes::sim::PlantConfig plant_of(const AxisBinding& binding) {
+    const auto& simulation = binding.simulation;
+    const double scale = binding.axis.gearing.counts_per_unit();
+    const auto counts = [&](double u) { return u * scale; };
+    axes::sim::PlantConfig plant;
+    plant.counts_per_revolution = binding.axis.gearing.counts_per_revolution;
+    plant.inertia = simulation.inertia;
+    plant.viscous_friction = simulation.viscous_friction;
+    plant.coulomb_friction = simulation.coulomb_friction;
+    plant.load_torque = simulation.load_torque * (scale < 0 ? -1.0 : 1.0);
+    plant.rated_torque = simulation.rated_torque;
+    plant.start = counts(simulation.start);
+    // On an inverted axis the drive's negative end is the axis' positive one.
+    const bool inverted = scale < 0;
+    const auto& low_stop = inverted ? simulation.positive_stop : simulation.negative_stop;
+    const auto& high_stop = inverted ? simulation.negative_stop : simulation.positive_stop;
+    const auto& low_limit = inverted ? simulation.positive_limit : simulation.negative_limit;
+    const auto& high_limit = inverted ? simulation.negative_limit : simulation.positive_limit;
+    if (low_stop) plant.negative_stop = counts(*low_stop);
+    if (high_stop) plant.positive_stop = counts(*high_stop);
+    if (low_limit) plant.negative_limit = counts(*low_limit);
+    if (high_limit) plant.positive_limit = counts(*high_limit);
+    if (simulation.home_from && simulation.home_to) {
+        plant.home_from = std::min(counts(*simulation.home_from), counts(*simulation.home_to));
+        plant.home_to = std::max(counts(*simulation.home_from), counts(*simulation.home_to));
+    }
+    return plant;
+}
+
+/// Configured slaves in cable order: fixed positions first, those by alias fill the gaps.
+std::vector<const ecat::SlaveConfig*> cable_order(const std::vector<ecat::SlaveConfig>& slaves) {
+    std::vector<const ecat::SlaveConfig*> order(slaves.size(), nullptr);
+    for (const auto& slave : slaves)
+        if (slave.position && *slave.position < order.size()) order[*slave.position] = &slave;
+    for (const auto& slave : slaves) {
+        if (slave.position && *slave.position < slaves.size()) continue;
+        for (auto& place : order)
+            if (!place) {
+                place = &slave;
+                break;
+            }
+    }
+    return order;
+}
+
+}  // namespace
+
+World::World(const MachineConfig& config, Instant start) : network_(start), transport_(network_), start_(start), events_(config.simulation.events) {
+    std::stable_sort(events_.begin(), events_.end(), [](const auto& a, const auto& b) { return a.at < b.at; });
+    for (const auto* slave : cable_order(config.bus.slaves)) {
+        ecat::sim::SlaveOptions options;
+        options.name = slave->name;
+        options.alias = slave->alias.value_or(0);
+        slave_names_.push_back(slave->name);
+        if (!slave->device->mailbox) {
+            auto model = std::make_unique<ecat::sim::DigitalTerminal>(*slave->device);
+            auto* terminal = model.get();
+            network_.add(slave->device, std::move(model), options);
+            for (const auto& point : config.io)
+                if (point.slave == slave->name) points_.push_back({point, terminal});
+            continue;
+        }
+        std::vector<axes::sim::Cia402Device::AxisSetup> setups;
+        std::vector<std::string> names;
+        const axes::DriveProfile* profile = nullptr;
+        for (const auto& binding : config.axes)
+            if (binding.slave == slave->name && binding.profile) profile = binding.profile.get();
+        static const axes::DriveProfile plain;  // a drive no axis uses still answers
+        if (!profile) profile = &plain;
+        setups.resize(profile->axes);
+        names.resize(profile->axes);
+        for (auto& setup : setups) setup.personality = axes::sim::personality_of(*profile, setup.plant.counts_per_revolution);
+        for (const auto& binding : config.axes) {
+            if (binding.slave != slave->name || binding.drive_axis >= profile->axes) continue;
+            auto& setup = setups[binding.drive_axis];
+            setup.plant = plant_of(binding);
+            setup.personality = axes::sim::personality_of(*profile, setup.plant.counts_per_revolution);
+            // Three motor turns of following error, and set-points within 6000 turns/min: what a drive of this class guards.
+            setup.personality.following_error_limit = 3.0 * static_cast<double>(setup.plant.counts_per_revolution);
+            setup.personality.maximum_velocity = 100.0 * static_cast<double>(setup.plant.counts_per_revolution);
+            names[binding.drive_axis] = binding.axis.name;
+            options.drift_ppm = binding.simulation.clock_drift_ppm;
+        }
+        auto model = std::make_unique<axes::sim::Cia402Device>(*profile, setups);
+        for (std::size_t i = 0; i < names.size(); ++i)
+            if (!names[i].empty()) axes_.push_back({names[i], &model->axis(i)});
+        network_.add(slave->device, std::move(model), options);
+    }
+    for (const auto& point : config.io)
+        if (point.direction == IoDirection::input && point.simulated) set_input(point.name, *point.simulated != 0);
+}
+
+std::size_t World::place(std::string_view slave) const noexcept {
+    return static_cast<std::size_t>(std::find(slave_names_.begin(), slave_names_.end(), slave) - slave_names_.begin());
+}
+
+axes::sim::Cia402Axis* World::drive(std::string_view axis) noexcept {
+    for (auto& place : axes_)
+        if (place.name == axis) return place.axis;
+    return nullptr;
+}
+
+void World::set_input(std::string_view name, bool value) {
+    for (auto& point : points_)
+        if (point.config.name == name && point.config.direction == IoDirection::input)
+            point.terminal->set_input(point.config.sub - 1u, value);
+}
+
+bool World::output(std::string_view name) const {
+    for (const auto& point : points_)
+        if (point.config.name == name && point.config.direction == IoDirection::output) return point.terminal->output(point.config.sub - 1u);
+    return false;
+}
+
+void World::set_slave_power(std::string_view slave, bool on) {
+    if (const auto at = place(slave); at < slave_names_.size()) network_.set_power(at, on);
+}
+
+void World::set_cable(std::string_view slave, bool plugged) {
+    if (const auto at = place(slave); at < slave_names_.size()) network_.set_cable(at, plugged);
+}
+
+void World::happen(const SimulationEvent& event) {
+    using Kind = SimulationEvent::Kind;
+    switch (event.kind) {
+        case Kind::input: set_input(event.target, event.value != 0); break;
+        case Kind::slave_power: set_slave_power(event.target, event.value != 0); break;
+        case Kind::drive_fault:
+            if (auto* axis = drive(event.target)) axis->raise(static_cast<std::uint16_t>(event.value));
+            break;
+        case Kind::main_power:
+            if (auto* axis = drive(event.target)) axis->main_power(event.value != 0);
+            break;
+        case Kind::jam:
+            if (auto* axis = drive(event.target)) axis->jam(event.value == 0);
+            break;
+    }
+}
+
+void World::apply_events(Instant now) {
+    while (next_event_ < events_.size() && start_ + events_[next_event_].at <= now) happen(events_[next_event_++]);
+}
+
+}  // namespace taktwerk::runtime

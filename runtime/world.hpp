@@ -1,0 +1,62 @@
+#pragma once
+// The simulated machine behind the bus: slaves, drives, mechanics, and what happens to them at given times. Built from the same
+// configuration as the machine; reached by the master only through frames.
+
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "axes/sim/cia402_device.hpp"
+#include "core/time.hpp"
+#include "ecat/sim/digital_terminal.hpp"
+#include "ecat/sim/sim_network.hpp"
+#include "ecat/transport/loopback.hpp"
+#include "runtime/machine_config.hpp"
+
+namespace taktwerk::runtime {
+
+class World {
+public:
+    /// `config` has passed check(). `start`: the machine time now.
+    World(const MachineConfig& config, Instant start);
+
+    [[nodiscard]] ecat::LoopbackTransport& transport() noexcept { return transport_; }
+    [[nodiscard]] ecat::sim::SimNetwork& network() noexcept { return network_; }
+
+    /// Lets the configured events happen that are due. Called by whoever runs the cycle, before it.
+    void apply_events(Instant now);
+
+    // --- hands on the machine: tests, demos -----------------------------------------------------------------------------------
+    /// nullptr when the axis is not on a simulated drive.
+    [[nodiscard]] axes::sim::Cia402Axis* drive(std::string_view axis) noexcept;
+    /// The contact of a named input point (before its `inverted`).
+    void set_input(std::string_view point, bool value);
+    /// What a named output point drives at the terminal.
+    [[nodiscard]] bool output(std::string_view point) const;
+    void set_slave_power(std::string_view slave, bool on);
+    /// Pulls or plugs the cable in front of a slave.
+    void set_cable(std::string_view slave, bool plugged);
+
+private:
+    [[nodiscard]] std::size_t place(std::string_view slave) const noexcept;
+    void happen(const SimulationEvent& event);
+
+    struct Point {
+        IoPoint config;
+        ecat::sim::DigitalTerminal* terminal = nullptr;
+    };
+    struct AxisPlace {
+        std::string name;
+        axes::sim::Cia402Axis* axis = nullptr;
+    };
+    ecat::sim::SimNetwork network_;
+    ecat::LoopbackTransport transport_;
+    Instant start_;
+    std::vector<std::string> slave_names_;  // in cable order
+    std::vector<AxisPlace> axes_;
+    std::vector<Point> points_;
+    std::vector<SimulationEvent> events_;   // by time
+    std::size_t next_event_ = 0;
+};
+
+}  // namespace taktwerk::runtime
