@@ -305,13 +305,17 @@ TYPED_TEST(CommandRules, AResultThatTheLedgerHasForgottenIsAnAbortion) {
 }
 
 TYPED_TEST(CommandRules, TheCommandBelongsToTheAxisOfTheEdge) {  // P1-099
-    this->begin();
     this->block.Axis = {1};
-    this->axes.finish(axes::Outcome::done, ErrorId::none, 0);
+    this->begin();
+    this->block.Axis = {0};
     this->scan();
-    EXPECT_FALSE(this->block.Error);
+    EXPECT_TRUE(this->block.Busy);
+
+    this->axes.finish(axes::Outcome::done, ErrorId::none, 1);
+    this->scan();
     EXPECT_FALSE(this->block.Busy);
-    for (const auto& call : this->axes.calls) EXPECT_EQ(call.axis.index, 0);
+    EXPECT_FALSE(this->block.Error);
+    for (const auto& call : this->axes.calls) EXPECT_EQ(call.axis.index, 1);
 }
 
 TYPED_TEST(CommandRules, CommandsInTheNameOfTheContextsOwner) {

@@ -133,6 +133,21 @@ TEST_F(Jog, PressedAgainWhileBrakingStartsAtStandstill) {
     EXPECT_EQ(submitted()[2].command.velocity, -10);
 }
 
+TEST_F(Jog, TheSameInputPressedAgainWhileBrakingStartsAtStandstillToo) {
+    block.JogForward = true;
+    scan();
+    block.JogForward = false;
+    scan();
+    block.JogForward = true;
+    scan();
+    scan();
+    EXPECT_EQ(submitted().size(), 2u) << "jog and halt only";
+    axes.finish(Outcome::done);
+    scan();
+    scan();
+    EXPECT_EQ(submitted().size(), 3u);
+}
+
 // The release comes in the very scan in which another command has already taken the axis: that one must not be halted.
 TEST_F(Jog, DoesNotHaltWhatIsNoLongerItsOwn) {
     block.JogForward = true;
