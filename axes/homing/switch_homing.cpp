@@ -16,7 +16,10 @@ void SwitchHoming::begin(Phase phase) noexcept {
     const double sense = settings_.negative ? -1.0 : 1.0;
     switch (phase) {
         case Phase::search: velocity_ = sense * settings_.search_velocity; break;
-        case Phase::back_off: velocity_ = -sense * settings_.latch_velocity; break;
+        case Phase::back_off:
+            velocity_ = -sense * settings_.latch_velocity;
+            was_on_ = false;
+            break;
         case Phase::leave:
         case Phase::pass_on:
         case Phase::pass_off: velocity_ = -sense * settings_.search_velocity; break;
@@ -57,7 +60,8 @@ void SwitchHoming::step(const SwitchHomingInput& in) noexcept {
             }
             break;
         case Phase::back_off:
-            if (!in.home_switch) {
+            if (in.home_switch) was_on_ = true;
+            if (was_on_ && !in.home_switch) {
                 reference_ = in.position;
                 stop_then(Phase::finished);
             } else if (backward_limit) fail(Phase::failed);

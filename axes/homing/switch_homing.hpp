@@ -3,7 +3,8 @@
 // the axis shall move; the axis plans the ramps. Real-time safe.
 //
 //   search    in the configured direction at search velocity until the switch is on
-//   back off  the other way at latch velocity until it is off: the place of that edge is the reference
+//   back off  the other way at latch velocity until it is off: the place of that edge is the reference. A switch shorter than the
+//             stopping distance was overrun: then it must come on again first
 //   leave     first of all, when it starts on the switch: the other way until it is off, then search
 //   pass      when a limit switch comes first: the other way over the whole switch, then search again; once only
 // Between two directions the axis stands.
@@ -61,7 +62,7 @@ private:
 
     SwitchHomingSettings settings_;
     Phase phase_ = Phase::idle, next_ = Phase::idle, failed_in_ = Phase::idle;
-    bool stopping_ = false, begun_ = false, reversed_ = false;
+    bool stopping_ = false, begun_ = false, reversed_ = false, was_on_ = false;
     double velocity_ = 0;
     std::int64_t reference_ = 0;
     Instant start_{};

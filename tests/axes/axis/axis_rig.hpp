@@ -52,16 +52,22 @@ struct Rig {
         now += cycle;
         axis.update(now);
         axis.supervise(now);
-        AlarmFact fact;
-        while (axis.fetch_alarm(fact)) alarms.push_back(fact);
+        fetch_alarms();
         axis.power(enable, true, true, view().owner);
         if (program) program();
         const double before = view().set_position;
+        const bool homed = view().homed;
         axis.plan(now, cycle);
         axis.encode(now);
-        if (seen_++ > 0) largest_step = std::max(largest_step, std::abs(view().set_position - before));
+        fetch_alarms();
+        // Homing gives the same place another number: no step.
+        if (seen_++ > 0 && homed == view().homed) largest_step = std::max(largest_step, std::abs(view().set_position - before));
         largest_velocity = std::max(largest_velocity, std::abs(view().set_velocity));
         largest_acceleration = std::max(largest_acceleration, std::abs(view().set_acceleration));
+    }
+    void fetch_alarms() {
+        AlarmFact fact;
+        while (axis.fetch_alarm(fact)) alarms.push_back(fact);
     }
     void run(int cycles) {
         for (int i = 0; i < cycles; ++i) step();
