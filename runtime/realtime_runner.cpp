@@ -1,0 +1,101 @@
+#include "runtime/realtime_runner.hpp"
+
+#include <fmt/format.h>
+
+#include "core/math.hpp"
+
+namespace taktwerk::runtime {
+
+namespace {
+
+constexpr Duration service_period = std::chrono::milliseconds{1};
+constexpr Duration bring_up_patience = std::chrono::seconds{30};
+
+}  // namespace
+
+RealtimeRunner::RealtimeRunner(Machine& machine, World* world) : machine_(machine), world_(world) {
+    const auto& wanted = machine.config().realtime;
+    request_.priority = wanted.priority > 0 ? std::optional<int>{wanted.priority} : std::nullopt;
+    request_.cpus = wanted.cpus;
+    request_.lock_memory = wanted.lock_memory;
+}
+
+RealtimeRunner::~RealtimeRunner() { finish(); }
+
+void RealtimeRunner::cycle_thread() {
+    report_ = prepare_cycle_thread(request_);
+    set_stepping_thread_float_environment();
+    ready_.store(true, std::memory_order_release);
+    CyclicConfig config;
+    config.period = machine_.config().cycle;
+    CyclicThread loop{clock_, config};
+    loop.run(
+        [this](const CycleTiming& timing) {
+            if (world_) world_->apply_events(timing.scheduled);
+            machine_.cycle({timing.scheduled, timing.woken, static_cast<std::uint32_t>(timing.missed)});
+        },
+        stop_);
+    counters_ = loop.counters();
+}
+
+void RealtimeRunner::task_thread(std::size_t index) {
+    set_stepping_thread_float_environment();
+    // The cycle never wakes anybody (that would be a system call): a task looks for its release itself, often enough.
+    const Duration look = machine_.config().cycle / 4;
+    while (!stop_.load(std::memory_order_acquire)) {
+        if (!machine_.run_slow_task(index)) clock_.sleep_until(clock_.now() + look);
+    }
+}
+
+Result<RealtimeReport> RealtimeRunner::start() {
+    auto whole = prepare_process(request_, latency_);
+    cycle_ = std::thread{[this] { cycle_thread(); }};
+    while (!ready_.load(std::memory_order_acquire)) std::this_thread::yield();
+    whole.items.insert(whole.items.end(), report_.items.begin(), report_.items.end());
+    if (machine_.config().realtime.required && !whole.all_granted()) {
+        finish();
+        return Error{"realtime.refused", "realtime", "the configuration requires real time, and the system refuses it:\n" + whole.text(),
+                     "give the process CAP_SYS_NICE and CAP_IPC_LOCK, or set `realtime.required: false`"};
+    }
+    for (std::size_t i = 0; i < machine_.slow_task_count(); ++i) tasks_.emplace_back([this, i] { task_thread(i); });
+    return whole;
+}
+
+void RealtimeRunner::service() {
+    next_service_ = std::max(next_service_ + service_period, clock_.now());
+    clock_.sleep_until(next_service_);
+    machine_.service(clock_.now());
+}
+
+Result<void> RealtimeRunner::serve(const std::function<bool(Instant)>& keep_on) {
+    next_service_ = clock_.now();
+    machine_.start_bus();
+    const auto until = clock_.now() + bring_up_patience;
+    while (!machine_.bus_operational()) {
+        service();
+        if (auto failure = machine_.bus_failure()) return *failure;
+        if (!keep_on(clock_.now())) return {};
+        if (clock_.now() > until)
+            return Error{"bus.timeout", "bus", fmt::format("not operational after {:.0f} s; last: {}", to_seconds(bring_up_patience), machine_.bus_progress()),
+                         "look at the slave that this line names"};
+    }
+    if (auto armed = machine_.arm(); !armed) return armed;
+    while (machine_.phase() != MachinePhase::stopped) {
+        service();
+        if (!keep_on(clock_.now())) machine_.request_shutdown();
+    }
+    machine_.stop_bus();
+    const auto down = clock_.now() + std::chrono::seconds{5};
+    while (machine_.bus().phase() != ecat::Master::Phase::stopped && clock_.now() < down) service();
+    return {};
+}
+
+void RealtimeRunner::finish() {
+    stop_.store(true, std::memory_order_release);
+    if (cycle_.joinable()) cycle_.join();
+    for (auto& task : tasks_)
+        if (task.joinable()) task.join();
+    tasks_.clear();
+}
+
+}  // namespace taktwerk::runtime
