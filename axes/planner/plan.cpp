@@ -41,10 +41,12 @@ PlanError check(const MotionState& from, double target, const MotionLimits& limi
     return jerk_in_bounds || std::isinf(limits.jerk) ? PlanError::none : PlanError::out_of_bounds;
 }
 
+double without_negligible(double x) noexcept { return std::abs(x) < PlanBounds::negligible ? 0 : x; }
+
 Plan refuse(const MotionState& from, PlanError error) noexcept { return {Profile{from}, error}; }
 
 Plan to_velocity(const MotionState& from, double target_velocity, const TwoWayLimits& limits) noexcept {
-    const VelocityRamp ramp{from.velocity, from.acceleration, target_velocity, limits};
+    const VelocityRamp ramp{without_negligible(from.velocity), without_negligible(from.acceleration), without_negligible(target_velocity), limits};
     // Only the last piece counts back from the end: it makes velocity and acceleration exact, the way is whatever it is.
     const auto stretches = ramp.stretches();
     const std::size_t forward = stretches.empty() ? 0 : stretches.size() - 1;
@@ -129,10 +131,10 @@ private:
 
         double low = 0;
         double high = stretch.duration;
-        const double whole = end_position - stop_position(begin);
-        const double share = (way_ - (end_position - whole)) / whole;
         // The end grows between linearly and with the fourth power of the moment; the cube is typical.
-        double t = share > 0 && share < 1 ? high * std::min(rough_cube_root(share), 1.0) : high / 2;
+        const double none = stop_position(begin);
+        double t = high / 2;
+        if (way_ > none && end_position > way_) t = high * std::min(rough_cube_root((way_ - none) / (end_position - none)), 0.999);
         double best = high;
         double best_miss = std::abs(end_position - way_);
         double last_miss = std::numeric_limits<double>::infinity();
@@ -145,7 +147,7 @@ private:
                 best = t;
                 best_miss = miss;
             }
-            if (miss <= epsilon * (std::abs(way_) + stop.path())) break;
+            if (miss <= 2 * epsilon * (std::abs(way_) + stop.path())) break;
             (beyond < 0 ? low : high) = t;
 
             const double stop_jerk = stop.stretches().empty() ? 0 : stop.stretches().front().jerk;
@@ -188,23 +190,25 @@ Plan plan_stop(const MotionState& from, const MotionLimits& limits) noexcept {
 
 double stopping_distance(const MotionState& from, const MotionLimits& limits) noexcept {
     if (check(from, 0, limits) != PlanError::none) return std::numeric_limits<double>::quiet_NaN();
-    return VelocityRamp{from.velocity, from.acceleration, 0, two_way(limits)}.travel();
+    return VelocityRamp{without_negligible(from.velocity), without_negligible(from.acceleration), 0, two_way(limits)}.travel();
 }
 
 Plan plan_to_position(const MotionState& from, double target, const MotionLimits& limits) noexcept {
     if (const PlanError error = check(from, target, limits); error != PlanError::none) return refuse(from, error);
 
     const TwoWayLimits both = two_way(limits);
-    const double way = target - from.position;
+    const double way = without_negligible(target - from.position);
+    const double velocity = without_negligible(from.velocity);
+    const double acceleration = without_negligible(from.acceleration);
     const MotionState end{target, 0, 0};
-    const VelocityRamp stop{from.velocity, from.acceleration, 0, both};
+    const VelocityRamp stop{velocity, acceleration, 0, both};
     // As close as the numbers can tell. A correction of a rounding error would cost time that grows with its cube root.
     const double rounding = epsilon * (2 * stop.path() + std::max(std::abs(target), std::abs(from.position)) / 2);
     const double missing = way - stop.travel();
     if (missing == 0 || (std::abs(missing) <= rounding && !stop.stretches().empty())) return {Profile{from, {}, stop.stretches(), end}, PlanError::none};
 
     const double sign = missing > 0 ? 1 : -1;
-    PushSearch search{sign * way, sign * from.velocity, sign * from.acceleration, sign > 0 ? both : both.mirrored()};
+    PushSearch search{sign * way, sign * velocity, sign * acceleration, sign > 0 ? both : both.mirrored()};
     const VelocityRamp last = search.run();
 
     std::array<Stretch, 6> backward{};

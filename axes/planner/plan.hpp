@@ -26,6 +26,7 @@ enum class PlanError : std::uint8_t {
 struct PlanBounds {
     static constexpr double largest = 1e30;          ///< any number handed in, in its unit
     static constexpr double smallest_limit = 1e-30;  ///< any limit, in its unit
+    static constexpr double negligible = 1e-150;     ///< a smaller way, velocity or acceleration counts as 0: its square would vanish
 };
 
 /// With an error the profile moves on from the start position at the start velocity: not a motion to run.

@@ -125,8 +125,12 @@ TEST(PlanProperty, AStartOutsideTheLimitsGetsNoFurtherOutside) {
     });
 }
 
+// The tolerance is what correcting a rounding error costs, and that grows with its cube root near the end of a motion; elsewhere the times agree far
+// better, so most must.
 TEST(PlanProperty, ReplanningOnTheWayNeitherGainsNorLosesTime) {
-    for_random_motions(5, [](const MotionCase& c, RandomMotion& random) {
+    std::size_t replans = 0;
+    std::size_t close = 0;
+    for_random_motions(5, [&](const MotionCase& c, RandomMotion& random) {
         const Profile profile = plan_to_position(c.from, c.target, c.limits).profile;
         const Rounding rounding{c, profile};
         for (int i = 0; i < 4; ++i) {
@@ -134,8 +138,11 @@ TEST(PlanProperty, ReplanningOnTheWayNeitherGainsNorLosesTime) {
             const Plan again = plan_to_position(profile.at(t), c.target, c.limits);
             ASSERT_EQ(again.error, PlanError::none);
             ASSERT_NEAR(t + again.profile.duration(), profile.duration(), rounding.time) << "from " << t;
+            ++replans;
+            close += std::abs(t + again.profile.duration() - profile.duration()) <= 1e-9 * profile.duration();
         }
     });
+    EXPECT_GT(static_cast<double>(close), 0.95 * static_cast<double>(replans));
 }
 
 TEST(PlanProperty, LargerLimitsAreNeverSlower) {
