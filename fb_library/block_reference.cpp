@@ -62,7 +62,8 @@ std::string block_reference_markdown() {
         page += "\n### ";
         page += name;
         page += "\n\n";
-        for (std::size_t i = 0; i < values.size(); ++i) page += std::to_string(i) + " " + std::string{values[i]} + (i + 1 < values.size() ? ", " : "\n");
+        for (std::size_t i = 0; i < values.size(); ++i)
+            page += std::to_string(i) + " " + std::string{values[i]} + (i + 1 < values.size() ? ", " : "\n");
     }
     return page;
 }

@@ -21,11 +21,9 @@ struct BlockType {
     void (*run)(void* bytes, const axes::MotionContext& context) noexcept = nullptr;
     /// After a reboot, on an instance whose bytes were retained: running timers go on, commands under way are CommandAborted.
     void (*warm_start)(void* bytes, Instant now) noexcept = nullptr;
-    std::span<const Pin> pins;        ///< in the standard's order
+    std::span<const Pin> pins;  ///< in the standard's order
 
-    [[nodiscard]] std::span<const std::byte> prototype_bytes() const noexcept {
-        return {static_cast<const std::byte*>(prototype), size};
-    }
+    [[nodiscard]] std::span<const std::byte> prototype_bytes() const noexcept { return {static_cast<const std::byte*>(prototype), size}; }
     [[nodiscard]] constexpr const Pin* pin(std::string_view pin_name) const noexcept {
         for (const Pin& p : pins)
             if (p.name == pin_name) return &p;
@@ -46,7 +44,7 @@ void run_block(void* bytes, const axes::MotionContext& context) noexcept {
 }
 template <class Block>
 void warm_start_block([[maybe_unused]] void* bytes, [[maybe_unused]] Instant now) noexcept {
-    if constexpr (requires(Block& block) { block.warm_start(now); }) static_cast<Block*>(bytes)->warm_start(now);
+    if constexpr (requires(Block & block) { block.warm_start(now); }) static_cast<Block*>(bytes)->warm_start(now);
 }
 
 }  // namespace detail
@@ -55,13 +53,18 @@ template <class Block>
 [[nodiscard]] consteval BlockType block_type() {
     static_assert(std::is_trivially_copyable_v<Block> && std::is_trivially_destructible_v<Block>,
                   "a block is plain data: it is copied, kept and dropped as bytes");
-    return {block_name<Block>(),         Block::summary,
-            sizeof(Block),               alignof(Block),
-            &detail::prototype_of<Block>, &detail::run_block<Block>,
-            &detail::warm_start_block<Block>, detail::pins_of<Block>};
+    return {block_name<Block>(),
+            Block::summary,
+            sizeof(Block),
+            alignof(Block),
+            &detail::prototype_of<Block>,
+            &detail::run_block<Block>,
+            &detail::warm_start_block<Block>,
+            detail::pins_of<Block>};
 }
 
-/// FNV-1a over what a user of the block relies on: name, size, alignment and each pin's name, direction, type and place.
+/// FNV-1a over what a user of the block relies on: name, size, alignment and each pin's name, direction, type (with
+/// the values of an enumeration) and place.
 [[nodiscard]] constexpr std::uint64_t layout_hash(std::uint64_t hash, const BlockType& block) noexcept {
     const auto number = [&hash](std::uint64_t value) {
         for (int i = 0; i < 8; ++i) hash = (hash ^ ((value >> (8 * i)) & 0xFF)) * 0x100000001B3;
@@ -79,6 +82,7 @@ template <class Block>
         number(static_cast<std::uint64_t>(pin.direction));
         number(pin.offset);
         number(pin.size);
+        for (const auto value : pin.type.values) text(value);
     }
     return hash;
 }

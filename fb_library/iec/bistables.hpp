@@ -15,7 +15,11 @@ struct SR {
 
     static constexpr std::string_view summary = "Bistable, set dominant: Q1 := S1 OR (NOT R AND Q1).";
     static consteval auto pins() {
-        return std::array{in<&SR::S1>("", "set, dominant"), in<&SR::R>("", "reset"), out<&SR::Q1>("", "state")};
+        return std::array{
+            in<&SR::S1>("", "set, dominant"),
+            in<&SR::R>("", "reset"),
+            out<&SR::Q1>("", "state"),
+        };
     }
 
     constexpr void operator()(const CycleContext&) noexcept { Q1 = S1 || (!R && Q1); }
@@ -27,7 +31,11 @@ struct RS {
 
     static constexpr std::string_view summary = "Bistable, reset dominant: Q1 := NOT R1 AND (S OR Q1).";
     static consteval auto pins() {
-        return std::array{in<&RS::S>("", "set"), in<&RS::R1>("", "reset, dominant"), out<&RS::Q1>("", "state")};
+        return std::array{
+            in<&RS::S>("", "set"),
+            in<&RS::R1>("", "reset, dominant"),
+            out<&RS::Q1>("", "state"),
+        };
     }
 
     constexpr void operator()(const CycleContext&) noexcept { Q1 = !R1 && (S || Q1); }

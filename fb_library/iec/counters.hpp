@@ -50,9 +50,13 @@ struct CountUp {
     static constexpr std::string_view block_name = detail::variant<T>({"CTU", "CTU_DINT", "CTU_LINT", "CTU_UDINT", "CTU_ULINT"});
     static constexpr std::string_view summary = "Counts rising edges up; Q when CV has reached PV.";
     static consteval auto pins() {
-        return std::array{in<&CountUp::CU>("", "count, rising edge"), in<&CountUp::R>("", "CV := 0, dominant"),
-                          in<&CountUp::PV>("", "preset"), out<&CountUp::Q>("", "CV >= PV"),
-                          out<&CountUp::CV>("", "count; stops at the type's largest value")};
+        return std::array{
+            in<&CountUp::CU>("", "count, rising edge"),
+            in<&CountUp::R>("", "CV := 0, dominant"),
+            in<&CountUp::PV>("", "preset"),
+            out<&CountUp::Q>("", "CV >= PV"),
+            out<&CountUp::CV>("", "count; stops at the type's largest value"),
+        };
     }
 
     constexpr void operator()(const CycleContext&) noexcept {
@@ -74,9 +78,13 @@ struct CountDown {
     static constexpr std::string_view block_name = detail::variant<T>({"CTD", "CTD_DINT", "CTD_LINT", "CTD_UDINT", "CTD_ULINT"});
     static constexpr std::string_view summary = "Counts rising edges down from PV; Q when CV has reached 0.";
     static consteval auto pins() {
-        return std::array{in<&CountDown::CD>("", "count, rising edge"), in<&CountDown::LD>("", "CV := PV, dominant"),
-                          in<&CountDown::PV>("", "preset"), out<&CountDown::Q>("", "CV <= 0"),
-                          out<&CountDown::CV>("", "count; stops at the type's smallest value")};
+        return std::array{
+            in<&CountDown::CD>("", "count, rising edge"),
+            in<&CountDown::LD>("", "CV := PV, dominant"),
+            in<&CountDown::PV>("", "preset"),
+            out<&CountDown::Q>("", "CV <= 0"),
+            out<&CountDown::CV>("", "count; stops at the type's smallest value"),
+        };
     }
 
     constexpr void operator()(const CycleContext&) noexcept {
@@ -98,10 +106,16 @@ struct CountUpDown {
     static constexpr std::string_view block_name = detail::variant<T>({"CTUD", "CTUD_DINT", "CTUD_LINT", "CTUD_UDINT", "CTUD_ULINT"});
     static constexpr std::string_view summary = "Counts up and down; QU when CV has reached PV, QD when it has reached 0.";
     static consteval auto pins() {
-        return std::array{in<&CountUpDown::CU>("", "count up, rising edge"), in<&CountUpDown::CD>("", "count down, rising edge"),
-                          in<&CountUpDown::R>("", "CV := 0, dominant over LD"), in<&CountUpDown::LD>("", "CV := PV"),
-                          in<&CountUpDown::PV>("", "preset"), out<&CountUpDown::QU>("", "CV >= PV"), out<&CountUpDown::QD>("", "CV <= 0"),
-                          out<&CountUpDown::CV>("", "count; stops at the type's limits")};
+        return std::array{
+            in<&CountUpDown::CU>("", "count up, rising edge"),
+            in<&CountUpDown::CD>("", "count down, rising edge"),
+            in<&CountUpDown::R>("", "CV := 0, dominant over LD"),
+            in<&CountUpDown::LD>("", "CV := PV"),
+            in<&CountUpDown::PV>("", "preset"),
+            out<&CountUpDown::QU>("", "CV >= PV"),
+            out<&CountUpDown::QD>("", "CV <= 0"),
+            out<&CountUpDown::CV>("", "count; stops at the type's limits"),
+        };
     }
 
     constexpr void operator()(const CycleContext&) noexcept {

@@ -18,7 +18,12 @@ struct R_TRIG {
     bool M = false;  ///< CLK of the last call; not a pin
 
     static constexpr std::string_view summary = "Rising edge: Q is TRUE for one call when CLK has become TRUE.";
-    static consteval auto pins() { return std::array{in<&R_TRIG::CLK>("", "signal"), out<&R_TRIG::Q>("", "edge, for one call")}; }
+    static consteval auto pins() {
+        return std::array{
+            in<&R_TRIG::CLK>("", "signal"),
+            out<&R_TRIG::Q>("", "edge, for one call"),
+        };
+    }
 
     constexpr void operator()(const CycleContext&) noexcept {
         Q = CLK && !M;
@@ -32,7 +37,12 @@ struct F_TRIG {
     bool M = false;  ///< NOT CLK of the last call; not a pin
 
     static constexpr std::string_view summary = "Falling edge: Q is TRUE for one call when CLK has become FALSE.";
-    static consteval auto pins() { return std::array{in<&F_TRIG::CLK>("", "signal"), out<&F_TRIG::Q>("", "edge, for one call")}; }
+    static consteval auto pins() {
+        return std::array{
+            in<&F_TRIG::CLK>("", "signal"),
+            out<&F_TRIG::Q>("", "edge, for one call"),
+        };
+    }
 
     constexpr void operator()(const CycleContext&) noexcept {
         Q = !CLK && !M;

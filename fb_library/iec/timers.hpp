@@ -61,8 +61,12 @@ struct TON {
 
     static constexpr std::string_view summary = "On-delay: Q follows a rising IN after PT, a falling IN at once.";
     static consteval auto pins() {
-        return std::array{in<&TON::IN>("", "starts the delay while TRUE"), in<&TON::PT>("", "delay; live until expired; negative = 0"),
-                          out<&TON::Q>("", "IN has been TRUE for PT"), out<&TON::ET>("", "elapsed time, at most PT; 0 while IN is FALSE")};
+        return std::array{
+            in<&TON::IN>("", "starts the delay while TRUE"),
+            in<&TON::PT>("", "delay; live until expired; negative = 0"),
+            out<&TON::Q>("", "IN has been TRUE for PT"),
+            out<&TON::ET>("", "elapsed time, at most PT; 0 while IN is FALSE"),
+        };
     }
 
     constexpr void operator()(const CycleContext& ctx) noexcept {
@@ -88,9 +92,12 @@ struct TOF {
 
     static constexpr std::string_view summary = "Off-delay: Q follows a rising IN at once, a falling IN after PT.";
     static consteval auto pins() {
-        return std::array{in<&TOF::IN>("", "a falling edge starts the delay, a rising one cancels it"),
-                          in<&TOF::PT>("", "delay; live until expired; negative = 0"), out<&TOF::Q>("", "IN is TRUE, or was within PT"),
-                          out<&TOF::ET>("", "time since the falling edge, at most PT; 0 while IN is TRUE")};
+        return std::array{
+            in<&TOF::IN>("", "a falling edge starts the delay, a rising one cancels it"),
+            in<&TOF::PT>("", "delay; live until expired; negative = 0"),
+            out<&TOF::Q>("", "IN is TRUE, or was within PT"),
+            out<&TOF::ET>("", "time since the falling edge, at most PT; 0 while IN is TRUE"),
+        };
     }
 
     constexpr void operator()(const CycleContext& ctx) noexcept {
@@ -116,9 +123,12 @@ struct TP {
 
     static constexpr std::string_view summary = "Pulse: a rising IN gives one pulse of length PT, whatever IN does meanwhile.";
     static consteval auto pins() {
-        return std::array{in<&TP::IN>("", "a rising edge starts the pulse; ignored while it lasts"),
-                          in<&TP::PT>("", "length; live until expired; negative = 0"), out<&TP::Q>("", "the pulse"),
-                          out<&TP::ET>("", "elapsed time, at most PT; 0 once the pulse is over and IN is FALSE")};
+        return std::array{
+            in<&TP::IN>("", "a rising edge starts the pulse; ignored while it lasts"),
+            in<&TP::PT>("", "length; live until expired; negative = 0"),
+            out<&TP::Q>("", "the pulse"),
+            out<&TP::ET>("", "elapsed time, at most PT; 0 once the pulse is over and IN is FALSE"),
+        };
     }
 
     constexpr void operator()(const CycleContext& ctx) noexcept {

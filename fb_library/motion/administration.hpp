@@ -17,7 +17,7 @@ struct MC_Reset : ExecuteBlock<MC_Reset> {
     bool Done = false, Busy = false, Error = false;
     ErrorId ErrorID{};
 
-    Instant started{};          ///< not a pin
+    Instant started{};            ///< not a pin
     bool seen_resetting = false;  ///< not a pin
 
     /// Longer than an axis waits for its drive to acknowledge.
@@ -25,12 +25,14 @@ struct MC_Reset : ExecuteBlock<MC_Reset> {
 
     static constexpr std::string_view summary = "Clears the axis' errors: from ErrorStop to Standstill or Disabled.";
     static consteval auto pins() {
-        return std::array{in_out<&Self::Axis>("", "axis acted on"),
-                          in<&Self::Execute>("", "a rising edge starts"),
-                          out<&Self::Done>("", "the axis is not in ErrorStop (any more)"),
-                          out<&Self::Busy>("", "not finished"),
-                          out<&Self::Error>("", "refused, or the cause is still there"),
-                          out<&Self::ErrorID>("", "why")};
+        return std::array{
+            in_out<&Self::Axis>("", "axis acted on"),
+            in<&Self::Execute>("", "a rising edge starts"),
+            out<&Self::Done>("", "the axis is not in ErrorStop (any more)"),
+            out<&Self::Busy>("", "not finished"),
+            out<&Self::Error>("", "refused, or the cause is still there"),
+            out<&Self::ErrorID>("", "why"),
+        };
     }
 
 private:
@@ -69,15 +71,17 @@ struct MC_SetPosition : ExecuteBlock<MC_SetPosition> {
 
     static constexpr std::string_view summary = "Shifts the axis' coordinates: set and actual position alike, without motion.";
     static consteval auto pins() {
-        return std::array{in_out<&Self::Axis>("", "axis acted on"),
-                          in<&Self::Execute>("", "a rising edge starts"),
-                          in<&Self::Position>("u", "the actual position's new value; with Relative added to it"),
-                          in<&Self::Relative>("", "Position is a distance"),
-                          in<&Self::ExecutionMode>("", "mcQueued is not supported so far and gives Error"),
-                          out<&Self::Done>("", "the position has its new value"),
-                          out<&Self::Busy>("", "not finished"),
-                          out<&Self::Error>("", "refused"),
-                          out<&Self::ErrorID>("", "why")};
+        return std::array{
+            in_out<&Self::Axis>("", "axis acted on"),
+            in<&Self::Execute>("", "a rising edge starts"),
+            in<&Self::Position>("u", "the actual position's new value; with Relative added to it"),
+            in<&Self::Relative>("", "Position is a distance"),
+            in<&Self::ExecutionMode>("", "mcQueued is not supported so far and gives Error"),
+            out<&Self::Done>("", "the position has its new value"),
+            out<&Self::Busy>("", "not finished"),
+            out<&Self::Error>("", "refused"),
+            out<&Self::ErrorID>("", "why"),
+        };
     }
 
 private:

@@ -51,10 +51,8 @@ protected:
     }
 
     void follow(const MotionContext& ctx) noexcept {
-        if constexpr (requires { Block::in_target_pin; })
-            this->core_.follow(ctx, Completion::in_target);
-        else
-            this->core_.follow(ctx, Completion::done);
+        if constexpr (requires { Block::in_target_pin; }) this->core_.follow(ctx, Completion::in_target);
+        else this->core_.follow(ctx, Completion::done);
     }
 };
 

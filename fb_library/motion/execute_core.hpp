@@ -57,7 +57,9 @@ public:
             case Status::queued: phase_ = Phase::waiting; break;
             case Status::active: phase_ = Phase::active; break;
             case Status::in_target:
-                phase_ = completion == Completion::done_held ? Phase::done : completion == Completion::in_target ? Phase::in_target : Phase::active;
+                phase_ = completion == Completion::done_held   ? Phase::done
+                         : completion == Completion::in_target ? Phase::in_target
+                                                               : Phase::active;
                 break;
             // A block without a Done pin has not completed: a buffered successor took over.
             case Status::done: phase_ = completion == Completion::in_target ? Phase::aborted : Phase::done; break;

@@ -19,16 +19,18 @@ struct MC_Home : CommandBlock<MC_Home> {
 
     static constexpr std::string_view summary = "Runs the axis' configured search for its reference.";
     static consteval auto pins() {
-        return std::array{in_out<&Self::Axis>("", "axis acted on"),
-                          in<&Self::Execute>("", "a rising edge starts"),
-                          in<&Self::Position>("u", "coordinate of the reference"),
-                          in<&Self::BufferMode>("", "when the command takes effect"),
-                          out<&Self::Done>("", "reference known and set, axis in Standstill"),
-                          out<&Self::Busy>("", "not finished"),
-                          out<&Self::Active>("", "this command controls the axis"),
-                          out<&Self::CommandAborted>("", "another command took over, or power went off"),
-                          out<&Self::Error>("", "refused, or the reference was not found"),
-                          out<&Self::ErrorID>("", "why")};
+        return std::array{
+            in_out<&Self::Axis>("", "axis acted on"),
+            in<&Self::Execute>("", "a rising edge starts"),
+            in<&Self::Position>("u", "coordinate of the reference"),
+            in<&Self::BufferMode>("", "when the command takes effect"),
+            out<&Self::Done>("", "reference known and set, axis in Standstill"),
+            out<&Self::Busy>("", "not finished"),
+            out<&Self::Active>("", "this command controls the axis"),
+            out<&Self::CommandAborted>("", "another command took over, or power went off"),
+            out<&Self::Error>("", "refused, or the reference was not found"),
+            out<&Self::ErrorID>("", "why"),
+        };
     }
 
     [[nodiscard]] axes::AxisCommand command() const noexcept {

@@ -28,8 +28,8 @@ struct MC_Jog {
     ErrorId ErrorID{};
 
     ExecuteCore core{};
-    struct Press {               ///< what the last press latched; not pins
-        std::int8_t sense = 0;   ///< +1 forward, -1 backwards
+    struct Press {              ///< what the last press latched; not pins
+        std::int8_t sense = 0;  ///< +1 forward, -1 backwards
         MC_JogMode mode = mcJogStandardSlow;
         bool released = false;
         bool halting = false;
@@ -38,21 +38,23 @@ struct MC_Jog {
     static constexpr std::string_view summary = "Moves the axis by hand, as long as an input is TRUE.";
     static consteval auto pins() {
         using Self = MC_Jog;
-        return std::array{in_out<&Self::Axis>("", "axis acted on"),
-                          in<&Self::JogForward>("", "moves in positive direction while TRUE; wins over JogBackwards"),
-                          in<&Self::JogBackwards>("", "moves in negative direction while TRUE"),
-                          in<&Self::Mode>("", "which speed, or inching; taken when pressed"),
-                          in<&Self::Position>("u", "inching: distance, > 0"),
-                          in<&Self::Velocity>("u/s", "continuous, inching: > 0; continuous follows changes"),
-                          in<&Self::Acceleration>("u/s2", "continuous, inching; 0 = the axis' default"),
-                          in<&Self::Deceleration>("u/s2", "continuous, inching; 0 = the axis' default"),
-                          in<&Self::Jerk>("u/s3", "continuous, inching; 0 = the axis' default"),
-                          out<&Self::Done>("", "standing again after a jog"),
-                          out<&Self::Busy>("", "moving or braking"),
-                          out<&Self::Active>("", "this block controls the axis"),
-                          out<&Self::CommandAborted>("", "another command took over, or power went off"),
-                          out<&Self::Error>("", "refused, or ended by an axis error"),
-                          out<&Self::ErrorID>("", "why")};
+        return std::array{
+            in_out<&Self::Axis>("", "axis acted on"),
+            in<&Self::JogForward>("", "moves in positive direction while TRUE; wins over JogBackwards"),
+            in<&Self::JogBackwards>("", "moves in negative direction while TRUE"),
+            in<&Self::Mode>("", "which speed, or inching; taken when pressed"),
+            in<&Self::Position>("u", "inching: distance, > 0"),
+            in<&Self::Velocity>("u/s", "continuous, inching: > 0; continuous follows changes"),
+            in<&Self::Acceleration>("u/s2", "continuous, inching; 0 = the axis' default"),
+            in<&Self::Deceleration>("u/s2", "continuous, inching; 0 = the axis' default"),
+            in<&Self::Jerk>("u/s3", "continuous, inching; 0 = the axis' default"),
+            out<&Self::Done>("", "standing again after a jog"),
+            out<&Self::Busy>("", "moving or braking"),
+            out<&Self::Active>("", "this block controls the axis"),
+            out<&Self::CommandAborted>("", "another command took over, or power went off"),
+            out<&Self::Error>("", "refused, or ended by an axis error"),
+            out<&Self::ErrorID>("", "why"),
+        };
     }
 
     void operator()(const MotionContext& ctx) noexcept {
@@ -80,12 +82,21 @@ private:
         if (!(velocity > 0) || !std::isfinite(velocity)) return core.refuse(ErrorId::invalid_velocity);
         if (Mode == mcJogInching) {
             if (!(Position > 0)) return core.refuse(ErrorId::invalid_position);
-            return core.submit(ctx, Axis, {.kind = axes::CommandKind::move_relative, .position = press.sense * Position, .velocity = velocity,
-                                           .acceleration = Acceleration, .deceleration = Deceleration, .jerk = Jerk});
+            return core.submit(ctx, Axis,
+                               {.kind = axes::CommandKind::move_relative,
+                                .position = press.sense * Position,
+                                .velocity = velocity,
+                                .acceleration = Acceleration,
+                                .deceleration = Deceleration,
+                                .jerk = Jerk});
         }
         const bool own = Mode == mcJogContinuous;
-        core.submit(ctx, Axis, {.kind = axes::CommandKind::jog, .velocity = press.sense * velocity, .acceleration = own ? Acceleration : 0.0,
-                                .deceleration = own ? Deceleration : 0.0, .jerk = own ? Jerk : 0.0});
+        core.submit(ctx, Axis,
+                    {.kind = axes::CommandKind::jog,
+                     .velocity = press.sense * velocity,
+                     .acceleration = own ? Acceleration : 0.0,
+                     .deceleration = own ? Deceleration : 0.0,
+                     .jerk = own ? Jerk : 0.0});
     }
 
     void keep_moving_or_halt(const MotionContext& ctx) noexcept {
@@ -95,7 +106,8 @@ private:
         if (press.released) {
             press.halting = true;
             const bool own = press.mode == mcJogContinuous;
-            core.submit(ctx, core.axis(), {.kind = axes::CommandKind::halt, .deceleration = own ? Deceleration : 0.0, .jerk = own ? Jerk : 0.0});
+            core.submit(ctx, core.axis(),
+                        {.kind = axes::CommandKind::halt, .deceleration = own ? Deceleration : 0.0, .jerk = own ? Jerk : 0.0});
         } else if (!(velocity > 0) || !std::isfinite(velocity)) {
             core.refuse(ErrorId::invalid_velocity);  // no renewal: the axis stops when the lease ends
         } else if (const ErrorId error = ctx.requests->renew_jog(core.axis(), core.command(), press.sense * velocity, ctx.owner);

@@ -41,6 +41,7 @@ inline constexpr std::array<std::string_view, 5> jog_mode_names{"mcJogStandardSl
                                                                 "mcJogInchingModulo"};
 }  // namespace detail
 
+// clang-format off
 template <> struct PinTypeOf<AxisRef> { static constexpr PinType value{PinKind::AXIS_REF, "AXIS_REF"}; };
 template <> struct PinTypeOf<ErrorId> { static constexpr PinType value{PinKind::WORD, "WORD"}; };
 template <> struct PinTypeOf<MC_BufferMode> { static constexpr PinType value{PinKind::ENUM, "MC_BUFFER_MODE", detail::buffer_mode_names}; };
@@ -49,5 +50,6 @@ template <> struct PinTypeOf<MC_ExecutionMode> {
     static constexpr PinType value{PinKind::ENUM, "MC_EXECUTION_MODE", detail::execution_mode_names};
 };
 template <> struct PinTypeOf<MC_JogMode> { static constexpr PinType value{PinKind::ENUM, "MC_JOG_MODE", detail::jog_mode_names}; };
+// clang-format on
 
 }  // namespace taktwerk::fb

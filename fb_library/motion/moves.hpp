@@ -24,27 +24,35 @@ struct MC_MoveAbsolute : CommandBlock<MC_MoveAbsolute> {
 
     static constexpr std::string_view summary = "Moves the axis to an absolute position.";
     static consteval auto pins() {
-        return std::array{in_out<&Self::Axis>("", "axis acted on"),
-                          in<&Self::Execute>("", "a rising edge starts"),
-                          in<&Self::ContinuousUpdate>("", "not supported so far: TRUE at the edge gives Error"),
-                          in<&Self::Position>("u", "target"),
-                          in<&Self::Velocity>("u/s", "largest velocity, > 0; need not be reached"),
-                          in<&Self::Acceleration>("u/s2", "0 = the axis' default"),
-                          in<&Self::Deceleration>("u/s2", "0 = the axis' default"),
-                          in<&Self::Jerk>("u/s3", "0 = the axis' default"),
-                          in<&Self::Direction>("", "for modulo axes; a linear axis ignores it"),
-                          in<&Self::BufferMode>("", "when the command takes effect"),
-                          out<&Self::Done>("", "target reached by the set-point, standing"),
-                          out<&Self::Busy>("", "not finished"),
-                          out<&Self::Active>("", "this command controls the axis"),
-                          out<&Self::CommandAborted>("", "another command took over, or power went off"),
-                          out<&Self::Error>("", "refused, or ended by an axis error"),
-                          out<&Self::ErrorID>("", "why")};
+        return std::array{
+            in_out<&Self::Axis>("", "axis acted on"),
+            in<&Self::Execute>("", "a rising edge starts"),
+            in<&Self::ContinuousUpdate>("", "not supported so far: TRUE at the edge gives Error"),
+            in<&Self::Position>("u", "target"),
+            in<&Self::Velocity>("u/s", "largest velocity, > 0; need not be reached"),
+            in<&Self::Acceleration>("u/s2", "0 = the axis' default"),
+            in<&Self::Deceleration>("u/s2", "0 = the axis' default"),
+            in<&Self::Jerk>("u/s3", "0 = the axis' default"),
+            in<&Self::Direction>("", "for modulo axes; a linear axis ignores it"),
+            in<&Self::BufferMode>("", "when the command takes effect"),
+            out<&Self::Done>("", "target reached by the set-point, standing"),
+            out<&Self::Busy>("", "not finished"),
+            out<&Self::Active>("", "this command controls the axis"),
+            out<&Self::CommandAborted>("", "another command took over, or power went off"),
+            out<&Self::Error>("", "refused, or ended by an axis error"),
+            out<&Self::ErrorID>("", "why"),
+        };
     }
 
     [[nodiscard]] axes::AxisCommand command() const noexcept {
-        return {.kind = axes::CommandKind::move_absolute, .buffer_mode = BufferMode, .direction = Direction, .position = Position,
-                .velocity = Velocity, .acceleration = Acceleration, .deceleration = Deceleration, .jerk = Jerk};
+        return {.kind = axes::CommandKind::move_absolute,
+                .buffer_mode = BufferMode,
+                .direction = Direction,
+                .position = Position,
+                .velocity = Velocity,
+                .acceleration = Acceleration,
+                .deceleration = Deceleration,
+                .jerk = Jerk};
     }
 };
 
@@ -60,26 +68,33 @@ struct MC_MoveRelative : CommandBlock<MC_MoveRelative> {
 
     static constexpr std::string_view summary = "Moves the axis by a distance from the set position at the start of the motion.";
     static consteval auto pins() {
-        return std::array{in_out<&Self::Axis>("", "axis acted on"),
-                          in<&Self::Execute>("", "a rising edge starts"),
-                          in<&Self::ContinuousUpdate>("", "not supported so far: TRUE at the edge gives Error"),
-                          in<&Self::Distance>("u", "signed; from the set position, not the actual one"),
-                          in<&Self::Velocity>("u/s", "largest velocity, > 0; need not be reached"),
-                          in<&Self::Acceleration>("u/s2", "0 = the axis' default"),
-                          in<&Self::Deceleration>("u/s2", "0 = the axis' default"),
-                          in<&Self::Jerk>("u/s3", "0 = the axis' default"),
-                          in<&Self::BufferMode>("", "when the command takes effect"),
-                          out<&Self::Done>("", "distance covered by the set-point, standing"),
-                          out<&Self::Busy>("", "not finished"),
-                          out<&Self::Active>("", "this command controls the axis"),
-                          out<&Self::CommandAborted>("", "another command took over, or power went off"),
-                          out<&Self::Error>("", "refused, or ended by an axis error"),
-                          out<&Self::ErrorID>("", "why")};
+        return std::array{
+            in_out<&Self::Axis>("", "axis acted on"),
+            in<&Self::Execute>("", "a rising edge starts"),
+            in<&Self::ContinuousUpdate>("", "not supported so far: TRUE at the edge gives Error"),
+            in<&Self::Distance>("u", "signed; from the set position, not the actual one"),
+            in<&Self::Velocity>("u/s", "largest velocity, > 0; need not be reached"),
+            in<&Self::Acceleration>("u/s2", "0 = the axis' default"),
+            in<&Self::Deceleration>("u/s2", "0 = the axis' default"),
+            in<&Self::Jerk>("u/s3", "0 = the axis' default"),
+            in<&Self::BufferMode>("", "when the command takes effect"),
+            out<&Self::Done>("", "distance covered by the set-point, standing"),
+            out<&Self::Busy>("", "not finished"),
+            out<&Self::Active>("", "this command controls the axis"),
+            out<&Self::CommandAborted>("", "another command took over, or power went off"),
+            out<&Self::Error>("", "refused, or ended by an axis error"),
+            out<&Self::ErrorID>("", "why"),
+        };
     }
 
     [[nodiscard]] axes::AxisCommand command() const noexcept {
-        return {.kind = axes::CommandKind::move_relative, .buffer_mode = BufferMode, .position = Distance, .velocity = Velocity,
-                .acceleration = Acceleration, .deceleration = Deceleration, .jerk = Jerk};
+        return {.kind = axes::CommandKind::move_relative,
+                .buffer_mode = BufferMode,
+                .position = Distance,
+                .velocity = Velocity,
+                .acceleration = Acceleration,
+                .deceleration = Deceleration,
+                .jerk = Jerk};
     }
 };
 
@@ -98,26 +113,33 @@ struct MC_MoveVelocity : CommandBlock<MC_MoveVelocity> {
     static constexpr bool MC_MoveVelocity::*in_target_pin = &MC_MoveVelocity::InVelocity;
     static constexpr std::string_view summary = "Runs the axis at a velocity until something else takes it.";
     static consteval auto pins() {
-        return std::array{in_out<&Self::Axis>("", "axis acted on"),
-                          in<&Self::Execute>("", "a rising edge starts"),
-                          in<&Self::ContinuousUpdate>("", "not supported so far: TRUE at the edge gives Error"),
-                          in<&Self::Velocity>("u/s", "signed; the sense times Direction; 0 is allowed"),
-                          in<&Self::Acceleration>("u/s2", "0 = the axis' default"),
-                          in<&Self::Deceleration>("u/s2", "0 = the axis' default"),
-                          in<&Self::Jerk>("u/s3", "0 = the axis' default"),
-                          in<&Self::Direction>("", "positive, negative or current; shortest way is an error"),
-                          in<&Self::BufferMode>("", "when the command takes effect"),
-                          out<&Self::InVelocity>("", "the set velocity is the commanded one"),
-                          out<&Self::Busy>("", "not finished"),
-                          out<&Self::Active>("", "this command controls the axis"),
-                          out<&Self::CommandAborted>("", "another command took over, or power went off"),
-                          out<&Self::Error>("", "refused, or ended by an axis error"),
-                          out<&Self::ErrorID>("", "why")};
+        return std::array{
+            in_out<&Self::Axis>("", "axis acted on"),
+            in<&Self::Execute>("", "a rising edge starts"),
+            in<&Self::ContinuousUpdate>("", "not supported so far: TRUE at the edge gives Error"),
+            in<&Self::Velocity>("u/s", "signed; the sense times Direction; 0 is allowed"),
+            in<&Self::Acceleration>("u/s2", "0 = the axis' default"),
+            in<&Self::Deceleration>("u/s2", "0 = the axis' default"),
+            in<&Self::Jerk>("u/s3", "0 = the axis' default"),
+            in<&Self::Direction>("", "positive, negative or current; shortest way is an error"),
+            in<&Self::BufferMode>("", "when the command takes effect"),
+            out<&Self::InVelocity>("", "the set velocity is the commanded one"),
+            out<&Self::Busy>("", "not finished"),
+            out<&Self::Active>("", "this command controls the axis"),
+            out<&Self::CommandAborted>("", "another command took over, or power went off"),
+            out<&Self::Error>("", "refused, or ended by an axis error"),
+            out<&Self::ErrorID>("", "why"),
+        };
     }
 
     [[nodiscard]] axes::AxisCommand command() const noexcept {
-        return {.kind = axes::CommandKind::move_velocity, .buffer_mode = BufferMode, .direction = Direction, .velocity = Velocity,
-                .acceleration = Acceleration, .deceleration = Deceleration, .jerk = Jerk};
+        return {.kind = axes::CommandKind::move_velocity,
+                .buffer_mode = BufferMode,
+                .direction = Direction,
+                .velocity = Velocity,
+                .acceleration = Acceleration,
+                .deceleration = Deceleration,
+                .jerk = Jerk};
     }
 };
 

@@ -6,6 +6,8 @@
 //     TRUE wishes nothing, so an operator may power an axis whose program is idle.
 //   * The axis is taken at the rising edge of Enable; another handle counts from the next edge.
 //   * EnablePositive and EnableNegative are TRUE by default: an unconnected pin forbids nothing.
+//   * While another party owns the axis (an operator in manual mode) a block with Enable TRUE shows owned_by_other, and Valid comes
+//     back with the control.
 //   * A second MC_Power on the axis shows Error with power_conflict; the axis decides which one.
 
 #include <array>
@@ -31,14 +33,16 @@ struct MC_Power {
     static constexpr std::string_view summary = "Switches the axis' power stage and permits its directions.";
     static consteval auto pins() {
         using Self = MC_Power;
-        return std::array{in_out<&Self::Axis>("", "axis acted on"),
-                          in<&Self::Enable>("", "power stage on while TRUE"),
-                          in<&Self::EnablePositive>("", "permits positive motion while Enable is TRUE; default TRUE"),
-                          in<&Self::EnableNegative>("", "permits negative motion while Enable is TRUE; default TRUE"),
-                          out<&Self::Status>("", "power stage is on and motion is accepted"),
-                          out<&Self::Valid>("", "Enable is TRUE and the axis takes the wish"),
-                          out<&Self::Error>("", "the axis refuses this block"),
-                          out<&Self::ErrorID>("", "why")};
+        return std::array{
+            in_out<&Self::Axis>("", "axis acted on"),
+            in<&Self::Enable>("", "power stage on while TRUE"),
+            in<&Self::EnablePositive>("", "permits positive motion while Enable is TRUE; default TRUE"),
+            in<&Self::EnableNegative>("", "permits negative motion while Enable is TRUE; default TRUE"),
+            out<&Self::Status>("", "power stage is on and motion is accepted"),
+            out<&Self::Valid>("", "Enable is TRUE and the axis takes the wish"),
+            out<&Self::Error>("", "the axis refuses this block"),
+            out<&Self::ErrorID>("", "why"),
+        };
     }
 
     void operator()(const MotionContext& ctx) noexcept {

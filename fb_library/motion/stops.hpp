@@ -21,15 +21,17 @@ struct MC_Stop : CommandBlock<MC_Stop> {
 
     static constexpr std::string_view summary = "Stops the axis, ends whatever it does and locks it while Execute is TRUE.";
     static consteval auto pins() {
-        return std::array{in_out<&Self::Axis>("", "axis acted on"),
-                          in<&Self::Execute>("", "a rising edge stops; the axis stays locked while TRUE"),
-                          in<&Self::Deceleration>("u/s2", "0 = the axis' default"),
-                          in<&Self::Jerk>("u/s3", "0 = the axis' default"),
-                          out<&Self::Done>("", "set velocity is zero"),
-                          out<&Self::Busy>("", "not finished"),
-                          out<&Self::CommandAborted>("", "power went off"),
-                          out<&Self::Error>("", "refused, or ended by an axis error"),
-                          out<&Self::ErrorID>("", "why")};
+        return std::array{
+            in_out<&Self::Axis>("", "axis acted on"),
+            in<&Self::Execute>("", "a rising edge stops; the axis stays locked while TRUE"),
+            in<&Self::Deceleration>("u/s2", "0 = the axis' default"),
+            in<&Self::Jerk>("u/s3", "0 = the axis' default"),
+            out<&Self::Done>("", "set velocity is zero"),
+            out<&Self::Busy>("", "not finished"),
+            out<&Self::CommandAborted>("", "power went off"),
+            out<&Self::Error>("", "refused, or ended by an axis error"),
+            out<&Self::ErrorID>("", "why"),
+        };
     }
 
     [[nodiscard]] axes::AxisCommand command() const noexcept {
@@ -56,17 +58,19 @@ struct MC_Halt : CommandBlock<MC_Halt> {
 
     static constexpr std::string_view summary = "Brings the axis to standstill; any other command may take over meanwhile.";
     static consteval auto pins() {
-        return std::array{in_out<&Self::Axis>("", "axis acted on"),
-                          in<&Self::Execute>("", "a rising edge starts"),
-                          in<&Self::Deceleration>("u/s2", "0 = the axis' default"),
-                          in<&Self::Jerk>("u/s3", "0 = the axis' default"),
-                          in<&Self::BufferMode>("", "when the command takes effect"),
-                          out<&Self::Done>("", "set velocity is zero"),
-                          out<&Self::Busy>("", "not finished"),
-                          out<&Self::Active>("", "this command controls the axis"),
-                          out<&Self::CommandAborted>("", "another command took over, or power went off"),
-                          out<&Self::Error>("", "refused, or ended by an axis error"),
-                          out<&Self::ErrorID>("", "why")};
+        return std::array{
+            in_out<&Self::Axis>("", "axis acted on"),
+            in<&Self::Execute>("", "a rising edge starts"),
+            in<&Self::Deceleration>("u/s2", "0 = the axis' default"),
+            in<&Self::Jerk>("u/s3", "0 = the axis' default"),
+            in<&Self::BufferMode>("", "when the command takes effect"),
+            out<&Self::Done>("", "set velocity is zero"),
+            out<&Self::Busy>("", "not finished"),
+            out<&Self::Active>("", "this command controls the axis"),
+            out<&Self::CommandAborted>("", "another command took over, or power went off"),
+            out<&Self::Error>("", "refused, or ended by an axis error"),
+            out<&Self::ErrorID>("", "why"),
+        };
     }
 
     [[nodiscard]] axes::AxisCommand command() const noexcept {

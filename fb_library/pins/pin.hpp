@@ -1,7 +1,7 @@
 #pragma once
 // Pins of function blocks as data. A block writes its table once, from member pointers:
 //
-//     static consteval auto pins() { return std::array{in<&Self::PT>("s", "delay time"), out<&Self::Q>("", "delayed IN")}; }
+//     static consteval auto pins() { return std::array{in<&Self::PT>("", "delay time"), out<&Self::Q>("", "delayed IN")}; }
 //
 // Name, type, size and offset come from the member, so a name stands once. Everything here is a constant: no run time, no
 // allocation. (`pins()` is a function because the class is complete only inside function bodies; offsets need that.)
@@ -18,7 +18,18 @@ namespace taktwerk::fb {
 
 /// IEC 61131-3 ed. 3 elementary types (6.4.2), plus an axis handle and enumerations.
 enum class PinKind : std::uint8_t {
-    BOOL, SINT, INT, DINT, LINT, USINT, UINT, UDINT, ULINT, REAL, LREAL, WORD,
+    BOOL,
+    SINT,
+    INT,
+    DINT,
+    LINT,
+    USINT,
+    UINT,
+    UDINT,
+    ULINT,
+    REAL,
+    LREAL,
+    WORD,
     TIME,      ///< int64 nanoseconds: never wraps in the life of a machine (292 years)
     AXIS_REF,  ///< axes::AxisRef, a handle
     ENUM,      ///< unsigned 8 bit; PinType::values names the numbers 0, 1, ...
@@ -45,6 +56,7 @@ struct Pin {
 template <class T>
 struct PinTypeOf;
 
+// clang-format off
 template <> struct PinTypeOf<bool> { static constexpr PinType value{PinKind::BOOL, "BOOL"}; };
 template <> struct PinTypeOf<std::int8_t> { static constexpr PinType value{PinKind::SINT, "SINT"}; };
 template <> struct PinTypeOf<std::int16_t> { static constexpr PinType value{PinKind::INT, "INT"}; };
@@ -57,6 +69,7 @@ template <> struct PinTypeOf<std::uint64_t> { static constexpr PinType value{Pin
 template <> struct PinTypeOf<float> { static constexpr PinType value{PinKind::REAL, "REAL"}; };
 template <> struct PinTypeOf<double> { static constexpr PinType value{PinKind::LREAL, "LREAL"}; };
 template <> struct PinTypeOf<Duration> { static constexpr PinType value{PinKind::TIME, "TIME"}; };
+// clang-format on
 
 namespace detail {
 
@@ -131,10 +144,8 @@ consteval Pin in_out(std::string_view unit, std::string_view doc) {
 /// A block's name is its type's name, unless it says otherwise (`static constexpr std::string_view block_name`).
 template <class Block>
 consteval std::string_view block_name() {
-    if constexpr (requires { Block::block_name; })
-        return Block::block_name;
-    else
-        return detail::type_name<Block>();
+    if constexpr (requires { Block::block_name; }) return Block::block_name;
+    else return detail::type_name<Block>();
 }
 
 }  // namespace taktwerk::fb

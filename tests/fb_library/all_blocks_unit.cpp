@@ -39,30 +39,39 @@ TEST(PinTables, HaveEveryPinOfPart1InItsOrderAndNoOther) {
         for (std::size_t i = 0; i < expected.size(); ++i) {
             EXPECT_EQ(type.pins[i].name, expected[i].name) << type.name;
             EXPECT_EQ(type.pins[i].direction, direction_of(expected[i].kind)) << type.name << '.' << expected[i].name;
-            EXPECT_TRUE(same_type(expected[i].type, type.pins[i].type.name)) << type.name << '.' << expected[i].name << ' ' << type.pins[i].type.name;
+            EXPECT_TRUE(same_type(expected[i].type, type.pins[i].type.name))
+                << type.name << '.' << expected[i].name << ' ' << type.pins[i].type.name;
         }
     }
 }
 
 std::string pin_names(const BlockType& type) {
     std::string names;
-    for (const Pin& pin : type.pins) names += (names.empty() ? "" : pin.direction != (&pin)[-1].direction ? " | " : " ") + std::string{pin.name};
+    for (const Pin& pin : type.pins)
+        names += (names.empty() ? "" : pin.direction != (&pin)[-1].direction ? " | " : " ") + std::string{pin.name};
     return names;
 }
 
 // IEC 61131-3 ed. 3, tables 43 to 46; MC_Jog: TwinCAT Tc2_MC2, axis first as in PLCopen's tables.
 TEST(PinTables, OfTheOtherBlocksFollowTheirDocuments) {
     const std::map<std::string_view, std::string> expected{
-        {"SR", "S1 R | Q1"},        {"RS", "S R1 | Q1"},       {"R_TRIG", "CLK | Q"},    {"F_TRIG", "CLK | Q"},
-        {"TP", "IN PT | Q ET"},     {"TON", "IN PT | Q ET"},   {"TOF", "IN PT | Q ET"},
-        {"MC_Jog", "Axis | JogForward JogBackwards Mode Position Velocity Acceleration Deceleration Jerk | "
-                   "Done Busy Active CommandAborted Error ErrorID"}};
+        {"SR", "S1 R | Q1"},
+        {"RS", "S R1 | Q1"},
+        {"R_TRIG", "CLK | Q"},
+        {"F_TRIG", "CLK | Q"},
+        {"TP", "IN PT | Q ET"},
+        {"TON", "IN PT | Q ET"},
+        {"TOF", "IN PT | Q ET"},
+        {"MC_Jog",
+         "Axis | JogForward JogBackwards Mode Position Velocity Acceleration Deceleration Jerk | "
+         "Done Busy Active CommandAborted Error ErrorID"}};
     for (const auto& [name, pins] : expected) {
         const BlockType* type = find_block_type(name);
         ASSERT_NE(type, nullptr) << name;
         EXPECT_EQ(pin_names(*type), pins) << name;
     }
-    const std::map<std::string_view, std::string> counters{{"CTU", "CU R PV | Q CV"}, {"CTD", "CD LD PV | Q CV"}, {"CTUD", "CU CD R LD PV | QU QD CV"}};
+    const std::map<std::string_view, std::string> counters{
+        {"CTU", "CU R PV | Q CV"}, {"CTD", "CD LD PV | Q CV"}, {"CTUD", "CU CD R LD PV | QU QD CV"}};
     for (const auto& [base, pins] : counters)
         for (const std::string variant : {"", "_DINT", "_LINT", "_UDINT", "_ULINT"}) {
             const BlockType* type = find_block_type(std::string{base} + variant);
@@ -74,7 +83,9 @@ TEST(PinTables, OfTheOtherBlocksFollowTheirDocuments) {
 
 TEST(PinTables, OffsetsAreThoseOfTheMembers) {
     MC_MoveAbsolute move;
-    const auto at = [&move](const auto& member) { return static_cast<std::size_t>(reinterpret_cast<const char*>(&member) - reinterpret_cast<const char*>(&move)); };
+    const auto at = [&move](const auto& member) {
+        return static_cast<std::size_t>(reinterpret_cast<const char*>(&member) - reinterpret_cast<const char*>(&move));
+    };
     const BlockType& type = *find_block_type("MC_MoveAbsolute");
     EXPECT_EQ(type.pin("Axis")->offset, at(move.Axis));
     EXPECT_EQ(type.pin("Execute")->offset, at(move.Execute));
@@ -114,7 +125,9 @@ TEST(BlockBytes, ATimerRunsWithoutItsTypeBeingKnown) {
     alignas(16) std::byte instance[64];
     ASSERT_LE(type.size, sizeof instance);
     std::memcpy(instance, type.prototype, type.size);
-    const auto set = [&](std::string_view pin, const auto& value) { std::memcpy(instance + type.pin(pin)->offset, &value, type.pin(pin)->size); };
+    const auto set = [&](std::string_view pin, const auto& value) {
+        std::memcpy(instance + type.pin(pin)->offset, &value, type.pin(pin)->size);
+    };
     const auto q = [&] { return instance[type.pin("Q")->offset] != std::byte{0}; };
     FakeAxes axes;
 
@@ -175,6 +188,13 @@ TEST(AbiHash, ChangesWithNameSizeAndEachPin) {
     EXPECT_NE(unchanged, hash([](BlockType&, auto& p) { p[1].offset += 8; }));
     EXPECT_NE(unchanged, hash([](BlockType&, auto& p) { p[1].type = PinTypeOf<std::int64_t>::value; }));
     EXPECT_NE(unchanged, hash([](BlockType&, auto& p) { p.pop_back(); }));
+    static constexpr std::array<std::string_view, 2> one_order{"mcA", "mcB"}, other_order{"mcB", "mcA"};
+    EXPECT_NE(hash([](BlockType&, auto& p) {
+                  p[1].type = {PinKind::ENUM, "MC_E", one_order};
+              }),
+              hash([](BlockType&, auto& p) {
+                  p[1].type = {PinKind::ENUM, "MC_E", other_order};
+              }));
     EXPECT_EQ(unchanged, hash([](BlockType&, auto& p) { p[1].doc = "a better text"; })) << "documentation is no ABI";
 }
 
@@ -182,7 +202,8 @@ TEST(BlockReference, NamesEveryBlockPinAndUnit) {
     const std::string page = block_reference_markdown();
     for (const BlockType& type : all_block_types()) EXPECT_THAT(page, HasSubstr("\n### " + std::string{type.name} + "\n"));
     EXPECT_THAT(page, HasSubstr("| Velocity | in | LREAL | u/s | signed; the sense times Direction; 0 is allowed |"));
-    EXPECT_THAT(page, HasSubstr("### MC_BUFFER_MODE\n\n0 mcAborting, 1 mcBuffered, 2 mcBlendingLow, 3 mcBlendingPrevious, 4 mcBlendingNext, 5 mcBlendingHigh\n"));
+    EXPECT_THAT(page, HasSubstr("### MC_BUFFER_MODE\n\n0 mcAborting, 1 mcBuffered, 2 mcBlendingLow, 3 mcBlendingPrevious, 4 "
+                                "mcBlendingNext, 5 mcBlendingHigh\n"));
 }
 
 }  // namespace

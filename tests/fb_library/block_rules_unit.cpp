@@ -13,11 +13,26 @@ namespace {
 
 // --- which rule is for which block ---------------------------------------------------------------------------------------
 
-template <class B> concept IsExecute = requires(B b) { b.Execute; };
-template <class B> concept IsJog = requires(B b) { b.JogForward; };
-template <class B> concept IsEnable = requires(B b) { b.Enable; };
-template <class B> concept HasDone = requires(B b) { b.Done; };
-template <class B> concept CanBeAborted = requires(B b) { b.CommandAborted; };
+template <class B>
+concept IsExecute = requires(B b) {
+    b.Execute;
+};
+template <class B>
+concept IsJog = requires(B b) {
+    b.JogForward;
+};
+template <class B>
+concept IsEnable = requires(B b) {
+    b.Enable;
+};
+template <class B>
+concept HasDone = requires(B b) {
+    b.Done;
+};
+template <class B>
+concept CanBeAborted = requires(B b) {
+    b.CommandAborted;
+};
 
 template <template <class> class Wanted, class List, class... Kept>
 struct Filter;
@@ -29,15 +44,22 @@ template <template <class> class Wanted, class B, class... More, class... Kept>
 struct Filter<Wanted, BlockList<B, More...>, Kept...>
     : std::conditional_t<Wanted<B>::value, Filter<Wanted, BlockList<More...>, Kept..., B>, Filter<Wanted, BlockList<More...>, Kept...>> {};
 
-template <class B> struct StartsWork : std::bool_constant<IsExecute<B> || IsJog<B>> {};
-template <class B> struct Commands : std::bool_constant<(IsExecute<B> || IsJog<B>)&&CanBeAborted<B>> {};
-template <class B> struct HasExecute : std::bool_constant<IsExecute<B> && CanBeAborted<B>> {};
-template <class B> struct HasEnable : std::bool_constant<IsEnable<B>> {};
-template <class B> struct HasContinuousUpdate : std::bool_constant<requires(B b) { b.ContinuousUpdate; }> {};
+template <class B>
+struct StartsWork : std::bool_constant<IsExecute<B> || IsJog<B>> {};
+template <class B>
+struct Commands : std::bool_constant<(IsExecute<B> || IsJog<B>)&&CanBeAborted<B>> {};
+template <class B>
+struct HasExecute : std::bool_constant<IsExecute<B> && CanBeAborted<B>> {};
+template <class B>
+struct HasEnable : std::bool_constant<IsEnable<B>> {};
+template <class B>
+    struct HasContinuousUpdate : std::bool_constant < requires(B b) {
+    b.ContinuousUpdate;
+} > {};
 
-using WorkBlocks = Filter<StartsWork, AllBlocks>::type;         // Execute blocks and MC_Jog
-using CommandBlocks = Filter<Commands, AllBlocks>::type;        // those of them that command an axis
-using ExecuteBlocks = Filter<HasExecute, AllBlocks>::type;      // without MC_Jog, whose inputs are levels
+using WorkBlocks = Filter<StartsWork, AllBlocks>::type;     // Execute blocks and MC_Jog
+using CommandBlocks = Filter<Commands, AllBlocks>::type;    // those of them that command an axis
+using ExecuteBlocks = Filter<HasExecute, AllBlocks>::type;  // without MC_Jog, whose inputs are levels
 using EnableBlocks = Filter<HasEnable, AllBlocks>::type;
 using ContinuousUpdateBlocks = Filter<HasContinuousUpdate, AllBlocks>::type;
 
@@ -233,12 +255,18 @@ TYPED_TEST(WorkRules, OutputsExcludeEachOtherInEveryOrderOfEvents) {
         const int shown = this->block.Busy + this->done() + this->aborted() + this->block.Error;
         ASSERT_LE(shown, 1) << step;
         if constexpr (!IsJog<TypeParam>) {  // a jog's level is taken at standstill only
-            if (level) { ASSERT_EQ(shown, 1) << step; }
+            if (level) {
+                ASSERT_EQ(shown, 1) << step;
+            }
         }
         ASSERT_EQ(this->block.Error, this->block.ErrorID != ErrorId::none) << step;
-        if (this->active()) { ASSERT_TRUE(this->block.Busy) << step; }
+        if (this->active()) {
+            ASSERT_TRUE(this->block.Busy) << step;
+        }
         if constexpr (requires { this->block.InVelocity; }) {
-            if (this->block.InVelocity) { ASSERT_TRUE(this->block.Active) << step; }
+            if (this->block.InVelocity) {
+                ASSERT_TRUE(this->block.Active) << step;
+            }
         }
         outcomes_seen += this->done() || this->aborted() || this->block.Error;
     }
@@ -450,7 +478,9 @@ TYPED_TEST(EnableRules, EveryOutputGoesBackInTheCallInWhichEnableFalls) {  // P1
     this->scan();
     for (const Pin& pin : TypeParam::pins()) {
         if (pin.direction != PinDirection::out || pin.name == "Status") continue;  // MC_Power.Status is the power stage's
-        EXPECT_EQ(std::memcmp(reinterpret_cast<const char*>(&this->block) + pin.offset, reinterpret_cast<const char*>(&fresh) + pin.offset, pin.size), 0)
+        EXPECT_EQ(std::memcmp(reinterpret_cast<const char*>(&this->block) + pin.offset, reinterpret_cast<const char*>(&fresh) + pin.offset,
+                              pin.size),
+                  0)
             << pin.name;
     }
 }

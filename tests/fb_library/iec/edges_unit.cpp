@@ -55,8 +55,9 @@ struct Row {
     bool set, reset, before, sr, rs;
 };
 constexpr Row rows[] = {
-    {false, false, false, false, false}, {false, false, true, true, true}, {false, true, false, false, false}, {false, true, true, false, false},
-    {true, false, false, true, true},    {true, false, true, true, true},  {true, true, false, true, false},   {true, true, true, true, false},
+    {false, false, false, false, false}, {false, false, true, true, true}, {false, true, false, false, false},
+    {false, true, true, false, false},   {true, false, false, true, true}, {true, false, true, true, true},
+    {true, true, false, true, false},    {true, true, true, true, false},
 };
 
 TEST(Bistables, FollowTheirTruthTables) {

@@ -35,15 +35,18 @@ Diagram run(Timer timer, const std::string& in, Duration start = 1000s) {
 }
 
 TEST(TonDiagram, FollowsTheStandard) {
-    EXPECT_EQ(run(TON{.PT = 4s}, "..########....##....#######.."), (Diagram{"......####..............###..", "00012344440000010000012344400"}));
+    EXPECT_EQ(run(TON{.PT = 4s}, "..########....##....#######.."),
+              (Diagram{"......####..............###..", "00012344440000010000012344400"}));
 }
 
 TEST(TofDiagram, FollowsTheStandardAndARisingEdgeCancelsTheDelay) {
-    EXPECT_EQ(run(TOF{.PT = 4s}, "..####........####..####......."), (Diagram{"..########....##############...", "0000000123444400000100000123444"}));
+    EXPECT_EQ(run(TOF{.PT = 4s}, "..####........####..####......."),
+              (Diagram{"..########....##############...", "0000000123444400000100000123444"}));
 }
 
 TEST(TpDiagram, FollowsTheStandardAndIsNotRetriggered) {
-    EXPECT_EQ(run(TP{.PT = 4s}, "..########....#.#.#......##...."), (Diagram{"..####........####.......####..", "0001234444000001234000000012300"}));
+    EXPECT_EQ(run(TP{.PT = 4s}, "..########....#.#.#......##...."),
+              (Diagram{"..####........####.......####..", "0001234444000001234000000012300"}));
 }
 
 TEST(TimerDiagram, PresetOfZeroTakesEffectInTheCallOfTheEdge) {
@@ -63,9 +66,7 @@ TEST(TimerDiagram, FirstCallWithInTrueIsARisingEdge) {
     EXPECT_EQ(run(TP{.PT = 4s}, "######"), (Diagram{"####..", "012344"}));
 }
 
-TEST(TimerDiagram, FirstCallWithInFalseIsNoFallingEdge) {
-    EXPECT_EQ(run(TOF{.PT = 4s}, "......"), (Diagram{"......", "000000"}));
-}
+TEST(TimerDiagram, FirstCallWithInFalseIsNoFallingEdge) { EXPECT_EQ(run(TOF{.PT = 4s}, "......"), (Diagram{"......", "000000"})); }
 
 TEST(TimerDiagram, AnEqualElapsedTimeHasElapsed) {
     TON ton{.IN = true, .PT = 4s};
