@@ -24,7 +24,7 @@ RealtimeRunner::~RealtimeRunner() { finish(); }
 
 void RealtimeRunner::cycle_thread() {
     report_ = prepare_cycle_thread(request_);
-    set_stepping_thread_float_environment();
+    math::set_stepping_thread_float_environment();
     ready_.store(true, std::memory_order_release);
     CyclicConfig config;
     config.period = machine_.config().cycle;
@@ -39,7 +39,7 @@ void RealtimeRunner::cycle_thread() {
 }
 
 void RealtimeRunner::task_thread(std::size_t index) {
-    set_stepping_thread_float_environment();
+    math::set_stepping_thread_float_environment();
     // The cycle never wakes anybody (that would be a system call): a task looks for its release itself, often enough.
     const Duration look = machine_.config().cycle / 4;
     while (!stop_.load(std::memory_order_acquire)) {

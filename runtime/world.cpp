@@ -62,7 +62,7 @@ World::World(const MachineConfig& config, Instant start) : network_(start), tran
         options.alias = slave->alias.value_or(0);
         slave_names_.push_back(slave->name);
         if (!slave->device->mailbox) {
-            auto model = std::make_unique<ecat::sim::DigitalTerminal>(*slave->device);
+            auto model = std::make_unique<ecat::sim::DigitalTerminal>();
             auto* terminal = model.get();
             network_.add(slave->device, std::move(model), options);
             for (const auto& point : config.io)

@@ -68,6 +68,8 @@ public:
     Cia402Axis(const PlantConfig& plant, const Personality& personality);
 
     void power_on(Instant now) noexcept;
+    /// Control supply gone: the motor is free, the state machine gone.
+    void power_off() noexcept { operational_ = false; enter(State::not_ready); }
     /// Physics up to `now`.
     void advance(Instant now) noexcept;
     /// Newest outputs in, answers out; `cycle` is the time until the next exchange (SYNC0 cycle).

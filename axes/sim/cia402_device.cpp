@@ -48,6 +48,14 @@ void Cia402Device::power_on(ecat::sim::ObjectDictionary& dictionary, Instant now
     exchange(now);  // the inputs show the truth from the first SAFEOP cycle on
 }
 
+void Cia402Device::power_off(Instant now) {
+    operational_ = false;
+    for (auto& axis : axes_) {
+        axis.model->advance(now);
+        axis.model->power_off();
+    }
+}
+
 std::uint16_t Cia402Device::refuse(ecat::sim::EsmState from, ecat::sim::EsmState to, const ecat::sim::SyncSettings& settings) {
     if (settings.sync0_active) cycle_ = settings.sync0_cycle;
     // 0036h: invalid SYNC0 cycle time (ETG.1000.6 table of AL status codes).

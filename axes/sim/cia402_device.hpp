@@ -26,6 +26,7 @@ public:
     Cia402Device(const DriveProfile& profile, const std::vector<AxisSetup>& axes);
 
     void power_on(ecat::sim::ObjectDictionary& dictionary, Instant now) override;
+    void power_off(Instant now) override;
     std::uint16_t refuse(ecat::sim::EsmState from, ecat::sim::EsmState to, const ecat::sim::SyncSettings& settings) override;
     void entered(ecat::sim::EsmState state, Instant now) override;
     void exchange(Instant now) override;
