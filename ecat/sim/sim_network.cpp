@@ -46,6 +46,7 @@ std::size_t SimNetwork::reachable() const noexcept {
 }
 
 void SimNetwork::fire_until(Instant now) noexcept {
+    schedule();  // a test may have touched a slave directly
     while (next_event_ <= now) {
         // The earliest event anywhere; of two at the same instant the slave nearer to the master first.
         auto* first = slaves_.front().slave.get();

@@ -150,6 +150,7 @@ void SimSlave::settle(Instant now) noexcept {
 void SimSlave::stick_mailbox(bool stuck) noexcept {
     if (!coe_) return;
     coe_->stick(stuck);
+    if (powered_) coe_->step(al_.state(), settled_);  // what waited goes on from here
     schedule();
 }
 
