@@ -108,7 +108,10 @@ void LatchedRequests::renew(AxisRequests& axes) const noexcept {
 }
 
 void LatchedRequests::latch(std::span<const AxisView> real, std::span<AxisView> task_views) noexcept {
-    for (std::size_t i = 0; i < real.size(); ++i) task_views[i] = real[i];
+    for (std::size_t i = 0; i < real.size(); ++i) {
+        task_views[i] = real[i];
+        task_views[i].last_id = next_ | provisional;  // all of the task's ids are known to the axes by now
+    }
     for (const auto& known : known_) {
         if (known.mine == 0 || known.axis >= task_views.size()) continue;
         auto& view = task_views[known.axis];
