@@ -143,7 +143,7 @@ void Axis::keep_close_to_anchor() noexcept {
 }
 
 void Axis::guard(const MotionState& before, Duration period) noexcept {
-    if (goal_.kind == Goal::Kind::rest || goal_.kind == Goal::Kind::stop || state_ == AxisState::ErrorStop || state_ == AxisState::Homing) return;
+    if (goal_.kind == Goal::Kind::rest || goal_.kind == Goal::Kind::stop || state_ == AxisState::Homing) return;
     if (!guard_switches() && !guard_software_limits(before)) return;
     setpoint_.restore(before);
     run_goal(0);
@@ -153,9 +153,10 @@ void Axis::guard(const MotionState& before, Duration period) noexcept {
 bool Axis::guard_switches() noexcept {
     const double velocity = setpoint_.state().velocity;
     const double here = units_.to_program(setpoint_.state().position);
-    if (velocity > 0 && positive_switch_) fail(AxisAlarm::positive_limit_switch, here);
-    else if (velocity < 0 && negative_switch_) fail(AxisAlarm::negative_limit_switch, here);
-    else if ((velocity > 0 && !permit_positive_) || (velocity < 0 && !permit_negative_)) {
+    if ((velocity > 0 && positive_switch_) || (velocity < 0 && negative_switch_)) {
+        fail(velocity > 0 ? AxisAlarm::positive_limit_switch : AxisAlarm::negative_limit_switch, here);
+        aim(Goal::Kind::stop, 0, stop_limits(config_.limits), VelocityLimiter::stopping);  // also on the way to a software limit
+    } else if ((velocity > 0 && !permit_positive_) || (velocity < 0 && !permit_negative_)) {
         queue_.finish_active(Outcome::error, ErrorId::interlocked);
         stop_on_own_account(false);
     } else return false;

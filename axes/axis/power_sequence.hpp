@@ -33,12 +33,13 @@ public:
         const bool enabled = in.online && in.drive == PowerState::enabled;
         switch (phase_) {
             case Phase::off:
-                if (in.wanted && !waiting_) {
+                // A bus that is not up yet is not the drive's delay: time runs from when the drive can be asked.
+                if (!in.wanted || !in.online) waiting_ = false;
+                else if (!waiting_) {
                     waiting_ = true;
                     since_ = in.now;
                 }
-                if (!in.wanted) waiting_ = false;
-                if (waiting_ && in.aligned && in.online) phase_ = Phase::enabling;
+                if (waiting_ && in.aligned) phase_ = Phase::enabling;
                 return timed_out(in.now);
             case Phase::enabling:
                 if (!in.wanted) return leave(Phase::switching_off, Event::none);

@@ -36,6 +36,7 @@ TEST(Authority, TakingOverStopsTheAxisFirst) {
     EXPECT_EQ(rig.status(id), CommandStatus::aborted);
     EXPECT_EQ(rig.view().state, AxisState::Stopping);
     EXPECT_EQ(rig.refuse(jog(5), Owner::operator_panel), ErrorId::state_forbids);
+    EXPECT_EQ(rig.refuse(absolute(5, 10, mcBuffered), Owner::operator_panel), ErrorId::state_forbids);  // no command to wait behind
     ASSERT_TRUE(rig.run_to(AxisState::Standstill));
     EXPECT_EQ(rig.view().set_velocity, 0);
     EXPECT_TRUE(rig.view().powered);

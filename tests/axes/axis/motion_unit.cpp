@@ -169,6 +169,21 @@ TEST(AxisMotion, BufferedCommandStartsWithoutAPause) {
     EXPECT_EQ(rig.view().state, AxisState::Standstill);
 }
 
+// The rest of a cycle in which a command ends belongs to the next one. 1 u at 1000 u/s2 without jerk takes 2 * sqrt(1 / 1000) = 63.2456 ms: eight
+// of them 505.96 ms; each rounded up to a cycle would be 512 ms.
+TEST(AxisMotion, BufferedCommandsLoseNoPartOfACycle) {
+    auto config = plain_axis();
+    config.limits.jerk = std::numeric_limits<double>::infinity();
+    config.queue_depth = 8;
+    Rig rig(config);
+    rig.power_on();
+    const auto begin = rig.now;
+    for (int i = 1; i <= 8; ++i) rig.accept(absolute(i, 100, mcBuffered));
+    ASSERT_TRUE(rig.run_to(AxisState::Standstill));
+    EXPECT_NEAR(to_seconds(rig.now - begin), 0.50596, 0.0011);
+    EXPECT_EQ(rig.view().set_position, 8);
+}
+
 // U-05, U-09: an aborting command clears the buffer; a full buffer refuses.
 TEST(AxisMotion, AbortingClearsTheBufferAndAFullOneRefuses) {
     auto config = plain_axis();

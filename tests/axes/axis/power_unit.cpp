@@ -43,6 +43,38 @@ TEST(AxisPower, TargetIsAlignedBeforeEnabling) {
     rig.expect_no_jump();
 }
 
+// The set-point comes back from a large following error no faster than the axis may be: power is not asked for before it has arrived.
+TEST(AxisPower, IsNotAskedForBeforeTheSetpointHasComeBack) {
+    Rig rig;
+    rig.power_on();
+    rig.drive.blocked = true;
+    rig.accept(absolute(20));
+    ASSERT_TRUE(rig.run_to(AxisState::Standstill));
+    rig.enable = false;
+    rig.run(5);
+    rig.drive.blocked = false;
+    rig.enable = true;
+    ASSERT_TRUE(rig.run_to(AxisState::Standstill, 500));
+    rig.run(10);
+
+    EXPECT_NEAR(rig.view().set_position, 0, 1e-9);
+    rig.expect_no_jump();
+}
+
+// A bus that comes up late is no enable timeout: the time runs from when the drive can be asked.
+TEST(AxisPower, WaitsForALateBusWithoutAnError) {
+    auto config = plain_axis();
+    config.enable_timeout = 100ms;
+    Rig rig(config, [](FakeDrive& drive) { drive.offline = true; });
+    rig.enable = true;
+    rig.run(1000);
+    EXPECT_EQ(rig.view().state, AxisState::Disabled);
+    EXPECT_FALSE(rig.view().online);
+    rig.drive.offline = false;
+    EXPECT_TRUE(rig.run_to(AxisState::Standstill, 100));
+    EXPECT_TRUE(rig.alarms.empty());
+}
+
 // P1-117 asks that a drive that never enables hangs nothing; we make it an axis error after enable_timeout.
 TEST(AxisPower, DriveThatNeverEnablesIsAnErrorAfterTheTimeout) {
     auto config = plain_axis();
