@@ -44,6 +44,9 @@ struct BusStatistics {
     std::uint32_t lost_in_a_row = 0;
     std::int64_t dc_difference_ns = 0;  ///< worst 092Ch seen in the last service round
     Duration round_trip{};              ///< of the last answered cyclic frame
+    std::int64_t dc_offset_ns = 0;      ///< reference clock minus machine time, smoothed; 0 without DC
+    std::int64_t dc_drift_ppb = 0;      ///< how fast dc_offset_ns changes, ns per s: what a servo will have to follow
+    std::uint64_t dc_rejected = 0;      ///< reference times that were missing or implausible
 };
 
 /// An SDO request in flight. Obtained from upload()/download(); polled from the service side.
@@ -74,6 +77,8 @@ public:
     [[nodiscard]] std::string progress() const;
     /// Why the bring-up failed, with slave, state, code and text, and what to try.
     [[nodiscard]] const Error& failure() const;
+    /// What happened since start() that an engineer wants to read: slaves that fell and came back. Newest last.
+    [[nodiscard]] std::span<const std::string> notes() const noexcept;
 
     [[nodiscard]] SdoTicket upload(std::size_t slave, std::uint16_t index, std::uint8_t sub);
     [[nodiscard]] SdoTicket download(std::size_t slave, std::uint16_t index, std::uint8_t sub, std::span<const std::byte> data);
@@ -96,6 +101,8 @@ public:
     [[nodiscard]] std::span<std::byte> outputs() noexcept;
     [[nodiscard]] const SlaveHealth& health(std::size_t slave) const noexcept;
     [[nodiscard]] const BusStatistics& statistics() const noexcept;
+    /// The conditions of alarms() that hold now, at most out.size(). Returns how many.
+    std::size_t active_faults(std::span<AlarmFact> out) const noexcept;
     /// When the drives will apply the outputs that the next send() carries: the next SYNC0, or the send itself without DC.
     [[nodiscard]] Instant outputs_effective(std::size_t slave, Instant send_time) const noexcept;
     /// Called by send() with each frame as it goes out, and by receive() with each as it came in: recorder, pcap. May be null.

@@ -58,7 +58,8 @@ Result<Half> plan_half(const PlanSlave& slave, SmUse use, const std::vector<PdoD
             while (next_pdo < pdos.size() && bit + mapped_bits({&pdos[next_pdo], 1}) <= end) append_entries(half, pdos[next_pdo++], bit);
         }
         first = false;
-        const std::uint32_t bytes = (bit + 7) / 8 - half.bytes;
+        // A terminal wants the length its EEPROM says, whatever part of it is mapped.
+        const std::uint32_t bytes = slave.coe ? (bit + 7) / 8 - half.bytes : sm.size;
         if (bytes == 0) continue;
         if (bytes > max_datagram_data)
             return plan_error("too_large", slave, fmt::format("its {} are {} bytes, a frame carries {}", direction, bytes, max_datagram_data), "map fewer objects");
@@ -72,14 +73,15 @@ Result<Half> plan_half(const PlanSlave& slave, SmUse use, const std::vector<PdoD
     return half;
 }
 
-/// Buffered sync managers keep three buffers: 3 * length bytes from start belong to them.
+/// Buffered sync managers of slaves with an application keep three buffers: 3 * length bytes from start belong to them.
 std::optional<Error> overlapping_buffers(const PlanSlave& slave, const std::vector<PlannedSyncManager>& process) {
     struct Area {
         unsigned sm;
         std::uint32_t start, end;
     };
     std::vector<Area> areas;
-    for (const auto& sm : process) areas.push_back({sm.number, sm.registers.start, sm.registers.start + 3u * sm.registers.length});
+    const std::uint32_t buffers = slave.coe ? 3 : 1;
+    for (const auto& sm : process) areas.push_back({sm.number, sm.registers.start, sm.registers.start + buffers * sm.registers.length});
     for (std::size_t n = 0; n < slave.sync_managers.size(); ++n) {
         const auto& sm = slave.sync_managers[n];
         if (sm.use == SmUse::mailbox_out || sm.use == SmUse::mailbox_in) areas.push_back({static_cast<unsigned>(n), sm.start, std::uint32_t{sm.start} + sm.size});
@@ -88,7 +90,7 @@ std::optional<Error> overlapping_buffers(const PlanSlave& slave, const std::vect
     for (std::size_t i = 1; i < areas.size(); ++i) {
         if (areas[i - 1].end <= areas[i].start) continue;
         return plan_error("overlap", slave,
-                          fmt::format("the buffers of SM{} ({:04X}h..{:04X}h, three of them) reach into SM{} at {:04X}h", areas[i - 1].sm, areas[i - 1].start,
+                          fmt::format("the buffers of SM{} ({:04X}h..{:04X}h) reach into SM{} at {:04X}h", areas[i - 1].sm, areas[i - 1].start,
                                       areas[i - 1].end - 1, areas[i].sm, areas[i].start),
                           "map fewer objects, or correct the start addresses in its profile");
     }

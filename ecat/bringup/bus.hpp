@@ -1,0 +1,105 @@
+#pragma once
+// What the scripts of one bus share: the slaves as configured and found, the port to the wire, and the few numbers that
+// cross to the cycle and back (atomics; everything else here belongs to the service side alone).
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/result.hpp"
+#include "core/time.hpp"
+#include "ecat/bringup/process_data_plan.hpp"
+#include "ecat/bus_config.hpp"
+#include "ecat/coe/sdo_client.hpp"
+#include "ecat/script/datagram_port.hpp"
+#include "ecat/wire/al_status.hpp"
+
+namespace taktwerk::ecat {
+
+/// The same values as Master::Phase.
+enum class BusPhase : std::uint8_t { idle, scanning, preop, configuring, safeop, operational, failed, stopping, stopped };
+
+/// Numbers between the cycle and the scripts.
+struct CycleLink {
+    // Written by the cycle.
+    std::atomic<std::uint64_t> cycles{0};              ///< process data sent
+    std::atomic<std::uint32_t> good_in_a_row{0};       ///< cycles in which every datagram had its working counter
+    std::atomic<std::int64_t> send_phase_ns{0};        ///< of send(), modulo the bus cycle, smoothed
+    std::atomic<std::int64_t> dc_offset_ns{0};         ///< reference clock minus machine time, at sending; smoothed
+    std::atomic<std::uint32_t> dc_samples{0};          ///< 0: dc_offset_ns is not measured yet
+    std::atomic<std::uint32_t> states_seen{0};         ///< OR of all AL states (low 5 bits), of the last BRD
+    std::atomic<std::uint16_t> worst_datagram{0};      ///< a datagram whose working counter was wrong last
+    std::atomic<std::uint16_t> worst_wkc{0};
+    // Written by the scripts.
+    std::atomic<bool> supervise{false};                ///< slaves are in SAFEOP or above: wrong working counters count
+    std::atomic<std::int64_t> dc_difference_ns{0};     ///< worst 092Ch
+};
+
+/// What a slave's controller and EEPROM said during the scan.
+struct FoundSlave {
+    std::uint16_t position = 0, station = 0;
+    Identity identity;
+    std::uint16_t alias = 0;
+    std::uint16_t features = 0, dl_status = 0;
+    std::uint8_t fmmus = 0, sync_managers = 0;
+    std::array<std::uint16_t, 4> mailbox{};  ///< SII: out start, out size, in start, in size
+    std::optional<Error> error;              ///< could not be read
+};
+
+struct BusSlave {
+    const SlaveConfig* config = nullptr;
+    std::size_t index = 0;                   ///< in the configuration
+    std::string subject;                     ///< "slave 3 'y_drive' (sv33-e)"
+    FoundSlave found;
+    MailboxEndpoint mailbox;
+    std::vector<PdoDescription> rx, tx;      ///< as the slave maps them now
+    std::string last_abort;                  ///< for the diagnosis of a refused state
+    bool in_line = false;                    ///< the bring-up gave it a place and a plan: recovery is possible
+
+    bool dc = false;                         ///< has a clock
+    std::uint32_t dc_delay = 0;              ///< 0928h
+    std::uint64_t dc_offset = 0;             ///< 0920h
+
+    // Read by the cycle.
+    std::atomic<std::uint32_t> al{0};        ///< AL status in the low word, status code in the high word
+    std::atomic<std::int64_t> sync0_start{0};///< an instant of SYNC0 in system time; 0: does not run
+    std::atomic<std::uint32_t> recoveries{0};
+
+    [[nodiscard]] const DeviceDescription& device() const noexcept { return *config->device; }
+    [[nodiscard]] bool has_mailbox() const noexcept { return config->device->mailbox && config->device->mailbox->coe; }
+};
+
+struct Bus {
+    Bus(const BusConfig& configuration, AcyclicChannel& channel) : config(configuration), port(channel) {}
+
+    const BusConfig& config;
+    DatagramPort port;
+    CycleLink link;
+    std::vector<std::unique_ptr<BusSlave>> slaves;  ///< configuration order
+    ProcessDataPlan plan;
+    std::optional<std::size_t> reference;           ///< the slave whose clock is the bus' clock
+    std::optional<std::int64_t> dc_phase;           ///< system time of a cycle start, modulo the cycle; fixed at the first SYNC0
+    std::atomic<BusPhase> phase{BusPhase::idle};
+    std::string progress;
+    /// Hands the plan to the cycle: from now on process data is exchanged.
+    std::function<void()> publish;
+    std::vector<std::string> notes;                 ///< recoveries and other remarkable things, newest last
+
+    void note(const BusSlave& slave, const std::string& doing) { progress = slave.subject + " " + doing; }
+    void remember(std::string text) {
+        if (notes.size() >= 100) notes.erase(notes.begin());
+        notes.push_back(std::move(text));
+    }
+};
+
+/// A step of one slave.
+using SlaveStep = Script<Result<void>> (*)(Bus&, BusSlave&);
+/// Runs a step for all slaves side by side; the first error in configuration order.
+[[nodiscard]] Script<Result<void>> for_each_slave(Bus& bus, SlaveStep step);
+
+}  // namespace taktwerk::ecat

@@ -1,0 +1,182 @@
+#include "ecat/bringup/clocks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ecat/dc/propagation.hpp"
+
+namespace taktwerk::ecat {
+
+namespace {
+
+constexpr Duration settle_time = std::chrono::seconds{10};
+constexpr Duration start_margin = std::chrono::milliseconds{100};
+constexpr unsigned frames_per_round = 8;  ///< reference times sent between two looks at 092Ch, while no cycle runs
+
+std::int64_t nanoseconds(Instant t) noexcept { return t.time_since_epoch().count(); }
+
+/// Machine time -> system time.
+std::int64_t system_time(const Bus& bus, Instant now) noexcept { return nanoseconds(now) + bus.link.dc_offset_ns.load(); }
+
+std::vector<BusSlave*> slaves_with_clock(Bus& bus) {
+    std::vector<BusSlave*> result;
+    for (auto& slave : bus.slaves) {
+        slave->dc = (slave->found.features & feature::dc) != 0;
+        if (slave->dc) result.push_back(slave.get());
+    }
+    std::sort(result.begin(), result.end(), [](const BusSlave* a, const BusSlave* b) { return a->found.position < b->found.position; });
+    return result;
+}
+
+Script<Result<LatchedTimes>> read_latched(Bus& bus, BusSlave& slave) {
+    const Reply ports = co_await bus.port.fprd(slave.found.station, reg::dc_receive_times, 16);
+    if (!ports.ok()) co_return unanswered(slave.subject, "its receive times (0900h)", ports);
+    const Reply unit = co_await bus.port.fprd(slave.found.station, reg::dc_receive_time_unit, 8);
+    if (!unit.ok()) co_return unanswered(slave.subject, "its receive time (0918h)", unit);
+    co_return LatchedTimes{ports.u32(0), ports.u32(4), dl_port_open(slave.found.dl_status, 1), unit.u64()};
+}
+
+Script<Result<void>> write_clock(Bus& bus, BusSlave& slave) {
+    const Reply delay = co_await bus.port.fpwr(slave.found.station, reg::dc_system_delay, slave.dc_delay);
+    if (!delay.ok()) co_return unanswered(slave.subject, "its propagation delay (0928h)", delay);
+    const Reply offset = co_await bus.port.fpwr(slave.found.station, reg::dc_system_offset, slave.dc_offset);
+    if (!offset.ok()) co_return unanswered(slave.subject, "its clock offset (0920h)", offset);
+    const Reply speed = co_await bus.port.fpwr(slave.found.station, reg::dc_speed_start, std::uint16_t{0x1000});
+    if (!speed.ok()) co_return unanswered(slave.subject, "its drift control (0930h)", speed);
+    co_return Result<void>{};
+}
+
+}  // namespace
+
+Duration sync0_shift(const BusConfig& bus, const SlaveConfig& slave) noexcept {
+    if (slave.sync0_shift != Duration{}) return slave.sync0_shift;
+    return bus.sync0_shift != Duration{} ? bus.sync0_shift : bus.cycle / 2;
+}
+
+Script<Result<void>> setup_clocks(Bus& bus) {
+    bus.reference.reset();
+    bus.dc_phase.reset();
+    const std::vector<BusSlave*> clocks = slaves_with_clock(bus);
+    if (clocks.empty()) co_return Result<void>{};
+    bus.progress = fmt::format("measuring the clocks of {} slaves", clocks.size());
+    bus.reference = clocks.front()->index;
+
+    const Instant now = co_await time();
+    const Reply latch = co_await bus.port.bwr(reg::dc_receive_times, std::uint32_t{0});
+    if (latch.lost) co_return unanswered("bus", "the latch of the receive times (0900h)", latch);
+    std::vector<LatchedTimes> times;
+    for (BusSlave* slave : clocks) {
+        const Result<LatchedTimes> latched = co_await read_latched(bus, *slave);
+        if (!latched) co_return latched.error();
+        times.push_back(*latched);
+    }
+    const std::vector<std::uint32_t> delays = line_delays(times);
+    const std::vector<std::uint64_t> offsets = system_offsets(times, delays, static_cast<std::uint64_t>(nanoseconds(now)));
+    for (std::size_t i = 0; i < clocks.size(); ++i) {
+        clocks[i]->dc_delay = delays[i];
+        clocks[i]->dc_offset = offsets[i];
+        const Result<void> written = co_await write_clock(bus, *clocks[i]);
+        if (!written) co_return written;
+    }
+    co_return Result<void>{};
+}
+
+Script<Result<void>> restore_clock(Bus& bus, BusSlave& slave) {
+    if (!slave.dc || !bus.reference) co_return Result<void>{};
+    auto& reference = *bus.slaves[*bus.reference];
+    if (&reference == &slave) {
+        const Reply local = co_await bus.port.aprd(slave.found.position, reg::dc_system_time, 8);
+        if (!local.ok()) co_return unanswered(slave.subject, "its system time (0910h)", local);
+        const Reply old = co_await bus.port.aprd(slave.found.position, reg::dc_system_offset, 8);
+        if (!old.ok()) co_return unanswered(slave.subject, "its clock offset (0920h)", old);
+        const Instant now = co_await time();
+        slave.dc_offset = old.u64() + static_cast<std::uint64_t>(system_time(bus, now)) - local.u64();
+        const Reply written = co_await bus.port.apwr(slave.found.position, reg::dc_system_offset, slave.dc_offset);
+        if (!written.ok()) co_return unanswered(slave.subject, "its clock offset (0920h)", written);
+        co_return Result<void>{};
+    }
+    const Reply latch = co_await bus.port.bwr(reg::dc_receive_times, std::uint32_t{0});
+    if (latch.lost) co_return unanswered(slave.subject, "the latch of the receive times (0900h)", latch);
+    const Result<LatchedTimes> master = co_await read_latched(bus, reference);
+    if (!master) co_return master.error();
+    const Result<LatchedTimes> own = co_await read_latched(bus, slave);
+    if (!own) co_return own.error();
+    slave.dc_offset = master->unit + reference.dc_offset + slave.dc_delay - own->unit;
+    co_return co_await write_clock(bus, slave);
+}
+
+Script<Result<void>> await_clocks(Bus& bus) {
+    if (!bus.reference) co_return Result<void>{};
+    bus.progress = "waiting for the clocks to agree";
+    const std::vector<BusSlave*> clocks = slaves_with_clock(bus);
+    const std::uint16_t reference = bus.slaves[*bus.reference]->found.station;
+    const Instant started = co_await time();
+    for (;;) {
+        for (unsigned i = 0; i < frames_per_round; ++i) co_await bus.port.frmw(reference, reg::dc_system_time, 8);
+        const BusSlave* worst = nullptr;
+        std::int64_t worst_ns = 0;
+        for (BusSlave* slave : clocks) {
+            if (slave->found.station == reference) continue;
+            const Reply reply = co_await bus.port.fprd(slave->found.station, reg::dc_difference, 4);
+            if (!reply.ok()) co_return unanswered(slave->subject, "its clock difference (092Ch)", reply);
+            const std::int64_t difference = std::abs(static_cast<std::int64_t>(dc_difference_ns(reply.u32())));
+            if (difference >= worst_ns) {
+                worst = slave;
+                worst_ns = difference;
+            }
+        }
+        bus.link.dc_difference_ns.store(worst_ns);
+        const Instant now = co_await time();
+        const bool measured = bus.link.cycles.load() == 0 || bus.link.dc_samples.load() > 0;
+        if (measured && worst_ns <= clock_limit.count()) co_return Result<void>{};
+        if (now - started > settle_time) {
+            if (worst == nullptr)
+                co_return Error{"bus.clock", bus.slaves[*bus.reference]->subject, "the reference clock does not answer in the cyclic frames",
+                                "a slave has lost its station address: restart the bus"};
+            co_return Error{"bus.clock", worst->subject, fmt::format("its clock is still {} ns off after {} s (limit {} ns)", worst_ns, settle_time / std::chrono::seconds{1}, clock_limit.count()),
+                            "check that the cycle runs evenly; a clock that drifts by more than 100 ppm is defective"};
+        }
+    }
+}
+
+Script<Result<void>> start_sync0(Bus& bus, BusSlave& slave) {
+    if (!slave.config->dc) co_return Result<void>{};
+    if (!slave.dc)
+        co_return Error{"bus.no_clock", slave.subject, "SYNC0 is configured, but its controller has no distributed clock", "set dc: false for this slave"};
+    bus.note(slave, "starting SYNC0");
+    const std::int64_t cycle = bus.config.cycle.count();
+    const std::uint16_t station = slave.found.station;
+    for (unsigned attempt = 0; attempt < 3; ++attempt) {
+        const Reply off = co_await bus.port.fpwr(station, reg::dc_activation, std::uint8_t{0});
+        if (!off.ok()) co_return unanswered(slave.subject, "SYNC0 activation (0981h)", off);
+        co_await bus.port.fpwr(station, reg::dc_cyclic_control, std::uint8_t{0});
+        if (!bus.dc_phase) bus.dc_phase = (((bus.link.send_phase_ns.load() + bus.link.dc_offset_ns.load()) % cycle) + cycle) % cycle;
+        const Reply now = co_await bus.port.fprd(station, reg::dc_system_time, 8);
+        if (!now.ok()) co_return unanswered(slave.subject, "its system time (0910h)", now);
+        const std::uint64_t start = sync0_start(now.u64(), start_margin, bus.config.cycle, Duration{*bus.dc_phase}, sync0_shift(bus.config, *slave.config));
+        const Reply first = co_await bus.port.fpwr(station, reg::dc_start_time, start);
+        const Reply period = co_await bus.port.fpwr(station, reg::dc_sync0_cycle, static_cast<std::uint32_t>(cycle));
+        const Reply sync1 = co_await bus.port.fpwr(station, reg::dc_sync1_cycle, std::uint32_t{0});
+        const Reply on = co_await bus.port.fpwr(station, reg::dc_activation, static_cast<std::uint8_t>(dc_activate::cyclic | dc_activate::sync0));
+        if (!first.ok() || !period.ok() || !sync1.ok() || !on.ok()) co_return unanswered(slave.subject, "SYNC0 (0990h, 09A0h, 0981h)", on.ok() ? first : on);
+        const Reply after = co_await bus.port.fprd(station, reg::dc_system_time, 8);
+        if (!after.ok()) co_return unanswered(slave.subject, "its system time (0910h)", after);
+        if (after.u64() < start) {
+            slave.sync0_start.store(static_cast<std::int64_t>(start));
+            // The drive must have seen SYNC0 when SAFEOP is asked for.
+            co_await pause(Duration{static_cast<std::int64_t>(start - after.u64())} + 2 * bus.config.cycle);
+            co_return Result<void>{};
+        }
+    }
+    co_return Error{"bus.sync0_late", slave.subject, "the start of SYNC0 had passed before it was activated, three times",
+                    "the service thread stalls for more than 100 ms: give it more CPU time"};
+}
+
+Script<Result<void>> stop_sync0(Bus& bus, BusSlave& slave) {
+    slave.sync0_start.store(0);
+    if (slave.config->dc && slave.dc) co_await bus.port.fpwr(slave.found.station, reg::dc_activation, std::uint8_t{0});
+    co_return Result<void>{};
+}
+
+}  // namespace taktwerk::ecat

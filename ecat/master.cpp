@@ -1,0 +1,228 @@
+#include "ecat/master.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <map>
+
+#include "ecat/alarms.hpp"
+#include "ecat/bringup/bring_up.hpp"
+#include "ecat/process_data_cycle.hpp"
+
+namespace taktwerk::ecat {
+
+namespace {
+
+static_assert(static_cast<int>(BusPhase::stopped) == static_cast<int>(Master::Phase::stopped));
+
+struct SdoJob {
+    std::optional<Runner> runner;
+    std::optional<Result<SdoResult>> result;
+};
+
+Script<void> run_upload(Bus& bus, BusSlave& slave, std::uint16_t index, std::uint8_t sub, SdoJob& job) {
+    Result<std::vector<std::byte>> data = co_await sdo_upload(bus.port, slave.mailbox, index, sub);
+    if (data)
+        job.result = SdoResult{std::move(*data)};
+    else
+        job.result = data.error();
+}
+
+Script<void> run_download(Bus& bus, BusSlave& slave, std::uint16_t index, std::uint8_t sub, std::vector<std::byte> value, SdoJob& job) {
+    const Result<void> written = co_await sdo_download(bus.port, slave.mailbox, index, sub, std::move(value));
+    if (written)
+        job.result = SdoResult{};
+    else
+        job.result = written.error();
+}
+
+Script<void> run_bring_up(Bus& bus, Error& failure) {
+    const Result<void> done = co_await bring_up(bus);
+    if (!done) {
+        failure = done.error();
+        co_return;
+    }
+    co_await keep_alive(bus);
+}
+
+Script<void> run_take_down(Bus& bus) {
+    const Result<void> done = co_await take_down(bus);
+    (void)done;  // what did not work stands in the notes
+}
+
+bool signed_object(const DeviceDescription& device, const MappedEntry& entry) {
+    const auto it = std::find_if(device.objects.begin(), device.objects.end(), [&](const ObjectEntry& o) { return o.index == entry.index && o.sub == entry.sub; });
+    return it != device.objects.end() && is_signed(it->type);
+}
+
+}  // namespace
+
+struct Master::Impl {
+    Impl(Transport& transport, BusConfig configuration) : config(std::move(configuration)), cycle(transport, config) { new_bus(); }
+
+    /// Every start has a bus of its own: the cycle may still read slaves of the one before.
+    void new_bus() {
+        buses.push_back(std::make_unique<Bus>(config, cycle.channel()));
+        bus = buses.back().get();
+        bus->publish = [this] { cycle.adopt(std::make_unique<CyclePlan>(*bus)); };
+        cycle.connect(bus->link);
+    }
+
+    [[nodiscard]] SdoTicket add_job(std::size_t slave, std::uint16_t index, std::uint8_t sub, std::optional<std::vector<std::byte>> value);
+    [[nodiscard]] const MappedEntry* find(std::size_t slave, std::uint16_t object, std::uint8_t sub, bool output) const noexcept;
+    [[nodiscard]] Result<Signal> resolve(std::size_t slave, std::uint16_t object, std::uint8_t sub, bool output) const;
+
+    BusConfig config;
+    ProcessDataCycle cycle;
+    std::vector<std::unique_ptr<Bus>> buses;
+    Bus* bus = nullptr;
+    std::atomic<BusPhase> phase{BusPhase::idle};  ///< of the present bus, for whoever asks from the cycle
+    std::optional<Runner> script;
+    Error failure;
+    std::map<SdoTicket, std::unique_ptr<SdoJob>> jobs;
+    SdoTicket next_ticket = 1;
+};
+
+Master::Master(Transport& transport, BusConfig config) : impl_(std::make_unique<Impl>(transport, std::move(config))) {}
+Master::~Master() {
+    // Scripts hold channel entries: they go before the channel.
+    impl_->jobs.clear();
+    impl_->script.reset();
+}
+
+void Master::start() {
+    impl_->jobs.clear();
+    impl_->script.reset();
+    impl_->cycle.withdraw();
+    impl_->cycle.set_operational(false);
+    if (impl_->bus->phase.load() != BusPhase::idle) impl_->new_bus();
+    impl_->failure = {};
+    impl_->bus->phase.store(BusPhase::scanning);
+    impl_->phase.store(BusPhase::scanning);
+    impl_->script.emplace(run_bring_up(*impl_->bus, impl_->failure));
+}
+
+void Master::stop() {
+    const auto phase_now = impl_->bus->phase.load();
+    if (phase_now == BusPhase::stopping || phase_now == BusPhase::stopped) return;
+    impl_->jobs.clear();
+    impl_->script.reset();
+    impl_->bus->phase.store(BusPhase::stopping);
+    impl_->phase.store(BusPhase::stopping);
+    impl_->script.emplace(run_take_down(*impl_->bus));
+}
+
+void Master::step(Instant now) {
+    auto& impl = *impl_;
+    if (impl.script && !impl.script->done()) impl.script->step(now);
+    for (auto& [ticket, job] : impl.jobs)
+        if (job->runner && !job->runner->done()) job->runner->step(now);
+    const auto phase_now = impl.bus->phase.load();
+    impl.phase.store(phase_now);
+    impl.cycle.set_operational(phase_now == BusPhase::operational);
+    if (phase_now == BusPhase::stopped) impl.cycle.withdraw();
+}
+
+Master::Phase Master::phase() const noexcept { return static_cast<Phase>(impl_->phase.load()); }
+std::string Master::progress() const { return impl_->bus->progress; }
+const Error& Master::failure() const { return impl_->failure; }
+std::span<const std::string> Master::notes() const noexcept { return impl_->bus->notes; }
+
+SdoTicket Master::Impl::add_job(std::size_t slave, std::uint16_t index, std::uint8_t sub, std::optional<std::vector<std::byte>> value) {
+    const SdoTicket ticket = next_ticket++;
+    auto& job = *jobs.emplace(ticket, std::make_unique<SdoJob>()).first->second;
+    const auto here = bus->phase.load();
+    const bool reachable = here == BusPhase::configuring || here == BusPhase::safeop || here == BusPhase::operational;
+    if (slave >= config.slaves.size()) {
+        job.result = Error{"sdo.no_slave", fmt::format("slave {}", slave), "there is no such slave in the configuration", ""};
+    } else if (!reachable || slave >= bus->slaves.size()) {
+        job.result = Error{"sdo.not_ready", fmt::format("slave '{}'", config.slaves[slave].name),
+                           fmt::format("{} {} is not possible before the slave is in PREOP", value ? "writing" : "reading", object_text(index, sub)), "wait until the bus is up"};
+    } else if (value) {
+        job.runner.emplace(run_download(*bus, *bus->slaves[slave], index, sub, std::move(*value), job));
+    } else {
+        job.runner.emplace(run_upload(*bus, *bus->slaves[slave], index, sub, job));
+    }
+    return ticket;
+}
+
+SdoTicket Master::upload(std::size_t slave, std::uint16_t index, std::uint8_t sub) { return impl_->add_job(slave, index, sub, std::nullopt); }
+
+SdoTicket Master::download(std::size_t slave, std::uint16_t index, std::uint8_t sub, std::span<const std::byte> data) {
+    return impl_->add_job(slave, index, sub, std::vector<std::byte>(data.begin(), data.end()));
+}
+
+std::optional<Result<SdoResult>> Master::poll(SdoTicket ticket) {
+    const auto it = impl_->jobs.find(ticket);
+    if (it == impl_->jobs.end()) return Result<SdoResult>{Error{"sdo.no_ticket", "", "the request does not exist, was already answered, or ended with its bus", ""}};
+    if (!it->second->result) return std::nullopt;
+    Result<SdoResult> result = std::move(*it->second->result);
+    impl_->jobs.erase(it);
+    return result;
+}
+
+std::size_t Master::slave_count() const noexcept { return impl_->config.slaves.size(); }
+const SlaveConfig& Master::slave(std::size_t index) const { return impl_->config.slaves.at(index); }
+
+const MappedEntry* Master::Impl::find(std::size_t slave, std::uint16_t object, std::uint8_t sub, bool output) const noexcept {
+    if (!cycle.published() || slave >= bus->plan.slaves.size()) return nullptr;
+    const auto& entries = output ? bus->plan.slaves[slave].mapped_outputs : bus->plan.slaves[slave].mapped_inputs;
+    const auto it = std::find_if(entries.begin(), entries.end(), [&](const MappedEntry& e) { return e.index == object && e.sub == sub; });
+    return it == entries.end() ? nullptr : &*it;
+}
+
+Result<Signal> Master::Impl::resolve(std::size_t slave, std::uint16_t object, std::uint8_t sub, bool output) const {
+    const std::string subject = slave < config.slaves.size() ? fmt::format("slave '{}'", config.slaves[slave].name) : fmt::format("slave {}", slave);
+    if (const auto* entry = find(slave, object, sub, output)) return Signal{entry->bit_offset, entry->bits, signed_object(config.slaves[slave].device ? *config.slaves[slave].device : DeviceDescription{}, *entry)};
+    if (!cycle.published()) return Error{"bus.not_planned", subject, "the layout of the process data is not known before the bus is configured", ""};
+    return Error{"bus.not_mapped", subject, fmt::format("{} is not in the {} of the slave", object_text(object, sub), output ? "outputs (RxPDO)" : "inputs (TxPDO)"),
+                 "map it: choose a PDO that contains it, or add it to the slave's variable PDO"};
+}
+
+Result<Signal> Master::input(std::size_t slave, std::uint16_t object, std::uint8_t sub) const { return impl_->resolve(slave, object, sub, false); }
+Result<Signal> Master::output(std::size_t slave, std::uint16_t object, std::uint8_t sub) const { return impl_->resolve(slave, object, sub, true); }
+bool Master::maps_output(std::size_t slave, std::uint16_t object, std::uint8_t sub) const noexcept { return impl_->find(slave, object, sub, true) != nullptr; }
+bool Master::maps_input(std::size_t slave, std::uint16_t object, std::uint8_t sub) const noexcept { return impl_->find(slave, object, sub, false) != nullptr; }
+
+void Master::pump(Instant now) noexcept { impl_->cycle.pump(now); }
+void Master::receive(Instant now) noexcept { impl_->cycle.receive(now); }
+void Master::send(Instant now) noexcept { impl_->cycle.send(now); }
+std::span<const std::byte> Master::inputs() const noexcept { return impl_->cycle.inputs(); }
+std::span<std::byte> Master::outputs() noexcept { return impl_->cycle.outputs(); }
+const SlaveHealth& Master::health(std::size_t slave) const noexcept { return impl_->cycle.health(slave); }
+const BusStatistics& Master::statistics() const noexcept { return impl_->cycle.statistics(); }
+Instant Master::outputs_effective(std::size_t slave, Instant send_time) const noexcept { return impl_->cycle.outputs_effective(slave, send_time); }
+
+void Master::set_tap(void (*tap)(void*, std::span<const std::byte>, Instant, bool) noexcept, void* context) noexcept { impl_->cycle.set_tap(tap, context); }
+
+std::size_t Master::active_faults(std::span<AlarmFact> out) const noexcept {
+    std::size_t count = 0;
+    const auto raise = [&](AlarmId id, AlarmSource source, std::size_t index, double a = 0, double b = 0) {
+        if (count < out.size()) out[count++] = {id, source, static_cast<std::uint16_t>(index), a, b};
+    };
+    const Phase now = phase();
+    if (now == Phase::failed) raise(alarm::bringup_failed, AlarmSource::bus, 0);
+    if (now != Phase::operational) {
+        if (now != Phase::failed) raise(alarm::bus_not_operational, AlarmSource::bus, 0);
+        return count;
+    }
+    const auto& seen = statistics();
+    if (!impl_->cycle.link_up()) raise(alarm::link_down, AlarmSource::bus, 0);
+    if (seen.lost_in_a_row >= impl_->config.lost_frames_limit) raise(alarm::frames_lost, AlarmSource::bus, 0, seen.lost_in_a_row);
+    for (std::size_t s = 0; s < slave_count(); ++s) {
+        const auto& state = health(s);
+        if (state.al_state == AlState::unknown)
+            raise(alarm::slave_lost, AlarmSource::slave, s);
+        else if (state.al_state != AlState::op || state.al_error)
+            raise(alarm::slave_left_op, AlarmSource::slave, s, static_cast<double>(state.al_state), state.al_status_code);
+        if (!state.fresh && state.age >= impl_->config.lost_frames_limit) raise(alarm::working_counter_wrong, AlarmSource::slave, s, state.age);
+    }
+    constexpr std::int64_t sync_limit_ns = 3000;  // SV33-E P0A.32 default
+    if (seen.dc_difference_ns > sync_limit_ns) raise(alarm::dc_out_of_sync, AlarmSource::bus, 0, static_cast<double>(seen.dc_difference_ns));
+    return count;
+}
+
+std::span<const AlarmInfo> Master::alarms() noexcept { return bus_alarms; }
+
+}  // namespace taktwerk::ecat
