@@ -62,6 +62,7 @@ void Axis::read_feedback() noexcept {
     actual_counts_ = feedback_.position;
     if (!seeded_) {
         seeded_ = true;
+        anchor_near_actual();
         setpoint_.place(actual_local());
     }
     // Switches are wired to the drive's sense of direction.

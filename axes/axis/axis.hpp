@@ -111,7 +111,7 @@ private:
     // axis_states.cpp
     bool fire(AxisEvent event) noexcept;
     void fail(AxisAlarm alarm, double a = 0, double b = 0) noexcept;
-    void enter_error_stop(AlarmId reason, bool then_power_off, bool keep_motion) noexcept;
+    void enter_error_stop(AlarmId reason, bool then_power_off) noexcept;
     void stop_on_own_account(bool then_power_off) noexcept;
     void switch_off() noexcept;
     void run_reset() noexcept;
@@ -131,6 +131,7 @@ private:
 
     // axis_motion.cpp
     void follow_actual(Duration period) noexcept;
+    void anchor_near_actual() noexcept;
     [[nodiscard]] double signed_velocity(const AxisCommand& command) const noexcept;
     void begin_command() noexcept;
     ErrorId set_goal(const AcceptedCommand& accepted) noexcept;

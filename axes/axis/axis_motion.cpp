@@ -7,6 +7,12 @@
 
 namespace taktwerk::axes {
 
+namespace {
+
+constexpr double far_from_anchor = 1024;  // feeds: nearer than this `local` resolves some 1e-13 feeds
+
+}  // namespace
+
 void Axis::plan(Instant now, Duration period) noexcept {
     now_ = now;
     if (power_.follows_actual() || drive_homing_.busy()) {
@@ -134,10 +140,15 @@ void Axis::run_goal(double late) noexcept {
     setpoint_.sample();
 }
 
+/// Only while nothing is planned: every local coordinate becomes another.
+void Axis::anchor_near_actual() noexcept {
+    if (std::abs(actual_local()) >= far_from_anchor * units_.feed()) units_.reanchor(actual_local());
+}
+
 void Axis::keep_close_to_anchor() noexcept {
-    constexpr double far = 1024;  // feeds: `local` keeps a resolution of some 1e-13 feeds
     const double here = setpoint_.state().position;
-    if (!endless_ || goal_pending_ || goal_.kind != Goal::Kind::velocity || !setpoint_.finished() || std::abs(here) < far * units_.feed()) return;
+    if (!endless_ || goal_pending_ || goal_.kind != Goal::Kind::velocity || !setpoint_.finished() || std::abs(here) < far_from_anchor * units_.feed())
+        return;
     setpoint_.rebase(units_.reanchor(here));
     goal_pending_ = true;
 }
@@ -179,6 +190,7 @@ bool Axis::guard_software_limits(const MotionState& before) noexcept {
     limits.velocity = std::min(limits.velocity, std::max(std::abs(goal_.value), std::abs(before.velocity)));
     if (queue_.active().command.kind == CommandKind::move_velocity)
         fail(AxisAlarm::software_limit_reached, units_.to_program(before.position), edge);
+    // Also in ErrorStop: its own stop might be softer and pass the limit.
     aim(Goal::Kind::position, edge_local, limits, VelocityLimiter::software_limit);
     return true;
 }

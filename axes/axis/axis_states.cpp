@@ -24,21 +24,20 @@ void Axis::fail(AxisAlarm alarm, double a, double b) noexcept {
     if (!alarms_.raise(alarm, a, b)) return;
     const auto how = reaction(alarm);
     if (how < Reaction::stop_axis) return;
-    // The way to a software limit is planned to end exactly there; a stop on its own account might be softer and pass it.
-    enter_error_stop(id(alarm), how == Reaction::power_off, alarm == AxisAlarm::software_limit_reached);
+    enter_error_stop(id(alarm), how == Reaction::power_off);
 }
 
 void Axis::stop_for_error(AlarmId reason, bool then_power_off) noexcept {
     const bool stays_off = state_ == AxisState::Disabled && !power_wish_;
     if (!stays_off && alarms_.raise(AxisAlarm::stopped_by_machine, reason, 0)) {
-        enter_error_stop(id(AxisAlarm::stopped_by_machine), then_power_off, false);
+        enter_error_stop(id(AxisAlarm::stopped_by_machine), then_power_off);
         publish();
     } else if (then_power_off && state_ == AxisState::ErrorStop) {
         off_after_error_ = true;
     }
 }
 
-void Axis::enter_error_stop(AlarmId reason, bool then_power_off, bool keep_motion) noexcept {
+void Axis::enter_error_stop(AlarmId reason, bool then_power_off) noexcept {
     off_after_error_ = off_after_error_ || then_power_off;
     if (state_ == AxisState::ErrorStop) return;  // it stops already; the first error is the one shown
     error_ = reason;
@@ -49,7 +48,7 @@ void Axis::enter_error_stop(AlarmId reason, bool then_power_off, bool keep_motio
     stop_lock_ = 0;
     off_when_stopped_ = begin_pending_ = false;
     abort_homing();
-    if (!keep_motion) aim(Goal::Kind::stop, 0, stop_limits(config_.limits), VelocityLimiter::stopping);
+    aim(Goal::Kind::stop, 0, stop_limits(config_.limits), VelocityLimiter::stopping);
 }
 
 void Axis::stop_on_own_account(bool then_power_off) noexcept {
@@ -100,7 +99,7 @@ void Axis::supervise(Instant now) noexcept {
         if (emergency_ == EmergencyStop::stop_and_power_off) off_after_error_ = state_ == AxisState::ErrorStop;
     }
     watch_jog_lease();
-    publish();
+    if (emergency_ != EmergencyStop::none || queue_.active().command.kind == CommandKind::jog) publish();
 }
 
 void Axis::watch_jog_lease() noexcept {

@@ -37,6 +37,7 @@ public:
     std::int64_t home_low = 0, home_high = 0;  ///< home switch on between
     std::int64_t negative_end = std::numeric_limits<std::int64_t>::min(), positive_end = std::numeric_limits<std::int64_t>::max();
     std::int64_t homing_speed = 5, homing_place = -2000;
+    std::int64_t wraps_at_home = 0;  ///< whole ranges of the raw position that the port's unwrapping has counted
     bool homing_fails = false, homing_hangs = false;
     DriveMode forced_mode = DriveMode::none;
     DriveCapabilities caps;
@@ -127,7 +128,7 @@ private:
         if (homing_fails) homing_error_ = true;
         else {
             attained_ = true;
-            zero = homing_place;
+            zero = homing_place - wraps_at_home * (1LL << 32);
         }
     }
     /// Linear between the set-points, as a drive interpolates.

@@ -70,6 +70,19 @@ TEST(HomeByDrive, ChangesModeStartsAndComesBackWithoutAJump) {
     EXPECT_LE(rig.drive.largest_step, 100);
 }
 
+// The port unwraps 32 bit positions; after homing the drive's zero may read as any multiple of 2^32.
+TEST(HomeByDrive, ReferenceIsTheDrivesZeroWhateverWasUnwrapped) {
+    Rig rig(homing_by(HomingKind::drive), [](FakeDrive& drive) { drive.wraps_at_home = -2; });
+    rig.power_on();
+    rig.accept(home(50));
+    ASSERT_TRUE(rig.run_to(AxisState::Standstill, 2000));
+    EXPECT_NEAR(rig.view().actual_position, 50, 1e-9);
+    rig.accept(absolute(51));
+    ASSERT_TRUE(rig.run_to(AxisState::Standstill));
+    EXPECT_EQ(rig.drive.last.position, -2 * (1LL << 32) + 1000);
+    EXPECT_LE(rig.drive.largest_step, 100);
+}
+
 // P1-035: only Stop leads out. The drive gets its start taken back, stands, and is in cyclic position before Stop is done.
 TEST(HomeByDrive, StopAbortsIt) {
     Rig rig(homing_by(HomingKind::drive), [](FakeDrive& drive) { drive.homing_hangs = true; });

@@ -424,6 +424,28 @@ TEST(AxisMotion, EndlessAxisDoesNotDriftInAMillionCycles) {
     EXPECT_GT(turns, 10'000);
 }
 
+// 3e15 counts from zero (an absolute encoder after years in one direction) the set-points are as fine as near zero: 3e15 counts as such would have
+// a resolution of half a count in double degrees.
+TEST(AxisMotion, FarAwayIsAsFineAsNear) {
+    auto config = plain_axis();
+    config.gearing = {.counts_per_revolution = 10000, .motor_revolutions = 7, .load_revolutions = 3, .feed = 360};
+    const std::int64_t turns = 3LL * 42'857'142'857LL;  // whole feeds and whole counts
+    const std::int64_t start = turns / 3 * 70000;
+    Rig near(config), far(config, [&](FakeDrive& drive) { drive.position = static_cast<double>(start); });
+    for (auto* rig : {&near, &far}) {
+        rig->power_on();
+        rig->run(10);
+    }
+    ASSERT_EQ(far.drive.last.position, start);
+    for (auto* rig : {&near, &far}) rig->accept(relative(7.3, 20));
+    for (int i = 0; i < 600; ++i) {
+        near.step();
+        far.step();
+        ASSERT_EQ(far.drive.last.position - start, near.drive.last.position) << i;
+    }
+    EXPECT_EQ(near.drive.last.position, 473);  // 7.3 * 70000 / 3 / 360 = 473.15
+}
+
 // The same at a constant velocity: 3600 degrees per second for 1000 s. Ramps are symmetric, so the way is v * (t - v / (2 a)) without jerk.
 TEST(AxisMotion, EndlessVelocityDoesNotDrift) {
     auto config = plain_axis();
