@@ -62,7 +62,6 @@ Script<Result<void>> setup_clocks(Bus& bus) {
     bus.progress = fmt::format("measuring the clocks of {} slaves", clocks.size());
     bus.reference = clocks.front()->index;
 
-    const Instant now = co_await time();
     const Reply latch = co_await bus.port.bwr(reg::dc_receive_times, std::uint32_t{0});
     if (latch.lost) co_return unanswered("bus", "the latch of the receive times (0900h)", latch);
     std::vector<LatchedTimes> times;
@@ -72,7 +71,7 @@ Script<Result<void>> setup_clocks(Bus& bus) {
         times.push_back(*latched);
     }
     const std::vector<std::uint32_t> delays = line_delays(times);
-    const std::vector<std::uint64_t> offsets = system_offsets(times, delays, static_cast<std::uint64_t>(nanoseconds(now)));
+    const std::vector<std::uint64_t> offsets = system_offsets(times, delays, static_cast<std::uint64_t>(nanoseconds(latch.sent_at)));
     for (std::size_t i = 0; i < clocks.size(); ++i) {
         clocks[i]->dc_delay = delays[i];
         clocks[i]->dc_offset = offsets[i];
@@ -90,8 +89,7 @@ Script<Result<void>> restore_clock(Bus& bus, BusSlave& slave) {
         if (!local.ok()) co_return unanswered(slave.subject, "its system time (0910h)", local);
         const Reply old = co_await bus.port.aprd(slave.found.position, reg::dc_system_offset, 8);
         if (!old.ok()) co_return unanswered(slave.subject, "its clock offset (0920h)", old);
-        const Instant now = co_await time();
-        slave.dc_offset = old.u64() + static_cast<std::uint64_t>(system_time(bus, now)) - local.u64();
+        slave.dc_offset = old.u64() + static_cast<std::uint64_t>(system_time(bus, local.sent_at)) - local.u64();
         const Reply written = co_await bus.port.apwr(slave.found.position, reg::dc_system_offset, slave.dc_offset);
         if (!written.ok()) co_return unanswered(slave.subject, "its clock offset (0920h)", written);
         co_return Result<void>{};

@@ -14,6 +14,7 @@ struct AcyclicChannel::Entry {
     std::size_t size = 0;
     std::uint16_t wkc = 0;
     std::uint16_t passed = 0;
+    Instant sent_at{};
     std::array<std::byte, max_datagram_data> data;
 };
 
@@ -69,10 +70,10 @@ std::optional<EntryId> AcyclicChannel::submit(Command command, Address address, 
 
 std::optional<AcyclicAnswer> AcyclicChannel::poll(EntryId id) const noexcept {
     const auto* entry = find(id);
-    if (entry == nullptr) return AcyclicAnswer{.lost = true, .wkc = 0, .slaves_passed = 0, .data = {}};
+    if (entry == nullptr) return AcyclicAnswer{.lost = true, .wkc = 0, .slaves_passed = 0, .data = {}, .sent_at = {}};
     switch (entry->state.load(std::memory_order_acquire)) {
         case State::done:
-            return AcyclicAnswer{false, entry->wkc, entry->passed, std::span<const std::byte>{entry->data}.first(entry->size)};
+            return AcyclicAnswer{false, entry->wkc, entry->passed, std::span<const std::byte>{entry->data}.first(entry->size), entry->sent_at};
         case State::filling:
         case State::submitted:
         case State::in_flight: return std::nullopt;
@@ -80,7 +81,7 @@ std::optional<AcyclicAnswer> AcyclicChannel::poll(EntryId id) const noexcept {
         case State::free:
         case State::abandoned: break;
     }
-    return AcyclicAnswer{.lost = true, .wkc = 0, .slaves_passed = 0, .data = {}};
+    return AcyclicAnswer{.lost = true, .wkc = 0, .slaves_passed = 0, .data = {}, .sent_at = {}};
 }
 
 void AcyclicChannel::release(EntryId id) noexcept {
@@ -163,6 +164,7 @@ void AcyclicChannel::collect(Instant now) noexcept {
                 std::copy(data.begin(), data.end(), entry.data.begin());
                 entry.wkc = exchange_.wkc(flight.slot, i);
                 entry.passed = exchange_.slaves_passed(flight.slot, i);
+                entry.sent_at = flight.sent_at;
             }
             finish(flight.entries[i], state == SlotState::answered ? State::done : State::lost);
         }

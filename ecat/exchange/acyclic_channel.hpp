@@ -34,6 +34,7 @@ struct AcyclicAnswer {
     std::uint16_t wkc = 0;
     std::uint16_t slaves_passed = 0;  ///< AP and B commands: how many slaves the datagram passed
     std::span<const std::byte> data;  ///< valid until release(); empty when lost
+    Instant sent_at{};                ///< when its frame left; not set when lost
 };
 
 class AcyclicChannel {

@@ -18,7 +18,7 @@ bool Transfer::ready(Instant now) {
     const auto answer = channel_.poll(*entry_);
     if (!answer && now < *give_up_at_) return false;
     if (answer && !answer->lost) {
-        reply_ = Reply{false, answer->wkc, answer->slaves_passed, {answer->data.begin(), answer->data.end()}};
+        reply_ = Reply{false, answer->wkc, answer->slaves_passed, {answer->data.begin(), answer->data.end()}, answer->sent_at};
     }
     channel_.release(*entry_);
     entry_.reset();

@@ -28,6 +28,7 @@ struct Reply {
     std::uint16_t wkc = 0;
     std::uint16_t slaves_passed = 0;  ///< AP and B commands
     std::vector<std::byte> data;
+    Instant sent_at{};                ///< when the frame left
 
     /// Exactly one slave answered.
     [[nodiscard]] bool ok() const noexcept { return !lost && wkc == 1; }
