@@ -227,7 +227,9 @@ void ProcessDataCycle::send_frame(CyclePlan& cycle, std::size_t frame, Instant n
     if (!slot) return;
     cycle.in_flight[frame] = *slot;
     if (frame == 0 && cycle.reference) {
-        const auto clock = exchange_.add(*slot, Command::FRMW, Address::physical(*cycle.reference, reg::dc_system_time), 8);
+        const auto* link = link_.load(std::memory_order_acquire);
+        const bool hold = link != nullptr && link->hold_clock.load(std::memory_order_relaxed);
+        const auto clock = exchange_.add(*slot, hold ? Command::FPRD : Command::FRMW, Address::physical(*cycle.reference, reg::dc_system_time), 8);
         // Should the reference be away, the others get the master's idea of its time instead of 0.
         if (clock) store_le(clock->data, 0, nanoseconds(now) + dc_offset_.value_or(0));
     }

@@ -102,6 +102,18 @@ Script<Result<void>> climb(Bus& bus) {
     co_return done;
 }
 
+/// While it lives the cycle gives the reference time to nobody.
+class ClockHold {
+public:
+    explicit ClockHold(Bus& bus) : bus_(bus) { bus_.link.hold_clock.store(true); }
+    ~ClockHold() { bus_.link.hold_clock.store(false); }
+    ClockHold(const ClockHold&) = delete;
+    ClockHold& operator=(const ClockHold&) = delete;
+
+private:
+    Bus& bus_;
+};
+
 /// The slave at this position has another (or no) station address: was it power-cycled, or is it another device?
 Script<Result<void>> readdress(Bus& bus, BusSlave& slave) {
     const std::uint16_t position = slave.found.position;
@@ -109,8 +121,12 @@ Script<Result<void>> readdress(Bus& bus, BusSlave& slave) {
     if (!address.ok()) co_return unanswered(slave.subject, "its station address (0010h)", address);
     if (address.u16() == slave.found.station) co_return Result<void>{};
     if (bus.reference == slave.index) {
+        const ClockHold hold{bus};
+        co_await pause(3 * bus.config.cycle);  // frames under way
         const Result<void> clock = co_await restore_clock(bus, slave);
         if (!clock) co_return clock;
+        const Reply addressed = co_await bus.port.apwr(position, reg::station_address, slave.found.station);
+        if (!addressed.ok()) co_return unanswered(slave.subject, "its station address (0010h)", addressed);
     }
     const Reply written = co_await bus.port.apwr(position, reg::station_address, slave.found.station);
     if (!written.ok()) co_return unanswered(slave.subject, "its station address (0010h)", written);

@@ -38,6 +38,7 @@ struct CycleLink {
     // Written by the scripts.
     std::atomic<bool> supervise{false};                ///< slaves are in SAFEOP or above: wrong working counters count
     std::atomic<std::int64_t> dc_difference_ns{0};     ///< worst 092Ch
+    std::atomic<bool> hold_clock{false};               ///< the reference is being set: read its time, give it to nobody
 };
 
 /// What a slave's controller and EEPROM said during the scan.
