@@ -85,7 +85,7 @@ void LatchedRequests::apply(AxisRequests& axes) noexcept {
         switch (r.kind) {
             case Kind::submit: {
                 const auto answer = axes.submit(r.axis, r.command, r.owner);
-                known_[known_next_] = {r.id, answer.id, r.axis.index, answer.error};
+                known_[known_next_] = {r.id, answer.id, r.axis.index, answer.error, false};
                 known_next_ = (known_next_ + 1) % capacity;
                 break;
             }
@@ -112,10 +112,11 @@ void LatchedRequests::latch(std::span<const AxisView> real, std::span<AxisView> 
         task_views[i] = real[i];
         task_views[i].last_id = next_ | provisional;  // all of the task's ids are known to the axes by now
     }
-    for (const auto& known : known_) {
-        if (known.mine == 0 || known.axis >= task_views.size()) continue;
+    for (auto& known : known_) {
+        if (known.mine == 0 || known.axis >= task_views.size() || known.told) continue;
         auto& view = task_views[known.axis];
         if (known.refused != ErrorId::none) {
+            known.told = true;
             view.ledger[view.ledger_next] = {known.mine, Outcome::error, known.refused};
             view.ledger_next = static_cast<std::uint8_t>((view.ledger_next + 1) % view.ledger.size());
             continue;

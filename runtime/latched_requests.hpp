@@ -54,6 +54,7 @@ private:
         axes::CommandId mine = 0, real = 0;
         std::uint16_t axis = 0xFFFF;
         axes::ErrorId refused = axes::ErrorId::none;
+        bool told = false;   // a refusal is shown in one latch: the block reads it in its next call
     };
     struct PowerWish {
         bool held = false, enable = false, positive = true, negative = true;

@@ -14,6 +14,7 @@ namespace taktwerk::runtime {
 namespace {
 
 constexpr std::size_t inbox_size = 64;
+constexpr Duration relaxed_watchdog = std::chrono::milliseconds{500};
 constexpr auto no_slave = std::numeric_limits<std::size_t>::max();
 
 constexpr std::array<std::string_view, step_count> step_names{"receive", "inbox", "decode", "update",   "supervise", "tasks",
@@ -31,6 +32,10 @@ ecat::BusConfig bus_of(const MachineConfig& config) {
             slave.startup.insert(slave.startup.end(), more.begin(), more.end());
         }
     }
+    // Without real time a stall of the host must not trip the slaves' watchdogs before it is even counted.
+    if (config.simulation.supervision == Supervision::relaxed)
+        for (auto& slave : bus.slaves)
+            if (slave.sm_watchdog == Duration{}) slave.sm_watchdog = relaxed_watchdog;
     std::erase_if(bus.slaves, [&](const ecat::SlaveConfig& slave) {
         bool bound = false, all_simulated = true;
         for (const auto& binding : config.axes) {

@@ -1,0 +1,158 @@
+#pragma once
+// A whole machine in virtual time for tests: real frames, simulated slaves and drives, built from structs.
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "ecat/sim/digital_terminal.hpp"
+#include "runtime/machine.hpp"
+#include "runtime/virtual_runner.hpp"
+#include "runtime/world.hpp"
+
+namespace taktwerk::runtime::testing {
+
+using namespace std::chrono_literals;
+
+/// A plain CiA 402 servo with the objects this suite needs.
+std::shared_ptr<const ecat::DeviceDescription> servo_device();
+std::shared_ptr<const axes::DriveProfile> servo_profile();
+
+/// `axes` servos named x, y, z, ... on slaves x_drive, ..., each with 800 mm of travel, 10 mm a turn, switches at its ends and
+/// a home switch from -20 to 0 mm; then one terminal `io` with 8 inputs and 8 outputs: estop_ok, button, spare; lamp.
+MachineConfig machine_config(std::size_t axes);
+
+/// Follows one axis through all cycles.
+struct AxisWatch {
+    double largest_step = 0;          ///< u between two set-points while the drive was enabled
+    double largest_velocity = 0;      ///< of the set-point, u/s
+    double previous = 0;
+    bool was_enabled = false;
+};
+
+class TestMachine {
+public:
+    explicit TestMachine(MachineConfig config) : clock(Instant{} + 1s), world(config, clock.now()) {
+        auto built = Machine::build(std::move(config), world.transport());
+        if (auto* errors = std::get_if<1>(&built)) {
+            for (const auto& error : *errors) ADD_FAILURE() << error.text();
+            return;
+        }
+        machine = std::move(std::get<0>(built));
+        runner = std::make_unique<VirtualRunner>(*machine, world, clock);
+        watch.resize(machine->layout().axes.size());
+        runner->after_cycle = [this](Instant) { each_cycle(); };
+    }
+    bool up() {
+        auto ok = runner->bring_up();
+        if (!ok) ADD_FAILURE() << ok.error().text();
+        run(2ms);
+        return ok.ok();
+    }
+    void run(Duration d) { runner->run_for(d); }
+    template <class Condition>
+    bool until(Condition condition, Duration patience) {
+        return runner->run_until([&] { return condition(); }, patience);
+    }
+    const Snapshot& state() {
+        const auto* s = machine->latest();
+        return *s;
+    }
+    const axes::AxisView& axis(std::size_t i) { return state().axes[i]; }
+
+    /// Sends an operator command and returns its answer.
+    CommandAnswer command(OperatorCommand c) {
+        c.client = 1;
+        c.sequence = ++sequence;
+        EXPECT_TRUE(machine->submit(c));
+        for (int i = 0; i < 10; ++i) {
+            run(machine->config().cycle);
+            while (auto answer = machine->next_answer())
+                if (answer->sequence == sequence) return *answer;
+        }
+        ADD_FAILURE() << "no answer";
+        return {};
+    }
+    CommandAnswer command(OperatorAction action, std::uint16_t axis = 0xFFFF, bool flag = false, double value = 0, double value2 = 0) {
+        OperatorCommand c;
+        c.action = action;
+        c.axis = axis;
+        c.index = axis;
+        c.flag = flag;
+        c.value = value;
+        c.value2 = value2;
+        return command(c);
+    }
+    CommandAnswer mode(Mode wanted) {
+        OperatorCommand c;
+        c.action = OperatorAction::set_mode;
+        c.mode = wanted;
+        return command(c);
+    }
+    /// Power on and wait.
+    void enable(std::uint16_t axis) {
+        EXPECT_EQ(command(OperatorAction::power, axis, true).answer, Answer::accepted);
+        EXPECT_TRUE(until([&] { return this->axis(axis).powered; }, 3s)) << "axis " << axis << " did not power on";
+    }
+    void home(std::uint16_t axis) {
+        EXPECT_EQ(command(OperatorAction::home, axis).answer, Answer::accepted);
+        EXPECT_TRUE(until([&] { return this->axis(axis).homed; }, 60s)) << "axis " << axis << " did not home";
+        EXPECT_TRUE(until([&] { return this->axis(axis).state == axes::AxisState::Standstill; }, 5s));
+    }
+    bool has_alarm(AlarmId id) {
+        const auto& s = state();
+        for (std::size_t i = 0; i < s.alarm_count; ++i)
+            if (s.alarms[i].fact.id == id) return true;
+        return false;
+    }
+    std::string alarms() {
+        std::string out;
+        const auto& s = state();
+        for (std::size_t i = 0; i < s.alarm_count; ++i) {
+            const auto words = machine->describe(s.alarms[i].fact);
+            out += words.source + ": " + words.english + "; ";
+        }
+        return out;
+    }
+    /// No set-point of an enabled drive ever stepped further than full speed allows in a cycle.
+    void expect_no_jump() {
+        for (std::size_t i = 0; i < watch.size(); ++i) {
+            const double most = machine->config().axes[i].axis.limits.velocity * to_seconds(machine->config().cycle) * (1 + 1e-9);
+            EXPECT_LE(watch[i].largest_step, most) << "axis " << i << " was given a set-point that jumps";
+            if (auto* drive = world.drive(machine->layout().axes[i].name)) {
+                const double counts = std::abs(machine->config().axes[i].axis.gearing.counts_per_unit());
+                EXPECT_LE(drive->largest_increment(), most * counts + 2) << "the drive of axis " << i << " saw its target jump";
+            }
+        }
+    }
+
+    VirtualClock clock;
+    World world;
+    std::unique_ptr<Machine> machine;
+    std::unique_ptr<VirtualRunner> runner;
+    std::vector<AxisWatch> watch;
+    std::uint64_t sequence = 0;
+    std::function<void()> on_cycle;
+
+private:
+    void each_cycle() {
+        const auto* s = machine->latest();
+        if (!s) return;
+        for (std::size_t i = 0; i < watch.size() && i < s->axes.size(); ++i) {
+            const auto& view = s->axes[i];
+            auto& w = watch[i];
+            // While the drive moves itself (homing) the set-point follows it and is not sent.
+            const bool commanded = view.drive_state == axes::PowerState::enabled && view.state != axes::AxisState::Homing;
+            if (commanded && w.was_enabled) w.largest_step = std::max(w.largest_step, std::abs(view.set_position - w.previous));
+            w.largest_velocity = std::max(w.largest_velocity, std::abs(view.set_velocity));
+            w.previous = view.set_position;
+            w.was_enabled = commanded;
+        }
+        if (on_cycle) on_cycle();
+    }
+};
+
+}  // namespace taktwerk::runtime::testing
