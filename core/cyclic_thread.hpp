@@ -13,11 +13,11 @@ namespace taktwerk {
 
 /// What the step is told about its cycle. With VirtualClock lateness is 0. Recorded, so that a recording can be replayed.
 struct CycleTiming {
-    Instant scheduled;          ///< the grid instant this cycle belongs to
-    Instant woken;              ///< when it really began
-    Duration lateness{0};       ///< woken - scheduled, >= 0
-    std::uint64_t cycle = 0;    ///< executed cycles before this one; a missed tick is not a cycle
-    std::uint64_t missed = 0;   ///< grid instants skipped between the cycle before and this one
+    Instant scheduled;         ///< the grid instant this cycle belongs to
+    Instant woken;             ///< when it really began
+    Duration lateness{0};      ///< woken - scheduled, >= 0
+    std::uint64_t cycle = 0;   ///< executed cycles before this one; a missed tick is not a cycle
+    std::uint64_t missed = 0;  ///< grid instants skipped between the cycle before and this one
 };
 
 enum class CycleVerdict : std::uint8_t { carry_on, stop };
@@ -39,11 +39,11 @@ struct CyclicConfig {
 
 /// A cycle overruns when its step ends after the next grid instant.
 struct CycleCounters {
-    std::uint64_t cycles = 0;        ///< executed
-    std::uint64_t missed = 0;        ///< grid instants skipped, never caught up
-    std::uint64_t overruns = 0;      ///< cycles that overran
-    std::uint32_t consecutive = 0;   ///< overruns in a row up to now
-    std::uint32_t worst_run = 0;     ///< most overruns in a row
+    std::uint64_t cycles = 0;       ///< executed
+    std::uint64_t missed = 0;       ///< grid instants skipped, never caught up
+    std::uint64_t overruns = 0;     ///< cycles that overran
+    std::uint32_t consecutive = 0;  ///< overruns in a row up to now
+    std::uint32_t worst_run = 0;    ///< most overruns in a row
 };
 
 enum class CycleEnd : std::uint8_t {

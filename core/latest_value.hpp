@@ -21,9 +21,7 @@ public:
     [[nodiscard]] T& back() noexcept { return buffers_[back_]; }
 
     /// Writer only: makes back() the newest value. The reference from back() is void from here on.
-    void publish() noexcept {
-        back_ = middle_.exchange(static_cast<std::uint8_t>(back_ | fresh_), std::memory_order_acq_rel) & index_;
-    }
+    void publish() noexcept { back_ = middle_.exchange(static_cast<std::uint8_t>(back_ | fresh_), std::memory_order_acq_rel) & index_; }
 
     struct Reading {
         const T* value;  ///< never null; before the first publish() the prototype. Valid until the reader's next read().

@@ -187,8 +187,8 @@ double log(double x) noexcept {
 namespace {
 
 #if defined(__x86_64__)
-constexpr std::uint64_t stepping_bits = 0x8040;   // FTZ and DAZ
-constexpr std::uint64_t rounding_bits = 0x6000;   // 00: to nearest
+constexpr std::uint64_t stepping_bits = 0x8040;  // FTZ and DAZ
+constexpr std::uint64_t rounding_bits = 0x6000;  // 00: to nearest
 std::uint64_t float_control() noexcept { return _mm_getcsr(); }
 void set_float_control(std::uint64_t bits) noexcept { _mm_setcsr(static_cast<unsigned>(bits)); }
 #elif defined(__aarch64__)

@@ -39,7 +39,8 @@ std::int64_t read_signal(std::span<const std::byte> image, const Signal& signal)
             case 8: return signal.is_signed ? load_le<std::int8_t>(image, first) : load_le<std::uint8_t>(image, first);
             case 16: return signal.is_signed ? load_le<std::int16_t>(image, first) : load_le<std::uint16_t>(image, first);
             case 32:
-                return signal.is_signed ? std::int64_t{load_le<std::int32_t>(image, first)} : std::int64_t{load_le<std::uint32_t>(image, first)};
+                return signal.is_signed ? std::int64_t{load_le<std::int32_t>(image, first)}
+                                        : std::int64_t{load_le<std::uint32_t>(image, first)};
             case 64: return load_le<std::int64_t>(image, first);
             default: break;
         }

@@ -81,12 +81,14 @@ CpuLatencyHold& CpuLatencyHold::operator=(CpuLatencyHold&& other) noexcept {
 
 Result<void> set_fifo_priority(int priority) {
     if (priority < 1 || priority > 99)
-        return Error{"realtime.priority", "", fmt::format("{} is no SCHED_FIFO priority", priority), "Choose 1..99; 80 is usual for the cycle"};
+        return Error{"realtime.priority", "", fmt::format("{} is no SCHED_FIFO priority", priority),
+                     "Choose 1..99; 80 is usual for the cycle"};
     sched_param parameters{};
     parameters.sched_priority = priority;
     // RESET_ON_FORK: threads that libraries start from here are ordinary ones.
     if (::sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &parameters) != 0)
-        return refusal("realtime.priority", "", errno, "Grant CAP_SYS_NICE or set `rtprio` in /etc/security/limits.conf (systemd: LimitRTPRIO=95)");
+        return refusal("realtime.priority", "", errno,
+                       "Grant CAP_SYS_NICE or set `rtprio` in /etc/security/limits.conf (systemd: LimitRTPRIO=95)");
     return {};
 }
 
@@ -107,7 +109,8 @@ Result<void> pin_to_cpus(const std::vector<int>& cpus) {
         CPU_SET(cpu, &set);
     }
     if (::sched_setaffinity(0, sizeof set, &set) != 0)
-        return refusal("realtime.cpus", fmt::format("CPU {}", fmt::join(cpus, ", ")), errno, "See `lscpu` for the CPUs there are, and the service's CPUAffinity=");
+        return refusal("realtime.cpus", fmt::format("CPU {}", fmt::join(cpus, ", ")), errno,
+                       "See `lscpu` for the CPUs there are, and the service's CPUAffinity=");
     return {};
 }
 
@@ -120,14 +123,16 @@ Result<void> set_timer_slack(Duration slack) {
 Result<void> prefault_stack(std::size_t bytes) {
     constexpr std::size_t spare = 64 * 1024;
     pthread_attr_t attributes;
-    if (const int number = ::pthread_getattr_np(::pthread_self(), &attributes); number != 0) return refusal("realtime.stack", "", number, "");
+    if (const int number = ::pthread_getattr_np(::pthread_self(), &attributes); number != 0)
+        return refusal("realtime.stack", "", number, "");
     void* lowest = nullptr;
     std::size_t size = 0;
     ::pthread_attr_getstack(&attributes, &lowest, &size);
     ::pthread_attr_destroy(&attributes);
     const auto left = static_cast<std::size_t>(static_cast<char*>(__builtin_frame_address(0)) - static_cast<char*>(lowest));
     if (left < bytes + spare)
-        return Error{"realtime.stack", "", fmt::format("the thread has {} KB of stack left, {} KB were to be touched", left / 1024, bytes / 1024),
+        return Error{"realtime.stack", "",
+                     fmt::format("the thread has {} KB of stack left, {} KB were to be touched", left / 1024, bytes / 1024),
                      "Ask for less, or start the thread with a larger stack"};
     touch_stack(bytes);
     return {};
@@ -144,10 +149,12 @@ bool kernel_is_preempt_rt() {
 RealtimeReport prepare_process(const RealtimeRequest& request, CpuLatencyHold& hold) {
     RealtimeReport report;
     note(report, "PREEMPT_RT kernel",
-         kernel_is_preempt_rt() ? Result<void>{} : Error{"realtime.kernel", "", "this kernel is not PREEMPT_RT", "Install linux-image-rt-amd64"},
+         kernel_is_preempt_rt() ? Result<void>{}
+                                : Error{"realtime.kernel", "", "this kernel is not PREEMPT_RT", "Install linux-image-rt-amd64"},
          "single cycles may start late by several 100 us to milliseconds; fit for tests and cycles from about 10 ms");
     if (request.lock_memory)
-        note(report, "memory locked", lock_memory(), "a page that was swapped out or never touched delays a cycle by 10 us to milliseconds");
+        note(report, "memory locked", lock_memory(),
+             "a page that was swapped out or never touched delays a cycle by 10 us to milliseconds");
     if (request.hold_cpu_latency) {
         auto acquired = CpuLatencyHold::acquire();
         note(report, "CPU kept out of deep sleep", acquired.ok() ? Result<void>{} : acquired.error(),

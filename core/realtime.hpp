@@ -14,16 +14,16 @@
 namespace taktwerk {
 
 struct RealtimeRequest {
-    std::optional<int> priority = 80;            ///< SCHED_FIFO, 1..99; above IRQ threads (50), below the watchdog (99)
-    std::vector<int> cpus;                       ///< the cycle thread's CPUs; empty: any
-    bool lock_memory = true;                     ///< mlockall: no page fault in the cycle
-    bool hold_cpu_latency = true;                ///< /dev/cpu_dma_latency: no deep sleep states
-    std::size_t prefault_stack = 256 * 1024;     ///< bytes of stack touched beforehand; 0: none
+    std::optional<int> priority = 80;         ///< SCHED_FIFO, 1..99; above IRQ threads (50), below the watchdog (99)
+    std::vector<int> cpus;                    ///< the cycle thread's CPUs; empty: any
+    bool lock_memory = true;                  ///< mlockall: no page fault in the cycle
+    bool hold_cpu_latency = true;             ///< /dev/cpu_dma_latency: no deep sleep states
+    std::size_t prefault_stack = 256 * 1024;  ///< bytes of stack touched beforehand; 0: none
 };
 
 /// One thing that was asked for, for the log, `monitor` and `--json`.
 struct RealtimeItem {
-    std::string what;         ///< "SCHED_FIFO priority 80"
+    std::string what;  ///< "SCHED_FIFO priority 80"
     bool granted = false;
     std::string reason;       ///< why not, and how to change that; empty when granted
     std::string consequence;  ///< what it costs; empty when granted
@@ -41,7 +41,8 @@ struct RealtimeReport {
 class CpuLatencyHold {
 public:
     /// Errors: realtime.cpu_latency.
-    [[nodiscard]] static Result<CpuLatencyHold> acquire(Duration worst_wake_up = Duration{0}, const std::string& device = "/dev/cpu_dma_latency");
+    [[nodiscard]] static Result<CpuLatencyHold> acquire(Duration worst_wake_up = Duration{0},
+                                                        const std::string& device = "/dev/cpu_dma_latency");
     CpuLatencyHold() = default;
     ~CpuLatencyHold();
     CpuLatencyHold(CpuLatencyHold&& other) noexcept;

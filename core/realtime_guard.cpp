@@ -22,8 +22,8 @@ namespace {
 constinit thread_local ForbiddenSystemCalls forbidden_here{};
 
 constexpr std::array allowed_always{
-    SYS_clock_nanosleep, SYS_clock_gettime, SYS_gettimeofday, SYS_sendto,    SYS_sendmsg, SYS_sendmmsg,
-    SYS_recvfrom,        SYS_recvmsg,       SYS_recvmmsg,     SYS_exit,      SYS_exit_group, SYS_rt_sigreturn,
+    SYS_clock_nanosleep, SYS_clock_gettime, SYS_gettimeofday, SYS_sendto, SYS_sendmsg,    SYS_sendmmsg,
+    SYS_recvfrom,        SYS_recvmsg,       SYS_recvmmsg,     SYS_exit,   SYS_exit_group, SYS_rt_sigreturn,
 };
 
 constexpr std::size_t most_further = 16;
@@ -58,7 +58,8 @@ void note_system_call(int, siginfo_t* info, void* context) {
 }
 
 Error failure(std::string_view what) {
-    return Error{"realtime.system_calls", "", fmt::format("{}: {}", what, std::strerror(errno)), "It needs a kernel with seccomp filters (CONFIG_SECCOMP_FILTER)"};
+    return Error{"realtime.system_calls", "", fmt::format("{}: {}", what, std::strerror(errno)),
+                 "It needs a kernel with seccomp filters (CONFIG_SECCOMP_FILTER)"};
 }
 
 std::string_view name_of(int number) {
@@ -83,7 +84,8 @@ std::string_view name_of(int number) {
 }  // namespace
 
 Result<void> restrict_cycle_thread_system_calls(SystemCallMode mode, std::span<const int> also_allowed) {
-    if (also_allowed.size() > most_further) return Error{"realtime.system_calls", "", "more than 16 further system calls are not a restriction", ""};
+    if (also_allowed.size() > most_further)
+        return Error{"realtime.system_calls", "", "more than 16 further system calls are not a restriction", ""};
 
     std::uint32_t otherwise = SECCOMP_RET_LOG;
     if (mode == SystemCallMode::kill_thread) otherwise = SECCOMP_RET_KILL_THREAD;

@@ -19,8 +19,8 @@ enum class SystemCallMode : std::uint8_t {
 };
 
 /// For the calling thread only, and for whatever it starts later. It cannot be undone, not even by root: only for a test's
-/// own thread, or when the operator asks for it. Allowed: clock_nanosleep, clock_gettime, gettimeofday, send*, recv*, exit*, rt_sigreturn, and
-/// `also_allowed` (numbers as in <sys/syscall.h>, at most 16). Sets no_new_privs.
+/// own thread, or when the operator asks for it. Allowed: clock_nanosleep, clock_gettime, gettimeofday, send*, recv*, exit*,
+/// rt_sigreturn, and `also_allowed` (numbers as in <sys/syscall.h>, at most 16). Sets no_new_privs.
 ///
 /// With `record` a thread should leave by a flag and let others read the record: a call that glibc cannot do without (futex) may
 /// end the process, and thread exit itself makes calls that are noted too, so read the record before the thread ends.
@@ -30,8 +30,8 @@ enum class SystemCallMode : std::uint8_t {
 /// What the calling thread tried in mode `record`.
 struct ForbiddenSystemCalls {
     std::uint64_t count = 0;
-    int first = -1;                       ///< number of the first one
-    std::array<void*, 24> backtrace{};    ///< of the first one
+    int first = -1;                     ///< number of the first one
+    std::array<void*, 24> backtrace{};  ///< of the first one
     std::size_t backtrace_depth = 0;
 
     /// For a test's message: number, name of the common ones, and the backtrace. Allocates: not on a restricted thread.

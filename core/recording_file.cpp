@@ -51,7 +51,8 @@ public:
         const std::size_t length = number();
         if (rest_.size() < length) return ok_ = false, std::string{};
         std::string out(length, '\0');
-        std::transform(rest_.begin(), rest_.begin() + static_cast<std::ptrdiff_t>(length), out.begin(), [](std::byte b) { return static_cast<char>(b); });
+        std::transform(rest_.begin(), rest_.begin() + static_cast<std::ptrdiff_t>(length), out.begin(),
+                       [](std::byte b) { return static_cast<char>(b); });
         rest_ = rest_.subspan(length);
         return out;
     }
@@ -74,7 +75,8 @@ std::array<std::byte, frame_size> frame_head(const RecordView& record) {
 }  // namespace
 
 Error RecordingWriter::failure(int number) const {
-    return Error{"recording.write", path_, fmt::format("cannot write the recording: {}", std::strerror(number)), "Check the folder and the space left on the disk"};
+    return Error{"recording.write", path_, fmt::format("cannot write the recording: {}", std::strerror(number)),
+                 "Check the folder and the space left on the disk"};
 }
 
 Result<void> RecordingWriter::put(std::span<const std::byte> bytes) {
@@ -128,13 +130,15 @@ Result<Recording> parse_recording(std::vector<std::byte> file, const std::string
     recording.bytes = std::move(file);
     const std::span<const std::byte> all{recording.bytes};
     const auto corrupt = [&](std::size_t offset, std::string_view what) {
-        return Error{"recording.corrupt", name, fmt::format("{} at byte {}", what, offset), "The file was damaged after it was written; use a backup"};
+        return Error{"recording.corrupt", name, fmt::format("{} at byte {}", what, offset),
+                     "The file was damaged after it was written; use a backup"};
     };
 
     if (all.size() < preamble_size || std::memcmp(all.data(), magic.data(), magic.size()) != 0)
         return Error{"recording.not_a_recording", name, "this is not a recording: it does not begin with TWREC", ""};
     if (const auto version = load_le<std::uint16_t>(all, 6); version != recording_version)
-        return Error{"recording.version", name, fmt::format("the recording has format {}, this program reads format {}", version, recording_version),
+        return Error{"recording.version", name,
+                     fmt::format("the recording has format {}, this program reads format {}", version, recording_version),
                      "Replay it with the program that recorded it"};
     const std::size_t head_size = load_le<std::uint32_t>(all, 8);
     if (head_size > all.size() - preamble_size) return corrupt(preamble_size, "the head is cut off");
@@ -171,7 +175,9 @@ Result<Recording> parse_recording(std::vector<std::byte> file, const std::string
 }
 
 Result<Recording> load_recording(const std::string& path) {
-    const auto failure = [&] { return Error{"recording.read", path, fmt::format("cannot read the recording: {}", std::strerror(errno)), "Check the path"}; };
+    const auto failure = [&] {
+        return Error{"recording.read", path, fmt::format("cannot read the recording: {}", std::strerror(errno)), "Check the path"};
+    };
     struct Close {
         void operator()(std::FILE* f) const noexcept { std::fclose(f); }
     };
@@ -179,7 +185,8 @@ Result<Recording> load_recording(const std::string& path) {
     if (file == nullptr) return failure();
     std::vector<std::byte> bytes;
     std::array<std::byte, 65536> block;
-    while (const std::size_t got = std::fread(block.data(), 1, block.size(), file.get())) bytes.insert(bytes.end(), block.begin(), block.begin() + static_cast<std::ptrdiff_t>(got));
+    while (const std::size_t got = std::fread(block.data(), 1, block.size(), file.get()))
+        bytes.insert(bytes.end(), block.begin(), block.begin() + static_cast<std::ptrdiff_t>(got));
     if (std::ferror(file.get()) != 0) return failure();
     return parse_recording(std::move(bytes), path);
 }

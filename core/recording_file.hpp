@@ -21,8 +21,8 @@ namespace taktwerk {
 inline constexpr std::uint16_t recording_version = 1;
 
 struct RecordingInfo {
-    std::vector<std::string> channels;                        ///< RecordChannel is the index
-    std::vector<std::pair<std::string, std::string>> facts;   ///< hashes of configuration and programs, binary, start state, ...
+    std::vector<std::string> channels;                       ///< RecordChannel is the index
+    std::vector<std::pair<std::string, std::string>> facts;  ///< hashes of configuration and programs, binary, start state, ...
 
     friend bool operator==(const RecordingInfo&, const RecordingInfo&) = default;
 };

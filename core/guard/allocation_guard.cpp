@@ -32,7 +32,8 @@ void note(std::size_t size, bool is_free) noexcept {
     const int saved = errno;
     if (use_here.backtrace_depth == 0) {  // the first since the innermost scope began
         use_here.first_size = size;
-        use_here.backtrace_depth = static_cast<std::size_t>(::backtrace(use_here.backtrace.data(), static_cast<int>(use_here.backtrace.size())));
+        use_here.backtrace_depth =
+            static_cast<std::size_t>(::backtrace(use_here.backtrace.data(), static_cast<int>(use_here.backtrace.size())));
     }
     ++(is_free ? use_here.frees : use_here.allocations);
     if (abort_here) {
@@ -120,11 +121,11 @@ void operator delete[](void* memory, const std::nothrow_t&) noexcept { operator 
 
 // glibc's own names for its allocator; operator new ends in malloc.
 extern "C" {
-void* __libc_malloc(std::size_t size);                                  // NOLINT(bugprone-reserved-identifier)
-void* __libc_calloc(std::size_t count, std::size_t size);               // NOLINT(bugprone-reserved-identifier)
-void* __libc_realloc(void* memory, std::size_t size);                   // NOLINT(bugprone-reserved-identifier)
-void* __libc_memalign(std::size_t alignment, std::size_t size);         // NOLINT(bugprone-reserved-identifier)
-void __libc_free(void* memory);                                         // NOLINT(bugprone-reserved-identifier)
+void* __libc_malloc(std::size_t size);                           // NOLINT(bugprone-reserved-identifier)
+void* __libc_calloc(std::size_t count, std::size_t size);        // NOLINT(bugprone-reserved-identifier)
+void* __libc_realloc(void* memory, std::size_t size);            // NOLINT(bugprone-reserved-identifier)
+void* __libc_memalign(std::size_t alignment, std::size_t size);  // NOLINT(bugprone-reserved-identifier)
+void __libc_free(void* memory);                                  // NOLINT(bugprone-reserved-identifier)
 
 void* malloc(std::size_t size) noexcept {
     taktwerk::note(size, false);

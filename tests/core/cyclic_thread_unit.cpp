@@ -187,7 +187,9 @@ TEST(CyclicThread, OnTheSystemClockNoCycleStartsBeforeItsInstant) {
     SystemClock clock;
     CyclicThread thread{clock, {.period = 200us}};
     int early = 0;
-    thread.run([&](const CycleTiming& t) { return early += t.woken < t.scheduled, t.cycle == 20 ? CycleVerdict::stop : CycleVerdict::carry_on; }, never);
+    thread.run(
+        [&](const CycleTiming& t) { return early += t.woken < t.scheduled, t.cycle == 20 ? CycleVerdict::stop : CycleVerdict::carry_on; },
+        never);
     EXPECT_EQ(early, 0);
 }
 

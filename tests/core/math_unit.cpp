@@ -56,8 +56,12 @@ TEST(Math, SineIsWithinOneUlpNextToItsZeros) {
         const double n = static_cast<double>(random() % 600'000);
         return std::nextafter(n * 1.5707963267948966, (random() & 1u) != 0 ? INFINITY : -INFINITY);
     };
-    EXPECT_LE(worst_ulps(math::sin, [](long double x) { return std::sin(x); }, near_zero), 1.0);
-    EXPECT_LE(worst_ulps(math::cos, [](long double x) { return std::cos(x); }, near_zero), 1.0);
+    EXPECT_LE(worst_ulps(
+                  math::sin, [](long double x) { return std::sin(x); }, near_zero),
+              1.0);
+    EXPECT_LE(worst_ulps(
+                  math::cos, [](long double x) { return std::cos(x); }, near_zero),
+              1.0);
 }
 
 TEST(Math, SineAndCosineOfHugeAnglesStayOnTheUnitCircleWithinTheArgumentsLastBit) {
@@ -78,8 +82,12 @@ TEST(Math, KnownAnglesAndSpecialValues) {
 }
 
 TEST(Math, CubeRootIsWithinOneUlpOverTheWholeRange) {
-    EXPECT_LE(worst_ulps(math::cbrt, [](long double x) { return std::cbrt(x); }, magnitudes(-1070, 1023.9)), 1.0);
-    EXPECT_LE(worst_ulps(math::cbrt, [](long double x) { return std::cbrt(x); }, between(-30, 30)), 1.0);
+    EXPECT_LE(worst_ulps(
+                  math::cbrt, [](long double x) { return std::cbrt(x); }, magnitudes(-1070, 1023.9)),
+              1.0);
+    EXPECT_LE(worst_ulps(
+                  math::cbrt, [](long double x) { return std::cbrt(x); }, between(-30, 30)),
+              1.0);
 }
 
 TEST(Math, CubeRootOfCubesIsExact) {

@@ -20,7 +20,9 @@ struct Record {
     friend bool operator==(const Record&, const Record&) = default;
 };
 
-Record copy_of(const RecordView& view) { return {view.channel, view.time.time_since_epoch().count(), {view.bytes.begin(), view.bytes.end()}}; }
+Record copy_of(const RecordView& view) {
+    return {view.channel, view.time.time_since_epoch().count(), {view.bytes.begin(), view.bytes.end()}};
+}
 
 template <class Records = std::vector<Record>>
 Records all_of(const Recorder& recorder) {
@@ -115,7 +117,8 @@ TEST(Recorder, OneThreadMayDrainWhileTheCycleAppends) {
     while (expected < count) {
         recorder.drain([&](const RecordView& view) {
             const bool right = view.channel == 3 && view.time == Instant{Duration{expected}} &&
-                               view.bytes.size() == static_cast<std::size_t>(expected % 33) + 8 && load_le<std::int64_t>(view.bytes) == expected;
+                               view.bytes.size() == static_cast<std::size_t>(expected % 33) + 8 &&
+                               load_le<std::int64_t>(view.bytes) == expected;
             wrong += !right;
             ++expected;
         });
