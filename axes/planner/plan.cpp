@@ -46,11 +46,13 @@ double without_negligible(double x) noexcept { return std::abs(x) < PlanBounds::
 Plan refuse(const MotionState& from, PlanError error) noexcept { return {Profile{from}, error}; }
 
 Plan to_velocity(const MotionState& from, double target_velocity, const TwoWayLimits& limits) noexcept {
-    const VelocityRamp ramp{without_negligible(from.velocity), without_negligible(from.acceleration), without_negligible(target_velocity), limits};
+    const VelocityRamp ramp{without_negligible(from.velocity), without_negligible(from.acceleration), without_negligible(target_velocity),
+                            limits};
     // Only the last piece counts back from the end: it makes velocity and acceleration exact, the way is whatever it is.
     const auto stretches = ramp.stretches();
     const std::size_t forward = stretches.empty() ? 0 : stretches.size() - 1;
-    return {Profile{from, stretches.first(forward), stretches.subspan(forward), {from.position + ramp.travel(), target_velocity, 0}}, PlanError::none};
+    return {Profile{from, stretches.first(forward), stretches.subspan(forward), {from.position + ramp.travel(), target_velocity, 0}},
+            PlanError::none};
 }
 
 /// A cube root to within 5 %, for a first guess: a third of the exponent.
@@ -133,8 +135,8 @@ private:
         double high = stretch.duration;
         // The end grows between linearly and with the fourth power of the moment; the cube is typical.
         const double none = stop_position(begin);
-        double t = high / 2;
-        if (way_ > none && end_position > way_) t = high * std::min(rough_cube_root((way_ - none) / (end_position - none)), 0.999);
+        if (way_ <= none) return 0;  // by rounding only
+        double t = high * std::min(rough_cube_root((way_ - none) / (end_position - none)), 0.999);
         double best = high;
         double best_miss = std::abs(end_position - way_);
         double last_miss = std::numeric_limits<double>::infinity();
@@ -205,7 +207,8 @@ Plan plan_to_position(const MotionState& from, double target, const MotionLimits
     // As close as the numbers can tell. A correction of a rounding error would cost time that grows with its cube root.
     const double rounding = epsilon * (2 * stop.path() + std::max(std::abs(target), std::abs(from.position)) / 2);
     const double missing = way - stop.travel();
-    if (missing == 0 || (std::abs(missing) <= rounding && !stop.stretches().empty())) return {Profile{from, {}, stop.stretches(), end}, PlanError::none};
+    if (missing == 0 || (std::abs(missing) <= rounding && !stop.stretches().empty()))
+        return {Profile{from, {}, stop.stretches(), end}, PlanError::none};
 
     const double sign = missing > 0 ? 1 : -1;
     PushSearch search{sign * way, sign * velocity, sign * acceleration, sign > 0 ? both : both.mirrored()};
@@ -215,7 +218,8 @@ Plan plan_to_position(const MotionState& from, double target, const MotionLimits
     std::size_t backward_count = 0;
     for (const Stretch& s : last.stretches()) backward[backward_count++] = {s.duration, sign * s.acceleration, sign * s.jerk};
     for (Stretch& s : search.push) s = {s.duration, sign * s.acceleration, sign * s.jerk};
-    return {Profile{from, std::span{search.push}.first(static_cast<std::size_t>(search.push_count)), std::span{backward}.first(backward_count), end},
+    return {Profile{from, std::span{search.push}.first(static_cast<std::size_t>(search.push_count)),
+                    std::span{backward}.first(backward_count), end},
             PlanError::none};
 }
 

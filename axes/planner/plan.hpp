@@ -6,8 +6,8 @@
 // same quality, because no tolerance is absolute.
 //
 // Limits are kept from a start inside them. A start outside them (a limit was lowered, an axis was taken over while moving)
-// is brought inside with full jerk and full deceleration first; nothing gets further outside than the start makes unavoidable. A start
-// too fast to stop before the target passes it and returns.
+// is brought inside with full jerk and full deceleration first, to the limit itself and not below it; nothing gets further outside than
+// the start makes unavoidable. A start too fast to stop before the target passes it and returns.
 
 #include <cstdint>
 

@@ -15,8 +15,7 @@ MotionState travel(const MotionState& from, double jerk, double t) noexcept {
 
 }  // namespace
 
-Profile::Profile(const MotionState& state) noexcept
-    : start_{state.position, state.velocity, 0}, end_{state.position, state.velocity, 0} {}
+Profile::Profile(const MotionState& state) noexcept : start_{state.position, state.velocity, 0}, end_{state.position, state.velocity, 0} {}
 
 Profile::Profile(const MotionState& start, std::span<const Stretch> forward, std::span<const Stretch> backward,
                  const MotionState& end) noexcept

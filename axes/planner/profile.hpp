@@ -33,8 +33,7 @@ public:
 
     /// From `start` through `forward` (counted from the start) and then `backward` (counted back from `end`). Together at most
     /// max_pieces; what does not fit, or lasts no time, is left out. The two must meet: that is the planner's business.
-    Profile(const MotionState& start, std::span<const Stretch> forward, std::span<const Stretch> backward,
-            const MotionState& end) noexcept;
+    Profile(const MotionState& start, std::span<const Stretch> forward, std::span<const Stretch> backward, const MotionState& end) noexcept;
 
     /// The state `t` seconds after the start. At or before 0: the start state. From duration() on: the end state, moving on with
     /// its velocity (a move to a position holds its target exactly).

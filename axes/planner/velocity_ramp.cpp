@@ -15,8 +15,7 @@ TwoWayLimits two_way(const MotionLimits& limits) noexcept {
     return {push, push};
 }
 
-VelocityRamp::VelocityRamp(double velocity, double acceleration, double target, const TwoWayLimits& limits) noexcept
-    : velocity_{velocity} {
+VelocityRamp::VelocityRamp(double velocity, double acceleration, double target, const TwoWayLimits& limits) noexcept : velocity_{velocity} {
     const bool unlimited_jerk = std::isinf(limits.up.jerk_on);
     // Where the velocity ends when the acceleration is just taken away: the target lies above or below that.
     double released = velocity;

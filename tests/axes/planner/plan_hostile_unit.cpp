@@ -59,11 +59,11 @@ void try_everything() {
     for (const MotionLimits& l : limits_to_try) {
         for (double v : {0.0, smallest, 1e-300, 2e-150, 0.5 * l.velocity, l.velocity, l.velocity * (1 + eps), 3 * l.velocity}) {
             if (v > PlanBounds::largest) continue;
-            for (double a : {0.0, -1e-300, 2e-150, l.acceleration, -l.acceleration, l.deceleration, -l.deceleration, 2 * std::min(l.acceleration, 1e9),
-                             -2 * std::min(l.deceleration, 1e9)}) {
+            for (double a : {0.0, -1e-300, 2e-150, l.acceleration, -l.acceleration, l.deceleration, -l.deceleration,
+                             2 * std::min(l.acceleration, 1e9), -2 * std::min(l.deceleration, 1e9)}) {
                 const double stop = stopping_distance({0, v, a}, l);
-                for (double way : {0.0, smallest, -smallest, 1e-300, 2e-150, -1e-140, 1e-12, -1e-12, stop, stop * (1 + eps), stop * (1 - eps), -stop, 2 * stop, 1.0, -1.0,
-                                   1e9, -1e9}) {
+                for (double way : {0.0, smallest, -smallest, 1e-300, 2e-150, -1e-140, 1e-12, -1e-12, stop, stop * (1 + eps),
+                                   stop * (1 - eps), -stop, 2 * stop, 1.0, -1.0, 1e9, -1e9}) {
                     if (std::abs(way) > PlanBounds::largest) continue;
                     expect_sound({{0, v, a}, way, l});
                     if (::testing::Test::HasFatalFailure()) return;

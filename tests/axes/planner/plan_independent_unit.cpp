@@ -1,5 +1,5 @@
-// The same question put to a solver that is not ours: durations calculated once with Ruckig 0.17 (its third-order position interface, one degree
-// of freedom, target at rest), data only. Where acceleration and deceleration differ the motion keeps its direction, so that limits
+// The same question put to a solver that is not ours: durations calculated once with Ruckig 0.17.3 (its third-order position
+// interface, one degree of freedom, target at rest), data only. Where acceleration and deceleration differ the motion keeps its direction, so that limits
 // per sign and PLCopen's limits mean the same.
 
 #include <array>

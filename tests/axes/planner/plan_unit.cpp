@@ -117,8 +117,8 @@ TEST(PlanToPosition, TooFastPassesTheTargetAndReturns) {
 }
 
 TEST(PlanToPosition, TooFastWithJerkPassesTheTargetWithoutStoppingBetweenTheLegs) {
-    // j = 1, no other limit reached, from velocity 1 to its own start. Push down for s, give back for m, take away for e: the
-    // acceleration ends at 0 for e = m - s, the velocity for 1 - s^2 + m^2/2... solved by m^2 = 2 (1 + s^2)... checked at the end only.
+    // j = 1, no other limit reached, from velocity 1 back to where it started: push down for s, up for m, down for e. The
+    // acceleration ends at 0 if m = s + e; the velocity ends at 0 if the three parabolas add up.
     const MotionLimits limits{.velocity = 9, .acceleration = 9, .deceleration = 9, .jerk = 1};
     const Profile profile = plan_to_position({0, 1, 0}, 0, limits).profile;
 
@@ -185,7 +185,8 @@ TEST(PlanToVelocity, MovesOnAtTheTargetVelocity) {
 }
 
 TEST(PlanToVelocity, WithoutJerkLimitTheAccelerationJumps) {
-    const Profile profile = plan_to_velocity({0, 4, 1}, -4, {.velocity = 8, .acceleration = 1, .deceleration = 2, .jerk = unlimited}).profile;
+    const Profile profile =
+        plan_to_velocity({0, 4, 1}, -4, {.velocity = 8, .acceleration = 1, .deceleration = 2, .jerk = unlimited}).profile;
 
     EXPECT_NEAR(profile.duration(), 4.0 / 2 + 4.0 / 1, tight);
     expect_state(profile.at(1), {4 - 1, 2, -2});
@@ -195,7 +196,8 @@ TEST(PlanToVelocity, WithoutJerkLimitTheAccelerationJumps) {
 
 TEST(PlanToPosition, WithoutJerkLimitTheWayIsATrapezoid) {
     // v = 2: 1 s over 1 u up (a = 2), 2 s over 2 u down (d = 1), 7 u at 2.
-    const Profile profile = plan_to_position({0, 0, 0}, 10, {.velocity = 2, .acceleration = 2, .deceleration = 1, .jerk = unlimited}).profile;
+    const Profile profile =
+        plan_to_position({0, 0, 0}, 10, {.velocity = 2, .acceleration = 2, .deceleration = 1, .jerk = unlimited}).profile;
 
     EXPECT_NEAR(profile.duration(), 1 + 3.5 + 2, tight);
     expect_state(profile.at(0.5), {0.25, 1, 2});
@@ -244,6 +246,8 @@ TEST(PlanErrors, BadInputIsRefusedAndTheProfileStaysFinite) {
     EXPECT_EQ(plan_to_position({}, unlimited, good).error, PlanError::invalid_input);
     EXPECT_EQ(plan_to_position({}, 1e31, good).error, PlanError::out_of_bounds);
     EXPECT_EQ(plan_to_position({}, 1, {1, 1, 1e-31, 1}).error, PlanError::out_of_bounds);
+    EXPECT_EQ(plan_to_position({}, 1, {1, 1e31, 1, 1}).error, PlanError::out_of_bounds);
+    EXPECT_EQ(plan_to_position({}, 1, {1, 1, 1, 1e31}).error, PlanError::out_of_bounds);
     EXPECT_EQ(plan_to_velocity({}, 1.5, good).error, PlanError::out_of_bounds);
     EXPECT_EQ(plan_to_position({3, 0, 0}, unlimited, good).profile.at(1).position, 3);
 }
