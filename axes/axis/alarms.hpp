@@ -32,6 +32,7 @@ inline constexpr std::size_t axis_alarm_count = 17;
 
 [[nodiscard]] constexpr AlarmId id(AxisAlarm alarm) noexcept { return static_cast<AlarmId>(alarm); }
 
+// clang-format off
 inline constexpr std::array<AlarmInfo, axis_alarm_count> axis_alarms{{
     {id(AxisAlarm::following_error), "following_error",
      "Following error {a} u is beyond the window of {b} u", "跟随误差 {a} u 超出允许窗口 {b} u",
@@ -119,13 +120,15 @@ inline constexpr std::array<AlarmInfo, axis_alarm_count> axis_alarms{{
      "Check the limits of the axis; report this, it should not happen",
      ResetRule::reset, Reaction::power_off, "The drive's communication watchdog stops it"},
 }};
+// clang-format on
 
 namespace alarm_check {
 consteval bool sound() {
     AlarmId last = 0;
     for (const auto& alarm : axis_alarms) {
         if (alarm.id <= last || alarm.id < 0x3000 || alarm.id > 0x3FFF) return false;  // rising: no id twice
-        if (alarm.name.empty() || alarm.english.empty() || alarm.chinese.empty() || alarm.cause.empty() || alarm.remedy.empty()) return false;
+        if (alarm.name.empty() || alarm.english.empty() || alarm.chinese.empty() || alarm.cause.empty() || alarm.remedy.empty())
+            return false;
         if (alarm.reaction >= Reaction::stop_axis && (alarm.reset != ResetRule::reset || alarm.master_gone.empty())) return false;
         last = alarm.id;
     }

@@ -73,8 +73,7 @@ void Axis::read_feedback() noexcept {
 
 void Axis::watch_drive() noexcept {
     const bool asked = power_.phase() != PowerSequence::Phase::off;
-    if (seeded_ && asked && !online())
-        fail(AxisAlarm::axis_feedback_lost, static_cast<double>(stale_), static_cast<double>(stale_limit_));
+    if (seeded_ && asked && !online()) fail(AxisAlarm::axis_feedback_lost, static_cast<double>(stale_), static_cast<double>(stale_limit_));
     if (!feedback_.fresh || !online()) return;
 
     if (feedback_.warning) fail(AxisAlarm::drive_warning, feedback_.error_code);

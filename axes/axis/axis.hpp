@@ -160,8 +160,8 @@ private:
 
     // from below
     DriveFeedback feedback_;
-    bool seeded_ = false;           // an actual position has arrived
-    std::uint32_t stale_ = 0;       // cycles since the last one
+    bool seeded_ = false;      // an actual position has arrived
+    std::uint32_t stale_ = 0;  // cycles since the last one
     std::int64_t actual_counts_ = 0;
     bool negative_switch_ = false, positive_switch_ = false;
 
@@ -169,8 +169,8 @@ private:
     AxisUnits units_;
     SetpointGenerator setpoint_;
     Goal goal_;
-    bool begin_pending_ = false;    // the active command has not been turned into a goal yet
-    bool goal_pending_ = false;     // the goal has no profile yet
+    bool begin_pending_ = false;  // the active command has not been turned into a goal yet
+    bool goal_pending_ = false;   // the goal has no profile yet
     bool aligned_ = false;
     SetpointHistory history_;
     FollowingErrorTimer following_timer_;
@@ -183,11 +183,11 @@ private:
     PowerSequence power_;
     AlarmBoard alarms_;
     bool power_wish_ = false, permit_positive_ = true, permit_negative_ = true;
-    std::uint8_t power_calls_ = 0;  // in this cycle
-    bool off_when_stopped_ = false; // Stopping on the way to Disabled
-    bool power_dropping_ = false;   // Disabled, but the drive has not let go yet
-    bool off_after_error_ = false;  // ErrorStop whose reaction is power off
-    CommandId stop_lock_ = 0;       // MC_Stop whose Execute is still TRUE
+    std::uint8_t power_calls_ = 0;   // in this cycle
+    bool off_when_stopped_ = false;  // Stopping on the way to Disabled
+    bool power_dropping_ = false;    // Disabled, but the drive has not let go yet
+    bool off_after_error_ = false;   // ErrorStop whose reaction is power off
+    CommandId stop_lock_ = 0;        // MC_Stop whose Execute is still TRUE
     bool resetting_ = false;
     Instant reset_since_{};
     ErrorId reset_error_ = ErrorId::none;
@@ -205,7 +205,7 @@ private:
     // homing
     DriveHoming drive_homing_;
     SwitchHoming switch_homing_;
-    double home_coordinate_ = 0;    // u, of the reference
+    double home_coordinate_ = 0;  // u, of the reference
     bool homed_ = false;
 
     AxisView view_;

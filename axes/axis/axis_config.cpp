@@ -29,13 +29,15 @@ private:
 void check_gearing(Problems& problems, const Gearing& gearing) {
     const auto count = [&](std::string_view field, std::int64_t value) {
         constexpr std::int64_t most = 1LL << 31;  // products of two stay inside 64 bit
-        if (value < 1 || value > most) problems.add(field, "must be a whole number from 1 to 2147483648", "Give the number from the data sheet");
+        if (value < 1 || value > most)
+            problems.add(field, "must be a whole number from 1 to 2147483648", "Give the number from the data sheet");
     };
     count("gearing.counts_per_revolution", gearing.counts_per_revolution);
     count("gearing.motor_revolutions", gearing.motor_revolutions);
     count("gearing.load_revolutions", gearing.load_revolutions);
     if (!(gearing.feed > 0) || std::isinf(gearing.feed))
-        problems.add("gearing.feed", "must be a finite number above 0", "Give the way per load revolution; use `inverted` to change the sense");
+        problems.add("gearing.feed", "must be a finite number above 0",
+                     "Give the way per load revolution; use `inverted` to change the sense");
 }
 
 void check_limits(Problems& problems, const AxisLimits& limits) {
@@ -52,7 +54,8 @@ void check_limits(Problems& problems, const AxisLimits& limits) {
 
 void check_homing(Problems& problems, const HomingConfig& homing) {
     if (homing.kind == HomingKind::none || homing.kind == HomingKind::set_here) return;
-    if (homing.timeout <= Duration::zero()) problems.add("homing.timeout", "must be above 0", "Give the longest time homing may take, such as 60 s");
+    if (homing.timeout <= Duration::zero())
+        problems.add("homing.timeout", "must be above 0", "Give the longest time homing may take, such as 60 s");
     if (homing.kind != HomingKind::home_switch) return;
     problems.positive("homing.search_velocity", homing.search_velocity, "u/s (the sense is homing.negative)");
     problems.positive("homing.latch_velocity", homing.latch_velocity, "u/s");
@@ -72,7 +75,8 @@ std::vector<Error> check(const AxisConfig& config) {
     problems.not_negative("defaults.acceleration", config.defaults.acceleration, "the limit");
     problems.not_negative("defaults.deceleration", config.defaults.deceleration, "the limit");
     problems.not_negative("defaults.jerk", config.defaults.jerk, "the limit");
-    if (!(config.following.window > 0)) problems.add("following.window", "must be above 0", "Give the largest permitted following error in u");
+    if (!(config.following.window > 0))
+        problems.add("following.window", "must be above 0", "Give the largest permitted following error in u");
     if (config.following.time < Duration::zero()) problems.add("following.time", "must not be negative", "Give a time such as 10 ms");
     if (!(config.windows.in_position > 0)) problems.add("windows.in_position", "must be above 0", "Give the window in u");
     problems.not_negative("windows.standstill_velocity", config.windows.standstill_velocity, "exact standstill");

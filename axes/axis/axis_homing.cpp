@@ -58,9 +58,7 @@ void Axis::step_homing() noexcept {
                          .now = now_});
     switch (switch_homing_.phase()) {
         case SwitchHoming::Phase::finished: end_homing(switch_homing_.reference()); return;
-        case SwitchHoming::Phase::failed:
-            fail(AxisAlarm::homing_failed, static_cast<double>(switch_homing_.failed_in()), 0);
-            return;
+        case SwitchHoming::Phase::failed: fail(AxisAlarm::homing_failed, static_cast<double>(switch_homing_.failed_in()), 0); return;
         case SwitchHoming::Phase::timed_out: fail(AxisAlarm::homing_timeout, to_seconds(config_.homing.timeout)); return;
         default: break;
     }

@@ -147,7 +147,8 @@ void Axis::anchor_near_actual() noexcept {
 
 void Axis::keep_close_to_anchor() noexcept {
     const double here = setpoint_.state().position;
-    if (!endless_ || goal_pending_ || goal_.kind != Goal::Kind::velocity || !setpoint_.finished() || std::abs(here) < far_from_anchor * units_.feed())
+    if (!endless_ || goal_pending_ || goal_.kind != Goal::Kind::velocity || !setpoint_.finished() ||
+        std::abs(here) < far_from_anchor * units_.feed())
         return;
     setpoint_.rebase(units_.reanchor(here));
     goal_pending_ = true;

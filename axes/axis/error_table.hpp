@@ -14,6 +14,7 @@ struct ErrorText {
     std::string_view english, chinese, remedy;
 };
 
+// clang-format off
 inline constexpr std::array<ErrorText, 23> error_texts{{
     {ErrorId::none, "none", "No error", "无错误", "Nothing to do"},
     {ErrorId::invalid_axis, "invalid_axis", "The axis reference names no axis", "轴引用无效", "Connect the Axis pin to an axis of the machine"},
@@ -53,6 +54,7 @@ inline constexpr std::array<ErrorText, 23> error_texts{{
     {ErrorId::power_conflict, "power_conflict", "A second MC_Power acts on the same axis", "同一轴上存在第二个 MC_Power", "Keep one MC_Power per axis"},
     {ErrorId::invalid_parameter, "invalid_parameter", "A parameter is outside its range", "参数超出范围", "Check the inputs of the block"},
 }};
+// clang-format on
 
 namespace error_check {
 /// Entry i belongs to id i, and nothing is left empty.

@@ -39,8 +39,8 @@ public:
         const auto& before = at(i - 1);
         if (i == count_) return static_cast<double>(before.counts - actual);
         const auto& after = at(i);
-        const double part = static_cast<double>((latched - before.effective).count()) /
-                            static_cast<double>((after.effective - before.effective).count());
+        const double part =
+            static_cast<double>((latched - before.effective).count()) / static_cast<double>((after.effective - before.effective).count());
         return static_cast<double>(before.counts - actual) + part * static_cast<double>(after.counts - before.counts);
     }
 

@@ -20,7 +20,7 @@ public:
 
     struct Input {
         bool wanted = false;
-        bool aligned = false;      ///< set-point equals the actual position: needed before power is asked for
+        bool aligned = false;  ///< set-point equals the actual position: needed before power is asked for
         bool online = false;
         bool mode_confirmed = false;
         PowerState drive = PowerState::unknown;

@@ -37,6 +37,7 @@ inline constexpr AxisState no = static_cast<AxisState>(0xFF);
 inline constexpr AxisState Still = Standstill, Discr = DiscreteMotion, Cont = ContinuousMotion, Sync = SynchronizedMotion;
 inline constexpr AxisState Error = ErrorStop, Off = Disabled, Stop = Stopping, Home = Homing;
 
+// clang-format off
 inline constexpr std::array<std::array<AxisState, axis_event_count>, axis_state_count> rows{{
     // error  off   rst_u rst_p  power  st_fin stop  home  done   discr  cont  sync  super  decoupled
     {Error,   Off,  no,   no,    Still, no,    no,   no,   no,    no,    no,   no,   no,    no},    // Disabled
@@ -48,6 +49,7 @@ inline constexpr std::array<std::array<AxisState, axis_event_count>, axis_state_
     {Error,   Off,  no,   no,    no,    Still, no,   no,   no,    no,    no,   no,   no,    no},    // Stopping
     {Error,   no,   Off,  Still, no,    no,    no,   no,   no,    no,    no,   no,   no,    no},    // ErrorStop
 }};
+// clang-format on
 
 /// Every entry is a state or `no`; an error is possible everywhere and has the highest priority.
 consteval bool sound() {

@@ -22,11 +22,11 @@ struct SwitchHomingSettings {
 };
 
 struct SwitchHomingInput {
-    bool fresh = false;           ///< the three switches and the position are new
+    bool fresh = false;  ///< the three switches and the position are new
     bool home_switch = false;
     bool negative_limit = false, positive_limit = false;
-    std::int64_t position = 0;    ///< counts, of the same instant as the switches
-    bool standing = false;        ///< the set-point is at rest
+    std::int64_t position = 0;  ///< counts, of the same instant as the switches
+    bool standing = false;      ///< the set-point is at rest
     Instant now{};
 };
 

@@ -57,25 +57,46 @@ TEST_P(RandomAxis, KeepsItsRules) {
     for (int cycle = 0; cycle < 15'000; ++cycle) {
         const auto owner = rig.view().owner;
         switch (random() % 400) {
-            case 0: case 1: case 2: last = rig.axis.submit(absolute(pick(-45, 65), pick(1, 150), random() % 2 ? mcBuffered : mcAborting), owner).id; break;
-            case 3: case 4: last = rig.axis.submit(relative(pick(-30, 30), pick(1, 150), random() % 2 ? mcBuffered : mcAborting), owner).id; break;
-            case 5: case 6: last = rig.axis.submit(at_velocity(pick(-120, 120), random() % 2 ? mcBuffered : mcAborting), owner).id; break;
+            case 0:
+            case 1:
+            case 2: last = rig.axis.submit(absolute(pick(-45, 65), pick(1, 150), random() % 2 ? mcBuffered : mcAborting), owner).id; break;
+            case 3:
+            case 4: last = rig.axis.submit(relative(pick(-30, 30), pick(1, 150), random() % 2 ? mcBuffered : mcAborting), owner).id; break;
+            case 5:
+            case 6: last = rig.axis.submit(at_velocity(pick(-120, 120), random() % 2 ? mcBuffered : mcAborting), owner).id; break;
             case 7: last = rig.axis.submit(jog(pick(-120, 120)), owner).id; break;
             case 8: last = rig.axis.submit(halt(random() % 2 ? mcBuffered : mcAborting), owner).id; break;
             case 9: last = rig.axis.submit(stop(), owner).id; break;
-            case 10: case 11: case 12: rig.axis.release_stop(last, owner); break;
+            case 10:
+            case 11:
+            case 12: rig.axis.release_stop(last, owner); break;
             case 13: last = rig.axis.submit(home(pick(-5, 5)), owner).id; break;
             case 14: (void)rig.axis.set_position(pick(-3, 3), true, owner); break;
             case 15: (void)rig.axis.renew_jog(last, pick(-100, 100), owner); break;
-            case 16: if (random() % 4 == 0) rig.drive.fault_code = 0x7500; break;
-            case 17: case 18: case 19: rig.drive.fault_code = 0; break;
-            case 20: if (random() % 4 == 0) rig.enable = false; break;
-            case 21: case 22: case 23: rig.enable = true; break;
+            case 16:
+                if (random() % 4 == 0) rig.drive.fault_code = 0x7500;
+                break;
+            case 17:
+            case 18:
+            case 19: rig.drive.fault_code = 0; break;
+            case 20:
+                if (random() % 4 == 0) rig.enable = false;
+                break;
+            case 21:
+            case 22:
+            case 23: rig.enable = true; break;
             case 24: rig.drive.silent = random() % 3 == 0; break;
             case 25: rig.drive.silent = false; break;
             case 26: rig.axis.demand_emergency_stop(random() % 4 == 0 ? EmergencyStop::stop_and_power_off : EmergencyStop::none); break;
             case 27: rig.axis.demand_emergency_stop(EmergencyStop::none); break;
-            case 28: case 29: case 30: case 31: case 32: case 33: case 34: case 35: (void)rig.axis.reset(owner); break;
+            case 28:
+            case 29:
+            case 30:
+            case 31:
+            case 32:
+            case 33:
+            case 34:
+            case 35: (void)rig.axis.reset(owner); break;
             case 36: rig.axis.take_control(static_cast<Owner>(1 + random() % 3)); break;
             case 37: rig.axis.set_mode(static_cast<OperatingMode>(random() % 3)); break;
             case 38: rig.drive.refuses_power = random() % 4 == 0; break;
@@ -103,7 +124,8 @@ TEST_P(RandomAxis, KeepsItsRules) {
             ASSERT_TRUE(view.powered) << cycle;
         }
         ASSERT_EQ(view.state == AxisState::ErrorStop, view.error != 0) << cycle;
-        ASSERT_TRUE(view.active != 0 || view.queued_count == 0 || view.state == AxisState::Stopping) << cycle;  // only MC_Stop lets them wait
+        ASSERT_TRUE(view.active != 0 || view.queued_count == 0 || view.state == AxisState::Stopping)
+            << cycle;  // only MC_Stop lets them wait
         ASSERT_LE(view.queued_count, rig.axis.config().queue_depth);
         // A command is heard of until it ends, and ends once.
         for (auto it = pending.begin(); it != pending.end();) {
@@ -120,10 +142,13 @@ TEST_P(RandomAxis, KeepsItsRules) {
     rig.axis.demand_emergency_stop(EmergencyStop::none);
     rig.axis.take_control(Owner::commissioning);
     rig.axis.take_control(Owner::program);
-    ASSERT_TRUE(rig.run_until([&] {
-        if (rig.view().state == AxisState::ErrorStop && !rig.view().resetting) (void)rig.axis.reset(Owner::program);
-        return rig.view().state == AxisState::Standstill;
-    }, 10'000)) << name(rig.view().state);
+    ASSERT_TRUE(rig.run_until(
+        [&] {
+            if (rig.view().state == AxisState::ErrorStop && !rig.view().resetting) (void)rig.axis.reset(Owner::program);
+            return rig.view().state == AxisState::Standstill;
+        },
+        10'000))
+        << name(rig.view().state);
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomAxis, ::testing::Range(1u, 41u));
 

@@ -27,7 +27,8 @@ inline AxisConfig plain_axis() {
 struct Rig {
     static constexpr Duration cycle = 1ms;
 
-    explicit Rig(const AxisConfig& config = plain_axis(), const std::function<void(FakeDrive&)>& prepare = {}) : drive(prepared(prepare)), axis(config, drive, cycle) {}
+    explicit Rig(const AxisConfig& config = plain_axis(), const std::function<void(FakeDrive&)>& prepare = {})
+        : drive(prepared(prepare)), axis(config, drive, cycle) {}
 
     static FakeDrive prepared(const std::function<void(FakeDrive&)>& prepare) {
         FakeDrive made(cycle);
@@ -41,8 +42,8 @@ struct Rig {
     bool enable = false;
     bool jog_alive = true;
     std::vector<AlarmFact> alarms;
-    double largest_step = 0;       ///< of the set position in the view, u
-    double largest_velocity = 0;   ///< u/s
+    double largest_step = 0;      ///< of the set position in the view, u
+    double largest_velocity = 0;  ///< u/s
     double largest_acceleration = 0;
     std::function<void()> program;  ///< called in step 6 of each cycle
 

@@ -22,17 +22,17 @@ public:
 
     // what a test turns
     Duration cycle;
-    int dead_cycles = 1;        ///< from sending a set-point to its effect
-    int latch_age = 1;          ///< how many cycles old the actual values are when they arrive
-    int power_delay = 3;        ///< cycles per step of the power state machine
-    bool silent = false;        ///< no fresh feedback
+    int dead_cycles = 1;  ///< from sending a set-point to its effect
+    int latch_age = 1;    ///< how many cycles old the actual values are when they arrive
+    int power_delay = 3;  ///< cycles per step of the power state machine
+    bool silent = false;  ///< no fresh feedback
     bool offline = false;
     bool refuses_power = false;
     std::uint16_t fault_code = 0;
     bool warning = false;
-    bool blocked = false;       ///< the motor does not move
-    std::int64_t lag = 0;       ///< counts the motor stays behind
-    double coasting = 0;        ///< counts per cycle while without power
+    bool blocked = false;  ///< the motor does not move
+    std::int64_t lag = 0;  ///< counts the motor stays behind
+    double coasting = 0;   ///< counts per cycle while without power
     bool switches = false;
     std::int64_t home_low = 0, home_high = 0;  ///< home switch on between
     std::int64_t negative_end = std::numeric_limits<std::int64_t>::min(), positive_end = std::numeric_limits<std::int64_t>::max();
@@ -43,7 +43,7 @@ public:
     DriveCapabilities caps;
 
     // what a test reads
-    double position = 0;        ///< of the motor, counts; what homing sets to zero is `zero`
+    double position = 0;  ///< of the motor, counts; what homing sets to zero is `zero`
     std::int64_t zero = 0;
     std::int64_t largest_step = 0;  ///< of the set-point while enabled in cyclic position, counts
     PowerState power = PowerState::disabled;
@@ -54,7 +54,8 @@ public:
     [[nodiscard]] DriveAlarm alarm() const noexcept override { return {}; }
 
     void encode(const DriveCommand& command, Instant now) noexcept override {
-        const bool obeys = power == PowerState::enabled && command.mode == DriveMode::cyclic_position && mode_ == DriveMode::cyclic_position;
+        const bool obeys =
+            power == PowerState::enabled && command.mode == DriveMode::cyclic_position && mode_ == DriveMode::cyclic_position;
         const auto target = command.position + zero;
         // The first target counts against where the motor is: a drive that switches on would jump there.
         const std::int64_t from = obeyed_ ? last_target_ : std::llround(position);
@@ -105,7 +106,9 @@ private:
             ticks_ = 0;
         } else if (power != PowerState::enabled && ++ticks_ >= power_delay) {
             ticks_ = 0;
-            power = power == PowerState::disabled ? PowerState::ready : power == PowerState::ready ? PowerState::switched_on : PowerState::enabled;
+            power = power == PowerState::disabled ? PowerState::ready
+                    : power == PowerState::ready  ? PowerState::switched_on
+                                                  : PowerState::enabled;
         }
     }
     void step_mode() {

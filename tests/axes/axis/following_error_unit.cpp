@@ -13,7 +13,7 @@ TEST(SetpointHistory, InterpolatesBetweenTheSetpointsInEffect) {
     history.record(Instant{10ms}, 1000);
     history.record(Instant{12ms}, 1200);
 
-    EXPECT_EQ(history.error_at(Instant{9ms}, 990), 10);    // before the first: the first
+    EXPECT_EQ(history.error_at(Instant{9ms}, 990), 10);  // before the first: the first
     EXPECT_EQ(history.error_at(Instant{10ms}, 990), 10);
     EXPECT_EQ(history.error_at(Instant{11ms}, 990), 110);  // half way: 1100
     EXPECT_EQ(history.error_at(Instant{15ms}, 1200), 0);   // after the last it holds
@@ -48,8 +48,8 @@ TEST_P(DeadTime, APerfectFollowerHasNoFollowingError) {
     EXPECT_FALSE(rig.raised(AxisAlarm::following_error));
 }
 INSTANTIATE_TEST_SUITE_P(CyclesToTheDriveAndBack, DeadTime,
-                         ::testing::Values(std::pair{0, 0}, std::pair{1, 0}, std::pair{2, 0}, std::pair{0, 1}, std::pair{1, 1}, std::pair{2, 1},
-                                           std::pair{2, 2}));
+                         ::testing::Values(std::pair{0, 0}, std::pair{1, 0}, std::pair{2, 0}, std::pair{0, 1}, std::pair{1, 1},
+                                           std::pair{2, 1}, std::pair{2, 2}));
 
 // A motor 250 counts behind is 0.25 u behind, at any velocity.
 TEST(FollowingError, ShowsTheRealLag) {

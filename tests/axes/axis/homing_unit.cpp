@@ -194,7 +194,10 @@ TEST(HomeBySwitchFailure, WithoutASwitchFailsAfterOneReversal) {
 }
 
 TEST(HomeBySwitchFailure, StopAbortsItAlongTheRamp) {
-    Rig rig(homing_by(HomingKind::home_switch), [](FakeDrive& drive) { drive.switches = true; drive.home_low = 1; });
+    Rig rig(homing_by(HomingKind::home_switch), [](FakeDrive& drive) {
+        drive.switches = true;
+        drive.home_low = 1;
+    });
     rig.power_on();
     const auto id = rig.accept(home(0));
     rig.run(300);

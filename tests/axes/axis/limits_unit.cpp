@@ -55,10 +55,13 @@ TEST(SoftwareLimits, VelocityCommandEndsOnTheLimitWithAnAlarm) {
         const auto id = rig.accept(at_velocity(velocity));
         const double edge = velocity > 0 ? 150 : -50;
         double farthest = 0;
-        ASSERT_TRUE(rig.run_until([&] {
-            farthest = std::max(farthest, rig.view().set_position * (velocity > 0 ? 1 : -1));
-            return rig.view().state == AxisState::ErrorStop && rig.view().set_velocity == 0;
-        }, 60000)) << velocity;
+        ASSERT_TRUE(rig.run_until(
+            [&] {
+                farthest = std::max(farthest, rig.view().set_position * (velocity > 0 ? 1 : -1));
+                return rig.view().state == AxisState::ErrorStop && rig.view().set_velocity == 0;
+            },
+            60000))
+            << velocity;
         EXPECT_DOUBLE_EQ(rig.view().set_position, edge);
         EXPECT_LE(farthest, std::abs(edge) * (1 + 1e-15));
         EXPECT_EQ(rig.error_of(id), static_cast<ErrorId>(AxisAlarm::software_limit_reached));
@@ -109,10 +112,12 @@ TEST(SoftwareLimits, GentleAbortNearTheLimitBrakesHardEnough) {
     gentle.jerk = 500;
     rig.accept(gentle);
     double farthest = 0;
-    ASSERT_TRUE(rig.run_until([&] {
-        farthest = std::max(farthest, rig.view().set_position);
-        return rig.view().state == AxisState::Standstill;
-    }, 60000));
+    ASSERT_TRUE(rig.run_until(
+        [&] {
+            farthest = std::max(farthest, rig.view().set_position);
+            return rig.view().state == AxisState::Standstill;
+        },
+        60000));
     EXPECT_LE(farthest, 150);
     EXPECT_NEAR(rig.view().set_position, 0, 1e-12);
 }

@@ -32,7 +32,10 @@ TEST(AxisPower, WaitsForTheDriveAndItsDwell) {
 
 // The target stands on the actual position when the drive switches on, wherever the axis was pushed before.
 TEST(AxisPower, TargetIsAlignedBeforeEnabling) {
-    Rig rig(plain_axis(), [](FakeDrive& drive) { drive.position = 123456; drive.coasting = 7; });
+    Rig rig(plain_axis(), [](FakeDrive& drive) {
+        drive.position = 123456;
+        drive.coasting = 7;
+    });
     rig.run(50);
     rig.drive.coasting = 0;
     rig.power_on();

@@ -18,6 +18,7 @@ struct Arrow {
     AxisState to;
 };
 
+// clang-format off
 constexpr std::array arrows{
     // note 2: "any" but ErrorStop
     Arrow{Disabled, E::power_off, Disabled}, Arrow{Standstill, E::power_off, Disabled}, Arrow{Homing, E::power_off, Disabled},
@@ -43,6 +44,7 @@ constexpr std::array arrows{
     Arrow{ContinuousMotion, E::superimposed, ContinuousMotion}, Arrow{SynchronizedMotion, E::superimposed, SynchronizedMotion},
     Arrow{SynchronizedMotion, E::decoupled, ContinuousMotion},
 };
+// clang-format on
 
 std::optional<AxisState> by_figure(AxisState from, E event) {
     if (event == E::axis_error) return ErrorStop;  // note 1: from any

@@ -9,9 +9,7 @@
 namespace taktwerk::axes::test {
 namespace {
 
-TEST(AxisConfigCheck, AGoodOneHasNoProblems) {
-    EXPECT_TRUE(check(plain_axis()).empty());
-}
+TEST(AxisConfigCheck, AGoodOneHasNoProblems) { EXPECT_TRUE(check(plain_axis()).empty()); }
 
 // All at once, each naming its field and saying what to do.
 TEST(AxisConfigCheck, FindsEveryProblemAtOnceAndNamesTheField) {
@@ -33,8 +31,8 @@ TEST(AxisConfigCheck, FindsEveryProblemAtOnceAndNamesTheField) {
         EXPECT_FALSE(problem.what.empty());
         EXPECT_FALSE(problem.remedy.empty());
     }
-    for (const char* field : {"gearing.feed", "gearing.load_revolutions", "limits.velocity", "limits.jerk", "limits.position_min", "following.window",
-                              "queue_depth", "homing.latch_velocity"})
+    for (const char* field : {"gearing.feed", "gearing.load_revolutions", "limits.velocity", "limits.jerk", "limits.position_min",
+                              "following.window", "queue_depth", "homing.latch_velocity"})
         EXPECT_NE(std::find(subjects.begin(), subjects.end(), std::string("axes.x.") + field), subjects.end()) << field;
     EXPECT_EQ(problems.size(), 8u);
 }
@@ -51,8 +49,10 @@ TEST(AxisAlarms, AreFoundByIdAndDecideTheReaction) {
 TEST(AxisAlarms, ChineseTextsCarryTheSameNumbers) {
     for (const auto& alarm : axis_alarms) {
         for (const auto* number : {"{a", "{b"})
-            EXPECT_EQ(alarm.english.find(number) != std::string_view::npos, alarm.chinese.find(number) != std::string_view::npos) << alarm.name;
-        EXPECT_TRUE(std::any_of(alarm.chinese.begin(), alarm.chinese.end(), [](char c) { return static_cast<unsigned char>(c) >= 0xE4; })) << alarm.name;
+            EXPECT_EQ(alarm.english.find(number) != std::string_view::npos, alarm.chinese.find(number) != std::string_view::npos)
+                << alarm.name;
+        EXPECT_TRUE(std::any_of(alarm.chinese.begin(), alarm.chinese.end(), [](char c) { return static_cast<unsigned char>(c) >= 0xE4; }))
+            << alarm.name;
     }
 }
 

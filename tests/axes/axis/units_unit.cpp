@@ -12,7 +12,7 @@ TEST(AxisUnits, ConvertsBothWays) {
     const AxisUnits units({.counts_per_revolution = 131072, .motor_revolutions = 1, .load_revolutions = 1, .feed = 5});
 
     EXPECT_EQ(units.counts(5), 131072);
-    EXPECT_EQ(units.counts(1), 26214);    // 26214.4
+    EXPECT_EQ(units.counts(1), 26214);      // 26214.4
     EXPECT_EQ(units.counts(-1.5), -39322);  // -39321.6
     EXPECT_DOUBLE_EQ(units.local(131072), 5);
     EXPECT_DOUBLE_EQ(units.counts_per_unit(), 26214.4);

@@ -27,8 +27,8 @@ TEST(SwitchHoming, SearchesStopsBacksOffAndTakesTheEdge) {
     Search s;
     EXPECT_EQ(s.step(), -20);
     s.in.home_switch = true;
-    EXPECT_EQ(s.step(), 0);   // first stand
-    EXPECT_EQ(s.step(), 2);   // then back off, slowly
+    EXPECT_EQ(s.step(), 0);  // first stand
+    EXPECT_EQ(s.step(), 2);  // then back off, slowly
     EXPECT_EQ(s.step(), 2);
     s.in.home_switch = false;
     s.in.position = 4711;
