@@ -15,7 +15,8 @@ constexpr std::uint16_t invalid_outputs = 0x001D, invalid_inputs = 0x001E, no_sy
 int rank(EsmState state) noexcept {
     switch (state) {
         case EsmState::init: return 0;
-        case EsmState::boot: case EsmState::preop: return 1;
+        case EsmState::boot:
+        case EsmState::preop: return 1;
         case EsmState::safeop: return 2;
         case EsmState::op: return 3;
     }
@@ -32,8 +33,13 @@ std::optional<unsigned> first_of(const DeviceDescription& description, SmUse use
 
 AlStateMachine::AlStateMachine(const DeviceDescription& description, SlaveController& controller, DeviceModel& model, CoeServer* coe,
                                ProcessData* process_data)
-    : description_(description), controller_(controller), model_(model), coe_(coe), process_data_(process_data),
-      outputs_sm_(first_of(description, SmUse::outputs)), inputs_sm_(first_of(description, SmUse::inputs)) {}
+    : description_(description),
+      controller_(controller),
+      model_(model),
+      coe_(coe),
+      process_data_(process_data),
+      outputs_sm_(first_of(description, SmUse::outputs)),
+      inputs_sm_(first_of(description, SmUse::inputs)) {}
 
 void AlStateMachine::power_on(Instant now) {
     state_ = EsmState::init;
@@ -140,7 +146,8 @@ std::uint16_t AlStateMachine::check_process_data() {
         if (inputs_sm_) input_bytes = description_.sync_managers[*inputs_sm_].size;
     }
     const auto start_of = [&](const std::optional<unsigned>& n) { return description_.sync_managers[*n].start; };
-    if (outputs_sm_ && !process_sm_fits(*outputs_sm_, output_bytes, start_of(outputs_sm_), SyncManager::master_writes)) return invalid_outputs;
+    if (outputs_sm_ && !process_sm_fits(*outputs_sm_, output_bytes, start_of(outputs_sm_), SyncManager::master_writes))
+        return invalid_outputs;
     if (inputs_sm_ && !process_sm_fits(*inputs_sm_, input_bytes, start_of(inputs_sm_), 0)) return invalid_inputs;
     return 0;
 }
@@ -149,7 +156,8 @@ bool AlStateMachine::process_sm_fits(unsigned n, std::uint16_t bytes, std::uint1
     const SyncManager& sm = controller_.sync_manager(n);
     if (bytes == 0) return !sm.enabled() || sm.length == 0;
     if (!sm.enabled() || sm.length != bytes) return false;
-    if ((sm.control & SyncManager::mode_mask) != SyncManager::mode_buffered || (sm.control & SyncManager::direction_mask) != direction) return false;
+    if ((sm.control & SyncManager::mode_mask) != SyncManager::mode_buffered || (sm.control & SyncManager::direction_mask) != direction)
+        return false;
     if (start != 0 && sm.start != start) return false;
     // Three buffers lie one after the other; only slaves with an application use all of them.
     const unsigned buffers = description_.mailbox ? 3 : 1;

@@ -18,7 +18,8 @@ namespace taktwerk::ecat::sim {
 class AlStateMachine {
 public:
     /// `coe` and `process_data` are null for slaves without mailbox.
-    AlStateMachine(const DeviceDescription& description, SlaveController& controller, DeviceModel& model, CoeServer* coe, ProcessData* process_data);
+    AlStateMachine(const DeviceDescription& description, SlaveController& controller, DeviceModel& model, CoeServer* coe,
+                   ProcessData* process_data);
 
     void power_on(Instant now);
     /// The master wrote AL control.

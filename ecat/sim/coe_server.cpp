@@ -23,8 +23,11 @@ std::size_t size_of(const DeviceDescription& description, unsigned n) {
 
 CoeServer::CoeServer(const DeviceDescription& description, ObjectDictionary& dictionary, DeviceModel& model, SlaveController& controller,
                      Duration response_delay)
-    : description_(description), controller_(controller), sdo_(description, dictionary, model),
-      out_sm_(position_of(description, SmUse::mailbox_out, 0)), in_sm_(position_of(description, SmUse::mailbox_in, 1)),
+    : description_(description),
+      controller_(controller),
+      sdo_(description, dictionary, model),
+      out_sm_(position_of(description, SmUse::mailbox_out, 0)),
+      in_sm_(position_of(description, SmUse::mailbox_in, 1)),
       response_delay_(response_delay) {
     const std::size_t slots = std::max<std::size_t>(1, description.mailbox ? description.mailbox->max_pending : 1);
     queue_.resize(slots);

@@ -53,13 +53,13 @@ private:
     SdoServer sdo_;
     unsigned out_sm_ = 0, in_sm_ = 1;
     Duration response_delay_;
-    std::vector<Slot> queue_;           // ring of max_pending messages
+    std::vector<Slot> queue_;  // ring of max_pending messages
     std::size_t head_ = 0, count_ = 0;
-    std::vector<std::byte> reply_;      // built, waiting for the mailbox to be free
-    std::vector<std::byte> last_reply_; // for a repeat request
+    std::vector<std::byte> reply_;       // built, waiting for the mailbox to be free
+    std::vector<std::byte> last_reply_;  // for a repeat request
     bool reply_waiting_ = false, last_reply_valid_ = false;
     std::uint8_t last_counter_ = 0, counter_ = 0;
-    Instant due_ = never;               // of the message at head_
+    Instant due_ = never;  // of the message at head_
     bool running_ = false, stuck_ = false;
 };
 

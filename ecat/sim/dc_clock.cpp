@@ -8,12 +8,18 @@ namespace taktwerk::ecat::sim {
 namespace {
 
 constexpr std::int64_t billion = 1'000'000'000;
+/// a - b without overflow; the registers wrap, too.
+constexpr std::int64_t wrapped_difference(std::int64_t a, std::int64_t b) noexcept {
+    return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) - static_cast<std::uint64_t>(b));
+}
+constexpr std::int64_t decades_ns = billion * 1'000'000'000;  // 31 years
+
 // The loop of a real controller nudges its clock by a fraction of a tick per ten: it never jumps. A master that leaves a large
 // offset to the loop (instead of writing 0920h) waits for ever, as on hardware.
 constexpr std::int64_t max_step_ns = 200;
 constexpr std::int64_t max_trim_ppb = 400'000;
-constexpr std::int64_t learning_range_ns = 1'000;       // speed is learned only near lock
-constexpr std::int64_t shortest_learning_ns = 50'000;   // and not from frames sent back to back: rounding would dominate
+constexpr std::int64_t learning_range_ns = 1'000;      // speed is learned only near lock
+constexpr std::int64_t shortest_learning_ns = 50'000;  // and not from frames sent back to back: rounding would dominate
 
 }  // namespace
 
@@ -35,11 +41,13 @@ std::int64_t DcClock::local(Instant at) const noexcept {
 }
 
 Instant DcClock::when_system(std::int64_t system_time) const noexcept {
-    const std::int64_t target = system_time - offset_;
+    const std::int64_t target = wrapped_difference(system_time, offset_);
     const std::int64_t rate = drift_ppb_ + trim_ppb_;
-    const std::int64_t ahead = target - base_local_;
+    const std::int64_t ahead = wrapped_difference(target, base_local_);
+    if (ahead > decades_ns) return Instant::max();
+    if (ahead < -decades_ns) return base_;
     std::int64_t passed = ahead - scaled(ahead, rate);
-    const auto error = [&](std::int64_t p) { return target - local(base_ + Duration{p}); };
+    const auto error = [&](std::int64_t p) { return wrapped_difference(target, local(base_ + Duration{p})); };
     for (int i = 0; i < 4 && error(passed) != 0; ++i) passed += error(passed);
     while (error(passed) > 0) ++passed;
     while (error(passed - 1) <= 0) --passed;
@@ -47,7 +55,8 @@ Instant DcClock::when_system(std::int64_t system_time) const noexcept {
 }
 
 void DcClock::correct(std::int64_t reference, Instant at) noexcept {
-    const std::int64_t difference = system(at) - reference - delay_;
+    const std::int64_t difference =
+        std::clamp(wrapped_difference(wrapped_difference(system(at), reference), delay_), -decades_ns, decades_ns);
     const std::int64_t change = difference - mean_difference_;
     mean_difference_ = std::abs(change) > 4 * learning_range_ns ? difference : mean_difference_ + change / 4;
     if (!corrected_) mean_difference_ = difference;

@@ -15,8 +15,12 @@ public:
     void power_on(Instant now, std::int64_t local, std::int32_t drift_ppb) noexcept;
 
     [[nodiscard]] std::int64_t local(Instant at) const noexcept;
-    [[nodiscard]] std::int64_t system(Instant at) const noexcept { return local(at) + offset_; }
-    /// First machine instant at which the system time is at least `system`; may lie before the last correction.
+    /// Wraps like the register: a master may write any offset.
+    [[nodiscard]] std::int64_t system(Instant at) const noexcept {
+        return static_cast<std::int64_t>(static_cast<std::uint64_t>(local(at)) + static_cast<std::uint64_t>(offset_));
+    }
+    /// First machine instant at which the system time is at least `system`; may lie before the last correction. Instant::max()
+    /// when that is decades away.
     [[nodiscard]] Instant when_system(std::int64_t system) const noexcept;
 
     void set_offset(std::int64_t offset) noexcept { offset_ = offset; }
@@ -34,10 +38,10 @@ public:
 private:
     [[nodiscard]] static std::int64_t scaled(std::int64_t ns, std::int64_t ppb) noexcept;
 
-    Instant base_{};                 // machine instant of the last correction
-    std::int64_t base_local_ = 0;    // local time at base_
-    std::int64_t drift_ppb_ = 0;     // of the quartz
-    std::int64_t trim_ppb_ = 0;      // learned by the control loop
+    Instant base_{};               // machine instant of the last correction
+    std::int64_t base_local_ = 0;  // local time at base_
+    std::int64_t drift_ppb_ = 0;   // of the quartz
+    std::int64_t trim_ppb_ = 0;    // learned by the control loop
     std::int64_t offset_ = 0;
     std::uint32_t delay_ = 0;
     std::int64_t mean_difference_ = 0;

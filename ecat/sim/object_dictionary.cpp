@@ -8,10 +8,16 @@ namespace taktwerk::ecat::sim {
 std::uint8_t bits_of(DataType type) noexcept {
     switch (type) {
         case DataType::BOOL: return 1;
-        case DataType::I8: case DataType::U8: return 8;
-        case DataType::I16: case DataType::U16: return 16;
-        case DataType::I32: case DataType::U32: case DataType::REAL32: return 32;
-        case DataType::I64: case DataType::U64: case DataType::REAL64: return 64;
+        case DataType::I8:
+        case DataType::U8: return 8;
+        case DataType::I16:
+        case DataType::U16: return 16;
+        case DataType::I32:
+        case DataType::U32:
+        case DataType::REAL32: return 32;
+        case DataType::I64:
+        case DataType::U64:
+        case DataType::REAL64: return 64;
         case DataType::STRING: return 0;
     }
     return 0;
@@ -37,7 +43,8 @@ ObjectDictionary::ObjectDictionary(const DeviceDescription& description) {
     const auto key = [](const Entry& entry) { return std::pair{entry.index_, entry.sub_}; };
     // The description's own entries came first: they win over derived ones of the same address.
     std::stable_sort(entries_.begin(), entries_.end(), [&](const Entry& a, const Entry& b) { return key(a) < key(b); });
-    entries_.erase(std::unique(entries_.begin(), entries_.end(), [&](const Entry& a, const Entry& b) { return key(a) == key(b); }), entries_.end());
+    entries_.erase(std::unique(entries_.begin(), entries_.end(), [&](const Entry& a, const Entry& b) { return key(a) == key(b); }),
+                   entries_.end());
     entries_.shrink_to_fit();
     reset();
 }
@@ -88,7 +95,8 @@ void ObjectDictionary::add_derived(const DeviceDescription& description) {
 
     add(number(0x1C00, 0, DataType::U8, static_cast<std::int64_t>(description.sync_managers.size())));
     for (std::size_t n = 0; n < description.sync_managers.size(); ++n)  // 1 mailbox out, 2 mailbox in, 3 outputs, 4 inputs
-        add(number(0x1C00, static_cast<std::uint8_t>(n + 1), DataType::U8, static_cast<std::int64_t>(description.sync_managers[n].use) + 1));
+        add(number(0x1C00, static_cast<std::uint8_t>(n + 1), DataType::U8,
+                   static_cast<std::int64_t>(description.sync_managers[n].use) + 1));
 
     add_pdos(description.rx_pdos, description.rx_rules);
     add_pdos(description.tx_pdos, description.tx_rules);
@@ -121,7 +129,8 @@ void ObjectDictionary::add_assignment(std::uint16_t index, const std::vector<std
     count.maximum = rules.max_assigned;
     add(count, EntryRole::assign_count);
     for (std::size_t n = 0; n < std::max<std::size_t>(assigned.size(), rules.max_assigned); ++n)
-        add(number(index, static_cast<std::uint8_t>(n + 1), DataType::U16, n < assigned.size() ? assigned[n] : 0, Access::rw), EntryRole::assign_entry);
+        add(number(index, static_cast<std::uint8_t>(n + 1), DataType::U16, n < assigned.size() ? assigned[n] : 0, Access::rw),
+            EntryRole::assign_entry);
 }
 
 void ObjectDictionary::add_synchronisation(std::uint16_t index, const DcDescription& dc) {
@@ -143,13 +152,15 @@ Entry* ObjectDictionary::find(std::uint16_t index, std::uint8_t sub) noexcept {
 
 const Entry* ObjectDictionary::find(std::uint16_t index, std::uint8_t sub) const noexcept {
     const auto wanted = std::pair{index, sub};
-    const auto at = std::lower_bound(entries_.begin(), entries_.end(), wanted,
-                                     [](const Entry& entry, const auto& key) { return std::pair{entry.index_, entry.sub_} < key; });
+    const auto at = std::lower_bound(entries_.begin(), entries_.end(), wanted, [](const Entry& entry, const auto& key) {
+        return std::pair{entry.index_, entry.sub_} < key;
+    });
     return at != entries_.end() && at->index_ == index && at->sub_ == sub ? &*at : nullptr;
 }
 
 bool ObjectDictionary::has_object(std::uint16_t index) const noexcept {
-    const auto at = std::lower_bound(entries_.begin(), entries_.end(), index, [](const Entry& entry, std::uint16_t key) { return entry.index_ < key; });
+    const auto at =
+        std::lower_bound(entries_.begin(), entries_.end(), index, [](const Entry& entry, std::uint16_t key) { return entry.index_ < key; });
     return at != entries_.end() && at->index_ == index;
 }
 

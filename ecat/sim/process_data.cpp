@@ -52,7 +52,8 @@ void ProcessData::store_inputs(std::span<std::byte> image) const noexcept {
 std::uint32_t mapped_bits(const ObjectDictionary& dictionary, std::uint16_t pdo) noexcept {
     std::uint32_t bits = 0;
     const auto count = dictionary.value(pdo, 0);
-    for (std::int64_t n = 1; n <= count; ++n) bits += static_cast<std::uint32_t>(dictionary.value(pdo, static_cast<std::uint8_t>(n))) & 0xFFu;
+    for (std::int64_t n = 1; n <= count; ++n)
+        bits += static_cast<std::uint32_t>(dictionary.value(pdo, static_cast<std::uint8_t>(n))) & 0xFFu;
     return bits;
 }
 

@@ -23,8 +23,10 @@ std::size_t SdoServer::serve(std::span<const std::byte> request, std::span<std::
             return download(*message, (request[coe_header_size] & std::byte{1}) != std::byte{0}, out, state, now);
         case SdoKind::download_segment_request: return download_segment(*message, out, state, now);
         case SdoKind::abort: reset(); return 0;
-        case SdoKind::download_response: case SdoKind::download_segment_response:
-        case SdoKind::upload_response: case SdoKind::upload_segment_response: break;
+        case SdoKind::download_response:
+        case SdoKind::download_segment_response:
+        case SdoKind::upload_response:
+        case SdoKind::upload_segment_response: break;
     }
     return abort(out, message->index, message->sub, sdo_abort::unknown_command);
 }
@@ -43,7 +45,8 @@ std::uint32_t SdoServer::locate(std::uint16_t index, std::uint8_t sub, Entry*& e
 std::span<const std::byte> SdoServer::value_of(const Entry& entry) noexcept {
     if (entry.type() == DataType::STRING) {
         const std::size_t size = std::min(entry.text().size(), value_.size());
-        std::transform(entry.text().begin(), entry.text().begin() + static_cast<std::ptrdiff_t>(size), value_.begin(), [](char c) { return static_cast<std::byte>(c); });
+        std::transform(entry.text().begin(), entry.text().begin() + static_cast<std::ptrdiff_t>(size), value_.begin(),
+                       [](char c) { return static_cast<std::byte>(c); });
         return {value_.data(), size};
     }
     store_le<std::int64_t>(value_, 0, entry.get());
@@ -82,7 +85,8 @@ std::size_t SdoServer::upload_segment(const SdoMessage& request, std::span<std::
     return size;
 }
 
-std::size_t SdoServer::download(const SdoMessage& request, bool size_given, std::span<std::byte> out, EsmState state, Instant now) noexcept {
+std::size_t SdoServer::download(const SdoMessage& request, bool size_given, std::span<std::byte> out, EsmState state,
+                                Instant now) noexcept {
     Entry* entry = nullptr;
     auto data = request.data;
     reset();

@@ -27,7 +27,8 @@ std::uint8_t type_number(DataType type) noexcept {
     return 0;
 }
 
-SiiPdo pdo_of(const DeviceDescription& description, const PdoDescription& pdo, const std::vector<std::uint16_t>& assigned, SmUse use, Sii& sii) {
+SiiPdo pdo_of(const DeviceDescription& description, const PdoDescription& pdo, const std::vector<std::uint16_t>& assigned, SmUse use,
+              Sii& sii) {
     constexpr std::uint16_t fixed_content = 1u << 4;
     SiiPdo out;
     out.index = pdo.index;
@@ -42,7 +43,11 @@ SiiPdo pdo_of(const DeviceDescription& description, const PdoDescription& pdo, c
         e.index = entry.index;
         e.sub = entry.sub;
         e.bits = entry.bits;
-        e.data_type = entry.index == 0 ? 0 : type_number(entry.bits == 1 ? DataType::BOOL : entry.bits <= 8 ? DataType::U8 : entry.bits <= 16 ? DataType::U16 : DataType::U32);
+        e.data_type = entry.index == 0 ? 0
+                                       : type_number(entry.bits == 1    ? DataType::BOOL
+                                                     : entry.bits <= 8  ? DataType::U8
+                                                     : entry.bits <= 16 ? DataType::U16
+                                                                        : DataType::U32);
         for (const auto& object : description.objects)
             if (entry.index != 0 && object.index == entry.index && object.sub == entry.sub) {
                 e.data_type = type_number(object.type);
@@ -100,8 +105,10 @@ std::vector<std::byte> sii_image(const DeviceDescription& description, std::uint
         sii.sync_managers.push_back(out);
     }
     if (description.mailbox) sii.fmmus.push_back(SiiFmmuUse::mailbox_status);
-    for (const auto& pdo : description.rx_pdos) sii.rx_pdos.push_back(pdo_of(description, pdo, description.rx_assigned, SmUse::outputs, sii));
-    for (const auto& pdo : description.tx_pdos) sii.tx_pdos.push_back(pdo_of(description, pdo, description.tx_assigned, SmUse::inputs, sii));
+    for (const auto& pdo : description.rx_pdos)
+        sii.rx_pdos.push_back(pdo_of(description, pdo, description.rx_assigned, SmUse::outputs, sii));
+    for (const auto& pdo : description.tx_pdos)
+        sii.tx_pdos.push_back(pdo_of(description, pdo, description.tx_assigned, SmUse::inputs, sii));
     return build_sii(sii);
 }
 

@@ -16,9 +16,9 @@ namespace taktwerk::ecat::sim {
 
 /// Delays per slave and cable. Slaves turn a frame around inside when nothing is plugged in behind them.
 struct LineTiming {
-    Duration forward = std::chrono::nanoseconds{600};   ///< port 0 -> processing -> port 1
-    Duration back = std::chrono::nanoseconds{400};      ///< port 1 -> port 0
-    Duration cable = std::chrono::nanoseconds{50};      ///< one way, 10 m
+    Duration forward = std::chrono::nanoseconds{600};  ///< port 0 -> processing -> port 1
+    Duration back = std::chrono::nanoseconds{400};     ///< port 1 -> port 0
+    Duration cable = std::chrono::nanoseconds{50};     ///< one way, 10 m
 };
 
 class SimNetwork final : public FrameSink {

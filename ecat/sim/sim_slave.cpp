@@ -30,10 +30,13 @@ DeviceDescription dictionary_source(const DeviceDescription& description) {
 }  // namespace
 
 SimSlave::SimSlave(std::shared_ptr<const DeviceDescription> description, std::unique_ptr<DeviceModel> model, SlaveOptions options)
-    : description_(std::move(description)), model_(std::move(model)), options_(std::move(options)),
+    : description_(std::move(description)),
+      model_(std::move(model)),
+      options_(std::move(options)),
       controller_(settings_of(*description_),
                   EepromInterface{sii_image(*description_, options_.alias), options_.eeprom_read_time, options_.eeprom_write_time}),
-      dictionary_(dictionary_source(*description_)), process_data_(*description_, dictionary_),
+      dictionary_(dictionary_source(*description_)),
+      process_data_(*description_, dictionary_),
       al_(*description_, controller_, *model_,
           description_->mailbox ? &coe_.emplace(*description_, dictionary_, *model_, controller_, options_.response_delay) : nullptr,
           description_->mailbox ? &process_data_ : nullptr) {

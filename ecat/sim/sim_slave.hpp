@@ -20,12 +20,12 @@
 namespace taktwerk::ecat::sim {
 
 struct SlaveOptions {
-    std::string name{};                   ///< for messages; empty: the description's
-    std::uint16_t alias = 0;              ///< SII word 4
-    double drift_ppm = 0;                 ///< of the DC quartz; positive: fast
-    Duration clock_start{};               ///< local time at power-on
-    Duration transition_time = std::chrono::microseconds{200};   ///< AL control written -> AL status changed
-    Duration response_delay = std::chrono::microseconds{200};    ///< mailbox request taken -> answer ready
+    std::string name{};                                         ///< for messages; empty: the description's
+    std::uint16_t alias = 0;                                    ///< SII word 4
+    double drift_ppm = 0;                                       ///< of the DC quartz; positive: fast
+    Duration clock_start{};                                     ///< local time at power-on
+    Duration transition_time = std::chrono::microseconds{200};  ///< AL control written -> AL status changed
+    Duration response_delay = std::chrono::microseconds{200};   ///< mailbox request taken -> answer ready
     Duration eeprom_read_time = std::chrono::microseconds{100};
     Duration eeprom_write_time = std::chrono::milliseconds{2};
 };
@@ -80,7 +80,7 @@ private:
     AlStateMachine al_;
     Entry* missed_entry_ = nullptr;  // 1C32h:0Bh
     bool powered_ = false;
-    bool outputs_valid_ = false;     // outputs arrived since SAFEOP was entered
+    bool outputs_valid_ = false;  // outputs arrived since SAFEOP was entered
     Instant al_due_ = never;
     Instant settled_{};
     Instant next_event_ = never;

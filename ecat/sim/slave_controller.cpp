@@ -7,7 +7,8 @@
 namespace taktwerk::ecat::sim {
 
 SlaveController::SlaveController(const ControllerSettings& settings, EepromInterface eeprom_interface)
-    : settings_(settings), eeprom_(std::move(eeprom_interface)),
+    : settings_(settings),
+      eeprom_(std::move(eeprom_interface)),
       memory_(std::size_t{reg::process_ram} + settings.process_ram),
       application_(std::size_t{reg::process_ram} + settings.process_ram) {}
 
@@ -35,33 +36,46 @@ void SlaveController::execute(MutableDatagram& datagram, Instant at) noexcept {
     };
     switch (datagram.command) {
         case Command::NOP: break;
-        case Command::APRD: case Command::APWR: case Command::APRW: case Command::ARMW:
+        case Command::APRD:
+        case Command::APWR:
+        case Command::APRW:
+        case Command::ARMW:
             exchange_physical(datagram, adp == 0, at);
             pass_on();
             break;
-        case Command::BRD: case Command::BWR: case Command::BRW:
+        case Command::BRD:
+        case Command::BWR:
+        case Command::BRW:
             exchange_physical(datagram, true, at);
             pass_on();
             break;
-        case Command::FPRD: case Command::FPWR: case Command::FPRW: case Command::FRMW:
-            exchange_physical(datagram, station(), at);
-            break;
-        case Command::LRD: case Command::LWR: case Command::LRW: exchange_logical(datagram, at); break;
+        case Command::FPRD:
+        case Command::FPWR:
+        case Command::FPRW:
+        case Command::FRMW: exchange_physical(datagram, station(), at); break;
+        case Command::LRD:
+        case Command::LWR:
+        case Command::LRW: exchange_logical(datagram, at); break;
     }
     const auto events = static_cast<std::uint16_t>(read16(reg::ecat_event_request) & read16(reg::ecat_event_mask));
-    if (events != 0) store_le<std::uint16_t>(datagram.header, 8, static_cast<std::uint16_t>(load_le<std::uint16_t>(datagram.header, 8) | events));
+    if (events != 0)
+        store_le<std::uint16_t>(datagram.header, 8, static_cast<std::uint16_t>(load_le<std::uint16_t>(datagram.header, 8) | events));
 }
 
 void SlaveController::exchange_physical(MutableDatagram& datagram, bool addressed, Instant at) noexcept {
     const std::uint32_t ado = load_le<std::uint16_t>(datagram.header, 4);
     switch (datagram.command) {
-        case Command::APRD: case Command::FPRD:
+        case Command::APRD:
+        case Command::FPRD:
             if (addressed && read(ado, datagram.data, at)) add_to_counter(datagram, 1);
             return;
-        case Command::APWR: case Command::FPWR: case Command::BWR:
+        case Command::APWR:
+        case Command::FPWR:
+        case Command::BWR:
             if (addressed && write(ado, datagram.data, at)) add_to_counter(datagram, 1);
             return;
-        case Command::ARMW: case Command::FRMW:
+        case Command::ARMW:
+        case Command::FRMW:
             // Read by the slave addressed, written by all others: spreads the reference clock's time.
             if (addressed ? read(ado, datagram.data, at) : write(ado, datagram.data, at)) add_to_counter(datagram, 1);
             return;

@@ -32,13 +32,13 @@ struct ControllerSettings {
 
 /// What happened since the application last asked.
 namespace event {
-inline constexpr unsigned al_control = 1u << 0;       ///< 0120h was written
-inline constexpr unsigned outputs = 1u << 1;          ///< a buffered sync manager got new data
+inline constexpr unsigned al_control = 1u << 0;  ///< 0120h was written
+inline constexpr unsigned outputs = 1u << 1;     ///< a buffered sync manager got new data
 inline constexpr unsigned mailbox_written = 1u << 2;
 inline constexpr unsigned mailbox_read = 1u << 3;
 inline constexpr unsigned repeat_request = 1u << 4;
-inline constexpr unsigned inputs_read = 1u << 5;      ///< a buffered sync manager was read
-inline constexpr unsigned watchdog = 1u << 6;         ///< the SM watchdog ran out
+inline constexpr unsigned inputs_read = 1u << 5;  ///< a buffered sync manager was read
+inline constexpr unsigned watchdog = 1u << 6;     ///< the SM watchdog ran out
 inline constexpr unsigned sync0 = 1u << 7;
 }  // namespace event
 
@@ -147,8 +147,8 @@ private:
 
     ControllerSettings settings_;
     EepromInterface eeprom_;
-    std::vector<std::byte> memory_;        // registers and process RAM as the bus sees them
-    std::vector<std::byte> application_;   // buffered outputs as the application sees them, same addresses
+    std::vector<std::byte> memory_;       // registers and process RAM as the bus sees them
+    std::vector<std::byte> application_;  // buffered outputs as the application sees them, same addresses
     std::array<Unit, 16> units_{};
     std::array<Fmmu, 16> fmmus_{};
     DcClock clock_;

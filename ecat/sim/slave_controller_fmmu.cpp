@@ -23,10 +23,12 @@ Overlap overlap(const Fmmu& fmmu, std::uint32_t logical, std::size_t size) noexc
     const std::uint64_t from = std::max(first, std::uint64_t{logical} * 8);
     const std::uint64_t to = std::min(end, (std::uint64_t{logical} + size) * 8);
     if (fmmu.length == 0 || from >= to) return {};
-    return {from - std::uint64_t{logical} * 8, std::uint64_t{fmmu.physical_start} * 8 + fmmu.physical_start_bit + (from - first), to - from};
+    return {from - std::uint64_t{logical} * 8, std::uint64_t{fmmu.physical_start} * 8 + fmmu.physical_start_bit + (from - first),
+            to - from};
 }
 
-void copy_bits(std::span<std::byte> target, std::uint64_t to, std::span<const std::byte> source, std::uint64_t from, std::uint64_t bits) noexcept {
+void copy_bits(std::span<std::byte> target, std::uint64_t to, std::span<const std::byte> source, std::uint64_t from,
+               std::uint64_t bits) noexcept {
     for (std::uint64_t i = 0; i < bits; ++i) {
         const bool set = ((static_cast<unsigned>(source[(from + i) / 8]) >> ((from + i) % 8)) & 1u) != 0;
         const auto mask = static_cast<std::byte>(1u << ((to + i) % 8));

@@ -121,7 +121,8 @@ void SlaveController::write_sync_manager_registers(std::uint32_t address, std::s
             if (((before ^ after) & SyncManager::repeat_request) != 0) events_ |= event::repeat_request;
         }
         const auto pdi = unit.sm.pdi_control;
-        unit.sm = decode_sync_manager(std::span<const std::byte>{memory_}.subspan(reg::sync_manager_at(static_cast<unsigned>(n))).first<SyncManager::size>());
+        unit.sm = decode_sync_manager(
+            std::span<const std::byte>{memory_}.subspan(reg::sync_manager_at(static_cast<unsigned>(n))).first<SyncManager::size>());
         unit.sm.pdi_control = pdi;
         // A manager that reaches beyond the RAM governs only what exists.
         if (std::size_t{unit.sm.start} + unit.sm.length > memory_.size() || unit.sm.start < reg::process_ram) {
@@ -177,7 +178,8 @@ bool SlaveController::repeat_requested(unsigned n) const noexcept {
 
 void SlaveController::acknowledge_repeat(unsigned n) noexcept {
     auto& sm = units_[n].sm;
-    sm.pdi_control = static_cast<std::uint8_t>((sm.pdi_control & ~SyncManager::repeat_acknowledge) | (sm.activate & SyncManager::repeat_request));
+    sm.pdi_control =
+        static_cast<std::uint8_t>((sm.pdi_control & ~SyncManager::repeat_acknowledge) | (sm.activate & SyncManager::repeat_request));
     show_sync_manager(n);
 }
 

@@ -15,14 +15,17 @@ struct Range {
 
 /// Plain read/write registers: a write is stored, nothing else happens at once.
 constexpr Range stored[] = {
-    {reg::station_address, 2}, {reg::write_register_enable, 2}, {reg::write_enable, 2}, {reg::dl_control, 4},
-    {reg::physical_rw_offset, 2}, {reg::al_control, 2}, {reg::ecat_event_mask, 2}, {reg::watchdog_divider, 2},
-    {reg::pdi_watchdog_time, 2}, {reg::sm_watchdog_time, 2}, {reg::eeprom_configuration, 2}, {reg::gp_outputs, 8}, {reg::user_ram, 128},
+    {reg::station_address, 2},  {reg::write_register_enable, 2}, {reg::write_enable, 2},
+    {reg::dl_control, 4},       {reg::physical_rw_offset, 2},    {reg::al_control, 2},
+    {reg::ecat_event_mask, 2},  {reg::watchdog_divider, 2},      {reg::pdi_watchdog_time, 2},
+    {reg::sm_watchdog_time, 2}, {reg::eeprom_configuration, 2},  {reg::gp_outputs, 8},
+    {reg::user_ram, 128},
 };
 /// The DC unit's; they exist only where the controller has one.
 constexpr Range stored_dc[] = {
-    {reg::dc_system_offset, 8}, {reg::dc_system_delay, 4}, {reg::dc_speed_start, 2}, {reg::dc_difference_filter, 2},
-    {reg::dc_cyclic_control, 2}, {reg::dc_start_time, 8}, {reg::dc_sync0_cycle, 4}, {reg::dc_sync1_cycle, 4}, {reg::dc_latch0_control, 2},
+    {reg::dc_system_offset, 8},     {reg::dc_system_delay, 4},   {reg::dc_speed_start, 2},
+    {reg::dc_difference_filter, 2}, {reg::dc_cyclic_control, 2}, {reg::dc_start_time, 8},
+    {reg::dc_sync0_cycle, 4},       {reg::dc_sync1_cycle, 4},    {reg::dc_latch0_control, 2},
 };
 
 constexpr std::uint32_t dc_unit_end = 0x0A00;
@@ -52,8 +55,9 @@ void SlaveController::power_on(Instant now, std::int64_t local, std::int32_t dri
     memory_[reg::sync_manager_count] = static_cast<std::byte>(settings_.sync_managers);
     memory_[reg::ram_size] = static_cast<std::byte>(settings_.process_ram / 1024);
     memory_[reg::port_descriptor] = settings_.second_port ? std::byte{0x0F} : std::byte{0x03};  // MII ports
-    write16(reg::features, static_cast<std::uint16_t>((settings_.dc ? feature::dc : 0) | (settings_.dc && settings_.dc_64bit ? feature::dc_64bit : 0) |
-                                                      feature::separate_fcs_count));
+    write16(reg::features,
+            static_cast<std::uint16_t>((settings_.dc ? feature::dc : 0) | (settings_.dc && settings_.dc_64bit ? feature::dc_64bit : 0) |
+                                       feature::separate_fcs_count));
     write16(reg::dl_control, 0x0001);
     write16(reg::al_control, 1);
     write16(reg::al_status, 1);
@@ -129,7 +133,8 @@ bool SlaveController::write_registers(std::uint32_t address, std::span<const std
     }
     const auto store = [&](std::span<const Range> ranges) {
         for (const Range& range : ranges)
-            for (std::uint32_t a = std::max(address, range.first); a < std::min<std::size_t>(address + in.size(), range.first + range.size); ++a)
+            for (std::uint32_t a = std::max(address, range.first); a < std::min<std::size_t>(address + in.size(), range.first + range.size);
+                 ++a)
                 memory_[a] = in[a - address];
     };
     const auto hits = [&](std::uint32_t first, std::uint32_t size) { return overlaps(address, in.size(), first, size); };
@@ -180,8 +185,10 @@ void SlaveController::write_dc(std::uint32_t address, std::span<const std::byte>
         const bool on = (static_cast<unsigned>(memory_[reg::dc_activation]) & needed) == needed;
         if (!on) sync0_.deactivate();
         else if (!sync0_.active())
-            sync0_.activate(load_le<std::int64_t>(memory_, reg::dc_start_time), load_le<std::uint32_t>(memory_, reg::dc_sync0_cycle), clock_, at);
+            sync0_.activate(load_le<std::int64_t>(memory_, reg::dc_start_time), load_le<std::uint32_t>(memory_, reg::dc_sync0_cycle),
+                            clock_, at);
     }
+    sync0_.clock_changed(clock_, at);
     sync0_due_ = sync0_.due(clock_).value_or(never);  // whatever was written may have moved it
 }
 
@@ -197,7 +204,8 @@ void SlaveController::frame_returned(std::optional<Instant> port1) noexcept {
 void SlaveController::write_eeprom(std::uint32_t address, std::span<const std::byte> in, Instant at) noexcept {
     // While the application owns the EEPROM (0500h bit 0) the master's commands go nowhere; while busy, too.
     if ((memory_[reg::eeprom_configuration] & std::byte{1}) != std::byte{0} || eeprom_.busy()) return;
-    for (std::uint32_t a = std::max<std::uint32_t>(address, reg::eeprom_address); a < std::min<std::size_t>(address + in.size(), reg::eeprom_data + 8); ++a)
+    for (std::uint32_t a = std::max<std::uint32_t>(address, reg::eeprom_address);
+         a < std::min<std::size_t>(address + in.size(), reg::eeprom_data + 8); ++a)
         memory_[a] = in[a - address];
     eeprom_.address_written(load_le<std::uint32_t>(memory_, reg::eeprom_address));
     eeprom_.data_written(load_le<std::uint16_t>(memory_, reg::eeprom_data));

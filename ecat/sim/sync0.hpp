@@ -2,6 +2,7 @@
 // The SYNC0 generator of a slave controller: pulse k stands at start + k * cycle of the slave's own system time. Real-time
 // safe. Source: ETG.1000.4 (0980h..09A7h).
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 
@@ -18,8 +19,13 @@ public:
         active_ = true;
         cycle_ = cycle;
         next_ = start;
-        waiting_ = start > clock.system(now);
+        waiting_ = start > clock.system(now) && (cycle == 0 || cycle >= shortest_cycle_ns);
         pulses_ = 0;
+    }
+    /// The clock was set. When it jumped over the next pulse by more than a cycle, that pulse and all others are missed, too.
+    void clock_changed(const DcClock& clock, Instant now) noexcept {
+        const auto late = static_cast<std::int64_t>(static_cast<std::uint64_t>(clock.system(now)) - static_cast<std::uint64_t>(next_));
+        if (late > std::max<std::int64_t>(cycle_, 1'000'000)) waiting_ = false;
     }
     void deactivate() noexcept { active_ = waiting_ = false; }
 
@@ -38,6 +44,8 @@ public:
         next_ += cycle_;
         waiting_ = cycle_ != 0;
     }
+
+    static constexpr std::uint32_t shortest_cycle_ns = 1000;  ///< the unit makes no faster pulses
 
 private:
     bool active_ = false, waiting_ = false;

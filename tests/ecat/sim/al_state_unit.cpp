@@ -92,13 +92,15 @@ TEST(AlState, PreopNeedsBothMailboxesAsTheSlaveHasThem) {
     EXPECT_EQ(code_with([](BusProbe& bus) { bus.mailboxes(0); }), 0);
     EXPECT_EQ(code_with([](BusProbe& bus) { bus.set_sync_manager(0, 0, 0x1000, 0x80, 0x26); }), 0x0016);
     EXPECT_EQ(code_with([](BusProbe& bus) {
-        bus.set_sync_manager(0, 0, 0x1000, 0x40, 0x26);
-        bus.set_sync_manager(0, 1, 0x1400, 0x80, 0x22);
-    }), 0x0016);
+                  bus.set_sync_manager(0, 0, 0x1000, 0x40, 0x26);
+                  bus.set_sync_manager(0, 1, 0x1400, 0x80, 0x22);
+              }),
+              0x0016);
     EXPECT_EQ(code_with([](BusProbe& bus) {
-        bus.set_sync_manager(0, 0, 0x1000, 0x80, 0x24);  // buffered
-        bus.set_sync_manager(0, 1, 0x1400, 0x80, 0x22);
-    }), 0x0016);
+                  bus.set_sync_manager(0, 0, 0x1000, 0x80, 0x24);  // buffered
+                  bus.set_sync_manager(0, 1, 0x1400, 0x80, 0x22);
+              }),
+              0x0016);
 }
 
 std::uint16_t safeop_code(const std::function<void(BusProbe&)>& managers, const DeviceDescription& description = small_drive()) {
@@ -117,35 +119,42 @@ TEST(AlState, SafeopNeedsSyncManagersThatFitTheMapping) {
     EXPECT_EQ(safeop_code([](BusProbe& bus) { bus.process_managers(0, 0, 6); }), 0x001D);
     EXPECT_EQ(safeop_code([](BusProbe&) {}), 0x001D);
     EXPECT_EQ(safeop_code([](BusProbe& bus) {
-        bus.set_sync_manager(0, 2, 0x1900, 6, 0x64);  // not where the slave has it
-        bus.set_sync_manager(0, 3, 0x1C00, 6, 0x20);
-    }), 0x001D);
+                  bus.set_sync_manager(0, 2, 0x1900, 6, 0x64);  // not where the slave has it
+                  bus.set_sync_manager(0, 3, 0x1C00, 6, 0x20);
+              }),
+              0x001D);
     EXPECT_EQ(safeop_code([](BusProbe& bus) {
-        bus.set_sync_manager(0, 2, 0x1800, 6, 0x64);
-        bus.set_sync_manager(0, 3, 0x1C00, 6, 0x24);  // the wrong direction
-    }), 0x001E);
+                  bus.set_sync_manager(0, 2, 0x1800, 6, 0x64);
+                  bus.set_sync_manager(0, 3, 0x1C00, 6, 0x24);  // the wrong direction
+              }),
+              0x001E);
 }
 
 TEST(AlState, SafeopFollowsAChangedMapping) {
     EXPECT_EQ(safeop_code([](BusProbe& bus) {
-        bus.download(0, 0x1C12, 0, 1, 0);
-        bus.download(0, 0x1C12, 1, 2, 0x1701);  // 7 bytes
-        bus.download(0, 0x1C12, 0, 1, 1);
-        bus.process_managers(0, 7, 6);
-    }), 0);
+                  bus.download(0, 0x1C12, 0, 1, 0);
+                  bus.download(0, 0x1C12, 1, 2, 0x1701);  // 7 bytes
+                  bus.download(0, 0x1C12, 0, 1, 1);
+                  bus.process_managers(0, 7, 6);
+              }),
+              0);
     EXPECT_EQ(safeop_code([](BusProbe& bus) {
-        bus.download(0, 0x1C12, 0, 1, 0);  // no outputs at all
-        bus.process_managers(0, 0, 6);
-    }), 0);
+                  bus.download(0, 0x1C12, 0, 1, 0);  // no outputs at all
+                  bus.process_managers(0, 0, 6);
+              }),
+              0);
 }
 
 TEST(AlState, ThreeBuffersMustNotReachIntoTheNextManager) {
     auto description = small_drive();
     description.sync_managers[3].start = 0x1800 + 2 * 6;  // room for two buffers of SM2 only
-    EXPECT_EQ(safeop_code([](BusProbe& bus) {
-        bus.set_sync_manager(0, 2, 0x1800, 6, 0x64);
-        bus.set_sync_manager(0, 3, 0x180C, 6, 0x20);
-    }, description), 0x001D);
+    EXPECT_EQ(safeop_code(
+                  [](BusProbe& bus) {
+                      bus.set_sync_manager(0, 2, 0x1800, 6, 0x64);
+                      bus.set_sync_manager(0, 3, 0x180C, 6, 0x20);
+                  },
+                  description),
+              0x001D);
 }
 
 TEST(AlState, TheModelMayRefuse) {
@@ -180,13 +189,15 @@ DeviceDescription dc_drive() {
 }
 
 std::uint16_t code_with_sync0(std::int64_t start_in_ns, std::uint32_t cycle) {
-    return safeop_code([&](BusProbe& bus) {
-        bus.process_managers(0);
-        if (cycle == 0) return;
-        bus.write(0, 0x0990, le<std::int64_t>(bus.value<std::int64_t>(0, 0x0910) + start_in_ns));
-        bus.write(0, 0x09A0, le<std::uint32_t>(cycle));
-        bus.write(0, 0x0981, bytes({0x03}));
-    }, dc_drive());
+    return safeop_code(
+        [&](BusProbe& bus) {
+            bus.process_managers(0);
+            if (cycle == 0) return;
+            bus.write(0, 0x0990, le<std::int64_t>(bus.value<std::int64_t>(0, 0x0910) + start_in_ns));
+            bus.write(0, 0x09A0, le<std::uint32_t>(cycle));
+            bus.write(0, 0x0981, bytes({0x03}));
+        },
+        dc_drive());
 }
 
 TEST(AlState, ADriveThatNeedsSync0WantsItBeforeSafeop) {

@@ -45,7 +45,9 @@ public:
     void exchange(Instant now) override { exchanges.push_back(now); }
     void advance(Instant now) override { advanced = std::max(advanced, now); }
     void outputs_lost(Instant now) override { lost.push_back(now); }
-    std::uint32_t refuse_write(std::uint16_t index, std::uint8_t, std::int64_t) override { return index == refused_object ? refused_code : 0; }
+    std::uint32_t refuse_write(std::uint16_t index, std::uint8_t, std::int64_t) override {
+        return index == refused_object ? refused_code : 0;
+    }
     void written(std::uint16_t index, std::uint8_t sub, Instant) override { writes.push_back((std::uint32_t{index} << 8) | sub); }
 
     ObjectDictionary* dictionary_ = nullptr;
@@ -67,14 +69,17 @@ inline DeviceDescription small_drive() {
     d.device_name = "SMALL-DRIVE";
     d.identity = {0x000007FB, 0x000C0108, 0x00010001, 77};
     d.mailbox = MailboxDescription{};
-    d.sync_managers = {{SmUse::mailbox_out, 0x1000, 0x80, 0x26}, {SmUse::mailbox_in, 0x1400, 0x80, 0x22},
-                       {SmUse::outputs, 0x1800, 0, 0x64}, {SmUse::inputs, 0x1C00, 0, 0x20}};
+    d.sync_managers = {{SmUse::mailbox_out, 0x1000, 0x80, 0x26},
+                       {SmUse::mailbox_in, 0x1400, 0x80, 0x22},
+                       {SmUse::outputs, 0x1800, 0, 0x64},
+                       {SmUse::inputs, 0x1C00, 0, 0x20}};
     d.rx_pdos = {{0x1600, false, {{0x6040, 0, 16}, {0x607A, 0, 32}}}, {0x1701, true, {{0x6040, 0, 16}, {0x607A, 0, 32}, {0x6060, 0, 8}}}};
     d.tx_pdos = {{0x1A00, false, {{0x6041, 0, 16}, {0x6064, 0, 32}}}};
     d.rx_assigned = {0x1600};
     d.tx_assigned = {0x1A00};
     d.rx_rules = d.tx_rules = {1, 4, 12};
-    const auto object = [&](std::uint16_t index, std::uint8_t sub, DataType type, Access access, Mappable mappable, std::int64_t value = 0) {
+    const auto object = [&](std::uint16_t index, std::uint8_t sub, DataType type, Access access, Mappable mappable,
+                            std::int64_t value = 0) {
         ObjectEntry e;
         e.index = index, e.sub = sub, e.type = type, e.access = access, e.mappable = mappable, e.value = value;
         d.objects.push_back(e);
@@ -130,8 +135,12 @@ public:
         if (!datagram) return {};
         return {datagram->working_counter(), Bytes(datagram->data.begin(), datagram->data.end()), datagram->address.adp(), datagram->irq};
     }
-    Answer read(std::uint16_t position, std::uint16_t ado, std::size_t size) { return send(Command::APRD, Address::position(position, ado), Bytes(size)); }
-    Answer write(std::uint16_t position, std::uint16_t ado, Bytes data) { return send(Command::APWR, Address::position(position, ado), std::move(data)); }
+    Answer read(std::uint16_t position, std::uint16_t ado, std::size_t size) {
+        return send(Command::APRD, Address::position(position, ado), Bytes(size));
+    }
+    Answer write(std::uint16_t position, std::uint16_t ado, Bytes data) {
+        return send(Command::APWR, Address::position(position, ado), std::move(data));
+    }
     template <class T>
     T value(std::uint16_t position, std::uint16_t ado) {
         return load_le<T>(read(position, ado, sizeof(T)).data);
@@ -141,7 +150,8 @@ public:
         network.advance(now);
     }
 
-    void set_sync_manager(std::uint16_t position, unsigned n, std::uint16_t start, std::uint16_t length, std::uint8_t control, std::uint8_t activate = 1) {
+    void set_sync_manager(std::uint16_t position, unsigned n, std::uint16_t start, std::uint16_t length, std::uint8_t control,
+                          std::uint8_t activate = 1) {
         Bytes registers(SyncManager::size);
         SyncManager sm;
         sm.start = start, sm.length = length, sm.control = control, sm.activate = activate;

@@ -74,7 +74,7 @@ struct DriftingPair : testing::Test {
     DriftingPair() {
         bus.add_drive({.drift_ppm = 40, .clock_start = 3s}, dc_drive());
         bus.add_drive({.drift_ppm = -60, .clock_start = 1s}, dc_drive());
-        bus.write(1, 0x0928, le<std::uint32_t>(650));  // delay: 600 + 50
+        bus.write(1, 0x0928, le<std::uint32_t>(650));           // delay: 600 + 50
         bus.write(1, 0x0920, le<std::int64_t>(2'000'000'300));  // 300 ns wrong on purpose
     }
     void spread(int frames) {

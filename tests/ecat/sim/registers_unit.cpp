@@ -11,13 +11,13 @@ TEST(SlaveRegisters, TellWhatTheControllerHas) {
     BusProbe bus;
     bus.add_drive();
 
-    EXPECT_EQ(bus.value<std::uint8_t>(0, 0x0004), 8);       // FMMUs
-    EXPECT_EQ(bus.value<std::uint8_t>(0, 0x0005), 8);       // sync managers
-    EXPECT_EQ(bus.value<std::uint8_t>(0, 0x0006), 4);       // KiB
-    EXPECT_EQ(bus.value<std::uint8_t>(0, 0x0007), 0x0F);    // two MII ports
-    EXPECT_EQ(bus.value<std::uint16_t>(0, 0x0400), 2498);   // 100 us ticks
-    EXPECT_EQ(bus.value<std::uint16_t>(0, 0x0420), 1000);   // 100 ms
-    EXPECT_EQ(bus.value<std::uint16_t>(0, 0x0130), 0x0001); // INIT
+    EXPECT_EQ(bus.value<std::uint8_t>(0, 0x0004), 8);        // FMMUs
+    EXPECT_EQ(bus.value<std::uint8_t>(0, 0x0005), 8);        // sync managers
+    EXPECT_EQ(bus.value<std::uint8_t>(0, 0x0006), 4);        // KiB
+    EXPECT_EQ(bus.value<std::uint8_t>(0, 0x0007), 0x0F);     // two MII ports
+    EXPECT_EQ(bus.value<std::uint16_t>(0, 0x0400), 2498);    // 100 us ticks
+    EXPECT_EQ(bus.value<std::uint16_t>(0, 0x0420), 1000);    // 100 ms
+    EXPECT_EQ(bus.value<std::uint16_t>(0, 0x0130), 0x0001);  // INIT
 }
 
 TEST(SlaveRegisters, FeatureBitsSayWhetherThereIsADcUnit) {
@@ -63,7 +63,7 @@ TEST(SlaveRegisters, BroadcastReadCountsSlavesAndOrsTheirData) {
     const auto answer = bus.send(Command::BRD, Address::physical(0, 0x0130), Bytes(2));
 
     EXPECT_EQ(answer.wkc, 3);
-    EXPECT_EQ(answer.adp, 3);                       // each slave adds one
+    EXPECT_EQ(answer.adp, 3);                                // each slave adds one
     EXPECT_EQ(load_le<std::uint16_t>(answer.data), 0x0003);  // INIT | PREOP
 }
 
@@ -110,7 +110,7 @@ TEST(WorkingCounter, OfEachPhysicalCommand) {
     EXPECT_EQ(wkc(Command::BRD, Address::physical(0, ram)), 3);
     EXPECT_EQ(wkc(Command::BWR, Address::physical(0, ram)), 3);
     EXPECT_EQ(wkc(Command::BRW, Address::physical(0, ram)), 9);
-    EXPECT_EQ(wkc(Command::ARMW, Address::position(1, ram)), 3);           // one reads, two write
+    EXPECT_EQ(wkc(Command::ARMW, Address::position(1, ram)), 3);  // one reads, two write
     EXPECT_EQ(wkc(Command::FRMW, Address::physical(0x1001, ram)), 3);
 }
 

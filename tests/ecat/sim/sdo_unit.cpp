@@ -31,7 +31,8 @@ TEST_F(Sdo, UploadOfOneAndTwoBytesSaysHowManyAreUnused) {
 }
 
 TEST_F(Sdo, UploadOfMoreThanFourBytesIsNormal) {
-    EXPECT_EQ(bus.upload(0, 0x1008, 0), bytes({0x00, 0x30, 0x41, 0x08, 0x10, 0x00, 11, 0, 0, 0, 'S', 'M', 'A', 'L', 'L', '-', 'D', 'R', 'I', 'V', 'E'}));
+    EXPECT_EQ(bus.upload(0, 0x1008, 0),
+              bytes({0x00, 0x30, 0x41, 0x08, 0x10, 0x00, 11, 0, 0, 0, 'S', 'M', 'A', 'L', 'L', '-', 'D', 'R', 'I', 'V', 'E'}));
 }
 
 TEST_F(Sdo, ALongStringComesInSegments) {
@@ -90,15 +91,15 @@ TEST_F(Sdo, NormalAndSegmentedDownload) {
 }
 
 TEST_F(Sdo, AbortsSayWhy) {
-    EXPECT_EQ(abort_of(bus.upload(0, 0x5000, 0)), 0x06020000u);              // no such object
-    EXPECT_EQ(abort_of(bus.upload(0, 0x1018, 9)), 0x06090011u);              // no such subindex
-    EXPECT_EQ(abort_of(bus.upload(0, 0x2000, 1)), 0x06010001u);              // write only
-    EXPECT_EQ(bus.download(0, 0x6041, 0, 2, 0), 0x06010002u);                // read only
-    EXPECT_EQ(bus.download(0, 0x6060, 0, 2, 8), 0x06070012u);                // too long
-    EXPECT_EQ(bus.download(0, 0x6081, 0, 2, 8), 0x06070013u);                // too short
-    EXPECT_EQ(bus.download(0, 0x6098, 0, 1, 36), 0x06090031u);               // too great
-    EXPECT_EQ(bus.download(0, 0x6098, 0, 1, 0xFD), 0x06090032u);             // -3: too small
-    EXPECT_EQ(bus.download(0, 0x6098, 0, 1, 0xFE), 0u);                      // -2
+    EXPECT_EQ(abort_of(bus.upload(0, 0x5000, 0)), 0x06020000u);                                             // no such object
+    EXPECT_EQ(abort_of(bus.upload(0, 0x1018, 9)), 0x06090011u);                                             // no such subindex
+    EXPECT_EQ(abort_of(bus.upload(0, 0x2000, 1)), 0x06010001u);                                             // write only
+    EXPECT_EQ(bus.download(0, 0x6041, 0, 2, 0), 0x06010002u);                                               // read only
+    EXPECT_EQ(bus.download(0, 0x6060, 0, 2, 8), 0x06070012u);                                               // too long
+    EXPECT_EQ(bus.download(0, 0x6081, 0, 2, 8), 0x06070013u);                                               // too short
+    EXPECT_EQ(bus.download(0, 0x6098, 0, 1, 36), 0x06090031u);                                              // too great
+    EXPECT_EQ(bus.download(0, 0x6098, 0, 1, 0xFD), 0x06090032u);                                            // -3: too small
+    EXPECT_EQ(bus.download(0, 0x6098, 0, 1, 0xFE), 0u);                                                     // -2
     EXPECT_EQ(abort_of(bus.coe(0, bytes({0x00, 0x20, 0x50, 0x18, 0x10, 0x00, 0, 0, 0, 0}))), 0x06010004u);  // complete access
     EXPECT_EQ(abort_of(bus.coe(0, bytes({0x00, 0x20, 0xE0, 0x18, 0x10, 0x00, 0, 0, 0, 0}))), 0x05040001u);  // no such command
 }
@@ -233,10 +234,10 @@ TEST(Mailbox, ErrorRepliesNameTheProblem) {
     bus.add_drive();
     bus.to_preop(0);
 
-    EXPECT_EQ(bus.coe(0, bytes({1, 2, 3, 4}), 2), bytes({0x01, 0x00, 0x02, 0x00}));                          // EoE: unsupported protocol
+    EXPECT_EQ(bus.coe(0, bytes({1, 2, 3, 4}), 2), bytes({0x01, 0x00, 0x02, 0x00}));  // EoE: unsupported protocol
     EXPECT_EQ(static_cast<int>(bus.header[5]) & 0x0F, 0);
-    EXPECT_EQ(bus.coe(0, bytes({0x00, 0x80, 1, 0, 0, 0, 1, 0})), bytes({0x01, 0x00, 0x04, 0x00}));           // SDO info: not supported
-    EXPECT_EQ(bus.coe(0, bytes({0x00})), bytes({0x01, 0x00, 0x06, 0x00}));                                   // too short
+    EXPECT_EQ(bus.coe(0, bytes({0x00, 0x80, 1, 0, 0, 0, 1, 0})), bytes({0x01, 0x00, 0x04, 0x00}));  // SDO info: not supported
+    EXPECT_EQ(bus.coe(0, bytes({0x00})), bytes({0x01, 0x00, 0x06, 0x00}));                          // too short
 }
 
 TEST(Mailbox, AStuckMailboxAnswersAfterItIsReleased) {
