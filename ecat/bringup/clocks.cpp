@@ -11,7 +11,8 @@ namespace taktwerk::ecat {
 namespace {
 
 constexpr Duration settle_time = std::chrono::seconds{10};
-constexpr Duration start_margin = std::chrono::milliseconds{100};
+constexpr Duration least_margin = std::chrono::milliseconds{100};
+constexpr std::int64_t margin_cycles = 50;  ///< six register accesses, each of two or three cycles, and reserve
 constexpr unsigned frames_per_round = 8;  ///< reference times sent between two looks at 092Ch, while no cycle runs
 
 std::int64_t nanoseconds(Instant t) noexcept { return t.time_since_epoch().count(); }
@@ -148,14 +149,15 @@ Script<Result<void>> start_sync0(Bus& bus, BusSlave& slave) {
     bus.note(slave, "starting SYNC0");
     const std::int64_t cycle = bus.config.cycle.count();
     const std::uint16_t station = slave.found.station;
-    for (unsigned attempt = 0; attempt < 3; ++attempt) {
+    Duration margin = std::max(least_margin, margin_cycles * bus.config.cycle);
+    for (unsigned attempt = 0; attempt < 3; ++attempt, margin *= 2) {
         const Reply off = co_await bus.port.fpwr(station, reg::dc_activation, std::uint8_t{0});
         if (!off.ok()) co_return unanswered(slave.subject, "SYNC0 activation (0981h)", off);
         co_await bus.port.fpwr(station, reg::dc_cyclic_control, std::uint8_t{0});
         if (!bus.dc_phase) bus.dc_phase = (((bus.link.send_phase_ns.load() + bus.link.dc_offset_ns.load()) % cycle) + cycle) % cycle;
         const Reply now = co_await bus.port.fprd(station, reg::dc_system_time, 8);
         if (!now.ok()) co_return unanswered(slave.subject, "its system time (0910h)", now);
-        const std::uint64_t start = sync0_start(now.u64(), start_margin, bus.config.cycle, Duration{*bus.dc_phase}, sync0_shift(bus.config, *slave.config));
+        const std::uint64_t start = sync0_start(now.u64(), margin, bus.config.cycle, Duration{*bus.dc_phase}, sync0_shift(bus.config, *slave.config));
         const Reply first = co_await bus.port.fpwr(station, reg::dc_start_time, start);
         const Reply period = co_await bus.port.fpwr(station, reg::dc_sync0_cycle, static_cast<std::uint32_t>(cycle));
         const Reply sync1 = co_await bus.port.fpwr(station, reg::dc_sync1_cycle, std::uint32_t{0});
@@ -171,7 +173,7 @@ Script<Result<void>> start_sync0(Bus& bus, BusSlave& slave) {
         }
     }
     co_return Error{"bus.sync0_late", slave.subject, "the start of SYNC0 had passed before it was activated, three times",
-                    "the service thread stalls for more than 100 ms: give it more CPU time"};
+                    "the service thread stalls for hundreds of milliseconds: give it more CPU time"};
 }
 
 Script<Result<void>> stop_sync0(Bus& bus, BusSlave& slave) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/guard/allocation_guard.hpp"
 #include "core/process_image.hpp"
 #include "ecat/alarms.hpp"
 #include "tests/ecat/test_bus.hpp"
@@ -36,6 +37,22 @@ TEST(ProcessData, ReachesTheDriveAndComesBackTwoCyclesLater) {
     EXPECT_EQ(read_signal(bus.master->inputs(), actual), 0);
     bus.cycle_once();  // and is back
     EXPECT_EQ(read_signal(bus.master->inputs(), actual), -123456);
+}
+
+TEST(ProcessData, CycleSideAllocatesNothing) {
+    TestBus bus{"sts"};
+    ASSERT_TRUE(bus.bring_up());
+    bus.run_for(50ms);
+    const NoAllocationScope heap;
+    std::array<AlarmFact, 8> facts;
+    for (int i = 0; i < 100; ++i) {
+        bus.now += 1ms;
+        bus.master->receive(bus.now);
+        (void)bus.master->active_faults(facts);
+        (void)bus.master->outputs_effective(0, bus.now);
+        bus.master->send(bus.now);
+    }
+    EXPECT_EQ(heap.used().total(), 0u) << heap.used().text();
 }
 
 TEST(ProcessData, TerminalsExchangeBits) {

@@ -1,0 +1,111 @@
+#include "ecat/bus_config.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "ecat/alarms.hpp"
+#include "tests/ecat/test_bus.hpp"
+
+namespace taktwerk::ecat::test {
+namespace {
+
+using ::testing::Contains;
+using ::testing::Field;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+BusConfig good() {
+    TestBus bus{"st"};
+    return bus.config;
+}
+
+auto with_code(const char* code) { return Contains(Field(&Error::code, code)); }
+
+TEST(BusConfig, AGoodOneHasNoProblems) { EXPECT_THAT(check(good()), IsEmpty()); }
+
+struct Case {
+    const char* code;
+    void (*spoil)(BusConfig&);
+};
+void PrintTo(const Case& c, std::ostream* out) { *out << c.code; }
+
+class BadBusConfig : public ::testing::TestWithParam<Case> {};
+
+TEST_P(BadBusConfig, IsFoundWithoutABusAndSaysWhatToDo) {
+    BusConfig config = good();
+    GetParam().spoil(config);
+    const auto problems = check(config);
+    ASSERT_THAT(problems, with_code(GetParam().code));
+    for (const auto& problem : problems) {
+        EXPECT_FALSE(problem.subject.empty()) << problem.text();
+        EXPECT_FALSE(problem.remedy.empty()) << problem.text();
+    }
+}
+
+StartupSdo quick_stop(std::int64_t value) {
+    StartupSdo sdo;
+    sdo.index = 0x6085;
+    sdo.value = value;
+    return sdo;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Each, BadBusConfig,
+    ::testing::Values(
+        Case{"bus.cycle", [](BusConfig& c) { c.cycle = 0ns; }}, Case{"bus.no_slaves", [](BusConfig& c) { c.slaves.clear(); }},
+        Case{"bus.lost_frames_limit", [](BusConfig& c) { c.lost_frames_limit = 0; }},
+        Case{"bus.acyclic_per_cycle", [](BusConfig& c) { c.acyclic_per_cycle = 0; }},
+        Case{"bus.sync0_shift", [](BusConfig& c) { c.slaves[0].sync0_shift = 1ms; }},
+        Case{"bus.no_name", [](BusConfig& c) { c.slaves[0].name.clear(); }},
+        Case{"bus.duplicate_name", [](BusConfig& c) { c.slaves[1].name = c.slaves[0].name; }},
+        Case{"bus.place", [](BusConfig& c) { c.slaves[0].alias = 3; }}, Case{"bus.place", [](BusConfig& c) { c.slaves[0].position.reset(); }},
+        Case{"bus.duplicate_position", [](BusConfig& c) { c.slaves[1].position = 0; }},
+        Case{"bus.position", [](BusConfig& c) { c.slaves[1].position = 2; }}, Case{"bus.no_device", [](BusConfig& c) { c.slaves[0].device.reset(); }},
+        Case{"bus.dc_required", [](BusConfig& c) { c.slaves[0].dc = false; }},
+        Case{"bus.dc_unsupported", [](BusConfig& c) { c.slaves[1].dc = true; }},
+        Case{"bus.cycle_multiple", [](BusConfig& c) { c.cycle = 200us; }}, Case{"bus.cycle_too_short", [](BusConfig& c) { c.cycle = 100us; }},
+        Case{"bus.sm_watchdog", [](BusConfig& c) { c.slaves[0].sm_watchdog = 1ms; }},
+        Case{"bus.sm_watchdog", [](BusConfig& c) { c.slaves[0].sm_watchdog = 7s; }},  // 65535 * 100 us = 6.5535 s
+        Case{"bus.pdo_unknown", [](BusConfig& c) { c.slaves[0].rx.assigned = {{0x1777, false, {}}}; }},
+        Case{"bus.pdo_too_many", [](BusConfig& c) { c.slaves[0].rx.assigned = {{0x1701, true, {}}, {0x1702, true, {}}}; }},
+        Case{"bus.pdo_fixed", [](BusConfig& c) { c.slaves[0].rx.assigned = {{0x1701, true, {{0x6040, 0, 16}}}}; }},
+        Case{"bus.pdo_mappable", [](BusConfig& c) { c.slaves[0].rx.assigned = {{0x1600, false, {{0x6064, 0, 32}}}}; }},
+        Case{"bus.pdo_bits", [](BusConfig& c) { c.slaves[0].rx.assigned = {{0x1600, false, {{0x6040, 0, 32}}}}; }},
+        Case{"bus.pdo_entries", [](BusConfig& c) { c.slaves[0].rx.assigned = {{0x1600, false, std::vector<PdoEntry>(11, {0x6040, 0, 16})}}; }},
+        Case{"bus.pdo_no_coe", [](BusConfig& c) { c.slaves[1].rx.assigned = {{0x1600, false, {}}}; }},
+        Case{"bus.startup_no_coe", [](BusConfig& c) { c.slaves[1].startup = {quick_stop(1)}; }},
+        Case{"bus.startup_range", [](BusConfig& c) { c.slaves[0].startup = {quick_stop(-1)}; }},
+        Case{"bus.startup_range", [](BusConfig& c) { c.slaves[0].startup = {quick_stop(1'000'001)}; }},
+        Case{"bus.startup_read_only", [](BusConfig& c) { c.slaves[0].startup = {quick_stop(1)}; c.slaves[0].startup[0].index = 0x6041; c.slaves[0].startup[0].type = DataType::U16; }}));
+
+TEST(BusConfig, AllProblemsAreReportedAtOnceAndNameTheSlave) {
+    BusConfig config = good();
+    config.slaves[0].dc = false;
+    config.slaves[1].dc = true;
+    const auto problems = check(config);
+    ASSERT_THAT(problems, SizeIs(2));
+    EXPECT_THAT(problems[0].text(), HasSubstr("slave 'a'"));
+    EXPECT_THAT(problems[1].text(), HasSubstr("slave 'b'"));
+}
+
+TEST(BusAlarms, HaveUniqueIdsInTheirRangeAndAllTexts) {
+    std::set<AlarmId> ids;
+    std::set<std::string_view> names;
+    for (const auto& info : Master::alarms()) {
+        EXPECT_EQ(info.id & 0xF000, 0x1000);
+        EXPECT_TRUE(ids.insert(info.id).second);
+        EXPECT_TRUE(names.insert(info.name).second);
+        for (const auto text : {info.english, info.chinese, info.cause, info.remedy}) EXPECT_FALSE(text.empty()) << info.name;
+    }
+}
+
+TEST(BusAlarms, LosingProcessDataStopsTheMachine) {
+    for (const AlarmId id : {alarm::frames_lost, alarm::working_counter_wrong, alarm::slave_lost, alarm::slave_left_op, alarm::link_down})
+        EXPECT_EQ(find_alarm(bus_alarms, id)->reaction, Reaction::stop_machine);
+}
+
+}  // namespace
+}  // namespace taktwerk::ecat::test
