@@ -113,12 +113,9 @@ void Machine::Impl::execute(const OperatorCommand& command) noexcept {
                 requests.submit(axes::AxisRef{static_cast<std::uint16_t>(i)}, halt, axes[i].view().owner);
             } else if (command.action == OperatorAction::power) {
                 if (mode == Mode::automatic) return answer(command, Answer::wrong_mode);
-                operator_power[i].held = true;
+                operator_power[i].held = command.flag;
                 operator_power[i].owner = command.owner;
-                if (!command.flag) {
-                    requests.power(axes::AxisRef{static_cast<std::uint16_t>(i)}, false, true, true, command.owner);
-                    operator_power[i].held = false;
-                }
+                if (!command.flag) axes[i].shut_down();
             } else if (command.action == OperatorAction::take_control) {
                 axes[i].take_control(command.owner);
             } else {
@@ -180,11 +177,14 @@ void Machine::Impl::execute_axis(const OperatorCommand& command, std::size_t axi
             axes[axis].release_control(command.owner);
             return answer(command, Answer::accepted);
         case OperatorAction::power: {
-            const auto error = requests.power(ref, command.flag, true, true, command.owner);
-            if (error == ErrorId::owned_by_other) return answer(command, Answer::no_control, error);
-            if (error != ErrorId::none) return answer(command, Answer::refused_by_axis, error);
+            // The wish itself is given in each cycle, where programs give theirs (renew_operator_power).
+            const auto& view = axes[axis].view();
+            if (view.owner != command.owner) return answer(command, Answer::no_control, ErrorId::owned_by_other);
+            if (command.flag && emergency) return answer(command, Answer::refused_by_axis, ErrorId::interlocked);
+            if (command.flag && view.state == AxisState::ErrorStop) return answer(command, Answer::refused_by_axis, ErrorId::in_error_stop);
             operator_power[axis].held = command.flag;
             operator_power[axis].owner = command.owner;
+            if (!command.flag) axes[axis].shut_down();
             return answer(command, Answer::accepted);
         }
         case OperatorAction::home: {
@@ -256,8 +256,7 @@ void Machine::Impl::stop_program(std::size_t program, ProgramState state) noexce
     handshakes[program].store(Handshake::stop_asked, std::memory_order_release);
     for (auto& axis : axes) {
         if (axis.view().owner != Owner::program) continue;
-        // Its power wishes end with it: each axis ramps down, then its power goes off.
-        axis.power(false, true, true, Owner::program);
+        axis.shut_down();  // its power wishes end with it: the axis ramps down, then its power goes off
     }
     bool any = false;
     for (const auto other : program_states) any = any || other == ProgramState::running;
@@ -294,7 +293,7 @@ void Machine::Impl::set_mode(Mode wanted) noexcept {
     mode = wanted;
     if (wanted == Mode::automatic) {
         for (std::size_t i = 0; i < axes.size(); ++i) {
-            if (operator_power[i].held) axes[i].power(false, true, true, operator_power[i].owner);
+            if (operator_power[i].held) axes[i].shut_down();
             operator_power[i] = {};
         }
     }

@@ -31,6 +31,7 @@ struct AxisWatch {
     double largest_velocity = 0;      ///< of the set-point, u/s
     double previous = 0;
     bool was_enabled = false;
+    bool homed = false;
 };
 
 class TestMachine {
@@ -145,7 +146,9 @@ private:
             const auto& view = s->axes[i];
             auto& w = watch[i];
             // While the drive moves itself (homing) the set-point follows it and is not sent.
-            const bool commanded = view.drive_state == axes::PowerState::enabled && view.state != axes::AxisState::Homing;
+            // Homing in place gives the same place another name; the drive's own check below sees its counts.
+            const bool commanded = view.drive_state == axes::PowerState::enabled && view.state != axes::AxisState::Homing && view.homed == w.homed;
+            w.homed = view.homed;
             if (commanded && w.was_enabled) w.largest_step = std::max(w.largest_step, std::abs(view.set_position - w.previous));
             w.largest_velocity = std::max(w.largest_velocity, std::abs(view.set_velocity));
             w.previous = view.set_position;

@@ -1,0 +1,208 @@
+// Every fault of the outside world: its documented reaction while the master is alive, no set-point that jumps, and recovery.
+// docs/faults.md is the table; this is its proof.
+
+#include "axes/axis/alarms.hpp"
+#include "ecat/alarms.hpp"
+#include "runtime/alarms.hpp"
+#include "tests/runtime/test_machine.hpp"
+
+namespace taktwerk::runtime::testing {
+namespace {
+
+using axes::AxisAlarm;
+using axes::AxisState;
+
+/// Two axes, enabled, homed and moving in manual mode: x towards 700 mm at 150 mm/s, y stands.
+struct Fault : ::testing::Test {
+    std::unique_ptr<TestMachine> machine;
+
+    void start(MachineConfig config = machine_config(2)) {
+        machine = std::make_unique<TestMachine>(std::move(config));
+        ASSERT_TRUE(machine->up());
+        for (std::uint16_t i = 0; i < 2; ++i) machine->enable(i);
+        for (std::uint16_t i = 0; i < 2; ++i) machine->home(i);
+        ASSERT_EQ(m().command(OperatorAction::move_absolute, 0, false, 700, 150).answer, Answer::accepted);
+        ASSERT_TRUE(m().until([&] { return m().axis(0).set_velocity > 140; }, 3s));
+    }
+    TestMachine& m() { return *machine; }
+
+    /// After the cause is gone: reset, enable, move. What a person does.
+    void recover(bool home_again = false) {
+        EXPECT_TRUE(m().until([&] { return m().command(OperatorAction::reset).answer == Answer::accepted && reset_done(); }, 5s)) << m().alarms();
+        for (std::uint16_t i = 0; i < 2; ++i) m().enable(i);
+        if (home_again)
+            for (std::uint16_t i = 0; i < 2; ++i)
+                if (!m().axis(i).homed) m().home(i);
+        EXPECT_EQ(m().command(OperatorAction::move_absolute, 0, false, 100, 150).answer, Answer::accepted) << m().alarms();
+        EXPECT_TRUE(m().until([&] { return m().axis(0).in_position && m().axis(0).set_position == 100; }, 15s)) << m().alarms();
+    }
+    bool reset_done() {
+        m().run(500ms);
+        return m().axis(0).state != AxisState::ErrorStop && m().axis(1).state != AxisState::ErrorStop;
+    }
+};
+
+TEST_F(Fault, EmergencyStopRampsDownThenTakesPowerAwayAndNeedsAReset) {
+    start();
+    m().world.set_input("estop_ok", false);
+    m().run(5ms);
+    EXPECT_TRUE(m().state().emergency_stop);
+    EXPECT_EQ(m().axis(0).state, AxisState::ErrorStop);
+    EXPECT_GT(m().axis(0).set_velocity, 0) << "it ramps, it does not stop dead";
+    EXPECT_TRUE(m().has_alarm(id(MachineAlarm::emergency_stop)));
+
+    EXPECT_TRUE(m().until([&] { return m().axis(0).drive_state != axes::PowerState::enabled; }, 500ms)) << "power goes within power_off_after";
+    EXPECT_TRUE(m().until([&] { return m().axis(1).drive_state != axes::PowerState::enabled; }, 100ms));
+    EXPECT_EQ(m().command(OperatorAction::move_absolute, 0, false, 100, 50).answer, Answer::refused_by_axis);
+
+    m().world.set_input("estop_ok", true);
+    m().run(20ms);
+    EXPECT_EQ(m().axis(0).state, AxisState::ErrorStop) << "releasing the button starts nothing";
+    recover();
+    m().expect_no_jump();
+}
+
+TEST_F(Fault, ADriveFaultStopsItsAxisAloneAndShowsTheDrivesOwnWords) {
+    start();
+    m().world.drive("x")->raise(0x3130);
+    m().run(100ms);
+
+    EXPECT_EQ(m().axis(0).state, AxisState::ErrorStop);
+    EXPECT_EQ(m().axis(0).drive_error, 0x3130);
+    EXPECT_EQ(m().axis(1).state, AxisState::Standstill) << "the other axis is not concerned";
+    EXPECT_TRUE(m().has_alarm(id(AxisAlarm::drive_fault)));
+    EXPECT_NE(m().alarms().find("E.999 phase failure"), std::string::npos) << m().alarms();
+
+    recover();
+    m().expect_no_jump();
+}
+
+TEST_F(Fault, ABlockedAxisTripsTheFollowingErrorWatch) {
+    start();
+    m().world.drive("x")->jam(true);
+    EXPECT_TRUE(m().until([&] { return m().axis(0).state == AxisState::ErrorStop; }, 1s));
+    EXPECT_TRUE(m().has_alarm(id(AxisAlarm::following_error))) << m().alarms();
+    m().run(1s);
+    m().world.drive("x")->jam(false);
+    m().run(1s);
+    recover();
+    m().expect_no_jump();
+}
+
+TEST_F(Fault, ASilentSlaveStopsTheMachineAndComesBackAfterItsPower) {
+    start();
+    m().world.set_slave_power("x_drive", false);  // first in the line: everything behind it is gone too
+    EXPECT_TRUE(m().until([&] { return m().axis(0).state == AxisState::ErrorStop; }, 100ms));
+    m().run(1s);
+    EXPECT_FALSE(m().axis(0).online);
+    EXPECT_GT(m().state().alarm_count, 0u);
+
+    m().world.set_slave_power("x_drive", true);
+    EXPECT_TRUE(m().until([&] { return m().axis(0).online && m().axis(1).online; }, 20s)) << m().machine->bus_progress() << " " << m().alarms();
+    recover(true);
+    m().expect_no_jump();
+}
+
+TEST_F(Fault, ThreeLostFramesMakeNoDifferenceButAreCounted) {
+    start();
+    const auto lost = m().state().bus.frames_lost;
+    m().world.transport().faults.drop_answers = 2;
+    m().run(50ms);
+    EXPECT_GT(m().state().bus.frames_lost, lost);
+    EXPECT_EQ(m().axis(0).state, AxisState::DiscreteMotion) << m().alarms();
+    EXPECT_TRUE(m().until([&] { return m().axis(0).in_position; }, 10s));
+    m().expect_no_jump();
+}
+
+TEST_F(Fault, ADeadLineStopsTheAxes) {
+    start();
+    m().world.set_cable("x_drive", false);
+    EXPECT_TRUE(m().until([&] { return m().axis(0).state == AxisState::ErrorStop && m().axis(1).state == AxisState::ErrorStop; }, 200ms)) << m().alarms();
+    EXPECT_TRUE(m().has_alarm(ecat::alarm::frames_lost) || m().has_alarm(ecat::alarm::slave_lost)) << m().alarms();
+    m().run(500ms);
+    m().world.set_cable("x_drive", true);
+    EXPECT_TRUE(m().until([&] { return m().axis(0).online && m().axis(1).online; }, 20s)) << m().machine->bus_progress() << " " << m().alarms();
+    recover(true);
+    m().expect_no_jump();
+}
+
+TEST_F(Fault, LateFramesAreDiscardedAndCounted) {
+    start();
+    auto& faults = m().world.transport().faults;
+    faults.delay = 1500us;
+    faults.delay_answers = 1;
+    m().run(50ms);
+    EXPECT_GT(m().state().bus.frames_late + m().state().bus.frames_lost, 0u);
+    EXPECT_EQ(m().axis(0).state, AxisState::DiscreteMotion) << m().alarms();
+    m().expect_no_jump();
+}
+
+TEST_F(Fault, AJogEndsWhenItsClientFallsSilent) {
+    start();
+    ASSERT_EQ(m().command(OperatorAction::stop, 0).answer, Answer::accepted);
+    ASSERT_TRUE(m().until([&] { return m().axis(0).state == AxisState::Standstill; }, 3s));
+    ASSERT_EQ(m().command(OperatorAction::jog, 0, true, 100).answer, Answer::accepted);
+    for (int i = 0; i < 10; ++i) {
+        m().run(50ms);
+        EXPECT_EQ(m().command(OperatorAction::jog, 0, false, 100).answer, Answer::accepted);
+    }
+    EXPECT_NEAR(m().axis(0).set_velocity, 100, 1e-6);
+
+    EXPECT_TRUE(m().until([&] { return m().axis(0).set_velocity == 0; }, 200ms + 100ms)) << "lease 200 ms, then the ramp";
+    EXPECT_TRUE(m().has_alarm(id(AxisAlarm::jog_lease_expired)));
+    EXPECT_EQ(m().command(OperatorAction::jog, 0, false, 100).answer, Answer::stale) << "a late heartbeat does not start it anew";
+    m().expect_no_jump();
+}
+
+TEST_F(Fault, AStopRequestEndsTheRunWithTheDrivesOff) {
+    start();
+    m().machine->request_shutdown();
+    EXPECT_TRUE(m().until([&] { return m().machine->phase() == MachinePhase::stopped; }, 3s));
+    EXPECT_NE(m().axis(0).drive_state, axes::PowerState::enabled);
+    EXPECT_EQ(m().axis(0).set_velocity, 0.0);
+    m().machine->stop_bus();
+    EXPECT_TRUE(m().until([&] { return m().machine->bus().phase() == ecat::Master::Phase::stopped; }, 5s));
+    m().expect_no_jump();
+}
+
+TEST_F(Fault, MissedTicksDelayTheMotionAndNeverMakeItJump) {
+    start();
+    // The host stalls for 20 ms: nineteen grid points are skipped, motion time advances by one period only.
+    m().clock.advance(20ms);
+    const auto now = m().clock.now();
+    const double before = m().axis(0).set_position;
+    m().machine->cycle({now, now, 19});
+    m().machine->service(now);
+    EXPECT_NEAR(m().axis(0).set_position - before, 150.0 * 0.001, 0.01);
+    m().run(50ms);
+    EXPECT_EQ(m().state().statistics.missed_ticks, 19u);
+    m().expect_no_jump();
+}
+
+// The master's column of docs/faults.md "master gone": nobody sends any more, the SM watchdog expires, the drive stops by itself.
+TEST_F(Fault, WhenTheMasterDiesTheSlavesWatchdogStopsTheDrive) {
+    start();
+    auto& network = m().world.network();
+    for (int i = 0; i < 400; ++i) {  // time goes on, no cycle runs
+        m().clock.advance(1ms);
+        network.advance(m().clock.now());
+    }
+    EXPECT_NE(m().world.drive("x")->state(), axes::sim::Cia402Axis::State::enabled);
+    EXPECT_NEAR(m().world.drive("x")->plant().velocity(), 0, 100);
+    EXPECT_NE(network.slave(0).state(), ecat::sim::EsmState::op);
+    EXPECT_FALSE(m().world.output("lamp"));
+}
+
+TEST_F(Fault, LosingMainPowerIsReportedAndResetOnceItIsBack) {
+    start();
+    m().world.drive("x")->main_power(false);
+    m().run(200ms);
+    EXPECT_EQ(m().axis(0).state, AxisState::ErrorStop);
+    m().world.drive("x")->main_power(true);
+    m().run(100ms);
+    recover();
+    m().expect_no_jump();
+}
+
+}  // namespace
+}  // namespace taktwerk::runtime::testing
