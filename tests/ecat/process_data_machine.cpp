@@ -97,7 +97,7 @@ TEST(Clocks, StayTogetherWithDriftingQuartzes) {
     for (std::uint16_t i = 0; i < 3; ++i) {
         sim::SlaveOptions options;
         options.drift_ppm = i == 0 ? 0 : i == 1 ? 50 : -50;
-        options.clock_start = Duration{1'000'000'007 * (i + 1)};
+        options.clock_start = Duration{1'000'000'007LL * (i + 1)};
         bus.network.add(servo_description(), std::make_unique<EchoServo>(), options);
         SlaveConfig slave;
         slave.name = std::string(1, static_cast<char>('a' + i));
