@@ -25,10 +25,15 @@ public:
 
     std::vector<Error> run() {
         if (config_.cycle < minimum_cycle || config_.cycle > maximum_cycle)
-            add("bus.cycle", "bus", fmt::format("the cycle of {} is outside {} .. {}", micro(config_.cycle), micro(minimum_cycle), micro(maximum_cycle)), "choose 1 ms if in doubt");
+            add("bus.cycle", "bus",
+                fmt::format("the cycle of {} is outside {} .. {}", micro(config_.cycle), micro(minimum_cycle), micro(maximum_cycle)),
+                "choose 1 ms if in doubt");
         if (config_.slaves.empty()) add("bus.no_slaves", "bus", "no slave is configured", "list the slaves as they stand on the cable");
-        if (config_.lost_frames_limit == 0) add("bus.lost_frames_limit", "bus", "a limit of 0 lost frames would stop at once", "choose 3 if in doubt");
-        if (config_.acyclic_per_cycle == 0) add("bus.acyclic_per_cycle", "bus", "with 0 acyclic datagrams no SDO and no recovery gets through in OP", "choose 4 if in doubt");
+        if (config_.lost_frames_limit == 0)
+            add("bus.lost_frames_limit", "bus", "a limit of 0 lost frames would stop at once", "choose 3 if in doubt");
+        if (config_.acyclic_per_cycle == 0)
+            add("bus.acyclic_per_cycle", "bus", "with 0 acyclic datagrams no SDO and no recovery gets through in OP",
+                "choose 4 if in doubt");
         check_shift("bus", config_.sync0_shift);
         check_places();
         for (const auto& slave : config_.slaves) check_slave(slave);
@@ -43,7 +48,9 @@ private:
 
     void check_shift(const std::string& subject, Duration shift) {
         if (shift < Duration{} || shift >= config_.cycle)
-            add("bus.sync0_shift", subject, fmt::format("a SYNC0 shift of {} is not inside the cycle of {}", micro(shift), micro(config_.cycle)), "leave it out for half a cycle");
+            add("bus.sync0_shift", subject,
+                fmt::format("a SYNC0 shift of {} is not inside the cycle of {}", micro(shift), micro(config_.cycle)),
+                "leave it out for half a cycle");
     }
 
     void check_places() {
@@ -51,16 +58,24 @@ private:
         std::set<std::uint16_t> positions, aliases;
         for (const auto& slave : config_.slaves) {
             if (slave.name.empty()) add("bus.no_name", "bus", "a slave has no name", "give every slave a name");
-            else if (!names.insert(slave.name).second) add("bus.duplicate_name", subject_of(slave), "two slaves have this name", "choose different names");
+            else if (!names.insert(slave.name).second)
+                add("bus.duplicate_name", subject_of(slave), "two slaves have this name", "choose different names");
             if (slave.position.has_value() == slave.alias.has_value())
-                add("bus.place", subject_of(slave), slave.position ? "it has both a position and an alias" : "it has neither a position nor an alias", "give exactly one of them");
+                add("bus.place", subject_of(slave),
+                    slave.position ? "it has both a position and an alias" : "it has neither a position nor an alias",
+                    "give exactly one of them");
             if (slave.position && !positions.insert(*slave.position).second)
-                add("bus.duplicate_position", subject_of(slave), fmt::format("position {} is taken by another slave", *slave.position), "positions count from 0 along the cable");
+                add("bus.duplicate_position", subject_of(slave), fmt::format("position {} is taken by another slave", *slave.position),
+                    "positions count from 0 along the cable");
             if (slave.position && *slave.position >= config_.slaves.size())
-                add("bus.position", subject_of(slave), fmt::format("position {} on a bus of {} slaves", *slave.position, config_.slaves.size()), "positions count from 0 along the cable, and every slave is listed");
-            if (slave.alias && *slave.alias == 0) add("bus.alias", subject_of(slave), "alias 0 means that none is set", "set an alias in the drive, or use the position");
+                add("bus.position", subject_of(slave),
+                    fmt::format("position {} on a bus of {} slaves", *slave.position, config_.slaves.size()),
+                    "positions count from 0 along the cable, and every slave is listed");
+            if (slave.alias && *slave.alias == 0)
+                add("bus.alias", subject_of(slave), "alias 0 means that none is set", "set an alias in the drive, or use the position");
             if (slave.alias && *slave.alias != 0 && !aliases.insert(*slave.alias).second)
-                add("bus.duplicate_alias", subject_of(slave), fmt::format("alias {} is taken by another slave", *slave.alias), "aliases are unique on a bus");
+                add("bus.duplicate_alias", subject_of(slave), fmt::format("alias {} is taken by another slave", *slave.alias),
+                    "aliases are unique on a bus");
         }
     }
 
@@ -73,9 +88,12 @@ private:
         const auto& device = *slave.device;
         check_clock(slave, device, subject);
         if (slave.sm_watchdog < Duration{} || slave.sm_watchdog > maximum_watchdog)
-            add("bus.sm_watchdog", subject, fmt::format("a watchdog of {} cannot be set", micro(slave.sm_watchdog)), fmt::format("0 .. {}", micro(maximum_watchdog)));
+            add("bus.sm_watchdog", subject, fmt::format("a watchdog of {} cannot be set", micro(slave.sm_watchdog)),
+                fmt::format("0 .. {}", micro(maximum_watchdog)));
         else if (slave.sm_watchdog > Duration{} && slave.sm_watchdog < 2 * config_.cycle)
-            add("bus.sm_watchdog", subject, fmt::format("a watchdog of {} trips at the first lost frame of a {} cycle", micro(slave.sm_watchdog), micro(config_.cycle)), "choose at least three cycles");
+            add("bus.sm_watchdog", subject,
+                fmt::format("a watchdog of {} trips at the first lost frame of a {} cycle", micro(slave.sm_watchdog), micro(config_.cycle)),
+                "choose at least three cycles");
         check_pdos(slave, device, subject, true);
         check_pdos(slave, device, subject, false);
         check_startup(slave, device, subject);
@@ -84,13 +102,21 @@ private:
 
     void check_clock(const SlaveConfig& slave, const DeviceDescription& device, const std::string& subject) {
         check_shift(subject, slave.sync0_shift);
-        if (slave.dc && !device.dc.supported) add("bus.dc_unsupported", subject, fmt::format("'{}' has no distributed clock", device.name), "set dc: false");
-        if (!slave.dc && device.dc.required) add("bus.dc_required", subject, fmt::format("'{}' works with SYNC0 only", device.name), "set dc: true");
+        if (slave.dc && !device.dc.supported)
+            add("bus.dc_unsupported", subject, fmt::format("'{}' has no distributed clock", device.name), "set dc: false");
+        if (!slave.dc && device.dc.required)
+            add("bus.dc_required", subject, fmt::format("'{}' works with SYNC0 only", device.name), "set dc: true");
         if (!slave.dc) return;
         if (device.dc.minimum_cycle > config_.cycle)
-            add("bus.cycle_too_short", subject, fmt::format("'{}' needs a cycle of at least {}, the bus has {}", device.name, micro(device.dc.minimum_cycle), micro(config_.cycle)), "lengthen the bus cycle");
+            add("bus.cycle_too_short", subject,
+                fmt::format("'{}' needs a cycle of at least {}, the bus has {}", device.name, micro(device.dc.minimum_cycle),
+                            micro(config_.cycle)),
+                "lengthen the bus cycle");
         if (device.dc.cycle_multiple > Duration{} && config_.cycle % device.dc.cycle_multiple != Duration{})
-            add("bus.cycle_multiple", subject, fmt::format("'{}' needs a multiple of {}, the bus cycle is {}", device.name, micro(device.dc.cycle_multiple), micro(config_.cycle)), "choose another bus cycle");
+            add("bus.cycle_multiple", subject,
+                fmt::format("'{}' needs a multiple of {}, the bus cycle is {}", device.name, micro(device.dc.cycle_multiple),
+                            micro(config_.cycle)),
+                "choose another bus cycle");
     }
 
     void check_pdos(const SlaveConfig& slave, const DeviceDescription& device, const std::string& subject, bool rx) {
@@ -104,31 +130,47 @@ private:
             return;
         }
         if (selection.size() > rules.max_assigned)
-            add("bus.pdo_too_many", subject, fmt::format("{} {}s are selected, '{}' takes {}", selection.size(), direction, device.name, rules.max_assigned), "select fewer");
+            add("bus.pdo_too_many", subject,
+                fmt::format("{} {}s are selected, '{}' takes {}", selection.size(), direction, device.name, rules.max_assigned),
+                "select fewer");
         for (const auto& pdo : selection) {
             const auto own = std::find_if(known.begin(), known.end(), [&](const PdoDescription& p) { return p.index == pdo.index; });
             if (own == known.end()) {
-                add("bus.pdo_unknown", subject, fmt::format("'{}' has no {} {:04X}h", device.name, direction, pdo.index), "select one that its profile lists");
+                add("bus.pdo_unknown", subject, fmt::format("'{}' has no {} {:04X}h", device.name, direction, pdo.index),
+                    "select one that its profile lists");
                 continue;
             }
             if (own->fixed && !pdo.entries.empty() && pdo.entries != own->entries)
-                add("bus.pdo_fixed", subject, fmt::format("the entries of {:04X}h are fixed and differ from the selection", pdo.index), "select it without entries, or use a variable PDO");
+                add("bus.pdo_fixed", subject, fmt::format("the entries of {:04X}h are fixed and differ from the selection", pdo.index),
+                    "select it without entries, or use a variable PDO");
             if (!own->fixed && pdo.entries.size() > rules.max_entries)
-                add("bus.pdo_entries", subject, fmt::format("{:04X}h gets {} entries, '{}' takes {}", pdo.index, pdo.entries.size(), device.name, rules.max_entries), "map fewer objects");
+                add("bus.pdo_entries", subject,
+                    fmt::format("{:04X}h gets {} entries, '{}' takes {}", pdo.index, pdo.entries.size(), device.name, rules.max_entries),
+                    "map fewer objects");
             for (const auto& entry : pdo.entries) check_entry(device, subject, pdo.index, entry, rx);
         }
         if ((mapped_bits(selection) + 7) / 8 > rules.max_bytes)
-            add("bus.pdo_bytes", subject, fmt::format("its {}s are {} bytes, '{}' takes {}", direction, (mapped_bits(selection) + 7) / 8, device.name, rules.max_bytes), "map fewer objects");
+            add("bus.pdo_bytes", subject,
+                fmt::format("its {}s are {} bytes, '{}' takes {}", direction, (mapped_bits(selection) + 7) / 8, device.name,
+                            rules.max_bytes),
+                "map fewer objects");
     }
 
     void check_entry(const DeviceDescription& device, const std::string& subject, std::uint16_t pdo, const PdoEntry& entry, bool rx) {
         if (entry.index == 0 || device.objects.empty()) return;
-        const auto object = std::find_if(device.objects.begin(), device.objects.end(), [&](const ObjectEntry& o) { return o.index == entry.index && o.sub == entry.sub; });
+        const auto object = std::find_if(device.objects.begin(), device.objects.end(),
+                                         [&](const ObjectEntry& o) { return o.index == entry.index && o.sub == entry.sub; });
         if (object == device.objects.end()) return;  // profiles need not list every object
         const bool mappable = object->mappable == Mappable::both || object->mappable == (rx ? Mappable::rx : Mappable::tx);
-        if (!mappable) add("bus.pdo_mappable", subject, fmt::format("{} '{}' cannot be mapped into {:04X}h", object_text(entry.index, entry.sub), object->name, pdo), "read or write it as an SDO");
+        if (!mappable)
+            add("bus.pdo_mappable", subject,
+                fmt::format("{} '{}' cannot be mapped into {:04X}h", object_text(entry.index, entry.sub), object->name, pdo),
+                "read or write it as an SDO");
         if (bit_size(object->type) != 0 && bit_size(object->type) != entry.bits)
-            add("bus.pdo_bits", subject, fmt::format("{} has {} bits, {:04X}h maps {}", object_text(entry.index, entry.sub), bit_size(object->type), pdo, entry.bits), "map its whole size");
+            add("bus.pdo_bits", subject,
+                fmt::format("{} has {} bits, {:04X}h maps {}", object_text(entry.index, entry.sub), bit_size(object->type), pdo,
+                            entry.bits),
+                "map its whole size");
     }
 
     void check_startup(const SlaveConfig& slave, const DeviceDescription& device, const std::string& subject) {
@@ -140,17 +182,23 @@ private:
         for (const auto& sdo : slave.startup) {
             const std::string where = sdo.origin.empty() ? subject : sdo.origin;
             const std::string object = object_text(sdo.index, sdo.sub);
-            if (sdo.type == DataType::STRING) add("bus.startup_type", where, fmt::format("{}: strings cannot be start-up values", object), "remove it");
+            if (sdo.type == DataType::STRING)
+                add("bus.startup_type", where, fmt::format("{}: strings cannot be start-up values", object), "remove it");
             const unsigned bits = bit_size(sdo.type);
             const std::int64_t low = is_signed(sdo.type) ? -(std::int64_t{1} << (bits - 1)) : 0;
             const std::int64_t high = is_signed(sdo.type) ? -(low + 1) : static_cast<std::int64_t>((std::uint64_t{1} << (bits % 64)) - 1);
             if (bits > 0 && bits < 64 && (sdo.value < low || sdo.value > high))
-                add("bus.startup_range", where, fmt::format("{}: {} does not fit {} bits", object, sdo.value, bits), fmt::format("{} .. {}", low, high));
-            const auto known = std::find_if(device.objects.begin(), device.objects.end(), [&](const ObjectEntry& o) { return o.index == sdo.index && o.sub == sdo.sub; });
+                add("bus.startup_range", where, fmt::format("{}: {} does not fit {} bits", object, sdo.value, bits),
+                    fmt::format("{} .. {}", low, high));
+            const auto known = std::find_if(device.objects.begin(), device.objects.end(),
+                                            [&](const ObjectEntry& o) { return o.index == sdo.index && o.sub == sdo.sub; });
             if (known == device.objects.end()) continue;
-            if (known->access == Access::ro) add("bus.startup_read_only", where, fmt::format("{} '{}' is read-only", object, known->name), "remove it from the start-up list");
+            if (known->access == Access::ro)
+                add("bus.startup_read_only", where, fmt::format("{} '{}' is read-only", object, known->name),
+                    "remove it from the start-up list");
             if (known->access == Access::wo && (sdo.verify || sdo.if_changed))
-                add("bus.startup_write_only", where, fmt::format("{} '{}' is write-only and cannot be read back", object, known->name), "set verify: false");
+                add("bus.startup_write_only", where, fmt::format("{} '{}' is write-only and cannot be read back", object, known->name),
+                    "set verify: false");
             if ((known->minimum && sdo.value < *known->minimum) || (known->maximum && sdo.value > *known->maximum))
                 add("bus.startup_range", where, fmt::format("{} '{}': {} is outside the drive's range", object, known->name, sdo.value),
                     fmt::format("{} .. {}", known->minimum.value_or(low), known->maximum.value_or(high)));
@@ -159,7 +207,8 @@ private:
 
     /// The sizes as far as they are known without the slave: selected, else factory PDOs.
     void check_plan(const SlaveConfig& slave, const DeviceDescription& device, const std::string& subject) {
-        const auto effective = [](const PdoSelection& selection, const std::vector<PdoDescription>& known, const std::vector<std::uint16_t>& assigned) {
+        const auto effective = [](const PdoSelection& selection, const std::vector<PdoDescription>& known,
+                                  const std::vector<std::uint16_t>& assigned) {
             std::vector<PdoDescription> result;
             const auto append = [&](std::uint16_t index) {
                 for (const auto& pdo : known)

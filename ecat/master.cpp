@@ -23,18 +23,14 @@ struct SdoJob {
 
 Script<void> run_upload(Bus& bus, BusSlave& slave, std::uint16_t index, std::uint8_t sub, SdoJob& job) {
     Result<std::vector<std::byte>> data = co_await sdo_upload(bus.port, slave.mailbox, index, sub);
-    if (data)
-        job.result = SdoResult{std::move(*data)};
-    else
-        job.result = data.error();
+    if (data) job.result = SdoResult{std::move(*data)};
+    else job.result = data.error();
 }
 
 Script<void> run_download(Bus& bus, BusSlave& slave, std::uint16_t index, std::uint8_t sub, std::vector<std::byte> value, SdoJob& job) {
     const Result<void> written = co_await sdo_download(bus.port, slave.mailbox, index, sub, std::move(value));
-    if (written)
-        job.result = SdoResult{};
-    else
-        job.result = written.error();
+    if (written) job.result = SdoResult{};
+    else job.result = written.error();
 }
 
 Script<void> run_bring_up(Bus& bus, Error& failure) {
@@ -52,7 +48,8 @@ Script<void> run_take_down(Bus& bus) {
 }
 
 bool signed_object(const DeviceDescription& device, const MappedEntry& entry) {
-    const auto it = std::find_if(device.objects.begin(), device.objects.end(), [&](const ObjectEntry& o) { return o.index == entry.index && o.sub == entry.sub; });
+    const auto it = std::find_if(device.objects.begin(), device.objects.end(),
+                                 [&](const ObjectEntry& o) { return o.index == entry.index && o.sub == entry.sub; });
     return it != device.objects.end() && is_signed(it->type);
 }
 
@@ -137,8 +134,10 @@ SdoTicket Master::Impl::add_job(std::size_t slave, std::uint16_t index, std::uin
     if (slave >= config.slaves.size()) {
         job.result = Error{"sdo.no_slave", fmt::format("slave {}", slave), "there is no such slave in the configuration", ""};
     } else if (!reachable || slave >= bus->slaves.size()) {
-        job.result = Error{"sdo.not_ready", fmt::format("slave '{}'", config.slaves[slave].name),
-                           fmt::format("{} {} is not possible before the slave is in PREOP", value ? "writing" : "reading", object_text(index, sub)), "wait until the bus is up"};
+        job.result =
+            Error{"sdo.not_ready", fmt::format("slave '{}'", config.slaves[slave].name),
+                  fmt::format("{} {} is not possible before the slave is in PREOP", value ? "writing" : "reading", object_text(index, sub)),
+                  "wait until the bus is up"};
     } else if (value) {
         job.runner.emplace(run_download(*bus, *bus->slaves[slave], index, sub, std::move(*value), job));
     } else {
@@ -147,7 +146,9 @@ SdoTicket Master::Impl::add_job(std::size_t slave, std::uint16_t index, std::uin
     return ticket;
 }
 
-SdoTicket Master::upload(std::size_t slave, std::uint16_t index, std::uint8_t sub) { return impl_->add_job(slave, index, sub, std::nullopt); }
+SdoTicket Master::upload(std::size_t slave, std::uint16_t index, std::uint8_t sub) {
+    return impl_->add_job(slave, index, sub, std::nullopt);
+}
 
 SdoTicket Master::download(std::size_t slave, std::uint16_t index, std::uint8_t sub, std::span<const std::byte> data) {
     return impl_->add_job(slave, index, sub, std::vector<std::byte>(data.begin(), data.end()));
@@ -155,7 +156,8 @@ SdoTicket Master::download(std::size_t slave, std::uint16_t index, std::uint8_t 
 
 std::optional<Result<SdoResult>> Master::poll(SdoTicket ticket) {
     const auto it = impl_->jobs.find(ticket);
-    if (it == impl_->jobs.end()) return Result<SdoResult>{Error{"sdo.no_ticket", "", "the request does not exist, was already answered, or ended with its bus", ""}};
+    if (it == impl_->jobs.end())
+        return Result<SdoResult>{Error{"sdo.no_ticket", "", "the request does not exist, was already answered, or ended with its bus", ""}};
     if (!it->second->result) return std::nullopt;
     Result<SdoResult> result = std::move(*it->second->result);
     impl_->jobs.erase(it);
@@ -173,17 +175,30 @@ const MappedEntry* Master::Impl::find(std::size_t slave, std::uint16_t object, s
 }
 
 Result<Signal> Master::Impl::resolve(std::size_t slave, std::uint16_t object, std::uint8_t sub, bool output) const {
-    const std::string subject = slave < config.slaves.size() ? fmt::format("slave '{}'", config.slaves[slave].name) : fmt::format("slave {}", slave);
-    if (const auto* entry = find(slave, object, sub, output)) return Signal{entry->bit_offset, entry->bits, signed_object(config.slaves[slave].device ? *config.slaves[slave].device : DeviceDescription{}, *entry)};
-    if (!cycle.published()) return Error{"bus.not_planned", subject, "the layout of the process data is not known before the bus is configured", ""};
-    return Error{"bus.not_mapped", subject, fmt::format("{} is not in the {} of the slave", object_text(object, sub), output ? "outputs (RxPDO)" : "inputs (TxPDO)"),
+    const std::string subject =
+        slave < config.slaves.size() ? fmt::format("slave '{}'", config.slaves[slave].name) : fmt::format("slave {}", slave);
+    if (const auto* entry = find(slave, object, sub, output))
+        return Signal{entry->bit_offset, entry->bits,
+                      signed_object(config.slaves[slave].device ? *config.slaves[slave].device : DeviceDescription{}, *entry)};
+    if (!cycle.published())
+        return Error{"bus.not_planned", subject, "the layout of the process data is not known before the bus is configured", ""};
+    return Error{"bus.not_mapped", subject,
+                 fmt::format("{} is not in the {} of the slave", object_text(object, sub), output ? "outputs (RxPDO)" : "inputs (TxPDO)"),
                  "map it: choose a PDO that contains it, or add it to the slave's variable PDO"};
 }
 
-Result<Signal> Master::input(std::size_t slave, std::uint16_t object, std::uint8_t sub) const { return impl_->resolve(slave, object, sub, false); }
-Result<Signal> Master::output(std::size_t slave, std::uint16_t object, std::uint8_t sub) const { return impl_->resolve(slave, object, sub, true); }
-bool Master::maps_output(std::size_t slave, std::uint16_t object, std::uint8_t sub) const noexcept { return impl_->find(slave, object, sub, true) != nullptr; }
-bool Master::maps_input(std::size_t slave, std::uint16_t object, std::uint8_t sub) const noexcept { return impl_->find(slave, object, sub, false) != nullptr; }
+Result<Signal> Master::input(std::size_t slave, std::uint16_t object, std::uint8_t sub) const {
+    return impl_->resolve(slave, object, sub, false);
+}
+Result<Signal> Master::output(std::size_t slave, std::uint16_t object, std::uint8_t sub) const {
+    return impl_->resolve(slave, object, sub, true);
+}
+bool Master::maps_output(std::size_t slave, std::uint16_t object, std::uint8_t sub) const noexcept {
+    return impl_->find(slave, object, sub, true) != nullptr;
+}
+bool Master::maps_input(std::size_t slave, std::uint16_t object, std::uint8_t sub) const noexcept {
+    return impl_->find(slave, object, sub, false) != nullptr;
+}
 
 void Master::pump(Instant now) noexcept { impl_->cycle.pump(now); }
 void Master::receive(Instant now) noexcept { impl_->cycle.receive(now); }
@@ -192,9 +207,13 @@ std::span<const std::byte> Master::inputs() const noexcept { return impl_->cycle
 std::span<std::byte> Master::outputs() noexcept { return impl_->cycle.outputs(); }
 const SlaveHealth& Master::health(std::size_t slave) const noexcept { return impl_->cycle.health(slave); }
 const BusStatistics& Master::statistics() const noexcept { return impl_->cycle.statistics(); }
-Instant Master::outputs_effective(std::size_t slave, Instant send_time) const noexcept { return impl_->cycle.outputs_effective(slave, send_time); }
+Instant Master::outputs_effective(std::size_t slave, Instant send_time) const noexcept {
+    return impl_->cycle.outputs_effective(slave, send_time);
+}
 
-void Master::set_tap(void (*tap)(void*, std::span<const std::byte>, Instant, bool) noexcept, void* context) noexcept { impl_->cycle.set_tap(tap, context); }
+void Master::set_tap(void (*tap)(void*, std::span<const std::byte>, Instant, bool) noexcept, void* context) noexcept {
+    impl_->cycle.set_tap(tap, context);
+}
 
 std::size_t Master::active_faults(std::span<AlarmFact> out) const noexcept {
     std::size_t count = 0;
@@ -212,14 +231,15 @@ std::size_t Master::active_faults(std::span<AlarmFact> out) const noexcept {
     if (seen.lost_in_a_row >= impl_->config.lost_frames_limit) raise(alarm::frames_lost, AlarmSource::bus, 0, seen.lost_in_a_row);
     for (std::size_t s = 0; s < slave_count(); ++s) {
         const auto& state = health(s);
-        if (state.al_state == AlState::unknown)
-            raise(alarm::slave_lost, AlarmSource::slave, s);
+        if (state.al_state == AlState::unknown) raise(alarm::slave_lost, AlarmSource::slave, s);
         else if (state.al_state != AlState::op || state.al_error)
             raise(alarm::slave_left_op, AlarmSource::slave, s, static_cast<double>(state.al_state), state.al_status_code);
-        if (!state.fresh && state.age >= impl_->config.lost_frames_limit) raise(alarm::working_counter_wrong, AlarmSource::slave, s, state.age);
+        if (!state.fresh && state.age >= impl_->config.lost_frames_limit)
+            raise(alarm::working_counter_wrong, AlarmSource::slave, s, state.age);
     }
     constexpr std::int64_t sync_limit_ns = 3000;  // SV33-E P0A.32 default
-    if (seen.dc_difference_ns > sync_limit_ns) raise(alarm::dc_out_of_sync, AlarmSource::bus, 0, static_cast<double>(seen.dc_difference_ns));
+    if (seen.dc_difference_ns > sync_limit_ns)
+        raise(alarm::dc_out_of_sync, AlarmSource::bus, 0, static_cast<double>(seen.dc_difference_ns));
     return count;
 }
 

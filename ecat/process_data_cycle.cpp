@@ -57,7 +57,8 @@ void ProcessDataCycle::copy_statistics() noexcept {
     statistics_.frames_late = s.late;
     statistics_.frames_rejected = s.rejected + s.duplicate;
     statistics_.send_errors = s.send_errors;
-    if (const auto* link = link_.load(std::memory_order_acquire)) statistics_.dc_difference_ns = link->dc_difference_ns.load(std::memory_order_relaxed);
+    if (const auto* link = link_.load(std::memory_order_acquire))
+        statistics_.dc_difference_ns = link->dc_difference_ns.load(std::memory_order_relaxed);
 }
 
 void ProcessDataCycle::pump(Instant now) noexcept {
@@ -97,16 +98,15 @@ void ProcessDataCycle::collect_frames(CyclePlan& cycle, Instant) noexcept {
             if (f == 0 && cycle.reference) ++statistics_.dc_rejected;
         }
         for (std::size_t d = cycle.first_datagram[f]; d < cycle.first_datagram[f + 1]; ++d) {
-            if (answered)
-                take_datagram(cycle, d, slot, number++);
-            else
-                miss(cycle, cycle.plan.datagrams[d]);
+            if (answered) take_datagram(cycle, d, slot, number++);
+            else miss(cycle, cycle.plan.datagrams[d]);
         }
         if (answered && f == 0)
             if (auto* link = link_.load(std::memory_order_acquire)) {
                 const auto states = exchange_.data(slot, number);
                 const bool all_answered = exchange_.wkc(slot, number) == cycle.state_wkc;
-                link->states_seen.store(all_answered && states.size() == 2 ? load_le<std::uint16_t>(states) & 0x1Fu : 0u, std::memory_order_relaxed);
+                link->states_seen.store(all_answered && states.size() == 2 ? load_le<std::uint16_t>(states) & 0x1Fu : 0u,
+                                        std::memory_order_relaxed);
             }
         exchange_.release(slot);
     }
@@ -229,7 +229,8 @@ void ProcessDataCycle::send_frame(CyclePlan& cycle, std::size_t frame, Instant n
     if (frame == 0 && cycle.reference) {
         const auto* link = link_.load(std::memory_order_acquire);
         const bool hold = link != nullptr && link->hold_clock.load(std::memory_order_relaxed);
-        const auto clock = exchange_.add(*slot, hold ? Command::FPRD : Command::FRMW, Address::physical(*cycle.reference, reg::dc_system_time), 8);
+        const auto clock =
+            exchange_.add(*slot, hold ? Command::FPRD : Command::FRMW, Address::physical(*cycle.reference, reg::dc_system_time), 8);
         // Should the reference be away, the others get the master's idea of its time instead of 0.
         if (clock) store_le(clock->data, 0, nanoseconds(now) + dc_offset_.value_or(0));
     }

@@ -22,7 +22,7 @@ struct CyclePlan {
 
     ProcessDataPlan plan;
     std::vector<const BusSlave*> slaves;
-    std::optional<std::uint16_t> reference;   ///< station of the reference clock
+    std::optional<std::uint16_t> reference;  ///< station of the reference clock
     std::uint16_t clock_wkc = 0, state_wkc = 0;
     // Working area of the cycle.
     std::vector<std::byte> outputs, inputs;
@@ -70,7 +70,7 @@ private:
     const BusConfig& config_;
     Exchange exchange_;
     AcyclicChannel channel_;
-    std::vector<std::unique_ptr<CyclePlan>> plans_;   ///< service side owns; the cycle sees the two pointers below
+    std::vector<std::unique_ptr<CyclePlan>> plans_;  ///< service side owns; the cycle sees the two pointers below
     std::atomic<CyclePlan*> running_{nullptr};
     std::atomic<CyclePlan*> latest_{nullptr};
     std::atomic<CycleLink*> link_{nullptr};

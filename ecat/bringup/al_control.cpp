@@ -27,16 +27,18 @@ std::string configuration_text(const Bus& bus, const BusSlave& slave) {
 Error refused(const Bus& bus, const BusSlave& slave, AlState target, std::uint16_t code) {
     const auto& info = al_status_info(code);
     return Error{"bus.refused_state", slave.subject,
-                 fmt::format("refused {}: 0x{:04X} {}{}", name(target), code, info.text, target >= AlState::safeop ? configuration_text(bus, slave) : ""),
+                 fmt::format("refused {}: 0x{:04X} {}{}", name(target), code, info.text,
+                             target >= AlState::safeop ? configuration_text(bus, slave) : ""),
                  std::string{info.remedy}};
 }
 
 Error timed_out(const Bus& bus, const BusSlave& slave, AlState target, std::uint16_t status, std::uint16_t code) {
     return Error{"bus.state_timeout", slave.subject,
-                 fmt::format("did not reach {} within {} s: it stays in {} without an error (status 0x{:04X}, code 0x{:04X} {}){}", name(target),
-                             state_timeout(target) / std::chrono::seconds{1}, name(al_state(status)), status, code, al_status_info(code).text,
-                             configuration_text(bus, slave)),
-                 target == AlState::op ? "it may be waiting for valid outputs or for SYNC0: check that the cycle runs" : "power-cycle the slave; if it stays, check its firmware"};
+                 fmt::format("did not reach {} within {} s: it stays in {} without an error (status 0x{:04X}, code 0x{:04X} {}){}",
+                             name(target), state_timeout(target) / std::chrono::seconds{1}, name(al_state(status)), status, code,
+                             al_status_info(code).text, configuration_text(bus, slave)),
+                 target == AlState::op ? "it may be waiting for valid outputs or for SYNC0: check that the cycle runs"
+                                       : "power-cycle the slave; if it stays, check its firmware"};
 }
 
 std::uint16_t code_of(const BusSlave& slave) noexcept { return static_cast<std::uint16_t>(slave.al.load() >> 16); }

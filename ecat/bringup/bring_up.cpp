@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cstdlib>
 
 #include "ecat/bringup/al_control.hpp"
 #include "ecat/bringup/clocks.hpp"
@@ -14,8 +16,9 @@ namespace taktwerk::ecat {
 namespace {
 
 constexpr Duration watch_period = std::chrono::milliseconds{100};
-constexpr Duration watch_glance = std::chrono::milliseconds{5};   ///< how soon a state the cycle saw is looked at
-constexpr Duration retry_period = std::chrono::milliseconds{500};  ///< between two attempts to get a slave back
+constexpr Duration watch_glance = std::chrono::milliseconds{5};       ///< how soon a state the cycle saw is noticed
+constexpr Duration watch_suspicious = std::chrono::milliseconds{20};  ///< instead of watch_period, while one slave is not in OP
+constexpr Duration retry_period = std::chrono::milliseconds{500};     ///< between two attempts to get a slave back
 constexpr Duration valid_outputs_timeout = std::chrono::seconds{3};
 constexpr std::uint32_t valid_cycles = 5;
 
@@ -50,14 +53,17 @@ Script<Result<void>> await_valid_outputs(Bus& bus) {
         const Instant now = co_await time();
         if (now - started > valid_outputs_timeout) {
             if (bus.link.cycles.load() - cycles_before < valid_cycles)
-                co_return Error{"bus.no_cycle", "bus", "all slaves are in SAFEOP, but no cycle sends process data", "start the machine's cycle before the bus is brought to OP"};
+                co_return Error{"bus.no_cycle", "bus", "all slaves are in SAFEOP, but no cycle sends process data",
+                                "start the machine's cycle before the bus is brought to OP"};
             const std::size_t d = bus.link.worst_datagram.load();
             if (d < bus.plan.datagrams.size() && bus.link.worst_wkc.load() != bus.plan.datagrams[d].expected_wkc)
                 co_return Error{"bus.working_counter", slaves_of(bus, bus.plan.datagrams[d]),
-                                fmt::format("process data comes back with working counter {}, expected {}", bus.link.worst_wkc.load(), bus.plan.datagrams[d].expected_wkc),
+                                fmt::format("process data comes back with working counter {}, expected {}", bus.link.worst_wkc.load(),
+                                            bus.plan.datagrams[d].expected_wkc),
                                 "the slave does not take part: check its sync managers and FMMUs, and that it is the device configured"};
-            co_return Error{"bus.no_frame", "bus", "process data frames do not come back in time",
-                            "the cycle is too short for the way out and back, or the link loses frames: check cable and NIC, or lengthen the cycle"};
+            co_return Error{
+                "bus.no_frame", "bus", "process data frames do not come back in time",
+                "the cycle is too short for the way out and back, or the link loses frames: check cable and NIC, or lengthen the cycle"};
         }
         co_await pause(bus.config.cycle);
     }
@@ -146,7 +152,7 @@ Script<void> watch(Bus& bus, BusSlave& slave) {
         Instant now = co_await pause(watch_glance);
         constexpr auto all_op = static_cast<std::uint32_t>(AlState::op);
         const bool suspicious = bus.link.states_seen.load() != all_op;
-        if (now < look && !suspicious) continue;
+        if (now < look && !(suspicious && now >= look - watch_period + watch_suspicious)) continue;
         look = now + watch_period;
 
         const Result<std::uint16_t> status = co_await read_al_status(bus, slave);
@@ -156,13 +162,17 @@ Script<void> watch(Bus& bus, BusSlave& slave) {
             if (slave.dc && bus.reference != slave.index && now - last_difference >= std::chrono::seconds{1}) {
                 last_difference = now;
                 const Reply reply = co_await bus.port.fprd(slave.found.station, reg::dc_difference, 4);
-                if (reply.ok()) bus.link.dc_difference_ns.store(std::abs(static_cast<std::int64_t>(dc_difference_ns(reply.u32()))));
+                if (reply.ok()) slave.dc_difference = std::abs(static_cast<std::int64_t>(dc_difference_ns(reply.u32())));
+                std::int64_t worst = 0;
+                for (const auto& other : bus.slaves) worst = std::max(worst, other->dc_difference);
+                bus.link.dc_difference_ns.store(worst);
             }
             continue;
         }
-        if (!reported) bus.remember(status ? fmt::format("{} left OP: status 0x{:04X}, code 0x{:04X} {}", slave.subject, *status, slave.al.load() >> 16,
-                                                         al_status_info(static_cast<std::uint16_t>(slave.al.load() >> 16)).text)
-                                           : status.error().text());
+        if (!reported)
+            bus.remember(status ? fmt::format("{} left OP: status 0x{:04X}, code 0x{:04X} {}", slave.subject, *status,
+                                              slave.al.load() >> 16, al_status_info(static_cast<std::uint16_t>(slave.al.load() >> 16)).text)
+                                : status.error().text());
         const Result<void> back = co_await recover(bus, slave);
         if (back) {
             slave.recoveries.fetch_add(1);
@@ -207,7 +217,8 @@ Script<Result<void>> recover(Bus& bus, BusSlave& slave) {
         done = co_await prepare(bus, slave);
         if (!done) co_return done;
         const auto& plan = bus.plan.slaves[slave.index];
-        if ((mapped_bits(slave.rx) + 7) / 8 != plan.outputs.size && slave.has_mailbox())
+        const bool same = (mapped_bits(slave.rx) + 7) / 8 == plan.outputs.size && (mapped_bits(slave.tx) + 7) / 8 == plan.inputs.size;
+        if (slave.has_mailbox() && !same)
             co_return Error{"bus.pdo_mismatch", slave.subject, "it came back with other PDOs than before", "restart the machine"};
         if (bus.reference != slave.index) {
             done = co_await restore_clock(bus, slave);

@@ -27,18 +27,18 @@ enum class BusPhase : std::uint8_t { idle, scanning, preop, configuring, safeop,
 /// Numbers between the cycle and the scripts.
 struct CycleLink {
     // Written by the cycle.
-    std::atomic<std::uint64_t> cycles{0};              ///< process data sent
-    std::atomic<std::uint32_t> good_in_a_row{0};       ///< cycles in which every datagram had its working counter
-    std::atomic<std::int64_t> send_phase_ns{0};        ///< of send(), modulo the bus cycle, smoothed
-    std::atomic<std::int64_t> dc_offset_ns{0};         ///< reference clock minus machine time, at sending; smoothed
-    std::atomic<std::uint32_t> dc_samples{0};          ///< 0: dc_offset_ns is not measured yet
-    std::atomic<std::uint32_t> states_seen{0};         ///< OR of all AL states (low 5 bits), of the last BRD
-    std::atomic<std::uint16_t> worst_datagram{0};      ///< a datagram whose working counter was wrong last
+    std::atomic<std::uint64_t> cycles{0};          ///< process data sent
+    std::atomic<std::uint32_t> good_in_a_row{0};   ///< cycles in which every datagram had its working counter
+    std::atomic<std::int64_t> send_phase_ns{0};    ///< of send(), modulo the bus cycle, smoothed
+    std::atomic<std::int64_t> dc_offset_ns{0};     ///< reference clock minus machine time, at sending; smoothed
+    std::atomic<std::uint32_t> dc_samples{0};      ///< 0: dc_offset_ns is not measured yet
+    std::atomic<std::uint32_t> states_seen{0};     ///< OR of all AL states (low 5 bits), of the last BRD
+    std::atomic<std::uint16_t> worst_datagram{0};  ///< a datagram whose working counter was wrong last
     std::atomic<std::uint16_t> worst_wkc{0};
     // Written by the scripts.
-    std::atomic<bool> supervise{false};                ///< slaves are in SAFEOP or above: wrong working counters count
-    std::atomic<std::int64_t> dc_difference_ns{0};     ///< worst 092Ch
-    std::atomic<bool> hold_clock{false};               ///< the reference is being set: read its time, give it to nobody
+    std::atomic<bool> supervise{false};             ///< slaves are in SAFEOP or above: wrong working counters count
+    std::atomic<std::int64_t> dc_difference_ns{0};  ///< worst 092Ch
+    std::atomic<bool> hold_clock{false};            ///< the reference is being set: read its time, give it to nobody
 };
 
 /// What a slave's controller and EEPROM said during the scan.
@@ -54,21 +54,22 @@ struct FoundSlave {
 
 struct BusSlave {
     const SlaveConfig* config = nullptr;
-    std::size_t index = 0;                   ///< in the configuration
-    std::string subject;                     ///< "slave 3 'y_drive' (sv33-e)"
+    std::size_t index = 0;  ///< in the configuration
+    std::string subject;    ///< "slave 3 'y_drive' (sv33-e)"
     FoundSlave found;
     MailboxEndpoint mailbox;
-    std::vector<PdoDescription> rx, tx;      ///< as the slave maps them now
-    std::string last_abort;                  ///< for the diagnosis of a refused state
-    bool in_line = false;                    ///< the bring-up gave it a place and a plan: recovery is possible
+    std::vector<PdoDescription> rx, tx;  ///< as the slave maps them now
+    std::string last_abort;              ///< for the diagnosis of a refused state
+    bool in_line = false;                ///< the bring-up gave it a place and a plan: recovery is possible
 
-    bool dc = false;                         ///< has a clock
-    std::uint32_t dc_delay = 0;              ///< 0928h
-    std::uint64_t dc_offset = 0;             ///< 0920h
+    bool dc = false;                 ///< has a clock
+    std::uint32_t dc_delay = 0;      ///< 0928h
+    std::uint64_t dc_offset = 0;     ///< 0920h
+    std::int64_t dc_difference = 0;  ///< ns, magnitude of 092Ch when it was read last
 
     // Read by the cycle.
-    std::atomic<std::uint32_t> al{0};        ///< AL status in the low word, status code in the high word
-    std::atomic<std::int64_t> sync0_start{0};///< an instant of SYNC0 in system time; 0: does not run
+    std::atomic<std::uint32_t> al{0};          ///< AL status in the low word, status code in the high word
+    std::atomic<std::int64_t> sync0_start{0};  ///< an instant of SYNC0 in system time; 0: does not run
     std::atomic<std::uint32_t> recoveries{0};
 
     [[nodiscard]] const DeviceDescription& device() const noexcept { return *config->device; }
@@ -83,13 +84,13 @@ struct Bus {
     CycleLink link;
     std::vector<std::unique_ptr<BusSlave>> slaves;  ///< configuration order
     ProcessDataPlan plan;
-    std::optional<std::size_t> reference;           ///< the slave whose clock is the bus' clock
-    std::optional<std::int64_t> dc_phase;           ///< system time of a cycle start, modulo the cycle; fixed at the first SYNC0
+    std::optional<std::size_t> reference;  ///< the slave whose clock is the bus' clock
+    std::optional<std::int64_t> dc_phase;  ///< system time of a cycle start, modulo the cycle; fixed at the first SYNC0
     std::atomic<BusPhase> phase{BusPhase::idle};
     std::string progress;
     /// Hands the plan to the cycle: from now on process data is exchanged.
     std::function<void()> publish;
-    std::vector<std::string> notes;                 ///< recoveries and other remarkable things, newest last
+    std::vector<std::string> notes;  ///< recoveries and other remarkable things, newest last
 
     void note(const BusSlave& slave, const std::string& doing) { progress = slave.subject + " " + doing; }
     void remember(std::string text) {

@@ -13,7 +13,7 @@ namespace {
 constexpr Duration settle_time = std::chrono::seconds{10};
 constexpr Duration least_margin = std::chrono::milliseconds{100};
 constexpr std::int64_t margin_cycles = 50;  ///< six register accesses, each of two or three cycles, and reserve
-constexpr unsigned frames_per_round = 8;  ///< reference times sent between two looks at 092Ch, while no cycle runs
+constexpr unsigned frames_per_round = 8;    ///< reference times sent between two looks at 092Ch, while no cycle runs
 
 std::int64_t nanoseconds(Instant t) noexcept { return t.time_since_epoch().count(); }
 
@@ -134,9 +134,12 @@ Script<Result<void>> await_clocks(Bus& bus) {
         if (measured && worst_ns <= clock_limit.count()) co_return Result<void>{};
         if (now - started > settle_time) {
             if (worst == nullptr)
-                co_return Error{"bus.clock", bus.slaves[*bus.reference]->subject, "the reference clock does not answer in the cyclic frames",
+                co_return Error{"bus.clock", bus.slaves[*bus.reference]->subject,
+                                "the reference clock does not answer in the cyclic frames",
                                 "a slave has lost its station address: restart the bus"};
-            co_return Error{"bus.clock", worst->subject, fmt::format("its clock is still {} ns off after {} s (limit {} ns)", worst_ns, settle_time / std::chrono::seconds{1}, clock_limit.count()),
+            co_return Error{"bus.clock", worst->subject,
+                            fmt::format("its clock is still {} ns off after {} s (limit {} ns)", worst_ns,
+                                        settle_time / std::chrono::seconds{1}, clock_limit.count()),
                             "check that the cycle runs evenly; a clock that drifts by more than 100 ppm is defective"};
         }
     }
@@ -145,7 +148,8 @@ Script<Result<void>> await_clocks(Bus& bus) {
 Script<Result<void>> start_sync0(Bus& bus, BusSlave& slave) {
     if (!slave.config->dc) co_return Result<void>{};
     if (!slave.dc)
-        co_return Error{"bus.no_clock", slave.subject, "SYNC0 is configured, but its controller has no distributed clock", "set dc: false for this slave"};
+        co_return Error{"bus.no_clock", slave.subject, "SYNC0 is configured, but its controller has no distributed clock",
+                        "set dc: false for this slave"};
     bus.note(slave, "starting SYNC0");
     const std::int64_t cycle = bus.config.cycle.count();
     const std::uint16_t station = slave.found.station;
@@ -157,12 +161,15 @@ Script<Result<void>> start_sync0(Bus& bus, BusSlave& slave) {
         if (!bus.dc_phase) bus.dc_phase = (((bus.link.send_phase_ns.load() + bus.link.dc_offset_ns.load()) % cycle) + cycle) % cycle;
         const Reply now = co_await bus.port.fprd(station, reg::dc_system_time, 8);
         if (!now.ok()) co_return unanswered(slave.subject, "its system time (0910h)", now);
-        const std::uint64_t start = sync0_start(now.u64(), margin, bus.config.cycle, Duration{*bus.dc_phase}, sync0_shift(bus.config, *slave.config));
+        const std::uint64_t start =
+            sync0_start(now.u64(), margin, bus.config.cycle, Duration{*bus.dc_phase}, sync0_shift(bus.config, *slave.config));
         const Reply first = co_await bus.port.fpwr(station, reg::dc_start_time, start);
         const Reply period = co_await bus.port.fpwr(station, reg::dc_sync0_cycle, static_cast<std::uint32_t>(cycle));
         const Reply sync1 = co_await bus.port.fpwr(station, reg::dc_sync1_cycle, std::uint32_t{0});
-        const Reply on = co_await bus.port.fpwr(station, reg::dc_activation, static_cast<std::uint8_t>(dc_activate::cyclic | dc_activate::sync0));
-        if (!first.ok() || !period.ok() || !sync1.ok() || !on.ok()) co_return unanswered(slave.subject, "SYNC0 (0990h, 09A0h, 0981h)", on.ok() ? first : on);
+        const Reply on =
+            co_await bus.port.fpwr(station, reg::dc_activation, static_cast<std::uint8_t>(dc_activate::cyclic | dc_activate::sync0));
+        if (!first.ok() || !period.ok() || !sync1.ok() || !on.ok())
+            co_return unanswered(slave.subject, "SYNC0 (0990h, 09A0h, 0981h)", on.ok() ? first : on);
         const Reply after = co_await bus.port.fprd(station, reg::dc_system_time, 8);
         if (!after.ok()) co_return unanswered(slave.subject, "its system time (0910h)", after);
         if (after.u64() < start) {

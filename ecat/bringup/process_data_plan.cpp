@@ -62,7 +62,9 @@ Result<Half> plan_half(const PlanSlave& slave, SmUse use, const std::vector<PdoD
         const std::uint32_t bytes = slave.coe ? (bit + 7) / 8 - half.bytes : sm.size;
         if (bytes == 0) continue;
         if (bytes > max_datagram_data)
-            return plan_error("too_large", slave, fmt::format("its {} are {} bytes, a frame carries {}", direction, bytes, max_datagram_data), "map fewer objects");
+            return plan_error("too_large", slave,
+                              fmt::format("its {} are {} bytes, a frame carries {}", direction, bytes, max_datagram_data),
+                              "map fewer objects");
         half.parts.push_back({static_cast<std::uint8_t>(n), sm.start, static_cast<std::uint16_t>(bytes)});
         half.bytes += bytes;
     }
@@ -84,14 +86,15 @@ std::optional<Error> overlapping_buffers(const PlanSlave& slave, const std::vect
     for (const auto& sm : process) areas.push_back({sm.number, sm.registers.start, sm.registers.start + buffers * sm.registers.length});
     for (std::size_t n = 0; n < slave.sync_managers.size(); ++n) {
         const auto& sm = slave.sync_managers[n];
-        if (sm.use == SmUse::mailbox_out || sm.use == SmUse::mailbox_in) areas.push_back({static_cast<unsigned>(n), sm.start, std::uint32_t{sm.start} + sm.size});
+        if (sm.use == SmUse::mailbox_out || sm.use == SmUse::mailbox_in)
+            areas.push_back({static_cast<unsigned>(n), sm.start, std::uint32_t{sm.start} + sm.size});
     }
     std::sort(areas.begin(), areas.end(), [](const Area& a, const Area& b) { return a.start < b.start; });
     for (std::size_t i = 1; i < areas.size(); ++i) {
         if (areas[i - 1].end <= areas[i].start) continue;
         return plan_error("overlap", slave,
-                          fmt::format("the buffers of SM{} ({:04X}h..{:04X}h) reach into SM{} at {:04X}h", areas[i - 1].sm, areas[i - 1].start,
-                                      areas[i - 1].end - 1, areas[i].sm, areas[i].start),
+                          fmt::format("the buffers of SM{} ({:04X}h..{:04X}h) reach into SM{} at {:04X}h", areas[i - 1].sm,
+                                      areas[i - 1].start, areas[i - 1].end - 1, areas[i].sm, areas[i].start),
                           "map fewer objects, or correct the start addresses in its profile");
     }
     return std::nullopt;
@@ -141,16 +144,22 @@ std::vector<std::vector<std::size_t>> group_into_datagrams(std::span<const PlanS
 
 std::optional<Error> limits_exceeded(const PlanSlave& slave, const Draft& draft) {
     if (!slave.lrw && draft.bytes() > 0)
-        return plan_error("no_lrw", slave, "its controller does not execute LRW, and separate LRD and LWR are not supported yet", "use another slave, or leave it without process data");
+        return plan_error("no_lrw", slave, "its controller does not execute LRW, and separate LRD and LWR are not supported yet",
+                          "use another slave, or leave it without process data");
     const std::size_t fmmus = draft.out.parts.size() + draft.in.parts.size();
     if (fmmus > slave.fmmus)
-        return plan_error("too_many_fmmus", slave, fmt::format("its process data needs {} FMMUs, its controller has {}", fmmus, slave.fmmus), "use fewer sync managers in its profile");
+        return plan_error("too_many_fmmus", slave,
+                          fmt::format("its process data needs {} FMMUs, its controller has {}", fmmus, slave.fmmus),
+                          "use fewer sync managers in its profile");
     if (slave.sync_managers.size() > slave.sync_manager_count)
-        return plan_error("too_many_sync_managers", slave,
-                          fmt::format("its profile has {} sync managers, its controller {}", slave.sync_managers.size(), slave.sync_manager_count), "correct its profile");
+        return plan_error(
+            "too_many_sync_managers", slave,
+            fmt::format("its profile has {} sync managers, its controller {}", slave.sync_managers.size(), slave.sync_manager_count),
+            "correct its profile");
     const std::size_t room = frame_capacity - clock_datagram - state_datagram - datagram_overhead;
     if (draft.bytes() > room)
-        return plan_error("too_large", slave, fmt::format("its process data is {} bytes, a frame carries {}", draft.bytes(), room), "map fewer objects");
+        return plan_error("too_large", slave, fmt::format("its process data is {} bytes, a frame carries {}", draft.bytes(), room),
+                          "map fewer objects");
     return std::nullopt;
 }
 
@@ -202,7 +211,8 @@ Result<ProcessDataPlan> plan_process_data(std::span<const PlanSlave> slaves) {
         for (const std::size_t s : group) {
             datagram.outputs.size += drafts[s].out.bytes;
             datagram.inputs.size += drafts[s].in.bytes;
-            datagram.expected_wkc = static_cast<std::uint16_t>(datagram.expected_wkc + (drafts[s].out.bytes > 0 ? 2 : 0) + (drafts[s].in.bytes > 0 ? 1 : 0));
+            datagram.expected_wkc =
+                static_cast<std::uint16_t>(datagram.expected_wkc + (drafts[s].out.bytes > 0 ? 2 : 0) + (drafts[s].in.bytes > 0 ? 1 : 0));
         }
         if (datagram.size() + datagram_overhead > room) {
             ++frame;
@@ -215,7 +225,8 @@ Result<ProcessDataPlan> plan_process_data(std::span<const PlanSlave> slaves) {
         for (const std::size_t s : group) {
             auto& planned = plan.slaves[s];
             planned.datagram = plan.datagrams.size();
-            const auto place = [&](const Half& half, ImageRange& range, std::vector<MappedEntry>& mapped, std::uint32_t& image_at, std::uint32_t& logical_at, bool outputs) {
+            const auto place = [&](const Half& half, ImageRange& range, std::vector<MappedEntry>& mapped, std::uint32_t& image_at,
+                                   std::uint32_t& logical_at, bool outputs) {
                 range = {image_at, half.bytes};
                 mapped = half.entries;
                 for (auto& entry : mapped) entry.bit_offset += image_at * 8;

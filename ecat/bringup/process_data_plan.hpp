@@ -31,9 +31,9 @@ struct PlanSlave {
     std::string sync_unit;  ///< empty: a unit of its own
     std::vector<SyncManagerDescription> sync_managers;
     std::vector<PdoDescription> rx, tx;  ///< as the slave maps them now, in the order of assignment
-    bool coe = true;        ///< all PDOs of a direction belong to its first sync manager; else they fill the managers in order
+    bool coe = true;                     ///< all PDOs of a direction belong to its first sync manager; else they fill the managers in order
     std::uint8_t fmmus = 8, sync_manager_count = 8;  ///< what its controller has
-    bool lrw = true;        ///< its controller executes LRW
+    bool lrw = true;                                 ///< its controller executes LRW
 };
 
 struct PlannedSyncManager {
@@ -62,12 +62,12 @@ struct SlavePlan {
     std::vector<Fmmu> fmmus;                        ///< unit n at n
     ImageRange outputs, inputs;
     std::vector<MappedEntry> mapped_outputs, mapped_inputs;
-    std::optional<std::size_t> datagram;            ///< none: the slave has no process data
+    std::optional<std::size_t> datagram;  ///< none: the slave has no process data
 };
 
 struct DatagramPlan {
     std::uint32_t logical = 0;
-    ImageRange outputs, inputs;        ///< in the datagram: outputs at 0, inputs behind them
+    ImageRange outputs, inputs;  ///< in the datagram: outputs at 0, inputs behind them
     std::uint16_t expected_wkc = 0;
     std::size_t frame = 0;
     std::vector<std::size_t> slaves;
@@ -75,9 +75,9 @@ struct DatagramPlan {
 };
 
 struct ProcessDataPlan {
-    std::vector<SlavePlan> slaves;         ///< as in the argument
-    std::vector<DatagramPlan> datagrams;   ///< ascending by frame
-    std::size_t frames = 0;                ///< at least 1: clock and AL status travel also without process data
+    std::vector<SlavePlan> slaves;        ///< as in the argument
+    std::vector<DatagramPlan> datagrams;  ///< ascending by frame
+    std::size_t frames = 0;               ///< at least 1: clock and AL status travel also without process data
     std::size_t output_bytes = 0, input_bytes = 0;
 };
 

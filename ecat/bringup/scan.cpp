@@ -18,7 +18,8 @@ std::string identity_text(const Identity& id, bool revision) {
 }
 
 std::string found_text(const FoundSlave& slave) {
-    return slave.error ? std::string{"not readable"} : identity_text(slave.identity, true) + (slave.alias != 0 ? fmt::format(" alias {}", slave.alias) : "");
+    return slave.error ? std::string{"not readable"}
+                       : identity_text(slave.identity, true) + (slave.alias != 0 ? fmt::format(" alias {}", slave.alias) : "");
 }
 
 /// Every slave to INIT and its sync managers, FMMUs and clocks to rest, whatever they were before.
@@ -27,7 +28,8 @@ Script<Result<std::uint16_t>> reset_all(Bus& bus) {
     const Reply first = co_await port.brd(reg::type, 1);
     if (first.lost) co_return unanswered("bus", "the count of slaves", first);
     if (first.wkc == 0)
-        co_return Error{"bus.empty", "bus", "frames come back, but no slave answered", "check the power of the slaves and that the cable goes to the IN port of the first"};
+        co_return Error{"bus.empty", "bus", "frames come back, but no slave answered",
+                        "check the power of the slaves and that the cable goes to the IN port of the first"};
     const std::uint16_t count = first.wkc;
 
     constexpr auto init = static_cast<std::uint16_t>(static_cast<unsigned>(AlState::init) | al_control_acknowledge);
@@ -88,8 +90,8 @@ Script<FoundSlave> read_slave(DatagramPort& port, std::uint16_t position, std::s
     found.dl_status = dl.u16();
 
     std::array<std::uint32_t, 7> values{};
-    constexpr std::array<std::uint16_t, 7> words{sii_word::alias,    sii_word::vendor,      sii_word::product,   sii_word::revision,
-                                                 sii_word::serial,   sii_word::mailbox_out, sii_word::mailbox_in};
+    constexpr std::array<std::uint16_t, 7> words{sii_word::alias,  sii_word::vendor,      sii_word::product,   sii_word::revision,
+                                                 sii_word::serial, sii_word::mailbox_out, sii_word::mailbox_in};
     for (std::size_t i = 0; i < words.size(); ++i) {
         const Result<std::uint32_t> value = co_await read_sii(port, found.station, words[i], subject);
         if (!value) {
@@ -109,7 +111,8 @@ Script<FoundSlave> read_slave(DatagramPort& port, std::uint16_t position, std::s
 
 Result<void> check_identity(const std::string& subject, const DeviceDescription& device, const Identity& found) {
     const auto fits = [&](const Identity& wanted) {
-        return wanted.vendor == found.vendor && wanted.product == found.product && (!device.revision_exact || wanted.revision == found.revision);
+        return wanted.vendor == found.vendor && wanted.product == found.product &&
+               (!device.revision_exact || wanted.revision == found.revision);
     };
     if (fits(device.identity) || std::any_of(device.also_accepted.begin(), device.also_accepted.end(), fits)) return {};
     std::string expected = identity_text(device.identity, device.revision_exact);
@@ -126,11 +129,15 @@ Result<void> match(const BusConfig& config, const std::vector<FoundSlave>& found
             return wanted.position ? f.position == *wanted.position : f.alias == *wanted.alias && !f.error;
         });
         if (it == found.end()) {
-            const std::string where = wanted.position ? fmt::format("position {}", *wanted.position) : fmt::format("alias {}", *wanted.alias);
-            const std::string last = found.empty() ? std::string{"the master"} : fmt::format("slave {} ({})", found.back().position, found_text(found.back()));
-            return Error{"bus.missing_slave", fmt::format("slave '{}' ({})", wanted.name, wanted.device->name),
-                         fmt::format("there is no slave at {}: the bus has {} of {} configured slaves", where, found.size(), config.slaves.size()),
-                         wanted.position ? fmt::format("check power and cable behind {}", last) : "set the alias in the drive and power-cycle it, or address it by position"};
+            const std::string where =
+                wanted.position ? fmt::format("position {}", *wanted.position) : fmt::format("alias {}", *wanted.alias);
+            const std::string last =
+                found.empty() ? std::string{"the master"} : fmt::format("slave {} ({})", found.back().position, found_text(found.back()));
+            return Error{
+                "bus.missing_slave", fmt::format("slave '{}' ({})", wanted.name, wanted.device->name),
+                fmt::format("there is no slave at {}: the bus has {} of {} configured slaves", where, found.size(), config.slaves.size()),
+                wanted.position ? fmt::format("check power and cable behind {}", last)
+                                : "set the alias in the drive and power-cycle it, or address it by position"};
         }
         auto slave = std::make_unique<BusSlave>();
         slave->config = &wanted;
@@ -145,14 +152,16 @@ Result<void> match(const BusConfig& config, const std::vector<FoundSlave>& found
         if (auto identity = check_identity(slave->subject, *wanted.device, it->identity); !identity) return identity;
         const auto at = static_cast<std::size_t>(it - found.begin());
         if (used[at])
-            return Error{"bus.ambiguous", slave->subject, "two configured slaves stand for this one", "correct position and alias in the configuration"};
+            return Error{"bus.ambiguous", slave->subject, "two configured slaves stand for this one",
+                         "correct position and alias in the configuration"};
         used[at] = true;
         slaves.push_back(std::move(slave));
     }
     for (std::size_t i = 0; i < found.size(); ++i) {
         if (used[i]) continue;
         return Error{"bus.unexpected_slave", fmt::format("slave {}", found[i].position),
-                     fmt::format("is on the bus but not in the configuration: {}", found_text(found[i])), "add it to the configuration or unplug it"};
+                     fmt::format("is on the bus but not in the configuration: {}", found_text(found[i])),
+                     "add it to the configuration or unplug it"};
     }
     return {};
 }

@@ -18,7 +18,8 @@ namespace taktwerk::ecat {
 [[nodiscard]] Script<FoundSlave> read_slave(DatagramPort& port, std::uint16_t position, std::string subject);
 
 /// Gives every configured slave its place. Pure.
-[[nodiscard]] Result<void> match(const BusConfig& config, const std::vector<FoundSlave>& found, std::vector<std::unique_ptr<BusSlave>>& slaves);
+[[nodiscard]] Result<void> match(const BusConfig& config, const std::vector<FoundSlave>& found,
+                                 std::vector<std::unique_ptr<BusSlave>>& slaves);
 
 /// Is this the device the configuration wants? Names expected and found.
 [[nodiscard]] Result<void> check_identity(const std::string& subject, const DeviceDescription& device, const Identity& found);

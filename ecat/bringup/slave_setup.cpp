@@ -42,14 +42,16 @@ Result<void> locate_mailbox(BusSlave& slave) {
     mailbox.in_size = in != nullptr && in->size != 0 ? in->size : slave.found.mailbox[3];
     if (mailbox.out_size < 22 || mailbox.in_size < 22)  // header 6, SDO 10, and some
         return Error{"bus.no_mailbox", slave.subject,
-                     fmt::format("its mailboxes are {} and {} bytes: neither profile nor EEPROM give usable sizes", mailbox.out_size, mailbox.in_size),
+                     fmt::format("its mailboxes are {} and {} bytes: neither profile nor EEPROM give usable sizes", mailbox.out_size,
+                                 mailbox.in_size),
                      "enter the mailbox sync managers in its profile"};
     return {};
 }
 
 std::vector<std::byte> encode_value(DataType type, std::int64_t value) {
     std::vector<std::byte> bytes((bit_size(type) + 7u) / 8u);
-    for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::byte>((static_cast<std::uint64_t>(value) >> (8 * i)) & 0xFFu);
+    for (std::size_t i = 0; i < bytes.size(); ++i)
+        bytes[i] = static_cast<std::byte>((static_cast<std::uint64_t>(value) >> (8 * i)) & 0xFFu);
     return bytes;
 }
 
@@ -83,7 +85,8 @@ Script<Result<void>> write_one(Bus& bus, BusSlave& slave, const StartupSdo& sdo)
         const Result<std::vector<std::byte>> back = co_await sdo_upload(bus.port, slave.mailbox, sdo.index, sdo.sub);
         if (!back) co_return with_origin(back.error());
         if (*back != value)
-            co_return with_origin(Error{"bus.startup_verify", slave.subject, fmt::format("{} reads back {} after {} was written", object, hex(*back), hex(value)),
+            co_return with_origin(Error{"bus.startup_verify", slave.subject,
+                                        fmt::format("{} reads back {} after {} was written", object, hex(*back), hex(value)),
                                         "the drive limits or rounds the value: write what it can hold, or set verify: false"});
     }
     co_return Result<void>{};
@@ -99,7 +102,8 @@ Script<Result<void>> write_startup(Bus& bus, BusSlave& slave, Transition transit
 }
 
 /// Writes an unsigned value of `bytes` bytes.
-Script<Result<void>> write_number(Bus& bus, BusSlave& slave, std::uint16_t index, std::uint8_t sub, std::uint32_t value, std::size_t bytes) {
+Script<Result<void>> write_number(Bus& bus, BusSlave& slave, std::uint16_t index, std::uint8_t sub, std::uint32_t value,
+                                  std::size_t bytes) {
     std::vector<std::byte> data(bytes);
     for (std::size_t i = 0; i < bytes; ++i) data[i] = static_cast<std::byte>((value >> (8 * i)) & 0xFFu);
     bus.note(slave, "writing " + object_text(index, sub));
@@ -152,7 +156,8 @@ Script<Result<std::vector<PdoDescription>>> read_assigned(Bus& bus, BusSlave& sl
         for (std::uint32_t k = 1; k <= (*entries & 0xFFu); ++k) {
             const Result<std::uint32_t> entry = co_await read_number(bus, slave, pdo.index, static_cast<std::uint8_t>(k));
             if (!entry) co_return entry.error();
-            pdo.entries.push_back({static_cast<std::uint16_t>(*entry >> 16), static_cast<std::uint8_t>(*entry >> 8), static_cast<std::uint8_t>(*entry)});
+            pdo.entries.push_back(
+                {static_cast<std::uint16_t>(*entry >> 16), static_cast<std::uint8_t>(*entry >> 8), static_cast<std::uint8_t>(*entry)});
         }
         pdos.push_back(std::move(pdo));
     }
@@ -164,16 +169,21 @@ std::string entry_text(const PdoEntry& entry) {
 }
 
 /// What was asked for and what the slave says, compared; the message shows the first difference and both sizes.
-Result<void> compare(const BusSlave& slave, std::uint16_t assignment, const std::vector<PdoDescription>& wanted, const std::vector<PdoDescription>& got) {
+Result<void> compare(const BusSlave& slave, std::uint16_t assignment, const std::vector<PdoDescription>& wanted,
+                     const std::vector<PdoDescription>& got) {
     const auto mismatch = [&](std::string what) {
-        return Error{"bus.pdo_mismatch", slave.subject,
-                     fmt::format("{}; configured are {} bytes, the slave has {}", std::move(what), (mapped_bits(wanted) + 7) / 8, (mapped_bits(got) + 7) / 8),
-                     "choose a PDO this firmware offers with exactly these entries, or correct the PDO in the profile to what the slave reports"};
+        return Error{
+            "bus.pdo_mismatch", slave.subject,
+            fmt::format("{}; configured are {} bytes, the slave has {}", std::move(what), (mapped_bits(wanted) + 7) / 8,
+                        (mapped_bits(got) + 7) / 8),
+            "choose a PDO this firmware offers with exactly these entries, or correct the PDO in the profile to what the slave reports"};
     };
     for (std::size_t i = 0; i < std::max(wanted.size(), got.size()); ++i) {
         if (i >= got.size()) return mismatch(fmt::format("{:04X}h was not assigned to {:04X}h", wanted[i].index, assignment));
-        if (i >= wanted.size()) return mismatch(fmt::format("the slave has {:04X}h assigned to {:04X}h in addition", got[i].index, assignment));
-        if (wanted[i].index != got[i].index) return mismatch(fmt::format("{:04X}h holds {:04X}h, not {:04X}h", assignment, got[i].index, wanted[i].index));
+        if (i >= wanted.size())
+            return mismatch(fmt::format("the slave has {:04X}h assigned to {:04X}h in addition", got[i].index, assignment));
+        if (wanted[i].index != got[i].index)
+            return mismatch(fmt::format("{:04X}h holds {:04X}h, not {:04X}h", assignment, got[i].index, wanted[i].index));
         const auto& a = wanted[i].entries;
         const auto& b = got[i].entries;
         for (std::size_t k = 0; k < std::max(a.size(), b.size()); ++k) {
@@ -299,10 +309,12 @@ Script<Result<void>> program_process_data(Bus& bus, BusSlave& slave) {
         const Reply reply = co_await bus.port.fpwr(station, reg::fmmu_at(static_cast<unsigned>(n)), bytes);
         if (!reply.ok()) co_return unanswered(slave.subject, fmt::format("FMMU {}", n), reply);
     }
-    const auto ticks = static_cast<std::uint16_t>(std::min<std::int64_t>(0xFFFF, (sm_watchdog(bus.config, *slave.config) + watchdog_tick - Duration{1}) / watchdog_tick));
+    const auto ticks = static_cast<std::uint16_t>(
+        std::min<std::int64_t>(0xFFFF, (sm_watchdog(bus.config, *slave.config) + watchdog_tick - Duration{1}) / watchdog_tick));
     const Reply divider = co_await bus.port.fpwr(station, reg::watchdog_divider, reg::watchdog_divider_default);
     const Reply watchdog = co_await bus.port.fpwr(station, reg::sm_watchdog_time, ticks);
-    if (plan.outputs.size > 0 && (!divider.ok() || !watchdog.ok())) co_return unanswered(slave.subject, "SM watchdog (0420h)", divider.ok() ? watchdog : divider);
+    if (plan.outputs.size > 0 && (!divider.ok() || !watchdog.ok()))
+        co_return unanswered(slave.subject, "SM watchdog (0420h)", divider.ok() ? watchdog : divider);
     co_return Result<void>{};
 }
 

@@ -27,11 +27,15 @@ Error abort_error(const MailboxEndpoint& mailbox, const Conversation& transfer, 
     std::string remedy;
     switch (code) {
         case sdo_abort::no_object: remedy = "this firmware does not have the object: check the profile against the drive's manual"; break;
-        case sdo_abort::no_subindex: remedy = "this firmware does not have the sub-index: check the profile against the drive's manual"; break;
+        case sdo_abort::no_subindex:
+            remedy = "this firmware does not have the sub-index: check the profile against the drive's manual";
+            break;
         case sdo_abort::read_only: remedy = "the object cannot be written: remove it from the start-up list"; break;
         case sdo_abort::write_only: remedy = "the object cannot be read back: set verify: false"; break;
         case sdo_abort::device_state:
-        case sdo_abort::local_control: remedy = "the drive does not accept it in its present state: disable the axis, or write it in PREOP"; break;
+        case sdo_abort::local_control:
+            remedy = "the drive does not accept it in its present state: disable the axis, or write it in PREOP";
+            break;
         case sdo_abort::value_range:
         case sdo_abort::value_too_high:
         case sdo_abort::value_too_low: remedy = "choose a value within the range the manual gives"; break;
@@ -42,7 +46,8 @@ Error abort_error(const MailboxEndpoint& mailbox, const Conversation& transfer, 
         case sdo_abort::pdo_length: remedy = "the drive does not accept this PDO mapping: map fewer or other objects"; break;
         default: break;
     }
-    return Error{"sdo.abort", mailbox.subject, fmt::format("{} was refused: abort {:08X}h {}", about(transfer), code, sdo_abort_text(code)), remedy};
+    return Error{"sdo.abort", mailbox.subject, fmt::format("{} was refused: abort {:08X}h {}", about(transfer), code, sdo_abort_text(code)),
+                 remedy};
 }
 
 void keep_emergency(MailboxEndpoint& mailbox, const Emergency& emergency) {
@@ -53,7 +58,8 @@ void keep_emergency(MailboxEndpoint& mailbox, const Emergency& emergency) {
 std::uint16_t sm_register(std::uint8_t sm, std::uint16_t offset) { return static_cast<std::uint16_t>(reg::sync_manager_at(sm) + offset); }
 
 /// Puts the message into the slave's mailbox.
-Script<Result<void>> write_message(DatagramPort& port, MailboxEndpoint& mailbox, Conversation transfer, const Bytes& message, Instant deadline) {
+Script<Result<void>> write_message(DatagramPort& port, MailboxEndpoint& mailbox, Conversation transfer, const Bytes& message,
+                                   Instant deadline) {
     bool perhaps_written = false;
     for (;;) {
         const Reply reply = co_await port.fpwr(mailbox.station, mailbox.out_start, message, 1);
@@ -66,7 +72,8 @@ Script<Result<void>> write_message(DatagramPort& port, MailboxEndpoint& mailbox,
         }
         if (now >= deadline) {
             if (reply.lost) co_return unanswered(mailbox.subject, about(transfer), reply);
-            co_return Error{"sdo.mailbox", mailbox.subject, fmt::format("{}: the slave does not take mailbox messages (its mailbox stays full)", about(transfer)),
+            co_return Error{"sdo.mailbox", mailbox.subject,
+                            fmt::format("{}: the slave does not take mailbox messages (its mailbox stays full)", about(transfer)),
                             "the slave's application hangs or left PREOP: power-cycle it"};
         }
         co_await pause(mailbox_poll_period);
@@ -106,7 +113,8 @@ Script<Result<Bytes>> read_message(DatagramPort& port, MailboxEndpoint& mailbox,
         }
         const Instant now = co_await time();
         if (now >= deadline) {
-            co_return Error{"sdo.timeout", mailbox.subject, fmt::format("{}: no answer within {} ms", about(transfer), sdo_timeout / std::chrono::milliseconds{1}),
+            co_return Error{"sdo.timeout", mailbox.subject,
+                            fmt::format("{}: no answer within {} ms", about(transfer), sdo_timeout / std::chrono::milliseconds{1}),
                             "the slave's application is busy or hangs: try again, then power-cycle it"};
         }
         co_await pause(mailbox_poll_period);
@@ -114,7 +122,8 @@ Script<Result<Bytes>> read_message(DatagramPort& port, MailboxEndpoint& mailbox,
 }
 
 /// One request, one answer of the wanted kind; the answer is a view into `storage`. Aborts and mailbox errors become errors.
-Script<Result<SdoMessage>> ask(DatagramPort& port, MailboxEndpoint& mailbox, Conversation transfer, const Bytes& payload, SdoKind wanted, Bytes& storage) {
+Script<Result<SdoMessage>> ask(DatagramPort& port, MailboxEndpoint& mailbox, Conversation transfer, const Bytes& payload, SdoKind wanted,
+                               Bytes& storage) {
     const Instant started = co_await time();
     const Instant deadline = started + sdo_timeout;
     for (;;) {
@@ -132,7 +141,8 @@ Script<Result<SdoMessage>> ask(DatagramPort& port, MailboxEndpoint& mailbox, Con
             storage = std::move(*read);
             const auto parsed = parse_mailbox(storage);
             if (!parsed) {
-                co_return Error{"sdo.protocol", mailbox.subject, fmt::format("{}: the mailbox holds a message longer than itself", about(transfer)),
+                co_return Error{"sdo.protocol", mailbox.subject,
+                                fmt::format("{}: the mailbox holds a message longer than itself", about(transfer)),
                                 "the slave's firmware is defective, or the mailbox size in its profile is wrong"};
             }
             if (parsed->header.type == MailboxType::error) {
@@ -144,7 +154,8 @@ Script<Result<SdoMessage>> ask(DatagramPort& port, MailboxEndpoint& mailbox, Con
                     ask_again = true;
                     continue;
                 }
-                co_return Error{"sdo.mailbox", mailbox.subject, fmt::format("{}: mailbox error {} {}", about(transfer), static_cast<unsigned>(detail), text(detail)),
+                co_return Error{"sdo.mailbox", mailbox.subject,
+                                fmt::format("{}: mailbox error {} {}", about(transfer), static_cast<unsigned>(detail), text(detail)),
                                 "the slave does not understand CoE requests: check the mailbox protocol and size in its profile"};
             }
             if (parsed->header.type != MailboxType::coe) continue;
@@ -169,7 +180,8 @@ Error no_mailbox(const MailboxEndpoint& mailbox, const Conversation& transfer) {
 }
 
 Error wrong_segment(const MailboxEndpoint& mailbox, const Conversation& transfer, const char* what) {
-    return Error{"sdo.protocol", mailbox.subject, fmt::format("{}: {}", about(transfer), what), "try again; if it stays, the slave's firmware is defective"};
+    return Error{"sdo.protocol", mailbox.subject, fmt::format("{}: {}", about(transfer), what),
+                 "try again; if it stays, the slave's firmware is defective"};
 }
 
 }  // namespace
@@ -213,7 +225,8 @@ Script<Result<std::vector<std::byte>>> sdo_upload(DatagramPort& port, MailboxEnd
     co_return value;
 }
 
-Script<Result<void>> sdo_download(DatagramPort& port, MailboxEndpoint& mailbox, std::uint16_t index, std::uint8_t sub, std::vector<std::byte> data) {
+Script<Result<void>> sdo_download(DatagramPort& port, MailboxEndpoint& mailbox, std::uint16_t index, std::uint8_t sub,
+                                  std::vector<std::byte> data) {
     const Conversation transfer{index, sub, "writing"};
     if (mailbox.out_size == 0) co_return no_mailbox(mailbox, transfer);
     co_await mailbox.lock.acquire();

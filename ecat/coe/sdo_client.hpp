@@ -22,13 +22,13 @@ namespace taktwerk::ecat {
 
 /// A slave's mailbox as the master knows it. Outlives the scripts that use it.
 struct MailboxEndpoint {
-    std::string subject;                 ///< for messages: "slave 2 'y' (sv33-e)"
+    std::string subject;  ///< for messages: "slave 2 'y' (sv33-e)"
     std::uint16_t station = 0;
     std::uint16_t out_start = 0, out_size = 0;  ///< master -> slave
     std::uint16_t in_start = 0, in_size = 0;    ///< slave -> master; size 0: no mailbox
     std::uint8_t out_sm = 0, in_sm = 1;
-    std::uint8_t counter = 0;            ///< of the last request
-    bool repeat_toggle = false;          ///< repeat request bit as last written
+    std::uint8_t counter = 0;    ///< of the last request
+    bool repeat_toggle = false;  ///< repeat request bit as last written
     ScriptLock lock;
     std::vector<Emergency> emergencies;  ///< received, oldest first, at most emergency_limit
     static constexpr std::size_t emergency_limit = 32;
@@ -45,7 +45,8 @@ inline constexpr Duration sdo_timeout = std::chrono::seconds{2};
 /// Between two looks at the mailbox state.
 inline constexpr Duration mailbox_poll_period = std::chrono::milliseconds{1};
 
-[[nodiscard]] Script<Result<std::vector<std::byte>>> sdo_upload(DatagramPort& port, MailboxEndpoint& mailbox, std::uint16_t index, std::uint8_t sub);
+[[nodiscard]] Script<Result<std::vector<std::byte>>> sdo_upload(DatagramPort& port, MailboxEndpoint& mailbox, std::uint16_t index,
+                                                                std::uint8_t sub);
 [[nodiscard]] Script<Result<void>> sdo_download(DatagramPort& port, MailboxEndpoint& mailbox, std::uint16_t index, std::uint8_t sub,
                                                 std::vector<std::byte> data);
 

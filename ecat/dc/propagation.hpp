@@ -18,10 +18,10 @@ namespace taktwerk::ecat {
 
 /// What one slave latched, in the order of the cable. Slaves without DC are left out: their transit counts as cable.
 struct LatchedTimes {
-    std::uint32_t port0 = 0;      ///< ns, local clock, wraps: frame comes in
-    std::uint32_t port1 = 0;      ///< ns: the same frame comes back from the slaves behind; unused at the end of the line
-    bool port1_open = false;      ///< somebody is behind
-    std::uint64_t unit = 0;       ///< ns: 0918h
+    std::uint32_t port0 = 0;  ///< ns, local clock, wraps: frame comes in
+    std::uint32_t port1 = 0;  ///< ns: the same frame comes back from the slaves behind; unused at the end of the line
+    bool port1_open = false;  ///< somebody is behind
+    std::uint64_t unit = 0;   ///< ns: 0918h
 };
 
 /// Time the frame needed from this slave to the end of the line and back. 0 at the end. 32-bit wrap is harmless.

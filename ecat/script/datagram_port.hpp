@@ -24,11 +24,11 @@ namespace taktwerk::ecat {
 
 /// How a datagram ended.
 struct Reply {
-    bool lost = true;                 ///< no frame came back in time, after all attempts
+    bool lost = true;  ///< no frame came back in time, after all attempts
     std::uint16_t wkc = 0;
     std::uint16_t slaves_passed = 0;  ///< AP and B commands
     std::vector<std::byte> data;
-    Instant sent_at{};                ///< when the frame left
+    Instant sent_at{};  ///< when the frame left
 
     /// Exactly one slave answered.
     [[nodiscard]] bool ok() const noexcept { return !lost && wkc == 1; }
@@ -74,7 +74,8 @@ public:
     [[nodiscard]] Transfer fprd(std::uint16_t station, std::uint16_t address, std::size_t size, unsigned attempts = default_attempts) {
         return read(Command::FPRD, Address::physical(station, address), size, attempts);
     }
-    [[nodiscard]] Transfer fpwr(std::uint16_t station, std::uint16_t address, std::span<const std::byte> data, unsigned attempts = default_attempts) {
+    [[nodiscard]] Transfer fpwr(std::uint16_t station, std::uint16_t address, std::span<const std::byte> data,
+                                unsigned attempts = default_attempts) {
         return write(Command::FPWR, Address::physical(station, address), data, attempts);
     }
     template <std::integral T>

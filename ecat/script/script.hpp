@@ -36,8 +36,8 @@ protected:
 /// The thread of one root script and all it awaits.
 struct ScriptThread {
     Instant now{};
-    Waiting* waiting = nullptr;           ///< null: resume at once
-    std::coroutine_handle<> current{};    ///< whom to resume; null: finished
+    Waiting* waiting = nullptr;         ///< null: resume at once
+    std::coroutine_handle<> current{};  ///< whom to resume; null: finished
 };
 
 namespace script_detail {

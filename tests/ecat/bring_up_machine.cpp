@@ -143,14 +143,28 @@ TEST(BringUp, AssignsAndMapsVariablePdos) {
 
 TEST(BringUp, WritesAndVerifiesStartupSdos) {
     TestBus bus{"s"};
-    bus.config.slaves[0].startup.push_back({.at = Transition::PreopToSafeop, .index = 0x6085, .sub = 0, .type = DataType::U32, .value = 5000, .verify = true, .if_changed = false, .origin = "demo.yaml:31:7"});
+    bus.config.slaves[0].startup.push_back({.at = Transition::PreopToSafeop,
+                                            .index = 0x6085,
+                                            .sub = 0,
+                                            .type = DataType::U32,
+                                            .value = 5000,
+                                            .verify = true,
+                                            .if_changed = false,
+                                            .origin = "demo.yaml:31:7"});
     ASSERT_TRUE(bus.bring_up()) << bus.why();
     EXPECT_EQ(bus.network.slave(0).dictionary().value(0x6085, 0), 5000);
 }
 
 TEST(BringUp, NamesObjectAbortAndOriginOfAStartupSdoThatIsRefused) {
     TestBus bus{"s"};
-    bus.config.slaves[0].startup.push_back({.at = Transition::PreopToSafeop, .index = 0x6085, .sub = 0, .type = DataType::U32, .value = 2'000'000, .verify = true, .if_changed = false, .origin = "demo.yaml:31:7"});
+    bus.config.slaves[0].startup.push_back({.at = Transition::PreopToSafeop,
+                                            .index = 0x6085,
+                                            .sub = 0,
+                                            .type = DataType::U32,
+                                            .value = 2'000'000,
+                                            .verify = true,
+                                            .if_changed = false,
+                                            .origin = "demo.yaml:31:7"});
     EXPECT_FALSE(bus.bring_up());
     EXPECT_EQ(bus.master->failure().code, "sdo.abort");
     EXPECT_THAT(bus.master->failure().text(), HasSubstr("slave 0 'a' (sv33-e): writing 6085h:00 was refused: abort 06090031h"));
@@ -163,7 +177,8 @@ TEST(BringUp, SurvivesLostFramesOnTheWay) {
         bus.start();
         bus.run_for(at * 1ms);
         bus.transport.faults.drop_answers = 2;
-        bus.run_until([&] { return bus.master->phase() == Master::Phase::operational || bus.master->phase() == Master::Phase::failed; }, 20s);
+        bus.run_until([&] { return bus.master->phase() == Master::Phase::operational || bus.master->phase() == Master::Phase::failed; },
+                      20s);
         EXPECT_EQ(bus.master->phase(), Master::Phase::operational) << "lost at " << at << " ms: " << bus.why();
     }
 }

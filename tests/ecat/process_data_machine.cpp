@@ -210,7 +210,7 @@ TEST(Faults, ThePowerCycledReferenceClockReturnsWithoutThrowingTheOthersClocks) 
     TestBus bus{"tss"};
     ASSERT_TRUE(bus.bring_up());
     bus.run_for(200ms);
-    bus.network.set_power(1, false);   // the reference, and with it the slave behind
+    bus.network.set_power(1, false);  // the reference, and with it the slave behind
     bus.run_for(50ms);
     bus.network.set_power(1, true);
     ASSERT_TRUE(bus.run_until([&] { return bus.state(1) == sim::EsmState::op && bus.state(2) == sim::EsmState::op; }, 10s)) << bus.why();
@@ -243,7 +243,7 @@ TEST(Sdo, InOpIsAQueuedRequestThatProcessDataDoesNotNotice) {
     ASSERT_TRUE(bus.bring_up());
     const std::array<std::byte, 4> value{std::byte{0x39}, std::byte{0x30}, std::byte{0}, std::byte{0}};
     const auto write = bus.master->download(0, 0x6085, 0, value);
-    const auto read = bus.master->upload(0, 0x2000, 1);   // 300 bytes through 128-byte mailboxes: segments
+    const auto read = bus.master->upload(0, 0x2000, 1);  // 300 bytes through 128-byte mailboxes: segments
     std::optional<Result<SdoResult>> written, text;
     for (int i = 0; i < 200 && (!written || !text); ++i) {
         bus.cycle_once();

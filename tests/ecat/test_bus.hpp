@@ -24,13 +24,14 @@ inline std::shared_ptr<DeviceDescription> servo_description() {
     d->device_name = "SV33-ECAT";
     d->identity = {0x000007FB, 0x000C0108, 0x00010001, 0};
     d->mailbox = MailboxDescription{};
-    d->sync_managers = {{SmUse::mailbox_out, 0x1000, 0x80, 0x26}, {SmUse::mailbox_in, 0x1400, 0x80, 0x22},
-                        {SmUse::outputs, 0x1800, 0, 0x64}, {SmUse::inputs, 0x1C00, 0, 0x20}};
+    d->sync_managers = {{SmUse::mailbox_out, 0x1000, 0x80, 0x26},
+                        {SmUse::mailbox_in, 0x1400, 0x80, 0x22},
+                        {SmUse::outputs, 0x1800, 0, 0x64},
+                        {SmUse::inputs, 0x1C00, 0, 0x20}};
     d->rx_pdos = {{0x1701, true, {{0x6040, 0, 16}, {0x607A, 0, 32}}},
                   {0x1702, true, {{0x6040, 0, 16}, {0x6060, 0, 8}, {0x607A, 0, 32}}},
                   {0x1600, false, {{0x6040, 0, 16}}}};
-    d->tx_pdos = {{0x1B01, true, {{0x6041, 0, 16}, {0x6064, 0, 32}}},
-                  {0x1A00, false, {{0x6041, 0, 16}}}};
+    d->tx_pdos = {{0x1B01, true, {{0x6041, 0, 16}, {0x6064, 0, 32}}}, {0x1A00, false, {{0x6041, 0, 16}}}};
     d->rx_assigned = {0x1701};
     d->tx_assigned = {0x1B01};
     d->objects = {
@@ -116,10 +117,8 @@ public:
             sim::SlaveOptions options;
             options.clock_start = Duration{static_cast<std::int64_t>(i + 1) * 987'654'321};
             std::unique_ptr<sim::DeviceModel> model;
-            if (servo)
-                model = std::make_unique<EchoServo>();
-            else
-                model = std::make_unique<InvertingTerminal>();
+            if (servo) model = std::make_unique<EchoServo>();
+            else model = std::make_unique<InvertingTerminal>();
             network.add(slave.device, std::move(model), options);
         }
     }

@@ -16,10 +16,24 @@ using ::testing::SizeIs;
 PlanSlave servo(const std::string& name) {
     PlanSlave slave;
     slave.subject = name;
-    slave.sync_managers = {{SmUse::mailbox_out, 0x1000, 0x80, 0x26}, {SmUse::mailbox_in, 0x1400, 0x80, 0x22},
-                           {SmUse::outputs, 0x1800, 0, 0x64}, {SmUse::inputs, 0x1C00, 0, 0x20}};
-    slave.rx = {{0x1702, true, {{0x6040, 0, 16}, {0x607A, 0, 32}, {0x60FF, 0, 32}, {0x6071, 0, 16}, {0x6060, 0, 8}, {0x60B8, 0, 16}, {0x607F, 0, 32}}}};
-    slave.tx = {{0x1B02, true, {{0x603F, 0, 16}, {0x6041, 0, 16}, {0x6064, 0, 32}, {0x6077, 0, 16}, {0x6061, 0, 8}, {0x60B9, 0, 16}, {0x60BA, 0, 32}, {0x60BC, 0, 32}, {0x60FD, 0, 32}}}};
+    slave.sync_managers = {{SmUse::mailbox_out, 0x1000, 0x80, 0x26},
+                           {SmUse::mailbox_in, 0x1400, 0x80, 0x22},
+                           {SmUse::outputs, 0x1800, 0, 0x64},
+                           {SmUse::inputs, 0x1C00, 0, 0x20}};
+    slave.rx = {{0x1702,
+                 true,
+                 {{0x6040, 0, 16}, {0x607A, 0, 32}, {0x60FF, 0, 32}, {0x6071, 0, 16}, {0x6060, 0, 8}, {0x60B8, 0, 16}, {0x607F, 0, 32}}}};
+    slave.tx = {{0x1B02,
+                 true,
+                 {{0x603F, 0, 16},
+                  {0x6041, 0, 16},
+                  {0x6064, 0, 32},
+                  {0x6077, 0, 16},
+                  {0x6061, 0, 8},
+                  {0x60B9, 0, 16},
+                  {0x60BA, 0, 32},
+                  {0x60BC, 0, 32},
+                  {0x60FD, 0, 32}}}};
     return slave;
 }
 
@@ -45,8 +59,10 @@ TEST(ProcessDataPlan, OneServoGetsItsManagersFmmusAndWorkingCounterThree) {
     const auto& x = plan->slaves[0];
     ASSERT_THAT(x.sync_managers, SizeIs(2));
     EXPECT_EQ(x.sync_managers[0].number, 2);
-    EXPECT_EQ(x.sync_managers[0].registers, (SyncManager{.start = 0x1800, .length = 19, .control = 0x64, .status = 0, .activate = 1, .pdi_control = 0}));
-    EXPECT_EQ(x.sync_managers[1].registers, (SyncManager{.start = 0x1C00, .length = 25, .control = 0x20, .status = 0, .activate = 1, .pdi_control = 0}));
+    EXPECT_EQ(x.sync_managers[0].registers,
+              (SyncManager{.start = 0x1800, .length = 19, .control = 0x64, .status = 0, .activate = 1, .pdi_control = 0}));
+    EXPECT_EQ(x.sync_managers[1].registers,
+              (SyncManager{.start = 0x1C00, .length = 25, .control = 0x20, .status = 0, .activate = 1, .pdi_control = 0}));
     ASSERT_THAT(x.fmmus, SizeIs(2));
     EXPECT_EQ(x.fmmus[0], (Fmmu{0, 19, 0, 7, 0x1800, 0, false, true, true}));
     EXPECT_EQ(x.fmmus[1], (Fmmu{19, 25, 0, 7, 0x1C00, 0, true, false, true}));

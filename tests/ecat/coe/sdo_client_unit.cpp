@@ -36,7 +36,7 @@ public:
     };
     std::deque<std::vector<Reply>> script;  ///< replies to the first, second, ... request
     std::vector<Bytes> requests;
-    bool full = false;                      ///< takes no request
+    bool full = false;  ///< takes no request
 
     void advance(Instant) noexcept override {}
     std::optional<Duration> process(std::span<std::byte> frame, Instant) noexcept override {
@@ -105,7 +105,9 @@ protected:
         return result ? std::move(*result) : Result<T>{Error{"test.hangs", "", "the script does not end", ""}};
     }
     Result<Bytes> upload(std::uint16_t index, std::uint8_t sub) { return run(sdo_upload(port, mailbox, index, sub)); }
-    Result<void> download(std::uint16_t index, std::uint8_t sub, Bytes data) { return run(sdo_download(port, mailbox, index, sub, std::move(data))); }
+    Result<void> download(std::uint16_t index, std::uint8_t sub, Bytes data) {
+        return run(sdo_download(port, mailbox, index, sub, std::move(data)));
+    }
     static MailboxSlave::Reply coe(std::initializer_list<int> values) { return {MailboxType::coe, bytes(values)}; }
 
     MailboxSlave slave;
@@ -126,7 +128,8 @@ TEST_F(SdoClient, UploadsExpedited) {
     ASSERT_THAT(slave.requests, SizeIs(1));
     EXPECT_THAT(slave.requests[0], SizeIs(box_size)) << "only a full mailbox switches";
     EXPECT_EQ(Bytes(slave.requests[0].begin(), slave.requests[0].begin() + 12),
-              bytes({10, 0, 0, 0, 0, 0x13, 0x00, 0x20, 0x40, 0x41, 0x60, 0x00})) << "length 10, CoE, counter 1";
+              bytes({10, 0, 0, 0, 0, 0x13, 0x00, 0x20, 0x40, 0x41, 0x60, 0x00}))
+        << "length 10, CoE, counter 1";
 }
 
 TEST_F(SdoClient, CountsItsMessagesFromOneToSeven) {
@@ -178,7 +181,7 @@ TEST_F(SdoClient, KeepsEmergenciesThatComeBeforeTheAnswer) {
 
 TEST_F(SdoClient, SkipsAnswersToEarlierRequestsAndForeignProtocols) {
     slave.script = {{{MailboxType::eoe, bytes({1, 2, 3, 4})},
-                     coe({0x00, 0x30, 0x4F, 0x61, 0x60, 0x00, 8, 0, 0, 0}),    // 6061h: asked long ago
+                     coe({0x00, 0x30, 0x4F, 0x61, 0x60, 0x00, 8, 0, 0, 0}),  // 6061h: asked long ago
                      coe({0x00, 0x30, 0x4B, 0x41, 0x60, 0x00, 0x34, 0x12, 0, 0})}};
     const auto value = upload(0x6041, 0);
     ASSERT_TRUE(value);
@@ -225,7 +228,9 @@ TEST_F(SdoClient, GivesUpWhenTheMailboxStaysFull) {
 
 // A mailbox of 128 bytes carries 128 - 6 - 10 = 112 bytes with the first request, 119 with each segment.
 TEST_F(SdoClient, DownloadsLongValuesInSegments) {
-    slave.script = {{coe({0x00, 0x30, 0x60, 0x00, 0x20, 0x01, 0, 0, 0, 0})}, {coe({0x00, 0x30, 0x20, 0, 0, 0, 0, 0, 0, 0})}, {coe({0x00, 0x30, 0x30, 0, 0, 0, 0, 0, 0, 0})}};
+    slave.script = {{coe({0x00, 0x30, 0x60, 0x00, 0x20, 0x01, 0, 0, 0, 0})},
+                    {coe({0x00, 0x30, 0x20, 0, 0, 0, 0, 0, 0, 0})},
+                    {coe({0x00, 0x30, 0x30, 0, 0, 0, 0, 0, 0, 0})}};
     const auto written = download(0x2000, 1, Bytes(250, std::byte{'x'}));
     ASSERT_TRUE(written) << written.error().text();
     ASSERT_THAT(slave.requests, SizeIs(3));

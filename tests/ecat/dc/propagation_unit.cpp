@@ -20,9 +20,7 @@ std::vector<LatchedTimes> line_of_three() {
     };
 }
 
-TEST(LineDelays, AreHalfTheDifferenceOfTheRoundTrips) {
-    EXPECT_THAT(line_delays(line_of_three()), ElementsAre(0, 100, 350));
-}
+TEST(LineDelays, AreHalfTheDifferenceOfTheRoundTrips) { EXPECT_THAT(line_delays(line_of_three()), ElementsAre(0, 100, 350)); }
 
 // The same line; A's 32-bit clock wraps between the two latches: FFFFFE00h, and 700 ns later 000000BCh.
 TEST(LineDelays, SurviveTheWrapOfTheLocalClock) {
@@ -71,9 +69,7 @@ TEST(Sync0Start, LiesOnTheGridAfterTheMargin) {
 }
 
 // The master sends 300 us after each multiple of 1 ms; SYNC0 follows 500 us behind the sending.
-TEST(Sync0Start, KeepsThePhaseOfTheMastersCycle) {
-    EXPECT_EQ(sync0_start(10'000'000, 100ms, 1ms, 300us, 500us), 110'800'000u);
-}
+TEST(Sync0Start, KeepsThePhaseOfTheMastersCycle) { EXPECT_EQ(sync0_start(10'000'000, 100ms, 1ms, 300us, 500us), 110'800'000u); }
 
 TEST(Sync0Instants, NextAndLastAroundATime) {
     EXPECT_EQ(next_sync0(1'600, 500, 1'000), 2'500);

@@ -26,8 +26,8 @@ TEST(Script, WaitsInMachineTimeAndReturnsValuesThroughNestedScripts) {
     std::vector<int> log;
     Runner runner{sum(log)};
 
-    runner.step(at(0ms));   // first pause starts
-    runner.step(at(1ms));   // it ends, the second starts: ends at 3 ms
+    runner.step(at(0ms));  // first pause starts
+    runner.step(at(1ms));  // it ends, the second starts: ends at 3 ms
     runner.step(at(2ms));
     EXPECT_FALSE(runner.done());
     EXPECT_TRUE(log.empty());
