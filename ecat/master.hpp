@@ -6,6 +6,13 @@
 //   before cycles  pump(now): moves acyclic datagrams only; for whoever has no cycle running yet.
 //
 // In virtual time the same three are called in a fixed order from one thread. Source: reference/ETG.1000, DESIGN 7.
+//
+// Time. The bus' system time (DC) starts as machine time; the reference clock, the first slave with DC, then runs by itself.
+// Each cycle's FRMW answer tells how far the two are apart (BusStatistics::dc_offset_ns, dc_drift_ppb); SYNC0 instants and latch
+// times are given in machine time through that offset. SYNC0 is placed `sync0_shift` after send(), in the phase in which send()
+// was seen to be called during the bring-up; so run receive()/send() from start() on: they work in every phase, and send
+// process data as soon as it is planned. Whoever pumps first must later send at multiples of the cycle. A servo that keeps the
+// phase against the drift does not exist yet: on real slaves SYNC0 wanders through the cycle by dc_drift_ppb.
 
 #include <cstddef>
 #include <cstdint>
