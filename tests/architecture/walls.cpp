@@ -35,9 +35,10 @@ const std::vector<OwnedInclude>& owned_includes() {
     static const std::vector<OwnedInclude> rules{
         {std::regex("^ecat/"), {"axes/drives/cia402", "axes/sim"}, motion_side, "ecat/"},
         {std::regex("^modbus/"), {"axes/drives/xp200", "axes/sim"}, motion_side, "modbus/"},
-        {std::regex("^lcm(/|\\.h)"), {"hmi_bridge", "apps"}, {}, "LCM"},
+        {std::regex("^(lcm(/|\\.h)|taktwerk_lcm/)"), {"hmi_bridge", "apps"}, {}, "LCM"},
         {std::regex("^yaml-cpp/"), {"config"}, {}, "yaml-cpp"},
         {std::regex("^pugixml"), {"ecat/esi"}, {}, "pugixml"},
+        {std::regex("^nlohmann/"), {"hmi_bridge", "apps"}, {}, "nlohmann-json"},
         {std::regex("^CLI/"), {"apps"}, {}, "CLI11"},
         {std::regex("^(gtest|gmock|benchmark)/"), {"tests"}, {}, "a test library"},
     };
