@@ -1,0 +1,117 @@
+#include "hmi_bridge/answer_text.hpp"
+
+#include <fmt/format.h>
+
+#include "axes/axis/error_table.hpp"
+
+namespace taktwerk::hmi {
+
+using runtime::Answer;
+
+namespace {
+
+std::string_view spoken(axes::Owner owner) {
+    switch (owner) {
+        case axes::Owner::none: return "nobody";
+        case axes::Owner::program: return "a program";
+        case axes::Owner::operator_panel: return "the operator panel";
+        case axes::Owner::commissioning: return "commissioning";
+    }
+    return "another party";
+}
+
+}  // namespace
+
+std::string_view code(Answer answer) noexcept {
+    switch (answer) {
+        case Answer::accepted: return "";
+        case Answer::unknown_name: return "command.unknown_name";
+        case Answer::bad_value: return "command.bad_value";
+        case Answer::stale: return "command.stale";
+        case Answer::no_control: return "command.no_control";
+        case Answer::wrong_mode: return "command.wrong_mode";
+        case Answer::refused_by_axis: return "command.refused_by_axis";
+        case Answer::not_possible_now: return "command.not_possible_now";
+        case Answer::queue_full: return "command.queue_full";
+        case Answer::duplicate: return "command.duplicate";
+    }
+    return "command.refused";
+}
+
+std::string subject_of(const runtime::MachineLayout& layout, TargetKind target, std::uint16_t axis, std::uint16_t index) {
+    switch (target) {
+        case TargetKind::none: return "";
+        case TargetKind::axis:
+        case TargetKind::axis_or_all: return axis < layout.axes.size() ? "axis " + layout.axes[axis].name : "all axes";
+        case TargetKind::program: return index < layout.programs.size() ? "program " + layout.programs[index] : "";
+        case TargetKind::parameter: return index < layout.parameters.size() ? "parameter " + layout.parameters[index].name : "";
+        case TargetKind::output: return index < layout.outputs.size() ? "output " + layout.outputs[index] : "";
+    }
+    return "";
+}
+
+Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::string subject) {
+    Error error{std::string(code(answer.answer)), std::move(subject), "", ""};
+    switch (answer.answer) {
+        case Answer::accepted: break;
+        case Answer::unknown_name:
+            error.what = "the machine does not know the target, or it is disabled by the configuration";
+            error.remedy = "Look at the names the machine has (taktwerk monitor), and at `disabled:` in the configuration.";
+            break;
+        case Answer::bad_value:
+            error.what = "the value is outside its range";
+            error.remedy = "Give a value inside the range.";
+            break;
+        case Answer::stale:
+            if (kind == CommandKind::jog) {
+                error.what = "the jog is over: its lease ran out before the renewal came, and the axis stops";
+                error.remedy = "Let go and press again; if it comes back, the connection or this computer is too slow.";
+            } else {
+                error.what = "the command came too late and was not carried out";
+                error.remedy = "Give it again.";
+            }
+            break;
+        case Answer::no_control:
+            error.what = fmt::format("{} has control", spoken(answer.owner));
+            error.remedy = answer.owner == axes::Owner::program
+                               ? "Stop the program or change to manual mode; or take control (the axis stops first)."
+                               : "Wait until it is released, or take control (the axis stops first).";
+            break;
+        case Answer::wrong_mode:
+            error.what = "the mode of the machine does not allow it";
+            error.remedy = kind == CommandKind::program_start ? "Change to automatic mode first." : "Change to manual or setup mode first.";
+            break;
+        case Answer::refused_by_axis:
+            if (const auto* text = axes::find_error(answer.error); text && answer.error != axes::ErrorId::none) {
+                error.what = fmt::format("{} ({})", text->english, text->name);
+                error.remedy = fmt::format("{}.", text->remedy);
+            } else {
+                error.what = fmt::format("the axis refused it with error 0x{:04X}", static_cast<unsigned>(answer.error));
+                error.remedy = "See the alarms of the axis.";
+            }
+            break;
+        case Answer::not_possible_now:
+            if (kind == CommandKind::set_output) {
+                error.what = "a program is running, and it drives the outputs";
+                error.remedy = "Stop the programs first.";
+            } else if (kind == CommandKind::program_start) {
+                error.what = "the program is in fault, or the machine is shutting down";
+                error.remedy = "Reset the program, then start it.";
+            } else {
+                error.what = "the machine is shutting down";
+                error.remedy = "Start it again for further commands.";
+            }
+            break;
+        case Answer::queue_full:
+            error.what = "too many commands at once; this one was not taken";
+            error.remedy = "Give it again.";
+            break;
+        case Answer::duplicate:
+            error.what = "the sequence number was used before";
+            error.remedy = "Use a new one for each command.";
+            break;
+    }
+    return error;
+}
+
+}  // namespace taktwerk::hmi

@@ -1,0 +1,20 @@
+#pragma once
+// The machine's answer to a command in words: what, why, what to do.
+
+#include "core/result.hpp"
+#include "hmi_bridge/command_words.hpp"
+#include "runtime/operator_command.hpp"
+#include "runtime/snapshot.hpp"
+
+namespace taktwerk::hmi {
+
+/// Stable code of a refusal: "command.no_control". Empty for accepted. Exit codes derive from it.
+[[nodiscard]] std::string_view code(runtime::Answer answer) noexcept;
+
+/// "axis x", "program cell", ...; empty when the command has no target.
+[[nodiscard]] std::string subject_of(const runtime::MachineLayout& layout, TargetKind target, std::uint16_t axis, std::uint16_t index);
+
+/// Only for refusals.
+[[nodiscard]] Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::string subject);
+
+}  // namespace taktwerk::hmi

@@ -1,0 +1,245 @@
+#include "hmi_bridge/json_requests.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "core/nearest_name.hpp"
+#include "hmi_bridge/json_state.hpp"
+#include "hmi_bridge/words.hpp"
+
+namespace taktwerk::hmi {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::array<std::string_view, 4> questions{"hello", "layout", "state", "alarms"};
+constexpr int deepest_nesting = 4;
+
+std::string_view key_of(TargetKind target) {
+    switch (target) {
+        case TargetKind::none: break;
+        case TargetKind::axis:
+        case TargetKind::axis_or_all: return "axis";
+        case TargetKind::program: return "program";
+        case TargetKind::parameter: return "parameter";
+        case TargetKind::output: return "output";
+    }
+    return "";
+}
+
+Error request_error(std::string code, std::string what, std::string remedy) { return {"request." + code, "", std::move(what), std::move(remedy)}; }
+
+std::string shown(std::string_view text) { return Json(text.substr(0, 64)).dump(-1, ' ', true, Json::error_handler_t::replace); }
+
+std::string refusal_line(const std::string& id, const Error& error) {
+    const nlohmann::ordered_json words{{"code", error.code}, {"subject", error.subject}, {"what", error.what}, {"remedy", error.remedy}};
+    return fmt::format(R"({{"id":{},"ok":false,"error":{}}})", id, words.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+Result<Json> parse(std::string_view line) {
+    bool too_deep = false;
+    const auto bounded = [&](int depth, Json::parse_event_t, Json&) {
+        too_deep = too_deep || depth > deepest_nesting;
+        return !too_deep;
+    };
+    auto json = Json::parse(line, bounded, false);
+    if (too_deep) return request_error("too_deep", fmt::format("the request is nested deeper than {} levels", deepest_nesting), "Send one flat JSON object a line.");
+    if (json.is_discarded()) return request_error("not_json", fmt::format("the line is not JSON: {}", shown(line)), R"(Send one JSON object a line: {"id":1,"cmd":"state"}.)");
+    if (!json.is_object()) return request_error("not_an_object", "the request is not a JSON object", R"(Send one JSON object a line: {"id":1,"cmd":"state"}.)");
+    return json;
+}
+
+/// Reads the keys of one request, all by their types; the first problem stays.
+class Fields {
+public:
+    explicit Fields(const Json& json) : json_(json) {}
+
+    std::string text(std::string_view key, bool required) {
+        const auto* value = find(key, required);
+        if (!value) return {};
+        if (value->is_string()) return value->get<std::string>();
+        return wrong(key, "a text"), std::string{};
+    }
+    double number(std::string_view key, bool required) {
+        const auto* value = find(key, required);
+        if (!value) return 0;
+        if (value->is_number()) return value->get<double>();
+        if (value->is_boolean() && key == "value") return value->get<bool>() ? 1 : 0;
+        return wrong(key, "a number"), 0;
+    }
+    bool flag(std::string_view key) {
+        const auto* value = find(key, false);
+        if (!value) return false;
+        if (value->is_boolean()) return value->get<bool>();
+        return wrong(key, "true or false"), false;
+    }
+    /// 0 when absent.
+    std::int64_t integer(std::string_view key) {
+        const auto* value = find(key, false);
+        if (!value) return 0;
+        if (value->is_number_unsigned() && value->get<std::uint64_t>() > INT64_MAX) return wrong(key, "a whole number below 2^63"), 0;
+        if (value->is_number_integer()) return value->get<std::int64_t>();
+        return wrong(key, "a whole number"), 0;
+    }
+    /// Keys that nobody asked for.
+    void finish() {
+        for (const auto& [key, value] : json_.items()) {
+            if (error_ || std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
+            const auto near = nearest_name(std::string_view(key).substr(0, 64), known_);
+            error_ = request_error("unknown_key", fmt::format("this command knows no key {}", shown(key)),
+                                   near.empty() ? fmt::format("It knows: {}.", fmt::join(known_, ", ")) : fmt::format("Did you mean \"{}\"?", near));
+        }
+    }
+    [[nodiscard]] const std::optional<Error>& error() const { return error_; }
+
+private:
+    const Json* find(std::string_view key, bool required) {
+        known_.emplace_back(key);
+        const auto found = json_.find(std::string(key));
+        if (found != json_.end()) return &*found;
+        if (required && !error_) error_ = request_error("missing_key", fmt::format("\"{}\" is missing", key), fmt::format("Add \"{}\".", key));
+        return nullptr;
+    }
+    void wrong(std::string_view key, std::string_view wanted) {
+        if (!error_) error_ = request_error("wrong_type", fmt::format("\"{}\" is not {}", key, wanted), fmt::format("Give {}.", wanted));
+    }
+
+    const Json& json_;
+    std::vector<std::string> known_;
+    std::optional<Error> error_;
+};
+
+std::optional<runtime::Mode> find_mode(std::string_view text) {
+    for (const auto mode : {runtime::Mode::manual, runtime::Mode::setup, runtime::Mode::automatic})
+        if (word(mode) == text) return mode;
+    return std::nullopt;
+}
+
+Error unknown_command(std::string_view cmd) {
+    std::vector<std::string> words(questions.begin(), questions.end());
+    for (const auto& entry : command_words) words.emplace_back(entry.word);
+    const auto near = nearest_name(cmd.substr(0, 64), words);
+    return request_error("unknown_command", fmt::format("there is no command {}", shown(cmd)),
+                         near.empty() ? fmt::format("Use one of: {}.", fmt::join(words, ", ")) : fmt::format("Did you mean \"{}\"?", near));
+}
+
+Result<CommandRequest> read_command(const CommandWord& entry, Fields& fields, std::int64_t wall_utime) {
+    CommandRequest request;
+    request.kind = entry.kind;
+    if (entry.target != TargetKind::none) {
+        const bool optional = entry.kind == CommandKind::stop || entry.kind == CommandKind::reset;
+        request.target = fields.text(key_of(entry.target), !optional);
+    }
+    if (!entry.value.empty()) request.value = fields.number(entry.value, true);
+    if (!entry.value2.empty()) request.value2 = fields.number(entry.value2, true);
+    if (entry.kind == CommandKind::jog) {
+        request.press = fields.flag("press");
+        request.valid_for = std::chrono::milliseconds{250};
+    }
+    std::optional<Error> mode_error;
+    if (entry.kind == CommandKind::mode) {
+        const auto wanted = fields.text("mode", true);
+        if (const auto mode = find_mode(wanted)) request.mode = *mode;
+        else mode_error = Error{"command.bad_value", "", fmt::format("there is no mode {}", shown(wanted)), "Give manual, setup or automatic."};
+    }
+    request.commissioning = fields.flag("commissioning");
+    // A validity beyond what fits is as wrong as one beyond the gateway's limit.
+    if (const auto ms = fields.integer("valid_ms"); ms != 0)
+        request.valid_for = std::chrono::milliseconds{std::clamp<std::int64_t>(ms, -1, 1'000'000)};
+    if (const auto utime = fields.integer("utime"); utime != 0) {
+        constexpr std::int64_t day = 86'400'000'000;
+        const bool far = utime < wall_utime - day || utime > wall_utime + day || utime < 0;
+        request.age = std::chrono::microseconds{far ? (utime < wall_utime ? day : -day) : wall_utime - utime};
+    }
+    fields.finish();
+    if (fields.error()) return *fields.error();
+    if (mode_error) return *mode_error;
+    return request;
+}
+
+}  // namespace
+
+JsonRequests::JsonRequests(Gateway& gateway, MachineLink& machine, std::function<std::int64_t()> wall_utime)
+    : gateway_(gateway), machine_(machine), wall_utime_(std::move(wall_utime)) {}
+
+void JsonRequests::on_open(ConnectionId connection, const Peer& peer) {
+    const auto client = gateway_.open(Source::socket, fmt::format("process {} of user {}", peer.pid, peer.uid), Rights::commissioning);
+    if (client == 0) return;  // questions are still answered
+    clients_[connection] = client;
+    connections_[client] = connection;
+}
+
+void JsonRequests::on_close(ConnectionId connection) {
+    const auto found = clients_.find(connection);
+    if (found == clients_.end()) return;
+    gateway_.close(found->second);
+    connections_.erase(found->second);
+    clients_.erase(found);
+}
+
+void JsonRequests::refuse(ConnectionId connection, const std::string& id, const Error& error) { answer(connection, refusal_line(id, error)); }
+
+void JsonRequests::on_line(ConnectionId connection, std::string_view line, Instant now) {
+    const auto json = parse(line);
+    if (!json) return refuse(connection, "null", json.error());
+    Fields fields(*json);
+    const auto id = fields.integer("id");
+    const auto id_text = id > 0 ? std::to_string(id) : std::string("null");
+    const auto cmd = fields.text("cmd", true);
+    if (fields.error()) return refuse(connection, id_text, *fields.error());
+
+    if (const auto* entry = find_command(cmd)) {
+        if (id <= 0) return refuse(connection, "null", request_error("missing_key", "a command needs an \"id\" of 1 or more", "Count \"id\" up with each command."));
+        auto request = read_command(*entry, fields, wall_utime_());
+        if (!request) return refuse(connection, id_text, request.error());
+        const auto client = clients_.find(connection);
+        if (client == clients_.end())
+            return refuse(connection, id_text, {"command.not_possible_now", "", "too many clients give commands", "Close some of them and connect again."});
+        request->client = client->second;
+        request->sequence = static_cast<std::uint64_t>(id);
+        return gateway_.handle(*request, now);
+    }
+    if (std::find(questions.begin(), questions.end(), cmd) == questions.end()) return refuse(connection, id_text, unknown_command(cmd));
+
+    fields.integer("utime");
+    fields.finish();
+    if (fields.error()) return refuse(connection, id_text, *fields.error());
+    const auto with = [&](std::string_view key, std::string_view value) {
+        answer(connection, fmt::format(R"({{"id":{},"ok":true,"{}":{}}})", id_text, key, value));
+    };
+    if (cmd == "hello") {
+        const nlohmann::ordered_json hello{{"protocol_version", protocol_version}, {"machine", machine_.layout().machine}, {"pid", ::getpid()},
+                                           {"cycling", snapshot_ != nullptr}, {"progress", progress_}};
+        return with("hello", hello.dump(-1, ' ', false, Json::error_handler_t::replace));
+    }
+    if (cmd == "layout") return with("layout", layout_json(machine_.layout()));
+    if (!snapshot_)
+        return refuse(connection, id_text, {"state.not_yet", "", "the machine has not executed a cycle yet" + (progress_.empty() ? "" : ": " + progress_), "Ask again in a moment."});
+    if (cmd == "state") return with("state", state_json(*snapshot_, machine_));
+    with("alarms", alarms_json(*snapshot_, machine_));
+}
+
+void JsonRequests::deliver(const CommandReply& reply) {
+    const auto found = connections_.find(reply.client);
+    if (found == connections_.end()) return;
+    const auto id = std::to_string(reply.sequence);
+    if (reply.accepted()) answer(found->second, fmt::format(R"({{"id":{},"ok":true}})", id));
+    else refuse(found->second, id, reply.error);
+}
+
+std::optional<JsonRequests::Line> JsonRequests::next_line() {
+    if (lines_.empty()) return std::nullopt;
+    auto line = std::move(lines_.front());
+    lines_.pop_front();
+    return line;
+}
+
+}  // namespace taktwerk::hmi

@@ -1,0 +1,61 @@
+#pragma once
+// The socket's language: one JSON object a line, one answer line for each. Commands go to the gateway, questions are answered
+// from the snapshot. Knows no sockets: lines in, lines out. README.md has the table of requests. One thread, not real-time.
+//
+//   {"id":1,"cmd":"jog","axis":"x","velocity":20,"press":true}   ->  {"id":1,"ok":true}
+//   {"id":2,"cmd":"hoem","axis":"x"}  ->  {"id":2,"ok":false,"error":{"code":"request.unknown_command","what":...,"remedy":...}}
+//
+// Unknown keys are errors: a misspelt "velocity" must not mean "no velocity".
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core/time.hpp"
+#include "hmi_bridge/gateway.hpp"
+#include "hmi_bridge/line_handler.hpp"
+
+namespace taktwerk::hmi {
+
+class JsonRequests final : public LineHandler {
+public:
+    struct Line {
+        ConnectionId connection = 0;
+        std::string text;  ///< without the newline
+    };
+
+    /// `wall_utime`: us since 1970; judges the age of requests that say when they were sent ("utime").
+    JsonRequests(Gateway& gateway, MachineLink& machine, std::function<std::int64_t()> wall_utime);
+
+    /// For questions: the snapshot of this step, nullptr before the first cycle. Until the next call.
+    void observe(const runtime::Snapshot* snapshot) noexcept { snapshot_ = snapshot; }
+    /// One line about how the start is getting on, for "hello" and "state".
+    void set_progress(std::string progress) { progress_ = std::move(progress); }
+
+    void on_open(ConnectionId connection, const Peer& peer) override;
+    void on_line(ConnectionId connection, std::string_view line, Instant now) override;
+    void on_close(ConnectionId connection) override;
+
+    /// A reply of the gateway with Source::socket.
+    void deliver(const CommandReply& reply);
+    std::optional<Line> next_line();
+
+private:
+    void refuse(ConnectionId connection, const std::string& id, const Error& error);
+    void answer(ConnectionId connection, std::string text) { lines_.push_back({connection, std::move(text)}); }
+
+    Gateway& gateway_;
+    MachineLink& machine_;
+    std::function<std::int64_t()> wall_utime_;
+    const runtime::Snapshot* snapshot_ = nullptr;
+    std::string progress_;
+    std::map<ConnectionId, ClientId> clients_;
+    std::map<ClientId, ConnectionId> connections_;
+    std::deque<Line> lines_;
+};
+
+}  // namespace taktwerk::hmi

@@ -1,0 +1,185 @@
+#include "hmi_bridge/json_state.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "ecat/wire/al_status.hpp"
+#include "hmi_bridge/words.hpp"
+
+namespace taktwerk::hmi {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::int64_t count(Duration d) { return d.count(); }
+std::int64_t count(Instant t) { return t.time_since_epoch().count(); }
+
+std::string text(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+Json axis_json(const axes::AxisView& axis, const runtime::MachineLayout::AxisInfo& info) {
+    return Json{
+        {"name", info.name},
+        {"unit", info.unit},
+        {"state", name(axis.state)},
+        {"owner", name(axis.owner)},
+        {"disabled", info.disabled},
+        {"simulated", axis.simulated},
+        {"online", axis.online},
+        {"powered", axis.powered},
+        {"homed", axis.homed},
+        {"in_position", axis.in_position},
+        {"has_job", axis.active != 0},
+        {"queued", axis.queued_count},
+        {"resetting", axis.resetting},
+        {"warning", axis.warning},
+        {"error", axis.error},
+        {"drive_error", axis.drive_error},
+        {"actual_position", axis.actual_position},
+        {"actual_velocity", axis.actual_velocity},
+        {"actual_torque", axis.actual_torque},
+        {"set_position", axis.set_position},
+        {"set_velocity", axis.set_velocity},
+        {"set_acceleration", axis.set_acceleration},
+        {"set_jerk", axis.set_jerk},
+        {"target_position", axis.target_position},
+        {"following_error", axis.following_error},
+        {"velocity_limiter", word(axis.limiter)},
+        {"drive_state", name(axis.drive_state)},
+        {"drive_mode", name(axis.drive_mode)},
+        {"status_word", axis.status_word},
+        {"negative_limit_switch", axis.negative_limit_switch},
+        {"positive_limit_switch", axis.positive_limit_switch},
+        {"home_switch", axis.home_switch},
+    };
+}
+
+Json alarm_array(const runtime::Snapshot& snapshot, const MachineLink& machine) {
+    auto out = Json::array();
+    for (std::size_t i = 0; i < snapshot.alarm_count && i < snapshot.alarms.size(); ++i) {
+        const auto& alarm = snapshot.alarms[i];
+        const auto words = machine.describe(alarm.fact);
+        out.push_back(Json{
+            {"id", alarm.fact.id},
+            {"name", words.name},
+            {"source", words.source},
+            {"since_ns", count(alarm.since)},
+            {"count", alarm.count},
+            {"standing", alarm.standing},
+            {"acknowledged", alarm.acknowledged},
+            {"reaction", word(alarm.reaction)},
+            {"english", words.english},
+            {"chinese", words.chinese},
+            {"cause", words.cause},
+            {"remedy", words.remedy},
+            {"reset", words.reset},
+        });
+    }
+    return out;
+}
+
+Json points(const std::vector<std::string>& names, const std::vector<std::int64_t>& values) {
+    auto out = Json::object();
+    for (std::size_t i = 0; i < names.size() && i < values.size(); ++i) out[names[i]] = values[i];
+    return out;
+}
+
+}  // namespace
+
+std::string state_json(const runtime::Snapshot& s, const MachineLink& machine) {
+    const auto& layout = machine.layout();
+    Json out{
+        {"machine", layout.machine},
+        {"cycle", s.cycle},
+        {"time_ns", count(s.at)},
+        {"phase", word(s.phase)},
+        {"mode", word(s.mode)},
+        {"emergency_stop", s.emergency_stop},
+        {"simulated", s.simulated},
+    };
+    out["statistics"] = Json{
+        {"cycles", s.statistics.cycles},
+        {"overruns", s.statistics.overruns},
+        {"missed_ticks", s.statistics.missed_ticks},
+        {"lateness_ns", count(s.statistics.lateness)},
+        {"lateness_max_ns", count(s.statistics.lateness_max)},
+        {"compute_ns", count(s.statistics.compute)},
+        {"compute_max_ns", count(s.statistics.compute_max)},
+        {"snapshots_dropped", s.statistics.snapshots_dropped},
+        {"commands_refused", s.statistics.commands_refused},
+    };
+    out["bus"] = Json{
+        {"phase", word(s.bus_phase)},
+        {"frames_sent", s.bus.frames_sent},
+        {"frames_received", s.bus.frames_received},
+        {"frames_lost", s.bus.frames_lost},
+        {"frames_late", s.bus.frames_late},
+        {"frames_rejected", s.bus.frames_rejected},
+        {"working_counter_errors", s.bus.working_counter_errors},
+        {"send_errors", s.bus.send_errors},
+        {"dc_difference_ns", s.bus.dc_difference_ns},
+        {"round_trip_ns", count(s.bus.round_trip)},
+    };
+    auto& slaves = out["slaves"] = Json::array();
+    for (std::size_t i = 0; i < s.slaves.size() && i < layout.slaves.size(); ++i)
+        slaves.push_back(Json{{"name", layout.slaves[i]},
+                              {"state", ecat::name(s.slaves[i].al_state)},
+                              {"al_status_code", s.slaves[i].al_status_code},
+                              {"fresh", s.slaves[i].fresh},
+                              {"age", s.slaves[i].age}});
+    auto& axes = out["axes"] = Json::array();
+    for (std::size_t i = 0; i < s.axes.size() && i < layout.axes.size(); ++i) axes.push_back(axis_json(s.axes[i], layout.axes[i]));
+    auto& programs = out["programs"] = Json::array();
+    for (std::size_t i = 0; i < s.programs.size() && i < layout.programs.size(); ++i)
+        programs.push_back(Json{{"name", layout.programs[i]}, {"state", word(s.programs[i])}});
+    auto& tasks = out["tasks"] = Json::array();
+    for (std::size_t i = 0; i < s.tasks.size() && i < layout.tasks.size(); ++i)
+        tasks.push_back(Json{{"name", layout.tasks[i]},
+                             {"releases", s.tasks[i].releases},
+                             {"overruns", s.tasks[i].overruns},
+                             {"run_ns", count(s.tasks[i].run)},
+                             {"run_max_ns", count(s.tasks[i].run_max)}});
+    out["inputs"] = points(layout.inputs, s.inputs);
+    out["outputs"] = points(layout.outputs, s.outputs);
+    auto& variables = out["variables"] = Json::array();
+    for (std::size_t i = 0; i < s.variables.size() && i < layout.variables.size(); ++i)
+        variables.push_back(Json{{"program", layout.variables[i].program},
+                                 {"name", layout.variables[i].name},
+                                 {"unit", layout.variables[i].unit},
+                                 {"value", s.variables[i]}});
+    auto& parameters = out["parameters"] = Json::array();
+    for (std::size_t i = 0; i < s.parameters.size() && i < layout.parameters.size(); ++i)
+        parameters.push_back(Json{{"program", layout.parameters[i].program},
+                                  {"name", layout.parameters[i].name},
+                                  {"unit", layout.parameters[i].unit},
+                                  {"value", s.parameters[i]}});
+    out["alarms"] = alarm_array(s, machine);
+    return text(out);
+}
+
+std::string layout_json(const runtime::MachineLayout& layout) {
+    Json out{{"machine", layout.machine}, {"cycle_ns", count(layout.cycle)}};
+    auto& axes = out["axes"] = Json::array();
+    for (const auto& axis : layout.axes)
+        axes.push_back(Json{{"name", axis.name},
+                            {"unit", axis.unit},
+                            {"disabled", axis.disabled},
+                            {"simulated", axis.simulated},
+                            {"jog_slow", axis.jog_slow},
+                            {"jog_fast", axis.jog_fast}});
+    out["slaves"] = layout.slaves;
+    out["inputs"] = layout.inputs;
+    out["outputs"] = layout.outputs;
+    out["programs"] = layout.programs;
+    out["tasks"] = layout.tasks;
+    auto& variables = out["variables"] = Json::array();
+    for (const auto& v : layout.variables)
+        variables.push_back(Json{{"program", v.program}, {"name", v.name}, {"unit", v.unit}, {"doc", v.doc}, {"type", word(v.type)}});
+    auto& parameters = out["parameters"] = Json::array();
+    for (const auto& p : layout.parameters)
+        parameters.push_back(Json{{"program", p.program}, {"name", p.name}, {"unit", p.unit}, {"doc", p.doc},
+                                  {"minimum", p.minimum}, {"maximum", p.maximum}, {"value", p.value}});
+    return text(out);
+}
+
+std::string alarms_json(const runtime::Snapshot& snapshot, const MachineLink& machine) { return text(alarm_array(snapshot, machine)); }
+
+}  // namespace taktwerk::hmi

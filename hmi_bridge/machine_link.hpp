@@ -1,0 +1,27 @@
+#pragma once
+// The machine as the bridge sees it: commands in, answers and snapshots out. runtime_link.hpp binds it to runtime::Machine;
+// tests play one by hand. One thread (the service side), not real-time.
+
+#include <optional>
+
+#include "runtime/machine.hpp"
+#include "runtime/operator_command.hpp"
+#include "runtime/snapshot.hpp"
+
+namespace taktwerk::hmi {
+
+class MachineLink {
+public:
+    virtual ~MachineLink() = default;
+    /// False: the inbox is full.
+    virtual bool submit(const runtime::OperatorCommand& command) = 0;
+    virtual std::optional<runtime::CommandAnswer> next_answer() = 0;
+    /// The newest snapshot, nullptr before the first cycle. Valid until the next call.
+    virtual const runtime::Snapshot* latest() = 0;
+    [[nodiscard]] virtual const runtime::MachineLayout& layout() const = 0;
+    [[nodiscard]] virtual runtime::AlarmText describe(const AlarmFact& fact) const = 0;
+    /// A level, never queued: works before the first cycle too.
+    virtual void request_shutdown() = 0;
+};
+
+}  // namespace taktwerk::hmi

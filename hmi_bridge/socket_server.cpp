@@ -1,0 +1,190 @@
+#include "hmi_bridge/socket_server.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include <fmt/format.h>
+
+namespace taktwerk::hmi {
+namespace {
+
+constexpr mode_t socket_mode = 0660;
+
+std::string reason() { return std::strerror(errno); }
+
+/// The lock file lives as long as the runtime and holds its pid; the kernel lets go of the lock when the runtime dies.
+Result<int> lock_for(const std::string& path) {
+    const auto lock_path = path + ".lock";
+    const int lock = ::open(lock_path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0640);
+    if (lock < 0)
+        return Error{"socket.bind", path, fmt::format("cannot make {}: {}", lock_path, reason()),
+                     "Give a path in a folder that exists and that this user may write, as `socket:` in the configuration."};
+    if (::flock(lock, LOCK_EX | LOCK_NB) != 0) {
+        char pid[32] = {};
+        const auto length = ::pread(lock, pid, sizeof pid - 1, 0);
+        ::close(lock);
+        return Error{"socket.in_use", path, fmt::format("another runtime already serves this machine: process {}", length > 0 ? pid : "unknown"),
+                     "Stop it first, or give this machine another name or `socket:`."};
+    }
+    const auto pid = std::to_string(::getpid());
+    if (::ftruncate(lock, 0) != 0 || ::pwrite(lock, pid.data(), pid.size(), 0) < 0) {
+        // Only the message for a second runtime would be poorer.
+    }
+    return lock;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<SocketServer>> SocketServer::open(const std::string& path, std::function<void(std::string_view)> log) {
+    sockaddr_un address{};
+    if (path.empty() || path.size() >= sizeof address.sun_path)
+        return Error{"socket.too_long", path, fmt::format("a socket's path has 1 to {} characters", sizeof address.sun_path - 1), "Give a shorter path as `socket:`."};
+    address.sun_family = AF_UNIX;
+    std::memcpy(address.sun_path, path.c_str(), path.size());
+
+    const auto lock = lock_for(path);
+    if (!lock) return lock.error();
+    const auto fail = [&](std::string code, std::string what, std::string remedy) {
+        ::close(*lock);
+        return Error{std::move(code), path, std::move(what), std::move(remedy)};
+    };
+    struct stat info {};
+    if (::lstat(path.c_str(), &info) == 0) {
+        if (!S_ISSOCK(info.st_mode)) return fail("socket.not_a_socket", "something else already has this name", "Remove it, or give another path as `socket:`.");
+        ::unlink(path.c_str());  // nobody holds the lock: left behind by a runtime that died
+    }
+    const int listener = ::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    // The mode is set on the socket before it gets a name, so that there is no moment in which others may connect.
+    const bool bound = listener >= 0 && ::fchmod(listener, socket_mode) == 0 && ::bind(listener, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 &&
+                       ::chmod(path.c_str(), socket_mode) == 0 && ::listen(listener, static_cast<int>(max_connections)) == 0;
+    if (!bound) {
+        const auto why = reason();
+        if (listener >= 0) ::close(listener);
+        return fail("socket.bind", "cannot make the command socket: " + why, "Give a path in a folder that this user may write, as `socket:` in the configuration.");
+    }
+    return std::unique_ptr<SocketServer>(new SocketServer(path, listener, *lock, std::move(log)));
+}
+
+SocketServer::SocketServer(std::string path, int listener, int lock, std::function<void(std::string_view)> log)
+    : path_(std::move(path)), listener_(listener), lock_(lock), log_(std::move(log)) {
+    connections_.reserve(max_connections);
+}
+
+SocketServer::~SocketServer() {
+    for (auto& connection : connections_) ::close(connection.socket);
+    ::close(listener_);
+    ::unlink(path_.c_str());
+    ::unlink((path_ + ".lock").c_str());
+    ::close(lock_);
+}
+
+void SocketServer::accept_all(LineHandler& handler) {
+    for (std::size_t round = 0; round < max_connections; ++round) {
+        const int socket = ::accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
+        if (socket < 0) return;
+        ucred who{};
+        socklen_t size = sizeof who;
+        ::getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &who, &size);
+        const Peer peer{who.pid, who.uid, who.gid};
+        if (connections_.size() >= max_connections) {
+            constexpr std::string_view full = R"({"id":null,"ok":false,"error":{"code":"socket.too_many_clients","subject":"","what":"8 clients are connected already","remedy":"Close one of them."}})" "\n";
+            [[maybe_unused]] const auto sent = ::send(socket, full.data(), full.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+            ::close(socket);
+            log_(fmt::format("command socket: process {} of user {} turned away, {} clients are connected", peer.pid, peer.uid, max_connections));
+            continue;
+        }
+        connections_.push_back({next_id_++, socket, {}, {}, false, false});
+        log_(fmt::format("command socket: process {} of user {} connected", peer.pid, peer.uid));
+        handler.on_open(connections_.back().id, peer);
+    }
+}
+
+void SocketServer::read(Connection& connection, Instant now, LineHandler& handler) {
+    char buffer[16 * 1024];
+    bool ended = false;
+    while (connection.in.size() <= max_line) {
+        const auto got = ::recv(connection.socket, buffer, sizeof buffer, 0);
+        if (got > 0) {
+            connection.in.append(buffer, static_cast<std::size_t>(got));
+            continue;
+        }
+        ended = got == 0 || (got < 0 && errno != EAGAIN && errno != EWOULDBLOCK && errno != EINTR);
+        break;
+    }
+    std::size_t start = 0;
+    std::size_t lines = 0;
+    bool limited = false;
+    for (auto end = connection.in.find('\n'); end != std::string::npos; end = connection.in.find('\n', start)) {
+        if (lines++ == lines_per_step) {
+            limited = true;
+            break;
+        }
+        auto line = std::string_view(connection.in).substr(start, end - start);
+        if (line.ends_with('\r')) line.remove_suffix(1);
+        if (line.size() > max_line) break;
+        if (!line.empty()) handler.on_line(connection.id, line, now);
+        start = end + 1;
+    }
+    connection.in.erase(0, start);
+    if (!limited && connection.in.size() > max_line) {
+        send(connection.id, fmt::format(R"({{"id":null,"ok":false,"error":{{"code":"request.too_long","subject":"","what":"a line is longer than {} bytes","remedy":"Send one request a line."}}}})", max_line));
+        connection.in.clear();
+        connection.closing = true;
+    }
+    // A half line at the end is nobody's request. Whole lines beyond this step's share are still done.
+    if (ended && !limited) connection.dead = true;
+}
+
+void SocketServer::flush(Connection& connection) {
+    while (!connection.out.empty()) {
+        const auto sent = ::send(connection.socket, connection.out.data(), connection.out.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+        if (sent > 0) {
+            connection.out.erase(0, static_cast<std::size_t>(sent));
+            continue;
+        }
+        if (sent < 0 && errno == EINTR) continue;
+        if (sent < 0 && errno != EAGAIN && errno != EWOULDBLOCK) connection.dead = true;
+        break;
+    }
+    if (connection.closing && connection.out.empty()) connection.dead = true;
+}
+
+void SocketServer::send(ConnectionId id, std::string_view line) {
+    const auto found = std::find_if(connections_.begin(), connections_.end(), [&](const auto& c) { return c.id == id; });
+    if (found == connections_.end() || found->dead) return;
+    if (found->out.size() + line.size() + 1 > max_unread) {
+        log_("command socket: a client does not read its answers; dropped");
+        found->dead = true;
+        return;
+    }
+    found->out.append(line).push_back('\n');
+    flush(*found);
+}
+
+void SocketServer::step(Instant now, LineHandler& handler) {
+    accept_all(handler);
+    for (auto& connection : connections_) {
+        if (!connection.closing && !connection.dead) read(connection, now, handler);
+        if (!connection.dead) flush(connection);
+    }
+    for (auto connection = connections_.begin(); connection != connections_.end();) {
+        if (!connection->dead) {
+            ++connection;
+            continue;
+        }
+        ::close(connection->socket);
+        const auto id = connection->id;
+        connection = connections_.erase(connection);
+        handler.on_close(id);
+    }
+}
+
+}  // namespace taktwerk::hmi

@@ -1,0 +1,58 @@
+#pragma once
+// A Unix stream socket that carries lines. Nothing blocks: step() does what can be done now. Bounded in every direction:
+// clients, line length, unread answers. Only users who may open the socket file (0660) get in. One thread, not real-time.
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/result.hpp"
+#include "core/time.hpp"
+#include "hmi_bridge/line_handler.hpp"
+
+namespace taktwerk::hmi {
+
+class SocketServer {
+public:
+    static constexpr std::size_t max_connections = 8;
+    static constexpr std::size_t max_line = 64 * 1024;
+    static constexpr std::size_t max_unread = 1024 * 1024;   ///< a client that does not read its answers is dropped
+    static constexpr std::size_t lines_per_step = 32;        ///< of one connection
+
+    /// Binds `path`, replacing what a runtime that died has left behind. `log` gets one line per connection and problem.
+    /// Errors: socket.in_use (with the process that has it), socket.not_a_socket, socket.too_long, socket.bind.
+    static Result<std::unique_ptr<SocketServer>> open(const std::string& path, std::function<void(std::string_view)> log);
+    ~SocketServer();  ///< closes everything and removes the file
+    SocketServer(const SocketServer&) = delete;
+    SocketServer& operator=(const SocketServer&) = delete;
+
+    void step(Instant now, LineHandler& handler);
+    /// Queues a line and sends what the kernel takes. Unknown connections are ignored.
+    void send(ConnectionId connection, std::string_view line);
+    [[nodiscard]] std::size_t connection_count() const noexcept { return connections_.size(); }
+    [[nodiscard]] const std::string& path() const noexcept { return path_; }
+
+private:
+    struct Connection {
+        ConnectionId id = 0;
+        int socket = -1;
+        std::string in, out;
+        bool closing = false;  ///< no more reading; closed when the rest is sent
+        bool dead = false;
+    };
+    SocketServer(std::string path, int listener, int lock, std::function<void(std::string_view)> log);
+    void accept_all(LineHandler& handler);
+    void read(Connection& connection, Instant now, LineHandler& handler);
+    void flush(Connection& connection);
+
+    std::string path_;
+    int listener_, lock_;
+    std::function<void(std::string_view)> log_;
+    ConnectionId next_id_ = 1;
+    std::vector<Connection> connections_;
+};
+
+}  // namespace taktwerk::hmi

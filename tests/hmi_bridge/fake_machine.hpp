@@ -1,0 +1,73 @@
+#pragma once
+// A machine played by hand: keeps what was submitted, answers what the test says, shows the snapshot the test fills.
+
+#include <deque>
+#include <vector>
+
+#include "hmi_bridge/machine_link.hpp"
+
+namespace taktwerk::hmi::test {
+
+class FakeMachine final : public MachineLink {
+public:
+    FakeMachine() {
+        layout_.machine = "demo";
+        layout_.cycle = std::chrono::milliseconds{1};
+        layout_.axes = {{"x", "mm", false, true, 10, 50}, {"y", "mm", false, true, 10, 50}, {"turret", "deg", true, true, 5, 20}};
+        layout_.slaves = {"x_drive", "y_drive"};
+        layout_.inputs = {"start_button", "estop_ok"};
+        layout_.outputs = {"lamp_run"};
+        layout_.programs = {"cell", "feeder"};
+        layout_.tasks = {"cell.main"};
+        layout_.variables = {{"cell", "step", "", "step of the sequence", VariableType::int32}};
+        layout_.parameters = {{"cell", "speed", "mm/s", "transfer speed", 10, 500, 200},
+                              {"cell", "pause", "s", "", 0, 5, 1},
+                              {"feeder", "pause", "s", "", 0, 9, 2}};
+        snapshot.cycle = 1000;
+        snapshot.at = Instant{std::chrono::seconds{1}};
+        snapshot.phase = runtime::MachinePhase::running;
+        snapshot.simulated = true;
+        snapshot.bus_phase = ecat::Master::Phase::operational;
+        snapshot.slaves.resize(2);
+        snapshot.axes.resize(3);
+        snapshot.inputs = {0, 1};
+        snapshot.outputs = {1};
+        snapshot.parameters = {200, 1, 2};
+        snapshot.variables = {7};
+        snapshot.programs = {runtime::ProgramState::running, runtime::ProgramState::stopped};
+        snapshot.tasks.resize(1);
+    }
+
+    bool submit(const runtime::OperatorCommand& command) override {
+        if (submitted.size() >= inbox_size) return false;
+        submitted.push_back(command);
+        return true;
+    }
+    std::optional<runtime::CommandAnswer> next_answer() override {
+        if (answers.empty()) return std::nullopt;
+        const auto answer = answers.front();
+        answers.pop_front();
+        return answer;
+    }
+    const runtime::Snapshot* latest() override { return cycling ? &snapshot : nullptr; }
+    [[nodiscard]] const runtime::MachineLayout& layout() const override { return layout_; }
+    [[nodiscard]] runtime::AlarmText describe(const AlarmFact&) const override {
+        return {"axis x", "following_error", "The axis lags behind", "跟随误差过大", "It is blocked", "Free it", "the axis stops", "reset"};
+    }
+    void request_shutdown() override { shutdown_requested = true; }
+
+    /// Answers the newest command.
+    void answer(runtime::Answer verdict, axes::ErrorId error = axes::ErrorId::none, axes::Owner owner = axes::Owner::none) {
+        answers.push_back({submitted.back().client, submitted.back().sequence, verdict, error, owner});
+    }
+
+    std::vector<runtime::OperatorCommand> submitted;
+    std::deque<runtime::CommandAnswer> answers;
+    runtime::Snapshot snapshot;
+    runtime::MachineLayout layout_;
+    std::size_t inbox_size = 1000;
+    bool cycling = true;
+    bool shutdown_requested = false;
+};
+
+}  // namespace taktwerk::hmi::test

@@ -1,0 +1,403 @@
+// The rules of the one gate for commands. Issue: client, sequence, validity, acknowledgement; control authority; jog lease.
+#include "hmi_bridge/gateway.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/hmi_bridge/fake_machine.hpp"
+
+namespace taktwerk::hmi {
+namespace {
+
+using namespace std::chrono_literals;
+using runtime::Answer;
+using runtime::OperatorAction;
+using test::FakeMachine;
+using testing::HasSubstr;
+
+class GatewayTest : public testing::Test {
+protected:
+    GatewayTest() { gateway.observe(true); }
+
+    CommandRequest request(CommandKind kind, std::string target = "") {
+        CommandRequest r;
+        r.client = client;
+        r.sequence = ++sequence;
+        r.kind = kind;
+        r.target = std::move(target);
+        return r;
+    }
+    CommandRequest jog(double velocity, bool press, ClientId who) {
+        auto r = request(CommandKind::jog, "x");
+        r.client = who;
+        r.value = velocity;
+        r.press = press;
+        r.valid_for = 250ms;
+        return r;
+    }
+    /// Hands the request in; the machine accepts what reaches it.
+    CommandReply outcome(const CommandRequest& r, Answer verdict = Answer::accepted, axes::ErrorId error = axes::ErrorId::none,
+                         axes::Owner owner = axes::Owner::none) {
+        const auto before = machine.submitted.size();
+        gateway.handle(r, now);
+        if (machine.submitted.size() > before) machine.answer(verdict, error, owner);
+        gateway.step(now);
+        auto reply = gateway.next_reply();
+        EXPECT_TRUE(reply.has_value());
+        EXPECT_FALSE(gateway.next_reply().has_value()) << "exactly one reply";
+        return reply.value_or(CommandReply{});
+    }
+
+    FakeMachine machine;
+    Gateway gateway{machine};
+    ClientId client = gateway.open(Source::socket, "panel A", Rights::commissioning);
+    std::uint64_t sequence = 0;
+    Instant now{10s};
+};
+
+TEST_F(GatewayTest, ACommandBecomesAnOperatorCommandWithItsNamesResolvedAndAnExpiry) {
+    auto r = request(CommandKind::move, "y");
+    r.value = 12.5;
+    r.value2 = 30;
+    r.valid_for = 400ms;
+    r.age = 100ms;
+
+    const auto reply = outcome(r);
+
+    EXPECT_TRUE(reply.accepted());
+    EXPECT_EQ(reply.sequence, 1u);
+    ASSERT_EQ(machine.submitted.size(), 1u);
+    const auto& command = machine.submitted[0];
+    EXPECT_EQ(command.action, OperatorAction::move_absolute);
+    EXPECT_EQ(command.axis, 1);
+    EXPECT_EQ(command.value, 12.5);
+    EXPECT_EQ(command.value2, 30);
+    EXPECT_EQ(command.owner, axes::Owner::operator_panel);
+    EXPECT_EQ(command.expires, now + 300ms) << "validity counts from when the client gave it";
+}
+
+TEST_F(GatewayTest, ARepeatedSequenceIsAnsweredAgainAndNotExecutedAgain) {
+    const auto r = request(CommandKind::home, "x");
+    outcome(r, Answer::refused_by_axis, axes::ErrorId::not_powered);
+
+    gateway.handle(r, now + 5ms);
+
+    const auto again = gateway.next_reply();
+    ASSERT_TRUE(again);
+    EXPECT_EQ(again->answer, Answer::refused_by_axis);
+    EXPECT_EQ(machine.submitted.size(), 1u);
+}
+
+TEST_F(GatewayTest, ARepeatWhileTheAnswerIsOnItsWayWaitsForThatAnswer) {
+    const auto r = request(CommandKind::home, "x");
+    gateway.handle(r, now);
+    gateway.handle(r, now);
+    EXPECT_FALSE(gateway.next_reply());
+
+    machine.answer(Answer::accepted);
+    gateway.step(now);
+
+    EXPECT_TRUE(gateway.next_reply());
+    EXPECT_FALSE(gateway.next_reply());
+    EXPECT_EQ(machine.submitted.size(), 1u);
+}
+
+TEST_F(GatewayTest, ASequenceUsedForAnotherCommandIsRefused) {
+    outcome(request(CommandKind::home, "x"));
+    auto other = request(CommandKind::home, "y");
+    other.sequence = 1;
+
+    EXPECT_EQ(outcome(other).answer, Answer::duplicate);
+    EXPECT_EQ(machine.submitted.size(), 1u);
+}
+
+TEST_F(GatewayTest, ASequenceThatIsForgottenOrRunsBackwardsIsNotExecuted) {
+    auto first = request(CommandKind::acknowledge);
+    first.sequence = 5;
+    outcome(first);
+    auto backwards = request(CommandKind::acknowledge);
+    backwards.sequence = 4;
+    EXPECT_EQ(outcome(backwards).answer, Answer::duplicate);
+
+    sequence = 5;
+    for (std::size_t i = 0; i < Gateway::remembered; ++i) outcome(request(CommandKind::acknowledge));
+    const auto executed = machine.submitted.size();
+    EXPECT_EQ(outcome(first).answer, Answer::duplicate);
+    EXPECT_EQ(machine.submitted.size(), executed);
+}
+
+TEST_F(GatewayTest, SequencesOfDifferentClientsDoNotMeet) {
+    outcome(request(CommandKind::home, "x"));
+    auto r = request(CommandKind::home, "y");
+    r.client = gateway.open(Source::lcm, "panel B", Rights::operating);
+    r.sequence = 1;
+
+    EXPECT_TRUE(outcome(r).accepted());
+    EXPECT_EQ(machine.submitted.size(), 2u);
+}
+
+TEST_F(GatewayTest, AFullInboxRefusesAndTheSameSequenceMayTryAgain) {
+    const auto r = request(CommandKind::home, "x");
+    machine.inbox_size = 0;
+    EXPECT_EQ(outcome(r).answer, Answer::queue_full);
+
+    machine.inbox_size = 10;
+    EXPECT_TRUE(outcome(r).accepted());
+}
+
+TEST_F(GatewayTest, ACommandOlderThanItsValidityIsStale) {
+    auto r = request(CommandKind::home, "x");
+    r.valid_for = 200ms;
+    r.age = 201ms;
+
+    const auto reply = outcome(r);
+
+    EXPECT_EQ(reply.answer, Answer::stale);
+    EXPECT_EQ(reply.error.code, "command.stale");
+    EXPECT_EQ(reply.error.subject, "axis x");
+    EXPECT_TRUE(machine.submitted.empty());
+}
+
+TEST_F(GatewayTest, ACommandFromTheFutureIsRefusedBecauseItsAgeCannotBeJudged) {
+    auto r = request(CommandKind::home, "x");
+    r.age = -1001ms;
+    EXPECT_EQ(outcome(r).answer, Answer::stale);
+    auto small = request(CommandKind::home, "x");
+    small.age = -900ms;
+    EXPECT_TRUE(outcome(small).accepted());
+    EXPECT_EQ(machine.submitted.back().expires, now + 1s) << "no credit for a clock that is ahead";
+}
+
+TEST_F(GatewayTest, ValiditiesOutsideTheirRangeAreRefused) {
+    for (const auto validity : {Duration{-1ms}, Duration{0}, Duration{10001ms}}) {
+        auto r = request(CommandKind::home, "x");
+        r.valid_for = validity;
+        EXPECT_EQ(outcome(r).answer, Answer::bad_value) << validity.count();
+    }
+    auto r = jog(20, true, client);
+    r.valid_for = 501ms;
+    EXPECT_EQ(outcome(r).answer, Answer::bad_value) << "a jog lives shorter";
+    EXPECT_TRUE(machine.submitted.empty());
+}
+
+TEST_F(GatewayTest, UnknownNamesAreRefusedWithASuggestion) {
+    const auto reply = outcome(request(CommandKind::home, "turet"));
+
+    EXPECT_EQ(reply.answer, Answer::unknown_name);
+    EXPECT_THAT(reply.error.what, HasSubstr("turet"));
+    EXPECT_THAT(reply.error.remedy, HasSubstr("'turret'"));
+    EXPECT_EQ(outcome(request(CommandKind::program_start, "cel")).answer, Answer::unknown_name);
+    EXPECT_EQ(outcome(request(CommandKind::home, "")).answer, Answer::unknown_name);
+    EXPECT_EQ(outcome(request(CommandKind::home, "all")).answer, Answer::unknown_name) << "axes are homed one by one";
+    EXPECT_EQ(outcome(request(static_cast<CommandKind>(99))).answer, Answer::unknown_name);
+    EXPECT_EQ(outcome(request(static_cast<CommandKind>(-1))).answer, Answer::unknown_name);
+    EXPECT_TRUE(machine.submitted.empty());
+}
+
+TEST_F(GatewayTest, StopAndResetWithoutANameMeanAll) {
+    outcome(request(CommandKind::stop));
+    outcome(request(CommandKind::reset));
+    outcome(request(CommandKind::enable, "all"));
+
+    ASSERT_EQ(machine.submitted.size(), 3u);
+    for (const auto& command : machine.submitted) EXPECT_EQ(command.axis, 0xFFFF);
+    EXPECT_TRUE(machine.submitted[2].flag);
+    EXPECT_EQ(outcome(request(CommandKind::enable, "")).answer, Answer::unknown_name) << "power for all must be said";
+}
+
+TEST_F(GatewayTest, AParameterIsFoundByItsNameAloneOnlyWhenThatIsUnique) {
+    auto speed = request(CommandKind::set_parameter, "speed");
+    speed.value = 300;
+    EXPECT_TRUE(outcome(speed).accepted());
+    EXPECT_EQ(machine.submitted[0].index, 0);
+
+    auto pause = request(CommandKind::set_parameter, "pause");
+    pause.value = 1;
+    const auto reply = outcome(pause);
+    EXPECT_EQ(reply.answer, Answer::unknown_name);
+    EXPECT_THAT(reply.error.remedy, HasSubstr("'feeder.pause'"));
+
+    pause = request(CommandKind::set_parameter, "feeder.pause");
+    pause.value = 8;
+    EXPECT_TRUE(outcome(pause).accepted());
+    EXPECT_EQ(machine.submitted[1].index, 2);
+}
+
+TEST_F(GatewayTest, ValuesOutsideTheirRangeAreRefusedWithTheRange) {
+    const auto nan = std::numeric_limits<double>::quiet_NaN();
+    const auto infinity = std::numeric_limits<double>::infinity();
+    auto speed = request(CommandKind::set_parameter, "speed");
+    speed.value = 500.1;
+    const auto reply = outcome(speed);
+    EXPECT_EQ(reply.answer, Answer::bad_value);
+    EXPECT_EQ(reply.error.subject, "parameter speed");
+    EXPECT_THAT(reply.error.remedy, HasSubstr("10 to 500 mm/s"));
+
+    for (const double value : {nan, infinity, -infinity, 9.9}) {
+        speed = request(CommandKind::set_parameter, "speed");
+        speed.value = value;
+        EXPECT_EQ(outcome(speed).answer, Answer::bad_value) << value;
+    }
+    for (const double velocity : {nan, infinity, 50.1, -50.1, 0.0}) EXPECT_EQ(outcome(jog(velocity, true, client)).answer, Answer::bad_value) << velocity;
+    for (const double velocity : {nan, infinity, 0.0, -1.0}) {
+        auto move = request(CommandKind::move, "x");
+        move.value2 = velocity;
+        EXPECT_EQ(outcome(move).answer, Answer::bad_value) << velocity;
+    }
+    auto lamp = request(CommandKind::set_output, "lamp_run");
+    lamp.value = 0.5;
+    EXPECT_EQ(outcome(lamp).answer, Answer::bad_value);
+    auto mode = request(CommandKind::mode);
+    mode.mode = static_cast<runtime::Mode>(7);
+    EXPECT_EQ(outcome(mode).answer, Answer::bad_value);
+    EXPECT_TRUE(machine.submitted.empty());
+}
+
+TEST_F(GatewayTest, RefusalsOfTheMachineComeBackInWords) {
+    const auto owned = outcome(request(CommandKind::home, "x"), Answer::no_control, axes::ErrorId::owned_by_other, axes::Owner::program);
+    EXPECT_EQ(owned.error.code, "command.no_control");
+    EXPECT_THAT(owned.error.what, HasSubstr("a program has control"));
+    EXPECT_THAT(owned.error.remedy, HasSubstr("manual mode"));
+
+    const auto refused = outcome(request(CommandKind::home, "x"), Answer::refused_by_axis, axes::ErrorId::not_powered);
+    EXPECT_EQ(refused.error.subject, "axis x");
+    EXPECT_THAT(refused.error.what, HasSubstr("The axis is disabled"));
+    EXPECT_THAT(refused.error.remedy, HasSubstr("Enable it"));
+
+    for (const auto answer : {Answer::unknown_name, Answer::bad_value, Answer::stale, Answer::wrong_mode, Answer::not_possible_now, Answer::queue_full, Answer::duplicate}) {
+        const auto reply = outcome(request(CommandKind::home, "x"), answer);
+        EXPECT_FALSE(reply.error.what.empty());
+        EXPECT_FALSE(reply.error.remedy.empty());
+    }
+}
+
+TEST_F(GatewayTest, CommissioningIsForClientsWithThatRight) {
+    auto r = request(CommandKind::take_control, "x");
+    r.commissioning = true;
+    EXPECT_TRUE(outcome(r).accepted());
+    EXPECT_EQ(machine.submitted[0].owner, axes::Owner::commissioning);
+
+    r = request(CommandKind::take_control, "x");
+    r.commissioning = true;
+    r.client = gateway.open(Source::lcm, "panel B", Rights::operating);
+    EXPECT_EQ(outcome(r).answer, Answer::no_control);
+    EXPECT_EQ(machine.submitted.size(), 1u);
+}
+
+TEST_F(GatewayTest, WithoutAnAnswerOfTheCycleTheClientIsTold) {
+    gateway.handle(request(CommandKind::home, "x"), now);
+    gateway.step(now + Gateway::answer_patience);
+    EXPECT_FALSE(gateway.next_reply());
+
+    gateway.step(now + Gateway::answer_patience + 1ms);
+
+    const auto reply = gateway.next_reply();
+    ASSERT_TRUE(reply);
+    EXPECT_EQ(reply->error.code, "command.no_answer");
+}
+
+TEST_F(GatewayTest, BeforeTheFirstCycleOnlyShutdownIsTaken) {
+    gateway.observe(false);
+    EXPECT_EQ(outcome(request(CommandKind::home, "x")).answer, Answer::not_possible_now);
+    EXPECT_TRUE(outcome(request(CommandKind::shutdown)).accepted());
+    EXPECT_TRUE(machine.shutdown_requested);
+    EXPECT_TRUE(machine.submitted.empty());
+}
+
+TEST_F(GatewayTest, ShutdownGetsThroughAFullInbox) {
+    machine.inbox_size = 0;
+    EXPECT_TRUE(outcome(request(CommandKind::shutdown)).accepted());
+    EXPECT_TRUE(machine.shutdown_requested);
+}
+
+TEST_F(GatewayTest, AJogIsPressedAndRenewedByTheSameClient) {
+    EXPECT_TRUE(outcome(jog(20, true, client)).accepted());
+    EXPECT_TRUE(machine.submitted.back().flag);
+    now += 50ms;
+    EXPECT_TRUE(outcome(jog(20, false, client)).accepted());
+    EXPECT_FALSE(machine.submitted.back().flag);
+    now += 50ms;
+    EXPECT_TRUE(outcome(jog(0, false, client)).accepted());
+    now += 50ms;
+    EXPECT_EQ(outcome(jog(20, false, client)).answer, Answer::stale) << "after letting go a renewal moves nothing";
+    EXPECT_EQ(machine.submitted.size(), 3u);
+}
+
+TEST_F(GatewayTest, ARenewalWithoutAPressMovesNothing) {
+    EXPECT_EQ(outcome(jog(20, false, client)).answer, Answer::stale);
+    EXPECT_TRUE(machine.submitted.empty());
+}
+
+TEST_F(GatewayTest, AJogThatWasSilentTooLongNeedsANewPress) {
+    outcome(jog(20, true, client));
+    now += Gateway::jog_session + 1ms;
+    EXPECT_EQ(outcome(jog(20, false, client)).answer, Answer::stale);
+    EXPECT_TRUE(outcome(jog(20, true, client)).accepted());
+}
+
+TEST_F(GatewayTest, AJogWhoseLeaseRanOutInTheCycleNeedsANewPress) {
+    outcome(jog(20, true, client));
+    const auto late = outcome(jog(20, false, client), Answer::stale);
+    EXPECT_THAT(late.error.what, HasSubstr("lease ran out"));
+    const auto count = machine.submitted.size();
+
+    EXPECT_EQ(outcome(jog(20, false, client)).answer, Answer::stale);
+
+    EXPECT_EQ(machine.submitted.size(), count) << "the gateway does not even ask";
+}
+
+TEST_F(GatewayTest, OnlyOneClientJogsAnAxisAtATime) {
+    outcome(jog(20, true, client));
+    const auto other = gateway.open(Source::lcm, "panel B", Rights::operating);
+
+    const auto refused = outcome(jog(-20, true, other));
+    EXPECT_EQ(refused.answer, Answer::no_control);
+    EXPECT_THAT(refused.error.what, HasSubstr("panel A"));
+
+    outcome(jog(0, false, client));
+    EXPECT_TRUE(outcome(jog(-20, true, other)).accepted());
+}
+
+TEST_F(GatewayTest, AClientThatClosesWhileJoggingStopsItsAxis) {
+    outcome(jog(20, true, client));
+
+    gateway.close(client);
+
+    ASSERT_EQ(machine.submitted.size(), 2u);
+    EXPECT_EQ(machine.submitted[1].action, OperatorAction::jog);
+    EXPECT_EQ(machine.submitted[1].value, 0);
+    EXPECT_EQ(machine.submitted[1].axis, 0);
+    gateway.close(client);
+    EXPECT_EQ(machine.submitted.size(), 2u) << "once";
+}
+
+TEST_F(GatewayTest, AnswersToAClosedClientAreDropped) {
+    gateway.handle(request(CommandKind::home, "x"), now);
+    gateway.close(client);
+    machine.answer(Answer::accepted);
+    gateway.step(now);
+    EXPECT_FALSE(gateway.next_reply());
+}
+
+TEST_F(GatewayTest, ClientsAreBounded) {
+    ClientId last = client;
+    while (gateway.client_count() < Gateway::max_clients) last = gateway.open(Source::lcm, "flood", Rights::operating);
+    EXPECT_EQ(gateway.open(Source::lcm, "flood", Rights::operating), 0u);
+    gateway.close(last);
+    EXPECT_NE(gateway.open(Source::lcm, "flood", Rights::operating), 0u);
+}
+
+TEST_F(GatewayTest, TooManyCommandsInFlightAreRefusedWithoutForgettingOne) {
+    for (std::size_t i = 0; i < Gateway::remembered; ++i) gateway.handle(request(CommandKind::acknowledge), now);
+    gateway.handle(request(CommandKind::acknowledge), now);
+
+    const auto reply = gateway.next_reply();
+    ASSERT_TRUE(reply);
+    EXPECT_EQ(reply->answer, Answer::queue_full);
+    EXPECT_EQ(machine.submitted.size(), Gateway::remembered);
+}
+
+}  // namespace
+}  // namespace taktwerk::hmi
