@@ -14,6 +14,7 @@ namespace taktwerk::runtime {
 namespace {
 
 constexpr std::size_t inbox_size = 64;
+constexpr unsigned relaxed_factor = 100;  // as Supervision documents
 constexpr Duration relaxed_watchdog = std::chrono::milliseconds{500};
 constexpr auto no_slave = std::numeric_limits<std::size_t>::max();
 
@@ -33,9 +34,11 @@ ecat::BusConfig bus_of(const MachineConfig& config) {
         }
     }
     // Without real time a stall of the host must not trip the slaves' watchdogs before it is even counted.
-    if (config.simulation.supervision == Supervision::relaxed)
+    if (config.simulation.supervision == Supervision::relaxed) {
+        bus.lost_frames_limit = static_cast<std::uint16_t>(std::min(bus.lost_frames_limit * relaxed_factor, 60000u));
         for (auto& slave : bus.slaves)
             if (slave.sm_watchdog == Duration{}) slave.sm_watchdog = relaxed_watchdog;
+    }
     std::erase_if(bus.slaves, [&](const ecat::SlaveConfig& slave) {
         bool bound = false, all_simulated = true;
         for (const auto& binding : config.axes) {
@@ -416,6 +419,7 @@ TraceRing& Machine::enable_trace(std::size_t rows) {
     return *impl_->trace;
 }
 const StepStatistics<step_count - 1>& Machine::step_statistics() const noexcept { return impl_->steps; }
+void Machine::reset_step_statistics() noexcept { impl_->steps.reset(); }
 const MachineConfig& Machine::config() const noexcept { return impl_->config; }
 const MachineLayout& Machine::layout() const noexcept { return impl_->layout; }
 const ecat::Master& Machine::bus() const noexcept { return impl_->bus; }

@@ -80,6 +80,7 @@ public:
     TraceRing& enable_trace(std::size_t rows);
     /// Times per step (Step order), for benchmarks and the monitor. Read by the cycle thread, or when it stands.
     [[nodiscard]] const StepStatistics<step_count - 1>& step_statistics() const noexcept;
+    void reset_step_statistics() noexcept;
 
     [[nodiscard]] const MachineConfig& config() const noexcept;
     [[nodiscard]] const MachineLayout& layout() const noexcept;

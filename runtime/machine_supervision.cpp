@@ -1,5 +1,7 @@
 // Step 5: what holds is raised, the log decides what remains, the strongest reaction is carried out. Real-time safe.
 
+#include <array>
+
 #include "axes/axis/alarms.hpp"
 #include "ecat/alarms.hpp"
 #include "runtime/machine_impl.hpp"
@@ -70,22 +72,9 @@ void Machine::Impl::supervise(Instant, const CycleTick& tick) noexcept {
 }
 
 void Machine::Impl::raise_bus_alarms() noexcept {
-    const auto& numbers = bus.statistics();
-    const bool operational = bus.phase() == ecat::Master::Phase::operational;
-    if (!operational) return;  // bring-up and ordered stop tell their own story
-    if (numbers.lost_in_a_row >= limit(config.bus.lost_frames_limit))
-        raise_fact({ecat::alarm::frames_lost, AlarmSource::bus, 0, static_cast<double>(numbers.lost_in_a_row),
-                    static_cast<double>(limit(config.bus.lost_frames_limit))}, ecat::bus_alarms);
-    for (std::size_t i = 0; i < bus.slave_count(); ++i) {
-        const auto& health = bus.health(i);
-        const auto index = static_cast<std::uint16_t>(i);
-        if (health.al_state != ecat::AlState::op && health.al_state != ecat::AlState::unknown)
-            raise_fact({ecat::alarm::slave_left_op, AlarmSource::slave, index, static_cast<double>(health.al_state),
-                        static_cast<double>(health.al_status_code)}, ecat::bus_alarms);
-        else if (health.age >= limit(config.bus.lost_frames_limit))
-            raise_fact({ecat::alarm::slave_lost, AlarmSource::slave, index, static_cast<double>(health.age),
-                        static_cast<double>(limit(config.bus.lost_frames_limit))}, ecat::bus_alarms);
-    }
+    std::array<AlarmFact, AlarmLog::capacity> facts;
+    const auto count = bus.active_faults(facts);
+    for (std::size_t i = 0; i < count; ++i) raise_fact(facts[i], ecat::bus_alarms);
 }
 
 void Machine::Impl::react() noexcept {

@@ -47,6 +47,8 @@ public:
     void refresh() noexcept;
 
     [[nodiscard]] const std::string& interface() const noexcept { return interface_; }
+    /// For poll(2), by whoever plays the slaves; a master never waits on it.
+    [[nodiscard]] int descriptor() const noexcept { return socket_; }
 
 private:
     RawSocketTransport(std::string interface, int socket, int lock, const MacAddress& mac, bool sees_own_frames) noexcept;

@@ -1,4 +1,8 @@
-#include "tests/runtime/test_machine.hpp"
+#include "tests/machines/plain_machine.hpp"
+
+#include <string>
+
+#include "ecat/sim/digital_terminal.hpp"
 
 namespace taktwerk::runtime::testing {
 
