@@ -1,0 +1,64 @@
+#include "hmi_bridge/hmi_bridge.hpp"
+
+#include <fmt/format.h>
+
+#include "hmi_bridge/lcm_bus.hpp"
+#include "hmi_bridge/socket_path.hpp"
+
+namespace taktwerk::hmi {
+
+Result<std::unique_ptr<HmiBridge>> HmiBridge::open(const HmiConfig& config, MachineLink& machine, HmiOptions options) {
+    if (auto errors = check(config); !errors.empty()) return errors.front();
+    if (!options.log) options.log = [](std::string_view) {};
+
+    auto path = config.socket.empty() ? make_socket_path(machine.layout().machine) : Result<std::string>(config.socket);
+    if (!path) return path.error();
+    auto server = SocketServer::open(*path, options.log);
+    if (!server) return server.error();
+
+    std::optional<Error> problem;
+    if (config.lcm && !options.bus) {
+        const auto url = parse_lcm_url(config.lcm_url);
+        auto bus = LcmBus::open(*url);
+        if (bus) options.bus = std::move(bus).value();
+        else problem = bus.error();
+    }
+    if (problem && config.lcm_required) return *problem;
+    if (problem) options.log("the state is not published over LCM: " + problem->text());
+    options.log("commands are taken at " + *path);
+    return std::unique_ptr<HmiBridge>(new HmiBridge(config, machine, std::move(options), std::move(server).value(), std::move(problem)));
+}
+
+HmiBridge::HmiBridge(const HmiConfig& config, MachineLink& machine, HmiOptions options, std::unique_ptr<SocketServer> server, std::optional<Error> lcm_problem)
+    : machine_(machine),
+      bus_(std::move(options.bus)),
+      lcm_problem_(std::move(lcm_problem)),
+      channels_(machine.layout().machine),
+      gateway_(machine),
+      requests_(gateway_, machine, options.wall_utime),
+      receiver_(gateway_, options.wall_utime),
+      server_(std::move(server)) {
+    if (!bus_) return;
+    const bool commands = config.lcm_commands == LcmCommands::local;
+    publisher_.emplace(*bus_, machine, config.rate_hz, commands, options.wall_utime);
+    if (commands) bus_->subscribe(channels_.command(), [this](std::span<const std::byte> message) { receiver_.receive(message, now_); });
+}
+
+void HmiBridge::step(Instant now) {
+    now_ = now;
+    snapshot_ = machine_.latest();
+    gateway_.observe(snapshot_ != nullptr);
+    requests_.observe(snapshot_);
+
+    gateway_.step(now);  // answers to what was asked before
+    server_->step(now, requests_);
+    if (bus_) bus_->poll(lcm_messages_per_step);
+    while (const auto reply = gateway_.next_reply()) {
+        if (reply->source == Source::socket) requests_.deliver(*reply);
+        else if (bus_) receiver_.deliver(*reply, *bus_, channels_);
+    }
+    while (const auto line = requests_.next_line()) server_->send(line->connection, line->text);
+    if (publisher_) publisher_->step(snapshot_, now);
+}
+
+}  // namespace taktwerk::hmi

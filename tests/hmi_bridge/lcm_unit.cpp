@@ -1,0 +1,485 @@
+// The LCM side: types that must not change, what is published, which commands are taken, what hostile messages do.
+#include <gmock/gmock.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <regex>
+#include <sstream>
+
+#include "hmi_bridge/hmi_bridge.hpp"
+#include "hmi_bridge/lcm_bus.hpp"
+#include "hmi_bridge/memory_bus.hpp"
+#include "taktwerk_lcm/acknowledge_v1_t.hpp"
+#include "taktwerk_lcm/alarm_list_v1_t.hpp"
+#include "taktwerk_lcm/axis_state_v1_t.hpp"
+#include "taktwerk_lcm/command_v1_t.hpp"
+#include "taktwerk_lcm/cycle_statistics_v1_t.hpp"
+#include "taktwerk_lcm/heartbeat_v1_t.hpp"
+#include "taktwerk_lcm/io_state_v1_t.hpp"
+#include "taktwerk_lcm/machine_state_v1_t.hpp"
+#include "taktwerk_lcm/program_values_v1_t.hpp"
+#include "tests/hmi_bridge/fake_machine.hpp"
+
+namespace taktwerk::hmi {
+namespace {
+
+using namespace std::chrono_literals;
+using namespace taktwerk_lcm;
+using runtime::Answer;
+using test::FakeMachine;
+using testing::HasSubstr;
+
+constexpr std::int64_t wall = 1'800'000'000'000'000;  // us since 1970
+
+template <class Message>
+std::vector<std::byte> encoded(const Message& message) {
+    std::vector<std::byte> bytes(static_cast<std::size_t>(message.getEncodedSize()));
+    EXPECT_EQ(message.encode(bytes.data(), 0, static_cast<int>(bytes.size())), static_cast<int>(bytes.size()));
+    return bytes;
+}
+
+template <class Message>
+std::vector<Message> decoded(const MemoryBus& bus, const std::string& channel) {
+    std::vector<Message> out;
+    for (const auto& message : bus.published) {
+        if (message.channel != channel) continue;
+        out.emplace_back();
+        EXPECT_EQ(out.back().decode(message.bytes.data(), 0, static_cast<int>(message.bytes.size())), static_cast<int>(message.bytes.size()));
+    }
+    return out;
+}
+
+command_v1_t command(std::int64_t seq, std::int32_t kind, std::string_view target = "") {
+    command_v1_t c;
+    std::memset(&c, 0, sizeof c);
+    c.utime = wall;
+    c.seq = seq;
+    c.protocol_version = 1;
+    c.command_kind = kind;
+    c.client_id = 4711;
+    c.valid_for_ms = 200;
+    std::memcpy(c.target, target.data(), target.size());
+    return c;
+}
+
+class LcmTest : public testing::Test {
+protected:
+    void open(HmiConfig config, std::unique_ptr<MessageBus> other = nullptr) {
+        static int counter = 0;
+        config.socket = (std::filesystem::temp_directory_path() / ("taktwerk-lcm-test-" + std::to_string(::getpid()) + "-" + std::to_string(counter++))).string();
+        auto memory = std::make_unique<MemoryBus>();
+        bus = other ? nullptr : memory.get();
+        auto opened = HmiBridge::open(config, machine, {.log = {}, .wall_utime = [] { return wall; }, .bus = other ? std::move(other) : std::move(memory)});
+        ASSERT_TRUE(opened) << opened.error().text();
+        bridge = std::move(opened).value();
+    }
+    static HmiConfig commanded() {
+        HmiConfig config;
+        config.lcm_commands = LcmCommands::local;
+        return config;
+    }
+    void send(const command_v1_t& c) { bus->publish("TAKTWERK_DEMO_COMMAND", encoded(c)); }
+    std::vector<acknowledge_v1_t> acknowledges() { return decoded<acknowledge_v1_t>(*bus, "TAKTWERK_DEMO_ACKNOWLEDGE"); }
+    void step() { bridge->step(now += 5ms); }
+
+    FakeMachine machine;
+    MemoryBus* bus = nullptr;
+    std::unique_ptr<HmiBridge> bridge;
+    Instant now{1s};
+};
+
+// What a message means is fixed by these numbers: a type that changes gets a new name (_v2_t) and this table a new line. The
+// fingerprints are lcm-gen's own; the table only keeps them from changing unnoticed.
+TEST(LcmTypes, FingerprintsDoNotChange) {
+    const std::vector<std::pair<std::string, std::pair<std::int64_t, std::uint64_t>>> table{
+        {"acknowledge_v1_t", {acknowledge_v1_t::getHash(), 0xa6da1e312ee63c20u}},
+        {"alarm_v1_t", {alarm_v1_t::getHash(), 0x5bd95d0177b99698u}},
+        {"alarm_list_v1_t", {alarm_list_v1_t::getHash(), 0x66c1467ef7d317eau}},
+        {"axis_state_v1_t", {axis_state_v1_t::getHash(), 0x5382e5f78658f4bau}},
+        {"command_v1_t", {command_v1_t::getHash(), 0x49f677269204d580u}},
+        {"cycle_statistics_v1_t", {cycle_statistics_v1_t::getHash(), 0xc75e584d828afcb5u}},
+        {"heartbeat_v1_t", {heartbeat_v1_t::getHash(), 0x33e13d4ee4af763eu}},
+        {"io_state_v1_t", {io_state_v1_t::getHash(), 0x74ff9bc328461ef9u}},
+        {"machine_state_v1_t", {machine_state_v1_t::getHash(), 0x29e7c8d11954642fu}},
+        {"program_values_v1_t", {program_values_v1_t::getHash(), 0xbf80812da8872cfbu}},
+    };
+    ASSERT_FALSE(table.empty());
+    for (const auto& [name, hashes] : table) EXPECT_EQ(static_cast<std::uint64_t>(hashes.first), hashes.second) << name << std::hex << " 0x" << hashes.first;
+}
+
+TEST(LcmTypes, ConstantsAreTheNumbersOfTheCommandTable) {
+    std::ifstream file(std::string(TAKTWERK_SOURCE_DIR) + "/hmi_bridge/lcm/command_v1_t.lcm");
+    std::stringstream text;
+    text << file.rdbuf();
+    const auto all = text.str();
+    std::map<std::string, int> kinds;
+    const std::regex constant("KIND_([A-Z_]+) = ([0-9]+)");
+    for (std::sregex_iterator match(all.begin(), all.end(), constant), end; match != end; ++match) kinds[(*match)[1]] = std::stoi((*match)[2]);
+    ASSERT_EQ(kinds.size(), command_words.size());
+    for (const auto& entry : command_words) {
+        std::string upper(entry.word);
+        for (auto& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+        EXPECT_EQ(kinds[upper], static_cast<int>(entry.kind)) << upper;
+    }
+    // The numbers themselves, as HMIs have compiled them in.
+    EXPECT_EQ(command_v1_t::KIND_JOG, 7);
+    EXPECT_EQ(command_v1_t::KIND_STOP, 9);
+    EXPECT_EQ(command_v1_t::KIND_SHUTDOWN, 17);
+    EXPECT_EQ(command_v1_t::MODE_AUTOMATIC, 2);
+    EXPECT_EQ(acknowledge_v1_t::ANSWER_DUPLICATE, static_cast<int>(Answer::duplicate));
+    EXPECT_EQ(acknowledge_v1_t::ANSWER_NO_CONTROL, static_cast<int>(Answer::no_control));
+    EXPECT_EQ(acknowledge_v1_t::ANSWER_REFUSED_BY_AXIS, static_cast<int>(Answer::refused_by_axis));
+}
+
+// Generated decoders compute sizes in 32 bits: with a count or a string length from the wire they read beyond the message.
+TEST(LcmTypes, WhatTheRuntimeReceivesHasFixedSize) {
+    std::ifstream file(std::string(TAKTWERK_SOURCE_DIR) + "/hmi_bridge/lcm/command_v1_t.lcm");
+    ASSERT_TRUE(file);
+    for (std::string line; std::getline(file, line);) {
+        line = line.substr(0, line.find("//"));
+        EXPECT_EQ(line.find("string"), std::string::npos) << line;
+        EXPECT_FALSE(std::regex_search(line, std::regex(R"(\[[^0-9])"))) << line;
+    }
+}
+
+TEST_F(LcmTest, TheStateIsPublishedAtItsRate) {
+    open({});
+    // 50 Hz by default: 50 messages in a second of 5 ms steps.
+    for (int i = 0; i < 200; ++i) step();
+
+    EXPECT_EQ(decoded<machine_state_v1_t>(*bus, "TAKTWERK_DEMO_MACHINE_STATE").size(), 50u);
+    EXPECT_EQ(decoded<axis_state_v1_t>(*bus, "TAKTWERK_DEMO_AXIS_STATE").size(), 150u);
+    EXPECT_EQ(decoded<io_state_v1_t>(*bus, "TAKTWERK_DEMO_IO_STATE").size(), 50u);
+    EXPECT_EQ(decoded<program_values_v1_t>(*bus, "TAKTWERK_DEMO_PROGRAM_VALUES").size(), 50u);
+    EXPECT_EQ(decoded<cycle_statistics_v1_t>(*bus, "TAKTWERK_DEMO_CYCLE_STATISTICS").size(), 5u);
+    EXPECT_EQ(decoded<alarm_list_v1_t>(*bus, "TAKTWERK_DEMO_ALARM_LIST").size(), 2u);
+    EXPECT_EQ(decoded<heartbeat_v1_t>(*bus, "TAKTWERK_DEMO_HEARTBEAT").size(), 10u);
+    for (const auto& message : bus->published) EXPECT_LE(message.bytes.size(), Publisher::message_size_aim) << message.channel;
+}
+
+TEST_F(LcmTest, AServiceThatWasHeldUpDoesNotCatchUpInABurst) {
+    open({});
+    step();
+    const auto before = bus->published.size();
+    now += 10s;
+    step();
+    step();
+    EXPECT_LE(bus->published.size() - before, 10u);
+}
+
+TEST_F(LcmTest, AnAxisCarriesTheValuesOfAnOnlinePage) {
+    open({});
+    auto& y = machine.snapshot.axes[1];
+    y.state = axes::AxisState::DiscreteMotion;
+    y.powered = y.homed = y.online = true;
+    y.actual_position = 99.5;
+    y.set_position = 100;
+    y.set_velocity = -20;
+    y.target_position = 40;
+    y.active = 3;
+    y.following_error = 0.5;
+    step();
+    y.following_error = -0.25;
+    now += 50ms;
+    step();
+
+    const auto all = decoded<axis_state_v1_t>(*bus, "TAKTWERK_DEMO_AXIS_STATE");
+    ASSERT_EQ(all.size(), 6u);
+    const auto& m = all[4];
+    EXPECT_EQ(m.utime, wall);
+    EXPECT_EQ(m.protocol_version, 1);
+    EXPECT_EQ(m.name, "y");
+    EXPECT_EQ(m.unit, "mm");
+    EXPECT_EQ(m.axis_index, 1);
+    EXPECT_EQ(m.axis_count, 3);
+    EXPECT_EQ(m.state, axis_state_v1_t::STATE_DISCRETE_MOTION);
+    EXPECT_EQ(m.actual_position, 99.5);
+    EXPECT_EQ(m.distance_to_go, -60) << "target minus set position";
+    EXPECT_EQ(m.following_error, -0.25);
+    EXPECT_EQ(m.following_error_min, -0.25);
+    EXPECT_EQ(m.following_error_max, 0.5);
+    EXPECT_TRUE(m.negative_direction && m.constant_velocity && m.has_job && m.homed);
+    EXPECT_FALSE(m.positive_direction || m.not_moving || m.disabled);
+    EXPECT_TRUE(all[5].disabled);
+    EXPECT_GT(all[5].seq, all[4].seq);
+}
+
+TEST_F(LcmTest, LongListsComeInSeveralMessages) {
+    machine.layout_.inputs.clear();
+    for (int i = 0; i < 70; ++i) machine.layout_.inputs.push_back("in_" + std::to_string(i));
+    machine.snapshot.inputs.assign(70, 0);
+    machine.snapshot.inputs[69] = 5;
+    machine.snapshot.alarms.resize(30);
+    for (std::size_t i = 0; i < 30; ++i) machine.snapshot.alarms[i].fact.id = static_cast<AlarmId>(100 + i);
+    machine.snapshot.alarm_count = 30;
+    open({});
+    step();
+
+    const auto io = decoded<io_state_v1_t>(*bus, "TAKTWERK_DEMO_IO_STATE");
+    ASSERT_EQ(io.size(), 3u);  // 71 points, 32 a message
+    EXPECT_EQ(io[2].first, 64);
+    EXPECT_EQ(io[2].total, 71);
+    EXPECT_EQ(io[2].value[5], 5);
+    EXPECT_EQ(io[2].name[6], "lamp_run");
+    EXPECT_EQ(io[2].output[6], 1);
+
+    const auto alarms = decoded<alarm_list_v1_t>(*bus, "TAKTWERK_DEMO_ALARM_LIST");
+    ASSERT_GT(alarms.size(), 1u);
+    std::int32_t next = 0;
+    for (const auto& page : alarms) {
+        EXPECT_EQ(page.revision, 1);
+        EXPECT_EQ(page.total, 30);
+        EXPECT_EQ(page.first, next);
+        for (const auto& alarm : page.alarm) EXPECT_EQ(alarm.id, 100 + next++);
+    }
+    EXPECT_EQ(next, 30);
+    for (const auto& message : bus->published) EXPECT_LE(message.bytes.size(), Publisher::message_size_aim) << message.channel;
+}
+
+TEST_F(LcmTest, AChangedAlarmIsPublishedAtOnce) {
+    open({});
+    for (int i = 0; i < 3; ++i) step();
+    const auto before = decoded<alarm_list_v1_t>(*bus, "TAKTWERK_DEMO_ALARM_LIST").size();
+    machine.snapshot.alarms.resize(1);
+    machine.snapshot.alarms[0].standing = true;
+    machine.snapshot.alarm_count = 1;
+
+    step();
+
+    const auto lists = decoded<alarm_list_v1_t>(*bus, "TAKTWERK_DEMO_ALARM_LIST");
+    ASSERT_EQ(lists.size(), before + 1);
+    ASSERT_EQ(lists.back().alarm.size(), 1u);
+    EXPECT_EQ(lists.back().alarm[0].chinese, "跟随误差过大");
+    EXPECT_EQ(lists.back().alarm[0].remedy, "Free it");
+}
+
+TEST_F(LcmTest, BeforeTheFirstCycleThereIsOnlyAHeartbeat) {
+    machine.cycling = false;
+    open({});
+    step();
+    ASSERT_EQ(bus->published.size(), 1u);
+    const auto heartbeat = decoded<heartbeat_v1_t>(*bus, "TAKTWERK_DEMO_HEARTBEAT");
+    ASSERT_EQ(heartbeat.size(), 1u);
+    EXPECT_EQ(heartbeat[0].cycling, 0);
+    EXPECT_EQ(heartbeat[0].commands_taken, 0);
+}
+
+TEST_F(LcmTest, ACommandIsCarriedOutAndAcknowledged) {
+    open(commanded());
+    auto c = command(1, command_v1_t::KIND_JOG, "y");
+    c.value = -20;
+    c.press = 1;
+    send(c);
+    step();
+
+    ASSERT_EQ(machine.submitted.size(), 1u);
+    EXPECT_EQ(machine.submitted[0].action, runtime::OperatorAction::jog);
+    EXPECT_EQ(machine.submitted[0].axis, 1);
+    EXPECT_EQ(machine.submitted[0].value, -20);
+    EXPECT_EQ(machine.submitted[0].expires, now + 200ms);
+    machine.answer(Answer::refused_by_axis, axes::ErrorId::not_powered);
+    step();
+
+    const auto answers = acknowledges();
+    ASSERT_EQ(answers.size(), 1u);
+    EXPECT_EQ(answers[0].client_id, 4711);
+    EXPECT_EQ(answers[0].command_seq, 1);
+    EXPECT_EQ(answers[0].answer, acknowledge_v1_t::ANSWER_REFUSED_BY_AXIS);
+    EXPECT_EQ(answers[0].axis_error, 2);  // not_powered
+    EXPECT_EQ(answers[0].code, "command.refused_by_axis");
+    EXPECT_EQ(answers[0].subject, "axis y");
+    EXPECT_THAT(answers[0].remedy, HasSubstr("Enable"));
+}
+
+TEST_F(LcmTest, ARepeatedCommandIsAcknowledgedAgainAndExecutedOnce) {
+    open(commanded());
+    send(command(1, command_v1_t::KIND_HOME, "x"));
+    step();
+    machine.answer(Answer::accepted);
+    step();
+    send(command(1, command_v1_t::KIND_HOME, "x"));
+    step();
+
+    EXPECT_EQ(machine.submitted.size(), 1u);
+    EXPECT_EQ(acknowledges().size(), 2u);
+}
+
+TEST_F(LcmTest, WithoutPermissionNoCommandIsHeard) {
+    open({});
+    send(command(1, command_v1_t::KIND_HOME, "x"));
+    step();
+    EXPECT_TRUE(machine.submitted.empty());
+    EXPECT_TRUE(acknowledges().empty());
+}
+
+TEST_F(LcmTest, AStaleCommandIsRefused) {
+    open(commanded());
+    auto c = command(1, command_v1_t::KIND_HOME, "x");
+    c.utime = wall - 200'001;
+    send(c);
+    c = command(2, command_v1_t::KIND_HOME, "x");
+    c.utime = std::numeric_limits<std::int64_t>::max();
+    send(c);
+    step();
+    EXPECT_TRUE(machine.submitted.empty());
+    ASSERT_EQ(acknowledges().size(), 2u);
+    for (const auto& answer : acknowledges()) EXPECT_EQ(answer.answer, acknowledge_v1_t::ANSWER_STALE);
+}
+
+TEST_F(LcmTest, ValuesOutOfRangeAndUnknownKindsAreRefused) {
+    open(commanded());
+    auto c = command(1, command_v1_t::KIND_JOG, "x");
+    c.value = std::numeric_limits<double>::quiet_NaN();
+    c.press = 1;
+    send(c);
+    send(command(2, 18, "x"));
+    send(command(3, -1, "x"));
+    c = command(4, command_v1_t::KIND_HOME, "x");
+    c.valid_for_ms = -1;
+    send(c);
+    send(command(5, command_v1_t::KIND_HOME, "z9"));
+    step();
+    EXPECT_TRUE(machine.submitted.empty());
+    const auto answers = acknowledges();
+    ASSERT_EQ(answers.size(), 5u);
+    EXPECT_EQ(answers[0].answer, acknowledge_v1_t::ANSWER_BAD_VALUE);
+    EXPECT_EQ(answers[1].answer, acknowledge_v1_t::ANSWER_UNKNOWN_NAME);
+    EXPECT_EQ(answers[2].answer, acknowledge_v1_t::ANSWER_UNKNOWN_NAME);
+    EXPECT_EQ(answers[3].answer, acknowledge_v1_t::ANSWER_BAD_VALUE);
+    EXPECT_EQ(answers[4].answer, acknowledge_v1_t::ANSWER_UNKNOWN_NAME);
+}
+
+TEST_F(LcmTest, HostileMessagesAreDroppedAndCounted) {
+    open(commanded());
+    const auto good = encoded(command(1, command_v1_t::KIND_HOME, "x"));
+    std::vector<std::vector<std::byte>> hostile;
+    for (std::size_t size = 0; size < good.size(); ++size) hostile.emplace_back(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size));
+    hostile.push_back(good);
+    hostile.back().push_back(std::byte{0});
+    hostile.emplace_back(100'000, std::byte{0xFF});
+    hostile.push_back(good);
+    hostile.back()[0] ^= std::byte{1};  // fingerprint
+    // The attack on variable types: another type's fingerprint with a count of 0x7fffffff, in a message of our size.
+    axis_state_v1_t other{};
+    auto foreign = encoded(other);
+    foreign.resize(good.size());
+    std::fill(foreign.begin() + 8, foreign.end(), std::byte{0x7F});
+    hostile.push_back(foreign);
+    const auto with = [](auto change) {
+        auto c = command(1, command_v1_t::KIND_HOME, "x");
+        change(c);
+        return encoded(c);
+    };
+    hostile.push_back(with([](auto& c) { c.protocol_version = 2; }));
+    hostile.push_back(with([](auto& c) { c.client_id = 0; }));
+    hostile.push_back(with([](auto& c) { c.seq = 0; }));
+    hostile.push_back(with([](auto& c) { c.seq = -5; }));
+    hostile.push_back(with([](auto& c) { c.utime = -1; }));
+    hostile.push_back(with([](auto& c) { c.press = 2; }));
+    hostile.push_back(with([](auto& c) { c.mode = 3; }));
+    hostile.push_back(with([](auto& c) { c.mode = 256; }));  // would be manual when cut to a byte
+    hostile.push_back(with([](auto& c) { std::memset(c.target, 'x', sizeof c.target); }));
+    hostile.push_back(with([](auto& c) { c.target[40] = 'y'; }));  // two names in one field
+
+    for (const auto& message : hostile) {
+        bus->publish("TAKTWERK_DEMO_COMMAND", message);
+        step();
+    }
+
+    EXPECT_TRUE(machine.submitted.empty());
+    EXPECT_TRUE(acknowledges().empty());
+    EXPECT_EQ(bridge->lcm_rejected(), hostile.size());
+    bus->publish("TAKTWERK_DEMO_COMMAND", good);
+    step();
+    EXPECT_EQ(machine.submitted.size(), 1u) << "and the next good one is taken";
+}
+
+TEST_F(LcmTest, AFloodOfClientIdsDoesNotLockOutOrGrow) {
+    open(commanded());
+    for (std::int64_t id = 1; id <= 1000; ++id) {
+        auto c = command(1, command_v1_t::KIND_ACKNOWLEDGE);
+        c.client_id = id;
+        send(c);
+        if (id % 50 == 0) step();
+    }
+    for (int i = 0; i < 20; ++i) step();
+    EXPECT_EQ(machine.submitted.size(), LcmCommandReceiver::max_clients);
+    EXPECT_EQ(bridge->lcm_rejected(), 1000 - LcmCommandReceiver::max_clients);
+
+    now += LcmCommandReceiver::idle_client;
+    auto late = command(1, command_v1_t::KIND_ACKNOWLEDGE);
+    late.client_id = 5000;
+    send(late);
+    step();
+    EXPECT_EQ(machine.submitted.size(), LcmCommandReceiver::max_clients + 1);
+}
+
+TEST_F(LcmTest, CommandsGoThroughRealLcmInMemory) {
+    auto opened = LcmBus::open(*parse_lcm_url("memq://"));
+    ASSERT_TRUE(opened) << opened.error().text();
+    auto* lcm = opened->get();
+    std::vector<acknowledge_v1_t> answers;
+    lcm->subscribe("TAKTWERK_DEMO_ACKNOWLEDGE", [&](std::span<const std::byte> bytes) {
+        answers.emplace_back();
+        answers.back().decode(bytes.data(), 0, static_cast<int>(bytes.size()));
+    });
+    open(commanded(), std::move(opened).value());
+
+    lcm->publish("TAKTWERK_DEMO_COMMAND", encoded(command(1, command_v1_t::KIND_HOME, "x")));
+    lcm->publish("TAKTWERK_DEMO_COMMAND", std::vector<std::byte>(3));
+    step();
+    ASSERT_EQ(machine.submitted.size(), 1u);
+    machine.answer(Answer::accepted);
+    step();
+    step();
+
+    ASSERT_EQ(answers.size(), 1u);
+    EXPECT_EQ(answers[0].answer, acknowledge_v1_t::ANSWER_ACCEPTED);
+    EXPECT_EQ(bridge->lcm_rejected(), 1u);
+}
+
+TEST_F(LcmTest, AHandlerThatThrowsDoesNotThrowThroughLcm) {
+    auto opened = LcmBus::open(*parse_lcm_url("memq://"));
+    ASSERT_TRUE(opened);
+    (*opened)->subscribe("C", [](std::span<const std::byte>) { throw std::runtime_error("no"); });
+    (*opened)->publish("C", std::vector<std::byte>(3));
+    EXPECT_NO_THROW((*opened)->poll(10));
+}
+
+TEST(LcmUrls, OnlyWhatDoesNotBlockIsTakenAndTheTtlIsAlwaysSaid) {
+    EXPECT_EQ(parse_lcm_url("udpm://239.255.76.67:7667")->text, "udpm://239.255.76.67:7667?ttl=0");
+    EXPECT_EQ(parse_lcm_url("udpm://")->text, "udpm://239.255.76.67:7667?ttl=0");
+    EXPECT_EQ(parse_lcm_url("udpm://224.1.2.3:9?ttl=1&recv_buf_size=2097152")->text, "udpm://224.1.2.3:9?ttl=1&recv_buf_size=2097152");
+    EXPECT_TRUE(parse_lcm_url("udpm://239.255.76.67:7667?ttl=1")->leaves_host());
+    for (const auto* url : {"", "tcpq://localhost:7700", "file://x.log", "mpudpm://239.255.76.67:7667", "udpm://10.0.0.1:7667", "udpm://239.255.76.67:0",
+                            "udpm://239.255.76.67:70000", "udpm://239.255.76.67:7667?ttl=256", "udpm://239.255.76.67:7667?ttl=", "udpm://239.255.76.67:7667?tll=0"})
+        EXPECT_FALSE(parse_lcm_url(url)) << url;
+}
+
+TEST(HmiConfigCheck, CommandsNeverLeaveTheHost) {
+    HmiConfig config;
+    EXPECT_TRUE(check(config).empty());
+    config.lcm_url = "udpm://239.255.76.67:7667?ttl=1";
+    EXPECT_TRUE(check(config).empty()) << "state may";
+    config.lcm_commands = LcmCommands::local;
+    ASSERT_EQ(check(config).size(), 1u);
+    EXPECT_EQ(check(config)[0].code, "hmi.commands_leave_host");
+
+    config = {};
+    config.rate_hz = 0;
+    config.lcm = false;
+    config.lcm_required = true;
+    config.lcm_commands = LcmCommands::local;
+    EXPECT_EQ(check(config).size(), 3u) << "all at once";
+}
+
+TEST(ChannelNames, FitLcmAndAreNoRegularExpressions) {
+    EXPECT_EQ(Channels("demo").axis_state(), "TAKTWERK_DEMO_AXIS_STATE");
+    EXPECT_EQ(Channels("Zelle 7.*").command(), "TAKTWERK_ZELLE_7___COMMAND");
+    EXPECT_LE(Channels(std::string(200, 'm')).cycle_statistics().size(), 63u);
+}
+
+}  // namespace
+}  // namespace taktwerk::hmi

@@ -1,0 +1,228 @@
+// The socket's language: what is asked, what comes back, and what broken lines get.
+#include "hmi_bridge/json_requests.hpp"
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/hmi_bridge/fake_machine.hpp"
+
+namespace taktwerk::hmi {
+namespace {
+
+using namespace std::chrono_literals;
+using nlohmann::json;
+using runtime::Answer;
+using runtime::OperatorAction;
+using test::FakeMachine;
+using testing::HasSubstr;
+
+constexpr std::int64_t wall = 1'800'000'000'000'000;  // us since 1970
+
+class RequestsTest : public testing::Test {
+protected:
+    RequestsTest() {
+        gateway.observe(true);
+        requests.observe(&machine.snapshot);
+        requests.on_open(1, {100, 1000, 1000});
+    }
+    /// The line's one answer; the machine accepts what reaches it.
+    json ask(std::string_view line) {
+        const auto before = machine.submitted.size();
+        requests.on_line(1, line, now);
+        if (machine.submitted.size() > before) machine.answer(Answer::accepted);
+        gateway.step(now);
+        while (const auto reply = gateway.next_reply()) requests.deliver(*reply);
+        const auto answer = requests.next_line();
+        EXPECT_TRUE(answer.has_value()) << line;
+        EXPECT_FALSE(requests.next_line().has_value()) << "one answer a line";
+        if (!answer) return json::object();
+        EXPECT_EQ(answer->text.find('\n'), std::string::npos);
+        auto parsed = json::parse(answer->text, nullptr, false);
+        EXPECT_TRUE(parsed.is_object()) << answer->text;
+        return parsed;
+    }
+    std::string code_for(std::string_view line) {
+        const auto answer = ask(line);
+        EXPECT_EQ(answer["ok"], false) << line;
+        EXPECT_FALSE(answer["error"]["what"].get<std::string>().empty());
+        EXPECT_FALSE(answer["error"]["remedy"].get<std::string>().empty());
+        return answer["error"]["code"];
+    }
+
+    FakeMachine machine;
+    Gateway gateway{machine};
+    JsonRequests requests{gateway, machine, [] { return wall; }};
+    Instant now{10s};
+};
+
+TEST_F(RequestsTest, ACommandIsCarriedOutAndAnsweredWithItsId) {
+    const auto answer = ask(R"({"id":7,"cmd":"jog","axis":"x","velocity":-20,"press":true})");
+
+    EXPECT_EQ(answer, (json{{"id", 7}, {"ok", true}}));
+    ASSERT_EQ(machine.submitted.size(), 1u);
+    EXPECT_EQ(machine.submitted[0].action, OperatorAction::jog);
+    EXPECT_EQ(machine.submitted[0].value, -20);
+    EXPECT_TRUE(machine.submitted[0].flag);
+}
+
+TEST_F(RequestsTest, EveryCommandOfTheTableHasALine) {
+    const std::vector<std::string> lines{
+        R"("cmd":"take_control","axis":"x")", R"("cmd":"release_control","axis":"all")", R"("cmd":"mode","mode":"automatic")",
+        R"("cmd":"enable","axis":"x")", R"("cmd":"disable","axis":"all")", R"("cmd":"home","axis":"x")",
+        R"("cmd":"jog","axis":"x","velocity":1,"press":true)", R"("cmd":"move","axis":"x","position":1,"velocity":2)", R"("cmd":"stop")",
+        R"("cmd":"reset","axis":"y")", R"("cmd":"program_start","program":"cell")", R"("cmd":"program_stop","program":"cell")",
+        R"("cmd":"program_reset","program":"cell")", R"("cmd":"set_parameter","parameter":"speed","value":100)",
+        R"("cmd":"set_output","output":"lamp_run","value":true)", R"("cmd":"acknowledge")", R"("cmd":"shutdown")"};
+    ASSERT_EQ(lines.size(), command_words.size());
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        const auto answer = ask("{\"id\":" + std::to_string(i + 1) + "," + lines[i] + "}");
+        EXPECT_EQ(answer["ok"], true) << lines[i] << answer;
+        if (command_words[i].kind == CommandKind::shutdown) EXPECT_TRUE(machine.shutdown_requested);
+        else EXPECT_EQ(machine.submitted.back().action, command_words[i].action) << lines[i];
+    }
+}
+
+TEST_F(RequestsTest, BrokenLinesGetOneClearErrorEach) {
+    EXPECT_EQ(code_for("{"), "request.not_json");
+    EXPECT_EQ(code_for(R"({"id":1,"cmd":"sta)"), "request.not_json");
+    EXPECT_EQ(code_for("\x00\xff\xfe\x80 binary"), "request.not_json");
+    EXPECT_EQ(code_for(R"({"id":1,"cmd":"jog","axis":"x","velocity":1e999,"press":true})"), "request.not_json") << "no such number";
+    EXPECT_EQ(code_for(R"({"id":1,"cmd":"jog","axis":"x","velocity":NaN,"press":true})"), "request.not_json");
+    EXPECT_EQ(code_for("[1,2]"), "request.not_an_object");
+    EXPECT_EQ(code_for("17"), "request.not_an_object");
+    EXPECT_EQ(code_for(R"({"id":1})"), "request.missing_key");
+    EXPECT_EQ(code_for(R"({"id":"one","cmd":"state"})"), "request.wrong_type");
+    EXPECT_EQ(code_for(R"({"id":18446744073709551615,"cmd":"home","axis":"x"})"), "request.wrong_type");
+    EXPECT_EQ(code_for(R"({"id":1,"cmd":5})"), "request.wrong_type");
+    EXPECT_EQ(code_for(R"({"cmd":"home","axis":"x"})"), "request.missing_key") << "a command needs a sequence";
+    EXPECT_EQ(code_for(R"({"id":0,"cmd":"home","axis":"x"})"), "request.missing_key");
+    EXPECT_EQ(code_for(R"({"id":-3,"cmd":"home","axis":"x"})"), "request.missing_key");
+    EXPECT_EQ(code_for(R"({"id":1,"cmd":"home"})"), "request.missing_key");
+    EXPECT_EQ(code_for(R"({"id":1,"cmd":"home","axis":["x"]})"), "request.wrong_type");
+    EXPECT_EQ(code_for(R"({"id":1,"cmd":"jog","axis":"x","velocity":"20"})"), "request.wrong_type");
+    EXPECT_EQ(code_for(R"({"id":1,"cmd":"jog","axis":"x","velocity":20,"press":1})"), "request.wrong_type");
+    EXPECT_EQ(code_for(R"({"id":1,"cmd":"mode","mode":"turbo"})"), "command.bad_value");
+    EXPECT_EQ(code_for(R"({"id":1,"cmd":"home","axis":"x","valid_ms":-5})"), "command.bad_value");
+    EXPECT_EQ(code_for(R"({"id":2,"cmd":"home","axis":"x","valid_ms":9223372036854775807})"), "command.bad_value");
+    EXPECT_TRUE(machine.submitted.empty());
+}
+
+TEST_F(RequestsTest, DeepNestingIsRefusedWithoutRecursion) {
+    EXPECT_EQ(code_for(R"({"id":1,"cmd":)" + std::string(60'000, '[')), "request.too_deep");
+    EXPECT_EQ(code_for(std::string(60'000, '{')), "request.not_json");
+    EXPECT_EQ(code_for(R"({"id":1,"cmd":)" + std::string(20'000, '[') + std::string(20'000, ']') + "}"), "request.too_deep");
+}
+
+TEST_F(RequestsTest, UnknownCommandsAndKeysComeWithASuggestion) {
+    const auto command = ask(R"({"id":1,"cmd":"hoem","axis":"x"})");
+    EXPECT_EQ(command["error"]["code"], "request.unknown_command");
+    EXPECT_THAT(command["error"]["remedy"].get<std::string>(), HasSubstr("home"));
+
+    const auto key = ask(R"({"id":2,"cmd":"jog","axis":"x","velocity":20,"pres":true})");
+    EXPECT_EQ(key["error"]["code"], "request.unknown_key");
+    EXPECT_THAT(key["error"]["remedy"].get<std::string>(), HasSubstr("press"));
+    EXPECT_TRUE(machine.submitted.empty());
+
+    const auto axis = ask(R"({"id":3,"cmd":"home","axis":"turet"})");
+    EXPECT_THAT(axis["error"]["remedy"].get<std::string>(), HasSubstr("turret"));
+}
+
+TEST_F(RequestsTest, ARequestThatSaysWhenItWasSentIsJudgedByItsAge) {
+    const auto sent = [](std::int64_t us_ago) { return std::to_string(wall - us_ago); };
+    EXPECT_EQ(code_for(R"({"id":1,"cmd":"home","axis":"x","valid_ms":200,"utime":)" + sent(201'000) + "}"), "command.stale");
+    EXPECT_EQ(code_for(R"({"id":2,"cmd":"home","axis":"x","utime":)" + sent(-2'000'000) + "}"), "command.stale");
+    EXPECT_EQ(code_for(R"({"id":3,"cmd":"home","axis":"x","utime":-9223372036854775808})"), "command.stale");
+    EXPECT_EQ(code_for(R"({"id":4,"cmd":"home","axis":"x","utime":9223372036854775807})"), "command.stale");
+    EXPECT_TRUE(machine.submitted.empty());
+    EXPECT_EQ(ask(R"({"id":5,"cmd":"home","axis":"x","valid_ms":200,"utime":)" + sent(100'000) + "}")["ok"], true);
+    EXPECT_EQ(machine.submitted[0].expires, now + 100ms);
+}
+
+TEST_F(RequestsTest, StateCarriesNamesUnitsAndAlarmTexts) {
+    machine.snapshot.axes[0].state = axes::AxisState::DiscreteMotion;
+    machine.snapshot.axes[0].actual_position = 12.5;
+    machine.snapshot.alarms.resize(4);
+    machine.snapshot.alarms[0].standing = true;
+    machine.snapshot.alarms[0].reaction = Reaction::stop_axis;
+    machine.snapshot.alarm_count = 1;
+
+    const auto state = ask(R"({"id":1,"cmd":"state"})")["state"];
+
+    EXPECT_EQ(state["machine"], "demo");
+    EXPECT_EQ(state["phase"], "running");
+    EXPECT_EQ(state["bus"]["phase"], "operational");
+    ASSERT_EQ(state["axes"].size(), 3u);
+    EXPECT_EQ(state["axes"][0]["name"], "x");
+    EXPECT_EQ(state["axes"][0]["unit"], "mm");
+    EXPECT_EQ(state["axes"][0]["state"], "DiscreteMotion");
+    EXPECT_EQ(state["axes"][0]["actual_position"], 12.5);
+    EXPECT_EQ(state["inputs"]["estop_ok"], 1);
+    EXPECT_EQ(state["outputs"]["lamp_run"], 1);
+    EXPECT_EQ(state["programs"][0]["state"], "running");
+    EXPECT_EQ(state["parameters"][2]["program"], "feeder");
+    ASSERT_EQ(state["alarms"].size(), 1u) << "only the valid ones";
+    EXPECT_EQ(state["alarms"][0]["chinese"], "跟随误差过大");
+    EXPECT_EQ(state["alarms"][0]["reaction"], "stop_axis");
+}
+
+TEST_F(RequestsTest, LayoutCarriesRangesAndJoggingSpeeds) {
+    const auto layout = ask(R"({"cmd":"layout"})")["layout"];
+    EXPECT_EQ(layout["axes"][2]["name"], "turret");
+    EXPECT_EQ(layout["axes"][2]["disabled"], true);
+    EXPECT_EQ(layout["axes"][0]["jog_fast"], 50);
+    EXPECT_EQ(layout["parameters"][0]["maximum"], 500);
+    EXPECT_EQ(layout["cycle_ns"], 1'000'000);
+}
+
+TEST_F(RequestsTest, BeforeTheFirstCycleStateSaysHowTheStartGetsOn) {
+    requests.observe(nullptr);
+    requests.set_progress("slave 2 'y' PREOP");
+    const auto answer = ask(R"({"id":1,"cmd":"state"})");
+    EXPECT_EQ(answer["error"]["code"], "state.not_yet");
+    EXPECT_THAT(answer["error"]["what"].get<std::string>(), HasSubstr("slave 2 'y' PREOP"));
+    EXPECT_EQ(ask(R"({"cmd":"hello"})")["hello"]["cycling"], false);
+}
+
+TEST_F(RequestsTest, ValuesThatAreNoNumbersDoNotBreakTheAnswer) {
+    machine.snapshot.axes[0].actual_position = std::numeric_limits<double>::quiet_NaN();
+    machine.snapshot.variables[0] = std::numeric_limits<double>::infinity();
+    machine.layout_.machine = "bro\xffken";
+    const auto state = ask(R"({"id":1,"cmd":"state"})")["state"];
+    EXPECT_TRUE(state["axes"][0]["actual_position"].is_null());
+    EXPECT_TRUE(state["variables"][0]["value"].is_null());
+}
+
+TEST_F(RequestsTest, AnswersGoToTheConnectionThatAsked) {
+    requests.on_open(2, {200, 1000, 1000});
+    requests.on_line(2, R"({"id":1,"cmd":"home","axis":"y"})", now);
+    machine.answer(Answer::accepted);
+    requests.on_line(1, R"({"id":1,"cmd":"home","axis":"x"})", now);
+    machine.answer(Answer::wrong_mode);
+    gateway.step(now);
+    while (const auto reply = gateway.next_reply()) requests.deliver(*reply);
+
+    const auto first = requests.next_line();
+    const auto second = requests.next_line();
+    ASSERT_TRUE(first && second);
+    EXPECT_EQ(first->connection, 2u);
+    EXPECT_EQ(second->connection, 1u);
+    EXPECT_THAT(second->text, HasSubstr("command.wrong_mode"));
+}
+
+TEST_F(RequestsTest, AClosedConnectionStopsItsJogAndHearsNothing) {
+    ask(R"({"id":1,"cmd":"jog","axis":"x","velocity":20,"press":true})");
+    requests.on_line(1, R"({"id":2,"cmd":"home","axis":"y"})", now);
+    machine.answer(Answer::accepted);
+
+    requests.on_close(1);
+
+    EXPECT_EQ(machine.submitted.back().action, OperatorAction::jog);
+    EXPECT_EQ(machine.submitted.back().value, 0);
+    gateway.step(now);
+    while (const auto reply = gateway.next_reply()) requests.deliver(*reply);
+    EXPECT_FALSE(requests.next_line());
+}
+
+}  // namespace
+}  // namespace taktwerk::hmi

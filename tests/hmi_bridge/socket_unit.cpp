@@ -1,0 +1,321 @@
+// The local socket with real sockets: server, client, and what broken or rude clients get. The client blocks, so the bridge steps
+// on a thread beside it; nothing here depends on how fast either is.
+#include "hmi_bridge/client.hpp"
+
+#include <gmock/gmock.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <filesystem>
+#include <thread>
+
+#include "hmi_bridge/hmi_bridge.hpp"
+#include "hmi_bridge/socket_path.hpp"
+#include "tests/hmi_bridge/fake_machine.hpp"
+
+namespace taktwerk::hmi {
+namespace {
+
+using namespace std::chrono_literals;
+using runtime::Answer;
+using test::FakeMachine;
+using testing::HasSubstr;
+
+/// A folder of its own, gone afterwards.
+class Folder {
+public:
+    Folder() {
+        std::string pattern = (std::filesystem::temp_directory_path() / "taktwerk-test-XXXXXX").string();
+        path_ = ::mkdtemp(pattern.data());
+    }
+    ~Folder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    [[nodiscard]] std::string file(const char* name) const { return path_ + "/" + name; }
+
+private:
+    std::string path_;
+};
+
+HmiConfig config_at(const std::string& socket) {
+    HmiConfig config;
+    config.lcm = false;
+    config.socket = socket;
+    return config;
+}
+
+/// Accepts everything, and steps the bridge until it is destroyed.
+class AnsweringMachine final : public MachineLink {
+public:
+    bool submit(const runtime::OperatorCommand& command) override {
+        fake.submit(command);
+        fake.answer(Answer::accepted);
+        return true;
+    }
+    std::optional<runtime::CommandAnswer> next_answer() override { return fake.next_answer(); }
+    const runtime::Snapshot* latest() override { return fake.latest(); }
+    [[nodiscard]] const runtime::MachineLayout& layout() const override { return fake.layout(); }
+    [[nodiscard]] runtime::AlarmText describe(const AlarmFact& fact) const override { return fake.describe(fact); }
+    void request_shutdown() override { fake.request_shutdown(); }
+    FakeMachine fake;
+};
+
+class SocketTest : public testing::Test {
+protected:
+    SocketTest() {
+        auto opened = HmiBridge::open(config_at(path), machine, {.log = [this](std::string_view line) { log.emplace_back(line); }, .wall_utime = wall_utime, .bus = nullptr});
+        EXPECT_TRUE(opened) << opened.error().text();
+        bridge = std::move(opened).value();
+    }
+    ~SocketTest() override { stop(); }
+
+    void serve() {
+        server = std::thread([this] {
+            while (!ended.load()) {
+                bridge->step(now += 5ms);
+                std::this_thread::yield();
+            }
+        });
+    }
+    void stop() {
+        ended = true;
+        if (server.joinable()) server.join();
+    }
+    /// A client that does as it likes.
+    int raw_client() const {
+        sockaddr_un address{};
+        address.sun_family = AF_UNIX;
+        path.copy(address.sun_path, sizeof address.sun_path - 1);
+        const int socket = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+        EXPECT_EQ(::connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+        return socket;
+    }
+    static std::string read_now(int socket) {
+        std::string all(1 << 20, '\0');
+        const auto got = ::recv(socket, all.data(), all.size(), MSG_DONTWAIT);
+        all.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
+        return all;
+    }
+    static bool closed(int socket) {
+        char byte = 0;
+        return ::recv(socket, &byte, 1, MSG_DONTWAIT) == 0;
+    }
+    void send_all(int socket, std::string_view text) {
+        while (!text.empty()) {
+            const auto sent = ::send(socket, text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+            if (sent > 0) text.remove_prefix(static_cast<std::size_t>(sent));
+            else if (errno != EAGAIN) return;
+            bridge->step(now += 5ms);
+        }
+    }
+
+    Folder folder;
+    std::string path = folder.file("demo.sock");
+    AnsweringMachine machine;
+    std::vector<std::string> log;
+    std::unique_ptr<HmiBridge> bridge;
+    Instant now{1s};
+    std::thread server;
+    std::atomic<bool> ended{false};
+};
+
+TEST_F(SocketTest, AClientCommandsAndReadsTheState) {
+    serve();
+    auto client = Client::connect(path);
+    ASSERT_TRUE(client) << client.error().text();
+
+    const auto pressed = client->request({{"cmd", "jog"}, {"axis", "x"}, {"velocity", 20}, {"press", true}});
+    const auto state = client->request({{"cmd", "state"}});
+    const auto wrong = client->request({{"cmd", "home"}, {"axis", "turet"}});
+
+    EXPECT_TRUE(pressed) << pressed.error().text();
+    ASSERT_TRUE(state) << state.error().text();
+    EXPECT_EQ((*state)["state"]["axes"][0]["name"], "x");
+    ASSERT_FALSE(wrong);
+    EXPECT_EQ(wrong.error().code, "command.unknown_name");
+    EXPECT_THAT(wrong.error().remedy, HasSubstr("turret"));
+}
+
+TEST_F(SocketTest, AClientThatGoesAwayWhileJoggingStopsItsAxis) {
+    serve();
+    {
+        auto client = Client::connect(path);
+        ASSERT_TRUE(client);
+        ASSERT_TRUE(client->request({{"cmd", "jog"}, {"axis", "x"}, {"velocity", 20}, {"press", true}}));
+    }
+    auto witness = Client::connect(path);
+    ASSERT_TRUE(witness);
+    // Two answered rounds after the close: the server has seen it.
+    ASSERT_TRUE(witness->request({{"cmd", "hello"}}));
+    ASSERT_TRUE(witness->request({{"cmd", "hello"}}));
+    stop();
+
+    ASSERT_EQ(machine.fake.submitted.size(), 2u);
+    EXPECT_EQ(machine.fake.submitted[1].action, runtime::OperatorAction::jog);
+    EXPECT_EQ(machine.fake.submitted[1].value, 0);
+}
+
+TEST_F(SocketTest, TheSocketIsForItsUserAndGroupAndPeersAreLogged) {
+    struct stat info {};
+    ASSERT_EQ(::stat(path.c_str(), &info), 0);
+    EXPECT_EQ(info.st_mode & 0777, 0660u);
+
+    const int socket = raw_client();
+    bridge->step(now);
+
+    EXPECT_THAT(log.back(), HasSubstr("process " + std::to_string(::getpid()) + " of user " + std::to_string(::getuid())));
+    ::close(socket);
+}
+
+TEST_F(SocketTest, ASecondRuntimeIsToldWhoHasTheSocket) {
+    FakeMachine other;
+    const auto second = HmiBridge::open(config_at(path), other, {});
+    ASSERT_FALSE(second);
+    EXPECT_EQ(second.error().code, "socket.in_use");
+    EXPECT_THAT(second.error().what, HasSubstr(std::to_string(::getpid())));
+}
+
+TEST_F(SocketTest, ASocketLeftBehindByADeadRuntimeIsReplaced) {
+    const auto left = folder.file("left.sock");
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    left.copy(address.sun_path, sizeof address.sun_path - 1);
+    const int dead = ::socket(AF_UNIX, SOCK_STREAM, 0);
+    ASSERT_EQ(::bind(dead, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+    ::close(dead);
+
+    const auto refused = Client::connect(left);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, "socket.no_runtime");
+
+    FakeMachine other;
+    EXPECT_TRUE(HmiBridge::open(config_at(left), other, {}));
+    EXPECT_FALSE(std::filesystem::exists(left)) << "removed at the end";
+}
+
+TEST_F(SocketTest, AFileThatIsNoSocketIsLeftAlone) {
+    const auto file = folder.file("letter.txt");
+    { const auto written = ::fopen(file.c_str(), "w"); ::fclose(written); }
+    FakeMachine other;
+    const auto opened = HmiBridge::open(config_at(file), other, {});
+    ASSERT_FALSE(opened);
+    EXPECT_EQ(opened.error().code, "socket.not_a_socket");
+    EXPECT_TRUE(std::filesystem::exists(file));
+    EXPECT_EQ(HmiBridge::open(config_at(folder.file("none/x.sock")), other, {}).error().code, "socket.bind");
+    EXPECT_EQ(HmiBridge::open(config_at("/" + std::string(120, 'x')), other, {}).error().code, "hmi.socket_too_long");
+}
+
+TEST_F(SocketTest, WithoutARuntimeTheClientSaysHowToStartOne) {
+    const auto client = Client::connect(folder.file("nobody.sock"));
+    ASSERT_FALSE(client);
+    EXPECT_EQ(client.error().code, "socket.no_runtime");
+    EXPECT_THAT(client.error().remedy, HasSubstr("taktwerk run"));
+    EXPECT_EQ(Client::connect("no-such-machine-here").error().code, "socket.not_found");
+}
+
+TEST_F(SocketTest, ARuntimeThatDoesNotAnswerTimesOut) {
+    auto client = Client::connect(path);  // nobody steps the bridge
+    ASSERT_TRUE(client);
+    EXPECT_EQ(client->request({{"cmd", "state"}}, 20ms).error().code, "socket.timeout");
+}
+
+TEST_F(SocketTest, ARuntimeThatEndsIsNoticed) {
+    auto client = Client::connect(path);
+    ASSERT_TRUE(client);
+    bridge->step(now);
+    bridge.reset();
+    EXPECT_EQ(client->request({{"cmd", "state"}}).error().code, "socket.closed");
+}
+
+TEST_F(SocketTest, LinesComeInPiecesAndSeveralAtOnce) {
+    const int socket = raw_client();
+    send_all(socket, R"({"id":1,"cmd":)");
+    bridge->step(now);
+    EXPECT_EQ(read_now(socket), "");
+    send_all(socket, "\"acknowledge\"}\r\n\n{\"id\":2,\"cmd\":\"acknowledge\"}\n{\"id\":3,\"cm");
+    bridge->step(now);
+    bridge->step(now);
+    EXPECT_EQ(read_now(socket), "{\"id\":1,\"ok\":true}\n{\"id\":2,\"ok\":true}\n");
+    ::close(socket);
+    bridge->step(now);
+    EXPECT_EQ(machine.fake.submitted.size(), 2u) << "half a line at the end is nobody's request";
+}
+
+TEST_F(SocketTest, AHugeLineIsRefusedAndTheConnectionClosed) {
+    const int socket = raw_client();
+    send_all(socket, std::string(SocketServer::max_line + 1000, 'x'));
+    bridge->step(now);
+    bridge->step(now);
+    EXPECT_THAT(read_now(socket), HasSubstr("request.too_long"));
+    EXPECT_TRUE(closed(socket));
+    ::close(socket);
+}
+
+TEST_F(SocketTest, ALineOfTheGreatestLengthIsStillRead) {
+    const int socket = raw_client();
+    const std::string request = R"({"cmd":"hello"})";
+    send_all(socket, request + std::string(SocketServer::max_line - request.size(), ' ') + "\n");
+    bridge->step(now);
+    EXPECT_THAT(read_now(socket), HasSubstr("protocol_version"));
+    ::close(socket);
+}
+
+TEST_F(SocketTest, BinaryRubbishGetsAnErrorAndTheNextLineIsServed) {
+    const int socket = raw_client();
+    std::string rubbish;
+    for (int i = 1; i < 256; ++i)
+        if (i != '\n') rubbish += static_cast<char>(i);
+    send_all(socket, rubbish + "\n{\"id\":1,\"cmd\":\"acknowledge\"}\n");
+    bridge->step(now);
+    bridge->step(now);
+    const auto answer = read_now(socket);
+    EXPECT_THAT(answer, HasSubstr("request.not_json"));
+    EXPECT_THAT(answer, HasSubstr("{\"id\":1,\"ok\":true}\n"));
+    ::close(socket);
+}
+
+TEST_F(SocketTest, ClientsAreBounded) {
+    std::vector<int> sockets;
+    for (std::size_t i = 0; i < SocketServer::max_connections; ++i) {
+        sockets.push_back(raw_client());
+        bridge->step(now);
+    }
+    const int ninth = raw_client();
+    bridge->step(now);
+    EXPECT_THAT(read_now(ninth), HasSubstr("socket.too_many_clients"));
+    EXPECT_TRUE(closed(ninth));
+
+    ::close(sockets.back());
+    bridge->step(now);
+    sockets.back() = raw_client();
+    send_all(sockets.back(), "{\"cmd\":\"hello\"}\n");
+    bridge->step(now);
+    bridge->step(now);
+    EXPECT_THAT(read_now(sockets.back()), HasSubstr("protocol_version"));
+    ::close(ninth);
+    for (const int socket : sockets) ::close(socket);
+}
+
+TEST_F(SocketTest, AClientThatNeverReadsIsDroppedAndTheOthersAreServed) {
+    const int deaf = raw_client();
+    for (int i = 0; i < 200'000 && bridge && std::none_of(log.begin(), log.end(), [](const auto& l) { return l.find("does not read") != std::string::npos; }); ++i) {
+        constexpr std::string_view ask = "{\"cmd\":\"state\"}\n";
+        [[maybe_unused]] const auto sent = ::send(deaf, ask.data(), ask.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+        bridge->step(now += 5ms);
+    }
+    EXPECT_THAT(log.back(), HasSubstr("does not read"));
+    const int good = raw_client();
+    send_all(good, "{\"cmd\":\"hello\"}\n");
+    bridge->step(now);
+    bridge->step(now);
+    EXPECT_THAT(read_now(good), HasSubstr("protocol_version"));
+    ::close(deaf);
+    ::close(good);
+}
+
+}  // namespace
+}  // namespace taktwerk::hmi
