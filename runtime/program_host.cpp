@@ -128,7 +128,9 @@ ProgramHost::ProgramHost(const MachineConfig& config, const IoImage& io, std::ve
         auto instance = library->create();
         libraries_.push_back(std::move(*library));
         if (!instance) {
-            errors.push_back(instance.error());
+            auto error = instance.error();
+            error.subject = fmt::format("program '{}' ({})", program.name, error.subject);
+            errors.push_back(std::move(error));
             continue;
         }
         programs_.back().instance = std::move(*instance);

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/shared_object_check.hpp"
+
 namespace taktwerk::runtime {
 
 namespace {
@@ -17,9 +19,12 @@ Result<void> check_entry(const ProgramEntry* entry, const std::string& subject) 
                      "build it against this SDK and put TAKTWERK_PROGRAM(YourClass) into one source file"};
     if (entry->abi_hash != abi_hash())
         return Error{"program.abi", subject,
-                     fmt::format("it was built with SDK {} (ABI {:016x}), this runtime is {} (ABI {:016x})", entry->sdk_version,
-                                 entry->abi_hash, sdk_version, abi_hash()),
+                     fmt::format("it was built with SDK {} (ABI {:016x}), this runtime is {} (ABI {:016x})",
+                                 entry->sdk_version ? entry->sdk_version : "unknown", entry->abi_hash, sdk_version, abi_hash()),
                      "rebuild the program with the SDK of this runtime"};
+    if (!entry->name || !entry->create || !entry->destroy)
+        return Error{"program.foreign", subject, "its entry is incomplete: it lacks the name, create or destroy",
+                     "let TAKTWERK_PROGRAM(YourClass) write it"};
     return {};
 }
 
@@ -30,6 +35,7 @@ Result<ProgramLibrary> ProgramLibrary::open(const std::string& path) {
     if (::stat(path.c_str(), &info) != 0)
         return Error{"program.missing", path, "there is no such file", "build the program, or correct `library:`"};
     if (!S_ISREG(info.st_mode)) return Error{"program.missing", path, "it is not a file", "correct `library:`"};
+    if (auto ok = check_shared_object(path); !ok) return ok.error();
     // dlopen searches names without a slash in system folders: a program is a file, not a library name.
     const std::string file = path.find('/') == std::string::npos ? "./" + path : path;
     void* raw = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
@@ -55,15 +61,17 @@ Result<ProgramLibrary> ProgramLibrary::linked(const ProgramEntry* entry) {
 }
 
 Result<ProgramLibrary::Instance> ProgramLibrary::create() const {
-    const auto failed = [&](const char* what) {
-        return Error{"program.constructor", entry_->name, fmt::format("its constructor threw: {}", what), "mend the program"};
+    const auto failed = [&](std::string what) {
+        return Error{"program.constructor", entry_->name, std::move(what), "mend the program: a constructor only sets members"};
     };
     try {
-        return Instance{entry_->create(), Deleter{entry_->destroy}};
+        Instance instance{entry_->create(), Deleter{entry_->destroy}};
+        if (!instance) return failed("it gave no program");
+        return instance;
     } catch (const std::exception& e) {
-        return failed(e.what());
+        return failed(fmt::format("its constructor threw: {}", e.what()));
     } catch (...) {
-        return failed("something that is no std::exception");
+        return failed("its constructor threw something that is no std::exception");
     }
 }
 

@@ -12,7 +12,9 @@ namespace taktwerk::runtime {
 /// Keeps the library loaded while it lives.
 class ProgramLibrary {
 public:
-    /// Errors: no such file, not a shared object, unresolved symbols, no entry symbol, foreign magic, other ABI.
+    /// Static constructors of the library run here. Errors (code): program.missing (no such file, or no file), program.not_loadable
+    /// (no shared object, for another processor, cut short, unresolved symbols), program.no_entry, program.foreign (another
+    /// magic or an incomplete entry), program.abi (built against another SDK).
     static Result<ProgramLibrary> open(const std::string& path);
     /// A program linked into this executable.
     static Result<ProgramLibrary> linked(const ProgramEntry* entry);
@@ -26,7 +28,7 @@ public:
         }
     };
     using Instance = std::unique_ptr<Program, Deleter>;
-    /// The constructor of the program runs here; an exception of it becomes an Error.
+    /// The constructor of the program runs here; an exception of it becomes the error program.constructor. Never null.
     [[nodiscard]] Result<Instance> create() const;
 
 private:

@@ -1,6 +1,6 @@
 #pragma once
-// The ABI hash: two builds agree on it exactly when programs of one run on the other. It covers the layout of every block, of
-// the views and contexts a program touches, and a number that is raised when the virtual functions of programs/api change.
+// The ABI hash: a program is loaded only where the runtime's is the same. It covers what a compiler can measure (the layout of
+// every block, of the views and contexts a program touches) and one number for what it cannot.
 
 #include <cstddef>
 #include <cstdint>
@@ -13,7 +13,14 @@ namespace taktwerk {
 
 inline constexpr const char* sdk_version = "0.1.0";
 
-/// Raise when a virtual function of Program, Declaration or AxisRequests is added, removed, moved or changed.
+/// Raise it by one, in the same commit, when
+///  - a virtual function of Program, Declaration or AxisRequests is added, removed, moved, or changes its signature or meaning;
+///  - an enumerator that passes between program and runtime gets another number (AxisState, ErrorId, Owner, CommandKind, Outcome,
+///    CommandStatus, Reaction, VariableType, MC_...); appending one is no change;
+///  - the members of a struct that both sides touch change in a way the sizes and offsets below do not show (two of one type
+///    swapped, another unit, another meaning);
+///  - a block's function and the axis agree on something new (what a command id means, who renews a lease).
+/// Not for: new blocks or pins (hashed), documentation, anything behind the virtual functions. It is never lowered or reused.
 inline constexpr std::uint64_t program_interface_version = 1;
 
 [[nodiscard]] constexpr std::uint64_t abi_hash() noexcept {
@@ -25,8 +32,17 @@ inline constexpr std::uint64_t program_interface_version = 1;
     add(sizeof(axes::AxisView));
     add(offsetof(axes::AxisView, ledger));
     add(offsetof(axes::AxisView, queued));
+    add(offsetof(axes::AxisView, error));
+    add(offsetof(axes::AxisView, set_position));
     add(offsetof(axes::AxisView, actual_position));
+    add(offsetof(axes::AxisView, drive_state));
+    add(offsetof(axes::AxisView, active));
+    add(offsetof(axes::AxisView, last_id));
     add(sizeof(axes::AxisCommand));
+    add(offsetof(axes::AxisCommand, position));
+    add(offsetof(axes::AxisCommand, velocity));
+    add(offsetof(axes::AxisCommand, jerk));
+    add(sizeof(axes::Submitted));
     add(sizeof(axes::MotionContext));
     add(sizeof(TaskContext));
     add(sizeof(ParameterSpec));

@@ -18,15 +18,19 @@
 //   };
 //   TAKTWERK_PROGRAM(Cell)
 //
-// Threads: declare(), start() and stop() are called on the service side, never during a scan; a task function runs on the
-// task's thread, one at a time. A program is trusted native code: an endless loop in it stops the bus, and the drives'
-// watchdogs are the reaction.
+// Threads: declare() is called once after loading, start() and stop() on the service side (they may allocate and log). A task
+// function runs on its task's thread: a base task on the cycle thread. Tasks of one program at different divisors run on
+// different threads; a member that both touch needs std::atomic.
+//
+// A task function must not block, allocate, do I/O or loop without a bound. A program is trusted native code: an endless loop in
+// it stops the bus, and the drives' watchdogs are the reaction. An exception that leaves it stops the program and its axes.
+//
+// What a builder learns step by step stands in docs/programming.md.
 
 #include <cstdint>
-#include <string>
+#include <span>
 #include <string_view>
 #include <type_traits>
-#include <vector>
 
 #include "axes/axis/motion_context.hpp"
 #include "core/alarm.hpp"
@@ -37,7 +41,11 @@ namespace taktwerk {
 using axes::AxisRef;
 
 /// Named points of the machine, resolved when the program is loaded. Read and written through the TaskContext, so that a
-/// slower task sees its latched values.
+/// slower task sees its latched values. `bool`: FALSE is 0, everything else TRUE; `std::int64_t`: the value as the terminal
+/// gives it (sign-extended where the object is signed), without scaling.
+///
+/// A handle that was never declared, or whose name the machine lacks, is unresolved (0xFFFF): reads give 0 and FALSE, writes do
+/// nothing. A program with an unresolved name is not started; a forgotten `d.input(...)` is found only that way.
 template <class T>
 struct Input {
     std::uint16_t index = 0xFFFF;
@@ -51,26 +59,31 @@ struct Parameter {
     std::uint16_t index = 0xFFFF;
 };
 
+/// All in `unit`. minimum <= value <= maximum, otherwise the machine does not start. The machine file may set another value.
 struct ParameterSpec {
-    double value = 0;
-    double minimum = 0, maximum = 0;
-    std::string_view unit;
-    std::string_view doc;
+    double value = 0;                ///< default
+    double minimum = 0, maximum = 0; ///< inclusive; the runtime refuses anything else, also from the operator
+    std::string_view unit{};
+    std::string_view doc{};
 };
 
 /// Types of monitored variables.
 enum class VariableType : std::uint8_t { boolean, int32, int64, uint16, uint32, real, duration };
 
 /// What a task function is handed: the motion context (time, axis views, requests) plus the task's own view of I/O points and
-/// parameters. Real-time safe throughout. Lives as long as the call.
+/// parameters. Real-time safe throughout. Lives as long as the call: keep no reference to it.
 class TaskContext : public axes::MotionContext {
 public:
-    [[nodiscard]] bool get(Input<bool> point) const noexcept { return inputs[point.index] != 0; }
-    [[nodiscard]] std::int64_t get(Input<std::int64_t> point) const noexcept { return inputs[point.index]; }
-    [[nodiscard]] bool get(Output<bool> point) const noexcept { return outputs[point.index] != 0; }
-    void set(Output<bool> point, bool value) noexcept { outputs[point.index] = value ? 1 : 0; }
-    void set(Output<std::int64_t> point, std::int64_t value) noexcept { outputs[point.index] = value; }
-    [[nodiscard]] double get(Parameter parameter) const noexcept { return parameters[parameter.index]; }
+    [[nodiscard]] bool get(Input<bool> point) const noexcept { return value_at(inputs, point.index) != 0; }
+    [[nodiscard]] std::int64_t get(Input<std::int64_t> point) const noexcept { return value_at(inputs, point.index); }
+    /// What was last written to it, by whomever.
+    [[nodiscard]] bool get(Output<bool> point) const noexcept { return value_at(outputs, point.index) != 0; }
+    [[nodiscard]] std::int64_t get(Output<std::int64_t> point) const noexcept { return value_at(outputs, point.index); }
+    /// An output keeps its value until it is written again; while no program runs it has its safe value.
+    void set(Output<bool> point, bool value) noexcept { write(point.index, value ? 1 : 0); }
+    /// The low bits that the terminal has are sent; the rest is cut off.
+    void set(Output<std::int64_t> point, std::int64_t value) noexcept { write(point.index, value); }
+    [[nodiscard]] double get(Parameter parameter) const noexcept { return value_at(parameters, parameter.index); }
 
     /// Raises the program's alarm `number` (0..63) for as long as `active` holds; texts come from Declaration::alarm.
     void alarm(std::uint8_t number, bool active) noexcept {
@@ -84,6 +97,18 @@ public:
     std::span<const double> parameters;
     std::uint64_t alarms = 0;
     bool first_scan = false;   ///< first call after start
+
+private:
+    template <class T>
+    [[nodiscard]] static T value_at(std::span<const T> values, std::uint16_t index) noexcept {
+        return index < values.size() ? values[index] : T{};
+    }
+    [[nodiscard]] static std::int64_t value_at(std::span<std::int64_t> values, std::uint16_t index) noexcept {
+        return index < values.size() ? values[index] : 0;
+    }
+    void write(std::uint16_t index, std::int64_t value) noexcept {
+        if (index < outputs.size()) outputs[index] = value;
+    }
 };
 
 /// Collects what a program needs. A name that the configuration lacks is an error that names it and the nearest one;
@@ -98,10 +123,13 @@ public:
     virtual Input<std::int64_t> input_word(std::string_view name) = 0;
     virtual Output<std::int64_t> output_word(std::string_view name) = 0;
     virtual Parameter parameter(std::string_view name, const ParameterSpec& spec) = 0;
-    /// `number` 0..63; reaction as in core/alarm.hpp.
+    /// `number` 0..63; reaction as in core/alarm.hpp. An alarm that is raised but not declared is not shown.
     virtual void alarm(std::uint8_t number, Reaction reaction, std::string_view english, std::string_view chinese,
                        std::string_view remedy) = 0;
 
+    /// Shows a variable to operators, the live view and traces. It is read by address while the machine runs, so it must be a member
+    /// of the program (or of one of its blocks: `d.monitor("timer", grip_.ET)`), of exactly one of these types.
+    // clang-format off
     void monitor(std::string_view name, const bool& v, std::string_view unit = {}, std::string_view doc = {}) { add(name, VariableType::boolean, &v, unit, doc); }
     void monitor(std::string_view name, const std::int32_t& v, std::string_view unit = {}, std::string_view doc = {}) { add(name, VariableType::int32, &v, unit, doc); }
     void monitor(std::string_view name, const std::int64_t& v, std::string_view unit = {}, std::string_view doc = {}) { add(name, VariableType::int64, &v, unit, doc); }
@@ -109,8 +137,16 @@ public:
     void monitor(std::string_view name, const std::uint32_t& v, std::string_view unit = {}, std::string_view doc = {}) { add(name, VariableType::uint32, &v, unit, doc); }
     void monitor(std::string_view name, const double& v, std::string_view unit = {}, std::string_view doc = {}) { add(name, VariableType::real, &v, unit, doc); }
     void monitor(std::string_view name, const Duration& v, std::string_view unit = {}, std::string_view doc = {}) { add(name, VariableType::duration, &v, unit, doc); }
+    // clang-format on
 
-    /// A task by the name under which the configuration schedules it: `d.task<&Cell::scan>("main")`.
+    /// Anything else would be converted into a temporary whose address is kept: an enumeration, a float, a short, a sum.
+    template <class T>
+    void monitor(std::string_view name, const T& v, std::string_view unit = {}, std::string_view doc = {}) = delete;
+    template <class T>
+    void monitor(std::string_view name, const T&& v, std::string_view unit = {}, std::string_view doc = {}) = delete;
+
+    /// A task by the name under which the configuration schedules it: `d.task<&Cell::scan>("main")`. The method is
+    /// `void scan(taktwerk::TaskContext&)`, noexcept or not. A task that the configuration does not mention runs in each cycle.
     template <auto Method>
     void task(std::string_view name) {
         add_task(name, &call<Method>);
@@ -128,17 +164,25 @@ private:
     struct Class<void (P::*)(TaskContext&)> {
         using type = P;
     };
+    template <class P>
+    struct Class<void (P::*)(TaskContext&) noexcept> {
+        using type = P;
+    };
     template <auto Method>
     static void call(void* program, TaskContext& context);
 };
 
+/// One instance per program of the machine file; it lives from loading until the machine is gone.
 class Program {
 public:
     virtual ~Program() = default;
-    /// Called once after loading. Names are resolved here.
+    /// Called once after loading, before there is a bus. Names are resolved here; nothing else is to be done here. An exception is
+    /// an error of the machine file's check.
     virtual void declare(Declaration& declaration) = 0;
-    /// The operator started the program (also after a fault was reset): put the sequence to its beginning.
+    /// The operator started the program (also after a fault was reset): put the sequence to its beginning. The first scan follows
+    /// when this has returned.
     virtual void start() {}
+    /// After the last scan: its axes are already stopping. For files and logs.
     virtual void stop() {}
 };
 

@@ -1,0 +1,45 @@
+# cmake --install BUILD --prefix P [--component runtime|sdk]
+#
+#   runtime  bin/taktwerk · share/taktwerk/{drives,machines} · lib/taktwerk/programs (the examples)
+#   sdk      include/taktwerk/ · lib/cmake/Taktwerk: what find_package(Taktwerk) needs to build programs elsewhere
+#
+# The SDK holds no library: blocks are headers, and a program reaches the machine only through what it is handed.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+set(TAKTWERK_SDK_ROOTS programs/api/entry.hpp fb_library/all_blocks.hpp)
+set(TAKTWERK_SDK_INCLUDE "${CMAKE_INSTALL_INCLUDEDIR}/taktwerk")
+set(sdk_cmake lib/cmake/Taktwerk)
+set(programs_folder lib/taktwerk/programs)  # not LIBDIR: bin/taktwerk finds it as ../lib/taktwerk/programs
+
+# --- runtime ----------------------------------------------------------------------------------------------------------------
+if(TARGET taktwerk)
+  install(TARGETS taktwerk RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT runtime)
+endif()
+foreach(folder drives machines)
+  install(DIRECTORY "${PROJECT_SOURCE_DIR}/config/${folder}" DESTINATION "${CMAKE_INSTALL_DATADIR}/taktwerk" COMPONENT runtime
+    FILES_MATCHING PATTERN "*.yaml")
+endforeach()
+get_property(examples GLOBAL PROPERTY TAKTWERK_EXAMPLE_PROGRAMS)
+if(examples)
+  install(TARGETS ${examples} LIBRARY DESTINATION "${programs_folder}" COMPONENT runtime)
+endif()
+
+# --- sdk --------------------------------------------------------------------------------------------------------------------
+# What a program reports as its SDK and what find_package() compares must be the same number.
+file(STRINGS "${PROJECT_SOURCE_DIR}/programs/api/abi.hpp" line REGEX "sdk_version = ")
+if(NOT line MATCHES "\"${PROJECT_VERSION}\"")
+  message(FATAL_ERROR "programs/api/abi.hpp: sdk_version is not the project's version ${PROJECT_VERSION}")
+endif()
+
+install(CODE "set(TAKTWERK_SOURCE [[${PROJECT_SOURCE_DIR}]])
+set(TAKTWERK_SDK_ROOTS [[${TAKTWERK_SDK_ROOTS}]])
+set(TAKTWERK_SDK_INCLUDE [[${TAKTWERK_SDK_INCLUDE}]])" COMPONENT sdk)
+install(SCRIPT "${PROJECT_SOURCE_DIR}/cmake/InstallSdkHeaders.cmake" COMPONENT sdk)
+
+configure_package_config_file(cmake/TaktwerkConfig.cmake.in "${PROJECT_BINARY_DIR}/sdk/TaktwerkConfig.cmake"
+  INSTALL_DESTINATION "${sdk_cmake}" PATH_VARS TAKTWERK_SDK_INCLUDE)
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/sdk/TaktwerkConfigVersion.cmake" VERSION "${PROJECT_VERSION}"
+  COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)  # headers only; whether a program fits a runtime is the ABI hash's business
+install(FILES "${PROJECT_BINARY_DIR}/sdk/TaktwerkConfig.cmake" "${PROJECT_BINARY_DIR}/sdk/TaktwerkConfigVersion.cmake"
+  "${PROJECT_SOURCE_DIR}/cmake/TaktwerkProgram.cmake" DESTINATION "${sdk_cmake}" COMPONENT sdk)

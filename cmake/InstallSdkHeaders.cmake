@@ -1,0 +1,22 @@
+# Runs at install time: copies the headers a program needs, which are the SDK's roots and whatever they include in turn,
+# found by reading the include lines. So the list is never stale, and nothing else of the tree gets out.
+# Given: TAKTWERK_SOURCE, TAKTWERK_SDK_ROOTS, TAKTWERK_SDK_INCLUDE (below the prefix).
+cmake_minimum_required(VERSION 3.25)
+set(pending ${TAKTWERK_SDK_ROOTS})
+set(headers "")
+while(pending)
+  list(POP_FRONT pending header)
+  if(header IN_LIST headers)
+    continue()
+  endif()
+  list(APPEND headers "${header}")
+  file(STRINGS "${TAKTWERK_SOURCE}/${header}" lines REGEX "^[ \t]*#[ \t]*include[ \t]*\"")
+  foreach(line IN LISTS lines)
+    string(REGEX REPLACE "^[^\"]*\"([^\"]*)\".*" "\\1" included "${line}")
+    list(APPEND pending "${included}")
+  endforeach()
+endwhile()
+foreach(header IN LISTS headers)
+  get_filename_component(folder "${header}" DIRECTORY)
+  file(INSTALL DESTINATION "${CMAKE_INSTALL_PREFIX}/${TAKTWERK_SDK_INCLUDE}/${folder}" TYPE FILE FILES "${TAKTWERK_SOURCE}/${header}")
+endforeach()

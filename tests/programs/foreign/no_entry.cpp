@@ -1,0 +1,2 @@
+// Some other shared object.
+extern "C" __attribute__((visibility("default"))) int answer() { return 42; }
