@@ -1,0 +1,47 @@
+// Any bytes as lines of the command socket: each line gets at most one answer line that is JSON, and whatever reaches the machine
+// is finite and names what the machine has.
+#include <cmath>
+#include <cstdlib>
+
+#include <nlohmann/json.hpp>
+
+#include "hmi_bridge/json_requests.hpp"
+#include "tests/hmi_bridge/fake_machine.hpp"
+
+using namespace taktwerk;
+using namespace taktwerk::hmi;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    test::FakeMachine machine;
+    Gateway gateway(machine);
+    JsonRequests requests(gateway, machine, [] { return std::int64_t{1'800'000'000'000'000}; });
+    gateway.observe(true);
+    requests.observe(&machine.snapshot);
+    requests.on_open(1, {});
+    Instant now{std::chrono::seconds{1}};
+
+    std::string_view rest(reinterpret_cast<const char*>(data), size);
+    while (!rest.empty()) {
+        const auto end = std::min(rest.find('\n'), rest.size());
+        const auto before = machine.submitted.size();
+        requests.on_line(1, rest.substr(0, end), now);
+        rest.remove_prefix(std::min(end + 1, rest.size()));
+        if (machine.submitted.size() > before + 1) std::abort();
+        if (machine.submitted.size() > before) {
+            const auto& command = machine.submitted.back();
+            if (!std::isfinite(command.value) || !std::isfinite(command.value2)) std::abort();
+            if (command.axis != 0xFFFF && command.axis >= machine.layout_.axes.size()) std::abort();
+            if (command.expires <= now - std::chrono::nanoseconds{1}) std::abort();
+            machine.answer(runtime::Answer::accepted);
+        }
+        now += std::chrono::milliseconds{5};
+        gateway.step(now);
+        while (const auto reply = gateway.next_reply()) requests.deliver(*reply);
+        int answers = 0;
+        while (const auto line = requests.next_line()) {
+            if (++answers > 1 || !nlohmann::json::accept(line->text) || line->text.find('\n') != std::string::npos) std::abort();
+        }
+    }
+    requests.on_close(1);
+    return 0;
+}
