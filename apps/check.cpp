@@ -1,0 +1,161 @@
+// taktwerk check FILE: everything that can be known without starting: the file, its drives, its programs, and what it means.
+
+#include <cmath>
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "apps/exit_code.hpp"
+#include "apps/load.hpp"
+#include "apps/master_gone.hpp"
+#include "apps/taktwerk.hpp"
+#include "runtime/machine.hpp"
+#include "runtime/world.hpp"
+
+namespace taktwerk::apps {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using runtime::MachineConfig;
+
+struct Options {
+    std::string file;
+    bool json = false;
+};
+
+Json problem_json(const Error& error) { return Json{{"code", error.code}, {"subject", error.subject}, {"what", error.what}, {"remedy", error.remedy}}; }
+
+Json problems_json(const std::vector<Error>& errors) {
+    auto out = Json::array();
+    for (const auto& error : errors) out.push_back(problem_json(error));
+    return out;
+}
+
+std::string homing_text(const axes::HomingConfig& homing) {
+    switch (homing.kind) {
+        case axes::HomingKind::none: return "none";
+        case axes::HomingKind::drive: return fmt::format("by the drive, method {}", homing.method);
+        case axes::HomingKind::home_switch: return fmt::format("home switch, {} direction", homing.negative ? "negative" : "positive");
+        case axes::HomingKind::set_here: return "where it stands";
+    }
+    return "";
+}
+
+std::string range_text(const axes::AxisLimits& limits, const std::string& unit) {
+    if (std::isinf(limits.position_min) && std::isinf(limits.position_max)) return "unlimited";
+    return fmt::format("{:g} .. {:g} {}", limits.position_min, limits.position_max, unit);
+}
+
+void print_slaves(const MachineConfig& config) {
+    fmt::print("\nBus: {}\n", config.bus.interface.empty() ? std::string("simulated") : "EtherCAT on " + config.bus.interface);
+    for (const auto& slave : config.bus.slaves) {
+        const auto where = slave.position ? fmt::format("position {}", *slave.position) : fmt::format("alias {}", slave.alias.value_or(0));
+        fmt::print("  {:<14} {:<22} {:<12} {}{}\n", slave.name, slave.device ? slave.device->name : "?", where, slave.dc ? "distributed clock" : "free running",
+                   slave.startup.empty() ? "" : fmt::format(", {} start-up SDOs", slave.startup.size()));
+    }
+}
+
+void print_axis(const MachineConfig& config, const runtime::AxisBinding& binding) {
+    const auto& axis = binding.axis;
+    const auto& u = axis.unit;
+    fmt::print("  {:<8} {}{}{}\n", axis.name, binding.slave.empty() ? "virtual" : "drive " + binding.slave, axis.disabled ? "  LEFT OUT" : "", axis.simulated ? "  SIMULATED" : "");
+    fmt::print("           velocity {:g} {}/s, acceleration {:g} {}/s2, deceleration {:g} {}/s2, jerk {:g} {}/s3\n", axis.limits.velocity, u, axis.limits.acceleration, u,
+               axis.limits.deceleration, u, axis.limits.jerk, u);
+    fmt::print("           range {}, homing: {}, jogging {:g} and {:g} {}/s, one {} = {:g} counts\n", range_text(axis.limits, u), homing_text(axis.homing),
+               axis.manual.slow > 0 ? axis.manual.slow : axis.limits.velocity * 0.05, axis.manual.fast > 0 ? axis.manual.fast : axis.limits.velocity * 0.25, u, u,
+               axis.gearing.counts_per_unit());
+    fmt::print("           if the master is gone:\n");
+    for (const auto& sentence : master_gone(config, binding)) fmt::print("             {}\n", sentence);
+}
+
+void print_programs(const MachineConfig& config, const runtime::MachineLayout& layout) {
+    if (config.programs.empty()) fmt::print("\nNo program: axes are moved from the command line.\n");
+    else fmt::print("\nPrograms\n");
+    for (const auto& program : config.programs) {
+        fmt::print("  {:<16} {}{}\n", program.name, program.library, program.autostart ? ", starts by itself" : "");
+        for (const auto& task : config.tasks)
+            if (task.program == program.name)
+                fmt::print("    task {:<12} every {:g} ms{}\n", task.name, to_seconds(config.cycle) * 1e3 * task.divisor, task.divisor == 1 ? ", inline in the cycle" : "");
+        for (const auto& p : layout.parameters)
+            if (p.program == program.name) fmt::print("    parameter {:<12} {:g} {} ({:g} .. {:g})  {}\n", p.name, p.value, p.unit, p.minimum, p.maximum, p.doc);
+        for (const auto& v : layout.variables)
+            if (v.program == program.name) fmt::print("    variable  {:<12} {} {}\n", v.name, v.unit, v.doc);
+    }
+}
+
+void print_assumptions(const MachineConfig& config) {
+    std::vector<std::string> seen;
+    for (const auto& binding : config.axes) {
+        if (!binding.profile || binding.profile->assumed.empty() || std::find(seen.begin(), seen.end(), binding.profile->name) != seen.end()) continue;
+        fmt::print("\nAssumed about {}, because its manual leaves it open:\n", binding.profile->name);
+        for (const auto& sentence : binding.profile->assumed) fmt::print("  {}\n", sentence);
+        seen.push_back(binding.profile->name);
+    }
+}
+
+Json summary_json(const MachineConfig& config, const runtime::MachineLayout& layout, const std::vector<Error>& warnings) {
+    Json out{{"ok", true}, {"machine", config.name}, {"cycle_us", config.cycle.count() / 1000}, {"interface", config.bus.interface}};
+    auto& slaves = out["slaves"] = Json::array();
+    for (const auto& slave : config.bus.slaves) slaves.push_back(Json{{"name", slave.name}, {"device", slave.device ? slave.device->name : ""}, {"dc", slave.dc}});
+    auto& axes = out["axes"] = Json::array();
+    for (const auto& binding : config.axes) {
+        const auto& axis = binding.axis;
+        axes.push_back(Json{{"name", axis.name}, {"unit", axis.unit}, {"slave", binding.slave}, {"disabled", axis.disabled}, {"simulated", axis.simulated},
+                            {"velocity", axis.limits.velocity}, {"acceleration", axis.limits.acceleration}, {"homing", homing_text(axis.homing)},
+                            {"master_gone", master_gone(config, binding)}, {"assumed", binding.profile ? binding.profile->assumed : std::vector<std::string>{}}});
+    }
+    out["programs"] = layout.programs;
+    out["tasks"] = layout.tasks;
+    out["warnings"] = problems_json(warnings);
+    return out;
+}
+
+int fail(const Options& options, const std::vector<Error>& errors) {
+    if (options.json) fmt::print("{}\n", Json{{"ok", false}, {"errors", problems_json(errors)}}.dump(2));
+    else print_errors(errors);
+    return exit_bad_file;
+}
+
+int check(const Options& options) {
+    auto result = read_machine(options.file, false);
+    if (const auto* errors = std::get_if<std::vector<Error>>(&result)) return fail(options, *errors);
+    auto& loaded = std::get<LoadedFile>(result);
+    const MachineConfig config = loaded.machine;
+
+    // Building the machine loads the programs and compares what they declare; nothing is started.
+    runtime::World world{config, Instant{}};
+    auto built = runtime::Machine::build(std::move(loaded.machine), world.transport());
+    if (const auto* errors = std::get_if<std::vector<Error>>(&built)) return fail(options, *errors);
+    const auto& layout = std::get<0>(built)->layout();
+
+    if (options.json) {
+        fmt::print("{}\n", summary_json(config, layout, loaded.warnings).dump(2));
+        return exit_ok;
+    }
+    for (const auto& warning : loaded.warnings) print_warning(warning);
+    fmt::print("{}: machine '{}', cycle {:g} ms, {} slaves, {} axes, {} programs: no problem found\n", options.file, config.name, to_seconds(config.cycle) * 1e3,
+               config.bus.slaves.size(), config.axes.size(), config.programs.size());
+    print_slaves(config);
+    if (!config.axes.empty()) fmt::print("\nAxes\n");
+    for (const auto& binding : config.axes) print_axis(config, binding);
+    print_programs(config, layout);
+    if (config.emergency_stop.input.empty()) fmt::print("\nNo emergency stop input: the runtime does not hear when the safety circuit opens.\n");
+    else fmt::print("\nEmergency stop: input {}; power off when the axes stand, at the latest after {:g} ms. This is no safety function.\n", config.emergency_stop.input,
+                    to_seconds(config.emergency_stop.power_off_after) * 1e3);
+    print_assumptions(config);
+    return exit_ok;
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, Action& action) {
+    auto* sub = app.add_subcommand("check", "check a machine file, its drives and programs; say what it means");
+    auto options = std::make_shared<Options>();
+    sub->add_option("FILE", options->file, "machine file")->required();
+    sub->add_flag("--json", options->json, "the result as one JSON object");
+    sub->callback([&action, options] { action = [options] { return check(*options); }; });
+}
+
+}  // namespace taktwerk::apps

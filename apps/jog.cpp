@@ -1,0 +1,92 @@
+// taktwerk jog AXIS --velocity V: the axis moves while this command lives. It presses once and renews each 50 ms; when it ends or
+// dies, the axis stops (by letting go, or by its lease in the runtime).
+
+#include "apps/jog.hpp"
+
+#include <cstdio>
+#include <thread>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "apps/duration_option.hpp"
+#include "apps/exit_code.hpp"
+#include "apps/remote.hpp"
+#include "apps/stop_signal.hpp"
+#include "core/clock.hpp"
+
+namespace taktwerk::apps {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto renewal = 50ms;
+constexpr auto settling = 5s;  ///< longest ramp we wait for after letting go
+
+struct Options {
+    RemoteOptions remote;
+    std::string axis;
+    double velocity = 0, for_s = 0;
+};
+
+/// The axis' own object of the state; empty when something went wrong.
+nlohmann::ordered_json axis_of(const nlohmann::ordered_json& state, const std::string& name) {
+    for (const auto& axis : state.at("axes"))
+        if (axis.at("name") == name) return axis;
+    return {};
+}
+
+int jog(const Options& options) {
+    auto client = hmi::Client::connect(options.remote.machine);
+    if (!client) return report(options.remote, client.error());
+    watch_stop_signals();
+    SystemClock clock;
+    const auto start = clock.now();
+    const bool show = !options.remote.json && ::isatty(STDOUT_FILENO) != 0;
+
+    for (bool press = true; !stop_requested(); press = false) {
+        nlohmann::json request{{"cmd", "jog"}, {"axis", options.axis}, {"velocity", options.velocity}};
+        if (press) request["press"] = true;
+        const auto answer = client->request(request);
+        if (!answer) return report(options.remote, answer.error());
+        if (show) {
+            if (const auto state = state_of(*client)) {
+                const auto axis = axis_of(*state, options.axis);
+                if (axis.is_object()) fmt::print("\r{} {:12.3f} {}  {:10.3f} {}/s   Ctrl-C stops ", options.axis, axis.at("actual_position").get<double>(), axis.at("unit").get<std::string>(),
+                           axis.at("actual_velocity").get<double>(), axis.at("unit").get<std::string>());
+                std::fflush(stdout);
+            }
+        }
+        if (options.for_s > 0 && clock.now() - start >= from_seconds(options.for_s)) break;
+        std::this_thread::sleep_for(renewal);
+    }
+    if (show) fmt::print("\n");
+    const auto released = client->request({{"cmd", "jog"}, {"axis", options.axis}, {"velocity", 0}});
+    if (!released) return report(options.remote, released.error());
+
+    // Where it came to rest is what one wants to know.
+    for (const auto end = clock.now() + settling; clock.now() < end;) {
+        const auto state = state_of(*client);
+        if (!state) return report(options.remote, state.error());
+        const auto axis = axis_of(*state, options.axis);
+        if (!axis.is_object()) break;
+        if (!axis.at("has_job").get<bool>() && axis.at("set_velocity").get<double>() == 0)
+            return report(options.remote, fmt::format("{}: stands at {:.3f} {}", options.axis, axis.at("actual_position").get<double>(), axis.at("unit").get<std::string>()));
+        std::this_thread::sleep_for(20ms);
+    }
+    return report(options.remote, options.axis + ": let go");
+}
+
+}  // namespace
+
+void add_jog(CLI::App& app, Action& action) {
+    auto* sub = app.add_subcommand("jog", "move an axis while this command lives, in manual or set-up mode");
+    auto options = std::make_shared<Options>();
+    add_remote_options(*sub, options->remote);
+    sub->add_option("AXIS", options->axis, "axis")->required();
+    sub->add_option("--velocity", options->velocity, "unit/s, signed")->required();
+    add_duration(*sub, "--for", options->for_s, "let go after this time; default: at Ctrl-C");
+    sub->callback([&action, options] { action = [options] { return jog(*options); }; });
+}
+
+}  // namespace taktwerk::apps

@@ -1,0 +1,50 @@
+#include "apps/load.hpp"
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "apps/taktwerk.hpp"
+
+namespace taktwerk::apps {
+
+std::vector<std::string> program_path() {
+    std::vector<std::string> folders;
+    std::error_code unknown;
+    const auto executable = std::filesystem::read_symlink("/proc/self/exe", unknown);
+    if (!unknown) {
+        folders.push_back((executable.parent_path() / "programs").string());                                  // in the build folder
+        folders.push_back((executable.parent_path().parent_path() / "lib" / "taktwerk" / "programs").string());  // installed
+    }
+    if (const char* more = std::getenv("TAKTWERK_PROGRAM_PATH")) {
+        const std::string text = more;
+        for (std::size_t at = 0; at < text.size();) {
+            const auto end = std::min(text.find(':', at), text.size());
+            if (end > at) folders.push_back(text.substr(at, end - at));
+            at = end + 1;
+        }
+    }
+    return folders;
+}
+
+config::LoadResult read_machine(const std::string& file, bool simulate) {
+    config::LoadOptions options;
+    options.simulate = simulate;
+    options.program_path = program_path();
+    std::error_code unknown;  // installed below any prefix, the data is found from the executable
+    const auto executable = std::filesystem::read_symlink("/proc/self/exe", unknown);
+    if (!unknown) options.data_dirs.push_back((executable.parent_path().parent_path() / "share" / "taktwerk").string());
+    return config::load_machine(file, options);
+}
+
+std::optional<LoadedFile> load(const std::string& file, bool simulate) {
+    auto result = read_machine(file, simulate);
+    if (const auto* errors = std::get_if<std::vector<Error>>(&result)) {
+        print_errors(*errors);
+        return std::nullopt;
+    }
+    auto& loaded = std::get<LoadedFile>(result);
+    for (const auto& warning : loaded.warnings) print_warning(warning);
+    return std::move(loaded);
+}
+
+}  // namespace taktwerk::apps

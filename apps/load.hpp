@@ -1,0 +1,24 @@
+#pragma once
+// Loading a machine file for a sub-command: where programs are looked for, and what is said about problems.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "config/machine_loader.hpp"
+
+namespace taktwerk::apps {
+
+using LoadedFile = config::LoadedMachine;
+
+/// Where a program library is looked for after the folder of the machine file: `programs` beside this executable, then the folders
+/// of $TAKTWERK_PROGRAM_PATH (with colons between).
+[[nodiscard]] std::vector<std::string> program_path();
+
+/// Silent. `simulate`: the bus and the drives are simulated whatever the file says.
+[[nodiscard]] config::LoadResult read_machine(const std::string& file, bool simulate);
+
+/// Prints warnings, or every problem (then nothing is returned).
+[[nodiscard]] std::optional<LoadedFile> load(const std::string& file, bool simulate);
+
+}  // namespace taktwerk::apps

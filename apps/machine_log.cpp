@@ -1,0 +1,117 @@
+#include "apps/machine_log.hpp"
+
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "apps/json_text.hpp"
+
+namespace taktwerk::apps {
+
+using namespace runtime;
+
+namespace {
+
+std::string_view text(Mode mode) {
+    switch (mode) {
+        case Mode::automatic: return "automatic";
+        case Mode::setup: return "set-up";
+        case Mode::manual: break;
+    }
+    return "manual";
+}
+
+std::string_view text(ProgramState state) {
+    switch (state) {
+        case ProgramState::running: return "running";
+        case ProgramState::fault: return "fault";
+        case ProgramState::stopped: break;
+    }
+    return "stopped";
+}
+
+}  // namespace
+
+void MachineLog::say(Instant now, const std::string& event, const std::string& what) {
+    const double at = to_seconds(now - start_);
+    if (json_) fmt::print("{{\"t\":{:.3f},\"event\":{},\"text\":{}}}\n", at, json_text(event), json_text(what));
+    else fmt::print("{:9.3f} s  {:<9} {}\n", at, event, what);
+    std::fflush(stdout);
+}
+
+void MachineLog::alarms(Instant now, const Snapshot& s) {
+    const auto same = [](const AlarmFact& a, const AlarmFact& b) { return a.id == b.id && a.source == b.source && a.index == b.index; };
+    for (std::size_t i = 0; i < s.alarm_count; ++i) {
+        const auto& alarm = s.alarms[i];
+        if (alarm.reaction == Reaction::none) continue;
+        Known* known = nullptr;
+        for (auto& k : known_)
+            if (same(k.fact, alarm.fact)) known = &k;
+        const bool is_new = !known || (alarm.standing && !known->standing) || alarm.count != known->count;
+        if (!known) {
+            known_.push_back({});
+            known = &known_.back();
+        }
+        *known = {alarm.fact, alarm.standing, alarm.count};
+        if (!is_new || !alarm.standing) continue;
+        const auto words = machine_.describe(alarm.fact);
+        if (words.name == "stopped_by_signal") continue;  // whoever ends the run knows it
+        say(now, "ALARM", fmt::format("{}: {} [{}]", words.source, words.english, words.reaction));
+        if (!json_) {
+            fmt::print("{:13}{:<9} {}\n", "", "", words.chinese);
+            fmt::print("{:13}{:<9} -> {} ({})\n", "", "", words.remedy, words.reset);
+            std::fflush(stdout);
+        }
+    }
+    std::erase_if(known_, [&](const Known& k) {
+        for (std::size_t i = 0; i < s.alarm_count; ++i)
+            if (same(s.alarms[i].fact, k.fact)) return false;
+        const auto words = machine_.describe(k.fact);
+        say(now, "gone", fmt::format("{}: {}", words.source, words.name));
+        return true;
+    });
+}
+
+void MachineLog::step(Instant now, const Snapshot* snapshot) {
+    if (!snapshot) {
+        const auto progress = machine_.bus_progress();
+        // Each SDO is gone before one has read of it; the ones that fail are named by the error.
+        const bool fleeting = progress.find(" writing ") != std::string::npos;
+        if (progress != progress_ && !progress.empty() && !fleeting) say(now, "bus", progress);
+        progress_ = progress;
+        return;
+    }
+    const auto& s = *snapshot;
+    const auto& layout = machine_.layout();
+    if (first_) {
+        first_ = false;
+        states_.resize(s.axes.size());
+        homed_.resize(s.axes.size());
+        programs_.resize(s.programs.size());
+        mode_ = s.mode;
+        say(now, "machine", fmt::format("running, {} mode, {} axes, cycle {} us{}", text(s.mode), s.axes.size(), layout.cycle.count() / 1000,
+                                        s.simulated ? ", SIMULATED bus" : ""));
+    }
+    if (s.mode != mode_) say(now, "mode", std::string(text(s.mode)));
+    mode_ = s.mode;
+    if (s.emergency_stop != emergency_) say(now, "E-STOP", s.emergency_stop ? "pressed" : "released");
+    emergency_ = s.emergency_stop;
+    for (std::size_t i = 0; i < s.axes.size(); ++i) {
+        const auto& view = s.axes[i];
+        // Moves come and go too fast to read: what a person wants to know is power, homing, stops and errors.
+        using S = axes::AxisState;
+        const auto quiet = [](S state) { return state == S::DiscreteMotion || state == S::ContinuousMotion || state == S::SynchronizedMotion || state == S::Standstill; };
+        if (view.state != states_[i] && !(quiet(view.state) && quiet(states_[i])))
+            say(now, "axis " + layout.axes[i].name, fmt::format("{} -> {}", axes::name(states_[i]), axes::name(view.state)));
+        if (view.homed != homed_[i] && s.phase == MachinePhase::running) say(now, "axis " + layout.axes[i].name, view.homed ? "homed" : "no longer homed");
+        states_[i] = view.state;
+        homed_[i] = view.homed;
+    }
+    for (std::size_t i = 0; i < s.programs.size(); ++i) {
+        if (s.programs[i] != programs_[i]) say(now, "program", fmt::format("{} {}", layout.programs[i], text(s.programs[i])));
+        programs_[i] = s.programs[i];
+    }
+    alarms(now, s);
+}
+
+}  // namespace taktwerk::apps

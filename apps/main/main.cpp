@@ -1,0 +1,3 @@
+#include "apps/taktwerk.hpp"
+
+int main(int argc, char** argv) { return taktwerk::apps::run(argc, argv); }

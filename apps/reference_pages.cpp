@@ -1,0 +1,74 @@
+#include "apps/reference_pages.hpp"
+
+#include <iterator>
+#include <span>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "axes/axis/alarms.hpp"
+#include "axes/axis/error_table.hpp"
+#include "ecat/alarms.hpp"
+#include "runtime/alarms.hpp"
+
+namespace taktwerk::apps {
+namespace {
+
+std::string_view words(Reaction reaction) {
+    switch (reaction) {
+        case Reaction::none: return "nothing; information only";
+        case Reaction::warn: return "shown, nothing stops";
+        case Reaction::stop_axis: return "the axis stops along its deceleration (ErrorStop)";
+        case Reaction::stop_machine: return "every axis stops along its deceleration; programs are told";
+        case Reaction::power_off: return "every axis stops, then power goes off";
+    }
+    return "";
+}
+
+std::string_view words(ResetRule reset) {
+    switch (reset) {
+        case ResetRule::self_clearing: return "goes away with its cause";
+        case ResetRule::acknowledge: return "`taktwerk ack`, once the cause is gone";
+        case ResetRule::reset: return "`taktwerk reset` or MC_Reset, once the cause is gone";
+        case ResetRule::restart: return "power cycle of the device, or restart of the runtime";
+    }
+    return "";
+}
+
+void append_table(std::string& page, std::string_view title, std::string_view numbers, std::span<const AlarmInfo> table) {
+    auto out = std::back_inserter(page);
+    fmt::format_to(out, "\n## {}\n\n{}\n", title, numbers);
+    for (const auto& alarm : table) {
+        fmt::format_to(out, "\n### {:04X}h {}\n\n", alarm.id, alarm.name);
+        fmt::format_to(out, "{}\n\n{}\n\n", alarm.english, alarm.chinese);
+        fmt::format_to(out, "* Cause: {}\n* Remedy: {}\n* Reset: {}\n* Reaction, master alive: {}\n", alarm.cause, alarm.remedy, words(alarm.reset),
+                       words(alarm.reaction));
+        if (!alarm.master_gone.empty()) fmt::format_to(out, "* Reaction, master gone: {}\n", alarm.master_gone);
+    }
+}
+
+}  // namespace
+
+std::string alarm_reference_markdown() {
+    std::string page =
+        "# Alarms\n\n"
+        "Generated from the alarm tables (`taktwerk docs alarms`). {a} and {b} stand for the numbers of the occasion. A drive's own\n"
+        "alarms come with its profile and are shown with `drive_fault` and `drive_warning`; a program's alarms are declared by the program.\n";
+    append_table(page, "Bus", "EtherCAT, 1xxxh.", ecat::bus_alarms);
+    append_table(page, "Axes", "3xxxh; also the error of an axis in ErrorStop (MC_ReadAxisError).", axes::axis_alarms);
+    append_table(page, "Machine", "6xxxh.", runtime::machine_alarms);
+    return page;
+}
+
+std::string error_reference_markdown() {
+    std::string page =
+        "# Errors of function blocks\n\n"
+        "Generated from the error table (`taktwerk docs errors`). These are answers to a command: the axis itself is untouched. Numbers from\n"
+        "3000h on are the axis' own errors and stand in alarms.md.\n\n"
+        "| ErrorID | name | meaning | 含义 | what to do |\n|---|---|---|---|---|\n";
+    for (const auto& error : axes::error_texts)
+        fmt::format_to(std::back_inserter(page), "| {:04X}h | {} | {} | {} | {} |\n", static_cast<unsigned>(error.id), error.name, error.english, error.chinese, error.remedy);
+    return page;
+}
+
+}  // namespace taktwerk::apps

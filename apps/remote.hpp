@@ -1,0 +1,32 @@
+#pragma once
+// What the sub-commands share that talk to a running machine: which one, how answers are printed, which exit code they mean.
+
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "core/result.hpp"
+#include "hmi_bridge/client.hpp"
+
+namespace taktwerk::apps {
+
+struct RemoteOptions {
+    std::string machine;  ///< socket path or machine name; empty: the only one that runs
+    bool json = false;
+};
+
+void add_remote_options(CLI::App& sub, RemoteOptions& options);
+
+/// 5 the machine refused, 6 no running machine, 2 a request the machine does not understand.
+[[nodiscard]] int exit_code_of(const Error& error);
+
+/// The answer of a command for people or scripts; returns the exit code.
+int report(const RemoteOptions& options, const std::string& done);
+int report(const RemoteOptions& options, const Error& error);
+
+/// The machine's state (the object of "state").
+[[nodiscard]] Result<nlohmann::ordered_json> state_of(hmi::Client& client);
+[[nodiscard]] Result<nlohmann::ordered_json> layout_of(hmi::Client& client);
+
+}  // namespace taktwerk::apps

@@ -1,0 +1,229 @@
+// taktwerk run FILE: runs a machine, in real time or in virtual time, on its bus or simulated.
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "apps/duration_option.hpp"
+#include "apps/exit_code.hpp"
+#include "apps/load.hpp"
+#include "apps/machine_log.hpp"
+#include "apps/stop_signal.hpp"
+#include "apps/taktwerk.hpp"
+#include "apps/trace_csv.hpp"
+#include "core/math.hpp"
+#include "ecat/transport/raw_socket.hpp"
+#include "hmi_bridge/hmi_bridge.hpp"
+#include "hmi_bridge/runtime_link.hpp"
+#include "runtime/realtime_runner.hpp"
+#include "runtime/virtual_runner.hpp"
+
+namespace taktwerk::apps {
+
+namespace {
+
+using namespace runtime;
+
+struct Options {
+    std::string file, trace;
+    bool simulate = false, virtual_time = false, json = false, quiet = false;
+    double duration_s = 0;
+};
+
+constexpr std::size_t trace_rows = 8192;
+
+/// A run that ends with something machine-wide still standing did not end well.
+int exit_code_of(Machine& machine) {
+    const auto* s = machine.latest();
+    if (!s) return exit_ok;
+    for (std::size_t i = 0; i < s->alarm_count; ++i) {
+        const bool machine_wide = s->alarms[i].standing && s->alarms[i].reaction >= Reaction::stop_machine;
+        if (machine_wide && machine.describe(s->alarms[i].fact).name != "stopped_by_signal") return exit_alarm;
+    }
+    return exit_ok;
+}
+
+void print_summary(Machine& machine, const Options& options, double machine_seconds, double wall_seconds) {
+    const auto* s = machine.latest();
+    if (!s || options.quiet) return;
+    const auto& total = machine.step_statistics().total();
+    if (options.json) {
+        fmt::print("{{\"cycles\":{},\"missed\":{},\"lateness_max_us\":{:.1f},\"compute_p50_us\":{:.2f},\"compute_p99_us\":{:.2f},\"compute_max_us\":{:.2f},"
+                   "\"frames_lost\":{},\"machine_s\":{:.3f},\"wall_s\":{:.3f}}}\n",
+                   s->statistics.cycles, s->statistics.missed_ticks, to_seconds(s->statistics.lateness_max) * 1e6,
+                   to_seconds(total.percentile(50)) * 1e6, to_seconds(total.percentile(99)) * 1e6, to_seconds(total.max()) * 1e6, s->bus.frames_lost,
+                   machine_seconds, wall_seconds);
+        return;
+    }
+    fmt::print("\n{} cycles of {} us, {} missed; {} frames lost, {} late\n", s->statistics.cycles, machine.layout().cycle.count() / 1000,
+               s->statistics.missed_ticks, s->bus.frames_lost, s->bus.frames_late);
+    fmt::print("computing per cycle: p50 {:.1f} us, p99 {:.1f} us, max {:.1f} us", to_seconds(total.percentile(50)) * 1e6,
+               to_seconds(total.percentile(99)) * 1e6, to_seconds(total.max()) * 1e6);
+    if (options.virtual_time)
+        fmt::print("\n{:.1f} s of machine time in {:.2f} s: {:.0f} times real time\n", machine_seconds, wall_seconds, machine_seconds / std::max(wall_seconds, 1e-9));
+    else fmt::print("; wake-up at most {:.0f} us late\n", to_seconds(s->statistics.lateness_max) * 1e6);
+    for (std::size_t i = 0; i < machine.layout().variables.size(); ++i) {
+        const auto& v = machine.layout().variables[i];
+        fmt::print("{}.{} = {}{}{}\n", v.program, v.name, s->variables[i], v.unit.empty() ? "" : " ", v.unit);
+    }
+}
+
+std::unique_ptr<Machine> build(MachineConfig config, ecat::Transport& transport) {
+    auto built = Machine::build(std::move(config), transport);
+    if (auto* errors = std::get_if<1>(&built)) {
+        print_errors(*errors);
+        return nullptr;
+    }
+    return std::move(std::get<0>(built));
+}
+
+int run_virtual(LoadedFile loaded, const Options& options) {
+    math::set_stepping_thread_float_environment();
+    VirtualClock clock{Instant{}};
+    World world{loaded.machine, clock.now()};
+    auto machine = build(std::move(loaded.machine), world.transport());
+    if (!machine) return exit_bad_file;
+    std::unique_ptr<TraceCsv> trace;
+    if (!options.trace.empty()) {
+        auto created = TraceCsv::create(options.trace, machine->enable_trace(trace_rows), machine->layout());
+        if (!created) {
+            print_error(created.error());
+            return exit_bad_file;
+        }
+        trace = std::move(*created);
+    }
+    watch_stop_signals();
+    SystemClock wall;
+    const auto wall_start = wall.now();
+    MachineLog log{*machine, clock.now(), options.json};
+    VirtualRunner runner{*machine, world, clock};
+    runner.after_cycle = [&](Instant now) {
+        if (trace) trace->drain();
+        if (!options.quiet) log.step(now, machine->latest());
+        if (stop_requested()) machine->request_shutdown();
+    };
+    if (auto up = runner.bring_up(); !up) {
+        print_error(up.error());
+        return exit_bus;
+    }
+    const auto duration = options.duration_s > 0 ? from_seconds(options.duration_s) : Duration::max() / 4;
+    runner.run_for(std::max(duration - (clock.now() - Instant{}), Duration{}));
+    const int code = exit_code_of(*machine);
+    runner.shut_down();
+    print_summary(*machine, options, to_seconds(clock.now() - Instant{}), to_seconds(wall.now() - wall_start));
+    if (trace)
+        if (auto ok = trace->finish(); !ok) {
+            print_error(ok.error());
+            return exit_bad_file;
+        }
+    return code;
+}
+
+int run_real(LoadedFile loaded, const Options& options) {
+    SystemClock clock;
+    std::unique_ptr<World> world;
+    std::unique_ptr<ecat::RawSocketTransport> nic;
+    if (loaded.machine.bus.interface.empty()) {
+        world = std::make_unique<World>(loaded.machine, clock.now());
+    } else {
+        auto opened = ecat::RawSocketTransport::open(loaded.machine.bus.interface);
+        if (!opened) {
+            print_error(opened.error());
+            return exit_bus;
+        }
+        nic = std::move(*opened);
+    }
+    ecat::Transport& transport = world ? static_cast<ecat::Transport&>(world->transport()) : *nic;
+    auto machine = build(std::move(loaded.machine), transport);
+    if (!machine) return exit_bad_file;
+    std::unique_ptr<TraceCsv> trace;
+    if (!options.trace.empty()) {
+        auto created = TraceCsv::create(options.trace, machine->enable_trace(trace_rows), machine->layout());
+        if (!created) {
+            print_error(created.error());
+            return exit_bad_file;
+        }
+        trace = std::move(*created);
+    }
+    hmi::RuntimeLink link{*machine};
+    hmi::HmiOptions bridge_options;
+    if (!options.quiet && !options.json) bridge_options.log = [](std::string_view text) { fmt::print("{}\n", text); };
+    auto bridge = hmi::HmiBridge::open(loaded.hmi, link, std::move(bridge_options));
+    if (!bridge) {
+        print_error(bridge.error());
+        return exit_bad_file;
+    }
+    if ((*bridge)->lcm_problem()) print_warning(*(*bridge)->lcm_problem());
+
+    watch_stop_signals();
+    RealtimeRunner runner{*machine, world.get()};
+    auto started = runner.start();
+    if (!started) {
+        print_error(started.error());
+        return exit_realtime;
+    }
+    if (!options.quiet && !options.json && !started->all_granted()) {
+        fmt::print("Without real time (the machine runs, but not punctually):\n");
+        for (const auto& item : started->items)
+            if (!item.granted) fmt::print("  {}: {}. It costs: {}\n", item.what, item.reason, item.consequence);
+    }
+    const auto start = clock.now();
+    MachineLog log{*machine, start, options.json};
+    int code = exit_ok;
+    bool said_stop = false, code_taken = false;
+    auto served = runner.serve([&](Instant now) {
+        if (trace) trace->drain();
+        if (nic) nic->refresh();
+        (*bridge)->set_progress(machine->bus_progress());
+        (*bridge)->step(now);
+        if (!options.quiet) log.step(now, (*bridge)->snapshot());
+        const bool time_up = options.duration_s > 0 && to_seconds(now - start) >= options.duration_s;
+        if (stop_requested() && !said_stop) {
+            said_stop = true;
+            if (!options.quiet) log.say(now, "stop", fmt::format("{}: axes stop along their ramps, then power goes off", stop_signal_name()));
+        }
+        if ((time_up || stop_requested()) && !code_taken) {
+            code = exit_code_of(*machine);
+            code_taken = true;
+        }
+        return !time_up && !stop_requested();
+    });
+    runner.finish();
+    if (!served) {
+        print_error(served.error());
+        return exit_bus;
+    }
+    if (!code_taken) code = exit_code_of(*machine);
+    print_summary(*machine, options, to_seconds(clock.now() - start), to_seconds(clock.now() - start));
+    if (trace)
+        if (auto ok = trace->finish(); !ok) {
+            print_error(ok.error());
+            return exit_bad_file;
+        }
+    return code;
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, Action& action) {
+    auto* sub = app.add_subcommand("run", "run a machine");
+    auto options = std::make_shared<Options>();
+    sub->add_option("FILE", options->file, "machine file")->required();
+    sub->add_flag("--simulate", options->simulate, "simulated bus and drives, whatever the file says");
+    sub->add_flag("--virtual-time", options->virtual_time, "as fast as the CPU allows, bit-identical each time (simulated only)");
+    add_duration(*sub, "--duration", options->duration_s, "machine time, e.g. 60s; default: until stopped");
+    sub->add_option("--trace", options->trace, "write every cycle to this CSV file (see `taktwerk plot`)");
+    sub->add_flag("--json", options->json, "events as one JSON object a line");
+    sub->add_flag("--quiet", options->quiet, "say nothing but errors");
+    sub->callback([&action, options] {
+        action = [options] {
+            auto loaded = load(options->file, options->simulate || options->virtual_time);
+            if (!loaded) return static_cast<int>(exit_bad_file);
+            return options->virtual_time ? run_virtual(std::move(*loaded), *options) : run_real(std::move(*loaded), *options);
+        };
+    });
+}
+
+}  // namespace taktwerk::apps

@@ -1,0 +1,54 @@
+#include "apps/taktwerk.hpp"
+
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "apps/exit_code.hpp"
+#include "programs/api/abi.hpp"
+
+namespace taktwerk::apps {
+
+namespace {
+
+bool colours(int fd) { return ::isatty(fd) != 0; }
+
+void print(const char* colour, const char* word, const Error& error) {
+    const bool tty = colours(STDERR_FILENO);
+    fmt::print(stderr, "{}{}{}: {}{}\n", tty ? colour : "", word, tty ? "\033[0m" : "", error.subject.empty() ? "" : error.subject + ": ", error.what);
+    if (!error.remedy.empty()) fmt::print(stderr, "  -> {}\n", error.remedy);
+}
+
+}  // namespace
+
+void print_error(const Error& error) { print("\033[1;31m", "error", error); }
+void print_warning(const Error& warning) { print("\033[1;33m", "warning", warning); }
+void print_errors(const std::vector<Error>& errors) {
+    for (const auto& error : errors) print_error(error);
+    if (errors.size() > 1) fmt::print(stderr, "{} problems; nothing was started\n", errors.size());
+}
+
+int run(int argc, char** argv) {
+    CLI::App app{"Taktwerk: soft-PLC and motion runtime"};
+    app.set_version_flag("--version", std::string("taktwerk ") + sdk_version);
+    app.require_subcommand(1);
+    app.footer("Exit codes: 0 ok, 2 usage, 3 bad file, 4 bus, 5 refused by the machine, 6 no running machine, 7 no real time, 8 ended with an alarm");
+    Action action;
+    add_run(app, action);
+    add_check(app, action);
+    add_monitor(app, action);
+    add_operate(app, action);
+    add_plot(app, action);
+    add_sim(app, action);
+    add_docs(app, action);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        const int code = app.exit(error);
+        return code == 0 ? exit_ok : exit_usage;
+    }
+    return action ? action() : exit_usage;
+}
+
+}  // namespace taktwerk::apps

@@ -1,0 +1,33 @@
+#pragma once
+// The `taktwerk` command. Each sub-command registers itself on the CLI11 application and returns an exit code (apps/exit_code.hpp).
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "core/result.hpp"
+
+namespace taktwerk::apps {
+
+/// What a sub-command leaves to be run after parsing.
+using Action = std::function<int()>;
+
+int run(int argc, char** argv);
+
+// One line a sub-command; each lives in its own file.
+void add_run(CLI::App& app, Action& action);
+void add_check(CLI::App& app, Action& action);
+void add_sim(CLI::App& app, Action& action);
+void add_plot(CLI::App& app, Action& action);
+void add_monitor(CLI::App& app, Action& action);
+void add_operate(CLI::App& app, Action& action);  ///< jog, home, enable, reset, start, stop, set, mode, ...
+void add_docs(CLI::App& app, Action& action);     ///< generated reference: blocks, configuration, alarms, errors
+
+/// One block a problem on stderr: what, where, why, what to do.
+void print_errors(const std::vector<Error>& errors);
+void print_error(const Error& error);
+void print_warning(const Error& warning);
+
+}  // namespace taktwerk::apps

@@ -1,0 +1,30 @@
+#pragma once
+// A trace read back from CSV (what apps/trace_csv.hpp writes), column by column, as far as a plot needs it.
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/result.hpp"
+
+namespace taktwerk::apps {
+
+struct AxisTrace {
+    std::string name, unit;  ///< unit "u" when the trace does not say
+    std::vector<double> state, set_position, actual_position, set_velocity, actual_velocity, set_acceleration, set_jerk, following_error;
+};
+
+struct Trace {
+    std::vector<double> time_s;          ///< since the first row
+    std::vector<double> emergency_stop;  ///< 0 or 1
+    std::vector<AxisTrace> axes;
+    bool cut_off = false;                ///< the last line is incomplete: the writer was killed
+};
+
+/// Errors: trace.open, trace.not_a_trace, trace.bad_line (with its number), trace.empty.
+[[nodiscard]] Result<Trace> read_trace(const std::string& path);
+/// The same from text; `name` stands in the errors.
+[[nodiscard]] Result<Trace> parse_trace(std::string_view text, const std::string& name);
+
+}  // namespace taktwerk::apps

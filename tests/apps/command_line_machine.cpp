@@ -1,0 +1,176 @@
+// The command as a user or a script meets it: exit codes, messages, and one short run in real time.
+
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "apps/exit_code.hpp"
+#include "apps/trace_file.hpp"
+#include "axes/axis/types.hpp"
+#include "tests/apps/child.hpp"
+
+namespace taktwerk::apps {
+namespace {
+
+using namespace std::chrono_literals;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+const std::string taktwerk = std::string(TAKTWERK_BINARY_DIR) + "/taktwerk";
+const std::string machines = std::string(TAKTWERK_SOURCE_DIR) + "/config/machines/";
+
+class CommandLine : public ::testing::Test {
+protected:
+    CommandLine() {
+        auto pattern = (std::filesystem::temp_directory_path() / "taktwerk-test-XXXXXX").string();
+        folder_ = ::mkdtemp(pattern.data());
+    }
+    ~CommandLine() override { std::filesystem::remove_all(folder_); }
+
+    std::string path(const std::string& name) const { return folder_ + "/" + name; }
+    std::string file(const std::string& name, const std::string& text) const {
+        std::ofstream(path(name)) << text;
+        return path(name);
+    }
+    static std::string text_of(const std::string& name) {
+        std::ifstream in(name, std::ios::binary);
+        std::ostringstream out;
+        out << in.rdbuf();
+        return out.str();
+    }
+
+    struct Outcome {
+        int code;
+        std::string text;
+    };
+    static Outcome command(std::vector<std::string> arguments, std::chrono::milliseconds patience = 20s) {
+        arguments.insert(arguments.begin(), taktwerk);
+        Child child(arguments);
+        const int code = child.wait(patience);
+        return {code, child.text()};
+    }
+    /// minimal.yaml with its own socket and without LCM: several tests may run at once.
+    std::string private_machine(const std::string& more = "") const {
+        auto text = text_of(machines + "minimal.yaml");
+        text += "hmi: { socket: '" + path("socket") + "', lcm: { enabled: false } }\n" + more;
+        std::filesystem::create_directories(folder_ + "/machines");
+        std::filesystem::create_directory_symlink(std::filesystem::path(machines) / ".." / "drives", folder_ + "/drives");
+        return file("machines/minimal.yaml", text);
+    }
+    Outcome to_machine(std::vector<std::string> arguments) const {
+        arguments.insert(arguments.end(), {"-s", path("socket")});
+        return command(std::move(arguments));
+    }
+
+    std::string folder_;
+};
+
+TEST_F(CommandLine, WrongArgumentsAreUsageErrors) {
+    EXPECT_EQ(command({}).code, exit_usage);
+    EXPECT_EQ(command({"fly"}).code, exit_usage);
+    EXPECT_EQ(command({"run", machines + "minimal.yaml", "--fast"}).code, exit_usage);
+    EXPECT_EQ(command({"mode", "sleepy"}).code, exit_usage);
+    EXPECT_EQ(command({"docs", "novels"}).code, exit_usage);
+    EXPECT_EQ(command({"--help"}).code, exit_ok);
+}
+
+TEST_F(CommandLine, BadFilesEndWithAllTheirProblems) {
+    const auto missing = command({"run", "/nowhere/machine.yaml"});
+    EXPECT_EQ(missing.code, exit_bad_file);
+    EXPECT_THAT(missing.text, HasSubstr("/nowhere/machine.yaml"));
+
+    const auto bad = command({"check", file("bad.yaml", "version: 1\nname: bad\ncycle: 1 mm\nbsu: {}\n")});
+    EXPECT_EQ(bad.code, exit_bad_file);
+    EXPECT_THAT(bad.text, AllOf(HasSubstr("bad.yaml:3:"), HasSubstr("bad.yaml:4:")));
+
+    EXPECT_EQ(command({"plot", "/nowhere/trace.csv"}).code, exit_bad_file);
+    EXPECT_EQ(command({"plot", file("no_trace.csv", "a,b\n1,2\n")}).code, exit_bad_file);
+}
+
+TEST_F(CommandLine, CheckSaysWhatADriveDoesWhenTheMasterIsGone) {
+    const auto checked = command({"check", machines + "demo.yaml"});
+    EXPECT_EQ(checked.code, exit_ok) << checked.text;
+    EXPECT_THAT(checked.text, AllOf(HasSubstr("if the master is gone"), HasSubstr("605Ah"), HasSubstr("Assumed about sv33-e"), HasSubstr("speed")));
+}
+
+TEST_F(CommandLine, TwoRunsInVirtualTimeWriteTheSameBytes) {
+    for (const char* name : {"one.csv", "two.csv"}) {
+        const auto run = command({"run", machines + "demo.yaml", "--virtual-time", "--duration", "6s", "--trace", path(name)});
+        ASSERT_EQ(run.code, exit_ok) << run.text;
+    }
+    const auto trace = text_of(path("one.csv"));
+    EXPECT_GT(trace.size(), 100000u);
+    EXPECT_TRUE(trace == text_of(path("two.csv")));
+}
+
+TEST_F(CommandLine, WithoutARunningMachineCommandsSaySo) {
+    for (const auto& arguments : {std::vector<std::string>{"monitor", "--once"}, {"enable", "x"}, {"jog", "x", "--velocity", "-5"}, {"reset"}}) {
+        const auto answer = to_machine(arguments);
+        EXPECT_EQ(answer.code, exit_no_runtime) << answer.text;
+    }
+    EXPECT_THAT(to_machine({"reset", "--json"}).text, HasSubstr(R"("ok":false)"));
+}
+
+TEST_F(CommandLine, AMissingNetworkInterfaceIsABusError) {
+    auto text = text_of(private_machine());
+    const std::string simulated = "interface: simulated";
+    text.replace(text.find(simulated), simulated.size(), "interface: nonic7");
+    const auto run = command({"run", file("machines/nic.yaml", text), "--duration", "1s"});
+    EXPECT_EQ(run.code, exit_bus) << run.text;
+    EXPECT_THAT(run.text, HasSubstr("nonic7"));
+    EXPECT_EQ(command({"sim", machines + "minimal.yaml", "--nic", "nonic7"}).code, exit_bus);
+}
+
+// The one run in real time: commands over the socket, then SIGTERM in the middle of a motion.
+TEST_F(CommandLine, ARunningMachineIsOperatedAndEndsAlongItsRamp) {
+    Child runtime({taktwerk, "run", private_machine(), "--trace", path("real.csv")});
+    ASSERT_TRUE(runtime.says("running, manual mode", 20s)) << runtime.text();
+
+    const auto refused = to_machine({"jog", "x", "--velocity", "5", "--for", "100ms"});
+    EXPECT_EQ(refused.code, exit_refused) << refused.text;
+    EXPECT_THAT(refused.text, HasSubstr("x"));
+    EXPECT_EQ(to_machine({"enable", "w"}).code, exit_refused);
+    EXPECT_EQ(to_machine({"start"}).code, exit_refused);
+
+    ASSERT_EQ(to_machine({"enable", "x", "--wait"}).code, exit_ok);
+    const auto homed = to_machine({"home", "x", "--wait"});
+    ASSERT_EQ(homed.code, exit_ok) << homed.text;
+    const auto jogged = to_machine({"jog", "x", "--velocity", "-20", "--for", "400ms"});
+    EXPECT_EQ(jogged.code, exit_ok) << jogged.text;
+    EXPECT_THAT(jogged.text, HasSubstr("stands at -"));
+    EXPECT_THAT(to_machine({"monitor", "--once"}).text, AllOf(HasSubstr("SIMULATED"), HasSubstr("Standstill")));
+
+    ASSERT_EQ(to_machine({"move", "x", "1000", "--velocity", "50"}).code, exit_ok);
+    std::filesystem::path trace = path("real.csv");
+    ::poll(nullptr, 0, 500);  // well into the motion
+    runtime.signal(SIGTERM);
+    EXPECT_EQ(runtime.wait(5s), exit_ok) << runtime.text();
+
+    const auto recorded = read_trace(trace.string());
+    ASSERT_TRUE(recorded) << recorded.error().text();
+    const auto& x = recorded->axes.at(0);
+    EXPECT_EQ(x.state.back(), static_cast<double>(axes::AxisState::Disabled));
+    EXPECT_EQ(x.set_velocity.back(), 0);
+    // minimal.yaml: 2000 mm/s2. At 50 mm/s the ramp takes 25 ms and a little for the jerk: nothing jumps between two cycles.
+    double fastest = 0;
+    for (std::size_t i = 1; i < x.set_position.size(); ++i) {
+        EXPECT_LE(std::abs(x.set_velocity[i] - x.set_velocity[i - 1]), 2000 * 1e-3 * 1.001) << "row " << i;
+        fastest = std::max(fastest, x.set_velocity[i]);
+    }
+    EXPECT_NEAR(fastest, 50, 0.5);
+}
+
+TEST_F(CommandLine, SigtermIsHeardBeforeTheBusIsUp) {
+    Child runtime({taktwerk, "run", private_machine()});
+    ASSERT_TRUE(runtime.says("bus", 10s)) << runtime.text();
+    runtime.signal(SIGTERM);
+    EXPECT_EQ(runtime.wait(5s), exit_ok) << runtime.text();
+}
+
+}  // namespace
+}  // namespace taktwerk::apps

@@ -1,0 +1,90 @@
+// The monitor's screen from a state as the runtime gives it.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "apps/monitor_screen.hpp"
+#include "apps/terminal_text.hpp"
+
+namespace taktwerk::apps {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using Json = nlohmann::ordered_json;
+
+Json axis(const std::string& name) {
+    return Json{{"name", name}, {"unit", "mm"}, {"state", "Standstill"}, {"owner", "program"}, {"disabled", false}, {"simulated", true}, {"online", true},
+                {"powered", true}, {"homed", true}, {"drive_error", 0}, {"actual_position", 12.3456}, {"actual_velocity", -0.5}, {"set_position", 12.5},
+                {"following_error", 0.001}, {"drive_state", "operation_enabled"}, {"negative_limit_switch", false}, {"positive_limit_switch", false}, {"home_switch", false}};
+}
+
+Json alarm(const std::string& source) {
+    return Json{{"source", source}, {"english", "The drive reports fault 0x3130"}, {"chinese", "驱动器报告故障 0x3130"}, {"remedy", "Check the mains"},
+                {"standing", true}, {"acknowledged", false}, {"count", 1}};
+}
+
+Json state(std::size_t axes, std::size_t alarms) {
+    Json out{{"machine", "cell"}, {"cycle", 12345}, {"phase", "running"}, {"mode", "automatic"}, {"emergency_stop", false}, {"simulated", true}};
+    out["statistics"] = Json{{"lateness_ns", 12000}, {"lateness_max_ns", 87000}, {"compute_ns", 45000}, {"compute_max_ns", 120000}, {"missed_ticks", 3}};
+    out["bus"] = Json{{"phase", "operational"}, {"frames_lost", 1}, {"frames_late", 2}, {"working_counter_errors", 0}};
+    out["slaves"] = Json::array({Json{{"fresh", true}}, Json{{"fresh", false}}});
+    out["axes"] = Json::array();
+    for (std::size_t i = 0; i < axes; ++i) out["axes"].push_back(axis("a" + std::to_string(i)));
+    out["alarms"] = Json::array();
+    for (std::size_t i = 0; i < alarms; ++i) out["alarms"].push_back(alarm("axis a" + std::to_string(i)));
+    out["programs"] = Json::array({Json{{"name", "cell"}, {"state", "running"}}});
+    out["variables"] = Json::array({Json{{"program", "cell"}, {"name", "step"}, {"unit", ""}, {"value", 30}}});
+    out["parameters"] = Json::array({Json{{"program", "cell"}, {"name", "speed"}, {"unit", "mm/s"}, {"value", 400}}});
+    out["inputs"] = Json{{"estop_ok", 1}, {"start_button", 0}};
+    out["outputs"] = Json{{"lamp", 1}};
+    return out;
+}
+
+const Json layout{{"cycle_ns", 1000000}};
+
+TEST(TerminalText, ChineseTakesTwoColumns) {
+    EXPECT_EQ(columns("abc"), 3u);
+    EXPECT_EQ(columns("急停:x"), 6u);
+    EXPECT_EQ(columns("急停：x"), 7u);  // fullwidth colon
+    EXPECT_EQ(cut("急停急停", 5), "急停…");
+    EXPECT_EQ(cut("急停急停", 4), "急…");
+    EXPECT_EQ(columns(left("急停", 7)), 7u);
+    EXPECT_EQ(right("ab", 4), "  ab");
+}
+
+TEST(MonitorScreen, ThreeAxesWithAlarmsFitAPlainTerminal) {
+    const auto lines = monitor_screen(state(3, 2), layout, {80, 24, false});
+
+    EXPECT_LE(lines.size(), 24u);
+    for (const auto& line : lines) EXPECT_LE(columns(line), 80u) << line;
+    EXPECT_THAT(lines, Contains(HasSubstr("SIMULATED")));
+    EXPECT_THAT(lines, Contains(HasSubstr("missed 3")));
+    EXPECT_THAT(lines, Contains(HasSubstr("axis a1: The drive reports fault 0x3130")));
+    EXPECT_THAT(lines, Contains(HasSubstr("驱动器报告故障 0x3130")));
+    EXPECT_THAT(lines, Contains(HasSubstr("-> Check the mains")));
+    EXPECT_THAT(lines, Contains(HasSubstr("step=30")));
+    EXPECT_THAT(lines, Contains(HasSubstr("speed=400 mm/s")));
+    EXPECT_THAT(lines, Contains(HasSubstr("estop_ok=1")));
+    EXPECT_THAT(lines, Contains(HasSubstr("owner program")));
+}
+
+TEST(MonitorScreen, WhatDoesNotFitGivesWayToAxesAndAlarms) {
+    const auto lines = monitor_screen(state(12, 9), layout, {80, 24, false});
+
+    EXPECT_EQ(lines.size(), 24u);
+    for (int i = 0; i < 12; ++i) EXPECT_THAT(lines, Contains(HasSubstr(" a" + std::to_string(i) + " ")));
+    EXPECT_THAT(lines, Contains(HasSubstr("axis a8")));  // the newest alarm
+    EXPECT_THAT(lines, Not(Contains(HasSubstr("owner program"))));
+    EXPECT_THAT(lines, Contains(HasSubstr("alarms more")));
+}
+
+TEST(MonitorScreen, EmergencyStopIsInTheFirstLine) {
+    auto stopped = state(1, 0);
+    stopped["emergency_stop"] = true;
+    EXPECT_THAT(monitor_screen(stopped, layout, {80, 24, true}).front(), HasSubstr("EMERGENCY STOP"));
+}
+
+}  // namespace
+}  // namespace taktwerk::apps

@@ -1,0 +1,156 @@
+// Traces read back, and what a picture needs of them.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "apps/plot_data.hpp"
+#include "apps/plot_script.hpp"
+#include "apps/trace_file.hpp"
+
+namespace taktwerk::apps {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+const std::string heading =
+    "time_s,emergency_stop,alarms,x.state,x.set_position[mm],x.set_velocity[mm/s],x.set_acceleration,x.set_jerk,x.actual_position,x.actual_velocity,"
+    "x.actual_torque,x.following_error,in.start\n";
+
+TEST(TraceFile, TimeCountsFromTheFirstRowAndUnitsComeFromTheHeading) {
+    const auto trace = parse_trace(heading + "100.5,0,0,1,7.25,2,3,4,7,1.5,0.1,0.25,1\n100.501,1,2,7,8,2,3,4,7,1.5,0.1,0.25,1\n", "t.csv");
+
+    ASSERT_TRUE(trace) << trace.error().text();
+    EXPECT_THAT(trace->time_s, ElementsAre(0, ::testing::DoubleNear(0.001, 1e-9)));
+    EXPECT_THAT(trace->emergency_stop, ElementsAre(0, 1));
+    ASSERT_EQ(trace->axes.size(), 1u);
+    EXPECT_EQ(trace->axes[0].name, "x");
+    EXPECT_EQ(trace->axes[0].unit, "mm");
+    EXPECT_THAT(trace->axes[0].set_position, ElementsAre(7.25, 8));
+    EXPECT_THAT(trace->axes[0].following_error, ElementsAre(0.25, 0.25));
+}
+
+TEST(TraceFile, ALineOfAKilledWriterIsLeftOutAndSaid) {
+    const auto trace = parse_trace(heading + "1,0,0,1,7.25,2,3,4,7,1.5,0.1,0.25,1\n2,0,0,1,7.", "t.csv");
+
+    ASSERT_TRUE(trace);
+    EXPECT_TRUE(trace->cut_off);
+    EXPECT_EQ(trace->time_s.size(), 1u);
+}
+
+TEST(TraceFile, DamageIsNamedWithItsLine) {
+    const auto short_line = parse_trace(heading + "1,0,0,1,7.25,2,3,4,7,1.5,0.1,0.25,1\n2,0,0\n", "t.csv");
+    ASSERT_FALSE(short_line);
+    EXPECT_EQ(short_line.error().code, "trace.bad_line");
+    EXPECT_EQ(short_line.error().subject, "t.csv:3");
+
+    const auto backwards = parse_trace(heading + "2,0,0,1,7,2,3,4,7,1,0,0,1\n1,0,0,1,7,2,3,4,7,1,0,0,1\n", "t.csv");
+    ASSERT_FALSE(backwards);
+    EXPECT_EQ(backwards.error().subject, "t.csv:3");
+
+    for (const char* text : {"", "a,b,c\n1,2,3\n", "time_s,x.set_position\n1,2\n"}) {
+        const auto foreign = parse_trace(text, "t.csv");
+        ASSERT_FALSE(foreign) << text;
+        EXPECT_EQ(foreign.error().code, "trace.not_a_trace") << text;
+    }
+    EXPECT_EQ(parse_trace(heading, "t.csv").error().code, "trace.empty");
+    EXPECT_EQ(parse_trace(heading + "nan,0,0,1,7,2,3,4,7,1,0,0,1\n", "t.csv").error().code, "trace.bad_line");
+    EXPECT_EQ(read_trace("/nowhere/trace.csv").error().code, "trace.open");
+}
+
+TEST(PlotData, NoPeakIsLostHoweverNarrow) {
+    std::vector<double> time, values;
+    for (int i = 0; i < 100000; ++i) {
+        time.push_back(i * 1e-3);
+        values.push_back(i == 54321 ? 5 : i == 54323 ? -7 : 0);
+    }
+
+    const auto points = decimate(time, values, {0, time.size()}, 100);
+
+    EXPECT_LE(points.size(), 400u);
+    const auto at = [](double t, double value) { return ::testing::AllOf(::testing::Field(&Point::t, t), ::testing::Field(&Point::value, value)); };
+    EXPECT_THAT(points, ::testing::Contains(at(54321e-3, 5)));
+    EXPECT_THAT(points, ::testing::Contains(at(54323e-3, -7)));
+    for (std::size_t i = 1; i < points.size(); ++i) EXPECT_LE(points[i - 1].t, points[i].t);
+}
+
+TEST(PlotData, FewRowsComeThroughAsTheyAre) {
+    const auto points = decimate({0, 1, 2, 3}, {4, 5, 6, 7}, {1, 3}, 10);
+    ASSERT_EQ(points.size(), 2u);
+    EXPECT_EQ(points[0].value, 5);
+    EXPECT_EQ(points[1].value, 6);
+}
+
+TEST(PlotData, TheMoreImportantStateOfACellIsShown) {
+    // 1000 rows of state 1, one row of state 7: an error of one cycle must be visible.
+    std::vector<double> time, state;
+    for (int i = 0; i <= 1000; ++i) {
+        time.push_back(i);
+        state.push_back(i == 505 ? 7 : 1);
+    }
+
+    const auto found = spans(time, state, {0, time.size()}, 10, [](int value) { return value; });
+
+    ASSERT_EQ(found.size(), 3u);
+    EXPECT_EQ(found[1].value, 7);
+    EXPECT_DOUBLE_EQ(found[1].from, 500);
+    EXPECT_DOUBLE_EQ(found[1].to, 600);
+    EXPECT_DOUBLE_EQ(found[0].from, 0);
+    EXPECT_DOUBLE_EQ(found[2].to, 1000);
+}
+
+TEST(PlotData, AValueHoldsOverCellsWithoutRows) {
+    const auto found = spans({0, 100}, {3, 4}, {0, 2}, 10, [](int value) { return value; });
+    ASSERT_EQ(found.size(), 2u);
+    EXPECT_EQ(found[0].value, 3);
+    EXPECT_DOUBLE_EQ(found[0].to, 90);
+}
+
+TEST(PlotData, TicksAreRoundNumbersInsideTheValues) {
+    EXPECT_THAT(ticks(-350, 350, 5).at, ElementsAre(-200, 0, 200));
+    EXPECT_THAT(ticks(0, 20, 6).at, ElementsAre(0, 5, 10, 15, 20));
+    EXPECT_THAT(ticks(0, 20, 5).at, ElementsAre(0, 5, 10, 15, 20));
+    const auto constant = ticks(0, 0, 5);
+    EXPECT_LT(constant.low, 0);
+    EXPECT_GT(constant.high, 0);
+    EXPECT_FALSE(constant.at.empty());
+    for (double size = 1e-9; size < 1e9; size *= 7) {
+        const auto t = ticks(0.3 * size, 1.7 * size, 5);
+        EXPECT_GE(t.at.size(), 2u) << size;
+        EXPECT_LE(t.at.size(), 6u) << size;
+    }
+}
+
+TEST(PlotData, TickTextsAreShortAndExact) {
+    EXPECT_EQ(tick_text(0, 5), "0");
+    EXPECT_EQ(tick_text(-200, 200), "-200");
+    EXPECT_EQ(tick_text(0.25, 0.05), "0.25");
+    EXPECT_EQ(tick_text(20000, 10000), "20k");
+    EXPECT_EQ(tick_text(15000, 5000), "15k");
+    EXPECT_EQ(tick_text(1500000, 500000), "1.5M");
+}
+
+TEST(PlotScript, AskedForWhatTheTraceDoesNotHave) {
+    const auto trace = parse_trace(heading + "1,0,0,1,7,2,3,4,7,1,0,0,1\n2,0,0,1,7,2,3,4,7,1,0,0,1\n", "t.csv");
+    ASSERT_TRUE(trace);
+
+    PlotRequest request{"t", "t.svg", {"xx"}, 0, 0, false};
+    EXPECT_EQ(plot_script(*trace, request).error().code, "plot.unknown_axis");
+    request.axes = {"x"};
+    EXPECT_TRUE(plot_script(*trace, request));
+    request.from_s = 5;
+    EXPECT_EQ(plot_script(*trace, request).error().code, "plot.empty_window");
+}
+
+TEST(PlotScript, TextsOfTheOutsideCannotLeaveTheirQuotes) {
+    const auto trace = parse_trace(heading + "1,0,0,1,7,2,3,4,7,1,0,0,1\n2,0,0,1,7,2,3,4,7,1,0,0,1\n", "t.csv");
+    ASSERT_TRUE(trace);
+
+    const auto script = plot_script(*trace, {"a\"; system(\"rm\") #\\", "t.svg", {}, 0, 0, false});
+
+    ASSERT_TRUE(script);
+    EXPECT_THAT(*script, HasSubstr(R"("a\"; system(\"rm\") #\\")"));
+}
+
+}  // namespace
+}  // namespace taktwerk::apps

@@ -1,0 +1,28 @@
+// The committed reference pages are what the tables say today.
+
+#include <fstream>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include "apps/reference_pages.hpp"
+#include "fb_library/block_reference.hpp"
+
+namespace taktwerk::apps {
+namespace {
+
+std::string committed(const std::string& name) {
+    std::ifstream file(std::string(TAKTWERK_SOURCE_DIR) + "/docs/reference/" + name);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+}
+
+TEST(ReferencePages, EqualTheGeneratedText) {
+    EXPECT_EQ(committed("blocks.md"), fb::block_reference_markdown()) << "taktwerk docs blocks -o docs/reference/blocks.md";
+    EXPECT_EQ(committed("alarms.md"), alarm_reference_markdown()) << "taktwerk docs alarms -o docs/reference/alarms.md";
+    EXPECT_EQ(committed("errors.md"), error_reference_markdown()) << "taktwerk docs errors -o docs/reference/errors.md";
+}
+
+}  // namespace
+}  // namespace taktwerk::apps
