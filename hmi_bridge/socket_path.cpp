@@ -1,5 +1,7 @@
 #include "hmi_bridge/socket_path.hpp"
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -33,6 +35,15 @@ bool usable(const std::string& folder) {
     return (info.st_uid == ::geteuid() || folder.starts_with("/run/")) && ::access(folder.c_str(), W_OK) == 0;
 }
 
+/// A socket whose runtime was killed stays behind; its lock does not.
+bool left_behind(const std::string& path) {
+    const int lock = ::open((path + ".lock").c_str(), O_RDONLY | O_CLOEXEC);
+    if (lock < 0) return errno == ENOENT;
+    const bool free = ::flock(lock, LOCK_SH | LOCK_NB) == 0;
+    ::close(lock);
+    return free;
+}
+
 }  // namespace
 
 std::vector<std::string> socket_folders() {
@@ -61,6 +72,7 @@ Result<std::string> find_socket(std::string_view wanted) {
         }
     }
     std::sort(found.begin(), found.end());
+    if (found.size() > 1) found.erase(std::remove_if(found.begin(), found.end(), left_behind), found.end());
     if (found.size() == 1 || (!wanted.empty() && !found.empty())) return found.front();
     if (found.empty())
         return Error{"socket.not_found", "", wanted.empty() ? std::string("no machine runs here") : fmt::format("no machine '{}' runs here", wanted),

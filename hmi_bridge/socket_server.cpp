@@ -34,6 +34,12 @@ Result<int> lock_for(const std::string& path) {
         return Error{"socket.in_use", path, fmt::format("another runtime already serves this machine: process {}", length > 0 ? pid : "unknown"),
                      "Stop it first, or give this machine another name or `socket:`."};
     }
+    // A runtime that ends removes the file: then this lock is on a file that nobody else will ever see.
+    struct stat held {}, named {};
+    if (::fstat(lock, &held) != 0 || ::stat(lock_path.c_str(), &named) != 0 || held.st_ino != named.st_ino) {
+        ::close(lock);
+        return Error{"socket.in_use", path, "another runtime of this machine is just ending", "Start again."};
+    }
     const auto pid = std::to_string(::getpid());
     if (::ftruncate(lock, 0) != 0 || ::pwrite(lock, pid.data(), pid.size(), 0) < 0) {
         // Only the message for a second runtime would be poorer.

@@ -35,6 +35,7 @@ public:
         std::error_code ignored;
         std::filesystem::remove_all(path_, ignored);
     }
+    [[nodiscard]] const std::string& path() const { return path_; }
     [[nodiscard]] std::string file(const char* name) const { return path_ + "/" + name; }
 
 private:
@@ -215,6 +216,33 @@ TEST_F(SocketTest, WithoutARuntimeTheClientSaysHowToStartOne) {
     EXPECT_EQ(client.error().code, "socket.no_runtime");
     EXPECT_THAT(client.error().remedy, HasSubstr("taktwerk run"));
     EXPECT_EQ(Client::connect("no-such-machine-here").error().code, "socket.not_found");
+}
+
+TEST_F(SocketTest, AMachineIsFoundByItsNameOrBecauseItIsTheOnlyOne) {
+    ::setenv("XDG_RUNTIME_DIR", folder.path().c_str(), 1);
+    const auto home = folder.file("taktwerk");
+    std::filesystem::create_directory(home);
+    const auto only = home + "/only-one-of-this-test.sock";
+    FakeMachine a;
+    const auto first = HmiBridge::open(config_at(only), a, {});
+    ASSERT_TRUE(first) << first.error().text();
+    // One that was killed: its socket is there, its lock is not.
+    ASSERT_EQ(::mknod((home + "/killed.sock").c_str(), S_IFSOCK | 0660, 0), 0);
+
+    EXPECT_EQ(*find_socket("only-one-of-this-test"), only);
+    EXPECT_EQ(*find_socket("/any/path"), "/any/path");
+    bool elsewhere = false;  // a runtime of somebody else on this computer
+    for (const auto& place : socket_folders()) elsewhere = elsewhere || (place != home && std::filesystem::exists(place) && !std::filesystem::is_empty(place));
+    if (!elsewhere) {
+        const auto found = find_socket("");
+        ASSERT_TRUE(found) << found.error().text();
+        EXPECT_EQ(*found, only);
+        FakeMachine b;
+        const auto second = HmiBridge::open(config_at(home + "/second.sock"), b, {});
+        ASSERT_TRUE(second);
+        EXPECT_EQ(find_socket("").error().code, "socket.ambiguous");
+    }
+    ::unsetenv("XDG_RUNTIME_DIR");
 }
 
 TEST_F(SocketTest, ARuntimeThatDoesNotAnswerTimesOut) {
