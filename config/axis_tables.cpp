@@ -1,0 +1,233 @@
+#include "config/axis_tables.hpp"
+
+#include <fmt/format.h>
+
+#include "config/codecs.hpp"
+
+namespace taktwerk::config {
+
+namespace {
+
+using axes::AxisConfig;
+using runtime::AxisBinding;
+using runtime::AxisSimulation;
+using Interval = std::pair<double, double>;
+
+Table<axes::Gearing> gearing_table() {
+    using G = axes::Gearing;
+    return {
+        "gearing",
+        "How the drive's counts become the axis' unit: counts = position / feed * gear * counts_per_revolution.",
+        {
+            required(field("counts_per_revolution", &G::counts_per_revolution, integer<std::int64_t>(1, 1LL << 31),
+                           "position counts of the drive per motor revolution (encoder resolution, or microsteps)")),
+            field_via<G>(
+                "gear", fraction(), [](G& g, const Fraction& f) { g.motor_revolutions = f.numerator, g.load_revolutions = f.denominator; },
+                "motor revolutions per load revolutions: 5/1 is a gear box that divides by five", "1/1"),
+            required(
+                field("feed", &G::feed, quantity(Dimension::position), "way per load revolution: pitch of the screw, 360 deg of a table")),
+            field("inverted", &G::inverted, boolean(), "true: positive is against the motor's positive sense"),
+        },
+        {},
+        {}};
+}
+
+Table<axes::AxisLimits> limits_table() {
+    using L = axes::AxisLimits;
+    Table<L> table{
+        "limits",
+        "What no motion of the axis ever exceeds.",
+        {
+            required(field("velocity", &L::velocity, quantity(Dimension::velocity), "highest velocity")),
+            required(field("acceleration", &L::acceleration, quantity(Dimension::acceleration), "highest acceleration")),
+            with_default(field("deceleration", &L::deceleration, quantity(Dimension::acceleration), "highest deceleration"),
+                         "= acceleration"),
+            required(field("jerk", &L::jerk, quantity_or_none(Dimension::jerk), "highest jerk; `none` for ramps with corners")),
+            with_default(
+                field("stop_deceleration", &L::stop_deceleration, quantity(Dimension::acceleration), "for errors and emergency stop"),
+                "= deceleration"),
+            with_default(field("stop_jerk", &L::stop_jerk, quantity_or_none(Dimension::jerk), "for errors and emergency stop"), "= jerk"),
+            field_via<L>(
+                "position", interval(Dimension::position),
+                [](L& l, const Interval& v) { l.position_min = v.first, l.position_max = v.second; },
+                "software limits, active once the axis is homed", "none"),
+        },
+        {},
+        {}};
+    table.after = [](Reader&, const Node& node, L& l) {
+        if (!node.find("deceleration")) l.deceleration = l.acceleration;
+    };
+    return table;
+}
+
+Table<AxisConfig> following_table() {
+    return {
+        "following_error",
+        "When the axis is too far from where it should be.",
+        {
+            required(field_at<AxisConfig>(
+                "window", [](AxisConfig& a) -> double& { return a.following.window; }, quantity_or_none(Dimension::position),
+                "largest difference between set-point and actual position, dead time taken into account")),
+            field_at<AxisConfig>(
+                "time", [](AxisConfig& a) -> Duration& { return a.following.time; }, duration(), "beyond the window for this long: alarm"),
+        },
+        {},
+        {}};
+}
+
+Table<axes::PositionWindows> in_position_table() {
+    using W = axes::PositionWindows;
+    return {"in_position",
+            "When a motion counts as finished on the axis itself.",
+            {
+                field("window", &W::in_position, quantity(Dimension::position), "largest distance from the target"),
+                field("time", &W::in_position_time, duration(), "inside the window for this long"),
+                field("standstill_velocity", &W::standstill_velocity, quantity(Dimension::velocity), "slower than this counts as standing"),
+            },
+            {},
+            {}};
+}
+
+Table<axes::HomingConfig> homing_table() {
+    using H = axes::HomingConfig;
+    using Kind = axes::HomingKind;
+    Table<H> table{
+        "homing",
+        "How the axis finds its reference.",
+        {
+            required(
+                field("kind", &H::kind,
+                      choice<Kind>(
+                          {{"none", Kind::none}, {"drive", Kind::drive}, {"home_switch", Kind::home_switch}, {"set_here", Kind::set_here}}),
+                      "drive: the drive's own method · home_switch: by the runtime, with the home switch · set_here: where it stands · "
+                      "none: MC_Home is refused")),
+            with_default(field("method", &H::method, integer<std::int8_t>(-128, 127), "kind drive: number of the method (6098h)"), ""),
+            field("search_velocity", &H::search_velocity, quantity(Dimension::velocity, 0), "to the switch"),
+            field("latch_velocity", &H::latch_velocity, quantity(Dimension::velocity, 0), "to its edge, slowly"),
+            field("acceleration", &H::acceleration, quantity(Dimension::acceleration, 0), "while homing"),
+            field("offset", &H::offset, quantity(Dimension::position), "coordinate of the reference where MC_Home gives none"),
+            field("direction", &H::negative, choice<bool>({{"negative", true}, {"positive", false}}),
+                  "kind home_switch: where the search starts"),
+            field("timeout", &H::timeout, duration(std::chrono::milliseconds{1}), "homing that takes longer has failed"),
+        },
+        {},
+        {}};
+    table.after = [](Reader& reader, const Node& node, H& h) {
+        if (h.kind == Kind::drive && !node.find("method"))
+            reader.problem(node.at, "config.missing_key", fmt::format("`{}` lacks its key `method`: the drive has several", reader.path()),
+                           "add `method:` with the number from the drive's manual, such as `method: 17`");
+    };
+    return table;
+}
+
+Table<axes::ManualSpeeds> manual_table() {
+    using M = axes::ManualSpeeds;
+    return {"manual",
+            "Speeds under the operator's hand.",
+            {
+                with_default(field("slow", &M::slow, quantity(Dimension::velocity, 0), "jogging, slow"), "5 % of the limit"),
+                with_default(field("fast", &M::fast, quantity(Dimension::velocity, 0), "jogging, fast"), "25 % of the limit"),
+                with_default(
+                    field("setup_velocity", &M::setup_velocity, quantity(Dimension::velocity, 0), "no motion is faster in set-up mode"),
+                    "= slow"),
+            },
+            {},
+            {}};
+}
+
+Table<axes::AxisDefaults> defaults_table() {
+    using D = axes::AxisDefaults;
+    return {"defaults",
+            "What a motion block uses where its pin is 0.",
+            {
+                with_default(field("acceleration", &D::acceleration, quantity(Dimension::acceleration, 0), "acceleration"), "the limit"),
+                with_default(field("deceleration", &D::deceleration, quantity(Dimension::acceleration, 0), "deceleration"), "the limit"),
+                with_default(field("jerk", &D::jerk, quantity(Dimension::jerk, 0), "jerk"), "the limit"),
+            },
+            {},
+            {}};
+}
+
+Table<AxisSimulation> simulation_table() {
+    using S = AxisSimulation;
+    return {"simulation",
+            "The mechanics of the simulated axis. Positions are machine coordinates: 0 is where the homed axis will say 0.",
+            {
+                field("inertia", &S::inertia, quantity(Dimension::inertia, 0), "motor and load, at the motor shaft"),
+                field("viscous_friction", &S::viscous_friction, quantity(Dimension::friction, 0), "friction that grows with speed"),
+                field("coulomb_friction", &S::coulomb_friction, quantity(Dimension::torque, 0), "friction that does not"),
+                field("load_torque", &S::load_torque, quantity(Dimension::torque),
+                      "constant load, such as weight; positive pushes to negative"),
+                field("rated_torque", &S::rated_torque, quantity(Dimension::torque, 0), "of the motor"),
+                field("start", &S::start, quantity(Dimension::position), "where the axis stands at power-on"),
+                field_via<S>(
+                    "stops", interval(Dimension::position),
+                    [](S& s, const Interval& v) { s.negative_stop = v.first, s.positive_stop = v.second; }, "hard stops", "none"),
+                field_via<S>(
+                    "limit_switches", interval(Dimension::position),
+                    [](S& s, const Interval& v) { s.negative_limit = v.first, s.positive_limit = v.second; },
+                    "active below the first, above the second", "none"),
+                field_via<S>(
+                    "home_switch", interval(Dimension::position),
+                    [](S& s, const Interval& v) { s.home_from = v.first, s.home_to = v.second; }, "active in between", "none"),
+                field("clock_drift", &S::clock_drift_ppm, quantity(Dimension::ratio_ppm), "how wrong the drive's clock runs"),
+            },
+            {},
+            {}};
+}
+
+/// The axis' own unit, which all its quantities are read in.
+Codec<std::string> axis_unit() {
+    Codec<std::string> c;
+    c.shape.kind = Shape::Kind::choice;
+    c.shape.choices = axis_units();
+    c.read = [](Reader& reader, const Node& node, std::string& out) {
+        const auto index = read_choice(reader, node, axis_units());
+        if (!index) return false;
+        out = reader.axis_unit = axis_units()[*index];
+        return true;
+    };
+    c.show = [](const std::string& v) { return v; };
+    return c;
+}
+
+}  // namespace
+
+Table<AxisBinding> axis_table() {
+    using A = AxisConfig;
+    const auto axis = [](AxisBinding& b) -> A& { return b.axis; };
+    Table<AxisBinding> table{
+        "axes.<name>", "One axis, by the name that programs use. All its quantities are in its own unit u.", {}, {}, {}};
+    auto& f = table.fields;
+    f.push_back(required(field_at<AxisBinding>(
+        "unit", [](AxisBinding& b) -> std::string& { return b.axis.unit; }, axis_unit(), "the unit u of the axis")));
+    f.push_back(with_default(field("slave", &AxisBinding::slave, name(), "slave that drives it; without one the axis is virtual"), ""));
+    f.push_back(field("drive_axis", &AxisBinding::drive_axis, integer<std::uint8_t>(0, 63), "axis of a drive that has several, from 0"));
+    std::vector<Field<A>> own{
+        required(field("gearing", &A::gearing, section(gearing_table()), "counts and unit")),
+        required(field("limits", &A::limits, section(limits_table()), "velocity, acceleration, jerk, travel")),
+        field("defaults", &A::defaults, section(defaults_table()), "dynamics where a block says 0"),
+        field_at<A>(
+            "following_error", [](A& a) -> A& { return a; }, section(following_table()),
+            "supervision; without it the following error is not watched"),
+        field("in_position", &A::windows, section(in_position_table()), "when a motion is finished"),
+        field("homing", &A::homing, section(homing_table()), "how the axis finds its reference"),
+        field("manual", &A::manual, section(manual_table()), "jogging speeds"),
+        field("require_homed", &A::require_homed, boolean(), "absolute moves need a homed axis"),
+        field("disabled", &A::disabled, boolean(), "left out while commissioning: its drive is never enabled"),
+        field("simulated", &A::simulated, boolean(), "its drive is simulated although the bus is real"),
+        field("queue_depth", &A::queue_depth, integer<std::uint8_t>(1, 8), "buffered motions"),
+        field("stale_limit", &A::stale_limit, integer<std::uint16_t>(1, 1000),
+              "cycles without fresh feedback until the axis stops in error"),
+        field("jog_lease", &A::jog_lease, duration(std::chrono::milliseconds{1}, std::chrono::seconds{5}),
+              "a jogging client must repeat its command within this time"),
+        field("enable_timeout", &A::enable_timeout, duration(std::chrono::milliseconds{1}, std::chrono::seconds{60}),
+              "a drive that takes longer to enable is an alarm"),
+    };
+    include_fields(f, axis, Table<A>{{}, {}, std::move(own), {}, {}});
+    f.push_back(field("simulation", &AxisBinding::simulation, section(simulation_table()), "mechanics of the simulated axis"));
+    table.before = [](Reader& reader, const Node&, AxisBinding& b) { reader.axis_unit = b.axis.unit; };
+    return table;
+}
+
+}  // namespace taktwerk::config

@@ -1,0 +1,56 @@
+#include "config/drive_loader.hpp"
+
+#include <filesystem>
+
+#include "config/drive_tables.hpp"
+#include "config/pdo_selection.hpp"
+
+namespace taktwerk::config {
+
+namespace {
+
+void load_alarms(const std::string& path, axes::DriveProfile& profile, std::vector<Error>& errors) {
+    auto document = read_document(path);
+    Reader reader(path);
+    reader.errors() = std::move(document.errors);
+    AlarmFile file;
+    if (document.root.kind != Node::Kind::null) read_table(reader, document.root, alarm_table(), file);
+    errors.insert(errors.end(), reader.errors().begin(), reader.errors().end());
+    profile.alarms.insert(profile.alarms.end(), file.alarms.begin(), file.alarms.end());
+}
+
+ecat::PdoSelection chosen(const std::vector<PdoChoice>& choices, const std::vector<ecat::PdoDescription>& available) {
+    ecat::PdoSelection out;
+    for (const auto& choice : choices)
+        for (const auto& pdo : available)
+            if (pdo.index == choice.pdo.index) {
+                out.assigned.push_back(pdo);
+                if (!choice.objects.empty()) out.assigned.back().entries = choice.objects;
+            }
+    return out;
+}
+
+}  // namespace
+
+std::variant<LoadedDrive, std::vector<Error>> load_drive(const std::string& path) {
+    auto document = read_document(path);
+    Reader reader(path);
+    reader.errors() = std::move(document.errors);
+    DriveFile file;
+    if (document.root.kind != Node::Kind::null) read_table(reader, document.root, drive_table(), file);
+    const auto startup = resolve_startup(reader, path, file.startup, file.device);
+    if (!file.alarm_file.empty())
+        load_alarms((std::filesystem::path(path).parent_path() / file.alarm_file).string(), file.profile, reader.errors());
+    if (!reader.errors().empty()) return std::move(reader.errors());
+
+    file.device.name = file.profile.name;
+    LoadedDrive drive;
+    drive.rx = chosen(file.rx, file.device.rx_pdos);
+    drive.tx = chosen(file.tx, file.device.tx_pdos);
+    drive.startup = startup;
+    drive.device = std::make_shared<const ecat::DeviceDescription>(std::move(file.device));
+    drive.profile = std::make_shared<const axes::DriveProfile>(std::move(file.profile));
+    return drive;
+}
+
+}  // namespace taktwerk::config

@@ -1,0 +1,25 @@
+#pragma once
+// Drive types: one file fills what the bus and what the axis need to know of a drive.
+
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "axes/port/drive_profile.hpp"
+#include "core/result.hpp"
+#include "ecat/bus_config.hpp"
+
+namespace taktwerk::config {
+
+struct LoadedDrive {
+    std::shared_ptr<const ecat::DeviceDescription> device;
+    std::shared_ptr<const axes::DriveProfile> profile;
+    ecat::PdoSelection rx, tx;              ///< the runtime's own mapping
+    std::vector<ecat::StartupSdo> startup;  ///< before those of the machine
+};
+
+/// All problems at once, each with file, line and column.
+[[nodiscard]] std::variant<LoadedDrive, std::vector<Error>> load_drive(const std::string& path);
+
+}  // namespace taktwerk::config

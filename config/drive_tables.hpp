@@ -1,0 +1,48 @@
+#pragma once
+// The keys of a drive file (config/drives/*.yaml), and what is read from one before it becomes the two structs.
+
+#include <string>
+#include <vector>
+
+#include "axes/port/drive_profile.hpp"
+#include "config/startup_entry.hpp"
+#include "ecat/device_description.hpp"
+
+namespace taktwerk::config {
+
+/// A PDO that the runtime wants; no objects = the PDO's own mapping.
+struct PdoChoice {
+    ObjectAddress pdo;
+    std::vector<ecat::PdoEntry> objects;
+};
+
+struct DriveFile {
+    std::int64_t version = 0;
+    ecat::DeviceDescription device;
+    axes::DriveProfile profile;
+    std::vector<PdoChoice> rx, tx;
+    std::vector<StartupEntry> startup;
+    std::string alarm_file;
+};
+
+struct AlarmFile {
+    std::int64_t version = 0;
+    std::vector<axes::DriveAlarmText> alarms;
+};
+
+inline constexpr std::int64_t format_version = 1;
+
+/// Every file begins with it; another number is an error.
+template <class T>
+Field<T> version_field(std::int64_t T::*member);
+
+[[nodiscard]] Table<DriveFile> drive_table();
+[[nodiscard]] Table<AlarmFile> alarm_table();
+[[nodiscard]] Codec<std::int64_t> version_number();
+
+template <class T>
+Field<T> version_field(std::int64_t T::*member) {
+    return required(field("version", member, version_number(), "of this file's format: 1"));
+}
+
+}  // namespace taktwerk::config

@@ -1,0 +1,454 @@
+#include "config/machine_tables.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "config/axis_tables.hpp"
+#include "config/codecs.hpp"
+#include "config/drive_tables.hpp"
+
+namespace taktwerk::config {
+
+namespace {
+
+using namespace std::chrono_literals;
+using runtime::MachineConfig;
+using runtime::SimulationEvent;
+
+// --- bus ----------------------------------------------------------------------------------------------------------------
+
+Table<Terminal> terminal_table() {
+    using T = Terminal;
+    Table<T> table{"bus.slaves.terminal",
+                   "A plain digital terminal without mailbox, as whole bytes.",
+                   {
+                       field("inputs", &T::inputs, integer<std::uint8_t>(0, 128), "digital inputs: 0, 8, 16, ..."),
+                       field("outputs", &T::outputs, integer<std::uint8_t>(0, 128), "digital outputs: 0, 8, 16, ..."),
+                   },
+                   {},
+                   {}};
+    table.after = [](Reader& reader, const Node& node, T& t) {
+        if (t.inputs + t.outputs == 0)
+            reader.problem(node.at, "config.terminal", "the terminal has neither inputs nor outputs", "give `inputs: 8` or `outputs: 8`");
+        if (t.inputs % 8 != 0 || t.outputs % 8 != 0)
+            reader.problem(node.at, "config.terminal", "terminals have whole bytes of inputs and outputs", "give 8, 16, 24, ...");
+    };
+    return table;
+}
+
+Table<SlaveEntry> slave_table() {
+    using S = SlaveEntry;
+    Table<S> table{
+        "bus.slaves",
+        "One slave on the cable: a drive (with `profile`) or a terminal (with `terminal`).",
+        {
+            required(field("name", &S::name, config::name(), "by which axes and I/O points refer to it")),
+            with_default(field("profile", &S::profile, config::name(), "drive type: a file in config/drives/"), ""),
+            field("terminal", &S::terminal, maybe(section(terminal_table())), "a digital terminal instead of a drive"),
+            with_default(field("position", &S::position, maybe(integer<std::uint16_t>(0, 65535)), "place on the cable, from 0"),
+                         "its place in this list"),
+            field("alias", &S::alias, maybe(integer<std::uint16_t>(1, 65535)), "station alias instead of the position"),
+            with_default(field("dc", &S::dc, maybe(boolean()), "run SYNC0 on it"), "where the drive supports it"),
+            with_default(field("sync0_shift", &S::sync0_shift, duration(), "SYNC0 after the start of the bus cycle"), "as the bus"),
+            with_default(field("sm_watchdog", &S::sm_watchdog, duration(0ns, 6s), "the slave stops when no outputs come for this long"),
+                         "three cycles, at least 10 ms"),
+            group<S>("pdo", "Other process data than the profile's mapping: objects (607Ah, ...) or whole PDOs (1702h).",
+                     {
+                         field("rx", &S::rx, list(object_address()), "to the drive"),
+                         field("tx", &S::tx, list(object_address()), "from the drive"),
+                     }),
+            field("startup", &S::startup, list(section(startup_table())), "SDOs written while the slave comes up"),
+        },
+        {},
+        {}};
+    for (auto& f : table.fields)
+        if (f.info.key == "pdo" || f.info.key == "startup") f.info.default_text.clear();
+    table.after = [](Reader& reader, const Node& node, S& s) {
+        reader.also_known_as(fmt::format("slave '{}'", s.name), node.at);  // as the bus calls it
+        if (s.profile.empty() == !s.terminal.has_value() && !node.find("profile") && !node.find("terminal"))
+            reader.problem(node.at, "config.missing_key", fmt::format("slave '{}' has neither `profile` nor `terminal`", s.name),
+                           "add `profile:` with a drive type or `terminal:` with its inputs and outputs");
+        if (node.find("profile") && node.find("terminal"))
+            reader.problem(node.at, "config.conflict", fmt::format("slave '{}' has both `profile` and `terminal`", s.name),
+                           "keep one of them");
+        if (s.position && s.alias)
+            reader.problem(node.at, "config.conflict", fmt::format("slave '{}' has both `position` and `alias`", s.name),
+                           "keep the one that identifies it");
+        s.broken = reader.already_bad(reader.path());
+    };
+    return table;
+}
+
+/// A NIC by name, or `simulated`.
+Codec<std::string> interface_name() {
+    auto c = text();
+    c.read = [any = c.read](Reader& reader, const Node& node, std::string& out) {
+        std::string value;
+        if (!any(reader, node, value)) return false;
+        if (value.size() > 15 || value.find_first_of(" /:") != std::string::npos) {
+            reader.problem(node.at, "config.bad_name", fmt::format("`{}` is no name of a network interface", value),
+                           "write `simulated`, or a name that `ip link` shows, such as `eth1`");
+            return false;
+        }
+        out = value == "simulated" ? std::string{} : value;
+        return true;
+    };
+    c.show = {};
+    return c;
+}
+
+Field<MachineFile> bus_field() {
+    using F = MachineFile;
+    return group<F>("bus", "The EtherCAT bus.",
+                    {
+                        required(field_at<F>(
+                            "interface", [](F & f) -> auto& { return f.machine.bus.interface; }, interface_name(),
+                            "`simulated`, or the name of the network interface (`ip link`)")),
+                        with_default(field_at<F>(
+                                         "sync0_shift", [](F & f) -> auto& { return f.machine.bus.sync0_shift; }, duration(),
+                                         "SYNC0 after the start of the bus cycle"),
+                                     "half a cycle"),
+                        field_at<F>(
+                            "lost_frames_limit", [](F & f) -> auto& { return f.machine.bus.lost_frames_limit; },
+                            integer<std::uint16_t>(1, 10000), "unanswered cycles in a row until the bus alarm"),
+                        field_at<F>(
+                            "acyclic_per_cycle", [](F & f) -> auto& { return f.machine.bus.acyclic_per_cycle; },
+                            integer<std::uint8_t>(1, 64), "datagrams per cycle for SDO, recovery, diagnosis"),
+                        required(field("slaves", &F::slaves, list(section(slave_table())), "what is on the cable, in its order")),
+                    });
+}
+
+// --- inputs and outputs ---------------------------------------------------------------------------------------------------
+
+std::vector<Field<IoEntry>> io_fields() {
+    using E = IoEntry;
+    return {
+        required(field_at<E>(
+            "slave", [](E & e) -> auto& { return e.point.slave; }, name(), "slave that has it")),
+        field("channel", &E::channel, maybe(integer<std::uint8_t>(1, 128)), "of a terminal, from 1"),
+        field("object", &E::object, maybe(object_address()), "or an object in the process data of a drive, such as 60FDh"),
+        field_at<E>(
+            "inverted", [](E & e) -> auto& { return e.point.inverted; }, boolean(), "TRUE while the terminal says 0"),
+    };
+}
+
+void check_io(Reader& reader, const Node& node, IoEntry& e) {
+    if (e.channel.has_value() == e.object.has_value() && node.find("channel") == nullptr && node.find("object") == nullptr)
+        reader.problem(node.at, "config.missing_key", fmt::format("`{}` has neither `channel` nor `object`", reader.path()),
+                       "add `channel:` with its number on the terminal, from 1");
+    if (e.channel && e.object)
+        reader.problem(node.at, "config.conflict", fmt::format("`{}` has both `channel` and `object`", reader.path()), "keep one of them");
+}
+
+constexpr auto least = std::numeric_limits<std::int32_t>::min();
+constexpr auto most = std::numeric_limits<std::int32_t>::max();
+
+Table<IoEntry> input_table() {
+    Table<IoEntry> table{"io.inputs.<name>", "An input by the name that programs use.", io_fields(), {}, check_io};
+    table.fields.push_back(field_at<IoEntry>(
+        "simulated", [](IoEntry & e) -> auto& { return e.point.simulated; }, maybe(integer<std::int64_t>(least, most)),
+        "what a simulated terminal says at first: 0 or 1, before `inverted`"));
+    return table;
+}
+
+Table<IoEntry> output_table() {
+    Table<IoEntry> table{"io.outputs.<name>", "An output by the name that programs use.", io_fields(), {}, check_io};
+    table.fields.push_back(field_at<IoEntry>(
+        "safe", [](IoEntry & e) -> auto& { return e.point.safe_value; }, integer<std::int64_t>(least, most), "while no program drives it"));
+    return table;
+}
+
+Field<MachineFile> io_field() {
+    using F = MachineFile;
+    const auto point_name = [](IoEntry& e) -> std::string& { return e.point.name; };
+    return group<F>("io", "Inputs and outputs by name.",
+                    {
+                        field("inputs", &F::inputs, by_name(section(input_table()), point_name), "inputs"),
+                        field("outputs", &F::outputs, by_name(section(output_table()), point_name), "outputs"),
+                    });
+}
+
+// --- programs -------------------------------------------------------------------------------------------------------------
+
+Codec<TaskPeriod> task_period() {
+    Codec<TaskPeriod> c;
+    c.shape.kind = Shape::Kind::quantity;
+    c.shape.dimension = Dimension::cycles;
+    c.read = [cycles = quantity(Dimension::cycles, 1).read](Reader& reader, const Node& node, TaskPeriod& out) {
+        if (node.kind == Node::Kind::scalar) {
+            const auto time = parse_quantity(node.text, Dimension::time, {});
+            if (time.problem == QuantityProblem::none) {
+                const auto period = time.value > 0 && time.value < 1e6 ? from_seconds(time.value) : Duration{};
+                if (period <= 0ns || reader.cycle <= 0ns || period % reader.cycle != 0ns || period / reader.cycle > 65535) {
+                    reader.problem(node.at, "config.out_of_range", fmt::format("`{}` is not a multiple of the machine's cycle", node.text),
+                                   "give whole cycles, such as `4 cycles`");
+                    return false;
+                }
+                out = {0, period};
+                return true;
+            }
+        }
+        double value = 0;
+        if (!cycles(reader, node, value)) return false;
+        if (value != std::floor(value) || value > 65535) {
+            reader.problem(node.at, "config.out_of_range", "a task runs every 1 to 65535 whole cycles", "write for instance `4 cycles`");
+            return false;
+        }
+        out = {value, {}};
+        return true;
+    };
+    return c;
+}
+
+Table<TaskEntry> task_table() {
+    using T = TaskEntry;
+    using runtime::OverrunReaction;
+    return {"programs.<name>.tasks.<task>",
+            "When a task of the program runs.",
+            {
+                with_default(field("every", &T::every, task_period(),
+                                   "`1 cycles` runs inline in the machine's cycle; `8 ms` or `8 cycles` beside it"),
+                             "1 cycles"),
+                field_at<T>(
+                    "overrun", [](T & t) -> auto& { return t.task.overrun; },
+                    choice<OverrunReaction>({{"count", OverrunReaction::count}, {"stop_machine", OverrunReaction::stop_machine}}),
+                    "when it has not finished at its next release"),
+                field_at<T>(
+                    "overruns_allowed", [](T & t) -> auto& { return t.task.overruns_allowed; }, integer<std::uint16_t>(0, 65535),
+                    "in a row, before that"),
+            },
+            {},
+            {}};
+}
+
+/// A number, or true and false as 1 and 0. Units and ranges are the program's own, checked when it is loaded.
+Codec<runtime::ParameterValue> parameter() {
+    Codec<runtime::ParameterValue> c;
+    const auto plain = number();
+    c.shape.kind = Shape::Kind::either;
+    c.shape.alternatives = {std::make_shared<const Shape>(plain.shape), std::make_shared<const Shape>(boolean().shape)};
+    c.read = [plain](Reader& reader, const Node& node, runtime::ParameterValue& out) {
+        if (node.kind == Node::Kind::scalar && !node.quoted && (node.text == "true" || node.text == "false")) {
+            out.value = node.text == "true" ? 1 : 0;
+            return true;
+        }
+        return plain.read(reader, node, out.value);
+    };
+    return c;
+}
+
+Table<ProgramFile> program_table() {
+    using P = ProgramFile;
+    return {
+        "programs.<name>",
+        "A machine program: a shared object built against the SDK.",
+        {
+            required(field_at<P>(
+                "library", [](P & p) -> auto& { return p.program.library; }, text(),
+                "the shared object, looked up beside the machine file and in the program path")),
+            field_at<P>(
+                "autostart", [](P & p) -> auto& { return p.program.autostart; }, boolean(),
+                "starts when the machine is up, in automatic mode"),
+            field_at<P>(
+                "parameters", [](P & p) -> auto& { return p.program.parameters; },
+                by_name(parameter(), [](runtime::ParameterValue& v) -> std::string& { return v.name; }),
+                "initial values, in the units that the program declares"),
+            with_default(field("tasks", &P::tasks, by_name(section(task_table()), [](TaskEntry& t) -> std::string& { return t.task.name; }),
+                               "tasks that the program declares"),
+                         "`main`, each cycle"),
+        },
+        {},
+        {}};
+}
+
+// --- simulation -------------------------------------------------------------------------------------------------------------
+
+struct EventWord {
+    const char* key;
+    SimulationEvent::Kind kind;
+    std::int64_t value;
+    const char* doc;
+};
+using EventKind = SimulationEvent::Kind;
+constexpr EventWord event_words[] = {
+    {"input", EventKind::input, 0, "an input of a simulated terminal takes `value`"},
+    {"drive_fault", EventKind::drive_fault, 0, "the drive of this axis raises the alarm `code`"},
+    {"main_power_off", EventKind::main_power, 0, "the drive of this axis loses its main power"},
+    {"main_power_on", EventKind::main_power, 1, "and gets it back"},
+    {"slave_power_off", EventKind::slave_power, 0, "this slave falls silent"},
+    {"slave_power_on", EventKind::slave_power, 1, "and comes back"},
+    {"jam", EventKind::jam, 0, "the mechanics of this axis do not move any more"},
+    {"free", EventKind::jam, 1, "and move again"},
+};
+
+Table<SimulationEvent> event_table() {
+    using E = SimulationEvent;
+    Table<E> table{"simulation.events",
+                   "Something that happens to the simulated machine: `at` and one event.",
+                   {required(with_default(field("at", &E::at, duration(), "since the start of the run"), ""))},
+                   {},
+                   {}};
+    for (const auto& word : event_words)
+        table.fields.push_back(field_via<E>(
+            word.key, name(), [word](E& e, const std::string& target) { e.kind = word.kind, e.target = target, e.value = word.value; },
+            word.doc));
+    table.fields.push_back(field_via<E>(
+        "value", integer<std::int64_t>(least, most), [](E& e, const std::int64_t& v) { e.value = v; }, "of `input`"));
+    table.fields.push_back(field_via<E>(
+        "code", integer<std::int64_t>(1, 0xFFFF), [](E& e, const std::int64_t& v) { e.value = v; }, "of `drive_fault`: 603Fh"));
+    table.after = [](Reader& reader, const Node& node, E&) {
+        int events = 0;
+        for (const auto& word : event_words) events += node.find(word.key) ? 1 : 0;
+        if (events != 1)
+            reader.problem(
+                node.at, "config.event", events == 0 ? "the event says when, but not what" : "one event holds several",
+                "give exactly one of input, drive_fault, main_power_off, main_power_on, slave_power_off, slave_power_on, jam, free");
+        const auto pair = [&](const char* key, const char* value) {
+            if ((node.find(key) != nullptr) != (node.find(value) != nullptr))
+                reader.problem(node.at, "config.event", fmt::format("`{}` and `{}` belong together", key, value),
+                               fmt::format("write both: `{}: ..., {}: ...`", key, value));
+        };
+        pair("input", "value");
+        pair("drive_fault", "code");
+    };
+    return table;
+}
+
+Table<runtime::SimulationConfig> simulation_table() {
+    using S = runtime::SimulationConfig;
+    using runtime::Supervision;
+    return {
+        "simulation",
+        "Used when the bus is simulated.",
+        {
+            field("supervision", &S::supervision, choice<Supervision>({{"strict", Supervision::strict}, {"relaxed", Supervision::relaxed}}),
+                  "relaxed: for hosts without real time; misses are counted, limits are 100 times wider"),
+            with_default(field("events", &S::events, list(section(event_table())), "what happens, and when"), ""),
+        },
+        {},
+        {}};
+}
+
+// --- the rest ---------------------------------------------------------------------------------------------------------------
+
+Table<runtime::EmergencyStop> emergency_stop_table() {
+    using E = runtime::EmergencyStop;
+    return {"emergency_stop",
+            "Reaction of the software. What protects people belongs in hardware.",
+            {
+                required(field("input", &E::input, name(), "input that is TRUE while all is well")),
+                field("power_off_after", &E::power_off_after, duration(1ms, 60s), "power goes off when the axes stand, at the latest then"),
+            },
+            {},
+            {}};
+}
+
+Table<runtime::CycleWatch> watch_table() {
+    using W = runtime::CycleWatch;
+    return {"watch",
+            "When the machine's own cycle comes too late.",
+            {
+                field("overruns_allowed", &W::overruns_allowed, integer<std::uint16_t>(0, 65535),
+                      "missed cycles in a row until the machine stops"),
+                with_default(field("lateness_warning", &W::lateness_warning, duration(), "a cycle later than this is counted as late"),
+                             "a quarter of the cycle"),
+            },
+            {},
+            {}};
+}
+
+Table<runtime::RealtimeConfig> realtime_table() {
+    using R = runtime::RealtimeConfig;
+    return {"realtime",
+            "What is asked of the operating system. What it refuses is reported, and the machine runs on unless `required`.",
+            {
+                field("priority", &R::priority, integer<int>(0, 99), "SCHED_FIFO priority of the cycle; 0 = leave"),
+                with_default(field("cpus", &R::cpus, list(integer<int>(0, 1023)), "processors for the cycle"), "any"),
+                field("lock_memory", &R::lock_memory, boolean(), "keep all memory resident"),
+                field("required", &R::required, boolean(), "refuse to start where something is not granted"),
+            },
+            {},
+            {}};
+}
+
+Table<hmi::HmiConfig> hmi_table() {
+    using H = hmi::HmiConfig;
+    using hmi::LcmCommands;
+    return {"hmi",
+            "How the state goes out and commands come in.",
+            {
+                field("rate", &H::rate_hz, quantity(Dimension::frequency, 1), "of the state messages: 1 Hz to 1000 Hz"),
+                with_default(field("socket", &H::socket, text(), "Unix socket of the command line"),
+                             "by the machine's name in the run-time directory"),
+                group<H>("lcm", "Publishing over LCM.",
+                         {
+                             field("enabled", &H::lcm, boolean(), "publish the state"),
+                             field("url", &H::lcm_url, text(), "multicast group, port and reach"),
+                             field("required", &H::lcm_required, boolean(), "refuse to run without it"),
+                             field("commands", &H::lcm_commands,
+                                   choice<LcmCommands>({{"disabled", LcmCommands::disabled}, {"local", LcmCommands::local}}),
+                                   "local: every process of this computer may command the machine"),
+                         }),
+            },
+            {},
+            {}};
+}
+
+}  // namespace
+
+Table<MachineFile> machine_table() {
+    using F = MachineFile;
+    using runtime::Mode;
+    using runtime::SendMode;
+    Table<F> table{"machine file",
+                   "One machine: bus, axes, inputs and outputs, programs. Values with a dimension carry their unit: `1 ms`, `100 mm/s`.",
+                   {},
+                   {},
+                   {}};
+    auto& f = table.fields;
+    f.push_back(version_field(&F::version));
+    f.push_back(required(field_at<F>(
+        "name", [](F & m) -> auto& { return m.machine.name; }, name(), "of the machine")));
+    auto cycle = duration(100us, 100ms);
+    const auto read_cycle = cycle.read;
+    cycle.read = [read_cycle](Reader& reader, const Node& node, Duration& out) {
+        const bool good = read_cycle(reader, node, out);
+        reader.cycle = out;
+        return good;
+    };
+    f.push_back(required(field_at<F>(
+        "cycle", [](F & m) -> auto& { return m.machine.cycle; }, std::move(cycle), "of the machine and its bus")));
+    f.push_back(field_at<F>(
+        "send", [](F & m) -> auto& { return m.machine.send; },
+        choice<SendMode>({{"after_plan", SendMode::after_plan}, {"at_tick", SendMode::at_tick}}),
+        "after_plan: outputs leave as soon as they are computed · at_tick: at the next tick, at a constant time, one cycle later"));
+    f.push_back(field_at<F>(
+        "start_mode", [](F & m) -> auto& { return m.machine.start_mode; },
+        choice<Mode>({{"manual", Mode::manual}, {"setup", Mode::setup}, {"automatic", Mode::automatic}}),
+        "mode in which the machine comes up; programs run in automatic"));
+    f.push_back(required(bus_field()));
+    f.push_back(io_field());
+    f.push_back(required(field_at<F>(
+        "axes", [](F & m) -> auto& { return m.machine.axes; },
+        by_name(section(axis_table()), [](runtime::AxisBinding& b) -> std::string& { return b.axis.name; }), "what programs move")));
+    f.push_back(field("programs", &F::programs,
+                      by_name(section(program_table()), [](ProgramFile& p) -> std::string& { return p.program.name; }),
+                      "what runs on the machine; none is fine"));
+    f.push_back(field_at<F>(
+        "emergency_stop", [](F & m) -> auto& { return m.machine.emergency_stop; }, section(emergency_stop_table()),
+        "reaction of the software"));
+    f.push_back(field_at<F>(
+        "watch", [](F & m) -> auto& { return m.machine.watch; }, section(watch_table()), "when the cycle comes too late"));
+    f.push_back(field_at<F>(
+        "realtime", [](F & m) -> auto& { return m.machine.realtime; }, section(realtime_table()), "what is asked of the operating system"));
+    f.push_back(field_at<F>(
+        "commands_per_cycle", [](F & m) -> auto& { return m.machine.commands_per_cycle; }, integer<std::uint8_t>(1, 64),
+        "operator commands taken per cycle"));
+    f.push_back(field("hmi", &F::hmi, section(hmi_table()), "state out, commands in"));
+    f.push_back(field_at<F>(
+        "simulation", [](F & m) -> auto& { return m.machine.simulation; }, section(simulation_table()), "used when the bus is simulated"));
+    return table;
+}
+
+}  // namespace taktwerk::config

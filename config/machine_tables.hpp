@@ -1,0 +1,62 @@
+#pragma once
+// The keys of a machine file, and what is read from one before names are resolved.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "config/startup_entry.hpp"
+#include "hmi_bridge/hmi_config.hpp"
+#include "runtime/machine_config.hpp"
+
+namespace taktwerk::config {
+
+struct Terminal {
+    std::uint8_t inputs = 0, outputs = 0;
+};
+
+struct SlaveEntry {
+    std::string name, profile;
+    std::optional<Terminal> terminal;
+    std::optional<std::uint16_t> position, alias;
+    std::optional<bool> dc;
+    Duration sync0_shift{}, sm_watchdog{};
+    std::vector<ObjectAddress> rx, tx;
+    std::vector<StartupEntry> startup;
+    bool broken = false;  ///< problems were reported: what follows from them is noise
+};
+
+struct IoEntry {
+    runtime::IoPoint point;
+    std::optional<std::uint8_t> channel;
+    std::optional<ObjectAddress> object;
+};
+
+/// `4 cycles` or `4 ms`.
+struct TaskPeriod {
+    double cycles = 1;
+    Duration time{};  ///< 0 = in cycles
+};
+
+struct TaskEntry {
+    runtime::TaskConfig task;
+    TaskPeriod every;
+};
+
+struct ProgramFile {
+    runtime::ProgramConfig program;
+    std::vector<TaskEntry> tasks;
+};
+
+struct MachineFile {
+    std::int64_t version = 0;
+    runtime::MachineConfig machine;  ///< without slaves, points, tasks and programs
+    hmi::HmiConfig hmi;
+    std::vector<SlaveEntry> slaves;
+    std::vector<IoEntry> inputs, outputs;
+    std::vector<ProgramFile> programs;
+};
+
+[[nodiscard]] Table<MachineFile> machine_table();
+
+}  // namespace taktwerk::config

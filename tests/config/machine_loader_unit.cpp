@@ -1,0 +1,328 @@
+// Whole machine files: what must load, and as what; what must be refused, with which words and where.
+
+#include "config/machine_loader.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+namespace taktwerk::config {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const std::string source = TAKTWERK_SOURCE_DIR;
+
+LoadOptions without_programs() {
+    LoadOptions options;
+    options.drive_dirs = {source + "/config/drives"};
+    options.resolve_programs = false;
+    return options;
+}
+
+std::string one_a_line(const std::vector<Error>& errors) {
+    std::string out;
+    for (const auto& error : errors) out += error.text() + "\n";
+    return out;
+}
+
+LoadedMachine must_load(const std::string& path, const LoadOptions& options = without_programs()) {
+    auto loaded = load_machine(path, options);
+    if (const auto* errors = std::get_if<std::vector<Error>>(&loaded)) {
+        ADD_FAILURE() << one_a_line(*errors);
+        return {};
+    }
+    return std::move(std::get<LoadedMachine>(loaded));
+}
+
+std::vector<Error> must_fail(const std::string& path, const LoadOptions& options = without_programs()) {
+    auto loaded = load_machine(path, options);
+    if (auto* errors = std::get_if<std::vector<Error>>(&loaded)) return std::move(*errors);
+    ADD_FAILURE() << path << " loads";
+    return {};
+}
+
+std::string written(const std::string& name, const std::string& text) {
+    const auto path = std::filesystem::path(testing::TempDir()) / name;
+    std::ofstream(path, std::ios::binary) << text;
+    return path.string();
+}
+
+// --- bad files: `# expect LINE:COL text` in the first lines, 0:0 for the file as a whole -----------------------------------
+
+struct Expectation {
+    std::string subject, text;
+};
+
+std::vector<Expectation> expectations(const std::string& path) {
+    std::vector<Expectation> out;
+    std::ifstream stream(path);
+    for (std::string line; std::getline(stream, line) && line.rfind("# expect ", 0) == 0;) {
+        line.erase(0, 9);
+        const auto space = line.find(' ');
+        const auto where = line.substr(0, space);
+        out.push_back({where == "0:0" ? path : path + ":" + where, line.substr(space + 1)});
+    }
+    return out;
+}
+
+std::vector<std::string> bad_files() {
+    std::vector<std::string> out;
+    for (const auto& file : std::filesystem::directory_iterator(source + "/tests/config/bad")) out.push_back(file.path().stem().string());
+    std::sort(out.begin(), out.end());
+    return out;
+}
+
+class BadFile : public testing::TestWithParam<std::string> {};
+
+TEST_P(BadFile, IsRefusedWithEveryProblemAtItsPlace) {
+    const auto path = source + "/tests/config/bad/" + GetParam() + ".yaml";
+    const auto expected = expectations(path);
+    ASSERT_FALSE(expected.empty());
+
+    const auto errors = must_fail(path);
+
+    EXPECT_EQ(errors.size(), expected.size()) << one_a_line(errors);
+    for (const auto& expectation : expected) {
+        const bool found = std::any_of(errors.begin(), errors.end(), [&](const Error& error) {
+            return error.subject == expectation.subject && error.text().find(expectation.text) != std::string::npos;
+        });
+        EXPECT_TRUE(found) << "not reported: " << expectation.subject << " " << expectation.text << "\nbut:\n" << one_a_line(errors);
+    }
+    for (const auto& error : errors) {
+        EXPECT_THAT(error.code, testing::ContainsRegex("^[a-z]+\\.[a-z_]+$"));
+        EXPECT_FALSE(error.remedy.empty()) << error.text();
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, BadFile, testing::ValuesIn(bad_files()), [](const auto& one) { return one.param; });
+
+TEST(BadFiles, AreManyEnoughToMeanSomething) { EXPECT_GE(bad_files().size(), 20u); }
+
+// --- hostile files ------------------------------------------------------------------------------------------------------------
+
+TEST(HostileFile, ThatIsMissingOrADirectoryIsOneClearError) {
+    EXPECT_THAT(must_fail("/nowhere/machine.yaml"), ElementsAre(testing::Field(&Error::what, HasSubstr("no such file"))));
+    EXPECT_THAT(must_fail(testing::TempDir()), ElementsAre(testing::Field(&Error::what, HasSubstr("not a regular file"))));
+}
+
+TEST(HostileFile, NestedTooDeeplyIsOneClearError) {
+    for (const int depth : {50, 400, 100'000}) {
+        const auto errors = must_fail(written("deep.yaml", std::string(static_cast<std::size_t>(depth), '[')));
+        EXPECT_GE(errors.size(), 1u);
+        EXPECT_LE(errors.size(), 2u) << one_a_line(errors);
+    }
+    const auto errors = must_fail(written("deep.yaml", "version: 1\nname: " + std::string(60, '[') + std::string(60, ']')));
+    EXPECT_THAT(one_a_line(errors), HasSubstr("nested more than 40 levels deep"));
+}
+
+TEST(HostileFile, ThatIsHugeIsRefusedBeforeItIsParsed) {
+    EXPECT_THAT(must_fail(written("huge.yaml", std::string(2u << 20, 'x'))), ElementsAre(testing::Field(&Error::code, "config.too_large")));
+}
+
+TEST(HostileFile, WhoseAliasesMultiplyIsRefused) {
+    std::string bomb = "a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n";
+    for (int n = 1; n < 12; ++n) {
+        const auto before = "*a" + std::to_string(n - 1);
+        bomb += "a" + std::to_string(n) + ": &a" + std::to_string(n) + " [";
+        for (int i = 0; i < 10; ++i) bomb += before + (i < 9 ? ", " : "]\n");
+    }
+    EXPECT_THAT(one_a_line(must_fail(written("bomb.yaml", bomb))), HasSubstr("expands to more than 100000 values"));
+}
+
+TEST(HostileFile, ThatRefersToItselfIsRefused) {
+    EXPECT_THAT(one_a_line(must_fail(written("self.yaml", "version: 1\nname: &a [*a]\n"))),
+                HasSubstr(":2:7: values are nested more than 40 levels deep"));
+}
+
+TEST(HostileFile, WithControlCharactersIsRefused) {
+    EXPECT_THAT(must_fail(written("nul.yaml", std::string("name: a\0b\n", 10))),
+                ElementsAre(testing::Field(&Error::what, HasSubstr("byte 00h"))));
+}
+
+// --- good files ---------------------------------------------------------------------------------------------------------------
+
+TEST(MachineLoader, TheDemoIsWhatItsCommentsSay) {
+    const auto [machine, hmi, warnings] = must_load(source + "/config/machines/demo.yaml");
+
+    EXPECT_TRUE(warnings.empty()) << one_a_line(warnings);
+    EXPECT_EQ(machine.cycle, 1ms);
+    EXPECT_EQ(machine.start_mode, runtime::Mode::automatic);
+    EXPECT_TRUE(machine.bus.interface.empty());
+    ASSERT_EQ(machine.bus.slaves.size(), 4u);
+    EXPECT_EQ(machine.bus.slaves[3].position, 3);
+    EXPECT_FALSE(machine.bus.slaves[3].device->mailbox.has_value());
+    EXPECT_TRUE(machine.bus.slaves[0].dc);
+    ASSERT_EQ(machine.axes.size(), 3u);
+    EXPECT_EQ(machine.axes[1].axis.name, "y");
+    EXPECT_EQ(machine.axes[1].profile->name, "sv33-e");
+    // 131072 counts a turn, 5 turns for 100 mm: 6553.6 counts/mm.
+    EXPECT_DOUBLE_EQ(machine.axes[1].axis.gearing.counts_per_unit(), 6553.6);
+    EXPECT_EQ(machine.axes[2].axis.homing.kind, axes::HomingKind::home_switch);
+    ASSERT_EQ(machine.tasks.size(), 1u);
+    EXPECT_EQ(machine.tasks[0].divisor, 1);
+    EXPECT_EQ(machine.programs[0].library, "pick_and_place.so");
+    EXPECT_EQ(machine.emergency_stop.input, "estop_ok");
+    EXPECT_EQ(hmi.rate_hz, 50);
+}
+
+// Homing must be able to work: the axis starts on the side from which its method searches, and has room to stop.
+TEST(MachineLoader, TheDemoCanHome) {
+    const auto loaded = must_load(source + "/config/machines/demo.yaml");
+    for (const auto& binding : loaded.machine.axes) {
+        const auto& s = binding.simulation;
+        SCOPED_TRACE(binding.axis.name);
+        ASSERT_TRUE(s.home_from && s.home_to && s.negative_limit && s.negative_stop && s.positive_limit && s.positive_stop);
+        EXPECT_GT(s.start, *s.home_to);  // all three search backward
+        EXPECT_EQ(*s.home_to, 0);        // and take their zero at the upper edge
+        const auto& homing = binding.axis.homing;
+        EXPECT_LT(homing.search_velocity * homing.search_velocity / (2 * homing.acceleration), *s.home_to - *s.home_from);
+        EXPECT_LE(*s.negative_stop, *s.negative_limit);
+        EXPECT_GT(binding.axis.limits.position_min, *s.negative_limit);
+        EXPECT_LT(binding.axis.limits.position_max, *s.positive_limit);
+    }
+}
+
+TEST(MachineLoader, TheSmallestMachineLoads) { EXPECT_EQ(must_load(source + "/config/machines/minimal.yaml").machine.axes.size(), 1u); }
+
+TEST(MachineLoader, UnitsAreConvertedToTheAxisOwn) {
+    const auto loaded = must_load(source + "/tests/config/good/units.yaml");
+    ASSERT_EQ(loaded.machine.axes.size(), 3u);
+
+    const auto& linear = loaded.machine.axes[0].axis;
+    EXPECT_EQ(linear.gearing.counts_per_revolution, 131072);
+    EXPECT_EQ(linear.gearing.motor_revolutions, 25);
+    EXPECT_EQ(linear.gearing.load_revolutions, 2);
+    EXPECT_EQ(linear.gearing.feed, 10);
+    EXPECT_TRUE(linear.gearing.inverted);
+    EXPECT_EQ(linear.limits.velocity, 500);  // 30 m/min
+    EXPECT_EQ(linear.limits.acceleration, 2000);
+    EXPECT_EQ(linear.limits.deceleration, 1500);
+    EXPECT_TRUE(std::isinf(linear.limits.jerk));
+    EXPECT_EQ(linear.limits.stop_deceleration, 4000);
+    EXPECT_EQ(linear.limits.position_min, -50);
+    EXPECT_EQ(linear.limits.position_max, 500);
+    EXPECT_EQ(linear.following.window, 2.5);
+    EXPECT_EQ(linear.windows.in_position_time, 5ms);
+    EXPECT_FALSE(linear.homing.negative);
+    EXPECT_EQ(linear.homing.search_velocity, 60);
+    EXPECT_EQ(linear.homing.offset, -10);
+    EXPECT_EQ(linear.manual.slow, 10);
+    EXPECT_DOUBLE_EQ(loaded.machine.axes[0].simulation.inertia, 3e-4);
+    EXPECT_EQ(loaded.machine.axes[0].simulation.load_torque, -0.5);
+    EXPECT_EQ(loaded.machine.axes[0].simulation.home_to, 10);
+
+    const auto& table = loaded.machine.axes[1].axis;
+    EXPECT_EQ(table.limits.velocity, 360);  // 60 rpm
+    EXPECT_EQ(table.limits.acceleration, 3600);
+    EXPECT_EQ(table.limits.deceleration, 3600) << "as acceleration when not given";
+    EXPECT_EQ(table.gearing.feed, 360);
+    EXPECT_TRUE(table.disabled);
+}
+
+TEST(MachineLoader, TasksRunAtWholeCycles) {
+    const auto loaded = must_load(source + "/tests/config/good/units.yaml");
+    ASSERT_EQ(loaded.machine.tasks.size(), 4u);
+    EXPECT_EQ(loaded.machine.tasks[0].divisor, 1);
+    EXPECT_EQ(loaded.machine.tasks[1].divisor, 4);  // 8 ms at 2 ms
+    EXPECT_EQ(loaded.machine.tasks[1].overrun, runtime::OverrunReaction::count);
+    EXPECT_EQ(loaded.machine.tasks[2].divisor, 250);
+    EXPECT_EQ(loaded.machine.tasks[3].name, "main") << "a program without `tasks` has one";
+    EXPECT_EQ(loaded.machine.tasks[3].program, "other");
+    ASSERT_EQ(loaded.machine.programs[0].parameters.size(), 2u);
+    EXPECT_EQ(loaded.machine.programs[0].parameters[0].value, 12.5);
+    EXPECT_EQ(loaded.machine.programs[0].parameters[1].value, 1);
+}
+
+TEST(MachineLoader, StartupListsReplaceTheProfilesEntriesAndKnowWhereTheyStand) {
+    const auto path = source + "/tests/config/good/units.yaml";
+    const auto loaded = must_load(path);
+    const auto& startup = loaded.machine.bus.slaves[0].startup;
+    ASSERT_EQ(startup.size(), 3u);
+    EXPECT_EQ(startup[0].index, 0x2005);
+    EXPECT_EQ(startup[0].sub, 0x0B);
+    EXPECT_EQ(startup[0].value, 2);
+    EXPECT_EQ(startup[0].type, ecat::DataType::U16) << "as the dictionary says";
+    EXPECT_EQ(startup[0].origin, path + ":13:11");
+    EXPECT_EQ(startup[1].sub, 0x2C) << "decimal 44";
+    EXPECT_EQ(startup[2].at, ecat::Transition::SafeopToOp);
+    EXPECT_EQ(startup[2].value, -5);
+    EXPECT_FALSE(startup[2].verify);
+    EXPECT_EQ(loaded.machine.bus.slaves[1].startup.size(), 3u) << "through the alias";
+}
+
+TEST(MachineLoader, ProcessDataIsTheProfilesOrTheMachines) {
+    const auto loaded = must_load(source + "/tests/config/good/units.yaml");
+    const auto& a = loaded.machine.bus.slaves[0];
+    ASSERT_EQ(a.rx.assigned.size(), 1u);
+    EXPECT_EQ(a.rx.assigned[0].index, 0x1702);
+    EXPECT_EQ(a.tx.assigned[0].index, 0x1A00);
+    const auto& b = loaded.machine.bus.slaves[1];
+    ASSERT_EQ(b.tx.assigned.size(), 1u);
+    EXPECT_THAT(b.tx.assigned[0].entries,
+                ElementsAre(ecat::PdoEntry{0x6041, 0, 16}, ecat::PdoEntry{0x6061, 0, 8}, ecat::PdoEntry{0x6064, 0, 32}));
+    EXPECT_EQ(b.alias, 300);
+    EXPECT_FALSE(b.position.has_value());
+}
+
+TEST(MachineLoader, PointsAreObjectsOfTheirSlave) {
+    const auto loaded = must_load(source + "/tests/config/good/units.yaml");
+    ASSERT_EQ(loaded.machine.io.size(), 2u);
+    EXPECT_EQ(loaded.machine.io[0].index, 0x6000);
+    EXPECT_EQ(loaded.machine.io[0].sub, 16);
+    EXPECT_TRUE(loaded.machine.io[0].inverted);
+    EXPECT_EQ(loaded.machine.io[0].simulated, 1);
+    EXPECT_EQ(loaded.machine.io[1].index, 0x60FD);
+}
+
+TEST(MachineLoader, SimulateReplacesTheInterfaceOnly) {
+    auto options = without_programs();
+    EXPECT_EQ(must_load(source + "/tests/config/good/units.yaml", options).machine.bus.interface, "eth0");
+    options.simulate = true;
+    EXPECT_EQ(must_load(source + "/tests/config/good/units.yaml", options).machine.bus.interface, "");
+}
+
+TEST(MachineLoader, WhatIsLegalButPerhapsNotMeantIsAWarning) {
+    const auto loaded = must_load(source + "/tests/config/good/units.yaml");
+    EXPECT_THAT(one_a_line(loaded.warnings),
+                testing::AllOf(HasSubstr("axis table is left out"), HasSubstr("following error of axis table is not watched")));
+    EXPECT_EQ(loaded.warnings.size(), 2u) << "a virtual axis has no following error";
+}
+
+TEST(MachineLoader, ProgramsAreFoundBesideTheFileOrInThePath) {
+    auto options = without_programs();
+    options.resolve_programs = true;
+    const auto demo = source + "/config/machines/demo.yaml";
+    const auto errors = must_fail(demo, options);
+    ASSERT_EQ(errors.size(), 1u);
+    EXPECT_THAT(errors[0].text(), testing::AllOf(HasSubstr("demo.yaml:"), HasSubstr("config/machines/pick_and_place.so")));
+
+    written("pick_and_place.so", "any file");
+    options.program_path = {"/nowhere", testing::TempDir()};
+    const auto library = must_load(demo, options).machine.programs[0].library;
+    EXPECT_EQ(std::filesystem::path(library), std::filesystem::path(testing::TempDir()) / "pick_and_place.so");
+}
+
+TEST(MachineLoader, ErrorsOfADriveFileNameThatFile) {
+    const auto folder = std::filesystem::path(testing::TempDir()) / "drives";
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "broken.yaml") << "version: 1\nname: broken\nvender: me\n";
+    const auto path = written("uses_broken.yaml",
+                              "version: 1\nname: m\ncycle: 1 ms\nbus: {interface: simulated, slaves: [{name: d, profile: broken}]}\n"
+                              "axes: {x: {slave: d, unit: mm, gearing: {counts_per_revolution: 1, feed: 1 mm}, limits: {velocity: 1 mm/s, "
+                              "acceleration: 1 mm/s2, jerk: none}}}\n");
+    auto options = without_programs();
+    options.drive_dirs = {folder.string()};
+    const auto errors = must_fail(path, options);
+    EXPECT_THAT(one_a_line(errors), HasSubstr("broken.yaml:3:1: there is no key `vender` here. did you mean `vendor`?"));
+    for (const auto& error : errors) EXPECT_THAT(error.subject, HasSubstr("broken.yaml")) << error.text();
+}
+
+}  // namespace
+}  // namespace taktwerk::config
