@@ -102,7 +102,7 @@ private:
         const auto near = nearest_name(name, known);
         std::string list;
         for (const auto& n : known) list += (list.empty() ? "" : ", ") + n;
-        problem(std::move(code), fmt::format("there is no {} '{}'; {} has: {}", kind, name, where, list.empty() ? "nothing" : list),
+        problem(std::move(code), fmt::format("there is no {} '{}' among {}: {}", kind, name, where, list.empty() ? "none" : list),
                 near.empty() ? fmt::format("add it to {}, or correct the name", where) : fmt::format("did you mean '{}'?", near));
     }
 

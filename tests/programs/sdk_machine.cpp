@@ -1,13 +1,8 @@
 // A machine builder's day: the SDK is installed, a program is built against it outside this tree, and the runtime takes it.
 
-#include <unistd.h>
-
-#include <array>
-#include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <memory>
 #include <set>
 #include <string>
 
@@ -17,63 +12,35 @@
 #include "runtime/io_image.hpp"
 #include "runtime/program_host.hpp"
 #include "runtime/program_library.hpp"
+#include "tests/programs/installed_sdk.hpp"
 
 namespace taktwerk::runtime {
 namespace {
 
 namespace fs = std::filesystem;
+using taktwerk::testing::InstalledSdk;
+using taktwerk::testing::Outcome;
+using taktwerk::testing::run;
+using taktwerk::testing::text_of;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-struct Outcome {
-    int status = -1;
-    std::string output;
-};
-
-Outcome run(const std::string& command) {
-    Outcome outcome;
-    // The build below is not this one: its flags and generator settings must not leak in.
-    FILE* pipe = ::popen(("env -u CXXFLAGS -u CPLUS_INCLUDE_PATH -u CPATH " + command + " 2>&1").c_str(), "r");
-    if (!pipe) return outcome;
-    std::array<char, 4096> part{};
-    while (const auto n = std::fread(part.data(), 1, part.size(), pipe)) outcome.output.append(part.data(), n);
-    outcome.status = ::pclose(pipe);
-    return outcome;
-}
-
-std::string text_of(const fs::path& path) {
-    std::ifstream in(path);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
-
-/// One installed SDK and one project folder for the whole suite: installing and building takes seconds.
 class Sdk : public ::testing::Test {
 protected:
     static void SetUpTestSuite() {
-        std::string name = fs::temp_directory_path() / "taktwerk-sdk-XXXXXX";
-        ASSERT_NE(::mkdtemp(name.data()), nullptr);
-        folder = name;
-        const auto installed = run(std::string(TAKTWERK_CMAKE " --install '" TAKTWERK_BINARY_DIR "' --component sdk --prefix '") + prefix().string() + "'");
-        ASSERT_EQ(installed.status, 0) << installed.output;
-        fs::create_directory(folder / "project");
+        sdk = std::make_unique<InstalledSdk>();
         for (const char* file : {"CMakeLists.txt", "outside.cpp"})
-            fs::copy_file(fs::path(TAKTWERK_SOURCE_DIR) / "tests/programs/outside" / file, folder / "project" / file);
-        configured = run(std::string(TAKTWERK_CMAKE " -S '") + (folder / "project").string() + "' -B '" + build().string() +
-                         "' -G '" TAKTWERK_GENERATOR "' -DCMAKE_CXX_COMPILER='" TAKTWERK_CXX_COMPILER "' -DCMAKE_BUILD_TYPE=Release"
-                         " -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DCMAKE_PREFIX_PATH='" + prefix().string() + "'");
-        if (configured.status == 0) built = run(TAKTWERK_CMAKE " --build '" + build().string() + "'");
+            fs::copy_file(fs::path(TAKTWERK_SOURCE_DIR) / "tests/programs/outside" / file, sdk->project() / file);
+        built = sdk->build_project();
     }
-    static void TearDownTestSuite() { fs::remove_all(folder); }
+    static void TearDownTestSuite() { sdk.reset(); }
+    static fs::path build() { return sdk->build(); }
 
-    static fs::path prefix() { return folder / "prefix"; }
-    static fs::path build() { return folder / "build"; }
-
-    inline static fs::path folder;
-    inline static Outcome configured, built;
+    inline static std::unique_ptr<InstalledSdk> sdk;
+    inline static Outcome built;
 };
 
 TEST_F(Sdk, BuildsAProgramThatKnowsNothingOfThisTree) {
-    ASSERT_EQ(configured.status, 0) << configured.output;
     ASSERT_EQ(built.status, 0) << built.output;
 
     EXPECT_EQ(text_of(build() / "compile_commands.json").find(TAKTWERK_SOURCE_DIR), std::string::npos) << "a path into this tree leaks into the build";
@@ -82,12 +49,12 @@ TEST_F(Sdk, BuildsAProgramThatKnowsNothingOfThisTree) {
 
 TEST_F(Sdk, HoldsOnlyWhatAProgramIncludes) {
     std::set<std::string> floors;
-    for (const auto& entry : fs::directory_iterator(prefix() / "include" / "taktwerk")) floors.insert(entry.path().filename());
+    for (const auto& entry : fs::directory_iterator(sdk->prefix() / "include" / "taktwerk")) floors.insert(entry.path().filename());
     EXPECT_THAT(floors, ElementsAre("axes", "core", "fb_library", "programs"));
 
     // What a program cannot include because all_blocks.hpp and entry.hpp do not: machine and drives stay inside.
-    EXPECT_FALSE(fs::exists(prefix() / "include/taktwerk/axes/axis/axis.hpp"));
-    EXPECT_FALSE(fs::exists(prefix() / "include/taktwerk/core/result.hpp"));
+    EXPECT_FALSE(fs::exists(sdk->prefix() / "include/taktwerk/axes/axis/axis.hpp"));
+    EXPECT_FALSE(fs::exists(sdk->prefix() / "include/taktwerk/core/result.hpp"));
 }
 
 TEST_F(Sdk, ProgramIsLoadedAndItsNamesAreResolved) {
@@ -136,12 +103,12 @@ TEST_F(Sdk, FlagsOfTheProjectDoNotChangeTheAbi) {
 }
 
 TEST_F(Sdk, MissingFunctionIsFoundWhenTheProgramIsLinked) {
-    ASSERT_EQ(configured.status, 0) << configured.output;
-    const auto source = folder / "project" / "outside.cpp";
+    ASSERT_EQ(built.status, 0) << built.output;
+    const auto source = sdk->project() / "outside.cpp";
     const auto before = text_of(source);
     std::ofstream(source, std::ios::app) << "extern \"C\" void nobody_defines_this();\n"
                                             "extern \"C\" __attribute__((visibility(\"default\"))) void call_it() { nobody_defines_this(); }\n";
-    const auto again = run(TAKTWERK_CMAKE " --build '" + build().string() + "' --target outside");
+    const auto again = run("'" TAKTWERK_CMAKE "' --build '" + build().string() + "' --target outside");
     std::ofstream(source) << before;
 
     EXPECT_NE(again.status, 0);
