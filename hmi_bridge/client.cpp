@@ -45,8 +45,10 @@ Result<Client> Client::connect(std::string_view machine_or_path) {
         return Error{"socket.no_runtime", *path, why == ENOENT ? "there is no such socket" : "nobody listens on this socket any more",
                      "Is the runtime running? Start it with `taktwerk run FILE`."};
     if (why == EACCES || why == EPERM)
-        return Error{"socket.no_permission", *path, "this user may not open the command socket", "Become a member of the socket's group, or use the user that runs the machine."};
-    return Error{"socket.connect", *path, fmt::format("cannot connect: {}", std::strerror(why)), "See that the path is the socket of a running machine."};
+        return Error{"socket.no_permission", *path, "this user may not open the command socket",
+                     "Become a member of the socket's group, or use the user that runs the machine."};
+    return Error{"socket.connect", *path, fmt::format("cannot connect: {}", std::strerror(why)),
+                 "See that the path is the socket of a running machine."};
 }
 
 Client::Client(Client&& other) noexcept
@@ -72,13 +74,16 @@ Result<std::string> Client::read_line(std::int64_t deadline_ns) {
             return line;
         }
         const auto left = deadline_ns - now_ns();
-        if (left <= 0) return Error{"socket.timeout", path_, "the runtime did not answer in time", "Look at the runtime's output; it may be overloaded or stopped in a debugger."};
+        if (left <= 0)
+            return Error{"socket.timeout", path_, "the runtime did not answer in time",
+                         "Look at the runtime's output; it may be overloaded or stopped in a debugger."};
         pollfd wait{socket_, POLLIN, 0};
         if (::poll(&wait, 1, static_cast<int>(std::min<std::int64_t>(left / 1'000'000 + 1, 10'000))) <= 0) continue;
         char buffer[64 * 1024];
         const auto got = ::recv(socket_, buffer, sizeof buffer, 0);
         if (got > 0) in_.append(buffer, static_cast<std::size_t>(got));
-        else if (got == 0 || errno != EINTR) return Error{"socket.closed", path_, "the runtime has closed the connection", "It has probably ended: look at its output."};
+        else if (got == 0 || errno != EINTR)
+            return Error{"socket.closed", path_, "the runtime has closed the connection", "It has probably ended: look at its output."};
     }
 }
 
@@ -98,10 +103,13 @@ Result<nlohmann::ordered_json> Client::request(nlohmann::json request, Duration 
         auto answer_line = read_line(deadline);
         if (!answer_line) return answer_line.error();
         auto answer = nlohmann::ordered_json::parse(*answer_line, nullptr, false);
-        const auto bad = [&] { return Error{"socket.bad_answer", path_, "the answer is not what this version understands", "Use the command line of the runtime's version."}; };
+        const auto bad = [&] {
+            return Error{"socket.bad_answer", path_, "the answer is not what this version understands",
+                         "Use the command line of the runtime's version."};
+        };
         if (!answer.is_object() || !answer.contains("id") || !answer.contains("ok") || !answer["ok"].is_boolean()) return bad();
         const auto& answered = answer["id"];
-        const bool of_connection = answered.is_null();  // e.g. too many clients
+        const bool of_connection = answered.is_null();                                      // e.g. too many clients
         if (!of_connection && !(answered.is_number_integer() && answered == id)) continue;  // of a request that was given up
         if (!answer["ok"].get<bool>()) {
             if (!answer.contains("error") || !answer["error"].is_object()) return bad();

@@ -14,8 +14,23 @@ inline constexpr std::int32_t protocol_version = 1;
 
 enum class CommandKind : std::int32_t {
     none = 0,
-    take_control, release_control, mode, enable, disable, home, jog, move, stop, reset,
-    program_start, program_stop, program_reset, set_parameter, set_output, acknowledge, shutdown,
+    take_control,
+    release_control,
+    mode,
+    enable,
+    disable,
+    home,
+    jog,
+    move,
+    stop,
+    reset,
+    program_start,
+    program_stop,
+    program_reset,
+    set_parameter,
+    set_output,
+    acknowledge,
+    shutdown,
 };
 
 /// What a command acts on. `_or_all`: also "all".

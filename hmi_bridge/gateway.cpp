@@ -40,10 +40,13 @@ std::optional<Error> check_values(const CommandWord& word, const CommandRequest&
         if (!key.empty() && !std::isfinite(value)) return bad_value(fmt::format("{} is not a finite number", key), "Give a finite number.");
     switch (word.kind) {
         case CommandKind::jog:
-            if (request.press && request.value == 0) return bad_value("a jog is pressed with velocity 0", "Give a velocity; 0 is for letting go.");
+            if (request.press && request.value == 0)
+                return bad_value("a jog is pressed with velocity 0", "Give a velocity; 0 is for letting go.");
             return check_jog_velocity(layout.axes[command.axis], request.value);
         case CommandKind::move:
-            if (request.value2 <= 0) return bad_value("a move to a position needs a velocity above 0", "Give `velocity`; the direction comes from the position.");
+            if (request.value2 <= 0)
+                return bad_value("a move to a position needs a velocity above 0",
+                                 "Give `velocity`; the direction comes from the position.");
             return std::nullopt;
         case CommandKind::set_parameter: {
             const auto& parameter = layout.parameters[command.index];
@@ -103,15 +106,20 @@ void Gateway::close(ClientId id) {
 std::optional<Gateway::Refusal> Gateway::check_age(const CommandRequest& request) const {
     const auto longest = request.kind == CommandKind::jog ? longest_jog_validity : longest_validity;
     if (request.valid_for < std::chrono::milliseconds{1} || request.valid_for > longest)
-        return Refusal{Answer::bad_value, bad_value(fmt::format("a validity of {:g} ms is outside its range", milliseconds(request.valid_for)),
-                                                    fmt::format("Give 1 to {:g} ms.", milliseconds(longest)))};
+        return Refusal{Answer::bad_value,
+                       bad_value(fmt::format("a validity of {:g} ms is outside its range", milliseconds(request.valid_for)),
+                                 fmt::format("Give 1 to {:g} ms.", milliseconds(longest)))};
     if (request.age < -clock_tolerance)
-        return Refusal{Answer::stale, {"command.stale", "", fmt::format("the client's clock is {:g} ms ahead of the runtime's", milliseconds(-request.age)),
-                                       "Set the clocks right; a command's age cannot be judged."}};
+        return Refusal{
+            Answer::stale,
+            {"command.stale", "", fmt::format("the client's clock is {:g} ms ahead of the runtime's", milliseconds(-request.age)),
+             "Set the clocks right; a command's age cannot be judged."}};
     if (request.age > request.valid_for)
-        return Refusal{Answer::stale, {"command.stale", "", fmt::format("the command is {:g} ms old and was valid for {:g} ms; it was not carried out",
-                                                                        milliseconds(request.age), milliseconds(request.valid_for)),
-                                       "Give it again; if it comes back, the connection or this computer is too slow."}};
+        return Refusal{Answer::stale,
+                       {"command.stale", "",
+                        fmt::format("the command is {:g} ms old and was valid for {:g} ms; it was not carried out",
+                                    milliseconds(request.age), milliseconds(request.valid_for)),
+                        "Give it again; if it comes back, the connection or this computer is too slow."}};
     return std::nullopt;
 }
 
@@ -122,8 +130,10 @@ std::optional<Gateway::Refusal> Gateway::check_jog(const CommandRequest& request
     const bool alive = found != jogs_.end() && now - found->second.renewed <= jog_session;
     if (alive && !mine) {
         const auto other = clients_.find(found->second.client);
-        return Refusal{Answer::no_control, {"command.no_control", "", fmt::format("{} is jogging this axis", other == clients_.end() ? "another client" : other->second.name),
-                                            "Wait until it lets go."}};
+        return Refusal{Answer::no_control,
+                       {"command.no_control", "",
+                        fmt::format("{} is jogging this axis", other == clients_.end() ? "another client" : other->second.name),
+                        "Wait until it lets go."}};
     }
     if (!request.press && !(mine && alive)) {
         runtime::CommandAnswer stale;
@@ -133,11 +143,14 @@ std::optional<Gateway::Refusal> Gateway::check_jog(const CommandRequest& request
     return std::nullopt;
 }
 
-std::optional<Gateway::Refusal> Gateway::translate(const Client& client, const CommandRequest& request, Instant now, OperatorCommand& command) const {
+std::optional<Gateway::Refusal> Gateway::translate(const Client& client, const CommandRequest& request, Instant now,
+                                                   OperatorCommand& command) const {
     const auto* word = find_command(request.kind);
     if (!word)
-        return Refusal{Answer::unknown_name, {"command.unknown_name", "", fmt::format("there is no command with number {}", static_cast<std::int32_t>(request.kind)),
-                                              "Use a command of this version; view and runtime may be of different versions."}};
+        return Refusal{
+            Answer::unknown_name,
+            {"command.unknown_name", "", fmt::format("there is no command with number {}", static_cast<std::int32_t>(request.kind)),
+             "Use a command of this version; view and runtime may be of different versions."}};
     command.action = word->action;
     command.client = request.client;
     command.sequence = request.sequence;
@@ -146,12 +159,16 @@ std::optional<Gateway::Refusal> Gateway::translate(const Client& client, const C
     command.value = request.value;
     command.value2 = request.value2;
     if (request.commissioning && client.rights != Rights::commissioning)
-        return Refusal{Answer::no_control, {"command.no_control", "", "commissioning commands are taken from the local socket only", "Use the command line on this computer."}};
+        return Refusal{Answer::no_control,
+                       {"command.no_control", "", "commissioning commands are taken from the local socket only",
+                        "Use the command line on this computer."}};
     if (request.commissioning) command.owner = axes::Owner::commissioning;
-    if (request.mode > runtime::Mode::automatic) return Refusal{Answer::bad_value, bad_value("there is no such mode", "Give manual, setup or automatic.")};
+    if (request.mode > runtime::Mode::automatic)
+        return Refusal{Answer::bad_value, bad_value("there is no such mode", "Give manual, setup or automatic.")};
 
     const bool all_by_default = request.kind == CommandKind::stop || request.kind == CommandKind::reset;
-    const auto target = find_target(machine_.layout(), word->target, request.target.empty() && all_by_default ? "all" : std::string_view(request.target));
+    const auto target =
+        find_target(machine_.layout(), word->target, request.target.empty() && all_by_default ? "all" : std::string_view(request.target));
     if (!target) return Refusal{Answer::unknown_name, target.error()};
     const bool axis = word->target == TargetKind::axis || word->target == TargetKind::axis_or_all;
     (axis ? command.axis : command.index) = *target;
@@ -161,8 +178,9 @@ std::optional<Gateway::Refusal> Gateway::translate(const Client& client, const C
         if (auto error = check_values(*word, request, command, machine_.layout())) refusal = Refusal{Answer::bad_value, std::move(*error)};
     if (!refusal) refusal = check_jog(request, command, now);
     if (!refusal && !cycling_ && request.kind != CommandKind::shutdown)
-        refusal = Refusal{Answer::not_possible_now, {"command.not_possible_now", "", "the machine is still starting: its bus is not operational yet",
-                                                     "Wait until it runs (taktwerk monitor shows the progress), then give the command again."}};
+        refusal = Refusal{Answer::not_possible_now,
+                          {"command.not_possible_now", "", "the machine is still starting: its bus is not operational yet",
+                           "Wait until it runs (taktwerk monitor shows the progress), then give the command again."}};
     if (refusal && refusal->error.subject.empty())
         refusal->error.subject = subject_of(machine_.layout(), word->target, command.axis, command.index);
     const auto age = std::max(request.age, Duration{});
@@ -181,14 +199,20 @@ void Gateway::handle(const CommandRequest& request, Instant now) {
     if (found == clients_.end()) return;
     auto& client = found->second;
     const auto refuse = [&](Answer answer, std::string what, std::string remedy) {
-        replies_.push_back({request.client, client.source, request.sequence, request.kind, answer, axes::ErrorId::none,
+        replies_.push_back({request.client,
+                            client.source,
+                            request.sequence,
+                            request.kind,
+                            answer,
+                            axes::ErrorId::none,
                             {std::string(code(answer)), "", std::move(what), std::move(remedy)}});
     };
 
     if (request.sequence == 0) return refuse(Answer::bad_value, "the sequence number is 0", "Count from 1.");
     Entry* entry = client.find(request.sequence);
     if (entry && !entry->request.same_as(request))
-        return refuse(Answer::duplicate, fmt::format("sequence {} was used for another command", request.sequence), "Use a new sequence number for each command.");
+        return refuse(Answer::duplicate, fmt::format("sequence {} was used for another command", request.sequence),
+                      "Use a new sequence number for each command.");
     if (entry && entry->state == Entry::State::waiting) return;  // its answer is on the way
     if (entry && entry->state == Entry::State::answered) return replies_.push_back(entry->reply);
     if (!entry && request.sequence <= client.highest)
@@ -204,7 +228,8 @@ void Gateway::handle(const CommandRequest& request, Instant now) {
             if (candidate.request.sequence < entry->request.sequence) entry = &candidate;
         }
         if (entry->state == Entry::State::waiting)
-            return refuse(Answer::queue_full, fmt::format("{} commands of this client wait for their answers", remembered), "Wait for an answer, then give it again.");
+            return refuse(Answer::queue_full, fmt::format("{} commands of this client wait for their answers", remembered),
+                          "Wait for an answer, then give it again.");
         client.highest = request.sequence;
     }
     entry->request = request;
@@ -257,7 +282,9 @@ void Gateway::step(Instant now) {
         for (auto& entry : client.entries)
             if (entry.state == Entry::State::waiting && now - entry.submitted > answer_patience)
                 settle(client, entry, Answer::not_possible_now, axes::ErrorId::none,
-                       {"command.no_answer", "", fmt::format("the cycle gave no answer within {:g} ms; the command may still have been carried out", milliseconds(answer_patience)),
+                       {"command.no_answer", "",
+                        fmt::format("the cycle gave no answer within {:g} ms; the command may still have been carried out",
+                                    milliseconds(answer_patience)),
                         "Look at the machine's state before giving it again."});
 }
 

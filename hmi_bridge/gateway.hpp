@@ -36,15 +36,15 @@ enum class Rights : std::uint8_t { operating, commissioning };
 /// A command as every source hands it over: names, not indices (a view may be older than the configuration).
 struct CommandRequest {
     ClientId client = 0;
-    std::uint64_t sequence = 0;       ///< >= 1
+    std::uint64_t sequence = 0;  ///< >= 1
     CommandKind kind = CommandKind::none;
-    std::string target;               ///< name; "all" (or empty for stop and reset) where the table allows it
-    bool press = false;               ///< jog: the first one; renewals have false
-    bool commissioning = false;       ///< commands in the name of commissioning instead of the operator panel
+    std::string target;          ///< name; "all" (or empty for stop and reset) where the table allows it
+    bool press = false;          ///< jog: the first one; renewals have false
+    bool commissioning = false;  ///< commands in the name of commissioning instead of the operator panel
     runtime::Mode mode = runtime::Mode::manual;
     double value = 0, value2 = 0;
     Duration valid_for = std::chrono::seconds{1};  ///< 1 ms .. 10 s; jog: up to 500 ms
-    Duration age{};                   ///< since the client gave it, by the common wall clock; negative: the clocks disagree
+    Duration age{};                                ///< since the client gave it, by the common wall clock; negative: the clocks disagree
 
     /// The same command (when it was sent does not matter).
     [[nodiscard]] bool same_as(const CommandRequest& other) const noexcept;
@@ -57,14 +57,14 @@ struct CommandReply {
     CommandKind kind = CommandKind::none;
     runtime::Answer answer = runtime::Answer::accepted;
     axes::ErrorId axis_error = axes::ErrorId::none;
-    Error error;                      ///< empty code when accepted
+    Error error;  ///< empty code when accepted
     [[nodiscard]] bool accepted() const noexcept { return answer == runtime::Answer::accepted; }
 };
 
 class Gateway {
 public:
     static constexpr std::size_t max_clients = 32;
-    static constexpr std::size_t remembered = 16;                 ///< commands per client
+    static constexpr std::size_t remembered = 16;  ///< commands per client
     static constexpr Duration answer_patience = std::chrono::seconds{2};
     static constexpr Duration longest_validity = std::chrono::seconds{10};
     static constexpr Duration longest_jog_validity = std::chrono::milliseconds{500};
@@ -115,7 +115,8 @@ private:
     [[nodiscard]] std::optional<Refusal> translate(const Client& client, const CommandRequest& request, Instant now,
                                                    runtime::OperatorCommand& command) const;
     [[nodiscard]] std::optional<Refusal> check_age(const CommandRequest& request) const;
-    [[nodiscard]] std::optional<Refusal> check_jog(const CommandRequest& request, const runtime::OperatorCommand& command, Instant now) const;
+    [[nodiscard]] std::optional<Refusal> check_jog(const CommandRequest& request, const runtime::OperatorCommand& command,
+                                                   Instant now) const;
     void settle(Client& client, Entry& entry, runtime::Answer answer, axes::ErrorId axis_error, Error error);
     void keep_jog_session(const Entry& entry, runtime::Answer answer);
 

@@ -29,7 +29,8 @@ Result<std::unique_ptr<HmiBridge>> HmiBridge::open(const HmiConfig& config, Mach
     return std::unique_ptr<HmiBridge>(new HmiBridge(config, machine, std::move(options), std::move(server).value(), std::move(problem)));
 }
 
-HmiBridge::HmiBridge(const HmiConfig& config, MachineLink& machine, HmiOptions options, std::unique_ptr<SocketServer> server, std::optional<Error> lcm_problem)
+HmiBridge::HmiBridge(const HmiConfig& config, MachineLink& machine, HmiOptions options, std::unique_ptr<SocketServer> server,
+                     std::optional<Error> lcm_problem)
     : machine_(machine),
       bus_(std::move(options.bus)),
       lcm_problem_(std::move(lcm_problem)),

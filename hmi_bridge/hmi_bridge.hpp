@@ -27,9 +27,9 @@
 namespace taktwerk::hmi {
 
 struct HmiOptions {
-    std::function<void(std::string_view)> log;                          ///< lines for the runtime's log; may be empty
+    std::function<void(std::string_view)> log;                   ///< lines for the runtime's log; may be empty
     std::function<std::int64_t()> wall_utime = hmi::wall_utime;  ///< us since 1970; tests give their own
-    std::unique_ptr<MessageBus> bus;                                    ///< instead of the configured LCM: tests
+    std::unique_ptr<MessageBus> bus;                             ///< instead of the configured LCM: tests
 };
 
 class HmiBridge {
@@ -51,7 +51,8 @@ public:
     [[nodiscard]] const runtime::Snapshot* snapshot() const noexcept { return snapshot_; }
 
 private:
-    HmiBridge(const HmiConfig& config, MachineLink& machine, HmiOptions options, std::unique_ptr<SocketServer> server, std::optional<Error> lcm_problem);
+    HmiBridge(const HmiConfig& config, MachineLink& machine, HmiOptions options, std::unique_ptr<SocketServer> server,
+              std::optional<Error> lcm_problem);
 
     MachineLink& machine_;
     std::unique_ptr<MessageBus> bus_;  ///< null: LCM is off or does not work

@@ -16,12 +16,12 @@ enum class LcmCommands : std::uint8_t {
 };
 
 struct HmiConfig {
-    bool lcm = true;                                                ///< publish the state over LCM
+    bool lcm = true;  ///< publish the state over LCM
     std::string lcm_url = "udpm://239.255.76.67:7667?ttl=0";
-    bool lcm_required = false;                                      ///< refuse to run without a working LCM
+    bool lcm_required = false;  ///< refuse to run without a working LCM
     LcmCommands lcm_commands = LcmCommands::disabled;
-    double rate_hz = 50;                                            ///< of the state messages, 1..1000
-    std::string socket;                                             ///< Unix socket of the command line; empty: /run/taktwerk/<machine>.sock or $XDG_RUNTIME_DIR
+    double rate_hz = 50;  ///< of the state messages, 1..1000
+    std::string socket;   ///< Unix socket of the command line; empty: /run/taktwerk/<machine>.sock or $XDG_RUNTIME_DIR
 };
 
 [[nodiscard]] std::vector<Error> check(const HmiConfig& config);

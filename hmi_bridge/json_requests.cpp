@@ -35,7 +35,9 @@ std::string_view key_of(TargetKind target) {
     return "";
 }
 
-Error request_error(std::string code, std::string what, std::string remedy) { return {"request." + code, "", std::move(what), std::move(remedy)}; }
+Error request_error(std::string code, std::string what, std::string remedy) {
+    return {"request." + code, "", std::move(what), std::move(remedy)};
+}
 
 std::string shown(std::string_view text) { return Json(text.substr(0, 64)).dump(-1, ' ', true, Json::error_handler_t::replace); }
 
@@ -51,9 +53,15 @@ Result<Json> parse(std::string_view line) {
         return !too_deep;
     };
     auto json = Json::parse(line, bounded, false);
-    if (too_deep) return request_error("too_deep", fmt::format("the request is nested deeper than {} levels", deepest_nesting), "Send one flat JSON object a line.");
-    if (json.is_discarded()) return request_error("not_json", fmt::format("the line is not JSON: {}", shown(line)), R"(Send one JSON object a line: {"id":1,"cmd":"state"}.)");
-    if (!json.is_object()) return request_error("not_an_object", "the request is not a JSON object", R"(Send one JSON object a line: {"id":1,"cmd":"state"}.)");
+    if (too_deep)
+        return request_error("too_deep", fmt::format("the request is nested deeper than {} levels", deepest_nesting),
+                             "Send one flat JSON object a line.");
+    if (json.is_discarded())
+        return request_error("not_json", fmt::format("the line is not JSON: {}", shown(line)),
+                             R"(Send one JSON object a line: {"id":1,"cmd":"state"}.)");
+    if (!json.is_object())
+        return request_error("not_an_object", "the request is not a JSON object",
+                             R"(Send one JSON object a line: {"id":1,"cmd":"state"}.)");
     return json;
 }
 
@@ -94,8 +102,9 @@ public:
         for (const auto& [key, value] : json_.items()) {
             if (error_ || std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
             const auto near = nearest_name(std::string_view(key).substr(0, 64), known_);
-            error_ = request_error("unknown_key", fmt::format("this command knows no key {}", shown(key)),
-                                   near.empty() ? fmt::format("It knows: {}.", fmt::join(known_, ", ")) : fmt::format("Did you mean \"{}\"?", near));
+            error_ = request_error(
+                "unknown_key", fmt::format("this command knows no key {}", shown(key)),
+                near.empty() ? fmt::format("It knows: {}.", fmt::join(known_, ", ")) : fmt::format("Did you mean \"{}\"?", near));
         }
     }
     [[nodiscard]] const std::optional<Error>& error() const { return error_; }
@@ -105,7 +114,8 @@ private:
         known_.emplace_back(key);
         const auto found = json_.find(std::string(key));
         if (found != json_.end()) return &*found;
-        if (required && !error_) error_ = request_error("missing_key", fmt::format("\"{}\" is missing", key), fmt::format("Add \"{}\".", key));
+        if (required && !error_)
+            error_ = request_error("missing_key", fmt::format("\"{}\" is missing", key), fmt::format("Add \"{}\".", key));
         return nullptr;
     }
     void wrong(std::string_view key, std::string_view wanted) {
@@ -148,7 +158,9 @@ Result<CommandRequest> read_command(const CommandWord& entry, Fields& fields, st
     if (entry.kind == CommandKind::mode) {
         const auto wanted = fields.text("mode", true);
         if (const auto mode = find_mode(wanted)) request.mode = *mode;
-        else mode_error = Error{"command.bad_value", "", fmt::format("there is no mode {}", shown(wanted)), "Give manual, setup or automatic."};
+        else
+            mode_error =
+                Error{"command.bad_value", "", fmt::format("there is no mode {}", shown(wanted)), "Give manual, setup or automatic."};
     }
     request.commissioning = fields.flag("commissioning");
     // A validity beyond what fits is as wrong as one beyond the gateway's limit.
@@ -185,7 +197,9 @@ void JsonRequests::on_close(ConnectionId connection) {
     clients_.erase(found);
 }
 
-void JsonRequests::refuse(ConnectionId connection, const std::string& id, const Error& error) { answer(connection, refusal_line(id, error)); }
+void JsonRequests::refuse(ConnectionId connection, const std::string& id, const Error& error) {
+    answer(connection, refusal_line(id, error));
+}
 
 void JsonRequests::on_line(ConnectionId connection, std::string_view line, Instant now) {
     const auto json = parse(line);
@@ -197,12 +211,15 @@ void JsonRequests::on_line(ConnectionId connection, std::string_view line, Insta
     if (fields.error()) return refuse(connection, id_text, *fields.error());
 
     if (const auto* entry = find_command(cmd)) {
-        if (id <= 0) return refuse(connection, "null", request_error("missing_key", "a command needs an \"id\" of 1 or more", "Count \"id\" up with each command."));
+        if (id <= 0)
+            return refuse(connection, "null",
+                          request_error("missing_key", "a command needs an \"id\" of 1 or more", "Count \"id\" up with each command."));
         auto request = read_command(*entry, fields, wall_utime_());
         if (!request) return refuse(connection, id_text, request.error());
         const auto client = clients_.find(connection);
         if (client == clients_.end())
-            return refuse(connection, id_text, {"command.not_possible_now", "", "too many clients give commands", "Close some of them and connect again."});
+            return refuse(connection, id_text,
+                          {"command.not_possible_now", "", "too many clients give commands", "Close some of them and connect again."});
         request->client = client->second;
         request->sequence = static_cast<std::uint64_t>(id);
         return gateway_.handle(*request, now);
@@ -216,13 +233,18 @@ void JsonRequests::on_line(ConnectionId connection, std::string_view line, Insta
         answer(connection, fmt::format(R"({{"id":{},"ok":true,"{}":{}}})", id_text, key, value));
     };
     if (cmd == "hello") {
-        const nlohmann::ordered_json hello{{"protocol_version", protocol_version}, {"machine", machine_.layout().machine}, {"pid", ::getpid()},
-                                           {"cycling", snapshot_ != nullptr}, {"progress", progress_}};
+        const nlohmann::ordered_json hello{{"protocol_version", protocol_version},
+                                           {"machine", machine_.layout().machine},
+                                           {"pid", ::getpid()},
+                                           {"cycling", snapshot_ != nullptr},
+                                           {"progress", progress_}};
         return with("hello", hello.dump(-1, ' ', false, Json::error_handler_t::replace));
     }
     if (cmd == "layout") return with("layout", layout_json(machine_.layout()));
     if (!snapshot_)
-        return refuse(connection, id_text, {"state.not_yet", "", "the machine has not executed a cycle yet" + (progress_.empty() ? "" : ": " + progress_), "Ask again in a moment."});
+        return refuse(connection, id_text,
+                      {"state.not_yet", "", "the machine has not executed a cycle yet" + (progress_.empty() ? "" : ": " + progress_),
+                       "Ask again in a moment."});
     if (cmd == "state") return with("state", state_json(*snapshot_, machine_));
     with("alarms", alarms_json(*snapshot_, machine_));
 }

@@ -87,12 +87,8 @@ Json points(const std::vector<std::string>& names, const std::vector<std::int64_
 std::string state_json(const runtime::Snapshot& s, const MachineLink& machine) {
     const auto& layout = machine.layout();
     Json out{
-        {"machine", layout.machine},
-        {"cycle", s.cycle},
-        {"time_ns", count(s.at)},
-        {"phase", word(s.phase)},
-        {"mode", word(s.mode)},
-        {"emergency_stop", s.emergency_stop},
+        {"machine", layout.machine}, {"cycle", s.cycle},     {"time_ns", count(s.at)},
+        {"phase", word(s.phase)},    {"mode", word(s.mode)}, {"emergency_stop", s.emergency_stop},
         {"simulated", s.simulated},
     };
     out["statistics"] = Json{
@@ -175,8 +171,13 @@ std::string layout_json(const runtime::MachineLayout& layout) {
         variables.push_back(Json{{"program", v.program}, {"name", v.name}, {"unit", v.unit}, {"doc", v.doc}, {"type", word(v.type)}});
     auto& parameters = out["parameters"] = Json::array();
     for (const auto& p : layout.parameters)
-        parameters.push_back(Json{{"program", p.program}, {"name", p.name}, {"unit", p.unit}, {"doc", p.doc},
-                                  {"minimum", p.minimum}, {"maximum", p.maximum}, {"value", p.value}});
+        parameters.push_back(Json{{"program", p.program},
+                                  {"name", p.name},
+                                  {"unit", p.unit},
+                                  {"doc", p.doc},
+                                  {"minimum", p.minimum},
+                                  {"maximum", p.maximum},
+                                  {"value", p.value}});
     return text(out);
 }
 

@@ -59,12 +59,17 @@ Result<std::unique_ptr<LcmBus>> LcmBus::open(const LcmUrl& url) {
     if (url.provider == LcmUrl::Provider::udpm) {
         const int problem = multicast_problem(url);
         if (problem == ENETUNREACH || problem == EHOSTUNREACH)
-            return Error{"hmi.no_multicast_route", url.text, fmt::format("there is no route to the multicast group {}, so LCM cannot publish", url.group),
+            return Error{"hmi.no_multicast_route", url.text,
+                         fmt::format("there is no route to the multicast group {}, so LCM cannot publish", url.group),
                          "Run as root: `ip link set lo multicast on` and `ip route add 224.0.0.0/4 dev lo`."};
-        if (problem != 0) return Error{"hmi.lcm", url.text, fmt::format("LCM cannot use the network: {}", std::strerror(problem)), "Check the network and the LCM URL."};
+        if (problem != 0)
+            return Error{"hmi.lcm", url.text, fmt::format("LCM cannot use the network: {}", std::strerror(problem)),
+                         "Check the network and the LCM URL."};
     }
     auto impl = std::make_unique<Impl>(url.text);
-    if (!impl->lcm.good()) return Error{"hmi.lcm", url.text, "LCM did not start; its own message stands above", "Check the LCM URL, and whether the port is free for multicast."};
+    if (!impl->lcm.good())
+        return Error{"hmi.lcm", url.text, "LCM did not start; its own message stands above",
+                     "Check the LCM URL, and whether the port is free for multicast."};
     return std::unique_ptr<LcmBus>(new LcmBus(std::move(impl)));
 }
 

@@ -36,7 +36,8 @@ ClientId LcmCommandReceiver::client_for(std::int64_t lcm_client, Instant now) {
         return found->second.client;
     }
     if (clients_.size() >= max_clients) {
-        const auto oldest = std::min_element(clients_.begin(), clients_.end(), [](const auto& a, const auto& b) { return a.second.heard < b.second.heard; });
+        const auto oldest = std::min_element(clients_.begin(), clients_.end(),
+                                             [](const auto& a, const auto& b) { return a.second.heard < b.second.heard; });
         if (now - oldest->second.heard < idle_client) return 0;
         gateway_.close(oldest->second.client);
         clients_.erase(oldest);
@@ -55,9 +56,9 @@ void LcmCommandReceiver::receive(std::span<const std::byte> message, Instant now
     const auto* name = reinterpret_cast<const char*>(command.target);
     const auto length = ::strnlen(name, sizeof command.target);
     const bool padded = std::all_of(name + length, name + sizeof command.target, [](char c) { return c == 0; });
-    const bool sound = decoded && command.protocol_version == protocol_version && command.client_id != 0 && command.seq >= 1 && command.utime > 0 &&
-                       (command.press == 0 || command.press == 1) && command.mode >= 0 && command.mode <= command_v1_t::MODE_AUTOMATIC &&
-                       length < sizeof command.target && padded;
+    const bool sound = decoded && command.protocol_version == protocol_version && command.client_id != 0 && command.seq >= 1 &&
+                       command.utime > 0 && (command.press == 0 || command.press == 1) && command.mode >= 0 &&
+                       command.mode <= command_v1_t::MODE_AUTOMATIC && length < sizeof command.target && padded;
     const auto client = sound ? client_for(command.client_id, now) : 0;
     if (client == 0) {
         ++rejected_;
@@ -78,7 +79,8 @@ void LcmCommandReceiver::receive(std::span<const std::byte> message, Instant now
 }
 
 void LcmCommandReceiver::deliver(const CommandReply& reply, MessageBus& bus, const Channels& channels) {
-    const auto known = std::find_if(clients_.begin(), clients_.end(), [&](const auto& entry) { return entry.second.client == reply.client; });
+    const auto known =
+        std::find_if(clients_.begin(), clients_.end(), [&](const auto& entry) { return entry.second.client == reply.client; });
     if (known == clients_.end()) return;
     acknowledge_v1_t message{};
     message.utime = wall_utime_();

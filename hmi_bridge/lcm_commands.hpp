@@ -22,7 +22,8 @@ public:
     /// A client that has been silent this long gives way to a new one.
     static constexpr Duration idle_client = std::chrono::seconds{10};
 
-    LcmCommandReceiver(Gateway& gateway, std::function<std::int64_t()> wall_utime) : gateway_(gateway), wall_utime_(std::move(wall_utime)) {}
+    LcmCommandReceiver(Gateway& gateway, std::function<std::int64_t()> wall_utime)
+        : gateway_(gateway), wall_utime_(std::move(wall_utime)) {}
 
     /// Any bytes. What is no command_v1_t of this version is counted and dropped, without an answer: nobody is known to answer to.
     void receive(std::span<const std::byte> message, Instant now);

@@ -31,7 +31,8 @@ Result<LcmUrl> parse_lcm_url(std::string_view url) {
         out.text = "memq://";
         return out;
     }
-    if (!url.starts_with("udpm://")) return wrong(url, "only udpm:// (and memq:// for tests) is taken as an LCM provider; the others block");
+    if (!url.starts_with("udpm://"))
+        return wrong(url, "only udpm:// (and memq:// for tests) is taken as an LCM provider; the others block");
     auto rest = url.substr(7);
     std::string_view options;
     if (const auto mark = rest.find('?'); mark != std::string_view::npos) {

@@ -14,8 +14,8 @@ struct LcmUrl {
     Provider provider = Provider::udpm;
     std::string group = "239.255.76.67";  ///< multicast address (udpm)
     std::uint16_t port = 7667;
-    int ttl = 0;                          ///< 0: this host only
-    std::string text;                     ///< the URL for LCM, with the ttl said
+    int ttl = 0;       ///< 0: this host only
+    std::string text;  ///< the URL for LCM, with the ttl said
 
     [[nodiscard]] bool leaves_host() const noexcept { return provider == Provider::udpm && ttl > 0; }
 };

@@ -103,7 +103,8 @@ struct Publisher::Impl {
         message.protocol_version = protocol_version;
         const auto size = static_cast<std::size_t>(message.getEncodedSize());
         if (buffer.size() < size) buffer.resize(size);
-        const bool ok = message.encode(buffer.data(), 0, static_cast<int>(size)) == static_cast<int>(size) && bus.publish(channel, std::span(buffer).first(size));
+        const bool ok = message.encode(buffer.data(), 0, static_cast<int>(size)) == static_cast<int>(size) &&
+                        bus.publish(channel, std::span(buffer).first(size));
         if (!ok) ++failed;
     }
 
@@ -118,8 +119,10 @@ struct Publisher::Impl {
     void send_heartbeat(const runtime::Snapshot* s);
 };
 
-Publisher::Publisher(MessageBus& bus, const MachineLink& machine, double rate_hz, bool commands_taken, std::function<std::int64_t()> wall_utime)
-    : impl_(new Impl{bus, machine, Channels(machine.layout().machine), commands_taken, std::move(wall_utime), Due{from_seconds(1 / rate_hz)}}) {
+Publisher::Publisher(MessageBus& bus, const MachineLink& machine, double rate_hz, bool commands_taken,
+                     std::function<std::int64_t()> wall_utime)
+    : impl_(new Impl{bus, machine, Channels(machine.layout().machine), commands_taken, std::move(wall_utime),
+                     Due{from_seconds(1 / rate_hz)}}) {
     impl_->peaks.resize(machine.layout().axes.size());
 }
 

@@ -23,7 +23,8 @@ constexpr std::string_view start_hint = "Is the runtime running? Start it with `
 /// A machine's name as a file name.
 std::string file_name(std::string_view machine) {
     std::string out;
-    for (const char c : machine.substr(0, 60)) out += (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '-' || c == '_' ? c : '_';
+    for (const char c : machine.substr(0, 60))
+        out += (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '-' || c == '_' ? c : '_';
     return (out.empty() ? "machine" : out) + std::string(suffix);
 }
 
@@ -48,7 +49,8 @@ bool left_behind(const std::string& path) {
 
 std::vector<std::string> socket_folders() {
     std::vector<std::string> folders{"/run/taktwerk"};
-    if (const char* runtime = std::getenv("XDG_RUNTIME_DIR"); runtime && *runtime == '/') folders.push_back(std::string(runtime) + "/taktwerk");
+    if (const char* runtime = std::getenv("XDG_RUNTIME_DIR"); runtime && *runtime == '/')
+        folders.push_back(std::string(runtime) + "/taktwerk");
     folders.push_back(fmt::format("/tmp/taktwerk-{}", ::geteuid()));
     return folders;
 }
@@ -75,9 +77,11 @@ Result<std::string> find_socket(std::string_view wanted) {
     if (found.size() > 1) found.erase(std::remove_if(found.begin(), found.end(), left_behind), found.end());
     if (found.size() == 1 || (!wanted.empty() && !found.empty())) return found.front();
     if (found.empty())
-        return Error{"socket.not_found", "", wanted.empty() ? std::string("no machine runs here") : fmt::format("no machine '{}' runs here", wanted),
+        return Error{"socket.not_found", "",
+                     wanted.empty() ? std::string("no machine runs here") : fmt::format("no machine '{}' runs here", wanted),
                      fmt::format("{} (looked in {})", start_hint, fmt::join(socket_folders(), ", "))};
-    return Error{"socket.ambiguous", "", fmt::format("{} machines run here: {}", found.size(), fmt::join(found, ", ")), "Say which one: its name or its socket."};
+    return Error{"socket.ambiguous", "", fmt::format("{} machines run here: {}", found.size(), fmt::join(found, ", ")),
+                 "Say which one: its name or its socket."};
 }
 
 }  // namespace taktwerk::hmi

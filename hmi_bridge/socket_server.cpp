@@ -31,11 +31,13 @@ Result<int> lock_for(const std::string& path) {
         char pid[32] = {};
         const auto length = ::pread(lock, pid, sizeof pid - 1, 0);
         ::close(lock);
-        return Error{"socket.in_use", path, fmt::format("another runtime already serves this machine: process {}", length > 0 ? pid : "unknown"),
+        return Error{"socket.in_use", path,
+                     fmt::format("another runtime already serves this machine: process {}", length > 0 ? pid : "unknown"),
                      "Stop it first, or give this machine another name or `socket:`."};
     }
     // A runtime that ends removes the file: then this lock is on a file that nobody else will ever see.
-    struct stat held {}, named {};
+    struct stat held {
+    }, named{};
     if (::fstat(lock, &held) != 0 || ::stat(lock_path.c_str(), &named) != 0 || held.st_ino != named.st_ino) {
         ::close(lock);
         return Error{"socket.in_use", path, "another runtime of this machine is just ending", "Start again."};
@@ -52,7 +54,8 @@ Result<int> lock_for(const std::string& path) {
 Result<std::unique_ptr<SocketServer>> SocketServer::open(const std::string& path, std::function<void(std::string_view)> log) {
     sockaddr_un address{};
     if (path.empty() || path.size() >= sizeof address.sun_path)
-        return Error{"socket.too_long", path, fmt::format("a socket's path has 1 to {} characters", sizeof address.sun_path - 1), "Give a shorter path as `socket:`."};
+        return Error{"socket.too_long", path, fmt::format("a socket's path has 1 to {} characters", sizeof address.sun_path - 1),
+                     "Give a shorter path as `socket:`."};
     address.sun_family = AF_UNIX;
     std::memcpy(address.sun_path, path.c_str(), path.size());
 
@@ -64,17 +67,20 @@ Result<std::unique_ptr<SocketServer>> SocketServer::open(const std::string& path
     };
     struct stat info {};
     if (::lstat(path.c_str(), &info) == 0) {
-        if (!S_ISSOCK(info.st_mode)) return fail("socket.not_a_socket", "something else already has this name", "Remove it, or give another path as `socket:`.");
+        if (!S_ISSOCK(info.st_mode))
+            return fail("socket.not_a_socket", "something else already has this name", "Remove it, or give another path as `socket:`.");
         ::unlink(path.c_str());  // nobody holds the lock: left behind by a runtime that died
     }
     const int listener = ::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     // The mode is set on the socket before it gets a name, so that there is no moment in which others may connect.
-    const bool bound = listener >= 0 && ::fchmod(listener, socket_mode) == 0 && ::bind(listener, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 &&
+    const bool bound = listener >= 0 && ::fchmod(listener, socket_mode) == 0 &&
+                       ::bind(listener, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 &&
                        ::chmod(path.c_str(), socket_mode) == 0 && ::listen(listener, static_cast<int>(max_connections)) == 0;
     if (!bound) {
         const auto why = reason();
         if (listener >= 0) ::close(listener);
-        return fail("socket.bind", "cannot make the command socket: " + why, "Give a path in a folder that this user may write, as `socket:` in the configuration.");
+        return fail("socket.bind", "cannot make the command socket: " + why,
+                    "Give a path in a folder that this user may write, as `socket:` in the configuration.");
     }
     return std::unique_ptr<SocketServer>(new SocketServer(path, listener, *lock, std::move(log)));
 }
@@ -101,10 +107,13 @@ void SocketServer::accept_all(LineHandler& handler) {
         ::getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &who, &size);
         const Peer peer{who.pid, who.uid, who.gid};
         if (connections_.size() >= max_connections) {
-            constexpr std::string_view full = R"({"id":null,"ok":false,"error":{"code":"socket.too_many_clients","subject":"","what":"8 clients are connected already","remedy":"Close one of them."}})" "\n";
+            constexpr std::string_view full =
+                R"({"id":null,"ok":false,"error":{"code":"socket.too_many_clients","subject":"","what":"8 clients are connected already","remedy":"Close one of them."}})"
+                "\n";
             [[maybe_unused]] const auto sent = ::send(socket, full.data(), full.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
             ::close(socket);
-            log_(fmt::format("command socket: process {} of user {} turned away, {} clients are connected", peer.pid, peer.uid, max_connections));
+            log_(fmt::format("command socket: process {} of user {} turned away, {} clients are connected", peer.pid, peer.uid,
+                             max_connections));
             continue;
         }
         connections_.push_back({next_id_++, socket, {}, {}, false, false});
@@ -141,7 +150,11 @@ void SocketServer::read(Connection& connection, Instant now, LineHandler& handle
     }
     connection.in.erase(0, start);
     if (!limited && connection.in.size() > max_line) {
-        send(connection.id, fmt::format(R"({{"id":null,"ok":false,"error":{{"code":"request.too_long","subject":"","what":"a line is longer than {} bytes","remedy":"Send one request a line."}}}})", max_line));
+        send(
+            connection.id,
+            fmt::format(
+                R"({{"id":null,"ok":false,"error":{{"code":"request.too_long","subject":"","what":"a line is longer than {} bytes","remedy":"Send one request a line."}}}})",
+                max_line));
         connection.in.clear();
         connection.closing = true;
     }

@@ -19,8 +19,8 @@ class SocketServer {
 public:
     static constexpr std::size_t max_connections = 8;
     static constexpr std::size_t max_line = 64 * 1024;
-    static constexpr std::size_t max_unread = 1024 * 1024;   ///< a client that does not read its answers is dropped
-    static constexpr std::size_t lines_per_step = 32;        ///< of one connection
+    static constexpr std::size_t max_unread = 1024 * 1024;  ///< a client that does not read its answers is dropped
+    static constexpr std::size_t lines_per_step = 32;       ///< of one connection
 
     /// Binds `path`, replacing what a runtime that died has left behind. `log` gets one line per connection and problem.
     /// Errors: socket.in_use (with the process that has it), socket.not_a_socket, socket.too_long, socket.bind.

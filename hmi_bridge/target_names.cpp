@@ -52,8 +52,13 @@ Error unknown(TargetKind kind, std::string_view name, const std::vector<std::str
     Error error{"command.unknown_name", "", fmt::format("there is no {} '{}'", noun(kind), shown(name)), ""};
     if (name.empty()) error.what = fmt::format("the command names no {}", noun(kind));
     if (candidates.empty()) error.remedy = fmt::format("This machine has no {} at all.", noun(kind));
-    else if (const auto near = nearest_name(name.substr(0, 64), candidates); !near.empty()) error.remedy = fmt::format("Did you mean '{}'?", near);
-    else error.remedy = fmt::format("Give one of: {}.", fmt::join(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(candidates.size(), 12)), ", "));
+    else if (const auto near = nearest_name(name.substr(0, 64), candidates); !near.empty())
+        error.remedy = fmt::format("Did you mean '{}'?", near);
+    else
+        error.remedy =
+            fmt::format("Give one of: {}.",
+                        fmt::join(candidates.begin(),
+                                  candidates.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(candidates.size(), 12)), ", "));
     return error;
 }
 

@@ -33,7 +33,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         std::vector<std::byte> good(static_cast<std::size_t>(command.getEncodedSize()));
         command.encode(good.data(), 0, static_cast<int>(good.size()));
         message.resize(good.size());
-        std::memcpy(message.data(), good.data(), 16);  // fingerprint and stamp
+        std::memcpy(message.data(), good.data(), 16);           // fingerprint and stamp
         std::memcpy(message.data() + 24, good.data() + 24, 4);  // protocol version, behind the sequence
     }
     for (int round = 0; round < 2; ++round) {  // a repeated message is executed once

@@ -240,7 +240,8 @@ TEST_F(GatewayTest, ValuesOutsideTheirRangeAreRefusedWithTheRange) {
         speed.value = value;
         EXPECT_EQ(outcome(speed).answer, Answer::bad_value) << value;
     }
-    for (const double velocity : {nan, infinity, 50.1, -50.1, 0.0}) EXPECT_EQ(outcome(jog(velocity, true, client)).answer, Answer::bad_value) << velocity;
+    for (const double velocity : {nan, infinity, 50.1, -50.1, 0.0})
+        EXPECT_EQ(outcome(jog(velocity, true, client)).answer, Answer::bad_value) << velocity;
     for (const double velocity : {nan, infinity, 0.0, -1.0}) {
         auto move = request(CommandKind::move, "x");
         move.value2 = velocity;
@@ -266,7 +267,8 @@ TEST_F(GatewayTest, RefusalsOfTheMachineComeBackInWords) {
     EXPECT_THAT(refused.error.what, HasSubstr("The axis is disabled"));
     EXPECT_THAT(refused.error.remedy, HasSubstr("Enable it"));
 
-    for (const auto answer : {Answer::unknown_name, Answer::bad_value, Answer::stale, Answer::wrong_mode, Answer::not_possible_now, Answer::queue_full, Answer::duplicate}) {
+    for (const auto answer : {Answer::unknown_name, Answer::bad_value, Answer::stale, Answer::wrong_mode, Answer::not_possible_now,
+                              Answer::queue_full, Answer::duplicate}) {
         const auto reply = outcome(request(CommandKind::home, "x"), answer);
         EXPECT_FALSE(reply.error.what.empty());
         EXPECT_FALSE(reply.error.remedy.empty());

@@ -88,11 +88,11 @@ std::string in_own_network(const std::function<std::string()>& body) {
     return problem.empty() ? "the child died" : problem;
 }
 
-#define RUN_IN_OWN_NETWORK(body)                                                                             \
-    do {                                                                                                     \
-        const auto problem = in_own_network(body);                                                           \
+#define RUN_IN_OWN_NETWORK(body)                                                                              \
+    do {                                                                                                      \
+        const auto problem = in_own_network(body);                                                            \
         if (problem == "skip") GTEST_SKIP() << "this system does not allow a network namespace of one's own"; \
-        EXPECT_EQ(problem, "");                                                                              \
+        EXPECT_EQ(problem, "");                                                                               \
     } while (false)
 
 TEST(Multicast, WithoutARouteTheErrorNamesTheTwoCommandsThatMendIt) {

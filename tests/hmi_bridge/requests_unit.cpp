@@ -67,13 +67,23 @@ TEST_F(RequestsTest, ACommandIsCarriedOutAndAnsweredWithItsId) {
 }
 
 TEST_F(RequestsTest, EveryCommandOfTheTableHasALine) {
-    const std::vector<std::string> lines{
-        R"("cmd":"take_control","axis":"x")", R"("cmd":"release_control","axis":"all")", R"("cmd":"mode","mode":"automatic")",
-        R"("cmd":"enable","axis":"x")", R"("cmd":"disable","axis":"all")", R"("cmd":"home","axis":"x")",
-        R"("cmd":"jog","axis":"x","velocity":1,"press":true)", R"("cmd":"move","axis":"x","position":1,"velocity":2)", R"("cmd":"stop")",
-        R"("cmd":"reset","axis":"y")", R"("cmd":"program_start","program":"cell")", R"("cmd":"program_stop","program":"cell")",
-        R"("cmd":"program_reset","program":"cell")", R"("cmd":"set_parameter","parameter":"speed","value":100)",
-        R"("cmd":"set_output","output":"lamp_run","value":true)", R"("cmd":"acknowledge")", R"("cmd":"shutdown")"};
+    const std::vector<std::string> lines{R"("cmd":"take_control","axis":"x")",
+                                         R"("cmd":"release_control","axis":"all")",
+                                         R"("cmd":"mode","mode":"automatic")",
+                                         R"("cmd":"enable","axis":"x")",
+                                         R"("cmd":"disable","axis":"all")",
+                                         R"("cmd":"home","axis":"x")",
+                                         R"("cmd":"jog","axis":"x","velocity":1,"press":true)",
+                                         R"("cmd":"move","axis":"x","position":1,"velocity":2)",
+                                         R"("cmd":"stop")",
+                                         R"("cmd":"reset","axis":"y")",
+                                         R"("cmd":"program_start","program":"cell")",
+                                         R"("cmd":"program_stop","program":"cell")",
+                                         R"("cmd":"program_reset","program":"cell")",
+                                         R"("cmd":"set_parameter","parameter":"speed","value":100)",
+                                         R"("cmd":"set_output","output":"lamp_run","value":true)",
+                                         R"("cmd":"acknowledge")",
+                                         R"("cmd":"shutdown")"};
     ASSERT_EQ(lines.size(), command_words.size());
     for (std::size_t i = 0; i < lines.size(); ++i) {
         const auto answer = ask("{\"id\":" + std::to_string(i + 1) + "," + lines[i] + "}");

@@ -68,7 +68,9 @@ public:
 class SocketTest : public testing::Test {
 protected:
     SocketTest() {
-        auto opened = HmiBridge::open(config_at(path), machine, {.log = [this](std::string_view line) { log.emplace_back(line); }, .wall_utime = wall_utime, .bus = nullptr});
+        auto opened =
+            HmiBridge::open(config_at(path), machine,
+                            {.log = [this](std::string_view line) { log.emplace_back(line); }, .wall_utime = wall_utime, .bus = nullptr});
         EXPECT_TRUE(opened) << opened.error().text();
         bridge = std::move(opened).value();
     }
@@ -200,7 +202,10 @@ TEST_F(SocketTest, ASocketLeftBehindByADeadRuntimeIsReplaced) {
 
 TEST_F(SocketTest, AFileThatIsNoSocketIsLeftAlone) {
     const auto file = folder.file("letter.txt");
-    { const auto written = ::fopen(file.c_str(), "w"); ::fclose(written); }
+    {
+        const auto written = ::fopen(file.c_str(), "w");
+        ::fclose(written);
+    }
     FakeMachine other;
     const auto opened = HmiBridge::open(config_at(file), other, {});
     ASSERT_FALSE(opened);
@@ -232,7 +237,8 @@ TEST_F(SocketTest, AMachineIsFoundByItsNameOrBecauseItIsTheOnlyOne) {
     EXPECT_EQ(*find_socket("only-one-of-this-test"), only);
     EXPECT_EQ(*find_socket("/any/path"), "/any/path");
     bool elsewhere = false;  // a runtime of somebody else on this computer
-    for (const auto& place : socket_folders()) elsewhere = elsewhere || (place != home && std::filesystem::exists(place) && !std::filesystem::is_empty(place));
+    for (const auto& place : socket_folders())
+        elsewhere = elsewhere || (place != home && std::filesystem::exists(place) && !std::filesystem::is_empty(place));
     if (!elsewhere) {
         const auto found = find_socket("");
         ASSERT_TRUE(found) << found.error().text();
@@ -330,7 +336,9 @@ TEST_F(SocketTest, ClientsAreBounded) {
 
 TEST_F(SocketTest, AClientThatNeverReadsIsDroppedAndTheOthersAreServed) {
     const int deaf = raw_client();
-    for (int i = 0; i < 200'000 && bridge && std::none_of(log.begin(), log.end(), [](const auto& l) { return l.find("does not read") != std::string::npos; }); ++i) {
+    for (int i = 0; i < 200'000 && bridge &&
+                    std::none_of(log.begin(), log.end(), [](const auto& l) { return l.find("does not read") != std::string::npos; });
+         ++i) {
         constexpr std::string_view ask = "{\"cmd\":\"state\"}\n";
         [[maybe_unused]] const auto sent = ::send(deaf, ask.data(), ask.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
         bridge->step(now += 5ms);
