@@ -61,8 +61,8 @@ struct Parameter {
 
 /// All in `unit`. minimum <= value <= maximum, otherwise the machine does not start. The machine file may set another value.
 struct ParameterSpec {
-    double value = 0;                ///< default
-    double minimum = 0, maximum = 0; ///< inclusive; the runtime refuses anything else, also from the operator
+    double value = 0;                 ///< default
+    double minimum = 0, maximum = 0;  ///< inclusive; the runtime refuses anything else, also from the operator
     std::string_view unit{};
     std::string_view doc{};
 };
@@ -96,7 +96,7 @@ public:
     std::span<std::int64_t> outputs;
     std::span<const double> parameters;
     std::uint64_t alarms = 0;
-    bool first_scan = false;   ///< first call after start
+    bool first_scan = false;  ///< first call after start
 
 private:
     template <class T>

@@ -41,8 +41,8 @@ public:
         std::string name = std::filesystem::temp_directory_path() / "taktwerk-sdk-XXXXXX";
         if (::mkdtemp(name.data())) folder_ = name;
         std::filesystem::create_directory(project());
-        const auto outcome =
-            run(std::string("'" TAKTWERK_CMAKE "' --install '" TAKTWERK_BINARY_DIR "' --component sdk --prefix '") + prefix().string() + "'");
+        const auto outcome = run(std::string("'" TAKTWERK_CMAKE "' --install '" TAKTWERK_BINARY_DIR "' --component sdk --prefix '") +
+                                 prefix().string() + "'");
         EXPECT_EQ(outcome.status, 0) << outcome.output;
     }
     ~InstalledSdk() {
@@ -55,8 +55,10 @@ public:
     /// Configures and builds what lies in project(), with this tree's compiler and generator.
     [[nodiscard]] Outcome build_project() const {
         const auto configured = run(std::string("'" TAKTWERK_CMAKE "' -S '") + project().string() + "' -B '" + build().string() +
-                                    "' -G '" TAKTWERK_GENERATOR "' -DCMAKE_CXX_COMPILER='" TAKTWERK_CXX_COMPILER "' -DCMAKE_BUILD_TYPE=Release"
-                                    " -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DCMAKE_PREFIX_PATH='" + prefix().string() + "'");
+                                    "' -G '" TAKTWERK_GENERATOR "' -DCMAKE_CXX_COMPILER='" TAKTWERK_CXX_COMPILER
+                                    "' -DCMAKE_BUILD_TYPE=Release"
+                                    " -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DCMAKE_PREFIX_PATH='" +
+                                    prefix().string() + "'");
         return configured.status == 0 ? run("'" TAKTWERK_CMAKE "' --build '" + build().string() + "'") : configured;
     }
     [[nodiscard]] std::filesystem::path prefix() const { return folder_ / "prefix"; }

@@ -43,7 +43,8 @@ protected:
 TEST_F(Sdk, BuildsAProgramThatKnowsNothingOfThisTree) {
     ASSERT_EQ(built.status, 0) << built.output;
 
-    EXPECT_EQ(text_of(build() / "compile_commands.json").find(TAKTWERK_SOURCE_DIR), std::string::npos) << "a path into this tree leaks into the build";
+    EXPECT_EQ(text_of(build() / "compile_commands.json").find(TAKTWERK_SOURCE_DIR), std::string::npos)
+        << "a path into this tree leaks into the build";
     EXPECT_TRUE(fs::is_regular_file(build() / "outside.so")) << "the library has no prefix";
 }
 
@@ -106,8 +107,9 @@ TEST_F(Sdk, MissingFunctionIsFoundWhenTheProgramIsLinked) {
     ASSERT_EQ(built.status, 0) << built.output;
     const auto source = sdk->project() / "outside.cpp";
     const auto before = text_of(source);
-    std::ofstream(source, std::ios::app) << "extern \"C\" void nobody_defines_this();\n"
-                                            "extern \"C\" __attribute__((visibility(\"default\"))) void call_it() { nobody_defines_this(); }\n";
+    std::ofstream(source, std::ios::app)
+        << "extern \"C\" void nobody_defines_this();\n"
+           "extern \"C\" __attribute__((visibility(\"default\"))) void call_it() { nobody_defines_this(); }\n";
     const auto again = run("'" TAKTWERK_CMAKE "' --build '" + build().string() + "' --target outside");
     std::ofstream(source) << before;
 

@@ -45,7 +45,8 @@ TEST(Tutorial, ShowsTheSmallestExampleAsItIs) {
 // The file's events: button at 1 s, a part from 2 s to 2.2 s, another from 3 s on. jam_time is 1.5 s, so the belt stops at 4.5 s.
 TEST(Tutorial, ItsFeederCountsPartsAndStopsAtAJam) {
     const taktwerk::testing::InstalledSdk sdk;
-    for (const auto& [file, start] : {std::pair{"CMakeLists.txt", "# CMakeLists.txt"}, std::pair{"feeder.cpp", "// feeder.cpp"}, std::pair{"feeder.yaml", "# feeder.yaml"}}) {
+    for (const auto& [file, start] : {std::pair{"CMakeLists.txt", "# CMakeLists.txt"}, std::pair{"feeder.cpp", "// feeder.cpp"},
+                                      std::pair{"feeder.yaml", "# feeder.yaml"}}) {
         ASSERT_FALSE(block(start).empty()) << file << " is not on the page";
         std::ofstream(sdk.project() / file) << block(start);
     }

@@ -5,13 +5,13 @@
 #include <gtest/gtest.h>
 
 namespace taktwerk {
-namespace {
+namespace abi_test {
 
 using fb::in;
 using fb::out;
 
 // One block in several versions of a library. The name is the type's own, without the namespace.
-#define TANK_FUNCTION \
+#define TANK_FUNCTION                                     \
     static constexpr std::string_view summary = "a tank"; \
     void operator()(const axes::MotionContext&) noexcept {}
 
@@ -27,7 +27,9 @@ namespace other_words {  // units and texts are for people
 struct Tank {
     bool Fill = false;
     double Level = 0, Limit = 0;
-    static consteval auto pins() { return std::array{in<&Tank::Fill>("", "opens the valve"), in<&Tank::Limit>("m3", ""), out<&Tank::Level>("l", "")}; }
+    static consteval auto pins() {
+        return std::array{in<&Tank::Fill>("", "opens the valve"), in<&Tank::Limit>("m3", ""), out<&Tank::Level>("l", "")};
+    }
     TANK_FUNCTION
 };
 }  // namespace other_words
@@ -104,5 +106,5 @@ TEST(AbiHash, DependsOnTheOrderOfBlocks) {
     EXPECT_NE(fb::layout_hash(fb::layout_hash(0, a), b), fb::layout_hash(fb::layout_hash(0, b), a));
 }
 
-}  // namespace
+}  // namespace abi_test
 }  // namespace taktwerk

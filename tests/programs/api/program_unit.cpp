@@ -64,10 +64,13 @@ TEST(Alarm, IsABitThatFollowsItsConditionAlone) {
 // An address of a temporary must not be kept: what is not exactly one of the types does not compile.
 enum Step : std::int32_t { first };
 template <class T>
-concept Monitored = requires(Declaration& d, T value) { d.monitor("name", std::forward<T>(value)); };
+concept Monitored = requires(Declaration& d, T value) {
+    d.monitor("name", std::forward<T>(value));
+};
 static_assert(Monitored<bool&> && Monitored<std::int32_t&> && Monitored<std::int64_t&> && Monitored<std::uint16_t&> &&
               Monitored<std::uint32_t&> && Monitored<double&> && Monitored<Duration&> && Monitored<const double&>);
-static_assert(!Monitored<Step&> && !Monitored<float&> && !Monitored<std::int16_t&> && !Monitored<std::uint8_t&> && !Monitored<std::chrono::seconds&>);
+static_assert(!Monitored<Step&> && !Monitored<float&> && !Monitored<std::int16_t&> && !Monitored<std::uint8_t&> &&
+              !Monitored<std::chrono::seconds&>);
 static_assert(!Monitored<double> && !Monitored<int> && !Monitored<bool>);
 
 class Recorder final : public Declaration {
