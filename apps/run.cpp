@@ -149,7 +149,11 @@ int run_real(LoadedFile loaded, const Options& options) {
     }
     hmi::RuntimeLink link{*machine};
     hmi::HmiOptions bridge_options;
-    if (!options.quiet && !options.json) bridge_options.log = [](std::string_view text) { fmt::print("{}\n", text); };
+    if (!options.quiet && !options.json) bridge_options.log = [](std::string_view text) {
+        // Each `taktwerk monitor --once` comes and goes: not worth a line.
+        constexpr std::string_view comes = " connected";
+        if (text.size() < comes.size() || text.substr(text.size() - comes.size()) != comes) fmt::print("{}\n", text);
+    };
     auto bridge = hmi::HmiBridge::open(loaded.hmi, link, std::move(bridge_options));
     if (!bridge) {
         print_error(bridge.error());
