@@ -39,7 +39,8 @@ namespace taktwerk::axes {
 enum class OperatingMode : std::uint8_t { automatic, manual, setup };
 
 /// A level, never queued: given in each cycle in which it changes, holds until taken back.
-enum class EmergencyStop : std::uint8_t { none, stop, stop_and_power_off };
+///   stop_and_power_off  power goes when the axis stands     power_off_now  power goes, wherever the axis is: the time is up
+enum class EmergencyStop : std::uint8_t { none, stop, stop_and_power_off, power_off_now };
 
 class Axis {
 public:

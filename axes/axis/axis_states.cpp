@@ -96,7 +96,7 @@ void Axis::supervise(Instant now) noexcept {
     if (emergency_ != EmergencyStop::none) {
         const bool stays_off = state_ == AxisState::Disabled && !power_wish_ && power_.phase() == PowerSequence::Phase::off;
         if (!stays_off) fail(AxisAlarm::emergency_stop);
-        if (emergency_ == EmergencyStop::stop_and_power_off) off_after_error_ = state_ == AxisState::ErrorStop;
+        if (emergency_ >= EmergencyStop::stop_and_power_off) off_after_error_ = state_ == AxisState::ErrorStop;
     }
     watch_jog_lease();
     if (emergency_ != EmergencyStop::none || queue_.active().command.kind == CommandKind::jog) publish();
