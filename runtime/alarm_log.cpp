@@ -1,9 +1,18 @@
 #include "runtime/alarm_log.hpp"
 
+#include "runtime/alarms.hpp"
+
 namespace taktwerk::runtime {
+
+namespace {
+
+constexpr auto full = id(MachineAlarm::alarm_log_full);
+
+}  // namespace
 
 void AlarmLog::begin_cycle() noexcept {
     for (std::size_t i = 0; i < count_; ++i) rules_[i].raised = false;
+    dropped_ = 0;
 }
 
 void AlarmLog::raise(const AlarmFact& fact, Reaction reaction, ResetRule reset, Instant now) noexcept {
@@ -13,19 +22,30 @@ void AlarmLog::raise(const AlarmFact& fact, Reaction reaction, ResetRule reset, 
         rules_[i].raised = true;
         if (!alarm.standing) {
             alarm.standing = true;
-            alarm.acknowledged = rules_[i].was_reset = false;
+            alarm.acknowledged = rules_[i].cleared = false;
             ++alarm.count;
             alarm.fact = fact;
         }
         return;
     }
-    if (count_ == capacity) {
-        ++dropped_;
-        return;
-    }
+    if (fact.id != full && !make_room(reaction)) return;
     alarms_[count_] = {fact, now, 1, true, false, reaction};
     rules_[count_] = {reset, true, false};
     ++count_;
+}
+
+bool AlarmLog::make_room(Reaction reaction) noexcept {
+    std::size_t others = 0, weakest = count_;
+    for (std::size_t i = 0; i < count_; ++i) {
+        if (alarms_[i].fact.id == full) continue;
+        ++others;
+        if (weakest == count_ || alarms_[i].reaction <= alarms_[weakest].reaction) weakest = i;
+    }
+    if (others < capacity - 1) return true;
+    ++dropped_;
+    if (alarms_[weakest].reaction >= reaction) return false;
+    remove(weakest);
+    return true;
 }
 
 void AlarmLog::remove(std::size_t index) noexcept {
@@ -36,43 +56,38 @@ void AlarmLog::remove(std::size_t index) noexcept {
     --count_;
 }
 
-void AlarmLog::end_cycle() noexcept {
+void AlarmLog::end_cycle(Instant now) noexcept {
+    if (dropped_ > 0) {
+        const auto& info = *find_alarm(machine_alarms, full);
+        raise({full, AlarmSource::machine, 0, static_cast<double>(dropped_), 0}, info.reaction, info.reset, now);
+    }
     for (std::size_t i = 0; i < count_;) {
         auto& alarm = alarms_[i];
+        const bool over = alarm.standing && !rules_[i].raised;
         alarm.standing = rules_[i].raised;
-        bool gone = false;
-        if (!alarm.standing) {
-            switch (rules_[i].reset) {
-                case ResetRule::self_clearing: gone = true; break;
-                case ResetRule::acknowledge: gone = alarm.acknowledged; break;
-                case ResetRule::reset: gone = rules_[i].was_reset; break;
-                case ResetRule::restart: break;
-            }
-        }
-        if (gone) remove(i);
+        if (over && rules_[i].reset != ResetRule::self_clearing) alarm.acknowledged = false;
+        if (!alarm.standing && (rules_[i].reset == ResetRule::self_clearing || rules_[i].cleared)) remove(i);
         else ++i;
     }
-    if (count_ < capacity) dropped_ = 0;
 }
 
 void AlarmLog::acknowledge() noexcept {
-    for (std::size_t i = 0; i < count_; ++i) alarms_[i].acknowledged = true;
+    for (std::size_t i = 0; i < count_; ++i) {
+        alarms_[i].acknowledged = true;
+        rules_[i].cleared = rules_[i].cleared || (!alarms_[i].standing && rules_[i].reset == ResetRule::acknowledge);
+    }
 }
 
 void AlarmLog::reset() noexcept {
-    for (std::size_t i = 0; i < count_; ++i) {
-        alarms_[i].acknowledged = true;
-        rules_[i].was_reset = true;
-    }
+    acknowledge();
+    for (std::size_t i = 0; i < count_; ++i)
+        rules_[i].cleared = rules_[i].cleared || (!alarms_[i].standing && rules_[i].reset == ResetRule::reset);
 }
 
 Reaction AlarmLog::strongest() const noexcept {
     Reaction strongest = Reaction::none;
-    for (std::size_t i = 0; i < count_; ++i) {
-        // A condition that needs a reset keeps its reaction until it is reset, even when it is gone.
-        const bool holds = alarms_[i].standing || rules_[i].reset == ResetRule::reset || rules_[i].reset == ResetRule::acknowledge;
-        if (holds && alarms_[i].reaction > strongest) strongest = alarms_[i].reaction;
-    }
+    for (const auto& alarm : alarms())
+        if (alarm.reaction > strongest) strongest = alarm.reaction;
     return strongest;
 }
 

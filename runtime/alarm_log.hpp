@@ -1,6 +1,9 @@
 #pragma once
 // The machine's list of alarms: what stands now, what waits to be acknowledged or reset. Each cycle everything that holds is
 // raised again; what is not raised any more goes by its reset rule. Fixed capacity, real-time safe.
+//
+// A full list never hides a reaction: an alarm that finds no place takes that of the newest among the weakest, if that one reacts
+// less. What finds none is counted, and the list says so in a place of its own (alarm_log_full).
 
 #include <array>
 #include <cstdint>
@@ -17,24 +20,30 @@ public:
     static constexpr std::size_t capacity = 64;
 
     void begin_cycle() noexcept;
-    /// The condition holds in this cycle. `reaction` and `reset` come from the table of the fact's floor.
+    /// The condition holds in this cycle. `reaction` and `reset` come from the table of the fact's floor. The two numbers kept are
+    /// those of the moment it began to hold.
     void raise(const AlarmFact& fact, Reaction reaction, ResetRule reset, Instant now) noexcept;
-    void end_cycle() noexcept;
+    void end_cycle(Instant now) noexcept;
 
-    void acknowledge() noexcept;  ///< all of them
-    void reset() noexcept;        ///< what needs a reset and does not hold any more goes
+    /// Marks all as seen; those whose rule is `acknowledge` and that do not hold any more go. One that still holds needs another
+    /// acknowledgement when it is over.
+    void acknowledge() noexcept;
+    /// Acknowledges; and what needs a reset and does not hold any more goes. `restart` stays.
+    void reset() noexcept;
 
-    /// The strongest reaction of what stands (for stop_axis: of no machine-wide meaning).
+    /// The strongest reaction of what is listed: an alarm that waits for somebody reacts on.
     [[nodiscard]] Reaction strongest() const noexcept;
     /// In order of their appearance.
     [[nodiscard]] std::span<const ActiveAlarm> alarms() const noexcept { return {alarms_.data(), count_}; }
+    /// Conditions of the cycle before that found no place.
     [[nodiscard]] std::uint32_t dropped() const noexcept { return dropped_; }
 
 private:
     struct Rule {
         ResetRule reset;
-        bool raised, was_reset;
+        bool raised, cleared;  // cleared: by the person its rule asks for, after it held
     };
+    bool make_room(Reaction reaction) noexcept;
     void remove(std::size_t index) noexcept;
 
     std::array<ActiveAlarm, capacity> alarms_{};

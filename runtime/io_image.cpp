@@ -1,5 +1,7 @@
 #include "runtime/io_image.hpp"
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 namespace taktwerk::runtime {
@@ -65,6 +67,14 @@ void IoImage::write(std::span<std::byte> image) const noexcept {
 
 void IoImage::make_safe() noexcept {
     for (std::size_t i = 0; i < output_points_.size(); ++i) outputs_[i] = output_points_[i].config.safe_value;
+}
+
+bool IoImage::fits(std::size_t output, double value) const noexcept {
+    const auto& signal = output_points_[output].signal;
+    if (!std::isfinite(value) || value != std::floor(value)) return false;
+    const double span = std::ldexp(1.0, signal.bits);
+    const double low = signal.is_signed ? -span / 2 : 0, beyond = signal.is_signed ? span / 2 : span;
+    return value >= low && value < beyond && value < 0x1p63;  // int64 carries it
 }
 
 int IoImage::find(IoDirection direction, std::string_view name) const noexcept {

@@ -29,6 +29,9 @@ public:
     [[nodiscard]] std::vector<std::int64_t>& inputs() noexcept { return inputs_; }
     [[nodiscard]] std::vector<std::int64_t>& outputs() noexcept { return outputs_; }
 
+    /// Whether an output point can take the value: whole, and within the bits of the terminal. Real-time safe.
+    [[nodiscard]] bool fits(std::size_t output, double value) const noexcept;
+
     /// Index among the points of that direction, in configuration order; -1 when there is none.
     [[nodiscard]] int find(IoDirection direction, std::string_view name) const noexcept;
     [[nodiscard]] const IoPoint& point(IoDirection direction, std::size_t index) const noexcept;

@@ -1,5 +1,8 @@
 #include "runtime/latched_requests.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace taktwerk::runtime {
 
 using namespace axes;
@@ -12,9 +15,17 @@ bool LatchedRequests::push(const Request& request) noexcept {
 
 CommandId LatchedRequests::real_id(CommandId mine) const noexcept {
     if (!(mine & provisional)) return mine;
-    for (const auto& known : known_)
-        if (known.mine == mine) return known.real;
+    for (std::size_t i = 0; i < known_count_; ++i)
+        if (known_[i].mine == mine) return known_[i].real;
     return 0;
+}
+
+void LatchedRequests::remember(const Known& known) noexcept {
+    if (known_count_ == known_.size()) {
+        std::move(known_.begin() + 1, known_.end(), known_.begin());
+        --known_count_;
+    }
+    known_[known_count_++] = known;
 }
 
 Submitted LatchedRequests::submit(AxisRef axis, const AxisCommand& command, Owner owner) noexcept {
@@ -32,8 +43,8 @@ Submitted LatchedRequests::submit(AxisRef axis, const AxisCommand& command, Owne
 }
 
 ErrorId LatchedRequests::power(AxisRef axis, bool enable, bool positive, bool negative, Owner owner) noexcept {
-    if (axis.index >= power_.size()) return ErrorId::invalid_axis;
-    auto& wish = power_[axis.index];
+    if (axis.index >= wishes_.size()) return ErrorId::invalid_axis;
+    auto& wish = wishes_[axis.index];
     const auto answer = wish.answer;
     wish = {true, enable, positive, negative, owner, answer};
     return answer;
@@ -50,6 +61,12 @@ ErrorId LatchedRequests::reset(AxisRef axis, Owner owner) noexcept {
 
 ErrorId LatchedRequests::set_position(AxisRef axis, double position, bool relative, Owner owner) noexcept {
     if (axis.index >= views_.size()) return ErrorId::invalid_axis;
+    // What the axis itself would say (Axis::set_position), as far as the latched view knows.
+    const auto& view = views_[axis.index];
+    if (view.owner != owner && view.owner != Owner::none) return ErrorId::owned_by_other;
+    if (!std::isfinite(position)) return ErrorId::invalid_position;
+    if (!view.online) return ErrorId::drive_not_ready;
+    if (view.state == AxisState::Homing) return ErrorId::state_forbids;
     Request request;
     request.kind = Kind::set_position;
     request.axis = axis;
@@ -85,54 +102,97 @@ void LatchedRequests::apply(AxisRequests& axes) noexcept {
         switch (r.kind) {
             case Kind::submit: {
                 const auto answer = axes.submit(r.axis, r.command, r.owner);
-                known_[known_next_] = {r.id, answer.id, r.axis.index, answer.error, false};
-                known_next_ = (known_next_ + 1) % capacity;
+                remember({r.id, answer.id, r.axis.index, answer.error, false});
                 break;
             }
-            case Kind::reset: axes.reset(r.axis, r.owner); break;
+            case Kind::reset:
+                if (const auto error = axes.reset(r.axis, r.owner); error != ErrorId::none)
+                    resets_[r.axis.index] = {RefusedReset::Show::resetting, error};
+                else
+                    resets_[r.axis.index] = {};
+                break;
             case Kind::set_position: axes.set_position(r.axis, r.value, r.relative, r.owner); break;
             case Kind::release_stop: axes.release_stop(r.axis, real_id(r.id), r.owner); break;
             case Kind::renew_jog: axes.renew_jog(r.axis, real_id(r.id), r.value, r.owner); break;
         }
     }
     count_ = 0;
+    for (std::size_t i = 0; i < wishes_.size(); ++i) {
+        if (!wishes_[i].given) continue;
+        const auto answer = held_[i].answer;
+        held_[i] = wishes_[i];
+        held_[i].answer = answer;
+        wishes_[i].given = false;
+    }
 }
 
-void LatchedRequests::renew(AxisRequests& axes) const noexcept {
-    for (std::size_t i = 0; i < power_.size(); ++i) {
-        auto& wish = power_[i];
-        if (!wish.held) continue;
+void LatchedRequests::renew(AxisRequests& axes) noexcept {
+    for (std::size_t i = 0; i < held_.size(); ++i) {
+        auto& wish = held_[i];
+        if (!wish.given) continue;
         wish.answer = axes.power(AxisRef{static_cast<std::uint16_t>(i)}, wish.enable, wish.positive, wish.negative, wish.owner);
-        if (!wish.enable) wish.held = false;  // taken back once
+        if (!wish.enable) wish.given = false;  // taken back once
     }
+}
+
+bool LatchedRequests::translate(const Known& known, const AxisView& real, AxisView& view) noexcept {
+    if (real.status(known.real) == CommandStatus::unknown) return false;
+    if (view.active == known.real) view.active = known.mine;
+    for (std::size_t q = 0; q < view.queued_count; ++q)
+        if (view.queued[q] == known.real) view.queued[q] = known.mine;
+    for (auto& entry : view.ledger)
+        if (entry.id == known.real) entry.id = known.mine;
+    return true;
+}
+
+bool LatchedRequests::tell(Known& known, std::uint8_t& told, AxisView& view) noexcept {
+    if (known.told) return false;
+    if (told == most_refusals) {  // to its block it is still on its way
+        if (static_cast<std::int32_t>(view.last_id - known.mine) >= 0) view.last_id = known.mine - 1;
+        return true;
+    }
+    ++told;
+    known.told = true;
+    view.ledger[view.ledger_next] = {known.mine, Outcome::error, known.refused};
+    view.ledger_next = static_cast<std::uint8_t>((view.ledger_next + 1) % view.ledger.size());
+    return true;
+}
+
+template <class Keep>
+void LatchedRequests::keep_if(Keep keep) noexcept {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < known_count_; ++i)
+        if (auto known = known_[i]; keep(known)) known_[kept++] = known;
+    known_count_ = kept;
 }
 
 void LatchedRequests::latch(std::span<const AxisView> real, std::span<AxisView> task_views) noexcept {
     for (std::size_t i = 0; i < real.size(); ++i) {
-        task_views[i] = real[i];
-        task_views[i].last_id = next_ | provisional;  // all of the task's ids are known to the axes by now
-    }
-    for (auto& known : known_) {
-        if (known.mine == 0 || known.axis >= task_views.size() || known.told) continue;
-        auto& view = task_views[known.axis];
-        if (known.refused != ErrorId::none) {
-            known.told = true;
-            view.ledger[view.ledger_next] = {known.mine, Outcome::error, known.refused};
-            view.ledger_next = static_cast<std::uint8_t>((view.ledger_next + 1) % view.ledger.size());
-            continue;
+        auto& view = task_views[i];
+        view = real[i];
+        view.last_id = next_ | provisional;  // all of the task's ids are known to the axes by now
+        auto& reset = resets_[i];
+        if (reset.show == RefusedReset::Show::resetting) {
+            view.resetting = true;
+            reset.show = RefusedReset::Show::error;
+        } else if (reset.show == RefusedReset::Show::error) {
+            view.resetting = false;
+            view.reset_error = reset.error;
+            reset.show = RefusedReset::Show::nothing;
         }
-        if (view.active == known.real) view.active = known.mine;
-        for (std::size_t q = 0; q < view.queued_count; ++q)
-            if (view.queued[q] == known.real) view.queued[q] = known.mine;
-        for (auto& entry : view.ledger)
-            if (entry.id == known.real) entry.id = known.mine;
+        wishes_[i].answer = held_[i].answer;
     }
+    // Real outcomes first: a refusal takes the place of the oldest entry of the ledger.
+    keep_if([&](Known& k) { return k.refused != ErrorId::none || translate(k, real[k.axis], task_views[k.axis]); });
+    std::fill(told_.begin(), told_.end(), std::uint8_t{0});
+    keep_if([&](Known& k) { return k.refused == ErrorId::none || tell(k, told_[k.axis], task_views[k.axis]); });
 }
 
 void LatchedRequests::clear() noexcept {
-    count_ = 0;
-    known_ = {};
-    for (auto& wish : power_) wish = {};
+    count_ = known_count_ = 0;
+    for (auto* all : {&wishes_, &held_})
+        for (auto& wish : *all) wish = {};
+    for (auto& reset : resets_) reset = {};
 }
 
 }  // namespace taktwerk::runtime

@@ -1,11 +1,19 @@
 #pragma once
 // Axis requests of a slower task: collected while it runs, carried out at its next release, when its outputs apply too. The
 // task gets an id at once; until the axis has given the real one, the task's own latched view shows the command as queued.
-// Real-time safe; used by one thread at a time (the task's, then the cycle's).
+//
+// Answers that a base task gets at once come a release later, in the task's latched view:
+//   submit        the ledger shows the refusal under the task's id, in one latch (at most half a ledger of them each time; the rest waits)
+//   power         the answer of the last release is returned by the next call
+//   reset         the view shows `resetting`, in the next latch no more, with reset_error saying why
+//   set_position  checked against the latched view in the call; should the axis have changed since, the refusal is lost
+//   renew_jog     the lease runs out
+// Real-time safe. Task's side and cycle's side take turns (SlowTask hands over), except renew(), which may run beside the task.
 
 #include <array>
 #include <cstdint>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "axes/axis/motion_context.hpp"
@@ -18,7 +26,7 @@ public:
     /// Ids that the task sees have this bit set: they never meet an axis' own.
     static constexpr axes::CommandId provisional = 0x8000'0000u;
 
-    explicit LatchedRequests(std::size_t axes) : power_(axes) {}
+    explicit LatchedRequests(std::size_t axes) : known_(known_per_axis * axes + capacity), wishes_(axes), held_(axes), resets_(axes), told_(axes) {}
 
     // --- the task's side --------------------------------------------------------------------------------------------------
     /// The views that the task reads: submitted commands show up in them.
@@ -33,8 +41,8 @@ public:
     // --- the cycle's side ---------------------------------------------------------------------------------------------------
     /// Carries out what the task has asked for, in its order.
     void apply(axes::AxisRequests& axes) noexcept;
-    /// Levels that must be renewed in every base cycle: the power wishes.
-    void renew(axes::AxisRequests& axes) const noexcept;
+    /// Levels that must be renewed in every base cycle: the power wishes that have been applied.
+    void renew(axes::AxisRequests& axes) noexcept;
     /// Copies the axes' views for the next run, with the task's own ids in place of the real ones.
     void latch(std::span<const axes::AxisView> real, std::span<axes::AxisView> task_views) noexcept;
     void clear() noexcept;
@@ -50,26 +58,44 @@ private:
         double value = 0;
         bool relative = false;
     };
-    struct Known {  // what became of a provisional id
+    struct Known {  // what became of a provisional id; forgotten once nothing of it shows any more
         axes::CommandId mine = 0, real = 0;
         std::uint16_t axis = 0xFFFF;
         axes::ErrorId refused = axes::ErrorId::none;
-        bool told = false;   // a refusal is shown in one latch: the block reads it in its next call
+        bool told = false;
     };
     struct PowerWish {
-        bool held = false, enable = false, positive = true, negative = true;
+        bool given = false, enable = false, positive = true, negative = true;
         axes::Owner owner = axes::Owner::program;
         axes::ErrorId answer = axes::ErrorId::none;
     };
+    struct RefusedReset {
+        enum class Show : std::uint8_t { nothing, resetting, error } show = Show::nothing;
+        axes::ErrorId error = axes::ErrorId::none;
+    };
+    /// What an axis shows of commands: active, queued, finished.
+    static constexpr std::size_t known_per_axis = 32;
+    static constexpr std::uint8_t most_refusals = std::tuple_size_v<decltype(axes::AxisView::ledger)> / 2;
+
     bool push(const Request& request) noexcept;
+    void remember(const Known& known) noexcept;
+    /// Puts the task's id in place of the axis' one; false when the axis has forgotten the command.
+    [[nodiscard]] static bool translate(const Known& known, const axes::AxisView& real, axes::AxisView& view) noexcept;
+    /// Enters a refusal in the ledger, `told` in this latch so far; false when it has been shown already.
+    [[nodiscard]] static bool tell(Known& known, std::uint8_t& told, axes::AxisView& view) noexcept;
+    template <class Keep>
+    void keep_if(Keep keep) noexcept;
     [[nodiscard]] axes::CommandId real_id(axes::CommandId mine) const noexcept;
 
     std::array<Request, capacity> requests_{};
     std::size_t count_ = 0;
-    std::array<Known, capacity> known_{};
-    std::size_t known_next_ = 0;
+    std::vector<Known> known_;  // oldest first
+    std::size_t known_count_ = 0;
     axes::CommandId next_ = 0;
-    mutable std::vector<PowerWish> power_;
+    std::vector<PowerWish> wishes_;  // the task's
+    std::vector<PowerWish> held_;    // the cycle's
+    std::vector<RefusedReset> resets_;
+    std::vector<std::uint8_t> told_;
     std::span<axes::AxisView> views_;
 };
 

@@ -7,7 +7,9 @@
 
 #include "axes/drives/cia402/homing_startup.hpp"
 #include "axes/sim/virtual_drive.hpp"
+#include "runtime/inbox_record.hpp"
 #include "runtime/machine_impl.hpp"
+#include "runtime/stop_time.hpp"
 
 namespace taktwerk::runtime {
 
@@ -16,6 +18,7 @@ namespace {
 constexpr std::size_t inbox_size = 64;
 constexpr unsigned relaxed_factor = 100;  // as Supervision documents
 constexpr Duration relaxed_watchdog = std::chrono::milliseconds{500};
+constexpr Duration shutdown_margin = std::chrono::seconds{5};  // for a drive that does not answer
 constexpr auto no_slave = std::numeric_limits<std::size_t>::max();
 
 constexpr std::array<std::string_view, step_count> step_names{"receive", "inbox", "decode", "update",   "supervise", "tasks",
@@ -83,15 +86,22 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, std::vect
     }
     operator_power.resize(axes.size());
     requests.bind(axes, views);
-    if (!config.emergency_stop.input.empty()) estop_input = io.find(IoDirection::input, config.emergency_stop.input);
+    if (!config.emergency_stop.input.empty()) {
+        estop_input = io.find(IoDirection::input, config.emergency_stop.input);
+        const auto& terminal = io.point(IoDirection::input, static_cast<std::size_t>(estop_input)).slave;
+        while (estop_slave < bus.slave_count() && bus.slave(estop_slave).name != terminal) ++estop_slave;
+    }
+    double longest_stop = 0;
+    for (const auto& binding : config.axes) longest_stop = std::max(longest_stop, stop_seconds(binding.axis.limits));
+    shutdown_patience = shutdown_margin + 2 * from_seconds(longest_stop);
 
     host = std::make_unique<ProgramHost>(config, io, errors);
     program_states.assign(config.programs.size(), ProgramState::stopped);
-    first_scan.assign(config.programs.size(), 0);
+    program_faults.resize(config.programs.size());
     handshakes = std::make_unique<std::atomic<Handshake>[]>(config.programs.size());
-    std::vector<bool> has_base(config.programs.size(), false);
+    has_base_task.assign(config.programs.size(), 0);
     for (const auto& task : host->tasks())
-        if (task.config.divisor == 1) has_base[task.program] = true;
+        if (task.config.divisor == 1) has_base_task[task.program] = 1;
     for (std::size_t i = 0; i < host->tasks().size(); ++i) {
         const auto& task = host->tasks()[i];
         if (task.config.divisor == 1) {
@@ -99,13 +109,16 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, std::vect
             continue;
         }
         std::vector<ProgramHost::Variable> variables;
-        if (!has_base[task.program])
+        if (!has_base_task[task.program])
             for (const auto& variable : host->variables())
                 if (variable.program == task.program) variables.push_back(variable);
+        slow_task_places.push_back(i);
         slow_tasks.push_back(std::make_unique<SlowTask>(task, host->programs()[task.program].instance.get(), std::move(variables), axes.size(),
                                                         io.inputs().size(), io.outputs().size(), host->parameters().size()));
     }
     task_overruns.assign(slow_tasks.size(), 0);
+    base_scans.assign(base_tasks.size(), 0);
+    for (const auto& variable : host->variables()) variable_values.push_back(ProgramHost::read(variable));
     task_statistics.resize(host->tasks().size());
 
     layout.machine = config.name;
@@ -146,7 +159,7 @@ Result<void> Machine::Impl::arm() {
     for (auto& axis : axes) axis.set_mode(operating);
     if (mode == Mode::automatic)
         for (std::size_t p = 0; p < config.programs.size(); ++p)
-            if (config.programs[p].autostart) start_program(p);
+            if (config.programs[p].autostart) (void)start_program(p);
     phase.store(MachinePhase::running, std::memory_order_release);
     armed.store(true, std::memory_order_release);
     return {};
@@ -155,7 +168,9 @@ Result<void> Machine::Impl::arm() {
 void Machine::Impl::cycle(const CycleTick& tick) noexcept {
     const Stopwatch whole;
     const bool runs = armed.load(std::memory_order_acquire);
+    if (recorder) record_tick(*recorder, tick);
     if (runs) now = tick.scheduled;
+    else if (shutdown_wanted.load(std::memory_order_relaxed)) phase.store(MachinePhase::stopped, std::memory_order_release);
     const bool at_tick = config.send == SendMode::at_tick;
     steps.begin();
 
@@ -208,14 +223,18 @@ void Machine::Impl::cycle(const CycleTick& tick) noexcept {
     statistics.compute_max = std::max(statistics.compute_max, statistics.compute);
 }
 
-void Machine::Impl::program_failed(std::size_t program) noexcept { stop_program(program, ProgramState::fault); }
+void Machine::Impl::program_failed(std::size_t program, const FaultText& why) noexcept {
+    program_faults[program] = why;
+    stop_program(program, ProgramState::fault);
+}
 
-void Machine::Impl::run_base_task(const ProgramHost::Task& task) noexcept {
+void Machine::Impl::run_base_task(std::size_t index) noexcept {
+    const auto& task = host->tasks()[base_tasks[index]];
     auto& program = host->programs()[task.program];
     TaskContext context;
     context.now = now;
     context.period = config.cycle;
-    context.cycle = cycles;
+    context.cycle = base_scans[index]++;
     context.axes = views;
     context.requests = &requests;
     context.owner = axes::Owner::program;
@@ -223,12 +242,14 @@ void Machine::Impl::run_base_task(const ProgramHost::Task& task) noexcept {
     context.outputs = io.outputs();
     context.parameters = host->parameters();
     context.alarms = program.alarms;
-    context.first_scan = first_scan[task.program] != 0;
+    context.first_scan = context.cycle == 0;
     try {
         task.function(program.instance.get(), context);
         program.alarms = context.alarms;
     } catch (...) {  // a program is foreign code: what it throws ends here, and the axes stop
-        program_failed(task.program);
+        FaultText why;
+        why.take_current();
+        program_failed(task.program, why);
     }
 }
 
@@ -239,55 +260,78 @@ void Machine::Impl::run_slow_releases() noexcept {
         const bool runs = program_states[program] == ProgramState::running;
         if (runs) task.renew(requests);
         if (!task.due(cycles)) continue;
-        auto& numbers = task_statistics[base_tasks.size() + i];
+        auto& numbers = task_statistics[slow_task_places[i]];
         if (!task.finished()) {
             ++numbers.overruns;
             if (task_overruns[i] < 0xFFFF) ++task_overruns[i];
             continue;
         }
         task_overruns[i] = 0;
-        if (task.threw()) {
-            program_failed(program);
-            task.forget();
-            continue;
-        }
         if (!runs) {
             task.forget();
             continue;
         }
-        task.apply(requests, io.outputs(), host->programs()[program].alarms);
+        if (task.threw()) {
+            program_failed(program, task.fault());
+            task.forget();
+            continue;
+        }
+        auto& alarms = host->programs()[program].alarms;
+        task.apply(requests, io.outputs(), alarms);
         numbers.run = task.last_run();
         numbers.run_max = std::max(numbers.run_max, numbers.run);
         ++numbers.releases;
         CycleContext context;
         context.now = now;
         context.period = config.cycle;
-        context.cycle = cycles;
-        task.release(context, views, io.inputs(), io.outputs(), host->parameters(), numbers.releases == 1);
+        task.release(context, views, io.inputs(), io.outputs(), host->parameters(), alarms);
     }
 }
 
-void Machine::Impl::run_tasks() noexcept {
+void Machine::Impl::take_handshakes() noexcept {
     for (std::size_t p = 0; p < program_states.size(); ++p) {
         auto expected = Handshake::started;
         if (handshakes[p].compare_exchange_strong(expected, Handshake::none, std::memory_order_acquire)) {
             program_states[p] = ProgramState::running;
-            first_scan[p] = 1;
+            program_faults[p] = {};
+            for (auto& task : slow_tasks)
+                if (task->program() == p) task->restart();
+            for (std::size_t i = 0; i < base_tasks.size(); ++i)
+                if (host->tasks()[base_tasks[i]].program == p) base_scans[i] = 0;
         }
+        expected = Handshake::failed;
+        if (handshakes[p].compare_exchange_strong(expected, Handshake::none, std::memory_order_acquire)) program_states[p] = ProgramState::fault;
     }
+}
+
+void Machine::Impl::run_tasks() noexcept {
+    take_handshakes();
     run_slow_releases();
     for (std::size_t i = 0; i < base_tasks.size(); ++i) {
-        const auto& task = host->tasks()[base_tasks[i]];
-        if (program_states[task.program] != ProgramState::running) continue;
+        if (program_states[host->tasks()[base_tasks[i]].program] != ProgramState::running) continue;
         const Stopwatch watch;
-        run_base_task(task);
-        auto& numbers = task_statistics[i];
+        run_base_task(i);
+        auto& numbers = task_statistics[base_tasks[i]];
         numbers.run = Stopwatch{watch}.lap();
         numbers.run_max = std::max(numbers.run_max, numbers.run);
         ++numbers.releases;
     }
-    for (std::size_t p = 0; p < program_states.size(); ++p)
-        if (program_states[p] == ProgramState::running) first_scan[p] = 0;
+}
+
+// Variables of a program that does not run keep their last values here: start() and stop() may be writing them on the service side.
+void Machine::Impl::take_variables() noexcept {
+    const auto& variables = host->variables();
+    for (std::size_t i = 0; i < variables.size(); ++i) {
+        const auto program = variables[i].program;
+        if (has_base_task[program] && program_states[program] == ProgramState::running) variable_values[i] = ProgramHost::read(variables[i]);
+    }
+    for (const auto& task : slow_tasks) {  // a program without a base task: as its last applied run left them
+        const auto values = task->variables();
+        if (task->applied() == 0) continue;
+        std::size_t next = 0;
+        for (std::size_t i = 0; i < variables.size() && next < values.size(); ++i)
+            if (variables[i].program == task->program()) variable_values[i] = values[next++];
+    }
 }
 
 void Machine::Impl::take_snapshot() noexcept {
@@ -306,16 +350,8 @@ void Machine::Impl::take_snapshot() noexcept {
     std::copy(io.inputs().begin(), io.inputs().end(), s.inputs.begin());
     std::copy(io.outputs().begin(), io.outputs().end(), s.outputs.begin());
     std::copy(host->parameters().begin(), host->parameters().end(), s.parameters.begin());
-    const auto& variables = host->variables();
-    std::size_t slow_value = 0;
-    for (std::size_t i = 0; i < variables.size(); ++i) s.variables[i] = ProgramHost::read(variables[i]);
-    for (const auto& task : slow_tasks) {  // a program without a base task: as its last finished run left them
-        const auto values = task->variables();
-        if (values.empty()) continue;
-        slow_value = 0;
-        for (std::size_t i = 0; i < variables.size() && slow_value < values.size(); ++i)
-            if (variables[i].program == task->program()) s.variables[i] = values[slow_value++];
-    }
+    take_variables();
+    std::copy(variable_values.begin(), variable_values.end(), s.variables.begin());
     std::copy(program_states.begin(), program_states.end(), s.programs.begin());
     std::copy(task_statistics.begin(), task_statistics.end(), s.tasks.begin());
     const auto alarms = log.alarms();
@@ -364,7 +400,7 @@ void Machine::Impl::take_trace() noexcept {
     }
     for (const auto value : io.inputs()) put(static_cast<double>(value));
     for (const auto value : io.outputs()) put(static_cast<double>(value));
-    for (const auto& variable : host->variables()) put(ProgramHost::read(variable));
+    for (const auto value : variable_values) put(value);
     trace->commit();
 }
 
@@ -414,6 +450,11 @@ const Snapshot* Machine::latest() noexcept {
 }
 void Machine::request_shutdown() noexcept { impl_->shutdown_wanted.store(true, std::memory_order_relaxed); }
 MachinePhase Machine::phase() const noexcept { return impl_->phase.load(std::memory_order_acquire); }
+std::string Machine::program_fault(std::size_t program) const { return impl_->host->programs()[program].fault; }
+void Machine::record(Recorder& recorder) noexcept {
+    impl_->recorder = &recorder;
+    impl_->bus.set_tap(&record_frame, &recorder);
+}
 TraceRing& Machine::enable_trace(std::size_t rows) {
     impl_->trace = std::make_unique<TraceRing>(impl_->trace_columns(), rows);
     return *impl_->trace;

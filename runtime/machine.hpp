@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/recorder.hpp"
 #include "core/result.hpp"
 #include "core/stopwatch.hpp"
 #include "core/time.hpp"
@@ -73,18 +74,24 @@ public:
     std::optional<CommandAnswer> next_answer() noexcept;
     /// Service side (one reader): the newest snapshot; nullptr before the first cycle.
     const Snapshot* latest() noexcept;
-    /// Levels, not queued: set by signal handlers. Real-time safe, async-signal-safe.
+    /// A level, not queued: set by signal handlers. Real-time safe, async-signal-safe. Before arm() the next cycle says `stopped`.
     void request_shutdown() noexcept;
     [[nodiscard]] MachinePhase phase() const noexcept;
     /// Before arm(): each cycle becomes a row of `columns()`; `rows` is how far a reader may fall behind.
     TraceRing& enable_trace(std::size_t rows);
+    /// Before start_bus(): everything that comes from outside goes into `recorder` (runtime/inbox_record.hpp says how), written by
+    /// the cycle thread. `recorder` outlives the machine. Off unless called; real-time safe.
+    void record(Recorder& recorder) noexcept;
     /// Times per step (Step order), for benchmarks and the monitor. Read by the cycle thread, or when it stands.
     [[nodiscard]] const StepStatistics<step_count - 1>& step_statistics() const noexcept;
     void reset_step_statistics() noexcept;
 
     [[nodiscard]] const MachineConfig& config() const noexcept;
     [[nodiscard]] const MachineLayout& layout() const noexcept;
+    /// Service side.
     [[nodiscard]] AlarmText describe(const AlarmFact& fact) const;
+    /// Service side: what a program threw when it stopped by itself; empty when it did not.
+    [[nodiscard]] std::string program_fault(std::size_t program) const;
     [[nodiscard]] const ecat::Master& bus() const noexcept;
     [[nodiscard]] ecat::Master& bus() noexcept;
 

@@ -7,20 +7,11 @@
 
 #include "core/nearest_name.hpp"
 #include "runtime/machine_config.hpp"
+#include "runtime/stop_time.hpp"
 
 namespace taktwerk::runtime {
 
 namespace {
-
-/// Seconds a jerk-limited stop from full speed takes, braking alone: the trapezoid of acceleration, or the triangle when the
-/// deceleration is not reached.
-double stop_seconds(const axes::AxisLimits& limits) {
-    const double d = limits.stop_deceleration > 0 ? limits.stop_deceleration : limits.deceleration;
-    const double j = limits.stop_jerk > 0 ? limits.stop_jerk : limits.jerk;
-    if (std::isinf(j)) return limits.velocity / d;
-    if (limits.velocity >= d * d / j) return limits.velocity / d + d / j;
-    return 2 * std::sqrt(limits.velocity / j);
-}
 
 class Problems {
 public:
@@ -58,6 +49,11 @@ std::vector<Error> check(const MachineConfig& config) {
     if (config.cycle < 100us || config.cycle > 100ms)
         problems.add("machine.cycle", "cycle", fmt::format("a cycle of {} us is outside 100 us to 100 ms", config.cycle / 1us), "choose for instance 1 ms");
 
+    if (config.commands_per_cycle == 0)
+        problems.add("machine.commands_per_cycle", "commands_per_cycle", "with 0 commands a cycle nobody can operate the machine", "use 4");
+    if (config.emergency_stop.power_off_after < Duration::zero())
+        problems.add("machine.emergency_stop_time", "emergency_stop.power_off_after", "a time below 0", "use for instance 500 ms");
+
     std::vector<std::string> slaves, axis_names, inputs, outputs, programs;
     for (const auto& slave : config.bus.slaves) slaves.push_back(slave.name);
     for (const auto& axis : config.axes) axis_names.push_back(axis.axis.name);
@@ -85,7 +81,10 @@ std::vector<Error> check(const MachineConfig& config) {
         }
         bool found = false;
         for (const auto& name : slaves) found = found || name == binding.slave;
-        if (!found) problems.unknown("axis.unknown_slave", subject + ".slave", "slave", binding.slave, slaves);
+        if (!found) {
+            problems.unknown("axis.unknown_slave", subject + ".slave", "slave", binding.slave, slaves);
+            continue;
+        }
         if (!taken.insert({binding.slave, binding.drive_axis}).second)
             problems.add("axis.drive_axis_taken", subject + ".drive_axis",
                          fmt::format("axis {} of slave '{}' already belongs to another axis", binding.drive_axis + 1, binding.slave),

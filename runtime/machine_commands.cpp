@@ -1,7 +1,9 @@
 // Operator commands inside the cycle: authority, modes, manual motion, programs. Real-time safe except service_programs().
+// Who may do what, and when, stands in operator_command.hpp.
 
 #include <cmath>
 
+#include "runtime/inbox_record.hpp"
 #include "runtime/machine_impl.hpp"
 
 namespace taktwerk::runtime {
@@ -27,6 +29,11 @@ axes::OperatingMode operating(Mode mode) noexcept {
 
 }  // namespace
 
+Machine::Impl::Verdict Machine::Impl::verdict(ErrorId error) noexcept {
+    if (error == ErrorId::none) return {};
+    return {error == ErrorId::owned_by_other ? Answer::no_control : Answer::refused_by_axis, error};
+}
+
 void Machine::Impl::answer(const OperatorCommand& command, Answer verdict, ErrorId error) noexcept {
     CommandAnswer reply;
     reply.client = command.client;
@@ -41,178 +48,19 @@ void Machine::Impl::answer(const OperatorCommand& command, Answer verdict, Error
 void Machine::Impl::drain_inbox(Instant at) noexcept {
     OperatorCommand command;
     for (std::uint8_t i = 0; i < config.commands_per_cycle && inbox.try_pop(command); ++i) {
-        if (command.expires != Instant{} && command.expires < at) answer(command, Answer::stale);
-        else if (shutting_down) answer(command, Answer::not_possible_now);
+        if (recorder) record_command(*recorder, at, command);
+        // A stop is never too late, and while the run ends everything stops anyway.
+        const bool stops = command.action == OperatorAction::stop || command.action == OperatorAction::shutdown;
+        if (!stops && command.expires != Instant{} && command.expires < at) answer(command, Answer::stale);
+        else if (!stops && shutting_down) answer(command, Answer::not_possible_now);
         else execute(command);
     }
 }
 
 void Machine::Impl::execute(const OperatorCommand& command) noexcept {
+    Verdict result;
+    const bool a_person = command.owner == Owner::operator_panel || command.owner == Owner::commissioning;
     switch (command.action) {
-        case OperatorAction::none: answer(command, Answer::unknown_name); return;
-        case OperatorAction::set_mode:
-            set_mode(command.mode);
-            answer(command, Answer::accepted);
-            return;
-        case OperatorAction::program_start:
-        case OperatorAction::program_stop:
-        case OperatorAction::program_reset: execute_program(command); return;
-        case OperatorAction::set_parameter: {
-            if (command.index >= host->parameters().size()) return answer(command, Answer::unknown_name);
-            const auto& info = host->parameter(command.index);
-            if (!(command.value >= info.minimum && command.value <= info.maximum)) return answer(command, Answer::bad_value);
-            host->parameters()[command.index] = command.value;
-            return answer(command, Answer::accepted);
-        }
-        case OperatorAction::set_output: {
-            if (command.index >= io.outputs().size()) return answer(command, Answer::unknown_name);
-            for (const auto state : program_states)
-                if (state == ProgramState::running) return answer(command, Answer::not_possible_now);
-            if (mode == Mode::automatic) return answer(command, Answer::wrong_mode);
-            io.outputs()[command.index] = static_cast<std::int64_t>(command.value);
-            return answer(command, Answer::accepted);
-        }
-        case OperatorAction::acknowledge_alarms:
-            log.acknowledge();
-            for (auto& axis : axes) axis.acknowledge_alarms();
-            return answer(command, Answer::accepted);
-        case OperatorAction::shutdown:
-            shutdown_wanted.store(true, std::memory_order_relaxed);
-            return answer(command, Answer::accepted);
-        case OperatorAction::reset:
-            if (command.axis == all) {
-                log.reset();
-                for (auto& count : task_overruns) count = 0;
-                for (std::size_t p = 0; p < program_states.size(); ++p)
-                    if (program_states[p] == ProgramState::fault) program_states[p] = ProgramState::stopped;
-            }
-            break;
-        case OperatorAction::take_control:
-        case OperatorAction::release_control:
-        case OperatorAction::power:
-        case OperatorAction::home:
-        case OperatorAction::jog:
-        case OperatorAction::move_absolute:
-        case OperatorAction::stop: break;
-    }
-    if (command.axis == all) {
-        const bool for_all = command.action == OperatorAction::stop || command.action == OperatorAction::reset ||
-                             command.action == OperatorAction::power || command.action == OperatorAction::take_control ||
-                             command.action == OperatorAction::release_control;
-        if (!for_all) return answer(command, Answer::unknown_name);
-        // One answer for all: the first refusal, if any. execute_axis answers each; so it is told apart by the axis.
-        ErrorId first = ErrorId::none;
-        for (std::size_t i = 0; i < axes.size(); ++i) {
-            if (config.axes[i].axis.disabled) continue;
-            if (command.action == OperatorAction::reset) {
-                const auto error = requests.reset(axes::AxisRef{static_cast<std::uint16_t>(i)}, command.owner);
-                if (first == ErrorId::none) first = error;
-            } else if (command.action == OperatorAction::stop) {
-                AxisCommand halt;
-                halt.kind = CommandKind::halt;
-                requests.submit(axes::AxisRef{static_cast<std::uint16_t>(i)}, halt, axes[i].view().owner);
-            } else if (command.action == OperatorAction::power) {
-                if (mode == Mode::automatic) return answer(command, Answer::wrong_mode);
-                operator_power[i].held = command.flag;
-                operator_power[i].owner = command.owner;
-                if (!command.flag) axes[i].shut_down();
-            } else if (command.action == OperatorAction::take_control) {
-                axes[i].take_control(command.owner);
-            } else {
-                axes[i].release_control(command.owner);
-            }
-        }
-        return answer(command, first == ErrorId::none ? Answer::accepted : Answer::refused_by_axis, first);
-    }
-    if (command.axis >= axes.size() || config.axes[command.axis].axis.disabled) return answer(command, Answer::unknown_name);
-    execute_axis(command, command.axis);
-}
-
-void Machine::Impl::submit_axis(const OperatorCommand& command, std::size_t axis, const AxisCommand& wanted) noexcept {
-    const auto submitted = requests.submit(axes::AxisRef{static_cast<std::uint16_t>(axis)}, wanted, command.owner);
-    if (submitted.error == ErrorId::owned_by_other) answer(command, Answer::no_control, submitted.error);
-    else if (submitted.error != ErrorId::none) answer(command, Answer::refused_by_axis, submitted.error);
-    else answer(command, Answer::accepted);
-}
-
-void Machine::Impl::jog(const OperatorCommand& command, std::size_t axis) noexcept {
-    auto& power = operator_power[axis];
-    const axes::AxisRef ref{static_cast<std::uint16_t>(axis)};
-    if (!std::isfinite(command.value)) return answer(command, Answer::bad_value);
-    const auto status = axes[axis].view().status(power.jog);
-    const bool jogging = status == axes::CommandStatus::active || status == axes::CommandStatus::in_target;
-    if (command.value == 0) {
-        if (jogging) {
-            AxisCommand halt;
-            halt.kind = CommandKind::halt;
-            requests.submit(ref, halt, command.owner);
-        }
-        power.jog = 0;
-        return answer(command, Answer::accepted);
-    }
-    if (jogging) {
-        const auto error = requests.renew_jog(ref, power.jog, command.value, command.owner);
-        if (error == ErrorId::none) return answer(command, Answer::accepted);
-        return answer(command, error == ErrorId::owned_by_other ? Answer::no_control : Answer::refused_by_axis, error);
-    }
-    // A heartbeat of a jog whose lease has run out must not start the axis anew: it takes a fresh press (flag).
-    if (!command.flag) return answer(command, Answer::stale);
-    AxisCommand wanted;
-    wanted.kind = CommandKind::jog;
-    wanted.velocity = command.value;
-    const auto submitted = requests.submit(ref, wanted, command.owner);
-    power.jog = submitted.id;
-    if (submitted.error == ErrorId::owned_by_other) answer(command, Answer::no_control, submitted.error);
-    else if (submitted.error != ErrorId::none) answer(command, Answer::refused_by_axis, submitted.error);
-    else answer(command, Answer::accepted);
-}
-
-void Machine::Impl::execute_axis(const OperatorCommand& command, std::size_t axis) noexcept {
-    const axes::AxisRef ref{static_cast<std::uint16_t>(axis)};
-    switch (command.action) {
-        case OperatorAction::take_control:
-            axes[axis].take_control(command.owner);
-            return answer(command, Answer::accepted);
-        case OperatorAction::release_control:
-            axes[axis].release_control(command.owner);
-            return answer(command, Answer::accepted);
-        case OperatorAction::power: {
-            // The wish itself is given in each cycle, where programs give theirs (renew_operator_power).
-            const auto& view = axes[axis].view();
-            if (view.owner != command.owner) return answer(command, Answer::no_control, ErrorId::owned_by_other);
-            if (command.flag && emergency) return answer(command, Answer::refused_by_axis, ErrorId::interlocked);
-            if (command.flag && view.state == AxisState::ErrorStop) return answer(command, Answer::refused_by_axis, ErrorId::in_error_stop);
-            operator_power[axis].held = command.flag;
-            operator_power[axis].owner = command.owner;
-            if (!command.flag) axes[axis].shut_down();
-            return answer(command, Answer::accepted);
-        }
-        case OperatorAction::home: {
-            AxisCommand wanted;
-            wanted.kind = CommandKind::home;
-            wanted.position = config.axes[axis].axis.homing.offset;
-            return submit_axis(command, axis, wanted);
-        }
-        case OperatorAction::jog: return jog(command, axis);
-        case OperatorAction::move_absolute: {
-            AxisCommand wanted;
-            wanted.kind = CommandKind::move_absolute;
-            wanted.position = command.value;
-            wanted.velocity = command.value2;
-            return submit_axis(command, axis, wanted);
-        }
-        case OperatorAction::stop: {
-            // Stopping is everybody's right: it is carried out in the owner's name.
-            AxisCommand wanted;
-            wanted.kind = CommandKind::halt;
-            const auto submitted = requests.submit(ref, wanted, axes[axis].view().owner);
-            const bool stands = submitted.error == ErrorId::not_powered || submitted.error == ErrorId::in_error_stop;
-            return answer(command, submitted.error == ErrorId::none || stands ? Answer::accepted : Answer::refused_by_axis, submitted.error);
-        }
-        case OperatorAction::reset: {
-            const auto error = requests.reset(ref, command.owner);
-            return answer(command, error == ErrorId::none ? Answer::accepted : Answer::refused_by_axis, error);
-        }
         case OperatorAction::none:
         case OperatorAction::set_mode:
         case OperatorAction::program_start:
@@ -221,33 +69,196 @@ void Machine::Impl::execute_axis(const OperatorCommand& command, std::size_t axi
         case OperatorAction::set_parameter:
         case OperatorAction::set_output:
         case OperatorAction::acknowledge_alarms:
-        case OperatorAction::shutdown: break;
+        case OperatorAction::shutdown: result = execute_machine(command); break;
+        case OperatorAction::take_control:
+        case OperatorAction::release_control:
+        case OperatorAction::power:
+        case OperatorAction::home:
+        case OperatorAction::jog:
+        case OperatorAction::move_absolute:
+        case OperatorAction::stop:
+        case OperatorAction::reset:
+            if (!a_person && command.action != OperatorAction::stop) result = {Answer::no_control, ErrorId::owned_by_other};
+            else if (command.axis == all) result = execute_all(command);
+            else if (command.axis >= axes.size() || config.axes[command.axis].axis.disabled) result = {Answer::unknown_name};
+            else result = execute_axis(command, command.axis);
+            break;
+        default: result = {Answer::unknown_name};  // a number that no enumerator has
     }
-    answer(command, Answer::unknown_name);
+    answer(command, result.answer, result.error);
 }
 
-void Machine::Impl::execute_program(const OperatorCommand& command) noexcept {
-    if (command.index >= program_states.size()) return answer(command, Answer::unknown_name);
+Machine::Impl::Verdict Machine::Impl::execute_machine(const OperatorCommand& command) noexcept {
+    switch (command.action) {
+        case OperatorAction::set_mode:
+            if (command.mode > Mode::automatic) return {Answer::bad_value};
+            set_mode(command.mode);
+            return {};
+        case OperatorAction::program_start:
+        case OperatorAction::program_stop:
+        case OperatorAction::program_reset: return execute_program(command);
+        case OperatorAction::set_parameter: {
+            if (command.index >= host->parameters().size()) return {Answer::unknown_name};
+            const auto& info = host->parameter(command.index);
+            if (!(command.value >= info.minimum && command.value <= info.maximum)) return {Answer::bad_value};  // also NaN
+            host->parameters()[command.index] = command.value;
+            return {};
+        }
+        case OperatorAction::set_output:
+            if (command.index >= io.outputs().size()) return {Answer::unknown_name};
+            if (!io.fits(command.index, command.value)) return {Answer::bad_value};
+            if (mode == Mode::automatic) return {Answer::wrong_mode};
+            for (std::size_t p = 0; p < program_states.size(); ++p)
+                if (program_states[p] == ProgramState::running || start_pending(p)) return {Answer::not_possible_now};
+            io.outputs()[command.index] = static_cast<std::int64_t>(command.value);
+            return {};
+        case OperatorAction::acknowledge_alarms:
+            log.acknowledge();
+            for (auto& axis : axes) axis.acknowledge_alarms();
+            return {};
+        case OperatorAction::shutdown: shutdown_wanted.store(true, std::memory_order_relaxed); return {};
+        default: return {Answer::unknown_name};
+    }
+}
+
+void Machine::Impl::reset_machine() noexcept {
+    log.reset();
+    for (auto& count : task_overruns) count = 0;
+    for (auto& state : program_states)
+        if (state == ProgramState::fault) state = ProgramState::stopped;
+}
+
+// Every axis is asked, whatever the others say; the answer is the first refusal.
+Machine::Impl::Verdict Machine::Impl::execute_all(const OperatorCommand& command) noexcept {
+    switch (command.action) {
+        case OperatorAction::stop:
+        case OperatorAction::power:
+        case OperatorAction::take_control:
+        case OperatorAction::release_control: break;
+        case OperatorAction::reset: reset_machine(); break;
+        default: return {Answer::unknown_name};
+    }
+    Verdict first;
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+        if (config.axes[i].axis.disabled) continue;
+        const auto each = execute_axis(command, i);
+        if (first.answer == Answer::accepted) first = each;
+    }
+    return first;
+}
+
+Machine::Impl::Verdict Machine::Impl::execute_axis(const OperatorCommand& command, std::size_t axis) noexcept {
+    const axes::AxisRef ref{static_cast<std::uint16_t>(axis)};
+    AxisCommand wanted;
+    switch (command.action) {
+        case OperatorAction::take_control:
+            // Manual speed limits hold outside automatic mode only, and the program's sequence would go on without its axis.
+            if (mode == Mode::automatic) return {Answer::wrong_mode};
+            axes[axis].take_control(command.owner);
+            return {};
+        case OperatorAction::release_control:
+            if (axes[axis].view().owner != command.owner) return verdict(ErrorId::owned_by_other);
+            axes[axis].release_control(command.owner);
+            return {};
+        case OperatorAction::power: return power(command, axis);
+        case OperatorAction::home:
+            wanted.kind = CommandKind::home;
+            wanted.position = config.axes[axis].axis.homing.offset;
+            return verdict(requests.submit(ref, wanted, command.owner).error);
+        case OperatorAction::jog: return jog(command, axis);
+        case OperatorAction::move_absolute:
+            wanted.kind = CommandKind::move_absolute;
+            wanted.position = command.value;
+            wanted.velocity = command.value2;
+            return verdict(requests.submit(ref, wanted, command.owner).error);
+        case OperatorAction::stop: return stop(axis);
+        case OperatorAction::reset: return verdict(requests.reset(ref, command.owner));
+        default: return {Answer::unknown_name};
+    }
+}
+
+// The wish itself is given in each cycle, where programs give theirs (renew_operator_power).
+Machine::Impl::Verdict Machine::Impl::power(const OperatorCommand& command, std::size_t axis) noexcept {
+    const auto& view = axes[axis].view();
+    if (view.owner != command.owner) return verdict(ErrorId::owned_by_other);
+    if (command.flag && emergency) return verdict(ErrorId::interlocked);
+    if (command.flag && view.state == AxisState::ErrorStop) return verdict(ErrorId::in_error_stop);
+    operator_power[axis].held = command.flag;
+    if (!command.flag) axes[axis].shut_down();  // ramps down first
+    return {};
+}
+
+// Stopping is everybody's right: it is carried out in the owner's name.
+Machine::Impl::Verdict Machine::Impl::stop(std::size_t axis) noexcept {
+    const axes::AxisRef ref{static_cast<std::uint16_t>(axis)};
+    const auto owner = axes[axis].view().owner;
+    operator_power[axis].jog = 0;
+    switch (axes[axis].view().state) {
+        case AxisState::Disabled:
+        case AxisState::Stopping:
+        case AxisState::ErrorStop: return {};  // it stands, or stops already
+        default: break;
+    }
+    AxisCommand wanted;
+    wanted.kind = CommandKind::halt;
+    auto submitted = requests.submit(ref, wanted, owner);
+    if (submitted.error == ErrorId::state_forbids) {  // the state diagram has no halt out of Homing
+        wanted.kind = CommandKind::stop;
+        submitted = requests.submit(ref, wanted, owner);
+        if (submitted.error == ErrorId::none) requests.release_stop(ref, submitted.id, owner);
+    }
+    return verdict(submitted.error == ErrorId::interlocked ? ErrorId::none : submitted.error);  // an emergency stop is under way
+}
+
+Machine::Impl::Verdict Machine::Impl::jog(const OperatorCommand& command, std::size_t axis) noexcept {
+    auto& power = operator_power[axis];
+    const axes::AxisRef ref{static_cast<std::uint16_t>(axis)};
+    if (!std::isfinite(command.value)) return {Answer::bad_value};
+    const auto status = axes[axis].view().status(power.jog);
+    const bool jogging = status == axes::CommandStatus::active || status == axes::CommandStatus::in_target;
+    if (command.value == 0) return jogging ? stop(axis) : Verdict{};
+    if (jogging) {
+        const auto error = requests.renew_jog(ref, power.jog, command.value, command.owner);
+        const bool lease_over = error == ErrorId::state_forbids;
+        if (!(lease_over && command.flag)) return lease_over ? Verdict{Answer::stale} : verdict(error);
+    }
+    // A heartbeat of a jog whose lease has run out must not start the axis anew: it takes a fresh press (flag).
+    if (!command.flag) return {Answer::stale};
+    AxisCommand wanted;
+    wanted.kind = CommandKind::jog;
+    wanted.velocity = command.value;
+    const auto submitted = requests.submit(ref, wanted, command.owner);
+    power.jog = submitted.id;
+    return verdict(submitted.error);
+}
+
+Machine::Impl::Verdict Machine::Impl::execute_program(const OperatorCommand& command) noexcept {
+    if (command.index >= program_states.size()) return {Answer::unknown_name};
     auto& state = program_states[command.index];
     switch (command.action) {
         case OperatorAction::program_start:
-            if (mode != Mode::automatic) return answer(command, Answer::wrong_mode);
-            if (state == ProgramState::running) return answer(command, Answer::accepted);
-            if (state == ProgramState::fault) return answer(command, Answer::not_possible_now);
-            start_program(command.index);
-            return answer(command, Answer::accepted);
+            if (mode != Mode::automatic) return {Answer::wrong_mode};
+            if (state == ProgramState::running) return {};
+            if (state == ProgramState::fault) return {Answer::not_possible_now};
+            return start_program(command.index) ? Verdict{} : Verdict{Answer::not_possible_now};  // its stop() is still to come
         case OperatorAction::program_stop:
-            if (state == ProgramState::running) stop_program(command.index, ProgramState::stopped);
-            return answer(command, Answer::accepted);
+            if (state == ProgramState::running || start_pending(command.index)) stop_program(command.index, ProgramState::stopped);
+            return {};
         default:
             if (state == ProgramState::fault) state = ProgramState::stopped;
-            return answer(command, Answer::accepted);
+            return {};
     }
 }
 
-void Machine::Impl::start_program(std::size_t program) noexcept {
+bool Machine::Impl::start_pending(std::size_t program) const noexcept {
+    const auto asked = handshakes[program].load(std::memory_order_relaxed);
+    return asked == Handshake::start_asked || asked == Handshake::started;
+}
+
+bool Machine::Impl::start_program(std::size_t program) noexcept {
     auto expected = Handshake::none;
-    handshakes[program].compare_exchange_strong(expected, Handshake::start_asked, std::memory_order_release);
+    return handshakes[program].compare_exchange_strong(expected, Handshake::start_asked, std::memory_order_release) ||
+           expected == Handshake::start_asked || expected == Handshake::started;
 }
 
 void Machine::Impl::stop_program(std::size_t program, ProgramState state) noexcept {
@@ -263,33 +274,47 @@ void Machine::Impl::stop_program(std::size_t program, ProgramState state) noexce
     if (!any) io.make_safe();
 }
 
+void Machine::Impl::stop_programs() noexcept {
+    for (std::size_t p = 0; p < program_states.size(); ++p)
+        if (program_states[p] == ProgramState::running || start_pending(p)) stop_program(p, ProgramState::stopped);
+}
+
+bool Machine::Impl::slow_tasks_finished(std::size_t program) const noexcept {
+    for (const auto& task : slow_tasks)
+        if (task->program() == program && !task->finished()) return false;
+    return true;
+}
+
 void Machine::Impl::service_programs() {
     for (std::size_t p = 0; p < program_states.size(); ++p) {
-        auto* program = host->programs()[p].instance.get();
-        if (!program) continue;
-        const auto asked = handshakes[p].load(std::memory_order_acquire);
+        auto& loaded = host->programs()[p];
+        if (!loaded.instance) continue;
+        auto asked = handshakes[p].load(std::memory_order_acquire);
+        auto next = asked;
         try {
             if (asked == Handshake::start_asked) {
-                program->start();
-                auto expected = Handshake::start_asked;
-                handshakes[p].compare_exchange_strong(expected, Handshake::started, std::memory_order_release);
-            } else if (asked == Handshake::stop_asked) {
-                program->stop();
-                auto expected = Handshake::stop_asked;
-                handshakes[p].compare_exchange_strong(expected, Handshake::none, std::memory_order_release);
+                loaded.fault.clear();
+                next = Handshake::started;
+                loaded.instance->start();
+            } else if (asked == Handshake::stop_asked && slow_tasks_finished(p)) {
+                // Written by the cycle before it asked; a program stopped by a person leaves it as it was.
+                if (const auto why = program_faults[p].text(); !why.empty()) loaded.fault = std::string(why);
+                next = Handshake::none;
+                loaded.instance->stop();
             }
         } catch (...) {
-            host->programs()[p].fault = "start() or stop() threw an exception";
-            handshakes[p].store(Handshake::none, std::memory_order_release);
+            FaultText why;
+            why.take_current();
+            loaded.fault = std::string(asked == Handshake::start_asked ? "start() threw: " : "stop() threw: ") + std::string(why.text());
+            next = Handshake::failed;
         }
+        if (next != asked) handshakes[p].compare_exchange_strong(asked, next, std::memory_order_release);
     }
 }
 
 void Machine::Impl::set_mode(Mode wanted) noexcept {
     if (wanted == mode) return;
-    if (mode == Mode::automatic)
-        for (std::size_t p = 0; p < program_states.size(); ++p)
-            if (program_states[p] == ProgramState::running) stop_program(p, ProgramState::stopped);
+    if (mode == Mode::automatic) stop_programs();
     mode = wanted;
     if (wanted == Mode::automatic) {
         for (std::size_t i = 0; i < axes.size(); ++i) {
@@ -301,8 +326,19 @@ void Machine::Impl::set_mode(Mode wanted) noexcept {
 }
 
 void Machine::Impl::renew_operator_power() noexcept {
-    for (std::size_t i = 0; i < axes.size(); ++i)
-        if (operator_power[i].held) axes[i].power(true, true, true, operator_power[i].owner);
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+        auto& power = operator_power[i];
+        if (!power.held) continue;
+        const auto& view = axes[i].view();
+        // After an emergency stop, or once an error has taken power away, a person must switch on again: a reset does not.
+        const bool fell = view.state == AxisState::ErrorStop && view.drive_state != axes::PowerState::enabled;
+        if (emergency || fell) {
+            power.held = false;
+            axes[i].shut_down();
+        } else {
+            axes[i].power(true, true, true, view.owner);  // whoever has taken control of the axis has taken its power, too
+        }
+    }
 }
 
 }  // namespace taktwerk::runtime

@@ -10,11 +10,13 @@
 #include "axes/drives/cia402/cia402_drive.hpp"
 #include "axes/port/drive_port.hpp"
 #include "core/latest_value.hpp"
+#include "core/recorder.hpp"
 #include "core/spsc_ring.hpp"
 #include "core/stopwatch.hpp"
 #include "ecat/master.hpp"
 #include "runtime/alarm_log.hpp"
 #include "runtime/alarms.hpp"
+#include "runtime/fault_text.hpp"
 #include "runtime/io_image.hpp"
 #include "runtime/machine.hpp"
 #include "runtime/program_host.hpp"
@@ -71,9 +73,11 @@ struct Machine::Impl {
     // machine.cpp
     void cycle(const CycleTick& tick) noexcept;
     void run_tasks() noexcept;
-    void run_base_task(const ProgramHost::Task& task) noexcept;
+    void run_base_task(std::size_t index) noexcept;
     void run_slow_releases() noexcept;
-    void program_failed(std::size_t program) noexcept;
+    void program_failed(std::size_t program, const FaultText& why) noexcept;
+    void take_handshakes() noexcept;
+    void take_variables() noexcept;
     void take_snapshot() noexcept;
     void take_trace() noexcept;
     std::vector<std::string> trace_columns() const;
@@ -83,18 +87,34 @@ struct Machine::Impl {
     void drain_inbox(Instant now) noexcept;
     void answer(const OperatorCommand& command, Answer answer, axes::ErrorId error = axes::ErrorId::none) noexcept;
     void execute(const OperatorCommand& command) noexcept;
-    void execute_axis(const OperatorCommand& command, std::size_t axis) noexcept;
-    void execute_program(const OperatorCommand& command) noexcept;
-    void jog(const OperatorCommand& command, std::size_t axis) noexcept;
-    void submit_axis(const OperatorCommand& command, std::size_t axis, const axes::AxisCommand& wanted) noexcept;
+    struct Verdict {
+        Answer answer = Answer::accepted;
+        axes::ErrorId error = axes::ErrorId::none;
+    };
+    [[nodiscard]] static Verdict verdict(axes::ErrorId error) noexcept;
+    Verdict execute_machine(const OperatorCommand& command) noexcept;
+    Verdict execute_all(const OperatorCommand& command) noexcept;
+    Verdict execute_axis(const OperatorCommand& command, std::size_t axis) noexcept;
+    Verdict execute_program(const OperatorCommand& command) noexcept;
+    Verdict power(const OperatorCommand& command, std::size_t axis) noexcept;
+    Verdict jog(const OperatorCommand& command, std::size_t axis) noexcept;
+    Verdict stop(std::size_t axis) noexcept;
+    void reset_machine() noexcept;
     void set_mode(Mode wanted) noexcept;
-    void start_program(std::size_t program) noexcept;
+    [[nodiscard]] bool start_program(std::size_t program) noexcept;
     void stop_program(std::size_t program, ProgramState state) noexcept;
+    [[nodiscard]] bool start_pending(std::size_t program) const noexcept;
+    /// Those that run or are about to.
+    void stop_programs() noexcept;
+    [[nodiscard]] bool slow_tasks_finished(std::size_t program) const noexcept;
     void renew_operator_power() noexcept;
     void service_programs();
 
     // machine_supervision.cpp
     void supervise(Instant now, const CycleTick& tick) noexcept;
+    void watch_emergency_stop() noexcept;
+    void watch_cycle(const CycleTick& tick) noexcept;
+    void watch_programs() noexcept;
     void raise_bus_alarms() noexcept;
     void raise(MachineAlarm alarm, AlarmSource source, std::uint16_t index, double a, double b) noexcept;
     void raise_fact(const AlarmFact& fact, std::span<const AlarmInfo> table) noexcept;
@@ -105,9 +125,8 @@ struct Machine::Impl {
     }
 
     struct AxisPower {
-        bool held = false;          // an operator holds the power wish
+        bool held = false;          // whoever has manual control of the axis holds the power wish
         axes::CommandId jog = 0;
-        axes::Owner owner = axes::Owner::operator_panel;
     };
 
     MachineConfig config;
@@ -123,35 +142,46 @@ struct Machine::Impl {
     MachineRequests requests;
     std::unique_ptr<ProgramHost> host;
     std::vector<std::unique_ptr<SlowTask>> slow_tasks;
-    std::vector<std::size_t> base_tasks;              // indices into host->tasks()
+    std::vector<std::size_t> base_tasks, slow_task_places;  // indices into host->tasks(), task_statistics, layout.tasks
+    std::vector<std::uint64_t> base_scans;            // since start, per base task
     std::vector<ProgramState> program_states;
-    std::vector<std::uint8_t> first_scan;             // per program
+    std::vector<FaultText> program_faults;            // the cycle's; handed over with stop_asked
     std::vector<std::uint16_t> task_overruns;         // in a row, per slow task
+    std::vector<double> variable_values;              // as this cycle shows them
+    std::vector<std::uint8_t> has_base_task;          // per program
     AlarmLog log;
     Mode mode;
     int estop_input = -1;
+    std::size_t estop_slave = 0;
 
     SpscRing<OperatorCommand> inbox;
     SpscRing<CommandAnswer> answers;
     LatestValue<Snapshot> snapshots;
     std::unique_ptr<TraceRing> trace;
+    Recorder* recorder = nullptr;
 
     // cycle state
     std::uint64_t cycles = 0;
     Instant now{};
     bool emergency = false;
+    Instant emergency_since{}, late_until{};
     std::uint32_t overruns_in_a_row = 0;
     CycleStatistics statistics;
     std::vector<TaskStatistics> task_statistics;
     StepStatistics<step_count - 1> steps;
     std::atomic<bool> shutdown_wanted{false};
+    static_assert(std::atomic<bool>::is_always_lock_free, "request_shutdown() is called by signal handlers");
+    Duration shutdown_patience{};
     std::atomic<MachinePhase> phase{MachinePhase::starting};
     Instant shutdown_since{};
     bool shutting_down = false;
     std::atomic<bool> armed{false};  // arm() runs on the service side while cycles already run
 
-    /// start() and stop() of a program run on the service side: the cycle asks, the service answers.
-    enum class Handshake : std::uint8_t { none, start_asked, started, stop_asked };
+    /// start() and stop() of a program run on the service side: the cycle asks, the service answers. While the handshake is not
+    /// `none` no task of the program runs, nothing reads its variables, and start() and stop() never run beside its tasks.
+    ///   cycle    none -> start_asked    any -> stop_asked    started, failed -> none
+    ///   service  start_asked -> started or failed    stop_asked -> none or failed, once its slower tasks have ended
+    enum class Handshake : std::uint8_t { none, start_asked, started, stop_asked, failed };
     std::unique_ptr<std::atomic<Handshake>[]> handshakes;
 };
 

@@ -10,7 +10,8 @@ namespace taktwerk::runtime {
 
 namespace {
 
-constexpr Duration shutdown_patience = std::chrono::seconds{5};
+/// How long a late wake-up stays listed: many in a row are one alarm.
+constexpr Duration late_wakeups_shown = std::chrono::seconds{1};
 
 }  // namespace
 
@@ -23,40 +24,60 @@ void Machine::Impl::raise(MachineAlarm alarm, AlarmSource source, std::uint16_t 
     raise_fact({id(alarm), source, index, a, b}, machine_alarms);
 }
 
-void Machine::Impl::supervise(Instant, const CycleTick& tick) noexcept {
-    log.begin_cycle();
-
-    emergency = estop_input >= 0 && io.inputs()[static_cast<std::size_t>(estop_input)] == 0;
+// The input is normally closed: what cannot be read counts as pressed.
+void Machine::Impl::watch_emergency_stop() noexcept {
+    if (estop_input < 0) return;
+    const bool unread = estop_slave < bus.slave_count() && bus.health(estop_slave).age > limit(config.bus.lost_frames_limit);
+    const bool pressed = unread || io.inputs()[static_cast<std::size_t>(estop_input)] == 0;
+    if (pressed && !emergency) emergency_since = now;
+    emergency = pressed;
     if (emergency) raise(MachineAlarm::emergency_stop, AlarmSource::machine, 0, 0, 0);
-    if (shutdown_wanted.load(std::memory_order_relaxed)) raise(MachineAlarm::stopped_by_signal, AlarmSource::machine, 0, 0, 0);
+}
 
+void Machine::Impl::watch_cycle(const CycleTick& tick) noexcept {
     overruns_in_a_row = tick.missed > 0 ? overruns_in_a_row + tick.missed : 0;
     if (overruns_in_a_row > limit(config.watch.overruns_allowed))
         raise(MachineAlarm::cycle_overrun, AlarmSource::machine, 0, overruns_in_a_row, limit(config.watch.overruns_allowed));
     const auto warning = config.watch.lateness_warning > Duration{} ? config.watch.lateness_warning : config.cycle / 4;
-    if (tick.woken - tick.scheduled > warning)
-        raise(MachineAlarm::late_wakeups, AlarmSource::machine, 0, to_seconds(tick.woken - tick.scheduled) * 1e6, to_seconds(warning) * 1e6);
+    const auto late = tick.woken - tick.scheduled;
+    if (late > warning) late_until = now + late_wakeups_shown;
+    if (now < late_until) raise(MachineAlarm::late_wakeups, AlarmSource::machine, 0, to_seconds(late) * 1e6, to_seconds(warning) * 1e6);
+}
 
+void Machine::Impl::watch_programs() noexcept {
     for (std::size_t i = 0; i < slow_tasks.size(); ++i) {
         const auto& task = slow_tasks[i]->config();
         if (task.overrun == OverrunReaction::stop_machine && task_overruns[i] > task.overruns_allowed)
-            raise(MachineAlarm::task_overrun, AlarmSource::task, static_cast<std::uint16_t>(i), task_overruns[i], task.overruns_allowed);
+            raise(MachineAlarm::task_overrun, AlarmSource::task, static_cast<std::uint16_t>(slow_task_places[i]), task_overruns[i],
+                  task.overruns_allowed);
     }
     for (std::size_t p = 0; p < program_states.size(); ++p) {
         const auto& program = host->programs()[p];
         if (program_states[p] == ProgramState::fault) raise(MachineAlarm::program_fault, AlarmSource::program, static_cast<std::uint16_t>(p), 0, 0);
-        for (std::uint8_t n = 0; program.alarms >> n; ++n) {
-            if (!((program.alarms >> n) & 1u)) continue;
+        for (std::size_t n = 0; n < program.alarm_texts.size(); ++n) {
             const auto& text = program.alarm_texts[n];
-            const AlarmFact fact{static_cast<AlarmId>(0x5000 + n), AlarmSource::program, static_cast<std::uint16_t>(p), 0, 0};
-            if (text.declared) log.raise(fact, text.reaction, ResetRule::self_clearing, now);
-            if (n == 63) break;
+            if (!text.declared || !((program.alarms >> n) & 1u)) continue;
+            log.raise({static_cast<AlarmId>(0x5000 + n), AlarmSource::program, static_cast<std::uint16_t>(p), 0, 0}, text.reaction,
+                      ResetRule::self_clearing, now);
         }
     }
+}
+
+void Machine::Impl::supervise(Instant, const CycleTick& tick) noexcept {
+    log.begin_cycle();
+
+    watch_emergency_stop();
+    if (shutdown_wanted.load(std::memory_order_relaxed)) raise(MachineAlarm::stopped_by_signal, AlarmSource::machine, 0, 0, 0);
+    watch_cycle(tick);
+    watch_programs();
     raise_bus_alarms();
 
+    auto level = axes::EmergencyStop::none;
+    if (emergency)
+        level = now - emergency_since >= config.emergency_stop.power_off_after ? axes::EmergencyStop::power_off_now
+                                                                               : axes::EmergencyStop::stop_and_power_off;
     for (auto& axis : axes) {
-        axis.demand_emergency_stop(emergency ? axes::EmergencyStop::stop_and_power_off : axes::EmergencyStop::none);
+        axis.demand_emergency_stop(level);
         axis.supervise(now);
         // An axis keeps its alarms until they are reset there: what it does not show any more is gone.
         for (const auto& fact : axis.active_alarms())
@@ -64,8 +85,7 @@ void Machine::Impl::supervise(Instant, const CycleTick& tick) noexcept {
         AlarmFact fetched;
         while (axis.fetch_alarm(fetched)) {}
     }
-    if (log.dropped() > 0) raise(MachineAlarm::alarm_log_full, AlarmSource::machine, 0, log.dropped(), 0);
-    log.end_cycle();
+    log.end_cycle(now);
 
     react();
     run_shutdown(now);
@@ -78,14 +98,15 @@ void Machine::Impl::raise_bus_alarms() noexcept {
 }
 
 void Machine::Impl::react() noexcept {
-    const auto strongest = log.strongest();
-    if (strongest < Reaction::stop_machine || emergency) return;  // the emergency stop is the axes' own business (level above)
+    if (emergency) return;  // the axes' own business: a level that each of them holds
+    const ActiveAlarm* cause = nullptr;
     for (const auto& alarm : log.alarms()) {
-        if (alarm.reaction != strongest) continue;
+        // An emergency stop that waits for its acknowledgement has stopped the axes already; the end of the run stops them otherwise.
         if (alarm.fact.id == id(MachineAlarm::stopped_by_signal) || alarm.fact.id == id(MachineAlarm::emergency_stop)) continue;
-        for (auto& axis : axes) axis.stop_for_error(alarm.fact.id, strongest == Reaction::power_off);
-        return;
+        if (alarm.reaction >= Reaction::stop_machine && (!cause || alarm.reaction > cause->reaction)) cause = &alarm;
     }
+    if (!cause) return;
+    for (auto& axis : axes) axis.stop_for_error(cause->fact.id, cause->reaction == Reaction::power_off);
 }
 
 void Machine::Impl::run_shutdown(Instant at) noexcept {
@@ -94,8 +115,7 @@ void Machine::Impl::run_shutdown(Instant at) noexcept {
         shutting_down = true;
         shutdown_since = at;
         phase.store(MachinePhase::stopping, std::memory_order_release);
-        for (std::size_t p = 0; p < program_states.size(); ++p)
-            if (program_states[p] == ProgramState::running) stop_program(p, ProgramState::stopped);
+        stop_programs();
         for (auto& power : operator_power) power.held = false;
         io.make_safe();
         for (auto& axis : axes) axis.shut_down();

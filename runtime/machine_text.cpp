@@ -69,8 +69,7 @@ AlarmText Machine::describe(const AlarmFact& fact) const {
             break;
         case AlarmSource::program: out.source = fact.index < m.layout.programs.size() ? "program " + m.layout.programs[fact.index] : "program ?"; break;
         case AlarmSource::task:
-            out.source = fact.index < m.slow_tasks.size() ? "task " + m.slow_tasks[fact.index]->config().program + "." + m.slow_tasks[fact.index]->config().name
-                                                          : "task ?";
+            out.source = fact.index < m.layout.tasks.size() ? "task " + m.layout.tasks[fact.index] : "task ?";
             break;
         case AlarmSource::bus: out.source = "bus"; break;
         case AlarmSource::machine:
@@ -103,6 +102,13 @@ AlarmText Machine::describe(const AlarmFact& fact) const {
     out.remedy = info->remedy;
     out.reaction = text(info->reaction);
     out.reset = text(info->reset);
+
+    if (fact.id == id(MachineAlarm::program_fault) && fact.index < m.host->programs().size()) {
+        if (const auto& why = m.host->programs()[fact.index].fault; !why.empty()) {
+            out.english += ": " + why;
+            out.chinese += ":" + why;
+        }
+    }
 
     // A drive's own alarm has its words in the profile.
     const bool of_drive = fact.id == axes::id(axes::AxisAlarm::drive_fault) || fact.id == axes::id(axes::AxisAlarm::drive_warning);

@@ -11,21 +11,33 @@
 
 namespace taktwerk::runtime {
 
+/// What each may do, and when. Refusals in brackets; beyond them: unknown_name (no such index, a disabled axis), stale (expired),
+/// not_possible_now (the run is ending). `axis` 0xFFFF means all where it says so: every axis is asked, the first refusal is the answer.
+///
+/// Commands to an axis come from the operator or from commissioning [no_control for anybody else, and from the other one while
+/// one of them owns the axis]; an emergency stop, a mode change and a stopped program take nothing back but stop the axis.
 enum class OperatorAction : std::uint8_t {
     none,
-    take_control, release_control,   ///< authority over `axis` (0xFFFF = all)
-    set_mode,                        ///< mode
-    power,                           ///< axis; flag = on
-    home,                            ///< axis
-    jog,                             ///< axis; value = velocity u/s, signed; a fresh one each 50 ms renews the lease; 0 stops
-    move_absolute,                   ///< axis; value = position u, value2 = velocity u/s (manual move to a position)
-    stop,                            ///< axis (0xFFFF = all): stop along the ramp; always allowed
-    reset,                           ///< axis (0xFFFF = all and machine)
-    program_start, program_stop, program_reset,  ///< index = program
-    set_parameter,                   ///< index = parameter; value
-    set_output,                      ///< index = output point; value; only while no program runs
+    take_control,     ///< axis or all: the axis stops, then obeys the new owner; it keeps its power [wrong_mode in automatic]
+    release_control,  ///< axis or all: back to the operator [no_control for who has none]
+    set_mode,         ///< mode: axes stop; leaving automatic stops the programs, entering it takes the operator's power back
+    power,            ///< axis or all; flag = on. Off: ramps down first. On: holds until off, an emergency stop, or an error that takes
+                      ///< power away: a reset alone never switches on [interlocked while the emergency stop holds, in_error_stop]
+    home,             ///< axis
+    jog,              ///< axis; value = velocity u/s, signed; 0 stops. flag = the key was pressed: starts. Without it: a heartbeat, each
+                      ///< 50 ms, renews the lease [stale when there is nothing to renew]
+    move_absolute,    ///< axis; value = position u, value2 = velocity u/s (manual move to a position)
+    stop,             ///< axis or all: stop along the ramp, whoever owns it; always allowed, never stale. A program goes on: its
+                      ///< block shows CommandAborted; program_stop ends it
+    reset,            ///< axis, or all: then also the machine's alarms and programs in fault
+    program_start,    ///< index = program [wrong_mode outside automatic; not_possible_now in fault, or while its stop() is to come]
+    program_stop,     ///< index = program; its axes ramp down, then power goes off; outputs go to their safe values with the last one
+    program_reset,    ///< index = program
+    set_parameter,    ///< index = parameter; value within its range [bad_value]
+    set_output,       ///< index = output point; value, whole and within its bits [bad_value; wrong_mode in automatic; not_possible_now
+                      ///< while a program runs]
     acknowledge_alarms,
-    shutdown,                        ///< stop axes, power off, end
+    shutdown,         ///< stop axes, power off, end
 };
 
 /// One command. Trivially copyable: goes through a ring.

@@ -9,7 +9,8 @@ namespace taktwerk::runtime {
 SlowTask::SlowTask(const ProgramHost::Task& task, Program* program, std::vector<ProgramHost::Variable> variables, std::size_t axes,
                    std::size_t inputs, std::size_t outputs, std::size_t parameters)
     : task_(task), program_(program), divisor_(task.config.divisor), variable_sources_(std::move(variables)), requests_(axes), views_(axes),
-      inputs_(inputs), outputs_(outputs), outputs_at_release_(outputs), parameters_(parameters), variable_values_(variable_sources_.size()) {
+      inputs_(inputs), outputs_(outputs), outputs_at_release_(outputs), parameters_(parameters), variable_values_(variable_sources_.size()),
+      variables_applied_(variable_sources_.size()) {
     requests_.bind(views_);
 }
 
@@ -18,21 +19,24 @@ void SlowTask::apply(axes::AxisRequests& axes, std::span<std::int64_t> outputs, 
     for (std::size_t i = 0; i < outputs.size(); ++i)
         if (outputs_[i] != outputs_at_release_[i]) outputs[i] = outputs_[i];
     requests_.apply(axes);
-    program_alarms = alarms_;
+    ++applied_;
+    const auto changed = alarms_ ^ alarms_at_release_;
+    program_alarms = (program_alarms & ~changed) | (alarms_ & changed);
+    std::copy(variable_values_.begin(), variable_values_.end(), variables_applied_.begin());
     state_.store(State::idle, std::memory_order_relaxed);
 }
 
 void SlowTask::release(const CycleContext& now, std::span<const axes::AxisView> views, std::span<const std::int64_t> inputs,
-                       std::span<const std::int64_t> outputs, std::span<const double> parameters, bool first_scan) noexcept {
+                       std::span<const std::int64_t> outputs, std::span<const double> parameters, std::uint64_t program_alarms) noexcept {
     requests_.latch(views, views_);
     std::copy(inputs.begin(), inputs.end(), inputs_.begin());
     std::copy(outputs.begin(), outputs.end(), outputs_.begin());
-    outputs_at_release_ = outputs_;
+    std::copy(outputs.begin(), outputs.end(), outputs_at_release_.begin());
     std::copy(parameters.begin(), parameters.end(), parameters_.begin());
     context_ = now;
     context_.period = now.period * static_cast<Duration::rep>(divisor_);
     context_.cycle = runs_++;
-    first_scan_ = first_scan;
+    alarms_ = alarms_at_release_ = program_alarms;
     state_.store(State::released, std::memory_order_release);
 }
 
@@ -48,11 +52,12 @@ bool SlowTask::run_if_released() noexcept {
     context.outputs = outputs_;
     context.parameters = parameters_;
     context.alarms = alarms_;
-    context.first_scan = first_scan_;
+    context.first_scan = context_.cycle == 0;
     try {
         task_.function(program_, context);
     } catch (...) {
         threw_ = true;
+        fault_.take_current();
     }
     alarms_ = context.alarms;
     for (std::size_t i = 0; i < variable_sources_.size(); ++i) variable_values_[i] = ProgramHost::read(variable_sources_[i]);
@@ -63,9 +68,13 @@ bool SlowTask::run_if_released() noexcept {
 
 void SlowTask::forget() noexcept {
     requests_.clear();
-    alarms_ = 0;
     threw_ = false;
     state_.store(State::idle, std::memory_order_relaxed);
+}
+
+void SlowTask::restart() noexcept {
+    forget();
+    runs_ = 0;
 }
 
 }  // namespace taktwerk::runtime

@@ -6,10 +6,10 @@
 
 #include <atomic>
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "core/cycle_context.hpp"
+#include "runtime/fault_text.hpp"
 #include "runtime/latched_requests.hpp"
 #include "runtime/program_host.hpp"
 
@@ -29,20 +29,26 @@ public:
         const auto state = state_.load(std::memory_order_acquire);
         return state == State::idle || state == State::done;
     }
-    /// What the last run wrote goes to the machine; only outputs that it changed.
+    /// What the last run wrote goes to the machine; only outputs and alarms that it changed.
     void apply(axes::AxisRequests& axes, std::span<std::int64_t> outputs, std::uint64_t& program_alarms) noexcept;
-    void renew(axes::AxisRequests& axes) const noexcept { requests_.renew(axes); }
+    void renew(axes::AxisRequests& axes) noexcept { requests_.renew(axes); }
     /// Latches everything and hands the task to its thread.
     void release(const CycleContext& now, std::span<const axes::AxisView> views, std::span<const std::int64_t> inputs,
-                 std::span<const std::int64_t> outputs, std::span<const double> parameters, bool first_scan) noexcept;
-    /// Values of the program's variables as the last finished run left them; for programs without a base task.
-    [[nodiscard]] std::span<const double> variables() const noexcept { return variable_values_; }
+                 std::span<const std::int64_t> outputs, std::span<const double> parameters, std::uint64_t program_alarms) noexcept;
+    /// Values of the program's variables as the last applied run left them; for programs without a base task.
+    [[nodiscard]] std::span<const double> variables() const noexcept { return variables_applied_; }
+    /// How many runs have been applied.
+    [[nodiscard]] std::uint64_t applied() const noexcept { return applied_; }
     [[nodiscard]] Duration last_run() const noexcept { return run_time_; }
+    /// Only while finished().
     [[nodiscard]] bool threw() const noexcept { return threw_; }
+    [[nodiscard]] const FaultText& fault() const noexcept { return fault_; }
     [[nodiscard]] std::size_t program() const noexcept { return task_.program; }
     [[nodiscard]] const TaskConfig& config() const noexcept { return task_.config; }
-    /// The program was stopped: forget what was asked for. Only while finished().
+    /// The program was stopped: what its last run asked for is not carried out. Only while finished().
     void forget() noexcept;
+    /// The program starts (again): forgets, and the next run is its first scan. Only while finished().
+    void restart() noexcept;
 
     // --- task thread, or between cycles in virtual time -----------------------------------------------------------------------
     /// True when there was something to do.
@@ -57,10 +63,11 @@ private:
     LatchedRequests requests_;
     std::vector<axes::AxisView> views_;
     std::vector<std::int64_t> inputs_, outputs_, outputs_at_release_;
-    std::vector<double> parameters_, variable_values_;
+    std::vector<double> parameters_, variable_values_, variables_applied_;
     CycleContext context_;
-    std::uint64_t runs_ = 0, alarms_ = 0;
-    bool first_scan_ = false, threw_ = false;
+    std::uint64_t runs_ = 0, applied_ = 0, alarms_ = 0, alarms_at_release_ = 0;
+    bool threw_ = false;
+    FaultText fault_;
     Duration run_time_{};
 };
 

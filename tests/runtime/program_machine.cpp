@@ -5,36 +5,13 @@
 #include "fb_library/all_blocks.hpp"
 #include "runtime/alarms.hpp"
 #include "tests/runtime/test_machine.hpp"
+#include "tests/runtime/test_program.hpp"
 
 namespace taktwerk::runtime::testing {
 namespace {
 
 using namespace fb;
 using axes::AxisState;
-
-/// A program made of one function, for tests.
-template <class Body>
-const ProgramEntry* entry_of() {
-    static const ProgramEntry entry{program_magic, sizeof(ProgramEntry), abi_hash(), sdk_version, "test",
-                                    []() -> Program* { return new Body; }, [](Program* p) { delete p; }};
-    return &entry;
-}
-
-MachineConfig with_program(std::size_t axes, const ProgramEntry* (*entry)(), std::uint16_t divisor = 1) {
-    auto config = machine_config(axes);
-    ProgramConfig program;
-    program.name = "p";
-    program.entry = entry;
-    program.autostart = true;
-    config.programs.push_back(program);
-    TaskConfig task;
-    task.name = "main";
-    task.program = "p";
-    task.divisor = divisor;
-    config.tasks.push_back(task);
-    config.start_mode = Mode::automatic;
-    return config;
-}
 
 /// Powers x, makes its present position 100 mm, moves to 150 mm.
 class PowerAndMove final : public Program {
@@ -76,14 +53,6 @@ public:
 MachineConfig homing_in_place(MachineConfig config) {
     config.axes[0].axis.homing.kind = axes::HomingKind::set_here;
     return config;
-}
-
-double variable(TestMachine& m, std::string_view name) {
-    const auto& variables = m.machine->layout().variables;
-    for (std::size_t i = 0; i < variables.size(); ++i)
-        if (variables[i].name == name) return m.state().variables[i];
-    ADD_FAILURE() << "no variable " << name;
-    return 0;
 }
 
 TEST(Program, McPowerAndMcMoveAbsoluteMoveAnAxisThroughRealFrames) {

@@ -1,0 +1,72 @@
+#pragma once
+// What comes from outside, as bytes of a Recorder: the one recorded inbox (DESIGN 2). Records stand in the order in which the
+// cycle took them: a tick, the frames received in it, the commands drained in it. Little-endian, written by the cycle thread.
+//
+//   tick     i64 scheduled ns, i64 woken ns, u32 missed                                        20 bytes
+//   frame    an Ethernet frame as it came in
+//   command  u8 action, u8 owner, u8 mode, u8 flag, u16 axis, u16 index, f64 value, f64 value2,
+//            u32 client, u64 sequence, i64 expires ns                                          44 bytes
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "core/recorder.hpp"
+#include "runtime/machine.hpp"
+#include "runtime/operator_command.hpp"
+
+namespace taktwerk::runtime {
+
+inline constexpr RecordChannel tick_channel = 1, frame_channel = 2, command_channel = 3;
+
+namespace inbox_record {
+template <std::size_t Size>
+class Bytes {
+public:
+    template <class T>
+    void put(T value) noexcept {
+        auto bits = static_cast<std::uint64_t>(value);
+        for (std::size_t i = 0; i < sizeof(T); ++i, bits >>= 8) bytes_[at_++] = static_cast<std::byte>(bits & 0xFF);
+    }
+    void put(double value) noexcept { put(std::bit_cast<std::uint64_t>(value)); }
+    void put(Instant value) noexcept { put(static_cast<std::int64_t>(value.time_since_epoch().count())); }
+    [[nodiscard]] std::span<const std::byte> all() const noexcept { return bytes_; }
+
+private:
+    std::array<std::byte, Size> bytes_{};
+    std::size_t at_ = 0;
+};
+}  // namespace inbox_record
+
+inline void record_tick(Recorder& recorder, const CycleTick& tick) noexcept {
+    inbox_record::Bytes<20> bytes;
+    bytes.put(tick.scheduled);
+    bytes.put(tick.woken);
+    bytes.put(tick.missed);
+    recorder.append(tick_channel, tick.scheduled, bytes.all());
+}
+
+inline void record_command(Recorder& recorder, Instant at, const OperatorCommand& command) noexcept {
+    inbox_record::Bytes<44> bytes;
+    bytes.put(static_cast<std::uint8_t>(command.action));
+    bytes.put(static_cast<std::uint8_t>(command.owner));
+    bytes.put(static_cast<std::uint8_t>(command.mode));
+    bytes.put(static_cast<std::uint8_t>(command.flag));
+    bytes.put(command.axis);
+    bytes.put(command.index);
+    bytes.put(command.value);
+    bytes.put(command.value2);
+    bytes.put(command.client);
+    bytes.put(command.sequence);
+    bytes.put(command.expires);
+    recorder.append(command_channel, at, bytes.all());
+}
+
+/// For ecat::Master::set_tap; `context` is the Recorder. What the master sends follows from what it received.
+inline void record_frame(void* context, std::span<const std::byte> frame, Instant at, bool outgoing) noexcept {
+    if (!outgoing) static_cast<Recorder*>(context)->append(frame_channel, at, frame);
+}
+
+}  // namespace taktwerk::runtime

@@ -1,0 +1,145 @@
+// The alarm list: how an alarm goes away by its rule (core/alarm.hpp, ResetRule), and what happens when the list is full.
+
+#include "runtime/alarm_log.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "runtime/alarms.hpp"
+
+namespace taktwerk::runtime {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr AlarmFact fact(AlarmId id, std::uint16_t index = 0) { return {id, AlarmSource::axis, index, 1, 2}; }
+
+struct Log : testing::Test {
+    AlarmLog log;
+    Instant now{};
+
+    /// One cycle in which exactly these hold.
+    void cycle(std::vector<AlarmFact> holding, ResetRule rule = ResetRule::self_clearing, Reaction reaction = Reaction::warn) {
+        now += 1ms;
+        log.begin_cycle();
+        for (const auto& f : holding) log.raise(f, reaction, rule, now);
+        log.end_cycle(now);
+    }
+};
+
+TEST_F(Log, ASelfClearingAlarmGoesWithItsCause) {
+    cycle({fact(1)});
+    ASSERT_EQ(log.alarms().size(), 1u);
+    EXPECT_TRUE(log.alarms()[0].standing);
+    cycle({});
+    EXPECT_TRUE(log.alarms().empty());
+}
+
+TEST_F(Log, AnAcknowledgedOneStaysWhileItHoldsAndWantsAnotherAcknowledgementWhenItIsOver) {
+    cycle({fact(1)}, ResetRule::acknowledge);
+    log.acknowledge();
+    cycle({fact(1)}, ResetRule::acknowledge);
+    ASSERT_EQ(log.alarms().size(), 1u);
+    EXPECT_TRUE(log.alarms()[0].acknowledged) << "somebody has seen it";
+
+    cycle({});
+    ASSERT_EQ(log.alarms().size(), 1u) << "the acknowledgement was given while it held";
+    EXPECT_FALSE(log.alarms()[0].standing);
+    EXPECT_FALSE(log.alarms()[0].acknowledged);
+
+    log.acknowledge();
+    cycle({});
+    EXPECT_TRUE(log.alarms().empty());
+}
+
+TEST_F(Log, AResetAlarmNeedsAResetAfterTheCauseIsGone) {
+    cycle({fact(1)}, ResetRule::reset);
+    log.reset();
+    cycle({fact(1)}, ResetRule::reset);
+    cycle({});
+    ASSERT_EQ(log.alarms().size(), 1u) << "the reset came while it held: it is none";
+    log.acknowledge();
+    cycle({});
+    ASSERT_EQ(log.alarms().size(), 1u) << "an acknowledgement is no reset";
+    log.reset();
+    cycle({});
+    EXPECT_TRUE(log.alarms().empty());
+}
+
+TEST_F(Log, AResetAlsoAcknowledges) {
+    cycle({fact(1)}, ResetRule::acknowledge);
+    cycle({});
+    log.reset();
+    cycle({});
+    EXPECT_TRUE(log.alarms().empty());
+}
+
+TEST_F(Log, ARestartAlarmStaysAndReactsUntilTheEnd) {
+    cycle({fact(1)}, ResetRule::restart, Reaction::stop_machine);
+    cycle({});
+    log.reset();
+    cycle({});
+    ASSERT_EQ(log.alarms().size(), 1u);
+    EXPECT_EQ(log.strongest(), Reaction::stop_machine);
+}
+
+TEST_F(Log, AnAlarmThatComesAgainIsCountedAndKeepsItsPlace) {
+    cycle({fact(1), fact(2)}, ResetRule::reset);
+    cycle({fact(2)}, ResetRule::reset);
+    cycle({fact(1), fact(2)}, ResetRule::reset);
+    ASSERT_EQ(log.alarms().size(), 2u);
+    EXPECT_EQ(log.alarms()[0].fact.id, 1);
+    EXPECT_EQ(log.alarms()[0].count, 2u);
+    EXPECT_EQ(log.alarms()[1].count, 1u);
+}
+
+TEST_F(Log, TheSameConditionOfTwoAxesIsTwoAlarmsInOrderOfAppearance) {
+    cycle({fact(1, 3)});
+    cycle({fact(1, 0), fact(1, 3)});
+    ASSERT_EQ(log.alarms().size(), 2u);
+    EXPECT_EQ(log.alarms()[0].fact.index, 3);
+    EXPECT_EQ(log.alarms()[1].fact.index, 0);
+}
+
+TEST_F(Log, WhatWaitsForAPersonReactsOn) {
+    cycle({fact(1)}, ResetRule::acknowledge, Reaction::power_off);
+    cycle({});
+    EXPECT_EQ(log.strongest(), Reaction::power_off);
+}
+
+std::vector<AlarmFact> many(std::size_t count) {
+    std::vector<AlarmFact> facts;
+    for (std::size_t i = 0; i < count; ++i) facts.push_back(fact(1, static_cast<std::uint16_t>(i)));
+    return facts;
+}
+
+// 64 places, one of them kept for the announcement.
+TEST_F(Log, AFullListSaysSoAndHowManyFoundNoPlace) {
+    cycle(many(66));
+    ASSERT_EQ(log.alarms().size(), AlarmLog::capacity);
+    const auto& last = log.alarms().back();
+    EXPECT_EQ(last.fact.id, id(MachineAlarm::alarm_log_full));
+    EXPECT_EQ(last.fact.a, 3.0);
+    EXPECT_EQ(log.dropped(), 3u);
+
+    cycle(many(10));
+    EXPECT_EQ(log.alarms().size(), 10u) << "there is room again, the announcement goes";
+    EXPECT_EQ(log.dropped(), 0u);
+}
+
+TEST_F(Log, AFullListOfWarningsDoesNotHideAReaction) {
+    cycle(many(63));
+    now += 1ms;
+    log.begin_cycle();
+    for (const auto& f : many(63)) log.raise(f, Reaction::warn, ResetRule::self_clearing, now);
+    log.raise(fact(9), Reaction::stop_machine, ResetRule::reset, now);
+    log.end_cycle(now);
+
+    EXPECT_EQ(log.strongest(), Reaction::stop_machine);
+    EXPECT_EQ(log.alarms()[0].fact.index, 0) << "the newest of the weakest gave its place";
+    EXPECT_EQ(log.dropped(), 1u);
+}
+
+}  // namespace
+}  // namespace taktwerk::runtime
