@@ -131,7 +131,7 @@ operate reset y --wait
 heard
 
 say "19.5 s: start pressed, the loop goes on after the fault"
-at 24600
+at 25400
 heard
 present 'y +(DiscreteMotion|Standstill) +on hm' 'pieces=[1-9]'
 

@@ -17,6 +17,7 @@
 #include "ecat/transport/raw_socket.hpp"
 #include "hmi_bridge/hmi_bridge.hpp"
 #include "hmi_bridge/runtime_link.hpp"
+#include "runtime/alarms.hpp"
 #include "runtime/realtime_runner.hpp"
 #include "runtime/virtual_runner.hpp"
 
@@ -34,15 +35,14 @@ struct Options {
 
 constexpr std::size_t trace_rows = 8192;
 
-/// A run that ends with something machine-wide still standing did not end well.
-int exit_code_of(Machine& machine) {
-    const auto* s = machine.latest();
-    if (!s) return exit_ok;
-    for (std::size_t i = 0; i < s->alarm_count; ++i) {
-        const bool machine_wide = s->alarms[i].standing && s->alarms[i].reaction >= Reaction::stop_machine;
-        if (machine_wide && machine.describe(s->alarms[i].fact).name != "stopped_by_signal") return exit_alarm;
-    }
-    return exit_ok;
+/// A run that ends with something machine-wide still standing did not end well. What stands while the machine goes down does not
+/// count: then the bus is meant to be silent.
+void judge(const Snapshot* s, int& code) {
+    if (!s || s->phase != MachinePhase::running) return;
+    code = exit_ok;
+    for (std::size_t i = 0; i < s->alarm_count; ++i)
+        if (s->alarms[i].standing && s->alarms[i].reaction >= Reaction::stop_machine && s->alarms[i].fact.id != id(MachineAlarm::stopped_by_signal))
+            code = exit_alarm;
 }
 
 void print_summary(Machine& machine, const Options& options, double machine_seconds, double wall_seconds) {
@@ -99,9 +99,12 @@ int run_virtual(LoadedFile loaded, const Options& options) {
     const auto wall_start = wall.now();
     MachineLog log{*machine, clock.now(), options.json};
     VirtualRunner runner{*machine, world, clock};
+    int code = exit_ok;
     runner.after_cycle = [&](Instant now) {
         if (trace) trace->drain();
-        if (!options.quiet) log.step(now, machine->latest());
+        const auto* snapshot = machine->latest();
+        judge(snapshot, code);
+        if (!options.quiet) log.step(now, snapshot);
         if (stop_requested()) machine->request_shutdown();
     };
     if (auto up = runner.bring_up(); !up) {
@@ -110,7 +113,6 @@ int run_virtual(LoadedFile loaded, const Options& options) {
     }
     const auto duration = options.duration_s > 0 ? from_seconds(options.duration_s) : Duration::max() / 4;
     runner.run_for(std::max(duration - (clock.now() - Instant{}), Duration{}));
-    const int code = exit_code_of(*machine);
     runner.shut_down();
     print_summary(*machine, options, to_seconds(clock.now() - Instant{}), to_seconds(wall.now() - wall_start));
     if (trace)
@@ -176,21 +178,18 @@ int run_real(LoadedFile loaded, const Options& options) {
     const auto start = clock.now();
     MachineLog log{*machine, start, options.json};
     int code = exit_ok;
-    bool said_stop = false, code_taken = false;
+    bool said_stop = false;
     auto served = runner.serve([&](Instant now) {
         if (trace) trace->drain();
         if (nic) nic->refresh();
         (*bridge)->set_progress(machine->bus_progress());
         (*bridge)->step(now);
+        judge((*bridge)->snapshot(), code);
         if (!options.quiet) log.step(now, (*bridge)->snapshot());
         const bool time_up = options.duration_s > 0 && to_seconds(now - start) >= options.duration_s;
         if (stop_requested() && !said_stop) {
             said_stop = true;
             if (!options.quiet) log.say(now, "stop", fmt::format("{}: axes stop along their ramps, then power goes off", stop_signal_name()));
-        }
-        if ((time_up || stop_requested()) && !code_taken) {
-            code = exit_code_of(*machine);
-            code_taken = true;
         }
         return !time_up && !stop_requested();
     });
@@ -199,7 +198,6 @@ int run_real(LoadedFile loaded, const Options& options) {
         print_error(served.error());
         return exit_bus;
     }
-    if (!code_taken) code = exit_code_of(*machine);
     print_summary(*machine, options, to_seconds(clock.now() - start), to_seconds(clock.now() - start));
     if (trace)
         if (auto ok = trace->finish(); !ok) {

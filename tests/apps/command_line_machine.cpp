@@ -165,6 +165,23 @@ TEST_F(CommandLine, ARunningMachineIsOperatedAndEndsAlongItsRamp) {
     EXPECT_NEAR(fastest, 50, 0.5);
 }
 
+TEST_F(CommandLine, ShutDownOnCommandIsAGoodEnd) {
+    Child runtime({taktwerk, "run", private_machine()});
+    ASSERT_TRUE(runtime.says("running, manual mode", 20s)) << runtime.text();
+    EXPECT_EQ(to_machine({"shutdown"}).code, exit_ok);
+    EXPECT_EQ(runtime.wait(5s), exit_ok) << runtime.text();
+}
+
+TEST_F(CommandLine, PlotNamesThePackageItMisses) {
+    const auto trace = file("t.csv",
+                            "time_s,emergency_stop,x.state,x.set_position,x.set_velocity,x.set_acceleration,x.set_jerk,x.actual_position,x.actual_velocity,"
+                            "x.following_error\n1,0,1,7,2,3,4,7,1,0\n2,0,1,8,2,3,4,7,1,0\n");
+    Child plot({"env", "PATH=" + folder_, taktwerk, "plot", trace});
+    EXPECT_EQ(plot.wait(10s), exit_bad_file);
+    EXPECT_THAT(plot.text(), HasSubstr("apt-get install gnuplot-nox"));
+    EXPECT_FALSE(std::filesystem::exists(path("t.svg")));
+}
+
 TEST_F(CommandLine, SigtermIsHeardBeforeTheBusIsUp) {
     Child runtime({taktwerk, "run", private_machine()});
     ASSERT_TRUE(runtime.says("bus", 10s)) << runtime.text();

@@ -1,0 +1,141 @@
+// Master and slaves in two processes with a cable between: `taktwerk run` and `taktwerk sim` on the ends of a veth pair, each in its own
+// network namespace. Needs root; skipped otherwise.
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "apps/exit_code.hpp"
+#include "tests/apps/child.hpp"
+
+namespace taktwerk::apps {
+namespace {
+
+using namespace std::chrono_literals;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const std::string taktwerk = std::string(TAKTWERK_BINARY_DIR) + "/taktwerk";
+const std::filesystem::path source = TAKTWERK_SOURCE_DIR;
+
+int run(std::vector<std::string> words, std::string* text = nullptr) {
+    Child child(std::move(words));
+    const int code = child.wait(20s);
+    if (text) *text = child.text();
+    return code;
+}
+
+/// Two namespaces with a cable between them; gone at the end.
+class Cable {
+public:
+    Cable() : master_("twk-m" + std::to_string(::getpid())), slaves_("twk-s" + std::to_string(::getpid())) {
+        laid_ = run({"ip", "netns", "add", master_}) == 0 && run({"ip", "netns", "add", slaves_}) == 0 &&
+                run({"ip", "link", "add", "twk0", "netns", master_, "type", "veth", "peer", "name", "twk1", "netns", slaves_}) == 0 &&
+                quiet(master_, "twk0") && quiet(slaves_, "twk1");
+    }
+    ~Cable() {
+        run({"ip", "netns", "del", master_});
+        run({"ip", "netns", "del", slaves_});
+    }
+    Cable(const Cable&) = delete;
+    Cable& operator=(const Cable&) = delete;
+
+    [[nodiscard]] bool laid() const { return laid_; }
+    [[nodiscard]] std::vector<std::string> at_master(std::vector<std::string> words) const { return in(master_, std::move(words)); }
+    [[nodiscard]] std::vector<std::string> at_slaves(std::vector<std::string> words) const { return in(slaves_, std::move(words)); }
+
+private:
+    /// Up, and without IPv6's own frames: the cable belongs to EtherCAT.
+    static bool quiet(const std::string& where, const std::string& nic) {
+        run(in(where, {"sysctl", "-q", "-w", "net.ipv6.conf." + nic + ".disable_ipv6=1"}));
+        return run(in(where, {"ip", "link", "set", nic, "up"})) == 0;
+    }
+    static std::vector<std::string> in(const std::string& where, std::vector<std::string> words) {
+        words.insert(words.begin(), {"ip", "netns", "exec", where});
+        return words;
+    }
+    std::string master_, slaves_;
+    bool laid_ = false;
+};
+
+std::string text_of(const std::filesystem::path& path) {
+    std::ifstream in(path);
+    std::ostringstream out;
+    out << in.rdbuf();
+    return out.str();
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+    const auto at = text.find(from);
+    return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+TEST(CommandLineCable, RunMovesTheAxesOfSim) {
+    if (::geteuid() != 0) GTEST_SKIP() << "network namespaces need root";
+    const Cable cable;
+    if (!cable.laid()) GTEST_SKIP() << "this system lets nobody make network namespaces or veth pairs";
+
+    auto pattern = (std::filesystem::temp_directory_path() / "taktwerk-test-XXXXXX").string();
+    const std::filesystem::path folder = ::mkdtemp(pattern.data());
+    std::filesystem::create_directories(folder / "machines");
+    std::filesystem::create_directory_symlink(source / "config/drives", folder / "drives");
+    const auto socket = (folder / "socket").string(), file = (folder / "machines/cable.yaml").string(), capture = (folder / "cable.pcap").string();
+    auto text = text_of(source / "config/machines/minimal.yaml");
+    text = replaced(replaced(text, "interface: simulated", "interface: twk0"), "cycle: 1 ms", "cycle: 4 ms");
+    text += "hmi: { socket: '" + socket + "', lcm: { enabled: false } }\nsimulation: { supervision: relaxed }\n";
+    std::ofstream(file) << text;
+    const auto operate = [&](std::vector<std::string> words) {
+        words.insert(words.begin(), taktwerk);
+        words.insert(words.end(), {"-s", socket});
+        std::string said;
+        const int code = run(std::move(words), &said);
+        EXPECT_EQ(code, exit_ok) << said;
+        return said;
+    };
+
+    std::string version;
+    const bool tshark = run({"tshark", "--version"}, &version) == 0;
+    Child listener(tshark ? cable.at_master({"tshark", "-q", "-i", "twk0", "-w", capture}) : std::vector<std::string>{"true"});
+    if (tshark) {
+        EXPECT_TRUE(listener.says("Capturing", 10s)) << listener.text();
+    }
+    Child slaves(cable.at_slaves({taktwerk, "sim", file, "--nic", "twk1"}));
+    ASSERT_TRUE(slaves.says("slaves of 'minimal'", 10s)) << slaves.text();
+    Child master(cable.at_master({taktwerk, "run", file}));
+    ASSERT_TRUE(master.says("running, manual mode", 30s)) << master.text() << slaves.text();
+
+    operate({"enable", "x", "--wait"});
+    operate({"home", "x", "--wait"});
+    EXPECT_THAT(operate({"jog", "x", "--velocity", "20", "--for", "600ms"}), HasSubstr("stands at 1"));  // 12 mm and the ramp
+    const auto state = operate({"monitor", "--once", "--json"});
+    EXPECT_THAT(state, HasSubstr("\"missed_ticks\":"));
+    EXPECT_THAT(state, HasSubstr("\"frames_lost\":"));
+
+    master.signal(SIGTERM);
+    EXPECT_EQ(master.wait(10s), exit_ok) << master.text();
+    slaves.signal(SIGTERM);
+    EXPECT_EQ(slaves.wait(10s), exit_ok) << slaves.text();
+    EXPECT_THAT(slaves.text(), HasSubstr("-> OP"));
+    EXPECT_THAT(slaves.text(), HasSubstr("frames answered, 0 not"));
+
+    if (tshark) {
+        listener.signal(SIGINT);
+        listener.wait(10s);
+        std::string malformed;
+        EXPECT_EQ(run({"tshark", "-r", capture, "-Y", "_ws.malformed"}, &malformed), 0) << malformed;
+        EXPECT_THAT(malformed, Not(HasSubstr("Malformed")));
+        std::string exchanges;  // LRW is command 12 (ETG.1000.4, table of commands)
+        EXPECT_EQ(run({"tshark", "-r", capture, "-Y", "ecat.cmd == 12", "-T", "fields", "-e", "frame.number"}, &exchanges), 0);
+        EXPECT_GT(std::count(exchanges.begin(), exchanges.end(), '\n'), 200) << exchanges;
+    }
+    std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace taktwerk::apps
