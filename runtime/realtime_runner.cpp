@@ -10,6 +10,7 @@ namespace {
 
 constexpr Duration service_period = std::chrono::milliseconds{1};
 constexpr Duration bring_up_patience = std::chrono::seconds{30};
+constexpr Duration bus_down_patience = std::chrono::seconds{5};
 
 }  // namespace
 
@@ -70,24 +71,30 @@ void RealtimeRunner::service() {
 Result<void> RealtimeRunner::serve(const std::function<bool(Instant)>& keep_on) {
     next_service_ = clock_.now();
     machine_.start_bus();
+    auto up = bring_up(keep_on);
+    while (up && machine_.phase() != MachinePhase::stopped) {
+        service();
+        if (!keep_on(clock_.now())) machine_.request_shutdown();
+    }
+    // However it ended: slaves are left in INIT, not to their watchdogs.
+    machine_.stop_bus();
+    const auto down = clock_.now() + bus_down_patience;
+    while (machine_.bus().phase() != ecat::Master::Phase::stopped && clock_.now() < down) service();
+    return up;
+}
+
+Result<void> RealtimeRunner::bring_up(const std::function<bool(Instant)>& keep_on) {
     const auto until = clock_.now() + bring_up_patience;
     while (!machine_.bus_operational()) {
         service();
         if (auto failure = machine_.bus_failure()) return *failure;
-        if (!keep_on(clock_.now())) return {};
+        if (!keep_on(clock_.now())) machine_.request_shutdown();
+        if (machine_.phase() == MachinePhase::stopped) return {};
         if (clock_.now() > until)
             return Error{"bus.timeout", "bus", fmt::format("not operational after {:.0f} s; last: {}", to_seconds(bring_up_patience), machine_.bus_progress()),
                          "look at the slave that this line names"};
     }
-    if (auto armed = machine_.arm(); !armed) return armed;
-    while (machine_.phase() != MachinePhase::stopped) {
-        service();
-        if (!keep_on(clock_.now())) machine_.request_shutdown();
-    }
-    machine_.stop_bus();
-    const auto down = clock_.now() + std::chrono::seconds{5};
-    while (machine_.bus().phase() != ecat::Master::Phase::stopped && clock_.now() < down) service();
-    return {};
+    return machine_.arm();
 }
 
 void RealtimeRunner::finish() {

@@ -25,8 +25,8 @@ public:
 
     /// Starts the threads; the report says what the system granted. Error when `realtime.required` and something was refused.
     [[nodiscard]] Result<RealtimeReport> start();
-    /// Called about each millisecond on the calling thread; returns when the machine has stopped, or `keep_on` says no.
-    /// Brings the bus up first; an error of the bring-up comes back.
+    /// `keep_on` is called about each millisecond on the calling thread; when it says no the axes stop, power goes off, the bus goes
+    /// down in order, and serve() returns. Brings the bus up first; an error of the bring-up comes back, the bus taken down.
     [[nodiscard]] Result<void> serve(const std::function<bool(Instant)>& keep_on);
     /// Ordered end; idempotent.
     void finish();
@@ -38,6 +38,7 @@ private:
     void cycle_thread();
     void task_thread(std::size_t index);
     void service();
+    Result<void> bring_up(const std::function<bool(Instant)>& keep_on);
 
     Machine& machine_;
     World* world_;
