@@ -11,8 +11,13 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
+#include "axes/port/drive_alarm_kind.hpp"
+#include "core/result.hpp"
 #include "core/time.hpp"
 
 namespace taktwerk::axes {
@@ -35,6 +40,14 @@ enum class SetpointClass : std::uint8_t {
     low_dynamics,  ///< speed steps at the pace of a poll schedule; no interpolation, no coupling (XP200)
 };
 
+/// Rare, guarded actions of a drive that no cycle asks for by itself.
+enum class DriveService : std::uint8_t {
+    clear_multi_turn,    ///< the encoder forgets its turns: the axis is unreferenced afterwards (TSVM bit 12, SV33-E P20.05, XP200: none)
+    save_parameters,     ///< into the EEPROM (SE-808X 1010h, XP200 FC41H); the drive may be silent for seconds
+    restore_parameters,  ///< to factory values
+    restart,             ///< the drive's own soft restart, where it has one
+};
+
 struct DriveCapabilities {
     std::uint16_t modes = 0;                 ///< bit per DriveMode
     SetpointClass setpoints = SetpointClass::cyclic;
@@ -54,8 +67,17 @@ struct DriveCapabilities {
     Duration mode_change_delay{};            ///< set-points must wait this long after the mode is confirmed
     bool mode_change_at_standstill = false;
     Duration feedback_period{};              ///< 0 = every bus cycle; else the poll period
+    // What the later drives need beyond it; a port that says nothing has none of it.
+    bool velocity_limit = false;             ///< 607Fh mapped (or Pr078): speed limit in torque modes
+    bool reports_following = false;          ///< DriveFeedback::follows_target means something
+    bool homing_per_run = false;             ///< DriveCommand::homing is obeyed; else the start-up values hold
+    std::uint8_t profile_buffer = 0;         ///< set-points the drive takes ahead in profile position mode (SV33-E 1, SV-DA200 8); 0: mode not served
+    std::uint8_t services = 0;               ///< bit per DriveService
+    double velocity_step = 0;                ///< counts/s between two velocity set-points the drive can tell apart (XP200: 1 r/min); 0 = none
+    Duration command_latency{};              ///< worst time from encode() to effect beyond setpoint_effective() (a slow line); 0 = none
 
     [[nodiscard]] constexpr bool has(DriveMode mode) const noexcept { return (modes >> static_cast<unsigned>(mode)) & 1u; }
+    [[nodiscard]] constexpr bool has(DriveService service) const noexcept { return (services >> static_cast<unsigned>(service)) & 1u; }
 };
 
 enum class PowerRequest : std::uint8_t {
@@ -73,6 +95,23 @@ struct ProbeCommand {
     ProbeEdge edge = ProbeEdge::rising;
 };
 
+/// One homing run other than the configured one; `method` 0: as configured. Ports that can only write it acyclically hold the
+/// start back until it is written.
+struct DriveHomingSetup {
+    std::int8_t method = 0;             ///< 6098h
+    double search_velocity = 0, latch_velocity = 0;  ///< counts/s
+    double acceleration = 0;            ///< counts/s2
+};
+
+/// A set-point for a drive that makes its own profile (PP). A changed `sequence` announces a new one; the port does the
+/// handshake (6040h bit 4 against 6041h bit 12) and answers with DriveFeedback::profile_accepted. Target, speed and ramps are
+/// the command's position, velocity, acceleration and deceleration.
+struct ProfileSetpoint {
+    std::uint32_t sequence = 0;         ///< 0: none
+    bool relative = false;
+    bool immediately = false;           ///< abandon the present one (bit 5; SE-808X means "blend after it", sheet 4.1)
+};
+
 /// What the axis wants in this cycle. Filled anew every cycle; a port needs no memory of earlier ones.
 struct DriveCommand {
     PowerRequest power = PowerRequest::off;
@@ -88,9 +127,14 @@ struct DriveCommand {
     bool halt = false;                  ///< controlword bit 8
     std::array<ProbeCommand, 2> probes{};
     std::uint32_t digital_outputs = 0, digital_output_mask = 0;
+    double velocity_limit = std::numeric_limits<double>::infinity();  ///< counts/s, torque modes; infinity = as at start-up
+    double torque_slope = 0;            ///< rated torques/s in profile torque mode; 0 = leave
+    DriveHomingSetup homing{};
+    ProfileSetpoint profile{};
 };
 
 struct ProbeFeedback {
+    bool armed = false;                 ///< the drive confirms that it waits for edges (false while a re-arming is under way)
     bool latched = false;
     std::uint16_t count = 0;            ///< latches since armed
     std::int64_t position = 0;          ///< counts at the edge
@@ -115,6 +159,13 @@ struct DriveFeedback {
     double velocity = 0;                ///< counts/s; from the drive, else differentiated
     double torque = 0;                  ///< fraction of rated
     bool homing_attained = false, homing_error = false;
+    bool follows_target = true;         ///< statusword bit 12 in cyclic modes, where it means that
+    /// Counts each time the position's zero may have become another: the drive was away and came back, homed, or lost its turns.
+    std::uint16_t position_epoch = 0;
+    /// The drive has acknowledged all that encode() asked that changes its state; false: still under way (polled drives).
+    bool commands_acknowledged = true;
+    std::uint32_t profile_accepted = 0; ///< sequence of the last profile set-point the drive has taken
+    bool setup_refused = false;         ///< the drive's settings forbid enabling it; setup_problems() says which
 
     bool has_inputs = false;
     bool negative_limit = false, positive_limit = false, home_switch = false;
@@ -130,7 +181,20 @@ struct DriveAlarm {
     std::int32_t entry = -1;            ///< index into the profile's alarm table; -1 = unknown code
     bool resettable = true;
     bool whole_drive = false;           ///< common to all axes of the drive
+    bool warning = false;               ///< announced while the drive goes on
+    DriveAlarmKind kind = DriveAlarmKind::other;
 };
+
+/// A parameter by its number: object index and sub-index, or a register (sub 0). Objects are named as for the first axis of a
+/// drive; the port adds the offset of its own. Names (P05.10, PA17, Pr098) are the profile's.
+struct ParameterAddress {
+    std::uint16_t index = 0;
+    std::uint8_t sub = 0;
+};
+/// A service request in flight; 0: refused at once (not supported, or not now).
+using ServiceTicket = std::uint32_t;
+/// Little-endian bytes of the value read; empty for everything else.
+using ServiceAnswer = std::vector<std::byte>;
 
 class DrivePort {
 public:
@@ -149,6 +213,30 @@ public:
     // --- service side; not real-time ------------------------------------------------------------------------------------
     /// Acyclic work of this drive: reading the detail of an alarm, parameters. Resumable, called often.
     virtual void step(Instant now) { (void)now; }
+
+    /// Reads a parameter. The answer comes through service_answer() in a later step().
+    [[nodiscard]] virtual ServiceTicket read_parameter(ParameterAddress address) {
+        (void)address;
+        return 0;
+    }
+    /// Writes a parameter as little-endian bytes, in the width the drive expects. Never an object that is mapped cyclically.
+    [[nodiscard]] virtual ServiceTicket write_parameter(ParameterAddress address, std::vector<std::byte> value) {
+        (void)address, (void)value;
+        return 0;
+    }
+    /// Starts a guarded service; refused (0) unless the drive is disabled and the capability is there. The caller has asked the
+    /// operator and logs it.
+    [[nodiscard]] virtual ServiceTicket start_service(DriveService service) {
+        (void)service;
+        return 0;
+    }
+    /// Nothing while it is in flight; afterwards the result, once.
+    [[nodiscard]] virtual std::optional<Result<ServiceAnswer>> service_answer(ServiceTicket ticket) {
+        (void)ticket;
+        return std::nullopt;
+    }
+    /// Settings of the drive with which it must not be enabled (SV-DA200 P0.03, P0.37; XP200 Pr097), in words.
+    [[nodiscard]] virtual std::vector<std::string> setup_problems() const { return {}; }
 };
 
 }  // namespace taktwerk::axes

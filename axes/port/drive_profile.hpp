@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "axes/port/drive_alarm_kind.hpp"
 #include "axes/port/drive_port.hpp"
 #include "core/time.hpp"
 
@@ -23,6 +24,12 @@ enum class Quirk : std::uint8_t {
 };
 inline constexpr std::size_t quirk_count = 7;
 
+/// How a drive brings its motor to rest by itself.
+enum class DriveStop : std::uint8_t {
+    coast,  ///< power off at once, the motor runs out
+    ramp,   ///< decelerates, then power off
+};
+
 struct DriveAlarmText {
     std::uint16_t code = 0;      ///< 603Fh
     std::uint32_t detail = 0;    ///< value of the further object that tells apart; 0 = code alone
@@ -30,6 +37,8 @@ struct DriveAlarmText {
     std::string english, chinese, cause, remedy;
     bool resettable = true;
     bool warning = false;
+    bool whole_drive = false;    ///< common to all axes of the drive (TSVM 603Fh 71..96)
+    DriveAlarmKind kind = DriveAlarmKind::other;
 };
 
 struct DriveProfile {
@@ -45,6 +54,15 @@ struct DriveProfile {
     Duration minimum_cycle_csp{};
     Duration enable_delay{}, mode_change_delay{}, enable_timeout = std::chrono::seconds{2};
     bool mode_change_at_standstill = false;
+    Duration mode_change_interval{};         ///< least time between two changes of 6060h (TSVM 5.4.1: 20 ms)
+    Duration mode_indeterminate{};           ///< 6061h means nothing this long after a change of 6060h (TSVM 5.4.1: 2 ms)
+    std::uint16_t enable_status_bits = 0;    ///< of 6041h, all set before Enable Operation (SV-DA200 3.1.2: bit 8 DC locked, bit 4 main power)
+    // What the drive does by itself; the simulator plays it, the axis plans with it.
+    Duration brake_release{};                ///< after enabling the brake still holds: earlier commands are lost (SV33-E P05.13)
+    Duration brake_hold{};                   ///< after disabling at standstill the motor holds until the brake does (SV33-E P05.14)
+    DriveStop off_stop = DriveStop::coast;   ///< power taken away while it moves (SV33-E P04.12 = 2: ramp)
+    DriveStop fault_stop = DriveStop::ramp;  ///< fault reaction (SE-808X 605Eh = 0: coast)
+    bool quick_stop_leaves = true;           ///< Quick Stop Active ends by itself in Switch On Disabled (SE-808X 3.2.1: it stays)
     bool csp_interpolates = true;            ///< reaches a CSP target one cycle after the SYNC0 that brought it
     std::uint16_t object_offset = 0x0800, pdo_offset = 0x40;  ///< per further axis of a multi-axis drive
     std::uint8_t axes = 1;

@@ -26,8 +26,11 @@ void Cia402Axis::power_on(Instant now) noexcept {
     now_ = now;
     mode_ = 0;
     error_code_ = 0;
+    error_detail_ = 0;
     error_resettable_ = true;
     last_control_ = 0;
+    encoder_failed_ = winding_down_ = false;
+    brake_closed_ = has_brake();
     homing_.abort();
     enter(State::disabled);
 }
@@ -36,8 +39,35 @@ double Cia402Axis::quantised() const noexcept { return std::floor(actual()); }
 
 SwitchStates Cia402Axis::switches() const noexcept { return {plant_.negative_limit(), plant_.positive_limit(), plant_.home_switch()}; }
 
+bool Cia402Axis::stands() const noexcept {
+    return std::abs(plant_.velocity()) < 0.01 * static_cast<double>(personality_.counts_per_revolution);
+}
+
+/// Power goes by command: the motor first stops, then holds until the brake does, as far as this drive does either.
+void Cia402Axis::wind_down() noexcept {
+    winding_down_ = personality_.off_stop == FaultStop::ramp || (has_brake() && stands());
+    winding_down_until_ = now_ + personality_.brake_hold;
+    if (winding_down_) demand_ = {plant_.position(), plant_.velocity(), 0};
+}
+
+void Cia402Axis::step_brake() noexcept {
+    if (winding_down_) {
+        if (!stands()) winding_down_until_ = now_ + personality_.brake_hold;
+        else if (now_ >= winding_down_until_) winding_down_ = false;
+    }
+    brake_closed_ = has_brake() && stands() && (state_ == State::enabled ? now_ < commands_from_ : !energised());
+    plant_.hold(brake_closed_);
+}
+
+bool Cia402Axis::too_early() noexcept { return now_ < commands_from_; }
+
 void Cia402Axis::enter(State state) noexcept {
+    const bool powered = state_ == State::enabled || state_ == State::quick_stop;
+    if (state == State::enabled) winding_down_ = false;
+    else if (powered && state != State::quick_stop && state != State::fault_reaction && state != State::not_ready) wind_down();
+    else if (state == State::not_ready || state == State::fault_reaction) winding_down_ = false;
     if (state == State::enabled && state_ != State::enabled) {
+        commands_from_ = now_ + personality_.brake_release;
         demand_ = {plant_.position(), 0, 0};
         target_ = plant_.position();
         steps_left_ = 0;
@@ -50,21 +80,37 @@ void Cia402Axis::enter(State state) noexcept {
     state_ = state;
 }
 
-void Cia402Axis::raise(std::uint16_t code, bool resettable) noexcept {
+void Cia402Axis::raise(std::uint16_t code, bool resettable, std::uint32_t detail) noexcept {
     if (state_ == State::fault || state_ == State::fault_reaction) return;  // the first alarm is the one shown
     error_code_ = code;
+    error_detail_ = detail;
     error_resettable_ = resettable;
     enter(energised() ? State::fault_reaction : State::fault);
 }
 
+void Cia402Axis::fail(Failure failure) noexcept {
+    switch (failure) {
+        case Failure::overspeed: raise(personality_.overspeed_alarm); break;
+        case Failure::following_error: raise(personality_.following_error_alarm); break;
+        case Failure::undervoltage: raise(personality_.undervoltage_alarm); break;
+        case Failure::overload: raise(personality_.overload_alarm); break;
+        case Failure::communication: raise(personality_.communication_alarm); break;
+        case Failure::encoder:
+            frozen_position_ = static_cast<std::int64_t>(quantised());
+            encoder_failed_ = true;
+            raise(personality_.encoder_alarm);
+            break;
+    }
+}
+
 void Cia402Axis::main_power(bool on) noexcept {
     main_power_ = on;
-    if (!on && (state_ == State::enabled || state_ == State::quick_stop)) raise(personality_.undervoltage_code);
+    if (!on && (state_ == State::enabled || state_ == State::quick_stop)) raise(personality_.undervoltage_alarm);
 }
 
 void Cia402Axis::communication_lost() noexcept {
     operational_ = false;
-    if (state_ == State::enabled || state_ == State::quick_stop) raise(personality_.communication_code);
+    if (state_ == State::enabled || state_ == State::quick_stop) raise(personality_.communication_alarm);
     else if (state_ == State::ready || state_ == State::switched_on) enter(State::disabled);
 }
 
@@ -74,9 +120,10 @@ void Cia402Axis::command(const AxisInputs& in) noexcept {
     last_control_ = word;
     if (state_ == State::fault) {
         const bool dropped = !personality_.reset_needs_disable || (word & 0x0Fu) != 0x0Fu;
-        const bool cause_gone = main_power_ || error_code_ != personality_.undervoltage_code;
+        const bool cause_gone = !encoder_failed_ && (main_power_ || error_code_ != personality_.undervoltage_alarm.code);
         if (reset_edge && dropped && error_resettable_ && cause_gone) {
             error_code_ = 0;
+            error_detail_ = 0;
             enter(State::disabled);
         }
         return;
@@ -133,10 +180,14 @@ void Cia402Axis::select_mode(const AxisInputs& in) noexcept {
 void Cia402Axis::take_position_target(const AxisInputs& in, double seconds) noexcept {
     const double wanted = static_cast<double>(in.target_position) + zero_;
     const double increment = std::abs(wanted - target_);
+    if (too_early()) {  // the drive does not listen yet; what was lost shows as a leap afterwards
+        if (increment >= 1) ++early_commands_;
+        return;
+    }
     largest_increment_ = std::max(largest_increment_, increment);
     if (personality_.maximum_velocity > 0 && increment > increment_factor * personality_.maximum_velocity * seconds) {
         if (++strikes_ >= allowed_strikes) {
-            raise(personality_.increment_code);
+            raise(personality_.increment_alarm);
             return;
         }
     } else {
@@ -165,13 +216,23 @@ void Cia402Axis::take_targets(const AxisInputs& in, Duration cycle) noexcept {
     switch (mode_) {
         case 8: take_position_target(in, to_seconds(cycle)); break;
         case 3:
-        case 9: velocity_demand_ = static_cast<double>(in.target_velocity + in.velocity_offset) / personality_.velocity_counts_per_unit; break;
+        case 9:
+            if (too_early()) {
+                if (in.target_velocity != 0) ++early_commands_;
+                break;
+            }
+            velocity_demand_ = static_cast<double>(in.target_velocity + in.velocity_offset) / personality_.velocity_counts_per_unit;
+            break;
         case 4:
         case 10:
             torque_demand_ = static_cast<double>(in.target_torque + in.torque_offset) / personality_.torque_rated_raw * plant_.config().rated_torque;
             break;
         case 6: {
             const bool start = (in.control & 0x10u) != 0;
+            if (start && homing_.state() == HomingRun::State::idle && too_early()) {
+                ++early_commands_;
+                break;
+            }
             const auto state = homing_.state();
             if (start && state == HomingRun::State::idle) {
                 homing_attained_ = homing_error_ = false;
@@ -230,15 +291,16 @@ void Cia402Axis::inner_step() noexcept {
             torque_ = loop_.position_control(plant_, demand_, quantised() + zero_, torque_limit(), dt);
         }
     }
+    step_brake();
     plant_.step(dt, torque_);
 
-    const double slow = 0.01 * static_cast<double>(personality_.counts_per_revolution);
-    if (state_ == State::fault_reaction && (personality_.fault_stop == FaultStop::coast || std::abs(plant_.velocity()) < slow)) enter(State::fault);
-    if (state_ == State::quick_stop && personality_.quick_stop_leaves && demand_.velocity == 0 && std::abs(plant_.velocity()) < slow)
-        enter(State::disabled);
+    if (state_ == State::fault_reaction && (personality_.fault_stop == FaultStop::coast || stands())) enter(State::fault);
+    if (state_ == State::quick_stop && personality_.quick_stop_leaves && demand_.velocity == 0 && stands()) enter(State::disabled);
+    if (state_ == State::enabled && personality_.overspeed > 0 && std::abs(plant_.velocity()) > personality_.overspeed)
+        raise(personality_.overspeed_alarm);
     if (state_ == State::enabled && personality_.following_error_limit > 0 && (mode_ == 8 || mode_ == 6) &&
         std::abs(demand_.position - plant_.position()) > personality_.following_error_limit)
-        raise(personality_.following_error_code);
+        raise(personality_.following_error_alarm);
 }
 
 void Cia402Axis::advance(Instant now) noexcept {
@@ -270,13 +332,12 @@ std::uint16_t Cia402Axis::status_word() const noexcept {
     if (main_power_) word |= bit(4);
     if (warning_) word |= bit(7);
     if (personality_.remote_bit && operational_) word |= bit(9);
-    const bool stands = std::abs(plant_.velocity()) < 0.01 * static_cast<double>(personality_.counts_per_revolution);
     if (mode_ == 6) {
-        if (stands && homing_.state() != HomingRun::State::moving && homing_.state() != HomingRun::State::stopping) word |= bit(10);
+        if (stands() && homing_.state() != HomingRun::State::moving && homing_.state() != HomingRun::State::stopping) word |= bit(10);
         if (homing_attained_) word |= bit(12);
         if (homing_error_) word |= bit(13);
     } else {
-        if (state_ == State::enabled && stands && std::abs(demand_.position - plant_.position()) < 10) word |= bit(10);
+        if (state_ == State::enabled && stands() && std::abs(demand_.position - plant_.position()) < 10) word |= bit(10);
         if (mode_ == 8 && personality_.csp_following_bits && state_ == State::enabled) word |= bit(12);
     }
     if (personality_.home_found_bit_15 && homed_) word |= bit(15);
@@ -286,12 +347,13 @@ std::uint16_t Cia402Axis::status_word() const noexcept {
 void Cia402Axis::fill(AxisOutputs& out) const noexcept {
     out.status = status_word();
     out.mode = mode_;
-    out.position = static_cast<std::int64_t>(quantised());
+    out.position = encoder_failed_ ? frozen_position_ : static_cast<std::int64_t>(quantised());
     out.velocity = std::llround(plant_.velocity() * personality_.velocity_counts_per_unit);
     out.torque = std::llround(torque_ / plant_.config().rated_torque * personality_.torque_rated_raw);
     out.demand = static_cast<std::int64_t>(std::floor(demand_.position - zero_));
     out.following_error = out.demand - out.position;
     out.error_code = error_code_;
+    out.error_detail = error_detail_;
     out.digital_inputs = (plant_.negative_limit() ? 1u : 0u) | (plant_.positive_limit() ? 2u : 0u) | (plant_.home_switch() ? 4u : 0u);
 }
 

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "axes/port/drive_profile.hpp"
 #include "axes/sim/homing_run.hpp"
 #include "axes/sim/plant.hpp"
 #include "axes/sim/servo_loop.hpp"
@@ -12,10 +13,18 @@
 
 namespace taktwerk::axes::sim {
 
-enum class FaultStop : std::uint8_t {
-    coast,  ///< power stage off at once (SE-808X 605Eh = 0)
-    ramp,   ///< decelerates, then off
+/// How a drive takes power from a motor that may still move; SE-808X 605Eh = 0 coasts, SV33-E P04.12 = 2 ramps.
+using FaultStop = DriveStop;
+
+/// Alarms that the drive finds out by itself.
+struct AlarmCode {
+    std::uint16_t code = 0;
+    bool resettable = true;
+    std::uint32_t detail = 0;  ///< what the detail object shows (P21.08)
 };
+
+/// A way in which a drive fails at once, whatever it is doing. How it shows and whether it clears is the personality's.
+enum class Failure : std::uint8_t { overspeed, following_error, undervoltage, overload, encoder, communication };
 
 /// How this drive type behaves where CiA 402 leaves room.
 struct Personality {
@@ -32,13 +41,22 @@ struct Personality {
     bool limit_stop_is_warning = false;         ///< overtravel: stop with position lock, warning, still enabled
     bool quick_stop_leaves = true;              ///< after the quick stop: Switch On Disabled by itself
     FaultStop fault_stop = FaultStop::ramp;
+    FaultStop off_stop = FaultStop::coast;      ///< power taken away by command while it moves
+    /// The holding brake opens this long after enabling; set-points and homing starts before are lost (SV33-E 3.1.2, P05.13).
+    Duration brake_release{};
+    /// After power is taken at standstill the motor holds this long until the brake does (SV33-E P05.14). 0: no brake.
+    Duration brake_hold{};
     double quick_stop_deceleration = 0;         ///< counts/s2; 0 = torque limit
     double following_error_limit = 0;           ///< counts; 0 = no check
     double maximum_velocity = 0;                ///< counts/s; CSP increments beyond 3 times that are counted; 0 = no check
-    std::uint16_t following_error_code = 0x8611;
-    std::uint16_t increment_code = 0x0424;
-    std::uint16_t undervoltage_code = 0x3220;
-    std::uint16_t communication_code = 0x7500;
+    double overspeed = 0;                       ///< counts/s beyond which the measured speed is an alarm; 0 = no check
+    AlarmCode following_error_alarm{0x8611};
+    AlarmCode increment_alarm{0x0424};
+    AlarmCode undervoltage_alarm{0x3220};
+    AlarmCode communication_alarm{0x7500};
+    AlarmCode overspeed_alarm{0x8400};
+    AlarmCode overload_alarm{0x3230};
+    AlarmCode encoder_alarm{0x7305, false};
     std::uint16_t negative_limit_code = 0x5444, positive_limit_code = 0x5443;
 };
 
@@ -58,6 +76,7 @@ struct AxisOutputs {
     std::int64_t mode = 0;
     std::int64_t position = 0, velocity = 0, torque = 0, following_error = 0, demand = 0;
     std::uint16_t error_code = 0;
+    std::uint32_t error_detail = 0;
     std::uint32_t digital_inputs = 0;
 };
 
@@ -80,7 +99,11 @@ public:
 
     // --- the outside world -----------------------------------------------------------------------------------------------
     /// An alarm of the drive; `resettable` false needs a power cycle. It stays until it is reset.
-    void raise(std::uint16_t code, bool resettable = true) noexcept;
+    void raise(std::uint16_t code, bool resettable = true, std::uint32_t detail = 0) noexcept;
+    void raise(const AlarmCode& alarm) noexcept { raise(alarm.code, alarm.resettable, alarm.detail); }
+    /// One of the failures every drive knows, with this drive's own alarm. An encoder that failed shows the same position for
+    /// ever after, until power_on().
+    void fail(Failure failure) noexcept;
     void main_power(bool on) noexcept;
     void jam(bool jammed) noexcept { plant_.jam(jammed); }
 
@@ -88,6 +111,9 @@ public:
     [[nodiscard]] State state() const noexcept { return state_; }
     /// Largest CSP target step between two exchanges while enabled, counts. What a jump of the master would show in.
     [[nodiscard]] double largest_increment() const noexcept { return largest_increment_; }
+    /// Set-points and homing starts that came before the brake was open and were lost. A careful master causes none.
+    [[nodiscard]] std::uint32_t early_commands() const noexcept { return early_commands_; }
+    [[nodiscard]] bool brake_closed() const noexcept { return brake_closed_; }
 
 private:
     void command(const AxisInputs& in) noexcept;
@@ -103,9 +129,14 @@ private:
     [[nodiscard]] SwitchStates switches() const noexcept;
     [[nodiscard]] double torque_limit() const noexcept { return plant_.config().rated_torque * plant_.config().maximum_torque; }
     [[nodiscard]] bool energised() const noexcept {
-        return state_ == State::enabled || state_ == State::quick_stop ||
+        return state_ == State::enabled || state_ == State::quick_stop || winding_down_ ||
                (state_ == State::fault_reaction && personality_.fault_stop == FaultStop::ramp);
     }
+    [[nodiscard]] bool has_brake() const noexcept { return personality_.brake_hold > Duration::zero(); }
+    [[nodiscard]] bool too_early() noexcept;
+    [[nodiscard]] bool stands() const noexcept;
+    void wind_down() noexcept;
+    void step_brake() noexcept;
     void fill(AxisOutputs& out) const noexcept;
     [[nodiscard]] std::uint16_t status_word() const noexcept;
 
@@ -123,11 +154,18 @@ private:
     std::int64_t steps_left_ = 0;     ///< inner steps until the target is reached
     double torque_ = 0, torque_demand_ = 0, velocity_demand_ = 0;
     std::uint16_t last_control_ = 0, error_code_ = 0;
+    std::uint32_t error_detail_ = 0;
     bool error_resettable_ = true, main_power_ = true, operational_ = false, homed_ = false, warning_ = false;
     bool homing_attained_ = false, homing_error_ = false;
     std::int64_t home_offset_ = 0;
     std::uint32_t strikes_ = 0;
     double largest_increment_ = 0;
+    Instant commands_from_{};         ///< the brake is open from here on
+    bool winding_down_ = false;       ///< power is to go, but the motor still stops or holds for the brake
+    Instant winding_down_until_{};
+    bool brake_closed_ = false, encoder_failed_ = false;
+    std::int64_t frozen_position_ = 0;
+    std::uint32_t early_commands_ = 0;
 };
 
 }  // namespace taktwerk::axes::sim

@@ -24,6 +24,32 @@ Personality personality_of(const DriveProfile& profile, std::int64_t counts_per_
     p.fault_pattern_f = profile.has(Quirk::fault_low_nibble_f);
     p.reset_needs_disable = profile.has(Quirk::fault_reset_needs_disable);
     p.limit_stop_is_warning = profile.has(Quirk::limit_stop_is_warning);
+    p.fault_stop = profile.fault_stop;
+    p.off_stop = profile.off_stop;
+    p.quick_stop_leaves = profile.quick_stop_leaves;
+    p.brake_release = profile.brake_release;
+    p.brake_hold = profile.brake_hold;
+    // The first row of a kind is this drive's own alarm for it; kinds that the profile does not mark keep the usual codes.
+    const auto own = [&](DriveAlarmKind kind, AlarmCode& alarm) {
+        for (const auto& row : profile.alarms)
+            if (row.kind == kind) {
+                alarm = {row.code, row.resettable, row.detail};
+                return;
+            }
+    };
+    own(DriveAlarmKind::following_error, p.following_error_alarm);
+    own(DriveAlarmKind::setpoint_leap, p.increment_alarm);
+    own(DriveAlarmKind::undervoltage, p.undervoltage_alarm);
+    own(DriveAlarmKind::communication, p.communication_alarm);
+    own(DriveAlarmKind::overspeed, p.overspeed_alarm);
+    own(DriveAlarmKind::overload, p.overload_alarm);
+    own(DriveAlarmKind::encoder, p.encoder_alarm);
+    AlarmCode limit;
+    own(DriveAlarmKind::negative_limit, limit);
+    if (limit.code) p.negative_limit_code = limit.code;
+    limit = {};
+    own(DriveAlarmKind::positive_limit, limit);
+    if (limit.code) p.positive_limit_code = limit.code;
     return p;
 }
 
@@ -58,6 +84,7 @@ void Cia402Device::power_off(Instant now) {
 
 std::uint16_t Cia402Device::refuse(ecat::sim::EsmState from, ecat::sim::EsmState to, const ecat::sim::SyncSettings& settings) {
     if (settings.sync0_active) cycle_ = settings.sync0_cycle;
+    if (refused_code_ != 0 && to == refused_state_) return refused_code_;
     // 0036h: invalid SYNC0 cycle time (ETG.1000.6 table of AL status codes).
     if (to == ecat::sim::EsmState::safeop && from == ecat::sim::EsmState::preop && settings.sync0_active && settings.sync0_cycle < minimum_cycle_)
         return 0x0036;
@@ -110,8 +137,8 @@ void Cia402Device::exchange(Instant) {
         put(o.error_code, out.error_code);
         put(o.digital_inputs, out.digital_inputs);
         if (alarm_detail_) {
-            std::int64_t detail = 0;
-            if (out.error_code)
+            std::int64_t detail = out.error_detail;
+            if (out.error_code && detail == 0)
                 for (const auto& row : alarms_)
                     if (row.code == out.error_code) {
                         detail = row.detail;

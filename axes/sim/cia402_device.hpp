@@ -33,6 +33,12 @@ public:
     void advance(Instant now) override;
     void outputs_lost(Instant now) override;
 
+    /// From now on the drive refuses this state with this AL status code; code 0: no more.
+    void refuse_state(ecat::sim::EsmState state, std::uint16_t al_status_code) noexcept {
+        refused_state_ = state;
+        refused_code_ = al_status_code;
+    }
+
     [[nodiscard]] Cia402Axis& axis(std::size_t index) { return *axes_[index].model; }
     [[nodiscard]] std::size_t axis_count() const noexcept { return axes_.size(); }
 
@@ -56,6 +62,8 @@ private:
     Duration minimum_cycle_;
     Duration cycle_{std::chrono::milliseconds{1}};
     bool operational_ = false;
+    ecat::sim::EsmState refused_state_ = ecat::sim::EsmState::op;
+    std::uint16_t refused_code_ = 0;
 };
 
 }  // namespace taktwerk::axes::sim

@@ -11,7 +11,7 @@ Plant::Plant(const PlantConfig& config) noexcept
       position_(config.start) {}
 
 void Plant::step(double dt, double torque) noexcept {
-    if (jammed_) {
+    if (jammed_ || held_) {
         velocity_ = 0;
         return;
     }

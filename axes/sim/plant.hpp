@@ -21,6 +21,8 @@ public:
     [[nodiscard]] const PlantConfig& config() const noexcept { return config_; }
     /// A jammed mechanism does not move whatever the torque.
     void jam(bool jammed) noexcept { jammed_ = jammed; }
+    /// A holding brake: the axis stands whatever the torque. Called each step; apart from a jam.
+    void hold(bool held) noexcept { held_ = held; }
     /// Torque that accelerates the load by `counts_per_s2`, without friction: what a tuned drive feeds forward.
     [[nodiscard]] double torque_for(double counts_per_s2) const noexcept { return counts_per_s2 * rad_per_count_ * config_.inertia; }
 
@@ -28,7 +30,7 @@ private:
     PlantConfig config_;
     double rad_per_count_;
     double position_, velocity_ = 0;
-    bool jammed_ = false;
+    bool jammed_ = false, held_ = false;
 };
 
 }  // namespace taktwerk::axes::sim

@@ -3,12 +3,17 @@
 // units, timing, bit positions. One object per axis; a six-axis drive gives six, each at its object offset.
 
 #include <array>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <string>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
 
+#include "axes/drives/cia402/alarm_reader.hpp"
+#include "axes/drives/cia402/mapped_output.hpp"
+#include "axes/drives/cia402/probe_latch.hpp"
 #include "axes/port/drive_port.hpp"
 #include "axes/port/drive_profile.hpp"
 #include "core/process_image.hpp"
@@ -25,7 +30,8 @@ public:
     Cia402Drive(ecat::Master& bus, std::size_t slave, std::uint8_t axis, std::shared_ptr<const DriveProfile> profile, Duration cycle);
 
     /// Finds the mapped objects; call once the bus has laid out its process image. Errors name the missing object and the
-    /// PDO that should carry it.
+    /// PDO that should carry it. Mapped objects that nobody writes each cycle start at what the start-up list or else the
+    /// dictionary says: a zero there would override it (SE-808X 6081h, 6083h, 6084h; SV33-E 607Fh).
     [[nodiscard]] Result<void> resolve();
 
     [[nodiscard]] const DriveCapabilities& capabilities() const noexcept override { return capabilities_; }
@@ -34,11 +40,15 @@ public:
     [[nodiscard]] Instant setpoint_effective(Instant send_time) const noexcept override;
     [[nodiscard]] DriveAlarm alarm() const noexcept override;
     void step(Instant now) override;
+    [[nodiscard]] ServiceTicket read_parameter(ParameterAddress address) override;
+    [[nodiscard]] ServiceTicket write_parameter(ParameterAddress address, std::vector<std::byte> value) override;
+    [[nodiscard]] std::optional<Result<ServiceAnswer>> service_answer(ServiceTicket ticket) override;
 
 private:
     struct Outputs {
-        Signal control, mode, target_position, target_velocity, target_torque, velocity_offset, torque_offset, torque_max,
-            torque_positive, torque_negative, digital, probe_function, profile_velocity, profile_acceleration, profile_deceleration;
+        MappedOutput control, mode, target_position, target_velocity, target_torque, velocity_offset, torque_offset, torque_max,
+            torque_positive, torque_negative, digital, probe_function, profile_velocity, profile_acceleration, profile_deceleration,
+            velocity_limit, torque_slope;
     };
     struct Inputs {
         Signal status, mode, position, velocity, torque, error, digital, probe_status;
@@ -46,13 +56,20 @@ private:
     };
 
     [[nodiscard]] std::uint16_t object(std::uint16_t base) const noexcept;
-    void decode_position(Instant now) noexcept;
-    void decode_homing(std::uint16_t status) noexcept;
+    [[nodiscard]] bool find_output(MappedOutput& output, std::uint16_t index, std::uint8_t sub, bool is_signed) const;
+    [[nodiscard]] bool find_input(Signal& signal, std::uint16_t index, std::uint8_t sub, bool is_signed) const;
+    void find_probes();
+    void drop_modes_without_target() noexcept;
+    void collect_starting_values();
+    void decode_motion() noexcept;
+    void decode_homing(std::uint16_t status, Instant now) noexcept;
     void decode_probes() noexcept;
-    void note_alarm() noexcept;
     [[nodiscard]] std::uint16_t control_word(const DriveCommand& command, bool mode_confirmed) noexcept;
     [[nodiscard]] std::uint16_t fault_reset_word() noexcept;
-    void write_probes(const DriveCommand& command) noexcept;
+    [[nodiscard]] DriveMode mode_to_send(DriveMode wanted, Instant now) noexcept;
+    void write_targets(std::span<std::byte> image, const DriveCommand& command, bool follows) const noexcept;
+    void write_limits(std::span<std::byte> image, const DriveCommand& command) const noexcept;
+    void write_probes(std::span<std::byte> image, const DriveCommand& command) noexcept;
 
     ecat::Master& bus_;
     std::size_t slave_;
@@ -64,19 +81,22 @@ private:
     Inputs in_;
     DriveCapabilities capabilities_;
     DriveFeedback feedback_;
-    bool position_known_ = false;
-    std::int64_t raw_position_ = 0;
-    Instant position_at_{};
-    std::uint32_t reset_cycle_ = 0;
-    std::uint32_t homing_cycles_ = 0;   // fresh cycles since bit 4 was set; attained bits of an earlier homing are ignored
-    bool homing_cleared_ = false;
-    DriveAlarm alarm_;
+    std::vector<std::pair<Signal, std::int64_t>> starting_values_;
+    bool started_ = false;
 
-    // The detail of an ambiguous alarm is read acyclically: the cycle names the code, the service side answers.
-    std::atomic<std::uint16_t> detail_wanted_{0};
-    std::atomic<std::uint64_t> detail_answer_{0};  // code << 32 | detail
-    ecat::SdoTicket detail_ticket_ = 0;
-    std::uint16_t detail_asked_ = 0;
+    bool was_online_ = false, position_seeded_ = false;
+    std::int64_t anchor_ = 0, anchor_raw_ = 0;  // unwrapped position and raw value of the last cycle that counted
+    Instant position_at_{};
+
+    DriveMode sent_mode_ = DriveMode::none;
+    std::optional<Instant> mode_sent_at_;
+    Instant mode_means_something_from_{};
+
+    std::uint32_t reset_cycle_ = 0;
+    std::optional<Instant> homing_since_;       // bit 4 was set; attained bits of an earlier homing are ignored
+    bool homing_cleared_ = false;
+    std::array<ProbeLatch, 2> probes_{};
+    AlarmReader alarm_;
 };
 
 }  // namespace taktwerk::axes::cia402

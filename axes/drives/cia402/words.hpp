@@ -24,6 +24,7 @@ inline constexpr std::uint16_t bit_voltage = 1u << 4;
 inline constexpr std::uint16_t bit_warning = 1u << 7;
 inline constexpr std::uint16_t bit_target_reached = 1u << 10;
 inline constexpr std::uint16_t bit_internal_limit = 1u << 11;
+inline constexpr std::uint16_t bit_follows_target = 1u << 12;   ///< cyclic modes; SE-808X and SV-DA200 leave it open
 inline constexpr std::uint16_t bit_homing_attained = 1u << 12;
 inline constexpr std::uint16_t bit_homing_error = 1u << 13;
 

@@ -1,59 +1,11 @@
 // The simulated axis against the manuals' state machines and homing tables, driven by its objects alone.
 
-#include "axes/sim/cia402_axis.hpp"
-
-#include <cmath>
-
 #include <gtest/gtest.h>
+
+#include "tests/axes/sim/axis_bench.hpp"
 
 namespace taktwerk::axes::sim {
 namespace {
-
-using namespace std::chrono_literals;
-
-PlantConfig table() {
-    PlantConfig plant;
-    plant.counts_per_revolution = 10000;
-    plant.negative_limit = -50000;
-    plant.positive_limit = 50000;
-    plant.home_from = 0;
-    plant.home_to = 5000;
-    return plant;
-}
-
-/// Exchanges each millisecond, as a master with a 1 ms cycle does.
-struct Bench {
-    Cia402Axis axis;
-    AxisInputs in;
-    AxisOutputs out;
-    Instant now{};
-
-    explicit Bench(PlantConfig plant = table(), Personality personality = {}) : axis(plant, personality) {
-        axis.power_on(now);
-        axis.operational(true);
-        in.mode = 8;
-        cycle();
-    }
-    void cycle() {
-        now += 1ms;
-        axis.advance(now);
-        axis.exchange(in, 1ms, out);
-    }
-    void run(int cycles) {
-        for (int i = 0; i < cycles; ++i) cycle();
-    }
-    void command(std::uint16_t word, int cycles = 3) {
-        in.control = word;
-        run(cycles);
-    }
-    void enable() {
-        command(6);
-        command(7);
-        in.target_position = out.position;
-        command(15);
-    }
-    [[nodiscard]] unsigned state() const { return out.status & 0x6Fu; }
-};
 
 // SV33-E manual 3.4.1: 6 -> 7 -> 15 through Ready (21h), Switched On (23h), Operation Enabled (27h).
 TEST(SimulatedAxis, EnablesBy6Then7Then15) {
@@ -166,7 +118,7 @@ TEST(SimulatedAxis, LeapingTargetsTripAfterThreeStrikes) {
 
 TEST(SimulatedAxis, LosingTheBusWhileEnabledIsAnAlarm) {
     Personality p;
-    p.communication_code = 0x0D26;  // SV33-E E.D26
+    p.communication_alarm = {0x0D26};  // SV33-E E.D26
     Bench b{table(), p};
     b.enable();
     b.axis.communication_lost();
@@ -212,77 +164,6 @@ TEST(SimulatedAxis, OvertravelAsWarningHoldsAndAllowsRetreat) {
     }
     EXPECT_EQ(b.out.error_code, 0);
     EXPECT_FALSE(b.out.digital_inputs & 2u);
-}
-
-struct HomingCase {
-    int method;
-    double start;
-    double expected_edge;   // machine coordinate of the reference
-    bool first_forward;     // which way it sets out
-};
-
-// Expected edges and first directions by hand from the table of SV33-E manual 3.4.3(9) / SE-808X manual 3.2.7, for a travel with
-// limits at -50000 / +50000 and a home switch active from 0 to 5000.
-class Homing : public ::testing::TestWithParam<HomingCase> {};
-
-TEST_P(Homing, EndsAtTheEdgeOfTheTableAndSetsOutTheRightWay) {
-    const auto& c = GetParam();
-    auto plant = table();
-    plant.start = c.start;
-    Bench b{plant};
-    b.in.homing = {c.method, 40000, 4000, 400000};
-    b.in.home_offset = 700;
-    b.enable();
-    b.in.mode = 6;
-    b.run(3);
-    ASSERT_EQ(b.out.mode, 6);
-    const double before = b.axis.plant().position();
-    b.in.control = 0x1F;
-    b.run(60);
-    EXPECT_EQ(b.axis.plant().position() > before, c.first_forward);
-    for (int i = 0; i < 20000 && !(b.out.status & (1u << 12)); ++i) b.cycle();
-    b.run(100);
-
-    ASSERT_TRUE(b.out.status & (1u << 12)) << "attained";
-    EXPECT_TRUE(b.out.status & (1u << 10));
-    EXPECT_FALSE(b.out.status & (1u << 13));
-    // The edge has the coordinate of 607Ch: the actual position tells where the edge was taken. One inner step at 4000 counts/s is
-    // half a count, at 40000 counts/s five.
-    const double edge = b.axis.plant().position() - static_cast<double>(b.out.position) + 700;
-    EXPECT_NEAR(edge, c.expected_edge, 8.0);
-}
-
-INSTANTIATE_TEST_SUITE_P(Methods17To22, Homing,
-                         ::testing::Values(HomingCase{17, 0, -50000, false}, HomingCase{17, -50500, -50000, true},
-                                           HomingCase{18, 0, 50000, true}, HomingCase{18, 50500, 50000, false},
-                                           HomingCase{19, -20000, 0, true}, HomingCase{19, 2500, 0, false},
-                                           HomingCase{20, -2000, 0, true}, HomingCase{20, 2500, 0, false},
-                                           HomingCase{21, 20000, 5000, false}, HomingCase{21, 2500, 5000, true},
-                                           HomingCase{22, 7000, 5000, false}, HomingCase{22, 2500, 5000, true}));
-
-TEST(HomingRun, AnUnknownMethodIsAHomingError) {
-    Bench b;
-    b.in.homing = {15, 40000, 4000, 400000};  // SV33-E: 15 is reserved
-    b.enable();
-    b.in.mode = 6;
-    b.run(3);
-    b.command(0x1F);
-    EXPECT_TRUE(b.out.status & (1u << 13));
-    EXPECT_FALSE(b.out.status & (1u << 12));
-}
-
-TEST(HomingRun, ALimitOnTheWayToTheHomeSwitchIsAHomingErrorAndTheAxisStops) {
-    auto plant = table();
-    plant.start = 20000;  // right of the switch, method 19 searches forward
-    Bench b{plant};
-    b.in.homing = {19, 40000, 4000, 400000};
-    b.enable();
-    b.in.mode = 6;
-    b.run(3);
-    b.command(0x1F, 3000);
-    EXPECT_TRUE(b.out.status & (1u << 13));
-    EXPECT_NEAR(b.axis.plant().velocity(), 0, 1.0);
-    EXPECT_LT(b.axis.plant().position(), 54000);
 }
 
 TEST(SimulatedAxis, AModeSwitchNeverMovesTheMotor) {

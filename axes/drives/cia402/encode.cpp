@@ -1,0 +1,132 @@
+// Command -> raw fields, each cycle.
+
+#include <algorithm>
+#include <cmath>
+
+#include "axes/drives/cia402/cia402_drive.hpp"
+#include "axes/drives/cia402/words.hpp"
+
+namespace taktwerk::axes::cia402 {
+
+namespace {
+
+// A reset edge is held this long, then taken back as long, then tried again while it is still asked for. TSVM and SV33-E
+// ignore every other command while bit 7 stands.
+constexpr std::uint32_t reset_low_cycles = 4;
+constexpr std::uint32_t reset_high_cycles = 4;
+constexpr std::uint32_t reset_wait_cycles = 100;
+
+bool position_mode(DriveMode mode) noexcept { return mode == DriveMode::cyclic_position || mode == DriveMode::profile_position; }
+bool velocity_mode(DriveMode mode) noexcept { return mode == DriveMode::cyclic_velocity || mode == DriveMode::profile_velocity; }
+bool torque_mode(DriveMode mode) noexcept { return mode == DriveMode::cyclic_torque || mode == DriveMode::profile_torque; }
+
+}  // namespace
+
+std::uint16_t Cia402Drive::fault_reset_word() noexcept {
+    const auto phase = reset_cycle_++ % (reset_low_cycles + reset_high_cycles + reset_wait_cycles);
+    return phase >= reset_low_cycles && phase < reset_low_cycles + reset_high_cycles ? fault_reset : disable_voltage;
+}
+
+std::uint16_t Cia402Drive::control_word(const DriveCommand& command, bool mode_confirmed) noexcept {
+    const bool unknown = feedback_.power == PowerState::unknown;
+    if (feedback_.fault || unknown) {
+        // A drive that clears this alarm by a power cycle only is not pestered with edges (TSVM 7, note on starred alarms).
+        if (command.reset_fault && alarm_.alarm().resettable) return fault_reset_word();
+        reset_cycle_ = 0;
+        // Whatever it is doing in a state nobody knows: a motor that runs is stopped rather than let go.
+        return unknown && !feedback_.fault ? quick_stop : disable_voltage;
+    }
+    reset_cycle_ = 0;
+
+    switch (command.power) {
+        case PowerRequest::off: return towards_off(feedback_.power);
+        case PowerRequest::quick_stop:
+            return feedback_.power == PowerState::enabled || feedback_.power == PowerState::quick_stop ? quick_stop : towards_off(feedback_.power);
+        case PowerRequest::on: break;
+    }
+    const auto needed = profile_->enable_status_bits;
+    const bool may_enable = mode_confirmed && (feedback_.status_word & needed) == needed;
+    std::uint16_t word = towards_enabled(feedback_.power, may_enable);
+    if (feedback_.power == PowerState::enabled) {
+        if (command.mode == DriveMode::homing && mode_confirmed && command.start_homing) word |= homing_start;
+        if (command.halt) word |= halt;
+    }
+    return word;
+}
+
+DriveMode Cia402Drive::mode_to_send(DriveMode wanted, Instant now) noexcept {
+    if (wanted == sent_mode_) return sent_mode_;
+    if (mode_sent_at_ && now - *mode_sent_at_ < profile_->mode_change_interval) return sent_mode_;
+    sent_mode_ = wanted;
+    mode_sent_at_ = now;
+    if (profile_->mode_indeterminate > Duration::zero())
+        mode_means_something_from_ = bus_.outputs_effective(slave_, now) + profile_->mode_indeterminate;
+    return sent_mode_;
+}
+
+void Cia402Drive::encode(const DriveCommand& command, Instant now) noexcept {
+    const auto image = bus_.outputs();
+    if (!started_) {
+        started_ = true;
+        for (const auto& [signal, value] : starting_values_) write_signal(image, signal, value);
+    }
+    const auto mode = mode_to_send(command.mode, now);
+    const bool mode_confirmed = feedback_.mode == command.mode && mode == command.mode;
+    const auto word = control_word(command, mode_confirmed);
+    const bool homing_runs = (word & homing_start) != 0 && command.mode == DriveMode::homing;
+    if (!homing_runs) {
+        homing_since_.reset();
+        homing_cleared_ = false;
+    } else if (!homing_since_) {
+        homing_since_ = now;
+    }
+    write_signal(image, out_.control.signal, word);
+    write_signal(image, out_.mode.signal, mode_code(mode));
+
+    // Until the drive follows in this mode its target is its own actual position: enabling and mode switches never step.
+    const bool follows = feedback_.power == PowerState::enabled && mode_confirmed && command.power == PowerRequest::on;
+    write_targets(image, command, follows);
+    write_limits(image, command);
+    if (out_.digital.mapped()) {
+        const auto before = static_cast<std::uint32_t>(read_signal(image, out_.digital.signal));
+        write_signal(image, out_.digital.signal,
+                     (before & ~command.digital_output_mask) | (command.digital_outputs & command.digital_output_mask));
+    }
+    if (out_.probe_function.mapped()) write_probes(image, command);
+}
+
+void Cia402Drive::write_targets(std::span<std::byte> image, const DriveCommand& command, bool follows) const noexcept {
+    // Positions wrap like the drive's own: the low bits, not a saturated value.
+    write_signal(image, out_.target_position.signal, follows && position_mode(command.mode) ? command.position : feedback_.position);
+    const double velocity = follows ? command.velocity * profile_->velocity_counts_per_unit : 0.0;
+    out_.target_velocity.write(image, velocity_mode(command.mode) ? velocity : 0);
+    out_.velocity_offset.write(image, position_mode(command.mode) ? velocity : 0);
+    const double torque = follows ? command.torque * profile_->torque_rated_raw : 0.0;
+    out_.target_torque.write(image, torque_mode(command.mode) ? torque : 0);
+    out_.torque_offset.write(image, torque_mode(command.mode) ? 0 : torque);
+}
+
+void Cia402Drive::write_limits(std::span<std::byte> image, const DriveCommand& command) const noexcept {
+    // A mapped torque limit of zero would block the drive (SV-DA200 sheet 9 item 12): infinity is the most the object takes.
+    const double positive = command.torque_limit_positive * profile_->torque_rated_raw;
+    const double negative = command.torque_limit_negative * profile_->torque_rated_raw;
+    out_.torque_positive.write(image, positive);
+    out_.torque_negative.write(image, negative);
+    out_.torque_max.write(image, std::min(positive, negative));
+    // The rest stays as the start-up list or the last command left it while nothing is asked for: zero would mean "never move".
+    if (std::isfinite(command.velocity_limit)) out_.velocity_limit.write(image, command.velocity_limit * profile_->velocity_counts_per_unit);
+    if (command.acceleration > 0) out_.profile_acceleration.write(image, command.acceleration);
+    if (command.deceleration > 0) out_.profile_deceleration.write(image, command.deceleration);
+    if (command.torque_slope > 0) out_.torque_slope.write(image, command.torque_slope * profile_->torque_rated_raw);
+    if (command.mode == DriveMode::profile_position && command.velocity != 0)
+        out_.profile_velocity.write(image, std::abs(command.velocity) * profile_->velocity_counts_per_unit);
+}
+
+void Cia402Drive::write_probes(std::span<std::byte> image, const DriveCommand& command) noexcept {
+    unsigned function = 0;
+    for (std::size_t probe = 0; probe < probes_.size(); ++probe)
+        function |= static_cast<unsigned>(probes_[probe].function(command.probes[probe])) << (8 * probe);
+    write_signal(image, out_.probe_function.signal, static_cast<std::int64_t>(function));
+}
+
+}  // namespace taktwerk::axes::cia402

@@ -1,0 +1,26 @@
+#pragma once
+// What an alarm of a drive means, whatever its number: so that axis, simulator and messages can tell kinds apart without
+// knowing a vendor.
+
+#include <cstdint>
+
+namespace taktwerk::axes {
+
+enum class DriveAlarmKind : std::uint8_t {
+    other,
+    overspeed,
+    following_error,      ///< the drive's own check (6065h)
+    setpoint_leap,        ///< a cyclic target stepped too far
+    undervoltage,         ///< main power
+    overload,
+    encoder,
+    communication,        ///< the bus or line fell silent
+    negative_limit, positive_limit,
+    emergency_stop,       ///< an input of the drive
+    battery_low,          ///< of the encoder; the position still holds
+    reference_lost,       ///< turns or zero are gone: home again
+    turn_overflow,
+    power_cycle_pending,  ///< a parameter takes effect after a restart only
+};
+
+}  // namespace taktwerk::axes

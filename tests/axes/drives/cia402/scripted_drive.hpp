@@ -1,0 +1,177 @@
+#pragma once
+// A Cia402Drive on the real master over a simulated slave whose objects say exactly what the test wants, in virtual time.
+// Frames, mailbox, dead times are real; only the drive behind the slave controller is a puppet.
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "axes/drives/cia402/cia402_drive.hpp"
+#include "ecat/master.hpp"
+#include "ecat/sim/device_model.hpp"
+#include "ecat/sim/object_dictionary.hpp"
+#include "ecat/sim/sim_network.hpp"
+#include "ecat/transport/loopback.hpp"
+
+namespace taktwerk::axes::cia402::test {
+
+using namespace std::chrono_literals;
+
+using Objects = std::vector<std::pair<std::uint16_t, std::uint8_t>>;
+
+/// CiA 402 objects of one axis; types as in the SV33-E manual 7.3.
+inline ecat::ObjectEntry object(std::uint16_t index, std::uint8_t sub = 0) {
+    using ecat::DataType;
+    static const std::map<std::uint16_t, DataType> types{
+        {0x603F, DataType::U16}, {0x6040, DataType::U16}, {0x6041, DataType::U16}, {0x6060, DataType::I8},  {0x6061, DataType::I8},
+        {0x6064, DataType::I32}, {0x606C, DataType::I32}, {0x6071, DataType::I16}, {0x6072, DataType::U16}, {0x6077, DataType::I16},
+        {0x607A, DataType::I32}, {0x607F, DataType::U32}, {0x6083, DataType::U32}, {0x60B1, DataType::I32}, {0x60B2, DataType::I16},
+        {0x60B8, DataType::U16}, {0x60B9, DataType::U16}, {0x60BA, DataType::I32}, {0x60BB, DataType::I32}, {0x60E0, DataType::U16},
+        {0x60E1, DataType::U16}, {0x60FD, DataType::U32}, {0x60FF, DataType::I32}, {0x2021, DataType::U16}, {0x2005, DataType::U16}};
+    ecat::ObjectEntry e;
+    e.index = index;
+    e.sub = sub;
+    e.name = "object";
+    const auto base = index < 0x6000 ? index : static_cast<std::uint16_t>(0x6000 + (index - 0x6000) % 0x800);
+    e.type = types.at(base);
+    e.mappable = ecat::Mappable::both;
+    if (base == 0x6072 || base == 0x60E0 || base == 0x60E1) e.value = e.maximum.emplace(5000);  // SV33-E 7.3
+    if (base == 0x6083) e.value = 100;
+    if (base == 0x607F) e.value = 100'000'000;
+    return e;
+}
+
+/// Keeps what the master wrote, answers what the test put there.
+class Puppet final : public ecat::sim::DeviceModel {
+public:
+    void power_on(ecat::sim::ObjectDictionary& dictionary, Instant) override { objects = &dictionary; }
+    void exchange(Instant) override {
+        if (on_exchange) on_exchange();
+    }
+    ecat::sim::ObjectDictionary* objects = nullptr;
+    std::function<void()> on_exchange;
+};
+
+class DriveRig {
+public:
+    Objects rx{{0x6040, 0}, {0x6060, 0}, {0x607A, 0}};
+    Objects tx{{0x6041, 0}, {0x6061, 0}, {0x6064, 0}, {0x606C, 0}, {0x6077, 0}, {0x603F, 0}, {0x60FD, 0}};
+    Objects others{{0x2021, 9}, {0x2005, 0x0B}};
+    DriveProfile profile;
+    std::uint8_t axis = 0;
+    Duration cycle = 1ms;
+    std::vector<ecat::StartupSdo> startup;
+
+    DriveRig() : network(Instant{}), transport(network) {
+        profile.name = "puppet";
+        profile.modes = {DriveMode::cyclic_position, DriveMode::homing};
+        profile.homing_methods = {17, 18, 19, 20, 21, 22};
+    }
+
+    /// Bus up, objects resolved. False: see `refusal`.
+    bool build() {
+        auto d = std::make_shared<ecat::DeviceDescription>();
+        d->name = "puppet";
+        d->identity = {1, 2, 3, 0};
+        d->mailbox = ecat::MailboxDescription{};
+        d->sync_managers = {{ecat::SmUse::mailbox_out, 0x1000, 0x80, 0x26}, {ecat::SmUse::mailbox_in, 0x1080, 0x80, 0x22},
+                            {ecat::SmUse::outputs, 0x1100, 0, 0x64}, {ecat::SmUse::inputs, 0x1400, 0, 0x20}};
+        d->rx_rules.max_entries = d->tx_rules.max_entries = 20;
+        d->rx_pdos = {{0x1600, false, {}}};
+        d->tx_pdos = {{0x1A00, false, {}}};
+        d->dc = {true, false, true, 125us, Duration{}};
+        const auto map = [&](const Objects& list, ecat::PdoDescription& pdo) {
+            for (const auto& [index, sub] : list) {
+                d->objects.push_back(object(index, sub));
+                pdo.entries.push_back({index, sub, ecat::bit_size(d->objects.back().type)});
+            }
+        };
+        map(rx, d->rx_pdos[0]);
+        map(tx, d->tx_pdos[0]);
+        for (const auto& [index, sub] : others) d->objects.push_back(object(index, sub));
+        d->rx_assigned = {0x1600};
+        d->tx_assigned = {0x1A00};
+
+        ecat::BusConfig config;
+        config.cycle = cycle;
+        ecat::SlaveConfig slave;
+        slave.name = "z_drive";
+        slave.device = d;
+        slave.position = 0;
+        slave.dc = true;
+        slave.startup = startup;
+        config.slaves = {slave};
+        auto model = std::make_unique<Puppet>();
+        puppet = model.get();
+        network.add(d, std::move(model), {});
+        master = std::make_unique<ecat::Master>(transport, config);
+        master->start();
+        const auto phase = [&] { return master->phase(); };
+        for (int i = 0; i < 20'000 && phase() != ecat::Master::Phase::operational && phase() != ecat::Master::Phase::failed; ++i) exchange();
+        if (phase() != ecat::Master::Phase::operational) {
+            refusal = master->failure();
+            return false;
+        }
+        drive = std::make_unique<Cia402Drive>(*master, 0, axis, std::make_shared<DriveProfile>(profile), cycle);
+        if (auto ok = drive->resolve(); !ok) {
+            refusal = ok.error();
+            return false;
+        }
+        status(0x0250);
+        run(5);
+        return true;
+    }
+
+    // --- what the drive says ------------------------------------------------------------------------------------------------
+    void put(std::uint16_t index, std::int64_t value, std::uint8_t sub = 0) { puppet->objects->find(index, sub)->set(value); }
+    void status(std::uint16_t word) { put(0x6041, word); }
+    void mode(std::int64_t code) { put(0x6061, code); }
+    /// Status word and mode of a drive that is Operation enabled in CSP (SV33-E 3.4.1 with bits 4 and 9; bit 12: follows).
+    void enabled() {
+        status(0x1237);
+        mode(8);
+    }
+    // --- what the drive was told ----------------------------------------------------------------------------------------------
+    std::int64_t got(std::uint16_t index, std::uint8_t sub = 0) { return puppet->objects->value(index, sub); }
+    std::uint16_t control() { return static_cast<std::uint16_t>(got(0x6040)); }
+
+    void run(int cycles) {
+        for (int i = 0; i < cycles; ++i) {
+            exchange();
+            if (on_cycle) on_cycle();
+        }
+    }
+    const DriveFeedback& feedback() const { return feedback_; }
+
+    DriveCommand command;
+    std::unique_ptr<ecat::Master> master;
+    std::unique_ptr<Cia402Drive> drive;
+    ecat::sim::SimNetwork network;
+    ecat::LoopbackTransport transport;
+    Puppet* puppet = nullptr;
+    Error refusal;
+    Instant now{};
+    std::function<void()> on_cycle;
+
+private:
+    void exchange() {
+        now += cycle;
+        master->receive(now);
+        if (drive) {
+            feedback_ = drive->decode(now);
+            drive->encode(command, now);
+        }
+        master->send(now);
+        if (drive) drive->step(now);
+        master->step(now);
+    }
+    DriveFeedback feedback_;
+};
+
+}  // namespace taktwerk::axes::cia402::test
