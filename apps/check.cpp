@@ -25,7 +25,9 @@ struct Options {
     bool json = false;
 };
 
-Json problem_json(const Error& error) { return Json{{"code", error.code}, {"subject", error.subject}, {"what", error.what}, {"remedy", error.remedy}}; }
+Json problem_json(const Error& error) {
+    return Json{{"code", error.code}, {"subject", error.subject}, {"what", error.what}, {"remedy", error.remedy}};
+}
 
 Json problems_json(const std::vector<Error>& errors) {
     auto out = Json::array();
@@ -52,7 +54,8 @@ void print_slaves(const MachineConfig& config) {
     fmt::print("\nBus: {}\n", config.bus.interface.empty() ? std::string("simulated") : "EtherCAT on " + config.bus.interface);
     for (const auto& slave : config.bus.slaves) {
         const auto where = slave.position ? fmt::format("position {}", *slave.position) : fmt::format("alias {}", slave.alias.value_or(0));
-        fmt::print("  {:<14} {:<22} {:<12} {}{}\n", slave.name, slave.device ? slave.device->name : "?", where, slave.dc ? "distributed clock" : "free running",
+        fmt::print("  {:<14} {:<22} {:<12} {}{}\n", slave.name, slave.device ? slave.device->name : "?", where,
+                   slave.dc ? "distributed clock" : "free running",
                    slave.startup.empty() ? "" : fmt::format(", {} start-up SDOs", slave.startup.size()));
     }
 }
@@ -60,12 +63,13 @@ void print_slaves(const MachineConfig& config) {
 void print_axis(const MachineConfig& config, const runtime::AxisBinding& binding) {
     const auto& axis = binding.axis;
     const auto& u = axis.unit;
-    fmt::print("  {:<8} {}{}{}\n", axis.name, binding.slave.empty() ? "virtual" : "drive " + binding.slave, axis.disabled ? "  LEFT OUT" : "", axis.simulated ? "  SIMULATED" : "");
-    fmt::print("           velocity {:g} {}/s, acceleration {:g} {}/s2, deceleration {:g} {}/s2, jerk {:g} {}/s3\n", axis.limits.velocity, u, axis.limits.acceleration, u,
-               axis.limits.deceleration, u, axis.limits.jerk, u);
-    fmt::print("           range {}, homing: {}, jogging {:g} and {:g} {}/s, one {} = {:g} counts\n", range_text(axis.limits, u), homing_text(axis.homing),
-               axis.manual.slow > 0 ? axis.manual.slow : axis.limits.velocity * 0.05, axis.manual.fast > 0 ? axis.manual.fast : axis.limits.velocity * 0.25, u, u,
-               axis.gearing.counts_per_unit());
+    fmt::print("  {:<8} {}{}{}\n", axis.name, binding.slave.empty() ? "virtual" : "drive " + binding.slave,
+               axis.disabled ? "  LEFT OUT" : "", axis.simulated ? "  SIMULATED" : "");
+    fmt::print("           velocity {:g} {}/s, acceleration {:g} {}/s2, deceleration {:g} {}/s2, jerk {:g} {}/s3\n", axis.limits.velocity,
+               u, axis.limits.acceleration, u, axis.limits.deceleration, u, axis.limits.jerk, u);
+    fmt::print("           range {}, homing: {}, jogging {:g} and {:g} {}/s, one {} = {:g} counts\n", range_text(axis.limits, u),
+               homing_text(axis.homing), axis.manual.slow > 0 ? axis.manual.slow : axis.limits.velocity * 0.05,
+               axis.manual.fast > 0 ? axis.manual.fast : axis.limits.velocity * 0.25, u, u, axis.gearing.counts_per_unit());
     fmt::print("           if the master is gone:\n");
     for (const auto& sentence : master_gone(config, binding)) fmt::print("             {}\n", sentence);
 }
@@ -77,9 +81,11 @@ void print_programs(const MachineConfig& config, const runtime::MachineLayout& l
         fmt::print("  {:<16} {}{}\n", program.name, program.library, program.autostart ? ", starts by itself" : "");
         for (const auto& task : config.tasks)
             if (task.program == program.name)
-                fmt::print("    task {:<12} every {:g} ms{}\n", task.name, to_seconds(config.cycle) * 1e3 * task.divisor, task.divisor == 1 ? ", inline in the cycle" : "");
+                fmt::print("    task {:<12} every {:g} ms{}\n", task.name, to_seconds(config.cycle) * 1e3 * task.divisor,
+                           task.divisor == 1 ? ", inline in the cycle" : "");
         for (const auto& p : layout.parameters)
-            if (p.program == program.name) fmt::print("    parameter {:<12} {:g} {} ({:g} .. {:g})  {}\n", p.name, p.value, p.unit, p.minimum, p.maximum, p.doc);
+            if (p.program == program.name)
+                fmt::print("    parameter {:<12} {:g} {} ({:g} .. {:g})  {}\n", p.name, p.value, p.unit, p.minimum, p.maximum, p.doc);
         for (const auto& v : layout.variables)
             if (v.program == program.name) fmt::print("    variable  {:<12} {} {}\n", v.name, v.unit, v.doc);
     }
@@ -88,7 +94,9 @@ void print_programs(const MachineConfig& config, const runtime::MachineLayout& l
 void print_assumptions(const MachineConfig& config) {
     std::vector<std::string> seen;
     for (const auto& binding : config.axes) {
-        if (!binding.profile || binding.profile->assumed.empty() || std::find(seen.begin(), seen.end(), binding.profile->name) != seen.end()) continue;
+        if (!binding.profile || binding.profile->assumed.empty() ||
+            std::find(seen.begin(), seen.end(), binding.profile->name) != seen.end())
+            continue;
         fmt::print("\nAssumed about {}, because its manual leaves it open:\n", binding.profile->name);
         for (const auto& sentence : binding.profile->assumed) fmt::print("  {}\n", sentence);
         seen.push_back(binding.profile->name);
@@ -98,13 +106,21 @@ void print_assumptions(const MachineConfig& config) {
 Json summary_json(const MachineConfig& config, const runtime::MachineLayout& layout, const std::vector<Error>& warnings) {
     Json out{{"ok", true}, {"machine", config.name}, {"cycle_us", config.cycle.count() / 1000}, {"interface", config.bus.interface}};
     auto& slaves = out["slaves"] = Json::array();
-    for (const auto& slave : config.bus.slaves) slaves.push_back(Json{{"name", slave.name}, {"device", slave.device ? slave.device->name : ""}, {"dc", slave.dc}});
+    for (const auto& slave : config.bus.slaves)
+        slaves.push_back(Json{{"name", slave.name}, {"device", slave.device ? slave.device->name : ""}, {"dc", slave.dc}});
     auto& axes = out["axes"] = Json::array();
     for (const auto& binding : config.axes) {
         const auto& axis = binding.axis;
-        axes.push_back(Json{{"name", axis.name}, {"unit", axis.unit}, {"slave", binding.slave}, {"disabled", axis.disabled}, {"simulated", axis.simulated},
-                            {"velocity", axis.limits.velocity}, {"acceleration", axis.limits.acceleration}, {"homing", homing_text(axis.homing)},
-                            {"master_gone", master_gone(config, binding)}, {"assumed", binding.profile ? binding.profile->assumed : std::vector<std::string>{}}});
+        axes.push_back(Json{{"name", axis.name},
+                            {"unit", axis.unit},
+                            {"slave", binding.slave},
+                            {"disabled", axis.disabled},
+                            {"simulated", axis.simulated},
+                            {"velocity", axis.limits.velocity},
+                            {"acceleration", axis.limits.acceleration},
+                            {"homing", homing_text(axis.homing)},
+                            {"master_gone", master_gone(config, binding)},
+                            {"assumed", binding.profile ? binding.profile->assumed : std::vector<std::string>{}}});
     }
     out["programs"] = layout.programs;
     out["tasks"] = layout.tasks;
@@ -135,15 +151,17 @@ int check(const Options& options) {
         return exit_ok;
     }
     for (const auto& warning : loaded.warnings) print_warning(warning);
-    fmt::print("{}: machine '{}', cycle {:g} ms, {} slaves, {} axes, {} programs: no problem found\n", options.file, config.name, to_seconds(config.cycle) * 1e3,
-               config.bus.slaves.size(), config.axes.size(), config.programs.size());
+    fmt::print("{}: machine '{}', cycle {:g} ms, {} slaves, {} axes, {} programs: no problem found\n", options.file, config.name,
+               to_seconds(config.cycle) * 1e3, config.bus.slaves.size(), config.axes.size(), config.programs.size());
     print_slaves(config);
     if (!config.axes.empty()) fmt::print("\nAxes\n");
     for (const auto& binding : config.axes) print_axis(config, binding);
     print_programs(config, layout);
-    if (config.emergency_stop.input.empty()) fmt::print("\nNo emergency stop input: the runtime does not hear when the safety circuit opens.\n");
-    else fmt::print("\nEmergency stop: input {}; power off when the axes stand, at the latest after {:g} ms. This is no safety function.\n", config.emergency_stop.input,
-                    to_seconds(config.emergency_stop.power_off_after) * 1e3);
+    if (config.emergency_stop.input.empty())
+        fmt::print("\nNo emergency stop input: the runtime does not hear when the safety circuit opens.\n");
+    else
+        fmt::print("\nEmergency stop: input {}; power off when the axes stand, at the latest after {:g} ms. This is no safety function.\n",
+                   config.emergency_stop.input, to_seconds(config.emergency_stop.power_off_after) * 1e3);
     print_assumptions(config);
     return exit_ok;
 }

@@ -34,7 +34,8 @@ int write_page(const std::string& name, const std::string& output) {
         if (name != page.name) continue;
         auto* file = output.empty() ? stdout : std::fopen(output.c_str(), "w");
         if (!file) {
-            print_error({"docs.output", output, fmt::format("the page cannot be written: {}", std::strerror(errno)), "Choose another place with -o."});
+            print_error({"docs.output", output, fmt::format("the page cannot be written: {}", std::strerror(errno)),
+                         "Choose another place with -o."});
             return exit_bad_file;
         }
         const auto text = page.text();

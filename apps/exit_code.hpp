@@ -5,13 +5,13 @@ namespace taktwerk::apps {
 
 enum ExitCode : int {
     exit_ok = 0,
-    exit_usage = 2,          ///< wrong arguments
-    exit_bad_file = 3,       ///< a configuration, program or trace is wrong or missing
-    exit_bus = 4,            ///< the bus did not come up, or the NIC cannot be used
-    exit_refused = 5,        ///< the running machine refused the command
-    exit_no_runtime = 6,     ///< no running machine to talk to
-    exit_realtime = 7,       ///< real time was required and is not there
-    exit_alarm = 8,          ///< the run ended with a machine-wide alarm standing
+    exit_usage = 2,       ///< wrong arguments
+    exit_bad_file = 3,    ///< a configuration, program or trace is wrong or missing
+    exit_bus = 4,         ///< the bus did not come up, or the NIC cannot be used
+    exit_refused = 5,     ///< the running machine refused the command
+    exit_no_runtime = 6,  ///< no running machine to talk to
+    exit_realtime = 7,    ///< real time was required and is not there
+    exit_alarm = 8,       ///< the run ended with a machine-wide alarm standing
 };
 
 }  // namespace taktwerk::apps

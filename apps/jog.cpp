@@ -52,8 +52,10 @@ int jog(const Options& options) {
         if (show) {
             if (const auto state = state_of(*client)) {
                 const auto axis = axis_of(*state, options.axis);
-                if (axis.is_object()) fmt::print("\r{} {:12.3f} {}  {:10.3f} {}/s   Ctrl-C stops ", options.axis, axis.at("actual_position").get<double>(), axis.at("unit").get<std::string>(),
-                           axis.at("actual_velocity").get<double>(), axis.at("unit").get<std::string>());
+                if (axis.is_object())
+                    fmt::print("\r{} {:12.3f} {}  {:10.3f} {}/s   Ctrl-C stops ", options.axis, axis.at("actual_position").get<double>(),
+                               axis.at("unit").get<std::string>(), axis.at("actual_velocity").get<double>(),
+                               axis.at("unit").get<std::string>());
                 std::fflush(stdout);
             }
         }
@@ -71,7 +73,8 @@ int jog(const Options& options) {
         const auto axis = axis_of(*state, options.axis);
         if (!axis.is_object()) break;
         if (!axis.at("has_job").get<bool>() && axis.at("set_velocity").get<double>() == 0)
-            return report(options.remote, fmt::format("{}: stands at {:.3f} {}", options.axis, axis.at("actual_position").get<double>(), axis.at("unit").get<std::string>()));
+            return report(options.remote, fmt::format("{}: stands at {:.3f} {}", options.axis, axis.at("actual_position").get<double>(),
+                                                      axis.at("unit").get<std::string>()));
         std::this_thread::sleep_for(20ms);
     }
     return report(options.remote, options.axis + ": let go");

@@ -12,7 +12,7 @@ std::vector<std::string> program_path() {
     std::error_code unknown;
     const auto executable = std::filesystem::read_symlink("/proc/self/exe", unknown);
     if (!unknown) {
-        folders.push_back((executable.parent_path() / "programs").string());                                  // in the build folder
+        folders.push_back((executable.parent_path() / "programs").string());                                     // in the build folder
         folders.push_back((executable.parent_path().parent_path() / "lib" / "taktwerk" / "programs").string());  // installed
     }
     if (const char* more = std::getenv("TAKTWERK_PROGRAM_PATH")) {

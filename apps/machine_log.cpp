@@ -89,8 +89,9 @@ void MachineLog::step(Instant now, const Snapshot* snapshot) {
         homed_.resize(s.axes.size());
         programs_.resize(s.programs.size());
         mode_ = s.mode;
-        say(now, "machine", fmt::format("running, {} mode, {} axes, cycle {} us{}", text(s.mode), s.axes.size(), layout.cycle.count() / 1000,
-                                        s.simulated ? ", SIMULATED bus" : ""));
+        say(now, "machine",
+            fmt::format("running, {} mode, {} axes, cycle {} us{}", text(s.mode), s.axes.size(), layout.cycle.count() / 1000,
+                        s.simulated ? ", SIMULATED bus" : ""));
     }
     if (s.mode != mode_) say(now, "mode", std::string(text(s.mode)));
     mode_ = s.mode;
@@ -100,10 +101,13 @@ void MachineLog::step(Instant now, const Snapshot* snapshot) {
         const auto& view = s.axes[i];
         // Moves come and go too fast to read: what a person wants to know is power, homing, stops and errors.
         using S = axes::AxisState;
-        const auto quiet = [](S state) { return state == S::DiscreteMotion || state == S::ContinuousMotion || state == S::SynchronizedMotion || state == S::Standstill; };
+        const auto quiet = [](S state) {
+            return state == S::DiscreteMotion || state == S::ContinuousMotion || state == S::SynchronizedMotion || state == S::Standstill;
+        };
         if (view.state != states_[i] && !(quiet(view.state) && quiet(states_[i])))
             say(now, "axis " + layout.axes[i].name, fmt::format("{} -> {}", axes::name(states_[i]), axes::name(view.state)));
-        if (view.homed != homed_[i] && s.phase == MachinePhase::running) say(now, "axis " + layout.axes[i].name, view.homed ? "homed" : "no longer homed");
+        if (view.homed != homed_[i] && s.phase == MachinePhase::running)
+            say(now, "axis " + layout.axes[i].name, view.homed ? "homed" : "no longer homed");
         states_[i] = view.state;
         homed_[i] = view.homed;
     }

@@ -20,9 +20,22 @@ struct ReactionObject {
 };
 constexpr std::array<ReactionObject, 3> reactions{{
     {0x6007, "connection lost", {{{0, "no action"}, {1, "fault"}, {2, "power off"}, {3, "quick stop"}, {-1, nullptr}, {-1, nullptr}}}},
-    {0x605A, "quick stop", {{{0, "power off, the motor coasts"}, {1, "slow-down ramp, then off"}, {2, "quick-stop ramp (6085h), then off"}, {3, "current limit, then off"},
-                             {5, "slow-down ramp, stays in quick stop"}, {6, "quick-stop ramp (6085h), stays in quick stop"}}}},
-    {0x605E, "fault", {{{0, "power off, the motor coasts"}, {1, "slow-down ramp"}, {2, "quick-stop ramp (6085h)"}, {3, "current limit"}, {-1, nullptr}, {-1, nullptr}}}},
+    {0x605A,
+     "quick stop",
+     {{{0, "power off, the motor coasts"},
+       {1, "slow-down ramp, then off"},
+       {2, "quick-stop ramp (6085h), then off"},
+       {3, "current limit, then off"},
+       {5, "slow-down ramp, stays in quick stop"},
+       {6, "quick-stop ramp (6085h), stays in quick stop"}}}},
+    {0x605E,
+     "fault",
+     {{{0, "power off, the motor coasts"},
+       {1, "slow-down ramp"},
+       {2, "quick-stop ramp (6085h)"},
+       {3, "current limit"},
+       {-1, nullptr},
+       {-1, nullptr}}}},
 }};
 
 struct Setting {
@@ -45,9 +58,10 @@ std::string words(const ReactionObject& reaction, std::int64_t value) {
     return "see the drive's manual";
 }
 
-/// As the master configures it (ecat/bus_config.hpp): three cycles, at least 10 ms.
+/// As the master configures it: three cycles, at least 10 ms (ecat/bus_config.hpp); 500 ms with relaxed supervision (runtime/machine.cpp).
 Duration watchdog(const runtime::MachineConfig& config, const ecat::SlaveConfig& slave) {
     if (slave.sm_watchdog.count() > 0) return slave.sm_watchdog;
+    if (config.simulation.supervision == runtime::Supervision::relaxed) return std::chrono::milliseconds{500};
     return std::max<Duration>(3 * config.cycle, std::chrono::milliseconds{10});
 }
 
@@ -57,12 +71,16 @@ std::vector<std::string> master_gone(const runtime::MachineConfig& config, const
     std::vector<std::string> out;
     if (axis.slave.empty()) return {"no drive: nothing moves"};
     if (axis.axis.disabled) return {"left out: its drive is never enabled"};
-    const auto slave = std::find_if(config.bus.slaves.begin(), config.bus.slaves.end(), [&](const auto& s) { return s.name == axis.slave; });
+    const auto slave =
+        std::find_if(config.bus.slaves.begin(), config.bus.slaves.end(), [&](const auto& s) { return s.name == axis.slave; });
     if (slave == config.bus.slaves.end()) return out;
-    out.push_back(fmt::format("after {:g} ms without process data the slave's watchdog takes it out of OP", to_seconds(watchdog(config, *slave)) * 1e3));
+    out.push_back(fmt::format("after {:g} ms without process data the slave's watchdog takes it out of OP",
+                              to_seconds(watchdog(config, *slave)) * 1e3));
     for (const auto& reaction : reactions) {
         const auto found = setting(*slave, reaction.index);
-        if (found) out.push_back(fmt::format("{} ({:04X}h) = {}: {} [{}]", reaction.name, reaction.index, found->value, words(reaction, found->value), found->from));
+        if (found)
+            out.push_back(fmt::format("{} ({:04X}h) = {}: {} [{}]", reaction.name, reaction.index, found->value,
+                                      words(reaction, found->value), found->from));
         else out.push_back(fmt::format("{} ({:04X}h): not in the drive's description; its manual decides", reaction.name, reaction.index));
     }
     return out;

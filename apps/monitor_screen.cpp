@@ -14,7 +14,8 @@ using Json = nlohmann::ordered_json;
 using Lines = std::vector<std::string>;
 
 namespace colour {
-constexpr const char *plain = "0", *bold = "1", *dim = "2", *bar = "7", *red = "1;31", *alert = "1;97;41", *green = "32", *yellow = "33", *simulated = "30;43";
+constexpr const char *plain = "0", *bold = "1", *dim = "2", *bar = "7", *red = "1;31", *alert = "1;97;41", *green = "32", *yellow = "33",
+                     *simulated = "30;43";
 }
 
 class Screen {
@@ -58,14 +59,17 @@ private:
         return out;
     }
 
-    std::string paint(const char* code, const std::string& text) const { return size_.colours ? fmt::format("\033[{}m{}\033[0m", code, text) : text; }
+    std::string paint(const char* code, const std::string& text) const {
+        return size_.colours ? fmt::format("\033[{}m{}\033[0m", code, text) : text;
+    }
 
     static double us(const Json& ns) { return ns.get<double>() / 1e3; }
 
     Lines heading() const {
         const bool stop = state_.at("emergency_stop").get<bool>(), simulated = state_.at("simulated").get<bool>();
         const double seconds = state_.at("cycle").get<double>() * layout_.at("cycle_ns").get<double>() * 1e-9;
-        std::string text = fmt::format(" {}   mode {}   {}", state_.at("machine").get<std::string>(), state_.at("mode").get<std::string>(), state_.at("phase").get<std::string>());
+        std::string text = fmt::format(" {}   mode {}   {}", state_.at("machine").get<std::string>(), state_.at("mode").get<std::string>(),
+                                       state_.at("phase").get<std::string>());
         const std::string flags = fmt::format("{}{}", stop ? " EMERGENCY STOP " : "", simulated ? " SIMULATED " : "");
         const std::string time = fmt::format(" {:.1f} s ", seconds);
         const auto room = size_.columns - std::min(size_.columns, columns(flags) + columns(time));
@@ -74,11 +78,13 @@ private:
                       (simulated ? paint(colour::simulated, " SIMULATED ") : "") + paint(colour::bar, time));
         const auto& s = state_.at("statistics");
         const auto& bus = state_.at("bus");
-        const auto line = fmt::format(" cycle {:g} ms   late {:.0f} us (max {:.0f})   computing {:.0f} us (max {:.0f})   missed {}", layout_.at("cycle_ns").get<double>() / 1e6,
-                                      us(s.at("lateness_ns")), us(s.at("lateness_max_ns")), us(s.at("compute_ns")), us(s.at("compute_max_ns")), s.at("missed_ticks").get<std::uint64_t>());
+        const auto line = fmt::format(" cycle {:g} ms   late {:.0f} us (max {:.0f})   computing {:.0f} us (max {:.0f})   missed {}",
+                                      layout_.at("cycle_ns").get<double>() / 1e6, us(s.at("lateness_ns")), us(s.at("lateness_max_ns")),
+                                      us(s.at("compute_ns")), us(s.at("compute_max_ns")), s.at("missed_ticks").get<std::uint64_t>());
         out.push_back(cut(line, size_.columns));
-        out.push_back(cut(fmt::format(" bus {}   {} slaves, {} not fresh   frames lost {}, late {}   working counter errors {}", bus.at("phase").get<std::string>(),
-                                      state_.at("slaves").size(), stale_slaves(), bus.at("frames_lost").get<std::uint64_t>(), bus.at("frames_late").get<std::uint64_t>(),
+        out.push_back(cut(fmt::format(" bus {}   {} slaves, {} not fresh   frames lost {}, late {}   working counter errors {}",
+                                      bus.at("phase").get<std::string>(), state_.at("slaves").size(), stale_slaves(),
+                                      bus.at("frames_lost").get<std::uint64_t>(), bus.at("frames_late").get<std::uint64_t>(),
                                       bus.at("working_counter_errors").get<std::uint64_t>()),
                           size_.columns));
         return out;
@@ -93,20 +99,27 @@ private:
     Lines axes(bool details) const {
         Lines out;
         if (state_.at("axes").empty()) return out;
-        out.push_back(paint(colour::dim, fmt::format("{} {} {} {} {} {} {}", left(" axis", 9), left("state", 18), "on hm", right("set", 11), right("actual", 11), right("velocity", 10), right("following", 10))));
+        out.push_back(paint(colour::dim, fmt::format("{} {} {} {} {} {} {}", left(" axis", 9), left("state", 18), "on hm", right("set", 11),
+                                                     right("actual", 11), right("velocity", 10), right("following", 10))));
         for (const auto& axis : state_.at("axes")) {
             const auto state = axis.at("state").get<std::string>();
-            const char* look = state == "ErrorStop" ? colour::red : state == "Disabled" ? colour::dim : state == "Stopping" || state == "Homing" ? colour::yellow : colour::green;
-            out.push_back(fmt::format("{} {} {} {} {} {} {} {}", paint(colour::bold, left(" " + axis.at("name").get<std::string>(), 9)), paint(look, left(state, 18)),
-                                      axis.at("powered").get<bool>() ? "on" : " -", axis.at("homed").get<bool>() ? "hm" : " -", right(number(axis.at("set_position")), 11),
-                                      right(number(axis.at("actual_position")), 11), right(number(axis.at("actual_velocity")), 10), right(number(axis.at("following_error")), 10)));
+            const char* look = state == "ErrorStop"                       ? colour::red
+                               : state == "Disabled"                      ? colour::dim
+                               : state == "Stopping" || state == "Homing" ? colour::yellow
+                                                                          : colour::green;
+            out.push_back(fmt::format("{} {} {} {} {} {} {} {}", paint(colour::bold, left(" " + axis.at("name").get<std::string>(), 9)),
+                                      paint(look, left(state, 18)), axis.at("powered").get<bool>() ? "on" : " -",
+                                      axis.at("homed").get<bool>() ? "hm" : " -", right(number(axis.at("set_position")), 11),
+                                      right(number(axis.at("actual_position")), 11), right(number(axis.at("actual_velocity")), 10),
+                                      right(number(axis.at("following_error")), 10)));
             if (details) out.push_back(paint(colour::dim, detail(axis)));
         }
         return out;
     }
 
     std::string detail(const Json& axis) const {
-        std::string text = fmt::format("          {}  drive {}", axis.at("unit").get<std::string>(), axis.at("drive_state").get<std::string>());
+        std::string text =
+            fmt::format("          {}  drive {}", axis.at("unit").get<std::string>(), axis.at("drive_state").get<std::string>());
         if (const int error = axis.at("drive_error").get<int>()) text += fmt::format(" error {:04X}h", error);
         text += fmt::format("  owner {}", axis.at("owner").get<std::string>());
         if (axis.at("disabled").get<bool>()) text += "  left out";
@@ -130,11 +143,17 @@ private:
             }
             const bool standing = alarm.at("standing").get<bool>(), acknowledged = alarm.at("acknowledged").get<bool>();
             const auto times = alarm.at("count").get<unsigned>();
-            auto text = fmt::format(" {} {}: {}", standing ? "!" : acknowledged ? " " : "?", alarm.at("source").get<std::string>(), alarm.at("english").get<std::string>());
+            auto text = fmt::format(" {} {}: {}",
+                                    standing       ? "!"
+                                    : acknowledged ? " "
+                                                   : "?",
+                                    alarm.at("source").get<std::string>(), alarm.at("english").get<std::string>());
             if (times > 1) text += fmt::format(" ({} times)", times);
             out.push_back(paint(standing ? colour::red : colour::yellow, cut(text, size_.columns)));
-            if (const auto chinese = alarm.at("chinese").get<std::string>(); !chinese.empty()) out.push_back(cut("   " + chinese, size_.columns));
-            if (const auto remedy = alarm.at("remedy").get<std::string>(); !remedy.empty()) out.push_back(cut("   -> " + remedy, size_.columns));
+            if (const auto chinese = alarm.at("chinese").get<std::string>(); !chinese.empty())
+                out.push_back(cut("   " + chinese, size_.columns));
+            if (const auto remedy = alarm.at("remedy").get<std::string>(); !remedy.empty())
+                out.push_back(cut("   -> " + remedy, size_.columns));
         }
         return out;
     }
@@ -157,7 +176,8 @@ private:
         Lines out;
         for (const auto& [key, title] : {std::pair{"inputs", " inputs "}, std::pair{"outputs", " outputs"}}) {
             std::vector<std::string> words;
-            for (const auto& [name, value] : state_.at(key).items()) words.push_back(fmt::format("{}={}", name, value.template get<std::int64_t>()));
+            for (const auto& [name, value] : state_.at(key).items())
+                words.push_back(fmt::format("{}={}", name, value.template get<std::int64_t>()));
             if (!words.empty()) wrap(out, title, words);
         }
         return out;
@@ -165,7 +185,8 @@ private:
 
     static std::string value(const char* before, const Json& variable) {
         const auto unit = variable.at("unit").get<std::string>();
-        return fmt::format("{}{}={:g}{}{}", before, variable.at("name").get<std::string>(), variable.at("value").get<double>(), unit.empty() ? "" : " ", unit);
+        return fmt::format("{}{}={:g}{}{}", before, variable.at("name").get<std::string>(), variable.at("value").get<double>(),
+                           unit.empty() ? "" : " ", unit);
     }
 
     /// Words after a title, on as many lines as it takes.
@@ -195,6 +216,8 @@ private:
 
 }  // namespace
 
-std::vector<std::string> monitor_screen(const Json& state, const Json& layout, const ScreenSize& size) { return Screen(state, layout, size).lines(); }
+std::vector<std::string> monitor_screen(const Json& state, const Json& layout, const ScreenSize& size) {
+    return Screen(state, layout, size).lines();
+}
 
 }  // namespace taktwerk::apps

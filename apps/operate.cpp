@@ -51,8 +51,10 @@ int wait_for(const Order& order, hmi::Client& client, bool (*reached)(const Json
             if (error_ends && axis.at("state") == "ErrorStop") {
                 for (const auto& alarm : state->at("alarms"))
                     if (alarm.at("source") == "axis " + name)
-                        return report(order.remote, Error{"axis.error_stop", "axis " + name, alarm.at("english").get<std::string>(), alarm.at("remedy").get<std::string>()});
-                return report(order.remote, Error{"axis.error_stop", "axis " + name, "the axis is in ErrorStop", "See `taktwerk monitor`; then reset."});
+                        return report(order.remote, Error{"axis.error_stop", "axis " + name, alarm.at("english").get<std::string>(),
+                                                          alarm.at("remedy").get<std::string>()});
+                return report(order.remote,
+                              Error{"axis.error_stop", "axis " + name, "the axis is in ErrorStop", "See `taktwerk monitor`; then reset."});
             }
             all = all && reached(axis);
         }
@@ -60,8 +62,9 @@ int wait_for(const Order& order, hmi::Client& client, bool (*reached)(const Json
         if (clock.now() >= end) break;
         std::this_thread::sleep_for(50ms);
     }
-    return report(order.remote, Error{"axis.not_in_time", order.target.empty() ? "axes" : "axis " + order.target, fmt::format("not finished within {:g} s", order.patience_s),
-                                      "See `taktwerk monitor` what it waits for."});
+    return report(order.remote,
+                  Error{"axis.not_in_time", order.target.empty() ? "axes" : "axis " + order.target,
+                        fmt::format("not finished within {:g} s", order.patience_s), "See `taktwerk monitor` what it waits for."});
 }
 
 bool is_powered(const Json& axis) { return axis.at("powered").get<bool>(); }
@@ -70,13 +73,15 @@ bool is_homed(const Json& axis) { return axis.at("homed").get<bool>() && axis.at
 bool is_reset(const Json& axis) { return axis.at("state") != "ErrorStop" && !axis.at("resetting").get<bool>(); }
 
 int enable(const Order& order, hmi::Client& client) {
-    if (const auto answer = client.request({{"cmd", "enable"}, {"axis", order.target}}); !answer) return report(order.remote, answer.error());
+    if (const auto answer = client.request({{"cmd", "enable"}, {"axis", order.target}}); !answer)
+        return report(order.remote, answer.error());
     if (order.wait) return wait_for(order, client, is_powered, order.target + ": enabled", true);
     return report(order.remote, order.target + ": enabling");
 }
 
 int disable(const Order& order, hmi::Client& client) {
-    if (const auto answer = client.request({{"cmd", "disable"}, {"axis", order.target}}); !answer) return report(order.remote, answer.error());
+    if (const auto answer = client.request({{"cmd", "disable"}, {"axis", order.target}}); !answer)
+        return report(order.remote, answer.error());
     if (order.wait) return wait_for(order, client, is_off, order.target + ": disabled", false);
     return report(order.remote, order.target + ": stops, then power goes off");
 }
@@ -99,7 +104,8 @@ int home(const Order& order, hmi::Client& client) {
 }
 
 int reset(const Order& order, hmi::Client& client) {
-    if (!order.program.empty()) return send(order, client, {{"cmd", "program_reset"}, {"program", order.program}}, "program " + order.program + ": reset");
+    if (!order.program.empty())
+        return send(order, client, {{"cmd", "program_reset"}, {"program", order.program}}, "program " + order.program + ": reset");
     const auto target = order.target.empty() ? std::string("all") : order.target;
     if (const auto answer = client.request({{"cmd", "reset"}, {"axis", target}}); !answer) return report(order.remote, answer.error());
     if (!order.wait) return report(order.remote, target + ": resetting");
@@ -108,7 +114,9 @@ int reset(const Order& order, hmi::Client& client) {
 }
 
 int stop(const Order& order, hmi::Client& client) {
-    if (!order.program.empty()) return send(order, client, {{"cmd", "program_stop"}, {"program", order.program}}, "program " + order.program + ": stopped, its axes ramp down");
+    if (!order.program.empty())
+        return send(order, client, {{"cmd", "program_stop"}, {"program", order.program}},
+                    "program " + order.program + ": stopped, its axes ramp down");
     const auto target = order.target.empty() ? std::string("all") : order.target;
     return send(order, client, {{"cmd", "stop"}, {"axis", target}}, target + ": stops along the ramp");
 }
@@ -119,22 +127,31 @@ int start(const Order& order, hmi::Client& client) {
         const auto layout = layout_of(client);
         if (!layout) return report(order.remote, layout.error());
         programs = layout->at("programs").get<std::vector<std::string>>();
-        if (programs.empty()) return report(order.remote, Error{"command.not_possible_now", "", "this machine has no program", "Move its axes with `taktwerk jog`, or add a program to the machine file."});
+        if (programs.empty())
+            return report(order.remote, Error{"command.not_possible_now", "", "this machine has no program",
+                                              "Move its axes with `taktwerk jog`, or add a program to the machine file."});
     }
     for (const auto& program : programs)
-        if (const auto answer = client.request({{"cmd", "program_start"}, {"program", program}}); !answer) return report(order.remote, answer.error());
+        if (const auto answer = client.request({{"cmd", "program_start"}, {"program", program}}); !answer)
+            return report(order.remote, answer.error());
     return report(order.remote, fmt::format("program {}: started", fmt::join(programs, ", ")));
 }
 
-int mode(const Order& order, hmi::Client& client) { return send(order, client, {{"cmd", "mode"}, {"mode", order.mode}}, "mode: " + order.mode); }
+int mode(const Order& order, hmi::Client& client) {
+    return send(order, client, {{"cmd", "mode"}, {"mode", order.mode}}, "mode: " + order.mode);
+}
 int set(const Order& order, hmi::Client& client) {
-    return send(order, client, {{"cmd", "set_parameter"}, {"parameter", order.target}, {"value", order.value}}, fmt::format("{} = {:g}", order.target, order.value));
+    return send(order, client, {{"cmd", "set_parameter"}, {"parameter", order.target}, {"value", order.value}},
+                fmt::format("{} = {:g}", order.target, order.value));
 }
 int output(const Order& order, hmi::Client& client) {
-    return send(order, client, {{"cmd", "set_output"}, {"output", order.target}, {"value", order.value}}, fmt::format("output {} = {:g}", order.target, order.value));
+    return send(order, client, {{"cmd", "set_output"}, {"output", order.target}, {"value", order.value}},
+                fmt::format("output {} = {:g}", order.target, order.value));
 }
 int acknowledge(const Order& order, hmi::Client& client) { return send(order, client, {{"cmd", "acknowledge"}}, "alarms acknowledged"); }
-int shut_down(const Order& order, hmi::Client& client) { return send(order, client, {{"cmd", "shutdown"}}, "the axes stop, then power goes off and the runtime ends"); }
+int shut_down(const Order& order, hmi::Client& client) {
+    return send(order, client, {{"cmd", "shutdown"}}, "the axes stop, then power goes off and the runtime ends");
+}
 int take_control(const Order& order, hmi::Client& client) {
     return send(order, client, {{"cmd", "take_control"}, {"axis", order.target}}, order.target + ": control taken");
 }
@@ -176,7 +193,8 @@ void add_operate(CLI::App& app, Action& action) {
     add_jog(app, action);
 
     Adder adder{app, action, nullptr};
-    const auto axis_command = [&](const char* word, const char* doc, Body body, const char* target, bool required, bool waits) -> CLI::App& {
+    const auto axis_command = [&](const char* word, const char* doc, Body body, const char* target, bool required,
+                                  bool waits) -> CLI::App& {
         auto& sub = adder.add(word, doc, body);
         sub.add_option("AXIS", adder.order->target, target)->required(required);
         if (waits) adder.add_wait(sub);
@@ -194,7 +212,8 @@ void add_operate(CLI::App& app, Action& action) {
     move_sub.add_option("POSITION", adder.order->value, "in the axis' unit")->required();
     move_sub.add_option("--velocity", adder.order->velocity, "unit/s, above 0")->required();
 
-    adder.add("start", "start a program, in automatic mode", start).add_option("PROGRAM", adder.order->target, "default: all of the machine");
+    adder.add("start", "start a program, in automatic mode", start)
+        .add_option("PROGRAM", adder.order->target, "default: all of the machine");
     adder.add("mode", "mode of the machine", mode)
         .add_option("MODE", adder.order->mode, "manual, setup or automatic")
         ->required()
@@ -211,7 +230,9 @@ void add_operate(CLI::App& app, Action& action) {
     auto* control = app.add_subcommand("control", "who commands an axis");
     control->require_subcommand(1);
     Adder inner{*control, action, nullptr};
-    inner.add("take", "become the owner; an axis that moves for another stops first", take_control).add_option("AXIS", inner.order->target, "axis, or all")->required();
+    inner.add("take", "become the owner; an axis that moves for another stops first", take_control)
+        .add_option("AXIS", inner.order->target, "axis, or all")
+        ->required();
     inner.add("release", "give the axis back", release_control).add_option("AXIS", inner.order->target, "axis, or all")->required();
 }
 

@@ -70,7 +70,8 @@ Result<void> draw(const std::string& script) {
     const ScratchFolder scratch;
     const auto script_file = scratch.path() / "plot.gp", messages = scratch.path() / "messages";
     if (scratch.path().empty() || !write_text(script_file, script))
-        return Error{"plot.scratch", std::filesystem::temp_directory_path().string(), "no room for the plot's data", "Free space there, or set TMPDIR to another place."};
+        return Error{"plot.scratch", std::filesystem::temp_directory_path().string(), "no room for the plot's data",
+                     "Free space there, or set TMPDIR to another place."};
 
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
@@ -84,10 +85,14 @@ Result<void> draw(const std::string& script) {
     if (failed == 0)
         while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {}
     if (failed == ENOENT || (WIFEXITED(status) && WEXITSTATUS(status) == 127))
-        return Error{"plot.no_gnuplot", "gnuplot", "it is not installed, and it draws the picture", "Install it: apt-get install gnuplot-nox"};
-    if (failed != 0) return Error{"plot.gnuplot", "gnuplot", fmt::format("it cannot be started: {}", std::strerror(failed)), "Try to run it by hand: gnuplot --version"};
+        return Error{"plot.no_gnuplot", "gnuplot", "it is not installed, and it draws the picture",
+                     "Install it: apt-get install gnuplot-nox"};
+    if (failed != 0)
+        return Error{"plot.gnuplot", "gnuplot", fmt::format("it cannot be started: {}", std::strerror(failed)),
+                     "Try to run it by hand: gnuplot --version"};
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-        return Error{"plot.gnuplot", "gnuplot", fmt::format("it did not draw the picture: {}", file_text(messages)), "Report this: the script is made by this command."};
+        return Error{"plot.gnuplot", "gnuplot", fmt::format("it did not draw the picture: {}", file_text(messages)),
+                     "Report this: the script is made by this command."};
     return {};
 }
 
@@ -98,10 +103,17 @@ int plot(const Options& options) {
     };
     const auto trace = read_trace(options.file);
     if (!trace) return fail(trace.error());
-    if (trace->cut_off) print_warning({"trace.cut_off", options.file, "the last line is incomplete: the run was killed while it wrote", "The plot ends one cycle earlier."});
+    if (trace->cut_off)
+        print_warning({"trace.cut_off", options.file, "the last line is incomplete: the run was killed while it wrote",
+                       "The plot ends one cycle earlier."});
 
     const std::filesystem::path file = options.file;
-    PlotRequest request{options.title.empty() ? file.stem().string() : options.title, options.output, options.axes, options.from_s, options.to_s, options.following_error};
+    PlotRequest request{options.title.empty() ? file.stem().string() : options.title,
+                        options.output,
+                        options.axes,
+                        options.from_s,
+                        options.to_s,
+                        options.following_error};
     if (request.output.empty()) request.output = std::filesystem::path(file).replace_extension(".svg").string();
     std::error_code ignored;
     if (std::filesystem::equivalent(request.output, file, ignored))
@@ -112,7 +124,8 @@ int plot(const Options& options) {
         return exit_usage;
     }
     if (!write_text(request.output, ""))
-        return fail({"plot.output", request.output, fmt::format("the picture cannot be written: {}", std::strerror(errno)), "Choose another place with -o."});
+        return fail({"plot.output", request.output, fmt::format("the picture cannot be written: {}", std::strerror(errno)),
+                     "Choose another place with -o."});
     if (const auto drawn = draw(*script); !drawn) {
         std::remove(request.output.c_str());
         return fail(drawn.error());

@@ -38,7 +38,8 @@ std::vector<Point> decimate(const std::vector<double>& time, const std::vector<d
     return out;
 }
 
-std::vector<Span> spans(const std::vector<double>& time, const std::vector<double>& values, Window rows, std::size_t cells, int (*rank)(int)) {
+std::vector<Span> spans(const std::vector<double>& time, const std::vector<double>& values, Window rows, std::size_t cells,
+                        int (*rank)(int)) {
     std::vector<Span> out;
     if (rows.first == rows.last || cells == 0) return out;
     const double begin = time[rows.first], width = (time[rows.last - 1] - begin) / static_cast<double>(cells);

@@ -21,7 +21,8 @@ struct Window {
 
 /// At most about four points a bin: first, lowest, highest and last of it, in the order of time. No peak is lost, however
 /// narrow. Fewer rows than that come through as they are.
-[[nodiscard]] std::vector<Point> decimate(const std::vector<double>& time, const std::vector<double>& values, Window rows, std::size_t bins);
+[[nodiscard]] std::vector<Point> decimate(const std::vector<double>& time, const std::vector<double>& values, Window rows,
+                                          std::size_t bins);
 
 /// A time over which a whole-numbered signal (a state, a switch) has one value.
 struct Span {
@@ -30,7 +31,8 @@ struct Span {
 };
 /// The window in `cells` equal times; each has the most important value that occurs in it (`rank` says how important), so an error
 /// of one cycle stays visible. Equal neighbours are one span. The spans join without gaps.
-[[nodiscard]] std::vector<Span> spans(const std::vector<double>& time, const std::vector<double>& values, Window rows, std::size_t cells, int (*rank)(int));
+[[nodiscard]] std::vector<Span> spans(const std::vector<double>& time, const std::vector<double>& values, Window rows, std::size_t cells,
+                                      int (*rank)(int));
 
 struct Ticks {
     double low = 0, high = 1;  ///< of the panel, with a margin

@@ -95,18 +95,23 @@ public:
     double y(double pixels) const { return 1 - pixels / height_; }
 
     void margins(double top, double bottom) {
-        line("set lmargin at screen {:.6f}; set rmargin at screen {:.6f}; set tmargin at screen {:.6f}; set bmargin at screen {:.6f}", x(left), x(width - right),
-             y(top), y(bottom));
+        line("set lmargin at screen {:.6f}; set rmargin at screen {:.6f}; set tmargin at screen {:.6f}; set bmargin at screen {:.6f}",
+             x(left), x(width - right), y(top), y(bottom));
         line("set xrange [{:.9g}:{:.9g}]", from_, to_);
     }
 
     void label(double px, double py, std::string_view what, std::string_view align, int size, std::string_view colour) {
-        line("set label {} at screen {:.6f}, screen {:.6f} {} font \",{}\" tc rgb \"{}\" noenhanced front", quoted(what), x(px), y(py), align, size, colour);
+        line("set label {} at screen {:.6f}, screen {:.6f} {} font \",{}\" tc rgb \"{}\" noenhanced front", quoted(what), x(px), y(py),
+             align, size, colour);
     }
 
     void shade(const std::vector<Span>& where, int value, const char* colour) {
         for (const auto& span : where)
-            if (span.value == value) line("set object rectangle from first {:.6f}, graph 0 to first {:.6f}, graph 1 behind fillcolor rgb \"{}\" fillstyle solid noborder", span.from, span.to, colour);
+            if (span.value == value)
+                line(
+                    "set object rectangle from first {:.6f}, graph 0 to first {:.6f}, graph 1 behind fillcolor rgb \"{}\" fillstyle solid "
+                    "noborder",
+                    span.from, span.to, colour);
     }
 
     void reset_panel() { line("unset label; unset object; unset xtics; unset ytics; unset key; unset xlabel"); }
@@ -125,12 +130,15 @@ public:
         margins(top, top + band_height);
         line("set yrange [0:1]; unset grid");
         for (const auto& span : spans(trace_.time_s, axis.state, rows_, bins, state_rank)) {
-            line("set object rectangle from first {:.6f}, graph 0 to first {:.6f}, graph 1 front fillcolor rgb \"{}\" fillstyle solid noborder", span.from, span.to,
-                 look(span.value).colour);
+            line(
+                "set object rectangle from first {:.6f}, graph 0 to first {:.6f}, graph 1 front fillcolor rgb \"{}\" fillstyle solid "
+                "noborder",
+                span.from, span.to, look(span.value).colour);
             const auto name = state_name(span.value);
             const double pixels = (span.to - span.from) / (to_ - from_) * plot_width;
             if (pixels > 7.0 * static_cast<double>(name.size()) + 8)
-                line("set label {} at first {:.6f}, graph 0.47 center font \",9\" tc rgb \"#303030\" noenhanced front", quoted(name), (span.from + span.to) / 2);
+                line("set label {} at first {:.6f}, graph 0.47 center font \",9\" tc rgb \"#303030\" noenhanced front", quoted(name),
+                     (span.from + span.to) / 2);
         }
         line("plot NaN notitle");
     }
@@ -153,8 +161,8 @@ public:
                 high = std::max(high, point.value);
             }
             line("EOD");
-            plots += fmt::format("{}{} using 1:2 with lines lw {} lc rgb \"{}\" {}", plots.empty() ? "" : ", ", block, curve.line, curve.colour,
-                                 *curve.title ? "title " + quoted(curve.title) : std::string("notitle"));
+            plots += fmt::format("{}{} using 1:2 with lines lw {} lc rgb \"{}\" {}", plots.empty() ? "" : ", ", block, curve.line,
+                                 curve.colour, *curve.title ? "title " + quoted(curve.title) : std::string("notitle"));
         }
         const auto t = ticks(low, high, panel.height > 100 ? 6 : 5);
         std::string list;
@@ -163,7 +171,9 @@ public:
         time_tics(last);
         label(12, top + panel.height / 2 - 7, panel.quantity, "left", 10, "#202020");
         label(12, top + panel.height / 2 + 8, panel.unit, "left", 9, "#707070");
-        if (first) line("set key at screen {:.6f}, screen {:.6f} right center horizontal samplen 2.2 font \",10\" noenhanced", x(width - right), y(top - gap - band_height - axis_head / 2));
+        if (first)
+            line("set key at screen {:.6f}, screen {:.6f} right center horizontal samplen 2.2 font \",10\" noenhanced", x(width - right),
+                 y(top - gap - band_height - axis_head / 2));
         line("plot {}", plots);
     }
 
@@ -189,8 +199,10 @@ void legend(Script& script, const Trace& trace, const std::vector<const AxisTrac
     }
     double at = left;
     const auto entry = [&](std::string_view colour, std::string_view text) {
-        script.line("set object rectangle from screen {:.6f}, screen {:.6f} to screen {:.6f}, screen {:.6f} front fillcolor rgb \"{}\" fillstyle solid border lc rgb \"#a0a0a0\"",
-                    script.x(at), script.y(top), script.x(at + 14), script.y(top + 12), colour);
+        script.line(
+            "set object rectangle from screen {:.6f}, screen {:.6f} to screen {:.6f}, screen {:.6f} front fillcolor rgb \"{}\" fillstyle "
+            "solid border lc rgb \"#a0a0a0\"",
+            script.x(at), script.y(top), script.x(at + 14), script.y(top + 12), colour);
         script.label(at + 19, top + 6, text, "left", 9, "#404040");
         at += 19 + 6.3 * static_cast<double>(text.size()) + 18;
     };
@@ -226,7 +238,8 @@ Result<std::string> plot_script(const Trace& trace, const PlotRequest& request) 
     if (!axes) return axes.error();
     const auto rows = window_of(trace.time_s, request.from_s, request.to_s > 0 ? request.to_s : HUGE_VAL);
     if (rows.last < rows.first + 2)
-        return Error{"plot.empty_window", "--from/--to", fmt::format("the trace has no cycles there; it is {:.3f} s long", trace.time_s.back()),
+        return Error{"plot.empty_window", "--from/--to",
+                     fmt::format("the trace has no cycles there; it is {:.3f} s long", trace.time_s.back()),
                      "Choose a part inside the trace."};
 
     double height = head + foot;
@@ -238,7 +251,9 @@ Result<std::string> plot_script(const Trace& trace, const PlotRequest& request) 
     const double cycle_ms = (script.to() - script.from()) / static_cast<double>(rows.last - rows.first - 1) * 1e3;
     script.line("set terminal svg size {:.0f},{:.0f} dynamic enhanced font \"DejaVu Sans,10\" background rgb \"#ffffff\"", width, height);
     script.line("set output {}", quoted(request.output));
-    script.line("set encoding utf8; set multiplot; set border 3 lc rgb \"#909090\"; set grid lc rgb \"#e4e4e4\" lt 1 lw 0.7; set tics font \",9\" tc rgb \"#404040\"");
+    script.line(
+        "set encoding utf8; set multiplot; set border 3 lc rgb \"#909090\"; set grid lc rgb \"#e4e4e4\" lt 1 lw 0.7; set tics font \",9\" "
+        "tc rgb \"#404040\"");
 
     double top = head;
     bool heading = true;
@@ -259,7 +274,9 @@ Result<std::string> plot_script(const Trace& trace, const PlotRequest& request) 
         script.label(12, panel_top - gap + 12, "time in s", "left", 9, "#707070");
         if (heading) {
             script.label(left, 22, request.title, "left", 16, "#101010");
-            script.label(left, 44, fmt::format("{:.2f} s to {:.2f} s of {:.2f} s, {} cycles of {:.3g} ms", script.from(), script.to(), trace.time_s.back(), rows.last - rows.first, cycle_ms),
+            script.label(left, 44,
+                         fmt::format("{:.2f} s to {:.2f} s of {:.2f} s, {} cycles of {:.3g} ms", script.from(), script.to(),
+                                     trace.time_s.back(), rows.last - rows.first, cycle_ms),
                          "left", 10, "#606060");
             legend(script, trace, *axes, rows, height - 30);
         }

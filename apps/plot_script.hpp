@@ -12,10 +12,10 @@ namespace taktwerk::apps {
 
 struct PlotRequest {
     std::string title;
-    std::string output;              ///< SVG file
-    std::vector<std::string> axes;   ///< names; empty = all
-    double from_s = 0, to_s = 0;     ///< since the first row; to 0 = until the end
-    bool following_error = false;    ///< a panel more
+    std::string output;             ///< SVG file
+    std::vector<std::string> axes;  ///< names; empty = all
+    double from_s = 0, to_s = 0;    ///< since the first row; to 0 = until the end
+    bool following_error = false;   ///< a panel more
 };
 
 /// Errors: plot.unknown_axis, plot.empty_window.

@@ -41,8 +41,8 @@ void append_table(std::string& page, std::string_view title, std::string_view nu
     for (const auto& alarm : table) {
         fmt::format_to(out, "\n### {:04X}h {}\n\n", alarm.id, alarm.name);
         fmt::format_to(out, "{}\n\n{}\n\n", alarm.english, alarm.chinese);
-        fmt::format_to(out, "* Cause: {}\n* Remedy: {}\n* Reset: {}\n* Reaction, master alive: {}\n", alarm.cause, alarm.remedy, words(alarm.reset),
-                       words(alarm.reaction));
+        fmt::format_to(out, "* Cause: {}\n* Remedy: {}\n* Reset: {}\n* Reaction, master alive: {}\n", alarm.cause, alarm.remedy,
+                       words(alarm.reset), words(alarm.reaction));
         if (!alarm.master_gone.empty()) fmt::format_to(out, "* Reaction, master gone: {}\n", alarm.master_gone);
     }
 }
@@ -53,7 +53,8 @@ std::string alarm_reference_markdown() {
     std::string page =
         "# Alarms\n\n"
         "Generated from the alarm tables (`taktwerk docs alarms`). {a} and {b} stand for the numbers of the occasion. A drive's own\n"
-        "alarms come with its profile and are shown with `drive_fault` and `drive_warning`; a program's alarms are declared by the program.\n";
+        "alarms come with its profile and are shown with `drive_fault` and `drive_warning`; a program's alarms are declared by the "
+        "program.\n";
     append_table(page, "Bus", "EtherCAT, 1xxxh.", ecat::bus_alarms);
     append_table(page, "Axes", "3xxxh; also the error of an axis in ErrorStop (MC_ReadAxisError).", axes::axis_alarms);
     append_table(page, "Machine", "6xxxh.", runtime::machine_alarms);
@@ -63,11 +64,13 @@ std::string alarm_reference_markdown() {
 std::string error_reference_markdown() {
     std::string page =
         "# Errors of function blocks\n\n"
-        "Generated from the error table (`taktwerk docs errors`). These are answers to a command: the axis itself is untouched. Numbers from\n"
+        "Generated from the error table (`taktwerk docs errors`). These are answers to a command: the axis itself is untouched. Numbers "
+        "from\n"
         "3000h on are the axis' own errors and stand in alarms.md.\n\n"
         "| ErrorID | name | meaning | 含义 | what to do |\n|---|---|---|---|---|\n";
     for (const auto& error : axes::error_texts)
-        fmt::format_to(std::back_inserter(page), "| {:04X}h | {} | {} | {} | {} |\n", static_cast<unsigned>(error.id), error.name, error.english, error.chinese, error.remedy);
+        fmt::format_to(std::back_inserter(page), "| {:04X}h | {} | {} | {} | {} |\n", static_cast<unsigned>(error.id), error.name,
+                       error.english, error.chinese, error.remedy);
     return page;
 }
 

@@ -14,7 +14,9 @@ namespace {
 Result<nlohmann::ordered_json> ask(hmi::Client& client, const char* question) {
     auto answer = client.request({{"cmd", question}});
     if (!answer) return answer.error();
-    if (!answer->contains(question)) return Error{"socket.bad_answer", client.path(), "the answer is not what this version understands", "Use the command line of the runtime's version."};
+    if (!answer->contains(question))
+        return Error{"socket.bad_answer", client.path(), "the answer is not what this version understands",
+                     "Use the command line of the runtime's version."};
     return (*answer)[question];
 }
 
@@ -41,8 +43,8 @@ int report(const RemoteOptions& options, const std::string& done) {
 
 int report(const RemoteOptions& options, const Error& error) {
     if (options.json)
-        fmt::print("{{\"ok\":false,\"error\":{{\"code\":{},\"subject\":{},\"what\":{},\"remedy\":{}}}}}\n", json_text(error.code), json_text(error.subject),
-                   json_text(error.what), json_text(error.remedy));
+        fmt::print("{{\"ok\":false,\"error\":{{\"code\":{},\"subject\":{},\"what\":{},\"remedy\":{}}}}}\n", json_text(error.code),
+                   json_text(error.subject), json_text(error.what), json_text(error.remedy));
     else print_error(error);
     return exit_code_of(error);
 }

@@ -41,7 +41,8 @@ void judge(const Snapshot* s, int& code) {
     if (!s || s->phase != MachinePhase::running) return;
     code = exit_ok;
     for (std::size_t i = 0; i < s->alarm_count; ++i)
-        if (s->alarms[i].standing && s->alarms[i].reaction >= Reaction::stop_machine && s->alarms[i].fact.id != id(MachineAlarm::stopped_by_signal))
+        if (s->alarms[i].standing && s->alarms[i].reaction >= Reaction::stop_machine &&
+            s->alarms[i].fact.id != id(MachineAlarm::stopped_by_signal))
             code = exit_alarm;
 }
 
@@ -50,11 +51,13 @@ void print_summary(Machine& machine, const Options& options, double machine_seco
     if (!s || options.quiet) return;
     const auto& total = machine.step_statistics().total();
     if (options.json) {
-        fmt::print("{{\"cycles\":{},\"missed\":{},\"lateness_max_us\":{:.1f},\"compute_p50_us\":{:.2f},\"compute_p99_us\":{:.2f},\"compute_max_us\":{:.2f},"
-                   "\"frames_lost\":{},\"machine_s\":{:.3f},\"wall_s\":{:.3f}}}\n",
-                   s->statistics.cycles, s->statistics.missed_ticks, to_seconds(s->statistics.lateness_max) * 1e6,
-                   to_seconds(total.percentile(50)) * 1e6, to_seconds(total.percentile(99)) * 1e6, to_seconds(total.max()) * 1e6, s->bus.frames_lost,
-                   machine_seconds, wall_seconds);
+        fmt::print(
+            "{{\"cycles\":{},\"missed\":{},\"lateness_max_us\":{:.1f},\"compute_p50_us\":{:.2f},\"compute_p99_us\":{:.2f},\"compute_max_"
+            "us\":{:.2f},"
+            "\"frames_lost\":{},\"machine_s\":{:.3f},\"wall_s\":{:.3f}}}\n",
+            s->statistics.cycles, s->statistics.missed_ticks, to_seconds(s->statistics.lateness_max) * 1e6,
+            to_seconds(total.percentile(50)) * 1e6, to_seconds(total.percentile(99)) * 1e6, to_seconds(total.max()) * 1e6,
+            s->bus.frames_lost, machine_seconds, wall_seconds);
         return;
     }
     fmt::print("\n{} cycles of {} us, {} missed; {} frames lost, {} late\n", s->statistics.cycles, machine.layout().cycle.count() / 1000,
@@ -62,7 +65,8 @@ void print_summary(Machine& machine, const Options& options, double machine_seco
     fmt::print("computing per cycle: p50 {:.1f} us, p99 {:.1f} us, max {:.1f} us", to_seconds(total.percentile(50)) * 1e6,
                to_seconds(total.percentile(99)) * 1e6, to_seconds(total.max()) * 1e6);
     if (options.virtual_time)
-        fmt::print("\n{:.1f} s of machine time in {:.2f} s: {:.0f} times real time\n", machine_seconds, wall_seconds, machine_seconds / std::max(wall_seconds, 1e-9));
+        fmt::print("\n{:.1f} s of machine time in {:.2f} s: {:.0f} times real time\n", machine_seconds, wall_seconds,
+                   machine_seconds / std::max(wall_seconds, 1e-9));
     else fmt::print("; wake-up at most {:.0f} us late\n", to_seconds(s->statistics.lateness_max) * 1e6);
     for (std::size_t i = 0; i < machine.layout().variables.size(); ++i) {
         const auto& v = machine.layout().variables[i];
@@ -151,11 +155,12 @@ int run_real(LoadedFile loaded, const Options& options) {
     }
     hmi::RuntimeLink link{*machine};
     hmi::HmiOptions bridge_options;
-    if (!options.quiet && !options.json) bridge_options.log = [](std::string_view text) {
-        // Each `taktwerk monitor --once` comes and goes: not worth a line.
-        constexpr std::string_view comes = " connected";
-        if (text.size() < comes.size() || text.substr(text.size() - comes.size()) != comes) fmt::print("{}\n", text);
-    };
+    if (!options.quiet && !options.json)
+        bridge_options.log = [](std::string_view text) {
+            // Each `taktwerk monitor --once` comes and goes: not worth a line.
+            constexpr std::string_view comes = " connected";
+            if (text.size() < comes.size() || text.substr(text.size() - comes.size()) != comes) fmt::print("{}\n", text);
+        };
     auto bridge = hmi::HmiBridge::open(loaded.hmi, link, std::move(bridge_options));
     if (!bridge) {
         print_error(bridge.error());
@@ -189,7 +194,8 @@ int run_real(LoadedFile loaded, const Options& options) {
         const bool time_up = options.duration_s > 0 && to_seconds(now - start) >= options.duration_s;
         if (stop_requested() && !said_stop) {
             said_stop = true;
-            if (!options.quiet) log.say(now, "stop", fmt::format("{}: axes stop along their ramps, then power goes off", stop_signal_name()));
+            if (!options.quiet)
+                log.say(now, "stop", fmt::format("{}: axes stop along their ramps, then power goes off", stop_signal_name()));
         }
         return !time_up && !stop_requested();
     });

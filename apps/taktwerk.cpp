@@ -16,7 +16,8 @@ bool colours(int fd) { return ::isatty(fd) != 0; }
 
 void print(const char* colour, const char* word, const Error& error) {
     const bool tty = colours(STDERR_FILENO);
-    fmt::print(stderr, "{}{}{}: {}{}\n", tty ? colour : "", word, tty ? "\033[0m" : "", error.subject.empty() ? "" : error.subject + ": ", error.what);
+    fmt::print(stderr, "{}{}{}: {}{}\n", tty ? colour : "", word, tty ? "\033[0m" : "", error.subject.empty() ? "" : error.subject + ": ",
+               error.what);
     if (!error.remedy.empty()) fmt::print(stderr, "  -> {}\n", error.remedy);
 }
 
@@ -33,7 +34,9 @@ int run(int argc, char** argv) {
     CLI::App app{"Taktwerk: soft-PLC and motion runtime"};
     app.set_version_flag("--version", std::string("taktwerk ") + sdk_version);
     app.require_subcommand(1);
-    app.footer("Exit codes: 0 ok, 2 usage, 3 bad file, 4 bus, 5 refused by the machine, 6 no running machine, 7 no real time, 8 ended with an alarm");
+    app.footer(
+        "Exit codes: 0 ok, 2 usage, 3 bad file, 4 bus, 5 refused by the machine, 6 no running machine, 7 no real time, 8 ended with an "
+        "alarm");
     Action action;
     add_run(app, action);
     add_check(app, action);

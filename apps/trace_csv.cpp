@@ -12,7 +12,7 @@ namespace {
 struct Quantity {
     std::string_view column, per;
 };
-constexpr Quantity quantities[] = {{"set_position", ""},    {"set_velocity", "/s"},  {"set_acceleration", "/s2"}, {"set_jerk", "/s3"},
+constexpr Quantity quantities[] = {{"set_position", ""},    {"set_velocity", "/s"},    {"set_acceleration", "/s2"}, {"set_jerk", "/s3"},
                                    {"actual_position", ""}, {"actual_velocity", "/s"}, {"following_error", ""}};
 
 /// "[mm/s]" for the columns of an axis that have its unit, empty for others.
@@ -25,9 +25,12 @@ std::string unit_of(std::string_view column, const runtime::MachineLayout& layou
 
 }  // namespace
 
-Result<std::unique_ptr<TraceCsv>> TraceCsv::create(const std::string& path, runtime::TraceRing& ring, const runtime::MachineLayout& layout) {
+Result<std::unique_ptr<TraceCsv>> TraceCsv::create(const std::string& path, runtime::TraceRing& ring,
+                                                   const runtime::MachineLayout& layout) {
     std::FILE* file = std::fopen(path.c_str(), "w");
-    if (!file) return Error{"trace.create", path, fmt::format("the trace cannot be written: {}", std::strerror(errno)), "choose another place for --trace"};
+    if (!file)
+        return Error{"trace.create", path, fmt::format("the trace cannot be written: {}", std::strerror(errno)),
+                     "choose another place for --trace"};
     std::setvbuf(file, nullptr, _IOFBF, 1 << 20);
     auto trace = std::unique_ptr<TraceCsv>(new TraceCsv(path, file, ring));
     std::string header;
@@ -51,8 +54,7 @@ void TraceCsv::drain() {
             // Whole numbers (states, switches, bits) are most of a trace: the short way is also the fast one.
             if (value > -1e15 && value < 1e15 && value == static_cast<double>(static_cast<long long>(value)))
                 out = fmt::format_to(out, "{}", static_cast<long long>(value));
-            else
-                out = fmt::format_to(out, "{}", value);
+            else out = fmt::format_to(out, "{}", value);
         }
         line_ += '\n';
         std::fwrite(line_.data(), 1, line_.size(), file_);

@@ -15,7 +15,8 @@ namespace taktwerk::apps {
 class TraceCsv {
 public:
     /// `layout` gives the units of the axes: "x.set_position[mm]".
-    static Result<std::unique_ptr<TraceCsv>> create(const std::string& path, runtime::TraceRing& ring, const runtime::MachineLayout& layout);
+    static Result<std::unique_ptr<TraceCsv>> create(const std::string& path, runtime::TraceRing& ring,
+                                                    const runtime::MachineLayout& layout);
     ~TraceCsv();
 
     /// Writes all rows that are waiting.

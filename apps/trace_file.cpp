@@ -79,7 +79,8 @@ Result<std::vector<Column*>> targets(Trace& trace, const std::vector<Heading>& c
         out.push_back(found == wanted.end() ? nullptr : found->second);
         if (found != wanted.end()) wanted.erase(found);
     }
-    if (trace.axes.empty()) return error("not_a_trace", name, "no column is called AXIS.set_position", "Give a file that `taktwerk run --trace` has written.");
+    if (trace.axes.empty())
+        return error("not_a_trace", name, "no column is called AXIS.set_position", "Give a file that `taktwerk run --trace` has written.");
     if (!wanted.empty())
         return error("not_a_trace", name, fmt::format("the column '{}' is missing", wanted.begin()->first),
                      "Give a file that `taktwerk run --trace` has written.");
@@ -125,21 +126,24 @@ Result<Trace> parse_trace(std::string_view text, const std::string& name) {
             break;
         }
         if (!read_row(text.substr(0, end), *target, row))
-            return error("bad_line", fmt::format("{}:{}", name, line_number), fmt::format("the line is not {} numbers with commas between", target->size()),
+            return error("bad_line", fmt::format("{}:{}", name, line_number),
+                         fmt::format("the line is not {} numbers with commas between", target->size()),
                          "Record the trace again; this file was changed or damaged.");
         for (std::size_t i = 0; i < row.size(); ++i)
             if (auto* column = (*target)[i]) column->push_back(row[i]);
         text.remove_prefix(end + 1);
     }
     if (trace.time_s.empty())
-        return error("empty", name, "the trace has a heading but no cycles", "The machine ended before its first cycle: see what `taktwerk run` said.");
+        return error("empty", name, "the trace has a heading but no cycles",
+                     "The machine ended before its first cycle: see what `taktwerk run` said.");
     const double start = trace.time_s.front();
     double last = 0;
     for (std::size_t i = 0; i < trace.time_s.size(); ++i) {
         auto& t = trace.time_s[i];
         t -= start;
         if (t < last)
-            return error("bad_line", fmt::format("{}:{}", name, i + 2), "the time runs backwards", "Record the trace again; this file was changed or damaged.");
+            return error("bad_line", fmt::format("{}:{}", name, i + 2), "the time runs backwards",
+                         "Record the trace again; this file was changed or damaged.");
         last = t;
     }
     return trace;
@@ -151,7 +155,8 @@ Result<Trace> read_trace(const std::string& path) {
     if (file) text << file.rdbuf();
     if (!file) {
         const std::string reason = errno != 0 ? std::strerror(errno) : "it is empty or not a file";
-        return error("open", path, fmt::format("the trace cannot be read: {}", reason), "Check the name; `taktwerk run FILE --trace out.csv` writes one.");
+        return error("open", path, fmt::format("the trace cannot be read: {}", reason),
+                     "Check the name; `taktwerk run FILE --trace out.csv` writes one.");
     }
     return parse_trace(text.str(), path);
 }

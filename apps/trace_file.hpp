@@ -19,7 +19,7 @@ struct Trace {
     std::vector<double> time_s;          ///< since the first row
     std::vector<double> emergency_stop;  ///< 0 or 1
     std::vector<AxisTrace> axes;
-    bool cut_off = false;                ///< the last line is incomplete: the writer was killed
+    bool cut_off = false;  ///< the last line is incomplete: the writer was killed
 };
 
 /// Errors: trace.open, trace.not_a_trace, trace.bad_line (with its number), trace.empty.

@@ -85,7 +85,8 @@ TEST(CommandLineCable, RunMovesTheAxesOfSim) {
     const std::filesystem::path folder = ::mkdtemp(pattern.data());
     std::filesystem::create_directories(folder / "machines");
     std::filesystem::create_directory_symlink(source / "config/drives", folder / "drives");
-    const auto socket = (folder / "socket").string(), file = (folder / "machines/cable.yaml").string(), capture = (folder / "cable.pcap").string();
+    const auto socket = (folder / "socket").string(), file = (folder / "machines/cable.yaml").string(),
+               capture = (folder / "cable.pcap").string();
     auto text = text_of(source / "config/machines/minimal.yaml");
     text = replaced(replaced(text, "interface: simulated", "interface: twk0"), "cycle: 1 ms", "cycle: 4 ms");
     text += "hmi: { socket: '" + socket + "', lcm: { enabled: false } }\nsimulation: { supervision: relaxed }\n";

@@ -95,7 +95,8 @@ TEST_F(CommandLine, BadFilesEndWithAllTheirProblems) {
 TEST_F(CommandLine, CheckSaysWhatADriveDoesWhenTheMasterIsGone) {
     const auto checked = command({"check", machines + "demo.yaml"});
     EXPECT_EQ(checked.code, exit_ok) << checked.text;
-    EXPECT_THAT(checked.text, AllOf(HasSubstr("if the master is gone"), HasSubstr("605Ah"), HasSubstr("Assumed about sv33-e"), HasSubstr("speed")));
+    EXPECT_THAT(checked.text,
+                AllOf(HasSubstr("if the master is gone"), HasSubstr("605Ah"), HasSubstr("Assumed about sv33-e"), HasSubstr("speed")));
 }
 
 TEST_F(CommandLine, TwoRunsInVirtualTimeWriteTheSameBytes) {
@@ -109,7 +110,8 @@ TEST_F(CommandLine, TwoRunsInVirtualTimeWriteTheSameBytes) {
 }
 
 TEST_F(CommandLine, WithoutARunningMachineCommandsSaySo) {
-    for (const auto& arguments : {std::vector<std::string>{"monitor", "--once"}, {"enable", "x"}, {"jog", "x", "--velocity", "-5"}, {"reset"}}) {
+    for (const auto& arguments :
+         {std::vector<std::string>{"monitor", "--once"}, {"enable", "x"}, {"jog", "x", "--velocity", "-5"}, {"reset"}}) {
         const auto answer = to_machine(arguments);
         EXPECT_EQ(answer.code, exit_no_runtime) << answer.text;
     }
@@ -173,9 +175,10 @@ TEST_F(CommandLine, ShutDownOnCommandIsAGoodEnd) {
 }
 
 TEST_F(CommandLine, PlotNamesThePackageItMisses) {
-    const auto trace = file("t.csv",
-                            "time_s,emergency_stop,x.state,x.set_position,x.set_velocity,x.set_acceleration,x.set_jerk,x.actual_position,x.actual_velocity,"
-                            "x.following_error\n1,0,1,7,2,3,4,7,1,0\n2,0,1,8,2,3,4,7,1,0\n");
+    const auto trace = file(
+        "t.csv",
+        "time_s,emergency_stop,x.state,x.set_position,x.set_velocity,x.set_acceleration,x.set_jerk,x.actual_position,x.actual_velocity,"
+        "x.following_error\n1,0,1,7,2,3,4,7,1,0\n2,0,1,8,2,3,4,7,1,0\n");
     Child plot({"env", "PATH=" + folder_, taktwerk, "plot", trace});
     EXPECT_EQ(plot.wait(10s), exit_bad_file);
     EXPECT_THAT(plot.text(), HasSubstr("apt-get install gnuplot-nox"));

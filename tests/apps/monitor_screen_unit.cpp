@@ -15,19 +15,41 @@ using ::testing::Not;
 using Json = nlohmann::ordered_json;
 
 Json axis(const std::string& name) {
-    return Json{{"name", name}, {"unit", "mm"}, {"state", "Standstill"}, {"owner", "program"}, {"disabled", false}, {"simulated", true}, {"online", true},
-                {"powered", true}, {"homed", true}, {"drive_error", 0}, {"actual_position", 12.3456}, {"actual_velocity", -0.5}, {"set_position", 12.5},
-                {"following_error", 0.001}, {"drive_state", "operation_enabled"}, {"negative_limit_switch", false}, {"positive_limit_switch", false}, {"home_switch", false}};
+    return Json{{"name", name},
+                {"unit", "mm"},
+                {"state", "Standstill"},
+                {"owner", "program"},
+                {"disabled", false},
+                {"simulated", true},
+                {"online", true},
+                {"powered", true},
+                {"homed", true},
+                {"drive_error", 0},
+                {"actual_position", 12.3456},
+                {"actual_velocity", -0.5},
+                {"set_position", 12.5},
+                {"following_error", 0.001},
+                {"drive_state", "operation_enabled"},
+                {"negative_limit_switch", false},
+                {"positive_limit_switch", false},
+                {"home_switch", false}};
 }
 
 Json alarm(const std::string& source) {
-    return Json{{"source", source}, {"english", "The drive reports fault 0x3130"}, {"chinese", "驱动器报告故障 0x3130"}, {"remedy", "Check the mains"},
-                {"standing", true}, {"acknowledged", false}, {"count", 1}};
+    return Json{{"source", source},
+                {"english", "The drive reports fault 0x3130"},
+                {"chinese", "驱动器报告故障 0x3130"},
+                {"remedy", "Check the mains"},
+                {"standing", true},
+                {"acknowledged", false},
+                {"count", 1}};
 }
 
 Json state(std::size_t axes, std::size_t alarms) {
-    Json out{{"machine", "cell"}, {"cycle", 12345}, {"phase", "running"}, {"mode", "automatic"}, {"emergency_stop", false}, {"simulated", true}};
-    out["statistics"] = Json{{"lateness_ns", 12000}, {"lateness_max_ns", 87000}, {"compute_ns", 45000}, {"compute_max_ns", 120000}, {"missed_ticks", 3}};
+    Json out{{"machine", "cell"},   {"cycle", 12345},          {"phase", "running"},
+             {"mode", "automatic"}, {"emergency_stop", false}, {"simulated", true}};
+    out["statistics"] =
+        Json{{"lateness_ns", 12000}, {"lateness_max_ns", 87000}, {"compute_ns", 45000}, {"compute_max_ns", 120000}, {"missed_ticks", 3}};
     out["bus"] = Json{{"phase", "operational"}, {"frames_lost", 1}, {"frames_late", 2}, {"working_counter_errors", 0}};
     out["slaves"] = Json::array({Json{{"fresh", true}}, Json{{"fresh", false}}});
     out["axes"] = Json::array();

@@ -14,7 +14,8 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 const std::string heading =
-    "time_s,emergency_stop,alarms,x.state,x.set_position[mm],x.set_velocity[mm/s],x.set_acceleration,x.set_jerk,x.actual_position,x.actual_velocity,"
+    "time_s,emergency_stop,alarms,x.state,x.set_position[mm],x.set_velocity[mm/"
+    "s],x.set_acceleration,x.set_jerk,x.actual_position,x.actual_velocity,"
     "x.actual_torque,x.following_error,in.start\n";
 
 TEST(TraceFile, TimeCountsFromTheFirstRowAndUnitsComeFromTheHeading) {
@@ -68,7 +69,9 @@ TEST(PlotData, NoPeakIsLostHoweverNarrow) {
     const auto points = decimate(time, values, {0, time.size()}, 100);
 
     EXPECT_LE(points.size(), 400u);
-    const auto at = [](double t, double value) { return ::testing::AllOf(::testing::Field(&Point::t, t), ::testing::Field(&Point::value, value)); };
+    const auto at = [](double t, double value) {
+        return ::testing::AllOf(::testing::Field(&Point::t, t), ::testing::Field(&Point::value, value));
+    };
     EXPECT_THAT(points, ::testing::Contains(at(54321e-3, 5)));
     EXPECT_THAT(points, ::testing::Contains(at(54323e-3, -7)));
     for (std::size_t i = 1; i < points.size(); ++i) EXPECT_LE(points[i - 1].t, points[i].t);
