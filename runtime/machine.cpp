@@ -9,6 +9,7 @@
 #include "axes/sim/virtual_drive.hpp"
 #include "runtime/inbox_record.hpp"
 #include "runtime/machine_impl.hpp"
+#include "runtime/present_slaves.hpp"
 #include "runtime/stop_time.hpp"
 
 namespace taktwerk::runtime {
@@ -28,6 +29,7 @@ constexpr std::array<std::string_view, step_count> step_names{"receive", "inbox"
 ecat::BusConfig bus_of(const MachineConfig& config) {
     auto bus = config.bus;
     bus.cycle = config.cycle;
+    bus.slaves = present_slaves(config);
     for (const auto& binding : config.axes) {
         if (binding.slave.empty() || !binding.profile || binding.axis.disabled) continue;
         for (auto& slave : bus.slaves) {
@@ -42,15 +44,6 @@ ecat::BusConfig bus_of(const MachineConfig& config) {
         for (auto& slave : bus.slaves)
             if (slave.sm_watchdog == Duration{}) slave.sm_watchdog = relaxed_watchdog;
     }
-    std::erase_if(bus.slaves, [&](const ecat::SlaveConfig& slave) {
-        bool bound = false, all_simulated = true;
-        for (const auto& binding : config.axes) {
-            if (binding.slave != slave.name) continue;
-            bound = true;
-            all_simulated = all_simulated && binding.axis.simulated;
-        }
-        return bound && all_simulated;
-    });
     return bus;
 }
 

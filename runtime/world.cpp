@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/present_slaves.hpp"
+
 namespace taktwerk::runtime {
 
 namespace {
@@ -56,7 +58,8 @@ std::vector<const ecat::SlaveConfig*> cable_order(const std::vector<ecat::SlaveC
 
 World::World(const MachineConfig& config, Instant start) : network_(start), transport_(network_), start_(start), events_(config.simulation.events) {
     std::stable_sort(events_.begin(), events_.end(), [](const auto& a, const auto& b) { return a.at < b.at; });
-    for (const auto* slave : cable_order(config.bus.slaves)) {
+    const auto present = present_slaves(config);
+    for (const auto* slave : cable_order(present)) {
         ecat::sim::SlaveOptions options;
         options.name = slave->name;
         options.alias = slave->alias.value_or(0);
