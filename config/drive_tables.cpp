@@ -227,6 +227,29 @@ Table<ecat::DcDescription> dc_table() {
             {}};
 }
 
+Codec<axes::DriveStop> drive_stop() {
+    return choice<axes::DriveStop>({{"coast", axes::DriveStop::coast}, {"ramp", axes::DriveStop::ramp}});
+}
+
+Codec<axes::DriveAlarmKind> alarm_kind() {
+    using K = axes::DriveAlarmKind;
+    return choice<K>({{"other", K::other},
+                      {"overspeed", K::overspeed},
+                      {"following_error", K::following_error},
+                      {"setpoint_leap", K::setpoint_leap},
+                      {"undervoltage", K::undervoltage},
+                      {"overload", K::overload},
+                      {"encoder", K::encoder},
+                      {"communication", K::communication},
+                      {"negative_limit", K::negative_limit},
+                      {"positive_limit", K::positive_limit},
+                      {"emergency_stop", K::emergency_stop},
+                      {"battery_low", K::battery_low},
+                      {"reference_lost", K::reference_lost},
+                      {"turn_overflow", K::turn_overflow},
+                      {"power_cycle_pending", K::power_cycle_pending}});
+}
+
 Table<DriveProfile> motion_table() {
     using P = DriveProfile;
     return {
@@ -255,6 +278,14 @@ Table<DriveProfile> motion_table() {
             field("mode_change_delay", &P::mode_change_delay, duration(), "set-points wait this long after a mode change"),
             field("enable_timeout", &P::enable_timeout, duration(), "enabling that takes longer has failed"),
             field("mode_change_at_standstill", &P::mode_change_at_standstill, boolean(), "modes change only while it stands"),
+            field("mode_change_interval", &P::mode_change_interval, duration(), "least time between two changes of 6060h"),
+            field("mode_indeterminate", &P::mode_indeterminate, duration(), "6061h means nothing this long after a change of 6060h"),
+            field("enable_status_bits", &P::enable_status_bits, integer<std::uint16_t>(0, u16), "of 6041h, all set before Enable Operation"),
+            field("brake_release", &P::brake_release, duration(), "after enabling the brake still holds: the drive loses earlier commands"),
+            field("brake_hold", &P::brake_hold, duration(), "after disabling at standstill the motor holds until the brake does"),
+            field("off_stop", &P::off_stop, drive_stop(), "power taken away while it moves"),
+            field("fault_stop", &P::fault_stop, drive_stop(), "its reaction to a fault"),
+            field("quick_stop_leaves", &P::quick_stop_leaves, boolean(), "Quick Stop Active ends by itself"),
             field("csp_interpolates", &P::csp_interpolates, boolean(), "a target is reached one cycle after the SYNC0 that brought it"),
             field("axes", &P::axes, integer<std::uint8_t>(1, 8), "axes in this drive"),
             field("object_offset", &P::object_offset, integer<std::uint16_t>(0, u16), "of the objects of each further axis"),
@@ -285,6 +316,8 @@ Table<DriveAlarmText> alarm_row_table() {
                 field("remedy", &A::remedy, text(), "what to do"),
                 field("resettable", &A::resettable, boolean(), "false: only a power cycle clears it"),
                 field("warning", &A::warning, boolean(), "the drive goes on"),
+                field("whole_drive", &A::whole_drive, boolean(), "common to all axes of the drive"),
+                field("kind", &A::kind, alarm_kind(), "what it means, whatever its number"),
             },
             {},
             {}};
