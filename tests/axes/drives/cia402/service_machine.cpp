@@ -184,21 +184,25 @@ TEST_F(Probe, ContinuousLatchesAreCounted) {
     EXPECT_EQ(rig.feedback().probes[0].position, 250);
 }
 
-// Disarmed for one cycle only: the latch of the arming before is still on its way.
+// Disarmed for one cycle only, and a drive that takes its time: the latch of the arming before is still shown.
 TEST_F(Probe, RearmingForgetsTheOldLatch) {
     rig.command.probes[0].armed = true;
     rig.run(10);
     latch(100);
     rig.run(6);
     ASSERT_TRUE(rig.feedback().probes[0].latched);
+    int cleared_after = 8;
+    rig.puppet->on_exchange = [&] {
+        const bool wanted = (rig.got(0x60B8) & 1) != 0;
+        if (!wanted && --cleared_after <= 0) rig.put(0x60B9, 0);
+        if (wanted && cleared_after <= 0) rig.put(0x60B9, rig.got(0x60B9) | 1);
+    };
     rig.command.probes[0].armed = false;
     rig.run(1);
     rig.command.probes[0].armed = true;
     bool stale = false;
     rig.on_cycle = [&] { stale |= rig.feedback().probes[0].latched; };
-    rig.run(1);
-    stale = false;
-    rig.run(20);
+    rig.run(30);
     EXPECT_FALSE(stale);
     EXPECT_TRUE(rig.feedback().probes[0].armed);
     latch(300);
