@@ -17,3 +17,9 @@ if(TAKTWERK_SANITIZE)
   target_compile_options(taktwerk_build_options INTERFACE -fsanitize=${TAKTWERK_SANITIZE} ${TAKTWERK_SANITIZE_EXCEPT} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   target_link_options(taktwerk_build_options INTERFACE -fsanitize=${TAKTWERK_SANITIZE})
 endif()
+
+# A fast linker where there is one: some sixty test binaries are linked from the same static libraries.
+find_program(MOLD mold)
+if(MOLD)
+  add_link_options(-fuse-ld=mold)
+endif()
