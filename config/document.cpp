@@ -7,9 +7,11 @@
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <sstream>
 #include <system_error>
 
 #include <fmt/format.h>
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 namespace taktwerk::config {
@@ -65,6 +67,30 @@ std::optional<Position> tab_in_indentation(std::string_view text, int line) {
     return std::nullopt;
 }
 
+/// Only says where documents begin.
+class DocumentStarts final : public YAML::EventHandler {
+public:
+    void OnDocumentStart(const YAML::Mark& mark) override { at = {mark.line + 1, mark.column + 1}; }
+    void OnDocumentEnd() override {}
+    void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+    void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+    void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
+    void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+    void OnSequenceEnd() override {}
+    void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+    void OnMapEnd() override {}
+    Position at;
+};
+
+/// YAML::LoadAll never returns on a stray `,` outside brackets: each of its documents ends where it began. Two are enough to know.
+std::optional<Position> second_document(const std::string& text) {
+    std::istringstream stream(text);
+    YAML::Parser parser(stream);
+    DocumentStarts starts;
+    if (!parser.HandleNextDocument(starts) || !parser.HandleNextDocument(starts)) return std::nullopt;
+    return starts.at;
+}
+
 class Converter {
 public:
     explicit Converter(Document& document) : document_(document) {}
@@ -89,6 +115,12 @@ public:
         if (from.IsScalar()) {
             node.kind = Node::Kind::scalar;
             node.text = from.Scalar();
+            bytes_ += node.text.size();
+            if (bytes_ > 4 * max_file_bytes) {
+                full_ = true;
+                problem("config.too_many_nodes", node.at, "aliases multiply the file beyond 4 MiB", "use fewer anchors and aliases");
+                return node;
+            }
             node.quoted = from.Tag() == "!";
         } else if (from.IsSequence()) {
             node.kind = Node::Kind::list;
@@ -123,7 +155,7 @@ private:
     }
 
     Document& document_;
-    std::size_t count_ = 0;
+    std::size_t count_ = 0, bytes_ = 0;
     bool full_ = false;
 };
 
@@ -166,16 +198,17 @@ Document parse_document(std::string file, std::string_view text) {
         return document;
     }
     try {
-        const auto documents = YAML::LoadAll(std::string(text));
-        if (documents.empty() || (documents.size() == 1 && documents.front().IsNull())) {
+        if (const auto second = second_document(std::string(text))) {
+            fail("config.several_documents", *second, "a second YAML document begins here, or text that belongs to nothing",
+                 "keep one document in a file; check `---`, commas and brackets");
+            return document;
+        }
+        const auto root = YAML::Load(std::string(text));
+        if (root.IsNull()) {
             fail("config.empty", {}, "the file is empty", "start from config/machines/minimal.yaml");
             return document;
         }
-        if (documents.size() > 1) {
-            fail("config.several_documents", {}, "the file holds several YAML documents (`---`)", "keep one document in a file");
-            return document;
-        }
-        document.root = Converter(document).convert(documents.front(), {1, 1}, 0);
+        document.root = Converter(document).convert(root, {1, 1}, 0);
     } catch (const YAML::Exception& e) {
         const Position at = e.mark.is_null() || e.mark.line < 0 ? Position{} : Position{e.mark.line + 1, e.mark.column + 1};
         if (const auto tab = tab_in_indentation(text, at.line))

@@ -141,6 +141,15 @@ TEST(HostileFile, ThatRefersToItselfIsRefused) {
                 HasSubstr(":2:7: values are nested more than 40 levels deep"));
 }
 
+// yaml-cpp 0.7 sees endless empty documents here and fills the memory.
+TEST(HostileFile, WithAStrayCommaIsOneClearError) {
+    for (const char* text : {",", ",,\nversion: 1\n", "# comment\n, a: 1\n", "version: 1\n]\n", "}"}) {
+        const auto errors = must_fail(written("comma.yaml", text));
+        EXPECT_GE(errors.size(), 1u) << text;
+        EXPECT_THAT(one_a_line(errors), HasSubstr("comma.yaml")) << text;
+    }
+}
+
 TEST(HostileFile, WithControlCharactersIsRefused) {
     EXPECT_THAT(must_fail(written("nul.yaml", std::string("name: a\0b\n", 10))),
                 ElementsAre(testing::Field(&Error::what, HasSubstr("byte 00h"))));
