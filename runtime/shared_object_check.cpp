@@ -49,6 +49,10 @@ Result<void> check_shared_object(const std::string& path) {
     if (header.e_type != ET_DYN || header.e_phentsize != sizeof(Elf64_Phdr))
         return not_loadable("it is no shared object but an object file, a program of its own, or the like");
 
+    // The section headers stand last in the file: where they are missing, the file lost its end, even if all that is mapped is there.
+    const auto sections = std::uint64_t{header.e_shnum} * header.e_shentsize;
+    if (header.e_shoff != 0 && (sections > size || header.e_shoff > size - sections))
+        return not_loadable(fmt::format("it is cut short: {} bytes are not all of it", size), "copy or build it again");
     for (std::uint16_t i = 0; i < header.e_phnum; ++i) {
         Elf64_Phdr segment{};
         if (!read_at(file, header.e_phoff + std::uint64_t{i} * sizeof segment, segment) ||

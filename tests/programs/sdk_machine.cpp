@@ -55,7 +55,7 @@ TEST_F(Sdk, HoldsOnlyWhatAProgramIncludes) {
 
     // What a program cannot include because all_blocks.hpp and entry.hpp do not: machine and drives stay inside.
     EXPECT_FALSE(fs::exists(sdk->prefix() / "include/taktwerk/axes/axis/axis.hpp"));
-    EXPECT_FALSE(fs::exists(sdk->prefix() / "include/taktwerk/core/result.hpp"));
+    EXPECT_FALSE(fs::exists(sdk->prefix() / "include/taktwerk/core/recorder.hpp"));
 }
 
 TEST_F(Sdk, ProgramIsLoadedAndItsNamesAreResolved) {
