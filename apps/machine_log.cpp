@@ -47,7 +47,10 @@ void MachineLog::alarms(Instant now, const Snapshot& s) {
         Known* known = nullptr;
         for (auto& k : known_)
             if (same(k.fact, alarm.fact)) known = &k;
-        const bool is_new = !known || (alarm.standing && !known->standing) || alarm.count != known->count;
+        // The detail of a drive's alarm is read after the fault: then its words are the right ones.
+        const bool told_more = known && alarm.fact.source == AlarmSource::axis && known->fact.b == 0 && alarm.fact.b != 0 &&
+                               machine_.describe(alarm.fact).name == "drive_fault";
+        const bool is_new = !known || (alarm.standing && !known->standing) || alarm.count != known->count || told_more;
         if (!known) {
             known_.push_back({});
             known = &known_.back();

@@ -36,11 +36,37 @@ std::string_view name(ecat::sim::EsmState state) {
     return "?";
 }
 
-/// Says when a slave changes its state: what one watches while a master brings the bus up.
+std::string_view name(axes::sim::Cia402Axis::State state) {
+    using S = axes::sim::Cia402Axis::State;
+    switch (state) {
+        case S::not_ready: return "not ready";
+        case S::disabled: return "switch on disabled";
+        case S::ready: return "ready";
+        case S::switched_on: return "switched on";
+        case S::enabled: return "operation enabled";
+        case S::quick_stop: return "quick stop";
+        case S::fault_reaction: return "fault reaction";
+        case S::fault: return "fault";
+    }
+    return "?";
+}
+
+/// Says when a slave or a drive changes its state: what one watches while a master brings the bus up, or dies.
 class StateLog {
 public:
-    explicit StateLog(ecat::sim::SimNetwork& network) : network_(network), states_(network.size(), ecat::sim::EsmState::init) {}
+    StateLog(ecat::sim::SimNetwork& network, runtime::World& world, const runtime::MachineConfig& machine)
+        : network_(network), states_(network.size(), ecat::sim::EsmState::init) {
+        for (const auto& binding : machine.axes)
+            if (auto* drive = world.drive(binding.axis.name)) drives_.push_back({binding.axis.name, drive, drive->state()});
+    }
     void step() {
+        for (auto& known : drives_) {
+            const auto state = known.drive->state();
+            if (state == known.state) continue;
+            fmt::print("drive of axis {}: {} -> {}\n", known.axis, name(known.state), name(state));
+            std::fflush(stdout);
+            known.state = state;
+        }
         for (std::size_t i = 0; i < states_.size(); ++i) {
             const auto state = network_.slave(i).state();
             if (state == states_[i]) continue;
@@ -51,8 +77,14 @@ public:
     }
 
 private:
+    struct Drive {
+        std::string axis;
+        axes::sim::Cia402Axis* drive;
+        axes::sim::Cia402Axis::State state;
+    };
     ecat::sim::SimNetwork& network_;
     std::vector<ecat::sim::EsmState> states_;
+    std::vector<Drive> drives_;
 };
 
 int play(const Options& options) {
@@ -69,7 +101,7 @@ int play(const Options& options) {
     const Instant start = clock.now();
     runtime::World world{loaded->machine, start};
     auto& network = world.network();
-    StateLog log{network};
+    StateLog log{network, world, loaded->machine};
     fmt::print("{} slaves of '{}' on {}; Ctrl-C ends\n", network.size(), loaded->machine.name, options.nic);
     std::fflush(stdout);
 

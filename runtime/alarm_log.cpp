@@ -24,8 +24,8 @@ void AlarmLog::raise(const AlarmFact& fact, Reaction reaction, ResetRule reset, 
             alarm.standing = true;
             alarm.acknowledged = rules_[i].cleared = false;
             ++alarm.count;
-            alarm.fact = fact;
         }
+        alarm.fact = fact;  // its numbers may follow the condition
         return;
     }
     if (fact.id != full && !make_room(reaction)) return;
