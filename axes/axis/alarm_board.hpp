@@ -21,6 +21,11 @@ public:
         else ++dropped_;
         return true;
     }
+    /// New numbers for an alarm that holds: what a drive tells only when it is asked again.
+    void renumber(AxisAlarm alarm, double a, double b) noexcept {
+        for (std::size_t i = 0; i < active_count_; ++i)
+            if (active_[i].id == id(alarm)) active_[i].a = a, active_[i].b = b;
+    }
     void clear(AxisAlarm alarm) noexcept {
         for (std::size_t i = 0; i < active_count_; ++i) {
             if (active_[i].id != id(alarm)) continue;

@@ -60,7 +60,11 @@ void Axis::read_feedback() noexcept {
     }
     stale_ = 0;
     actual_counts_ = feedback_.position;
-    if (!seeded_) {
+    // A drive that was away may count from another zero: the set-point of a drive without power goes there at once.
+    // (One that was enabled when it went has to be seen without power first; its own homing is followed elsewhere.)
+    const bool other_zero = feedback_.position_epoch != position_epoch_;
+    if (!seeded_ || (other_zero && power_.follows_actual()) || drive_homing_.busy()) position_epoch_ = feedback_.position_epoch;
+    if (!seeded_ || (other_zero && power_.follows_actual() && !drive_homing_.busy())) {
         seeded_ = true;
         anchor_near_actual();
         setpoint_.place(actual_local());
@@ -79,8 +83,11 @@ void Axis::watch_drive() noexcept {
     if (feedback_.warning) fail(AxisAlarm::drive_warning, feedback_.error_code);
     else alarms_.clear(AxisAlarm::drive_warning);
 
-    if (drive_faulted()) fail(AxisAlarm::drive_fault, feedback_.error_code, port_.alarm().detail);
-    else if (asked && feedback_.power == PowerState::unknown) fail(AxisAlarm::drive_unknown_state, feedback_.status_word);
+    if (drive_faulted()) {
+        fail(AxisAlarm::drive_fault, feedback_.error_code, port_.alarm().detail);
+        // The detail that tells shared codes apart is read acyclically and comes later (P21.08 of the SV33-E).
+        if (feedback_.error_code != 0) alarms_.renumber(AxisAlarm::drive_fault, feedback_.error_code, port_.alarm().detail);
+    } else if (asked && feedback_.power == PowerState::unknown) fail(AxisAlarm::drive_unknown_state, feedback_.status_word);
     else if (power_.on() && !drive_homing_.busy() && feedback_.mode != DriveMode::cyclic_position)
         fail(AxisAlarm::drive_mode_mismatch, static_cast<double>(feedback_.mode), static_cast<double>(DriveMode::cyclic_position));
 }

@@ -164,6 +164,7 @@ private:
     bool seeded_ = false;      // an actual position has arrived
     std::uint32_t stale_ = 0;  // cycles since the last one
     std::int64_t actual_counts_ = 0;
+    std::uint16_t position_epoch_ = 0;
     bool negative_switch_ = false, positive_switch_ = false;
 
     // motion

@@ -129,7 +129,8 @@ void Axis::run_reset() noexcept {
         }
         // Power is on its way off (note 3 or 4 holds when it is there).
     }
-    if (now_ - reset_since_ >= reset_patience) {
+    const bool hopeless = drive_faulted() && !port_.alarm().resettable;  // the drive says: power cycle
+    if (hopeless || now_ - reset_since_ >= reset_patience) {
         resetting_ = false;
         reset_error_ = ErrorId::reset_failed;
     }

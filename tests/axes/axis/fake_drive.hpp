@@ -29,6 +29,9 @@ public:
     bool offline = false;
     bool refuses_power = false;
     std::uint16_t fault_code = 0;
+    std::uint32_t alarm_detail = 0;
+    bool resettable = true;
+    std::uint16_t epoch = 0;
     bool warning = false;
     bool blocked = false;  ///< the motor does not move
     std::int64_t lag = 0;  ///< counts the motor stays behind
@@ -51,7 +54,13 @@ public:
 
     [[nodiscard]] const DriveCapabilities& capabilities() const noexcept override { return caps; }
     [[nodiscard]] Instant setpoint_effective(Instant send) const noexcept override { return send + dead_cycles * cycle; }
-    [[nodiscard]] DriveAlarm alarm() const noexcept override { return {}; }
+    [[nodiscard]] DriveAlarm alarm() const noexcept override {
+        DriveAlarm known;
+        known.code = fault_code;
+        known.detail = alarm_detail;
+        known.resettable = resettable;
+        return known;
+    }
 
     void encode(const DriveCommand& command, Instant now) noexcept override {
         const bool obeys =
@@ -85,6 +94,7 @@ public:
         feedback_.fault = power == PowerState::fault;
         feedback_.warning = warning;
         feedback_.error_code = fault_code;
+        feedback_.position_epoch = epoch;
         feedback_.position = std::llround(position) - zero;
         feedback_.velocity = velocity_;
         feedback_.homing_attained = attained_;

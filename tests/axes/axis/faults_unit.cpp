@@ -237,5 +237,57 @@ TEST(AxisFault, ShutDownRampsAndSwitchesOffWithoutError) {
     rig.expect_no_jump();
 }
 
+// A drive's shared alarm code is told apart by a further object that is read later (SV33-E P21.08): the alarm's number follows.
+TEST(AxisFault, TheDetailOfADrivesAlarmArrivesAfterItAndIsShown) {
+    Rig rig;
+    rig.power_on();
+    rig.drive.fault_code = 0x7305;
+    rig.run(5);
+    ASSERT_EQ(rig.view().state, AxisState::ErrorStop);
+    ASSERT_FALSE(rig.axis.active_alarms().empty());
+    EXPECT_EQ(rig.axis.active_alarms()[0].b, 0.0);
+
+    rig.drive.alarm_detail = 0x731;
+    rig.run(2);
+    EXPECT_EQ(rig.axis.active_alarms()[0].a, 0x7305);
+    EXPECT_EQ(rig.axis.active_alarms()[0].b, 0x731);
+}
+
+// An alarm that needs a power cycle: MC_Reset says so at once instead of waiting for what cannot come (SV33-E table 7.2, R = no).
+TEST(AxisFault, AResetOfAnAlarmThatNeedsAPowerCycleFailsAtOnce) {
+    Rig rig;
+    rig.power_on();
+    rig.drive.fault_code = 0x2312;
+    rig.drive.resettable = false;
+    rig.run(5);
+    ASSERT_EQ(rig.view().state, AxisState::ErrorStop);
+
+    rig.axis.reset(Owner::program);
+    rig.run(3);
+    EXPECT_FALSE(rig.view().resetting);
+    EXPECT_EQ(rig.view().reset_error, ErrorId::reset_failed);
+    EXPECT_EQ(rig.view().state, AxisState::ErrorStop);
+}
+
+// A drive that was away may count from another zero. Its axis has no power, so the set-point goes there at once: enabling does not wait.
+TEST(AxisFault, ADriveThatComesBackWithAnotherZeroTakesTheSetPointAlong) {
+    Rig rig;
+    rig.power_on();
+    rig.enable = false;
+    ASSERT_TRUE(rig.run_to(AxisState::Disabled, 1000));
+    rig.run(10);  // the drive has followed
+    rig.drive.offline = true;
+    rig.run(20);
+
+    rig.drive.zero = -5'000'000;  // 5000 u away: at 100 u/s the set-point would walk for 50 s
+    ++rig.drive.epoch;
+    rig.drive.offline = false;
+    rig.run(3);
+    EXPECT_NEAR(rig.view().set_position, rig.view().actual_position, 0.001);
+    rig.enable = true;
+    EXPECT_TRUE(rig.run_to(AxisState::Standstill, 200));
+    EXPECT_LE(rig.drive.largest_step, 101);
+}
+
 }  // namespace
 }  // namespace taktwerk::axes::test
