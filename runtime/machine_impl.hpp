@@ -165,6 +165,7 @@ struct Machine::Impl {
     Instant now{};
     bool emergency = false;
     Instant emergency_since{}, late_until{};
+    Duration late_worst{};  // while a late wake-up is shown
     std::uint32_t overruns_in_a_row = 0;
     CycleStatistics statistics;
     std::vector<TaskStatistics> task_statistics;

@@ -1,5 +1,6 @@
 // Step 5: what holds is raised, the log decides what remains, the strongest reaction is carried out. Real-time safe.
 
+#include <algorithm>
 #include <array>
 
 #include "axes/axis/alarms.hpp"
@@ -40,8 +41,12 @@ void Machine::Impl::watch_cycle(const CycleTick& tick) noexcept {
         raise(MachineAlarm::cycle_overrun, AlarmSource::machine, 0, overruns_in_a_row, limit(config.watch.overruns_allowed));
     const auto warning = config.watch.lateness_warning > Duration{} ? config.watch.lateness_warning : config.cycle / 4;
     const auto late = tick.woken - tick.scheduled;
-    if (late > warning) late_until = now + late_wakeups_shown;
-    if (now < late_until) raise(MachineAlarm::late_wakeups, AlarmSource::machine, 0, to_seconds(late) * 1e6, to_seconds(warning) * 1e6);
+    if (now >= late_until) late_worst = Duration{};
+    if (late > warning) {
+        late_until = now + late_wakeups_shown;
+        late_worst = std::max(late_worst, late);
+    }
+    if (now < late_until) raise(MachineAlarm::late_wakeups, AlarmSource::machine, 0, to_seconds(late_worst) * 1e6, to_seconds(warning) * 1e6);
 }
 
 void Machine::Impl::watch_programs() noexcept {

@@ -40,7 +40,7 @@ inline constexpr std::array<AlarmInfo, axis_alarm_count> axis_alarms{{
      "Free the axis, check load and brake, lower acceleration and jerk or tune the drive; then reset",
      ResetRule::reset, Reaction::stop_axis, "The drive's own following error monitor (6065h) decides"},
     {id(AxisAlarm::drive_fault), "drive_fault",
-     "The drive reports fault 0x{a:x} (detail {b})", "驱动器报告故障 0x{a:x}(详细代码 {b})",
+     "The drive reports fault 0x{a:x} (detail 0x{b:x})", "驱动器报告故障 0x{a:x}(详细代码 0x{b:x})",
      "See the drive's alarm list for this number",
      "Remove the cause named by the drive's alarm text, then reset",
      ResetRule::reset, Reaction::stop_axis, "The drive has stopped by its fault reaction (605Eh)"},
