@@ -166,7 +166,8 @@ int run_real(LoadedFile loaded, const Options& options) {
         print_error(bridge.error());
         return exit_bad_file;
     }
-    if ((*bridge)->lcm_problem()) print_warning(*(*bridge)->lcm_problem());
+    // Otherwise the bridge's own log has said it.
+    if ((options.quiet || options.json) && (*bridge)->lcm_problem()) print_warning(*(*bridge)->lcm_problem());
 
     watch_stop_signals();
     RealtimeRunner runner{*machine, world.get()};

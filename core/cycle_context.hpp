@@ -8,9 +8,9 @@
 namespace taktwerk {
 
 struct CycleContext {
-    Instant now{};             ///< start of this scan: what timers (TON, ...) use
-    Duration period{};         ///< of the calling task
-    std::uint64_t cycle = 0;   ///< scans of the calling task since start
+    Instant now{};            ///< start of this scan: what timers (TON, ...) use
+    Duration period{};        ///< of the calling task
+    std::uint64_t cycle = 0;  ///< scans of the calling task since start
 };
 
 }  // namespace taktwerk

@@ -18,10 +18,16 @@ enum class DataType : std::uint8_t { BOOL, I8, I16, I32, I64, U8, U16, U32, U64,
 [[nodiscard]] constexpr std::uint8_t bit_size(DataType type) noexcept {  ///< STRING: 0
     switch (type) {
         case DataType::BOOL: return 1;
-        case DataType::I8: case DataType::U8: return 8;
-        case DataType::I16: case DataType::U16: return 16;
-        case DataType::I32: case DataType::U32: case DataType::REAL32: return 32;
-        case DataType::I64: case DataType::U64: case DataType::REAL64: return 64;
+        case DataType::I8:
+        case DataType::U8: return 8;
+        case DataType::I16:
+        case DataType::U16: return 16;
+        case DataType::I32:
+        case DataType::U32:
+        case DataType::REAL32: return 32;
+        case DataType::I64:
+        case DataType::U64:
+        case DataType::REAL64: return 64;
         case DataType::STRING: break;
     }
     return 0;
@@ -42,7 +48,7 @@ struct ObjectEntry {
     Mappable mappable = Mappable::no;
     std::int64_t value = 0;  ///< default
     std::optional<std::int64_t> minimum, maximum;
-    std::string text;        ///< default of a STRING
+    std::string text;  ///< default of a STRING
 };
 
 /// index 0 = a gap of `bits`.
@@ -54,9 +60,9 @@ struct PdoEntry {
 };
 
 struct PdoDescription {
-    std::uint16_t index = 0;         ///< 16xxh/17xxh Rx, 1Axxh/1Bxxh Tx
-    bool fixed = false;              ///< its entries cannot be changed
-    std::vector<PdoEntry> entries;   ///< default mapping
+    std::uint16_t index = 0;        ///< 16xxh/17xxh Rx, 1Axxh/1Bxxh Tx
+    bool fixed = false;             ///< its entries cannot be changed
+    std::vector<PdoEntry> entries;  ///< default mapping
 };
 
 enum class SmUse : std::uint8_t { mailbox_out, mailbox_in, outputs, inputs };
@@ -64,47 +70,47 @@ enum class SmUse : std::uint8_t { mailbox_out, mailbox_in, outputs, inputs };
 struct SyncManagerDescription {
     SmUse use = SmUse::outputs;
     std::uint16_t start = 0;
-    std::uint16_t size = 0;          ///< mailboxes and slaves without CoE; process data of a CoE slave: computed from the PDOs
-    std::uint8_t control = 0;        ///< usual: 26h mailbox out, 22h mailbox in, 64h outputs (watchdog), 20h inputs
+    std::uint16_t size = 0;    ///< mailboxes and slaves without CoE; process data of a CoE slave: computed from the PDOs
+    std::uint8_t control = 0;  ///< usual: 26h mailbox out, 22h mailbox in, 64h outputs (watchdog), 20h inputs
 };
 
 struct DcDescription {
     bool supported = false;
-    bool required = false;           ///< SYNC0 must run before SAFEOP (SV33-E: DC SYNC0 only, sheet 1.3)
+    bool required = false;  ///< SYNC0 must run before SAFEOP (SV33-E: DC SYNC0 only, sheet 1.3)
     bool clock_64bit = true;
-    Duration minimum_cycle{};        ///< 0 = not stated
-    Duration cycle_multiple{};       ///< the cycle must be a multiple of it; 0 = any
+    Duration minimum_cycle{};   ///< 0 = not stated
+    Duration cycle_multiple{};  ///< the cycle must be a multiple of it; 0 = any
 };
 
 struct MailboxDescription {
     bool coe = true;
     bool complete_access = false;
     bool sdo_info = false;
-    std::uint8_t max_pending = 4;    ///< messages the slave buffers (SV33-E manual 6.2.8.4)
+    std::uint8_t max_pending = 4;  ///< messages the slave buffers (SV33-E manual 6.2.8.4)
 };
 
 /// Per direction, what CoE lets the master assign and map.
 struct PdoRules {
-    std::uint8_t max_assigned = 1;      ///< 1C12h:00 / 1C13h:00
-    std::uint8_t max_entries = 10;      ///< entries per mapping object
+    std::uint8_t max_assigned = 1;  ///< 1C12h:00 / 1C13h:00
+    std::uint8_t max_entries = 10;  ///< entries per mapping object
     std::uint16_t max_bytes = 1486;
 };
 
 struct DeviceDescription {
-    std::string name;                        ///< "sv33-e"
-    std::string device_name;                 ///< 1008h
-    Identity identity;                       ///< vendor and product are compared exactly
-    std::vector<Identity> also_accepted;     ///< manuals contradict themselves: further vendor/product pairs
+    std::string name;                     ///< "sv33-e"
+    std::string device_name;              ///< 1008h
+    Identity identity;                    ///< vendor and product are compared exactly
+    std::vector<Identity> also_accepted;  ///< manuals contradict themselves: further vendor/product pairs
     bool revision_exact = false;
-    std::optional<MailboxDescription> mailbox;  ///< none: a plain terminal, configured from SII alone
+    std::optional<MailboxDescription> mailbox;          ///< none: a plain terminal, configured from SII alone
     std::vector<SyncManagerDescription> sync_managers;  ///< in SM order
     std::vector<PdoDescription> rx_pdos, tx_pdos;
     std::vector<std::uint16_t> rx_assigned, tx_assigned;  ///< factory 1C12h / 1C13h
     PdoRules rx_rules, tx_rules;
-    std::vector<ObjectEntry> objects;        ///< without 1018h, 16xxh.., 1C00h..: those follow from the fields above
+    std::vector<ObjectEntry> objects;  ///< without 1018h, 16xxh.., 1C00h..: those follow from the fields above
     DcDescription dc;
     std::uint8_t fmmus = 8, sync_manager_count = 8;
-    std::uint16_t process_ram = 0x1000;      ///< bytes from 1000h
+    std::uint16_t process_ram = 0x1000;  ///< bytes from 1000h
 };
 
 }  // namespace taktwerk::ecat

@@ -39,9 +39,9 @@ struct SlaveHealth {
     AlState al_state = AlState::unknown;
     bool al_error = false;
     std::uint16_t al_status_code = 0;
-    bool fresh = false;             ///< its inputs were exchanged in the last receive(), with the right working counter
-    std::uint32_t age = 0;          ///< cycles since they were
-    Instant latched{};              ///< when its inputs were latched (SYNC0 instant, or frame time); of the last fresh exchange
+    bool fresh = false;     ///< its inputs were exchanged in the last receive(), with the right working counter
+    std::uint32_t age = 0;  ///< cycles since they were
+    Instant latched{};      ///< when its inputs were latched (SYNC0 instant, or frame time); of the last fresh exchange
 };
 
 /// Counters since start; never reset by the master.
@@ -93,7 +93,7 @@ public:
     [[nodiscard]] std::optional<Result<SdoResult>> poll(SdoTicket ticket);
 
     // --- resolved once, after `configuring` -----------------------------------------------------------------------------
-    [[nodiscard]] std::size_t slave_count() const noexcept;          ///< configured slaves, in configuration order
+    [[nodiscard]] std::size_t slave_count() const noexcept;  ///< configured slaves, in configuration order
     [[nodiscard]] const SlaveConfig& slave(std::size_t index) const;
     [[nodiscard]] Result<Signal> input(std::size_t slave, std::uint16_t object, std::uint8_t sub) const;
     [[nodiscard]] Result<Signal> output(std::size_t slave, std::uint16_t object, std::uint8_t sub) const;

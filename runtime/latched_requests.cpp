@@ -108,8 +108,7 @@ void LatchedRequests::apply(AxisRequests& axes) noexcept {
             case Kind::reset:
                 if (const auto error = axes.reset(r.axis, r.owner); error != ErrorId::none)
                     resets_[r.axis.index] = {RefusedReset::Show::resetting, error};
-                else
-                    resets_[r.axis.index] = {};
+                else resets_[r.axis.index] = {};
                 break;
             case Kind::set_position: axes.set_position(r.axis, r.value, r.relative, r.owner); break;
             case Kind::release_stop: axes.release_stop(r.axis, real_id(r.id), r.owner); break;

@@ -26,7 +26,8 @@ public:
     /// Ids that the task sees have this bit set: they never meet an axis' own.
     static constexpr axes::CommandId provisional = 0x8000'0000u;
 
-    explicit LatchedRequests(std::size_t axes) : known_(known_per_axis * axes + capacity), wishes_(axes), held_(axes), resets_(axes), told_(axes) {}
+    explicit LatchedRequests(std::size_t axes)
+        : known_(known_per_axis * axes + capacity), wishes_(axes), held_(axes), resets_(axes), told_(axes) {}
 
     // --- the task's side --------------------------------------------------------------------------------------------------
     /// The views that the task reads: submitted commands show up in them.

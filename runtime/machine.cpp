@@ -22,8 +22,8 @@ constexpr Duration relaxed_watchdog = std::chrono::milliseconds{500};
 constexpr Duration shutdown_margin = std::chrono::seconds{5};  // for a drive that does not answer
 constexpr auto no_slave = std::numeric_limits<std::size_t>::max();
 
-constexpr std::array<std::string_view, step_count> step_names{"receive", "inbox", "decode", "update",   "supervise", "tasks",
-                                                              "plan",    "encode", "send",  "snapshot", "total"};
+constexpr std::array<std::string_view, step_count> step_names{"receive", "inbox",  "decode", "update",   "supervise", "tasks",
+                                                              "plan",    "encode", "send",   "snapshot", "total"};
 
 /// What the axes need of the bus beyond what the file says: SDOs of drive homing, and no slave for an axis that is simulated.
 ecat::BusConfig bus_of(const MachineConfig& config) {
@@ -52,8 +52,14 @@ ecat::BusConfig bus_of(const MachineConfig& config) {
 std::string_view name(Step step) noexcept { return step_names[static_cast<std::size_t>(step)]; }
 
 Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, std::vector<Error>& errors)
-    : config(std::move(machine)), bus(transport, bus_of(config)), io(config.io), mode(config.start_mode), inbox(inbox_size),
-      answers(inbox_size * 2), snapshots(), steps([] {
+    : config(std::move(machine)),
+      bus(transport, bus_of(config)),
+      io(config.io),
+      mode(config.start_mode),
+      inbox(inbox_size),
+      answers(inbox_size * 2),
+      snapshots(),
+      steps([] {
           std::array<std::string_view, step_count - 1> names{};
           std::copy_n(step_names.begin(), names.size(), names.begin());
           return names;
@@ -106,8 +112,8 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, std::vect
             for (const auto& variable : host->variables())
                 if (variable.program == task.program) variables.push_back(variable);
         slow_task_places.push_back(i);
-        slow_tasks.push_back(std::make_unique<SlowTask>(task, host->programs()[task.program].instance.get(), std::move(variables), axes.size(),
-                                                        io.inputs().size(), io.outputs().size(), host->parameters().size()));
+        slow_tasks.push_back(std::make_unique<SlowTask>(task, host->programs()[task.program].instance.get(), std::move(variables),
+                                                        axes.size(), io.inputs().size(), io.outputs().size(), host->parameters().size()));
     }
     task_overruns.assign(slow_tasks.size(), 0);
     base_scans.assign(base_tasks.size(), 0);
@@ -293,7 +299,8 @@ void Machine::Impl::take_handshakes() noexcept {
                 if (host->tasks()[base_tasks[i]].program == p) base_scans[i] = 0;
         }
         expected = Handshake::failed;
-        if (handshakes[p].compare_exchange_strong(expected, Handshake::none, std::memory_order_acquire)) program_states[p] = ProgramState::fault;
+        if (handshakes[p].compare_exchange_strong(expected, Handshake::none, std::memory_order_acquire))
+            program_states[p] = ProgramState::fault;
     }
 }
 
@@ -316,7 +323,8 @@ void Machine::Impl::take_variables() noexcept {
     const auto& variables = host->variables();
     for (std::size_t i = 0; i < variables.size(); ++i) {
         const auto program = variables[i].program;
-        if (has_base_task[program] && program_states[program] == ProgramState::running) variable_values[i] = ProgramHost::read(variables[i]);
+        if (has_base_task[program] && program_states[program] == ProgramState::running)
+            variable_values[i] = ProgramHost::read(variables[i]);
     }
     for (const auto& task : slow_tasks) {  // a program without a base task: as its last applied run left them
         const auto values = task->variables();
@@ -356,8 +364,8 @@ void Machine::Impl::take_snapshot() noexcept {
 std::vector<std::string> Machine::Impl::trace_columns() const {
     std::vector<std::string> columns{"time_s", "emergency_stop", "alarms"};
     for (const auto& axis : layout.axes)
-        for (const char* what : {"state", "set_position", "set_velocity", "set_acceleration", "set_jerk", "actual_position", "actual_velocity",
-                                 "actual_torque", "following_error", "drive_state", "homed", "error"})
+        for (const char* what : {"state", "set_position", "set_velocity", "set_acceleration", "set_jerk", "actual_position",
+                                 "actual_velocity", "actual_torque", "following_error", "drive_state", "homed", "error"})
             columns.push_back(axis.name + "." + what);
     for (const auto& input : layout.inputs) columns.push_back("in." + input);
     for (const auto& output : layout.outputs) columns.push_back("out." + output);

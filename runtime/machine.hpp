@@ -25,14 +25,14 @@ namespace taktwerk::runtime {
 
 /// What the caller knows about this wake-up.
 struct CycleTick {
-    Instant scheduled{};          ///< the grid point
-    Instant woken{};              ///< when the thread really ran
-    std::uint32_t missed = 0;     ///< grid points skipped since the last cycle
+    Instant scheduled{};       ///< the grid point
+    Instant woken{};           ///< when the thread really ran
+    std::uint32_t missed = 0;  ///< grid points skipped since the last cycle
 };
 
 /// An alarm in words, for people. Made outside the cycle.
 struct AlarmText {
-    std::string source;           ///< "axis x", "slave 2 'y_drive'", "machine"
+    std::string source;  ///< "axis x", "slave 2 'y_drive'", "machine"
     std::string name, english, chinese, cause, remedy;
     std::string reaction, reset;
 };

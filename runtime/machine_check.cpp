@@ -19,11 +19,13 @@ public:
     void add(std::string code, std::string subject, std::string what, std::string remedy) {
         errors_.push_back({std::move(code), std::move(subject), std::move(what), std::move(remedy)});
     }
-    void unknown(std::string code, std::string subject, std::string_view kind, std::string_view name, const std::vector<std::string>& known) {
+    void unknown(std::string code, std::string subject, std::string_view kind, std::string_view name,
+                 const std::vector<std::string>& known) {
         const auto near = nearest_name(name, known);
         std::string list;
         for (const auto& n : known) list += (list.empty() ? "" : ", ") + n;
-        add(std::move(code), std::move(subject), fmt::format("there is no {} '{}' (there is: {})", kind, name, list.empty() ? "none" : list),
+        add(std::move(code), std::move(subject),
+            fmt::format("there is no {} '{}' (there is: {})", kind, name, list.empty() ? "none" : list),
             near.empty() ? "correct the name" : fmt::format("did you mean '{}'?", near));
     }
     template <class Names>
@@ -31,7 +33,8 @@ public:
         std::set<std::string> seen;
         for (const auto& n : names) {
             if (n.empty()) add("config.name_missing", std::string(what), "a name is empty", "give it a name");
-            else if (!seen.insert(n).second) add("config.duplicate_name", fmt::format("{}.{}", what, n), "the name is used twice", "rename one of them");
+            else if (!seen.insert(n).second)
+                add("config.duplicate_name", fmt::format("{}.{}", what, n), "the name is used twice", "rename one of them");
         }
     }
 
@@ -47,7 +50,8 @@ std::vector<Error> check(const MachineConfig& config) {
     using namespace std::chrono_literals;
 
     if (config.cycle < 100us || config.cycle > 100ms)
-        problems.add("machine.cycle", "cycle", fmt::format("a cycle of {} us is outside 100 us to 100 ms", config.cycle / 1us), "choose for instance 1 ms");
+        problems.add("machine.cycle", "cycle", fmt::format("a cycle of {} us is outside 100 us to 100 ms", config.cycle / 1us),
+                     "choose for instance 1 ms");
 
     if (config.commands_per_cycle == 0)
         problems.add("machine.commands_per_cycle", "commands_per_cycle", "with 0 commands a cycle nobody can operate the machine", "use 4");
@@ -76,7 +80,8 @@ std::vector<Error> check(const MachineConfig& config) {
         for (auto& error : axes::check(binding.axis)) errors.push_back(std::move(error));
         if (binding.slave.empty()) {
             if (binding.axis.homing.kind != axes::HomingKind::none && binding.axis.homing.kind != axes::HomingKind::set_here)
-                problems.add("axis.homing", subject + ".homing", "a virtual axis (without `slave`) has no switches", "use `kind: set_here`");
+                problems.add("axis.homing", subject + ".homing", "a virtual axis (without `slave`) has no switches",
+                             "use `kind: set_here`");
             continue;
         }
         bool found = false;
@@ -99,8 +104,9 @@ std::vector<Error> check(const MachineConfig& config) {
             problems.add("axis.drive_axis", subject + ".drive_axis", fmt::format("{} has {} axes", profile.name, profile.axes),
                          fmt::format("choose 0 to {}", profile.axes - 1));
         if (config.cycle < profile.minimum_cycle_csp)
-            problems.add("axis.cycle_too_short", "cycle", fmt::format("{} (axis {}) needs at least {} us in cyclic synchronous position mode",
-                                                                      profile.name, binding.axis.name, profile.minimum_cycle_csp / 1us),
+            problems.add("axis.cycle_too_short", "cycle",
+                         fmt::format("{} (axis {}) needs at least {} us in cyclic synchronous position mode", profile.name,
+                                     binding.axis.name, profile.minimum_cycle_csp / 1us),
                          "lengthen `cycle`");
         if (binding.axis.homing.kind == axes::HomingKind::drive && !binding.axis.simulated) {
             bool documented = false;
@@ -134,7 +140,9 @@ std::vector<Error> check(const MachineConfig& config) {
         bool found = false;
         for (const auto& name : programs) found = found || name == task.program;
         if (!found) problems.unknown("task.unknown_program", "tasks." + task.name, "program", task.program, programs);
-        if (task.divisor == 0) problems.add("task.divisor", fmt::format("programs.{}.tasks.{}", task.program, task.name), "a divisor of 0 never runs", "use 1 or more");
+        if (task.divisor == 0)
+            problems.add("task.divisor", fmt::format("programs.{}.tasks.{}", task.program, task.name), "a divisor of 0 never runs",
+                         "use 1 or more");
     }
     if (!config.emergency_stop.input.empty()) {
         bool found = false;
@@ -151,8 +159,8 @@ std::vector<Error> check(const MachineConfig& config) {
     if (config.start_mode != Mode::automatic)
         for (const auto& program : config.programs)
             if (program.autostart)
-                problems.add("program.autostart", fmt::format("programs.{}.autostart", program.name), "programs start only in automatic mode",
-                             "set `start_mode: automatic`, or start it by hand");
+                problems.add("program.autostart", fmt::format("programs.{}.autostart", program.name),
+                             "programs start only in automatic mode", "set `start_mode: automatic`, or start it by hand");
     return errors;
 }
 

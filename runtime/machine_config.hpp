@@ -25,18 +25,18 @@ enum class SendMode : std::uint8_t {
 /// Simulation of one axis' mechanics, in the axis' own unit; used with --simulate or `simulated: true`.
 struct AxisSimulation {
     double inertia = 2e-4, viscous_friction = 1e-3, coulomb_friction = 0.05, load_torque = 0;  ///< SI at the motor shaft
-    double rated_torque = 1.27;         ///< N m
-    double start = 0;                   ///< u: where the axis stands at power-on
-    std::optional<double> negative_stop, positive_stop;      ///< u: hard stops
-    std::optional<double> negative_limit, positive_limit;    ///< u: limit switches
-    std::optional<double> home_from, home_to;                ///< u: home switch active in between
+    double rated_torque = 1.27;                                                                ///< N m
+    double start = 0;                                                                          ///< u: where the axis stands at power-on
+    std::optional<double> negative_stop, positive_stop;                                        ///< u: hard stops
+    std::optional<double> negative_limit, positive_limit;                                      ///< u: limit switches
+    std::optional<double> home_from, home_to;                                                  ///< u: home switch active in between
     double clock_drift_ppm = 0;
 };
 
 struct AxisBinding {
     axes::AxisConfig axis;
-    std::string slave;                  ///< name in BusConfig; empty: a purely virtual axis
-    std::uint8_t drive_axis = 0;        ///< 0-based axis of a multi-axis drive
+    std::string slave;            ///< name in BusConfig; empty: a purely virtual axis
+    std::uint8_t drive_axis = 0;  ///< 0-based axis of a multi-axis drive
     std::shared_ptr<const axes::DriveProfile> profile;
     AxisSimulation simulation;
 };
@@ -48,10 +48,10 @@ struct IoPoint {
     std::string name;
     IoDirection direction = IoDirection::input;
     std::string slave;
-    std::uint16_t index = 0;            ///< mapped object
+    std::uint16_t index = 0;  ///< mapped object
     std::uint8_t sub = 0;
-    bool inverted = false;              ///< 1-bit points: TRUE when the terminal says 0
-    std::int64_t safe_value = 0;        ///< outputs: while no program drives it, and when the bus is lost (by the terminal)
+    bool inverted = false;                  ///< 1-bit points: TRUE when the terminal says 0
+    std::int64_t safe_value = 0;            ///< outputs: while no program drives it, and when the bus is lost (by the terminal)
     std::optional<std::int64_t> simulated;  ///< inputs: value the simulated terminal starts with
 };
 
@@ -59,11 +59,11 @@ struct IoPoint {
 enum class OverrunReaction : std::uint8_t { count, stop_machine };
 
 struct TaskConfig {
-    std::string name;                   ///< task as the program declares it
-    std::string program;                ///< program name
-    std::uint16_t divisor = 1;          ///< 1 = base task, inline in the cycle
+    std::string name;           ///< task as the program declares it
+    std::string program;        ///< program name
+    std::uint16_t divisor = 1;  ///< 1 = base task, inline in the cycle
     OverrunReaction overrun = OverrunReaction::stop_machine;
-    std::uint16_t overruns_allowed = 3; ///< in a row
+    std::uint16_t overruns_allowed = 3;  ///< in a row
 };
 
 struct ParameterValue {
@@ -73,30 +73,30 @@ struct ParameterValue {
 
 struct ProgramConfig {
     std::string name;
-    std::string library;                          ///< path of the shared object; empty: `entry`
-    const ProgramEntry* (*entry)() = nullptr;     ///< linked in (tests)
+    std::string library;                       ///< path of the shared object; empty: `entry`
+    const ProgramEntry* (*entry)() = nullptr;  ///< linked in (tests)
     std::vector<ParameterValue> parameters;
-    bool autostart = false;                       ///< starts when the machine is up, in automatic mode
+    bool autostart = false;  ///< starts when the machine is up, in automatic mode
 };
 
 enum class Mode : std::uint8_t { manual, setup, automatic };
 
 struct EmergencyStop {
-    std::string input;                  ///< name of an input point that is TRUE while all is well (normally closed); empty: none
+    std::string input;  ///< name of an input point that is TRUE while all is well (normally closed); empty: none
     Duration power_off_after = std::chrono::milliseconds{500};  ///< power goes off when the axes stand, at the latest then
 };
 
 /// When the base cycle itself comes too late.
 struct CycleWatch {
-    std::uint16_t overruns_allowed = 10;    ///< missed ticks in a row until the machine stops
-    Duration lateness_warning{};            ///< 0 = a quarter of the cycle
+    std::uint16_t overruns_allowed = 10;  ///< missed ticks in a row until the machine stops
+    Duration lateness_warning{};          ///< 0 = a quarter of the cycle
 };
 
 struct RealtimeConfig {
-    int priority = 80;                  ///< SCHED_FIFO; 0 = leave
-    std::vector<int> cpus;              ///< empty = leave
+    int priority = 80;      ///< SCHED_FIFO; 0 = leave
+    std::vector<int> cpus;  ///< empty = leave
     bool lock_memory = true;
-    bool required = false;              ///< refuse to start when the system does not grant it
+    bool required = false;  ///< refuse to start when the system does not grant it
 };
 
 enum class Supervision : std::uint8_t {
@@ -107,10 +107,10 @@ enum class Supervision : std::uint8_t {
 /// Something that happens to the simulated machine at a given machine time: for demos, rehearsals and tests.
 struct SimulationEvent {
     enum class Kind : std::uint8_t { input, drive_fault, main_power, slave_power, jam };
-    Duration at{};                      ///< since start of the run
+    Duration at{};  ///< since start of the run
     Kind kind = Kind::input;
-    std::string target;                 ///< input point (input), axis (drive_fault, main_power, jam), slave (slave_power)
-    std::int64_t value = 0;             ///< input value; 603Fh code; 1 = power on / free, 0 = power off / jammed
+    std::string target;      ///< input point (input), axis (drive_fault, main_power, jam), slave (slave_power)
+    std::int64_t value = 0;  ///< input value; 603Fh code; 1 = power on / free, 0 = power off / jammed
 };
 
 struct SimulationConfig {
@@ -132,7 +132,7 @@ struct MachineConfig {
     CycleWatch watch;
     RealtimeConfig realtime;
     SimulationConfig simulation;
-    std::uint8_t commands_per_cycle = 4;    ///< K operator commands drained per cycle
+    std::uint8_t commands_per_cycle = 4;  ///< K operator commands drained per cycle
 };
 
 /// Cross-floor problems (names that do not exist, two axes on one drive axis, cycle against drive minimum, ...), all of them.

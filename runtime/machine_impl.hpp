@@ -125,7 +125,7 @@ struct Machine::Impl {
     }
 
     struct AxisPower {
-        bool held = false;          // whoever has manual control of the axis holds the power wish
+        bool held = false;  // whoever has manual control of the axis holds the power wish
         axes::CommandId jog = 0;
     };
 
@@ -134,21 +134,21 @@ struct Machine::Impl {
     IoImage io;
     MachineLayout layout;
     std::vector<std::unique_ptr<axes::DrivePort>> ports;
-    std::vector<axes::cia402::Cia402Drive*> drives;   // those of `ports` that are on the bus
+    std::vector<axes::cia402::Cia402Drive*> drives;  // those of `ports` that are on the bus
     std::vector<axes::Axis> axes;
-    std::vector<axes::AxisView> views;                // of this scan; what programs and the snapshot read
-    std::vector<std::size_t> axis_slave;              // index in the bus configuration; npos for virtual axes
+    std::vector<axes::AxisView> views;    // of this scan; what programs and the snapshot read
+    std::vector<std::size_t> axis_slave;  // index in the bus configuration; npos for virtual axes
     std::vector<AxisPower> operator_power;
     MachineRequests requests;
     std::unique_ptr<ProgramHost> host;
     std::vector<std::unique_ptr<SlowTask>> slow_tasks;
     std::vector<std::size_t> base_tasks, slow_task_places;  // indices into host->tasks(), task_statistics, layout.tasks
-    std::vector<std::uint64_t> base_scans;            // since start, per base task
+    std::vector<std::uint64_t> base_scans;                  // since start, per base task
     std::vector<ProgramState> program_states;
-    std::vector<FaultText> program_faults;            // the cycle's; handed over with stop_asked
-    std::vector<std::uint16_t> task_overruns;         // in a row, per slow task
-    std::vector<double> variable_values;              // as this cycle shows them
-    std::vector<std::uint8_t> has_base_task;          // per program
+    std::vector<FaultText> program_faults;     // the cycle's; handed over with stop_asked
+    std::vector<std::uint16_t> task_overruns;  // in a row, per slow task
+    std::vector<double> variable_values;       // as this cycle shows them
+    std::vector<std::uint8_t> has_base_task;   // per program
     AlarmLog log;
     Mode mode;
     int estop_input = -1;

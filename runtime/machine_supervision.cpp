@@ -46,7 +46,8 @@ void Machine::Impl::watch_cycle(const CycleTick& tick) noexcept {
         late_until = now + late_wakeups_shown;
         late_worst = std::max(late_worst, late);
     }
-    if (now < late_until) raise(MachineAlarm::late_wakeups, AlarmSource::machine, 0, to_seconds(late_worst) * 1e6, to_seconds(warning) * 1e6);
+    if (now < late_until)
+        raise(MachineAlarm::late_wakeups, AlarmSource::machine, 0, to_seconds(late_worst) * 1e6, to_seconds(warning) * 1e6);
 }
 
 void Machine::Impl::watch_programs() noexcept {
@@ -58,7 +59,8 @@ void Machine::Impl::watch_programs() noexcept {
     }
     for (std::size_t p = 0; p < program_states.size(); ++p) {
         const auto& program = host->programs()[p];
-        if (program_states[p] == ProgramState::fault) raise(MachineAlarm::program_fault, AlarmSource::program, static_cast<std::uint16_t>(p), 0, 0);
+        if (program_states[p] == ProgramState::fault)
+            raise(MachineAlarm::program_fault, AlarmSource::program, static_cast<std::uint16_t>(p), 0, 0);
         for (std::size_t n = 0; n < program.alarm_texts.size(); ++n) {
             const auto& text = program.alarm_texts[n];
             if (!text.declared || !((program.alarms >> n) & 1u)) continue;

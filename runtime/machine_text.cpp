@@ -67,10 +67,10 @@ AlarmText Machine::describe(const AlarmFact& fact) const {
         case AlarmSource::slave:
             out.source = fact.index < m.layout.slaves.size() ? fmt::format("slave '{}'", m.layout.slaves[fact.index]) : "slave ?";
             break;
-        case AlarmSource::program: out.source = fact.index < m.layout.programs.size() ? "program " + m.layout.programs[fact.index] : "program ?"; break;
-        case AlarmSource::task:
-            out.source = fact.index < m.layout.tasks.size() ? "task " + m.layout.tasks[fact.index] : "task ?";
+        case AlarmSource::program:
+            out.source = fact.index < m.layout.programs.size() ? "program " + m.layout.programs[fact.index] : "program ?";
             break;
+        case AlarmSource::task: out.source = fact.index < m.layout.tasks.size() ? "task " + m.layout.tasks[fact.index] : "task ?"; break;
         case AlarmSource::bus: out.source = "bus"; break;
         case AlarmSource::machine:
         case AlarmSource::io:
@@ -88,8 +88,9 @@ AlarmText Machine::describe(const AlarmFact& fact) const {
         return out;
     }
     const AlarmInfo* info = nullptr;
-    for (const std::span<const AlarmInfo> table : {std::span<const AlarmInfo>(machine_alarms), std::span<const AlarmInfo>(axes::axis_alarms),
-                                                   std::span<const AlarmInfo>(ecat::bus_alarms)})
+    for (const std::span<const AlarmInfo> table :
+         {std::span<const AlarmInfo>(machine_alarms), std::span<const AlarmInfo>(axes::axis_alarms),
+          std::span<const AlarmInfo>(ecat::bus_alarms)})
         if (!info) info = find_alarm(table, fact.id);
     if (!info) {
         out.name = fmt::format("alarm_{:04x}", fact.id);

@@ -37,7 +37,7 @@ enum class OperatorAction : std::uint8_t {
     set_output,       ///< index = output point; value, whole and within its bits [bad_value; wrong_mode in automatic; not_possible_now
                       ///< while a program runs]
     acknowledge_alarms,
-    shutdown,         ///< stop axes, power off, end
+    shutdown,  ///< stop axes, power off, end
 };
 
 /// One command. Trivially copyable: goes through a ring.
@@ -49,23 +49,32 @@ struct OperatorCommand {
     std::uint16_t axis = 0xFFFF;
     std::uint16_t index = 0xFFFF;
     double value = 0, value2 = 0;
-    std::uint32_t client = 0;        ///< who; answers go there
-    std::uint64_t sequence = 0;      ///< of the client; a repeated one is answered again, not executed again
-    Instant expires{};               ///< older than this at drain: refused as stale
+    std::uint32_t client = 0;    ///< who; answers go there
+    std::uint64_t sequence = 0;  ///< of the client; a repeated one is answered again, not executed again
+    Instant expires{};           ///< older than this at drain: refused as stale
 };
 static_assert(std::is_trivially_copyable_v<OperatorCommand>);
 
 /// Stable answers (exit codes and LCM acknowledgements derive from them).
 enum class Answer : std::uint8_t {
-    accepted, unknown_name, bad_value, stale, no_control, wrong_mode, refused_by_axis, not_possible_now, queue_full, duplicate,
+    accepted,
+    unknown_name,
+    bad_value,
+    stale,
+    no_control,
+    wrong_mode,
+    refused_by_axis,
+    not_possible_now,
+    queue_full,
+    duplicate,
 };
 
 struct CommandAnswer {
     std::uint32_t client = 0;
     std::uint64_t sequence = 0;
     Answer answer = Answer::accepted;
-    axes::ErrorId error = axes::ErrorId::none;   ///< refused_by_axis: why
-    axes::Owner owner = axes::Owner::none;       ///< no_control: who has it
+    axes::ErrorId error = axes::ErrorId::none;  ///< refused_by_axis: why
+    axes::Owner owner = axes::Owner::none;      ///< no_control: who has it
 };
 static_assert(std::is_trivially_copyable_v<CommandAnswer>);
 

@@ -32,22 +32,27 @@ public:
         const auto& program = config_.programs[program_];
         double value = spec.value;
         if (!(spec.minimum <= spec.value && spec.value <= spec.maximum))
-            problem("program.parameter_range", fmt::format("parameter '{}' has default {} outside its own range {} to {}", name, spec.value,
-                                                           spec.minimum, spec.maximum), "correct the declaration in the program");
+            problem(
+                "program.parameter_range",
+                fmt::format("parameter '{}' has default {} outside its own range {} to {}", name, spec.value, spec.minimum, spec.maximum),
+                "correct the declaration in the program");
         for (const auto& set : program.parameters) {
             if (set.name != name) continue;
             if (!(spec.minimum <= set.value && set.value <= spec.maximum))
-                problem("program.parameter_range", fmt::format("parameter '{}' = {} {} is outside {} to {}", name, set.value, spec.unit,
-                                                               spec.minimum, spec.maximum), "choose a value inside the range");
+                problem("program.parameter_range",
+                        fmt::format("parameter '{}' = {} {} is outside {} to {}", name, set.value, spec.unit, spec.minimum, spec.maximum),
+                        "choose a value inside the range");
             else value = set.value;
         }
         host_.parameters_.push_back(value);
-        host_.parameter_info_.push_back({program.name, std::string(name), std::string(spec.unit), std::string(spec.doc), spec.minimum, spec.maximum, value});
+        host_.parameter_info_.push_back(
+            {program.name, std::string(name), std::string(spec.unit), std::string(spec.doc), spec.minimum, spec.maximum, value});
         parameter_names_.emplace_back(name);
         return {static_cast<std::uint16_t>(host_.parameters_.size() - 1)};
     }
 
-    void alarm(std::uint8_t number, Reaction reaction, std::string_view english, std::string_view chinese, std::string_view remedy) override {
+    void alarm(std::uint8_t number, Reaction reaction, std::string_view english, std::string_view chinese,
+               std::string_view remedy) override {
         if (number >= 64) {
             problem("program.alarm_number", fmt::format("alarm number {} is beyond 63", number), "use 0 to 63");
             return;
@@ -96,9 +101,11 @@ private:
         return 0xFFFF;
     }
     void problem(std::string code, std::string what, std::string remedy) {
-        errors_.push_back({std::move(code), fmt::format("program '{}'", config_.programs[program_].name), std::move(what), std::move(remedy)});
+        errors_.push_back(
+            {std::move(code), fmt::format("program '{}'", config_.programs[program_].name), std::move(what), std::move(remedy)});
     }
-    void unknown(std::string code, std::string_view kind, std::string_view name, const std::vector<std::string>& known, std::string_view where) {
+    void unknown(std::string code, std::string_view kind, std::string_view name, const std::vector<std::string>& known,
+                 std::string_view where) {
         const auto near = nearest_name(name, known);
         std::string list;
         for (const auto& n : known) list += (list.empty() ? "" : ", ") + n;
@@ -139,9 +146,11 @@ ProgramHost::ProgramHost(const MachineConfig& config, const IoImage& io, std::ve
             programs_.back().instance->declare(collector);
             collector.check_configuration();
         } catch (const std::exception& e) {
-            errors.push_back({"program.declare", fmt::format("program '{}'", program.name), fmt::format("declare() threw: {}", e.what()), "mend the program"});
+            errors.push_back({"program.declare", fmt::format("program '{}'", program.name), fmt::format("declare() threw: {}", e.what()),
+                              "mend the program"});
         } catch (...) {
-            errors.push_back({"program.declare", fmt::format("program '{}'", program.name), "declare() threw something that is no std::exception", "mend the program"});
+            errors.push_back({"program.declare", fmt::format("program '{}'", program.name),
+                              "declare() threw something that is no std::exception", "mend the program"});
         }
     }
 }

@@ -34,9 +34,9 @@ public:
     struct Loaded {
         ProgramConfig config;
         ProgramLibrary::Instance instance;
-        std::uint64_t alarms = 0;                        ///< those that hold, set by its scans
-        std::vector<AlarmDeclared> alarm_texts;          ///< 64
-        std::string fault;                               ///< why it stopped by itself; set with state fault
+        std::uint64_t alarms = 0;                ///< those that hold, set by its scans
+        std::vector<AlarmDeclared> alarm_texts;  ///< 64
+        std::string fault;                       ///< why it stopped by itself; set with state fault
     };
 
     /// Loads and declares everything; problems are added to `errors` (all of them). `io` gives the point names.

@@ -91,7 +91,8 @@ Result<void> RealtimeRunner::bring_up(const std::function<bool(Instant)>& keep_o
         if (!keep_on(clock_.now())) machine_.request_shutdown();
         if (machine_.phase() == MachinePhase::stopped) return {};
         if (clock_.now() > until)
-            return Error{"bus.timeout", "bus", fmt::format("not operational after {:.0f} s; last: {}", to_seconds(bring_up_patience), machine_.bus_progress()),
+            return Error{"bus.timeout", "bus",
+                         fmt::format("not operational after {:.0f} s; last: {}", to_seconds(bring_up_patience), machine_.bus_progress()),
                          "look at the slave that this line names"};
     }
     return machine_.arm();

@@ -8,8 +8,17 @@ namespace taktwerk::runtime {
 
 SlowTask::SlowTask(const ProgramHost::Task& task, Program* program, std::vector<ProgramHost::Variable> variables, std::size_t axes,
                    std::size_t inputs, std::size_t outputs, std::size_t parameters)
-    : task_(task), program_(program), divisor_(task.config.divisor), variable_sources_(std::move(variables)), requests_(axes), views_(axes),
-      inputs_(inputs), outputs_(outputs), outputs_at_release_(outputs), parameters_(parameters), variable_values_(variable_sources_.size()),
+    : task_(task),
+      program_(program),
+      divisor_(task.config.divisor),
+      variable_sources_(std::move(variables)),
+      requests_(axes),
+      views_(axes),
+      inputs_(inputs),
+      outputs_(outputs),
+      outputs_at_release_(outputs),
+      parameters_(parameters),
+      variable_values_(variable_sources_.size()),
       variables_applied_(variable_sources_.size()) {
     requests_.bind(views_);
 }

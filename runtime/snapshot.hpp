@@ -22,8 +22,8 @@ enum class ProgramState : std::uint8_t { stopped, running, fault };
 struct ActiveAlarm {
     AlarmFact fact;
     Instant since{};
-    std::uint32_t count = 0;      ///< times raised since it was last clear
-    bool standing = false;        ///< the condition still holds
+    std::uint32_t count = 0;  ///< times raised since it was last clear
+    bool standing = false;    ///< the condition still holds
     bool acknowledged = false;
     Reaction reaction = Reaction::none;
 };
@@ -35,8 +35,8 @@ inline constexpr std::size_t step_count = 11;
 
 struct CycleStatistics {
     std::uint64_t cycles = 0, overruns = 0, missed_ticks = 0;
-    Duration lateness{}, lateness_max{};          ///< of the wake-up
-    Duration compute{}, compute_max{};            ///< steps 1 to 10
+    Duration lateness{}, lateness_max{};  ///< of the wake-up
+    Duration compute{}, compute_max{};    ///< steps 1 to 10
     std::uint64_t snapshots_dropped = 0, commands_refused = 0;
 };
 
@@ -47,22 +47,22 @@ struct TaskStatistics {
 
 struct Snapshot {
     std::uint64_t cycle = 0;
-    Instant at{};                          ///< scan time of that cycle
+    Instant at{};  ///< scan time of that cycle
     MachinePhase phase = MachinePhase::starting;
     Mode mode = Mode::manual;
-    bool emergency_stop = false;           ///< pressed (or its wire is broken)
+    bool emergency_stop = false;  ///< pressed (or its wire is broken)
     bool simulated = false;
     ecat::Master::Phase bus_phase = ecat::Master::Phase::idle;
     ecat::BusStatistics bus;
     CycleStatistics statistics;
     std::vector<ecat::SlaveHealth> slaves;
     std::vector<axes::AxisView> axes;
-    std::vector<std::int64_t> inputs, outputs;    ///< one per I/O point, in configuration order of that direction
+    std::vector<std::int64_t> inputs, outputs;  ///< one per I/O point, in configuration order of that direction
     std::vector<double> parameters;
-    std::vector<double> variables;                ///< monitored variables of all programs
+    std::vector<double> variables;  ///< monitored variables of all programs
     std::vector<ProgramState> programs;
     std::vector<TaskStatistics> tasks;
-    std::vector<ActiveAlarm> alarms;              ///< capacity fixed; the first alarm_count are valid, newest last
+    std::vector<ActiveAlarm> alarms;  ///< capacity fixed; the first alarm_count are valid, newest last
     std::size_t alarm_count = 0;
 };
 
@@ -79,7 +79,7 @@ struct MachineLayout {
     struct AxisInfo {
         std::string name, unit;
         bool disabled = false, simulated = false;
-        double jog_slow = 0, jog_fast = 0;        ///< u/s
+        double jog_slow = 0, jog_fast = 0;  ///< u/s
     };
     std::string machine;
     Duration cycle{};

@@ -24,7 +24,8 @@ Result<void> VirtualRunner::bring_up(Duration patience) {
         one_cycle();
         if (auto failure = machine_.bus_failure()) return *failure;
         if (clock_.now() > until)
-            return Error{"bus.timeout", "bus", fmt::format("not operational after {:.0f} s; last: {}", to_seconds(patience), machine_.bus_progress()),
+            return Error{"bus.timeout", "bus",
+                         fmt::format("not operational after {:.0f} s; last: {}", to_seconds(patience), machine_.bus_progress()),
                          "look at the slave that this line names"};
     }
     return machine_.arm();

@@ -56,7 +56,8 @@ std::vector<const ecat::SlaveConfig*> cable_order(const std::vector<ecat::SlaveC
 
 }  // namespace
 
-World::World(const MachineConfig& config, Instant start) : network_(start), transport_(network_), start_(start), events_(config.simulation.events) {
+World::World(const MachineConfig& config, Instant start)
+    : network_(start), transport_(network_), start_(start), events_(config.simulation.events) {
     std::stable_sort(events_.begin(), events_.end(), [](const auto& a, const auto& b) { return a.at < b.at; });
     const auto present = present_slaves(config);
     for (const auto* slave : cable_order(present)) {
@@ -120,7 +121,8 @@ void World::set_input(std::string_view name, bool value) {
 
 bool World::output(std::string_view name) const {
     for (const auto& point : points_)
-        if (point.config.name == name && point.config.direction == IoDirection::output) return point.terminal->output(point.config.sub - 1u);
+        if (point.config.name == name && point.config.direction == IoDirection::output)
+            return point.terminal->output(point.config.sub - 1u);
     return false;
 }
 

@@ -55,7 +55,7 @@ private:
     std::vector<std::string> slave_names_;  // in cable order
     std::vector<AxisPlace> axes_;
     std::vector<Point> points_;
-    std::vector<SimulationEvent> events_;   // by time
+    std::vector<SimulationEvent> events_;  // by time
     std::size_t next_event_ = 0;
 };
 

@@ -98,7 +98,8 @@ bool Axis::power_wanted() const noexcept {
     const bool drive_on = power_.phase() == Phase::on || power_.phase() == Phase::settling;
     switch (state_) {
         case AxisState::Disabled: return power_wish_ && !power_dropping_ && emergency_ == EmergencyStop::none;
-        case AxisState::ErrorStop: return drive_on && emergency_ != EmergencyStop::power_off_now && (moves() || (power_wish_ && !off_after_error_));
+        case AxisState::ErrorStop:
+            return drive_on && emergency_ != EmergencyStop::power_off_now && (moves() || (power_wish_ && !off_after_error_));
         default: return true;  // these states end in Disabled before power goes
     }
 }

@@ -13,10 +13,10 @@ namespace taktwerk::axes {
 
 /// counts = position[u] * counts_numerator / counts_denominator: exact, so that nothing drifts.
 struct Gearing {
-    std::int64_t counts_per_revolution = 10000;   ///< drive's position counts per motor revolution
-    std::int64_t motor_revolutions = 1;           ///< gear: this many motor turns ...
-    std::int64_t load_revolutions = 1;            ///< ... for so many load turns
-    double feed = 1.0;                            ///< u per load revolution (screw pitch, 360 deg, ...)
+    std::int64_t counts_per_revolution = 10000;  ///< drive's position counts per motor revolution
+    std::int64_t motor_revolutions = 1;          ///< gear: this many motor turns ...
+    std::int64_t load_revolutions = 1;           ///< ... for so many load turns
+    double feed = 1.0;                           ///< u per load revolution (screw pitch, 360 deg, ...)
     bool inverted = false;
 
     [[nodiscard]] double counts_per_unit() const noexcept {
@@ -26,12 +26,12 @@ struct Gearing {
 };
 
 struct AxisLimits {
-    double velocity = 100;          ///< u/s, > 0
-    double acceleration = 1000;     ///< u/s2
-    double deceleration = 1000;     ///< u/s2
-    double jerk = 10000;            ///< u/s3; infinity = none
-    double stop_deceleration = 0;   ///< u/s2 for errors and emergency stop; 0 = deceleration
-    double stop_jerk = 0;           ///< u/s3; 0 = jerk
+    double velocity = 100;                                           ///< u/s, > 0
+    double acceleration = 1000;                                      ///< u/s2
+    double deceleration = 1000;                                      ///< u/s2
+    double jerk = 10000;                                             ///< u/s3; infinity = none
+    double stop_deceleration = 0;                                    ///< u/s2 for errors and emergency stop; 0 = deceleration
+    double stop_jerk = 0;                                            ///< u/s3; 0 = jerk
     double position_min = -std::numeric_limits<double>::infinity();  ///< software limits, active once homed
     double position_max = std::numeric_limits<double>::infinity();
 };
@@ -47,32 +47,32 @@ struct FollowingErrorWatch {
 };
 
 struct PositionWindows {
-    double in_position = 0.01;      ///< u
+    double in_position = 0.01;  ///< u
     Duration in_position_time = std::chrono::milliseconds{10};
     double standstill_velocity = 0.1;  ///< u/s
 };
 
 enum class HomingKind : std::uint8_t {
-    none,            ///< MC_Home is refused
-    drive,           ///< the drive's own method (6098h)
-    home_switch,     ///< master-side: search the home switch edge, back off slowly (see axes/homing/README.md)
-    set_here,        ///< the present position becomes Position, without motion
+    none,         ///< MC_Home is refused
+    drive,        ///< the drive's own method (6098h)
+    home_switch,  ///< master-side: search the home switch edge, back off slowly (see axes/homing/README.md)
+    set_here,     ///< the present position becomes Position, without motion
 };
 
 struct HomingConfig {
     HomingKind kind = HomingKind::none;
-    std::int8_t method = 0;              ///< drive: 6098h
-    double search_velocity = 10;         ///< u/s, to the switch; sign by method or `negative`
-    double latch_velocity = 1;           ///< u/s, to the edge
-    double acceleration = 100;           ///< u/s2
-    double offset = 0;                   ///< u: coordinate of the reference when MC_Home.Position is not given
-    bool negative = true;                ///< master-side: search in negative direction
+    std::int8_t method = 0;       ///< drive: 6098h
+    double search_velocity = 10;  ///< u/s, to the switch; sign by method or `negative`
+    double latch_velocity = 1;    ///< u/s, to the edge
+    double acceleration = 100;    ///< u/s2
+    double offset = 0;            ///< u: coordinate of the reference when MC_Home.Position is not given
+    bool negative = true;         ///< master-side: search in negative direction
     Duration timeout = std::chrono::seconds{60};
 };
 
 struct ManualSpeeds {
-    double slow = 0, fast = 0;           ///< u/s for jogging; 0 = 5 % and 25 % of the velocity limit
-    double setup_velocity = 0;           ///< u/s, cap in set-up mode; 0 = slow
+    double slow = 0, fast = 0;  ///< u/s for jogging; 0 = 5 % and 25 % of the velocity limit
+    double setup_velocity = 0;  ///< u/s, cap in set-up mode; 0 = slow
 };
 
 struct AxisConfig {
@@ -85,11 +85,11 @@ struct AxisConfig {
     PositionWindows windows;
     HomingConfig homing;
     ManualSpeeds manual;
-    bool require_homed = true;           ///< absolute moves need a homed axis
-    bool disabled = false;               ///< left out while commissioning: its drive is never enabled
-    bool simulated = false;              ///< its drive is simulated although the bus is real
-    std::uint8_t queue_depth = 4;        ///< buffered commands, 1..8
-    std::uint16_t stale_limit = 3;       ///< cycles without fresh feedback until the axis stops in error
+    bool require_homed = true;      ///< absolute moves need a homed axis
+    bool disabled = false;          ///< left out while commissioning: its drive is never enabled
+    bool simulated = false;         ///< its drive is simulated although the bus is real
+    std::uint8_t queue_depth = 4;   ///< buffered commands, 1..8
+    std::uint16_t stale_limit = 3;  ///< cycles without fresh feedback until the axis stops in error
     Duration jog_lease = std::chrono::milliseconds{200};
     Duration enable_timeout = std::chrono::seconds{3};
 };

@@ -19,21 +19,21 @@ enum class VelocityLimiter : std::uint8_t { none, command, axis_limit, manual_sp
 struct AxisView {
     AxisState state = AxisState::Disabled;
     Owner owner = Owner::none;
-    bool powered = false;          ///< operation enabled and the dwell after it has passed: motion is accepted
+    bool powered = false;  ///< operation enabled and the dwell after it has passed: motion is accepted
     bool homed = false;
     bool simulated = false;
-    bool online = false;           ///< feedback is fresh enough
-    bool in_position = false;      ///< actual inside the in-position window of the set-point, standstill
+    bool online = false;       ///< feedback is fresh enough
+    bool in_position = false;  ///< actual inside the in-position window of the set-point, standstill
     bool warning = false;
-    std::uint16_t error = 0;       ///< alarm id while in ErrorStop (or ErrorId of the last error); 0 = none
-    std::uint16_t drive_error = 0; ///< drive's own number (603Fh); 0 = none
-    bool resetting = false;        ///< a reset waits for the drive or for standstill
+    std::uint16_t error = 0;              ///< alarm id while in ErrorStop (or ErrorId of the last error); 0 = none
+    std::uint16_t drive_error = 0;        ///< drive's own number (603Fh); 0 = none
+    bool resetting = false;               ///< a reset waits for the drive or for standstill
     ErrorId reset_error = ErrorId::none;  ///< what the last reset came to, once it is over
 
     // u, u/s, u/s2, u/s3, fraction of rated torque
     double set_position = 0, set_velocity = 0, set_acceleration = 0, set_jerk = 0;
     double actual_position = 0, actual_velocity = 0, actual_torque = 0;
-    double following_error = 0;    ///< set-point in effect at the latch, minus actual
+    double following_error = 0;  ///< set-point in effect at the latch, minus actual
     double target_position = 0;
     VelocityLimiter limiter = VelocityLimiter::none;
     double manual_slow = 0, manual_fast = 0;  ///< u/s, > 0: the configured jogging speeds (ManualSpeeds, resolved); constant
@@ -53,9 +53,9 @@ struct AxisView {
         Outcome outcome = Outcome::done;
         ErrorId error = ErrorId::none;
     };
-    std::array<Finished, 16> ledger{};   ///< ring; newest at (ledger_next - 1)
+    std::array<Finished, 16> ledger{};  ///< ring; newest at (ledger_next - 1)
     std::uint8_t ledger_next = 0;
-    CommandId last_id = 0;               ///< highest id given out
+    CommandId last_id = 0;  ///< highest id given out
 
     /// Bounded (a few dozen compares).
     [[nodiscard]] constexpr CommandStatus status(CommandId id, ErrorId* error_out = nullptr) const noexcept {

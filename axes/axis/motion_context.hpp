@@ -34,9 +34,7 @@ struct MotionContext : CycleContext {
     Owner owner = Owner::program;
 
     /// nullptr for an invalid handle: blocks answer with ErrorId::invalid_axis.
-    [[nodiscard]] const AxisView* view(AxisRef axis) const noexcept {
-        return axis.index < axes.size() ? &axes[axis.index] : nullptr;
-    }
+    [[nodiscard]] const AxisView* view(AxisRef axis) const noexcept { return axis.index < axes.size() ? &axes[axis.index] : nullptr; }
 };
 
 }  // namespace taktwerk::axes

@@ -9,16 +9,17 @@ namespace taktwerk::axes {
 enum class DriveAlarmKind : std::uint8_t {
     other,
     overspeed,
-    following_error,      ///< the drive's own check (6065h)
-    setpoint_leap,        ///< a cyclic target stepped too far
-    undervoltage,         ///< main power
+    following_error,  ///< the drive's own check (6065h)
+    setpoint_leap,    ///< a cyclic target stepped too far
+    undervoltage,     ///< main power
     overload,
     encoder,
-    communication,        ///< the bus or line fell silent
-    negative_limit, positive_limit,
-    emergency_stop,       ///< an input of the drive
-    battery_low,          ///< of the encoder; the position still holds
-    reference_lost,       ///< turns or zero are gone: home again
+    communication,  ///< the bus or line fell silent
+    negative_limit,
+    positive_limit,
+    emergency_stop,  ///< an input of the drive
+    battery_low,     ///< of the encoder; the position still holds
+    reference_lost,  ///< turns or zero are gone: home again
     turn_overflow,
     power_cycle_pending,  ///< a parameter takes effect after a restart only
 };

@@ -24,13 +24,28 @@ namespace taktwerk::axes {
 
 /// CiA 402 6060h by meaning; a drive without a status word (XP200) maps its own modes to these.
 enum class DriveMode : std::uint8_t {
-    none, profile_position, profile_velocity, profile_torque, homing, cyclic_position, cyclic_velocity, cyclic_torque,
+    none,
+    profile_position,
+    profile_velocity,
+    profile_torque,
+    homing,
+    cyclic_position,
+    cyclic_velocity,
+    cyclic_torque,
 };
 [[nodiscard]] std::string_view name(DriveMode mode) noexcept;
 
 /// CiA 402 power state by meaning. `unknown`: a status word that fits no state; treated like a fault (never "keep the last").
 enum class PowerState : std::uint8_t {
-    unknown, not_ready, disabled, ready, switched_on, enabled, quick_stop, fault_reaction, fault,
+    unknown,
+    not_ready,
+    disabled,
+    ready,
+    switched_on,
+    enabled,
+    quick_stop,
+    fault_reaction,
+    fault,
 };
 [[nodiscard]] std::string_view name(PowerState state) noexcept;
 
@@ -49,32 +64,33 @@ enum class DriveService : std::uint8_t {
 };
 
 struct DriveCapabilities {
-    std::uint16_t modes = 0;                 ///< bit per DriveMode
+    std::uint16_t modes = 0;  ///< bit per DriveMode
     SetpointClass setpoints = SetpointClass::cyclic;
-    bool velocity_feed_forward = false;      ///< 60B1h mapped
-    bool torque_feed_forward = false;        ///< 60B2h mapped
-    bool torque_limits = false;              ///< 6072h or 60E0h/60E1h mapped
-    bool digital_inputs = false;             ///< limits and home are reported (60FDh)
-    bool digital_outputs = false;            ///< 60FEh mapped
-    std::uint8_t probes = 0;                 ///< touch probes with hardware latch
+    bool velocity_feed_forward = false;  ///< 60B1h mapped
+    bool torque_feed_forward = false;    ///< 60B2h mapped
+    bool torque_limits = false;          ///< 6072h or 60E0h/60E1h mapped
+    bool digital_inputs = false;         ///< limits and home are reported (60FDh)
+    bool digital_outputs = false;        ///< 60FEh mapped
+    std::uint8_t probes = 0;             ///< touch probes with hardware latch
     bool drive_homing = false;
-    bool motor_has_encoder = true;           ///< false: "actual" is the command (open-loop stepper)
+    bool motor_has_encoder = true;  ///< false: "actual" is the command (open-loop stepper)
     bool absolute_encoder = false;
-    std::uint8_t position_bits = 32;         ///< width of the raw position before unwrapping
+    std::uint8_t position_bits = 32;                                  ///< width of the raw position before unwrapping
     double rated_velocity = std::numeric_limits<double>::infinity();  ///< counts/s the drive can follow; infinity = not stated
     Duration minimum_cycle{};
-    Duration enable_delay{};                 ///< motion must wait this long after `enabled` (brake, servo-on dwell)
-    Duration mode_change_delay{};            ///< set-points must wait this long after the mode is confirmed
+    Duration enable_delay{};       ///< motion must wait this long after `enabled` (brake, servo-on dwell)
+    Duration mode_change_delay{};  ///< set-points must wait this long after the mode is confirmed
     bool mode_change_at_standstill = false;
-    Duration feedback_period{};              ///< 0 = every bus cycle; else the poll period
+    Duration feedback_period{};  ///< 0 = every bus cycle; else the poll period
     // What the later drives need beyond it; a port that says nothing has none of it.
-    bool velocity_limit = false;             ///< 607Fh mapped (or Pr078): speed limit in torque modes
-    bool reports_following = false;          ///< DriveFeedback::follows_target means something
-    bool homing_per_run = false;             ///< DriveCommand::homing is obeyed; else the start-up values hold
-    std::uint8_t profile_buffer = 0;         ///< set-points the drive takes ahead in profile position mode (SV33-E 1, SV-DA200 8); 0: mode not served
-    std::uint8_t services = 0;               ///< bit per DriveService
-    double velocity_step = 0;                ///< counts/s between two velocity set-points the drive can tell apart (XP200: 1 r/min); 0 = none
-    Duration command_latency{};              ///< worst time from encode() to effect beyond setpoint_effective() (a slow line); 0 = none
+    bool velocity_limit = false;     ///< 607Fh mapped (or Pr078): speed limit in torque modes
+    bool reports_following = false;  ///< DriveFeedback::follows_target means something
+    bool homing_per_run = false;     ///< DriveCommand::homing is obeyed; else the start-up values hold
+    std::uint8_t profile_buffer =
+        0;                       ///< set-points the drive takes ahead in profile position mode (SV33-E 1, SV-DA200 8); 0: mode not served
+    std::uint8_t services = 0;   ///< bit per DriveService
+    double velocity_step = 0;    ///< counts/s between two velocity set-points the drive can tell apart (XP200: 1 r/min); 0 = none
+    Duration command_latency{};  ///< worst time from encode() to effect beyond setpoint_effective() (a slow line); 0 = none
 
     [[nodiscard]] constexpr bool has(DriveMode mode) const noexcept { return (modes >> static_cast<unsigned>(mode)) & 1u; }
     [[nodiscard]] constexpr bool has(DriveService service) const noexcept { return (services >> static_cast<unsigned>(service)) & 1u; }
@@ -98,90 +114,90 @@ struct ProbeCommand {
 /// One homing run other than the configured one; `method` 0: as configured. Ports that can only write it acyclically hold the
 /// start back until it is written.
 struct DriveHomingSetup {
-    std::int8_t method = 0;             ///< 6098h
+    std::int8_t method = 0;                          ///< 6098h
     double search_velocity = 0, latch_velocity = 0;  ///< counts/s
-    double acceleration = 0;            ///< counts/s2
+    double acceleration = 0;                         ///< counts/s2
 };
 
 /// A set-point for a drive that makes its own profile (PP). A changed `sequence` announces a new one; the port does the
 /// handshake (6040h bit 4 against 6041h bit 12) and answers with DriveFeedback::profile_accepted. Target, speed and ramps are
 /// the command's position, velocity, acceleration and deceleration.
 struct ProfileSetpoint {
-    std::uint32_t sequence = 0;         ///< 0: none
+    std::uint32_t sequence = 0;  ///< 0: none
     bool relative = false;
-    bool immediately = false;           ///< abandon the present one (bit 5; SE-808X means "blend after it", sheet 4.1)
+    bool immediately = false;  ///< abandon the present one (bit 5; SE-808X means "blend after it", sheet 4.1)
 };
 
 /// What the axis wants in this cycle. Filled anew every cycle; a port needs no memory of earlier ones.
 struct DriveCommand {
     PowerRequest power = PowerRequest::off;
-    bool reset_fault = false;           ///< level; the port makes the edge and takes it back (bit 7 must return to 0)
+    bool reset_fault = false;  ///< level; the port makes the edge and takes it back (bit 7 must return to 0)
     DriveMode mode = DriveMode::cyclic_position;
-    std::int64_t position = 0;          ///< counts
-    double velocity = 0;                ///< counts/s: set-point in velocity modes, feed-forward in position mode
-    double torque = 0;                  ///< set-point in torque modes, feed-forward otherwise
+    std::int64_t position = 0;                  ///< counts
+    double velocity = 0;                        ///< counts/s: set-point in velocity modes, feed-forward in position mode
+    double torque = 0;                          ///< set-point in torque modes, feed-forward otherwise
     double acceleration = 0, deceleration = 0;  ///< counts/s2 for drives that ramp by themselves; 0 = leave
     double torque_limit_positive = std::numeric_limits<double>::infinity();
     double torque_limit_negative = std::numeric_limits<double>::infinity();
-    bool start_homing = false;          ///< level, while mode is homing: hold until attained or failed; false aborts
-    bool halt = false;                  ///< controlword bit 8
+    bool start_homing = false;  ///< level, while mode is homing: hold until attained or failed; false aborts
+    bool halt = false;          ///< controlword bit 8
     std::array<ProbeCommand, 2> probes{};
     std::uint32_t digital_outputs = 0, digital_output_mask = 0;
     double velocity_limit = std::numeric_limits<double>::infinity();  ///< counts/s, torque modes; infinity = as at start-up
-    double torque_slope = 0;            ///< rated torques/s in profile torque mode; 0 = leave
+    double torque_slope = 0;                                          ///< rated torques/s in profile torque mode; 0 = leave
     DriveHomingSetup homing{};
     ProfileSetpoint profile{};
 };
 
 struct ProbeFeedback {
-    bool armed = false;                 ///< the drive confirms that it waits for edges (false while a re-arming is under way)
+    bool armed = false;  ///< the drive confirms that it waits for edges (false while a re-arming is under way)
     bool latched = false;
-    std::uint16_t count = 0;            ///< latches since armed
-    std::int64_t position = 0;          ///< counts at the edge
+    std::uint16_t count = 0;    ///< latches since armed
+    std::int64_t position = 0;  ///< counts at the edge
 };
 
 /// What the drive says. All of one latch instant.
 struct DriveFeedback {
-    bool fresh = false;                 ///< new in this cycle
-    bool online = false;                ///< exchanged at all (bus in OP, line answering); false: everything below is old
-    std::uint32_t age = 0;              ///< bus cycles since it was fresh
-    Instant latched{};                  ///< when the actual values were taken
+    bool fresh = false;     ///< new in this cycle
+    bool online = false;    ///< exchanged at all (bus in OP, line answering); false: everything below is old
+    std::uint32_t age = 0;  ///< bus cycles since it was fresh
+    Instant latched{};      ///< when the actual values were taken
 
     PowerState power = PowerState::unknown;
-    DriveMode mode = DriveMode::none;   ///< active mode (6061h), or the commanded one where the drive cannot say
+    DriveMode mode = DriveMode::none;  ///< active mode (6061h), or the commanded one where the drive cannot say
     bool fault = false, warning = false;
-    bool main_power = true;             ///< statusword bit 4 where it means that
+    bool main_power = true;  ///< statusword bit 4 where it means that
     bool target_reached = false, internal_limit = false;
-    std::uint16_t status_word = 0;      ///< raw, for people
-    std::uint16_t error_code = 0;       ///< 603Fh or the vendor's number; 0 = none
+    std::uint16_t status_word = 0;  ///< raw, for people
+    std::uint16_t error_code = 0;   ///< 603Fh or the vendor's number; 0 = none
 
-    std::int64_t position = 0;          ///< counts, unwrapped
-    double velocity = 0;                ///< counts/s; from the drive, else differentiated
-    double torque = 0;                  ///< fraction of rated
+    std::int64_t position = 0;  ///< counts, unwrapped
+    double velocity = 0;        ///< counts/s; from the drive, else differentiated
+    double torque = 0;          ///< fraction of rated
     bool homing_attained = false, homing_error = false;
-    bool follows_target = true;         ///< statusword bit 12 in cyclic modes, where it means that
+    bool follows_target = true;  ///< statusword bit 12 in cyclic modes, where it means that
     /// Counts each time the position's zero may have become another: the drive was away and came back, homed, or lost its turns.
     std::uint16_t position_epoch = 0;
     /// The drive has acknowledged all that encode() asked that changes its state; false: still under way (polled drives).
     bool commands_acknowledged = true;
-    std::uint32_t profile_accepted = 0; ///< sequence of the last profile set-point the drive has taken
-    bool setup_refused = false;         ///< the drive's settings forbid enabling it; setup_problems() says which
+    std::uint32_t profile_accepted = 0;  ///< sequence of the last profile set-point the drive has taken
+    bool setup_refused = false;          ///< the drive's settings forbid enabling it; setup_problems() says which
 
     bool has_inputs = false;
     bool negative_limit = false, positive_limit = false, home_switch = false;
-    std::uint32_t digital_inputs = 0;   ///< raw
+    std::uint32_t digital_inputs = 0;  ///< raw
     std::array<ProbeFeedback, 2> probes{};
 };
 
 /// A drive alarm with what the profile knows about it; texts are looked up outside the cycle by `entry`.
 struct DriveAlarm {
-    std::uint16_t code = 0;             ///< 603Fh or the vendor's number; 0 = none
-    std::uint32_t detail = 0;           ///< further object (4000h, P21.08), 0 = not read or none
+    std::uint16_t code = 0;    ///< 603Fh or the vendor's number; 0 = none
+    std::uint32_t detail = 0;  ///< further object (4000h, P21.08), 0 = not read or none
     bool detail_known = false;
-    std::int32_t entry = -1;            ///< index into the profile's alarm table; -1 = unknown code
+    std::int32_t entry = -1;  ///< index into the profile's alarm table; -1 = unknown code
     bool resettable = true;
-    bool whole_drive = false;           ///< common to all axes of the drive
-    bool warning = false;               ///< announced while the drive goes on
+    bool whole_drive = false;  ///< common to all axes of the drive
+    bool warning = false;      ///< announced while the drive goes on
     DriveAlarmKind kind = DriveAlarmKind::other;
 };
 

@@ -31,32 +31,33 @@ enum class DriveStop : std::uint8_t {
 };
 
 struct DriveAlarmText {
-    std::uint16_t code = 0;      ///< 603Fh
-    std::uint32_t detail = 0;    ///< value of the further object that tells apart; 0 = code alone
-    std::string panel;           ///< what the drive's own display shows: "E.200.0"
+    std::uint16_t code = 0;    ///< 603Fh
+    std::uint32_t detail = 0;  ///< value of the further object that tells apart; 0 = code alone
+    std::string panel;         ///< what the drive's own display shows: "E.200.0"
     std::string english, chinese, cause, remedy;
     bool resettable = true;
     bool warning = false;
-    bool whole_drive = false;    ///< common to all axes of the drive (TSVM 603Fh 71..96)
+    bool whole_drive = false;  ///< common to all axes of the drive (TSVM 603Fh 71..96)
     DriveAlarmKind kind = DriveAlarmKind::other;
 };
 
 struct DriveProfile {
-    std::string name;                        ///< "sv33-e"
-    std::string vendor, title;               ///< for people
+    std::string name;           ///< "sv33-e"
+    std::string vendor, title;  ///< for people
     std::vector<DriveMode> modes;
-    std::vector<std::int8_t> homing_methods; ///< 6098h values the drive documents
-    double velocity_counts_per_unit = 1.0;   ///< 606Ch/60FFh raw = counts/s * this
-    double torque_rated_raw = 1000.0;        ///< 6077h/6071h raw value of rated torque
+    std::vector<std::int8_t> homing_methods;  ///< 6098h values the drive documents
+    double velocity_counts_per_unit = 1.0;    ///< 606Ch/60FFh raw = counts/s * this
+    double torque_rated_raw = 1000.0;         ///< 6077h/6071h raw value of rated torque
     std::uint8_t position_bits = 32;
     std::uint8_t probes = 0;
     bool motor_has_encoder = true;
     Duration minimum_cycle_csp{};
     Duration enable_delay{}, mode_change_delay{}, enable_timeout = std::chrono::seconds{2};
     bool mode_change_at_standstill = false;
-    Duration mode_change_interval{};         ///< least time between two changes of 6060h (TSVM 5.4.1: 20 ms)
-    Duration mode_indeterminate{};           ///< 6061h means nothing this long after a change of 6060h (TSVM 5.4.1: 2 ms)
-    std::uint16_t enable_status_bits = 0;    ///< of 6041h, all set before Enable Operation (SV-DA200 3.1.2: bit 8 DC locked, bit 4 main power)
+    Duration mode_change_interval{};  ///< least time between two changes of 6060h (TSVM 5.4.1: 20 ms)
+    Duration mode_indeterminate{};    ///< 6061h means nothing this long after a change of 6060h (TSVM 5.4.1: 2 ms)
+    std::uint16_t enable_status_bits =
+        0;  ///< of 6041h, all set before Enable Operation (SV-DA200 3.1.2: bit 8 DC locked, bit 4 main power)
     // What the drive does by itself; the simulator plays it, the axis plans with it.
     Duration brake_release{};                ///< after enabling the brake still holds: earlier commands are lost (SV33-E P05.13)
     Duration brake_hold{};                   ///< after disabling at standstill the motor holds until the brake does (SV33-E P05.14)
@@ -68,10 +69,10 @@ struct DriveProfile {
     std::uint8_t axes = 1;
     std::uint8_t input_bit_negative_limit = 0, input_bit_positive_limit = 1, input_bit_home = 2;  ///< in 60FDh
     std::vector<Quirk> quirks;
-    std::uint16_t alarm_detail_index = 0;    ///< object that tells ambiguous 603Fh apart (P21.08 = 2021h:09); 0 = none
+    std::uint16_t alarm_detail_index = 0;  ///< object that tells ambiguous 603Fh apart (P21.08 = 2021h:09); 0 = none
     std::uint8_t alarm_detail_sub = 0;
     std::vector<DriveAlarmText> alarms;
-    std::vector<std::string> assumed;        ///< what the manual leaves open and we took, in words
+    std::vector<std::string> assumed;  ///< what the manual leaves open and we took, in words
 
     [[nodiscard]] bool has(Quirk quirk) const noexcept {
         for (const auto q : quirks)

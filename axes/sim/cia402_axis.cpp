@@ -225,7 +225,8 @@ void Cia402Axis::take_targets(const AxisInputs& in, Duration cycle) noexcept {
             break;
         case 4:
         case 10:
-            torque_demand_ = static_cast<double>(in.target_torque + in.torque_offset) / personality_.torque_rated_raw * plant_.config().rated_torque;
+            torque_demand_ =
+                static_cast<double>(in.target_torque + in.torque_offset) / personality_.torque_rated_raw * plant_.config().rated_torque;
             break;
         case 6: {
             const bool start = (in.control & 0x10u) != 0;

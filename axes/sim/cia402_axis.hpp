@@ -29,27 +29,27 @@ enum class Failure : std::uint8_t { overspeed, following_error, undervoltage, ov
 /// How this drive type behaves where CiA 402 leaves room.
 struct Personality {
     std::int64_t counts_per_revolution = 10000;
-    double velocity_counts_per_unit = 1.0;      ///< raw 606Ch/60FFh = counts/s * this
+    double velocity_counts_per_unit = 1.0;  ///< raw 606Ch/60FFh = counts/s * this
     double torque_rated_raw = 1000.0;
-    bool absolute_encoder = false;              ///< keeps its coordinate over a power cycle
-    bool fault_pattern_f = false;               ///< Fault shows as x0xx1111
-    bool remote_bit = true;                     ///< bit 9 set in OP
+    bool absolute_encoder = false;  ///< keeps its coordinate over a power cycle
+    bool fault_pattern_f = false;   ///< Fault shows as x0xx1111
+    bool remote_bit = true;         ///< bit 9 set in OP
     bool internal_limit_bit = true;
-    bool csp_following_bits = true;             ///< bits 12 and 13 in CSP
+    bool csp_following_bits = true;  ///< bits 12 and 13 in CSP
     bool home_found_bit_15 = false;
-    bool reset_needs_disable = false;           ///< fault reset only with enable dropped
-    bool limit_stop_is_warning = false;         ///< overtravel: stop with position lock, warning, still enabled
-    bool quick_stop_leaves = true;              ///< after the quick stop: Switch On Disabled by itself
+    bool reset_needs_disable = false;    ///< fault reset only with enable dropped
+    bool limit_stop_is_warning = false;  ///< overtravel: stop with position lock, warning, still enabled
+    bool quick_stop_leaves = true;       ///< after the quick stop: Switch On Disabled by itself
     FaultStop fault_stop = FaultStop::ramp;
-    FaultStop off_stop = FaultStop::coast;      ///< power taken away by command while it moves
+    FaultStop off_stop = FaultStop::coast;  ///< power taken away by command while it moves
     /// The holding brake opens this long after enabling; set-points and homing starts before are lost (SV33-E 3.1.2, P05.13).
     Duration brake_release{};
     /// After power is taken at standstill the motor holds this long until the brake does (SV33-E P05.14). 0: no brake.
     Duration brake_hold{};
-    double quick_stop_deceleration = 0;         ///< counts/s2; 0 = torque limit
-    double following_error_limit = 0;           ///< counts; 0 = no check
-    double maximum_velocity = 0;                ///< counts/s; CSP increments beyond 3 times that are counted; 0 = no check
-    double overspeed = 0;                       ///< counts/s beyond which the measured speed is an alarm; 0 = no check
+    double quick_stop_deceleration = 0;  ///< counts/s2; 0 = torque limit
+    double following_error_limit = 0;    ///< counts; 0 = no check
+    double maximum_velocity = 0;         ///< counts/s; CSP increments beyond 3 times that are counted; 0 = no check
+    double overspeed = 0;                ///< counts/s beyond which the measured speed is an alarm; 0 = no check
     AlarmCode following_error_alarm{0x8611};
     AlarmCode increment_alarm{0x0424};
     AlarmCode undervoltage_alarm{0x3220};
@@ -88,7 +88,10 @@ public:
 
     void power_on(Instant now) noexcept;
     /// Control supply gone: the motor is free, the state machine gone.
-    void power_off() noexcept { operational_ = false; enter(State::not_ready); }
+    void power_off() noexcept {
+        operational_ = false;
+        enter(State::not_ready);
+    }
     /// Physics up to `now`.
     void advance(Instant now) noexcept;
     /// Newest outputs in, answers out; `cycle` is the time until the next exchange (SYNC0 cycle).
@@ -146,12 +149,12 @@ private:
     HomingRun homing_;
     State state_ = State::not_ready;
     Instant now_{};
-    double zero_ = 0;                 ///< plant position at which the drive counts 0
+    double zero_ = 0;  ///< plant position at which the drive counts 0
     std::int64_t mode_ = 0;
     Demand demand_;
-    double demand_step_ = 0;          ///< counts per second towards the newest target
-    double target_ = 0;               ///< newest CSP target, plant coordinates
-    std::int64_t steps_left_ = 0;     ///< inner steps until the target is reached
+    double demand_step_ = 0;       ///< counts per second towards the newest target
+    double target_ = 0;            ///< newest CSP target, plant coordinates
+    std::int64_t steps_left_ = 0;  ///< inner steps until the target is reached
     double torque_ = 0, torque_demand_ = 0, velocity_demand_ = 0;
     std::uint16_t last_control_ = 0, error_code_ = 0;
     std::uint32_t error_detail_ = 0;
@@ -160,8 +163,8 @@ private:
     std::int64_t home_offset_ = 0;
     std::uint32_t strikes_ = 0;
     double largest_increment_ = 0;
-    Instant commands_from_{};         ///< the brake is open from here on
-    bool winding_down_ = false;       ///< power is to go, but the motor still stops or holds for the brake
+    Instant commands_from_{};    ///< the brake is open from here on
+    bool winding_down_ = false;  ///< power is to go, but the motor still stops or holds for the brake
     Instant winding_down_until_{};
     bool brake_closed_ = false, encoder_failed_ = false;
     std::int64_t frozen_position_ = 0;

@@ -54,8 +54,11 @@ Personality personality_of(const DriveProfile& profile, std::int64_t counts_per_
 }
 
 Cia402Device::Cia402Device(const DriveProfile& profile, const std::vector<AxisSetup>& axes)
-    : object_offset_(profile.object_offset), detail_index_(profile.alarm_detail_index), detail_sub_(profile.alarm_detail_sub),
-      alarms_(profile.alarms), minimum_cycle_(profile.minimum_cycle_csp) {
+    : object_offset_(profile.object_offset),
+      detail_index_(profile.alarm_detail_index),
+      detail_sub_(profile.alarm_detail_sub),
+      alarms_(profile.alarms),
+      minimum_cycle_(profile.minimum_cycle_csp) {
     for (const auto& setup : axes) axes_.push_back({std::make_unique<Cia402Axis>(setup.plant, setup.personality), {}});
 }
 
@@ -64,9 +67,9 @@ void Cia402Device::power_on(ecat::sim::ObjectDictionary& dictionary, Instant now
         const auto at = [&](unsigned index, std::uint8_t sub = 0) {
             return dictionary.find(static_cast<std::uint16_t>(index + i * object_offset_), sub);
         };
-        axes_[i].objects = {at(0x6040), at(0x6060), at(0x607A), at(0x60FF), at(0x6071), at(0x60B1), at(0x60B2),
-                            at(0x6098), at(0x6099, 1), at(0x6099, 2), at(0x609A), at(0x607C),
-                            at(0x6041), at(0x6061), at(0x6064), at(0x606C), at(0x6077), at(0x60F4), at(0x6062), at(0x603F), at(0x60FD)};
+        axes_[i].objects = {at(0x6040), at(0x6060),    at(0x607A),    at(0x60FF), at(0x6071), at(0x60B1), at(0x60B2),
+                            at(0x6098), at(0x6099, 1), at(0x6099, 2), at(0x609A), at(0x607C), at(0x6041), at(0x6061),
+                            at(0x6064), at(0x606C),    at(0x6077),    at(0x60F4), at(0x6062), at(0x603F), at(0x60FD)};
         axes_[i].model->power_on(now);
     }
     alarm_detail_ = detail_index_ ? dictionary.find(detail_index_, detail_sub_) : nullptr;
@@ -86,7 +89,8 @@ std::uint16_t Cia402Device::refuse(ecat::sim::EsmState from, ecat::sim::EsmState
     if (settings.sync0_active) cycle_ = settings.sync0_cycle;
     if (refused_code_ != 0 && to == refused_state_) return refused_code_;
     // 0036h: invalid SYNC0 cycle time (ETG.1000.6 table of AL status codes).
-    if (to == ecat::sim::EsmState::safeop && from == ecat::sim::EsmState::preop && settings.sync0_active && settings.sync0_cycle < minimum_cycle_)
+    if (to == ecat::sim::EsmState::safeop && from == ecat::sim::EsmState::preop && settings.sync0_active &&
+        settings.sync0_cycle < minimum_cycle_)
         return 0x0036;
     return 0;
 }

@@ -59,7 +59,8 @@ void HomingRun::step(double dt, const SwitchStates& switches, double position) n
             ramp(0, dt);
             return;
         }
-    } else if (method_->uses == Switch::home && ((velocity_ > 0 && switches.positive_limit) || (velocity_ < 0 && switches.negative_limit))) {
+    } else if (method_->uses == Switch::home &&
+               ((velocity_ > 0 && switches.positive_limit) || (velocity_ < 0 && switches.negative_limit))) {
         // Neither manual says what methods 19..22 do at a limit; running on into the stop would be the worst answer.
         state_ = State::failed;
         ramp(0, dt);

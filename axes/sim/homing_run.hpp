@@ -10,8 +10,8 @@ namespace taktwerk::axes::sim {
 
 struct HomingSettings {
     std::int64_t method = 0;
-    double fast = 0, slow = 0;     ///< counts/s (6099h:01, :02)
-    double acceleration = 0;       ///< counts/s2 (609Ah)
+    double fast = 0, slow = 0;  ///< counts/s (6099h:01, :02)
+    double acceleration = 0;    ///< counts/s2 (609Ah)
 };
 
 struct SwitchStates {

@@ -9,12 +9,12 @@ namespace taktwerk::axes::sim {
 
 struct PlantConfig {
     std::int64_t counts_per_revolution = 10000;
-    double inertia = 2e-4;             ///< kg m2, motor and load together
-    double viscous_friction = 1e-3;    ///< N m s/rad
-    double coulomb_friction = 0.05;    ///< N m
-    double load_torque = 0;            ///< N m, constant (gravity); positive pushes to negative
-    double rated_torque = 1.27;        ///< N m: 1.0 of the port
-    double maximum_torque = 3.0;       ///< in rated torques
+    double inertia = 2e-4;           ///< kg m2, motor and load together
+    double viscous_friction = 1e-3;  ///< N m s/rad
+    double coulomb_friction = 0.05;  ///< N m
+    double load_torque = 0;          ///< N m, constant (gravity); positive pushes to negative
+    double rated_torque = 1.27;      ///< N m: 1.0 of the port
+    double maximum_torque = 3.0;     ///< in rated torques
     // travel, in counts; infinite = none
     double start = 0;
     double negative_stop = -std::numeric_limits<double>::infinity();

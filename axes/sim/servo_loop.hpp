@@ -14,9 +14,9 @@ struct Demand {
 
 class ServoLoop {
 public:
-    static constexpr double position_gain = 80.0;    ///< 1/s
-    static constexpr double velocity_gain = 500.0;   ///< 1/s
-    static constexpr double integral_gain = 12000.0; ///< 1/s2
+    static constexpr double position_gain = 80.0;     ///< 1/s
+    static constexpr double velocity_gain = 500.0;    ///< 1/s
+    static constexpr double integral_gain = 12000.0;  ///< 1/s2
 
     /// Torque for one inner step, limited to +- limit N m. `measured` is the quantised encoder position.
     [[nodiscard]] double position_control(const Plant& plant, const Demand& demand, double measured, double limit, double dt) noexcept {

@@ -73,7 +73,8 @@ std::optional<AcyclicAnswer> AcyclicChannel::poll(EntryId id) const noexcept {
     if (entry == nullptr) return AcyclicAnswer{.lost = true, .wkc = 0, .slaves_passed = 0, .data = {}, .sent_at = {}};
     switch (entry->state.load(std::memory_order_acquire)) {
         case State::done:
-            return AcyclicAnswer{false, entry->wkc, entry->passed, std::span<const std::byte>{entry->data}.first(entry->size), entry->sent_at};
+            return AcyclicAnswer{false, entry->wkc, entry->passed, std::span<const std::byte>{entry->data}.first(entry->size),
+                                 entry->sent_at};
         case State::filling:
         case State::submitted:
         case State::in_flight: return std::nullopt;

@@ -8,8 +8,21 @@
 namespace taktwerk::ecat {
 
 enum class Command : std::uint8_t {
-    NOP = 0, APRD = 1, APWR = 2, APRW = 3, FPRD = 4, FPWR = 5, FPRW = 6, BRD = 7, BWR = 8, BRW = 9,
-    LRD = 10, LWR = 11, LRW = 12, ARMW = 13, FRMW = 14,
+    NOP = 0,
+    APRD = 1,
+    APWR = 2,
+    APRW = 3,
+    FPRD = 4,
+    FPWR = 5,
+    FPRW = 6,
+    BRD = 7,
+    BWR = 8,
+    BRW = 9,
+    LRD = 10,
+    LWR = 11,
+    LRW = 12,
+    ARMW = 13,
+    FRMW = 14,
 };
 [[nodiscard]] std::string_view name(Command command) noexcept;
 
@@ -19,8 +32,8 @@ inline constexpr std::size_t ecat_header_size = 2;
 inline constexpr std::size_t datagram_header_size = 10;
 inline constexpr std::size_t working_counter_size = 2;
 inline constexpr std::size_t datagram_overhead = datagram_header_size + working_counter_size;
-inline constexpr std::size_t min_frame_size = 60;      ///< without FCS; shorter frames are padded
-inline constexpr std::size_t max_frame_size = 1514;    ///< without FCS
+inline constexpr std::size_t min_frame_size = 60;    ///< without FCS; shorter frames are padded
+inline constexpr std::size_t max_frame_size = 1514;  ///< without FCS
 inline constexpr std::size_t max_datagram_data = 1486;
 
 /// Where a datagram goes: position or station address plus register offset, or a 32-bit logical address.

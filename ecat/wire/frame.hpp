@@ -26,7 +26,7 @@ struct BasicDatagram {
     std::uint16_t irq = 0;
     std::span<Byte> header;  ///< the 10 header bytes (a slave increments ADP in place)
     std::span<Byte> data;
-    std::span<Byte> wkc;     ///< 2 bytes
+    std::span<Byte> wkc;  ///< 2 bytes
     [[nodiscard]] std::uint16_t working_counter() const noexcept {
         return static_cast<std::uint16_t>(static_cast<unsigned>(wkc[0]) | (static_cast<unsigned>(wkc[1]) << 8));
     }
@@ -35,7 +35,14 @@ using Datagram = BasicDatagram<const std::byte>;
 using MutableDatagram = BasicDatagram<std::byte>;
 
 enum class FrameError : std::uint8_t {
-    none, too_short, not_ethercat, wrong_type, length_beyond_frame, truncated_datagram, trailing_bytes, unknown_command,
+    none,
+    too_short,
+    not_ethercat,
+    wrong_type,
+    length_beyond_frame,
+    truncated_datagram,
+    trailing_bytes,
+    unknown_command,
 };
 [[nodiscard]] std::string_view text(FrameError error) noexcept;
 

@@ -17,7 +17,19 @@ struct Place {
 constexpr Place pick{60, 40}, place{520, 260};
 
 class PickAndPlace final : public Program {
-    enum Step : std::int32_t { waiting = 0, homing_z = 10, homing_xy = 20, above_pick = 30, down_pick = 40, close = 50, lift = 60, carry = 70, down_place = 80, open = 90, raise = 100 };
+    enum Step : std::int32_t {
+        waiting = 0,
+        homing_z = 10,
+        homing_xy = 20,
+        above_pick = 30,
+        down_pick = 40,
+        close = 50,
+        lift = 60,
+        carry = 70,
+        down_place = 80,
+        open = 90,
+        raise = 100
+    };
 
     AxisRef x_, y_, z_;
     Input<bool> start_;
@@ -44,11 +56,12 @@ public:
         lamp_ = d.output("lamp_run");
         gripper_ = d.output("gripper");
         speed_ = d.parameter("speed", {.value = 400, .minimum = 10, .maximum = 600, .unit = "mm/s", .doc = "travel of x and y"});
-        grip_time_ = d.parameter("grip_time", {.value = 0.15, .minimum = 0.05, .maximum = 2, .unit = "s", .doc = "closing and opening the gripper"});
+        grip_time_ =
+            d.parameter("grip_time", {.value = 0.15, .minimum = 0.05, .maximum = 2, .unit = "s", .doc = "closing and opening the gripper"});
         d.monitor("step", step_, "", "step of the sequence");
         d.monitor("pieces", pieces_, "", "pieces placed since start");
-        d.alarm(0, Reaction::warn, "An axis is in ErrorStop: remove the cause, reset, then press start", "有轴处于 ErrorStop:排除原因、复位,然后按启动按钮",
-                "see the axis' own alarm");
+        d.alarm(0, Reaction::warn, "An axis is in ErrorStop: remove the cause, reset, then press start",
+                "有轴处于 ErrorStop:排除原因、复位,然后按启动按钮", "see the axis' own alarm");
         d.task<&PickAndPlace::scan>("main");
     }
 

@@ -21,8 +21,8 @@ const std::filesystem::path source = TAKTWERK_SOURCE_DIR;
 
 struct Death {
     const char* name;
-    int how;       // parameter of the program
-    int signal;    // sent to the master, 0 = none
+    int how;     // parameter of the program
+    int signal;  // sent to the master, 0 = none
 };
 
 class MasterDeath : public ::testing::TestWithParam<Death> {};

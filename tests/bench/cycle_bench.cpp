@@ -117,8 +117,13 @@ void run(std::size_t axes, int cycles) {
         binding.axis.limits.position_min = -10;
         Shuttle::names.push_back(binding.axis.name);
     }
-    static const ProgramEntry entry{program_magic, sizeof(ProgramEntry), abi_hash(), sdk_version, "shuttle",
-                                    []() -> Program* { return new Shuttle; }, [](Program* p) { delete p; }};
+    static const ProgramEntry entry{program_magic,
+                                    sizeof(ProgramEntry),
+                                    abi_hash(),
+                                    sdk_version,
+                                    "shuttle",
+                                    []() -> Program* { return new Shuttle; },
+                                    [](Program* p) { delete p; }};
     ProgramConfig program;
     program.name = "bench";
     program.entry = [] { return &entry; };
@@ -162,13 +167,14 @@ void run(std::size_t axes, int cycles) {
             for (const auto& view : machine.latest()->axes) moving += view.set_velocity != 0;
     }
     const auto& steps = machine.step_statistics();
-    fmt::print("\n{} axes, {} cycles, {:.0f} % of them in motion\n", axes, cycles, 100.0 * static_cast<double>(moving) / (static_cast<double>(axes) * cycles / 100));
+    fmt::print("\n{} axes, {} cycles, {:.0f} % of them in motion\n", axes, cycles,
+               100.0 * static_cast<double>(moving) / (static_cast<double>(axes) * cycles / 100));
     fmt::print("{:<10} {:>36}   {:>32}\n", "", "ns per axis and cycle", "us per cycle");
     fmt::print("{:<10} {:>11} {:>11} {:>12}   {:>10} {:>10} {:>10}\n", "step", "p50", "p99", "max", "p50", "p99", "max");
     const auto row = [&](std::string_view step, const Histogram& h) {
         const double n = static_cast<double>(axes) / 1000.0;
-        fmt::print("{:<10} {:>11.1f} {:>11.1f} {:>12.1f}   {:>10.2f} {:>10.2f} {:>10.2f}\n", step, us(h.percentile(50)) / n, us(h.percentile(99)) / n,
-                   us(h.max()) / n, us(h.percentile(50)), us(h.percentile(99)), us(h.max()));
+        fmt::print("{:<10} {:>11.1f} {:>11.1f} {:>12.1f}   {:>10.2f} {:>10.2f} {:>10.2f}\n", step, us(h.percentile(50)) / n,
+                   us(h.percentile(99)) / n, us(h.max()) / n, us(h.percentile(50)), us(h.percentile(99)), us(h.max()));
     };
     for (std::size_t i = 0; i < steps.size(); ++i) row(steps.name(i), steps.times(i));
     row("total", steps.total());

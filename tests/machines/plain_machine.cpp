@@ -31,10 +31,14 @@ std::shared_ptr<const ecat::DeviceDescription> servo_device() {
     d->name = d->device_name = "test servo";
     d->identity = {0x1234, 0x402, 1, 0};
     d->mailbox = ecat::MailboxDescription{};
-    d->sync_managers = {{ecat::SmUse::mailbox_out, 0x1000, 0x80, 0x26}, {ecat::SmUse::mailbox_in, 0x1080, 0x80, 0x22},
-                        {ecat::SmUse::outputs, 0x1100, 0, 0x64}, {ecat::SmUse::inputs, 0x1400, 0, 0x20}};
+    d->sync_managers = {{ecat::SmUse::mailbox_out, 0x1000, 0x80, 0x26},
+                        {ecat::SmUse::mailbox_in, 0x1080, 0x80, 0x22},
+                        {ecat::SmUse::outputs, 0x1100, 0, 0x64},
+                        {ecat::SmUse::inputs, 0x1400, 0, 0x20}};
     d->rx_pdos = {{0x1600, false, {{0x6040, 0, 16}, {0x6060, 0, 8}, {0x607A, 0, 32}}}};
-    d->tx_pdos = {{0x1A00, false, {{0x6041, 0, 16}, {0x6061, 0, 8}, {0x6064, 0, 32}, {0x606C, 0, 32}, {0x6077, 0, 16}, {0x603F, 0, 16}, {0x60FD, 0, 32}}}};
+    d->tx_pdos = {{0x1A00,
+                   false,
+                   {{0x6041, 0, 16}, {0x6061, 0, 8}, {0x6064, 0, 32}, {0x606C, 0, 32}, {0x6077, 0, 16}, {0x603F, 0, 16}, {0x60FD, 0, 32}}}};
     d->rx_assigned = {0x1600};
     d->tx_assigned = {0x1A00};
     d->dc = {true, true, true, 250us, 250us};

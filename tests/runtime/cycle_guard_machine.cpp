@@ -57,8 +57,13 @@ public:
 };
 
 MachineConfig config() {
-    static const ProgramEntry entry{program_magic, sizeof(ProgramEntry), abi_hash(), sdk_version, "shuttle",
-                                    []() -> Program* { return new Shuttle; }, [](Program* p) { delete p; }};
+    static const ProgramEntry entry{program_magic,
+                                    sizeof(ProgramEntry),
+                                    abi_hash(),
+                                    sdk_version,
+                                    "shuttle",
+                                    []() -> Program* { return new Shuttle; },
+                                    [](Program* p) { delete p; }};
     auto c = machine_config(3);
     c.axes[0].axis.homing.kind = axes::HomingKind::set_here;
     ProgramConfig program;

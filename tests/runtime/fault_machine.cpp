@@ -28,7 +28,8 @@ struct Fault : ::testing::Test {
 
     /// After the cause is gone: reset, enable, move. What a person does.
     void recover(bool home_again = false) {
-        EXPECT_TRUE(m().until([&] { return m().command(OperatorAction::reset).answer == Answer::accepted && reset_done(); }, 5s)) << m().alarms();
+        EXPECT_TRUE(m().until([&] { return m().command(OperatorAction::reset).answer == Answer::accepted && reset_done(); }, 5s))
+            << m().alarms();
         for (std::uint16_t i = 0; i < 2; ++i) m().enable(i);
         if (home_again)
             for (std::uint16_t i = 0; i < 2; ++i)
@@ -51,7 +52,8 @@ TEST_F(Fault, EmergencyStopRampsDownThenTakesPowerAwayAndNeedsAReset) {
     EXPECT_GT(m().axis(0).set_velocity, 0) << "it ramps, it does not stop dead";
     EXPECT_TRUE(m().has_alarm(id(MachineAlarm::emergency_stop)));
 
-    EXPECT_TRUE(m().until([&] { return m().axis(0).drive_state != axes::PowerState::enabled; }, 500ms)) << "power goes within power_off_after";
+    EXPECT_TRUE(m().until([&] { return m().axis(0).drive_state != axes::PowerState::enabled; }, 500ms))
+        << "power goes within power_off_after";
     EXPECT_TRUE(m().until([&] { return m().axis(1).drive_state != axes::PowerState::enabled; }, 100ms));
     EXPECT_EQ(m().command(OperatorAction::move_absolute, 0, false, 100, 50).answer, Answer::refused_by_axis);
 
@@ -98,7 +100,8 @@ TEST_F(Fault, ASilentSlaveStopsTheMachineAndComesBackAfterItsPower) {
     EXPECT_GT(m().state().alarm_count, 0u);
 
     m().world.set_slave_power("x_drive", true);
-    EXPECT_TRUE(m().until([&] { return m().axis(0).online && m().axis(1).online; }, 20s)) << m().machine->bus_progress() << " " << m().alarms();
+    EXPECT_TRUE(m().until([&] { return m().axis(0).online && m().axis(1).online; }, 20s))
+        << m().machine->bus_progress() << " " << m().alarms();
     recover(true);
     m().expect_no_jump();
 }
@@ -117,11 +120,13 @@ TEST_F(Fault, ThreeLostFramesMakeNoDifferenceButAreCounted) {
 TEST_F(Fault, ADeadLineStopsTheAxes) {
     start();
     m().world.set_cable("x_drive", false);
-    EXPECT_TRUE(m().until([&] { return m().axis(0).state == AxisState::ErrorStop && m().axis(1).state == AxisState::ErrorStop; }, 200ms)) << m().alarms();
+    EXPECT_TRUE(m().until([&] { return m().axis(0).state == AxisState::ErrorStop && m().axis(1).state == AxisState::ErrorStop; }, 200ms))
+        << m().alarms();
     EXPECT_TRUE(m().has_alarm(ecat::alarm::frames_lost) || m().has_alarm(ecat::alarm::slave_lost)) << m().alarms();
     m().run(500ms);
     m().world.set_cable("x_drive", true);
-    EXPECT_TRUE(m().until([&] { return m().axis(0).online && m().axis(1).online; }, 20s)) << m().machine->bus_progress() << " " << m().alarms();
+    EXPECT_TRUE(m().until([&] { return m().axis(0).online && m().axis(1).online; }, 20s))
+        << m().machine->bus_progress() << " " << m().alarms();
     recover(true);
     m().expect_no_jump();
 }

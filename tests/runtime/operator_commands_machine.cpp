@@ -60,7 +60,8 @@ TEST_F(Commands, AnAxisThatDoesNotExistOrIsDisabledIsUnknown) {
     }
     EXPECT_EQ(m().command(none).answer, Answer::unknown_name);
     EXPECT_EQ(m().command(static_cast<OperatorAction>(200), 0).answer, Answer::unknown_name);
-    for (const auto action : {home, jog, move_absolute}) EXPECT_EQ(m().command(action, 0xFFFF, true, 1, 1).answer, Answer::unknown_name) << "not for all";
+    for (const auto action : {home, jog, move_absolute})
+        EXPECT_EQ(m().command(action, 0xFFFF, true, 1, 1).answer, Answer::unknown_name) << "not for all";
 }
 
 TEST_F(Commands, AnExpiredCommandIsStaleAndDoesNothingButAStopIsNeverTooLate) {
@@ -102,10 +103,12 @@ TEST_F(Commands, PowerOffWhileMovingRampsDownFirst) {
     EXPECT_GT(m().axis(0).set_velocity, 100);
 
     double last_velocity = 0;
-    ASSERT_TRUE(m().until([&] {
-        if (m().axis(0).powered) last_velocity = m().axis(0).set_velocity;
-        return m().axis(0).state == AxisState::Disabled;
-    }, 3s));
+    ASSERT_TRUE(m().until(
+        [&] {
+            if (m().axis(0).powered) last_velocity = m().axis(0).set_velocity;
+            return m().axis(0).state == AxisState::Disabled;
+        },
+        3s));
     EXPECT_LT(last_velocity, 1.0) << "u/s when power went";
     m().run(1s);
     EXPECT_NE(m().axis(0).drive_state, axes::PowerState::enabled) << "the wish is taken back";

@@ -19,8 +19,8 @@ using namespace std::chrono_literals;
 
 /// Follows one axis through all cycles.
 struct AxisWatch {
-    double largest_step = 0;          ///< u between two set-points while the drive was enabled
-    double largest_velocity = 0;      ///< of the set-point, u/s
+    double largest_step = 0;      ///< u between two set-points while the drive was enabled
+    double largest_velocity = 0;  ///< of the set-point, u/s
     double previous = 0;
     bool was_enabled = false;
     bool homed = false;
@@ -139,7 +139,8 @@ private:
             auto& w = watch[i];
             // While the drive moves itself (homing) the set-point follows it and is not sent.
             // Homing in place gives the same place another name; the drive's own check below sees its counts.
-            const bool commanded = view.drive_state == axes::PowerState::enabled && view.state != axes::AxisState::Homing && view.homed == w.homed;
+            const bool commanded =
+                view.drive_state == axes::PowerState::enabled && view.state != axes::AxisState::Homing && view.homed == w.homed;
             w.homed = view.homed;
             if (commanded && w.was_enabled) w.largest_step = std::max(w.largest_step, std::abs(view.set_position - w.previous));
             w.largest_velocity = std::max(w.largest_velocity, std::abs(view.set_velocity));

@@ -10,8 +10,13 @@ namespace taktwerk::runtime::testing {
 /// A program made of one class, for tests.
 template <class Body>
 const ProgramEntry* entry_of() {
-    static const ProgramEntry entry{program_magic, sizeof(ProgramEntry), abi_hash(), sdk_version, "test",
-                                    []() -> Program* { return new Body; }, [](Program* p) { delete p; }};
+    static const ProgramEntry entry{program_magic,
+                                    sizeof(ProgramEntry),
+                                    abi_hash(),
+                                    sdk_version,
+                                    "test",
+                                    []() -> Program* { return new Body; },
+                                    [](Program* p) { delete p; }};
     return &entry;
 }
 

@@ -22,8 +22,12 @@ std::uint16_t of_axis(std::uint16_t base, std::uint8_t axis, const DriveProfile&
 
 Cia402Drive::Cia402Drive(ecat::Master& bus, std::size_t slave, std::uint8_t axis, std::shared_ptr<const DriveProfile> profile,
                          Duration cycle)
-    : bus_(bus), slave_(slave), axis_(axis), profile_(std::move(profile)),
-      interpolation_(profile_->csp_interpolates ? cycle : Duration{}), fault_quirk_(profile_->has(Quirk::fault_low_nibble_f)),
+    : bus_(bus),
+      slave_(slave),
+      axis_(axis),
+      profile_(std::move(profile)),
+      interpolation_(profile_->csp_interpolates ? cycle : Duration{}),
+      fault_quirk_(profile_->has(Quirk::fault_low_nibble_f)),
       alarm_(*profile_, profile_->alarm_detail_index ? of_axis(profile_->alarm_detail_index, axis, *profile_) : std::uint16_t{0}) {
     auto& c = capabilities_;
     for (const auto mode : profile_->modes) c.modes = static_cast<std::uint16_t>(c.modes | (1u << static_cast<unsigned>(mode)));
@@ -68,10 +72,11 @@ bool Cia402Drive::find_input(Signal& signal, std::uint16_t index, std::uint8_t s
 
 Result<void> Cia402Drive::resolve() {
     const auto missing = [&](std::uint16_t index, const char* what, const char* pdo, const char* list) {
-        return Error{"drive.not_mapped", fmt::format("slave '{}' axis {}", bus_.slave(slave_).name, axis_ + 1),
-                     fmt::format("object {:04X}h ({}) is not in its {}", object(index), what, pdo),
-                     fmt::format("map {:04X}h: choose a PDO that has it, or add it to a variable one under `pdo.{}` of the slave (docs/drives.md)",
-                                 object(index), list)};
+        return Error{
+            "drive.not_mapped", fmt::format("slave '{}' axis {}", bus_.slave(slave_).name, axis_ + 1),
+            fmt::format("object {:04X}h ({}) is not in its {}", object(index), what, pdo),
+            fmt::format("map {:04X}h: choose a PDO that has it, or add it to a variable one under `pdo.{}` of the slave (docs/drives.md)",
+                        object(index), list)};
     };
     const auto no_output = [&](std::uint16_t index, const char* what) { return missing(index, what, "RxPDO", "rx"); };
     const auto no_input = [&](std::uint16_t index, const char* what) { return missing(index, what, "TxPDO", "tx"); };

@@ -93,7 +93,7 @@ private:
     Instant mode_means_something_from_{};
 
     std::uint32_t reset_cycle_ = 0;
-    std::optional<Instant> homing_since_;       // bit 4 was set; attained bits of an earlier homing are ignored
+    std::optional<Instant> homing_since_;  // bit 4 was set; attained bits of an earlier homing are ignored
     bool homing_cleared_ = false;
     std::array<ProbeLatch, 2> probes_{};
     AlarmReader alarm_;

@@ -41,7 +41,8 @@ std::uint16_t Cia402Drive::control_word(const DriveCommand& command, bool mode_c
     switch (command.power) {
         case PowerRequest::off: return towards_off(feedback_.power);
         case PowerRequest::quick_stop:
-            return feedback_.power == PowerState::enabled || feedback_.power == PowerState::quick_stop ? quick_stop : towards_off(feedback_.power);
+            return feedback_.power == PowerState::enabled || feedback_.power == PowerState::quick_stop ? quick_stop
+                                                                                                       : towards_off(feedback_.power);
         case PowerRequest::on: break;
     }
     const auto needed = profile_->enable_status_bits;
@@ -114,7 +115,8 @@ void Cia402Drive::write_limits(std::span<std::byte> image, const DriveCommand& c
     out_.torque_negative.write(image, negative);
     out_.torque_max.write(image, std::min(positive, negative));
     // The rest stays as the start-up list or the last command left it while nothing is asked for: zero would mean "never move".
-    if (std::isfinite(command.velocity_limit)) out_.velocity_limit.write(image, command.velocity_limit * profile_->velocity_counts_per_unit);
+    if (std::isfinite(command.velocity_limit))
+        out_.velocity_limit.write(image, command.velocity_limit * profile_->velocity_counts_per_unit);
     if (command.acceleration > 0) out_.profile_acceleration.write(image, command.acceleration);
     if (command.deceleration > 0) out_.profile_deceleration.write(image, command.deceleration);
     if (command.torque_slope > 0) out_.torque_slope.write(image, command.torque_slope * profile_->torque_rated_raw);

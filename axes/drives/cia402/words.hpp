@@ -11,11 +11,11 @@ namespace taktwerk::axes::cia402 {
 // Control word commands (the bits that matter; see each manual's table of commands).
 inline constexpr std::uint16_t disable_voltage = 0x0000;
 inline constexpr std::uint16_t shutdown = 0x0006;
-inline constexpr std::uint16_t switch_on = 0x0007;          ///< also Disable Operation
+inline constexpr std::uint16_t switch_on = 0x0007;  ///< also Disable Operation
 inline constexpr std::uint16_t enable_operation = 0x000F;
 inline constexpr std::uint16_t quick_stop = 0x0002;
 inline constexpr std::uint16_t fault_reset = 0x0080;
-inline constexpr std::uint16_t homing_start = 0x0010;       ///< bit 4 in homing mode
+inline constexpr std::uint16_t homing_start = 0x0010;  ///< bit 4 in homing mode
 inline constexpr std::uint16_t halt = 0x0100;
 
 // Status word bits that every manual gives the same meaning.
@@ -24,7 +24,7 @@ inline constexpr std::uint16_t bit_voltage = 1u << 4;
 inline constexpr std::uint16_t bit_warning = 1u << 7;
 inline constexpr std::uint16_t bit_target_reached = 1u << 10;
 inline constexpr std::uint16_t bit_internal_limit = 1u << 11;
-inline constexpr std::uint16_t bit_follows_target = 1u << 12;   ///< cyclic modes; SE-808X and SV-DA200 leave it open
+inline constexpr std::uint16_t bit_follows_target = 1u << 12;  ///< cyclic modes; SE-808X and SV-DA200 leave it open
 inline constexpr std::uint16_t bit_homing_attained = 1u << 12;
 inline constexpr std::uint16_t bit_homing_error = 1u << 13;
 

@@ -109,33 +109,32 @@ TEST_P(Homing, StopsWhenTheStartBitIsTakenBack) {
     EXPECT_FALSE(b.out.status & (1u << 12)) << "an aborted homing has found nothing";
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Methods17To22, Homing,
-    ::testing::Values(
-        // 17: back to the negative limit switch, forward until it is left.
-        HomingCase{17, -20000, false, Ends::negative_edge}, HomingCase{17, 2500, false, Ends::negative_edge},
-        HomingCase{17, 20000, false, Ends::negative_edge}, HomingCase{17, -50500, true, Ends::negative_edge},
-        HomingCase{17, 50500, false, Ends::negative_edge},
-        // 18: its mirror.
-        HomingCase{18, -20000, true, Ends::positive_edge}, HomingCase{18, 2500, true, Ends::positive_edge},
-        HomingCase{18, 20000, true, Ends::positive_edge}, HomingCase{18, -50500, true, Ends::positive_edge},
-        HomingCase{18, 50500, false, Ends::positive_edge},
-        // 19: forward onto the home switch, back until it is left: its lower edge.
-        HomingCase{19, -20000, true, Ends::home_low}, HomingCase{19, 2500, false, Ends::home_low},
-        HomingCase{19, 20000, true, Ends::error}, HomingCase{19, -50500, true, Ends::home_low},
-        HomingCase{19, 50500, true, Ends::error},
-        // 20: forward until the home switch comes on: its lower edge.
-        HomingCase{20, -20000, true, Ends::home_low}, HomingCase{20, 2500, false, Ends::home_low},
-        HomingCase{20, 20000, true, Ends::error}, HomingCase{20, -50500, true, Ends::home_low},
-        HomingCase{20, 50500, true, Ends::error},
-        // 21: back onto the home switch, forward until it is left: its upper edge.
-        HomingCase{21, -20000, false, Ends::error}, HomingCase{21, 2500, true, Ends::home_high},
-        HomingCase{21, 20000, false, Ends::home_high}, HomingCase{21, -50500, false, Ends::error},
-        HomingCase{21, 50500, false, Ends::home_high},
-        // 22: back until the home switch comes on: its upper edge.
-        HomingCase{22, -20000, false, Ends::error}, HomingCase{22, 2500, true, Ends::home_high},
-        HomingCase{22, 20000, false, Ends::home_high}, HomingCase{22, -50500, false, Ends::error},
-        HomingCase{22, 50500, false, Ends::home_high}));
+INSTANTIATE_TEST_SUITE_P(Methods17To22, Homing,
+                         ::testing::Values(
+                             // 17: back to the negative limit switch, forward until it is left.
+                             HomingCase{17, -20000, false, Ends::negative_edge}, HomingCase{17, 2500, false, Ends::negative_edge},
+                             HomingCase{17, 20000, false, Ends::negative_edge}, HomingCase{17, -50500, true, Ends::negative_edge},
+                             HomingCase{17, 50500, false, Ends::negative_edge},
+                             // 18: its mirror.
+                             HomingCase{18, -20000, true, Ends::positive_edge}, HomingCase{18, 2500, true, Ends::positive_edge},
+                             HomingCase{18, 20000, true, Ends::positive_edge}, HomingCase{18, -50500, true, Ends::positive_edge},
+                             HomingCase{18, 50500, false, Ends::positive_edge},
+                             // 19: forward onto the home switch, back until it is left: its lower edge.
+                             HomingCase{19, -20000, true, Ends::home_low}, HomingCase{19, 2500, false, Ends::home_low},
+                             HomingCase{19, 20000, true, Ends::error}, HomingCase{19, -50500, true, Ends::home_low},
+                             HomingCase{19, 50500, true, Ends::error},
+                             // 20: forward until the home switch comes on: its lower edge.
+                             HomingCase{20, -20000, true, Ends::home_low}, HomingCase{20, 2500, false, Ends::home_low},
+                             HomingCase{20, 20000, true, Ends::error}, HomingCase{20, -50500, true, Ends::home_low},
+                             HomingCase{20, 50500, true, Ends::error},
+                             // 21: back onto the home switch, forward until it is left: its upper edge.
+                             HomingCase{21, -20000, false, Ends::error}, HomingCase{21, 2500, true, Ends::home_high},
+                             HomingCase{21, 20000, false, Ends::home_high}, HomingCase{21, -50500, false, Ends::error},
+                             HomingCase{21, 50500, false, Ends::home_high},
+                             // 22: back until the home switch comes on: its upper edge.
+                             HomingCase{22, -20000, false, Ends::error}, HomingCase{22, 2500, true, Ends::home_high},
+                             HomingCase{22, 20000, false, Ends::home_high}, HomingCase{22, -50500, false, Ends::error},
+                             HomingCase{22, 50500, false, Ends::home_high}));
 
 // SV33-E A.D35: "non-existent"; 35 and those with the index pulse are not simulated yet.
 TEST(HomingRun, AnUnknownMethodIsAHomingError) {

@@ -176,8 +176,9 @@ TEST(Failures, EachShowsTheDrivesOwnCodeAndItsOwnResetRule) {
         bool resettable;
     };
     // SV33-E 5.2: E.416, E.423, E.414, E.419, E.911 (needs a power cycle), E.D26.
-    for (const auto& c : {Case{Failure::overspeed, 0x8400, true}, Case{Failure::following_error, 0x8611, true}, Case{Failure::undervoltage, 0x3220, true},
-                          Case{Failure::overload, 0x3230, true}, Case{Failure::encoder, 0x7305, false}, Case{Failure::communication, 0x0D26, true}}) {
+    for (const auto& c :
+         {Case{Failure::overspeed, 0x8400, true}, Case{Failure::following_error, 0x8611, true}, Case{Failure::undervoltage, 0x3220, true},
+          Case{Failure::overload, 0x3230, true}, Case{Failure::encoder, 0x7305, false}, Case{Failure::communication, 0x0D26, true}}) {
         Personality p;
         p.communication_alarm = {0x0D26};
         Bench b{long_table(), p};

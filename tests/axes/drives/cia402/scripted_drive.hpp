@@ -80,8 +80,10 @@ public:
         d->name = "puppet";
         d->identity = {1, 2, 3, 0};
         d->mailbox = ecat::MailboxDescription{};
-        d->sync_managers = {{ecat::SmUse::mailbox_out, 0x1000, 0x80, 0x26}, {ecat::SmUse::mailbox_in, 0x1080, 0x80, 0x22},
-                            {ecat::SmUse::outputs, 0x1100, 0, 0x64}, {ecat::SmUse::inputs, 0x1400, 0, 0x20}};
+        d->sync_managers = {{ecat::SmUse::mailbox_out, 0x1000, 0x80, 0x26},
+                            {ecat::SmUse::mailbox_in, 0x1080, 0x80, 0x22},
+                            {ecat::SmUse::outputs, 0x1100, 0, 0x64},
+                            {ecat::SmUse::inputs, 0x1400, 0, 0x20}};
         d->rx_rules.max_entries = d->tx_rules.max_entries = 20;
         d->rx_pdos = {{0x1600, false, {}}};
         d->tx_pdos = {{0x1A00, false, {}}};
@@ -113,7 +115,8 @@ public:
         master = std::make_unique<ecat::Master>(transport, config);
         master->start();
         const auto phase = [&] { return master->phase(); };
-        for (int i = 0; i < 20'000 && phase() != ecat::Master::Phase::operational && phase() != ecat::Master::Phase::failed; ++i) exchange();
+        for (int i = 0; i < 20'000 && phase() != ecat::Master::Phase::operational && phase() != ecat::Master::Phase::failed; ++i)
+            exchange();
         if (phase() != ecat::Master::Phase::operational) {
             refusal = master->failure();
             return false;
