@@ -72,16 +72,20 @@ struct Machine::Impl {
 
     // machine.cpp
     void cycle(const CycleTick& tick) noexcept;
+    Result<void> arm();
+
+    // machine_tasks.cpp
     void run_tasks() noexcept;
     void run_base_task(std::size_t index) noexcept;
     void run_slow_releases() noexcept;
     void program_failed(std::size_t program, const FaultText& why) noexcept;
     void take_handshakes() noexcept;
+
+    // machine_snapshot.cpp
     void take_variables() noexcept;
     void take_snapshot() noexcept;
     void take_trace() noexcept;
     std::vector<std::string> trace_columns() const;
-    Result<void> arm();
 
     // machine_commands.cpp
     void drain_inbox(Instant now) noexcept;
