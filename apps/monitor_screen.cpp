@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 using Lines = std::vector<std::string>;
 
 namespace colour {
-constexpr const char *plain = "0", *bold = "1", *dim = "2", *bar = "7", *red = "1;31", *alert = "1;97;41", *green = "32", *yellow = "33",
+constexpr const char *bold = "1", *dim = "2", *bar = "7", *red = "1;31", *alert = "1;97;41", *green = "32", *yellow = "33",
                      *simulated = "30;43";
 }
 
