@@ -5,7 +5,7 @@
 //   cyclic side    receive(now) / send(now): process data, then at most K acyclic datagrams. Real-time safe.
 //   before cycles  pump(now): moves acyclic datagrams only; for whoever has no cycle running yet.
 //
-// In virtual time the same three are called in a fixed order from one thread. Source: reference/ETG.1000, DESIGN 7.
+// In virtual time the same three are called in a fixed order from one thread. Source: ETG.1000, docs/architecture.md.
 //
 // Time. The bus' system time (DC) starts as machine time; the reference clock, the first slave with DC, then runs by itself.
 // Each cycle's FRMW answer tells how far the two are apart (BusStatistics::dc_offset_ns, dc_drift_ppb); SYNC0 instants and latch

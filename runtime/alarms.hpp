@@ -1,5 +1,5 @@
 #pragma once
-// What the machine itself announces. One table decides reactions (DESIGN: alarms); axes, bus and programs have their own.
+// What the machine itself announces. One table decides reactions (docs/architecture.md); axes, bus and programs have their own.
 
 #include <array>
 

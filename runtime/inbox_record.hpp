@@ -1,5 +1,5 @@
 #pragma once
-// What comes from outside, as bytes of a Recorder: the one recorded inbox (DESIGN 2). Records stand in the order in which the
+// What comes from outside, as bytes of a Recorder: the one recorded inbox (docs/architecture.md). Records stand in the order in which the
 // cycle took them: a tick, the frames received in it, the commands drained in it. Little-endian, written by the cycle thread.
 //
 //   tick     i64 scheduled ns, i64 woken ns, u32 missed                                        20 bytes

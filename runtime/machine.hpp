@@ -1,5 +1,5 @@
 #pragma once
-// One machine and its cycle (DESIGN 3). Built from plain structs; knows no YAML and no LCM.
+// One machine and its cycle (docs/architecture.md). Built from plain structs; knows no YAML and no LCM.
 //
 //   build -> bring_up() until up -> arm() -> cycle(...) each period; service(now) beside it, from another thread or between
 //   cycles. In virtual time one thread calls them in a fixed order (runtime/runner.hpp).

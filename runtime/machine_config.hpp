@@ -16,7 +16,7 @@
 
 namespace taktwerk::runtime {
 
-/// When the outputs of a cycle leave (DESIGN 3).
+/// When the outputs of a cycle leave (docs/architecture.md).
 enum class SendMode : std::uint8_t {
     after_plan,  ///< as soon as they are computed
     at_tick,     ///< at the start of the next cycle: constant send time, one cycle more dead time

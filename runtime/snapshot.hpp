@@ -28,7 +28,7 @@ struct ActiveAlarm {
     Reaction reaction = Reaction::none;
 };
 
-/// Steps of DESIGN 3, for statistics.
+/// Steps of a cycle (docs/architecture.md), for statistics.
 enum class Step : std::uint8_t { receive, inbox, decode, update, supervise, tasks, plan, encode, send, snapshot, total };
 inline constexpr std::size_t step_count = 11;
 [[nodiscard]] std::string_view name(Step step) noexcept;

@@ -1,4 +1,4 @@
-// A task at a divisor: inputs latched at release, outputs applied at the next one, whenever it finishes (DESIGN 3).
+// A task at a divisor: inputs latched at release, outputs applied at the next one, whenever it finishes (docs/architecture.md).
 
 #include "runtime/slow_task.hpp"
 
