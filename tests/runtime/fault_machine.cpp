@@ -106,7 +106,7 @@ TEST_F(Fault, ASilentSlaveStopsTheMachineAndComesBackAfterItsPower) {
     m().expect_no_jump();
 }
 
-TEST_F(Fault, ThreeLostFramesMakeNoDifferenceButAreCounted) {
+TEST_F(Fault, TwoLostFramesMakeNoDifferenceButAreCounted) {
     start();
     const auto lost = m().state().bus.frames_lost;
     m().world.transport().faults.drop_answers = 2;
