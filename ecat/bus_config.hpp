@@ -33,24 +33,60 @@ struct PdoSelection {
     std::vector<PdoDescription> assigned;  ///< written to 16xxh/1Axxh (unless fixed) and 1C12h/1C13h
 };
 
+/// How exactly the revision of SII word Ch has to be the description's.
+enum class RevisionRule : std::uint8_t { any, at_least, exact };
+
+/// What the loss of a slave means to the machine.
+enum class LossPolicy : std::uint8_t {
+    stop_machine,   ///< every axis stops
+    stop_own_axes,  ///< only what is on this slave stops; the others run on
+};
+
+/// The AL state in which SYNC0/SYNC1 are started. Most drives want them before SAFEOP; some refuse them there.
+enum class SyncStart : std::uint8_t { before_safeop, in_safeop };
+
+/// The module plugged into (or chosen for) a slot of a modular slave.
+struct ModuleSelection {
+    std::uint8_t slot = 0;  ///< 0-based
+    std::string module;     ///< name of a ModuleDescription of the device
+};
+
 struct SlaveConfig {
     std::string name;
     std::shared_ptr<const DeviceDescription> device;
-    std::optional<std::uint16_t> position;  ///< 0-based on the cable; exactly one of position and alias
-    std::optional<std::uint16_t> alias;
+    std::optional<std::uint16_t> position;   ///< 0-based on the cable; exactly one of position, alias and device_id
+    std::optional<std::uint16_t> alias;      ///< station alias of SII word 4
+    std::optional<std::uint16_t> device_id;  ///< explicit device identification (AL control bit 5)
+    std::optional<RevisionRule> revision;    ///< instead of the description's rule
+    LossPolicy on_loss = LossPolicy::stop_machine;
     PdoSelection rx, tx;
+    std::vector<ModuleSelection> modules;
     std::vector<StartupSdo> startup;
-    bool dc = false;         ///< run SYNC0 on it
-    Duration sync0_shift{};  ///< SYNC0 after the start of the bus cycle; 0 = the master's default
-    Duration sm_watchdog{};  ///< 0 = three cycles, at least 10 ms
-    std::string sync_unit;   ///< slaves of the same name share one datagram and working counter; empty: its own
+    bool dc = false;                ///< run SYNC0 on it
+    Duration sync0_shift{};         ///< SYNC0 after the start of the bus cycle; 0 = the master's default
+    std::optional<Duration> sync1;  ///< run SYNC1, this long after SYNC0 (0 .. below the cycle)
+    SyncStart sync_start = SyncStart::before_safeop;
+    Duration sm_watchdog{};   ///< 0 = three cycles of its sync unit, at least 10 ms
+    Duration pdi_watchdog{};  ///< 0 = as the controller has it after power-on
+    std::string sync_unit;    ///< slaves of the same name share one datagram and working counter; empty: its own
 };
+
+/// A group of slaves that is exchanged together. Named by SlaveConfig::sync_unit; those that are not listed have divisor 1.
+struct SyncUnitConfig {
+    std::string name;
+    std::uint16_t divisor = 1;  ///< exchanged every so many bus cycles
+};
+
+/// What to do about a slave on the cable that the configuration does not name.
+enum class ExtraSlaves : std::uint8_t { refuse, ignore };
 
 struct BusConfig {
     std::string interface;  ///< NIC; empty: simulated
     Duration cycle = std::chrono::milliseconds{1};
-    Duration sync0_shift{};               ///< default shift; 0 = half a cycle
-    std::vector<SlaveConfig> slaves;      ///< in any order
+    Duration sync0_shift{};           ///< default shift; 0 = half a cycle
+    std::vector<SlaveConfig> slaves;  ///< in any order
+    std::vector<SyncUnitConfig> sync_units;
+    ExtraSlaves extra_slaves = ExtraSlaves::refuse;
     std::uint16_t lost_frames_limit = 3;  ///< consecutive unanswered cycles until the bus alarm
     std::uint8_t acyclic_per_cycle = 4;   ///< datagrams per cycle for SDO, recovery, diagnosis
 };

@@ -60,9 +60,10 @@ struct PdoEntry {
 };
 
 struct PdoDescription {
-    std::uint16_t index = 0;        ///< 16xxh/17xxh Rx, 1Axxh/1Bxxh Tx
-    bool fixed = false;             ///< its entries cannot be changed
-    std::vector<PdoEntry> entries;  ///< default mapping
+    std::uint16_t index = 0;                     ///< 16xxh/17xxh Rx, 1Axxh/1Bxxh Tx
+    bool fixed = false;                          ///< its entries cannot be changed
+    std::vector<PdoEntry> entries;               ///< default mapping
+    std::optional<std::uint8_t> sync_manager{};  ///< the one it is assigned to; none: the first of its direction
 };
 
 enum class SmUse : std::uint8_t { mailbox_out, mailbox_in, outputs, inputs };
@@ -96,6 +97,21 @@ struct PdoRules {
     std::uint16_t max_bytes = 1486;
 };
 
+/// One valid content of a slot (ETG.5001). Its PDOs are those of slot 0; each further slot adds SlotDescription's increments.
+struct ModuleDescription {
+    std::string name;         ///< how a configuration chooses it
+    std::uint32_t ident = 0;  ///< written to F030h, found in F050h
+    std::vector<PdoDescription> rx_pdos, tx_pdos;
+};
+
+/// The slots of a modular slave.
+struct SlotDescription {
+    std::uint8_t count = 0;             ///< 0: not modular
+    std::uint16_t index_increment = 0;  ///< 800h: object 6040h of slot 2 is 7040h
+    std::uint16_t pdo_increment = 0;    ///< 40h: 1600h of slot 2 is 1680h
+    std::vector<ModuleDescription> modules;
+};
+
 struct DeviceDescription {
     std::string name;                     ///< "sv33-e"
     std::string device_name;              ///< 1008h
@@ -109,6 +125,7 @@ struct DeviceDescription {
     PdoRules rx_rules, tx_rules;
     std::vector<ObjectEntry> objects;  ///< without 1018h, 16xxh.., 1C00h..: those follow from the fields above
     DcDescription dc;
+    SlotDescription slots;
     std::uint8_t fmmus = 8, sync_manager_count = 8;
     std::uint16_t process_ram = 0x1000;  ///< bytes from 1000h
 };

@@ -17,7 +17,9 @@
 #include "ecat/bus_config.hpp"
 #include "ecat/coe/sdo_client.hpp"
 #include "ecat/script/datagram_port.hpp"
+#include "ecat/topology/topology.hpp"
 #include "ecat/wire/al_status.hpp"
+#include "ecat/wire/sii.hpp"
 
 namespace taktwerk::ecat {
 
@@ -49,6 +51,8 @@ struct FoundSlave {
     std::uint16_t features = 0, dl_status = 0;
     std::uint8_t fmmus = 0, sync_managers = 0;
     std::array<std::uint16_t, 4> mailbox{};  ///< SII: out start, out size, in start, in size
+    Sii sii;                                 ///< everything its EEPROM says
+    std::optional<std::uint16_t> device_id;  ///< read only where a configuration addresses by it
     std::optional<Error> error;              ///< could not be read
 };
 
@@ -83,6 +87,8 @@ struct Bus {
     DatagramPort port;
     CycleLink link;
     std::vector<std::unique_ptr<BusSlave>> slaves;  ///< configuration order
+    std::vector<FoundSlave> found;                  ///< all on the cable, by position; also those that nobody configured
+    Topology topology;                              ///< of `found`
     ProcessDataPlan plan;
     std::optional<std::size_t> reference;  ///< the slave whose clock is the bus' clock
     std::optional<std::int64_t> dc_phase;  ///< system time of a cycle start, modulo the cycle; fixed at the first SYNC0
