@@ -8,6 +8,7 @@
 
 #include "ecat/alarms.hpp"
 #include "ecat/bringup/bring_up.hpp"
+#include "ecat/bringup/watch.hpp"
 #include "ecat/process_data_cycle.hpp"
 
 namespace taktwerk::ecat {

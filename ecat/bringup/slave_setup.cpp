@@ -290,6 +290,12 @@ Script<Result<void>> assign_pdos(Bus& bus, BusSlave& slave) {
 Script<Result<void>> write_startup_safeop(Bus& bus, BusSlave& slave) { return write_startup(bus, slave, Transition::PreopToSafeop); }
 Script<Result<void>> write_startup_op(Bus& bus, BusSlave& slave) { return write_startup(bus, slave, Transition::SafeopToOp); }
 
+Script<Result<void>> prepare_process_data(Bus& bus, BusSlave& slave) {
+    const Result<void> written = co_await write_startup_safeop(bus, slave);
+    if (!written) co_return written;
+    co_return co_await assign_pdos(bus, slave);
+}
+
 Duration sm_watchdog(const BusConfig& bus, const SlaveConfig& slave) noexcept {
     if (slave.sm_watchdog > Duration{}) return slave.sm_watchdog;
     return std::max(3 * bus.cycle, minimum_watchdog);

@@ -18,6 +18,9 @@ namespace taktwerk::ecat {
 [[nodiscard]] Script<Result<void>> write_startup_safeop(Bus& bus, BusSlave& slave);
 [[nodiscard]] Script<Result<void>> write_startup_op(Bus& bus, BusSlave& slave);
 
+/// The two above that come before the plan: start-up SDOs of PREOP -> SAFEOP, then the PDOs.
+[[nodiscard]] Script<Result<void>> prepare_process_data(Bus& bus, BusSlave& slave);
+
 /// Sync managers, FMMUs and the SM watchdog from bus.plan.
 [[nodiscard]] Script<Result<void>> program_process_data(Bus& bus, BusSlave& slave);
 
