@@ -1,7 +1,6 @@
 #include "ecat/process_data_cycle.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 
 #include "core/bytes.hpp"
 #include "ecat/dc/propagation.hpp"
@@ -10,10 +9,6 @@ namespace taktwerk::ecat {
 
 namespace {
 
-/// A reference time further than this from what it should be is not believed, unless it stays there.
-constexpr std::int64_t clock_outlier_ns = 100'000;
-constexpr std::uint32_t clock_outliers_until_new_start = 20;
-constexpr std::int64_t clock_smoothing = 16;
 constexpr std::int64_t phase_smoothing = 16;
 constexpr std::size_t bringup_datagrams = AcyclicChannel::max_datagrams_a_frame;  // nobody to disturb before OP
 
@@ -57,6 +52,7 @@ void ProcessDataCycle::copy_statistics() noexcept {
     statistics_.frames_late = s.late;
     statistics_.frames_rejected = s.rejected + s.duplicate;
     statistics_.send_errors = s.send_errors;
+    statistics_.dc_rejected = clock_.rejected();
     if (const auto* link = link_.load(std::memory_order_acquire))
         statistics_.dc_difference_ns = link->dc_difference_ns.load(std::memory_order_relaxed);
 }
@@ -95,7 +91,7 @@ void ProcessDataCycle::collect_frames(CyclePlan& cycle, Instant) noexcept {
         } else {
             any_lost_ = true;
             all_good_ = false;
-            if (f == 0 && cycle.reference) ++statistics_.dc_rejected;
+            if (f == 0 && cycle.reference) clock_.miss();
         }
         for (std::size_t d = cycle.first_datagram[f]; d < cycle.first_datagram[f + 1]; ++d) {
             if (answered) take_datagram(cycle, d, slot, number++);
@@ -156,45 +152,27 @@ void ProcessDataCycle::take_datagram(CyclePlan& cycle, std::size_t d, SlotId slo
         health.age = 0;
         health.latched = sent;
         const std::int64_t start = cycle.slaves[s]->sync0_start.load(std::memory_order_relaxed);
-        if (start != 0 && dc_offset_) {
-            const std::int64_t system = nanoseconds(sent) + *dc_offset_;
-            if (system >= start) health.latched = Instant{Duration{last_sync0(system, start, config_.cycle.count()) - *dc_offset_}};
+        if (const auto offset = clock_.offset(); start != 0 && offset) {
+            const std::int64_t system = nanoseconds(sent) + *offset;
+            if (system >= start) health.latched = Instant{Duration{last_sync0(system, start, config_.cycle.count()) - *offset}};
         }
     }
 }
 
-/// Only a time that the reference itself put in counts (exact working counter), and only near where it should be: a slave
-/// without its station address leaves the master's own time in the datagram.
+/// Only a time that the reference itself put in counts (exact working counter): a slave without its station address leaves the
+/// master's own time in the datagram.
 void ProcessDataCycle::take_clock(const CyclePlan& cycle, SlotId slot) noexcept {
     const auto data = exchange_.data(slot, 0);
     if (data.size() != 8 || exchange_.wkc(slot, 0) != cycle.clock_wkc) {
-        ++statistics_.dc_rejected;
+        clock_.miss();
         return;
     }
-    const Instant sent = exchange_.sent_at(slot);
-    const std::int64_t offset = load_le<std::int64_t>(data) - nanoseconds(sent);
-    const std::int64_t step = dc_offset_ ? offset - *dc_offset_ : 0;
-    if (std::abs(step) > clock_outlier_ns && ++dc_outliers_ < clock_outliers_until_new_start) {
-        ++statistics_.dc_rejected;
-        return;
-    }
-    if (!dc_offset_ || dc_outliers_ >= clock_outliers_until_new_start) {
-        dc_offset_ = offset;
-        drift_reference_offset_ = offset;
-        drift_reference_at_ = sent;
-    } else {
-        *dc_offset_ += step / clock_smoothing;
-    }
-    dc_outliers_ = 0;
-    statistics_.dc_offset_ns = *dc_offset_;
-    if (sent - drift_reference_at_ >= std::chrono::seconds{1}) {
-        statistics_.dc_drift_ppb = (*dc_offset_ - drift_reference_offset_) * 1'000'000'000 / (sent - drift_reference_at_).count();
-        drift_reference_offset_ = *dc_offset_;
-        drift_reference_at_ = sent;
-    }
+    if (!clock_.take(exchange_.sent_at(slot), load_le<std::int64_t>(data))) return;
+    statistics_.dc_offset_ns = *clock_.offset();
+    statistics_.dc_drift_ppb = clock_.drift_ppb();
     if (auto* link = link_.load(std::memory_order_acquire)) {
-        link->dc_offset_ns.store(*dc_offset_, std::memory_order_relaxed);
-        link->dc_samples.store(link->dc_samples.load(std::memory_order_relaxed) + 1, std::memory_order_release);
+        link->dc_offset_ns.store(*clock_.offset(), std::memory_order_relaxed);
+        link->dc_samples.store(clock_.samples(), std::memory_order_release);
     }
 }
 
@@ -232,7 +210,7 @@ void ProcessDataCycle::send_frame(CyclePlan& cycle, std::size_t frame, Instant n
         const auto clock =
             exchange_.add(*slot, hold ? Command::FPRD : Command::FRMW, Address::physical(*cycle.reference, reg::dc_system_time), 8);
         // Should the reference be away, the others get the master's idea of its time instead of 0.
-        if (clock) store_le(clock->data, 0, nanoseconds(now) + dc_offset_.value_or(0));
+        if (clock) store_le(clock->data, 0, nanoseconds(now) + clock_.offset().value_or(0));
     }
     for (std::size_t d = cycle.first_datagram[frame]; d < cycle.first_datagram[frame + 1]; ++d) {
         const auto& datagram = cycle.plan.datagrams[d];
@@ -260,11 +238,11 @@ const SlaveHealth& ProcessDataCycle::health(std::size_t slave) const noexcept {
 
 Instant ProcessDataCycle::outputs_effective(std::size_t slave, Instant send_time) const noexcept {
     const auto* cycle = latest_.load(std::memory_order_acquire);
-    if (cycle == nullptr || slave >= cycle->slaves.size() || !dc_offset_) return send_time;
+    if (cycle == nullptr || slave >= cycle->slaves.size() || !clock_.offset()) return send_time;
     const std::int64_t start = cycle->slaves[slave]->sync0_start.load(std::memory_order_relaxed);
     if (start == 0) return send_time;
-    const std::int64_t arrival = nanoseconds(send_time) + statistics_.round_trip.count() / 2 + *dc_offset_;
-    return Instant{Duration{next_sync0(arrival + 1, start, config_.cycle.count()) - *dc_offset_}};
+    const std::int64_t arrival = nanoseconds(send_time) + statistics_.round_trip.count() / 2 + *clock_.offset();
+    return Instant{Duration{next_sync0(arrival + 1, start, config_.cycle.count()) - *clock_.offset()}};
 }
 
 }  // namespace taktwerk::ecat

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "ecat/bringup/bus.hpp"
+#include "ecat/dc/reference_clock.hpp"
 #include "ecat/exchange/acyclic_channel.hpp"
 #include "ecat/exchange/exchange.hpp"
 #include "ecat/master.hpp"
@@ -81,10 +82,7 @@ private:
     // Of the cycle.
     bool all_good_ = true;
     bool any_lost_ = false;
-    std::optional<std::int64_t> dc_offset_;
-    std::uint32_t dc_outliers_ = 0;
-    std::int64_t drift_reference_offset_ = 0;
-    Instant drift_reference_at_{};
+    ReferenceClock clock_;
     std::optional<std::int64_t> phase_;
 };
 
