@@ -30,12 +30,41 @@ std::vector<BusSlave*> slaves_with_clock(Bus& bus) {
     return result;
 }
 
-Script<Result<LatchedTimes>> read_latched(Bus& bus, BusSlave& slave) {
-    const Reply ports = co_await bus.port.fprd(slave.found.station, reg::dc_receive_times, 16);
-    if (!ports.ok()) co_return unanswered(slave.subject, "its receive times (0900h)", ports);
-    const Reply unit = co_await bus.port.fprd(slave.found.station, reg::dc_receive_time_unit, 8);
-    if (!unit.ok()) co_return unanswered(slave.subject, "its receive time (0918h)", unit);
-    co_return LatchedTimes{ports.u32(0), ports.u32(4), dl_port_open(slave.found.dl_status, 1), unit.u64()};
+Script<Result<LatchedTimes>> read_latched(Bus& bus, std::uint16_t station, std::string subject) {
+    const Reply ports = co_await bus.port.fprd(station, reg::dc_receive_times, 16);
+    if (!ports.ok()) co_return unanswered(subject, "its receive times (0900h)", ports);
+    const Reply unit = co_await bus.port.fprd(station, reg::dc_receive_time_unit, 8);
+    if (!unit.ok()) co_return unanswered(subject, "its receive time (0918h)", unit);
+    co_return LatchedTimes{true, {ports.u32(0), ports.u32(4), ports.u32(8), ports.u32(12)}, unit.u64()};
+}
+
+/// Of every slave on the cable, also of those that nobody configured: their clocks measure their branches.
+Script<Result<std::vector<LatchedTimes>>> read_all_latched(Bus& bus) {
+    std::vector<LatchedTimes> times(bus.found.size());
+    for (std::size_t p = 0; p < bus.found.size(); ++p) {
+        if ((bus.found[p].features & feature::dc) == 0) continue;
+        const auto configured = std::find_if(bus.slaves.begin(), bus.slaves.end(), [&](const auto& s) { return s->found.position == p; });
+        const bool known = configured != bus.slaves.end();
+        const std::string subject = known ? (*configured)->subject : fmt::format("slave {}", p);
+        const Result<LatchedTimes> latched = co_await read_latched(bus, bus.found[p].station, subject);
+        if (latched) times[p] = *latched;
+        else if (known) co_return latched.error();
+    }
+    co_return times;
+}
+
+/// The tree as the scan found it.
+Result<void> learn_topology(Bus& bus) {
+    if (bus.topology.slaves.size() == bus.found.size() && !bus.found.empty()) return {};
+    bus.found.clear();
+    for (const auto& slave : bus.slaves) bus.found.push_back(slave->found);
+    std::sort(bus.found.begin(), bus.found.end(), [](const auto& a, const auto& b) { return a.position < b.position; });
+    std::vector<std::uint16_t> dl_status;
+    for (const auto& slave : bus.found) dl_status.push_back(slave.dl_status);
+    Result<Topology> tree = build_topology(dl_status);
+    if (!tree) return tree.error();
+    bus.topology = std::move(*tree);
+    return {};
 }
 
 Script<Result<void>> write_clock(Bus& bus, BusSlave& slave) {
@@ -63,20 +92,22 @@ Script<Result<void>> setup_clocks(Bus& bus) {
     bus.progress = fmt::format("measuring the clocks of {} slaves", clocks.size());
     bus.reference = clocks.front()->index;
 
+    if (const Result<void> known = learn_topology(bus); !known) co_return known.error();
     const Reply latch = co_await bus.port.bwr(reg::dc_receive_times, std::uint32_t{0});
     if (latch.lost) co_return unanswered("bus", "the latch of the receive times (0900h)", latch);
-    std::vector<LatchedTimes> times;
+    const Result<std::vector<LatchedTimes>> times = co_await read_all_latched(bus);
+    if (!times) co_return times.error();
+    const PropagationDelays delays = propagation_delays(bus.topology, *times);
     for (BusSlave* slave : clocks) {
-        const Result<LatchedTimes> latched = co_await read_latched(bus, *slave);
-        if (!latched) co_return latched.error();
-        times.push_back(*latched);
-    }
-    const std::vector<std::uint32_t> delays = line_delays(times);
-    const std::vector<std::uint64_t> offsets = system_offsets(times, delays, static_cast<std::uint64_t>(nanoseconds(latch.sent_at)));
-    for (std::size_t i = 0; i < clocks.size(); ++i) {
-        clocks[i]->dc_delay = delays[i];
-        clocks[i]->dc_offset = offsets[i];
-        const Result<void> written = co_await write_clock(bus, *clocks[i]);
+        const std::size_t p = slave->found.position;
+        slave->dc_delay = delays.ns[p];
+        slave->dc_offset = system_offset((*times)[p].unit, delays.ns[p], static_cast<std::uint64_t>(nanoseconds(latch.sent_at)));
+        if (std::find(delays.estimated.begin(), delays.estimated.end(), p) != delays.estimated.end())
+            bus.remember(
+                fmt::format("{}: its propagation delay of {} ns is a guess: no slave with a clock stands before the branch that "
+                            "it is in; put one first on the cable",
+                            slave->subject, slave->dc_delay));
+        const Result<void> written = co_await write_clock(bus, *slave);
         if (!written) co_return written;
     }
     co_return Result<void>{};
@@ -100,9 +131,9 @@ Script<Result<void>> restore_clock(Bus& bus, BusSlave& slave) {
     }
     const Reply latch = co_await bus.port.bwr(reg::dc_receive_times, std::uint32_t{0});
     if (latch.lost) co_return unanswered(slave.subject, "the latch of the receive times (0900h)", latch);
-    const Result<LatchedTimes> master = co_await read_latched(bus, reference);
+    const Result<LatchedTimes> master = co_await read_latched(bus, reference.found.station, reference.subject);
     if (!master) co_return master.error();
-    const Result<LatchedTimes> own = co_await read_latched(bus, slave);
+    const Result<LatchedTimes> own = co_await read_latched(bus, slave.found.station, slave.subject);
     if (!own) co_return own.error();
     slave.dc_offset = master->unit + reference.dc_offset + slave.dc_delay - own->unit;
     co_return co_await write_clock(bus, slave);

@@ -7,36 +7,50 @@
 // only differences inside one slave mean anything until the offsets are written.
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "core/time.hpp"
+#include "ecat/topology/topology.hpp"
 
 namespace taktwerk::ecat {
 
-/// What one slave latched, in the order of the cable. Slaves without DC are left out: their transit counts as cable.
+/// What one slave latched.
 struct LatchedTimes {
-    std::uint32_t port0 = 0;  ///< ns, local clock, wraps: frame comes in
-    std::uint32_t port1 = 0;  ///< ns: the same frame comes back from the slaves behind; unused at the end of the line
-    bool port1_open = false;  ///< somebody is behind
-    std::uint64_t unit = 0;   ///< ns: 0918h
+    bool dc = false;                                    ///< it has a clock; the rest is then valid
+    std::array<std::uint32_t, ports_per_slave> port{};  ///< ns, local clock, wraps; of closed ports anything
+    std::uint64_t unit = 0;                             ///< ns: 0918h
 };
 
-/// Time the frame needed from this slave to the end of the line and back. 0 at the end. 32-bit wrap is harmless.
-[[nodiscard]] constexpr std::uint32_t round_trip_behind(const LatchedTimes& slave) noexcept {
-    return slave.port1_open ? slave.port1 - slave.port0 : 0u;
+/// Through its processing unit a frame takes this much longer than past it (from an exit to the next, or back to the entry).
+/// 40 ns in the controllers of the ET1100's family (tDiff of its data sheet); 0918h and 0928h count at the processing unit.
+inline constexpr Duration processing_difference = std::chrono::nanoseconds{40};
+
+/// What one hop (out of a slave, through the cable) is taken for where nothing measured it.
+inline constexpr Duration assumed_hop = std::chrono::nanoseconds{600};
+
+struct PropagationDelays {
+    std::vector<std::uint32_t> ns;       ///< by position, from the reference: for 0928h; 0 for slaves without a clock
+    std::vector<std::size_t> estimated;  ///< positions with a clock whose delay nothing could measure
+};
+
+/// Propagation delays from the reference, the first slave with a clock, to all others, along the way that a frame takes through
+/// the tree. `slaves`: by position, as many as the topology has.
+///
+/// A slave with a clock measures each of its branches: from the arrival at one port to that at the next (in the order of time,
+/// so that it does not matter which socket the cable from the master is in). What the clocks inside the branch account for
+/// themselves is subtracted; the rest are the hops between them, there and back. Slaves without a clock count as cable. The
+/// hops share the rest evenly: exact for a line between two clocks as long as both ways take the same time, a good guess where
+/// two branches part at a slave without a clock. Where such a slave stands before all clocks, nothing measures what lies between
+/// the branches behind it: assumed_hop, reported in `estimated` (put a slave with a clock first).
+[[nodiscard]] PropagationDelays propagation_delays(const Topology& topology, std::span<const LatchedTimes> slaves);
+
+/// System time offset (0920h) of a slave: local time + offset = system time. `reference_time`: the system time that the reference
+/// shall have had when it latched; the slave saw the same frame `delay` later, at its local time `unit` (0918h). Modulo 2^64.
+[[nodiscard]] constexpr std::uint64_t system_offset(std::uint64_t unit, std::uint32_t delay, std::uint64_t reference_time) noexcept {
+    return reference_time + delay - unit;
 }
-
-/// Propagation delay from the first slave (the reference clock, 0) to each, ns: for register 0928h. A line.
-///     delay(i) = delay(i-1) + (round trip behind i-1  -  round trip behind i) / 2
-[[nodiscard]] std::vector<std::uint32_t> line_delays(std::span<const LatchedTimes> slaves);
-
-/// System time offsets (0920h): local time + offset = system time. `reference_time`: the system time that the first slave shall
-/// have had when it latched. All slaves see the frame; slave i sees it delay(i) later than the reference.
-[[nodiscard]] std::vector<std::uint64_t> system_offsets(std::span<const LatchedTimes> slaves, std::span<const std::uint32_t> delays,
-                                                        std::uint64_t reference_time);
 
 /// The first SYNC0: the first instant `shift` after a start of a bus cycle that is at least `margin` after `now`. All in
 /// system time; cycles start at multiples of `cycle` (plus `phase`, 0 <= phase < cycle).
