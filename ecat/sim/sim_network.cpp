@@ -1,58 +1,87 @@
 #include "ecat/sim/sim_network.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <utility>
+
+#include "core/bytes.hpp"
 
 namespace taktwerk::ecat::sim {
 
+namespace {
+
+constexpr std::uint16_t circulating_bit = 1u << 14;  // of a datagram's length word
+
+void mark_circulating(MutableDatagram& datagram) noexcept {
+    store_le<std::uint16_t>(datagram.header, 6, static_cast<std::uint16_t>(load_le<std::uint16_t>(datagram.header, 6) | circulating_bit));
+    datagram.circulating = true;
+}
+
+}  // namespace
+
 SimSlave& SimNetwork::add(std::shared_ptr<const DeviceDescription> description, std::unique_ptr<DeviceModel> model, SlaveOptions options) {
-    slaves_.push_back({std::make_unique<SimSlave>(std::move(description), std::move(model), std::move(options)), true});
-    slaves_.back().slave->power_on(now_);
-    show_links();
+    const unsigned port = last_ != nullptr && last_->entry_port == 1 ? 0 : 1;
+    return install(last_, port, std::make_unique<SimSlave>(std::move(description), std::move(model), std::move(options)), 0);
+}
+
+SimSlave& SimNetwork::add_behind(SimSlave& parent, unsigned port, std::shared_ptr<const DeviceDescription> description,
+                                 std::unique_ptr<DeviceModel> model, SlaveOptions options, unsigned entry_port) {
+    assert(port_free(parent, port) && entry_port < ports_per_slave);
+    return install(wiring_.find(parent), port, std::make_unique<SimSlave>(std::move(description), std::move(model), std::move(options)),
+                   entry_port);
+}
+
+SimSlave& SimNetwork::install(Place* parent, unsigned port, std::unique_ptr<SimSlave> slave, unsigned entry_port) {
+    slave->power_on(now_);
+    last_ = &wiring_.add(std::move(slave), parent, port, entry_port, timing_.slave, timing_.cable);
+    wiring_.update();
     schedule();
-    return *slaves_.back().slave;
+    return *last_->slave;
 }
 
-void SimNetwork::set_power(std::size_t position, bool on) {
-    SimSlave& s = slave(position);
-    if (on == s.powered()) return;
-    if (on) s.power_on(now_);
-    else s.power_off(now_);
-    show_links();
+bool SimNetwork::port_free(const SimSlave& parent, unsigned port) const noexcept {
+    const Place* place = wiring_.find(parent);
+    return place != nullptr && port < ports_per_slave && port != place->entry_port && place->child[port] == nullptr;
+}
+
+std::size_t SimNetwork::position(const SimSlave& slave) const noexcept {
+    const auto places = wiring_.places();
+    const auto at = std::find_if(places.begin(), places.end(), [&](const Place* place) { return place->slave.get() == &slave; });
+    return static_cast<std::size_t>(at - places.begin());
+}
+
+void SimNetwork::set_power(SimSlave& slave, bool on) {
+    if (on == slave.powered()) return;
+    if (on) slave.power_on(now_);
+    else slave.power_off(now_);
+    wiring_.update();
     schedule();
 }
 
-void SimNetwork::set_cable(std::size_t position, bool plugged) {
-    slaves_[position].cable = plugged;
-    show_links();
+void SimNetwork::set_cable(const SimSlave& slave, bool plugged) {
+    wiring_.find(slave)->plugged = plugged;
+    wiring_.update();
 }
 
-void SimNetwork::show_links() noexcept {
-    for (std::size_t i = 0; i < slaves_.size(); ++i) {
-        if (!slaves_[i].slave->powered()) continue;
-        const bool before = slaves_[i].cable && (i == 0 || slaves_[i - 1].slave->powered());
-        const bool after = i + 1 < slaves_.size() && slaves_[i + 1].cable && slaves_[i + 1].slave->powered();
-        slaves_[i].slave->controller().set_links(before, after);
-    }
+void SimNetwork::set_cable_delay(const SimSlave& slave, Duration one_way) {
+    wiring_.find(slave)->cable = one_way;
+    wiring_.update();
 }
 
-std::size_t SimNetwork::reachable() const noexcept {
-    std::size_t count = 0;
-    while (count < slaves_.size() && slaves_[count].cable && slaves_[count].slave->powered()) {
-        ++count;
-        if (slaves_[count - 1].slave->controller().port1_forced_closed()) break;
-    }
-    return count;
+void SimNetwork::set_delays(const SimSlave& slave, const SlaveDelays& delays) {
+    wiring_.find(slave)->delays = delays;
+    wiring_.update();
 }
 
 void SimNetwork::fire_until(Instant now) noexcept {
     schedule();  // a test may have touched a slave directly
     while (next_event_ <= now) {
         // The earliest event anywhere; of two at the same instant the slave nearer to the master first.
-        auto* first = slaves_.front().slave.get();
-        for (auto& place : slaves_)
-            if (place.slave->next_event() < first->next_event()) first = place.slave.get();
+        SimSlave* first = wiring_.places().front()->slave.get();
+        for (const Place* place : wiring_.places())
+            if (place->slave->next_event() < first->next_event()) first = place->slave.get();
         first->fire(first->next_event());
+        if (first->controller().take_loop_change()) wiring_.update();
         schedule();
     }
     now_ = std::max(now_, now);
@@ -60,13 +89,26 @@ void SimNetwork::fire_until(Instant now) noexcept {
 
 void SimNetwork::schedule() noexcept {
     next_event_ = never;
-    for (const auto& place : slaves_) next_event_ = std::min(next_event_, place.slave->next_event());
+    for (const Place* place : wiring_.places()) next_event_ = std::min(next_event_, place->slave->next_event());
 }
 
 void SimNetwork::advance(Instant now) noexcept {
     if (now < now_) return;
     fire_until(now);
-    for (auto& place : slaves_) place.slave->settle(now);
+    for (const Place* place : wiring_.places()) place->slave->settle(now);
+}
+
+std::size_t SimNetwork::take_apart(std::span<std::byte> frame) noexcept {
+    if (frame.size() > max_frame_size) return 0;
+    FrameEditor editor{frame};
+    std::size_t n = 0;
+    while (n < datagrams_.size()) {
+        const auto datagram = editor.next();
+        if (!datagram) break;
+        datagrams_[n++] = *datagram;
+    }
+    // A frame with a defect passes: the controllers execute only what is sound as a whole.
+    return editor.error() == FrameError::none ? n : 0;
 }
 
 std::optional<Duration> SimNetwork::process(std::span<std::byte> frame, Instant now) noexcept {
@@ -75,40 +117,28 @@ std::optional<Duration> SimNetwork::process(std::span<std::byte> frame, Instant 
         --lose_;
         return std::nullopt;
     }
-    const std::size_t count = reachable();
-    if (count == 0) return std::nullopt;
+    if (wiring_.route().empty() || frame.size() < ethernet_header_size) return std::nullopt;
 
-    std::size_t n = 0;
-    if (frame.size() <= max_frame_size) {
-        FrameEditor editor{frame};
-        while (n < datagrams_.size()) {
-            const auto datagram = editor.next();
-            if (!datagram) break;
-            datagrams_[n++] = *datagram;
+    const std::span<MutableDatagram> datagrams{datagrams_.data(), take_apart(frame)};
+    bool loops_changed = false, destroyed = false;
+    for (const Visit& visit : wiring_.route()) {
+        if (visit.port_0_shut) {
+            // The second time a frame finds port 0 shut it would go round for ever.
+            destroyed = !datagrams.empty() && datagrams.front().circulating;
+            if (destroyed) break;
+            for (auto& datagram : datagrams) mark_circulating(datagram);
         }
-        // A frame with a defect passes unchanged: the controllers execute only what is sound as a whole.
-        if (editor.error() != FrameError::none) n = 0;
+        SimSlave& slave = *visit.place->slave;
+        slave.process(datagrams, now + visit.at);
+        loops_changed |= slave.controller().take_loop_change();
     }
-
-    const std::span<MutableDatagram> datagrams{datagrams_.data(), n};
-    Instant at = now;
-    for (std::size_t i = 0; i < count; ++i) {
-        at += timing_.cable;
-        slaves_[i].slave->process(datagrams, at);
-        at += timing_.forward;
-    }
-    // The way back: the last slave turned the frame around; before it, each sees it again at port 1.
-    slaves_[count - 1].slave->frame_returned(std::nullopt);
-    for (std::size_t i = count - 1; i-- > 0;) {
-        at += timing_.cable;
-        slaves_[i].slave->frame_returned(at);
-        at += timing_.back;
-    }
-    at += timing_.cable;
-    // The processing unit marks what it forwarded: locally administered source address.
-    if (n > 0) frame[6] |= std::byte{0x02};
+    for (const Visit& visit : wiring_.route()) visit.place->slave->frame_passed(now, visit.place->arrival, visit.place->arrives);
+    // Every processing unit marks what it forwards: locally administered source address.
+    frame[6] |= std::byte{0x02};
+    const auto flight = destroyed ? std::nullopt : wiring_.flight();
+    if (loops_changed) wiring_.update();
     schedule();
-    return at - now;
+    return flight;
 }
 
 }  // namespace taktwerk::ecat::sim

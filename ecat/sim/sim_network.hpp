@@ -1,7 +1,8 @@
 #pragma once
-// A line of simulated slaves: the far end of the master's cable. Frames run through all slaves that have power and
-// connection and come back; what is due in machine time happens in event order across the slaves. Deterministic: the same
-// calls give the same bytes. process() and advance() are real-time safe as far as the device models are.
+// A tree of simulated slaves: the far end of the master's cable. Frames run through all slaves that have power and connection
+// and come back; what is due in machine time happens in event order across the slaves. Deterministic: the same calls give the
+// same bytes. process() and advance() are real-time safe as far as the device models are. How they hang together, and which way a
+// frame takes: wiring.hpp.
 
 #include <array>
 #include <cstdint>
@@ -10,35 +11,50 @@
 
 #include "core/time.hpp"
 #include "ecat/sim/sim_slave.hpp"
+#include "ecat/sim/wiring.hpp"
 #include "ecat/transport/loopback.hpp"
 
 namespace taktwerk::ecat::sim {
 
-/// Delays per slave and cable. Slaves turn a frame around inside when nothing is plugged in behind them.
+/// What slaves and cables have that are not told otherwise.
 struct LineTiming {
-    Duration forward = std::chrono::nanoseconds{600};  ///< port 0 -> processing -> port 1
-    Duration back = std::chrono::nanoseconds{400};     ///< port 1 -> port 0
-    Duration cable = std::chrono::nanoseconds{50};     ///< one way, 10 m
+    SlaveDelays slave{};
+    Duration cable = cable_delay(10);  ///< one way
 };
 
 class SimNetwork final : public FrameSink {
 public:
     explicit SimNetwork(Instant start = Instant{}, LineTiming timing = {}) : timing_(timing), now_(start) {}
 
-    /// Appends a slave at the end of the line and powers it on. The reference stays valid.
+    /// Appends a slave to the line, behind port 1 of the one added last (behind its port 0 where that one was entered through
+    /// port 1), and powers it on. The reference stays valid; positions change when a slave is added before others.
     SimSlave& add(std::shared_ptr<const DeviceDescription> description, std::unique_ptr<DeviceModel> model, SlaveOptions options = {});
-    [[nodiscard]] std::size_t size() const noexcept { return slaves_.size(); }
-    [[nodiscard]] SimSlave& slave(std::size_t position) noexcept { return *slaves_[position].slave; }
+    /// Hangs a slave behind `port` of `parent`. The port must be free (port_free()). `entry_port`: the new slave's socket that
+    /// the cable goes into; 1..3: plugged into an OUT socket, which changes the order of processing (wiring.hpp).
+    SimSlave& add_behind(SimSlave& parent, unsigned port, std::shared_ptr<const DeviceDescription> description,
+                         std::unique_ptr<DeviceModel> model, SlaveOptions options = {}, unsigned entry_port = 0);
+    [[nodiscard]] bool port_free(const SimSlave& parent, unsigned port) const noexcept;
+
+    [[nodiscard]] std::size_t size() const noexcept { return wiring_.places().size(); }
+    /// Positions count in the order in which a frame is processed when every cable is plugged in and every slave is on.
+    [[nodiscard]] SimSlave& slave(std::size_t position) noexcept { return *wiring_.places()[position]->slave; }
+    [[nodiscard]] std::size_t position(const SimSlave& slave) const noexcept;
     [[nodiscard]] Instant now() const noexcept { return now_; }
 
-    /// A slave without power ends the line before it; with power it starts from its reset values.
-    void set_power(std::size_t position, bool on);
-    /// Pulls (or plugs in) the cable before slave `position`; 0: the master's own cable, nothing comes back then.
-    void set_cable(std::size_t position, bool plugged);
+    /// A slave without power ends its branch; with power it starts from its reset values.
+    void set_power(SimSlave& slave, bool on);
+    void set_power(std::size_t position, bool on) { set_power(slave(position), on); }
+    /// Pulls (or plugs in) the cable that leads to the slave from the master's side. Position 0: the master's own cable, nothing
+    /// comes back then.
+    void set_cable(const SimSlave& slave, bool plugged);
+    void set_cable(std::size_t position, bool plugged) { set_cable(slave(position), plugged); }
+    /// One way through the cable that leads to the slave.
+    void set_cable_delay(const SimSlave& slave, Duration one_way);
+    void set_delays(const SimSlave& slave, const SlaveDelays& delays);
     /// The next frames vanish before any slave sees them.
     void lose_frames(std::uint32_t count) noexcept { lose_ = count; }
     /// Slaves that a frame reaches now.
-    [[nodiscard]] std::size_t reachable() const noexcept;
+    [[nodiscard]] std::size_t reachable() const noexcept { return wiring_.route().size(); }
 
     void advance(Instant now) noexcept override;
     std::optional<Duration> process(std::span<std::byte> frame, Instant now) noexcept override;
@@ -46,19 +62,17 @@ public:
     [[nodiscard]] Instant next_event() const noexcept { return next_event_; }
 
 private:
-    struct Place {
-        std::unique_ptr<SimSlave> slave;
-        bool cable = true;  // towards the master
-    };
+    SimSlave& install(Place* parent, unsigned port, std::unique_ptr<SimSlave> slave, unsigned entry_port);
     void fire_until(Instant now) noexcept;
     void schedule() noexcept;
-    void show_links() noexcept;
+    [[nodiscard]] std::size_t take_apart(std::span<std::byte> frame) noexcept;
 
     // 12 bytes is the shortest datagram: more than this do not fit into a frame.
     static constexpr std::size_t max_datagrams = (max_frame_size - ethernet_header_size - ecat_header_size) / datagram_overhead;
 
     LineTiming timing_;
-    std::vector<Place> slaves_;
+    Wiring wiring_;
+    Place* last_ = nullptr;  // added
     std::array<MutableDatagram, max_datagrams> datagrams_{};
     Instant now_;
     Instant next_event_ = never;

@@ -74,8 +74,6 @@ void SimSlave::process(std::span<MutableDatagram> datagrams, Instant at) noexcep
     schedule();
 }
 
-void SimSlave::frame_returned(std::optional<Instant> port1) noexcept { controller_.frame_returned(port1); }
-
 void SimSlave::fire(Instant now) noexcept {
     controller_.fire(now);
     if (al_due_ <= now) {

@@ -39,10 +39,12 @@ public:
     [[nodiscard]] bool powered() const noexcept { return powered_; }
 
     // --- for the network, real-time safe ------------------------------------------------------------------------------------
-    /// A frame passes; `at` is when it arrives here.
+    /// A frame passes the processing unit at `at`.
     void process(std::span<MutableDatagram> datagrams, Instant at) noexcept;
-    /// The frame is through; `port1`: when it came back there, nothing when it was turned around here.
-    void frame_returned(std::optional<Instant> port1) noexcept;
+    /// The frame is through. It left the master at `sent` and arrived at port p `arrival[p]` later where bit p of `arrives` is set.
+    void frame_passed(Instant sent, std::span<const Duration, ports_per_slave> arrival, std::uint8_t arrives) noexcept {
+        controller_.frame_passed(sent, arrival, arrives);
+    }
     [[nodiscard]] Instant next_event() const noexcept { return next_event_; }
     /// Does what is due at `now`.
     void fire(Instant now) noexcept;

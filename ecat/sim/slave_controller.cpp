@@ -94,7 +94,7 @@ void SlaveController::exchange_physical(MutableDatagram& datagram, bool addresse
 }
 
 Instant SlaveController::next_event() const noexcept {
-    Instant next = std::min(watchdog_deadline_, sync0_due_);
+    Instant next = std::min({watchdog_deadline_, sync0_due_, loops_revert_});
     if (eeprom_.busy()) next = std::min(next, eeprom_.due());
     return next;
 }
@@ -107,9 +107,13 @@ void SlaveController::fire(Instant now) noexcept {
     if (watchdog_deadline_ <= now) {
         watchdog_deadline_ = never;
         write16(reg::sm_watchdog_status, 0);
-        auto& count = memory_[reg::sm_watchdog_count];
-        if (count != std::byte{255}) count = static_cast<std::byte>(static_cast<unsigned>(count) + 1);
+        count_error(reg::sm_watchdog_count);
         events_ |= event::watchdog;
+    }
+    if (loops_revert_ <= now) {
+        loops_revert_ = never;
+        memory_[reg::dl_control_loops] = static_cast<std::byte>(kept_modes_);
+        move_loops(kept_modes_);
     }
     if (sync0_due_ <= now) {
         sync0_.fire();

@@ -15,6 +15,7 @@
 #include "core/time.hpp"
 #include "ecat/sim/dc_clock.hpp"
 #include "ecat/sim/eeprom_interface.hpp"
+#include "ecat/sim/ports.hpp"
 #include "ecat/sim/sync0.hpp"
 #include "ecat/wire/frame.hpp"
 #include "ecat/wire/registers.hpp"
@@ -27,7 +28,7 @@ struct ControllerSettings {
     std::uint8_t fmmus = 8, sync_managers = 8;  ///< 1..16 each
     std::uint16_t process_ram = 0x1000;         ///< bytes from 1000h
     bool dc = true, dc_64bit = true;
-    bool second_port = true;
+    std::uint8_t sockets = 0b0011;  ///< bit p: port p exists; IN and OUT
 };
 
 /// What happened since the application last asked.
@@ -42,6 +43,11 @@ inline constexpr unsigned watchdog = 1u << 6;     ///< the SM watchdog ran out
 inline constexpr unsigned sync0 = 1u << 7;
 }  // namespace event
 
+/// Bits of the event request to the master (0210h).
+namespace ecat_event {
+inline constexpr std::uint16_t dl_status = 1u << 2, al_status = 1u << 3;
+}  // namespace ecat_event
+
 class SlaveController {
 public:
     SlaveController(const ControllerSettings& settings, EepromInterface eeprom);
@@ -52,12 +58,17 @@ public:
     // --- bus side --------------------------------------------------------------------------------------------------------
     /// One datagram passes; `at` is when the start of its frame arrived here.
     void execute(MutableDatagram& datagram, Instant at) noexcept;
-    /// The frame came back through port 1, or was turned around here. Completes the receive time latch.
-    void frame_returned(std::optional<Instant> port1) noexcept;
-    /// Which ports have a neighbour: port 0 towards the master, port 1 away from it.
-    void set_links(bool port0, bool port1) noexcept;
-    /// The master forced port 1 shut (0101h).
-    [[nodiscard]] bool port1_forced_closed() const noexcept;
+    /// The frame is through: completes the receive time latch. It arrived at port p at `sent` + `arrival[p]` where bit p of
+    /// `arrives` is set.
+    void frame_passed(Instant sent, std::span<const Duration, ports_per_slave> arrival, std::uint8_t arrives) noexcept;
+    /// Bit p: port p has a neighbour with power.
+    void set_links(std::uint8_t links) noexcept;
+    [[nodiscard]] Ports& ports() noexcept { return ports_; }
+    [[nodiscard]] const Ports& ports() const noexcept { return ports_; }
+    /// A write to DL control moved a loop since the last call: frames take another way from now on.
+    [[nodiscard]] bool take_loop_change() noexcept { return std::exchange(loop_changed_, false); }
+    /// The controller has port p (a cable goes into it).
+    void add_socket(unsigned p) noexcept;
 
     // --- time --------------------------------------------------------------------------------------------------------------
     [[nodiscard]] Instant next_event() const noexcept;
@@ -132,6 +143,13 @@ private:
     void show_sync_manager(unsigned n) noexcept;
     void reset_unit(unsigned n) noexcept;
 
+    // slave_controller_ports.cpp: data link layer
+    void write_dl_control(std::uint8_t modes_before, Instant at) noexcept;
+    void move_loops(std::uint8_t modes) noexcept;
+    void show_ports() noexcept;
+    void show_sockets() noexcept;
+    void count_error(std::uint16_t counter) noexcept;
+
     // slave_controller_registers.cpp
     bool read_registers(std::uint32_t address, std::span<std::byte> out, Instant at) noexcept;
     bool write_registers(std::uint32_t address, std::span<const std::byte> in, Instant at) noexcept;
@@ -153,7 +171,11 @@ private:
     std::array<Fmmu, 16> fmmus_{};
     DcClock clock_;
     Sync0 sync0_;
-    Instant latched_at_{};
+    Ports ports_;
+    bool loop_changed_ = false;
+    Instant loops_revert_ = never;  // a temporary setting of 0101h ends
+    std::uint8_t kept_modes_ = 0;   // and these return
+    Instant latched_at_{};          // at the processing unit
     bool latch_pending_ = false;
     Instant watchdog_deadline_ = never;
     Instant sync0_due_ = never;

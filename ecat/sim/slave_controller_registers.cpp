@@ -34,9 +34,6 @@ constexpr bool overlaps(std::uint32_t address, std::size_t size, std::uint32_t f
     return address < first + length && first < address + size;
 }
 
-// Bits of 0210h.
-constexpr std::uint16_t request_dl_status = 1u << 2, request_al_status = 1u << 3;
-
 }  // namespace
 
 void SlaveController::power_on(Instant now, std::int64_t local, std::int32_t drift_ppb) {
@@ -48,13 +45,17 @@ void SlaveController::power_on(Instant now, std::int64_t local, std::int32_t dri
     sync0_due_ = watchdog_deadline_ = never;
     latch_pending_ = false;
     events_ = 0;
+    ports_.power_on();
+    loop_changed_ = false;
+    loops_revert_ = never;
     clock_.power_on(now, local, drift_ppb);
 
     memory_[reg::type] = std::byte{0x11};  // ET1100-like
     memory_[reg::fmmu_count] = static_cast<std::byte>(settings_.fmmus);
     memory_[reg::sync_manager_count] = static_cast<std::byte>(settings_.sync_managers);
     memory_[reg::ram_size] = static_cast<std::byte>(settings_.process_ram / 1024);
-    memory_[reg::port_descriptor] = settings_.second_port ? std::byte{0x0F} : std::byte{0x03};  // MII ports
+    show_sockets();
+    show_ports();
     write16(reg::features,
             static_cast<std::uint16_t>((settings_.dc ? feature::dc : 0) | (settings_.dc && settings_.dc_64bit ? feature::dc_64bit : 0) |
                                        feature::separate_fcs_count));
@@ -82,25 +83,8 @@ void SlaveController::load_configuration_words() noexcept {
     write16(reg::dl_status, static_cast<std::uint16_t>(read16(reg::dl_status) | dl_pdi_operational));
 }
 
-void SlaveController::set_links(bool port0, bool port1) noexcept {
-    // Ports 2 and 3 do not exist: their loops are closed.
-    std::uint16_t status = static_cast<std::uint16_t>((read16(reg::dl_status) & 0x0003u) | 0x5000u);
-    const auto port = [&](unsigned p, bool link) {
-        const unsigned bits = link ? (1u << (4 + p)) | (1u << (9 + 2 * p)) : 1u << (8 + 2 * p);
-        status = static_cast<std::uint16_t>(status | bits);
-    };
-    port(0, port0);
-    port(1, port1);
-    if (status != read16(reg::dl_status)) set_event_request(request_dl_status, true);
-    write16(reg::dl_status, status);
-}
-
-bool SlaveController::port1_forced_closed() const noexcept {
-    return ((static_cast<unsigned>(memory_[reg::dl_control_loops]) >> 2) & 3u) == 3u;
-}
-
 void SlaveController::set_al_status(std::uint16_t status, std::uint16_t code) noexcept {
-    if (status != read16(reg::al_status)) set_event_request(request_al_status, true);
+    if (status != read16(reg::al_status)) set_event_request(ecat_event::al_status, true);
     write16(reg::al_status, status);
     write16(reg::al_status_code, code);
 }
@@ -120,8 +104,8 @@ bool SlaveController::read_registers(std::uint32_t address, std::span<std::byte>
     const std::size_t run = std::min<std::size_t>(out.size(), reg::process_ram - address);
     std::copy_n(memory_.begin() + address, run, out.begin());
     if (run < out.size()) (void)read_memory(reg::process_ram, out.subspan(run));
-    if (overlaps(address, run, reg::al_status, 2)) set_event_request(request_al_status, false);
-    if (overlaps(address, run, reg::dl_status, 2)) set_event_request(request_dl_status, false);
+    if (overlaps(address, run, reg::al_status, 2)) set_event_request(ecat_event::al_status, false);
+    if (overlaps(address, run, reg::dl_status, 2)) set_event_request(ecat_event::dl_status, false);
     return true;
 }
 
@@ -144,7 +128,9 @@ bool SlaveController::write_registers(std::uint32_t address, std::span<const std
         write_dc(address, in, at);
         return true;
     }
+    const auto modes_before = ports_.modes();
     store(stored);
+    if (hits(reg::dl_control_loops, 1)) write_dl_control(modes_before, at);
     if (hits(reg::al_control, 1)) events_ |= event::al_control;
     if (hits(reg::rx_errors, 12)) std::fill_n(memory_.begin() + reg::rx_errors, 12, std::byte{0});
     if (hits(reg::processing_unit_errors, 1)) memory_[reg::processing_unit_errors] = std::byte{0};
@@ -190,15 +176,6 @@ void SlaveController::write_dc(std::uint32_t address, std::span<const std::byte>
     }
     sync0_.clock_changed(clock_, at);
     sync0_due_ = sync0_.due(clock_).value_or(never);  // whatever was written may have moved it
-}
-
-void SlaveController::frame_returned(std::optional<Instant> port1) noexcept {
-    if (!latch_pending_) return;
-    latch_pending_ = false;
-    const std::int64_t unit = clock_.local(latched_at_);
-    store_le<std::uint32_t>(memory_, reg::dc_receive_times, static_cast<std::uint32_t>(unit));
-    if (port1) store_le<std::uint32_t>(memory_, reg::dc_receive_times + 4, static_cast<std::uint32_t>(clock_.local(*port1)));
-    if (settings_.dc) store_le<std::int64_t>(memory_, reg::dc_receive_time_unit, unit);
 }
 
 void SlaveController::write_eeprom(std::uint32_t address, std::span<const std::byte> in, Instant at) noexcept {

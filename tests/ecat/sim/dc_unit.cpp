@@ -1,5 +1,5 @@
 // Distributed clocks of simulated slaves: latched times, offset and delay, drift control, SYNC0 in machine time.
-// Source: ETG.1000.4 (0900h..09A7h); line delays as given in LineTiming (600 ns there, 400 ns back, 50 ns of cable).
+// Source: ETG.1000.4 (0900h..09A7h); line delays as given in LineTiming (600 ns there, 560 ns back, 50 ns of cable).
 
 #include <gmock/gmock.h>
 
@@ -39,7 +39,7 @@ TEST(DcLatch, TheFlightTimeIsTheWayThereAndBack) {
     bus.add_drive();
     bus.read(0, 0x0000, 1);
 
-    EXPECT_EQ(*bus.flight, 50ns + 600ns + 50ns + 600ns + 50ns + 400ns + 50ns);
+    EXPECT_EQ(*bus.flight, 50ns + 600ns + 50ns + 600ns + 50ns + 560ns + 50ns);
 }
 
 TEST(DcClockRegisters, SystemTimeIsLocalTimePlusOffset) {

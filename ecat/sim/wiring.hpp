@@ -1,0 +1,82 @@
+#pragma once
+// Which slave hangs where, which links are up, and the way a frame takes through them. The way is computed when a link or a loop
+// changes; a frame only follows it. Source: ETG.1000.3 (order of the ports), ETG.1000.4 (circulating frames, loop control).
+//
+// Inside a slave the ports form a ring: 0 -> processing unit -> 3 -> 1 -> 2 -> 0. A frame that enters anywhere goes on to the next
+// open port, around the branch behind it, and so on until it leaves where it came in. It is processed where it passes from port 0
+// to port 3: at once when it entered at port 0, else on its way round.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/time.hpp"
+#include "ecat/sim/sim_slave.hpp"
+#include "ecat/topology/topology.hpp"
+
+namespace taktwerk::ecat::sim {
+
+/// Time a frame needs inside a slave, between two open ports (or from a port back to itself when all others are closed). Through
+/// the processing unit it is some 40 ns more than past it, as in the common controllers: half of that per slave is what a master
+/// that takes both ways for equal gets wrong.
+struct SlaveDelays {
+    Duration forward = std::chrono::nanoseconds{600};  ///< through the processing unit
+    Duration back = std::chrono::nanoseconds{560};     ///< past it, between any other two ports
+};
+
+/// 5 ns a metre: two thirds of the speed of light.
+[[nodiscard]] constexpr Duration cable_delay(double metres) noexcept { return Duration{static_cast<std::int64_t>(metres * 5.0 + 0.5)}; }
+
+/// One slave and the cable that leads to it from the master's side.
+struct Place {
+    std::unique_ptr<SimSlave> slave;
+    Place* parent = nullptr;  ///< none: the master's cable
+    unsigned parent_port = 1, entry_port = 0;
+    std::array<Place*, ports_per_slave> child{};
+    bool plugged = true;
+    Duration cable{};
+    SlaveDelays delays{};
+
+    // Of a frame that follows the route: when it arrives at each port, counted from its start at the master.
+    std::array<Duration, ports_per_slave> arrival{};
+    std::uint8_t arrives = 0;  ///< bit p: it does
+};
+
+/// The frame at the processing unit of one slave.
+struct Visit {
+    Place* place = nullptr;
+    Duration at{};             ///< since its start at the master
+    bool port_0_shut = false;  ///< port 0 closed itself: the frame gets its circulating bit, or dies of it
+};
+
+class Wiring {
+public:
+    /// `parent`: nullptr for the slave at the master's cable. The port must be free. Allocates all that a route can need.
+    Place& add(std::unique_ptr<SimSlave> slave, Place* parent, unsigned port, unsigned entry_port, const SlaveDelays& delays,
+               Duration cable);
+    /// In processing order with every cable plugged in and every slave on.
+    [[nodiscard]] std::span<Place* const> places() const noexcept { return order_; }
+    [[nodiscard]] Place* find(const SimSlave& slave) const noexcept;
+
+    /// Tells every controller which of its ports have a link now, and computes the way anew. Call when a cable, a power supply or
+    /// a loop changed. Allocation-free.
+    void update() noexcept;
+
+    [[nodiscard]] std::span<const Visit> route() const noexcept { return route_; }
+    /// Master to master; nothing when the frame does not come back.
+    [[nodiscard]] std::optional<Duration> flight() const noexcept { return flight_; }
+
+private:
+    [[nodiscard]] std::optional<Duration> walk(Place& place, Duration at) noexcept;
+    void number(Place& place);
+
+    std::vector<std::unique_ptr<Place>> places_;  // as they were added
+    std::vector<Place*> order_;
+    std::vector<Visit> route_;
+    std::optional<Duration> flight_;
+};
+
+}  // namespace taktwerk::ecat::sim
