@@ -77,6 +77,15 @@ struct SyncUnitConfig {
     std::uint16_t divisor = 1;  ///< exchanged every so many bus cycles
 };
 
+/// How long a slave may take for a transition, from writing AL control until AL status shows it. Defaults: ETG.1020 (INIT ->
+/// PREOP 3 s, PREOP -> SAFEOP and SAFEOP -> OP 10 s, down 5 s).
+struct StateTimeouts {
+    Duration preop = std::chrono::seconds{3};
+    Duration safeop = std::chrono::seconds{10};
+    Duration op = std::chrono::seconds{10};
+    Duration down = std::chrono::seconds{5};  ///< back towards INIT, and the acknowledgement of an error
+};
+
 /// What to do about a slave on the cable that the configuration does not name.
 enum class ExtraSlaves : std::uint8_t { refuse, ignore };
 
@@ -87,6 +96,7 @@ struct BusConfig {
     std::vector<SlaveConfig> slaves;  ///< in any order
     std::vector<SyncUnitConfig> sync_units;
     ExtraSlaves extra_slaves = ExtraSlaves::refuse;
+    StateTimeouts state_timeouts;
     std::uint16_t lost_frames_limit = 3;  ///< consecutive unanswered cycles until the bus alarm
     std::uint8_t acyclic_per_cycle = 4;   ///< datagrams per cycle for SDO, recovery, diagnosis
 };

@@ -14,6 +14,7 @@
 #include "core/result.hpp"
 #include "core/time.hpp"
 #include "ecat/bringup/process_data_plan.hpp"
+#include "ecat/bringup/refusal.hpp"
 #include "ecat/bus_config.hpp"
 #include "ecat/coe/sdo_client.hpp"
 #include "ecat/script/datagram_port.hpp"
@@ -64,6 +65,7 @@ struct BusSlave {
     MailboxEndpoint mailbox;
     std::vector<PdoDescription> rx, tx;  ///< as the slave maps them now
     std::string last_abort;              ///< for the diagnosis of a refused state
+    std::optional<Refusal> refusal;      ///< why it did not take the state asked last; none: it did
     bool in_line = false;                ///< the bring-up gave it a place and a plan: recovery is possible
 
     bool dc = false;                 ///< has a clock
