@@ -26,6 +26,7 @@ CoeServer::CoeServer(const DeviceDescription& description, ObjectDictionary& dic
     : description_(description),
       controller_(controller),
       sdo_(description, dictionary, model),
+      info_(dictionary),
       out_sm_(position_of(description, SmUse::mailbox_out, 0)),
       in_sm_(position_of(description, SmUse::mailbox_in, 1)),
       response_delay_(response_delay) {
@@ -33,16 +34,21 @@ CoeServer::CoeServer(const DeviceDescription& description, ObjectDictionary& dic
     queue_.resize(slots);
     for (auto& slot : queue_) slot.bytes.resize(std::max<std::size_t>(mailbox_header_size, size_of(description, out_sm_)));
     reply_.resize(std::max<std::size_t>(mailbox_header_size, size_of(description, in_sm_)));
-    last_reply_.resize(reply_.size());
+    unasked_.resize(reply_.size());
+    current_.resize(reply_.size());
+    read_.resize(reply_.size());
 }
 
 void CoeServer::start() noexcept {
     head_ = count_ = 0;
-    reply_waiting_ = last_reply_valid_ = false;
+    reply_waiting_ = displaced_ = read_valid_ = false;
+    in_box_ = InBox::nothing;
     last_counter_ = counter_ = 0;
     due_ = never;
     running_ = true;
     sdo_.reset();
+    info_.reset();
+    emergency_head_ = emergency_count_ = 0;
 }
 
 void CoeServer::stop() noexcept {
@@ -50,21 +56,14 @@ void CoeServer::stop() noexcept {
     due_ = never;
 }
 
-Instant CoeServer::next_event() const noexcept { return running_ && !stuck_ && !reply_waiting_ ? due_ : never; }
+Instant CoeServer::next_event() const noexcept { return running_ && !stuck_ && !reply_waiting_ && !info_.pending() ? due_ : never; }
 
 void CoeServer::step(EsmState state, Instant now) noexcept {
     if (!running_ || stuck_) return;
-    if (controller_.repeat_requested(in_sm_)) {
-        // The answer was lost on the wire: the same bytes once more, then the acknowledge bit follows the request.
-        if (last_reply_valid_) {
-            controller_.empty_mailbox(in_sm_);
-            (void)controller_.fill_mailbox(in_sm_, last_reply_);
-        }
-        controller_.acknowledge_repeat(in_sm_);
-    }
+    follow_mailbox();
     deliver();
     take(now);
-    while (count_ > 0 && due_ <= now && !reply_waiting_) {
+    while (count_ > 0 && due_ <= now && !reply_waiting_ && !info_.pending()) {
         answer(state, now);
         deliver();
         take(now);
@@ -89,34 +88,9 @@ void CoeServer::take(Instant now) noexcept {
 
 void CoeServer::answer(EsmState state, Instant now) noexcept {
     const Slot& slot = queue_[head_];
-    const std::span<const std::byte> bytes{slot.bytes.data(), slot.size};
     const std::span<std::byte> out{reply_};
-    const auto payload_out = out.subspan(mailbox_header_size);
     MailboxType type = MailboxType::error;
-    std::size_t size = 0;
-    const auto error = [&](MailboxErrorDetail detail) {
-        if (payload_out.size() < mailbox_error_size) return;
-        encode_mailbox_error(payload_out.first<mailbox_error_size>(), detail);
-        type = MailboxType::error;
-        size = mailbox_error_size;
-    };
-
-    const auto message = parse_mailbox(bytes);
-    if (!message) {
-        error(MailboxErrorDetail::invalid_size);
-    } else if (message->header.type != MailboxType::coe || !description_.mailbox || !description_.mailbox->coe) {
-        error(message->header.type == MailboxType::error ? MailboxErrorDetail::invalid_header : MailboxErrorDetail::unsupported_protocol);
-    } else if (message->payload.size() < coe_header_size) {
-        error(MailboxErrorDetail::size_too_short);
-    } else if (coe_service(message->payload) != CoeService::sdo_request) {
-        error(MailboxErrorDetail::service_not_supported);
-    } else if (message->payload.size() < sdo_segment_header_size + sdo_segment_minimum) {
-        error(MailboxErrorDetail::size_too_short);
-    } else {
-        type = MailboxType::coe;
-        size = sdo_.serve(message->payload, payload_out, state, now);
-    }
-
+    const std::size_t size = serve({slot.bytes.data(), slot.size}, out.subspan(mailbox_header_size), type, state, now);
     head_ = (head_ + 1) % queue_.size();
     due_ = --count_ > 0 ? now + response_delay_ : never;
     if (size == 0) return;  // an abort from the client needs no answer
@@ -124,11 +98,88 @@ void CoeServer::answer(EsmState state, Instant now) noexcept {
     reply_waiting_ = finish_mailbox(out, type, counter_, size);
 }
 
+std::size_t CoeServer::serve(std::span<const std::byte> bytes, std::span<std::byte> out, MailboxType& type, EsmState state,
+                             Instant now) noexcept {
+    const auto error = [&](MailboxErrorDetail detail) -> std::size_t {
+        if (out.size() < mailbox_error_size) return 0;
+        encode_mailbox_error(out.first<mailbox_error_size>(), detail);
+        type = MailboxType::error;
+        return mailbox_error_size;
+    };
+    const auto message = parse_mailbox(bytes);
+    if (!message) return error(MailboxErrorDetail::invalid_size);
+    if (message->header.type == MailboxType::error) return error(MailboxErrorDetail::invalid_header);
+    if (message->header.type != MailboxType::coe || !description_.mailbox || !description_.mailbox->coe)
+        return error(MailboxErrorDetail::unsupported_protocol);
+    const auto service = coe_service(message->payload);
+    if (!service) return error(MailboxErrorDetail::size_too_short);
+    if (*service == CoeService::sdo_request) {
+        if (message->payload.size() < sdo_segment_header_size + sdo_segment_minimum) return error(MailboxErrorDetail::size_too_short);
+        type = MailboxType::coe;
+        return sdo_.serve(message->payload, out, state, now);
+    }
+    if (*service == CoeService::sdo_info && description_.mailbox->sdo_info) {
+        if (message->payload.size() < sdo_info_header_size) return error(MailboxErrorDetail::size_too_short);
+        if (!info_.accept(message->payload)) return error(MailboxErrorDetail::service_not_supported);
+        type = MailboxType::coe;
+        return info_.next(out);
+    }
+    return error(MailboxErrorDetail::service_not_supported);
+}
+
+void CoeServer::send(const Emergency& emergency) noexcept {
+    if (!running_ || emergency_count_ == emergencies_.size()) return;
+    emergencies_[(emergency_head_ + emergency_count_++) % emergencies_.size()] = emergency;
+    if (stuck_) return;
+    follow_mailbox();
+    deliver();
+}
+
+void CoeServer::follow_mailbox() noexcept {
+    if (in_box_ != InBox::nothing && controller_.full_mailbox(in_sm_).empty()) {
+        if (in_box_ == InBox::current) std::swap(read_, current_), read_valid_ = true;
+        in_box_ = InBox::nothing;
+    }
+    if (controller_.repeat_requested(in_sm_)) {
+        if (read_valid_) {
+            displaced_ = displaced_ || in_box_ == InBox::current;
+            controller_.empty_mailbox(in_sm_);
+            if (controller_.fill_mailbox(in_sm_, read_)) in_box_ = InBox::repetition;
+        }
+        controller_.acknowledge_repeat(in_sm_);
+    }
+    if (displaced_ && in_box_ == InBox::nothing && controller_.fill_mailbox(in_sm_, current_)) {
+        displaced_ = false;
+        in_box_ = InBox::current;
+    }
+}
+
+bool CoeServer::put(std::vector<std::byte>& message) noexcept {
+    if (in_box_ != InBox::nothing || displaced_ || !controller_.fill_mailbox(in_sm_, message)) return false;
+    std::copy(message.begin(), message.end(), current_.begin());
+    in_box_ = InBox::current;
+    return true;
+}
+
 void CoeServer::deliver() noexcept {
-    if (!reply_waiting_ || !controller_.fill_mailbox(in_sm_, reply_)) return;
-    reply_waiting_ = false;
-    last_reply_ = reply_;
-    last_reply_valid_ = true;
+    if (emergency_count_ > 0) {
+        // A counter is spent only on what really goes out: the mailbox may still be full.
+        const std::span<std::byte> out{unasked_};
+        const std::size_t size = encode_emergency(out.subspan(mailbox_header_size), emergencies_[emergency_head_]);
+        const std::uint8_t counter = next_mailbox_counter(counter_);
+        if (size == 0 || !finish_mailbox(out, MailboxType::coe, counter, size) || !put(unasked_)) return;
+        counter_ = counter;
+        emergency_head_ = (emergency_head_ + 1) % emergencies_.size();
+        --emergency_count_;
+        return;
+    }
+    if (!reply_waiting_ && info_.pending()) {
+        const std::span<std::byte> out{reply_};
+        const std::size_t size = info_.next(out.subspan(mailbox_header_size));
+        counter_ = next_mailbox_counter(counter_);
+        reply_waiting_ = size > 0 && finish_mailbox(out, MailboxType::coe, counter_, size);
+    }
+    if (reply_waiting_ && put(reply_)) reply_waiting_ = false;
 }
 
 }  // namespace taktwerk::ecat::sim

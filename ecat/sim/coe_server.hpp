@@ -1,7 +1,8 @@
 #pragma once
-// The mailbox of a simulated slave and the SDO server behind it. Messages are queued (at most max_pending), answered one
+// The mailbox of a simulated slave and the CoE servers behind it. Messages are queued (at most max_pending), answered one
 // after the other, each after the response delay of machine time. A full queue leaves the mailbox full: the master's next
-// write gets working counter 0. Fixed buffers. Source: ETG.1000.4 (mailbox), ETG.1000.6 (SDO), SV33-E manual 6.2.8.
+// write gets working counter 0. Emergencies of the application go out as soon as the mailbox is free, before an answer that
+// waits. A repeat request brings back the message that was read last, then the one it displaced. Fixed buffers. Source: ETG.1000.4 (mailbox), ETG.1000.6 (CoE), SV33-E manual 6.2.8.
 
 #include <array>
 #include <cstdint>
@@ -12,12 +13,14 @@
 #include "ecat/device_description.hpp"
 #include "ecat/sim/device_model.hpp"
 #include "ecat/sim/object_dictionary.hpp"
+#include "ecat/sim/sdo_info_server.hpp"
 #include "ecat/sim/sdo_server.hpp"
 #include "ecat/sim/slave_controller.hpp"
+#include "ecat/wire/mailbox.hpp"
 
 namespace taktwerk::ecat::sim {
 
-class CoeServer {
+class CoeServer final : public EmergencyPort {
 public:
     CoeServer(const DeviceDescription& description, ObjectDictionary& dictionary, DeviceModel& model, SlaveController& controller,
               Duration response_delay);
@@ -33,6 +36,10 @@ public:
     void step(EsmState state, Instant now) noexcept;
     [[nodiscard]] Instant next_event() const noexcept;
 
+    /// From the application. Dropped before PREOP, and when emergency_limit of them wait already.
+    void send(const Emergency& emergency) noexcept override;
+    static constexpr std::size_t emergency_limit = 8;
+
     /// Test: the mailbox answers nothing and takes nothing until it is released.
     void stick(bool stuck) noexcept { stuck_ = stuck; }
     void set_response_delay(Duration delay) noexcept { response_delay_ = delay; }
@@ -46,18 +53,29 @@ private:
 
     void take(Instant now) noexcept;
     void answer(EsmState state, Instant now) noexcept;
+    /// What the message at the head of the queue gets as answer: its type and payload size; 0: nothing.
+    std::size_t serve(std::span<const std::byte> bytes, std::span<std::byte> out, MailboxType& type, EsmState state, Instant now) noexcept;
+    /// Notices what the master has read, serves a repeat request.
+    void follow_mailbox() noexcept;
     void deliver() noexcept;
+    bool put(std::vector<std::byte>& message) noexcept;
 
     const DeviceDescription& description_;
     SlaveController& controller_;
     SdoServer sdo_;
+    SdoInfoServer info_;
     unsigned out_sm_ = 0, in_sm_ = 1;
     Duration response_delay_;
     std::vector<Slot> queue_;  // ring of max_pending messages
     std::size_t head_ = 0, count_ = 0;
-    std::vector<std::byte> reply_;       // built, waiting for the mailbox to be free
-    std::vector<std::byte> last_reply_;  // for a repeat request
-    bool reply_waiting_ = false, last_reply_valid_ = false;
+    std::vector<std::byte> reply_;    // an answer that is built and waits for the mailbox to be free
+    std::vector<std::byte> unasked_;  // an emergency
+    std::vector<std::byte> current_;  // what is in the mailbox, or was displaced from it by a repetition
+    std::vector<std::byte> read_;     // what the master read last, for a repeat request
+    enum class InBox : std::uint8_t { nothing, current, repetition } in_box_ = InBox::nothing;
+    bool reply_waiting_ = false, displaced_ = false, read_valid_ = false;
+    std::array<Emergency, emergency_limit> emergencies_{};  // ring
+    std::size_t emergency_head_ = 0, emergency_count_ = 0;
     std::uint8_t last_counter_ = 0, counter_ = 0;
     Instant due_ = never;  // of the message at head_
     bool running_ = false, stuck_ = false;

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "core/time.hpp"
+#include "ecat/wire/sdo.hpp"
 
 namespace taktwerk::ecat::sim {
 
@@ -22,9 +23,21 @@ struct SyncSettings {
     std::uint16_t output_bytes = 0, input_bytes = 0;
 };
 
+/// Where an application puts its emergencies: the mailbox sends them as soon as it is free.
+class EmergencyPort {
+public:
+    virtual void send(const Emergency& emergency) noexcept = 0;
+
+protected:
+    ~EmergencyPort() = default;
+};
+
 class DeviceModel {
 public:
     virtual ~DeviceModel() = default;
+
+    /// Before the first power_on(). `port` outlives the model's last call; null: a slave without CoE.
+    void connect(EmergencyPort* port) noexcept { emergencies_ = port; }
 
     /// Power is on: dictionary values are at their defaults (or what non-volatile memory holds). Resolve objects here.
     virtual void power_on(ObjectDictionary& dictionary, Instant now) = 0;
@@ -59,6 +72,15 @@ public:
     /// Terminals without CoE: raw process data instead of objects. Called around exchange().
     virtual void raw_outputs(std::span<const std::byte> outputs) { (void)outputs; }
     virtual void raw_inputs(std::span<std::byte> inputs) { (void)inputs; }
+
+protected:
+    /// Tells the master about an error (code 0000h: it is gone). From any call above; dropped in INIT and without CoE.
+    void send_emergency(const Emergency& emergency) noexcept {
+        if (emergencies_ != nullptr) emergencies_->send(emergency);
+    }
+
+private:
+    EmergencyPort* emergencies_ = nullptr;
 };
 
 }  // namespace taktwerk::ecat::sim

@@ -7,10 +7,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "ecat/device_description.hpp"
+#include "ecat/wire/sdo_info.hpp"
 
 namespace taktwerk::ecat::sim {
 
@@ -36,6 +39,8 @@ public:
     [[nodiscard]] Access access() const noexcept { return access_; }
     [[nodiscard]] Mappable mappable() const noexcept { return mappable_; }
     [[nodiscard]] EntryRole role() const noexcept { return role_; }
+    [[nodiscard]] const std::string& name() const noexcept { return name_; }
+    [[nodiscard]] std::int64_t default_value() const noexcept { return default_; }
     [[nodiscard]] const std::optional<std::int64_t>& minimum() const noexcept { return minimum_; }
     [[nodiscard]] const std::optional<std::int64_t>& maximum() const noexcept { return maximum_; }
 
@@ -43,7 +48,7 @@ private:
     friend class ObjectDictionary;
     std::int64_t value_ = 0, default_ = 0;
     std::optional<std::int64_t> minimum_, maximum_;
-    std::string text_, default_text_;
+    std::string name_, text_, default_text_;
     std::uint16_t index_ = 0;
     std::uint8_t sub_ = 0;
     DataType type_ = DataType::U32;
@@ -52,6 +57,12 @@ private:
     Access access_ = Access::rw;
     Mappable mappable_ = Mappable::no;
     EntryRole role_ = EntryRole::plain;
+};
+
+/// What an object as a whole is: ETG.1000.6 5.6.7.1.
+struct ObjectShape {
+    ObjectCode code = ObjectCode::variable;
+    std::uint16_t data_type = 0;  ///< of a record: its CoE type number; 0: the type of its entries
 };
 
 class ObjectDictionary {
@@ -64,6 +75,11 @@ public:
     [[nodiscard]] Entry* find(std::uint16_t index, std::uint8_t sub) noexcept;
     [[nodiscard]] const Entry* find(std::uint16_t index, std::uint8_t sub) const noexcept;
     [[nodiscard]] bool has_object(std::uint16_t index) const noexcept;
+    /// All entries of an object, ascending; empty when there is no such object.
+    [[nodiscard]] std::span<const Entry> object(std::uint16_t index) const noexcept;
+    [[nodiscard]] ObjectShape shape(std::uint16_t index) const noexcept;
+    /// Its own name where the standard gives one, else what the names of its entries begin with.
+    [[nodiscard]] std::string_view object_name(std::uint16_t index) const noexcept;
     /// Value, or `otherwise` when there is no such subindex.
     [[nodiscard]] std::int64_t value(std::uint16_t index, std::uint8_t sub, std::int64_t otherwise = 0) const noexcept;
 
@@ -77,6 +93,8 @@ private:
     void add_pdos(const std::vector<PdoDescription>& pdos, const PdoRules& rules);
     void add_assignment(std::uint16_t index, const std::vector<std::uint16_t>& assigned, const PdoRules& rules);
     void add_synchronisation(std::uint16_t index, const DcDescription& dc);
+    /// Objects whose description names sub-indices only have their number of entries in sub-index 0 all the same.
+    void add_counts();
 
     std::vector<Entry> entries_;  // ascending by (index, sub)
 };

@@ -41,6 +41,7 @@ SimSlave::SimSlave(std::shared_ptr<const DeviceDescription> description, std::un
           description_->mailbox ? &coe_.emplace(*description_, dictionary_, *model_, controller_, options_.response_delay) : nullptr,
           description_->mailbox ? &process_data_ : nullptr) {
     if (options_.name.empty()) options_.name = description_->name;
+    model_->connect(coe_ ? &*coe_ : nullptr);
     missed_entry_ = dictionary_.find(0x1C32, 0x0B);
 }
 

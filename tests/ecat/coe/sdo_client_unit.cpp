@@ -87,6 +87,7 @@ protected:
     SdoClient() {
         mailbox.subject = "slave 2 'y' (sv33-e)";
         mailbox.station = 0x1003;
+        mailbox.log = &log;
         mailbox.out_start = out_start;
         mailbox.in_start = in_start;
         mailbox.out_size = mailbox.in_size = box_size;
@@ -115,6 +116,7 @@ protected:
     Exchange exchange{transport};
     AcyclicChannel channel{exchange};
     DatagramPort port{channel};
+    EmergencyLog log;
     MailboxEndpoint mailbox;
     Instant now{};
 };
@@ -175,8 +177,8 @@ TEST_F(SdoClient, KeepsEmergenciesThatComeBeforeTheAnswer) {
     slave.script = {{coe({0x00, 0x10, 0x20, 0x32, 0x04, 1, 2, 3, 4, 5}), coe({0x00, 0x30, 0x4B, 0x41, 0x60, 0x00, 0x34, 0x12, 0, 0})}};
     const auto value = upload(0x6041, 0);
     ASSERT_TRUE(value) << value.error().text();
-    ASSERT_THAT(mailbox.emergencies, SizeIs(1));
-    EXPECT_EQ(mailbox.emergencies[0].code, 0x3220);
+    ASSERT_THAT(log.entries(), SizeIs(1));
+    EXPECT_EQ(log.entries()[0].emergency.code, 0x3220);
 }
 
 TEST_F(SdoClient, SkipsAnswersToEarlierRequestsAndForeignProtocols) {

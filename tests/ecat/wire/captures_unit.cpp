@@ -7,6 +7,7 @@
 #include "ecat/wire/frame.hpp"
 #include "ecat/wire/mailbox.hpp"
 #include "ecat/wire/sdo.hpp"
+#include "ecat/wire/sdo_info.hpp"
 #include "tests/ecat/wire/bytes_of.hpp"
 #include "tests/ecat/wire/pcapng.hpp"
 
@@ -96,6 +97,41 @@ TEST(CaptureSdo, RealSlavesAnswerIsUnderstood) {
         }
     }
     EXPECT_EQ(names, 1u);
+}
+
+// A servo drive answers 35 uploads, one after the other: each expedited, each to the object just asked for. (Named "sdinfo", but
+// its master did not get to the SDO information service: no message of it is in the capture.)
+TEST(CaptureSdo, EveryAnswerOfADriveBelongsToItsRequest) {
+    TAKTWERK_SKIP_WITHOUT_CAPTURES();
+    std::optional<SdoMessage> asked;
+    std::size_t answered = 0, information = 0;
+    for (const auto& packet : test::read_pcapng(test::captures_folder() / "soem-sdinfo-akd.pcapng")) {
+        FrameReader reader{packet};
+        while (const auto datagram = reader.next()) {
+            // The mailboxes of this drive are 1024 bytes each, at 1800h and 1C00h.
+            if (datagram->data.size() != 1024 || datagram->working_counter() != 1) continue;
+            const auto mailbox = parse_mailbox(datagram->data);
+            ASSERT_TRUE(mailbox);
+            ASSERT_EQ(mailbox->header.type, MailboxType::coe);
+            if (parse_sdo_info(mailbox->payload)) ++information;
+            const auto sdo = parse_sdo(mailbox->payload);
+            ASSERT_TRUE(sdo);
+            if (datagram->command == Command::FPWR) {
+                ASSERT_EQ(sdo->kind, SdoKind::upload_request);
+                asked = sdo;
+                asked->data = {};
+            } else {
+                ASSERT_EQ(sdo->kind, SdoKind::upload_response);
+                ASSERT_TRUE(asked);
+                EXPECT_EQ(sdo->index, asked->index);
+                EXPECT_EQ(sdo->sub, asked->sub);
+                EXPECT_TRUE(sdo->expedited);
+                ++answered;
+            }
+        }
+    }
+    EXPECT_EQ(answered, 35u);
+    EXPECT_EQ(information, 0u);
 }
 
 }  // namespace
