@@ -101,6 +101,13 @@ struct BusConfig {
     std::uint8_t acyclic_per_cycle = 4;   ///< datagrams per cycle for SDO, recovery, diagnosis
 };
 
+/// How often the process data of a slave is exchanged: the bus cycle times the divisor of its sync unit.
+[[nodiscard]] inline Duration exchange_period(const BusConfig& config, const SlaveConfig& slave) noexcept {
+    for (const auto& unit : config.sync_units)
+        if (!slave.sync_unit.empty() && unit.name == slave.sync_unit && unit.divisor > 0) return unit.divisor * config.cycle;
+    return config.cycle;
+}
+
 /// Every problem of a configuration, found without a bus.
 [[nodiscard]] std::vector<Error> check(const BusConfig& config);
 

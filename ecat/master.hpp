@@ -40,13 +40,15 @@ struct SlaveHealth {
     bool al_error = false;
     std::uint16_t al_status_code = 0;
     bool fresh = false;     ///< its inputs were exchanged in the last receive(), with the right working counter
-    std::uint32_t age = 0;  ///< cycles since they were
+    bool due = true;        ///< its sync unit was to be exchanged in that cycle; false between the instants of a slower unit
+    std::uint32_t age = 0;  ///< exchanges missed since they were, in periods of its sync unit
     Instant latched{};      ///< when its inputs were latched (SYNC0 instant, or frame time); of the last fresh exchange
 };
 
 /// Counters since start; never reset by the master.
 struct BusStatistics {
     std::uint64_t frames_sent = 0, frames_received = 0, frames_lost = 0, frames_late = 0, frames_rejected = 0;
+    std::uint64_t frames_foreign = 0;  ///< EtherCAT frames of another master on the cable
     std::uint64_t working_counter_errors = 0, send_errors = 0;
     std::uint32_t lost_in_a_row = 0;
     std::int64_t dc_difference_ns = 0;  ///< worst 092Ch seen in the last service round

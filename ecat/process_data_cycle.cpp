@@ -23,16 +23,20 @@ std::int64_t centred(std::int64_t value, std::int64_t period) noexcept {
 }  // namespace
 
 CyclePlan::CyclePlan(const Bus& bus)
-    : plan(bus.plan), outputs(bus.plan.output_bytes), inputs(bus.plan.input_bytes), health(bus.slaves.size()), in_flight(bus.plan.frames) {
+    : plan(bus.plan),
+      outputs(bus.plan.output_bytes),
+      inputs(bus.plan.input_bytes),
+      health(bus.slaves.size()),
+      frames(bus.plan.frames),
+      places(bus.plan.datagrams.size()),
+      under_way(bus.plan.units.size(), 0) {
     for (const auto& slave : bus.slaves) {
         slaves.push_back(slave.get());
+        period.push_back(exchange_period(bus.config, *slave->config));
         if (slave->dc) ++clock_wkc;
         ++state_wkc;
     }
     if (bus.reference) reference = bus.slaves[*bus.reference]->found.station;
-    first_datagram.assign(plan.frames + 1, plan.datagrams.size());
-    for (std::size_t d = plan.datagrams.size(); d-- > 0;) first_datagram[plan.datagrams[d].frame] = d;
-    for (std::size_t f = plan.frames; f-- > 0;) first_datagram[f] = std::min(first_datagram[f], first_datagram[f + 1]);
 }
 
 ProcessDataCycle::ProcessDataCycle(Transport& transport, const BusConfig& config)
@@ -51,6 +55,7 @@ void ProcessDataCycle::copy_statistics() noexcept {
     statistics_.frames_lost = s.lost;
     statistics_.frames_late = s.late;
     statistics_.frames_rejected = s.rejected + s.duplicate;
+    statistics_.frames_foreign = s.foreign;
     statistics_.send_errors = s.send_errors;
     statistics_.dc_rejected = clock_.rejected();
     if (const auto* link = link_.load(std::memory_order_acquire))
@@ -67,46 +72,24 @@ void ProcessDataCycle::pump(Instant now) noexcept {
 void ProcessDataCycle::receive(Instant now) noexcept {
     exchange_.receive(now);
     channel_.collect(now);
-    if (auto* cycle = latest_.load(std::memory_order_acquire)) collect_frames(*cycle, now);
+    if (auto* cycle = latest_.load(std::memory_order_acquire)) collect_frames(*cycle);
     copy_statistics();
 }
 
-void ProcessDataCycle::collect_frames(CyclePlan& cycle, Instant) noexcept {
-    all_good_ = true;
-    any_lost_ = false;
-    bool any = false;
-    for (std::size_t f = 0; f < cycle.in_flight.size(); ++f) {
-        const SlotId slot = cycle.in_flight[f];
+void ProcessDataCycle::collect_frames(CyclePlan& cycle) noexcept {
+    if (!cycle.sent) return;
+    cycle.sent = false;
+    any_lost_ = cycle.frames[0].generation == 0;
+    for (const SlotId slot : cycle.frames) {
         if (slot.generation == 0) continue;
-        any = true;
-        cycle.in_flight[f] = SlotId{};
-        std::size_t number = 0;
-        const bool answered = exchange_.state(slot) == SlotState::answered;
-        if (answered) {
-            statistics_.round_trip = exchange_.round_trip(slot);
-            if (f == 0 && cycle.reference) {
-                take_clock(cycle, slot);
-                ++number;
-            }
-        } else {
-            any_lost_ = true;
-            all_good_ = false;
-            if (f == 0 && cycle.reference) clock_.miss();
-        }
-        for (std::size_t d = cycle.first_datagram[f]; d < cycle.first_datagram[f + 1]; ++d) {
-            if (answered) take_datagram(cycle, d, slot, number++);
-            else miss(cycle, cycle.plan.datagrams[d]);
-        }
-        if (answered && f == 0)
-            if (auto* link = link_.load(std::memory_order_acquire)) {
-                const auto states = exchange_.data(slot, number);
-                const bool all_answered = exchange_.wkc(slot, number) == cycle.state_wkc;
-                link->states_seen.store(all_answered && states.size() == 2 ? load_le<std::uint16_t>(states) & 0x1Fu : 0u,
-                                        std::memory_order_relaxed);
-            }
-        exchange_.release(slot);
+        if (exchange_.state(slot) == SlotState::answered) statistics_.round_trip = exchange_.round_trip(slot);
+        else any_lost_ = true;
     }
-    if (!any) return;
+    all_good_ = !any_lost_;
+    collect_first_frame(cycle, cycle.frames[0]);
+    for (const auto& unit : cycle.plan.units) take_unit(cycle, unit);
+    give_up_frames(cycle);
+
     statistics_.lost_in_a_row = any_lost_ ? statistics_.lost_in_a_row + 1 : 0;
     for (std::size_t s = 0; s < cycle.slaves.size(); ++s) {
         auto& health = cycle.health[s];
@@ -114,7 +97,7 @@ void ProcessDataCycle::collect_frames(CyclePlan& cycle, Instant) noexcept {
         health.al_state = al_state(static_cast<std::uint16_t>(al));
         health.al_error = (al & al_status_error) != 0;
         health.al_status_code = static_cast<std::uint16_t>(al >> 16);
-        if (!cycle.plan.slaves[s].datagram) health.fresh = !any_lost_ && health.al_state != AlState::unknown;
+        if (!cycle.plan.slaves[s].unit) health.fresh = !any_lost_ && health.al_state != AlState::unknown;
     }
     if (auto* link = link_.load(std::memory_order_acquire)) {
         const auto good = link->good_in_a_row.load(std::memory_order_relaxed);
@@ -122,41 +105,79 @@ void ProcessDataCycle::collect_frames(CyclePlan& cycle, Instant) noexcept {
     }
 }
 
-void ProcessDataCycle::miss(CyclePlan& cycle, const DatagramPlan& datagram) noexcept {
-    for (const std::size_t s : datagram.slaves) {
-        cycle.health[s].fresh = false;
-        ++cycle.health[s].age;
+/// What only the first frame carries: reference time, AL states, full mailboxes.
+void ProcessDataCycle::collect_first_frame(CyclePlan& cycle, SlotId slot) noexcept {
+    const bool answered = exchange_.state(slot) == SlotState::answered;
+    if (cycle.reference) {
+        if (answered) take_clock(cycle, slot);
+        else clock_.miss();
     }
+    auto* link = link_.load(std::memory_order_acquire);
+    if (!answered || link == nullptr) return;
+    const auto states = exchange_.data(slot, cycle.state_number);
+    const bool all_answered = exchange_.wkc(slot, cycle.state_number) == cycle.state_wkc;
+    link->states_seen.store(all_answered && states.size() == 2 ? load_le<std::uint16_t>(states) & 0x1Fu : 0u, std::memory_order_relaxed);
+    if (cycle.plan.mailbox.size > 0)
+        link->mailbox.publish(exchange_.data(slot, cycle.state_number + 1),
+                              exchange_.wkc(slot, cycle.state_number + 1) == cycle.plan.mailbox.expected_wkc);
 }
 
-void ProcessDataCycle::take_datagram(CyclePlan& cycle, std::size_t d, SlotId slot, std::size_t number) noexcept {
-    const auto& datagram = cycle.plan.datagrams[d];
-    const std::uint16_t wkc = exchange_.wkc(slot, number);
-    auto* link = link_.load(std::memory_order_acquire);
-    if (wkc != datagram.expected_wkc) {
-        all_good_ = false;
-        if (link != nullptr) {
+bool ProcessDataCycle::answered_exactly(const CyclePlan& cycle, const UnitPlan& unit) noexcept {
+    bool exact = true;
+    for (std::size_t d = unit.first; d < unit.first + unit.count; ++d) {
+        const auto place = cycle.places[d];
+        if (place.frame == CyclePlan::Place::nowhere) return false;
+        const SlotId slot = cycle.frames[place.frame];
+        if (exchange_.state(slot) != SlotState::answered) return false;
+        const std::uint16_t wkc = exchange_.wkc(slot, place.number);
+        if (wkc == cycle.plan.datagrams[d].expected_wkc) continue;
+        exact = false;
+        if (auto* link = link_.load(std::memory_order_acquire)) {
             link->worst_datagram.store(static_cast<std::uint16_t>(d), std::memory_order_relaxed);
             link->worst_wkc.store(wkc, std::memory_order_relaxed);
             if (link->supervise.load(std::memory_order_relaxed)) ++statistics_.working_counter_errors;
         }
-        miss(cycle, datagram);
+    }
+    return exact;
+}
+
+void ProcessDataCycle::take_unit(CyclePlan& cycle, const UnitPlan& unit) noexcept {
+    auto& under_way = cycle.under_way[static_cast<std::size_t>(&unit - cycle.plan.units.data())];
+    if (!under_way) {
+        for (const std::size_t s : unit.slaves) cycle.health[s].fresh = cycle.health[s].due = false;
         return;
     }
-    const auto data = exchange_.data(slot, number);
-    std::copy_n(data.begin() + datagram.outputs.size, datagram.inputs.size, cycle.inputs.begin() + datagram.inputs.offset);
-    const Instant sent = exchange_.sent_at(slot);
-    for (const std::size_t s : datagram.slaves) {
+    under_way = 0;
+    if (!answered_exactly(cycle, unit)) {
+        all_good_ = false;
+        for (const std::size_t s : unit.slaves) {
+            auto& health = cycle.health[s];
+            health.fresh = false;
+            health.due = true;
+            ++health.age;
+        }
+        return;
+    }
+    for (std::size_t d = unit.first; d < unit.first + unit.count; ++d) {
+        const auto& datagram = cycle.plan.datagrams[d];
+        const auto data = exchange_.data(cycle.frames[cycle.places[d].frame], cycle.places[d].number);
+        std::copy_n(data.begin() + datagram.outputs.size, datagram.inputs.size, cycle.inputs.begin() + datagram.inputs.offset);
+    }
+    const Instant sent = exchange_.sent_at(cycle.frames[cycle.places[unit.first].frame]);
+    for (const std::size_t s : unit.slaves) {
         auto& health = cycle.health[s];
-        health.fresh = true;
+        health.fresh = health.due = true;
         health.age = 0;
         health.latched = sent;
-        const std::int64_t start = cycle.slaves[s]->sync0_start.load(std::memory_order_relaxed);
-        if (const auto offset = clock_.offset(); start != 0 && offset) {
-            const std::int64_t system = nanoseconds(sent) + *offset;
-            if (system >= start) health.latched = Instant{Duration{last_sync0(system, start, config_.cycle.count()) - *offset}};
+        if (const std::int64_t start = sync0_of(cycle, s); start != 0) {
+            const std::int64_t system = nanoseconds(sent) + *clock_.offset();
+            if (system >= start) health.latched = Instant{Duration{last_sync0(system, start, cycle.period[s].count()) - *clock_.offset()}};
         }
     }
+}
+
+std::int64_t ProcessDataCycle::sync0_of(const CyclePlan& cycle, std::size_t slave) const noexcept {
+    return clock_.offset() ? cycle.slaves[slave]->sync0_start.load(std::memory_order_relaxed) : 0;
 }
 
 /// Only a time that the reference itself put in counts (exact working counter): a slave without its station address leaves the
@@ -187,38 +208,67 @@ void ProcessDataCycle::send(Instant now) noexcept {
     auto* link = link_.load(std::memory_order_acquire);
     auto* cycle = running_.load(std::memory_order_acquire);
     if (cycle != nullptr) {
-        for (std::size_t f = 0; f < cycle->in_flight.size(); ++f) send_frame(*cycle, f, now);
+        send_frames(*cycle, now);
         if (link != nullptr) {
             link->send_phase_ns.store(*phase_, std::memory_order_relaxed);
+            link->first_send_ns.store(nanoseconds(now) - static_cast<std::int64_t>(cycle->number - 1) * config_.cycle.count(),
+                                      std::memory_order_relaxed);
             link->cycles.store(link->cycles.load(std::memory_order_relaxed) + 1, std::memory_order_release);
         }
     }
     channel_.pack(now, operational_.load(std::memory_order_relaxed) ? config_.acyclic_per_cycle : bringup_datagrams);
 }
 
-void ProcessDataCycle::send_frame(CyclePlan& cycle, std::size_t frame, Instant now) noexcept {
-    if (cycle.in_flight[frame].generation != 0) {  // send() twice without receive(): the older one is given up
-        exchange_.release(cycle.in_flight[frame]);
-        cycle.in_flight[frame] = SlotId{};
+void ProcessDataCycle::send_frames(CyclePlan& cycle, Instant now) noexcept {
+    give_up_frames(cycle);  // send() twice without receive()
+    const SlotId first = cycle.frames[0] = exchange_.begin(FrameKind::cyclic).value_or(SlotId{});
+    if (cycle.reference) add_clock(cycle, first, now);
+    FramePacker packer{cycle.plan.mailbox};
+    for (std::size_t u = 0; u < cycle.plan.units.size(); ++u) {
+        cycle.under_way[u] = cycle.plan.units[u].due(cycle.number) ? 1 : 0;
+        if (cycle.under_way[u]) add_unit(cycle, cycle.plan.units[u], packer);
     }
-    const auto slot = exchange_.begin(FrameKind::cyclic);
-    if (!slot) return;
-    cycle.in_flight[frame] = *slot;
-    if (frame == 0 && cycle.reference) {
-        const auto* link = link_.load(std::memory_order_acquire);
-        const bool hold = link != nullptr && link->hold_clock.load(std::memory_order_relaxed);
-        const auto clock =
-            exchange_.add(*slot, hold ? Command::FPRD : Command::FRMW, Address::physical(*cycle.reference, reg::dc_system_time), 8);
-        // Should the reference be away, the others get the master's idea of its time instead of 0.
-        if (clock) store_le(clock->data, 0, nanoseconds(now) + clock_.offset().value_or(0));
-    }
-    for (std::size_t d = cycle.first_datagram[frame]; d < cycle.first_datagram[frame + 1]; ++d) {
+    if (const auto states = exchange_.add(first, Command::BRD, Address::physical(0, reg::al_status), 2))
+        cycle.state_number = states->number;
+    const auto& mailbox = cycle.plan.mailbox;
+    if (mailbox.size > 0) exchange_.add(first, Command::LRD, Address::logical(mailbox.logical), mailbox.size);
+    for (const SlotId slot : cycle.frames)
+        if (slot.generation != 0) exchange_.send(slot, now);
+    cycle.sent = true;
+    ++cycle.number;
+}
+
+void ProcessDataCycle::add_clock(const CyclePlan& cycle, SlotId slot, Instant now) noexcept {
+    const auto* link = link_.load(std::memory_order_acquire);
+    const bool hold = link != nullptr && link->hold_clock.load(std::memory_order_relaxed);
+    const auto clock =
+        exchange_.add(slot, hold ? Command::FPRD : Command::FRMW, Address::physical(*cycle.reference, reg::dc_system_time), 8);
+    // Should the reference be away, the others get the master's idea of its time instead of 0.
+    if (clock) store_le(clock->data, 0, nanoseconds(now) + clock_.offset().value_or(0));
+}
+
+void ProcessDataCycle::add_unit(CyclePlan& cycle, const UnitPlan& unit, FramePacker& packer) noexcept {
+    std::size_t before = 0;
+    for (std::size_t d = unit.first; d < unit.first + unit.count; ++d) {
         const auto& datagram = cycle.plan.datagrams[d];
-        const auto lrw = exchange_.add(*slot, Command::LRW, Address::logical(datagram.logical), datagram.size());
-        if (lrw) std::copy_n(cycle.outputs.begin() + datagram.outputs.offset, datagram.outputs.size, lrw->data.begin());
+        cycle.places[d] = {};
+        const auto frame = packer.place(datagram.size(), datagram.continues ? before : 0);
+        if (!frame || *frame >= cycle.frames.size()) continue;
+        before = *frame;
+        auto& slot = cycle.frames[*frame];
+        if (slot.generation == 0) slot = exchange_.begin(FrameKind::cyclic).value_or(SlotId{});
+        const auto added = exchange_.add(slot, datagram.command, Address::logical(datagram.logical), datagram.size());
+        if (!added) continue;
+        std::copy_n(cycle.outputs.begin() + datagram.outputs.offset, datagram.outputs.size, added->data.begin());
+        cycle.places[d] = {static_cast<std::uint8_t>(*frame), static_cast<std::uint8_t>(added->number)};
     }
-    if (frame == 0) exchange_.add(*slot, Command::BRD, Address::physical(0, reg::al_status), 2);
-    exchange_.send(*slot, now);
+}
+
+void ProcessDataCycle::give_up_frames(CyclePlan& cycle) noexcept {
+    for (auto& slot : cycle.frames) {
+        if (slot.generation != 0) exchange_.release(slot);
+        slot = SlotId{};
+    }
 }
 
 std::span<const std::byte> ProcessDataCycle::inputs() const noexcept {
@@ -238,11 +288,12 @@ const SlaveHealth& ProcessDataCycle::health(std::size_t slave) const noexcept {
 
 Instant ProcessDataCycle::outputs_effective(std::size_t slave, Instant send_time) const noexcept {
     const auto* cycle = latest_.load(std::memory_order_acquire);
-    if (cycle == nullptr || slave >= cycle->slaves.size() || !clock_.offset()) return send_time;
-    const std::int64_t start = cycle->slaves[slave]->sync0_start.load(std::memory_order_relaxed);
+    if (cycle == nullptr || slave >= cycle->slaves.size()) return send_time;
+    if (const auto unit = cycle->plan.slaves[slave].unit) send_time += cycle->plan.units[*unit].cycles_until(cycle->number) * config_.cycle;
+    const std::int64_t start = sync0_of(*cycle, slave);
     if (start == 0) return send_time;
     const std::int64_t arrival = nanoseconds(send_time) + statistics_.round_trip.count() / 2 + *clock_.offset();
-    return Instant{Duration{next_sync0(arrival + 1, start, config_.cycle.count()) - *clock_.offset()}};
+    return Instant{Duration{next_sync0(arrival + 1, start, cycle->period[slave].count()) - *clock_.offset()}};
 }
 
 }  // namespace taktwerk::ecat

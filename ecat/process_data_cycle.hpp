@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "ecat/bringup/bus.hpp"
+#include "ecat/bringup/frame_schedule.hpp"
 #include "ecat/dc/reference_clock.hpp"
 #include "ecat/exchange/acyclic_channel.hpp"
 #include "ecat/exchange/exchange.hpp"
@@ -23,13 +24,25 @@ struct CyclePlan {
 
     ProcessDataPlan plan;
     std::vector<const BusSlave*> slaves;
+    std::vector<Duration> period;            ///< of each slave's sync unit
     std::optional<std::uint16_t> reference;  ///< station of the reference clock
     std::uint16_t clock_wkc = 0, state_wkc = 0;
+
+    /// Where a datagram is under way.
+    struct Place {
+        static constexpr std::uint8_t nowhere = 0xFF;  ///< it found no slot
+        std::uint8_t frame = nowhere;
+        std::uint8_t number = 0;  ///< in its frame
+    };
     // Working area of the cycle.
+    std::uint64_t number = 0;  ///< of the next send(); decides which units are due
+    bool sent = false;         ///< and not collected yet
     std::vector<std::byte> outputs, inputs;
     std::vector<SlaveHealth> health;
-    std::vector<SlotId> in_flight;            ///< one a frame; generation 0: none
-    std::vector<std::size_t> first_datagram;  ///< of frame f; one more at the end
+    std::vector<SlotId> frames;           ///< under way; generation 0: none
+    std::vector<Place> places;            ///< of each datagram; valid while its unit is under way
+    std::vector<std::uint8_t> under_way;  ///< of each unit
+    std::size_t state_number = 0;         ///< of BRD AL status in the first frame; the mailbox bits follow it
 };
 
 class ProcessDataCycle {
@@ -58,12 +71,18 @@ public:
     void set_tap(Exchange::Tap tap, void* context) noexcept { exchange_.set_tap(tap, context); }
 
 private:
-    /// Datagrams of one frame, in order, after [clock] in the first.
-    void collect_frames(CyclePlan& cycle, Instant now) noexcept;
-    void take_datagram(CyclePlan& cycle, std::size_t datagram, SlotId slot, std::size_t number) noexcept;
+    void collect_frames(CyclePlan& cycle) noexcept;
+    void collect_first_frame(CyclePlan& cycle, SlotId slot) noexcept;
+    /// All datagrams of the unit or nothing.
+    void take_unit(CyclePlan& cycle, const UnitPlan& unit) noexcept;
+    [[nodiscard]] bool answered_exactly(const CyclePlan& cycle, const UnitPlan& unit) noexcept;
     void take_clock(const CyclePlan& cycle, SlotId slot) noexcept;
-    void miss(CyclePlan& cycle, const DatagramPlan& datagram) noexcept;
-    void send_frame(CyclePlan& cycle, std::size_t frame, Instant now) noexcept;
+    void send_frames(CyclePlan& cycle, Instant now) noexcept;
+    void add_clock(const CyclePlan& cycle, SlotId slot, Instant now) noexcept;
+    void add_unit(CyclePlan& cycle, const UnitPlan& unit, FramePacker& packer) noexcept;
+    void give_up_frames(CyclePlan& cycle) noexcept;
+    /// SYNC0 of the slave, as machine time follows from it; 0: does not run, or the reference is not known yet.
+    [[nodiscard]] std::int64_t sync0_of(const CyclePlan& cycle, std::size_t slave) const noexcept;
     void update_phase(Instant now) noexcept;
     void copy_statistics() noexcept;
 

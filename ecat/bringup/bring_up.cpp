@@ -23,7 +23,7 @@ Script<Result<void>> to_op(Bus& bus, BusSlave& slave) { return set_state(bus, sl
 Result<ProcessDataPlan> plan_bus(const Bus& bus) {
     std::vector<PlanSlave> inputs;
     for (const auto& slave : bus.slaves) inputs.push_back(plan_input(*slave));
-    return plan_process_data(inputs);
+    return plan_process_data(inputs, bus.config.sync_units);
 }
 
 std::string slaves_of(const Bus& bus, const DatagramPlan& datagram) {
@@ -37,10 +37,12 @@ Script<Result<void>> await_valid_outputs(Bus& bus) {
     bus.progress = "waiting for valid process data";
     const Instant started = co_await time();
     const std::uint64_t cycles_before = bus.link.cycles.load();
+    std::uint32_t slowest = 1;
+    for (const auto& unit : bus.plan.units) slowest = std::max<std::uint32_t>(slowest, unit.divisor);
     for (;;) {
-        if (bus.link.good_in_a_row.load() >= valid_cycles) co_return Result<void>{};
+        if (bus.link.good_in_a_row.load() >= valid_cycles * slowest) co_return Result<void>{};
         const Instant now = co_await time();
-        if (now - started > valid_outputs_timeout) {
+        if (now - started > valid_outputs_timeout + 2 * valid_cycles * slowest * bus.config.cycle) {
             if (bus.link.cycles.load() - cycles_before < valid_cycles)
                 co_return Error{"bus.no_cycle", "bus", "all slaves are in SAFEOP, but no cycle sends process data",
                                 "start the machine's cycle before the bus is brought to OP"};

@@ -2,12 +2,14 @@
 // What the scripts of one bus share: the slaves as configured and found, the port to the wire, and the few numbers that
 // cross to the cycle and back (atomics; everything else here belongs to the service side alone).
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -27,17 +29,40 @@ namespace taktwerk::ecat {
 /// The same values as Master::Phase.
 enum class BusPhase : std::uint8_t { idle, scanning, preop, configuring, safeop, operational, failed, stopping, stopped };
 
+/// Which slaves have an answer in their mailbox, as the cycle saw it last (SlavePlan::mailbox_bit numbers the bits). A bit
+/// that is set is certain. One that is not says little of a slave whose FMMU is not programmed or that is away: ask such a
+/// slave itself, now and then, while `exact` does not count on.
+struct MailboxBits {
+    std::array<std::atomic<std::uint64_t>, MailboxStatusPlan::max_size / 8> words{};
+    std::atomic<std::uint32_t> exact{0};  ///< answers to which every slave with a bit contributed; wraps
+
+    [[nodiscard]] bool full(std::uint32_t bit) const noexcept {
+        return bit / 64 < words.size() && ((words[bit / 64].load(std::memory_order_relaxed) >> (bit % 64)) & 1u) != 0;
+    }
+    /// By the cycle, with the data of the datagram. Real-time safe.
+    void publish(std::span<const std::byte> data, bool all_contributed) noexcept {
+        for (std::size_t w = 0; w * 8 < data.size() && w < words.size(); ++w) {
+            std::uint64_t word = 0;
+            for (std::size_t i = w * 8; i < std::min(data.size(), w * 8 + 8); ++i) word |= std::uint64_t(data[i]) << (8 * (i % 8));
+            words[w].store(word, std::memory_order_relaxed);
+        }
+        if (all_contributed) exact.store(exact.load(std::memory_order_relaxed) + 1, std::memory_order_release);
+    }
+};
+
 /// Numbers between the cycle and the scripts.
 struct CycleLink {
     // Written by the cycle.
     std::atomic<std::uint64_t> cycles{0};          ///< process data sent
     std::atomic<std::uint32_t> good_in_a_row{0};   ///< cycles in which every datagram had its working counter
     std::atomic<std::int64_t> send_phase_ns{0};    ///< of send(), modulo the bus cycle, smoothed
+    std::atomic<std::int64_t> first_send_ns{0};    ///< when send() was cycle 0 of the plan, had no cycle been missed since
     std::atomic<std::int64_t> dc_offset_ns{0};     ///< reference clock minus machine time, at sending; smoothed
     std::atomic<std::uint32_t> dc_samples{0};      ///< 0: dc_offset_ns is not measured yet
     std::atomic<std::uint32_t> states_seen{0};     ///< OR of all AL states (low 5 bits), of the last BRD
     std::atomic<std::uint16_t> worst_datagram{0};  ///< a datagram whose working counter was wrong last
     std::atomic<std::uint16_t> worst_wkc{0};
+    MailboxBits mailbox;
     // Written by the scripts.
     std::atomic<bool> supervise{false};             ///< slaves are in SAFEOP or above: wrong working counters count
     std::atomic<std::int64_t> dc_difference_ns{0};  ///< worst 092Ch

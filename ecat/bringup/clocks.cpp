@@ -20,6 +20,17 @@ std::int64_t nanoseconds(Instant t) noexcept { return t.time_since_epoch().count
 /// Machine time -> system time.
 std::int64_t system_time(const Bus& bus, Instant now) noexcept { return nanoseconds(now) + bus.link.dc_offset_ns.load(); }
 
+/// System time of a cycle start in which the slave's sync unit is exchanged, modulo its period: SYNC0 then comes at the same
+/// distance behind the frame as in every cycle.
+Duration unit_phase(const Bus& bus, const BusSlave& slave, std::int64_t dc_phase) {
+    const std::int64_t cycle = bus.config.cycle.count();
+    const auto unit = bus.plan.slaves[slave.index].unit;
+    const std::int64_t exchanged =
+        bus.link.first_send_ns.load() + bus.link.dc_offset_ns.load() + (unit ? bus.plan.units[*unit].phase : 0) * cycle;
+    const std::int64_t whole_cycles = (exchanged - dc_phase + cycle / 2) / cycle;
+    return Duration{(dc_phase + whole_cycles * cycle) % exchange_period(bus.config, *slave.config).count()};
+}
+
 std::vector<BusSlave*> slaves_with_clock(Bus& bus) {
     std::vector<BusSlave*> result;
     for (auto& slave : bus.slaves) {
@@ -183,6 +194,7 @@ Script<Result<void>> start_sync0(Bus& bus, BusSlave& slave) {
                         "set dc: false for this slave"};
     bus.note(slave, "starting SYNC0");
     const std::int64_t cycle = bus.config.cycle.count();
+    const Duration sync0_period = exchange_period(bus.config, *slave.config);
     const std::uint16_t station = slave.found.station;
     Duration margin = std::max(least_margin, margin_cycles * bus.config.cycle);
     for (unsigned attempt = 0; attempt < 3; ++attempt, margin *= 2) {
@@ -193,9 +205,9 @@ Script<Result<void>> start_sync0(Bus& bus, BusSlave& slave) {
         const Reply now = co_await bus.port.fprd(station, reg::dc_system_time, 8);
         if (!now.ok()) co_return unanswered(slave.subject, "its system time (0910h)", now);
         const std::uint64_t start =
-            sync0_start(now.u64(), margin, bus.config.cycle, Duration{*bus.dc_phase}, sync0_shift(bus.config, *slave.config));
+            sync0_start(now.u64(), margin, sync0_period, unit_phase(bus, slave, *bus.dc_phase), sync0_shift(bus.config, *slave.config));
         const Reply first = co_await bus.port.fpwr(station, reg::dc_start_time, start);
-        const Reply period = co_await bus.port.fpwr(station, reg::dc_sync0_cycle, static_cast<std::uint32_t>(cycle));
+        const Reply period = co_await bus.port.fpwr(station, reg::dc_sync0_cycle, static_cast<std::uint32_t>(sync0_period.count()));
         const Reply sync1 = co_await bus.port.fpwr(station, reg::dc_sync1_cycle, std::uint32_t{0});
         const Reply on =
             co_await bus.port.fpwr(station, reg::dc_activation, static_cast<std::uint8_t>(dc_activate::cyclic | dc_activate::sync0));
@@ -206,7 +218,7 @@ Script<Result<void>> start_sync0(Bus& bus, BusSlave& slave) {
         if (after.u64() < start) {
             slave.sync0_start.store(static_cast<std::int64_t>(start));
             // The drive must have seen SYNC0 when SAFEOP is asked for.
-            co_await pause(Duration{static_cast<std::int64_t>(start - after.u64())} + 2 * bus.config.cycle);
+            co_await pause(Duration{static_cast<std::int64_t>(start - after.u64())} + 2 * sync0_period);
             co_return Result<void>{};
         }
     }

@@ -4,249 +4,217 @@
 
 #include <algorithm>
 
-#include "ecat/wire/commands.hpp"
+#include "ecat/bringup/frame_schedule.hpp"
 
 namespace taktwerk::ecat {
 
 namespace {
 
-/// FRMW of the system time and BRD of the AL status, in the first frame.
-constexpr std::size_t clock_datagram = datagram_overhead + 8;
-constexpr std::size_t state_datagram = datagram_overhead + 2;
+constexpr std::uint32_t mailbox_gap = 4;           // bytes between process data and mailbox bits
+constexpr std::uint16_t sm_status_offset = 5;      // of a sync manager's registers
+constexpr std::uint8_t mailbox_full_position = 3;  // of its status
 
-/// One direction of one slave before it has its place: which sync manager carries how many bytes.
-struct Half {
-    struct Part {
-        std::uint8_t sm = 0;
-        std::uint16_t start = 0;
-        std::uint16_t bytes = 0;
-    };
-    std::vector<Part> parts;
-    std::vector<MappedEntry> entries;  // bit offsets from the half's start
-    std::uint32_t bytes = 0;
+/// Bytes from `begin` up to `end` of an address space.
+struct Window {
+    std::uint32_t begin = 0, end = 0;
+    [[nodiscard]] std::uint32_t size() const noexcept { return end - begin; }
+    [[nodiscard]] Window overlap(Window other) const noexcept {
+        const std::uint32_t from = std::max(begin, other.begin), to = std::min(end, other.end);
+        return from < to ? Window{from, to} : Window{from, from};
+    }
 };
 
-std::uint8_t usual_control(SmUse use) { return use == SmUse::outputs ? SyncManager::usual_outputs : SyncManager::usual_inputs; }
+class Planner {
+public:
+    Planner(std::span<const PlanSlave> slaves, std::span<const SyncUnitConfig> units) : slaves_(slaves), configured_(units) {}
 
-Error plan_error(const char* code, const PlanSlave& slave, std::string what, std::string remedy) {
-    return Error{std::string{"bus.plan."} + code, slave.subject, std::move(what), std::move(remedy)};
-}
-
-void append_entries(Half& half, const PdoDescription& pdo, std::uint32_t& bit) {
-    for (const auto& entry : pdo.entries) {
-        if (entry.index != 0) half.entries.push_back({entry.index, entry.sub, entry.bits, bit});
-        bit += entry.bits;
-    }
-}
-
-Result<Half> plan_half(const PlanSlave& slave, SmUse use, const std::vector<PdoDescription>& pdos) {
-    Half half;
-    const char* direction = use == SmUse::outputs ? "outputs" : "inputs";
-    std::size_t next_pdo = 0;
-    bool first = true;
-    for (std::size_t n = 0; n < slave.sync_managers.size(); ++n) {
-        const auto& sm = slave.sync_managers[n];
-        if (sm.use != use) continue;
-        std::uint32_t bit = half.bytes * 8;
-        if (slave.coe) {
-            if (first)
-                for (; next_pdo < pdos.size(); ++next_pdo) append_entries(half, pdos[next_pdo], bit);
-        } else if (pdos.empty()) {
-            bit += sm.size * 8u;
-        } else {
-            const std::uint32_t end = bit + sm.size * 8u;
-            while (next_pdo < pdos.size() && bit + mapped_bits({&pdos[next_pdo], 1}) <= end) append_entries(half, pdos[next_pdo++], bit);
+    Result<ProcessDataPlan> run() {
+        for (const auto& slave : slaves_) {
+            auto mapping = map_slave(slave);
+            if (!mapping) return mapping.error();
+            mappings_.push_back(std::move(*mapping));
         }
-        first = false;
-        // A terminal wants the length its EEPROM says, whatever part of it is mapped.
-        const std::uint32_t bytes = slave.coe ? (bit + 7) / 8 - half.bytes : sm.size;
-        if (bytes == 0) continue;
-        if (bytes > max_datagram_data)
-            return plan_error("too_large", slave,
-                              fmt::format("its {} are {} bytes, a frame carries {}", direction, bytes, max_datagram_data),
-                              "map fewer objects");
-        half.parts.push_back({static_cast<std::uint8_t>(n), sm.start, static_cast<std::uint16_t>(bytes)});
-        half.bytes += bytes;
+        plan_.slaves.resize(slaves_.size());
+        out_at_.resize(slaves_.size());
+        in_at_.resize(slaves_.size());
+        for (std::size_t s = 0; s < slaves_.size(); ++s)
+            for (const auto* half : {&mappings_[s].outputs, &mappings_[s].inputs})
+                plan_.slaves[s].sync_managers.insert(plan_.slaves[s].sync_managers.end(), half->sync_managers.begin(),
+                                                     half->sync_managers.end());
+        // The bits' size decides how much room the first frame has; their place comes last.
+        choose_mailbox_bits();
+        make_units();
+        for (std::size_t u = 0; u < plan_.units.size(); ++u) lay_out(u);
+        place_mailbox_bits();
+        stagger(plan_);
+        const auto frames = frames_at_most(plan_);
+        if (!frames)
+            return Error{"bus.plan.too_many_frames", "bus",
+                         fmt::format("its process data needs more than {} frames a cycle", max_cyclic_frames), "use two buses"};
+        plan_.frames = *frames;
+        plan_.output_bytes = image_out_;
+        plan_.input_bytes = image_in_;
+        return std::move(plan_);
     }
-    if (next_pdo < pdos.size())
-        return plan_error("no_sync_manager", slave,
-                          fmt::format("PDO {:04X}h finds no room in a sync manager for {}", pdos[next_pdo].index, direction),
-                          "check sync managers and PDOs in its profile");
-    return half;
-}
 
-/// Buffered sync managers of slaves with an application keep three buffers: 3 * length bytes from start belong to them.
-std::optional<Error> overlapping_buffers(const PlanSlave& slave, const std::vector<PlannedSyncManager>& process) {
-    struct Area {
-        unsigned sm;
-        std::uint32_t start, end;
-    };
-    std::vector<Area> areas;
-    const std::uint32_t buffers = slave.coe ? 3 : 1;
-    for (const auto& sm : process) areas.push_back({sm.number, sm.registers.start, sm.registers.start + buffers * sm.registers.length});
-    for (std::size_t n = 0; n < slave.sync_managers.size(); ++n) {
-        const auto& sm = slave.sync_managers[n];
-        if (sm.use == SmUse::mailbox_out || sm.use == SmUse::mailbox_in)
-            areas.push_back({static_cast<unsigned>(n), sm.start, std::uint32_t{sm.start} + sm.size});
-    }
-    std::sort(areas.begin(), areas.end(), [](const Area& a, const Area& b) { return a.start < b.start; });
-    for (std::size_t i = 1; i < areas.size(); ++i) {
-        if (areas[i - 1].end <= areas[i].start) continue;
-        return plan_error("overlap", slave,
-                          fmt::format("the buffers of SM{} ({:04X}h..{:04X}h) reach into SM{} at {:04X}h", areas[i - 1].sm,
-                                      areas[i - 1].start, areas[i - 1].end - 1, areas[i].sm, areas[i].start),
-                          "map fewer objects, or correct the start addresses in its profile");
-    }
-    return std::nullopt;
-}
-
-Fmmu fmmu_for(std::uint32_t logical, std::uint16_t bytes, std::uint16_t physical, bool outputs) {
-    Fmmu fmmu;
-    fmmu.logical_start = logical;
-    fmmu.length = bytes;
-    fmmu.physical_start = physical;
-    fmmu.write = outputs;
-    fmmu.read = !outputs;
-    fmmu.active = true;
-    return fmmu;
-}
-
-struct Draft {
-    Half out, in;
-    [[nodiscard]] std::size_t bytes() const noexcept { return out.bytes + in.bytes; }
-};
-
-/// Slaves of one datagram, in configuration order.
-std::vector<std::vector<std::size_t>> group_into_datagrams(std::span<const PlanSlave> slaves, const std::vector<Draft>& drafts) {
-    std::vector<std::vector<std::size_t>> groups;
-    std::vector<bool> taken(slaves.size(), false);
-    const std::size_t room = frame_capacity - clock_datagram - state_datagram - datagram_overhead;
-    for (std::size_t i = 0; i < slaves.size(); ++i) {
-        if (taken[i] || drafts[i].bytes() == 0) continue;
-        std::vector<std::size_t> group;
-        std::size_t bytes = 0;
-        for (std::size_t k = i; k < slaves.size(); ++k) {
-            const bool together = k == i || (!slaves[i].sync_unit.empty() && slaves[k].sync_unit == slaves[i].sync_unit);
-            if (taken[k] || !together || drafts[k].bytes() == 0) continue;
-            if (!group.empty() && bytes + drafts[k].bytes() > room) {
-                groups.push_back(std::move(group));
-                group.clear();
-                bytes = 0;
+private:
+    void make_units() {
+        for (std::size_t s = 0; s < slaves_.size(); ++s) {
+            if (mappings_[s].bytes() == 0) continue;
+            const auto& name = slaves_[s].sync_unit;
+            auto unit =
+                std::find_if(plan_.units.begin(), plan_.units.end(), [&](const UnitPlan& u) { return !name.empty() && u.name == name; });
+            if (unit == plan_.units.end()) {
+                UnitPlan fresh;
+                fresh.name = name;
+                for (const auto& c : configured_)
+                    if (!name.empty() && c.name == name && c.divisor > 0) fresh.divisor = c.divisor;
+                unit = plan_.units.insert(plan_.units.end(), std::move(fresh));
             }
-            group.push_back(k);
-            bytes += drafts[k].bytes();
-            taken[k] = true;
+            unit->slaves.push_back(s);
+            plan_.slaves[s].unit = static_cast<std::size_t>(unit - plan_.units.begin());
         }
-        groups.push_back(std::move(group));
     }
-    return groups;
-}
 
-std::optional<Error> limits_exceeded(const PlanSlave& slave, const Draft& draft) {
-    if (!slave.lrw && draft.bytes() > 0)
-        return plan_error("no_lrw", slave, "its controller does not execute LRW, and separate LRD and LWR are not supported yet",
-                          "use another slave, or leave it without process data");
-    const std::size_t fmmus = draft.out.parts.size() + draft.in.parts.size();
-    if (fmmus > slave.fmmus)
-        return plan_error("too_many_fmmus", slave,
-                          fmt::format("its process data needs {} FMMUs, its controller has {}", fmmus, slave.fmmus),
-                          "use fewer sync managers in its profile");
-    if (slave.sync_managers.size() > slave.sync_manager_count)
-        return plan_error(
-            "too_many_sync_managers", slave,
-            fmt::format("its profile has {} sync managers, its controller {}", slave.sync_managers.size(), slave.sync_manager_count),
-            "correct its profile");
-    const std::size_t room = frame_capacity - clock_datagram - state_datagram - datagram_overhead;
-    if (draft.bytes() > room)
-        return plan_error("too_large", slave, fmt::format("its process data is {} bytes, a frame carries {}", draft.bytes(), room),
-                          "map fewer objects");
-    return std::nullopt;
-}
+    [[nodiscard]] bool reads_and_writes(const UnitPlan& unit) const {
+        return std::all_of(unit.slaves.begin(), unit.slaves.end(), [&](std::size_t s) { return slaves_[s].lrw; });
+    }
+
+    /// Blocks of whole slaves that fit a datagram also in the first frame; a slave that does not is a block of its own.
+    void lay_out(std::size_t u) {
+        auto& unit = plan_.units[u];
+        const bool lrw = reads_and_writes(unit);
+        const std::size_t room = std::min(FramePacker::room_in_first(plan_.mailbox), max_datagram_data);
+        unit.first = plan_.datagrams.size();
+        std::vector<std::size_t> block;
+        std::size_t out = 0, in = 0;
+        for (const std::size_t s : unit.slaves) {
+            const std::size_t more_out = mappings_[s].outputs.bytes, more_in = mappings_[s].inputs.bytes;
+            const std::size_t needed = lrw ? out + in + more_out + more_in : std::max(out + more_out, in + more_in);
+            if (!block.empty() && needed > room) {
+                lay_out_block(u, block, lrw);
+                block.clear();
+                out = in = 0;
+            }
+            block.push_back(s);
+            out += more_out;
+            in += more_in;
+        }
+        lay_out_block(u, block, lrw);
+        unit.count = plan_.datagrams.size() - unit.first;
+    }
+
+    void lay_out_block(std::size_t u, const std::vector<std::size_t>& block, bool lrw) {
+        const Window all_out = place(block, &SlaveMapping::outputs, &SlavePlan::outputs, &SlavePlan::mapped_outputs, image_out_, out_at_);
+        const Window all_in = place(block, &SlaveMapping::inputs, &SlavePlan::inputs, &SlavePlan::mapped_inputs, image_in_, in_at_);
+        image_out_ += all_out.size();
+        image_in_ += all_in.size();
+        if (lrw) cut(u, block, Command::LRW, {all_out.begin, all_in.end}, all_out, all_in);
+        else {
+            cut(u, block, Command::LWR, all_out, all_out, all_in);
+            cut(u, block, Command::LRD, all_in, all_out, all_in);
+        }
+    }
+
+    /// One direction of the block's slaves, one behind the other: logical addresses, FMMUs, image.
+    Window place(const std::vector<std::size_t>& block, MappedHalf SlaveMapping::*half, ImageRange SlavePlan::*range,
+                 std::vector<MappedEntry> SlavePlan::*mapped, std::uint32_t image, std::vector<Window>& where) {
+        const bool outputs = half == &SlaveMapping::outputs;
+        const std::uint32_t begin = logical_;
+        for (const std::size_t s : block) {
+            const auto& from = mappings_[s].*half;
+            auto& slave = plan_.slaves[s];
+            where[s] = {logical_, logical_ + from.bytes};
+            slave.*range = {image + logical_ - begin, from.bytes};
+            slave.*mapped = from.entries;
+            for (auto& entry : slave.*mapped) entry.bit_offset += (slave.*range).offset * 8;
+            for (const auto& run : from.runs) {
+                Fmmu fmmu;
+                fmmu.logical_start = logical_;
+                fmmu.length = run.bytes;
+                fmmu.physical_start = run.start;
+                fmmu.write = outputs;
+                fmmu.read = !outputs;
+                fmmu.active = true;
+                slave.fmmus.push_back(fmmu);
+                logical_ += run.bytes;
+            }
+        }
+        return {begin, logical_};
+    }
+
+    /// `range` in datagrams: one, unless it is a slave larger than a frame.
+    void cut(std::size_t u, const std::vector<std::size_t>& block, Command command, Window range, Window all_out, Window all_in) {
+        const bool writes = command != Command::LRD, reads = command != Command::LWR;
+        const std::uint32_t image_out = image_out_ - all_out.size(), image_in = image_in_ - all_in.size();
+        for (std::uint32_t at = range.begin; at < range.end; at += static_cast<std::uint32_t>(max_datagram_data)) {
+            const Window window{at, std::min(range.end, at + static_cast<std::uint32_t>(max_datagram_data))};
+            DatagramPlan datagram;
+            datagram.command = command;
+            datagram.logical = at;
+            datagram.unit = u;
+            datagram.continues = at != range.begin;
+            const Window out = window.overlap(all_out), in = window.overlap(all_in);
+            if (writes) datagram.outputs = {image_out + out.begin - all_out.begin, out.size()};
+            if (reads) datagram.inputs = {image_in + in.begin - all_in.begin, in.size()};
+            unsigned wkc = 0;
+            for (const std::size_t s : block) {
+                const bool written = writes && window.overlap(out_at_[s]).size() > 0;
+                const bool read = reads && window.overlap(in_at_[s]).size() > 0;
+                wkc += (written ? (command == Command::LRW ? 2u : 1u) : 0u) + (read ? 1u : 0u);
+                if (written || read) datagram.slaves.push_back(s);
+            }
+            datagram.expected_wkc = static_cast<std::uint16_t>(wkc);
+            plan_.datagrams.push_back(std::move(datagram));
+        }
+    }
+
+    /// Bits of the controllers that map bits, then a byte for each of the others.
+    void choose_mailbox_bits() {
+        std::uint32_t bits = 0;
+        const auto wants = [&](std::size_t s) {
+            return slaves_[s].mailbox_in && mappings_[s].outputs.runs.size() + mappings_[s].inputs.runs.size() < slaves_[s].fmmus;
+        };
+        for (std::size_t s = 0; s < slaves_.size() && bits < MailboxStatusPlan::max_size * 8; ++s)
+            if (wants(s) && slaves_[s].bitwise_fmmu) plan_.slaves[s].mailbox_bit = bits++;
+        std::uint32_t byte = (bits + 7) / 8;
+        for (std::size_t s = 0; s < slaves_.size() && byte < MailboxStatusPlan::max_size; ++s)
+            if (wants(s) && !slaves_[s].bitwise_fmmu) plan_.slaves[s].mailbox_bit = byte++ * 8 + mailbox_full_position;
+        plan_.mailbox.size = static_cast<std::uint16_t>(byte);
+    }
+
+    void place_mailbox_bits() {
+        plan_.mailbox.logical = logical_ + mailbox_gap;
+        for (std::size_t s = 0; s < slaves_.size(); ++s) {
+            auto& slave = plan_.slaves[s];
+            if (!slave.mailbox_bit) continue;
+            Fmmu fmmu;
+            fmmu.logical_start = plan_.mailbox.logical + *slave.mailbox_bit / 8;
+            fmmu.length = 1;
+            fmmu.physical_start = static_cast<std::uint16_t>(reg::sync_manager_at(*slaves_[s].mailbox_in) + sm_status_offset);
+            if (slaves_[s].bitwise_fmmu) {
+                fmmu.logical_start_bit = fmmu.logical_stop_bit = static_cast<std::uint8_t>(*slave.mailbox_bit % 8);
+                fmmu.physical_start_bit = mailbox_full_position;
+            }
+            fmmu.read = true;
+            fmmu.active = true;
+            slave.fmmus.push_back(fmmu);
+            ++plan_.mailbox.expected_wkc;
+        }
+    }
+
+    std::span<const PlanSlave> slaves_;
+    std::span<const SyncUnitConfig> configured_;
+    std::vector<SlaveMapping> mappings_;
+    std::vector<Window> out_at_, in_at_;  ///< logical, by slave
+    ProcessDataPlan plan_;
+    std::uint32_t logical_ = 0, image_out_ = 0, image_in_ = 0;
+};
 
 }  // namespace
 
-std::size_t mapped_bits(std::span<const PdoDescription> pdos) noexcept {
-    std::size_t bits = 0;
-    for (const auto& pdo : pdos)
-        for (const auto& entry : pdo.entries) bits += entry.bits;
-    return bits;
-}
-
-Result<ProcessDataPlan> plan_process_data(std::span<const PlanSlave> slaves) {
-    ProcessDataPlan plan;
-    std::vector<Draft> drafts;
-    for (const auto& slave : slaves) {
-        auto out = plan_half(slave, SmUse::outputs, slave.rx);
-        if (!out) return out.error();
-        auto in = plan_half(slave, SmUse::inputs, slave.tx);
-        if (!in) return in.error();
-        Draft draft{std::move(*out), std::move(*in)};
-        if (auto error = limits_exceeded(slave, draft)) return *error;
-
-        SlavePlan planned;
-        const auto add = [&](const Half& half, SmUse use) {
-            for (const auto& part : half.parts) {
-                SyncManager sm;
-                sm.start = part.start;
-                sm.length = part.bytes;
-                sm.control = slave.sync_managers[part.sm].control != 0 ? slave.sync_managers[part.sm].control : usual_control(use);
-                sm.activate = SyncManager::enable;
-                planned.sync_managers.push_back({part.sm, sm});
-            }
-        };
-        add(draft.out, SmUse::outputs);
-        add(draft.in, SmUse::inputs);
-        if (auto error = overlapping_buffers(slave, planned.sync_managers)) return *error;
-        plan.slaves.push_back(std::move(planned));
-        drafts.push_back(std::move(draft));
-    }
-
-    std::uint32_t logical = 0, out_at = 0, in_at = 0;
-    std::size_t frame = 0, room = frame_capacity - clock_datagram - state_datagram;
-    for (auto& group : group_into_datagrams(slaves, drafts)) {
-        DatagramPlan datagram;
-        datagram.logical = logical;
-        datagram.outputs.offset = out_at;
-        datagram.inputs.offset = in_at;
-        for (const std::size_t s : group) {
-            datagram.outputs.size += drafts[s].out.bytes;
-            datagram.inputs.size += drafts[s].in.bytes;
-            datagram.expected_wkc =
-                static_cast<std::uint16_t>(datagram.expected_wkc + (drafts[s].out.bytes > 0 ? 2 : 0) + (drafts[s].in.bytes > 0 ? 1 : 0));
-        }
-        if (datagram.size() + datagram_overhead > room) {
-            ++frame;
-            room = frame_capacity;
-        }
-        room -= datagram.size() + datagram_overhead;
-        datagram.frame = frame;
-
-        std::uint32_t logical_in = logical + datagram.outputs.size;
-        for (const std::size_t s : group) {
-            auto& planned = plan.slaves[s];
-            planned.datagram = plan.datagrams.size();
-            const auto place = [&](const Half& half, ImageRange& range, std::vector<MappedEntry>& mapped, std::uint32_t& image_at,
-                                   std::uint32_t& logical_at, bool outputs) {
-                range = {image_at, half.bytes};
-                mapped = half.entries;
-                for (auto& entry : mapped) entry.bit_offset += image_at * 8;
-                for (const auto& part : half.parts) {
-                    planned.fmmus.push_back(fmmu_for(logical_at, part.bytes, part.start, outputs));
-                    logical_at += part.bytes;
-                }
-                image_at += half.bytes;
-            };
-            place(drafts[s].out, planned.outputs, planned.mapped_outputs, out_at, logical, true);
-            place(drafts[s].in, planned.inputs, planned.mapped_inputs, in_at, logical_in, false);
-        }
-        logical = logical_in;
-        datagram.slaves = std::move(group);
-        plan.datagrams.push_back(std::move(datagram));
-    }
-    plan.frames = frame + 1;
-    plan.output_bytes = out_at;
-    plan.input_bytes = in_at;
-    return plan;
+Result<ProcessDataPlan> plan_process_data(std::span<const PlanSlave> slaves, std::span<const SyncUnitConfig> units) {
+    return Planner{slaves, units}.run();
 }
 
 }  // namespace taktwerk::ecat

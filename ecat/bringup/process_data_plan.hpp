@@ -1,15 +1,26 @@
 #pragma once
-// The planner: from what the slaves are and what they map to sync managers, FMMUs, logical addresses, datagrams, frames and
-// expected working counters. A pure function, no I/O; run once per bring-up, outside the cycle.
+// The planner: from what the slaves are and what they map to sync managers, FMMUs, logical addresses, datagrams and expected
+// working counters. A pure function, no I/O; run once per bring-up, outside the cycle. Which frame of a cycle carries a
+// datagram: frame_schedule.hpp.
 //
-// Layout. A sync unit is a set of slaves whose process data is valid or not together: one LRW datagram with one working
-// counter (more when it would not fit a frame). By default each slave is its own unit, so that a silent slave takes nobody
-// along. In a datagram stand first the outputs of its slaves, then their inputs, each slave byte-aligned:
+// A sync unit is a set of slaves whose process data is valid or not together: exchanged every `divisor` cycles, in datagrams of
+// its own. By default each slave is its own unit, so that a silent slave takes nobody along. In the logical address space
+// stand first the outputs of its slaves, then their inputs, each slave byte-aligned:
 //
 //     logical   | out A | out B | in A | in B |      expected WKC: per slave 2 for outputs + 1 for inputs
 //     images    outputs: A B C ...   inputs: A B C ...   (one contiguous copy per datagram and direction)
 //
-// A frame carries [FRMW clock] LRW.. [BRD AL status] (the first) or LRW.. (the others).
+// One LRW covers both. Where a slave of the unit does not execute LRW, an LWR covers the outputs and an LRD the inputs (1 each
+// per slave). A unit larger than a frame gets several such blocks, cut between slaves; a slave larger than a frame is cut into
+// windows of its block, which must leave in order (its sync managers open with the first byte and close with the last):
+//
+//     | out A ................ | in A ............... |
+//     |   LRW, 1486 bytes   | continues, 1486 |  rest  |
+//
+// Behind the process data, apart by more than the 3 bytes that controllers want between an FMMU of bits and others of its
+// direction, lies one bit per slave with a mailbox: "its answer mailbox is full", read each cycle by one small LRD.
+//
+// Source: ETG.1000.4 (FMMU, working counter); ET1100 data sheet, FMMU restrictions.
 
 #include <cstddef>
 #include <cstdint>
@@ -20,36 +31,12 @@
 
 #include "core/process_image.hpp"
 #include "core/result.hpp"
-#include "ecat/device_description.hpp"
+#include "ecat/bringup/slave_mapping.hpp"
+#include "ecat/bus_config.hpp"
+#include "ecat/wire/commands.hpp"
 #include "ecat/wire/registers.hpp"
 
 namespace taktwerk::ecat {
-
-/// What the planner is told of one slave.
-struct PlanSlave {
-    std::string subject;    ///< for messages
-    std::string sync_unit;  ///< empty: a unit of its own
-    std::vector<SyncManagerDescription> sync_managers;
-    std::vector<PdoDescription> rx, tx;  ///< as the slave maps them now, in the order of assignment
-    bool coe = true;                     ///< all PDOs of a direction belong to its first sync manager; else they fill the managers in order
-    std::uint8_t fmmus = 8, sync_manager_count = 8;  ///< what its controller has
-    bool lrw = true;                                 ///< its controller executes LRW
-};
-
-struct PlannedSyncManager {
-    std::uint8_t number = 0;
-    SyncManager registers;
-    friend bool operator==(const PlannedSyncManager&, const PlannedSyncManager&) = default;
-};
-
-/// An object in a process image. Bit offset from the start of the image.
-struct MappedEntry {
-    std::uint16_t index = 0;
-    std::uint8_t sub = 0;
-    std::uint8_t bits = 0;
-    std::uint32_t bit_offset = 0;
-    friend bool operator==(const MappedEntry&, const MappedEntry&) = default;
-};
 
 /// Bytes of a process image.
 struct ImageRange {
@@ -62,32 +49,51 @@ struct SlavePlan {
     std::vector<Fmmu> fmmus;                        ///< unit n at n
     ImageRange outputs, inputs;
     std::vector<MappedEntry> mapped_outputs, mapped_inputs;
-    std::optional<std::size_t> datagram;  ///< none: the slave has no process data
+    std::optional<std::size_t> unit;           ///< none: the slave has no process data
+    std::optional<std::uint32_t> mailbox_bit;  ///< in the data of MailboxStatusPlan's datagram; none: not mapped, ask the slave
 };
 
 struct DatagramPlan {
+    Command command = Command::LRW;  ///< or LWR, LRD
     std::uint32_t logical = 0;
     ImageRange outputs, inputs;  ///< in the datagram: outputs at 0, inputs behind them
     std::uint16_t expected_wkc = 0;
-    std::size_t frame = 0;
+    std::size_t unit = 0;
+    bool continues = false;  ///< not in an earlier frame than the datagram ahead of it
     std::vector<std::size_t> slaves;
-    [[nodiscard]] std::size_t size() const noexcept { return outputs.size + inputs.size; }
+    [[nodiscard]] std::size_t size() const noexcept { return std::size_t{outputs.size} + inputs.size; }
+};
+
+struct UnitPlan {
+    std::string name;                      ///< empty: of one slave that names none
+    std::uint16_t divisor = 1, phase = 0;  ///< exchanged in cycles n with n % divisor == phase
+    std::size_t first = 0, count = 0;      ///< of its datagrams
+    std::vector<std::size_t> slaves;       ///< ascending
+    [[nodiscard]] bool due(std::uint64_t cycle) const noexcept { return cycles_until(cycle) == 0; }
+    /// Cycles from `cycle` to the first one in which it is due; 0 .. divisor - 1.
+    [[nodiscard]] std::uint16_t cycles_until(std::uint64_t cycle) const noexcept {
+        return divisor == 1 ? std::uint16_t{0} : static_cast<std::uint16_t>((divisor + phase - cycle % divisor) % divisor);
+    }
+};
+
+/// The bits "answer mailbox full" of all slaves that have it mapped.
+struct MailboxStatusPlan {
+    static constexpr std::size_t max_size = 256;
+    std::uint32_t logical = 0;
+    std::uint16_t size = 0;  ///< bytes, at most max_size; 0: no slave has it mapped, no datagram
+    std::uint16_t expected_wkc = 0;
 };
 
 struct ProcessDataPlan {
     std::vector<SlavePlan> slaves;        ///< as in the argument
-    std::vector<DatagramPlan> datagrams;  ///< ascending by frame
-    std::size_t frames = 0;               ///< at least 1: clock and AL status travel also without process data
+    std::vector<UnitPlan> units;          ///< in the order of their first slaves
+    std::vector<DatagramPlan> datagrams;  ///< unit by unit
+    MailboxStatusPlan mailbox;
+    std::size_t frames = 0;  ///< the most that a cycle can need; at least 1: clock and AL status travel also without process data
     std::size_t output_bytes = 0, input_bytes = 0;
 };
 
-/// Bytes of an Ethernet frame that datagrams may fill: 1514 - 14 - 2.
-inline constexpr std::size_t frame_capacity = 1498;
-
-/// Errors: bus.plan.* (too many sync managers or FMMUs, sizes that do not fit, buffers that overlap, no LRW).
-[[nodiscard]] Result<ProcessDataPlan> plan_process_data(std::span<const PlanSlave> slaves);
-
-/// Bits that the PDOs map.
-[[nodiscard]] std::size_t mapped_bits(std::span<const PdoDescription> pdos) noexcept;
+/// Errors: bus.plan.* (too many sync managers or FMMUs, sizes that do not fit, buffers that overlap, too many frames).
+[[nodiscard]] Result<ProcessDataPlan> plan_process_data(std::span<const PlanSlave> slaves, std::span<const SyncUnitConfig> units = {});
 
 }  // namespace taktwerk::ecat

@@ -67,7 +67,8 @@ Script<Result<void>> recover(Bus& bus, BusSlave& slave) {
         done = co_await prepare_process_data(bus, slave);
         if (!done) co_return done;
         const auto& plan = bus.plan.slaves[slave.index];
-        const bool same = (mapped_bits(slave.rx) + 7) / 8 == plan.outputs.size && (mapped_bits(slave.tx) + 7) / 8 == plan.inputs.size;
+        const auto mapping = map_slave(plan_input(slave));
+        const bool same = mapping && mapping->outputs.bytes == plan.outputs.size && mapping->inputs.bytes == plan.inputs.size;
         if (slave.has_mailbox() && !same)
             co_return Error{"bus.pdo_mismatch", slave.subject, "it came back with other PDOs than before", "restart the machine"};
         if (bus.reference != slave.index) {
@@ -86,7 +87,7 @@ Script<Result<void>> recover(Bus& bus, BusSlave& slave) {
     }
     done = co_await write_startup_op(bus, slave);
     if (!done) co_return done;
-    co_await pause(static_cast<std::int64_t>(valid_cycles) * bus.config.cycle);
+    co_await pause(static_cast<std::int64_t>(valid_cycles) * exchange_period(bus.config, *slave.config));
     co_return co_await set_state(bus, slave, AlState::op);
 }
 

@@ -6,7 +6,7 @@
 
 namespace taktwerk::ecat {
 
-/// Valid process data is exchanged for this many cycles before OP is asked for.
+/// Valid process data is exchanged this many times before OP is asked for.
 inline constexpr std::uint32_t valid_cycles = 5;
 
 /// One slave back to OP from whatever it is in. Needs a bus that was operational once. May be called again at any time.

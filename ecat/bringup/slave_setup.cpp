@@ -298,7 +298,7 @@ Script<Result<void>> prepare_process_data(Bus& bus, BusSlave& slave) {
 
 Duration sm_watchdog(const BusConfig& bus, const SlaveConfig& slave) noexcept {
     if (slave.sm_watchdog > Duration{}) return slave.sm_watchdog;
-    return std::max(3 * bus.cycle, minimum_watchdog);
+    return std::max(3 * exchange_period(bus, slave), minimum_watchdog);
 }
 
 Script<Result<void>> program_process_data(Bus& bus, BusSlave& slave) {
@@ -335,6 +335,8 @@ PlanSlave plan_input(const BusSlave& slave) {
     input.fmmus = slave.found.fmmus;
     input.sync_manager_count = slave.found.sync_managers;
     input.lrw = (slave.found.features & feature::no_lrw) == 0;
+    input.bitwise_fmmu = (slave.found.features & feature::fmmu_not_bitwise) == 0;
+    if (input.coe) input.mailbox_in = slave.mailbox.in_sm;
     return input;
 }
 

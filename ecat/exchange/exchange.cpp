@@ -67,15 +67,25 @@ Exchange::Slot* Exchange::find(SlotId id) const noexcept {
     return slot.state != SlotState::free && slot.generation == id.generation ? &slot : nullptr;
 }
 
+Exchange::Slot* Exchange::carrier(std::uint8_t index) const noexcept {
+    auto& slot = (*slots_)[slot_of_[index]];
+    return slot.state != SlotState::free && first_index(slot.generation) == index ? &slot : nullptr;
+}
+
+bool Exchange::is_ours(std::span<const std::byte> frame) const noexcept {
+    constexpr std::size_t source_at = 6;
+    for (std::size_t i = 0; i < source_.size(); ++i) {
+        const auto locally_administered = static_cast<std::uint8_t>(i == 0 ? 0x02 : 0x00);
+        if ((static_cast<std::uint8_t>(frame[source_at + i]) & ~locally_administered) != source_[i]) return false;
+    }
+    return true;
+}
+
 void Exchange::next_generation() noexcept {
-    const auto taken = [this](std::uint8_t index) {
-        return std::any_of(slots_->begin(), slots_->end(),
-                           [index](const Slot& s) { return s.state != SlotState::free && first_index(s.generation) == index; });
-    };
     for (;;) {
         ++generation_;
         const auto index = first_index(generation_);
-        if (generation_ == 0 || taken(index)) continue;
+        if (generation_ == 0 || carrier(index) != nullptr) continue;
         if (past_[index] != Past::lost) return;
         past_[index] = Past::quarantined;  // its answer may still come: leave the index alone this round
     }
@@ -93,6 +103,7 @@ std::optional<SlotId> Exchange::begin(FrameKind kind) noexcept {
     slot->size = 0;
     slot->echoed = false;
     slot->builder.emplace(slot->bytes, source_);
+    slot_of_[first_index(generation_)] = static_cast<std::uint8_t>(slot - slots_->begin());
     return SlotId{static_cast<std::uint8_t>(slot - slots_->begin()), generation_};
 }
 
@@ -164,18 +175,14 @@ bool Exchange::match(std::span<const std::byte> frame, Instant at) noexcept {
         ++statistics_.rejected;
         return false;
     }
+    if (!is_ours(frame)) {
+        ++statistics_.foreign;
+        return false;
+    }
     auto& past = past_[first->index];
-    const auto slot = std::find_if(slots_->begin(), slots_->end(),
-                                   [&](const Slot& s) { return s.state == SlotState::sent && first_index(s.generation) == first->index; });
-    if (slot == slots_->end()) {
-        if (past == Past::lost || past == Past::quarantined) {
-            ++statistics_.late;
-            past = Past::answered;
-        } else if (past == Past::answered) {
-            ++statistics_.duplicate;
-        } else {
-            ++statistics_.rejected;
-        }
+    auto* slot = carrier(first->index);
+    if (slot == nullptr || slot->state != SlotState::sent) {
+        count_stray(past);
         return false;
     }
     if (!slot->fits_answer(reader, *first)) {
@@ -195,6 +202,20 @@ bool Exchange::match(std::span<const std::byte> frame, Instant at) noexcept {
     past = Past::answered;
     ++statistics_.received;
     return true;
+}
+
+/// An answer that nobody waits for.
+void Exchange::count_stray(Past& past) noexcept {
+    switch (past) {
+        case Past::lost:
+        case Past::quarantined:
+            ++statistics_.late;
+            past = Past::answered;
+            break;
+        case Past::answered: ++statistics_.duplicate; break;
+        case Past::never:
+        case Past::in_flight: ++statistics_.rejected; break;
+    }
 }
 
 void Exchange::give_up(Slot& slot) noexcept {

@@ -14,6 +14,9 @@
 // increment ADP of AP and B commands; there only the offset is compared.) Each frame has a generation; its bytes are spread
 // over the datagrams' 8-bit indices, so that a frame of two datagrams is told from the 65535 before it. The index of a frame
 // that got lost is not used again for a full round.
+//
+// A frame whose source address is not ours (slave controllers set the locally-administered bit, which does not count) was sent
+// by another master on the cable. It is counted as foreign and never looked at again.
 // Source: reference/ethercat-masters.md 2.4, F1 (a master that matched by index alone mistook late frames for fresh ones).
 
 #include <array>
@@ -53,13 +56,14 @@ struct ExchangeStatistics {
     std::uint64_t late = 0;         ///< answers to frames already given up
     std::uint64_t duplicate = 0;    ///< answers to frames already answered
     std::uint64_t rejected = 0;     ///< not EtherCAT, mangled, or never sent by us
+    std::uint64_t foreign = 0;      ///< sound EtherCAT frames of another source address: another master on the cable
     std::uint64_t echoes = 0;       ///< our own frame, not touched by any slave
     std::uint64_t send_errors = 0;  ///< the link did not take a frame
 };
 
 class Exchange {
 public:
-    static constexpr std::size_t slot_count = 16;
+    static constexpr std::size_t slot_count = 32;
     static constexpr std::size_t max_datagrams = 124;  ///< of 12 bytes each in one frame
 
     /// `transport` outlives the exchange. Allocates the frame buffers here.
@@ -110,15 +114,18 @@ public:
 
 private:
     using Buffer = std::array<std::byte, max_frame_size>;
+    /// What became of the last frame that carried an index, to tell late answers from those never asked for.
+    enum class Past : std::uint8_t { never, in_flight, answered, lost, quarantined };
     struct Slot;
     [[nodiscard]] Slot* find(SlotId id) const noexcept;
     bool match(std::span<const std::byte> frame, Instant at) noexcept;
+    void count_stray(Past& past) noexcept;
+    [[nodiscard]] bool is_ours(std::span<const std::byte> frame) const noexcept;
+    /// The slot that carries this index now.
+    [[nodiscard]] Slot* carrier(std::uint8_t index) const noexcept;
     void give_up(Slot& slot) noexcept;
     void expire(Slot& slot) noexcept;
     void next_generation() noexcept;
-
-    /// What became of the last frame that carried an index, to tell late from foreign answers.
-    enum class Past : std::uint8_t { never, in_flight, answered, lost, quarantined };
 
     static constexpr std::size_t frames_per_receive = 64;  ///< bounds the cycle when the wire is flooded
 
@@ -127,6 +134,7 @@ private:
     std::unique_ptr<std::array<Slot, slot_count>> slots_;
     std::unique_ptr<Buffer> scratch_;
     std::array<Past, 256> past_{};
+    std::array<std::uint8_t, 256> slot_of_{};  ///< by first index; meaningful while a slot carries that index
     std::uint32_t generation_ = 0;
     ExchangeStatistics statistics_;
     Tap tap_ = nullptr;

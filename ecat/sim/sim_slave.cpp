@@ -12,13 +12,15 @@ namespace {
 
 constexpr std::uint16_t sm_watchdog_expired = 0x001B;
 
-ControllerSettings settings_of(const DeviceDescription& description) {
+ControllerSettings settings_of(const DeviceDescription& description, const SlaveOptions& options) {
     ControllerSettings settings;
     settings.fmmus = std::min<std::uint8_t>(description.fmmus, 16);
     settings.sync_managers = std::min<std::uint8_t>(description.sync_manager_count, 16);
     settings.process_ram = description.process_ram;
     settings.dc = description.dc.supported;
     settings.dc_64bit = description.dc.clock_64bit;
+    settings.lrw = options.lrw;
+    settings.bitwise_fmmu = options.bitwise_fmmu;
     return settings;
 }
 
@@ -33,7 +35,7 @@ SimSlave::SimSlave(std::shared_ptr<const DeviceDescription> description, std::un
     : description_(std::move(description)),
       model_(std::move(model)),
       options_(std::move(options)),
-      controller_(settings_of(*description_),
+      controller_(settings_of(*description_, options_),
                   EepromInterface{sii_image(*description_, options_.alias), options_.eeprom_read_time, options_.eeprom_write_time}),
       dictionary_(dictionary_source(*description_)),
       process_data_(*description_, dictionary_),

@@ -24,6 +24,7 @@ struct SlaveOptions {
     std::uint16_t alias = 0;                                    ///< SII word 4
     double drift_ppm = 0;                                       ///< of the DC quartz; positive: fast
     Duration clock_start{};                                     ///< local time at power-on
+    bool lrw = true, bitwise_fmmu = true;                       ///< what its controller can (ControllerSettings)
     Duration transition_time = std::chrono::microseconds{200};  ///< AL control written -> AL status changed
     Duration response_delay = std::chrono::microseconds{200};   ///< mailbox request taken -> answer ready
     Duration eeprom_read_time = std::chrono::microseconds{100};

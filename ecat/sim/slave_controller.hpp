@@ -28,6 +28,8 @@ struct ControllerSettings {
     std::uint8_t fmmus = 8, sync_managers = 8;  ///< 1..16 each
     std::uint16_t process_ram = 0x1000;         ///< bytes from 1000h
     bool dc = true, dc_64bit = true;
+    bool lrw = true;                ///< executes LRW; without, such a datagram passes unchanged
+    bool bitwise_fmmu = true;       ///< FMMUs map bits; without, their bit fields are ignored: whole bytes
     std::uint8_t sockets = 0b0011;  ///< bit p: port p exists; IN and OUT
 };
 

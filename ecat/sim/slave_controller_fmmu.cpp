@@ -40,6 +40,7 @@ void copy_bits(std::span<std::byte> target, std::uint64_t to, std::span<const st
 }  // namespace
 
 void SlaveController::exchange_logical(MutableDatagram& datagram, Instant at) noexcept {
+    if (datagram.command == Command::LRW && !settings_.lrw) return;
     const auto logical = load_le<std::uint32_t>(datagram.header, 2);
     bool was_written = false, was_read = false;
     // All writes take what the master sent, before any read replaces it.

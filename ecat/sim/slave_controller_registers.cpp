@@ -58,6 +58,7 @@ void SlaveController::power_on(Instant now, std::int64_t local, std::int32_t dri
     show_ports();
     write16(reg::features,
             static_cast<std::uint16_t>((settings_.dc ? feature::dc : 0) | (settings_.dc && settings_.dc_64bit ? feature::dc_64bit : 0) |
+                                       (settings_.lrw ? 0 : feature::no_lrw) | (settings_.bitwise_fmmu ? 0 : feature::fmmu_not_bitwise) |
                                        feature::separate_fcs_count));
     write16(reg::dl_control, 0x0001);
     write16(reg::al_control, 1);
@@ -145,6 +146,10 @@ bool SlaveController::write_registers(std::uint32_t address, std::span<const std
         for (std::uint32_t a = std::max(address, base); a < std::min<std::size_t>(address + in.size(), base + Fmmu::size); ++a)
             memory_[a] = in[a - address];
         fmmus_[n] = decode_fmmu(std::span<const std::byte>{memory_}.subspan(base).first<Fmmu::size>());
+        if (!settings_.bitwise_fmmu) {
+            fmmus_[n].logical_start_bit = fmmus_[n].physical_start_bit = 0;
+            fmmus_[n].logical_stop_bit = 7;
+        }
     }
     if (hits(reg::sync_manager, 16 * SyncManager::size)) {
         const std::uint32_t skip = address < reg::sync_manager ? reg::sync_manager - address : 0;

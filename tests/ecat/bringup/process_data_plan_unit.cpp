@@ -5,51 +5,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/ecat/bringup/plan_slaves.hpp"
+
 namespace taktwerk::ecat {
 namespace {
 
+using test::servo;
+using test::terminal;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
-
-/// SV33-E manual 7.1: 1702h is 19 bytes, 1B02h 25 bytes; entries at odd offsets behind 8-bit objects.
-PlanSlave servo(const std::string& name) {
-    PlanSlave slave;
-    slave.subject = name;
-    slave.sync_managers = {{SmUse::mailbox_out, 0x1000, 0x80, 0x26},
-                           {SmUse::mailbox_in, 0x1400, 0x80, 0x22},
-                           {SmUse::outputs, 0x1800, 0, 0x64},
-                           {SmUse::inputs, 0x1C00, 0, 0x20}};
-    slave.rx = {{0x1702,
-                 true,
-                 {{0x6040, 0, 16}, {0x607A, 0, 32}, {0x60FF, 0, 32}, {0x6071, 0, 16}, {0x6060, 0, 8}, {0x60B8, 0, 16}, {0x607F, 0, 32}}}};
-    slave.tx = {{0x1B02,
-                 true,
-                 {{0x603F, 0, 16},
-                  {0x6041, 0, 16},
-                  {0x6064, 0, 32},
-                  {0x6077, 0, 16},
-                  {0x6061, 0, 8},
-                  {0x60B9, 0, 16},
-                  {0x60BA, 0, 32},
-                  {0x60BC, 0, 32},
-                  {0x60FD, 0, 32}}}};
-    return slave;
-}
-
-/// 12 digital inputs in a 2-byte input manager, 4 outputs in a 1-byte output manager, no mailbox.
-PlanSlave terminal() {
-    PlanSlave slave;
-    slave.subject = "io";
-    slave.coe = false;
-    slave.sync_managers = {{SmUse::outputs, 0x0F00, 1, 0x44}, {SmUse::inputs, 0x1000, 2, 0x00}};
-    PdoDescription in{0x1A00, true, {}}, out{0x1600, true, {}};
-    for (std::uint8_t i = 1; i <= 12; ++i) in.entries.push_back({0x6000, i, 1});
-    for (std::uint8_t i = 1; i <= 4; ++i) out.entries.push_back({0x7000, i, 1});
-    slave.tx = {in};
-    slave.rx = {out};
-    return slave;
-}
 
 TEST(ProcessDataPlan, OneServoGetsItsManagersFmmusAndWorkingCounterThree) {
     const std::vector slaves{servo("x")};
@@ -141,15 +106,14 @@ TEST(ProcessDataPlan, GapsTakeRoomAndHaveNoName) {
 
 // 12 + 44 = 56 bytes a servo. First frame: 1498 - 20 (clock) - 14 (AL status) = 1464 = 26 * 56 + 8. Others: 1498 = 26 * 56 + 42.
 TEST(ProcessDataPlan, FramesAreSplitAtTheEthernetLimit) {
-    std::vector<PlanSlave> slaves;
-    for (int i = 0; i < 53; ++i) slaves.push_back(servo("s"));
-    const auto plan = plan_process_data(slaves);
-    ASSERT_TRUE(plan);
-    EXPECT_EQ(plan->frames, 3u);
-    EXPECT_EQ(plan->datagrams[25].frame, 0u);
-    EXPECT_EQ(plan->datagrams[26].frame, 1u);
-    EXPECT_EQ(plan->datagrams[51].frame, 1u);
-    EXPECT_EQ(plan->datagrams[52].frame, 2u);
+    const auto frames = [](std::size_t servos) {
+        const std::vector slaves(servos, servo("s"));
+        return plan_process_data(slaves).value().frames;
+    };
+    EXPECT_EQ(frames(26), 1u);
+    EXPECT_EQ(frames(27), 2u);
+    EXPECT_EQ(frames(52), 2u);
+    EXPECT_EQ(frames(53), 3u);
 }
 
 // A datagram has room for 1464 - 12 = 1452 bytes = 33 servos of 44.
@@ -176,7 +140,7 @@ TEST(ProcessDataPlan, ASlaveWithoutProcessDataHasNoDatagram) {
     const std::vector slaves{coupler};
     const auto plan = plan_process_data(slaves);
     ASSERT_TRUE(plan);
-    EXPECT_FALSE(plan->slaves[0].datagram);
+    EXPECT_FALSE(plan->slaves[0].unit);
     EXPECT_EQ(plan->frames, 1u);
 }
 
@@ -192,13 +156,10 @@ TEST(ProcessDataPlan, OverlappingBuffersAreRefused) {
     EXPECT_THAT(plan.error().text(), HasSubstr("SM2 (1BE0h..1C18h"));
 }
 
-TEST(ProcessDataPlan, TooFewFmmusAndMissingLrwAreRefused) {
+TEST(ProcessDataPlan, TooFewFmmusAreRefused) {
     auto slave = servo("x");
     slave.fmmus = 1;
     EXPECT_EQ(plan_process_data(std::vector{slave}).error().code, "bus.plan.too_many_fmmus");
-    slave = servo("x");
-    slave.lrw = false;
-    EXPECT_EQ(plan_process_data(std::vector{slave}).error().code, "bus.plan.no_lrw");
 }
 
 TEST(ProcessDataPlan, TerminalPdosThatDoNotFitTheirManagerAreRefused) {
