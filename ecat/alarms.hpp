@@ -16,6 +16,7 @@ inline constexpr AlarmId working_counter_wrong = 0x1010;
 inline constexpr AlarmId slave_lost = 0x1011;
 inline constexpr AlarmId slave_left_op = 0x1012;
 inline constexpr AlarmId dc_out_of_sync = 0x1020;
+inline constexpr AlarmId dc_not_locked = 0x1021;
 }  // namespace alarm
 
 inline constexpr std::array bus_alarms{
@@ -49,6 +50,10 @@ inline constexpr std::array bus_alarms{
     AlarmInfo{alarm::dc_out_of_sync, "dc_out_of_sync", "Distributed clocks differ by {a} ns", "分布式时钟偏差 {a} ns",
               "reference times are lost, or a slave's clock is defective", "check the reference slave and lost frames",
               ResetRule::self_clearing, Reaction::warn, "drives supervise SYNC0 themselves"},
+    AlarmInfo{alarm::dc_not_locked, "dc_not_locked", "The cycle is not locked to the reference clock ({a} ns off)",
+              "控制周期未与参考时钟同步（偏差 {a} ns）", "the reference clock does not answer or jumped, or the cycle runs unevenly",
+              "check the reference slave, lost frames and the cycle's lateness", ResetRule::self_clearing, Reaction::warn,
+              "outputs may miss SYNC0: drives supervise that themselves"},
 };
 
 }  // namespace taktwerk::ecat

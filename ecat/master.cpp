@@ -208,6 +208,7 @@ std::span<const std::byte> Master::inputs() const noexcept { return impl_->cycle
 std::span<std::byte> Master::outputs() noexcept { return impl_->cycle.outputs(); }
 const SlaveHealth& Master::health(std::size_t slave) const noexcept { return impl_->cycle.health(slave); }
 const BusStatistics& Master::statistics() const noexcept { return impl_->cycle.statistics(); }
+Duration Master::period_correction() const noexcept { return impl_->cycle.period_correction(); }
 Instant Master::outputs_effective(std::size_t slave, Instant send_time) const noexcept {
     return impl_->cycle.outputs_effective(slave, send_time);
 }
@@ -241,6 +242,9 @@ std::size_t Master::active_faults(std::span<AlarmFact> out) const noexcept {
     constexpr std::int64_t sync_limit_ns = 3000;  // SV33-E P0A.32 default
     if (seen.dc_difference_ns > sync_limit_ns)
         raise(alarm::dc_out_of_sync, AlarmSource::bus, 0, static_cast<double>(seen.dc_difference_ns));
+    const bool in_time = seen.dc_lock == DcLock::locked || seen.dc_lock == DcLock::coasting;
+    if (!in_time && impl_->bus->runs_sync0.load(std::memory_order_relaxed))
+        raise(alarm::dc_not_locked, AlarmSource::bus, 0, static_cast<double>(seen.dc_phase_error_ns));
     return count;
 }
 

@@ -11,8 +11,8 @@
 // Each cycle's FRMW answer tells how far the two are apart (BusStatistics::dc_offset_ns, dc_drift_ppb); SYNC0 instants and latch
 // times are given in machine time through that offset. SYNC0 is placed `sync0_shift` after send(), in the phase in which send()
 // was seen to be called during the bring-up; so run receive()/send() from start() on: they work in every phase, and send
-// process data as soon as it is planned. Whoever pumps first must later send at multiples of the cycle. A servo that keeps the
-// phase against the drift does not exist yet: on real slaves SYNC0 wanders through the cycle by dc_drift_ppb.
+// process data as soon as it is planned. Whoever pumps first must later send at multiples of the cycle. From then on a servo
+// keeps that phase against the drift: add period_correction() to each period.
 
 #include <cstddef>
 #include <cstdint>
@@ -29,6 +29,7 @@
 #include "core/result.hpp"
 #include "core/time.hpp"
 #include "ecat/bus_config.hpp"
+#include "ecat/dc/cycle_servo.hpp"
 #include "ecat/transport/transport.hpp"
 #include "ecat/wire/al_status.hpp"
 
@@ -51,11 +52,14 @@ struct BusStatistics {
     std::uint64_t frames_foreign = 0;  ///< EtherCAT frames of another master on the cable
     std::uint64_t working_counter_errors = 0, send_errors = 0;
     std::uint32_t lost_in_a_row = 0;
-    std::int64_t dc_difference_ns = 0;  ///< worst 092Ch seen in the last service round
-    Duration round_trip{};              ///< of the last answered cyclic frame
-    std::int64_t dc_offset_ns = 0;      ///< reference clock minus machine time, smoothed; 0 without DC
-    std::int64_t dc_drift_ppb = 0;      ///< how fast dc_offset_ns changes, ns per s: what a servo will have to follow
-    std::uint64_t dc_rejected = 0;      ///< reference times that were missing or implausible
+    std::int64_t dc_difference_ns = 0;   ///< worst 092Ch seen in the last service round
+    Duration round_trip{};               ///< of the last answered cyclic frame
+    std::int64_t dc_offset_ns = 0;       ///< reference clock minus machine time, smoothed; 0 without DC
+    std::int64_t dc_drift_ppb = 0;       ///< how fast dc_offset_ns changes, ns per s: what the servo follows
+    std::int64_t dc_phase_error_ns = 0;  ///< how much later than it should the last frame left, in the reference's time
+    Duration dc_correction{};            ///< of the period that follows: what the servo asks for
+    DcLock dc_lock = DcLock::none;       ///< of the master's cycle to the reference clock
+    std::uint64_t dc_rejected = 0;       ///< reference times that were missing or implausible
 };
 
 /// An SDO request in flight. Obtained from upload()/download(); polled from the service side.
@@ -110,6 +114,9 @@ public:
     [[nodiscard]] std::span<std::byte> outputs() noexcept;
     [[nodiscard]] const SlaveHealth& health(std::size_t slave) const noexcept;
     [[nodiscard]] const BusStatistics& statistics() const noexcept;
+    /// After send(): what has to be added to the period before the next cycle, so that the master's cycle stays locked to the
+    /// reference clock (ecat/dc/cycle_servo.hpp). 0 without DC. At most a hundredth of the cycle.
+    [[nodiscard]] Duration period_correction() const noexcept;
     /// The conditions of alarms() that hold now, at most out.size(). Returns how many.
     std::size_t active_faults(std::span<AlarmFact> out) const noexcept;
     /// When the drives will apply the outputs that the next send() carries: the next SYNC0, or the send itself without DC.

@@ -9,16 +9,9 @@ namespace taktwerk::ecat {
 
 namespace {
 
-constexpr std::int64_t phase_smoothing = 16;
 constexpr std::size_t bringup_datagrams = AcyclicChannel::max_datagrams_a_frame;  // nobody to disturb before OP
 
 std::int64_t nanoseconds(Instant t) noexcept { return t.time_since_epoch().count(); }
-
-/// `value` in -period/2 .. period/2.
-std::int64_t centred(std::int64_t value, std::int64_t period) noexcept {
-    const std::int64_t into = ((value % period) + period) % period;
-    return into > period / 2 ? into - period : into;
-}
 
 }  // namespace
 
@@ -33,14 +26,14 @@ CyclePlan::CyclePlan(const Bus& bus)
     for (const auto& slave : bus.slaves) {
         slaves.push_back(slave.get());
         period.push_back(exchange_period(bus.config, *slave->config));
-        if (slave->dc) ++clock_wkc;
+        delay.push_back(slave->dc_delay);
         ++state_wkc;
     }
     if (bus.reference) reference = bus.slaves[*bus.reference]->found.station;
 }
 
 ProcessDataCycle::ProcessDataCycle(Transport& transport, const BusConfig& config)
-    : transport_(transport), config_(config), exchange_(transport), channel_(exchange_) {}
+    : transport_(transport), config_(config), exchange_(transport), channel_(exchange_), clock_(config.cycle) {}
 
 void ProcessDataCycle::adopt(std::unique_ptr<CyclePlan> plan) {
     plans_.push_back(std::move(plan));
@@ -57,7 +50,12 @@ void ProcessDataCycle::copy_statistics() noexcept {
     statistics_.frames_rejected = s.rejected + s.duplicate;
     statistics_.frames_foreign = s.foreign;
     statistics_.send_errors = s.send_errors;
-    statistics_.dc_rejected = clock_.rejected();
+    statistics_.dc_rejected = clock_.reference().rejected();
+    statistics_.dc_offset_ns = clock_.offset().value_or(0);
+    statistics_.dc_drift_ppb = clock_.reference().drift_ppb();
+    statistics_.dc_lock = clock_.lock();
+    statistics_.dc_phase_error_ns = clock_.phase_error();
+    statistics_.dc_correction = clock_.correction();
     if (const auto* link = link_.load(std::memory_order_acquire))
         statistics_.dc_difference_ns = link->dc_difference_ns.load(std::memory_order_relaxed);
 }
@@ -109,8 +107,8 @@ void ProcessDataCycle::collect_frames(CyclePlan& cycle) noexcept {
 void ProcessDataCycle::collect_first_frame(CyclePlan& cycle, SlotId slot) noexcept {
     const bool answered = exchange_.state(slot) == SlotState::answered;
     if (cycle.reference) {
-        if (answered) take_clock(cycle, slot);
-        else clock_.miss();
+        if (answered) clock_.answer(exchange_.data(slot, 0), exchange_.wkc(slot, 0), exchange_.sent_at(slot));
+        else clock_.no_answer();
     }
     auto* link = link_.load(std::memory_order_acquire);
     if (!answered || link == nullptr) return;
@@ -180,37 +178,13 @@ std::int64_t ProcessDataCycle::sync0_of(const CyclePlan& cycle, std::size_t slav
     return clock_.offset() ? cycle.slaves[slave]->sync0_start.load(std::memory_order_relaxed) : 0;
 }
 
-/// Only a time that the reference itself put in counts (exact working counter): a slave without its station address leaves the
-/// master's own time in the datagram.
-void ProcessDataCycle::take_clock(const CyclePlan& cycle, SlotId slot) noexcept {
-    const auto data = exchange_.data(slot, 0);
-    if (data.size() != 8 || exchange_.wkc(slot, 0) != cycle.clock_wkc) {
-        clock_.miss();
-        return;
-    }
-    if (!clock_.take(exchange_.sent_at(slot), load_le<std::int64_t>(data))) return;
-    statistics_.dc_offset_ns = *clock_.offset();
-    statistics_.dc_drift_ppb = clock_.drift_ppb();
-    if (auto* link = link_.load(std::memory_order_acquire)) {
-        link->dc_offset_ns.store(*clock_.offset(), std::memory_order_relaxed);
-        link->dc_samples.store(clock_.samples(), std::memory_order_release);
-    }
-}
-
-void ProcessDataCycle::update_phase(Instant now) noexcept {
-    const std::int64_t period = config_.cycle.count();
-    const std::int64_t t = nanoseconds(now);
-    phase_ = phase_ ? *phase_ + centred(t - *phase_, period) / phase_smoothing : ((t % period) + period) % period;
-}
-
 void ProcessDataCycle::send(Instant now) noexcept {
-    update_phase(now);
     auto* link = link_.load(std::memory_order_acquire);
+    clock_.steer(now, link);
     auto* cycle = running_.load(std::memory_order_acquire);
     if (cycle != nullptr) {
         send_frames(*cycle, now);
         if (link != nullptr) {
-            link->send_phase_ns.store(*phase_, std::memory_order_relaxed);
             link->first_send_ns.store(nanoseconds(now) - static_cast<std::int64_t>(cycle->number - 1) * config_.cycle.count(),
                                       std::memory_order_relaxed);
             link->cycles.store(link->cycles.load(std::memory_order_relaxed) + 1, std::memory_order_release);
@@ -241,10 +215,9 @@ void ProcessDataCycle::send_frames(CyclePlan& cycle, Instant now) noexcept {
 void ProcessDataCycle::add_clock(const CyclePlan& cycle, SlotId slot, Instant now) noexcept {
     const auto* link = link_.load(std::memory_order_acquire);
     const bool hold = link != nullptr && link->hold_clock.load(std::memory_order_relaxed);
-    const auto clock =
-        exchange_.add(slot, hold ? Command::FPRD : Command::FRMW, Address::physical(*cycle.reference, reg::dc_system_time), 8);
-    // Should the reference be away, the others get the master's idea of its time instead of 0.
-    if (clock) store_le(clock->data, 0, nanoseconds(now) + clock_.offset().value_or(0));
+    const auto request = clock_.request(now, hold);
+    const auto clock = exchange_.add(slot, request.command, Address::physical(*cycle.reference, reg::dc_system_time), 8);
+    if (clock) store_le(clock->data, 0, request.data);
 }
 
 void ProcessDataCycle::add_unit(CyclePlan& cycle, const UnitPlan& unit, FramePacker& packer) noexcept {
@@ -292,8 +265,9 @@ Instant ProcessDataCycle::outputs_effective(std::size_t slave, Instant send_time
     if (const auto unit = cycle->plan.slaves[slave].unit) send_time += cycle->plan.units[*unit].cycles_until(cycle->number) * config_.cycle;
     const std::int64_t start = sync0_of(*cycle, slave);
     if (start == 0) return send_time;
-    const std::int64_t arrival = nanoseconds(send_time) + statistics_.round_trip.count() / 2 + *clock_.offset();
-    return Instant{Duration{next_sync0(arrival + 1, start, cycle->period[slave].count()) - *clock_.offset()}};
+    const std::int64_t offset = clock_.offset_at(send_time);
+    const std::int64_t arrival = nanoseconds(send_time) + cycle->delay[slave] + offset;
+    return Instant{Duration{next_sync0(arrival + 1, start, cycle->period[slave].count()) - offset}};
 }
 
 }  // namespace taktwerk::ecat

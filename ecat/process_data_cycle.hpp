@@ -11,7 +11,7 @@
 
 #include "ecat/bringup/bus.hpp"
 #include "ecat/bringup/frame_schedule.hpp"
-#include "ecat/dc/reference_clock.hpp"
+#include "ecat/cycle_clock.hpp"
 #include "ecat/exchange/acyclic_channel.hpp"
 #include "ecat/exchange/exchange.hpp"
 #include "ecat/master.hpp"
@@ -26,7 +26,8 @@ struct CyclePlan {
     std::vector<const BusSlave*> slaves;
     std::vector<Duration> period;            ///< of each slave's sync unit
     std::optional<std::uint16_t> reference;  ///< station of the reference clock
-    std::uint16_t clock_wkc = 0, state_wkc = 0;
+    std::vector<std::int64_t> delay;         ///< ns from the reference to each slave
+    std::uint16_t state_wkc = 0;
 
     /// Where a datagram is under way.
     struct Place {
@@ -67,6 +68,7 @@ public:
     [[nodiscard]] const SlaveHealth& health(std::size_t slave) const noexcept;
     [[nodiscard]] const BusStatistics& statistics() const noexcept { return statistics_; }
     [[nodiscard]] Instant outputs_effective(std::size_t slave, Instant send_time) const noexcept;
+    [[nodiscard]] Duration period_correction() const noexcept { return clock_.correction(); }
     [[nodiscard]] bool link_up() const noexcept { return transport_.link_up(); }
     void set_tap(Exchange::Tap tap, void* context) noexcept { exchange_.set_tap(tap, context); }
 
@@ -76,20 +78,19 @@ private:
     /// All datagrams of the unit or nothing.
     void take_unit(CyclePlan& cycle, const UnitPlan& unit) noexcept;
     [[nodiscard]] bool answered_exactly(const CyclePlan& cycle, const UnitPlan& unit) noexcept;
-    void take_clock(const CyclePlan& cycle, SlotId slot) noexcept;
     void send_frames(CyclePlan& cycle, Instant now) noexcept;
     void add_clock(const CyclePlan& cycle, SlotId slot, Instant now) noexcept;
     void add_unit(CyclePlan& cycle, const UnitPlan& unit, FramePacker& packer) noexcept;
     void give_up_frames(CyclePlan& cycle) noexcept;
     /// SYNC0 of the slave, as machine time follows from it; 0: does not run, or the reference is not known yet.
     [[nodiscard]] std::int64_t sync0_of(const CyclePlan& cycle, std::size_t slave) const noexcept;
-    void update_phase(Instant now) noexcept;
     void copy_statistics() noexcept;
 
     Transport& transport_;
     const BusConfig& config_;
     Exchange exchange_;
     AcyclicChannel channel_;
+    CycleClock clock_;
     std::vector<std::unique_ptr<CyclePlan>> plans_;  ///< service side owns; the cycle sees the two pointers below
     std::atomic<CyclePlan*> running_{nullptr};
     std::atomic<CyclePlan*> latest_{nullptr};
@@ -101,8 +102,6 @@ private:
     // Of the cycle.
     bool all_good_ = true;
     bool any_lost_ = false;
-    ReferenceClock clock_;
-    std::optional<std::int64_t> phase_;
 };
 
 }  // namespace taktwerk::ecat

@@ -31,9 +31,10 @@ void RealtimeRunner::cycle_thread() {
     config.period = machine_.config().cycle;
     CyclicThread loop{clock_, config};
     loop.run(
-        [this](const CycleTiming& timing) {
+        [this, &loop](const CycleTiming& timing) {
             if (world_) world_->apply_events(timing.scheduled);
             machine_.cycle({timing.scheduled, timing.woken, static_cast<std::uint32_t>(timing.missed)});
+            loop.shift_grid(machine_.bus().period_correction());
         },
         stop_);
     counters_ = loop.counters();

@@ -8,7 +8,7 @@ VirtualRunner::VirtualRunner(Machine& machine, World& world, VirtualClock& clock
     : machine_(machine), world_(world), clock_(clock), period_(machine.config().cycle) {}
 
 void VirtualRunner::one_cycle() {
-    clock_.advance(period_);
+    clock_.advance(period_ + machine_.bus().period_correction());
     const auto now = clock_.now();
     world_.apply_events(now);
     machine_.cycle({now, now, 0});

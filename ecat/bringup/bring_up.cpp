@@ -84,14 +84,18 @@ Script<Result<void>> climb(Bus& bus) {
     co_await pause(3 * bus.config.cycle);  // lets a running cycle show itself
     done = co_await await_clocks(bus);
     if (!done) co_return done;
-    done = co_await for_each_slave(bus, &start_sync0);
+    done = co_await for_each_slave(bus, &start_sync_before_safeop);
     if (!done) co_return done;
 
     bus.phase.store(BusPhase::safeop);
     done = co_await for_each_slave(bus, &to_safeop);
     if (!done) co_return done;
     bus.link.supervise.store(true);
+    done = co_await for_each_slave(bus, &start_sync_in_safeop);
+    if (!done) co_return done;
     done = co_await await_valid_outputs(bus);
+    if (!done) co_return done;
+    done = co_await await_lock(bus);
     if (!done) co_return done;
     done = co_await for_each_slave(bus, &write_startup_op);
     if (!done) co_return done;

@@ -19,6 +19,7 @@
 #include "ecat/bringup/refusal.hpp"
 #include "ecat/bus_config.hpp"
 #include "ecat/coe/sdo_client.hpp"
+#include "ecat/dc/cycle_servo.hpp"
 #include "ecat/script/datagram_port.hpp"
 #include "ecat/topology/topology.hpp"
 #include "ecat/wire/al_status.hpp"
@@ -58,7 +59,9 @@ struct CycleLink {
     std::atomic<std::int64_t> send_phase_ns{0};    ///< of send(), modulo the bus cycle, smoothed
     std::atomic<std::int64_t> first_send_ns{0};    ///< when send() was cycle 0 of the plan, had no cycle been missed since
     std::atomic<std::int64_t> dc_offset_ns{0};     ///< reference clock minus machine time, at sending; smoothed
-    std::atomic<std::uint32_t> dc_samples{0};      ///< 0: dc_offset_ns is not measured yet
+    std::atomic<bool> dc_settled{false};           ///< dc_offset_ns and its drift are known well enough to act on
+    std::atomic<std::int64_t> dc_phase_error_ns{0};  ///< of the servo
+    std::atomic<DcLock> dc_lock{DcLock::none};
     std::atomic<std::uint32_t> states_seen{0};     ///< OR of all AL states (low 5 bits), of the last BRD
     std::atomic<std::uint16_t> worst_datagram{0};  ///< a datagram whose working counter was wrong last
     std::atomic<std::uint16_t> worst_wkc{0};
@@ -66,6 +69,7 @@ struct CycleLink {
     // Written by the scripts.
     std::atomic<bool> supervise{false};             ///< slaves are in SAFEOP or above: wrong working counters count
     std::atomic<std::int64_t> dc_difference_ns{0};  ///< worst 092Ch
+    std::atomic<std::int64_t> dc_phase_ns{-1};      ///< system time of send(), modulo the cycle, that the servo keeps; -1: not fixed
     std::atomic<bool> hold_clock{false};            ///< the reference is being set: read its time, give it to nobody
 };
 
@@ -119,6 +123,7 @@ struct Bus {
     ProcessDataPlan plan;
     std::optional<std::size_t> reference;  ///< the slave whose clock is the bus' clock
     std::optional<std::int64_t> dc_phase;  ///< system time of a cycle start, modulo the cycle; fixed at the first SYNC0
+    std::atomic<bool> runs_sync0{false};   ///< some slave does: the cycle has to be locked to the reference
     std::atomic<BusPhase> phase{BusPhase::idle};
     std::string progress;
     /// Hands the plan to the cycle: from now on process data is exchanged.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "ecat/dc/propagation.hpp"
 
@@ -11,6 +12,8 @@ namespace taktwerk::ecat {
 namespace {
 
 constexpr Duration settle_time = std::chrono::seconds{10};
+constexpr Duration lock_patience = std::chrono::seconds{5};
+constexpr std::int64_t tolerable_phase = 8;  ///< an eighth of the cycle: the way a frame has to go before SYNC0 is longer
 constexpr Duration least_margin = std::chrono::milliseconds{100};
 constexpr std::int64_t margin_cycles = 50;  ///< six register accesses, each of two or three cycles, and reserve
 constexpr unsigned frames_per_round = 8;    ///< reference times sent between two looks at 092Ch, while no cycle runs
@@ -78,6 +81,14 @@ Result<void> learn_topology(Bus& bus) {
     return {};
 }
 
+/// From now on the cycle keeps the phase it has now, in system time.
+void fix_phase(Bus& bus) {
+    if (bus.dc_phase) return;
+    const std::int64_t cycle = bus.config.cycle.count();
+    bus.dc_phase = (((bus.link.send_phase_ns.load() + bus.link.dc_offset_ns.load()) % cycle) + cycle) % cycle;
+    bus.link.dc_phase_ns.store(*bus.dc_phase);
+}
+
 Script<Result<void>> write_clock(Bus& bus, BusSlave& slave) {
     const Reply delay = co_await bus.port.fpwr(slave.found.station, reg::dc_system_delay, slave.dc_delay);
     if (!delay.ok()) co_return unanswered(slave.subject, "its propagation delay (0928h)", delay);
@@ -98,6 +109,7 @@ Duration sync0_shift(const BusConfig& bus, const SlaveConfig& slave) noexcept {
 Script<Result<void>> setup_clocks(Bus& bus) {
     bus.reference.reset();
     bus.dc_phase.reset();
+    bus.link.dc_phase_ns.store(-1);
     const std::vector<BusSlave*> clocks = slaves_with_clock(bus);
     if (clocks.empty()) co_return Result<void>{};
     bus.progress = fmt::format("measuring the clocks of {} slaves", clocks.size());
@@ -172,8 +184,11 @@ Script<Result<void>> await_clocks(Bus& bus) {
         }
         bus.link.dc_difference_ns.store(worst_ns);
         const Instant now = co_await time();
-        const bool measured = bus.link.cycles.load() == 0 || bus.link.dc_samples.load() > 0;
-        if (measured && worst_ns <= clock_limit.count()) co_return Result<void>{};
+        const bool measured = bus.link.cycles.load() == 0 || bus.link.dc_settled.load();
+        if (measured && worst_ns <= clock_limit.count()) {
+            fix_phase(bus);
+            co_return Result<void>{};
+        }
         if (now - started > settle_time) {
             if (worst == nullptr)
                 co_return Error{"bus.clock", bus.slaves[*bus.reference]->subject,
@@ -185,6 +200,39 @@ Script<Result<void>> await_clocks(Bus& bus) {
                             "check that the cycle runs evenly; a clock that drifts by more than 100 ppm is defective"};
         }
     }
+}
+
+Script<Result<void>> await_lock(Bus& bus) {
+    const bool needed = std::any_of(bus.slaves.begin(), bus.slaves.end(), [](const auto& slave) { return slave->config->dc && slave->dc; });
+    bus.runs_sync0.store(bus.reference && needed);
+    if (!bus.reference || !needed) co_return Result<void>{};
+    bus.progress = "waiting for the cycle to lock to the reference clock";
+    const Instant started = co_await time();
+    for (;;) {
+        const DcLock lock = bus.link.dc_lock.load();
+        if (lock == DcLock::locked || lock == DcLock::coasting) co_return Result<void>{};
+        const Instant now = co_await pause(bus.config.cycle);
+        if (now - started < lock_patience) continue;
+        const std::int64_t error = bus.link.dc_phase_error_ns.load();
+        const std::string what = fmt::format("the master's cycle does not lock to it: {}, {} ns off in phase", name(lock), error);
+        const bool known = lock == DcLock::acquiring;
+        if (known && std::abs(error) <= bus.config.cycle.count() / tolerable_phase) {
+            bus.remember(bus.slaves[*bus.reference]->subject + ": " + what);  // the alarm dc_not_locked stands; frames are in time
+            co_return Result<void>{};
+        }
+        co_return Error{"bus.dc_not_locked", bus.slaves[*bus.reference]->subject, what,
+                        "the cycle runs unevenly or ignores the correction: check its lateness (real-time priority, CPU isolation)"};
+    }
+}
+
+Script<Result<void>> start_sync_before_safeop(Bus& bus, BusSlave& slave) {
+    if (slave.config->sync_start == SyncStart::before_safeop) co_return co_await start_sync0(bus, slave);
+    co_return Result<void>{};
+}
+
+Script<Result<void>> start_sync_in_safeop(Bus& bus, BusSlave& slave) {
+    if (slave.config->sync_start == SyncStart::in_safeop) co_return co_await start_sync0(bus, slave);
+    co_return Result<void>{};
 }
 
 Script<Result<void>> start_sync0(Bus& bus, BusSlave& slave) {
@@ -201,16 +249,17 @@ Script<Result<void>> start_sync0(Bus& bus, BusSlave& slave) {
         const Reply off = co_await bus.port.fpwr(station, reg::dc_activation, std::uint8_t{0});
         if (!off.ok()) co_return unanswered(slave.subject, "SYNC0 activation (0981h)", off);
         co_await bus.port.fpwr(station, reg::dc_cyclic_control, std::uint8_t{0});
-        if (!bus.dc_phase) bus.dc_phase = (((bus.link.send_phase_ns.load() + bus.link.dc_offset_ns.load()) % cycle) + cycle) % cycle;
+        fix_phase(bus);
         const Reply now = co_await bus.port.fprd(station, reg::dc_system_time, 8);
         if (!now.ok()) co_return unanswered(slave.subject, "its system time (0910h)", now);
         const std::uint64_t start =
             sync0_start(now.u64(), margin, sync0_period, unit_phase(bus, slave, *bus.dc_phase), sync0_shift(bus.config, *slave.config));
         const Reply first = co_await bus.port.fpwr(station, reg::dc_start_time, start);
         const Reply period = co_await bus.port.fpwr(station, reg::dc_sync0_cycle, static_cast<std::uint32_t>(sync0_period.count()));
-        const Reply sync1 = co_await bus.port.fpwr(station, reg::dc_sync1_cycle, std::uint32_t{0});
-        const Reply on =
-            co_await bus.port.fpwr(station, reg::dc_activation, static_cast<std::uint8_t>(dc_activate::cyclic | dc_activate::sync0));
+        const auto behind_sync0 = static_cast<std::uint32_t>(slave.config->sync1.value_or(Duration{}).count());
+        const Reply sync1 = co_await bus.port.fpwr(station, reg::dc_sync1_cycle, behind_sync0);
+        const auto units = dc_activate::cyclic | dc_activate::sync0 | (slave.config->sync1 ? dc_activate::sync1 : 0);
+        const Reply on = co_await bus.port.fpwr(station, reg::dc_activation, static_cast<std::uint8_t>(units));
         if (!first.ok() || !period.ok() || !sync1.ok() || !on.ok())
             co_return unanswered(slave.subject, "SYNC0 (0990h, 09A0h, 0981h)", on.ok() ? first : on);
         const Reply after = co_await bus.port.fprd(station, reg::dc_system_time, 8);

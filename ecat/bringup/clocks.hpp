@@ -18,7 +18,14 @@ inline constexpr Duration clock_limit = std::chrono::microseconds{1};
 [[nodiscard]] Script<Result<void>> restore_clock(Bus& bus, BusSlave& slave);
 /// Until 092Ch of every slave is inside clock_limit. Sends the reference time itself while the cycle does not.
 [[nodiscard]] Script<Result<void>> await_clocks(Bus& bus);
-/// Start, cycle and activation of SYNC0, in the phase of the master's send(). Nothing for slaves without `dc`.
+/// Until the master's cycle is locked to the reference. After five seconds a phase error below an eighth of the cycle is let pass
+/// (the alarm dc_not_locked stands then); Error bus.dc_not_locked otherwise. Returns at once where no slave runs SYNC0.
+[[nodiscard]] Script<Result<void>> await_lock(Bus& bus);
+/// start_sync0() for those slaves that are configured for this moment.
+[[nodiscard]] Script<Result<void>> start_sync_before_safeop(Bus& bus, BusSlave& slave);
+[[nodiscard]] Script<Result<void>> start_sync_in_safeop(Bus& bus, BusSlave& slave);
+/// Start, cycle and activation of SYNC0 (and SYNC1 behind it), in the phase of the master's send(), from the slave's clock as just
+/// read. Nothing for slaves without `dc`.
 [[nodiscard]] Script<Result<void>> start_sync0(Bus& bus, BusSlave& slave);
 [[nodiscard]] Script<Result<void>> stop_sync0(Bus& bus, BusSlave& slave);
 

@@ -77,9 +77,11 @@ Script<Result<void>> recover(Bus& bus, BusSlave& slave) {
         }
         done = co_await program_process_data(bus, slave);
         if (!done) co_return done;
-        done = co_await start_sync0(bus, slave);
+        done = co_await start_sync_before_safeop(bus, slave);
         if (!done) co_return done;
         done = co_await set_state(bus, slave, AlState::safeop);
+        if (!done) co_return done;
+        done = co_await start_sync_in_safeop(bus, slave);
         if (!done) co_return done;
     } else if (state == AlState::safeop) {
         done = co_await set_state(bus, slave, AlState::safeop);  // acknowledges the error

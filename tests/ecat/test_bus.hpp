@@ -132,7 +132,7 @@ public:
     }
     /// One cycle as the runtime runs it.
     void cycle_once() {
-        now += config.cycle;
+        now += config.cycle + (locks ? master->period_correction() : Duration{0});
         master->receive(now);
         if (on_cycle) on_cycle();
         master->send(now);
@@ -162,6 +162,7 @@ public:
     LoopbackTransport transport;
     std::unique_ptr<Master> master;
     std::function<void()> on_cycle;
+    bool locks = true;  ///< the caller's cycle follows the reference clock, as the runtime's does
     Instant now{};
 };
 
