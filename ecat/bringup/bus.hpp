@@ -54,12 +54,12 @@ struct MailboxBits {
 /// Numbers between the cycle and the scripts.
 struct CycleLink {
     // Written by the cycle.
-    std::atomic<std::uint64_t> cycles{0};          ///< process data sent
-    std::atomic<std::uint32_t> good_in_a_row{0};   ///< cycles in which every datagram had its working counter
-    std::atomic<std::int64_t> send_phase_ns{0};    ///< of send(), modulo the bus cycle, smoothed
-    std::atomic<std::int64_t> first_send_ns{0};    ///< when send() was cycle 0 of the plan, had no cycle been missed since
-    std::atomic<std::int64_t> dc_offset_ns{0};     ///< reference clock minus machine time, at sending; smoothed
-    std::atomic<bool> dc_settled{false};           ///< dc_offset_ns and its drift are known well enough to act on
+    std::atomic<std::uint64_t> cycles{0};            ///< process data sent
+    std::atomic<std::uint32_t> good_in_a_row{0};     ///< cycles in which every datagram had its working counter
+    std::atomic<std::int64_t> send_phase_ns{0};      ///< of send(), modulo the bus cycle, smoothed
+    std::atomic<std::int64_t> first_send_ns{0};      ///< when send() was cycle 0 of the plan, had no cycle been missed since
+    std::atomic<std::int64_t> dc_offset_ns{0};       ///< reference clock minus machine time, at sending; smoothed
+    std::atomic<bool> dc_settled{false};             ///< dc_offset_ns and its drift are known well enough to act on
     std::atomic<std::int64_t> dc_phase_error_ns{0};  ///< of the servo
     std::atomic<DcLock> dc_lock{DcLock::none};
     std::atomic<std::uint32_t> states_seen{0};     ///< OR of all AL states (low 5 bits), of the last BRD

@@ -241,7 +241,6 @@ Script<Result<void>> start_sync0(Bus& bus, BusSlave& slave) {
         co_return Error{"bus.no_clock", slave.subject, "SYNC0 is configured, but its controller has no distributed clock",
                         "set dc: false for this slave"};
     bus.note(slave, "starting SYNC0");
-    const std::int64_t cycle = bus.config.cycle.count();
     const Duration sync0_period = exchange_period(bus.config, *slave.config);
     const std::uint16_t station = slave.found.station;
     Duration margin = std::max(least_margin, margin_cycles * bus.config.cycle);
