@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "config/codecs.hpp"
+#include "config/device_tables.hpp"
 
 namespace taktwerk::config {
 
@@ -12,159 +13,10 @@ using axes::DriveAlarmText;
 using axes::DriveMode;
 using axes::DriveProfile;
 using axes::Quirk;
-using ecat::Access;
 using ecat::DeviceDescription;
 using ecat::Mappable;
-using ecat::ObjectEntry;
-using ecat::SmUse;
 
-constexpr std::int64_t u8 = 0xFF, u16 = 0xFFFF, u32 = 0xFFFFFFFF;
-
-Table<ecat::Identity> identity_pair_table() {
-    using I = ecat::Identity;
-    return {"identity.also_accepted",
-            "Another identity of the same drive.",
-            {required(field("vendor", &I::vendor, integer<std::uint32_t>(0, u32), "vendor id")),
-             required(field("product", &I::product, integer<std::uint32_t>(0, u32), "product code"))},
-            {},
-            {}};
-}
-
-Table<DeviceDescription> identity_table() {
-    using D = DeviceDescription;
-    return {
-        "identity",
-        "Who the slave says it is (object 1018h, SII words 8 to 15).",
-        {
-            field("device_name", &D::device_name, text(), "object 1008h"),
-            required(field_at<D>(
-                "vendor", [](D & d) -> auto& { return d.identity.vendor; }, integer<std::uint32_t>(0, u32), "vendor id, compared exactly")),
-            required(field_at<D>(
-                "product", [](D & d) -> auto& { return d.identity.product; }, integer<std::uint32_t>(0, u32),
-                "product code, compared exactly")),
-            field_at<D>(
-                "revision", [](D & d) -> auto& { return d.identity.revision; }, integer<std::uint32_t>(0, u32), "revision"),
-            field("revision_exact", &D::revision_exact, boolean(), "also the revision must be equal"),
-            field("also_accepted", &D::also_accepted, list(section(identity_pair_table())),
-                  "further vendor and product pairs, where manuals contradict themselves"),
-        },
-        {},
-        {}};
-}
-
-Table<ecat::MailboxDescription> mailbox_table() {
-    using M = ecat::MailboxDescription;
-    return {"mailbox",
-            "Acyclic services. Left out for terminals that have none.",
-            {
-                field("coe", &M::coe, boolean(), "CANopen over EtherCAT"),
-                field("complete_access", &M::complete_access, boolean(), "whole objects in one SDO"),
-                field("sdo_info", &M::sdo_info, boolean(), "the dictionary can be listed"),
-                field("max_pending", &M::max_pending, integer<std::uint8_t>(1, 255), "messages that the slave buffers"),
-            },
-            {},
-            {}};
-}
-
-Table<ecat::SyncManagerDescription> sync_manager_table() {
-    using S = ecat::SyncManagerDescription;
-    return {"sync_managers",
-            "One sync manager, in the order of the controller.",
-            {
-                required(field("use", &S::use,
-                               choice<SmUse>({{"mailbox_out", SmUse::mailbox_out},
-                                              {"mailbox_in", SmUse::mailbox_in},
-                                              {"outputs", SmUse::outputs},
-                                              {"inputs", SmUse::inputs}}),
-                               "what goes through it")),
-                required(field("start", &S::start, integer<std::uint16_t>(0x1000, u16), "address in the controller's memory")),
-                with_default(field("size", &S::size, integer<std::uint16_t>(1, u16), "bytes of a mailbox"), "from the PDOs"),
-                required(field("control", &S::control, integer<std::uint8_t>(0, u8), "control byte: usually 26h, 22h, 64h, 20h")),
-            },
-            {},
-            {}};
-}
-
-/// An object in a PDO; its bits are looked up later unless given.
-Codec<ecat::PdoEntry> pdo_entry() {
-    Codec<ecat::PdoEntry> c;
-    const auto address = object_address();
-    c.shape = address.shape;
-    c.read = [read = address.read](Reader& reader, const Node& node, ecat::PdoEntry& out) {
-        ObjectAddress value;
-        if (!read(reader, node, value)) return false;
-        out = {value.index, value.sub, value.bits};
-        return true;
-    };
-    return c;
-}
-
-Table<ecat::PdoDescription> pdo_table() {
-    using P = ecat::PdoDescription;
-    return {"pdo.<direction>.available",
-            "One PDO of the slave.",
-            {
-                required(field("pdo", &P::index, integer<std::uint16_t>(0x1600, 0x1BFF), "its mapping object: 16xxh, 17xxh, 1Axxh, 1Bxxh")),
-                field("fixed", &P::fixed, boolean(), "its mapping cannot be changed"),
-                required(field("objects", &P::entries, list(pdo_entry()),
-                               "what it carries, in order; `60FDh/16` where it maps fewer bits than the object has")),
-            },
-            {},
-            {}};
-}
-
-struct PdoDirection {
-    ecat::PdoRules rules;
-    std::vector<ecat::PdoDescription> available;
-    std::vector<std::uint16_t> assigned;
-};
-
-Table<PdoDirection> pdo_direction_table() {
-    using P = PdoDirection;
-    return {
-        "pdo.<direction>",
-        "PDOs of one direction (rx: to the drive, tx: from it) and what may be changed.",
-        {
-            field_at<P>(
-                "max_assigned", [](P & p) -> auto& { return p.rules.max_assigned; }, integer<std::uint8_t>(1, 32), "PDOs assigned at once"),
-            field_at<P>(
-                "max_entries", [](P & p) -> auto& { return p.rules.max_entries; }, integer<std::uint8_t>(1, 254), "objects in one PDO"),
-            field_at<P>(
-                "max_bytes", [](P & p) -> auto& { return p.rules.max_bytes; }, integer<std::uint16_t>(1, 1486), "bytes of the direction"),
-            required(field("assigned", &P::assigned, list(integer<std::uint16_t>(0x1600, 0x1BFF)), "factory assignment (1C12h or 1C13h)")),
-            required(field("available", &P::available, list(section(pdo_table())), "all PDOs")),
-        },
-        {},
-        {}};
-}
-
-template <class RulesOf, class PdosOf, class AssignedOf>
-Field<DeviceDescription> direction_field(std::string key, RulesOf rules, PdosOf pdos, AssignedOf assigned, std::string doc) {
-    return required(field_via<DeviceDescription>(
-        std::move(key), section(pdo_direction_table()),
-        [=](DeviceDescription& d, const PdoDirection& p) {
-            rules(d) = p.rules;
-            pdos(d) = p.available;
-            assigned(d) = p.assigned;
-        },
-        std::move(doc)));
-}
-
-Table<DeviceDescription> pdo_section_table() {
-    using D = DeviceDescription;
-    return {"pdo",
-            "Process data as the drive offers it.",
-            {
-                direction_field(
-                    "rx", [](D & d) -> auto& { return d.rx_rules; }, [](D & d) -> auto& { return d.rx_pdos; },
-                    [](D & d) -> auto& { return d.rx_assigned; }, "to the drive"),
-                direction_field(
-                    "tx", [](D & d) -> auto& { return d.tx_rules; }, [](D & d) -> auto& { return d.tx_pdos; },
-                    [](D & d) -> auto& { return d.tx_assigned; }, "from the drive"),
-            },
-            {},
-            {}};
-}
+constexpr std::int64_t u16 = 0xFFFF, u32 = 0xFFFFFFFF;
 
 Table<PdoChoice> choice_table() {
     using P = PdoChoice;
@@ -184,45 +36,6 @@ Table<DriveFile> mapping_table() {
             "What the runtime assigns and maps, unless a machine asks for something else.",
             {required(field("rx", &F::rx, list(section(choice_table())), "to the drive")),
              required(field("tx", &F::tx, list(section(choice_table())), "from the drive"))},
-            {},
-            {}};
-}
-
-Table<ObjectEntry> object_table() {
-    using O = ObjectEntry;
-    constexpr auto low = std::numeric_limits<std::int64_t>::min(), high = std::numeric_limits<std::int64_t>::max();
-    return {
-        "objects",
-        "One object of the dictionary.",
-        {
-            required(field_via<O>(
-                "object", object_address(), [](O& o, const ObjectAddress& a) { o.index = a.index, o.sub = a.sub; }, "index and sub-index")),
-            required(field("name", &O::name, text(), "its name")),
-            required(field("type", &O::type, data_type(), "its type")),
-            field("access", &O::access, choice<Access>({{"ro", Access::ro}, {"rw", Access::rw}, {"wo", Access::wo}}), "by SDO"),
-            field("map", &O::mappable,
-                  choice<Mappable>({{"no", Mappable::no}, {"rx", Mappable::rx}, {"tx", Mappable::tx}, {"both", Mappable::both}}),
-                  "into which PDOs"),
-            field("value", &O::value, integer<std::int64_t>(low, high), "default"),
-            field("minimum", &O::minimum, maybe(integer<std::int64_t>(low, high)), "least value that the drive accepts"),
-            field("maximum", &O::maximum, maybe(integer<std::int64_t>(low, high)), "greatest value that the drive accepts"),
-            field("text", &O::text, text(), "default of a STRING"),
-        },
-        {},
-        {}};
-}
-
-Table<ecat::DcDescription> dc_table() {
-    using D = ecat::DcDescription;
-    return {"dc",
-            "Distributed clocks.",
-            {
-                field("supported", &D::supported, boolean(), "has a clock and SYNC0"),
-                field("required", &D::required, boolean(), "SYNC0 must run before SAFEOP"),
-                field("clock_64bit", &D::clock_64bit, boolean(), "width of the clock"),
-                with_default(field("minimum_cycle", &D::minimum_cycle, duration(), "shortest SYNC0 cycle"), "not stated"),
-                with_default(field("cycle_multiple", &D::cycle_multiple, duration(), "the cycle must be a multiple of it"), "any"),
-            },
             {},
             {}};
 }
@@ -406,23 +219,7 @@ Table<DriveFile> drive_table() {
         "vendor", [](F & d) -> auto& { return d.profile.vendor; }, text(), "for people")));
     f.push_back(required(field_at<F>(
         "title", [](F & d) -> auto& { return d.profile.title; }, text(), "for people")));
-    std::vector<Field<DeviceDescription>> bus{
-        required(field_at<DeviceDescription>(
-            "identity", [](DeviceDescription& d) -> DeviceDescription& { return d; }, section(identity_table()), "who it says it is")),
-        field("mailbox", &DeviceDescription::mailbox, maybe(section(mailbox_table())), "acyclic services"),
-        required(field("sync_managers", &DeviceDescription::sync_managers, list(section(sync_manager_table())),
-                       "in the order of the controller")),
-        field("fmmus", &DeviceDescription::fmmus, integer<std::uint8_t>(1, 16), "of the controller"),
-        field("sync_manager_count", &DeviceDescription::sync_manager_count, integer<std::uint8_t>(1, 16), "of the controller"),
-        field("process_ram", &DeviceDescription::process_ram, integer<std::uint16_t>(1, u16), "bytes from 1000h"),
-        required(
-            field("objects", &DeviceDescription::objects, list(section(object_table())), "of the dictionary, as far as they are used")),
-        required(field_at<DeviceDescription>(
-            "pdo", [](DeviceDescription& d) -> DeviceDescription& { return d; }, section(pdo_section_table()),
-            "process data as the drive offers it")),
-        field("dc", &DeviceDescription::dc, section(dc_table()), "distributed clocks"),
-    };
-    include_fields(f, device, Table<DeviceDescription>{{}, {}, std::move(bus), {}, {}});
+    include_fields(f, device, Table<DeviceDescription>{{}, {}, device_fields(), {}, {}});
     f.push_back(required(field_at<F>(
         "mapping", [](F& d) -> F& { return d; }, section(mapping_table()), "what the runtime maps")));
     f.push_back(required(field("motion", &F::profile, section(motion_table()), "what it means to an axis")));

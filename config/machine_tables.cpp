@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "config/axis_tables.hpp"
+#include "config/bus_tables.hpp"
 #include "config/codecs.hpp"
 #include "config/drive_tables.hpp"
 
@@ -15,109 +16,6 @@ namespace {
 using namespace std::chrono_literals;
 using runtime::MachineConfig;
 using runtime::SimulationEvent;
-
-// --- bus ----------------------------------------------------------------------------------------------------------------
-
-Table<Terminal> terminal_table() {
-    using T = Terminal;
-    Table<T> table{"bus.slaves.terminal",
-                   "A plain digital terminal without mailbox, as whole bytes.",
-                   {
-                       field("inputs", &T::inputs, integer<std::uint8_t>(0, 128), "digital inputs: 0, 8, 16, ..."),
-                       field("outputs", &T::outputs, integer<std::uint8_t>(0, 128), "digital outputs: 0, 8, 16, ..."),
-                   },
-                   {},
-                   {}};
-    table.after = [](Reader& reader, const Node& node, T& t) {
-        if (t.inputs + t.outputs == 0)
-            reader.problem(node.at, "config.terminal", "the terminal has neither inputs nor outputs", "give `inputs: 8` or `outputs: 8`");
-        if (t.inputs % 8 != 0 || t.outputs % 8 != 0)
-            reader.problem(node.at, "config.terminal", "terminals have whole bytes of inputs and outputs", "give 8, 16, 24, ...");
-    };
-    return table;
-}
-
-Table<SlaveEntry> slave_table() {
-    using S = SlaveEntry;
-    Table<S> table{
-        "bus.slaves",
-        "One slave on the cable: a drive (with `profile`) or a terminal (with `terminal`).",
-        {
-            required(field("name", &S::name, config::name(), "by which axes and I/O points refer to it")),
-            with_default(field("profile", &S::profile, config::name(), "drive type: a file in config/drives/"), ""),
-            field("terminal", &S::terminal, maybe(section(terminal_table())), "a digital terminal instead of a drive"),
-            with_default(field("position", &S::position, maybe(integer<std::uint16_t>(0, 65535)), "place on the cable, from 0"),
-                         "its place in this list"),
-            field("alias", &S::alias, maybe(integer<std::uint16_t>(1, 65535)), "station alias instead of the position"),
-            with_default(field("dc", &S::dc, maybe(boolean()), "run SYNC0 on it"), "where the drive supports it"),
-            with_default(field("sync0_shift", &S::sync0_shift, duration(), "SYNC0 after the start of the bus cycle"), "as the bus"),
-            with_default(field("sm_watchdog", &S::sm_watchdog, duration(0ns, 6s), "the slave stops when no outputs come for this long"),
-                         "three cycles, at least 10 ms"),
-            group<S>("pdo", "Other process data than the profile's mapping: objects (607Ah, ...) or whole PDOs (1702h).",
-                     {
-                         field("rx", &S::rx, list(object_address()), "to the drive"),
-                         field("tx", &S::tx, list(object_address()), "from the drive"),
-                     }),
-            field("startup", &S::startup, list(section(startup_table())), "SDOs written while the slave comes up"),
-        },
-        {},
-        {}};
-    for (auto& f : table.fields)
-        if (f.info.key == "pdo" || f.info.key == "startup") f.info.default_text.clear();
-    table.after = [](Reader& reader, const Node& node, S& s) {
-        reader.also_known_as(fmt::format("slave '{}'", s.name), node.at);  // as the bus calls it
-        if (s.profile.empty() == !s.terminal.has_value() && !node.find("profile") && !node.find("terminal"))
-            reader.problem(node.at, "config.missing_key", fmt::format("slave '{}' has neither `profile` nor `terminal`", s.name),
-                           "add `profile:` with a drive type or `terminal:` with its inputs and outputs");
-        if (node.find("profile") && node.find("terminal"))
-            reader.problem(node.at, "config.conflict", fmt::format("slave '{}' has both `profile` and `terminal`", s.name),
-                           "keep one of them");
-        if (s.position && s.alias)
-            reader.problem(node.at, "config.conflict", fmt::format("slave '{}' has both `position` and `alias`", s.name),
-                           "keep the one that identifies it");
-        s.broken = reader.already_bad(reader.path());
-    };
-    return table;
-}
-
-/// A NIC by name, or `simulated`.
-Codec<std::string> interface_name() {
-    auto c = text();
-    c.read = [any = c.read](Reader& reader, const Node& node, std::string& out) {
-        std::string value;
-        if (!any(reader, node, value)) return false;
-        if (value.size() > 15 || value.find_first_of(" /:") != std::string::npos) {
-            reader.problem(node.at, "config.bad_name", fmt::format("`{}` is no name of a network interface", value),
-                           "write `simulated`, or a name that `ip link` shows, such as `eth1`");
-            return false;
-        }
-        out = value == "simulated" ? std::string{} : value;
-        return true;
-    };
-    c.show = {};
-    return c;
-}
-
-Field<MachineFile> bus_field() {
-    using F = MachineFile;
-    return group<F>("bus", "The EtherCAT bus.",
-                    {
-                        required(field_at<F>(
-                            "interface", [](F & f) -> auto& { return f.machine.bus.interface; }, interface_name(),
-                            "`simulated`, or the name of the network interface (`ip link`)")),
-                        with_default(field_at<F>(
-                                         "sync0_shift", [](F & f) -> auto& { return f.machine.bus.sync0_shift; }, duration(),
-                                         "SYNC0 after the start of the bus cycle"),
-                                     "half a cycle"),
-                        field_at<F>(
-                            "lost_frames_limit", [](F & f) -> auto& { return f.machine.bus.lost_frames_limit; },
-                            integer<std::uint16_t>(1, 10000), "unanswered cycles in a row until the bus alarm"),
-                        field_at<F>(
-                            "acyclic_per_cycle", [](F & f) -> auto& { return f.machine.bus.acyclic_per_cycle; },
-                            integer<std::uint8_t>(1, 64), "datagrams per cycle for SDO, recovery, diagnosis"),
-                        required(field("slaves", &F::slaves, list(section(slave_table())), "what is on the cable, in its order")),
-                    });
-}
 
 // --- inputs and outputs ---------------------------------------------------------------------------------------------------
 

@@ -5,26 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "config/startup_entry.hpp"
+#include "config/bus_tables.hpp"
 #include "hmi_bridge/hmi_config.hpp"
 #include "runtime/machine_config.hpp"
 
 namespace taktwerk::config {
-
-struct Terminal {
-    std::uint8_t inputs = 0, outputs = 0;
-};
-
-struct SlaveEntry {
-    std::string name, profile;
-    std::optional<Terminal> terminal;
-    std::optional<std::uint16_t> position, alias;
-    std::optional<bool> dc;
-    Duration sync0_shift{}, sm_watchdog{};
-    std::vector<ObjectAddress> rx, tx;
-    std::vector<StartupEntry> startup;
-    bool broken = false;  ///< problems were reported: what follows from them is noise
-};
 
 struct IoEntry {
     runtime::IoPoint point;

@@ -1,0 +1,32 @@
+#pragma once
+// The keys of a machine file that describe its bus: interface, slaves, what each gets. Names are resolved by the loader.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "config/startup_entry.hpp"
+
+namespace taktwerk::config {
+
+struct MachineFile;
+
+struct Terminal {
+    std::uint8_t inputs = 0, outputs = 0;
+};
+
+struct SlaveEntry {
+    std::string name, profile;
+    std::optional<Terminal> terminal;
+    std::optional<std::uint16_t> position, alias;
+    std::optional<bool> dc;
+    Duration sync0_shift{}, sm_watchdog{};
+    std::vector<ObjectAddress> rx, tx;
+    std::vector<StartupEntry> startup;
+    bool broken = false;  ///< problems were reported: what follows from them is noise
+};
+
+/// The section `bus`.
+[[nodiscard]] Field<MachineFile> bus_field();
+
+}  // namespace taktwerk::config

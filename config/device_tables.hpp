@@ -1,0 +1,18 @@
+#pragma once
+// The keys of a drive file that say what the slave is on the bus: identity, mailbox, sync managers, PDOs, objects, clock. They
+// fill ecat::DeviceDescription, for master and simulator alike.
+
+#include <vector>
+
+#include "config/field_table.hpp"
+#include "ecat/device_description.hpp"
+
+namespace taktwerk::config {
+
+[[nodiscard]] std::vector<Field<ecat::DeviceDescription>> device_fields();
+
+/// An object in a PDO; its bits are looked up later unless given.
+[[nodiscard]] Codec<ecat::PdoEntry> pdo_entry();
+[[nodiscard]] Codec<ecat::RevisionRule> revision_rule();
+
+}  // namespace taktwerk::config
