@@ -33,9 +33,6 @@ struct PdoSelection {
     std::vector<PdoDescription> assigned;  ///< written to 16xxh/1Axxh (unless fixed) and 1C12h/1C13h
 };
 
-/// How exactly the revision of SII word Ch has to be the description's.
-enum class RevisionRule : std::uint8_t { any, at_least, exact };
-
 /// What the loss of a slave means to the machine.
 enum class LossPolicy : std::uint8_t {
     stop_machine,   ///< every axis stops
@@ -54,10 +51,10 @@ struct ModuleSelection {
 struct SlaveConfig {
     std::string name;
     std::shared_ptr<const DeviceDescription> device;
-    std::optional<std::uint16_t> position;   ///< 0-based on the cable; exactly one of position, alias and device_id
-    std::optional<std::uint16_t> alias;      ///< station alias of SII word 4
-    std::optional<std::uint16_t> device_id;  ///< explicit device identification (AL control bit 5)
-    std::optional<RevisionRule> revision;    ///< instead of the description's rule
+    std::optional<std::uint16_t> position;      ///< 0-based on the cable; exactly one of position, alias and device_id
+    std::optional<std::uint16_t> alias;         ///< station alias: register 0012h, loaded from SII word 4
+    std::optional<std::uint16_t> device_id;     ///< explicit device identification (AL control bit 5)
+    std::optional<RevisionRule> revision_rule;  ///< instead of the description's
     LossPolicy on_loss = LossPolicy::stop_machine;
     PdoSelection rx, tx;
     std::vector<ModuleSelection> modules;

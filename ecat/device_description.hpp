@@ -97,6 +97,13 @@ struct PdoRules {
     std::uint16_t max_bytes = 1486;
 };
 
+/// How exactly the revision of SII word Ch has to be the description's.
+enum class RevisionRule : std::uint8_t {
+    any,
+    at_least,  ///< the number is the description's or a greater one
+    exact,
+};
+
 /// One valid content of a slot (ETG.5001). Its PDOs are those of slot 0; each further slot adds SlotDescription's increments.
 struct ModuleDescription {
     std::string name;         ///< how a configuration chooses it
@@ -117,7 +124,7 @@ struct DeviceDescription {
     std::string device_name;              ///< 1008h
     Identity identity;                    ///< vendor and product are compared exactly
     std::vector<Identity> also_accepted;  ///< manuals contradict themselves: further vendor/product pairs
-    bool revision_exact = false;
+    RevisionRule revision_rule = RevisionRule::any;
     std::optional<MailboxDescription> mailbox;          ///< none: a plain terminal, configured from SII alone
     std::vector<SyncManagerDescription> sync_managers;  ///< in SM order
     std::vector<PdoDescription> rx_pdos, tx_pdos;

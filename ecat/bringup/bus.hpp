@@ -77,7 +77,7 @@ struct CycleLink {
 struct FoundSlave {
     std::uint16_t position = 0, station = 0;
     Identity identity;
-    std::uint16_t alias = 0;
+    std::uint16_t alias = 0;  ///< register 0012h; the EEPROM's, which counts after the next power-on, is sii.alias
     std::uint16_t features = 0, dl_status = 0;
     std::uint8_t fmmus = 0, sync_managers = 0;
     std::array<std::uint16_t, 4> mailbox{};  ///< SII: out start, out size, in start, in size

@@ -5,22 +5,12 @@
 #include <algorithm>
 
 #include "ecat/bringup/sii_reader.hpp"
+#include "ecat/topology/topology.hpp"
 #include "ecat/wire/sii.hpp"
 
 namespace taktwerk::ecat {
 
 namespace {
-
-std::string identity_text(const Identity& id, bool revision) {
-    std::string text = fmt::format("vendor {:08X}h product {:08X}h", id.vendor, id.product);
-    if (revision) text += fmt::format(" revision {:08X}h", id.revision);
-    return text;
-}
-
-std::string found_text(const FoundSlave& slave) {
-    return slave.error ? std::string{"not readable"}
-                       : identity_text(slave.identity, true) + (slave.alias != 0 ? fmt::format(" alias {}", slave.alias) : "");
-}
 
 /// Every slave to INIT and its sync managers, FMMUs and clocks to rest, whatever they were before.
 Script<Result<std::uint16_t>> reset_all(Bus& bus) {
@@ -61,24 +51,13 @@ Script<Result<std::uint16_t>> reset_all(Bus& bus) {
     co_return again.wkc;
 }
 
-Script<void> find_one(Bus& bus, std::uint16_t position, FoundSlave& found) {
-    const std::string subject = fmt::format("slave {}", position);
-    const Reply written = co_await bus.port.apwr(position, reg::station_address, station_at(position));
-    if (!written.ok()) {
-        found.position = position;
-        found.error = unanswered(subject, "its station address (0010h)", written);
-        co_return;
-    }
-    found = co_await read_slave(bus.port, position, subject);
-}
-
-}  // namespace
-
-Script<FoundSlave> read_slave(DatagramPort& port, std::uint16_t position, std::string subject) {
+/// Controller and ports of one slave.
+Script<FoundSlave> read_controller(DatagramPort& port, std::uint16_t position, std::string subject) {
     FoundSlave found;
     found.position = position;
     found.station = station_at(position);
     const Reply info = co_await port.fprd(found.station, reg::type, 10);
+    const Reply alias = co_await port.fprd(found.station, reg::station_alias, 2);
     const Reply dl = co_await port.fprd(found.station, reg::dl_status, 2);
     if (!info.ok() || !dl.ok()) {
         found.error = unanswered(subject, "its controller's description (0000h)", info.ok() ? dl : info);
@@ -87,10 +66,69 @@ Script<FoundSlave> read_slave(DatagramPort& port, std::uint16_t position, std::s
     found.fmmus = static_cast<std::uint8_t>(info.data[reg::fmmu_count]);
     found.sync_managers = static_cast<std::uint8_t>(info.data[reg::sync_manager_count]);
     found.features = info.u16(reg::features);
+    found.alias = alias.ok() ? alias.u16() : std::uint16_t{0};
     found.dl_status = dl.u16();
+    co_return found;
+}
 
-    std::array<std::uint32_t, 7> values{};
-    constexpr std::array<std::uint16_t, 7> words{sii_word::alias,  sii_word::vendor,      sii_word::product,   sii_word::revision,
+Script<void> find_one(Bus& bus, std::uint16_t position, bool wants_id, FoundSlave& found) {
+    const std::string subject = fmt::format("slave {}", position);
+    const Reply written = co_await bus.port.apwr(position, reg::station_address, station_at(position));
+    if (!written.ok()) {
+        found.position = position;
+        found.error = unanswered(subject, "its station address (0010h)", written);
+        co_return;
+    }
+    found = co_await read_controller(bus.port, position, subject);
+    if (found.error) co_return;
+    Result<Sii> sii = co_await read_whole_sii(bus.port, found.station, subject);
+    if (!sii) {
+        found.error = sii.error();
+        co_return;
+    }
+    found.sii = std::move(*sii);
+    found.identity = found.sii.identity;
+    found.mailbox = {found.sii.mailbox_out.start, found.sii.mailbox_out.size, found.sii.mailbox_in.start, found.sii.mailbox_in.size};
+    if (wants_id) found.device_id = co_await read_device_id(bus.port, found.station);
+}
+
+/// What a technician wants to know of an EEPROM that was read all the same.
+void note_defects(Bus& bus) {
+    for (const auto& slave : bus.found)
+        for (const auto defect : slave.sii.defects)
+            if (defect != SiiDefect::empty) bus.remember(fmt::format("slave {}: {}", slave.position, text(defect)));
+}
+
+/// The tree, from the ports as the slaves report them; asked again once where they contradict each other: a cable may just
+/// have been plugged. Process data needs no tree, so the bring-up goes on without.
+Script<void> find_topology(Bus& bus) {
+    for (int attempt = 0; attempt < 2; ++attempt) {
+        const bool again = attempt > 0;
+        std::vector<std::uint16_t> dl_status;
+        for (auto& slave : bus.found) {
+            if (again) {
+                const Reply reply = co_await bus.port.fprd(slave.station, reg::dl_status, 2);
+                if (reply.ok()) slave.dl_status = reply.u16();
+            }
+            dl_status.push_back(slave.dl_status);
+        }
+        Result<Topology> tree = build_topology(dl_status);
+        if (tree) {
+            bus.topology = std::move(*tree);
+            co_return;
+        }
+        if (again) bus.remember(tree.error().text());
+    }
+    bus.topology = {};
+}
+
+}  // namespace
+
+Script<FoundSlave> read_slave(DatagramPort& port, std::uint16_t position, std::string subject) {
+    FoundSlave found = co_await read_controller(port, position, subject);
+    if (found.error) co_return found;
+    std::array<std::uint32_t, 6> values{};
+    constexpr std::array<std::uint16_t, 6> words{sii_word::vendor, sii_word::product,     sii_word::revision,
                                                  sii_word::serial, sii_word::mailbox_out, sii_word::mailbox_in};
     for (std::size_t i = 0; i < words.size(); ++i) {
         const Result<std::uint32_t> value = co_await read_sii(port, found.station, words[i], subject);
@@ -100,82 +138,51 @@ Script<FoundSlave> read_slave(DatagramPort& port, std::uint16_t position, std::s
         }
         values[i] = *value;
     }
-    found.alias = static_cast<std::uint16_t>(values[0] & 0xFFFFu);
-    found.identity = {values[1], values[2], values[3], values[4]};
+    found.identity = {values[0], values[1], values[2], values[3]};
     for (std::size_t i = 0; i < 2; ++i) {
-        found.mailbox[2 * i] = static_cast<std::uint16_t>(values[5 + i] & 0xFFFFu);
-        found.mailbox[2 * i + 1] = static_cast<std::uint16_t>(values[5 + i] >> 16);
+        found.mailbox[2 * i] = static_cast<std::uint16_t>(values[4 + i] & 0xFFFFu);
+        found.mailbox[2 * i + 1] = static_cast<std::uint16_t>(values[4 + i] >> 16);
     }
     co_return found;
 }
 
-Result<void> check_identity(const std::string& subject, const DeviceDescription& device, const Identity& found) {
-    const auto fits = [&](const Identity& wanted) {
-        return wanted.vendor == found.vendor && wanted.product == found.product &&
-               (!device.revision_exact || wanted.revision == found.revision);
-    };
-    if (fits(device.identity) || std::any_of(device.also_accepted.begin(), device.also_accepted.end(), fits)) return {};
-    std::string expected = identity_text(device.identity, device.revision_exact);
-    for (const auto& other : device.also_accepted) expected += " or " + identity_text(other, device.revision_exact);
-    return Error{"bus.wrong_identity", subject, fmt::format("expected {}, found {}", expected, identity_text(found, true)),
-                 "check the order of the slaves on the cable, or set the device of this slave in the configuration to what is there"};
-}
-
-Result<void> match(const BusConfig& config, const std::vector<FoundSlave>& found, std::vector<std::unique_ptr<BusSlave>>& slaves) {
-    slaves.clear();
-    std::vector<bool> used(found.size(), false);
-    for (const auto& wanted : config.slaves) {
-        const auto it = std::find_if(found.begin(), found.end(), [&](const FoundSlave& f) {
-            return wanted.position ? f.position == *wanted.position : f.alias == *wanted.alias && !f.error;
-        });
-        if (it == found.end()) {
-            const std::string where =
-                wanted.position ? fmt::format("position {}", *wanted.position) : fmt::format("alias {}", *wanted.alias);
-            const std::string last =
-                found.empty() ? std::string{"the master"} : fmt::format("slave {} ({})", found.back().position, found_text(found.back()));
-            return Error{
-                "bus.missing_slave", fmt::format("slave '{}' ({})", wanted.name, wanted.device->name),
-                fmt::format("there is no slave at {}: the bus has {} of {} configured slaves", where, found.size(), config.slaves.size()),
-                wanted.position ? fmt::format("check power and cable behind {}", last)
-                                : "set the alias in the drive and power-cycle it, or address it by position"};
+Script<std::optional<std::uint16_t>> read_device_id(DatagramPort& port, std::uint16_t station) {
+    std::optional<std::uint16_t> id;
+    const Reply state = co_await port.fprd(station, reg::al_status, 2);
+    if (!state.ok()) co_return id;
+    const auto present = static_cast<std::uint16_t>(state.u16() & al_state_mask);
+    co_await port.fpwr(station, reg::al_control, static_cast<std::uint16_t>(present | al_control_request_id));
+    const Instant started = co_await time();
+    for (;;) {
+        const Reply status = co_await port.fprd(station, reg::al_status, 6);
+        // Controllers without a processor copy AL control to AL status, bit 5 too: their 0134h stays 0, which is no id.
+        if (status.ok() && (status.u16() & al_status_id_valid) != 0 && status.u16(4) != 0) {
+            id = status.u16(4);
+            break;
         }
-        auto slave = std::make_unique<BusSlave>();
-        slave->config = &wanted;
-        slave->index = slaves.size();
-        slave->found = *it;
-        slave->subject = fmt::format("slave {} '{}' ({})", it->position, wanted.name, wanted.device->name);
-        if (it->error) {
-            Error error = *it->error;
-            error.subject = slave->subject;
-            return error;
-        }
-        if (auto identity = check_identity(slave->subject, *wanted.device, it->identity); !identity) return identity;
-        const auto at = static_cast<std::size_t>(it - found.begin());
-        if (used[at])
-            return Error{"bus.ambiguous", slave->subject, "two configured slaves stand for this one",
-                         "correct position and alias in the configuration"};
-        used[at] = true;
-        slaves.push_back(std::move(slave));
+        const Instant now = co_await time();
+        if (now - started >= device_id_timeout) break;
+        co_await pause(std::chrono::milliseconds{1});
     }
-    for (std::size_t i = 0; i < found.size(); ++i) {
-        if (used[i]) continue;
-        return Error{"bus.unexpected_slave", fmt::format("slave {}", found[i].position),
-                     fmt::format("is on the bus but not in the configuration: {}", found_text(found[i])),
-                     "add it to the configuration or unplug it"};
-    }
-    return {};
+    co_await port.fpwr(station, reg::al_control, present);
+    co_return id;
 }
 
 Script<Result<void>> scan(Bus& bus) {
     bus.progress = "counting slaves";
     const Result<std::uint16_t> count = co_await reset_all(bus);
     if (!count) co_return count.error();
-    bus.progress = fmt::format("reading the identity of {} slaves", *count);
-    std::vector<FoundSlave> found(*count);
+    bus.progress = fmt::format("reading the EEPROM of {} slaves", *count);
+    bus.found.assign(*count, {});
+    const bool wants_id =
+        std::any_of(bus.config.slaves.begin(), bus.config.slaves.end(), [](const SlaveConfig& s) { return s.device_id.has_value(); });
     std::vector<Script<void>> scripts;
-    for (std::uint16_t position = 0; position < *count; ++position) scripts.push_back(find_one(bus, position, found[position]));
+    for (std::uint16_t position = 0; position < *count; ++position)
+        scripts.push_back(find_one(bus, position, wants_id, bus.found[position]));
     co_await all(std::move(scripts));
-    co_return match(bus.config, found, bus.slaves);
+    note_defects(bus);
+    co_await find_topology(bus);
+    co_return match(bus.config, bus.found, bus.slaves);
 }
 
 }  // namespace taktwerk::ecat

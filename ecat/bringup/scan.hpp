@@ -1,27 +1,30 @@
 #pragma once
-// From an unknown bus to slaves with names: reset, count, station addresses, EEPROM identity, match with the configuration.
+// From an unknown bus to slaves with names: reset, count, station addresses, EEPROM, device ids, topology, match with the
+// configuration (slave_match.hpp). Service side only.
 
-#include <vector>
+#include <string>
 
 #include "ecat/bringup/bus.hpp"
+#include "ecat/bringup/slave_match.hpp"
 
 namespace taktwerk::ecat {
 
 /// The station address of the slave at a position. 0 is what a slave has after power-on, so it is never given.
 [[nodiscard]] constexpr std::uint16_t station_at(std::uint16_t position) noexcept { return static_cast<std::uint16_t>(0x1001 + position); }
 
-/// Brings every slave to INIT, clears FMMUs, sync managers and clocks, finds all and fills bus.slaves.
-/// Errors: bus.no_frame, bus.empty, bus.missing_slave, bus.unexpected_slave, bus.wrong_identity, bus.sii.
+/// How long a slave may take to show its explicit device id (AL status bit 5). Who has none never does.
+inline constexpr Duration device_id_timeout = std::chrono::milliseconds{300};
+
+/// Brings every slave to INIT, clears FMMUs, sync managers and clocks, fills bus.found and bus.topology (empty, and a note,
+/// where the ports of the slaves contradict each other) and bus.slaves.
+/// Errors: bus.no_frame, bus.empty, and those of match().
 [[nodiscard]] Script<Result<void>> scan(Bus& bus);
 
-/// Reads identity, alias, mailbox and features of the slave that has this station address. Problems stand in `error`.
+/// Identity, mailbox and features of the slave that has the station address of this position: the few words that tell who it
+/// is. Problems stand in `error`. `sii` is left as it is: read_whole_sii() takes its time.
 [[nodiscard]] Script<FoundSlave> read_slave(DatagramPort& port, std::uint16_t position, std::string subject);
 
-/// Gives every configured slave its place. Pure.
-[[nodiscard]] Result<void> match(const BusConfig& config, const std::vector<FoundSlave>& found,
-                                 std::vector<std::unique_ptr<BusSlave>>& slaves);
-
-/// Is this the device the configuration wants? Names expected and found.
-[[nodiscard]] Result<void> check_identity(const std::string& subject, const DeviceDescription& device, const Identity& found);
+/// Explicit device identification (ETG.1020): AL control bit 5, the id comes in 0134h. Nothing where the slave has none.
+[[nodiscard]] Script<std::optional<std::uint16_t>> read_device_id(DatagramPort& port, std::uint16_t station);
 
 }  // namespace taktwerk::ecat

@@ -2,47 +2,172 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+
 #include "ecat/wire/registers.hpp"
 
 namespace taktwerk::ecat {
 
 namespace {
 
-constexpr Duration sii_timeout = std::chrono::seconds{1};
-constexpr Duration sii_poll_period = std::chrono::microseconds{200};
+constexpr Duration poll_period = std::chrono::microseconds{200};
+constexpr Duration retry_period = std::chrono::milliseconds{5};
+constexpr std::size_t words_per_kbit = 64;
+constexpr std::size_t usual_words = 1024;  ///< 16 kbit: where the header does not say, or says nonsense
+constexpr std::uint16_t most_size_code = 0x0FFF;
 
-Error sii_error(const std::string& subject, std::uint16_t word, const char* what) {
+Error sii_error(const std::string& subject, std::size_t word, std::string what) {
     return Error{"bus.sii", subject, fmt::format("EEPROM word {:04X}h cannot be read: {}", word, what),
                  "power-cycle the slave; if it stays, its EEPROM is empty or defective"};
 }
 
-}  // namespace
+/// What one command delivered.
+struct Words {
+    std::array<std::uint16_t, 4> words{};
+    std::size_t count = 0;  ///< 2 or 4
+};
 
-Script<Result<std::uint32_t>> read_sii(DatagramPort& port, std::uint16_t station, std::uint16_t word, const std::string& subject) {
+/// One read command. `idle`: the one before was answered, so the interface need not be asked first.
+Script<Result<Words>> read_words(DatagramPort& port, std::uint16_t station, std::size_t word, bool idle, std::string subject) {
     const Instant started = co_await time();
-    const Instant deadline = started + sii_timeout;
     std::vector<std::byte> request(6);
     store_le(request, 0, eeprom::read);
-    store_le(request, 2, std::uint32_t{word});
+    store_le(request, 2, static_cast<std::uint32_t>(word));
     bool asked = false;
-    for (;;) {
+    if (idle) {
+        const Reply written = co_await port.fpwr(station, reg::eeprom_control, request);
+        if (!written.ok()) co_return unanswered(subject, "EEPROM (0502h)", written);
+        asked = true;
+    }
+    for (unsigned refusals = 0;;) {
         const Reply reply = co_await port.fprd(station, reg::eeprom_control, 14);
         if (!reply.ok()) co_return unanswered(subject, "EEPROM (0502h)", reply);
         const std::uint16_t control = reply.u16();
         const bool busy = (control & eeprom::busy) != 0;
         const bool refused = (control & (eeprom::command_error | eeprom::write_enable_error)) != 0;
-        if (!busy && asked && !refused && reply.u32(2) == word) co_return reply.u32(6);
+        if (!busy && asked && !refused && reply.u32(2) == word) {
+            Words found;
+            found.count = (control & eeprom::reads_8_bytes) != 0 ? 4 : 2;
+            for (std::size_t i = 0; i < found.count; ++i) found.words[i] = reply.u16(6 + 2 * i);
+            co_return found;
+        }
         const Instant now = co_await time();
-        if (now >= deadline) co_return sii_error(subject, word, busy ? "the EEPROM stays busy" : "the controller reports an error");
-        if (!busy) {
-            if (asked) co_await pause(sii_poll_period);
-            const Reply written = co_await port.fpwr(station, reg::eeprom_control, request);
-            if (!written.ok()) co_return unanswered(subject, "EEPROM (0502h)", written);
-            asked = true;
-        } else {
-            co_await pause(sii_poll_period);
+        if (busy && now - started >= sii_busy_limit)
+            co_return sii_error(subject, word,
+                                fmt::format("the EEPROM stays busy for {} ms", (now - started) / std::chrono::milliseconds{1}));
+        if (busy) {
+            co_await pause(poll_period);
+            continue;
+        }
+        if (asked && ++refusals > sii_retries)
+            co_return sii_error(subject, word, fmt::format("the controller reports an error (0502h = {:04X}h)", control));
+        if (asked) co_await pause(retry_period);
+        const Reply written = co_await port.fpwr(station, reg::eeprom_control, request);
+        if (!written.ok()) co_return unanswered(subject, "EEPROM (0502h)", written);
+        asked = true;
+    }
+}
+
+/// The image as far as it was fetched. Words that nobody asked for are 0.
+class Fetcher {
+public:
+    Fetcher(DatagramPort& port, std::uint16_t station, std::string subject)
+        : port_(port), station_(station), subject_(std::move(subject)) {}
+
+    /// Makes words [first, first + count) known.
+    Script<Result<void>> fetch(std::size_t first, std::size_t count) {
+        for (std::size_t word = first; word < first + count; ++word) {
+            if (word < known_.size() && known_[word]) continue;
+            const Result<Words> read = co_await read_words(port_, station_, word, idle_, subject_);
+            idle_ = static_cast<bool>(read);
+            if (!read) co_return read.error();
+            keep(word, *read);
+        }
+        co_return Result<void>{};
+    }
+    [[nodiscard]] std::uint16_t word(std::size_t address) const noexcept {
+        return 2 * address + 2 <= image_.size() ? load_le<std::uint16_t>(image_, 2 * address) : std::uint16_t{0};
+    }
+    /// The image ends here: what a wide read brought of the words behind it is none of it.
+    void cut(std::size_t words) { image_.resize(std::min(image_.size(), 2 * words)); }
+    [[nodiscard]] const std::vector<std::byte>& image() const noexcept { return image_; }
+
+private:
+    void keep(std::size_t first, const Words& read) {
+        const std::size_t end = first + read.count;
+        if (known_.size() < end) known_.resize(end, false);
+        if (image_.size() < 2 * end) image_.resize(2 * end);
+        for (std::size_t i = 0; i < read.count; ++i) {
+            known_[first + i] = true;
+            store_le(image_, 2 * (first + i), read.words[i]);
         }
     }
+
+    DatagramPort& port_;
+    std::uint16_t station_;
+    std::string subject_;
+    std::vector<std::byte> image_;
+    std::vector<bool> known_;
+    bool idle_ = false;
+};
+
+/// Words that the EEPROM has by its own word 3Eh.
+std::size_t device_words(std::uint16_t size_code) noexcept {
+    return size_code == 0 || size_code > most_size_code ? usual_words : (size_code + 1u) * words_per_kbit;
+}
+
+/// The parts of the header that mean something (sii_word); the rest is reserved.
+Script<Result<void>> fetch_header(Fetcher& eeprom) {
+    Result<void> done = co_await eeprom.fetch(0, sii_word::serial + 2u);
+    if (!done) co_return done;
+    done = co_await eeprom.fetch(sii_word::boot_mailbox_out, sii_word::mailbox_protocols + 1u - sii_word::boot_mailbox_out);
+    if (!done) co_return done;
+    co_return co_await eeprom.fetch(sii_word::size, 2);
+}
+
+Script<Result<void>> fetch_categories(Fetcher& eeprom) {
+    const std::size_t end = device_words(eeprom.word(sii_word::size));
+    for (std::size_t at = sii_word::categories; at + 2 <= end;) {
+        const Result<void> header = co_await eeprom.fetch(at, 2);
+        if (!header) co_return header;
+        const std::uint16_t type = eeprom.word(at), words = eeprom.word(at + 1);
+        if (type == sii_category::end || (type == sii_category::nop && words == 0)) {
+            eeprom.cut(at + 1);
+            co_return Result<void>{};
+        }
+        const std::size_t there = std::min<std::size_t>(words, end - (at + 2));
+        if (is_decoded(type)) {
+            const Result<void> content = co_await eeprom.fetch(at + 2, there);
+            if (!content) co_return content;
+        }
+        at += 2 + there;
+        if (there < words) break;
+    }
+    eeprom.cut(end);
+    co_return Result<void>{};
+}
+
+}  // namespace
+
+Script<Result<std::uint32_t>> read_sii(DatagramPort& port, std::uint16_t station, std::uint16_t word, std::string subject) {
+    const Result<Words> read = co_await read_words(port, station, word, false, std::move(subject));
+    if (!read) co_return read.error();
+    co_return read->words[0] | (std::uint32_t{read->words[1]} << 16);
+}
+
+Script<Result<Sii>> read_whole_sii(DatagramPort& port, std::uint16_t station, std::string subject) {
+    Fetcher eeprom{port, station, std::move(subject)};
+    const Result<void> header = co_await fetch_header(eeprom);
+    if (!header) co_return header.error();
+    const auto first = eeprom.word(sii_word::vendor);
+    const bool blank =
+        first == eeprom.word(sii_word::product) && (first == 0 || first == 0xFFFF) && eeprom.word(sii_word::checksum) == first;
+    if (blank) co_return parse_sii({});
+    const Result<void> categories = co_await fetch_categories(eeprom);
+    Sii sii = parse_sii(eeprom.image());
+    if (!categories) sii.defects.push_back(SiiDefect::unreadable);
+    co_return sii;
 }
 
 }  // namespace taktwerk::ecat

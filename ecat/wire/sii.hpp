@@ -42,6 +42,21 @@ inline constexpr std::uint8_t sdo = 1u << 0, sdo_info = 1u << 1, pdo_assign = 1u
                               upload_at_startup = 1u << 4, complete_access = 1u << 5;
 }  // namespace sii_coe
 
+/// Content that Sii keeps field by field; other categories (data types, sync units, vendors' own) it only names.
+[[nodiscard]] constexpr bool is_decoded(std::uint16_t category) noexcept {
+    switch (category) {
+        case sii_category::strings:
+        case sii_category::general:
+        case sii_category::fmmu:
+        case sii_category::sync_manager:
+        case sii_category::fmmu_extension:
+        case sii_category::tx_pdo:
+        case sii_category::rx_pdo:
+        case sii_category::dc: return true;
+        default: return false;
+    }
+}
+
 struct SiiMailbox {
     std::uint16_t start = 0, size = 0;
     friend bool operator==(const SiiMailbox&, const SiiMailbox&) = default;
@@ -88,6 +103,24 @@ struct SiiPdo {
     friend bool operator==(const SiiPdo&, const SiiPdo&) = default;
 };
 
+/// Where the vendor wants an FMMU (ETG.2010, category 42).
+struct SiiFmmuExtension {
+    std::uint8_t flags = 0;  ///< b0 active only in OP
+    std::uint8_t sync_manager = 0, sync_unit = 0;
+    friend bool operator==(const SiiFmmuExtension&, const SiiFmmuExtension&) = default;
+};
+
+/// One way to run the slave with distributed clocks (ETG.2010, category 60). Times in ns; 0: the master chooses.
+struct SiiDcMode {
+    std::uint32_t sync0_cycle = 0;
+    std::int32_t sync0_shift = 0, sync1_shift = 0;
+    std::int16_t sync1_factor = 0;      ///< SYNC1 in SYNC0 cycles
+    std::uint16_t assign_activate = 0;  ///< 0980h/0981h: 0300h SYNC0, 0700h SYNC0 and SYNC1, 0000h without
+    std::int16_t sync0_factor = 0;      ///< SYNC0 in bus cycles
+    std::uint8_t name = 0, description = 0;
+    friend bool operator==(const SiiDcMode&, const SiiDcMode&) = default;
+};
+
 /// What is wrong with an image. None of it keeps the rest from being read.
 enum class SiiDefect : std::uint8_t {
     empty,               ///< all words are 0000h or FFFFh
@@ -98,7 +131,9 @@ enum class SiiDefect : std::uint8_t {
     bad_strings,         ///< the string table does not hold as many strings as it says
     bad_general,
     bad_sync_managers,
-    bad_pdo,  ///< the category's length does not fit its content
+    bad_pdo,     ///< the category's length does not fit its content
+    bad_dc,      ///< the clock category is not a multiple of 24 bytes
+    unreadable,  ///< reading it broke off: the rest is missing (parse_sii never says this, who reads the EEPROM does)
 };
 [[nodiscard]] std::string_view text(SiiDefect defect) noexcept;
 
@@ -117,8 +152,10 @@ struct Sii {
     std::vector<SiiFmmuUse> fmmus;  ///< in FMMU order
     std::vector<SiiSyncManager> sync_managers;
     std::vector<SiiPdo> tx_pdos, rx_pdos;  ///< tx: slave to master
-    std::vector<std::uint16_t> skipped;    ///< types of the categories that are not read here
-    std::vector<SiiDefect> defects;        ///< of a parsed image
+    std::vector<SiiFmmuExtension> fmmu_extensions;
+    std::vector<SiiDcMode> dc_modes;
+    std::vector<std::uint16_t> skipped;  ///< types of the categories that are not decoded here
+    std::vector<SiiDefect> defects;      ///< of a parsed image
 
     [[nodiscard]] bool has(SiiDefect defect) const noexcept;
     /// String `number` (1-based); empty for 0 and for numbers beyond the table.

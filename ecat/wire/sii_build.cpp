@@ -87,6 +87,33 @@ std::vector<std::byte> pdos_of(const std::vector<SiiPdo>& pdos) {
     return data;
 }
 
+std::vector<std::byte> dc_modes_of(const std::vector<SiiDcMode>& modes) {
+    std::vector<std::byte> data;
+    for (const auto& mode : modes) {
+        const std::size_t at = data.size();
+        data.resize(at + 24);
+        store_le(data, at, mode.sync0_cycle);
+        store_le(data, at + 4, mode.sync0_shift);
+        store_le(data, at + 8, mode.sync1_shift);
+        store_le(data, at + 12, mode.sync1_factor);
+        store_le(data, at + 14, mode.assign_activate);
+        store_le(data, at + 16, mode.sync0_factor);
+        data[at + 18] = static_cast<std::byte>(mode.name);
+        data[at + 19] = static_cast<std::byte>(mode.description);
+    }
+    return data;
+}
+
+std::vector<std::byte> fmmu_extensions_of(const std::vector<SiiFmmuExtension>& extensions) {
+    std::vector<std::byte> data;
+    for (const auto& extension : extensions) {
+        put8(data, extension.flags);
+        put8(data, extension.sync_manager);
+        put8(data, extension.sync_unit);
+    }
+    return data;
+}
+
 }  // namespace
 
 std::uint8_t Sii::add_string(std::string_view string) {
@@ -131,8 +158,10 @@ std::vector<std::byte> build_sii(const Sii& sii) {
         put_category(image, sii_category::fmmu, std::move(data), std::byte{0xFF});
     }
     if (!sii.sync_managers.empty()) put_category(image, sii_category::sync_manager, sync_managers_of(sii.sync_managers));
+    if (!sii.fmmu_extensions.empty()) put_category(image, sii_category::fmmu_extension, fmmu_extensions_of(sii.fmmu_extensions));
     if (!sii.tx_pdos.empty()) put_category(image, sii_category::tx_pdo, pdos_of(sii.tx_pdos));
     if (!sii.rx_pdos.empty()) put_category(image, sii_category::rx_pdo, pdos_of(sii.rx_pdos));
+    if (!sii.dc_modes.empty()) put_category(image, sii_category::dc, dc_modes_of(sii.dc_modes));
     put16(image, sii_category::end);
 
     constexpr std::size_t bytes_per_kbit = 128;

@@ -105,6 +105,27 @@ void take_pdos(Sii& sii, std::vector<SiiPdo>& pdos, std::span<const std::byte> d
     }
 }
 
+void take_fmmu_extensions(Sii& sii, std::span<const std::byte> data) {
+    for (; data.size() >= 3; data = data.subspan(3)) sii.fmmu_extensions.push_back({byte_at(data, 0), byte_at(data, 1), byte_at(data, 2)});
+}
+
+void take_dc_modes(Sii& sii, std::span<const std::byte> data) {
+    constexpr std::size_t mode_bytes = 24;  // the last four are reserved
+    if (data.size() % mode_bytes != 0) note(sii, SiiDefect::bad_dc);
+    for (; data.size() >= mode_bytes; data = data.subspan(mode_bytes)) {
+        SiiDcMode mode;
+        mode.sync0_cycle = load_le<std::uint32_t>(data, 0);
+        mode.sync0_shift = load_le<std::int32_t>(data, 4);
+        mode.sync1_shift = load_le<std::int32_t>(data, 8);
+        mode.sync1_factor = load_le<std::int16_t>(data, 12);
+        mode.assign_activate = load_le<std::uint16_t>(data, 14);
+        mode.sync0_factor = load_le<std::int16_t>(data, 16);
+        mode.name = byte_at(data, 18);
+        mode.description = byte_at(data, 19);
+        sii.dc_modes.push_back(mode);
+    }
+}
+
 void take_category(Sii& sii, std::uint16_t type, std::span<const std::byte> data) {
     switch (type) {
         case sii_category::nop: break;
@@ -115,6 +136,8 @@ void take_category(Sii& sii, std::uint16_t type, std::span<const std::byte> data
             for (const auto byte : data) sii.fmmus.push_back(byte == std::byte{0xFF} ? SiiFmmuUse::unused : static_cast<SiiFmmuUse>(byte));
             break;
         case sii_category::sync_manager: take_sync_managers(sii, data); break;
+        case sii_category::fmmu_extension: take_fmmu_extensions(sii, data); break;
+        case sii_category::dc: take_dc_modes(sii, data); break;
         case sii_category::tx_pdo: take_pdos(sii, sii.tx_pdos, data); break;
         case sii_category::rx_pdo: take_pdos(sii, sii.rx_pdos, data); break;
         default: sii.skipped.push_back(type); break;
@@ -139,6 +162,8 @@ std::string_view text(SiiDefect defect) noexcept {
         case SiiDefect::bad_general: return "the general category is too short";
         case SiiDefect::bad_sync_managers: return "the sync manager category is not a multiple of 8 bytes";
         case SiiDefect::bad_pdo: return "a PDO category is shorter than its entries";
+        case SiiDefect::bad_dc: return "the clock category is not a multiple of 24 bytes";
+        case SiiDefect::unreadable: return "the EEPROM could not be read to its end";
     }
     return "unknown defect";
 }

@@ -58,7 +58,7 @@ TEST(Match, OneSlaveCannotStandForTwo) {
 TEST(Identity, RevisionCountsOnlyWhereItIsAskedFor) {
     auto d = *device(10);
     EXPECT_TRUE(check_identity("s", d, {1, 10, 99, 5}));
-    d.revision_exact = true;
+    d.revision_rule = RevisionRule::exact;
     const auto refused = check_identity("s", d, {1, 10, 99, 5});
     ASSERT_FALSE(refused);
     EXPECT_THAT(refused.error().what, HasSubstr("expected vendor 00000001h product 0000000Ah revision 00000007h"));
