@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "fb_library/block_type.hpp"
+#include "fb_library/fieldbus/sdo.hpp"
 #include "fb_library/iec/bistables.hpp"
 #include "fb_library/iec/counters.hpp"
 #include "fb_library/iec/edges.hpp"
@@ -36,6 +37,8 @@ using IecBlocks = BlockList<SR, RS, R_TRIG, F_TRIG, CTU, CTU_DINT, CTU_LINT, CTU
 using MotionBlocks = BlockList<MC_Power, MC_Home, MC_Stop, MC_Halt, MC_MoveAbsolute, MC_MoveRelative, MC_MoveVelocity, MC_Jog,
                                MC_SetPosition, MC_ReadActualPosition, MC_ReadStatus, MC_ReadAxisError, MC_Reset>;
 
+using FieldbusBlocks = BlockList<EC_SdoRead, EC_SdoWrite>;
+
 namespace detail {
 template <class... A, class... B>
 BlockList<A..., B...> joined(BlockList<A...>, BlockList<B...>);
@@ -50,7 +53,7 @@ consteval bool names_differ(BlockList<Blocks...>) {
 }
 }  // namespace detail
 
-using AllBlocks = decltype(detail::joined(IecBlocks{}, MotionBlocks{}));
+using AllBlocks = decltype(detail::joined(detail::joined(IecBlocks{}, MotionBlocks{}), FieldbusBlocks{}));
 static_assert(detail::names_differ(AllBlocks{}));
 
 [[nodiscard]] constexpr std::span<const BlockType> all_block_types() noexcept { return AllBlocks::types; }

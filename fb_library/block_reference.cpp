@@ -53,6 +53,9 @@ std::string block_reference_markdown() {
     page += "\n## PLCopen motion\n";
     for (const BlockType& type : MotionBlocks::types) append_block(page, type);
 
+    page += "\n## Fieldbus\n";
+    for (const BlockType& type : FieldbusBlocks::types) append_block(page, type);
+
     std::map<std::string_view, std::span<const std::string_view>> enumerations;
     for (const BlockType& type : all_block_types())
         for (const Pin& pin : type.pins)

@@ -6,20 +6,23 @@
 //   frame    an Ethernet frame as it came in
 //   command  u8 action, u8 owner, u8 mode, u8 flag, u16 axis, u16 index, f64 value, f64 value2,
 //            u32 client, u64 sequence, i64 expires ns                                          44 bytes
+//   object   u16 program, u16 place, u8 outcome, u32 abort code                                9 bytes, then the value read
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
+#include "core/object_access.hpp"
 #include "core/recorder.hpp"
 #include "runtime/machine.hpp"
 #include "runtime/operator_command.hpp"
 
 namespace taktwerk::runtime {
 
-inline constexpr RecordChannel tick_channel = 1, frame_channel = 2, command_channel = 3;
+inline constexpr RecordChannel tick_channel = 1, frame_channel = 2, command_channel = 3, object_channel = 4;
 
 namespace inbox_record {
 template <std::size_t Size>
@@ -33,6 +36,7 @@ public:
     void put(double value) noexcept { put(std::bit_cast<std::uint64_t>(value)); }
     void put(Instant value) noexcept { put(static_cast<std::int64_t>(value.time_since_epoch().count())); }
     [[nodiscard]] std::span<const std::byte> all() const noexcept { return bytes_; }
+    [[nodiscard]] std::span<const std::byte> written() const noexcept { return std::span{bytes_}.first(at_); }
 
 private:
     std::array<std::byte, Size> bytes_{};
@@ -62,6 +66,17 @@ inline void record_command(Recorder& recorder, Instant at, const OperatorCommand
     bytes.put(command.sequence);
     bytes.put(command.expires);
     recorder.append(command_channel, at, bytes.all());
+}
+
+inline void record_object(Recorder& recorder, Instant at, std::uint16_t program, std::uint16_t place, ObjectOutcome outcome,
+                          std::uint32_t abort_code, std::span<const std::byte> value) noexcept {
+    inbox_record::Bytes<9 + object_data_limit> bytes;
+    bytes.put(program);
+    bytes.put(place);
+    bytes.put(static_cast<std::uint8_t>(outcome));
+    bytes.put(abort_code);
+    for (const std::byte b : value.first(std::min(value.size(), object_data_limit))) bytes.put(static_cast<std::uint8_t>(b));
+    recorder.append(object_channel, at, bytes.written());
 }
 
 /// For ecat::Master::set_tap; `context` is the Recorder. What the master sends follows from what it received.

@@ -95,6 +95,7 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, std::vect
     shutdown_patience = shutdown_margin + 2 * from_seconds(longest_stop);
 
     host = std::make_unique<ProgramHost>(config, io, errors);
+    objects = std::make_unique<ObjectRequests>(config.programs.size(), bus.slave_count());
     program_states.assign(config.programs.size(), ProgramState::stopped);
     program_faults.resize(config.programs.size());
     handshakes = std::make_unique<std::atomic<Handshake>[]>(config.programs.size());
@@ -113,7 +114,8 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, std::vect
                 if (variable.program == task.program) variables.push_back(variable);
         slow_task_places.push_back(i);
         slow_tasks.push_back(std::make_unique<SlowTask>(task, host->programs()[task.program].instance.get(), std::move(variables),
-                                                        axes.size(), io.inputs().size(), io.outputs().size(), host->parameters().size()));
+                                                        axes.size(), io.inputs().size(), io.outputs().size(), host->parameters().size(),
+                                                        objects->of(task.program)));
     }
     task_overruns.assign(slow_tasks.size(), 0);
     base_scans.assign(base_tasks.size(), 0);
@@ -178,6 +180,7 @@ void Machine::Impl::cycle(const CycleTick& tick) noexcept {
     steps.done(static_cast<std::size_t>(Step::receive));
 
     if (runs) {
+        objects->take_answers(recorder, now);
         drain_inbox(now);
         steps.done(static_cast<std::size_t>(Step::inbox));
 
@@ -240,6 +243,7 @@ void Machine::stop_bus() { impl_->bus.stop(); }
 void Machine::service(Instant now) {
     impl_->bus.step(now);
     for (auto& port : impl_->ports) port->step(now);
+    impl_->objects->step(impl_->bus);
     impl_->service_programs();
 }
 Result<void> Machine::arm() { return impl_->arm(); }

@@ -19,6 +19,7 @@
 #include "runtime/fault_text.hpp"
 #include "runtime/io_image.hpp"
 #include "runtime/machine.hpp"
+#include "runtime/object_requests.hpp"
 #include "runtime/program_host.hpp"
 #include "runtime/slow_task.hpp"
 
@@ -145,6 +146,7 @@ struct Machine::Impl {
     std::vector<AxisPower> operator_power;
     MachineRequests requests;
     std::unique_ptr<ProgramHost> host;
+    std::unique_ptr<ObjectRequests> objects;
     std::vector<std::unique_ptr<SlowTask>> slow_tasks;
     std::vector<std::size_t> base_tasks, slow_task_places;  // indices into host->tasks(), task_statistics, layout.tasks
     std::vector<std::uint64_t> base_scans;                  // since start, per base task

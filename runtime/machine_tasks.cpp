@@ -21,6 +21,7 @@ void Machine::Impl::run_base_task(std::size_t index) noexcept {
     context.cycle = base_scans[index]++;
     context.axes = views;
     context.requests = &requests;
+    context.objects = &objects->of(task.program);
     context.owner = axes::Owner::program;
     context.inputs = io.inputs();
     context.outputs = io.outputs();
@@ -78,6 +79,7 @@ void Machine::Impl::take_handshakes() noexcept {
         if (handshakes[p].compare_exchange_strong(expected, Handshake::none, std::memory_order_acquire)) {
             program_states[p] = ProgramState::running;
             program_faults[p] = {};
+            objects->release_all(p);
             for (auto& task : slow_tasks)
                 if (task->program() == p) task->restart();
             for (std::size_t i = 0; i < base_tasks.size(); ++i)

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/nearest_name.hpp"
+#include "runtime/present_slaves.hpp"
 
 namespace taktwerk::runtime {
 
@@ -21,6 +22,16 @@ public:
             names.push_back(config_.axes[i].axis.name);
         }
         unknown("program.unknown_axis", "axis", name, names, "axes");
+        return {};
+    }
+    DeviceRef device(std::string_view name) override {
+        std::vector<std::string> names;
+        const auto slaves = present_slaves(config_);
+        for (std::size_t i = 0; i < slaves.size(); ++i) {
+            if (slaves[i].name == name) return DeviceRef{static_cast<std::uint16_t>(i)};
+            names.push_back(slaves[i].name);
+        }
+        unknown("program.unknown_device", "slave", name, names, "bus.slaves");
         return {};
     }
     Input<bool> input(std::string_view name) override { return {point(IoDirection::input, name)}; }

@@ -7,12 +7,13 @@
 namespace taktwerk::runtime {
 
 SlowTask::SlowTask(const ProgramHost::Task& task, Program* program, std::vector<ProgramHost::Variable> variables, std::size_t axes,
-                   std::size_t inputs, std::size_t outputs, std::size_t parameters)
+                   std::size_t inputs, std::size_t outputs, std::size_t parameters, ObjectAccess& objects)
     : task_(task),
       program_(program),
       divisor_(task.config.divisor),
       variable_sources_(std::move(variables)),
       requests_(axes),
+      objects_(objects),
       views_(axes),
       inputs_(inputs),
       outputs_(outputs),
@@ -57,6 +58,7 @@ bool SlowTask::run_if_released() noexcept {
     static_cast<CycleContext&>(context) = context_;
     context.axes = views_;
     context.requests = &requests_;
+    context.objects = &objects_;
     context.inputs = inputs_;
     context.outputs = outputs_;
     context.parameters = parameters_;

@@ -15,7 +15,7 @@ struct ErrorText {
 };
 
 // clang-format off
-inline constexpr std::array<ErrorText, 23> error_texts{{
+inline constexpr std::array<ErrorText, 28> error_texts{{
     {ErrorId::none, "none", "No error", "无错误", "Nothing to do"},
     {ErrorId::invalid_axis, "invalid_axis", "The axis reference names no axis", "轴引用无效", "Connect the Axis pin to an axis of the machine"},
     {ErrorId::not_powered, "not_powered", "The axis is disabled", "轴未使能", "Enable it with MC_Power and wait for Status"},
@@ -53,6 +53,16 @@ inline constexpr std::array<ErrorText, 23> error_texts{{
      "Read the axis error, remove its cause, then MC_Reset"},
     {ErrorId::power_conflict, "power_conflict", "A second MC_Power acts on the same axis", "同一轴上存在第二个 MC_Power", "Keep one MC_Power per axis"},
     {ErrorId::invalid_parameter, "invalid_parameter", "A parameter is outside its range", "参数超出范围", "Check the inputs of the block"},
+    {ErrorId::invalid_device, "invalid_device", "The device reference names no device of the bus", "设备引用无效",
+     "Connect the Device pin to a device that the program declared; a machine without a bus has none"},
+    {ErrorId::object_refused, "object_refused", "The device refused the access to its object", "设备拒绝访问该对象",
+     "Read AbortCode: it says why; check index, sub-index and size against the device's manual"},
+    {ErrorId::object_no_answer, "object_no_answer", "The device did not answer the access to its object", "设备未应答对象访问",
+     "Check that the device is on the bus and not switched off; then try again"},
+    {ErrorId::object_too_long, "object_too_long", "The object is longer than the block can hold", "对象长度超出功能块容量",
+     "Read it with an ObjectFuture, or from the command line"},
+    {ErrorId::object_requests_full, "object_requests_full", "Too many object requests of this program are under way",
+     "该程序的对象请求过多", "Wait until others are answered, or ask one after the other"},
 }};
 // clang-format on
 
@@ -64,7 +74,7 @@ consteval bool sound() {
         if (static_cast<std::size_t>(text.id) != i) return false;
         if (text.name.empty() || text.english.empty() || text.chinese.empty() || text.remedy.empty()) return false;
     }
-    return error_texts.size() == static_cast<std::size_t>(ErrorId::invalid_parameter) + 1;
+    return error_texts.size() == static_cast<std::size_t>(ErrorId::object_requests_full) + 1;
 }
 static_assert(sound());
 }  // namespace error_check

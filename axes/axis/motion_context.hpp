@@ -7,6 +7,7 @@
 #include "axes/axis/axis_view.hpp"
 #include "axes/axis/command.hpp"
 #include "core/cycle_context.hpp"
+#include "core/object_access.hpp"
 
 namespace taktwerk::axes {
 
@@ -32,6 +33,7 @@ struct MotionContext : CycleContext {
     std::span<const AxisView> axes;
     AxisRequests* requests = nullptr;
     Owner owner = Owner::program;
+    ObjectAccess* objects = nullptr;  ///< of the bus' devices; nullptr where there is no bus
 
     /// nullptr for an invalid handle: blocks answer with ErrorId::invalid_axis.
     [[nodiscard]] const AxisView* view(AxisRef axis) const noexcept { return axis.index < axes.size() ? &axes[axis.index] : nullptr; }

@@ -63,6 +63,12 @@ enum class ErrorId : std::uint16_t {
     aborted_by_axis_error = 0x0014,
     power_conflict = 0x0015,  ///< a second MC_Power on the same axis
     invalid_parameter = 0x0016,
+    // Objects of a device (EC_SdoRead, EC_SdoWrite).
+    invalid_device = 0x0017,
+    object_refused = 0x0018,
+    object_no_answer = 0x0019,
+    object_too_long = 0x001A,
+    object_requests_full = 0x001B,
 };
 
 }  // namespace taktwerk::axes

@@ -31,7 +31,8 @@ enum class PinKind : std::uint8_t {
     LREAL,
     WORD,
     TIME,      ///< int64 nanoseconds: never wraps in the life of a machine (292 years)
-    AXIS_REF,  ///< axes::AxisRef, a handle
+    AXIS_REF,    ///< axes::AxisRef, a handle
+    DEVICE_REF,  ///< taktwerk::DeviceRef, a handle
     ENUM,      ///< unsigned 8 bit; PinType::values names the numbers 0, 1, ...
 };
 

@@ -118,6 +118,8 @@ public:
     using TaskFunction = void (*)(void* program, TaskContext& context);
 
     virtual AxisRef axis(std::string_view name) = 0;
+    /// A slave of the bus, for its objects: EC_SdoRead, EC_SdoWrite, ObjectFuture.
+    virtual DeviceRef device(std::string_view name) = 0;
     virtual Input<bool> input(std::string_view name) = 0;
     virtual Output<bool> output(std::string_view name) = 0;
     virtual Input<std::int64_t> input_word(std::string_view name) = 0;

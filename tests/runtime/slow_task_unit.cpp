@@ -1,5 +1,6 @@
 // A task at a divisor: inputs latched at release, outputs applied at the next one, whenever it finishes (docs/architecture.md).
 
+#include "runtime/object_requests.hpp"
 #include "runtime/slow_task.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +27,7 @@ struct Body final : Program {
 };
 
 struct Slow : testing::Test {
-    Slow() : task{host_task(), &body, {{VariableType::real, &body.shown, 0}}, 1, 1, 2, 1} {}
+    Slow() : task{host_task(), &body, {{VariableType::real, &body.shown, 0}}, 1, 1, 2, 1, objects.of(0)} {}
 
     static ProgramHost::Task host_task() {
         ProgramHost::Task t;
@@ -50,6 +51,7 @@ struct Slow : testing::Test {
     std::vector<std::int64_t> inputs{0}, outputs{0, 0};
     std::vector<double> parameters{0};
     std::uint64_t alarms = 0;
+    ObjectRequests objects{1, 0};
     SlowTask task;
 };
 

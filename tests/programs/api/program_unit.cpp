@@ -76,6 +76,7 @@ static_assert(!Monitored<double> && !Monitored<int> && !Monitored<bool>);
 class Recorder final : public Declaration {
 public:
     AxisRef axis(std::string_view) override { return {}; }
+    DeviceRef device(std::string_view) override { return {}; }
     Input<bool> input(std::string_view) override { return {}; }
     Output<bool> output(std::string_view) override { return {}; }
     Input<std::int64_t> input_word(std::string_view) override { return {}; }
