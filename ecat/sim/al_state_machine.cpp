@@ -10,7 +10,8 @@ namespace {
 
 // AL status codes (ETG.1000.6 table 11; texts in ecat/wire/al_status.cpp).
 constexpr std::uint16_t invalid_state_change = 0x0011, unknown_state = 0x0012, no_bootstrap = 0x0013, invalid_mailbox = 0x0016;
-constexpr std::uint16_t invalid_outputs = 0x001D, invalid_inputs = 0x001E, no_sync = 0x002D, invalid_sync0_cycle = 0x0036;
+constexpr std::uint16_t invalid_sync_manager = 0x0017, invalid_outputs = 0x001D, invalid_inputs = 0x001E, invalid_watchdog = 0x001F;
+constexpr std::uint16_t no_sync = 0x002D, invalid_sync0_cycle = 0x0036;
 
 int rank(EsmState state) noexcept {
     switch (state) {
@@ -23,10 +24,11 @@ int rank(EsmState state) noexcept {
     return 0;
 }
 
-std::optional<unsigned> first_of(const DeviceDescription& description, SmUse use) {
-    for (std::size_t n = 0; n < description.sync_managers.size(); ++n)
-        if (description.sync_managers[n].use == use) return static_cast<unsigned>(n);
-    return std::nullopt;
+std::vector<unsigned> all_of(const DeviceDescription& description, SmUse use) {
+    std::vector<unsigned> found;
+    for (unsigned n = 0; n < description.sync_managers.size(); ++n)
+        if (description.sync_managers[n].use == use) found.push_back(n);
+    return found;
 }
 
 }  // namespace
@@ -38,12 +40,12 @@ AlStateMachine::AlStateMachine(const DeviceDescription& description, SlaveContro
       model_(model),
       coe_(coe),
       process_data_(process_data),
-      outputs_sm_(first_of(description, SmUse::outputs)),
-      inputs_sm_(first_of(description, SmUse::inputs)) {}
+      outputs_(all_of(description, SmUse::outputs)),
+      inputs_(all_of(description, SmUse::inputs)) {}
 
 void AlStateMachine::power_on(Instant now) {
     state_ = EsmState::init;
-    error_ = false;
+    error_ = id_requested_ = false;
     if (coe_ != nullptr) coe_->stop();
     lock_process_data(true);
     show(0);
@@ -56,7 +58,13 @@ void AlStateMachine::refuse_state(EsmState to, std::uint16_t code) {
 }
 
 void AlStateMachine::show(std::uint16_t code) {
-    controller_.set_al_status(static_cast<std::uint16_t>(static_cast<unsigned>(state_) | (error_ ? al_status_error : 0u)), code);
+    unsigned status = static_cast<unsigned>(state_) | (error_ ? al_status_error : 0u);
+    // The id takes the place of the code, so an error hides it.
+    if (id_requested_ && device_id_ && !error_) {
+        status |= al_status_id_valid;
+        code = *device_id_;
+    }
+    controller_.set_al_status(static_cast<std::uint16_t>(status), code);
 }
 
 void AlStateMachine::refuse(std::uint16_t code) {
@@ -66,6 +74,7 @@ void AlStateMachine::refuse(std::uint16_t code) {
 
 void AlStateMachine::request(std::uint16_t al_control, Instant now) {
     const auto wanted = al_state(al_control);
+    id_requested_ = (al_control & al_control_request_id) != 0;
     if (error_) {
         // Until the master has acknowledged, only the way to INIT is open.
         if ((al_control & al_control_acknowledge) == 0 && wanted != AlState::init) return;
@@ -109,14 +118,27 @@ void AlStateMachine::move_to(EsmState to, Instant now) {
 }
 
 void AlStateMachine::lock_process_data(bool locked) {
-    if (outputs_sm_) controller_.lock_sync_manager(*outputs_sm_, locked);
-    if (inputs_sm_) controller_.lock_sync_manager(*inputs_sm_, locked);
+    for (const unsigned n : outputs_) controller_.lock_sync_manager(n, locked);
+    for (const unsigned n : inputs_) controller_.lock_sync_manager(n, locked);
+}
+
+void AlStateMachine::check_running(Instant now) {
+    if (error_ || state_ == EsmState::init || state_ == EsmState::boot) return;
+    const auto fall = [&](EsmState to, std::uint16_t code) {
+        move_to(to, now);
+        refuse(code);
+    };
+    if (const auto code = coe_ != nullptr ? check_mailbox() : std::uint16_t{0}; code != 0) return fall(EsmState::init, code);
+    if (!exchanging()) return;
+    if (const auto code = check_sync_managers(); code != 0) fall(EsmState::preop, code);
 }
 
 std::uint16_t AlStateMachine::check_upwards(EsmState to) {
     std::uint16_t code = 0;
-    if (to == EsmState::preop && coe_ != nullptr) code = check_mailbox();
-    if (to == EsmState::safeop) code = check_process_data();
+    if (coe_ != nullptr) code = check_mailbox();
+    if (code == 0 && to == EsmState::safeop) code = check_process_data();
+    if (code == 0 && to == EsmState::op) code = check_sync_managers();
+    if (code == 0 && to != EsmState::preop) code = check_watchdog();
     if (code == 0 && to != EsmState::preop) code = check_dc();
     if (code != 0) return code;
     for (const auto& refusal : refusals_)
@@ -136,19 +158,36 @@ std::uint16_t AlStateMachine::check_mailbox() const {
 }
 
 std::uint16_t AlStateMachine::check_process_data() {
-    std::uint16_t output_bytes = 0, input_bytes = 0;
-    if (process_data_ != nullptr) {
+    if (process_data_ != nullptr)
         if (const auto code = process_data_->resolve(); code != 0) return code;
-        output_bytes = process_data_->output_bytes();
-        input_bytes = process_data_->input_bytes();
-    } else {
-        if (outputs_sm_) output_bytes = description_.sync_managers[*outputs_sm_].size;
-        if (inputs_sm_) input_bytes = description_.sync_managers[*inputs_sm_].size;
+    return check_sync_managers();
+}
+
+std::uint16_t AlStateMachine::bytes_of(unsigned n) const {
+    return process_data_ != nullptr ? process_data_->bytes(n) : description_.sync_managers[n].size;
+}
+
+std::uint16_t AlStateMachine::check_sync_managers() const {
+    const auto fits = [&](unsigned n, std::uint8_t direction) {
+        return process_sm_fits(n, bytes_of(n), description_.sync_managers[n].start, direction);
+    };
+    for (const unsigned n : outputs_)
+        if (!fits(n, SyncManager::master_writes)) return invalid_outputs;
+    for (const unsigned n : inputs_)
+        if (!fits(n, 0)) return invalid_inputs;
+    // One that the device does not know would take memory from it.
+    for (auto n = static_cast<unsigned>(description_.sync_managers.size()); n < controller_.settings().sync_managers; ++n)
+        if (controller_.sync_manager(n).enabled() && controller_.sync_manager(n).length > 0) return invalid_sync_manager;
+    return 0;
+}
+
+std::uint16_t AlStateMachine::check_watchdog() const {
+    // Outputs that the device wants supervised must trigger the watchdog. (Its time may be 0: the master's explicit choice.)
+    for (const unsigned n : outputs_) {
+        const bool wanted = (description_.sync_managers[n].control & SyncManager::watchdog_trigger) != 0;
+        const SyncManager& sm = controller_.sync_manager(n);
+        if (wanted && sm.enabled() && sm.length > 0 && (sm.control & SyncManager::watchdog_trigger) == 0) return invalid_watchdog;
     }
-    const auto start_of = [&](const std::optional<unsigned>& n) { return description_.sync_managers[*n].start; };
-    if (outputs_sm_ && !process_sm_fits(*outputs_sm_, output_bytes, start_of(outputs_sm_), SyncManager::master_writes))
-        return invalid_outputs;
-    if (inputs_sm_ && !process_sm_fits(*inputs_sm_, input_bytes, start_of(inputs_sm_), 0)) return invalid_inputs;
     return 0;
 }
 
@@ -173,7 +212,7 @@ bool AlStateMachine::process_sm_fits(unsigned n, std::uint16_t bytes, std::uint1
 
 std::uint16_t AlStateMachine::check_dc() const {
     const Sync0& sync0 = controller_.sync0();
-    if (!sync0.active()) return description_.dc.required ? no_sync : std::uint16_t{0};
+    if (!controller_.sync0_active()) return description_.dc.required ? no_sync : std::uint16_t{0};
     if (!sync0.runs()) return no_sync;  // the start time was in the past, or there is no cycle: no pulse will come
     const Duration cycle = sync0.cycle();
     const DcDescription& dc = description_.dc;
@@ -184,15 +223,10 @@ std::uint16_t AlStateMachine::check_dc() const {
 
 SyncSettings AlStateMachine::sync_settings() const {
     SyncSettings settings;
-    settings.sync0_active = controller_.sync0().runs();
+    settings.sync0_active = controller_.sync0_runs();
     settings.sync0_cycle = controller_.sync0().cycle();
-    if (process_data_ != nullptr) {
-        settings.output_bytes = process_data_->output_bytes();
-        settings.input_bytes = process_data_->input_bytes();
-    } else {
-        if (outputs_sm_) settings.output_bytes = description_.sync_managers[*outputs_sm_].size;
-        if (inputs_sm_) settings.input_bytes = description_.sync_managers[*inputs_sm_].size;
-    }
+    for (const unsigned n : outputs_) settings.output_bytes = static_cast<std::uint16_t>(settings.output_bytes + bytes_of(n));
+    for (const unsigned n : inputs_) settings.input_bytes = static_cast<std::uint16_t>(settings.input_bytes + bytes_of(n));
     return settings;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/time.hpp"
@@ -31,8 +32,14 @@ public:
     [[nodiscard]] bool error() const noexcept { return error_; }
     /// Process data is exchanged: SAFEOP and OP.
     [[nodiscard]] bool exchanging() const noexcept { return state_ == EsmState::safeop || state_ == EsmState::op; }
-    [[nodiscard]] std::optional<unsigned> outputs_sm() const noexcept { return outputs_sm_; }
-    [[nodiscard]] std::optional<unsigned> inputs_sm() const noexcept { return inputs_sm_; }
+    /// The sync managers of the description that carry process data, ascending.
+    [[nodiscard]] std::span<const unsigned> outputs() const noexcept { return outputs_; }
+    [[nodiscard]] std::span<const unsigned> inputs() const noexcept { return inputs_; }
+    /// What the slave says when AL control bit 5 asks (a rotary switch); none: it has no explicit device identification.
+    void set_device_id(std::optional<std::uint16_t> id) noexcept { device_id_ = id; }
+    /// The master turned a sync manager on or off while the state needs it: INIT with 0016h for a mailbox, PREOP with 001Dh or
+    /// 001Eh for process data.
+    void check_running(Instant now);
 
     /// Test: entering `to` from below fails with `code` until it is 0 again.
     void refuse_state(EsmState to, std::uint16_t code);
@@ -44,6 +51,9 @@ private:
     [[nodiscard]] std::uint16_t check_upwards(EsmState to);
     [[nodiscard]] std::uint16_t check_mailbox() const;
     [[nodiscard]] std::uint16_t check_process_data();
+    [[nodiscard]] std::uint16_t check_sync_managers() const;
+    [[nodiscard]] std::uint16_t check_watchdog() const;
+    [[nodiscard]] std::uint16_t bytes_of(unsigned n) const;
     [[nodiscard]] bool process_sm_fits(unsigned n, std::uint16_t bytes, std::uint16_t start, std::uint8_t direction) const;
     [[nodiscard]] std::uint16_t check_dc() const;
     [[nodiscard]] SyncSettings sync_settings() const;
@@ -54,7 +64,9 @@ private:
     DeviceModel& model_;
     CoeServer* coe_;
     ProcessData* process_data_;
-    std::optional<unsigned> outputs_sm_, inputs_sm_;
+    std::vector<unsigned> outputs_, inputs_;
+    std::optional<std::uint16_t> device_id_;
+    bool id_requested_ = false;
     EsmState state_ = EsmState::init;
     bool error_ = false;
     struct Refusal {

@@ -4,6 +4,8 @@
 #include <map>
 #include <utility>
 
+#include "ecat/sim/process_data.hpp"
+
 namespace taktwerk::ecat::sim {
 
 std::uint8_t bits_of(DataType type) noexcept {
@@ -106,8 +108,21 @@ void ObjectDictionary::add_derived(const DeviceDescription& description) {
 
     add_pdos(description.rx_pdos, description.rx_rules);
     add_pdos(description.tx_pdos, description.tx_rules);
-    add_assignment(0x1C12, description.rx_assigned, description.rx_rules);
-    add_assignment(0x1C13, description.tx_assigned, description.tx_rules);
+    bool outputs = false, inputs = false;
+    for (std::size_t n = 0; n < description.sync_managers.size(); ++n) {
+        const SmUse use = description.sync_managers[n].use;
+        if (use != SmUse::outputs && use != SmUse::inputs) continue;
+        const bool rx = use == SmUse::outputs;
+        (rx ? outputs : inputs) = true;
+        std::vector<std::uint16_t> assigned;  // of those the description assigns, what goes through this sync manager
+        for (const auto index : rx ? description.rx_assigned : description.tx_assigned)
+            for (const auto& pdo : rx ? description.rx_pdos : description.tx_pdos)
+                if (pdo.index == index && belongs_to(description, pdo, static_cast<unsigned>(n))) assigned.push_back(index);
+        add_assignment(assignment_object(n), assigned, rx ? description.rx_rules : description.tx_rules);
+    }
+    // The usual two are there also where a direction has no sync manager of its own.
+    if (!outputs) add_assignment(0x1C12, {}, description.rx_rules);
+    if (!inputs) add_assignment(0x1C13, {}, description.tx_rules);
     add_synchronisation(0x1C32, description.dc);
     add_synchronisation(0x1C33, description.dc);
 }

@@ -31,9 +31,17 @@ std::uint32_t refuse_pdo_write(const DeviceDescription& description, const Objec
     if (entry.role() == EntryRole::plain) return 0;
     if (state != EsmState::preop) return sdo_abort::device_state;
     const std::uint16_t index = entry.index();
-    const bool rx = index == 0x1C12 || lists(description.rx_pdos, index);
+    const std::size_t sync_manager = index - assignment_object(0);
+    const bool rx = lists(description.rx_pdos, index) ||
+                    (sync_manager < description.sync_managers.size() && description.sync_managers[sync_manager].use == SmUse::outputs);
     const PdoRules& rules = rx ? description.rx_rules : description.tx_rules;
     const auto& pdos = rx ? description.rx_pdos : description.tx_pdos;
+    // A PDO that names its sync manager goes only there; the others wherever the direction is right.
+    const auto may_be_assigned = [&](std::uint16_t pdo) {
+        return std::any_of(pdos.begin(), pdos.end(), [&](const PdoDescription& known) {
+            return known.index == pdo && (!known.sync_manager || *known.sync_manager == sync_manager);
+        });
+    };
 
     switch (entry.role()) {
         case EntryRole::plain: break;
@@ -42,7 +50,7 @@ std::uint32_t refuse_pdo_write(const DeviceDescription& description, const Objec
             return refuse_mapping_entry(dictionary, value, rx);
         case EntryRole::assign_entry:
             if (dictionary.value(index, 0) != 0) return sdo_abort::sub0_not_zero;
-            return value == 0 || lists(pdos, static_cast<std::uint16_t>(value)) ? 0 : sdo_abort::value_range;
+            return value == 0 || may_be_assigned(static_cast<std::uint16_t>(value)) ? 0 : sdo_abort::value_range;
         case EntryRole::mapping_count: {
             std::uint32_t bits = 0;
             for (std::int64_t n = 1; n <= value; ++n) {
@@ -56,7 +64,7 @@ std::uint32_t refuse_pdo_write(const DeviceDescription& description, const Objec
             std::uint32_t bits = 0;
             for (std::int64_t n = 1; n <= value; ++n) {
                 const auto pdo = static_cast<std::uint16_t>(dictionary.value(index, static_cast<std::uint8_t>(n)));
-                if (!lists(pdos, pdo)) return sdo_abort::value_range;
+                if (!may_be_assigned(pdo)) return sdo_abort::value_range;
                 bits += mapped_bits(dictionary, pdo);
             }
             return (bits + 7) / 8 > rules.max_bytes ? sdo_abort::pdo_length : 0;

@@ -1,22 +1,30 @@
 #include "ecat/sim/process_data.hpp"
 
+#include <algorithm>
+
 namespace taktwerk::ecat::sim {
 
-ProcessData::ProcessData(const DeviceDescription& description, ObjectDictionary& dictionary) : dictionary_(dictionary) {
-    outputs_.copies.reserve(std::size_t{description.rx_rules.max_assigned} * description.rx_rules.max_entries + 32);
-    inputs_.copies.reserve(std::size_t{description.tx_rules.max_assigned} * description.tx_rules.max_entries + 32);
+ProcessData::ProcessData(const DeviceDescription& description, ObjectDictionary& dictionary)
+    : dictionary_(dictionary), windows_(description.sync_managers.size()) {
+    for (std::size_t n = 0; n < windows_.size(); ++n) {
+        windows_[n].use = description.sync_managers[n].use;
+        const PdoRules& rules = windows_[n].use == SmUse::outputs ? description.rx_rules : description.tx_rules;
+        windows_[n].copies.reserve(std::size_t{rules.max_assigned} * rules.max_entries + 32);
+    }
 }
 
 std::uint16_t ProcessData::resolve() {
     constexpr std::uint16_t invalid_input_mapping = 0x0024, invalid_output_mapping = 0x0025;
-    if (!resolve(0x1C12, outputs_)) return invalid_output_mapping;
-    if (!resolve(0x1C13, inputs_)) return invalid_input_mapping;
+    for (unsigned n = 0; n < windows_.size(); ++n)
+        if (!resolve(n, windows_[n])) return windows_[n].use == SmUse::outputs ? invalid_output_mapping : invalid_input_mapping;
     return 0;
 }
 
-bool ProcessData::resolve(std::uint16_t assignment, Direction& direction) {
-    direction.copies.clear();
-    direction.bytes = 0;
+bool ProcessData::resolve(unsigned sync_manager, Window& window) {
+    window.copies.clear();
+    window.bytes = 0;
+    if (window.use != SmUse::outputs && window.use != SmUse::inputs) return true;
+    const auto assignment = assignment_object(sync_manager);
     std::uint32_t bit = 0;
     const auto pdos = dictionary_.value(assignment, 0);
     for (std::int64_t p = 1; p <= pdos; ++p) {
@@ -30,23 +38,45 @@ bool ProcessData::resolve(std::uint16_t assignment, Direction& direction) {
             if (index != 0) {
                 Entry* entry = dictionary_.find(index, static_cast<std::uint8_t>(raw >> 8));
                 if (entry == nullptr || entry->bits() != bits) return false;
-                direction.copies.push_back({entry, Signal{bit, bits, entry->is_signed()}});
+                window.copies.push_back({entry, Signal{bit, bits, entry->is_signed()}});
             }
             bit += bits;
         }
     }
-    direction.bytes = static_cast<std::uint16_t>((bit + 7) / 8);
+    window.bytes = static_cast<std::uint16_t>((bit + 7) / 8);
     return true;
 }
 
-void ProcessData::load_outputs(std::span<const std::byte> image) noexcept {
-    if (image.size() < outputs_.bytes) return;
-    for (const auto& copy : outputs_.copies) copy.entry->set(read_signal(image, copy.signal));
+std::uint16_t ProcessData::bytes(unsigned sync_manager) const noexcept {
+    return sync_manager < windows_.size() ? windows_[sync_manager].bytes : std::uint16_t{0};
 }
 
-void ProcessData::store_inputs(std::span<std::byte> image) const noexcept {
-    if (image.size() < inputs_.bytes) return;
-    for (const auto& copy : inputs_.copies) write_signal(image, copy.signal, copy.entry->get());
+void ProcessData::load_outputs(unsigned sync_manager, std::span<const std::byte> image) noexcept {
+    const Window& window = windows_[sync_manager];
+    if (image.size() < window.bytes) return;
+    for (const auto& copy : window.copies) copy.entry->set(read_signal(image, copy.signal));
+}
+
+void ProcessData::store_inputs(unsigned sync_manager, std::span<std::byte> image) const noexcept {
+    const Window& window = windows_[sync_manager];
+    if (image.size() < window.bytes) return;
+    for (const auto& copy : window.copies) write_signal(image, copy.signal, copy.entry->get());
+}
+
+std::optional<unsigned> first_sync_manager(const DeviceDescription& description, SmUse use) noexcept {
+    for (std::size_t n = 0; n < description.sync_managers.size(); ++n)
+        if (description.sync_managers[n].use == use) return static_cast<unsigned>(n);
+    return std::nullopt;
+}
+
+bool belongs_to(const DeviceDescription& description, const PdoDescription& pdo, unsigned n) noexcept {
+    if (n >= description.sync_managers.size()) return false;
+    const auto has = [&](const std::vector<PdoDescription>& pdos) {
+        return std::any_of(pdos.begin(), pdos.end(), [&](const PdoDescription& other) { return other.index == pdo.index; });
+    };
+    const SmUse use = has(description.rx_pdos) ? SmUse::outputs : SmUse::inputs;
+    if (description.sync_managers[n].use != use) return false;
+    return pdo.sync_manager ? *pdo.sync_manager == n : first_sync_manager(description, use) == n;
 }
 
 std::uint32_t mapped_bits(const ObjectDictionary& dictionary, std::uint16_t pdo) noexcept {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "ecat/sim/process_data.hpp"
 #include "ecat/wire/sii.hpp"
 
 namespace taktwerk::ecat::sim {
@@ -27,17 +28,14 @@ std::uint8_t type_number(DataType type) noexcept {
     return 0;
 }
 
-SiiPdo pdo_of(const DeviceDescription& description, const PdoDescription& pdo, const std::vector<std::uint16_t>& assigned, SmUse use,
-              Sii& sii) {
+SiiPdo pdo_of(const DeviceDescription& description, const PdoDescription& pdo, const std::vector<std::uint16_t>& assigned, Sii& sii) {
     constexpr std::uint16_t fixed_content = 1u << 4;
     SiiPdo out;
     out.index = pdo.index;
     out.flags = pdo.fixed ? fixed_content : std::uint16_t{0};
-    for (std::size_t n = 0; n < description.sync_managers.size(); ++n)
-        if (description.sync_managers[n].use == use && std::find(assigned.begin(), assigned.end(), pdo.index) != assigned.end()) {
-            out.sync_manager = static_cast<std::uint8_t>(n);
-            break;
-        }
+    if (std::find(assigned.begin(), assigned.end(), pdo.index) != assigned.end())
+        for (unsigned n = 0; n < description.sync_managers.size(); ++n)
+            if (belongs_to(description, pdo, n)) out.sync_manager = static_cast<std::uint8_t>(n);
     for (const auto& entry : pdo.entries) {
         SiiPdoEntry e;
         e.index = entry.index;
@@ -58,17 +56,20 @@ SiiPdo pdo_of(const DeviceDescription& description, const PdoDescription& pdo, c
     return out;
 }
 
-std::uint16_t default_bytes(const std::vector<PdoDescription>& pdos, const std::vector<std::uint16_t>& assigned) {
+/// Of the PDOs that a sync manager carries as the device comes from the factory.
+std::uint16_t default_bytes(const DeviceDescription& description, unsigned n) {
+    const bool rx = description.sync_managers[n].use == SmUse::outputs;
+    const auto& assigned = rx ? description.rx_assigned : description.tx_assigned;
     std::size_t bits = 0;
-    for (const auto& pdo : pdos)
-        if (std::find(assigned.begin(), assigned.end(), pdo.index) != assigned.end())
+    for (const auto& pdo : rx ? description.rx_pdos : description.tx_pdos)
+        if (std::find(assigned.begin(), assigned.end(), pdo.index) != assigned.end() && belongs_to(description, pdo, n))
             for (const auto& entry : pdo.entries) bits += entry.bits;
     return static_cast<std::uint16_t>((bits + 7) / 8);
 }
 
 }  // namespace
 
-std::vector<std::byte> sii_image(const DeviceDescription& description, std::uint16_t alias) {
+std::vector<std::byte> sii_image(const DeviceDescription& description, std::uint16_t alias, std::uint8_t general_flags) {
     Sii sii;
     // PDI 08h: 16-bit microcontroller, 04h: digital I/O; high byte 0Ch: SYNC and latch unit (SV33-E manual 6.2.6.2 reads 0C08h).
     sii.pdi_control = static_cast<std::uint16_t>((description.mailbox ? 0x08 : 0x04) | (description.dc.supported ? 0x0C00 : 0));
@@ -82,6 +83,7 @@ std::vector<std::byte> sii_image(const DeviceDescription& description, std::uint
     general.order = sii.add_string(description.name);
     general.name = sii.add_string(description.device_name.empty() ? description.name : description.device_name);
     general.physical_ports = 0x0011;
+    general.flags = general_flags;
     if (description.mailbox && description.mailbox->coe) {
         sii.mailbox_protocols = sii_protocol::coe;
         general.coe_details = sii_coe::sdo | sii_coe::pdo_assign | sii_coe::pdo_configuration;
@@ -90,7 +92,8 @@ std::vector<std::byte> sii_image(const DeviceDescription& description, std::uint
     }
     sii.general = general;
 
-    for (const auto& sm : description.sync_managers) {
+    for (unsigned n = 0; n < description.sync_managers.size(); ++n) {
+        const auto& sm = description.sync_managers[n];
         SiiSyncManager out;
         out.start = sm.start;
         out.length = sm.size;
@@ -98,17 +101,14 @@ std::vector<std::byte> sii_image(const DeviceDescription& description, std::uint
         out.use = static_cast<SiiSyncManagerUse>(static_cast<std::uint8_t>(sm.use) + 1);
         if (sm.use == SmUse::mailbox_out) sii.mailbox_out = {sm.start, sm.size};
         if (sm.use == SmUse::mailbox_in) sii.mailbox_in = {sm.start, sm.size};
-        if (sm.use == SmUse::outputs && sm.size == 0) out.length = default_bytes(description.rx_pdos, description.rx_assigned);
-        if (sm.use == SmUse::inputs && sm.size == 0) out.length = default_bytes(description.tx_pdos, description.tx_assigned);
+        if ((sm.use == SmUse::outputs || sm.use == SmUse::inputs) && sm.size == 0) out.length = default_bytes(description, n);
         if (sm.use == SmUse::outputs) sii.fmmus.push_back(SiiFmmuUse::outputs);
         if (sm.use == SmUse::inputs) sii.fmmus.push_back(SiiFmmuUse::inputs);
         sii.sync_managers.push_back(out);
     }
     if (description.mailbox) sii.fmmus.push_back(SiiFmmuUse::mailbox_status);
-    for (const auto& pdo : description.rx_pdos)
-        sii.rx_pdos.push_back(pdo_of(description, pdo, description.rx_assigned, SmUse::outputs, sii));
-    for (const auto& pdo : description.tx_pdos)
-        sii.tx_pdos.push_back(pdo_of(description, pdo, description.tx_assigned, SmUse::inputs, sii));
+    for (const auto& pdo : description.rx_pdos) sii.rx_pdos.push_back(pdo_of(description, pdo, description.rx_assigned, sii));
+    for (const auto& pdo : description.tx_pdos) sii.tx_pdos.push_back(pdo_of(description, pdo, description.tx_assigned, sii));
     return build_sii(sii);
 }
 

@@ -9,6 +9,6 @@
 
 namespace taktwerk::ecat::sim {
 
-[[nodiscard]] std::vector<std::byte> sii_image(const DeviceDescription& description, std::uint16_t alias);
+[[nodiscard]] std::vector<std::byte> sii_image(const DeviceDescription& description, std::uint16_t alias, std::uint8_t general_flags = 0);
 
 }  // namespace taktwerk::ecat::sim

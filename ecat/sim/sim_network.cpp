@@ -98,8 +98,8 @@ void SimNetwork::advance(Instant now) noexcept {
     for (const Place* place : wiring_.places()) place->slave->settle(now);
 }
 
-std::size_t SimNetwork::take_apart(std::span<std::byte> frame) noexcept {
-    if (frame.size() > max_frame_size) return 0;
+std::optional<std::size_t> SimNetwork::take_apart(std::span<std::byte> frame) noexcept {
+    if (frame.size() > max_frame_size) return std::nullopt;
     FrameEditor editor{frame};
     std::size_t n = 0;
     while (n < datagrams_.size()) {
@@ -107,8 +107,8 @@ std::size_t SimNetwork::take_apart(std::span<std::byte> frame) noexcept {
         if (!datagram) break;
         datagrams_[n++] = *datagram;
     }
-    // A frame with a defect passes: the controllers execute only what is sound as a whole.
-    return editor.error() == FrameError::none ? n : 0;
+    if (editor.error() != FrameError::none) return std::nullopt;
+    return n;
 }
 
 std::optional<Duration> SimNetwork::process(std::span<std::byte> frame, Instant now) noexcept {
@@ -119,7 +119,9 @@ std::optional<Duration> SimNetwork::process(std::span<std::byte> frame, Instant 
     }
     if (wiring_.route().empty() || frame.size() < ethernet_header_size) return std::nullopt;
 
-    const std::span<MutableDatagram> datagrams{datagrams_.data(), take_apart(frame)};
+    // A frame with a defect passes: the controllers count it and execute only what is sound as a whole.
+    const auto sound = take_apart(frame);
+    const std::span<MutableDatagram> datagrams{datagrams_.data(), sound.value_or(0)};
     bool loops_changed = false, destroyed = false;
     for (const Visit& visit : wiring_.route()) {
         if (visit.port_0_shut) {
@@ -129,6 +131,7 @@ std::optional<Duration> SimNetwork::process(std::span<std::byte> frame, Instant 
             for (auto& datagram : datagrams) mark_circulating(datagram);
         }
         SimSlave& slave = *visit.place->slave;
+        if (!sound) slave.controller().count_processing_unit_error();
         slave.process(datagrams, now + visit.at);
         loops_changed |= slave.controller().take_loop_change();
     }

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/time.hpp"
@@ -65,7 +66,7 @@ private:
     SimSlave& install(Place* parent, unsigned port, std::unique_ptr<SimSlave> slave, unsigned entry_port);
     void fire_until(Instant now) noexcept;
     void schedule() noexcept;
-    [[nodiscard]] std::size_t take_apart(std::span<std::byte> frame) noexcept;
+    [[nodiscard]] std::optional<std::size_t> take_apart(std::span<std::byte> frame) noexcept;
 
     // 12 bytes is the shortest datagram: more than this do not fit into a frame.
     static constexpr std::size_t max_datagrams = (max_frame_size - ethernet_header_size - ecat_header_size) / datagram_overhead;

@@ -20,8 +20,15 @@ ControllerSettings settings_of(const DeviceDescription& description, const Slave
     settings.dc = description.dc.supported;
     settings.dc_64bit = description.dc.clock_64bit;
     settings.lrw = options.lrw;
+    settings.read_write = options.read_write;
     settings.bitwise_fmmu = options.bitwise_fmmu;
+    settings.application = description.mailbox.has_value();
     return settings;
+}
+
+std::uint8_t general_flags(const SlaveOptions& options) {
+    constexpr unsigned lrw_not_supported = 1u << 1, identifies_in_al_status = 1u << 3;  // ETG.2010, category General
+    return static_cast<std::uint8_t>((options.lrw ? 0u : lrw_not_supported) | (options.device_id ? identifies_in_al_status : 0u));
 }
 
 /// A slave without CoE has no dictionary: nothing but what a description always implies would be in it.
@@ -35,8 +42,8 @@ SimSlave::SimSlave(std::shared_ptr<const DeviceDescription> description, std::un
     : description_(std::move(description)),
       model_(std::move(model)),
       options_(std::move(options)),
-      controller_(settings_of(*description_, options_),
-                  EepromInterface{sii_image(*description_, options_.alias), options_.eeprom_read_time, options_.eeprom_write_time}),
+      controller_(settings_of(*description_, options_), EepromInterface{sii_image(*description_, options_.alias, general_flags(options_)),
+                                                                        options_.eeprom_read_time, options_.eeprom_write_time}),
       dictionary_(dictionary_source(*description_)),
       process_data_(*description_, dictionary_),
       al_(*description_, controller_, *model_,
@@ -45,13 +52,15 @@ SimSlave::SimSlave(std::shared_ptr<const DeviceDescription> description, std::un
     if (options_.name.empty()) options_.name = description_->name;
     model_->connect(coe_ ? &*coe_ : nullptr);
     missed_entry_ = dictionary_.find(0x1C32, 0x0B);
+    al_.set_device_id(options_.device_id);
+    raw_.resize(description_->process_ram);
 }
 
 void SimSlave::power_on(Instant now) {
     controller_.power_on(now, options_.clock_start.count(), static_cast<std::int32_t>(std::lround(options_.drift_ppm * 1000.0)));
     dictionary_.reset();
     powered_ = true;
-    outputs_valid_ = false;
+    hung_ = outputs_valid_ = false;
     al_due_ = never;
     settled_ = now;
     missed_outputs_ = 0;
@@ -70,6 +79,7 @@ void SimSlave::power_off(Instant now) {
 
 void SimSlave::process(std::span<MutableDatagram> datagrams, Instant at) noexcept {
     while (next_event_ <= at) fire(next_event_);
+    controller_.begin_frame();
     // Plain inputs are sampled at the start of the frame that carries them away.
     if (!description_->mailbox && al_.exchanging()) latch_raw_inputs();
     for (auto& datagram : datagrams) controller_.execute(datagram, at);
@@ -79,6 +89,7 @@ void SimSlave::process(std::span<MutableDatagram> datagrams, Instant at) noexcep
 
 void SimSlave::fire(Instant now) noexcept {
     controller_.fire(now);
+    if (hung_) return schedule();
     if (al_due_ <= now) {
         al_due_ = never;
         settle(now);
@@ -86,7 +97,7 @@ void SimSlave::fire(Instant now) noexcept {
         al_.request(controller_.al_control(), now);
         if (!exchanged && al_.exchanging()) {
             outputs_valid_ = false;
-            if (Entry* cycle = dictionary_.find(0x1C32, 0x02); cycle != nullptr && controller_.sync0().runs())
+            if (Entry* cycle = dictionary_.find(0x1C32, 0x02); cycle != nullptr && controller_.sync0_runs())
                 cycle->set(controller_.sync0().cycle().count());
             exchange(now);  // the inputs are valid from the first frame in SAFEOP on
         }
@@ -100,49 +111,89 @@ void SimSlave::fire(Instant now) noexcept {
 }
 
 void SimSlave::handle_events(Instant now) noexcept {
+    if (hung_) return;
     const unsigned events = controller_.take_events();
     if (events == 0) return;
+    if ((events & event::reset) != 0) {
+        power_off(now);
+        return power_on(now);
+    }
     if ((events & event::al_control) != 0 && al_due_ == never) al_due_ = now + options_.transition_time;
+    if ((events & event::sync_manager_switched) != 0) al_.check_running(now);
     if (coe_ && (events & (event::mailbox_written | event::mailbox_read | event::repeat_request)) != 0) coe_->step(al_.state(), now);
     if ((events & event::watchdog) != 0 && al_.state() == EsmState::op) {
         settle(now);
-        if (al_.outputs_sm()) controller_.clear_outputs(*al_.outputs_sm());
+        for (const unsigned n : al_.outputs()) controller_.clear_outputs(n);
         outputs_valid_ = false;
         model_->outputs_lost(now);
         al_.fall_to_safeop(sm_watchdog_expired, now);
     }
     if (!al_.exchanging()) return;
-    if (controller_.sync0().runs()) {
+    if (controller_.sync0_runs()) {
         if ((events & event::sync0) != 0) exchange(now);
-    } else if ((events & (al_.outputs_sm() ? event::outputs : event::inputs_read)) != 0) {
+    } else if ((events & (al_.outputs().empty() ? event::inputs_read : event::outputs)) != 0) {
         exchange(now);
     }
 }
 
 void SimSlave::exchange(Instant now) noexcept {
     settle(now);
-    const auto outputs = al_.outputs_sm(), inputs = al_.inputs_sm();
-    const bool fresh = outputs && controller_.take_fresh(*outputs);
+    bool fresh = false;
+    for (const unsigned n : al_.outputs()) fresh |= controller_.take_fresh(n);
     outputs_valid_ |= fresh;
     const bool op = al_.state() == EsmState::op;
-    if (op && outputs && !fresh && controller_.sync0().runs()) {
+    if (op && !al_.outputs().empty() && !fresh && controller_.sync0_runs()) {
         ++missed_outputs_;
         if (missed_entry_ != nullptr) missed_entry_->set(std::min<std::int64_t>(missed_outputs_, 0xFFFF));
     }
-    const bool apply = op && outputs && outputs_valid_;
+    if (op && outputs_valid_) load_outputs();
+    model_->exchange(now);
+    if (description_->mailbox) store_inputs();
+    else latch_raw_inputs();
+}
+
+void SimSlave::load_outputs() noexcept {
     if (description_->mailbox) {
-        if (apply) process_data_.load_outputs(controller_.outputs(*outputs));
-        model_->exchange(now);
-        if (inputs) process_data_.store_inputs(controller_.inputs(*inputs));
-    } else {
-        if (apply) model_->raw_outputs(controller_.outputs(*outputs));
-        model_->exchange(now);
-        latch_raw_inputs();
+        for (const unsigned n : al_.outputs()) process_data_.load_outputs(n, controller_.outputs(n));
+        return;
+    }
+    std::size_t size = 0;
+    for (const unsigned n : al_.outputs()) {
+        const auto part = controller_.outputs(n);
+        const std::size_t run = std::min(part.size(), raw_.size() - size);
+        std::copy_n(part.begin(), run, raw_.begin() + static_cast<std::ptrdiff_t>(size));
+        size += run;
+    }
+    if (size > 0) model_->raw_outputs({raw_.data(), size});
+}
+
+void SimSlave::store_inputs() noexcept {
+    for (const unsigned n : al_.inputs()) {
+        process_data_.store_inputs(n, controller_.inputs(n));
+        controller_.publish_inputs(n);
     }
 }
 
 void SimSlave::latch_raw_inputs() noexcept {
-    if (const auto inputs = al_.inputs_sm()) model_->raw_inputs(controller_.inputs(*inputs));
+    std::size_t size = 0;
+    for (const unsigned n : al_.inputs()) size += controller_.inputs(n).size();
+    if (size == 0 || size > raw_.size()) return;
+    model_->raw_inputs({raw_.data(), size});
+    std::size_t from = 0;
+    for (const unsigned n : al_.inputs()) {
+        const auto part = controller_.inputs(n);
+        std::copy_n(raw_.begin() + static_cast<std::ptrdiff_t>(from), part.size(), part.begin());
+        from += part.size();
+        controller_.publish_inputs(n);
+    }
+}
+
+void SimSlave::hang(bool hung) noexcept {
+    if (!powered_ || hung_ == hung) return;
+    hung_ = hung;
+    controller_.set_application_alive(!hung, settled_);
+    if (!hung) handle_events(settled_);  // what came in meanwhile
+    schedule();
 }
 
 void SimSlave::settle(Instant now) noexcept {
@@ -159,7 +210,9 @@ void SimSlave::stick_mailbox(bool stuck) noexcept {
 }
 
 void SimSlave::schedule() noexcept {
-    next_event_ = std::min(controller_.next_event(), al_due_);
+    next_event_ = controller_.next_event();
+    if (hung_) return;
+    next_event_ = std::min(next_event_, al_due_);
     if (coe_) next_event_ = std::min(next_event_, coe_->next_event());
 }
 

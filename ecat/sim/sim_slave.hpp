@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/time.hpp"
 #include "ecat/device_description.hpp"
@@ -25,6 +26,8 @@ struct SlaveOptions {
     double drift_ppm = 0;                                       ///< of the DC quartz; positive: fast
     Duration clock_start{};                                     ///< local time at power-on
     bool lrw = true, bitwise_fmmu = true;                       ///< what its controller can (ControllerSettings)
+    bool read_write = true;                                     ///< it executes APRW, FPRW and BRW
+    std::optional<std::uint16_t> device_id{};                   ///< explicit device identification, as a rotary switch sets it
     Duration transition_time = std::chrono::microseconds{200};  ///< AL control written -> AL status changed
     Duration response_delay = std::chrono::microseconds{200};   ///< mailbox request taken -> answer ready
     Duration eeprom_read_time = std::chrono::microseconds{100};
@@ -60,6 +63,9 @@ public:
     /// Slaves without mailbox have an empty one.
     [[nodiscard]] ObjectDictionary& dictionary() noexcept { return dictionary_; }
     [[nodiscard]] const SlaveOptions& options() const noexcept { return options_; }
+    /// The firmware hangs: no state changes, no mailbox, no new inputs, outputs ignored; the controller goes on by itself. Until it is
+    /// released, or the power goes.
+    void hang(bool hung) noexcept;
     /// The mailbox neither takes nor answers anything until it is released.
     void stick_mailbox(bool stuck) noexcept;
     /// Entering `to` from below fails with this AL status code until it is 0 again.
@@ -71,6 +77,8 @@ private:
     void handle_events(Instant now) noexcept;
     void exchange(Instant now) noexcept;
     void latch_raw_inputs() noexcept;
+    void load_outputs() noexcept;
+    void store_inputs() noexcept;
     void schedule() noexcept;
 
     std::shared_ptr<const DeviceDescription> description_;
@@ -82,7 +90,9 @@ private:
     std::optional<CoeServer> coe_;
     AlStateMachine al_;
     Entry* missed_entry_ = nullptr;  // 1C32h:0Bh
+    std::vector<std::byte> raw_;     // of a slave without dictionary, all its sync managers of one direction in a row
     bool powered_ = false;
+    bool hung_ = false;
     bool outputs_valid_ = false;  // outputs arrived since SAFEOP was entered
     Instant al_due_ = never;
     Instant settled_{};

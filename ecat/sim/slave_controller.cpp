@@ -20,6 +20,7 @@ bool SlaveController::read(std::uint32_t address, std::span<std::byte> out, Inst
 }
 
 bool SlaveController::write(std::uint32_t address, std::span<const std::byte> in, Instant at) noexcept {
+    if (!write_allowed(address)) return false;
     return address < reg::process_ram ? write_registers(address, in, at) : write_memory(address, in, at);
 }
 
@@ -81,20 +82,22 @@ void SlaveController::exchange_physical(MutableDatagram& datagram, bool addresse
             return;
         default: break;
     }
-    if (!addressed) return;
+    if (!addressed || (datagram.command != Command::BRD && !settings_.read_write)) return;
     // BRD, APRW, FPRW, BRW: the old content leaves, the arriving one stays. Broadcast reads are the OR over the slaves.
     std::array<std::byte, max_datagram_data> old;
     const std::span<std::byte> content{old.data(), std::min(datagram.data.size(), old.size())};
     const bool broadcast = datagram.command == Command::BRD || datagram.command == Command::BRW;
     const bool was_read = read(ado, content, at);
-    if (datagram.command != Command::BRD && write(ado, datagram.data, at)) add_to_counter(datagram, 2);
+    // 0108h: a slave may be told to keep what arrives somewhere else than where it reads.
+    const std::uint32_t offset = broadcast ? 0u : read16(reg::physical_rw_offset);
+    if (datagram.command != Command::BRD && write((ado + offset) & 0xFFFFu, datagram.data, at)) add_to_counter(datagram, 2);
     if (!was_read) return;
     for (std::size_t i = 0; i < content.size(); ++i) datagram.data[i] = broadcast ? datagram.data[i] | content[i] : content[i];
     add_to_counter(datagram, 1);
 }
 
 Instant SlaveController::next_event() const noexcept {
-    Instant next = std::min({watchdog_deadline_, sync0_due_, loops_revert_});
+    Instant next = std::min({watchdog_deadline_, pdi_watchdog_deadline_, sync0_due_, sync1_due_, loops_revert_});
     if (eeprom_.busy()) next = std::min(next, eeprom_.due());
     return next;
 }
@@ -115,11 +118,13 @@ void SlaveController::fire(Instant now) noexcept {
         memory_[reg::dl_control_loops] = static_cast<std::byte>(kept_modes_);
         move_loops(kept_modes_);
     }
-    if (sync0_due_ <= now) {
-        sync0_.fire();
-        sync0_due_ = sync0_.due(clock_).value_or(never);
-        events_ |= event::sync0;
+    if (pdi_watchdog_deadline_ <= now) {
+        pdi_watchdog_deadline_ = never;
+        count_error(reg::pdi_watchdog_count);
+        write16(reg::dl_status, static_cast<std::uint16_t>(read16(reg::dl_status) & ~dl_pdi_watchdog_ok));
+        set_event_request(ecat_event::dl_status, true);
     }
+    fire_sync(now);
 }
 
 }  // namespace taktwerk::ecat::sim

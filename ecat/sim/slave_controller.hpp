@@ -16,7 +16,7 @@
 #include "ecat/sim/dc_clock.hpp"
 #include "ecat/sim/eeprom_interface.hpp"
 #include "ecat/sim/ports.hpp"
-#include "ecat/sim/sync0.hpp"
+#include "ecat/sim/sync_signals.hpp"
 #include "ecat/wire/frame.hpp"
 #include "ecat/wire/registers.hpp"
 
@@ -29,7 +29,9 @@ struct ControllerSettings {
     std::uint16_t process_ram = 0x1000;         ///< bytes from 1000h
     bool dc = true, dc_64bit = true;
     bool lrw = true;                ///< executes LRW; without, such a datagram passes unchanged
+    bool read_write = true;         ///< executes APRW, FPRW and BRW
     bool bitwise_fmmu = true;       ///< FMMUs map bits; without, their bit fields are ignored: whole bytes
+    bool application = true;        ///< a processor behind it serves the PDI and feeds the PDI watchdog
     std::uint8_t sockets = 0b0011;  ///< bit p: port p exists; IN and OUT
 };
 
@@ -43,11 +45,15 @@ inline constexpr unsigned repeat_request = 1u << 4;
 inline constexpr unsigned inputs_read = 1u << 5;  ///< a buffered sync manager was read
 inline constexpr unsigned watchdog = 1u << 6;     ///< the SM watchdog ran out
 inline constexpr unsigned sync0 = 1u << 7;
+inline constexpr unsigned sync1 = 1u << 8;
+inline constexpr unsigned sync_manager_switched = 1u << 9;  ///< a sync manager was turned on or off
+inline constexpr unsigned reset = 1u << 10;                 ///< 'R', 'E', 'S' at 0040h: everything starts anew
 }  // namespace event
 
 /// Bits of the event request to the master (0210h).
 namespace ecat_event {
-inline constexpr std::uint16_t dl_status = 1u << 2, al_status = 1u << 3;
+inline constexpr std::uint16_t dc_latch = 1u << 0, dl_status = 1u << 2, al_status = 1u << 3;
+inline constexpr unsigned sync_manager_0 = 4;  ///< bit of SM0; SM1..SM7 follow
 }  // namespace ecat_event
 
 class SlaveController {
@@ -58,6 +64,8 @@ public:
     void power_on(Instant now, std::int64_t local, std::int32_t drift_ppb);
 
     // --- bus side --------------------------------------------------------------------------------------------------------
+    /// A frame begins: what the last one unlocked (0020h, 0030h) is locked again.
+    void begin_frame() noexcept;
     /// One datagram passes; `at` is when the start of its frame arrived here.
     void execute(MutableDatagram& datagram, Instant at) noexcept;
     /// The frame is through: completes the receive time latch. It arrived at port p at `sent` + `arrival[p]` where bit p of
@@ -71,6 +79,11 @@ public:
     [[nodiscard]] bool take_loop_change() noexcept { return std::exchange(loop_changed_, false); }
     /// The controller has port p (a cable goes into it).
     void add_socket(unsigned p) noexcept;
+    /// Noise on the cable: the frame that came in at port p has a wrong checksum (and invalid symbols) here first, or had it already.
+    void count_receive_error(unsigned p) noexcept;
+    void count_forwarded_error(unsigned p) noexcept;
+    /// A frame with a good checksum whose datagrams make no sense.
+    void count_processing_unit_error() noexcept { count_error(reg::processing_unit_errors); }
 
     // --- time --------------------------------------------------------------------------------------------------------------
     [[nodiscard]] Instant next_event() const noexcept;
@@ -95,15 +108,27 @@ public:
     /// The newest complete outputs of a buffered sync manager.
     [[nodiscard]] std::span<const std::byte> outputs(unsigned n) const noexcept;
     /// Outputs that arrived since the last call.
-    [[nodiscard]] bool take_fresh(unsigned n) noexcept { return std::exchange(units_[n].fresh, false); }
+    [[nodiscard]] bool take_fresh(unsigned n) noexcept;
     void clear_outputs(unsigned n) noexcept;
+    /// Where the application puts its inputs; publish_inputs() when they are complete.
     [[nodiscard]] std::span<std::byte> inputs(unsigned n) noexcept;
+    void publish_inputs(unsigned n) noexcept;
     /// Restarts the SM watchdog, as the first outputs do.
     void start_watchdog(Instant now) noexcept;
     void stop_watchdog() noexcept;
     [[nodiscard]] bool watchdog_configured() const noexcept;
+    /// The processor behind the PDI works, or hangs: then the PDI watchdog (0410h) runs out.
+    void set_application_alive(bool alive, Instant now) noexcept;
+    /// The application takes or gives back the EEPROM (0501h); false: the master has not offered it (0500h bit 0).
+    bool take_eeprom(bool take) noexcept;
+    /// An edge or level at a latch input (n: 0, 1).
+    void set_latch_input(unsigned n, bool level, Instant at) noexcept;
 
+    /// The pulse generator; SYNC0 itself is out only when 0981h says so.
     [[nodiscard]] const Sync0& sync0() const noexcept { return sync0_; }
+    [[nodiscard]] const Sync1& sync1() const noexcept { return sync1_; }
+    [[nodiscard]] bool sync0_active() const noexcept { return sync0_.active() && sync_is_out(dc_activate::sync0); }
+    [[nodiscard]] bool sync0_runs() const noexcept { return sync0_.runs() && sync_is_out(dc_activate::sync0); }
     [[nodiscard]] DcClock& clock() noexcept { return clock_; }
     [[nodiscard]] EepromInterface& eeprom() noexcept { return eeprom_; }
     [[nodiscard]] const ControllerSettings& settings() const noexcept { return settings_; }
@@ -115,9 +140,11 @@ public:
 private:
     struct Unit {
         SyncManager sm;
-        bool full = false;    // mailbox
-        bool opened = false;  // the first byte was touched, the last not yet
-        bool fresh = false;   // buffered, outputs not yet taken by the application
+        bool full = false;                       // mailbox
+        bool opened = false;                     // the first byte was touched, the last not yet
+        bool fresh = false;                      // buffered, outputs not yet taken by the application
+        bool written = false, was_read = false;  // status bits 0 and 1: since the other side last began
+        std::uint8_t buffer = 3;                 // the one written last; 3: none yet
         [[nodiscard]] bool governs(std::uint32_t address) const noexcept {
             return sm.enabled() && address >= sm.start && address < std::uint32_t{sm.start} + sm.length;
         }
@@ -152,15 +179,27 @@ private:
     void show_sockets() noexcept;
     void count_error(std::uint16_t counter) noexcept;
 
+    // slave_controller_dc.cpp
+    void write_dc(std::uint32_t address, std::span<const std::byte> in, Instant at) noexcept;
+    void control_sync(Instant at) noexcept;
+    void show_dc(Instant at) noexcept;
+    void fire_sync(Instant now) noexcept;
+    void latch_times_read(std::uint32_t address, std::size_t size) noexcept;
+    [[nodiscard]] bool sync_is_out(std::uint8_t bit) const noexcept {
+        return (static_cast<unsigned>(memory_[reg::dc_activation]) & bit) != 0;
+    }
+
     // slave_controller_registers.cpp
+    [[nodiscard]] bool write_allowed(std::uint32_t address) const noexcept;
+    void write_reset(std::byte value) noexcept;
+    void start_pdi_watchdog(Instant now) noexcept;
+    [[nodiscard]] Duration watchdog_ticks(std::uint16_t ticks_register) const noexcept;
     bool read_registers(std::uint32_t address, std::span<std::byte> out, Instant at) noexcept;
     bool write_registers(std::uint32_t address, std::span<const std::byte> in, Instant at) noexcept;
-    void write_dc(std::uint32_t address, std::span<const std::byte> in, Instant at) noexcept;
     void write_eeprom(std::uint32_t address, std::span<const std::byte> in, Instant at) noexcept;
     void show_eeprom() noexcept;
     void load_configuration_words() noexcept;
     void set_event_request(std::uint16_t bits, bool on) noexcept;
-    [[nodiscard]] Duration watchdog_time() const noexcept;
 
     [[nodiscard]] std::uint16_t read16(std::uint16_t address) const noexcept;
     void write16(std::uint16_t address, std::uint16_t value) noexcept;
@@ -173,6 +212,9 @@ private:
     std::array<Fmmu, 16> fmmus_{};
     DcClock clock_;
     Sync0 sync0_;
+    Sync1 sync1_;
+    std::array<std::byte, 8> start_time_{};  // 0990h as written; it reads as the next pulse
+    std::array<bool, 2> latch_level_{};
     Ports ports_;
     bool loop_changed_ = false;
     Instant loops_revert_ = never;  // a temporary setting of 0101h ends
@@ -180,7 +222,12 @@ private:
     Instant latched_at_{};          // at the processing unit
     bool latch_pending_ = false;
     Instant watchdog_deadline_ = never;
-    Instant sync0_due_ = never;
+    Instant pdi_watchdog_deadline_ = never;
+    bool application_alive_ = true;
+    bool registers_unlocked_ = false, all_unlocked_ = false;  // by 0020h and 0030h, in this frame
+    std::uint64_t frames_ = 0, reset_frame_ = 0;
+    unsigned reset_step_ = 0;
+    Instant sync0_due_ = never, sync1_due_ = never;
     unsigned events_ = 0;
 };
 

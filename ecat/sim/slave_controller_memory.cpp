@@ -7,6 +7,13 @@
 
 namespace taktwerk::ecat::sim {
 
+namespace {
+
+/// The three buffers in turn; 3 stands for none yet.
+constexpr std::uint8_t next_buffer(std::uint8_t buffer) noexcept { return buffer < 2 ? static_cast<std::uint8_t>(buffer + 1) : 0; }
+
+}  // namespace
+
 std::optional<unsigned> SlaveController::governor(std::uint32_t address) const noexcept {
     for (unsigned n = 0; n < settings_.sync_managers; ++n)
         if (units_[n].governs(address)) return n;
@@ -66,7 +73,10 @@ bool SlaveController::governed_read(unsigned n, std::uint32_t address, std::span
         if (address == unit.sm.start) unit.opened = true;
         if (!unit.opened) return false;
     }
+    if (address == unit.sm.start) unit.written = false;
     std::copy_n(memory_.begin() + address, out.size(), out.begin());
+    if (last) unit.was_read = true;
+    show_sync_manager(n);
     if (!last) return true;
     if (unit.sm.is_mailbox()) {
         unit.full = unit.opened = false;
@@ -84,10 +94,12 @@ bool SlaveController::governed_write(unsigned n, std::uint32_t address, std::spa
     if (unit.full) return false;
     if (address == unit.sm.start) unit.opened = true;
     if (!unit.opened) return false;
+    if (address == unit.sm.start) unit.was_read = false;
     std::copy(in.begin(), in.end(), memory_.begin() + address);
     if (address + in.size() != std::size_t{unit.sm.start} + unit.sm.length) return true;
 
     unit.opened = false;
+    unit.written = true;
     if (unit.sm.is_mailbox()) {
         unit.full = true;
         events_ |= event::mailbox_written;
@@ -95,6 +107,7 @@ bool SlaveController::governed_write(unsigned n, std::uint32_t address, std::spa
         // Three buffers, seen from outside: the application gets nothing until the last byte is there.
         std::copy_n(memory_.begin() + unit.sm.start, unit.sm.length, application_.begin() + unit.sm.start);
         unit.fresh = true;
+        unit.buffer = next_buffer(unit.buffer);
         events_ |= event::outputs;
     }
     if ((unit.sm.control & SyncManager::watchdog_trigger) != 0) start_watchdog(at);
@@ -117,7 +130,10 @@ void SlaveController::write_sync_manager_registers(std::uint32_t address, std::s
             const auto before = unit.sm.activate;
             memory_[at] = in[i];
             const auto after = static_cast<std::uint8_t>(in[i]);
-            if (((before ^ after) & SyncManager::enable) != 0) reset_unit(static_cast<unsigned>(n));
+            if (((before ^ after) & SyncManager::enable) != 0) {
+                reset_unit(static_cast<unsigned>(n));
+                events_ |= event::sync_manager_switched;
+            }
             if (((before ^ after) & SyncManager::repeat_request) != 0) events_ |= event::repeat_request;
         }
         const auto pdi = unit.sm.pdi_control;
@@ -133,14 +149,43 @@ void SlaveController::write_sync_manager_registers(std::uint32_t address, std::s
     }
 }
 
-void SlaveController::reset_unit(unsigned n) noexcept { units_[n].full = units_[n].opened = units_[n].fresh = false; }
+void SlaveController::reset_unit(unsigned n) noexcept {
+    Unit fresh;
+    fresh.sm = units_[n].sm;
+    units_[n] = fresh;
+}
 
 void SlaveController::show_sync_manager(unsigned n) noexcept {
     Unit& unit = units_[n];
     const std::size_t base = reg::sync_manager_at(n);
-    unit.sm.status = unit.sm.is_mailbox() && unit.full ? SyncManager::mailbox_full : std::uint8_t{0};
+    unsigned status = (unit.written ? SyncManager::interrupt_write : 0u) | (unit.was_read ? SyncManager::interrupt_read : 0u);
+    if (unit.sm.is_mailbox()) status |= unit.full ? SyncManager::mailbox_full : 0u;
+    else if (unit.sm.enabled()) status |= unsigned{unit.buffer} << 4;
+    unit.sm.status = static_cast<std::uint8_t>(status);
     memory_[base + sm_status_offset] = static_cast<std::byte>(unit.sm.status);
     memory_[base + sm_pdi_control_offset] = static_cast<std::byte>(unit.sm.pdi_control);
+    // What the other side did with it: taken what the master wrote, or left something to read.
+    const bool pending = unit.sm.is_written_by_master() ? unit.was_read : unit.written;
+    if (n < 8)
+        set_event_request(static_cast<std::uint16_t>(1u << (ecat_event::sync_manager_0 + n)),
+                          pending && unit.sm.enabled() && (unit.sm.control & SyncManager::ecat_interrupt) != 0);
+}
+
+bool SlaveController::take_fresh(unsigned n) noexcept {
+    Unit& unit = units_[n];
+    if (!unit.fresh) return false;
+    unit.fresh = unit.written = false;
+    unit.was_read = true;
+    show_sync_manager(n);
+    return true;
+}
+
+void SlaveController::publish_inputs(unsigned n) noexcept {
+    Unit& unit = units_[n];
+    unit.written = true;
+    unit.was_read = false;
+    unit.buffer = next_buffer(unit.buffer);
+    show_sync_manager(n);
 }
 
 void SlaveController::lock_sync_manager(unsigned n, bool locked) noexcept {
@@ -157,7 +202,8 @@ std::span<const std::byte> SlaveController::full_mailbox(unsigned n) const noexc
 }
 
 void SlaveController::empty_mailbox(unsigned n) noexcept {
-    units_[n].full = false;
+    units_[n].full = units_[n].written = false;
+    units_[n].was_read = true;
     show_sync_manager(n);
 }
 
@@ -166,8 +212,8 @@ bool SlaveController::fill_mailbox(unsigned n, std::span<const std::byte> messag
     if (unit.full || !unit.sm.enabled() || message.size() > unit.sm.length) return false;
     const auto area = std::span<std::byte>{memory_}.subspan(unit.sm.start, unit.sm.length);
     std::fill(std::copy(message.begin(), message.end(), area.begin()), area.end(), std::byte{0});
-    unit.full = true;
-    unit.opened = false;
+    unit.full = unit.written = true;
+    unit.opened = unit.was_read = false;
     show_sync_manager(n);
     return true;
 }

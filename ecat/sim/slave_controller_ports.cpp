@@ -67,6 +67,16 @@ void SlaveController::frame_passed(Instant sent, std::span<const Duration, ports
     if (settings_.dc) store_le<std::int64_t>(memory_, reg::dc_receive_time_unit, clock_.local(latched_at_));
 }
 
+void SlaveController::count_receive_error(unsigned p) noexcept {
+    count_error(static_cast<std::uint16_t>(reg::rx_errors + 2 * p));      // invalid frame
+    count_error(static_cast<std::uint16_t>(reg::rx_errors + 2 * p + 1));  // invalid symbols
+}
+
+void SlaveController::count_forwarded_error(unsigned p) noexcept {
+    count_error(static_cast<std::uint16_t>(reg::rx_errors + 2 * p));
+    count_error(static_cast<std::uint16_t>(reg::forwarded_rx_errors + p));
+}
+
 void SlaveController::count_error(std::uint16_t counter) noexcept {
     auto& count = memory_[counter];
     if (count != std::byte{255}) count = static_cast<std::byte>(static_cast<unsigned>(count) + 1);

@@ -15,20 +15,17 @@ struct Range {
 
 /// Plain read/write registers: a write is stored, nothing else happens at once.
 constexpr Range stored[] = {
-    {reg::station_address, 2},  {reg::write_register_enable, 2}, {reg::write_enable, 2},
-    {reg::dl_control, 4},       {reg::physical_rw_offset, 2},    {reg::al_control, 2},
-    {reg::ecat_event_mask, 2},  {reg::watchdog_divider, 2},      {reg::pdi_watchdog_time, 2},
-    {reg::sm_watchdog_time, 2}, {reg::eeprom_configuration, 2},  {reg::gp_outputs, 8},
-    {reg::user_ram, 128},
+    {reg::station_address, 2},    {reg::write_register_enable, 2},
+    {reg::write_enable, 2},       {reg::dl_control, 4},
+    {reg::physical_rw_offset, 2}, {reg::al_control, 2},
+    {reg::ecat_event_mask, 2},    {reg::watchdog_divider, 2},
+    {reg::pdi_watchdog_time, 2},  {reg::sm_watchdog_time, 2},
+    {reg::gp_outputs, 8},         {reg::user_ram, 128},
 };
-/// The DC unit's; they exist only where the controller has one.
-constexpr Range stored_dc[] = {
-    {reg::dc_system_offset, 8},     {reg::dc_system_delay, 4},   {reg::dc_speed_start, 2},
-    {reg::dc_difference_filter, 2}, {reg::dc_cyclic_control, 2}, {reg::dc_start_time, 8},
-    {reg::dc_sync0_cycle, 4},       {reg::dc_sync1_cycle, 4},    {reg::dc_latch0_control, 2},
-};
-
-constexpr std::uint32_t dc_unit_end = 0x0A00;
+constexpr std::uint32_t dc_unit = 0x0900, dc_unit_end = 0x0A00;
+constexpr std::uint32_t protected_end = 0x0F80;             // 0021h guards the registers below
+constexpr std::uint8_t protect = 0x01;                      // bit 0 of 0021h and 0031h
+constexpr unsigned pdi_takes = 0x01, force_release = 0x02;  // 0500h; bit 0 of 0501h: the application has it
 
 constexpr bool overlaps(std::uint32_t address, std::size_t size, std::uint32_t first, std::uint32_t length) noexcept {
     return address < first + length && first < address + size;
@@ -42,11 +39,16 @@ void SlaveController::power_on(Instant now, std::int64_t local, std::int32_t dri
     units_ = {};
     fmmus_ = {};
     sync0_ = Sync0{};
-    sync0_due_ = watchdog_deadline_ = never;
+    sync1_ = Sync1{};
+    start_time_ = {};
+    sync0_due_ = sync1_due_ = watchdog_deadline_ = pdi_watchdog_deadline_ = never;
+    application_alive_ = true;
+    registers_unlocked_ = all_unlocked_ = false;
+    reset_step_ = 0;
     latch_pending_ = false;
     events_ = 0;
     ports_.power_on();
-    loop_changed_ = false;
+    loop_changed_ = true;  // whoever keeps the wiring tells the links anew
     loops_revert_ = never;
     clock_.power_on(now, local, drift_ppb);
 
@@ -58,8 +60,8 @@ void SlaveController::power_on(Instant now, std::int64_t local, std::int32_t dri
     show_ports();
     write16(reg::features,
             static_cast<std::uint16_t>((settings_.dc ? feature::dc : 0) | (settings_.dc && settings_.dc_64bit ? feature::dc_64bit : 0) |
-                                       (settings_.lrw ? 0 : feature::no_lrw) | (settings_.bitwise_fmmu ? 0 : feature::fmmu_not_bitwise) |
-                                       feature::separate_fcs_count));
+                                       (settings_.lrw ? 0 : feature::no_lrw) | (settings_.read_write ? 0 : feature::no_read_write) |
+                                       (settings_.bitwise_fmmu ? 0 : feature::fmmu_not_bitwise) | feature::separate_fcs_count));
     write16(reg::dl_control, 0x0001);
     write16(reg::al_control, 1);
     write16(reg::al_status, 1);
@@ -81,7 +83,8 @@ void SlaveController::load_configuration_words() noexcept {
     if (settings_.dc) write16(reg::dc_pulse_length, eeprom_.word(2));
     write16(reg::pdi_configuration_extended, eeprom_.word(3));
     write16(reg::station_alias, eeprom_.word(4));
-    write16(reg::dl_status, static_cast<std::uint16_t>(read16(reg::dl_status) | dl_pdi_operational));
+    const unsigned served = settings_.application ? dl_pdi_watchdog_ok : 0u;
+    write16(reg::dl_status, static_cast<std::uint16_t>(read16(reg::dl_status) | dl_pdi_operational | served));
 }
 
 void SlaveController::set_al_status(std::uint16_t status, std::uint16_t code) noexcept {
@@ -98,15 +101,13 @@ void SlaveController::set_event_request(std::uint16_t bits, bool on) noexcept {
 bool SlaveController::read_registers(std::uint32_t address, std::span<std::byte> out, Instant at) noexcept {
     // A controller without DC unit does not count these: a FRMW's working counter shows who keeps the time.
     if (!settings_.dc && address >= reg::dc_system_time && address + out.size() <= dc_unit_end) return false;
-    if (settings_.dc && overlaps(address, out.size(), reg::dc_system_time, 0x20)) {
-        store_le<std::int64_t>(memory_, reg::dc_system_time, clock_.system(at));
-        store_le<std::uint32_t>(memory_, reg::dc_difference, clock_.difference_register());
-    }
+    if (settings_.dc && overlaps(address, out.size(), dc_unit, dc_unit_end - dc_unit)) show_dc(at);
     const std::size_t run = std::min<std::size_t>(out.size(), reg::process_ram - address);
     std::copy_n(memory_.begin() + address, run, out.begin());
     if (run < out.size()) (void)read_memory(reg::process_ram, out.subspan(run));
     if (overlaps(address, run, reg::al_status, 2)) set_event_request(ecat_event::al_status, false);
     if (overlaps(address, run, reg::dl_status, 2)) set_event_request(ecat_event::dl_status, false);
+    latch_times_read(address, run);
     return true;
 }
 
@@ -124,14 +125,16 @@ bool SlaveController::write_registers(std::uint32_t address, std::span<const std
     };
     const auto hits = [&](std::uint32_t first, std::uint32_t size) { return overlaps(address, in.size(), first, size); };
 
-    if (address >= 0x0900 && address < dc_unit_end) {
-        if (settings_.dc) store(stored_dc);
+    if (address >= dc_unit && address < dc_unit_end) {
         write_dc(address, in, at);
         return true;
     }
     const auto modes_before = ports_.modes();
     store(stored);
     if (hits(reg::dl_control_loops, 1)) write_dl_control(modes_before, at);
+    if (hits(reg::write_register_enable, 1)) registers_unlocked_ = true;
+    if (hits(reg::write_enable, 1)) all_unlocked_ = true;
+    if (hits(reg::reset_ecat, 1)) write_reset(in[reg::reset_ecat - address]);
     if (hits(reg::al_control, 1)) events_ |= event::al_control;
     if (hits(reg::rx_errors, 12)) std::fill_n(memory_.begin() + reg::rx_errors, 12, std::byte{0});
     if (hits(reg::processing_unit_errors, 1)) memory_[reg::processing_unit_errors] = std::byte{0};
@@ -139,6 +142,12 @@ bool SlaveController::write_registers(std::uint32_t address, std::span<const std
     if (hits(reg::lost_links, 4)) std::fill_n(memory_.begin() + reg::lost_links, 4, std::byte{0});
     if (hits(reg::sm_watchdog_count, 2)) std::fill_n(memory_.begin() + reg::sm_watchdog_count, 2, std::byte{0});
     if ((hits(reg::sm_watchdog_time, 2) || hits(reg::watchdog_divider, 2)) && watchdog_deadline_ != never) start_watchdog(at);
+    if ((hits(reg::pdi_watchdog_time, 2) || hits(reg::watchdog_divider, 2)) && !application_alive_) start_pdi_watchdog(at);
+    if (hits(reg::eeprom_configuration, 1)) {
+        const auto configuration = static_cast<unsigned>(in[reg::eeprom_configuration - address]);
+        memory_[reg::eeprom_configuration] = static_cast<std::byte>(configuration & pdi_takes);
+        if ((configuration & force_release) != 0) memory_[reg::eeprom_pdi_access] = std::byte{0};
+    }
     if (hits(reg::eeprom_control, 14)) write_eeprom(address, in, at);
     for (std::uint32_t n = 0; n < settings_.fmmus; ++n) {
         const std::uint32_t base = reg::fmmu_at(n);
@@ -158,34 +167,10 @@ bool SlaveController::write_registers(std::uint32_t address, std::span<const std
     return true;
 }
 
-void SlaveController::write_dc(std::uint32_t address, std::span<const std::byte> in, Instant at) noexcept {
-    const auto hits = [&](std::uint32_t first, std::uint32_t size) { return overlaps(address, in.size(), first, size); };
-    if (hits(reg::dc_receive_times, 1)) {
-        latched_at_ = at;
-        latch_pending_ = true;
-    }
-    if (!settings_.dc) return;
-    if (address == reg::dc_system_time && in.size() >= 8) clock_.correct(load_le<std::int64_t>(in), at);
-    else if (address == reg::dc_system_time && in.size() >= 4) clock_.correct_low32(load_le<std::uint32_t>(in), at);
-    if (hits(reg::dc_system_offset, 8)) clock_.set_offset(load_le<std::int64_t>(memory_, reg::dc_system_offset));
-    if (hits(reg::dc_system_delay, 4)) clock_.set_delay(load_le<std::uint32_t>(memory_, reg::dc_system_delay));
-    if (hits(reg::dc_speed_start, 2)) clock_.reset_control(at);
-    // The cyclic unit belongs to whom 0980h says: bit 0 set, the application keeps it and 0981h does nothing.
-    if (hits(reg::dc_activation, 1) && (memory_[reg::dc_cyclic_control] & std::byte{1}) == std::byte{0}) {
-        constexpr unsigned needed = dc_activate::cyclic | dc_activate::sync0;
-        const bool on = (static_cast<unsigned>(memory_[reg::dc_activation]) & needed) == needed;
-        if (!on) sync0_.deactivate();
-        else if (!sync0_.active())
-            sync0_.activate(load_le<std::int64_t>(memory_, reg::dc_start_time), load_le<std::uint32_t>(memory_, reg::dc_sync0_cycle),
-                            clock_, at);
-    }
-    sync0_.clock_changed(clock_, at);
-    sync0_due_ = sync0_.due(clock_).value_or(never);  // whatever was written may have moved it
-}
-
 void SlaveController::write_eeprom(std::uint32_t address, std::span<const std::byte> in, Instant at) noexcept {
-    // While the application owns the EEPROM (0500h bit 0) the master's commands go nowhere; while busy, too.
-    if ((memory_[reg::eeprom_configuration] & std::byte{1}) != std::byte{0} || eeprom_.busy()) return;
+    // The master has the EEPROM while 0500h and 0501h both say so; else its commands go nowhere, and while busy, too.
+    const bool taken = ((memory_[reg::eeprom_configuration] | memory_[reg::eeprom_pdi_access]) & std::byte{1}) != std::byte{0};
+    if (taken || eeprom_.busy()) return;
     for (std::uint32_t a = std::max<std::uint32_t>(address, reg::eeprom_address);
          a < std::min<std::size_t>(address + in.size(), reg::eeprom_data + 8); ++a)
         memory_[a] = in[a - address];
@@ -206,9 +191,49 @@ void SlaveController::show_eeprom() noexcept {
     std::copy(data.begin(), data.end(), memory_.begin() + reg::eeprom_data);
 }
 
-Duration SlaveController::watchdog_time() const noexcept {
+bool SlaveController::take_eeprom(bool take) noexcept {
+    if (take && (memory_[reg::eeprom_configuration] & std::byte{pdi_takes}) == std::byte{0}) return false;
+    memory_[reg::eeprom_pdi_access] = take ? std::byte{1} : std::byte{0};
+    return true;
+}
+
+void SlaveController::begin_frame() noexcept {
+    registers_unlocked_ = all_unlocked_ = false;
+    ++frames_;
+}
+
+bool SlaveController::write_allowed(std::uint32_t address) const noexcept {
+    const auto protects = [&](std::uint16_t at) { return (memory_[at] & std::byte{protect}) != std::byte{0}; };
+    if (protects(reg::write_protect) && !all_unlocked_ && address != reg::write_enable) return false;
+    return address >= protected_end || !protects(reg::write_register_protect) || registers_unlocked_ ||
+           address == reg::write_register_enable || address == reg::write_enable;
+}
+
+void SlaveController::write_reset(std::byte value) noexcept {
+    constexpr std::array keys{std::byte{'R'}, std::byte{'E'}, std::byte{'S'}};
+    const bool next = value == keys[reset_step_] && (reset_step_ == 0 || frames_ == reset_frame_ + 1);
+    reset_step_ = next ? reset_step_ + 1 : value == keys[0] ? 1u : 0u;
+    reset_frame_ = frames_;
+    if (reset_step_ < keys.size()) return;
+    reset_step_ = 0;
+    events_ |= event::reset;
+}
+
+Duration SlaveController::watchdog_ticks(std::uint16_t ticks_register) const noexcept {
     constexpr std::int64_t tick_ns = 40;  // 25 MHz
-    return Duration{tick_ns * (std::int64_t{read16(reg::watchdog_divider)} + 2) * read16(reg::sm_watchdog_time)};
+    return Duration{tick_ns * (std::int64_t{read16(reg::watchdog_divider)} + 2) * read16(ticks_register)};
+}
+
+void SlaveController::set_application_alive(bool alive, Instant now) noexcept {
+    application_alive_ = alive;
+    if (!alive) return start_pdi_watchdog(now);
+    pdi_watchdog_deadline_ = never;
+    if (settings_.application) write16(reg::dl_status, static_cast<std::uint16_t>(read16(reg::dl_status) | dl_pdi_watchdog_ok));
+}
+
+void SlaveController::start_pdi_watchdog(Instant now) noexcept {
+    const Duration time = watchdog_ticks(reg::pdi_watchdog_time);
+    pdi_watchdog_deadline_ = time > Duration::zero() ? now + time : never;
 }
 
 bool SlaveController::watchdog_configured() const noexcept {
@@ -221,7 +246,7 @@ bool SlaveController::watchdog_configured() const noexcept {
 }
 
 void SlaveController::start_watchdog(Instant now) noexcept {
-    const Duration time = watchdog_time();
+    const Duration time = watchdog_ticks(reg::sm_watchdog_time);
     watchdog_deadline_ = time > Duration::zero() ? now + time : never;
     write16(reg::sm_watchdog_status, 1);
 }

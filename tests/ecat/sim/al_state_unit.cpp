@@ -208,6 +208,143 @@ TEST(AlState, ADriveThatNeedsSync0WantsItBeforeSafeop) {
     EXPECT_EQ(code_with_sync0(10'000'000, 1'000'000), 0);
 }
 
+TEST(AlState, OutputsThatTheDeviceWantsSupervisedMustTriggerTheWatchdog) {
+    EXPECT_EQ(safeop_code([](BusProbe& bus) {
+                  bus.set_sync_manager(0, 2, 0x1800, 6, 0x24);  // without bit 6
+                  bus.set_sync_manager(0, 3, 0x1C00, 6, 0x20);
+              }),
+              0x001F);
+}
+
+TEST(AlState, ASyncManagerTheDeviceDoesNotKnowIsRefused) {
+    EXPECT_EQ(safeop_code([](BusProbe& bus) {
+                  bus.process_managers(0);
+                  bus.set_sync_manager(0, 4, 0x1F00, 4, 0x20);
+              }),
+              0x0017);
+}
+
+TEST(AlState, WhatChangedWhileTheFirmwareHungIsSeenWhenItGoesOn) {
+    BusProbe bus;
+    auto& slave = bus.add_drive();
+    bus.to_safeop(0);
+    slave.hang(true);
+    bus.write(0, 0x0816, bytes({0}));
+    slave.hang(false);
+
+    EXPECT_EQ(bus.value<std::uint16_t>(0, 0x0130), 0x12);
+    EXPECT_EQ(bus.code(0), 0x001D);
+}
+
+TEST(AlState, ASyncManagerTurnedOffInOpEndsIt) {
+    BusProbe bus;
+    bus.add_drive();
+    bus.to_safeop(0);
+    bus.request(0, 8);
+
+    bus.write(0, 0x081E, bytes({0}));  // the inputs
+    EXPECT_EQ(bus.value<std::uint16_t>(0, 0x0130), 0x12);
+    EXPECT_EQ(bus.code(0), 0x001E);
+    bus.write(0, 0x0806, bytes({0}));  // a mailbox: the error stands until it is acknowledged
+    EXPECT_EQ(bus.request(0, 0x11), 1);
+}
+
+TEST(AlState, AMailboxTurnedOffIsTheWayToInit) {
+    BusProbe bus;
+    bus.add_drive();
+    bus.to_preop(0);
+
+    bus.write(0, 0x0806, bytes({0}));
+
+    EXPECT_EQ(bus.value<std::uint16_t>(0, 0x0130), 0x11);
+    EXPECT_EQ(bus.code(0), 0x0016);
+}
+
+TEST(DeviceIdentification, IsShownWhileAlControlAsksForIt) {
+    BusProbe bus;
+    bus.add_drive({.device_id = std::uint16_t{0x0042}});
+    bus.add_drive();
+
+    EXPECT_EQ(bus.request(0, 0x21), 0x21);
+    EXPECT_EQ(bus.code(0), 0x0042);
+    EXPECT_EQ(bus.request(0, 0x01), 0x01);
+    EXPECT_EQ(bus.code(0), 0);
+    EXPECT_EQ(bus.request(1, 0x21), 0x01) << "this one has no switch";
+    EXPECT_EQ(bus.code(1), 0);
+}
+
+TEST(DeviceIdentification, IsHiddenByAnError) {
+    BusProbe bus;
+    bus.add_drive({.device_id = std::uint16_t{0x0042}});
+
+    EXPECT_EQ(bus.request(0, 0x28), 0x11) << "OP from INIT";
+    EXPECT_EQ(bus.code(0), 0x0011);
+}
+
+/// Outputs over SM2 and SM4, inputs over SM3 and SM5.
+DeviceDescription four_windows() {
+    auto description = small_drive();
+    description.sync_managers.push_back({SmUse::outputs, 0x1A00, 0, 0x64});
+    description.sync_managers.push_back({SmUse::inputs, 0x1E00, 0, 0x20});
+    description.rx_pdos.push_back({0x1610, true, {{0x6060, 0, 8}}, std::uint8_t{4}});
+    description.tx_pdos.push_back({0x1A10, true, {{0x6098, 0, 8}}, std::uint8_t{5}});
+    description.rx_assigned = {0x1600, 0x1610};
+    description.tx_assigned = {0x1A00, 0x1A10};
+    return description;
+}
+
+TEST(SeveralSyncManagers, CarryEachItsOwnPdos) {
+    BusProbe bus;
+    auto& slave = bus.add_drive({}, four_windows());
+    bus.to_preop(0);
+    bus.process_managers(0);
+    bus.set_sync_manager(0, 4, 0x1A00, 1, 0x64);
+    bus.set_sync_manager(0, 5, 0x1E00, 1, 0x20);
+    ASSERT_EQ(bus.request(0, 4), 4) << bus.code(0);
+    ASSERT_EQ(bus.request(0, 8), 8);
+    slave.dictionary().find(0x6098, 0)->set(17);
+
+    bus.write(0, 0x1800, bytes({0x0F, 0, 1, 0, 0, 0}));
+    bus.write(0, 0x1A00, bytes({8}));
+
+    EXPECT_EQ(slave.dictionary().value(0x6040, 0), 0x000F);
+    EXPECT_EQ(slave.dictionary().value(0x6060, 0), 8);
+    EXPECT_EQ(bus.read(0, 0x1E00, 1).data, bytes({17}));
+    EXPECT_EQ(bus.recorders[0]->last_settings.output_bytes, 7);
+}
+
+TEST(SeveralSyncManagers, AreCheckedEach) {
+    EXPECT_EQ(safeop_code(
+                  [](BusProbe& bus) {
+                      bus.process_managers(0);
+                      bus.set_sync_manager(0, 4, 0x1A00, 2, 0x64);
+                      bus.set_sync_manager(0, 5, 0x1E00, 1, 0x20);
+                  },
+                  four_windows()),
+              0x001D);
+    EXPECT_EQ(safeop_code(
+                  [](BusProbe& bus) {
+                      bus.process_managers(0);
+                      bus.set_sync_manager(0, 4, 0x1A00, 1, 0x64);
+                  },
+                  four_windows()),
+              0x001E);
+}
+
+TEST(SeveralSyncManagers, AreAssignedEachByItsOwnObject) {
+    BusProbe bus;
+    bus.add_drive({}, four_windows());
+    bus.to_preop(0);
+
+    const auto assigned = bus.upload(0, 0x1C14, 1);
+    ASSERT_EQ(assigned.size(), 10u);
+    EXPECT_EQ(load_le<std::uint16_t>(assigned, 6), 0x1610);
+    bus.download(0, 0x1C14, 0, 1, 0);
+    EXPECT_EQ(bus.download(0, 0x1C14, 1, 2, 0x1600), 0u) << "it names no sync manager of its own";
+    bus.download(0, 0x1C12, 0, 1, 0);
+    EXPECT_EQ(bus.download(0, 0x1C12, 1, 2, 0x1610), 0x06090030u) << "it belongs to sync manager 4";
+}
+
 TEST(SmWatchdog, ExpiresInOpAndTakesTheSlaveToSafeop) {
     BusProbe bus;
     auto& slave = bus.add_drive();

@@ -103,7 +103,7 @@ TEST(SyncManagerMailbox, FullUntilTakenThenRefusesTheNextWrite) {
     slave.stick_mailbox(true);
 
     EXPECT_EQ(bus.write(0, 0x1000, Bytes(0x80)).wkc, 1);
-    EXPECT_EQ(bus.value<std::uint8_t>(0, 0x0805), 0x08);
+    EXPECT_EQ(bus.value<std::uint8_t>(0, 0x0805), 0x09);  // full, written
     EXPECT_EQ(bus.write(0, 0x1000, Bytes(0x80)).wkc, 0);
 }
 
@@ -116,7 +116,7 @@ TEST(SyncManagerMailbox, IsEmptyUntilItsLastByteIsWritten) {
     EXPECT_EQ(bus.write(0, 0x1000, Bytes(16)).wkc, 1);
     EXPECT_EQ(bus.value<std::uint8_t>(0, 0x0805), 0x00);
     EXPECT_EQ(bus.write(0, 0x107F, Bytes(1)).wkc, 1);
-    EXPECT_EQ(bus.value<std::uint8_t>(0, 0x0805), 0x08);
+    EXPECT_EQ(bus.value<std::uint8_t>(0, 0x0805), 0x09);  // full, written
 }
 
 TEST(SyncManagerMailbox, AWriteThatDoesNotOpenAtTheStartIsRefused) {

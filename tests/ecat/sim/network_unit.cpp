@@ -136,14 +136,14 @@ TEST(Line, MarksWhatTheSlavesForwardedInTheSourceAddress) {
     EXPECT_EQ(bus.source_mac_first, std::byte{0x02});
 }
 
-// DL status: link bits 4 and 5, loop closed 8 and 10, signal 9 and 11; ports 2 and 3 do not exist (12 and 14 closed).
+// DL status: bit 0 EEPROM loaded, bit 1 the application feeds the PDI watchdog, link bits 4 and 5, loop closed 8 and 10, signal 9 and 11; ports 2 and 3 do not exist (12 and 14 closed).
 TEST(Line, DlStatusShowsTheNeighbours) {
     BusProbe bus;
     bus.add_drive();
     bus.add_drive();
 
-    EXPECT_EQ(bus.value<std::uint16_t>(0, 0x0110), 0x5A31);
-    EXPECT_EQ(bus.value<std::uint16_t>(1, 0x0110), 0x5611);
+    EXPECT_EQ(bus.value<std::uint16_t>(0, 0x0110), 0x5A33);
+    EXPECT_EQ(bus.value<std::uint16_t>(1, 0x0110), 0x5613);
 }
 
 TEST(Line, APulledCableEndsTheLineThere) {
@@ -153,7 +153,7 @@ TEST(Line, APulledCableEndsTheLineThere) {
 
     bus.network.set_cable(2, false);
     EXPECT_EQ(bus.send(Command::BRD, Address::physical(0, 0), Bytes(1)).wkc, 2);
-    EXPECT_EQ(bus.value<std::uint16_t>(1, 0x0110), 0x5611);
+    EXPECT_EQ(bus.value<std::uint16_t>(1, 0x0110), 0x5613);
 
     bus.network.set_cable(2, true);
     EXPECT_EQ(bus.send(Command::BRD, Address::physical(0, 0), Bytes(1)).wkc, 3);
@@ -212,6 +212,7 @@ TEST(Line, OfABrokenFrameOnlyTheSourceAddressIsTouched) {
     EXPECT_TRUE(bus.network.process({buffer.data(), size}, bus.now).has_value());
 
     EXPECT_EQ(buffer, expected);
+    EXPECT_EQ(bus.value<std::uint8_t>(0, 0x030C), 1) << "the processing unit counts it";
     EXPECT_EQ(bus.value<std::uint16_t>(0, 0x0010), 0);
 }
 

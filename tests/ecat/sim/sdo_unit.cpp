@@ -173,7 +173,7 @@ TEST_F(Sdo, TheAnswerTakesTheResponseDelay) {
     bus.coe(0, bytes({0x00, 0x20, 0x40, 0x00, 0x10, 0x00, 0, 0, 0, 0}), 3, 199us);
     EXPECT_EQ(bus.value<std::uint8_t>(0, 0x080D), 0x00);
     bus.wait(1us);
-    EXPECT_EQ(bus.value<std::uint8_t>(0, 0x080D), 0x08);
+    EXPECT_EQ(bus.value<std::uint8_t>(0, 0x080D), 0x09);  // full, written
 }
 
 TEST(Mailbox, QueuesWhatItCanAndThenStaysFull) {

@@ -51,11 +51,11 @@ TEST_F(Tree, PositionsFollowTheOrderOfProcessing) {
     EXPECT_EQ(c->controller().station_address(), 0x1003);
 }
 
-// By hand: link 4+p, loop closed 8+2p, signal 9+2p; bit 0: EEPROM loaded.
+// By hand: link 4+p, loop closed 8+2p, signal 9+2p; bit 0: EEPROM loaded, bit 1: PDI watchdog fed.
 TEST_F(Tree, DlStatusShowsEveryPort) {
-    EXPECT_EQ(bus.value<std::uint16_t>(0, dl_status), 0x5A31);  // ports 0 and 1
-    EXPECT_EQ(bus.value<std::uint16_t>(1, dl_status), 0x9AB1);  // ports 0, 1 and 3; port 2 closed
-    EXPECT_EQ(bus.value<std::uint16_t>(2, dl_status), 0x5611);  // port 0
+    EXPECT_EQ(bus.value<std::uint16_t>(0, dl_status), 0x5A33);  // ports 0 and 1
+    EXPECT_EQ(bus.value<std::uint16_t>(1, dl_status), 0x9AB3);  // ports 0, 1 and 3; port 2 closed
+    EXPECT_EQ(bus.value<std::uint16_t>(2, dl_status), 0x5613);  // port 0
     EXPECT_EQ(bus.value<std::uint8_t>(1, 0x0007), 0xCF) << "sockets 0, 1 and 3";
 }
 
@@ -92,7 +92,7 @@ TEST_F(Tree, CablesHaveTheirOwnLength) {
 TEST_F(Tree, APulledCableTakesAwayOnlyWhatIsBehindIt) {
     bus.network.set_cable(*c, false);
     EXPECT_EQ(count(), 3);
-    EXPECT_EQ(bus.value<std::uint16_t>(1, dl_status), 0x5A31);
+    EXPECT_EQ(bus.value<std::uint16_t>(1, dl_status), 0x5A33);
     EXPECT_EQ(lost_links(1, 3), 1);
     EXPECT_EQ(lost_links(1, 1), 0);
 
@@ -128,7 +128,7 @@ TEST_F(Tree, AClosedLoopHidesABranchAndTheLinkStays) {
     bus.write(1, dl_control_loops, bytes({0xC0}));  // port 3: 11 closed
 
     EXPECT_EQ(count(), 3);
-    EXPECT_EQ(bus.value<std::uint16_t>(1, dl_status), 0xDAB1) << "signal and link of port 3 are still there, bit 14 says closed";
+    EXPECT_EQ(bus.value<std::uint16_t>(1, dl_status), 0xDAB3) << "signal and link of port 3 are still there, bit 14 says closed";
     bus.write(1, dl_control_loops, bytes({0x00}));
     EXPECT_EQ(count(), 4);
 }
@@ -190,7 +190,7 @@ TEST(SwappedSockets, AtTheEndOfTheLineTheSlaveStillWorksAndMarksTheFrame) {
     ASSERT_TRUE(datagram);
     EXPECT_EQ(datagram->working_counter(), 2);
     EXPECT_TRUE(datagram->circulating) << "port 0 of b closed itself";
-    EXPECT_EQ(bus.value<std::uint16_t>(1, dl_status), 0x5921) << "port 1 open, port 0 closed";
+    EXPECT_EQ(bus.value<std::uint16_t>(1, dl_status), 0x5923) << "port 1 open, port 0 closed";
 }
 
 TEST(SwappedSockets, AFrameThatMeetsASecondShutPort0IsDestroyed) {

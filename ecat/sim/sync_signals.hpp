@@ -1,6 +1,6 @@
 #pragma once
-// The SYNC0 generator of a slave controller: pulse k stands at start + k * cycle of the slave's own system time. Real-time
-// safe. Source: ETG.1000.4 (0980h..09A7h).
+// The SYNC generators of a slave controller. SYNC0: pulse k stands at start + k * cycle of the slave's own system time; SYNC1
+// follows it. Real-time safe. Source: ETG.1000.4 (0980h..09A7h).
 
 #include <algorithm>
 #include <cstdint>
@@ -46,6 +46,33 @@ public:
     }
 
     static constexpr std::uint32_t shortest_cycle_ns = 1000;  ///< the unit makes no faster pulses
+
+private:
+    bool active_ = false, waiting_ = false;
+    std::uint32_t cycle_ = 0;
+    std::int64_t next_ = 0;
+    std::uint64_t pulses_ = 0;
+};
+
+/// SYNC1 follows SYNC0: a time of its own starts with a SYNC0 pulse, ends with the SYNC1 pulse, and starts again with the next SYNC0.
+/// Shorter than a SYNC0 cycle it is a delay; n cycles give every n-th pulse. 0: together with SYNC0.
+class Sync1 {
+public:
+    void activate(std::uint32_t cycle) noexcept { active_ = true, cycle_ = cycle, waiting_ = false, pulses_ = 0; }
+    void deactivate() noexcept { active_ = waiting_ = false; }
+    [[nodiscard]] bool active() const noexcept { return active_; }
+    void sync0_fired(std::int64_t system) noexcept {
+        if (!active_ || waiting_) return;
+        waiting_ = true;
+        next_ = system + cycle_;
+    }
+    [[nodiscard]] std::int64_t next_system() const noexcept { return next_; }
+    [[nodiscard]] std::uint64_t pulses() const noexcept { return pulses_; }
+    [[nodiscard]] std::optional<Instant> due(const DcClock& clock) const noexcept {
+        if (!waiting_) return std::nullopt;
+        return clock.when_system(next_);
+    }
+    void fire() noexcept { waiting_ = false, ++pulses_; }
 
 private:
     bool active_ = false, waiting_ = false;
