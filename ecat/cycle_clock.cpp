@@ -1,5 +1,8 @@
 #include "ecat/cycle_clock.hpp"
 
+#include <algorithm>
+#include <limits>
+
 #include "core/bytes.hpp"
 
 namespace taktwerk::ecat {
@@ -9,8 +12,9 @@ namespace {
 constexpr std::int64_t phase_smoothing = 16;
 /// What a FRMW carries towards the reference is its time as the master knows it, less this: so that a datagram that comes back
 /// as it was sent (the reference has lost its station address: the others wrote, the working counter is as ever) is told from
-/// one with the reference's time in it. Should it be taken by a slave all the same, one microsecond for one cycle is nothing.
-constexpr std::int64_t mark_ns = 1000;
+/// one with the reference's time in it. A slave that takes it all the same sees it in one frame only, and too far off to learn
+/// from it; a real clock moves by a fraction of a tick then.
+constexpr std::int64_t mark_ns = 10'000;
 
 std::int64_t nanoseconds(Instant t) noexcept { return t.time_since_epoch().count(); }
 
@@ -33,7 +37,11 @@ void CycleClock::steer(Instant now, CycleLink* link) noexcept {
     }
     const bool fresh = fresh_;
     fresh_ = false;
+    missing_ = fresh ? 0 : std::min(missing_ + 1, std::numeric_limits<std::uint32_t>::max() - 1);
     if (link == nullptr) return;
+    link->dc_missing.store(missing_, std::memory_order_relaxed);
+    link->dc_offset_ns.store(reference_.offset_at(now), std::memory_order_relaxed);
+    link->dc_measured.store(reference_.measured(), std::memory_order_release);
     link->send_phase_ns.store(*phase_, std::memory_order_relaxed);
     const std::int64_t target = link->dc_phase_ns.load(std::memory_order_relaxed);
     if (target < 0 || !reference_.settled()) {
@@ -47,8 +55,14 @@ void CycleClock::steer(Instant now, CycleLink* link) noexcept {
     link->dc_lock.store(servo_.lock(), std::memory_order_release);
 }
 
-CycleClock::Request CycleClock::request(Instant now, bool hold) noexcept {
-    asked_.command = trusted_ && !hold ? Command::FRMW : Command::FPRD;
+CycleClock::Request CycleClock::request(Instant now, std::uint16_t first) noexcept {
+    const std::uint64_t serving = link_ != nullptr ? link_->reference.load(std::memory_order_relaxed) : 0;
+    const bool hold = link_ != nullptr && link_->clock_holds.load(std::memory_order_relaxed) > 0;
+    const std::uint16_t before = asked_.station;
+    asked_.station = serving != 0 ? static_cast<std::uint16_t>(serving & 0xFFFF) : first;
+    asked_.behind = static_cast<std::int64_t>(serving >> 16);
+    // Another one is listened to before it is believed.
+    asked_.command = trusted_ && !hold && asked_.station == before ? Command::FRMW : Command::FPRD;
     asked_.data = nanoseconds(now) + reference_.offset_at(now) - mark_ns;
     return asked_;
 }
@@ -62,11 +76,9 @@ void CycleClock::answer(std::span<const std::byte> data, std::uint16_t wkc, Inst
         reference_.miss();
         return;
     }
-    if (!reference_.take(sent, system)) return;
+    // As the first reference would have said it: where a frame passes another one later, system time is the same.
+    if (!reference_.take(sent, system - asked_.behind)) return;
     trusted_ = fresh_ = true;
-    if (link_ == nullptr) return;
-    link_->dc_offset_ns.store(*reference_.offset(), std::memory_order_relaxed);
-    link_->dc_settled.store(reference_.settled(), std::memory_order_release);
 }
 
 void CycleClock::no_answer() noexcept { reference_.miss(); }

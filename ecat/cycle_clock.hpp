@@ -26,12 +26,14 @@ public:
     /// Once a cycle, by send(): the phase of sending, then the correction of the next period.
     void steer(Instant now, CycleLink* link) noexcept;
 
-    /// The clock datagram of the frame that leaves at `now`. `hold`: give the time to nobody.
+    /// The clock datagram of the frame that leaves at `now`: to whoever serves as reference, `first` unless the link says otherwise.
     struct Request {
-        Command command;
-        std::int64_t data;
+        Command command = Command::FPRD;
+        std::uint16_t station = 0;
+        std::int64_t behind = 0;  ///< ns: propagation delay from the first reference to this one
+        std::int64_t data = 0;
     };
-    [[nodiscard]] Request request(Instant now, bool hold) noexcept;
+    [[nodiscard]] Request request(Instant now, std::uint16_t first) noexcept;
     /// It came back. `sent`: when its frame left.
     void answer(std::span<const std::byte> data, std::uint16_t wkc, Instant sent) noexcept;
     void no_answer() noexcept;
@@ -53,9 +55,10 @@ private:
     std::optional<std::int64_t> phase_;  ///< of send(), modulo the cycle, machine time, smoothed
     std::int64_t phase_error_ = 0;
     Duration correction_{};
-    Request asked_{Command::FPRD, 0};
-    bool trusted_ = false;  ///< the last answer was the reference's and plausible
-    bool fresh_ = false;    ///< ... since the last steer()
+    Request asked_;
+    std::uint32_t missing_ = 0;  ///< cycles without a sample
+    bool trusted_ = false;       ///< the last answer was the reference's and plausible
+    bool fresh_ = false;         ///< ... since the last steer()
 };
 
 }  // namespace taktwerk::ecat

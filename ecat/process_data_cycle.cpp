@@ -213,10 +213,8 @@ void ProcessDataCycle::send_frames(CyclePlan& cycle, Instant now) noexcept {
 }
 
 void ProcessDataCycle::add_clock(const CyclePlan& cycle, SlotId slot, Instant now) noexcept {
-    const auto* link = link_.load(std::memory_order_acquire);
-    const bool hold = link != nullptr && link->hold_clock.load(std::memory_order_relaxed);
-    const auto request = clock_.request(now, hold);
-    const auto clock = exchange_.add(slot, request.command, Address::physical(*cycle.reference, reg::dc_system_time), 8);
+    const auto request = clock_.request(now, *cycle.reference);
+    const auto clock = exchange_.add(slot, request.command, Address::physical(request.station, reg::dc_system_time), 8);
     if (clock) store_le(clock->data, 0, request.data);
 }
 

@@ -59,9 +59,10 @@ struct CycleLink {
     std::atomic<std::int64_t> send_phase_ns{0};      ///< of send(), modulo the bus cycle, smoothed
     std::atomic<std::int64_t> first_send_ns{0};      ///< when send() was cycle 0 of the plan, had no cycle been missed since
     std::atomic<std::int64_t> dc_offset_ns{0};       ///< reference clock minus machine time, at sending; smoothed
-    std::atomic<bool> dc_settled{false};             ///< dc_offset_ns and its drift are known well enough to act on
+    std::atomic<bool> dc_measured{false};            ///< dc_offset_ns is
     std::atomic<std::int64_t> dc_phase_error_ns{0};  ///< of the servo
     std::atomic<DcLock> dc_lock{DcLock::none};
+    std::atomic<std::uint32_t> dc_missing{0};      ///< cycles since the reference's time came
     std::atomic<std::uint32_t> states_seen{0};     ///< OR of all AL states (low 5 bits), of the last BRD
     std::atomic<std::uint16_t> worst_datagram{0};  ///< a datagram whose working counter was wrong last
     std::atomic<std::uint16_t> worst_wkc{0};
@@ -70,7 +71,8 @@ struct CycleLink {
     std::atomic<bool> supervise{false};             ///< slaves are in SAFEOP or above: wrong working counters count
     std::atomic<std::int64_t> dc_difference_ns{0};  ///< worst 092Ch
     std::atomic<std::int64_t> dc_phase_ns{-1};      ///< system time of send(), modulo the cycle, that the servo keeps; -1: not fixed
-    std::atomic<bool> hold_clock{false};            ///< the reference is being set: read its time, give it to nobody
+    std::atomic<std::uint32_t> clock_holds{0};      ///< above 0: a reference is being set: read its time, give it to nobody
+    std::atomic<std::uint64_t> reference{0};        ///< who serves as reference clock: station + (ns behind the first << 16)
 };
 
 /// What a slave's controller and EEPROM said during the scan.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "ecat/bringup/reference_role.hpp"
 #include "ecat/dc/propagation.hpp"
 
 namespace taktwerk::ecat {
@@ -90,7 +91,10 @@ void fix_phase(Bus& bus) {
 }
 
 Script<Result<void>> write_clock(Bus& bus, BusSlave& slave) {
-    const Reply delay = co_await bus.port.fpwr(slave.found.station, reg::dc_system_delay, slave.dc_delay);
+    // From the reference of now; one before it gets none: it will be the reference itself.
+    const std::uint32_t first = bus.slaves[*bus.reference]->dc_delay;
+    const std::uint32_t behind = slave.dc_delay > first ? slave.dc_delay - first : 0;
+    const Reply delay = co_await bus.port.fpwr(slave.found.station, reg::dc_system_delay, behind);
     if (!delay.ok()) co_return unanswered(slave.subject, "its propagation delay (0928h)", delay);
     const Reply offset = co_await bus.port.fpwr(slave.found.station, reg::dc_system_offset, slave.dc_offset);
     if (!offset.ok()) co_return unanswered(slave.subject, "its clock offset (0920h)", offset);
@@ -114,6 +118,7 @@ Script<Result<void>> setup_clocks(Bus& bus) {
     if (clocks.empty()) co_return Result<void>{};
     bus.progress = fmt::format("measuring the clocks of {} slaves", clocks.size());
     bus.reference = clocks.front()->index;
+    bus.link.reference.store(clocks.front()->found.station);
 
     if (const Result<void> known = learn_topology(bus); !known) co_return known.error();
     const Reply latch = co_await bus.port.bwr(reg::dc_receive_times, std::uint32_t{0});
@@ -152,14 +157,22 @@ Script<Result<void>> restore_clock(Bus& bus, BusSlave& slave) {
         if (!written.ok()) co_return unanswered(slave.subject, "its clock offset (0920h)", written);
         co_return Result<void>{};
     }
+    // Before the reference the time in a datagram is not yet the reference's: nothing to follow until it serves itself.
+    std::optional<ClockHold> hold;
+    if (slave.found.position < reference.found.position) {
+        hold.emplace(bus);
+        co_await pause(frames_under_way * bus.config.cycle);
+    }
     const Reply latch = co_await bus.port.bwr(reg::dc_receive_times, std::uint32_t{0});
     if (latch.lost) co_return unanswered(slave.subject, "the latch of the receive times (0900h)", latch);
     const Result<LatchedTimes> master = co_await read_latched(bus, reference.found.station, reference.subject);
     if (!master) co_return master.error();
     const Result<LatchedTimes> own = co_await read_latched(bus, slave.found.station, slave.subject);
     if (!own) co_return own.error();
-    slave.dc_offset = master->unit + reference.dc_offset + slave.dc_delay - own->unit;
-    co_return co_await write_clock(bus, slave);
+    slave.dc_offset = master->unit + reference.dc_offset + std::uint64_t{slave.dc_delay} - reference.dc_delay - own->unit;
+    const Result<void> written = co_await write_clock(bus, slave);
+    if (!written || slave.found.position > reference.found.position) co_return written;
+    co_return co_await serve_as_reference(bus, slave);
 }
 
 Script<Result<void>> await_clocks(Bus& bus) {
@@ -184,7 +197,7 @@ Script<Result<void>> await_clocks(Bus& bus) {
         }
         bus.link.dc_difference_ns.store(worst_ns);
         const Instant now = co_await time();
-        const bool measured = bus.link.cycles.load() == 0 || bus.link.dc_settled.load();
+        const bool measured = bus.link.cycles.load() == 0 || bus.link.dc_measured.load();
         if (measured && worst_ns <= clock_limit.count()) {
             fix_phase(bus);
             co_return Result<void>{};

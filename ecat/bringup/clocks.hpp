@@ -14,8 +14,20 @@ inline constexpr Duration clock_limit = std::chrono::microseconds{1};
 /// Finds the reference, latches, writes 0928h and 0920h of every slave with DC. Does nothing on a bus without DC.
 [[nodiscard]] Script<Result<void>> setup_clocks(Bus& bus);
 /// A slave came back with a clock that started anew: offset again, delay as before. For the reference: before it answers to
-/// its station address, so that nobody copies its wrong time.
+/// its station address, so that nobody copies its wrong time. One that stands before the present reference becomes the reference.
 [[nodiscard]] Script<Result<void>> restore_clock(Bus& bus, BusSlave& slave);
+/// While it lives the cycle gives the reference time to nobody: the slaves' clocks run by themselves.
+class ClockHold {
+public:
+    explicit ClockHold(Bus& bus) : bus_(bus) { bus_.link.clock_holds.fetch_add(1); }
+    ~ClockHold() { bus_.link.clock_holds.fetch_sub(1); }
+    ClockHold(const ClockHold&) = delete;
+    ClockHold& operator=(const ClockHold&) = delete;
+
+private:
+    Bus& bus_;
+};
+
 /// Until 092Ch of every slave is inside clock_limit. Sends the reference time itself while the cycle does not.
 [[nodiscard]] Script<Result<void>> await_clocks(Bus& bus);
 /// Until the master's cycle is locked to the reference. After five seconds a phase error below an eighth of the cycle is let pass

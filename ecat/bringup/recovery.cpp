@@ -9,18 +9,6 @@ namespace taktwerk::ecat {
 
 namespace {
 
-/// While it lives the cycle gives the reference time to nobody.
-class ClockHold {
-public:
-    explicit ClockHold(Bus& bus) : bus_(bus) { bus_.link.hold_clock.store(true); }
-    ~ClockHold() { bus_.link.hold_clock.store(false); }
-    ClockHold(const ClockHold&) = delete;
-    ClockHold& operator=(const ClockHold&) = delete;
-
-private:
-    Bus& bus_;
-};
-
 /// The slave at this position has another (or no) station address: was it power-cycled, or is it another device?
 Script<Result<void>> readdress(Bus& bus, BusSlave& slave) {
     const std::uint16_t position = slave.found.position;

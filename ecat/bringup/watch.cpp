@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include "ecat/bringup/al_control.hpp"
 #include "ecat/bringup/recovery.hpp"
+#include "ecat/bringup/reference_role.hpp"
 #include "ecat/dc/propagation.hpp"
 
 namespace taktwerk::ecat {
@@ -64,6 +65,7 @@ Script<void> watch(Bus& bus, BusSlave& slave) {
 Script<void> keep_alive(Bus& bus) {
     std::vector<Script<void>> scripts;
     for (auto& slave : bus.slaves) scripts.push_back(watch(bus, *slave));
+    scripts.push_back(watch_reference(bus));
     co_await all(std::move(scripts));
 }
 

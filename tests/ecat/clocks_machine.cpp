@@ -170,6 +170,41 @@ TEST(CycleLock, IsNotFooledByADatagramThatNobodyFilled) {
     EXPECT_NEAR(static_cast<double>(system_time(*bus, 0) - system_time(*bus, 1)), 0, 100);
 }
 
+// The reference loses its station address again and again for a second (a defective power supply, say): the second slave serves,
+// until the first can be given its address for good. SYNC0 of the others, as the master's frames see it, never moves by as much as
+// a microsecond.
+TEST(ReferenceRole, PassesToTheNextClockAndBackWithoutAJump) {
+    auto bus = line_of({30, -40, 10});
+    ASSERT_TRUE(bus->bring_up()) << bus->why();
+    bus->run_for(2s);
+    Duration least = 1s, most = -1s;
+    const auto watch_for = [&](Duration length) {
+        for (const Instant end = bus->now + length; bus->now < end;) {
+            const Instant sent = bus->now;
+            bus->cycle_once();
+            for (const std::size_t p : {1u, 2u}) {
+                least = std::min(least, bus->servo(p).last_exchange - sent);
+                most = std::max(most, bus->servo(p).last_exchange - sent);
+            }
+        }
+    };
+
+    bus->on_cycle = [&] { write_register(*bus, 0, reg::station_address, std::array{std::byte{0}, std::byte{0}}); };
+    watch_for(1s);
+    EXPECT_THAT(bus->master->notes(), Contains(HasSubstr("'b' (sv33-e) is the reference clock now")));
+    EXPECT_EQ(bus->master->statistics().dc_lock, DcLock::locked) << "to the substitute";
+    EXPECT_NEAR(static_cast<double>(system_time(*bus, 1) - system_time(*bus, 2)), 0, 50);
+    EXPECT_EQ(peek(*bus, 2, reg::dc_system_delay, 4), 650u) << "600 ns through b and 50 ns of cable: from b, not from a";
+
+    bus->on_cycle = {};
+    watch_for(3s);
+    EXPECT_EQ(peek(*bus, 2, reg::dc_system_delay, 4), 1300u) << "the first serves again";
+    EXPECT_EQ(bus->master->statistics().dc_lock, DcLock::locked);
+    EXPECT_NEAR(static_cast<double>(system_time(*bus, 0) - system_time(*bus, 1)), 0, 50);
+    EXPECT_NEAR(static_cast<double>(system_time(*bus, 0) - system_time(*bus, 2)), 0, 50);
+    EXPECT_LT((most - least).count(), 1'000);
+}
+
 // The second slave's clock is 400 us off all of a sudden; its loop takes out 200 ns a frame. It is looked at once a second. The
 // limit is the SV33-E's own of 3000 ns (P0A.32).
 TEST(DcOutOfSync, IsRaisedWhenASlavesClockDiffersAndEndsWithIt) {
