@@ -140,6 +140,8 @@ int run_real(LoadedFile loaded, const Options& options) {
             return exit_bus;
         }
         nic = std::move(*opened);
+        if (!options.quiet && !options.json)
+            for (const auto& refused : nic->report().refused) fmt::print("{}: {}\n", nic->interface(), refused);
     }
     ecat::Transport& transport = world ? static_cast<ecat::Transport&>(world->transport()) : *nic;
     auto machine = build(std::move(loaded.machine), transport);

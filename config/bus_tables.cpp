@@ -45,7 +45,10 @@ Table<SlaveEntry> slave_table() {
             with_default(field("dc", &S::dc, maybe(boolean()), "run SYNC0 on it"), "where the drive supports it"),
             with_default(field("sync0_shift", &S::sync0_shift, duration(), "SYNC0 after the start of the bus cycle"), "as the bus"),
             with_default(field("sm_watchdog", &S::sm_watchdog, duration(0ns, 6s), "the slave stops when no outputs come for this long"),
-                         "three cycles, at least 10 ms"),
+                         "three periods of its sync unit, at least 10 ms"),
+            with_default(
+                field("sync_unit", &S::sync_unit, config::name(), "slaves of one name are exchanged together, and valid or not together"),
+                "a unit of its own"),
             group<S>("pdo", "Other process data than the profile's mapping: objects (607Ah, ...) or whole PDOs (1702h).",
                      {
                          field("rx", &S::rx, list(object_address()), "to the drive"),
@@ -91,6 +94,18 @@ Codec<std::string> interface_name() {
     return c;
 }
 
+Table<ecat::SyncUnitConfig> sync_unit_table() {
+    using U = ecat::SyncUnitConfig;
+    return {"bus.sync_units",
+            "How often the slaves of a `sync_unit` are exchanged; those of a unit that is not listed are in every cycle.",
+            {
+                required(field("name", &U::name, config::name(), "as the slaves name it")),
+                required(field("divisor", &U::divisor, integer<std::uint16_t>(1, 1000), "exchanged every so many bus cycles")),
+            },
+            {},
+            {}};
+}
+
 }  // namespace
 
 Field<MachineFile> bus_field() {
@@ -110,6 +125,10 @@ Field<MachineFile> bus_field() {
                         field_at<F>(
                             "acyclic_per_cycle", [](F & f) -> auto& { return f.machine.bus.acyclic_per_cycle; },
                             integer<std::uint8_t>(1, 64), "datagrams per cycle for SDO, recovery, diagnosis"),
+                        with_default(field_at<F>(
+                                         "sync_units", [](F & f) -> auto& { return f.machine.bus.sync_units; },
+                                         list(section(sync_unit_table())), "groups of slaves that are exchanged less often"),
+                                     ""),
                         required(field("slaves", &F::slaves, list(section(slave_table())), "what is on the cable, in its order")),
                     });
 }

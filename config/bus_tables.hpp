@@ -16,7 +16,7 @@ struct Terminal {
 };
 
 struct SlaveEntry {
-    std::string name, profile;
+    std::string name, sync_unit, profile;
     std::optional<Terminal> terminal;
     std::optional<std::uint16_t> position, alias;
     std::optional<bool> dc;

@@ -77,6 +77,7 @@ private:
         if (!entry.position && !entry.alias) slave.position = static_cast<std::uint16_t>(place);
         slave.sync0_shift = entry.sync0_shift;
         slave.sm_watchdog = entry.sm_watchdog;
+        slave.sync_unit = entry.sync_unit;
         const auto here = fmt::format("bus.slaves.{}", place);
         if (!entry.profile.empty()) add_drive(slave, entry, here, out.machine.axes);
         else if (entry.terminal)

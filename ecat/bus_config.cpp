@@ -15,6 +15,7 @@ namespace {
 
 constexpr Duration minimum_cycle = std::chrono::microseconds{50};
 constexpr Duration maximum_cycle = std::chrono::milliseconds{100};
+constexpr std::uint16_t maximum_divisor = 1000;
 constexpr Duration maximum_watchdog = std::chrono::microseconds{100} * 0xFFFF;
 
 std::string micro(Duration d) { return fmt::format("{} us", to_seconds(d) * 1e6); }
@@ -36,6 +37,7 @@ public:
                 "choose 4 if in doubt");
         check_shift("bus", config_.sync0_shift);
         check_places();
+        check_sync_units();
         for (const auto& slave : config_.slaves) check_slave(slave);
         return std::move(errors_);
     }
@@ -79,6 +81,22 @@ private:
         }
     }
 
+    void check_sync_units() {
+        std::set<std::string> names;
+        for (const auto& unit : config_.sync_units) {
+            const std::string subject = fmt::format("sync unit '{}'", unit.name);
+            if (!names.insert(unit.name).second) add("bus.duplicate_sync_unit", subject, "it is listed twice", "keep one of them");
+            if (unit.divisor == 0 || unit.divisor > maximum_divisor)
+                add("bus.sync_unit_divisor", subject, fmt::format("it cannot be exchanged every {} cycles", unit.divisor),
+                    fmt::format("1 .. {}", maximum_divisor));
+            const bool used = std::any_of(config_.slaves.begin(), config_.slaves.end(),
+                                          [&](const SlaveConfig& slave) { return slave.sync_unit == unit.name; });
+            if (!used)
+                add("bus.sync_unit_unused", subject, "no slave belongs to it",
+                    "name it as `sync_unit` of its slaves, or remove it from the list");
+        }
+    }
+
     void check_slave(const SlaveConfig& slave) {
         const std::string subject = subject_of(slave);
         if (!slave.device) {
@@ -90,10 +108,11 @@ private:
         if (slave.sm_watchdog < Duration{} || slave.sm_watchdog > maximum_watchdog)
             add("bus.sm_watchdog", subject, fmt::format("a watchdog of {} cannot be set", micro(slave.sm_watchdog)),
                 fmt::format("0 .. {}", micro(maximum_watchdog)));
-        else if (slave.sm_watchdog > Duration{} && slave.sm_watchdog < 2 * config_.cycle)
+        else if (const auto period = exchange_period(config_, slave); slave.sm_watchdog > Duration{} && slave.sm_watchdog < 2 * period)
             add("bus.sm_watchdog", subject,
-                fmt::format("a watchdog of {} trips at the first lost frame of a {} cycle", micro(slave.sm_watchdog), micro(config_.cycle)),
-                "choose at least three cycles");
+                fmt::format("a watchdog of {} trips at the first lost frame: it is exchanged every {}", micro(slave.sm_watchdog),
+                            micro(period)),
+                fmt::format("choose at least {}", micro(3 * period)));
         check_pdos(slave, device, subject, true);
         check_pdos(slave, device, subject, false);
         check_startup(slave, device, subject);
@@ -107,15 +126,16 @@ private:
         if (!slave.dc && device.dc.required)
             add("bus.dc_required", subject, fmt::format("'{}' works with SYNC0 only", device.name), "set dc: true");
         if (!slave.dc) return;
-        if (device.dc.minimum_cycle > config_.cycle)
+        const Duration sync0_cycle = exchange_period(config_, slave);
+        if (device.dc.minimum_cycle > sync0_cycle)
             add("bus.cycle_too_short", subject,
-                fmt::format("'{}' needs a cycle of at least {}, the bus has {}", device.name, micro(device.dc.minimum_cycle),
-                            micro(config_.cycle)),
-                "lengthen the bus cycle");
-        if (device.dc.cycle_multiple > Duration{} && config_.cycle % device.dc.cycle_multiple != Duration{})
+                fmt::format("'{}' needs a cycle of at least {}, it is exchanged every {}", device.name, micro(device.dc.minimum_cycle),
+                            micro(sync0_cycle)),
+                "lengthen the bus cycle, or put it into a slower sync unit");
+        if (device.dc.cycle_multiple > Duration{} && sync0_cycle % device.dc.cycle_multiple != Duration{})
             add("bus.cycle_multiple", subject,
-                fmt::format("'{}' needs a multiple of {}, the bus cycle is {}", device.name, micro(device.dc.cycle_multiple),
-                            micro(config_.cycle)),
+                fmt::format("'{}' needs a multiple of {}, it is exchanged every {}", device.name, micro(device.dc.cycle_multiple),
+                            micro(sync0_cycle)),
                 "choose another bus cycle");
     }
 

@@ -64,6 +64,7 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, std::vect
           std::copy_n(step_names.begin(), names.size(), names.begin());
           return names;
       }()) {
+    const auto on_bus = bus_of(config);
     axes.reserve(config.axes.size());
     for (std::size_t i = 0; i < config.axes.size(); ++i) {
         const auto& binding = config.axes[i];
@@ -74,7 +75,8 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, std::vect
         if (slave == no_slave) {
             ports.push_back(std::make_unique<axes::sim::VirtualDrive>(config.cycle));
         } else {
-            auto drive = std::make_unique<axes::cia402::Cia402Drive>(bus, slave, binding.drive_axis, binding.profile, config.cycle);
+            auto drive = std::make_unique<axes::cia402::Cia402Drive>(bus, slave, binding.drive_axis, binding.profile,
+                                                                     ecat::exchange_period(on_bus, bus.slave(slave)));
             drives.push_back(drive.get());
             ports.push_back(std::move(drive));
         }

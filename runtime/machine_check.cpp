@@ -13,6 +13,15 @@ namespace taktwerk::runtime {
 
 namespace {
 
+/// How often the slave's process data is exchanged.
+Duration exchange_period_of(const MachineConfig& config, const std::string& name) {
+    auto bus = config.bus;
+    bus.cycle = config.cycle;
+    for (const auto& slave : bus.slaves)
+        if (slave.name == name) return ecat::exchange_period(bus, slave);
+    return config.cycle;
+}
+
 class Problems {
 public:
     explicit Problems(std::vector<Error>& errors) : errors_(errors) {}
@@ -103,7 +112,7 @@ std::vector<Error> check(const MachineConfig& config) {
         if (binding.drive_axis >= profile.axes)
             problems.add("axis.drive_axis", subject + ".drive_axis", fmt::format("{} has {} axes", profile.name, profile.axes),
                          fmt::format("choose 0 to {}", profile.axes - 1));
-        if (config.cycle < profile.minimum_cycle_csp)
+        if (exchange_period_of(config, binding.slave) < profile.minimum_cycle_csp)
             problems.add("axis.cycle_too_short", "cycle",
                          fmt::format("{} (axis {}) needs at least {} us in cyclic synchronous position mode", profile.name,
                                      binding.axis.name, profile.minimum_cycle_csp / 1us),

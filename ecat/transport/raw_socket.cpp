@@ -1,13 +1,16 @@
 #include "ecat/transport/raw_socket.hpp"
 
 #include <fmt/format.h>
+#include <linux/errqueue.h>
 #include <linux/if_packet.h>
 #include <net/if.h>
 #include <net/if_arp.h>
 #include <netinet/in.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
+#include <sys/uio.h>
 #include <sys/un.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -15,10 +18,6 @@
 #include <cstddef>
 #include <cstring>
 #include <utility>
-
-#ifndef PACKET_IGNORE_OUTGOING  // Linux 4.20; older headers lack it
-#define PACKET_IGNORE_OUTGOING 23
-#endif
 
 namespace taktwerk::ecat {
 
@@ -69,6 +68,40 @@ ifreq request(std::string_view interface) noexcept {
     ifreq ifr{};
     std::copy_n(interface.begin(), std::min<std::size_t>(interface.size(), IFNAMSIZ - 1), ifr.ifr_name);
     return ifr;
+}
+
+std::int64_t nanoseconds(Instant t) noexcept { return t.time_since_epoch().count(); }
+
+std::int64_t nanoseconds(const timespec& t) noexcept { return std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec; }
+
+std::int64_t clock_ns(clockid_t clock) noexcept {
+    timespec t{};
+    ::clock_gettime(clock, &t);
+    return nanoseconds(t);
+}
+
+template <class Value>
+std::optional<Value> control_value(msghdr& message, int level, int type) noexcept {
+    for (auto* part = CMSG_FIRSTHDR(&message); part != nullptr; part = CMSG_NXTHDR(&message, part)) {
+        if (part->cmsg_level != level || part->cmsg_type != type) continue;
+        Value value{};
+        std::memcpy(&value, CMSG_DATA(part), sizeof value);
+        return value;
+    }
+    return std::nullopt;
+}
+
+/// The kernel's own stamp of a frame, in its real-time clock.
+std::optional<std::int64_t> stamp_of(msghdr& message) noexcept {
+    const auto stamps = control_value<scm_timestamping>(message, SOL_SOCKET, SCM_TIMESTAMPING);
+    if (!stamps || stamps->ts[0].tv_sec == 0) return std::nullopt;
+    return nanoseconds(stamps->ts[0]);
+}
+
+/// Which of the frames sent a stamp belongs to.
+std::optional<std::uint32_t> number_of(msghdr& message) noexcept {
+    const auto error = control_value<sock_extended_err>(message, SOL_PACKET, PACKET_TX_TIMESTAMP);
+    return error ? std::optional{error->ee_data} : std::nullopt;
 }
 
 /// Abstract Unix sockets are per network namespace, as interfaces are, and vanish with their process.
@@ -136,10 +169,7 @@ Result<std::unique_ptr<RawSocketTransport>> RawSocketTransport::open(std::string
         lock = Descriptor{*taken};
     }
 
-    const int on = 1;
-    const bool sees_own_frames = ::setsockopt(socket.get(), SOL_PACKET, PACKET_IGNORE_OUTGOING, &on, sizeof on) != 0;
-    if (options.skip_queueing) (void)::setsockopt(socket.get(), SOL_PACKET, PACKET_QDISC_BYPASS, &on, sizeof on);
-    (void)::setsockopt(socket.get(), SOL_SOCKET, SO_PRIORITY, &options.priority, sizeof options.priority);
+    RawSocketReport report = apply(options, socket.get(), interface);
 
     sockaddr_ll address{};
     address.sll_family = AF_PACKET;
@@ -149,41 +179,103 @@ Result<std::unique_ptr<RawSocketTransport>> RawSocketTransport::open(std::string
         return socket_error(interface, "binding the packet socket");
 
     std::unique_ptr<RawSocketTransport> transport{
-        new RawSocketTransport{std::string{interface}, socket.release(), lock.release(), mac, sees_own_frames}};
+        new RawSocketTransport{std::string{interface}, socket.release(), lock.release(), mac, std::move(report)}};
     transport->refresh();
     return transport;
 }
 
-RawSocketTransport::RawSocketTransport(std::string interface, int socket, int lock, const MacAddress& mac, bool sees_own_frames) noexcept
-    : interface_(std::move(interface)), socket_(socket), lock_(lock), mac_(mac), sees_own_frames_(sees_own_frames) {}
+RawSocketTransport::RawSocketTransport(std::string interface, int socket, int lock, const MacAddress& mac, RawSocketReport report) noexcept
+    : interface_(std::move(interface)), socket_(socket), lock_(lock), mac_(mac), report_(std::move(report)) {}
 
 RawSocketTransport::~RawSocketTransport() {
     ::close(socket_);
     if (lock_ >= 0) ::close(lock_);
 }
 
-bool RawSocketTransport::send(std::span<const std::byte> frame, Instant) noexcept {
-    return ::send(socket_, frame.data(), frame.size(), MSG_DONTWAIT) == static_cast<ssize_t>(frame.size());
+bool RawSocketTransport::send(std::span<const std::byte> frame, Instant now) noexcept {
+    if (::send(socket_, frame.data(), frame.size(), MSG_DONTWAIT) != static_cast<ssize_t>(frame.size())) return false;
+    if (report_.stamps_sending) sent_at_ns_[next_send_++ % remembered_sends].store(nanoseconds(now), std::memory_order_relaxed);
+    return true;
 }
 
 std::optional<ReceivedFrame> RawSocketTransport::receive(std::span<std::byte> buffer, Instant now) noexcept {
     constexpr int own_frames_skipped = 16;  // at most so many are between two answers
     for (int i = 0; i < own_frames_skipped; ++i) {
         sockaddr_ll from{};
-        socklen_t from_size = sizeof from;
-        const auto size = ::recvfrom(socket_, buffer.data(), buffer.size(), MSG_DONTWAIT, reinterpret_cast<sockaddr*>(&from), &from_size);
+        iovec data{buffer.data(), buffer.size()};
+        alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(scm_timestamping))> control{};
+        msghdr message{};
+        message.msg_name = &from;
+        message.msg_namelen = sizeof from;
+        message.msg_iov = &data;
+        message.msg_iovlen = 1;
+        message.msg_control = report_.stamps_receipt ? control.data() : nullptr;
+        message.msg_controllen = report_.stamps_receipt ? control.size() : 0;
+        const auto size = ::recvmsg(socket_, &message, MSG_DONTWAIT);
         if (size <= 0) return std::nullopt;
-        if (sees_own_frames_ && from.sll_pkttype == PACKET_OUTGOING) continue;
-        return ReceivedFrame{static_cast<std::size_t>(size), now};
+        if (report_.sees_own_frames && from.sll_pkttype == PACKET_OUTGOING) continue;
+        const auto stamp = stamp_of(message);
+        return ReceivedFrame{static_cast<std::size_t>(size), stamp ? arrival(*stamp, now) : now};
     }
     return std::nullopt;
 }
 
+Instant RawSocketTransport::arrival(std::int64_t stamp_ns, Instant asked) const noexcept {
+    // A frame may come in after the cycle looked at its clock and before it asked.
+    constexpr Duration most_ahead = std::chrono::milliseconds{5}, most_behind = std::chrono::seconds{1};
+    const Instant at{Duration{stamp_ns - realtime_minus_machine_ns_.load(std::memory_order_relaxed)}};
+    return at <= asked + most_ahead && at >= asked - most_behind ? at : asked;
+}
+
 void RawSocketTransport::refresh() noexcept {
+    read_carrier();
+    if (report_.stamps_receipt || report_.stamps_sending) read_clock_distance();
+    read_drops();
+    if (report_.stamps_sending) read_send_stamps();
+}
+
+void RawSocketTransport::read_carrier() noexcept {
     auto ifr = request(interface_);
     const bool answered = ::ioctl(socket_, SIOCGIFFLAGS, &ifr) == 0;
     constexpr short both = IFF_UP | IFF_RUNNING;
     link_up_.store(answered && (ifr.ifr_flags & both) == both, std::memory_order_relaxed);
+}
+
+/// Both clocks are disciplined alike: their distance changes only when somebody sets the time.
+void RawSocketTransport::read_clock_distance() noexcept {
+    std::int64_t tightest = INT64_MAX, distance = 0;
+    for (int i = 0; i < 5; ++i) {  // the one least disturbed
+        const std::int64_t before = clock_ns(CLOCK_MONOTONIC), real = clock_ns(CLOCK_REALTIME), after = clock_ns(CLOCK_MONOTONIC);
+        if (after - before >= tightest) continue;
+        tightest = after - before;
+        distance = real - before - tightest / 2;
+    }
+    realtime_minus_machine_ns_.store(distance, std::memory_order_relaxed);
+}
+
+void RawSocketTransport::read_drops() noexcept {
+    tpacket_stats counted{};  // since the last call
+    socklen_t size = sizeof counted;
+    if (::getsockopt(socket_, SOL_PACKET, PACKET_STATISTICS, &counted, &size) != 0) return;
+    statistics_.received += counted.tp_packets - counted.tp_drops;
+    statistics_.dropped += counted.tp_drops;
+}
+
+void RawSocketTransport::read_send_stamps() noexcept {
+    for (std::size_t i = 0; i < remembered_sends; ++i) {
+        alignas(cmsghdr) std::array<char, 256> control{};
+        msghdr message{};
+        message.msg_control = control.data();
+        message.msg_controllen = control.size();
+        if (::recvmsg(socket_, &message, MSG_ERRQUEUE | MSG_DONTWAIT) < 0) return;
+        const auto stamp = stamp_of(message);
+        const auto number = number_of(message);
+        if (!stamp || !number) continue;
+        const auto sent = sent_at_ns_[*number % remembered_sends].load(std::memory_order_relaxed);
+        statistics_.send_delay = Duration{*stamp - realtime_minus_machine_ns_.load(std::memory_order_relaxed) - sent};
+        statistics_.longest_send_delay = std::max(statistics_.longest_send_delay, statistics_.send_delay);
+        ++statistics_.stamped;
+    }
 }
 
 }  // namespace taktwerk::ecat

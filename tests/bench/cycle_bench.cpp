@@ -4,7 +4,6 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <deque>
 #include <vector>
 
@@ -14,6 +13,7 @@
 #include "fb_library/all_blocks.hpp"
 #include "runtime/machine.hpp"
 #include "runtime/world.hpp"
+#include "tests/bench/between_cycles.hpp"
 #include "tests/machines/plain_machine.hpp"
 
 namespace {
@@ -61,50 +61,6 @@ public:
 std::size_t Shuttle::count = 0;
 std::vector<std::string> Shuttle::names;
 
-/// A wire: send() puts the frame on it, the slaves work when deliver() is called, receive() takes what came back.
-class Wire final : public ecat::Transport {
-public:
-    explicit Wire(ecat::sim::SimNetwork& network) : network_(network) {}
-    bool send(std::span<const std::byte> frame, Instant now) noexcept override {
-        if (count_ == frames_.size()) return false;
-        auto& f = frames_[count_++];
-        std::memcpy(f.bytes.data(), frame.data(), frame.size());
-        f.size = frame.size();
-        f.at = now;
-        return true;
-    }
-    std::optional<ecat::ReceivedFrame> receive(std::span<std::byte> buffer, Instant) noexcept override {
-        if (taken_ == done_) return std::nullopt;
-        const auto& f = frames_[taken_++];
-        std::memcpy(buffer.data(), f.bytes.data(), f.size);
-        return ecat::ReceivedFrame{f.size, f.at};
-    }
-    ecat::MacAddress mac() const noexcept override { return {2, 0, 0, 0, 0, 1}; }
-    bool link_up() const noexcept override { return true; }
-    void deliver(Instant now) {
-        std::size_t kept = 0;
-        for (std::size_t i = done_ = taken_ = 0; i < count_; ++i) {
-            if (network_.process({frames_[i].bytes.data(), frames_[i].size}, frames_[i].at)) {
-                if (kept != i) frames_[kept] = frames_[i];
-                ++kept;
-            }
-        }
-        done_ = kept;
-        count_ = 0;
-        network_.advance(now);
-    }
-    /// After receive() has taken all: the slots are free for the next send().
-private:
-    struct Frame {
-        std::array<std::byte, ecat::max_frame_size> bytes;
-        std::size_t size = 0;
-        Instant at{};
-    };
-    ecat::sim::SimNetwork& network_;
-    std::array<Frame, 64> frames_{};
-    std::size_t count_ = 0, done_ = 0, taken_ = 0;
-};
-
 double us(Duration d) { return static_cast<double>(d.count()) / 1000.0; }
 
 void run(std::size_t axes, int cycles) {
@@ -133,7 +89,7 @@ void run(std::size_t axes, int cycles) {
 
     Instant now{1s};
     World world{config, now};
-    Wire wire{world.network()};
+    bench::BetweenCycles wire{world.network()};
     auto built = Machine::build(config, wire);
     if (auto* errors = std::get_if<1>(&built)) {
         for (const auto& error : *errors) fmt::print(stderr, "{}\n", error.text());

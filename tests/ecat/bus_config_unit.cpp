@@ -24,6 +24,16 @@ BusConfig good() {
 
 auto with_code(const char* code) { return Contains(Field(&Error::code, code)); }
 
+// The servo needs multiples of 125 us and at least 125 us: a 50 us bus serves it every fifth cycle.
+TEST(BusConfig, ASlowerSyncUnitGivesADriveTheCycleItNeeds) {
+    auto config = good();
+    config.cycle = 50us;
+    EXPECT_THAT(check(config), with_code("bus.cycle_too_short"));
+    config.slaves[0].sync_unit = "drives";
+    config.sync_units = {{"drives", 5}};
+    EXPECT_THAT(check(config), IsEmpty());
+}
+
 TEST(BusConfig, AGoodOneHasNoProblems) { EXPECT_THAT(check(good()), IsEmpty()); }
 
 struct Case {
@@ -54,54 +64,64 @@ StartupSdo quick_stop(std::int64_t value) {
 
 INSTANTIATE_TEST_SUITE_P(
     Each, BadBusConfig,
-    ::
-        testing::Values(Case{"bus.cycle", [](BusConfig& c) { c.cycle = 0ns; }},
-                        Case{"bus.no_slaves", [](BusConfig& c) { c.slaves.clear(); }},
-                        Case{"bus.lost_frames_limit", [](BusConfig& c) { c.lost_frames_limit = 0; }},
-                        Case{"bus.acyclic_per_cycle", [](BusConfig& c) { c.acyclic_per_cycle = 0; }},
-                        Case{"bus.sync0_shift", [](BusConfig& c) { c.slaves[0].sync0_shift = 1ms; }},
-                        Case{"bus.no_name", [](BusConfig& c) { c.slaves[0].name.clear(); }},
-                        Case{"bus.duplicate_name", [](BusConfig& c) { c.slaves[1].name = c.slaves[0].name; }},
-                        Case{"bus.place", [](BusConfig& c) { c.slaves[0].alias = 3; }},
-                        Case{"bus.place", [](BusConfig& c) { c.slaves[0].position.reset(); }},
-                        Case{"bus.duplicate_position", [](BusConfig& c) { c.slaves[1].position = 0; }},
-                        Case{"bus.position", [](BusConfig& c) { c.slaves[1].position = 2; }},
-                        Case{"bus.no_device", [](BusConfig& c) { c.slaves[0].device.reset(); }},
-                        Case{"bus.dc_required", [](BusConfig& c) { c.slaves[0].dc = false; }},
-                        Case{"bus.dc_unsupported", [](BusConfig& c) { c.slaves[1].dc = true; }},
-                        Case{"bus.cycle_multiple", [](BusConfig& c) { c.cycle = 200us; }},
-                        Case{"bus.cycle_too_short", [](BusConfig& c) { c.cycle = 100us; }},
-                        Case{"bus.sm_watchdog", [](BusConfig& c) { c.slaves[0].sm_watchdog = 1ms; }},
-                        Case{"bus.sm_watchdog", [](BusConfig& c) { c.slaves[0].sm_watchdog = 7s; }},  // 65535 * 100 us = 6.5535 s
-                        Case{"bus.pdo_unknown",
-                             [](BusConfig& c) {
-                                 c.slaves[0].rx.assigned = {{0x1777, false, {}}};
-                             }},
-                        Case{"bus.pdo_too_many",
-                             [](BusConfig& c) {
-                                 c.slaves[0].rx.assigned = {{0x1701, true, {}}, {0x1702, true, {}}};
-                             }},
-                        Case{"bus.pdo_fixed", [](BusConfig& c) { c.slaves[0].rx.assigned = {{0x1701, true, {{0x6040, 0, 16}}}}; }},
-                        Case{
-                            "bus.pdo_mappable",
-                            [](BusConfig& c) {
-                                c.slaves[0].rx.assigned = {{0x1600, false, {{0x6064, 0, 32}}}};
-                            }},
-                        Case{"bus.pdo_bits", [](BusConfig& c) { c.slaves[0].rx.assigned = {{0x1600, false, {{0x6040, 0, 32}}}}; }},
-                        Case{
-                            "bus.pdo_entries",
-                            [](BusConfig& c) {
-                                c.slaves[0].rx.assigned = {{0x1600, false, std::vector<PdoEntry>(11, {0x6040, 0, 16})}};
-                            }},
-                        Case{"bus.pdo_no_coe", [](BusConfig& c) { c.slaves[1].rx.assigned = {{0x1600, false, {}}}; }},
-                        Case{"bus.startup_no_coe", [](BusConfig& c) { c.slaves[1].startup = {quick_stop(1)}; }},
-                        Case{"bus.startup_range", [](BusConfig& c) { c.slaves[0].startup = {quick_stop(-1)}; }},
-                        Case{"bus.startup_range", [](BusConfig& c) { c.slaves[0].startup = {quick_stop(1'000'001)}; }},
-                        Case{"bus.startup_read_only", [](BusConfig& c) {
-                                 c.slaves[0].startup = {quick_stop(1)};
-                                 c.slaves[0].startup[0].index = 0x6041;
-                                 c.slaves[0].startup[0].type = DataType::U16;
-                             }}));
+    ::testing::Values(
+        Case{"bus.cycle", [](BusConfig& c) { c.cycle = 0ns; }}, Case{"bus.no_slaves", [](BusConfig& c) { c.slaves.clear(); }},
+        Case{"bus.lost_frames_limit", [](BusConfig& c) { c.lost_frames_limit = 0; }},
+        Case{"bus.acyclic_per_cycle", [](BusConfig& c) { c.acyclic_per_cycle = 0; }},
+        Case{"bus.sync0_shift", [](BusConfig& c) { c.slaves[0].sync0_shift = 1ms; }},
+        Case{"bus.duplicate_sync_unit",
+             [](BusConfig& c) {
+                 c.slaves[1].sync_unit = "io";
+                 c.sync_units = {{"io", 2}, {"io", 3}};
+             }},
+        Case{"bus.sync_unit_divisor",
+             [](BusConfig& c) {
+                 c.slaves[1].sync_unit = "io";
+                 c.sync_units = {{"io", 0}};
+             }},
+        Case{"bus.sync_unit_unused",
+             [](BusConfig& c) {
+                 c.sync_units = {{"io", 2}};
+             }},
+        Case{"bus.sm_watchdog",  // 2 ms are two cycles, but half a period of its unit
+             [](BusConfig& c) {
+                 c.slaves[1].sync_unit = "io";
+                 c.slaves[1].sm_watchdog = 2ms;
+                 c.sync_units = {{"io", 4}};
+             }},
+        Case{"bus.no_name", [](BusConfig& c) { c.slaves[0].name.clear(); }},
+        Case{"bus.duplicate_name", [](BusConfig& c) { c.slaves[1].name = c.slaves[0].name; }},
+        Case{"bus.place", [](BusConfig& c) { c.slaves[0].alias = 3; }},
+        Case{"bus.place", [](BusConfig& c) { c.slaves[0].position.reset(); }},
+        Case{"bus.duplicate_position", [](BusConfig& c) { c.slaves[1].position = 0; }},
+        Case{"bus.position", [](BusConfig& c) { c.slaves[1].position = 2; }},
+        Case{"bus.no_device", [](BusConfig& c) { c.slaves[0].device.reset(); }},
+        Case{"bus.dc_required", [](BusConfig& c) { c.slaves[0].dc = false; }},
+        Case{"bus.dc_unsupported", [](BusConfig& c) { c.slaves[1].dc = true; }},
+        Case{"bus.cycle_multiple", [](BusConfig& c) { c.cycle = 200us; }},
+        Case{"bus.cycle_too_short", [](BusConfig& c) { c.cycle = 100us; }},
+        Case{"bus.sm_watchdog", [](BusConfig& c) { c.slaves[0].sm_watchdog = 1ms; }},
+        Case{"bus.sm_watchdog", [](BusConfig& c) { c.slaves[0].sm_watchdog = 7s; }},  // 65535 * 100 us = 6.5535 s
+        Case{"bus.pdo_unknown", [](BusConfig& c) { c.slaves[0].rx.assigned = {{0x1777, false, {}}}; }},
+        Case{"bus.pdo_too_many", [](BusConfig& c) { c.slaves[0].rx.assigned = {{0x1701, true, {}}, {0x1702, true, {}}}; }},
+        Case{
+            "bus.pdo_fixed",
+            [](BusConfig& c) {
+                c.slaves[0].rx.assigned = {{0x1701, true, {{0x6040, 0, 16}}}};
+            }},
+        Case{"bus.pdo_mappable", [](BusConfig& c) { c.slaves[0].rx.assigned = {{0x1600, false, {{0x6064, 0, 32}}}}; }},
+        Case{"bus.pdo_bits", [](BusConfig& c) { c.slaves[0].rx.assigned = {{0x1600, false, {{0x6040, 0, 32}}}}; }},
+        Case{"bus.pdo_entries",
+             [](BusConfig& c) { c.slaves[0].rx.assigned = {{0x1600, false, std::vector<PdoEntry>(11, {0x6040, 0, 16})}}; }},
+        Case{"bus.pdo_no_coe", [](BusConfig& c) { c.slaves[1].rx.assigned = {{0x1600, false, {}}}; }},
+        Case{"bus.startup_no_coe", [](BusConfig& c) { c.slaves[1].startup = {quick_stop(1)}; }},
+        Case{"bus.startup_range", [](BusConfig& c) { c.slaves[0].startup = {quick_stop(-1)}; }},
+        Case{"bus.startup_range", [](BusConfig& c) { c.slaves[0].startup = {quick_stop(1'000'001)}; }},
+        Case{"bus.startup_read_only", [](BusConfig& c) {
+                 c.slaves[0].startup = {quick_stop(1)};
+                 c.slaves[0].startup[0].index = 0x6041;
+                 c.slaves[0].startup[0].type = DataType::U16;
+             }}));
 
 TEST(BusConfig, AllProblemsAreReportedAtOnceAndNameTheSlave) {
     BusConfig config = good();

@@ -35,6 +35,7 @@ Cia402Drive::Cia402Drive(ecat::Master& bus, std::size_t slave, std::uint8_t axis
     c.motor_has_encoder = profile_->motor_has_encoder;
     c.position_bits = profile_->position_bits;
     c.minimum_cycle = profile_->minimum_cycle_csp;
+    c.feedback_period = cycle;
     c.enable_delay = profile_->enable_delay;
     c.mode_change_delay = profile_->mode_change_delay;
     c.mode_change_at_standstill = profile_->mode_change_at_standstill;

@@ -23,7 +23,8 @@ bool torque_mode(DriveMode mode) noexcept { return mode == DriveMode::cyclic_tor
 }  // namespace
 
 std::uint16_t Cia402Drive::fault_reset_word() noexcept {
-    const auto phase = reset_cycle_++ % (reset_low_cycles + reset_high_cycles + reset_wait_cycles);
+    const auto phase = reset_cycle_ % (reset_low_cycles + reset_high_cycles + reset_wait_cycles);
+    if (bus_.health(slave_).due) ++reset_cycle_;  // in exchanges: a slower sync unit carries each level as often
     return phase >= reset_low_cycles && phase < reset_low_cycles + reset_high_cycles ? fault_reset : disable_voltage;
 }
 

@@ -113,6 +113,15 @@ TEST_F(ExchangeTest, WrongCommandIndexAddressLengthOrStructureIsRejected) {
     EXPECT_EQ(exchange.statistics().received, 0u);
 }
 
+// Byte 6 is the first of the source address; controllers set bit 1 of it, another master's differs elsewhere.
+TEST_F(ExchangeTest, FramesOfAnotherMasterAreCountedAndNotTaken) {
+    EXPECT_EQ(state_after([](auto f) { f[11] ^= std::byte{0x40}; }), SlotState::sent);
+    EXPECT_EQ(exchange.statistics().foreign, 1u);
+    EXPECT_EQ(exchange.statistics().rejected, 0u);
+    EXPECT_EQ(state_after([](auto f) { f[6] |= std::byte{0x02}; }), SlotState::answered) << "as a real controller marks it";
+    EXPECT_EQ(exchange.statistics().foreign, 1u);
+}
+
 TEST_F(ExchangeTest, ASecondDatagramWithAnotherIndexIsRejected) {
     slaves.tamper = [](std::span<std::byte> f) { f[first + 12 + 1] ^= std::byte{1}; };
     const auto slot = exchange.begin(FrameKind::cyclic);

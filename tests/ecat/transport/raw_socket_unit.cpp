@@ -3,7 +3,9 @@
 
 #include <gmock/gmock.h>
 #include <linux/capability.h>
+#include <netinet/in.h>
 #include <sched.h>
+#include <sys/socket.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -11,6 +13,8 @@
 #include <cstdlib>
 #include <fstream>
 #include <thread>
+
+#include "core/clock.hpp"
 
 namespace taktwerk::ecat {
 namespace {
@@ -145,6 +149,73 @@ TEST_F(RawSocket, ErrorsSayWhatToDo) {
     ASSERT_FALSE(down.ok());
     EXPECT_EQ(down.error().code, "transport.interface_down");
     EXPECT_THAT(down.error().remedy, HasSubstr("ip link set ecat0 up"));
+}
+
+// A frame lies in the socket for 5 ms before anybody asks: its stamp says when it came. (The kernel starts to stamp a moment
+// after it was asked to: the first frames may have none.)
+TEST_F(RawSocket, AnArrivalIsDatedByTheKernelAndNotByTheQuestion) {
+    SystemClock clock;
+    auto master = RawSocketTransport::open("ecat0");
+    auto slave = RawSocketTransport::open("ecat1");
+    ASSERT_TRUE(master.ok() && slave.ok());
+    ASSERT_TRUE((*slave)->report().stamps_receipt) << (*slave)->report().time_stamps;
+    Instant before{}, asked{}, at{};
+    for (int i = 0; i < 200 && at == asked; ++i) {
+        before = clock.now();
+        ASSERT_TRUE((*master)->send(frame(), before));
+        clock.sleep_until(clock.now() + 5ms);
+        asked = clock.now();
+        const auto received = (*slave)->receive(buffer, asked);
+        ASSERT_TRUE(received);
+        at = received->at;
+    }
+    EXPECT_GE(at, before);
+    EXPECT_LE(at, asked - 4ms);
+}
+
+TEST_F(RawSocket, SendStampsMeasureTheWayToTheDriver) {
+    SystemClock clock;
+    auto master = RawSocketTransport::open("ecat0", {.send_stamps = true});
+    ASSERT_TRUE(master.ok()) << master.error().text();
+    ASSERT_TRUE((*master)->send(frame(), clock.now()));
+    for (int i = 0; i < 1000 && (*master)->statistics().stamped == 0; ++i) {
+        (*master)->refresh();
+        std::this_thread::sleep_for(1ms);
+    }
+    EXPECT_EQ((*master)->statistics().stamped, 1u);
+    EXPECT_GT((*master)->statistics().send_delay, 0ns);
+    EXPECT_LT((*master)->statistics().send_delay, 1s);
+    EXPECT_FALSE((*master)->receive(buffer, now)) << "stamps are no frames";
+}
+
+// The socket's buffer holds some hundred short frames.
+TEST_F(RawSocket, FramesThatNobodyFetchedInTimeAreCounted) {
+    auto master = RawSocketTransport::open("ecat0");
+    auto slave = RawSocketTransport::open("ecat1");
+    ASSERT_TRUE(master.ok() && slave.ok());
+    std::uint64_t sent = 0;
+    for (int i = 0; i < 3000; ++i) sent += (*master)->send(frame(), now) ? 1 : 0;
+    for (int i = 0; i < 1000 && (*slave)->statistics().received + (*slave)->statistics().dropped < sent; ++i) {
+        (*slave)->refresh();
+        std::this_thread::sleep_for(1ms);
+    }
+    EXPECT_GT((*slave)->statistics().dropped, 0u);
+    EXPECT_EQ((*slave)->statistics().received + (*slave)->statistics().dropped, sent);
+}
+
+// A socket that is no packet socket refuses what only those have; stamps and priority it grants.
+TEST_F(RawSocket, WhatTheKernelRefusedIsSaidOnceInWords) {
+    const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    const auto report = apply({.priority = 6}, socket, "ecat0");
+    ::close(socket);
+    EXPECT_THAT(report.refused, ::testing::ElementsAre(::testing::StartsWith("no filter for outgoing frames ("),
+                                                       ::testing::StartsWith("no queue bypass (")));
+    EXPECT_THAT(report.refused[1], HasSubstr("): frames pass the queueing discipline, some us later"));
+    EXPECT_TRUE(report.sees_own_frames);
+
+    const auto opened = RawSocketTransport::open("ecat0", {.priority = 6});
+    ASSERT_TRUE(opened.ok()) << opened.error().text();
+    EXPECT_TRUE((*opened)->report().refused.empty()) << "bypass, priority 6 and stamps need no privilege";
 }
 
 TEST_F(RawSocket, MissingPrivilegeIsNamedWithTheCommandThatGivesIt) {
