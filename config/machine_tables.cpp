@@ -53,7 +53,8 @@ Table<IoEntry> input_table() {
 Table<IoEntry> output_table() {
     Table<IoEntry> table{"io.outputs.<name>", "An output by the name that programs use.", io_fields(), {}, check_io};
     table.fields.push_back(field_at<IoEntry>(
-        "safe", [](IoEntry & e) -> auto& { return e.point.safe_value; }, integer<std::int64_t>(least, most), "while no program drives it"));
+        "safe", [](IoEntry & e) -> auto& { return e.point.safe_value; }, integer<std::int64_t>(least, most),
+        "from the bus' first frames on and while no program drives it"));
     return table;
 }
 

@@ -138,7 +138,8 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, std::vect
 Result<void> Machine::Impl::arm() {
     for (auto* drive : drives)
         if (auto ok = drive->resolve(); !ok) return ok;
-    if (auto ok = io.resolve(bus); !ok) return ok;
+    if (!outputs_laid_out.load(std::memory_order_relaxed))
+        if (auto ok = io.resolve(bus); !ok) return ok;
 
     Snapshot prototype;
     prototype.slaves.resize(bus.slave_count());
@@ -166,6 +167,15 @@ Result<void> Machine::Impl::arm() {
     phase.store(MachinePhase::running, std::memory_order_release);
     armed.store(true, std::memory_order_release);
     return {};
+}
+
+void Machine::Impl::lay_out_outputs() {
+    using Phase = ecat::Master::Phase;
+    const auto at = bus.phase();
+    const bool planned = at == Phase::configuring || at == Phase::safeop || at == Phase::operational;
+    if (!planned || armed.load(std::memory_order_relaxed) || outputs_laid_out.load(std::memory_order_relaxed)) return;
+    // What cannot be resolved is told by arm().
+    if (io.resolve(bus)) outputs_laid_out.store(true, std::memory_order_release);
 }
 
 void Machine::Impl::cycle(const CycleTick& tick) noexcept {
@@ -207,6 +217,8 @@ void Machine::Impl::cycle(const CycleTick& tick) noexcept {
         for (auto& axis : axes) axis.encode(send_time);
         io.write(bus.outputs());
         steps.done(static_cast<std::size_t>(Step::encode));
+    } else if (outputs_laid_out.load(std::memory_order_acquire)) {
+        io.write(bus.outputs());
     }
 
     if (!at_tick) bus.send(tick.scheduled);
@@ -240,10 +252,14 @@ std::variant<std::unique_ptr<Machine>, std::vector<Error>> Machine::build(Machin
     return std::unique_ptr<Machine>(new Machine(std::move(impl)));
 }
 
-void Machine::start_bus() { impl_->bus.start(); }
+void Machine::start_bus() {
+    if (!impl_->armed.load(std::memory_order_relaxed)) impl_->outputs_laid_out.store(false, std::memory_order_release);
+    impl_->bus.start();
+}
 void Machine::stop_bus() { impl_->bus.stop(); }
 void Machine::service(Instant now) {
     impl_->bus.step(now);
+    impl_->lay_out_outputs();
     for (auto& port : impl_->ports) port->step(now);
     impl_->objects->step(impl_->bus);
     impl_->service_programs();

@@ -182,6 +182,9 @@ struct Machine::Impl {
     std::atomic<MachinePhase> phase{MachinePhase::starting};
     Instant shutdown_since{};
     bool shutting_down = false;
+    /// The outputs carry their safe values from the bus' first frames on: what enters OP must not find zeros. Service side.
+    void lay_out_outputs();
+    std::atomic<bool> outputs_laid_out{false};  // the cycle may write them although nothing runs yet
     std::atomic<bool> armed{false};  // arm() runs on the service side while cycles already run
 
     /// start() and stop() of a program run on the service side: the cycle asks, the service answers. While the handshake is not
