@@ -50,7 +50,7 @@ struct IoPoint {
     std::string slave;
     std::uint16_t index = 0;  ///< mapped object
     std::uint8_t sub = 0;
-    bool inverted = false;                  ///< 1-bit points: TRUE when the terminal says 0
+    bool inverted = false;  ///< 1-bit points: TRUE when the terminal says 0
     /// Outputs: from the bus' first frames on, while no program drives it, and at the end. Not when the master is gone or the
     /// cable is cut: then the terminal's own watchdog sets its outputs to zero, whatever stands here.
     std::int64_t safe_value = 0;

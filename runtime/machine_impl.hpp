@@ -185,7 +185,7 @@ struct Machine::Impl {
     /// The outputs carry their safe values from the bus' first frames on: what enters OP must not find zeros. Service side.
     void lay_out_outputs();
     std::atomic<bool> outputs_laid_out{false};  // the cycle may write them although nothing runs yet
-    std::atomic<bool> armed{false};  // arm() runs on the service side while cycles already run
+    std::atomic<bool> armed{false};             // arm() runs on the service side while cycles already run
 
     /// start() and stop() of a program run on the service side: the cycle asks, the service answers. While the handshake is not
     /// `none` no task of the program runs, nothing reads its variables, and start() and stop() never run beside its tasks.

@@ -19,6 +19,8 @@
 #include <cstring>
 #include <utility>
 
+#include "core/calendar_distance.hpp"
+
 namespace taktwerk::ecat {
 
 namespace {
@@ -73,12 +75,6 @@ ifreq request(std::string_view interface) noexcept {
 std::int64_t nanoseconds(Instant t) noexcept { return t.time_since_epoch().count(); }
 
 std::int64_t nanoseconds(const timespec& t) noexcept { return std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec; }
-
-std::int64_t clock_ns(clockid_t clock) noexcept {
-    timespec t{};
-    ::clock_gettime(clock, &t);
-    return nanoseconds(t);
-}
 
 template <class Value>
 std::optional<Value> control_value(msghdr& message, int level, int type) noexcept {
@@ -229,7 +225,8 @@ Instant RawSocketTransport::arrival(std::int64_t stamp_ns, Instant asked) const 
 
 void RawSocketTransport::refresh() noexcept {
     read_carrier();
-    if (report_.stamps_receipt || report_.stamps_sending) read_clock_distance();
+    if (report_.stamps_receipt || report_.stamps_sending)
+        realtime_minus_machine_ns_.store(calendar_minus_machine_time().count(), std::memory_order_relaxed);
     read_drops();
     if (report_.stamps_sending) read_send_stamps();
 }
@@ -239,18 +236,6 @@ void RawSocketTransport::read_carrier() noexcept {
     const bool answered = ::ioctl(socket_, SIOCGIFFLAGS, &ifr) == 0;
     constexpr short both = IFF_UP | IFF_RUNNING;
     link_up_.store(answered && (ifr.ifr_flags & both) == both, std::memory_order_relaxed);
-}
-
-/// Both clocks are disciplined alike: their distance changes only when somebody sets the time.
-void RawSocketTransport::read_clock_distance() noexcept {
-    std::int64_t tightest = INT64_MAX, distance = 0;
-    for (int i = 0; i < 5; ++i) {  // the one least disturbed
-        const std::int64_t before = clock_ns(CLOCK_MONOTONIC), real = clock_ns(CLOCK_REALTIME), after = clock_ns(CLOCK_MONOTONIC);
-        if (after - before >= tightest) continue;
-        tightest = after - before;
-        distance = real - before - tightest / 2;
-    }
-    realtime_minus_machine_ns_.store(distance, std::memory_order_relaxed);
 }
 
 void RawSocketTransport::read_drops() noexcept {

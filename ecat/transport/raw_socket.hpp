@@ -70,7 +70,6 @@ private:
     RawSocketTransport(std::string interface, int socket, int lock, const MacAddress& mac, RawSocketReport report) noexcept;
     [[nodiscard]] Instant arrival(std::int64_t stamp_ns, Instant asked) const noexcept;
     void read_carrier() noexcept;
-    void read_clock_distance() noexcept;
     void read_drops() noexcept;
     void read_send_stamps() noexcept;
 
