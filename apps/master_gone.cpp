@@ -58,13 +58,6 @@ std::string words(const ReactionObject& reaction, std::int64_t value) {
     return "see the drive's manual";
 }
 
-/// As the master configures it: three cycles, at least 10 ms (ecat/bus_config.hpp); 500 ms with relaxed supervision (runtime/machine.cpp).
-Duration watchdog(const runtime::MachineConfig& config, const ecat::SlaveConfig& slave) {
-    if (slave.sm_watchdog.count() > 0) return slave.sm_watchdog;
-    if (config.simulation.supervision == runtime::Supervision::relaxed) return std::chrono::milliseconds{500};
-    return std::max<Duration>(3 * config.cycle, std::chrono::milliseconds{10});
-}
-
 }  // namespace
 
 std::vector<std::string> master_gone(const runtime::MachineConfig& config, const runtime::AxisBinding& axis) {
@@ -75,7 +68,7 @@ std::vector<std::string> master_gone(const runtime::MachineConfig& config, const
         std::find_if(config.bus.slaves.begin(), config.bus.slaves.end(), [&](const auto& s) { return s.name == axis.slave; });
     if (slave == config.bus.slaves.end()) return out;
     out.push_back(fmt::format("after {:g} ms without process data the slave's watchdog takes it out of OP",
-                              to_seconds(watchdog(config, *slave)) * 1e3));
+                              to_seconds(runtime::sm_watchdog(config, *slave)) * 1e3));
     for (const auto& reaction : reactions) {
         const auto found = setting(*slave, reaction.index);
         if (found)

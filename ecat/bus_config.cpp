@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 
 #include "ecat/bringup/clocks.hpp"
 #include "ecat/bringup/process_data_plan.hpp"
-#include "ecat/bringup/slave_setup.hpp"
+#include "ecat/module_pdos.hpp"
+#include "ecat/place_check.hpp"
 
 namespace taktwerk::ecat {
 
@@ -15,7 +15,6 @@ namespace {
 
 constexpr Duration minimum_cycle = std::chrono::microseconds{50};
 constexpr Duration maximum_cycle = std::chrono::milliseconds{100};
-constexpr std::uint16_t maximum_divisor = 1000;
 constexpr Duration maximum_watchdog = std::chrono::microseconds{100} * 0xFFFF;
 
 std::string micro(Duration d) { return fmt::format("{} us", to_seconds(d) * 1e6); }
@@ -36,8 +35,7 @@ public:
             add("bus.acyclic_per_cycle", "bus", "with 0 acyclic datagrams no SDO and no recovery gets through in OP",
                 "choose 4 if in doubt");
         check_shift("bus", config_.sync0_shift);
-        check_places();
-        check_sync_units();
+        check_places(config_, errors_);
         for (const auto& slave : config_.slaves) check_slave(slave);
         return std::move(errors_);
     }
@@ -53,48 +51,6 @@ private:
             add("bus.sync0_shift", subject,
                 fmt::format("a SYNC0 shift of {} is not inside the cycle of {}", micro(shift), micro(config_.cycle)),
                 "leave it out for half a cycle");
-    }
-
-    void check_places() {
-        std::set<std::string> names;
-        std::set<std::uint16_t> positions, aliases;
-        for (const auto& slave : config_.slaves) {
-            if (slave.name.empty()) add("bus.no_name", "bus", "a slave has no name", "give every slave a name");
-            else if (!names.insert(slave.name).second)
-                add("bus.duplicate_name", subject_of(slave), "two slaves have this name", "choose different names");
-            if (slave.position.has_value() == slave.alias.has_value())
-                add("bus.place", subject_of(slave),
-                    slave.position ? "it has both a position and an alias" : "it has neither a position nor an alias",
-                    "give exactly one of them");
-            if (slave.position && !positions.insert(*slave.position).second)
-                add("bus.duplicate_position", subject_of(slave), fmt::format("position {} is taken by another slave", *slave.position),
-                    "positions count from 0 along the cable");
-            if (slave.position && *slave.position >= config_.slaves.size())
-                add("bus.position", subject_of(slave),
-                    fmt::format("position {} on a bus of {} slaves", *slave.position, config_.slaves.size()),
-                    "positions count from 0 along the cable, and every slave is listed");
-            if (slave.alias && *slave.alias == 0)
-                add("bus.alias", subject_of(slave), "alias 0 means that none is set", "set an alias in the drive, or use the position");
-            if (slave.alias && *slave.alias != 0 && !aliases.insert(*slave.alias).second)
-                add("bus.duplicate_alias", subject_of(slave), fmt::format("alias {} is taken by another slave", *slave.alias),
-                    "aliases are unique on a bus");
-        }
-    }
-
-    void check_sync_units() {
-        std::set<std::string> names;
-        for (const auto& unit : config_.sync_units) {
-            const std::string subject = fmt::format("sync unit '{}'", unit.name);
-            if (!names.insert(unit.name).second) add("bus.duplicate_sync_unit", subject, "it is listed twice", "keep one of them");
-            if (unit.divisor == 0 || unit.divisor > maximum_divisor)
-                add("bus.sync_unit_divisor", subject, fmt::format("it cannot be exchanged every {} cycles", unit.divisor),
-                    fmt::format("1 .. {}", maximum_divisor));
-            const bool used = std::any_of(config_.slaves.begin(), config_.slaves.end(),
-                                          [&](const SlaveConfig& slave) { return slave.sync_unit == unit.name; });
-            if (!used)
-                add("bus.sync_unit_unused", subject, "no slave belongs to it",
-                    "name it as `sync_unit` of its slaves, or remove it from the list");
-        }
     }
 
     void check_slave(const SlaveConfig& slave) {
@@ -113,6 +69,10 @@ private:
                 fmt::format("a watchdog of {} trips at the first lost frame: it is exchanged every {}", micro(slave.sm_watchdog),
                             micro(period)),
                 fmt::format("choose at least {}", micro(3 * period)));
+        if (slave.pdi_watchdog < Duration{} || slave.pdi_watchdog > maximum_watchdog)
+            add("bus.pdi_watchdog", subject, fmt::format("a watchdog of {} cannot be set", micro(slave.pdi_watchdog)),
+                fmt::format("0 .. {}", micro(maximum_watchdog)));
+        check_modules(slave, device, subject);
         check_pdos(slave, device, subject, true);
         check_pdos(slave, device, subject, false);
         check_startup(slave, device, subject);
@@ -125,6 +85,12 @@ private:
             add("bus.dc_unsupported", subject, fmt::format("'{}' has no distributed clock", device.name), "set dc: false");
         if (!slave.dc && device.dc.required)
             add("bus.dc_required", subject, fmt::format("'{}' works with SYNC0 only", device.name), "set dc: true");
+        if (slave.sync1 && !slave.dc)
+            add("bus.sync1", subject, "SYNC1 is asked for, and the slave runs without SYNC0", "set dc: true, or remove sync1");
+        if (slave.sync1 && (*slave.sync1 < Duration{} || *slave.sync1 >= config_.cycle))
+            add("bus.sync1", subject,
+                fmt::format("SYNC1 {} after SYNC0 is not inside the cycle of {}", micro(*slave.sync1), micro(config_.cycle)),
+                "choose a shorter time");
         if (!slave.dc) return;
         const Duration sync0_cycle = exchange_period(config_, slave);
         if (device.dc.minimum_cycle > sync0_cycle)
@@ -139,10 +105,34 @@ private:
                 "choose another bus cycle");
     }
 
+    void check_modules(const SlaveConfig& slave, const DeviceDescription& device, const std::string& subject) {
+        if (slave.modules.empty()) return;
+        if (device.slots.count == 0) {
+            add("bus.modules", subject, fmt::format("'{}' has no slots: modules cannot be chosen", device.name), "remove them");
+            return;
+        }
+        std::vector<bool> filled(device.slots.count, false);
+        for (const auto& selection : slave.modules) {
+            if (selection.slot >= device.slots.count) {
+                add("bus.modules", subject,
+                    fmt::format("there is no slot {}: '{}' has {}", selection.slot, device.name, device.slots.count), "slots count from 0");
+                continue;
+            }
+            if (filled[selection.slot])
+                add("bus.modules", subject, fmt::format("slot {} holds two modules", selection.slot), "keep one of them");
+            filled[selection.slot] = true;
+            if (find_module(device.slots, selection.module) != nullptr) continue;
+            std::string known;
+            for (const auto& module : device.slots.modules) known += (known.empty() ? "" : ", ") + module.name;
+            add("bus.modules", subject, fmt::format("'{}' has no module '{}'", device.name, selection.module), "choose one of " + known);
+        }
+    }
+
     void check_pdos(const SlaveConfig& slave, const DeviceDescription& device, const std::string& subject, bool rx) {
         const auto& selection = rx ? slave.rx.assigned : slave.tx.assigned;
         const auto& rules = rx ? device.rx_rules : device.tx_rules;
-        const auto& known = rx ? device.rx_pdos : device.tx_pdos;
+        const auto offered = pdos_of(device, slave.modules);
+        const auto& known = rx ? offered.rx : offered.tx;
         const char* direction = rx ? "RxPDO" : "TxPDO";
         if (selection.empty()) return;
         if (!device.mailbox || !device.mailbox->coe) {
@@ -246,8 +236,9 @@ private:
         input.subject = subject;
         input.sync_managers = device.sync_managers;
         input.coe = device.mailbox && device.mailbox->coe;
-        input.rx = effective(slave.rx, device.rx_pdos, device.rx_assigned);
-        input.tx = effective(slave.tx, device.tx_pdos, device.tx_assigned);
+        const auto offered = pdos_of(device, slave.modules);
+        input.rx = effective(slave.rx, offered.rx, offered.rx_assigned);
+        input.tx = effective(slave.tx, offered.tx, offered.tx_assigned);
         input.fmmus = device.fmmus;
         input.sync_manager_count = device.sync_manager_count;
         const std::vector inputs{input};

@@ -1,6 +1,7 @@
 #pragma once
 // What the master is told about one bus. Plain data, checked by `check(BusConfig)`; config/ only fills it.
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -41,12 +42,6 @@ enum class LossPolicy : std::uint8_t {
 
 /// The AL state in which SYNC0/SYNC1 are started. Most drives want them before SAFEOP; some refuse them there.
 enum class SyncStart : std::uint8_t { before_safeop, in_safeop };
-
-/// The module plugged into (or chosen for) a slot of a modular slave.
-struct ModuleSelection {
-    std::uint8_t slot = 0;  ///< 0-based
-    std::string module;     ///< name of a ModuleDescription of the device
-};
 
 struct SlaveConfig {
     std::string name;
@@ -103,6 +98,13 @@ struct BusConfig {
     for (const auto& unit : config.sync_units)
         if (!slave.sync_unit.empty() && unit.name == slave.sync_unit && unit.divisor > 0) return unit.divisor * config.cycle;
     return config.cycle;
+}
+
+/// The SM watchdog that the master writes: configured, or three exchanges of its sync unit and at least 10 ms, so that a single
+/// lost frame never trips it.
+[[nodiscard]] inline Duration sm_watchdog(const BusConfig& config, const SlaveConfig& slave) noexcept {
+    if (slave.sm_watchdog > Duration{}) return slave.sm_watchdog;
+    return std::max<Duration>(3 * exchange_period(config, slave), std::chrono::milliseconds{10});
 }
 
 /// Every problem of a configuration, found without a bus.

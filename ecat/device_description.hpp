@@ -119,6 +119,12 @@ struct SlotDescription {
     std::vector<ModuleDescription> modules;
 };
 
+/// The module plugged into (or chosen for) a slot of a modular slave.
+struct ModuleSelection {
+    std::uint8_t slot = 0;  ///< 0-based
+    std::string module;     ///< name of a ModuleDescription of the device
+};
+
 struct DeviceDescription {
     std::string name;                     ///< "sv33-e"
     std::string device_name;              ///< 1008h

@@ -18,7 +18,6 @@ namespace {
 
 constexpr std::size_t inbox_size = 64;
 constexpr unsigned relaxed_factor = 100;  // as Supervision documents
-constexpr Duration relaxed_watchdog = std::chrono::milliseconds{500};
 constexpr Duration shutdown_margin = std::chrono::seconds{5};  // for a drive that does not answer
 constexpr auto no_slave = std::numeric_limits<std::size_t>::max();
 

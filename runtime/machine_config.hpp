@@ -140,4 +140,13 @@ struct MachineConfig {
 /// Cross-floor problems (names that do not exist, two axes on one drive axis, cycle against drive minimum, ...), all of them.
 [[nodiscard]] std::vector<Error> check(const MachineConfig& config);
 
+/// What relaxed supervision gives slaves without a watchdog of their own: a stall of the host must not trip them.
+inline constexpr Duration relaxed_watchdog = std::chrono::milliseconds{500};
+
+/// The SM watchdog that a slave of this machine gets.
+[[nodiscard]] inline Duration sm_watchdog(const MachineConfig& machine, const ecat::SlaveConfig& slave) {
+    const bool relaxed = machine.simulation.supervision == Supervision::relaxed && slave.sm_watchdog == Duration{};
+    return relaxed ? relaxed_watchdog : ecat::sm_watchdog(machine.bus, slave);
+}
+
 }  // namespace taktwerk::runtime

@@ -70,6 +70,8 @@ Script<Result<void>> climb(Bus& bus) {
     if (!done) co_return done;
 
     bus.phase.store(BusPhase::configuring);
+    done = co_await for_each_slave(bus, &compare_identity);
+    if (!done) co_return done;
     done = co_await for_each_slave(bus, &prepare_process_data);
     if (!done) co_return done;
     Result<ProcessDataPlan> plan = plan_bus(bus);

@@ -110,7 +110,8 @@ struct BusSlave {
     std::atomic<std::uint32_t> recoveries{0};
 
     [[nodiscard]] const DeviceDescription& device() const noexcept { return *config->device; }
-    [[nodiscard]] bool has_mailbox() const noexcept { return config->device->mailbox && config->device->mailbox->coe; }
+    [[nodiscard]] bool has_mailbox() const noexcept { return config->device->mailbox.has_value(); }
+    [[nodiscard]] bool has_coe() const noexcept { return config->device->mailbox && config->device->mailbox->coe; }
 };
 
 struct Bus {

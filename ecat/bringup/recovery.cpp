@@ -57,7 +57,7 @@ Script<Result<void>> recover(Bus& bus, BusSlave& slave) {
         const auto& plan = bus.plan.slaves[slave.index];
         const auto mapping = map_slave(plan_input(slave));
         const bool same = mapping && mapping->outputs.bytes == plan.outputs.size && mapping->inputs.bytes == plan.inputs.size;
-        if (slave.has_mailbox() && !same)
+        if (slave.has_coe() && !same)
             co_return Error{"bus.pdo_mismatch", slave.subject, "it came back with other PDOs than before", "restart the machine"};
         if (bus.reference != slave.index) {
             done = co_await restore_clock(bus, slave);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "ecat/wire/registers.hpp"
 
@@ -69,20 +70,47 @@ Script<Result<Words>> read_words(DatagramPort& port, std::uint16_t station, std:
     }
 }
 
+Script<void> read_answer(DatagramPort& port, std::uint16_t station, Reply& reply) {
+    reply = co_await port.fprd(station, reg::eeprom_control, 14);
+}
+
+Script<void> write_command(DatagramPort& port, std::uint16_t station, std::size_t word, bool& written) {
+    std::vector<std::byte> request(6);
+    store_le(request, 0, eeprom::read);
+    store_le(request, 2, static_cast<std::uint32_t>(word));
+    const Reply reply = co_await port.fpwr(station, reg::eeprom_control, request);
+    written = reply.ok();
+}
+
 /// The image as far as it was fetched. Words that nobody asked for are 0.
 class Fetcher {
 public:
     Fetcher(DatagramPort& port, std::uint16_t station, std::string subject)
         : port_(port), station_(station), subject_(std::move(subject)) {}
 
-    /// Makes words [first, first + count) known.
+    /// Makes words [first, first + count) known. The answer to one command and the next command travel in the same frame; an
+    /// EEPROM that is not ready by then is waited for instead.
     Script<Result<void>> fetch(std::size_t first, std::size_t count) {
-        for (std::size_t word = first; word < first + count; ++word) {
-            if (word < known_.size() && known_[word]) continue;
+        const std::size_t end = first + count;
+        for (std::size_t word = next_unknown(first, end); word < end; word = next_unknown(word, end)) {
+            if (asked_ == word && !slow_) {
+                const std::size_t next = next_unknown(word + width_, end);
+                const Words found = co_await take(word, next < end ? std::optional{next} : std::nullopt);
+                if (found.count != 0) {
+                    keep(word, found);
+                    continue;
+                }
+                slow_ = ++missed_ > 2;
+            }
             const Result<Words> read = co_await read_words(port_, station_, word, idle_, subject_);
             idle_ = static_cast<bool>(read);
             if (!read) co_return read.error();
             keep(word, *read);
+            width_ = read->count;
+            const std::size_t next = next_unknown(word, end);
+            if (slow_ || next >= end) continue;
+            co_await write_command(port_, station_, next, idle_);
+            if (idle_) asked_ = next;
         }
         co_return Result<void>{};
     }
@@ -94,6 +122,33 @@ public:
     [[nodiscard]] const std::vector<std::byte>& image() const noexcept { return image_; }
 
 private:
+    [[nodiscard]] std::size_t next_unknown(std::size_t from, std::size_t end) const noexcept {
+        while (from < end && from < known_.size() && known_[from]) ++from;
+        return from;
+    }
+
+    /// The answer to the command for `word`, which was given before, and the command for `next`. Count 0: not ready.
+    Script<Words> take(std::size_t word, std::optional<std::size_t> next) {
+        Reply reply;
+        bool written = false;
+        std::vector<Script<void>> both;
+        both.push_back(read_answer(port_, station_, reply));
+        if (next) both.push_back(write_command(port_, station_, *next, written));
+        co_await all(std::move(both));
+        Words found;
+        asked_.reset();
+        idle_ = false;
+        if (!reply.ok()) co_return found;
+        const std::uint16_t control = reply.u16();
+        constexpr std::uint16_t trouble = eeprom::busy | eeprom::command_error | eeprom::write_enable_error;
+        if ((control & trouble) != 0 || reply.u32(2) != word) co_return found;
+        found.count = (control & eeprom::reads_8_bytes) != 0 ? 4 : 2;
+        for (std::size_t i = 0; i < found.count; ++i) found.words[i] = reply.u16(6 + 2 * i);
+        idle_ = !next || written;
+        if (written) asked_ = next;
+        co_return found;
+    }
+
     void keep(std::size_t first, const Words& read) {
         const std::size_t end = first + read.count;
         if (known_.size() < end) known_.resize(end, false);
@@ -109,7 +164,11 @@ private:
     std::string subject_;
     std::vector<std::byte> image_;
     std::vector<bool> known_;
-    bool idle_ = false;
+    std::optional<std::size_t> asked_;  ///< the command for this word is under way
+    std::size_t width_ = 2;             ///< words a command delivers
+    unsigned missed_ = 0;               ///< answers that were not ready when they were fetched
+    bool slow_ = false;                 ///< slower than a frame's way out and back: every answer is waited for
+    bool idle_ = false;                 ///< the interface takes a command without being asked first
 };
 
 /// Words that the EEPROM has by its own word 3Eh.

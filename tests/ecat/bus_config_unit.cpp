@@ -6,6 +6,7 @@
 #include <set>
 
 #include "ecat/alarms.hpp"
+#include "ecat/module_pdos.hpp"
 #include "tests/ecat/test_bus.hpp"
 
 namespace taktwerk::ecat::test {
@@ -122,6 +123,72 @@ INSTANTIATE_TEST_SUITE_P(
                  c.slaves[0].startup[0].index = 0x6041;
                  c.slaves[0].startup[0].type = DataType::U16;
              }}));
+
+INSTANTIATE_TEST_SUITE_P(OfPlacesUnitsAndModules, BadBusConfig,
+                         ::testing::Values(Case{"bus.place", [](BusConfig& c) { c.slaves[0].device_id = 3; }},
+                                           Case{"bus.device_id",
+                                                [](BusConfig& c) { c.slaves[0].position.reset(), c.slaves[0].device_id = 0; }},
+                                           Case{"bus.duplicate_device_id",
+                                                [](BusConfig& c) {
+                                                    for (auto& slave : c.slaves) slave.position.reset(), slave.device_id = 7;
+                                                }},
+                                           Case{"bus.sync1", [](BusConfig& c) { c.slaves[0].sync1 = 1ms; }},
+                                           Case{"bus.sync1", [](BusConfig& c) { c.slaves[1].sync1 = 0ms; }},
+                                           Case{"bus.pdi_watchdog", [](BusConfig& c) { c.slaves[0].pdi_watchdog = 7s; }},
+                                           Case{"bus.modules", [](BusConfig& c) {
+                                                    c.slaves[0].modules = {{0, "csp"}};
+                                                }}));
+
+TEST(BusConfig, APositionBehindTheListedSlavesIsFineWhereOthersMayBeThere) {
+    BusConfig config = good();
+    config.slaves[1].position = 5;
+    EXPECT_THAT(check(config), with_code("bus.position"));
+    config.extra_slaves = ExtraSlaves::ignore;
+    EXPECT_THAT(check(config), IsEmpty());
+}
+
+// Exchanged every eighth 1 ms cycle, 10 ms would trip at the first lost frame: 2 * 8 ms is the least.
+TEST(BusConfig, TheWatchdogOfASlowUnitIsMeasuredByItsOwnRate) {
+    BusConfig config = good();
+    config.slaves[1].sync_unit = "slow";
+    config.sync_units = {{"slow", 8}};
+    config.slaves[1].sm_watchdog = 10ms;
+    EXPECT_THAT(check(config), with_code("bus.sm_watchdog"));
+    EXPECT_EQ(sm_watchdog(config, config.slaves[0]), 10ms);
+    config.slaves[1].sm_watchdog = {};
+    EXPECT_EQ(sm_watchdog(config, config.slaves[1]), 24ms);
+    EXPECT_THAT(check(config), IsEmpty());
+}
+
+/// Two slots, TSVM's increments (manual 5.2.5): objects +800h, PDOs +40h.
+std::shared_ptr<DeviceDescription> modular() {
+    auto d = servo_description();
+    d->rx_pdos.clear(), d->tx_pdos.clear(), d->rx_assigned.clear(), d->tx_assigned.clear();
+    d->rx_rules.max_assigned = d->tx_rules.max_assigned = 6;
+    d->slots = {2, 0x800, 0x40, {{"csp", 0x11, {{0x1600, true, {{0x6040, 0, 16}, {0x607A, 0, 32}}}}, {{0x1A00, true, {{0x6041, 0, 16}}}}}}};
+    return d;
+}
+
+TEST(Modules, OfASlotAreMovedByItsIncrements) {
+    const auto pdos = pdos_of(*modular(), std::vector<ModuleSelection>{{1, "csp"}, {0, "csp"}});
+    EXPECT_EQ(pdos.rx_assigned, (std::vector<std::uint16_t>{0x1600, 0x1640}));
+    EXPECT_EQ(pdos.tx_assigned, (std::vector<std::uint16_t>{0x1A00, 0x1A40}));
+    ASSERT_EQ(pdos.rx.size(), 2u);
+    EXPECT_EQ(pdos.rx[1].entries, (std::vector<PdoEntry>{{0x6840, 0, 16}, {0x687A, 0, 32}}));
+}
+
+TEST(Modules, AreCheckedAgainstTheDevice) {
+    BusConfig config = good();
+    config.slaves[0].device = modular();
+    config.slaves[0].modules = {{0, "csp"}, {1, "csp"}};
+    EXPECT_THAT(check(config), IsEmpty());
+    config.slaves[0].modules = {{0, "csp"}, {0, "csp"}, {2, "csp"}, {1, "pp"}};
+    const auto problems = check(config);
+    EXPECT_THAT(problems, SizeIs(3));
+    EXPECT_THAT(problems, Contains(Field(&Error::what, HasSubstr("there is no slot 2"))));
+    EXPECT_THAT(problems, Contains(Field(&Error::what, HasSubstr("slot 0 holds two modules"))));
+    EXPECT_THAT(problems, Contains(Field(&Error::what, HasSubstr("has no module 'pp'"))));
+}
 
 TEST(BusConfig, AllProblemsAreReportedAtOnceAndNameTheSlave) {
     BusConfig config = good();

@@ -3,6 +3,7 @@
 
 #include "ecat/bringup/scan.hpp"
 #include "ecat/bringup/slave_setup.hpp"
+#include "ecat/bringup/watchdogs.hpp"
 
 namespace taktwerk::ecat {
 namespace {
@@ -64,6 +65,77 @@ TEST(Identity, RevisionCountsOnlyWhereItIsAskedFor) {
     EXPECT_THAT(refused.error().what, HasSubstr("expected vendor 00000001h product 0000000Ah revision 00000007h"));
 }
 
+TEST(Identity, AtLeastTakesTheDescribedRevisionAndLaterOnes) {
+    auto d = *device(10);
+    d.revision_rule = RevisionRule::at_least;
+    EXPECT_TRUE(check_identity("s", d, {1, 10, 7, 0}));
+    EXPECT_TRUE(check_identity("s", d, {1, 10, 8, 0}));
+    EXPECT_FALSE(check_identity("s", d, {1, 10, 6, 0}));
+}
+
+TEST(Identity, ASlavesOwnRuleIsTakenInsteadOfTheDescriptions) {
+    auto slave = wanted("x", 10);
+    EXPECT_TRUE(check_identity("s", slave, {1, 10, 6, 0}));
+    slave.revision_rule = RevisionRule::exact;
+    EXPECT_FALSE(check_identity("s", slave, {1, 10, 6, 0}));
+    EXPECT_TRUE(check_identity("s", slave, {1, 10, 7, 0}));
+}
+
+TEST(Match, ByDeviceId) {
+    BusConfig config;
+    config.slaves = {wanted("x", 10)};
+    config.slaves[0].device_id = 9;
+    config.extra_slaves = ExtraSlaves::ignore;
+    auto on_cable = std::vector{found(0, 10), found(1, 10)};
+    std::vector<std::unique_ptr<BusSlave>> slaves;
+
+    const auto none = match(config, on_cable, slaves);
+    EXPECT_EQ(none.error().code, "bus.missing_slave");
+    EXPECT_THAT(none.error().what, HasSubstr("device id 9"));
+
+    on_cable[1].device_id = 9;
+    ASSERT_TRUE(match(config, on_cable, slaves));
+    EXPECT_EQ(slaves[0]->found.position, 1);
+
+    on_cable[0].device_id = 9;
+    const auto twice = match(config, on_cable, slaves);
+    EXPECT_EQ(twice.error().code, "bus.duplicate_device_id");
+    EXPECT_THAT(twice.error().what, HasSubstr("positions 0 and 1"));
+}
+
+TEST(Match, AnAliasThatIsWrittenButNotLoadedIsNamed) {
+    BusConfig config;
+    config.slaves = {wanted("x", 10)};
+    config.slaves[0].alias = 5;
+    auto on_cable = std::vector{found(0, 10, 4)};
+    on_cable[0].sii.alias = 5;
+    std::vector<std::unique_ptr<BusSlave>> slaves;
+    const auto missing = match(config, on_cable, slaves);
+    EXPECT_THAT(missing.error().what, HasSubstr("the EEPROM of slave 0 holds this alias, it was not loaded yet"));
+    EXPECT_THAT(missing.error().what, HasSubstr("found: 4 at position 0"));
+}
+
+// a b c are configured, the cable has c a b: nobody is missing.
+TEST(Match, SlavesInAnotherOrderAreToldWhereTheyAre) {
+    BusConfig config;
+    config.slaves = {wanted("a", 10), wanted("b", 20), wanted("c", 30)};
+    for (std::uint16_t i = 0; i < 3; ++i) config.slaves[i].position = i;
+    std::vector<std::unique_ptr<BusSlave>> slaves;
+    const auto wrong = match(config, {found(0, 30), found(1, 10), found(2, 20)}, slaves);
+    EXPECT_EQ(wrong.error().code, "bus.wrong_identity");
+    EXPECT_THAT(wrong.error().remedy, HasSubstr("in another order: the cable fits 'a' at 1, 'b' at 2, 'c' at 0"));
+}
+
+TEST(Match, AForeignDeviceIsNoQuestionOfOrder) {
+    BusConfig config;
+    config.slaves = {wanted("a", 10), wanted("b", 20)};
+    for (std::uint16_t i = 0; i < 2; ++i) config.slaves[i].position = i;
+    std::vector<std::unique_ptr<BusSlave>> slaves;
+    const auto wrong = match(config, {found(0, 99), found(1, 20)}, slaves);
+    EXPECT_EQ(wrong.error().code, "bus.wrong_identity");
+    EXPECT_THAT(wrong.error().remedy, ::testing::Not(HasSubstr("order: ")));
+}
+
 // Three cycles, at least 10 ms, unless configured.
 TEST(SmWatchdog, FollowsTheCycle) {
     BusConfig bus;
@@ -74,6 +146,13 @@ TEST(SmWatchdog, FollowsTheCycle) {
     EXPECT_EQ(sm_watchdog(bus, slave), 12ms);
     slave.sm_watchdog = 50ms;
     EXPECT_EQ(sm_watchdog(bus, slave), 50ms);
+}
+
+// 100 us a tick, rounded up: never shorter than asked for.
+TEST(SmWatchdog, IsCountedInTicks) {
+    EXPECT_EQ(watchdog_ticks(10ms), 100);
+    EXPECT_EQ(watchdog_ticks(10ms + 1ns), 101);
+    EXPECT_EQ(watchdog_ticks(1min), 0xFFFF);
 }
 
 }  // namespace

@@ -40,6 +40,8 @@ Sii drive() {
     sii.rx_pdos = {rx};
     SiiPdo tx{.index = 0x1B02, .sync_manager = 3, .synchronization = 0, .name = 0, .flags = 0, .entries = {{0x6041, 0, 0, 6, 16, 0}}};
     sii.tx_pdos = {tx, SiiPdo{}};
+    sii.fmmu_extensions = {{1, 2, 0}};
+    sii.dc_modes = {{1'000'000, -250, 500'000, -1, 0x0700, 1, 2, 0}};
     return sii;
 }
 
@@ -84,6 +86,8 @@ TEST(Sii, BuiltImageReadsBackTheSame) {
     EXPECT_EQ(read.sync_managers, sii.sync_managers);
     EXPECT_EQ(read.rx_pdos, sii.rx_pdos);
     EXPECT_EQ(read.tx_pdos, sii.tx_pdos);
+    EXPECT_EQ(read.fmmu_extensions, sii.fmmu_extensions);
+    EXPECT_EQ(read.dc_modes, sii.dc_modes);
     EXPECT_EQ(read.rx_pdos[0].bits(), 56u);
     EXPECT_EQ(read.string(read.general->name), "SV33-E servo drive");
 }
@@ -173,6 +177,36 @@ TEST(RealSii, Akd) {
     EXPECT_EQ(sii.tx_pdos[0].entries, (std::vector<SiiPdoEntry>{{0x6041, 0, 9, 6, 16, 0}}));
     ASSERT_FALSE(sii.rx_pdos.empty());
     EXPECT_EQ(sii.rx_pdos[0].index, 0x1600);
+}
+
+// Category 60 by eye: AssignActivate 0300h named by string 6, 0000h (no clock) by string 7; SYNC0 factor 1 in both.
+TEST(RealSii, AkdHasTwoWaysToRunItsClock) {
+    TAKTWERK_SKIP_WITHOUT_CAPTURES();
+    const auto sii = parse_sii(test::read_file(test::captures_folder() / "eeprom" / "akd.hex"));
+    ASSERT_EQ(sii.dc_modes.size(), 2u);
+    EXPECT_EQ(sii.dc_modes[0].assign_activate, 0x0300);
+    EXPECT_EQ(sii.dc_modes[0].sync0_factor, 1);
+    EXPECT_EQ(sii.dc_modes[0].name, 6);
+    EXPECT_EQ(sii.dc_modes[1].assign_activate, 0x0000);
+    EXPECT_EQ(sii.dc_modes[1].name, 7);
+    EXPECT_THAT(sii.skipped, testing::ElementsAre(2048, 2049, 43));  // two of the vendor's own, and sync units
+}
+
+// What is there is read; what is missing is a defect, never a crash and never silence.
+TEST(RealSii, TruncatedAtAnyWordGivesAPrefixAndADefect) {
+    TAKTWERK_SKIP_WITHOUT_CAPTURES();
+    for (const auto& entry : std::filesystem::directory_iterator{test::captures_folder() / "eeprom"}) {
+        SCOPED_TRACE(entry.path().filename());
+        const auto image = test::read_file(entry.path());
+        const auto whole = parse_sii(image);
+        for (std::size_t words = 0; 2 * words < image.size(); ++words) {
+            const auto cut = parse_sii(std::span{image}.first(2 * words));
+            ASSERT_LE(cut.strings.size(), whole.strings.size()) << words;
+            ASSERT_LE(cut.tx_pdos.size(), whole.tx_pdos.size()) << words;
+            ASSERT_TRUE(!cut.defects.empty() || (cut.tx_pdos == whole.tx_pdos && cut.general == whole.general)) << words;
+            ASSERT_TRUE(words < sii_word::categories || cut.identity == whole.identity) << words;
+        }
+    }
 }
 
 TEST(RealSii, CouplerAndTerminal) {

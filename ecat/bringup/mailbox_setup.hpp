@@ -1,0 +1,19 @@
+#pragma once
+// A slave's mailbox: where it is, its two sync managers, PREOP, and who the slave says it is through it. Service side only.
+
+#include "ecat/bringup/bus.hpp"
+
+namespace taktwerk::ecat {
+
+/// Mailbox sync managers, then PREOP. A mailbox without CoE (FoE, EoE) is set up all the same: the slave checks it. Slaves
+/// without mailbox only change state. Errors: bus.no_mailbox, those of set_state().
+[[nodiscard]] Script<Result<void>> enter_preop(Bus& bus, BusSlave& slave);
+
+/// Object 1018h beside the EEPROM. Devices are on the market whose product codes differ there, so a difference is a note in
+/// bus.notes, never an error.
+[[nodiscard]] Script<Result<void>> compare_identity(Bus& bus, BusSlave& slave);
+
+/// Writes one sync manager. Error bus.no_slave, bus.no_frame.
+[[nodiscard]] Script<Result<void>> write_sync_manager(Bus& bus, BusSlave& slave, std::uint8_t number, SyncManager registers);
+
+}  // namespace taktwerk::ecat
