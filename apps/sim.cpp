@@ -1,6 +1,8 @@
-// taktwerk sim FILE --nic IF: plays the slaves of a machine file on a network interface, for any master on the cable.
+// taktwerk sim FILE --nic IF: plays the slaves of a machine file on a network interface, for any master on the cable. Commands on
+// standard input make things go wrong while it runs.
 
 #include <poll.h>
+#include <unistd.h>
 
 #include <cstdio>
 
@@ -8,10 +10,12 @@
 
 #include "apps/duration_option.hpp"
 #include "apps/exit_code.hpp"
+#include "apps/line_input.hpp"
 #include "apps/load.hpp"
 #include "apps/stop_signal.hpp"
 #include "apps/taktwerk.hpp"
 #include "core/clock.hpp"
+#include "ecat/sim/faults.hpp"
 #include "ecat/transport/raw_socket.hpp"
 #include "runtime/world.hpp"
 
@@ -22,6 +26,7 @@ namespace {
 struct Options {
     std::string file, nic;
     double duration_s = 0;
+    std::vector<std::string> faults;
 };
 
 std::string_view name(ecat::sim::EsmState state) {
@@ -87,6 +92,64 @@ private:
     std::vector<Drive> drives_;
 };
 
+/// The language of standard input: that of the faults, and a few words about the simulation itself.
+class Commands {
+public:
+    Commands(ecat::sim::SimNetwork& network, ecat::FaultPlan& cable) : network_(network), injector_(network, cable) {}
+
+    /// False: `quit`.
+    bool obey(const std::string& line, Instant now) {
+        if (line.find_first_not_of(" \t\r") == std::string::npos || line.front() == '#') return true;
+        if (line == "quit") return false;
+        if (line == "help") help();
+        else if (line == "slaves") slaves();
+        else if (const auto done = inject(line, now); !done) print_error(done.error());
+        else fmt::print("{}\n", line);
+        std::fflush(stdout);
+        return true;
+    }
+    Result<void> inject(const std::string& line, Instant now) {
+        const auto fault = ecat::sim::parse_fault(line);
+        if (!fault) return fault.error();
+        return injector_.apply(*fault, now);
+    }
+    void step(Instant now) { injector_.step(now); }
+    [[nodiscard]] Instant next_event() const noexcept { return injector_.next_event(); }
+
+private:
+    static void help() {
+        for (const auto& command : ecat::sim::fault_commands())
+            fmt::print("  {:<40} {}\n", fmt::format("{} {}", command.word, command.arguments), command.effect);
+        fmt::print("  {:<40} any of them, later\n", "after TIME COMMAND");
+        fmt::print("  {:<40} position, name and state of each slave\n", "slaves");
+        fmt::print("  {:<40} ends the simulation\n", "quit");
+    }
+    void slaves() {
+        for (std::size_t i = 0; i < network_.size(); ++i) {
+            auto& slave = network_.slave(i);
+            fmt::print("  {:>3} {:<20} {}\n", i, slave.options().name, slave.powered() ? name(slave.state()) : "no power");
+        }
+    }
+    ecat::sim::SimNetwork& network_;
+    ecat::sim::FaultInjector injector_;
+};
+
+/// What comes back to the master, at the time at which it would come back through the slaves. Returns the frames sent.
+std::uint64_t return_answers(ecat::LoopbackTransport& cable, ecat::RawSocketTransport& nic, SystemClock& clock) {
+    constexpr Duration worth_waiting = std::chrono::microseconds{200};  // a flight through 100 slaves; later ones wait in poll
+    std::array<std::byte, ecat::max_frame_size> frame{};
+    std::uint64_t sent = 0;
+    while (const auto next = cable.next_arrival()) {
+        Instant now = clock.now();
+        if (*next - now > worth_waiting) break;
+        while (now < *next) now = clock.now();
+        const auto received = cable.receive(frame, now);
+        if (!received) break;
+        sent += nic.send(std::span{frame}.first(received->size), now) ? 1 : 0;
+    }
+    return sent;
+}
+
 int play(const Options& options) {
     auto loaded = load(options.file, true);
     if (!loaded) return exit_bad_file;
@@ -101,35 +164,44 @@ int play(const Options& options) {
     const Instant start = clock.now();
     runtime::World world{loaded->machine, start};
     auto& network = world.network();
+    auto& cable = world.transport();
     StateLog log{network, world, loaded->machine};
-    fmt::print("{} slaves of '{}' on {}; Ctrl-C ends\n", network.size(), loaded->machine.name, options.nic);
+    Commands commands{network, cable.faults};
+    for (const auto& fault : options.faults)
+        if (const auto done = commands.inject(fault, start); !done) {
+            print_error(done.error());
+            return exit_usage;
+        }
+    LineInput input{STDIN_FILENO};
+    fmt::print("{} slaves of '{}' on {}; `help` lists what can go wrong; Ctrl-C ends\n", network.size(), loaded->machine.name, options.nic);
     std::fflush(stdout);
 
     std::array<std::byte, ecat::max_frame_size> frame{};
-    std::uint64_t frames = 0, unanswered = 0;
-    while (!stop_requested()) {
+    std::uint64_t frames = 0, answers = 0;
+    bool wanted = true;
+    while (wanted && !stop_requested()) {
         Instant now = clock.now();
         if (options.duration_s > 0 && to_seconds(now - start) > options.duration_s) break;
-        const Duration wait = std::clamp(network.next_event() - now, Duration{}, Duration{std::chrono::milliseconds{10}});
-        pollfd ready{nic.descriptor(), POLLIN, 0};
+        const Instant next = std::min({network.next_event(), commands.next_event(), cable.next_arrival().value_or(Instant::max())});
+        const Duration wait = std::clamp(next - now, Duration{}, Duration{std::chrono::milliseconds{10}});
+        pollfd ready[] = {{nic.descriptor(), POLLIN, 0}, {input.descriptor(), POLLIN, 0}};
         timespec timeout{0, static_cast<long>(wait.count())};
-        ::ppoll(&ready, 1, &timeout, nullptr);
+        ::ppoll(ready, std::size(ready), &timeout, nullptr);
         now = clock.now();
         world.apply_events(now);
+        commands.step(now);
         network.advance(now);
         while (auto received = nic.receive(frame, now)) {
-            const auto bytes = std::span{frame}.first(received->size);
-            if (network.process(bytes, now)) {
-                nic.send(bytes, now);
-                ++frames;
-            } else {
-                ++unanswered;
-            }
+            cable.send(std::span{frame}.first(received->size), now);
+            ++frames;
+            answers += return_answers(cable, nic, clock);
             now = clock.now();
         }
+        answers += return_answers(cable, nic, clock);
+        while (const auto line = input.next()) wanted = wanted && commands.obey(*line, clock.now());
         log.step();
     }
-    fmt::print("{} frames answered, {} not\n", frames, unanswered);
+    fmt::print("{} frames came, {} answers went back\n", frames, answers);
     for (std::size_t i = 0; i < network.size(); ++i)
         if (const auto missed = network.slave(i).missed_outputs())
             fmt::print("slave {} '{}': {} SYNC0 pulses found no new outputs\n", i, network.slave(i).options().name, missed);
@@ -143,6 +215,9 @@ void add_sim(CLI::App& app, Action& action) {
     auto options = std::make_shared<Options>();
     sub->add_option("FILE", options->file, "machine file")->required();
     sub->add_option("--nic", options->nic, "network interface, e.g. eth1")->required();
+    sub->add_option("--fault", options->faults, "what goes wrong: a command as on standard input; may be given several times")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     add_duration(*sub, "--duration", options->duration_s, "default: until Ctrl-C");
     sub->callback([&action, options] { action = [options] { return play(*options); }; });
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/bytes.hpp"
 #include "ecat/wire/mailbox.hpp"
 #include "ecat/wire/sdo.hpp"
 
@@ -96,6 +97,9 @@ void CoeServer::answer(EsmState state, Instant now) noexcept {
     if (size == 0) return;  // an abort from the client needs no answer
     counter_ = next_mailbox_counter(counter_);
     reply_waiting_ = finish_mailbox(out, type, counter_, size);
+    if (wrong_lengths_ == 0) return;
+    const std::array lies{out.size() - mailbox_header_size + 1, std::size_t{0}, size - 1};
+    store_le<std::uint16_t>(out, 0, static_cast<std::uint16_t>(lies[wrong_lengths_-- % lies.size()]));
 }
 
 std::size_t CoeServer::serve(std::span<const std::byte> bytes, std::span<std::byte> out, MailboxType& type, EsmState state,

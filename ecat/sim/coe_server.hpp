@@ -42,6 +42,10 @@ public:
 
     /// Test: the mailbox answers nothing and takes nothing until it is released.
     void stick(bool stuck) noexcept { stuck_ = stuck; }
+    /// Test: the next answers claim a length that is not theirs: in turn one byte more than the mailbox has,
+    /// one byte short, none.
+    void misstate_lengths(std::uint32_t answers) noexcept { wrong_lengths_ = answers; }
+    void abort_object(std::uint16_t index, std::uint8_t sub, std::uint32_t code) { sdo_.abort_object(index, sub, code); }
     void set_response_delay(Duration delay) noexcept { response_delay_ = delay; }
     [[nodiscard]] std::size_t pending() const noexcept { return count_; }
 
@@ -77,6 +81,7 @@ private:
     std::array<Emergency, emergency_limit> emergencies_{};  // ring
     std::size_t emergency_head_ = 0, emergency_count_ = 0;
     std::uint8_t last_counter_ = 0, counter_ = 0;
+    std::uint32_t wrong_lengths_ = 0;
     Instant due_ = never;  // of the message at head_
     bool running_ = false, stuck_ = false;
 };

@@ -79,6 +79,12 @@ void DcClock::correct_low32(std::uint32_t reference, Instant at) noexcept {
     correct(static_cast<std::int64_t>(own) - behind, at);
 }
 
+void DcClock::set_drift(std::int32_t drift_ppb, Instant at) noexcept {
+    base_local_ = local(at);
+    base_ = at;
+    drift_ppb_ = drift_ppb;
+}
+
 void DcClock::reset_control(Instant at) noexcept {
     // The local time goes on from where it is; only its speed falls back to the quartz.
     base_local_ = local(at);

@@ -23,6 +23,10 @@ public:
     /// when that is decades away.
     [[nodiscard]] Instant when_system(std::int64_t system) const noexcept;
 
+    /// The quartz runs at another speed from now on (warmth, a bad part). The local time does not jump.
+    void set_drift(std::int32_t drift_ppb, Instant at) noexcept;
+    /// The local time jumps.
+    void step(Duration by) noexcept { base_local_ += by.count(); }
     void set_offset(std::int64_t offset) noexcept { offset_ = offset; }
     void set_delay(std::uint32_t delay) noexcept { delay_ = delay; }
     /// A system time of the reference clock arrived (a write to 0910h).

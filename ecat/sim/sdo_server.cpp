@@ -36,7 +36,14 @@ std::size_t SdoServer::abort(std::span<std::byte> out, std::uint16_t index, std:
     return encode_sdo_abort(out, index, sub, code);
 }
 
+void SdoServer::abort_object(std::uint16_t index, std::uint8_t sub, std::uint32_t code) {
+    std::erase_if(refused_, [&](const Refused& refused) { return refused.index == index && refused.sub == sub; });
+    if (code != 0) refused_.push_back({index, sub, code});
+}
+
 std::uint32_t SdoServer::locate(std::uint16_t index, std::uint8_t sub, Entry*& entry) noexcept {
+    for (const auto& refused : refused_)
+        if (refused.index == index && refused.sub == sub) return refused.code;
     entry = dictionary_.find(index, sub);
     if (entry != nullptr) return 0;
     return dictionary_.has_object(index) ? sdo_abort::no_subindex : sdo_abort::no_object;

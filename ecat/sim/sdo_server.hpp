@@ -18,6 +18,8 @@ class SdoServer {
 public:
     SdoServer(const DeviceDescription& description, ObjectDictionary& dictionary, DeviceModel& model);
 
+    /// Test: every transfer of this object is aborted with `code` until it is 0 again.
+    void abort_object(std::uint16_t index, std::uint8_t sub, std::uint32_t code);
     /// Forgets a transfer in progress.
     void reset() noexcept;
     /// `request` and `out` without the mailbox header, `out` as long as the mailbox allows. Bytes written to `out`; 0: nothing to answer.
@@ -42,6 +44,12 @@ private:
     const DeviceDescription& description_;
     ObjectDictionary& dictionary_;
     DeviceModel& model_;
+    struct Refused {
+        std::uint16_t index;
+        std::uint8_t sub;
+        std::uint32_t code;
+    };
+    std::vector<Refused> refused_;
     Transfer transfer_ = Transfer::none;
     std::uint16_t index_ = 0;
     std::uint8_t sub_ = 0;

@@ -73,6 +73,22 @@ void SimNetwork::set_delays(const SimSlave& slave, const SlaveDelays& delays) {
     wiring_.update();
 }
 
+void SimNetwork::disturb(const SimSlave& slave, std::uint32_t frames) noexcept {
+    damaged_ = wiring_.find(slave);
+    damage_ = frames;
+}
+
+void SimNetwork::count_damage(const Place& where) noexcept {
+    const Duration since = where.arrival[where.entry_port];
+    for (const Place* place : wiring_.places()) {
+        for (unsigned p = 0; p < ports_per_slave; ++p) {
+            if ((place->arrives & (1u << p)) == 0 || place->arrival[p] < since) continue;
+            if (place == &where && p == where.entry_port) place->slave->controller().count_receive_error(p);
+            else place->slave->controller().count_forwarded_error(p);
+        }
+    }
+}
+
 void SimNetwork::fire_until(Instant now) noexcept {
     schedule();  // a test may have touched a slave directly
     while (next_event_ <= now) {
@@ -122,12 +138,18 @@ std::optional<Duration> SimNetwork::process(std::span<std::byte> frame, Instant 
     // A frame with a defect passes: the controllers count it and execute only what is sound as a whole.
     const auto sound = take_apart(frame);
     const std::span<MutableDatagram> datagrams{datagrams_.data(), sound.value_or(0)};
-    bool loops_changed = false, destroyed = false;
+    // A damaged frame does nothing from the place of the damage on.
+    const bool damaged = damage_ > 0 && damaged_->arrives != 0;
+    const Duration good_until = damaged ? damaged_->arrival[damaged_->entry_port] : Duration::max();
+    bool loops_changed = false, destroyed = damaged;
     for (const Visit& visit : wiring_.route()) {
+        if (visit.at >= good_until) break;
         if (visit.port_0_shut) {
             // The second time a frame finds port 0 shut it would go round for ever.
-            destroyed = !datagrams.empty() && datagrams.front().circulating;
-            if (destroyed) break;
+            if (!datagrams.empty() && datagrams.front().circulating) {
+                destroyed = true;
+                break;
+            }
             for (auto& datagram : datagrams) mark_circulating(datagram);
         }
         SimSlave& slave = *visit.place->slave;
@@ -136,6 +158,10 @@ std::optional<Duration> SimNetwork::process(std::span<std::byte> frame, Instant 
         loops_changed |= slave.controller().take_loop_change();
     }
     for (const Visit& visit : wiring_.route()) visit.place->slave->frame_passed(now, visit.place->arrival, visit.place->arrives);
+    if (damaged) {
+        --damage_;
+        count_damage(*damaged_);
+    }
     // Every processing unit marks what it forwards: locally administered source address.
     frame[6] |= std::byte{0x02};
     const auto flight = destroyed ? std::nullopt : wiring_.flight();

@@ -54,6 +54,9 @@ public:
     void set_delays(const SimSlave& slave, const SlaveDelays& delays);
     /// The next frames vanish before any slave sees them.
     void lose_frames(std::uint32_t count) noexcept { lose_ = count; }
+    /// The next frames are damaged on the cable that leads to the slave: what is before it acts on them, it and all behind count
+    /// errors (0300h, 0308h), and the master's network card throws them away.
+    void disturb(const SimSlave& slave, std::uint32_t frames) noexcept;
     /// Slaves that a frame reaches now.
     [[nodiscard]] std::size_t reachable() const noexcept { return wiring_.route().size(); }
 
@@ -66,6 +69,7 @@ private:
     SimSlave& install(Place* parent, unsigned port, std::unique_ptr<SimSlave> slave, unsigned entry_port);
     void fire_until(Instant now) noexcept;
     void schedule() noexcept;
+    void count_damage(const Place& where) noexcept;
     [[nodiscard]] std::optional<std::size_t> take_apart(std::span<std::byte> frame) noexcept;
 
     // 12 bytes is the shortest datagram: more than this do not fit into a frame.
@@ -78,6 +82,8 @@ private:
     Instant now_;
     Instant next_event_ = never;
     std::uint32_t lose_ = 0;
+    std::uint32_t damage_ = 0;        // so many frames more
+    const Place* damaged_ = nullptr;  // on the cable to this one
 };
 
 }  // namespace taktwerk::ecat::sim

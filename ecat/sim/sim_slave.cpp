@@ -94,7 +94,7 @@ void SimSlave::fire(Instant now) noexcept {
         al_due_ = never;
         settle(now);
         const bool exchanged = al_.exchanging();
-        al_.request(controller_.al_control(), now);
+        al_.request(controller_.take_al_control(), now);
         if (!exchanged && al_.exchanging()) {
             outputs_valid_ = false;
             if (Entry* cycle = dictionary_.find(0x1C32, 0x02); cycle != nullptr && controller_.sync0_runs())

@@ -63,6 +63,14 @@ public:
     /// Slaves without mailbox have an empty one.
     [[nodiscard]] ObjectDictionary& dictionary() noexcept { return dictionary_; }
     [[nodiscard]] const SlaveOptions& options() const noexcept { return options_; }
+    /// The next mailbox answers claim a length that is not theirs.
+    void answer_with_wrong_lengths(std::uint32_t answers) noexcept {
+        if (coe_) coe_->misstate_lengths(answers);
+    }
+    /// Every SDO to this object is aborted with `code` until it is 0 again.
+    void abort_object(std::uint16_t index, std::uint8_t sub, std::uint32_t code) {
+        if (coe_) coe_->abort_object(index, sub, code);
+    }
     /// The firmware hangs: no state changes, no mailbox, no new inputs, outputs ignored; the controller goes on by itself. Until it is
     /// released, or the power goes.
     void hang(bool hung) noexcept;

@@ -92,7 +92,11 @@ public:
 
     // --- application side ---------------------------------------------------------------------------------------------------
     [[nodiscard]] unsigned take_events() noexcept { return std::exchange(events_, 0u); }
-    [[nodiscard]] std::uint16_t al_control() const noexcept { return read16(reg::al_control); }
+    /// What the master asked for. Until the application has taken it, another write to 0120h is refused.
+    [[nodiscard]] std::uint16_t take_al_control() noexcept {
+        al_control_waits_ = false;
+        return read16(reg::al_control);
+    }
     void set_al_status(std::uint16_t status, std::uint16_t code) noexcept;
     [[nodiscard]] const SyncManager& sync_manager(unsigned n) const noexcept { return units_[n].sm; }
     /// PDI control bit 0: the application locks a sync manager; the bus then gets no access to its memory.
@@ -129,6 +133,13 @@ public:
     [[nodiscard]] const Sync1& sync1() const noexcept { return sync1_; }
     [[nodiscard]] bool sync0_active() const noexcept { return sync0_.active() && sync_is_out(dc_activate::sync0); }
     [[nodiscard]] bool sync0_runs() const noexcept { return sync0_.runs() && sync_is_out(dc_activate::sync0); }
+    // --- for tests and faults -----------------------------------------------------------------------------------------------
+    /// The quartz runs fast by so much from now on.
+    void set_clock_drift(double ppm, Instant now) noexcept;
+    /// The local time jumps: pulses that were due in between are lost.
+    void step_clock(Duration by, Instant now) noexcept;
+    void forget_station_address() noexcept { write16(reg::station_address, 0); }
+
     [[nodiscard]] DcClock& clock() noexcept { return clock_; }
     [[nodiscard]] EepromInterface& eeprom() noexcept { return eeprom_; }
     [[nodiscard]] const ControllerSettings& settings() const noexcept { return settings_; }
@@ -182,6 +193,7 @@ private:
     // slave_controller_dc.cpp
     void write_dc(std::uint32_t address, std::span<const std::byte> in, Instant at) noexcept;
     void control_sync(Instant at) noexcept;
+    void clock_moved(Instant now) noexcept;
     void show_dc(Instant at) noexcept;
     void fire_sync(Instant now) noexcept;
     void latch_times_read(std::uint32_t address, std::size_t size) noexcept;
@@ -224,6 +236,7 @@ private:
     Instant watchdog_deadline_ = never;
     Instant pdi_watchdog_deadline_ = never;
     bool application_alive_ = true;
+    bool al_control_waits_ = false;
     bool registers_unlocked_ = false, all_unlocked_ = false;  // by 0020h and 0030h, in this frame
     std::uint64_t frames_ = 0, reset_frame_ = 0;
     unsigned reset_step_ = 0;

@@ -1,6 +1,7 @@
 // The distributed clocks unit of a simulated slave controller: system time, SYNC signals, latch inputs (0900h..09FFh).
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/bytes.hpp"
 #include "ecat/sim/slave_controller.hpp"
@@ -55,9 +56,7 @@ void SlaveController::write_dc(std::uint32_t address, std::span<const std::byte>
     // The cyclic unit belongs to whom 0980h says: bit 0 set, the application keeps it and 0981h does nothing.
     if (hits(reg::dc_activation, 1) && (static_cast<unsigned>(memory_[reg::dc_cyclic_control]) & cyclic_by_application) == 0)
         control_sync(at);
-    sync0_.clock_changed(clock_, at);
-    sync0_due_ = sync0_.due(clock_).value_or(never);  // whatever was written may have moved them
-    sync1_due_ = sync1_.due(clock_).value_or(never);
+    clock_moved(at);  // whatever was written may have moved it
 }
 
 void SlaveController::control_sync(Instant at) noexcept {
@@ -80,6 +79,22 @@ void SlaveController::control_sync(Instant at) noexcept {
     }
     if ((activation & dc_activate::sync1) == 0) sync1_.deactivate();
     else if (!sync1_.active()) sync1_.activate(load_le<std::uint32_t>(memory_, reg::dc_sync1_cycle));
+}
+
+void SlaveController::clock_moved(Instant now) noexcept {
+    sync0_.clock_changed(clock_, now);
+    sync0_due_ = sync0_.due(clock_).value_or(never);
+    sync1_due_ = sync1_.due(clock_).value_or(never);
+}
+
+void SlaveController::set_clock_drift(double ppm, Instant now) noexcept {
+    clock_.set_drift(static_cast<std::int32_t>(std::lround(ppm * 1000.0)), now);
+    clock_moved(now);
+}
+
+void SlaveController::step_clock(Duration by, Instant now) noexcept {
+    clock_.step(by);
+    clock_moved(now);
 }
 
 void SlaveController::show_dc(Instant at) noexcept {

@@ -43,6 +43,7 @@ void SlaveController::power_on(Instant now, std::int64_t local, std::int32_t dri
     start_time_ = {};
     sync0_due_ = sync1_due_ = watchdog_deadline_ = pdi_watchdog_deadline_ = never;
     application_alive_ = true;
+    al_control_waits_ = false;
     registers_unlocked_ = all_unlocked_ = false;
     reset_step_ = 0;
     latch_pending_ = false;
@@ -129,13 +130,18 @@ bool SlaveController::write_registers(std::uint32_t address, std::span<const std
         write_dc(address, in, at);
         return true;
     }
+    // Recorded buses show it: of two writes in quick succession the slaves count only the first.
+    if (address == reg::al_control && al_control_waits_) return false;
     const auto modes_before = ports_.modes();
     store(stored);
     if (hits(reg::dl_control_loops, 1)) write_dl_control(modes_before, at);
     if (hits(reg::write_register_enable, 1)) registers_unlocked_ = true;
     if (hits(reg::write_enable, 1)) all_unlocked_ = true;
     if (hits(reg::reset_ecat, 1)) write_reset(in[reg::reset_ecat - address]);
-    if (hits(reg::al_control, 1)) events_ |= event::al_control;
+    if (hits(reg::al_control, 1)) {
+        events_ |= event::al_control;
+        al_control_waits_ = settings_.application;
+    }
     if (hits(reg::rx_errors, 12)) std::fill_n(memory_.begin() + reg::rx_errors, 12, std::byte{0});
     if (hits(reg::processing_unit_errors, 1)) memory_[reg::processing_unit_errors] = std::byte{0};
     if (hits(reg::pdi_errors, 2)) std::fill_n(memory_.begin() + reg::pdi_errors, 2, std::byte{0});

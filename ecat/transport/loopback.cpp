@@ -45,7 +45,15 @@ bool LoopbackTransport::send(std::span<const std::byte> frame, Instant now) noex
     slot->size = frame.size();
     slot->arrival = now + *flight;
     slot->order = order_++;
-    if (strikes(faults.delay_answers)) slot->arrival += faults.delay;
+    for (auto& held : slots_) {
+        if (held.size == 0 || !held.overtaken || &held == slot) continue;
+        held.overtaken = false;
+        held.arrival = slot->arrival;
+        held.order = order_++;
+    }
+    slot->overtaken = strikes(faults.reorder_answers);
+    if (slot->overtaken) slot->arrival = Instant::max();
+    else if (strikes(faults.delay_answers)) slot->arrival += faults.delay;
     if (strikes(faults.corrupt_answers)) {
         const std::size_t bit = faults.corrupt_bit % (frame.size() * 8);
         bytes[bit / 8] ^= static_cast<std::byte>(1u << (bit % 8));

@@ -32,6 +32,7 @@ struct FaultPlan {
     std::uint32_t delay_answers = 0;  ///< the next answers arrive `delay` later
     Duration delay{};
     std::uint32_t duplicate_answers = 0;
+    std::uint32_t reorder_answers = 0;  ///< each waits until the answer that follows it has arrived
     std::uint32_t corrupt_answers = 0;  ///< one bit flips: number `corrupt_bit` of the frame, modulo its size
     std::uint32_t corrupt_bit = 0;
     bool link_down = false;  ///< send() refuses, nothing arrives
@@ -58,6 +59,7 @@ private:
         std::size_t size = 0;  ///< 0 = free
         Instant arrival{};
         std::uint64_t order = 0;
+        bool overtaken = false;  ///< reordered: arrives right after the next one
     };
     [[nodiscard]] Slot* free_slot() noexcept;
     [[nodiscard]] Slot* earliest() noexcept;

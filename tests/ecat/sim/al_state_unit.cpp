@@ -37,6 +37,18 @@ TEST(AlState, ChangesOnlyAfterTheTransitionTime) {
     EXPECT_EQ(bus.value<std::uint16_t>(0, 0x0130), 2);
 }
 
+TEST(AlState, AnotherRequestIsNotTakenBeforeTheFirstWasRead) {
+    BusProbe bus;
+    bus.add_drive({.transition_time = 300us});
+    bus.mailboxes(0);
+
+    EXPECT_EQ(bus.write(0, 0x0120, le<std::uint16_t>(2)).wkc, 1);
+    EXPECT_EQ(bus.write(0, 0x0120, le<std::uint16_t>(1)).wkc, 0);
+    bus.wait(400us);
+    EXPECT_EQ(bus.value<std::uint16_t>(0, 0x0130), 2);
+    EXPECT_EQ(bus.write(0, 0x0120, le<std::uint16_t>(1)).wkc, 1);
+}
+
 TEST(AlState, MayFallAnyNumberOfSteps) {
     for (const std::uint16_t to : {std::uint16_t{4}, std::uint16_t{2}, std::uint16_t{1}}) {
         BusProbe bus;
