@@ -130,7 +130,10 @@ bool SlaveController::write_registers(std::uint32_t address, std::span<const std
         write_dc(address, in, at);
         return true;
     }
-    // Recorded buses show it: of two writes in quick succession the slaves count only the first.
+    // Recorded buses show both: FMMUs and sync managers that do not exist do not count, and of two writes in quick succession the slaves count only the first.
+    constexpr std::uint32_t fmmus_end = reg::fmmu + 0x100, sync_managers_end = reg::sync_manager + 0x80;
+    if (address >= reg::fmmu_at(settings_.fmmus) && address + in.size() <= fmmus_end) return false;
+    if (address >= reg::sync_manager_at(settings_.sync_managers) && address + in.size() <= sync_managers_end) return false;
     if (address == reg::al_control && al_control_waits_) return false;
     const auto modes_before = ports_.modes();
     store(stored);

@@ -137,6 +137,20 @@ TEST(WorkingCounter, ExchangeReturnsTheOldContentAndKeepsTheNew) {
     EXPECT_EQ(bus.value<std::uint16_t>(0, 0x0F80), 0x2222);
 }
 
+TEST(WorkingCounter, IsZeroForUnitsTheControllerDoesNotHave) {
+    BusProbe bus;
+    auto description = small_drive();
+    description.fmmus = 3;
+    description.sync_manager_count = 4;
+    bus.add_drive({}, description);
+
+    EXPECT_EQ(bus.write(0, 0x0620, Bytes(16)).wkc, 1);
+    EXPECT_EQ(bus.write(0, 0x0630, Bytes(16)).wkc, 0);
+    EXPECT_EQ(bus.write(0, 0x0600, Bytes(64)).wkc, 1) << "part of it is there";
+    EXPECT_EQ(bus.write(0, 0x0818, Bytes(8)).wkc, 1);
+    EXPECT_EQ(bus.write(0, 0x0820, Bytes(8)).wkc, 0);
+}
+
 TEST(WorkingCounter, IsZeroBeyondTheMemory) {
     BusProbe bus;
     bus.add_drive();
