@@ -22,6 +22,7 @@ Profile::Profile(const MotionState& start, std::span<const Stretch> forward, std
     : start_{start}, end_{end} {
     MotionState state = start;
     for (const Stretch& s : forward) {
+        state.velocity += s.velocity_step;
         if (!(s.duration > 0) || count_ == max_pieces) continue;
         state.acceleration = s.acceleration;
         pieces_[static_cast<std::size_t>(count_++)] = {duration_ + s.duration, duration_, s.jerk, state};
@@ -33,18 +34,23 @@ Profile::Profile(const MotionState& start, std::span<const Stretch> forward, std
     for (const Stretch& s : backward) {
         if (!(s.duration > 0) || count_ == max_pieces) continue;
         duration_ += s.duration;
-        // Until the chain is walked back below, the anchor holds what that walk needs.
-        pieces_[static_cast<std::size_t>(count_++)] = {duration_, s.duration, s.jerk, {0, 0, s.acceleration + s.duration * s.jerk}};
+        pieces_[static_cast<std::size_t>(count_++)] = {duration_, duration_, s.jerk, {}};
     }
     state = end;
-    for (int i = count_ - 1; i >= first_backward; --i) {
-        Piece& piece = pieces_[static_cast<std::size_t>(i)];
-        const double length = piece.anchor_time;
-        // The last piece without a jerk limit still ends with its own acceleration; with one it ends exactly at the target's.
-        if (i != count_ - 1 || piece.jerk == 0) state.acceleration = piece.anchor.acceleration;
-        piece.anchor = state;
-        piece.anchor_time = piece.end_time;
-        state = travel(state, piece.jerk, -length);
+    int i = count_;
+    for (std::size_t k = backward.size(); k-- > 0 && i >= first_backward;) {
+        const Stretch& s = backward[k];
+        if (s.duration > 0) {
+            if (--i < first_backward) break;
+            // The acceleration arrives exactly where the last stretch leads to the end's; without a jerk limit it may end elsewhere.
+            const double arrives = s.end_acceleration();
+            const bool continues =
+                std::abs(arrives - state.acceleration) <= 1e-6 * (std::abs(s.acceleration) + std::abs(s.duration * s.jerk));
+            if (!continues || s.jerk == 0) state.acceleration = arrives;
+            pieces_[static_cast<std::size_t>(i)].anchor = state;
+            state = travel(state, s.jerk, -s.duration);
+        }
+        state.velocity -= s.velocity_step;
     }
 }
 
@@ -54,7 +60,8 @@ MotionState Profile::on_piece(int i, double t) const noexcept {
 }
 
 MotionState Profile::at(double t) const noexcept {
-    if (t >= duration_) return {end_.position + end_.velocity * (t - duration_), end_.velocity, end_.acceleration};
+    if (t == duration_) return end_;
+    if (t > duration_) return {end_.position + end_.velocity * (t - duration_), end_.velocity, 0};
     if (!(t > 0)) return start_;
     int i = 0;
     while (t >= pieces_[static_cast<std::size_t>(i)].end_time) ++i;

@@ -2,6 +2,7 @@
 // A planned motion: a few pieces of constant jerk, evaluated exactly at any time. Plan on events, sample per cycle.
 
 #include <array>
+#include <cstddef>
 #include <span>
 
 #include "axes/planner/motion.hpp"
@@ -9,11 +10,15 @@
 namespace taktwerk::axes {
 
 /// One piece of motion: `acceleration` at its beginning, then constant `jerk` for `duration`. s, u/s2, u/s3.
-/// Without a jerk limit the acceleration jumps from one stretch to the next; otherwise it continues.
+/// Without a jerk limit the acceleration jumps from one stretch to the next; otherwise it continues. Without an acceleration limit the
+/// velocity jumps as well, by `velocity_step` before the stretch; a stretch of no duration is such a jump alone.
 struct Stretch {
     double duration = 0;
     double acceleration = 0;
     double jerk = 0;
+    double velocity_step = 0;
+
+    [[nodiscard]] double end_acceleration() const noexcept { return acceleration + duration * jerk; }
 };
 
 /// A motion from a start state to an end state. A value: trivially copyable, allocates nothing, real-time safe.
@@ -35,8 +40,8 @@ public:
     /// max_pieces; what does not fit, or lasts no time, is left out. The two must meet: that is the planner's business.
     Profile(const MotionState& start, std::span<const Stretch> forward, std::span<const Stretch> backward, const MotionState& end) noexcept;
 
-    /// The state `t` seconds after the start. At or before 0: the start state. From duration() on: the end state, moving on with
-    /// its velocity (a move to a position holds its target exactly).
+    /// The state `t` seconds after the start. At or before 0: the start state. At duration(): the end state, exactly. Later: moving on
+    /// with the end's velocity, without acceleration (a move to rest holds its target exactly).
     [[nodiscard]] MotionState at(double t) const noexcept;
 
     /// s, >= 0.

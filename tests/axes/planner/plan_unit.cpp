@@ -234,8 +234,9 @@ TEST(PlanErrors, BadInputIsRefusedAndTheProfileStaysFinite) {
     const MotionLimits good{1, 1, 1, 1};
     const double nan = std::numeric_limits<double>::quiet_NaN();
 
-    for (const MotionLimits& bad : {MotionLimits{0, 1, 1, 1}, MotionLimits{1, -1, 1, 1}, MotionLimits{1, 1, 0, 1}, MotionLimits{1, 1, 1, 0},
-                                    MotionLimits{nan, 1, 1, 1}, MotionLimits{1, 1, 1, nan}, MotionLimits{unlimited, 1, 1, 1}}) {
+    for (const MotionLimits& bad :
+         {MotionLimits{0, 1, 1, 1}, MotionLimits{1, -1, 1, 1}, MotionLimits{1, 1, 0, 1}, MotionLimits{1, 1, 1, 0},
+          MotionLimits{nan, 1, 1, 1}, MotionLimits{1, 1, 1, nan}, MotionLimits{unlimited, unlimited, unlimited, unlimited}}) {
         EXPECT_EQ(plan_to_position({}, 1, bad).error, PlanError::invalid_input);
         EXPECT_EQ(plan_to_velocity({}, 1, bad).error, PlanError::invalid_input);
         EXPECT_EQ(plan_stop({}, bad).error, PlanError::invalid_input);

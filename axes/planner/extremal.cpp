@@ -1,0 +1,160 @@
+#include "axes/planner/extremal.hpp"
+
+#include <limits>
+
+namespace taktwerk::axes {
+
+namespace {
+
+double sign_of(Curve c) noexcept { return c == Curve::peak_down || c == Curve::trough_down || c == Curve::early_trough_down ? -1 : 1; }
+
+/// The problem in the frame in which the curve is a push upwards.
+Problem in_frame(const Problem& p, Curve c) noexcept {
+    switch (c) {
+        case Curve::peak_up:
+        case Curve::trough_up: return p;
+        case Curve::peak_down:
+        case Curve::trough_down: return p.mirrored();
+        case Curve::early_trough_up: return p.reversed();
+        case Curve::early_trough_down: break;
+    }
+    return p.reversed().mirrored();
+}
+
+bool is_peak(Curve c) noexcept { return c == Curve::peak_up || c == Curve::peak_down; }
+
+/// A trough exists only where an end has an acceleration of the curve's sign.
+bool may_exist(const Problem& p, Curve c) noexcept {
+    switch (c) {
+        case Curve::trough_up: return p.a1 > 0;
+        case Curve::trough_down: return p.a1 < 0;
+        case Curve::early_trough_up: return p.a0 > 0;
+        case Curve::early_trough_down: return p.a0 < 0;
+        case Curve::peak_up:
+        case Curve::peak_down: break;
+    }
+    return true;
+}
+
+/// A peak, and a trough whose other end has the other sign, pass acceleration 0.
+bool keeps_limits_on(const Problem& p, Curve c, const Ends& ends) noexcept {
+    if (is_peak(c)) return ends.start_releases && ends.end_releases;
+    if (p.a0 * p.a1 > 0) return true;
+    return c == Curve::trough_up || c == Curve::trough_down ? ends.start_releases : ends.end_releases;
+}
+
+/// From the reversed frame: accelerations stay, jerks change their sign.
+void add_reversed(Chain& chain, std::span<const Stretch> stretches, double sign) noexcept {
+    for (std::size_t i = stretches.size(); i-- > 0;) {
+        const Stretch& s = stretches[i];
+        if (s.duration > 0) chain.add({s.duration, s.end_acceleration(), -s.jerk, 0}, sign);
+    }
+}
+
+Extremal in_time(const Problem& problem, double time, std::span<const Curve> curves) noexcept {
+    for (const Curve c : curves) {
+        if (!may_exist(problem, c)) continue;
+        const Problem p = in_frame(problem, c);
+        const Found found = is_peak(c) ? PeakFamily{p}.in_time(time) : TroughFamily{p}.in_time(time);
+        if (found.found) return {c, found};
+    }
+    return {};
+}
+
+/// Between two curves that meet rounding may leave a gap: the end of a curve that comes closest.
+Extremal nearest(const Problem& problem, std::span<const Curve> curves) noexcept {
+    Extremal best;
+    double least = std::numeric_limits<double>::infinity();
+    for (const Curve c : curves) {
+        if (!may_exist(problem, c)) continue;
+        const Problem p = in_frame(problem, c);
+        double miss = least;
+        double duration = 0;
+        if (is_peak(c)) {
+            const auto m = PeakFamily{p}.at(0);
+            miss = std::abs(m.travel() - p.way);
+            duration = m.duration();
+        } else if (const TroughFamily family{p}; family.exists()) {
+            const auto m = family.at(0);
+            miss = std::abs(m.travel() - p.way);
+            duration = m.duration();
+        }
+        if (miss >= least) continue;
+        least = miss;
+        best = {c, {true, 0, 0, duration}};
+    }
+    return best;
+}
+
+}  // namespace
+
+void add_climb(Chain& chain, const Ramp& ramp, double sign) noexcept {
+    for (const Stretch& s : ramp.stretches()) chain.add(s, sign);
+}
+
+void add_descent(Chain& chain, const Ramp& back, double sign) noexcept {
+    // Mirrored and reversed: jerks and velocity steps keep their sign, accelerations do not.
+    double step = 0;
+    const auto stretches = back.stretches();
+    for (std::size_t i = stretches.size(); i-- > 0;) {
+        const Stretch& s = stretches[i];
+        if (s.duration > 0) chain.add({s.duration, -s.end_acceleration(), s.jerk, step}, sign);
+        else if (step != 0) chain.add({0, 0, 0, step}, sign);
+        step = -s.velocity_step;
+    }
+    if (step != 0) chain.add({0, 0, 0, step}, sign);
+}
+
+Extremal fastest(const Problem& problem, double rounding, const Ends& ends) noexcept {
+    // With one end at rest the ends of the curves follow each other: the first root found is the only one.
+    const bool only_one = (problem.v1 == 0 && problem.a1 == 0) || (problem.v0 == 0 && problem.a0 == 0);
+    constexpr std::array curves{Curve::peak_up,     Curve::peak_down,       Curve::trough_up,
+                                Curve::trough_down, Curve::early_trough_up, Curve::early_trough_down};
+    Extremal best;
+    for (const Curve c : curves) {
+        if (!may_exist(problem, c) || !keeps_limits_on(problem, c, ends)) continue;
+        const Problem p = in_frame(problem, c);
+        const Found found = is_peak(c) ? PeakFamily{p}.over_way(rounding) : TroughFamily{p}.over_way(rounding);
+        if (!found.found || found.duration >= best.found.duration) continue;
+        best = {c, found};
+        if (only_one) break;
+    }
+    if (best.found.found || !ends.start_releases || !ends.end_releases) return best;
+    return nearest(problem, curves);
+}
+
+Extremal furthest(const Problem& problem, double time) noexcept {
+    constexpr std::array curves{Curve::peak_up, Curve::trough_up, Curve::early_trough_down};
+    return in_time(problem, time, curves);
+}
+
+Extremal least_far(const Problem& problem, double time) noexcept {
+    constexpr std::array curves{Curve::peak_down, Curve::trough_down, Curve::early_trough_up};
+    return in_time(problem, time, curves);
+}
+
+Motion motion_of(const Problem& problem, const Extremal& extremal) noexcept {
+    const Problem p = in_frame(problem, extremal.curve);
+    const double sign = sign_of(extremal.curve);
+    Motion motion;
+    if (is_peak(extremal.curve)) {
+        const PeakFamily::Motion m = PeakFamily{p}.at(extremal.found.parameter);
+        add_climb(motion.forward, m.up, sign);
+        motion.forward.add({extremal.found.cruise, 0, 0, 0}, sign);
+        add_descent(motion.backward, m.back, sign);
+        // Both halves have no acceleration where they meet.
+        if (!(extremal.found.cruise > 0) && p.limits.down.ease > 0) motion.forward.join(motion.backward);
+        return motion;
+    }
+    const TroughFamily::Motion m = TroughFamily{p}.at(extremal.found.parameter);
+    if (extremal.curve == Curve::trough_up || extremal.curve == Curve::trough_down) {
+        add_climb(motion.forward, m.up, sign);
+        motion.backward.add(m.last, sign);
+    } else {
+        add_reversed(motion.forward, std::array{m.last}, sign);
+        add_reversed(motion.backward, m.up.stretches(), sign);
+    }
+    return motion;
+}
+
+}  // namespace taktwerk::axes

@@ -1,0 +1,102 @@
+#pragma once
+// The two families of extremal motions, each a curve with one parameter (mathematics.md says why these are all). Internal to the
+// planner. Both are written for a push upwards; mirroring and reversing time give the others.
+
+#include "axes/planner/bracketed_root.hpp"
+#include "axes/planner/frame.hpp"
+#include "axes/planner/ramp.hpp"
+
+namespace taktwerk::axes {
+
+/// A root that was found: parameter, time at constant velocity, total time.
+struct Found {
+    bool found = false;
+    double parameter = 0;
+    double cruise = 0;
+    double duration = std::numeric_limits<double>::infinity();
+};
+
+/// Climb to a highest velocity c, where the acceleration is 0, cruise there if c is the limit, and descend to the end. The parameter is
+/// the acceleration x that a climb from rest by c - c0 peaks at, c0 being the higher of the released velocities of both ends: near c0 the
+/// way is then linear in x or of third order. Without a jerk limit it is c - c0 itself.
+class PeakFamily {
+public:
+    explicit PeakFamily(const Problem& problem) noexcept;
+
+    /// Both halves for one parameter. The second half runs in the frame mirrored and reversed, in which it climbs too.
+    struct Motion {
+        Ramp up;
+        Ramp back;
+        double peak_velocity;
+        [[nodiscard]] double travel() const noexcept { return up.travel() + back.travel(); }
+        [[nodiscard]] double path() const noexcept { return up.path() + back.path(); }
+        [[nodiscard]] double duration() const noexcept { return up.duration() + back.duration(); }
+    };
+    [[nodiscard]] Motion at(double x) const noexcept;
+
+    /// The fastest motion over the problem's way. The way is known to `known_to`: a member that misses it by
+    /// no more will do.
+    [[nodiscard]] Found over_way(double known_to) const noexcept;
+    /// The motion that takes `time`: it goes further up than any other of that duration.
+    [[nodiscard]] Found in_time(double time) const noexcept;
+    /// The shortest duration in the family.
+    [[nodiscard]] double shortest() const noexcept { return at(0).duration(); }
+
+    /// Rate of the end over the duration, d way / d time, along the family. It rises with x.
+    [[nodiscard]] double rate(const Motion& m) const noexcept;
+
+private:
+    [[nodiscard]] double excess(double x) const noexcept { return ease_ > 0 ? x * (x * ease_ / 2) : x; }
+    [[nodiscard]] double parameter(double excess) const noexcept { return ease_ > 0 ? std::sqrt(2 * excess / ease_) : excess; }
+    [[nodiscard]] double excess_slope(double x) const noexcept { return ease_ > 0 ? x * ease_ : 1; }
+    [[nodiscard]] double way_slope(double x, const Motion& m) const noexcept;
+    [[nodiscard]] double enough_for(double missing) const noexcept;
+
+    const Problem& problem_;
+    FrameLimits back_limits_;
+    double released1_ = 0;       // of the end, backwards in time
+    double floor_velocity_ = 0;  // c0
+    double excess_start_ = 0;    // c0 above the start's released velocity
+    double excess_end_ = 0;      // c0 above the end's
+    double ease_ = 0;            // of rise and fall together
+    double widest_ = 0;          // x at the velocity limit
+};
+
+/// For an end with acceleration a1 > 0 that is reached without ever losing all of it: climb over a peak, fall to a trough t >= 0, rise
+/// to a1. The parameter is a1 - t; the duration grows with it.
+class TroughFamily {
+public:
+    explicit TroughFamily(const Problem& problem) noexcept;
+
+    [[nodiscard]] bool exists() const noexcept { return exists_; }
+
+    struct Motion {
+        Ramp up;
+        Stretch last;
+        double trough;
+        double last_travel;
+        [[nodiscard]] double travel() const noexcept { return up.travel() + last_travel; }
+        [[nodiscard]] double path() const noexcept { return up.path() + std::abs(last_travel); }
+        [[nodiscard]] double duration() const noexcept { return up.duration() + last.duration; }
+    };
+    [[nodiscard]] Motion at(double u) const noexcept;
+
+    [[nodiscard]] Found over_way(double known_to) const noexcept;
+    [[nodiscard]] Found in_time(double time) const noexcept;
+    [[nodiscard]] double shortest() const noexcept { return at(0).duration(); }
+    [[nodiscard]] double longest() const noexcept { return at(widest_).duration(); }
+
+    /// d way / d time along the family: falls and then rises with the parameter's trough.
+    [[nodiscard]] double rate(const Motion& m) const noexcept;
+
+private:
+    [[nodiscard]] double time_slope(const Motion& m) const noexcept;
+    [[nodiscard]] double slowest_trough() const noexcept;
+
+    const Problem& problem_;
+    double square_ = 0;  // peak^2 - trough^2
+    double widest_ = 0;
+    bool exists_ = false;
+};
+
+}  // namespace taktwerk::axes

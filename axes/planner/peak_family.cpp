@@ -1,0 +1,148 @@
+#include <algorithm>
+#include <cmath>
+
+#include "axes/planner/families.hpp"
+#include "core/math.hpp"
+
+namespace taktwerk::axes {
+
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+}  // namespace
+
+PeakFamily::PeakFamily(const Problem& problem) noexcept : problem_{problem}, back_limits_{problem.limits.reversed().mirrored()} {
+    const double start = problem.released0;
+    const double end = released1_ = released_velocity(problem.v1, -problem.a1, back_limits_);
+    // v1 - v0 first: where both are large and close, it is exact.
+    double gap = (problem.v1 - problem.v0) + (release(-problem.a1, back_limits_) - release(problem.a0, problem.limits));
+    if (problem.braked) gap = end - start;
+    excess_start_ = std::max(gap, 0.0);
+    excess_end_ = std::max(-gap, 0.0);
+    floor_velocity_ = std::max(start, end);
+    ease_ = problem.limits.up.ease + problem.limits.down.ease;
+    widest_ = parameter(std::max(problem.limits.up.velocity - floor_velocity_, 0.0));
+}
+
+PeakFamily::Motion PeakFamily::at(double x) const noexcept {
+    const double e = excess(x);
+    return {Ramp{climb_above_release(problem_.v0, problem_.a0, problem_.released0, excess_start_ + e, problem_.limits), problem_.limits},
+            Ramp{climb_above_release(problem_.v1, -problem_.a1, released1_, excess_end_ + e, back_limits_), back_limits_},
+            floor_velocity_ + e};
+}
+
+double PeakFamily::rate(const Motion& m) const noexcept {
+    const double ease = problem_.limits.down.ease;
+    if (ease == 0) return m.peak_velocity;
+    return m.peak_velocity + m.up.peak() * m.back.peak() * ease / 2;
+}
+
+double PeakFamily::way_slope(double x, const Motion& m) const noexcept {
+    const double p = m.up.peak();
+    const double q = m.back.peak();
+    const double ease = problem_.limits.down.ease;
+    return excess_slope(x) * (m.peak_velocity * (1 / p + 1 / q) + (ease > 0 ? (p + q) * ease / 2 : 0));
+}
+
+/// Above a c0 >= 0 each half adds to the way at least e^2/2a for an excess e, and with the eases q of both jerks and f of the fall at
+/// least x^3 q sqrt(q f) / 3: the x that is certainly enough.
+double PeakFamily::enough_for(double missing) const noexcept {
+    if (!(missing > 0)) return 0;
+    const double hardest = std::min(problem_.limits.up.speeding_up, back_limits_.up.speeding_up);
+    const double fall = problem_.limits.down.ease;
+    const double x = parameter(std::sqrt(2 * hardest * missing));
+    return fall > 0 ? std::min(x, math::cbrt(3 * missing / (ease_ * std::sqrt(ease_ * fall)))) : x;
+}
+
+Found PeakFamily::over_way(double known_to) const noexcept {
+    const double way = problem_.way;
+    const auto difference = [&](double x) noexcept -> RootSample {
+        const Motion m = at(x);
+        return {m.travel() - way, way_slope(x, m), 2 * epsilon * (std::abs(way) + m.path())};
+    };
+    const auto result = [&](double x) noexcept -> Found { return {true, x, 0, at(x).duration()}; };
+
+    double low = 0;
+    const Motion lowest = at(0);
+    double low_travel = lowest.travel();
+    const double rounding = known_to + 2 * epsilon * lowest.path();
+    if (std::abs(low_travel - way) <= rounding) return {true, 0, 0, lowest.duration()};
+    if (floor_velocity_ < 0 && rate(lowest) < 0) {
+        // The way first shrinks: up to where the rate passes 0, which it does before the velocity.
+        const double most = std::min(widest_, parameter(-floor_velocity_));
+        const double turn = bracketed_root(
+            [&](double x) noexcept -> RootSample {
+                const Motion m = at(x);
+                const double p = m.up.peak();
+                const double q = m.back.peak();
+                const double fall = problem_.limits.down.ease;
+                // dp/dx = x/p while no acceleration limit is reached; a guess is enough here.
+                const double bend = fall > 0 && p > 0 && q > 0 ? x * (q / p + p / q) * fall / 2 : 0;
+                return {rate(m), excess_slope(x) + bend, 4 * epsilon * (std::abs(m.peak_velocity) + (fall > 0 ? p * q * fall : 0))};
+            },
+            0, most, most / 2, true);
+        const Motion turning = at(turn);
+        const double turn_travel = turning.travel();
+        if (way < low_travel && way >= turn_travel - rounding) {
+            if (way <= turn_travel) return {true, turn, 0, turning.duration()};
+            return result(bracketed_root(difference, 0, turn, turn / 2, false));
+        }
+        low = turn;
+        low_travel = turn_travel;
+    }
+    if (way < low_travel) return {};
+
+    double high = widest_;
+    // What the lowest motion lacks; where it ends at negative velocity the way back to 0 comes on top.
+    if (floor_velocity_ < 0) {
+        const double stand = parameter(-floor_velocity_);
+        if (stand > low && stand < widest_) {
+            const double stand_travel = at(stand).travel();
+            if (way <= stand_travel) return result(bracketed_root(difference, low, stand, (low + stand) / 2, true));
+            low = stand;
+            low_travel = stand_travel;
+        }
+    }
+    const double enough = enough_for(way - low_travel);
+    const auto together = [&](double part) noexcept -> double {
+        return ease_ > 0 ? std::sqrt(low * low + part * enough * enough) : low + std::sqrt(part) * enough;
+    };
+    const double sum = together(1) * (1 + 4 * epsilon);
+    if (sum >= widest_) {
+        const Motion widest = at(widest_);
+        const double rest = way - widest.travel();
+        if (rest >= 0) {
+            const double cruise = rest / widest.peak_velocity;
+            return {true, widest_, cruise, widest.duration() + cruise};
+        }
+    } else {
+        high = sum;
+    }
+    // Two halves share the way: half the cube of x from rest.
+    return result(bracketed_root(difference, low, high, together(0.63), true));
+}
+
+Found PeakFamily::in_time(double time) const noexcept {
+    const Motion lowest = at(0);
+    if (time < lowest.duration()) return {};
+    if (!(time > 0)) return {true, 0, 0, time};
+    // A climb of e takes at least e/a, and at least sqrt(2 e / j).
+    const double hardest = std::min(std::max(problem_.limits.up.speeding_up, problem_.limits.up.slowing_down),
+                                    std::max(back_limits_.up.speeding_up, back_limits_.up.slowing_down));
+    const double ease = problem_.limits.down.ease;
+    double most = hardest * time;
+    if (ease > 0) most = std::min(most, time * (time / (2 * ease)));
+    const double high = std::min(widest_, parameter(most));
+    const Motion widest = at(high);
+    if (time >= widest.duration()) return {true, high, time - widest.duration(), time};
+    const double x_in_time = bracketed_root(
+        [&](double x) noexcept -> RootSample {
+            const Motion m = at(x);
+            return {m.duration() - time, excess_slope(x) * (1 / m.up.peak() + 1 / m.back.peak()), 2 * epsilon * time};
+        },
+        0, high, high / 2, true);
+    return {true, x_in_time, 0, time};
+}
+
+}  // namespace taktwerk::axes

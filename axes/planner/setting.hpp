@@ -1,0 +1,83 @@
+#pragma once
+// A plan from start to target, reduced to the problem that begins where braking into the limits ends. Internal to the planner.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "axes/planner/brake.hpp"
+#include "axes/planner/extremal.hpp"
+#include "axes/planner/plan_checks.hpp"
+
+namespace taktwerk::axes {
+
+struct Setting {
+    Setting(const MotionState& start, const MotionState& end, const SignedLimits& signed_limits) noexcept
+        : from{start},
+          target{end},
+          limits{frame_limits(signed_limits)},
+          brake{without_negligible(start.velocity), without_negligible(start.acceleration), limits},
+          problem{brake.velocity(),
+                  brake.acceleration(),
+                  without_negligible(end.velocity),
+                  limits.jerk_free() ? 0 : without_negligible(end.acceleration),
+                  without_negligible((end.position - start.position) - brake.travel()),
+                  brake.released(),
+                  brake.reduced_velocity(),
+                  limits} {}
+
+    struct Unbraked {};
+    /// From the start as it is.
+    Setting(const MotionState& start, const MotionState& end, const SignedLimits& signed_limits, Unbraked) noexcept
+        : from{start},
+          target{end},
+          limits{frame_limits(signed_limits)},
+          brake{0, 0, limits},
+          problem{start.velocity,
+                  start.acceleration,
+                  end.velocity,
+                  end.acceleration,
+                  end.position - start.position,
+                  released_velocity(start.velocity, start.acceleration, limits),
+                  false,
+                  limits} {}
+
+    /// Outside the limits, or bound to cross velocity 0 outside them. (Otherwise a brake only prevents what would come later.)
+    [[nodiscard]] bool start_is_outside() const noexcept {
+        FrameLimits at_any_velocity = limits;
+        at_any_velocity.up.velocity = at_any_velocity.down.velocity = std::numeric_limits<double>::infinity();
+        return limits.jerk_free() || !is_inside(from.velocity, from.acceleration, limits, 0) ||
+               !keeps_limits(from.velocity, from.acceleration, at_any_velocity, 0);
+    }
+    [[nodiscard]] bool target_is_outside() const noexcept {
+        return !is_inside(problem.v1, -problem.a1, limits.reversed().mirrored(), slack);
+    }
+    /// Could a motion inside the limits arrive with the target's acceleration built up from 0? Backwards in time it must be able to leave.
+    [[nodiscard]] bool target_releases() const noexcept {
+        return keeps_limits(problem.v1, -problem.a1, limits.reversed().mirrored(), slack);
+    }
+
+    /// What the way is known to: a few units in the last place of the positions and of what braking covers. A correction of a rounding
+    /// error would cost time that grows with its cube root.
+    [[nodiscard]] double rounding() const noexcept {
+        constexpr double epsilon = std::numeric_limits<double>::epsilon();
+        return epsilon * (std::max(std::abs(from.position), std::abs(target.position)) / 2 + 2 * brake.path());
+    }
+
+    [[nodiscard]] Profile profile(const Motion& motion) const noexcept {
+        Chain forward;
+        for (const Stretch& s : brake.stretches()) forward.add(s, 1);
+        for (const Stretch& s : motion.forward.stretches()) forward.add(s, 1);
+        return Profile{from, forward.stretches(), motion.backward.stretches(), target};
+    }
+
+    static constexpr double slack = 16 * std::numeric_limits<double>::epsilon();
+
+    MotionState from;
+    MotionState target;
+    FrameLimits limits;
+    Brake brake;
+    Problem problem;
+};
+
+}  // namespace taktwerk::axes
