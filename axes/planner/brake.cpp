@@ -59,15 +59,17 @@ void Brake::give_acceleration_back(const FrameLimits& l) noexcept {
     const double fall = l.down.ease;
     const double crossing = velocity_ < 0 ? crossing_square(velocity_, acceleration_, l) : 0;
     double end = acceleration_;
+    bool to_standstill = false;
     if (velocity_ < 0 && crossing > beyond * beyond) {
         end = beyond;
     } else if (acceleration_ > here) {
         end = here;
-        const bool crosses_first = velocity_ < 0 && crossing > here * here;
-        if (crosses_first) end = std::sqrt(crossing);
+        to_standstill = velocity_ < 0 && crossing > here * here;
+        if (to_standstill) end = std::sqrt(crossing);
     }
     if (end == acceleration_) return;
     add((acceleration_ - end) * fall, acceleration_, -l.down.jerk, end);
+    if (to_standstill) velocity_ = 0;
 }
 
 /// Returns whether there was anything to give back.

@@ -51,11 +51,11 @@ void add_reversed(Chain& chain, std::span<const Stretch> stretches, double sign)
     }
 }
 
-Extremal in_time(const Problem& problem, double time, std::span<const Curve> curves) noexcept {
+Extremal in_time(const Problem& problem, double time, double slack, std::span<const Curve> curves) noexcept {
     for (const Curve c : curves) {
         if (!may_exist(problem, c)) continue;
         const Problem p = in_frame(problem, c);
-        const Found found = is_peak(c) ? PeakFamily{p}.in_time(time) : TroughFamily{p}.in_time(time);
+        const Found found = is_peak(c) ? PeakFamily{p}.in_time(time, slack) : TroughFamily{p}.in_time(time, slack);
         if (found.found) return {c, found};
     }
     return {};
@@ -117,20 +117,20 @@ Extremal fastest(const Problem& problem, double rounding, const Ends& ends) noex
         const Found found = is_peak(c) ? PeakFamily{p}.over_way(rounding) : TroughFamily{p}.over_way(rounding);
         if (!found.found || found.duration >= best.found.duration) continue;
         best = {c, found};
-        if (only_one) break;
+        if (only_one && found.parameter > 0) break;  // at its very end a curve meets the next one
     }
     if (best.found.found || !ends.start_releases || !ends.end_releases) return best;
     return nearest(problem, curves);
 }
 
-Extremal furthest(const Problem& problem, double time) noexcept {
+Extremal furthest(const Problem& problem, double time, double slack) noexcept {
     constexpr std::array curves{Curve::peak_up, Curve::trough_up, Curve::early_trough_down};
-    return in_time(problem, time, curves);
+    return in_time(problem, time, slack, curves);
 }
 
-Extremal least_far(const Problem& problem, double time) noexcept {
+Extremal least_far(const Problem& problem, double time, double slack) noexcept {
     constexpr std::array curves{Curve::peak_down, Curve::trough_down, Curve::early_trough_up};
-    return in_time(problem, time, curves);
+    return in_time(problem, time, slack, curves);
 }
 
 Motion motion_of(const Problem& problem, const Extremal& extremal) noexcept {
@@ -140,7 +140,8 @@ Motion motion_of(const Problem& problem, const Extremal& extremal) noexcept {
     if (is_peak(extremal.curve)) {
         const PeakFamily::Motion m = PeakFamily{p}.at(extremal.found.parameter);
         add_climb(motion.forward, m.up, sign);
-        motion.forward.add({extremal.found.cruise, 0, 0, 0}, sign);
+        // The cruise keeps its velocity to the last bit: over a long one the least difference would add up.
+        if (extremal.found.cruise > 0) motion.forward.add({extremal.found.cruise, 0, 0, m.peak_velocity - m.up.end_velocity()}, sign);
         add_descent(motion.backward, m.back, sign);
         // Both halves have no acceleration where they meet.
         if (!(extremal.found.cruise > 0) && p.limits.down.ease > 0) motion.forward.join(motion.backward);

@@ -59,9 +59,9 @@ struct Ends {
 /// The fastest motion over the problem's way, known to `rounding`. Always found where both ends release.
 [[nodiscard]] Extremal fastest(const Problem& problem, double rounding, const Ends& ends) noexcept;
 
-/// The motion of duration `time` whose way is the longest (or, of the mirrored problem, the shortest) of all.
-[[nodiscard]] Extremal furthest(const Problem& problem, double time) noexcept;
-[[nodiscard]] Extremal least_far(const Problem& problem, double time) noexcept;
+/// The motion of duration `time` whose way is the longest of all, or the shortest. Times known to `slack`.
+[[nodiscard]] Extremal furthest(const Problem& problem, double time, double slack) noexcept;
+[[nodiscard]] Extremal least_far(const Problem& problem, double time, double slack) noexcept;
 
 /// Its stretches.
 [[nodiscard]] Motion motion_of(const Problem& problem, const Extremal& extremal) noexcept;

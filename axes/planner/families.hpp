@@ -38,9 +38,8 @@ public:
     /// no more will do.
     [[nodiscard]] Found over_way(double known_to) const noexcept;
     /// The motion that takes `time`: it goes further up than any other of that duration.
-    [[nodiscard]] Found in_time(double time) const noexcept;
-    /// The shortest duration in the family.
-    [[nodiscard]] double shortest() const noexcept { return at(0).duration(); }
+    /// A time outside the family's by no more than `slack` is taken for its end.
+    [[nodiscard]] Found in_time(double time, double slack) const noexcept;
 
     /// Rate of the end over the duration, d way / d time, along the family. It rises with x.
     [[nodiscard]] double rate(const Motion& m) const noexcept;
@@ -82,9 +81,7 @@ public:
     [[nodiscard]] Motion at(double u) const noexcept;
 
     [[nodiscard]] Found over_way(double known_to) const noexcept;
-    [[nodiscard]] Found in_time(double time) const noexcept;
-    [[nodiscard]] double shortest() const noexcept { return at(0).duration(); }
-    [[nodiscard]] double longest() const noexcept { return at(widest_).duration(); }
+    [[nodiscard]] Found in_time(double time, double slack) const noexcept;
 
     /// d way / d time along the family: falls and then rises with the parameter's trough.
     [[nodiscard]] double rate(const Motion& m) const noexcept;

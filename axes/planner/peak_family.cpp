@@ -16,8 +16,12 @@ PeakFamily::PeakFamily(const Problem& problem) noexcept : problem_{problem}, bac
     const double start = problem.released0;
     const double end = released1_ = released_velocity(problem.v1, -problem.a1, back_limits_);
     // v1 - v0 first: where both are large and close, it is exact.
-    double gap = (problem.v1 - problem.v0) + (release(-problem.a1, back_limits_) - release(problem.a0, problem.limits));
+    const double release0 = release(problem.a0, problem.limits);
+    const double release1 = release(-problem.a1, back_limits_);
+    double gap = (problem.v1 - problem.v0) + (release1 - release0);
     if (problem.braked) gap = end - start;
+    // Equal as far as the numbers can tell is equal: the root of a rounding error is not small.
+    if (std::abs(gap) <= 4 * epsilon * (std::abs(problem.v0) + std::abs(problem.v1) + std::abs(release0) + std::abs(release1))) gap = 0;
     excess_start_ = std::max(gap, 0.0);
     excess_end_ = std::max(-gap, 0.0);
     floor_velocity_ = std::max(start, end);
@@ -26,10 +30,12 @@ PeakFamily::PeakFamily(const Problem& problem) noexcept : problem_{problem}, bac
 }
 
 PeakFamily::Motion PeakFamily::at(double x) const noexcept {
-    const double e = excess(x);
+    const bool at_limit = x == widest_;
+    const double top = std::max(problem_.limits.up.velocity, floor_velocity_);
+    const double e = at_limit ? top - floor_velocity_ : excess(x);
     return {Ramp{climb_above_release(problem_.v0, problem_.a0, problem_.released0, excess_start_ + e, problem_.limits), problem_.limits},
             Ramp{climb_above_release(problem_.v1, -problem_.a1, released1_, excess_end_ + e, back_limits_), back_limits_},
-            floor_velocity_ + e};
+            at_limit ? top : floor_velocity_ + e};
 }
 
 double PeakFamily::rate(const Motion& m) const noexcept {
@@ -123,10 +129,10 @@ Found PeakFamily::over_way(double known_to) const noexcept {
     return result(bracketed_root(difference, low, high, together(0.63), true));
 }
 
-Found PeakFamily::in_time(double time) const noexcept {
-    const Motion lowest = at(0);
-    if (time < lowest.duration()) return {};
-    if (!(time > 0)) return {true, 0, 0, time};
+Found PeakFamily::in_time(double time, double slack) const noexcept {
+    const double shortest = at(0).duration();
+    if (time < shortest - slack) return {};
+    if (time <= shortest) return {true, 0, 0, time};
     // A climb of e takes at least e/a, and at least sqrt(2 e / j).
     const double hardest = std::min(std::max(problem_.limits.up.speeding_up, problem_.limits.up.slowing_down),
                                     std::max(back_limits_.up.speeding_up, back_limits_.up.slowing_down));

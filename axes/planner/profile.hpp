@@ -11,7 +11,8 @@ namespace taktwerk::axes {
 
 /// One piece of motion: `acceleration` at its beginning, then constant `jerk` for `duration`. s, u/s2, u/s3.
 /// Without a jerk limit the acceleration jumps from one stretch to the next; otherwise it continues. Without an acceleration limit the
-/// velocity jumps as well, by `velocity_step` before the stretch; a stretch of no duration is such a jump alone.
+/// velocity jumps as well, by `velocity_step` before the stretch; a stretch of no duration is such a jump alone. (Before a cruise it
+/// takes the rounding errors of the velocity away.)
 struct Stretch {
     double duration = 0;
     double acceleration = 0;

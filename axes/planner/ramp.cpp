@@ -16,19 +16,24 @@ Ramp::Ramp(const Climb& c, const FrameLimits& limits) noexcept : limits_{limits}
     const double rise = limits.up.ease;
     const double fall = limits.down.ease;
     if (limits.jerk_free()) {
-        if (c.v0 < 0) gain(std::min(c.v1, 0.0) - c.v0, before);
-        if (c.v1 > 0) gain(c.v1 - std::max(c.v0, 0.0), after);
+        if (c.v0 < 0 && c.v1 > 0) {
+            gain(-c.v0, before);
+            gain(c.v1, after);
+        } else {
+            gain(c.fall_square, c.v1 > 0 ? after : before);
+        }
         return;
     }
     if (before == after || !(c.lowest < 0 && c.v1 > 0)) {
-        leg(c.a0, c.a1, c.fall_square, c.rise_square, c.v1 > 0 ? after : before);
+        // At standstill alone, acceleration only comes and goes: whichever side it is of has it.
+        const double bound = c.v1 > 0 ? after : (c.lowest < 0 ? before : std::max(before, after));
+        leg(c.a0, c.a1, c.fall_square, c.rise_square, bound);
         return;
     }
     // Two legs. The first one may arrive at velocity 0 only with what the second one can take over: its own limit, and what can
     // still be taken away before the end.
     const double room = fall > 0 ? std::sqrt(c.a1 * c.a1 + 2 * c.v1 / fall) : std::numeric_limits<double>::infinity();
     const double crossing = leg_to_standstill(c.a0, std::min({before, after, room}), before);
-    velocity_ = 0;
     const double difference = (c.a1 - crossing) * (c.a1 + crossing);
     const double fall_square = (2 * c.v1 - difference * rise) / (rise + fall);
     const double first_peak = peak_;

@@ -13,6 +13,7 @@ namespace taktwerk::axes {
 
 /// A climb from (v0, a0) to (v1, a1), a1 >= 0. The two differences of squares are given by who knows them without cancellation: with
 /// the peak p that the acceleration would reach without its limit, fall_square = p^2 - a1^2 and rise_square = p^2 - a0^2 (used for a0 > 0).
+/// Without a jerk limit there is no such peak; then fall_square is v1 - v0 itself.
 struct Climb {
     double v0 = 0;
     double a0 = 0;
@@ -36,6 +37,8 @@ public:
     /// Sum of the ways without regard to sign: the scale of rounding errors in travel().
     [[nodiscard]] double path() const noexcept { return path_; }
     [[nodiscard]] double duration() const noexcept { return duration_; }
+    /// As it comes out of the stretches: v1 but for rounding.
+    [[nodiscard]] double end_velocity() const noexcept { return velocity_; }
     /// The (last) highest acceleration, and the velocity at which it begins to fall.
     [[nodiscard]] double peak() const noexcept { return peak_; }
     [[nodiscard]] double turn_velocity() const noexcept { return turn_velocity_; }
@@ -64,8 +67,8 @@ private:
 /// velocity of 1000 still has all its digits.
 [[nodiscard]] inline Climb climb_above_release(double v, double a, double released, double excess, const FrameLimits& limits) noexcept {
     const double ease = limits.up.ease + limits.down.ease;
-    const double square = ease > 0 ? 2 * excess / ease : 0;
-    const double held = a > 0 ? a : 0.0;
+    const double square = ease > 0 ? 2 * excess / ease : excess;
+    const double held = a > 0 && ease > 0 ? a : 0.0;
     return {v, a, released + excess, 0, a < 0 ? released : v, square + held * held, square};
 }
 

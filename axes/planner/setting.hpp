@@ -42,12 +42,16 @@ struct Setting {
                   false,
                   limits} {}
 
-    /// Outside the limits, or bound to cross velocity 0 outside them. (Otherwise a brake only prevents what would come later.)
+    /// Outside the limits, or bound to cross velocity 0 outside them before the target. (Otherwise a brake only prevents what would
+    /// come later.)
     [[nodiscard]] bool start_is_outside() const noexcept {
         FrameLimits at_any_velocity = limits;
         at_any_velocity.up.velocity = at_any_velocity.down.velocity = std::numeric_limits<double>::infinity();
-        return limits.jerk_free() || !is_inside(from.velocity, from.acceleration, limits, 0) ||
-               !keeps_limits(from.velocity, from.acceleration, at_any_velocity, 0);
+        const double v = from.velocity;
+        const double a = from.acceleration;
+        const bool runs_away = a > 0 ? v > limits.up.velocity : -v > limits.down.velocity;
+        return limits.jerk_free() || runs_away || !is_inside(v, a, at_any_velocity, 0) ||
+               (v * target.velocity < 0 && !keeps_limits(v, a, at_any_velocity, 0));
     }
     [[nodiscard]] bool target_is_outside() const noexcept {
         return !is_inside(problem.v1, -problem.a1, limits.reversed().mirrored(), slack);
@@ -58,10 +62,18 @@ struct Setting {
     }
 
     /// What the way is known to: a few units in the last place of the positions and of what braking covers. A correction of a rounding
-    /// error would cost time that grows with its cube root.
+    /// error would cost time that grows with its cube root, and more where both ends move: a target just missed has to be approached
+    /// again. From rest or to rest one unit in the last place is a move.
     [[nodiscard]] double rounding() const noexcept {
         constexpr double epsilon = std::numeric_limits<double>::epsilon();
-        return epsilon * (std::max(std::abs(from.position), std::abs(target.position)) / 2 + 2 * brake.path());
+        const bool both_move = (problem.v0 != 0 || problem.a0 != 0) && (problem.v1 != 0 || problem.a1 != 0);
+        double known_to = std::max(std::abs(from.position), std::abs(target.position)) * (both_move ? 4 : 0.5) + 2 * brake.path();
+        if (both_move) {
+            // An acceleration known to its rounding is a time known to that over the jerk.
+            const double ease = std::max(limits.up.ease, limits.down.ease);
+            known_to += 2 * ease * (std::abs(problem.v0 * problem.a0) + std::abs(problem.v1 * problem.a1));
+        }
+        return epsilon * known_to;
     }
 
     [[nodiscard]] Profile profile(const Motion& motion) const noexcept {

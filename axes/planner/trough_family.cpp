@@ -22,10 +22,8 @@ TroughFamily::TroughFamily(const Problem& problem) noexcept : problem_{problem} 
     square_ = (2 * (problem.v1 - problem.v0) - difference * rise) / (rise + fall);
     // A start on the parabola into the end is on it also when rounding says it is beside it.
     const double rounding = 4 * epsilon * (2 * (std::abs(problem.v0) + std::abs(problem.v1)) / (rise + fall) + a1 * a1 + a0 * a0);
-    if (square_ < 0) {
-        if (square_ < -rounding) return;
-        square_ = 0;
-    }
+    if (square_ < -rounding) return;
+    if (square_ <= rounding) square_ = 0;
     widest_ = a1;
     if (a0 > 0) {
         // The peak is not below the start: trough^2 >= a0^2 - square.
@@ -33,8 +31,8 @@ TroughFamily::TroughFamily(const Problem& problem) noexcept : problem_{problem} 
         if (least_square > 0) {
             const double room = difference + square_;
             if (room < -rounding) return;
-            if (room < 0) square_ = -difference;
-            widest_ = std::max(room, 0.0) / (a1 + std::sqrt(std::max(a0 * a0 - square_, 0.0)));
+            if (std::abs(room) <= rounding) square_ = -difference;
+            widest_ = std::max(difference + square_, 0.0) / (a1 + std::sqrt(std::max(a0 * a0 - square_, 0.0)));
             widest_ = std::min(widest_, a1);
         }
     }
@@ -127,8 +125,13 @@ Found TroughFamily::over_way(double known_to) const noexcept {
     return {};
 }
 
-Found TroughFamily::in_time(double time) const noexcept {
-    if (!exists_ || time < shortest() || time > longest()) return {};
+Found TroughFamily::in_time(double time, double slack) const noexcept {
+    if (!exists_) return {};
+    const double shortest = at(0).duration();
+    const double longest = at(widest_).duration();
+    if (time < shortest - slack || time > longest + slack) return {};
+    if (time <= shortest) return {true, 0, 0, time};
+    if (time >= longest) return {true, widest_, 0, time};
     const double u = bracketed_root(
         [&](double x) noexcept -> RootSample {
             const Motion m = at(x);

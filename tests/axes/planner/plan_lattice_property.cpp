@@ -149,5 +149,29 @@ TEST(PlanLattice, NoMotionOfExhaustiveSearchIsFasterWithoutReachingAnyLimit) {
     compare(3, [](auto) { return LatticeLimits{12, 12, 4, 4, 4, 4}; });
 }
 
+// Any walk on the lattice proves that its end can be reached in the time it took: whatever times are left out, this one is not.
+TEST(PlanLattice, TheTimeOfEveryWalkHasASolution) {
+    std::mt19937_64 random{4};
+    const auto pick = [&](int low, int high) { return low + int(random() % std::uint64_t(high - low + 1)); };
+    for (std::size_t k = 0; k < property_cases(20'000); ++k) {
+        const int up = pick(1, 3), down = pick(1, 3), fastest = pick(1, 8);
+        const LatticeState start{pick(-1, 1), pick(-fastest / 2, fastest / 2), 0};
+        LatticeState s = start;
+        const int steps = pick(1, 12);
+        for (int i = 0; i < steps; ++i) {
+            const int jerk = pick(-1, 1);
+            const LatticeState to{s.a + jerk, s.v + 2 * s.a + jerk, s.p + 3 * s.v + 3 * s.a + jerk};
+            s = to.a <= up && -to.a <= down ? to : LatticeState{s.a, s.v + 2 * s.a, s.p + 3 * s.v + 3 * s.a};
+        }
+        // Velocity limits that both ends release into and the walk need not know.
+        const SignedLimits limits{{100, double(up), double(up), 1}, {100, double(down), double(down), 1}};
+        SCOPED_TRACE(::testing::Message() << "a, v, p from " << start.a << " " << start.v / 2.0 << " 0 to " << s.a << " " << s.v / 2.0
+                                          << " " << s.p << "/6 in " << steps << " limits " << up << " " << down);
+        const Plan plan = plan_in_time(start.real(), s.real(), steps, limits);
+        ASSERT_EQ(plan.error, PlanError::none);
+        ASSERT_NEAR(plan.profile.duration(), steps, 1e-9);
+    }
+}
+
 }  // namespace
 }  // namespace taktwerk::axes

@@ -41,7 +41,7 @@ std::vector<Profile> all_plans(const MotionCase& c, RandomMotion& random) {
 /// Sample times: a grid, and both ends of every piece.
 std::vector<double> sample_times(const Profile& profile) {
     std::vector<double> times;
-    for (int i = 0; i <= 100; ++i) times.push_back(profile.duration() * i / 100);
+    for (int i = 0; i <= 8; ++i) times.push_back(profile.duration() * i / 8);
     for (int i = 0; i < profile.piece_count(); ++i) times.push_back(profile.piece_end(i));
     std::sort(times.begin(), times.end());
     return times;
