@@ -56,18 +56,22 @@ public:
 
     /// Between velocities `low` and `high`; nothing where the ramps to the velocity that would do take too long.
     [[nodiscard]] std::optional<Motion> between(double low, double high) const noexcept {
-        // Counted from `low`: a bracket must not be negative.
-        const double c =
-            low + bracketed_root(
-                      [&](double x) noexcept -> RootSample {
-                          const At m = at(low + x);
-                          const double miss = m.travel(time_) - problem_.way;
-                          const double slope = (time_ - m.ramps()) + (m.first.fall_duration() + m.last.fall_duration()) / 2;
-                          const double rounding =
-                              2 * epsilon * (std::abs(problem_.way) + m.first.path() + m.last.path() + std::abs(m.velocity) * time_);
-                          return {miss, slope, rounding};
-                      },
-                      0, high - low, (high - low) / 2, true);
+        // Counted from standstill where that lies between: near it a velocity has all its digits.
+        double base = low;
+        double sign = 1;
+        double most = high - low;
+        if (low < 0 && high > 0) {
+            base = 0;
+            sign = at(0).travel(time_) <= problem_.way ? 1 : -1;
+            most = sign > 0 ? high : -low;
+        }
+        const auto miss_at = [&](double x) noexcept -> RootSample {
+            const At m = at(base + sign * x);
+            const double slope = (time_ - m.ramps()) + (m.first.fall_duration() + m.last.fall_duration()) / 2;
+            const double rounding = 2 * epsilon * (std::abs(problem_.way) + m.first.path() + m.last.path() + std::abs(m.velocity) * time_);
+            return {sign * (m.travel(time_) - problem_.way), slope, rounding};
+        };
+        const double c = base + sign * bracketed_root(miss_at, 0, most, most / 2, true);
         const At m = at(c);
         const double cruise = time_ - m.ramps();
         const double miss = std::abs(m.travel(time_) - problem_.way);

@@ -49,7 +49,10 @@ struct Setting {
         at_any_velocity.up.velocity = at_any_velocity.down.velocity = std::numeric_limits<double>::infinity();
         const double v = from.velocity;
         const double a = from.acceleration;
-        const bool runs_away = a > 0 ? v > limits.up.velocity : -v > limits.down.velocity;
+        // Beyond a velocity limit, and not on a sure way back inside.
+        const double released = released_velocity(v, a, limits);
+        const bool runs_away =
+            (v > limits.up.velocity && released > limits.up.velocity) || (-v > limits.down.velocity && -released > limits.down.velocity);
         return limits.jerk_free() || runs_away || !is_inside(v, a, at_any_velocity, 0) ||
                (v * target.velocity < 0 && !keeps_limits(v, a, at_any_velocity, 0));
     }

@@ -1,0 +1,117 @@
+// Motions to a moving state, short enough to calculate by hand.
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "axes/planner/plan.hpp"
+
+namespace taktwerk::axes {
+namespace {
+
+constexpr double unlimited = std::numeric_limits<double>::infinity();
+constexpr double tight = 1e-12;
+const MotionLimits unit_limits{.velocity = 10, .acceleration = 1, .deceleration = 1, .jerk = 1};
+
+TEST(PlanToState, PassesTheTargetAtItsVelocity) {
+    // 0 to 2 with a = j = 1: 1 s, 1 s, 1 s over the mean 1 u/s, 3 u. That is the fastest change of velocity: it ends there.
+    const Plan plan = plan_to_state({}, {3, 2, 0}, unit_limits);
+
+    ASSERT_EQ(plan.error, PlanError::none);
+    EXPECT_NEAR(plan.profile.duration(), 3, tight);
+    EXPECT_EQ(plan.profile.at(plan.profile.duration()), (MotionState{3, 2, 0}));
+    EXPECT_NEAR(plan.profile.at(4).position, 5, tight);  // and moves on
+}
+
+TEST(PlanToState, ATargetJustBehindAMovingStartIsApproachedAgain) {
+    // At 1 u/s, the target 0 u away is met at once; 1e-3 u behind it must be passed again from below: back and round.
+    const MotionState start{0, 1, 0};
+    EXPECT_EQ(plan_to_state(start, {0, 1, 0}, unit_limits).profile.duration(), 0);
+    EXPECT_GT(plan_to_state(start, {-1e-3, 1, 0}, unit_limits).profile.duration(), 4);
+    // 1e-3 u ahead: at most the 1e-3 s that going on takes.
+    EXPECT_LE(plan_to_state(start, {1e-3, 1, 0}, unit_limits).profile.duration(), 1e-3);
+}
+
+TEST(PlanToState, AccelerationOfOneSignIsKeptWhereThatIsFastest) {
+    // a from 1 to 2 with j = 1: 1 s, v grows by 1.5, p by v0 + 1/2 + 1/6. Taking it away and building it up again would be slower.
+    const MotionLimits limits{.velocity = 10, .acceleration = 5, .deceleration = 5, .jerk = 1};
+    const Plan plan = plan_to_state({0, 1, 1}, {1 + 2.0 / 3, 2.5, 2}, limits);
+
+    EXPECT_NEAR(plan.profile.duration(), 1, 1e-9);
+    EXPECT_NEAR(plan.profile.at(0.5).acceleration, 1.5, 1e-9);
+}
+
+TEST(PlanToState, LimitsPerSignAreKeptEachOnItsSide) {
+    // Up with a <= 1, down with a >= -2, no jerk limit, 12 u from rest to rest, v <= 4: 4 s over 8 u, 2 s over 4 u.
+    const SignedLimits limits{{4, 1, 1, unlimited}, {9, 2, 2, unlimited}};
+    const Plan plan = plan_to_state({}, {12, 0, 0}, limits);
+
+    EXPECT_NEAR(plan.profile.duration(), 6, tight);
+    EXPECT_NEAR(plan.profile.at(4).velocity, 4, tight);
+    EXPECT_NEAR(plan.profile.at(5).acceleration, -2, tight);
+}
+
+TEST(PlanToState, WithoutAccelerationLimitTheVelocityJumps) {
+    // 10 u at 4 u/s.
+    const SignedLimits limits{MotionLimits{4, unlimited, unlimited, unlimited}};
+    const Plan plan = plan_to_state({}, {10, 0, 0}, limits);
+
+    ASSERT_EQ(plan.error, PlanError::none);
+    EXPECT_NEAR(plan.profile.duration(), 2.5, tight);
+    EXPECT_NEAR(plan.profile.at(1).position, 4, tight);
+    EXPECT_NEAR(plan.profile.at(1).velocity, 4, tight);
+    EXPECT_EQ(plan.profile.at(2.5), (MotionState{10, 0, 0}));
+}
+
+TEST(PlanToState, WithoutVelocityAndAccelerationLimitOnlyTheJerkCounts) {
+    // 2 j t^3 = 2 u in 4 t.
+    const Plan plan = plan_to_state({}, {2, 0, 0}, MotionLimits{unlimited, unlimited, unlimited, 1});
+
+    EXPECT_NEAR(plan.profile.duration(), 4, tight);
+}
+
+TEST(PlanToState, EncoderCountsFarOutMoveByOneCount) {
+    // 2 j t^3 = 1 count with j = 5e10: t = 1e-11^(1/3), and the same at p = 1e9.
+    const MotionLimits counts{4e8, 2e9, 2e9, 5e10};
+    const double t = 4 * std::cbrt(1.0 / (2 * 5e10));
+    EXPECT_NEAR(plan_to_position({1e9, 0, 0}, 1e9 + 1, counts).profile.duration() / t, 1, tight);
+    EXPECT_NEAR(plan_to_position({-1e9, 0, 0}, -1e9 - 1, counts).profile.duration() / t, 1, tight);
+}
+
+TEST(PlanToState, ATargetOutsideTheLimitsIsRefused) {
+    EXPECT_EQ(plan_to_state({}, {1, 11, 0}, unit_limits).error, PlanError::target_outside_limits);
+    EXPECT_EQ(plan_to_state({}, {1, 0, 2}, unit_limits).error, PlanError::target_outside_limits);
+    // At the velocity limit with acceleration -1: before that the velocity was higher.
+    EXPECT_EQ(plan_to_state({}, {1, 10, -1}, unit_limits).error, PlanError::target_outside_limits);
+    EXPECT_EQ(plan_to_state({}, {std::nan(""), 0, 0}, unit_limits).error, PlanError::invalid_input);
+    EXPECT_EQ(plan_to_state({}, {0, 0, 1e31}, unit_limits).error, PlanError::out_of_bounds);
+    EXPECT_EQ(plan_to_state({}, {1, 0, 0}, MotionLimits{unlimited, unlimited, unlimited, unlimited}).error, PlanError::invalid_input);
+}
+
+TEST(PlanInTime, TheSameWayInALongerTimeIsSlower) {
+    // From rest to rest 6 u in 3 + 3 s at least (to 2 u/s and back); in 60 s at one velocity of a little more than 0.1 u/s.
+    EXPECT_NEAR(plan_to_position({}, 6, unit_limits).profile.duration(), 6, tight);
+    EXPECT_EQ(plan_in_time({}, {6, 0, 0}, 5.9, unit_limits).error, PlanError::no_solution);
+    EXPECT_NEAR(plan_in_time({}, {6, 0, 0}, 6, unit_limits).profile.max_speed(), 2, 1e-6);
+
+    const Plan plan = plan_in_time({}, {6, 0, 0}, 60, unit_limits);
+    ASSERT_EQ(plan.error, PlanError::none);
+    EXPECT_NEAR(plan.profile.duration(), 60, 1e-9);
+    // v (60 - 2 sqrt(v)) = 6: both ramps of 2 sqrt(v/j) at half the velocity.
+    const double v = plan.profile.max_speed();
+    EXPECT_NEAR(v * (60 - 2 * std::sqrt(v)), 6, 1e-9);
+}
+
+TEST(PlanInTime, AMovingTargetMayBeTooFastToWaitForAndTooSlowToComeRoundTo) {
+    // At 9 of 10 u/s, 9 u ahead at 9 u/s: 1 s as it is. In 1.05 s a dip of up to (1.05/4)^2 u/s will do: 0.036 u less than 9.45. Four u ahead and 9 u/s: too near
+    // to be there after 1 s, and coming round takes far longer.
+    const MotionState start{0, 9, 0};
+    EXPECT_EQ(plan_in_time(start, {9, 9, 0}, 1, unit_limits).error, PlanError::none);
+    EXPECT_EQ(plan_in_time(start, {9.43, 9, 0}, 1.05, unit_limits).error, PlanError::none);
+    EXPECT_EQ(plan_in_time(start, {4, 9, 0}, 1, unit_limits).error, PlanError::no_solution);
+    EXPECT_EQ(plan_in_time(start, {9, 9, 0}, -1, unit_limits).error, PlanError::invalid_input);
+}
+
+}  // namespace
+}  // namespace taktwerk::axes
