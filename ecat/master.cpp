@@ -126,6 +126,7 @@ Master::Phase Master::phase() const noexcept { return static_cast<Phase>(impl_->
 std::string Master::progress() const { return impl_->bus->progress; }
 const Error& Master::failure() const { return impl_->failure; }
 std::span<const std::string> Master::notes() const noexcept { return impl_->bus->notes; }
+Bus& Master::bus() noexcept { return *impl_->bus; }
 
 SdoTicket Master::Impl::add_job(std::size_t slave, std::uint16_t index, std::uint8_t sub, std::optional<std::vector<std::byte>> value) {
     const SdoTicket ticket = next_ticket++;

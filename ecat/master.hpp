@@ -35,6 +35,8 @@
 
 namespace taktwerk::ecat {
 
+struct Bus;
+
 /// What the cycle knows about a slave's process data. Trivially copyable.
 struct SlaveHealth {
     AlState al_state = AlState::unknown;
@@ -92,6 +94,8 @@ public:
     [[nodiscard]] const Error& failure() const;
     /// What happened since start() that an engineer wants to read: slaves that fell and came back. Newest last.
     [[nodiscard]] std::span<const std::string> notes() const noexcept;
+    /// What the scripts share, for diagnosis (ecat/diagnosis/): scripts of one's own may run on its port. Valid until start().
+    [[nodiscard]] Bus& bus() noexcept;
 
     [[nodiscard]] SdoTicket upload(std::size_t slave, std::uint16_t index, std::uint8_t sub);
     [[nodiscard]] SdoTicket download(std::size_t slave, std::uint16_t index, std::uint8_t sub, std::span<const std::byte> data);
