@@ -17,6 +17,7 @@ inline constexpr AlarmId slave_lost = 0x1011;
 inline constexpr AlarmId slave_left_op = 0x1012;
 inline constexpr AlarmId dc_out_of_sync = 0x1020;
 inline constexpr AlarmId dc_not_locked = 0x1021;
+inline constexpr AlarmId slave_emergency = 0x1040;
 }  // namespace alarm
 
 inline constexpr std::array bus_alarms{
@@ -54,6 +55,10 @@ inline constexpr std::array bus_alarms{
               "控制周期未与参考时钟同步（偏差 {a} ns）", "the reference clock does not answer or jumped, or the cycle runs unevenly",
               "check the reference slave, lost frames and the cycle's lateness", ResetRule::self_clearing, Reaction::warn,
               "outputs may miss SYNC0: drives supervise that themselves"},
+    AlarmInfo{alarm::slave_emergency, "slave_emergency", "The slave sent emergency 0x{a:x} (error register 0x{b:x})",
+              "从站发出紧急报文 0x{a:x}（错误寄存器 0x{b:x}）", "the slave found an error of its own; the code is that of its object 603Fh",
+              "look the code up in the device's manual; goes when the slave says that the error is gone, or starts anew",
+              ResetRule::self_clearing, Reaction::warn, "the drive reacts by its own fault reaction"},
 };
 
 }  // namespace taktwerk::ecat

@@ -126,6 +126,7 @@ Master::Phase Master::phase() const noexcept { return static_cast<Phase>(impl_->
 std::string Master::progress() const { return impl_->bus->progress; }
 const Error& Master::failure() const { return impl_->failure; }
 std::span<const std::string> Master::notes() const noexcept { return impl_->bus->notes; }
+std::span<const SlaveEmergency> Master::emergencies() const noexcept { return impl_->bus->emergencies.entries(); }
 
 SdoTicket Master::Impl::add_job(std::size_t slave, std::uint16_t index, std::uint8_t sub, std::optional<std::vector<std::byte>> value) {
     const SdoTicket ticket = next_ticket++;
@@ -238,6 +239,7 @@ std::size_t Master::active_faults(std::span<AlarmFact> out) const noexcept {
             raise(alarm::slave_left_op, AlarmSource::slave, s, static_cast<double>(state.al_state), state.al_status_code);
         if (!state.fresh && state.age >= impl_->config.lost_frames_limit)
             raise(alarm::working_counter_wrong, AlarmSource::slave, s, state.age);
+        if (state.emergency_code != 0) raise(alarm::slave_emergency, AlarmSource::slave, s, state.emergency_code, state.error_register);
     }
     constexpr std::int64_t sync_limit_ns = 3000;  // SV33-E P0A.32 default
     if (seen.dc_difference_ns > sync_limit_ns)

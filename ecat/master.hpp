@@ -29,6 +29,7 @@
 #include "core/result.hpp"
 #include "core/time.hpp"
 #include "ecat/bus_config.hpp"
+#include "ecat/coe/emergency_log.hpp"
 #include "ecat/dc/cycle_servo.hpp"
 #include "ecat/transport/transport.hpp"
 #include "ecat/wire/al_status.hpp"
@@ -40,10 +41,12 @@ struct SlaveHealth {
     AlState al_state = AlState::unknown;
     bool al_error = false;
     std::uint16_t al_status_code = 0;
-    bool fresh = false;     ///< its inputs were exchanged in the last receive(), with the right working counter
-    bool due = true;        ///< its sync unit was to be exchanged in that cycle; false between the instants of a slower unit
-    std::uint32_t age = 0;  ///< exchanges missed since they were, in periods of its sync unit
-    Instant latched{};      ///< when its inputs were latched (SYNC0 instant, or frame time); of the last fresh exchange
+    std::uint16_t emergency_code = 0;  ///< of its last emergency; 0: none, or the slave has taken it back
+    std::uint8_t error_register = 0;   ///< 1001h, of that emergency
+    bool fresh = false;                ///< its inputs were exchanged in the last receive(), with the right working counter
+    bool due = true;                   ///< its sync unit was to be exchanged in that cycle; false between the instants of a slower unit
+    std::uint32_t age = 0;             ///< exchanges missed since they were, in periods of its sync unit
+    Instant latched{};                 ///< when its inputs were latched (SYNC0 instant, or frame time); of the last fresh exchange
 };
 
 /// Counters since start; never reset by the master.
@@ -92,6 +95,8 @@ public:
     [[nodiscard]] const Error& failure() const;
     /// What happened since start() that an engineer wants to read: slaves that fell and came back. Newest last.
     [[nodiscard]] std::span<const std::string> notes() const noexcept;
+    /// What slaves sent unasked since start(), newest last; the newest hundred. Valid until the next step().
+    [[nodiscard]] std::span<const SlaveEmergency> emergencies() const noexcept;
 
     [[nodiscard]] SdoTicket upload(std::size_t slave, std::uint16_t index, std::uint8_t sub);
     [[nodiscard]] SdoTicket download(std::size_t slave, std::uint16_t index, std::uint8_t sub, std::span<const std::byte> data);

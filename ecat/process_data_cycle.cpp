@@ -95,6 +95,9 @@ void ProcessDataCycle::collect_frames(CyclePlan& cycle) noexcept {
         health.al_state = al_state(static_cast<std::uint16_t>(al));
         health.al_error = (al & al_status_error) != 0;
         health.al_status_code = static_cast<std::uint16_t>(al >> 16);
+        const std::uint32_t emergency = cycle.slaves[s]->mailbox.emergency.load(std::memory_order_relaxed);
+        health.emergency_code = static_cast<std::uint16_t>(emergency);
+        health.error_register = static_cast<std::uint8_t>(emergency >> 16);
         if (!cycle.plan.slaves[s].unit) health.fresh = !any_lost_ && health.al_state != AlState::unknown;
     }
     if (auto* link = link_.load(std::memory_order_acquire)) {

@@ -131,6 +131,7 @@ struct Bus {
     std::string progress;
     /// Hands the plan to the cycle: from now on process data is exchanged.
     std::function<void()> publish;
+    EmergencyLog emergencies;
     std::vector<std::string> notes;  ///< recoveries and other remarkable things, newest last
 
     void note(const BusSlave& slave, const std::string& doing) { progress = slave.subject + " " + doing; }

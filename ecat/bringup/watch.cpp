@@ -64,7 +64,10 @@ Script<void> watch(Bus& bus, BusSlave& slave) {
 
 Script<void> keep_alive(Bus& bus) {
     std::vector<Script<void>> scripts;
-    for (auto& slave : bus.slaves) scripts.push_back(watch(bus, *slave));
+    for (auto& slave : bus.slaves) {
+        scripts.push_back(watch(bus, *slave));
+        if (slave->has_coe()) scripts.push_back(listen(bus.port, slave->mailbox));
+    }
     scripts.push_back(watch_reference(bus));
     co_await all(std::move(scripts));
 }

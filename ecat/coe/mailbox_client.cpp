@@ -16,6 +16,7 @@ using Bytes = std::vector<std::byte>;
 /// With mapped status the slave is asked all the same, rarely: process data may not be exchanged.
 constexpr Duration mapped_status_doubt = std::chrono::milliseconds{20};
 constexpr Duration busy_pause = std::chrono::milliseconds{10};  ///< after "no memory" and "in work"
+constexpr Duration settled = std::chrono::milliseconds{5};      ///< a mapped flag may still show what was just read
 constexpr int drain_limit = 16;                                 ///< messages; a slave that never stops is not waited for
 
 std::uint16_t sm_register(std::uint8_t sm, std::uint16_t offset) { return static_cast<std::uint16_t>(reg::sync_manager_at(sm) + offset); }
@@ -291,6 +292,19 @@ Script<Result<void>> read_unasked(DatagramPort& port, MailboxEndpoint& mailbox) 
     const Instant now = co_await time();
     const std::string about = "reading its mailbox";
     co_return co_await drain(port, mailbox, about, now + sdo_timeout);
+}
+
+Script<void> listen(DatagramPort& port, MailboxEndpoint& mailbox) {
+    Instant asked = co_await time();
+    for (;;) {
+        const Instant now = co_await pause(settled);
+        const bool flagged = mailbox.flag.mapped() && mailbox.flag.set();
+        const bool ask_now = !mailbox.flag.mapped() && now - asked >= unasked_poll_period;
+        if (mailbox.lock.taken() || !(flagged || ask_now)) continue;
+        asked = now;
+        const Result<void> read = co_await read_unasked(port, mailbox);
+        (void)read;  // a slave that does not answer is the business of whoever watches its state
+    }
 }
 
 }  // namespace taktwerk::ecat

@@ -100,4 +100,9 @@ struct MailboxRequest {
 /// Ends when it is empty.
 [[nodiscard]] Script<Result<void>> read_unasked(DatagramPort& port, MailboxEndpoint& mailbox);
 
+/// Without end: read_unasked() whenever something waits and no conversation is going on. Where the status is not mapped the
+/// slave is asked every unasked_poll_period.
+[[nodiscard]] Script<void> listen(DatagramPort& port, MailboxEndpoint& mailbox);
+inline constexpr Duration unasked_poll_period = std::chrono::milliseconds{100};
+
 }  // namespace taktwerk::ecat

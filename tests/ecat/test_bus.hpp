@@ -83,6 +83,7 @@ public:
         ++exchanges;
     }
     void outputs_lost(Instant) override { ++watchdogs; }
+    void raise(const Emergency& emergency) { send_emergency(emergency); }
     Instant last_exchange{};
     int exchanges = 0, watchdogs = 0;
 
