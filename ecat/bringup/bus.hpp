@@ -37,9 +37,8 @@ struct MailboxBits {
     std::array<std::atomic<std::uint64_t>, MailboxStatusPlan::max_size / 8> words{};
     std::atomic<std::uint32_t> exact{0};  ///< answers to which every slave with a bit contributed; wraps
 
-    [[nodiscard]] bool full(std::uint32_t bit) const noexcept {
-        return bit / 64 < words.size() && ((words[bit / 64].load(std::memory_order_relaxed) >> (bit % 64)) & 1u) != 0;
-    }
+    /// For a slave's mailbox, once its FMMU is programmed.
+    [[nodiscard]] MailboxFlag flag(std::uint32_t bit) const noexcept { return {&words[bit / 64], bit % 64}; }
     /// By the cycle, with the data of the datagram. Real-time safe.
     void publish(std::span<const std::byte> data, bool all_contributed) noexcept {
         for (std::size_t w = 0; w * 8 < data.size() && w < words.size(); ++w) {
