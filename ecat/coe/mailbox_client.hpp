@@ -82,7 +82,7 @@ inline constexpr Duration mailbox_forgets_after = std::chrono::seconds{10};
 struct MailboxRequest {
     std::string about;               ///< for messages: "reading 1C12h:00"
     std::vector<std::byte> payload;  ///< the CoE message
-    /// Whether a CoE message is the answer; others are skipped.
+    /// Whether a CoE message is the answer; others are skipped. Empty: there will be none.
     std::function<bool(std::span<const std::byte>)> answered_by;
 };
 

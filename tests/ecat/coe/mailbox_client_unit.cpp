@@ -138,7 +138,7 @@ protected:
             if (lost == 0) frames = bench.frames;
             if (HasFatalFailure()) return;
         }
-        EXPECT_GE(frames, 7u) << "a list: one request, three fragments of two frames each";
+        EXPECT_GE(frames, 6u) << "three messages of two frames each: request and reading";
     }
 };
 
