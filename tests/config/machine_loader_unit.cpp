@@ -290,6 +290,15 @@ TEST(MachineLoader, PointsAreObjectsOfTheirSlave) {
     EXPECT_EQ(loaded.machine.io[1].index, 0x60FD);
 }
 
+TEST(MachineLoader, SlavesAreExchangedAtTheRateOfTheirSyncUnit) {
+    const auto bus = must_load(source + "/tests/config/good/sync_units.yaml").machine.bus;
+    ASSERT_EQ(bus.slaves.size(), 3u);
+    EXPECT_EQ(ecat::exchange_period(bus, bus.slaves[0]), 1ms);
+    EXPECT_EQ(ecat::exchange_period(bus, bus.slaves[1]), 10ms);
+    EXPECT_EQ(ecat::exchange_period(bus, bus.slaves[2]), 10ms);
+    EXPECT_EQ(bus.slaves[1].sync_unit, "station");
+}
+
 TEST(MachineLoader, SimulateReplacesTheInterfaceOnly) {
     auto options = without_programs();
     EXPECT_EQ(must_load(source + "/tests/config/good/units.yaml", options).machine.bus.interface, "eth0");
