@@ -134,7 +134,7 @@ int run_real(LoadedFile loaded, const Options& options) {
     if (loaded.machine.bus.interface.empty()) {
         world = std::make_unique<World>(loaded.machine, clock.now());
     } else {
-        auto opened = ecat::RawSocketTransport::open(loaded.machine.bus.interface);
+        auto opened = ecat::RawSocketTransport::open(loaded.machine.bus.interface, {.clock = &clock});
         if (!opened) {
             print_error(opened.error());
             return exit_bus;

@@ -58,8 +58,11 @@ struct BusStatistics {
     std::int64_t dc_drift_ppb = 0;       ///< how fast dc_offset_ns changes, ns per s: what the servo follows
     std::int64_t dc_phase_error_ns = 0;  ///< how much later than it should the last frame left, in the reference's time
     Duration dc_correction{};            ///< of the period that follows: what the servo asks for
-    DcLock dc_lock = DcLock::none;       ///< of the master's cycle to the reference clock
-    std::uint64_t dc_rejected = 0;       ///< reference times that were missing or implausible
+    /// From the arrival of a cycle's last byte at a slave to the SYNC0 that is to find it, measured by the reference clock; the
+    /// least of all slaves, in the last cycle and since OP. Below 0: too late. 0 while no slave runs SYNC0.
+    std::int64_t sync0_margin_ns = 0, sync0_margin_least_ns = 0;
+    DcLock dc_lock = DcLock::none;  ///< of the master's cycle to the reference clock
+    std::uint64_t dc_rejected = 0;  ///< reference times that were missing or implausible
 };
 
 /// An SDO request in flight. Obtained from upload()/download(); polled from the service side.

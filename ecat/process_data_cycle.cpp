@@ -4,6 +4,7 @@
 
 #include "core/bytes.hpp"
 #include "ecat/dc/propagation.hpp"
+#include "ecat/dc/sync0_budget.hpp"
 
 namespace taktwerk::ecat {
 
@@ -107,8 +108,9 @@ void ProcessDataCycle::collect_frames(CyclePlan& cycle) noexcept {
 void ProcessDataCycle::collect_first_frame(CyclePlan& cycle, SlotId slot) noexcept {
     const bool answered = exchange_.state(slot) == SlotState::answered;
     if (cycle.reference) {
-        if (answered) clock_.answer(exchange_.data(slot, 0), exchange_.wkc(slot, 0), exchange_.sent_at(slot));
+        if (answered) clock_.answer(exchange_.data(slot, 0), exchange_.wkc(slot, 0), exchange_.departed_at(slot));
         else clock_.no_answer();
+        measure_margin(cycle, slot);
     }
     auto* link = link_.load(std::memory_order_acquire);
     if (!answered || link == nullptr) return;
@@ -118,6 +120,32 @@ void ProcessDataCycle::collect_first_frame(CyclePlan& cycle, SlotId slot) noexce
     if (cycle.plan.mailbox.size > 0)
         link->mailbox.publish(exchange_.data(slot, cycle.state_number + 1),
                               exchange_.wkc(slot, cycle.state_number + 1) == cycle.plan.mailbox.expected_wkc);
+}
+
+/// From the arrival of the last byte of the frames at each slave to the SYNC0 that was to find them there.
+void ProcessDataCycle::measure_margin(const CyclePlan& cycle, SlotId slot) noexcept {
+    const auto passed = clock_.passed_reference();
+    if (!passed) return;
+    std::size_t bytes = 0, frames = 0;
+    for (const SlotId frame : cycle.frames) {
+        if (frame.generation == 0) continue;
+        bytes += exchange_.frame_size(frame);
+        ++frames;
+    }
+    const std::int64_t through = *passed + flight_time(bytes, frames, 0).count();
+    const std::int64_t due = nanoseconds(exchange_.sent_at(slot)) + clock_.offset_at(exchange_.sent_at(slot));
+    std::optional<std::int64_t> least;
+    for (std::size_t s = 0; s < cycle.slaves.size(); ++s) {
+        const std::int64_t start = sync0_of(cycle, s);
+        if (start == 0 || due < start) continue;
+        const std::int64_t margin = next_sync0(due + 1, start, cycle.period[s].count()) - (through + cycle.delay[s]);
+        least = least ? std::min(*least, margin) : margin;
+    }
+    if (!least) return;
+    statistics_.sync0_margin_ns = *least;
+    if (!operational_.load(std::memory_order_relaxed)) return;
+    statistics_.sync0_margin_least_ns = margin_known_ ? std::min(statistics_.sync0_margin_least_ns, *least) : *least;
+    margin_known_ = true;
 }
 
 bool ProcessDataCycle::answered_exactly(const CyclePlan& cycle, const UnitPlan& unit) noexcept {

@@ -75,6 +75,7 @@ public:
 private:
     void collect_frames(CyclePlan& cycle) noexcept;
     void collect_first_frame(CyclePlan& cycle, SlotId slot) noexcept;
+    void measure_margin(const CyclePlan& cycle, SlotId slot) noexcept;
     /// All datagrams of the unit or nothing.
     void take_unit(CyclePlan& cycle, const UnitPlan& unit) noexcept;
     [[nodiscard]] bool answered_exactly(const CyclePlan& cycle, const UnitPlan& unit) noexcept;
@@ -102,6 +103,7 @@ private:
     // Of the cycle.
     bool all_good_ = true;
     bool any_lost_ = false;
+    bool margin_known_ = false;
 };
 
 }  // namespace taktwerk::ecat

@@ -217,8 +217,9 @@ Script<Result<void>> await_clocks(Bus& bus) {
 
 Script<Result<void>> await_lock(Bus& bus) {
     const bool needed = std::any_of(bus.slaves.begin(), bus.slaves.end(), [](const auto& slave) { return slave->config->dc && slave->dc; });
-    bus.runs_sync0.store(bus.reference && needed);
-    if (!bus.reference || !needed) co_return Result<void>{};
+    const bool required = bus.reference && needed && bus.config.lock_required;
+    bus.runs_sync0.store(required);
+    if (!required) co_return Result<void>{};
     bus.progress = "waiting for the cycle to lock to the reference clock";
     const Instant started = co_await time();
     for (;;) {

@@ -38,7 +38,7 @@ public:
     /// ns / 65536 in `period`, without the rounding of drift_ppb().
     [[nodiscard]] std::int64_t drift_in(Duration period) const noexcept;
     /// The offset is more than a first impression; its drift may not be.
-    [[nodiscard]] bool measured() const noexcept { return in_a_row_ >= memory / 16; }
+    [[nodiscard]] bool measured() const noexcept { return samples_ >= memory / 16; }
     /// Enough samples since the last new start to act on.
     [[nodiscard]] bool settled() const noexcept { return in_a_row_ >= memory / 4; }
     [[nodiscard]] Instant last_sample() const noexcept { return at_; }
