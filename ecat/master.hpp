@@ -51,6 +51,7 @@ struct BusStatistics {
     std::uint64_t frames_sent = 0, frames_received = 0, frames_lost = 0, frames_late = 0, frames_rejected = 0;
     std::uint64_t frames_foreign = 0;  ///< EtherCAT frames of another master on the cable
     std::uint64_t working_counter_errors = 0, send_errors = 0;
+    std::uint16_t slaves_answering = 0;  ///< in the last cyclic frame that came back
     std::uint32_t lost_in_a_row = 0;
     std::int64_t dc_difference_ns = 0;   ///< worst 092Ch seen in the last service round
     Duration round_trip{};               ///< of the last answered cyclic frame
@@ -119,6 +120,8 @@ public:
     [[nodiscard]] Duration period_correction() const noexcept;
     /// The conditions of alarms() that hold now, at most out.size(). Returns how many.
     std::size_t active_faults(std::span<AlarmFact> out) const noexcept;
+    /// More words about one of them, for whoever shows it: which cable, which reason. May be empty. Service side.
+    [[nodiscard]] std::string detail(const AlarmFact& fact) const;
     /// When the drives will apply the outputs that the next send() carries: the next SYNC0, or the send itself without DC.
     [[nodiscard]] Instant outputs_effective(std::size_t slave, Instant send_time) const noexcept;
     /// Called by send() with each frame as it goes out, and by receive() with each as it came in: recorder, pcap. May be null.

@@ -20,6 +20,7 @@ CyclePlan::CyclePlan(const Bus& bus)
       outputs(bus.plan.output_bytes),
       inputs(bus.plan.input_bytes),
       health(bus.slaves.size()),
+      faults(fault_slaves(bus), static_cast<std::uint16_t>(std::max(bus.found.size(), bus.slaves.size())), bus.config.lost_frames_limit),
       frames(bus.plan.frames),
       places(bus.plan.datagrams.size()),
       under_way(bus.plan.units.size(), 0) {
@@ -27,8 +28,8 @@ CyclePlan::CyclePlan(const Bus& bus)
         slaves.push_back(slave.get());
         period.push_back(exchange_period(bus.config, *slave->config));
         delay.push_back(slave->dc_delay);
-        ++state_wkc;
     }
+    state_wkc = static_cast<std::uint16_t>(std::max(bus.found.size(), bus.slaves.size()));
     if (bus.reference) reference = bus.slaves[*bus.reference]->found.station;
 }
 
@@ -48,16 +49,18 @@ void ProcessDataCycle::copy_statistics() noexcept {
     statistics_.frames_lost = s.lost;
     statistics_.frames_late = s.late;
     statistics_.frames_rejected = s.rejected + s.duplicate;
-    statistics_.frames_foreign = s.foreign;
     statistics_.send_errors = s.send_errors;
+    statistics_.frames_foreign = s.foreign;
     statistics_.dc_rejected = clock_.reference().rejected();
     statistics_.dc_offset_ns = clock_.offset().value_or(0);
     statistics_.dc_drift_ppb = clock_.reference().drift_ppb();
     statistics_.dc_lock = clock_.lock();
     statistics_.dc_phase_error_ns = clock_.phase_error();
     statistics_.dc_correction = clock_.correction();
-    if (const auto* link = link_.load(std::memory_order_acquire))
+    if (auto* link = link_.load(std::memory_order_acquire)) {
+        link->foreign_frames.store(s.foreign, std::memory_order_relaxed);
         statistics_.dc_difference_ns = link->dc_difference_ns.load(std::memory_order_relaxed);
+    }
 }
 
 void ProcessDataCycle::pump(Instant now) noexcept {
@@ -70,8 +73,29 @@ void ProcessDataCycle::pump(Instant now) noexcept {
 void ProcessDataCycle::receive(Instant now) noexcept {
     exchange_.receive(now);
     channel_.collect(now);
-    if (auto* cycle = latest_.load(std::memory_order_acquire)) collect_frames(*cycle);
+    auto* cycle = latest_.load(std::memory_order_acquire);
+    if (cycle != nullptr) collect_frames(*cycle);
     copy_statistics();
+    if (cycle != nullptr) find_faults(*cycle);
+}
+
+void ProcessDataCycle::find_faults(CyclePlan& cycle) noexcept {
+    for (std::size_t s = 0; s < cycle.slaves.size(); ++s) {
+        const auto& health = cycle.health[s];
+        const auto& slave = *cycle.slaves[s];
+        cycle.faults.condition(s) = {health.al_state,
+                                     health.al_error,
+                                     health.al_status_code,
+                                     health.age,
+                                     slave.presence.load(std::memory_order_relaxed),
+                                     slave.trouble.load(std::memory_order_relaxed),
+                                     slave.attempts.load(std::memory_order_relaxed),
+                                     slave.mailbox_silent.load(std::memory_order_relaxed)};
+    }
+    const auto* link = link_.load(std::memory_order_acquire);
+    cycle.faults.look({transport_.link_up(), statistics_.lost_in_a_row, statistics_.slaves_answering,
+                       clock_.reference().rejected_in_a_row(), statistics_.dc_difference_ns,
+                       link != nullptr && link->foreign_master.load(std::memory_order_relaxed)});
 }
 
 void ProcessDataCycle::collect_frames(CyclePlan& cycle) noexcept {
@@ -89,6 +113,7 @@ void ProcessDataCycle::collect_frames(CyclePlan& cycle) noexcept {
     give_up_frames(cycle);
 
     statistics_.lost_in_a_row = any_lost_ ? statistics_.lost_in_a_row + 1 : 0;
+    if (auto* link = link_.load(std::memory_order_acquire)) link->lost_in_a_row.store(statistics_.lost_in_a_row, std::memory_order_relaxed);
     for (std::size_t s = 0; s < cycle.slaves.size(); ++s) {
         auto& health = cycle.health[s];
         const std::uint32_t al = cycle.slaves[s]->al.load(std::memory_order_relaxed);
@@ -96,6 +121,7 @@ void ProcessDataCycle::collect_frames(CyclePlan& cycle) noexcept {
         health.al_error = (al & al_status_error) != 0;
         health.al_status_code = static_cast<std::uint16_t>(al >> 16);
         if (!cycle.plan.slaves[s].unit) health.fresh = !any_lost_ && health.al_state != AlState::unknown;
+        cycle.slaves[s]->age.store(health.age, std::memory_order_relaxed);
     }
     if (auto* link = link_.load(std::memory_order_acquire)) {
         const auto good = link->good_in_a_row.load(std::memory_order_relaxed);
@@ -113,7 +139,9 @@ void ProcessDataCycle::collect_first_frame(CyclePlan& cycle, SlotId slot) noexce
     auto* link = link_.load(std::memory_order_acquire);
     if (!answered || link == nullptr) return;
     const auto states = exchange_.data(slot, cycle.state_number);
-    const bool all_answered = exchange_.wkc(slot, cycle.state_number) == cycle.state_wkc;
+    statistics_.slaves_answering = exchange_.wkc(slot, cycle.state_number);
+    link->slaves_answering.store(statistics_.slaves_answering, std::memory_order_relaxed);
+    const bool all_answered = statistics_.slaves_answering == cycle.state_wkc;
     link->states_seen.store(all_answered && states.size() == 2 ? load_le<std::uint16_t>(states) & 0x1Fu : 0u, std::memory_order_relaxed);
     if (cycle.plan.mailbox.size > 0)
         link->mailbox.publish(exchange_.data(slot, cycle.state_number + 1),
@@ -255,6 +283,11 @@ std::span<std::byte> ProcessDataCycle::outputs() noexcept {
 const SlaveHealth& ProcessDataCycle::health(std::size_t slave) const noexcept {
     const auto* cycle = latest_.load(std::memory_order_acquire);
     return cycle != nullptr && slave < cycle->health.size() ? cycle->health[slave] : nothing_;
+}
+
+std::span<const AlarmFact> ProcessDataCycle::faults() const noexcept {
+    const auto* cycle = latest_.load(std::memory_order_acquire);
+    return cycle != nullptr ? cycle->faults.facts() : std::span<const AlarmFact>{};
 }
 
 Instant ProcessDataCycle::outputs_effective(std::size_t slave, Instant send_time) const noexcept {
