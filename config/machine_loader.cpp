@@ -74,7 +74,14 @@ private:
         slave.name = entry.name;
         slave.position = entry.position;
         slave.alias = entry.alias;
-        if (!entry.position && !entry.alias) slave.position = static_cast<std::uint16_t>(place);
+        slave.device_id = entry.device_id;
+        if (!entry.position && !entry.alias && !entry.device_id) slave.position = static_cast<std::uint16_t>(place);
+        slave.revision_rule = entry.revision_rule;
+        slave.on_loss = entry.on_loss;
+        slave.modules = entry.modules;
+        slave.sync1 = entry.sync1;
+        slave.sync_start = entry.sync_start;
+        slave.pdi_watchdog = entry.pdi_watchdog;
         slave.sync0_shift = entry.sync0_shift;
         slave.sm_watchdog = entry.sm_watchdog;
         slave.sync_unit = entry.sync_unit;
@@ -113,15 +120,16 @@ private:
             return;
         }
         slave.device = drive->device;
-        slave.rx = selection(*drive, PdoWay::rx, entry.rx, here + ".pdo.rx");
-        slave.tx = selection(*drive, PdoWay::tx, entry.tx, here + ".pdo.tx");
+        slave.rx = selection(*drive, PdoWay::rx, entry, here + ".pdo.rx");
+        slave.tx = selection(*drive, PdoWay::tx, entry, here + ".pdo.tx");
         slave.startup = drive->startup;
         profiles_.emplace_back(entry.name, drive->profile);
     }
 
-    ecat::PdoSelection selection(const LoadedDrive& drive, PdoWay way, const std::vector<ObjectAddress>& wanted, const std::string& here) {
+    ecat::PdoSelection selection(const LoadedDrive& drive, PdoWay way, const SlaveEntry& entry, const std::string& here) {
+        const auto& wanted = way == PdoWay::rx ? entry.rx : entry.tx;
         if (wanted.empty()) return way == PdoWay::rx ? drive.rx : drive.tx;
-        auto chosen = select_pdos(*drive.device, way, wanted);
+        auto chosen = select_pdos(*drive.device, entry.modules, way, wanted);
         if (chosen) return std::move(*chosen);
         problem(here, chosen.error().code, chosen.error().what, chosen.error().remedy);
         return {};

@@ -10,6 +10,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "config/drive_loader.hpp"
+
 namespace taktwerk::config {
 namespace {
 
@@ -278,6 +280,54 @@ TEST(MachineLoader, ProcessDataIsTheProfilesOrTheMachines) {
                 ElementsAre(ecat::PdoEntry{0x6041, 0, 16}, ecat::PdoEntry{0x6061, 0, 8}, ecat::PdoEntry{0x6064, 0, 32}));
     EXPECT_EQ(b.alias, 300);
     EXPECT_FALSE(b.position.has_value());
+}
+
+TEST(MachineLoader, TheBusSaysWhoIsWhereHowFastAndWhatIfItIsGone) {
+    auto options = without_programs();
+    options.drive_dirs.push_back(source + "/tests/config/good");
+    const auto bus = must_load(source + "/tests/config/good/bus.yaml", options).machine.bus;
+    EXPECT_EQ(bus.extra_slaves, ecat::ExtraSlaves::ignore);
+    EXPECT_EQ(bus.state_timeouts.preop, 4s);
+    EXPECT_EQ(bus.state_timeouts.safeop, 10s) << "the default";
+    EXPECT_EQ(bus.state_timeouts.op, 500ms);
+    ASSERT_EQ(bus.sync_units.size(), 1u);
+    EXPECT_EQ(bus.sync_units[0].name, "slow");
+    EXPECT_EQ(bus.sync_units[0].divisor, 4);
+
+    ASSERT_EQ(bus.slaves.size(), 2u);
+    const auto& robot = bus.slaves[0];
+    EXPECT_FALSE(robot.position.has_value());
+    EXPECT_EQ(robot.device_id, 7);
+    EXPECT_EQ(robot.revision_rule, ecat::RevisionRule::exact);
+    EXPECT_EQ(robot.on_loss, ecat::LossPolicy::stop_own_axes);
+    EXPECT_EQ(robot.sync_unit, "slow");
+    EXPECT_EQ(robot.pdi_watchdog, 20ms);
+    ASSERT_EQ(robot.modules.size(), 2u);
+    EXPECT_EQ(robot.modules[0].slot, 1);
+    EXPECT_EQ(robot.modules[0].module, "csp");
+    const auto& y = bus.slaves[1];
+    EXPECT_EQ(y.alias, 3);
+    EXPECT_EQ(y.sync1, 250us);
+    EXPECT_EQ(y.sync_start, ecat::SyncStart::in_safeop);
+    EXPECT_FALSE(y.revision_rule.has_value());
+}
+
+TEST(DriveLoader, AModularDriveHasSlotsModulesGapsAndASyncManagerPerPdo) {
+    const auto loaded = load_drive(source + "/tests/config/good/modular_drive.yaml");
+    ASSERT_TRUE(std::holds_alternative<LoadedDrive>(loaded)) << one_a_line(std::get<std::vector<Error>>(loaded));
+    const auto& device = *std::get<LoadedDrive>(loaded).device;
+    EXPECT_EQ(device.revision_rule, ecat::RevisionRule::at_least);
+    EXPECT_EQ(device.slots.count, 2);
+    EXPECT_EQ(device.slots.index_increment, 0x800);
+    EXPECT_EQ(device.slots.pdo_increment, 0x40);
+    ASSERT_EQ(device.slots.modules.size(), 1u);
+    EXPECT_EQ(device.slots.modules[0].name, "csp");
+    EXPECT_EQ(device.slots.modules[0].ident, 0x11u);
+    ASSERT_EQ(device.slots.modules[0].rx_pdos.size(), 1u);
+    EXPECT_THAT(device.slots.modules[0].rx_pdos[0].entries, ElementsAre(ecat::PdoEntry{0x6040, 0, 16}, ecat::PdoEntry{0x607A, 0, 32}));
+    ASSERT_EQ(device.tx_pdos.size(), 1u);
+    EXPECT_EQ(device.tx_pdos[0].sync_manager, 4);
+    EXPECT_THAT(device.tx_pdos[0].entries, ElementsAre(ecat::PdoEntry{0, 0, 3}, ecat::PdoEntry{0x60FD, 0, 16}, ecat::PdoEntry{0, 0, 5}));
 }
 
 TEST(MachineLoader, PointsAreObjectsOfTheirSlave) {
