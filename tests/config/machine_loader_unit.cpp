@@ -333,5 +333,29 @@ TEST(MachineLoader, ErrorsOfADriveFileNameThatFile) {
     for (const auto& error : errors) EXPECT_THAT(error.subject, HasSubstr("broken.yaml")) << error.text();
 }
 
+// A bus for other people's masters: no axis, and slaves that do not stand in a line.
+TEST(MachineLoader, AFileMayDescribeOnlyABusAndWhereItsSlavesHang) {
+    const auto path = written("bus_only.yaml",
+                              "version: 1\nname: tree\ncycle: 1 ms\nbus:\n  interface: simulated\n  slaves:\n"
+                              "    - {name: junction, terminal: {inputs: 8}}\n"
+                              "    - {name: y_drive, profile: sv33-e, alias: 7}\n"
+                              "    - {name: lamp, terminal: {outputs: 8}}\n"
+                              "simulation:\n  slaves:\n"
+                              "    y_drive: {behind: junction, port: 3, cable: 25, drift: -40 ppm}\n"
+                              "    lamp: {behind: junction}\n");
+    const auto loaded = must_load(path);
+
+    EXPECT_TRUE(loaded.machine.axes.empty());
+    const auto& wires = loaded.machine.simulation.slaves;
+    ASSERT_EQ(wires.size(), 2u);
+    EXPECT_EQ(wires[0].slave, "y_drive");
+    EXPECT_EQ(wires[0].behind, "junction");
+    EXPECT_EQ(wires[0].port, 3);
+    EXPECT_EQ(wires[0].cable, 25.0);
+    EXPECT_EQ(wires[0].drift_ppm, -40.0);
+    EXPECT_EQ(wires[1].port, 1);
+    EXPECT_FALSE(wires[1].drift_ppm);
+}
+
 }  // namespace
 }  // namespace taktwerk::config
