@@ -60,6 +60,23 @@ void print_slaves(const MachineConfig& config) {
     }
 }
 
+/// What has to fit between the start of a cycle and SYNC0.
+void print_clocks(const MachineConfig& config) {
+    const ecat::SlaveConfig* tightest = nullptr;
+    for (const auto& slave : config.bus.slaves)
+        if (slave.dc && (!tightest || time_to_compute(config.bus, slave) < time_to_compute(config.bus, *tightest))) tightest = &slave;
+    if (!tightest) return;
+    const auto us = [](Duration d) { return to_seconds(d) * 1e6; };
+    const Duration left = time_to_compute(config.bus, *tightest), flight = estimated_flight(config.bus);
+    const Duration late = config.watch.lateness_warning > Duration{} ? config.watch.lateness_warning : config.cycle / 4;
+    fmt::print(
+        "\nSYNC0 of '{}' comes {:.0f} us after the start of the cycle. The frames need about {:.0f} us on the wire; {:.0f} us are left "
+        "for\n"
+        "computing and lateness, of which {:.0f} us of lateness are warned about.{}\n",
+        tightest->name, us(left + flight), us(flight), us(left), us(late),
+        late > left ? " A cycle may be too late for SYNC0 before that warning: shift SYNC0 or lower the limit." : "");
+}
+
 void print_axis(const MachineConfig& config, const runtime::AxisBinding& binding) {
     const auto& axis = binding.axis;
     const auto& u = axis.unit;
@@ -154,6 +171,7 @@ int check(const Options& options) {
     fmt::print("{}: machine '{}', cycle {:g} ms, {} slaves, {} axes, {} programs: no problem found\n", options.file, config.name,
                to_seconds(config.cycle) * 1e3, config.bus.slaves.size(), config.axes.size(), config.programs.size());
     print_slaves(config);
+    print_clocks(config);
     if (!config.axes.empty()) fmt::print("\nAxes\n");
     for (const auto& binding : config.axes) print_axis(config, binding);
     print_programs(config, layout);

@@ -26,13 +26,25 @@ std::vector<std::string> program_path() {
     return folders;
 }
 
-config::LoadResult read_machine(const std::string& file, bool simulate) {
+namespace {
+
+config::LoadOptions options_for(bool simulate) {
     config::LoadOptions options;
     options.simulate = simulate;
     options.program_path = program_path();
     std::error_code unknown;  // installed below any prefix, the data is found from the executable
     const auto executable = std::filesystem::read_symlink("/proc/self/exe", unknown);
     if (!unknown) options.data_dirs.push_back((executable.parent_path().parent_path() / "share" / "taktwerk").string());
+    return options;
+}
+
+}  // namespace
+
+config::LoadResult read_machine(const std::string& file, bool simulate) { return config::load_machine(file, options_for(simulate)); }
+
+config::LoadResult read_machine_without_programs(const std::string& file, bool simulate) {
+    auto options = options_for(simulate);
+    options.resolve_programs = false;
     return config::load_machine(file, options);
 }
 

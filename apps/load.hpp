@@ -17,6 +17,8 @@ using LoadedFile = config::LoadedMachine;
 
 /// Silent. `simulate`: the bus and the drives are simulated whatever the file says.
 [[nodiscard]] config::LoadResult read_machine(const std::string& file, bool simulate);
+/// The same for whoever looks at the bus alone: programs need not be built.
+[[nodiscard]] config::LoadResult read_machine_without_programs(const std::string& file, bool simulate);
 
 /// Prints warnings, or every problem (then nothing is returned).
 [[nodiscard]] std::optional<LoadedFile> load(const std::string& file, bool simulate);

@@ -13,7 +13,9 @@
 #include "apps/stop_signal.hpp"
 #include "apps/taktwerk.hpp"
 #include "apps/trace_csv.hpp"
+#include "core/calendar_distance.hpp"
 #include "core/math.hpp"
+#include "ecat/diagnosis/frame_capture.hpp"
 #include "ecat/transport/raw_socket.hpp"
 #include "hmi_bridge/hmi_bridge.hpp"
 #include "hmi_bridge/runtime_link.hpp"
@@ -28,7 +30,7 @@ namespace {
 using namespace runtime;
 
 struct Options {
-    std::string file, trace;
+    std::string file, trace, pcap;
     bool simulate = false, virtual_time = false, json = false, quiet = false;
     double duration_s = 0;
 };
@@ -74,6 +76,25 @@ void print_summary(Machine& machine, const Options& options, double machine_seco
     }
 }
 
+/// The frames of the bus go into a file, if that was asked for. `capture` outlives the machine's cycle.
+Result<void> capture_frames(Machine& machine, const Options& options, Duration epoch, std::unique_ptr<ecat::FrameCapture>& capture) {
+    if (options.pcap.empty()) return {};
+    auto created = ecat::FrameCapture::create(options.pcap, epoch);
+    if (!created) return created.error();
+    capture = std::move(*created);
+    machine.bus().set_tap(&ecat::FrameCapture::tap, capture.get());
+    return {};
+}
+
+/// After the cycle has ended. Says what is missing.
+void finish(ecat::FrameCapture* capture, const Options& options) {
+    if (capture == nullptr) return;
+    if (auto ok = capture->finish(); !ok) print_error(ok.error());
+    if (capture->dropped() > 0)
+        print_warning(Error{"capture.dropped", options.pcap, fmt::format("{} frames did not fit and are missing", capture->dropped()), ""});
+    if (!options.quiet && !options.json) fmt::print("{} frames in {}\n", capture->frames(), options.pcap);
+}
+
 std::unique_ptr<Machine> build(MachineConfig config, ecat::Transport& transport) {
     auto built = Machine::build(std::move(config), transport);
     if (auto* errors = std::get_if<1>(&built)) {
@@ -87,8 +108,13 @@ int run_virtual(LoadedFile loaded, const Options& options) {
     math::set_stepping_thread_float_environment();
     VirtualClock clock{Instant{}};
     World world{loaded.machine, clock.now()};
+    std::unique_ptr<ecat::FrameCapture> capture;
     auto machine = build(std::move(loaded.machine), world.transport());
     if (!machine) return exit_bad_file;
+    if (auto ok = capture_frames(*machine, options, Duration{}, capture); !ok) {
+        print_error(ok.error());
+        return exit_bad_file;
+    }
     std::unique_ptr<TraceCsv> trace;
     if (!options.trace.empty()) {
         auto created = TraceCsv::create(options.trace, machine->enable_trace(trace_rows), machine->layout());
@@ -106,18 +132,21 @@ int run_virtual(LoadedFile loaded, const Options& options) {
     int code = exit_ok;
     runner.after_cycle = [&](Instant now) {
         if (trace) trace->drain();
+        if (capture) (void)capture->drain().ok();  // an error comes again from finish()
         const auto* snapshot = machine->latest();
         judge(snapshot, code);
         if (!options.quiet) log.step(now, snapshot);
         if (stop_requested()) machine->request_shutdown();
     };
     if (auto up = runner.bring_up(); !up) {
+        finish(capture.get(), options);
         print_error(up.error());
         return exit_bus;
     }
     const auto duration = options.duration_s > 0 ? from_seconds(options.duration_s) : Duration::max() / 4;
     runner.run_for(std::max(duration - (clock.now() - Instant{}), Duration{}));
     runner.shut_down();
+    finish(capture.get(), options);
     print_summary(*machine, options, to_seconds(clock.now() - Instant{}), to_seconds(wall.now() - wall_start));
     if (trace)
         if (auto ok = trace->finish(); !ok) {
@@ -134,7 +163,7 @@ int run_real(LoadedFile loaded, const Options& options) {
     if (loaded.machine.bus.interface.empty()) {
         world = std::make_unique<World>(loaded.machine, clock.now());
     } else {
-        auto opened = ecat::RawSocketTransport::open(loaded.machine.bus.interface);
+        auto opened = ecat::RawSocketTransport::open(loaded.machine.bus.interface, {.clock = &clock});
         if (!opened) {
             print_error(opened.error());
             return exit_bus;
@@ -144,8 +173,13 @@ int run_real(LoadedFile loaded, const Options& options) {
             for (const auto& refused : nic->report().refused) fmt::print("{}: {}\n", nic->interface(), refused);
     }
     ecat::Transport& transport = world ? static_cast<ecat::Transport&>(world->transport()) : *nic;
+    std::unique_ptr<ecat::FrameCapture> capture;
     auto machine = build(std::move(loaded.machine), transport);
     if (!machine) return exit_bad_file;
+    if (auto ok = capture_frames(*machine, options, calendar_minus_machine_time(), capture); !ok) {
+        print_error(ok.error());
+        return exit_bad_file;
+    }
     std::unique_ptr<TraceCsv> trace;
     if (!options.trace.empty()) {
         auto created = TraceCsv::create(options.trace, machine->enable_trace(trace_rows), machine->layout());
@@ -189,6 +223,7 @@ int run_real(LoadedFile loaded, const Options& options) {
     bool said_stop = false;
     auto served = runner.serve([&](Instant now) {
         if (trace) trace->drain();
+        if (capture) (void)capture->drain().ok();
         if (nic) nic->refresh();
         (*bridge)->set_progress(machine->bus_progress());
         (*bridge)->step(now);
@@ -203,6 +238,7 @@ int run_real(LoadedFile loaded, const Options& options) {
         return !time_up && !stop_requested();
     });
     runner.finish();
+    finish(capture.get(), options);
     if (!served) {
         print_error(served.error());
         return exit_bus;
@@ -226,6 +262,7 @@ void add_run(CLI::App& app, Action& action) {
     sub->add_flag("--virtual-time", options->virtual_time, "as fast as the CPU allows, bit-identical each time (simulated only)");
     add_duration(*sub, "--duration", options->duration_s, "machine time, e.g. 60s; default: until stopped");
     sub->add_option("--trace", options->trace, "write every cycle to this CSV file (see `taktwerk plot`)");
+    sub->add_option("--pcap", options->pcap, "write every frame of the bus to this file, for Wireshark and tshark");
     sub->add_flag("--json", options->json, "events as one JSON object a line");
     sub->add_flag("--quiet", options->quiet, "say nothing but errors");
     sub->callback([&action, options] {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "config/codecs.hpp"
+#include "config/device_tables.hpp"
 #include "config/machine_tables.hpp"
 
 namespace taktwerk::config {
@@ -30,6 +31,33 @@ Table<Terminal> terminal_table() {
     return table;
 }
 
+Table<ecat::ModuleSelection> module_table() {
+    using M = ecat::ModuleSelection;
+    return {"bus.slaves.modules",
+            "The module in one slot of a modular slave.",
+            {
+                required(field("slot", &M::slot, integer<std::uint8_t>(0, 254), "from 0")),
+                required(field("module", &M::module, config::name(), "one of the modules that the drive file lists")),
+            },
+            {},
+            {}};
+}
+
+Codec<ecat::LossPolicy> loss_policy() {
+    using L = ecat::LossPolicy;
+    return choice<L>({{"stop_machine", L::stop_machine}, {"stop_own_axes", L::stop_own_axes}});
+}
+
+Codec<ecat::SyncStart> sync_start() {
+    using S = ecat::SyncStart;
+    return choice<S>({{"before_safeop", S::before_safeop}, {"in_safeop", S::in_safeop}});
+}
+
+Codec<ecat::ExtraSlaves> extra_slaves() {
+    using E = ecat::ExtraSlaves;
+    return choice<E>({{"refuse", E::refuse}, {"ignore", E::ignore}});
+}
+
 Table<SlaveEntry> slave_table() {
     using S = SlaveEntry;
     Table<S> table{
@@ -42,6 +70,12 @@ Table<SlaveEntry> slave_table() {
             with_default(field("position", &S::position, maybe(integer<std::uint16_t>(0, 65535)), "place on the cable, from 0"),
                          "its place in this list"),
             field("alias", &S::alias, maybe(integer<std::uint16_t>(1, 65535)), "station alias instead of the position"),
+            field("device_id", &S::device_id, maybe(integer<std::uint16_t>(1, 65535)),
+                  "explicit device id (switches on the device) instead of the position"),
+            with_default(field("revision_rule", &S::revision_rule, maybe(revision_rule()),
+                               "any · at_least: the drive file's revision or a later one · exact"),
+                         "as its drive file says"),
+            field("on_loss", &S::on_loss, loss_policy(), "when it is gone: every axis stops, or those on this slave alone"),
             with_default(field("dc", &S::dc, maybe(boolean()), "run SYNC0 on it"), "where the drive supports it"),
             with_default(field("sync0_shift", &S::sync0_shift, duration(), "SYNC0 after the start of the bus cycle"), "as the bus"),
             with_default(field("sm_watchdog", &S::sm_watchdog, duration(0ns, 6s), "the slave stops when no outputs come for this long"),
@@ -49,6 +83,12 @@ Table<SlaveEntry> slave_table() {
             with_default(
                 field("sync_unit", &S::sync_unit, config::name(), "slaves of one name are exchanged together, and valid or not together"),
                 "a unit of its own"),
+            with_default(
+                field("pdi_watchdog", &S::pdi_watchdog, duration(0ns, 6s), "the controller notices that the slave's processor hangs"),
+                "as the slave has it"),
+            with_default(field("sync1", &S::sync1, maybe(duration()), "run SYNC1 too, this long after SYNC0"), "not used"),
+            field("sync_start", &S::sync_start, sync_start(), "when SYNC0 starts; some slaves refuse it before SAFEOP"),
+            field("modules", &S::modules, list(section(module_table())), "what is in the slots of a modular slave"),
             group<S>("pdo", "Other process data than the profile's mapping: objects (607Ah, ...) or whole PDOs (1702h).",
                      {
                          field("rx", &S::rx, list(object_address()), "to the drive"),
@@ -59,7 +99,7 @@ Table<SlaveEntry> slave_table() {
         {},
         {}};
     for (auto& f : table.fields)
-        if (f.info.key == "pdo" || f.info.key == "startup") f.info.default_text.clear();
+        if (f.info.key == "pdo" || f.info.key == "startup" || f.info.key == "modules") f.info.default_text.clear();
     table.after = [](Reader& reader, const Node& node, S& s) {
         reader.also_known_as(fmt::format("slave '{}'", s.name), node.at);  // as the bus calls it
         if (s.profile.empty() == !s.terminal.has_value() && !node.find("profile") && !node.find("terminal"))
@@ -68,8 +108,9 @@ Table<SlaveEntry> slave_table() {
         if (node.find("profile") && node.find("terminal"))
             reader.problem(node.at, "config.conflict", fmt::format("slave '{}' has both `profile` and `terminal`", s.name),
                            "keep one of them");
-        if (s.position && s.alias)
-            reader.problem(node.at, "config.conflict", fmt::format("slave '{}' has both `position` and `alias`", s.name),
+        if (s.position.has_value() + s.alias.has_value() + s.device_id.has_value() > 1)
+            reader.problem(node.at, "config.conflict",
+                           fmt::format("slave '{}' has more than one of `position`, `alias` and `device_id`", s.name),
                            "keep the one that identifies it");
         s.broken = reader.already_bad(reader.path());
     };
@@ -110,27 +151,44 @@ Table<ecat::SyncUnitConfig> sync_unit_table() {
 
 Field<MachineFile> bus_field() {
     using F = MachineFile;
-    return group<F>("bus", "The EtherCAT bus.",
-                    {
-                        required(field_at<F>(
-                            "interface", [](F & f) -> auto& { return f.machine.bus.interface; }, interface_name(),
-                            "`simulated`, or the name of the network interface (`ip link`)")),
-                        with_default(field_at<F>(
-                                         "sync0_shift", [](F & f) -> auto& { return f.machine.bus.sync0_shift; }, duration(),
-                                         "SYNC0 after the start of the bus cycle"),
-                                     "half a cycle"),
-                        field_at<F>(
-                            "lost_frames_limit", [](F & f) -> auto& { return f.machine.bus.lost_frames_limit; },
-                            integer<std::uint16_t>(1, 10000), "unanswered cycles in a row until the bus alarm"),
-                        field_at<F>(
-                            "acyclic_per_cycle", [](F & f) -> auto& { return f.machine.bus.acyclic_per_cycle; },
-                            integer<std::uint8_t>(1, 64), "datagrams per cycle for SDO, recovery, diagnosis"),
-                        with_default(field_at<F>(
-                                         "sync_units", [](F & f) -> auto& { return f.machine.bus.sync_units; },
-                                         list(section(sync_unit_table())), "groups of slaves that are exchanged less often"),
-                                     ""),
-                        required(field("slaves", &F::slaves, list(section(slave_table())), "what is on the cable, in its order")),
-                    });
+    return group<F>(
+        "bus", "The EtherCAT bus.",
+        {
+            required(field_at<F>(
+                "interface", [](F & f) -> auto& { return f.machine.bus.interface; }, interface_name(),
+                "`simulated`, or the name of the network interface (`ip link`)")),
+            with_default(field_at<F>(
+                             "sync0_shift", [](F & f) -> auto& { return f.machine.bus.sync0_shift; }, duration(),
+                             "SYNC0 after the start of the bus cycle"),
+                         "half a cycle"),
+            field_at<F>(
+                "lost_frames_limit", [](F & f) -> auto& { return f.machine.bus.lost_frames_limit; }, integer<std::uint16_t>(1, 10000),
+                "unanswered cycles in a row until the bus alarm"),
+            field_at<F>(
+                "acyclic_per_cycle", [](F & f) -> auto& { return f.machine.bus.acyclic_per_cycle; }, integer<std::uint8_t>(1, 64),
+                "datagrams per cycle for SDO, recovery, diagnosis"),
+            field_at<F>(
+                "extra_slaves", [](F & f) -> auto& { return f.machine.bus.extra_slaves; }, extra_slaves(),
+                "on the cable, and not in `slaves`: refuse to start, or leave them in INIT"),
+            group<F>(
+                "state_timeouts", "How long a slave may take for a transition.",
+                {
+                    field_at<F>(
+                        "preop", [](F & f) -> auto& { return f.machine.bus.state_timeouts.preop; }, duration(1ms, 600s), "INIT to PREOP"),
+                    field_at<F>(
+                        "safeop", [](F & f) -> auto& { return f.machine.bus.state_timeouts.safeop; }, duration(1ms, 600s),
+                        "PREOP to SAFEOP"),
+                    field_at<F>(
+                        "op", [](F & f) -> auto& { return f.machine.bus.state_timeouts.op; }, duration(1ms, 600s), "SAFEOP to OP"),
+                    field_at<F>(
+                        "down", [](F & f) -> auto& { return f.machine.bus.state_timeouts.down; }, duration(1ms, 600s), "back towards INIT"),
+                }),
+            with_default(field_at<F>(
+                             "sync_units", [](F & f) -> auto& { return f.machine.bus.sync_units; }, list(section(sync_unit_table())),
+                             "groups of slaves that are exchanged less often"),
+                         ""),
+            required(field("slaves", &F::slaves, list(section(slave_table())), "what is on the cable, in its order")),
+        });
 }
 
 }  // namespace taktwerk::config

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "config/startup_entry.hpp"
+#include "ecat/bus_config.hpp"
 
 namespace taktwerk::config {
 
@@ -16,11 +17,17 @@ struct Terminal {
 };
 
 struct SlaveEntry {
-    std::string name, sync_unit, profile;
+    std::string name, profile;
     std::optional<Terminal> terminal;
-    std::optional<std::uint16_t> position, alias;
+    std::optional<std::uint16_t> position, alias, device_id;
+    std::optional<ecat::RevisionRule> revision_rule;
+    ecat::LossPolicy on_loss = ecat::LossPolicy::stop_machine;
     std::optional<bool> dc;
-    Duration sync0_shift{}, sm_watchdog{};
+    Duration sync0_shift{}, sm_watchdog{}, pdi_watchdog{};
+    std::optional<Duration> sync1;
+    ecat::SyncStart sync_start = ecat::SyncStart::before_safeop;
+    std::string sync_unit;
+    std::vector<ecat::ModuleSelection> modules;
     std::vector<ObjectAddress> rx, tx;
     std::vector<StartupEntry> startup;
     bool broken = false;  ///< problems were reported: what follows from them is noise

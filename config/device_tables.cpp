@@ -89,8 +89,11 @@ Table<ecat::PdoDescription> pdo_table() {
             {
                 required(field("pdo", &P::index, integer<std::uint16_t>(0x1600, 0x1BFF), "its mapping object: 16xxh, 17xxh, 1Axxh, 1Bxxh")),
                 field("fixed", &P::fixed, boolean(), "its mapping cannot be changed"),
-                required(field("objects", &P::entries, list(pdo_entry()),
-                               "what it carries, in order; `60FDh/16` where it maps fewer bits than the object has")),
+                with_default(field("sync_manager", &P::sync_manager, maybe(integer<std::uint8_t>(0, 15)), "that it is assigned to"),
+                             "the first of its direction"),
+                required(
+                    field("objects", &P::entries, list(pdo_entry()),
+                          "what it carries, in order; `60FDh/16` where it maps fewer bits than the object has, `gap/5` for 5 unused bits")),
             },
             {},
             {}};
@@ -188,13 +191,52 @@ Table<ecat::DcDescription> dc_table() {
             {}};
 }
 
+Table<ecat::ModuleDescription> module_table() {
+    using M = ecat::ModuleDescription;
+    return {"slots.modules.<name>",
+            "A module: PDOs and ident, as in slot 0.",
+            {
+                required(field("ident", &M::ident, integer<std::uint32_t>(1, u32), "written to F030h, found in F050h")),
+                field("rx", &M::rx_pdos, list(section(pdo_table())), "PDOs to the drive"),
+                field("tx", &M::tx_pdos, list(section(pdo_table())), "PDOs from the drive"),
+            },
+            {},
+            {}};
+}
+
+Table<ecat::SlotDescription> slot_table() {
+    using S = ecat::SlotDescription;
+    return {
+        "slots",
+        "A modular slave (ETG.5001): each slot holds one of the modules.",
+        {
+            required(field("count", &S::count, integer<std::uint8_t>(1, 255), "slots")),
+            field("index_increment", &S::index_increment, integer<std::uint16_t>(0, u16), "between the objects of two slots, such as 800h"),
+            field("pdo_increment", &S::pdo_increment, integer<std::uint16_t>(0, u16), "between the PDOs of two slots, such as 40h"),
+            required(field("modules", &S::modules,
+                           by_name(section(module_table()), [](ecat::ModuleDescription& m) -> std::string& { return m.name; }),
+                           "what a slot can hold")),
+        },
+        {},
+        {}};
+}
+
 }  // namespace
 
 Codec<ecat::PdoEntry> pdo_entry() {
     Codec<ecat::PdoEntry> c;
     const auto address = object_address();
-    c.shape = address.shape;
+    c.shape.kind = Shape::Kind::either;
+    c.shape.alternatives = {std::make_shared<const Shape>(address.shape), std::make_shared<const Shape>(text().shape)};
     c.read = [read = address.read](Reader& reader, const Node& node, ecat::PdoEntry& out) {
+        constexpr std::string_view gap = "gap/";
+        if (node.kind == Node::Kind::scalar && node.text.compare(0, gap.size(), gap) == 0) {
+            Node bits = node;
+            bits.text = node.text.substr(gap.size());
+            const auto count = read_integer(reader, bits, 1, 255);
+            if (count) out = {0, 0, static_cast<std::uint8_t>(*count)};
+            return count.has_value();
+        }
         ObjectAddress value;
         if (!read(reader, node, value)) return false;
         out = {value.index, value.sub, value.bits};
@@ -223,6 +265,7 @@ std::vector<Field<DeviceDescription>> device_fields() {
         required(field_at<DeviceDescription>(
             "pdo", [](DeviceDescription& d) -> DeviceDescription& { return d; }, section(pdo_section_table()),
             "process data as the drive offers it")),
+        field("slots", &DeviceDescription::slots, section(slot_table()), "of a modular slave"),
         field("dc", &DeviceDescription::dc, section(dc_table()), "distributed clocks"),
     };
 }

@@ -143,6 +143,7 @@ public:
     PdoResolver(Reader& reader, const DeviceDescription& device) : reader_(reader), device_(device) {}
 
     void resolve(ecat::PdoEntry& entry, bool rx, std::string_view place) const {
+        if (entry.index == 0) return;  // a gap
         const auto* object = find_object(device_, entry.index, entry.sub);
         const auto shown = show_object(entry.index, entry.sub);
         if (!object) {
@@ -247,6 +248,12 @@ Table<DriveFile> drive_table() {
             for (auto& entry : pdo.entries) resolver.resolve(entry, true, "pdo.rx");
         for (auto& pdo : file.device.tx_pdos)
             for (auto& entry : pdo.entries) resolver.resolve(entry, false, "pdo.tx");
+        for (auto& module : file.device.slots.modules) {
+            for (auto& pdo : module.rx_pdos)
+                for (auto& entry : pdo.entries) resolver.resolve(entry, true, "slots.modules");
+            for (auto& pdo : module.tx_pdos)
+                for (auto& entry : pdo.entries) resolver.resolve(entry, false, "slots.modules");
+        }
         for (auto& choice : file.rx)
             for (auto& entry : choice.objects) resolver.resolve(entry, true, "mapping.rx");
         for (auto& choice : file.tx)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
 #include <tuple>
 
 #include <fmt/format.h>
@@ -62,6 +63,7 @@ public:
         for (const auto& entry : file_.inputs) add_point(out, entry, runtime::IoDirection::input);
         for (const auto& entry : file_.outputs) add_point(out, entry, runtime::IoDirection::output);
         for (const auto& entry : file_.programs) add_program(out, entry);
+        check_wiring(out.machine);
         check_events(out.machine);
         add_warnings(out);
         reader_.errors().insert(reader_.errors().end(), drives_.errors().begin(), drives_.errors().end());
@@ -74,7 +76,14 @@ private:
         slave.name = entry.name;
         slave.position = entry.position;
         slave.alias = entry.alias;
-        if (!entry.position && !entry.alias) slave.position = static_cast<std::uint16_t>(place);
+        slave.device_id = entry.device_id;
+        if (!entry.position && !entry.alias && !entry.device_id) slave.position = static_cast<std::uint16_t>(place);
+        slave.revision_rule = entry.revision_rule;
+        slave.on_loss = entry.on_loss;
+        slave.modules = entry.modules;
+        slave.sync1 = entry.sync1;
+        slave.sync_start = entry.sync_start;
+        slave.pdi_watchdog = entry.pdi_watchdog;
         slave.sync0_shift = entry.sync0_shift;
         slave.sm_watchdog = entry.sm_watchdog;
         slave.sync_unit = entry.sync_unit;
@@ -113,15 +122,16 @@ private:
             return;
         }
         slave.device = drive->device;
-        slave.rx = selection(*drive, PdoWay::rx, entry.rx, here + ".pdo.rx");
-        slave.tx = selection(*drive, PdoWay::tx, entry.tx, here + ".pdo.tx");
+        slave.rx = selection(*drive, PdoWay::rx, entry, here + ".pdo.rx");
+        slave.tx = selection(*drive, PdoWay::tx, entry, here + ".pdo.tx");
         slave.startup = drive->startup;
         profiles_.emplace_back(entry.name, drive->profile);
     }
 
-    ecat::PdoSelection selection(const LoadedDrive& drive, PdoWay way, const std::vector<ObjectAddress>& wanted, const std::string& here) {
+    ecat::PdoSelection selection(const LoadedDrive& drive, PdoWay way, const SlaveEntry& entry, const std::string& here) {
+        const auto& wanted = way == PdoWay::rx ? entry.rx : entry.tx;
         if (wanted.empty()) return way == PdoWay::rx ? drive.rx : drive.tx;
-        auto chosen = select_pdos(*drive.device, way, wanted);
+        auto chosen = select_pdos(*drive.device, entry.modules, way, wanted);
         if (chosen) return std::move(*chosen);
         problem(here, chosen.error().code, chosen.error().what, chosen.error().remedy);
         return {};
@@ -204,6 +214,37 @@ private:
         }
         problem(fmt::format("programs.{}.library", program.name), "config.no_library",
                 fmt::format("there is no program library {}", joined(searched)), "build the program, or correct the path");
+    }
+
+    /// Every simulated slave hangs behind one that stands before it on the cable, each socket has one cable.
+    void check_wiring(const runtime::MachineConfig& machine) {
+        std::vector<std::string> names;
+        for (const auto& slave : machine.bus.slaves) names.push_back(slave.name);
+        std::set<std::pair<std::string, unsigned>> taken;
+        for (const auto& wire : machine.simulation.slaves) {
+            const auto here = "simulation.slaves." + wire.slave;
+            const auto self = std::find(names.begin(), names.end(), wire.slave);
+            const auto report = [&](const std::string& name) {
+                const auto near = nearest_name(name, names);
+                problem(here, "simulation.unknown_slave", fmt::format("there is no slave '{}' (there is: {})", name, joined(names)),
+                        near.empty() ? "correct the name" : fmt::format("did you mean `{}`?", near));
+            };
+            if (self == names.end()) {
+                report(wire.slave);
+                continue;
+            }
+            if (wire.behind.empty()) continue;
+            const auto parent = std::find(names.begin(), names.end(), wire.behind);
+            if (parent == names.end()) {
+                report(wire.behind);
+            } else if (parent >= self) {
+                problem(here, "simulation.order", fmt::format("'{}' stands behind '{}' in `bus.slaves`", wire.behind, wire.slave),
+                        "list slaves in the order in which a frame reaches them");
+            } else if (!taken.emplace(wire.behind, wire.port).second) {
+                problem(here, "simulation.port_taken", fmt::format("port {} of '{}' has a cable already", wire.port, wire.behind),
+                        "choose another port (1, 2, 3) or another slave");
+            }
+        }
     }
 
     /// runtime::check knows the targets too, but not which event it is.

@@ -214,6 +214,23 @@ Table<SimulationEvent> event_table() {
     return table;
 }
 
+Table<runtime::SlaveSimulation> slave_simulation_table() {
+    using S = runtime::SlaveSimulation;
+    return {
+        "simulation.slaves",
+        "Where a simulated slave hangs. The list `bus.slaves` stays in the order in which a frame reaches them: of the branches behind one "
+        "slave that at port 3 first, then 1, then 2.",
+        {
+            with_default(field("behind", &S::behind, name(), "the slave that its cable comes from"), "the one before it in `bus.slaves`"),
+            field("port", &S::port, integer<std::uint8_t>(1, 3), "that slave's socket"),
+            field("cable", &S::cable, number(0, 10000), "length of the cable, in metres"),
+            with_default(field("drift", &S::drift_ppm, maybe(quantity(Dimension::ratio_ppm)), "how wrong its clock runs"),
+                         "`clock_drift` of its axis"),
+        },
+        {},
+        {}};
+}
+
 Table<runtime::SimulationConfig> simulation_table() {
     using S = runtime::SimulationConfig;
     using runtime::Supervision;
@@ -223,6 +240,9 @@ Table<runtime::SimulationConfig> simulation_table() {
         {
             field("supervision", &S::supervision, choice<Supervision>({{"strict", Supervision::strict}, {"relaxed", Supervision::relaxed}}),
                   "relaxed: for hosts without real time; misses are counted, limits are 100 times wider"),
+            field("slaves", &S::slaves,
+                  by_name(section(slave_simulation_table()), [](runtime::SlaveSimulation& s) -> std::string& { return s.slave; }),
+                  "slaves that do not simply follow the one before them"),
             with_default(field("events", &S::events, list(section(event_table())), "what happens, and when"), ""),
         },
         {},
@@ -328,9 +348,10 @@ Table<MachineFile> machine_table() {
         "mode in which the machine comes up; programs run in automatic"));
     f.push_back(required(bus_field()));
     f.push_back(io_field());
-    f.push_back(required(field_at<F>(
+    f.push_back(field_at<F>(
         "axes", [](F & m) -> auto& { return m.machine.axes; },
-        by_name(section(axis_table()), [](runtime::AxisBinding& b) -> std::string& { return b.axis.name; }), "what programs move")));
+        by_name(section(axis_table()), [](runtime::AxisBinding& b) -> std::string& { return b.axis.name; }),
+        "what programs move; none: only a bus"));
     f.push_back(field("programs", &F::programs,
                       by_name(section(program_table()), [](ProgramFile& p) -> std::string& { return p.program.name; }),
                       "what runs on the machine; none is fine"));

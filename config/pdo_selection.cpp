@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "config/startup_entry.hpp"
+#include "ecat/module_pdos.hpp"
 
 namespace taktwerk::config {
 
@@ -12,9 +13,11 @@ Error mapping_error(std::string what, std::string remedy) { return {"config.mapp
 
 }  // namespace
 
-Result<ecat::PdoSelection> select_pdos(const ecat::DeviceDescription& device, PdoWay way, const std::vector<ObjectAddress>& wanted) {
+Result<ecat::PdoSelection> select_pdos(const ecat::DeviceDescription& device, std::span<const ecat::ModuleSelection> modules, PdoWay way,
+                                       const std::vector<ObjectAddress>& wanted) {
     const bool rx = way == PdoWay::rx;
-    const auto& pdos = rx ? device.rx_pdos : device.tx_pdos;
+    const auto offered = ecat::pdos_of(device, modules);
+    const auto& pdos = rx ? offered.rx : offered.tx;
     const auto& rules = rx ? device.rx_rules : device.tx_rules;
     ecat::PdoSelection out;
     std::vector<ecat::PdoEntry> loose;

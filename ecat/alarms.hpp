@@ -15,8 +15,20 @@ inline constexpr AlarmId frames_lost = 0x1004;
 inline constexpr AlarmId working_counter_wrong = 0x1010;
 inline constexpr AlarmId slave_lost = 0x1011;
 inline constexpr AlarmId slave_left_op = 0x1012;
+inline constexpr AlarmId cable_broken = 0x1013;
+inline constexpr AlarmId slaves_missing = 0x1014;
+inline constexpr AlarmId slave_dropped_out = 0x1015;
+inline constexpr AlarmId branch_dropped_out = 0x1016;
+inline constexpr AlarmId station_address_lost = 0x1017;
+inline constexpr AlarmId other_device = 0x1018;
+inline constexpr AlarmId slave_does_not_return = 0x1019;
+inline constexpr AlarmId mailbox_silent = 0x101A;
+inline constexpr AlarmId other_device_tolerated = 0x101B;
 inline constexpr AlarmId dc_out_of_sync = 0x1020;
 inline constexpr AlarmId dc_not_locked = 0x1021;
+inline constexpr AlarmId reference_clock_lost = 0x1022;
+inline constexpr AlarmId foreign_master = 0x1030;
+inline constexpr AlarmId slave_emergency = 0x1040;
 }  // namespace alarm
 
 inline constexpr std::array bus_alarms{
@@ -47,6 +59,43 @@ inline constexpr std::array bus_alarms{
               "从站退出 OP 状态（AL 状态 {a}，代码 {b}）", "the slave found an error of its own: watchdog, synchronisation, configuration",
               "read the AL status code; the bus acknowledges it and returns the slave to OP", ResetRule::acknowledge,
               Reaction::stop_machine, "the drive reacts by its own fault reaction"},
+    AlarmInfo{alarm::cable_broken, "cable_broken", "{a} slaves behind one cable do not answer", "同一电缆后的 {a} 个从站无应答",
+              "the cable to this slave is pulled or broken, or its power went",
+              "check cable and power at the place named; the slaves are taken back to OP by themselves when they return",
+              ResetRule::acknowledge, Reaction::stop_machine, "the drives stop by their SM watchdog"},
+    AlarmInfo{alarm::slaves_missing, "slaves_missing", "{a} of {b} slaves do not answer", "{b} 个从站中有 {a} 个无应答",
+              "power lost or cable pulled; who it is will be known in a moment", "read the alarm that follows", ResetRule::self_clearing,
+              Reaction::stop_machine, "the drives stop by their SM watchdog"},
+    // Slaves with on_loss: stop_own_axes. Their axes stop by axis_feedback_lost.
+    AlarmInfo{alarm::slave_dropped_out, "slave_dropped_out", "The slave dropped out (AL status {a}, code {b}); the others run on",
+              "从站已退出（AL 状态 {a}，代码 {b}），其余从站继续运行",
+              "power lost, cable pulled, or an error of its own; its configuration says on_loss: stop_own_axes",
+              "check its power, cable and AL status code; it is taken back to OP by itself", ResetRule::acknowledge, Reaction::warn,
+              "the drive stops by its SM watchdog"},
+    AlarmInfo{alarm::branch_dropped_out, "branch_dropped_out", "{a} slaves behind one cable dropped out; the others run on",
+              "同一电缆后的 {a} 个从站已退出，其余从站继续运行",
+              "the cable to this slave is pulled, or its power went; all of them have on_loss: stop_own_axes",
+              "plug it in; they are taken back to OP by themselves", ResetRule::acknowledge, Reaction::warn,
+              "the drives stop by their SM watchdog"},
+    AlarmInfo{alarm::station_address_lost, "station_address_lost", "The slave exchanges process data, but lost its station address",
+              "从站仍交换过程数据，但站地址已丢失", "another master is on the cable, or the slave's controller was disturbed",
+              "unplug the other master; the address is given back by itself", ResetRule::self_clearing, Reaction::warn, ""},
+    AlarmInfo{alarm::other_device, "other_device", "Another device stands in the slave's place", "从站位置上是另一种设备",
+              "the slave was replaced, or cables were swapped",
+              "read the note in the bus log: it names expected and found; put the right device there or restart with another configuration",
+              ResetRule::acknowledge, Reaction::stop_machine, "the slave is gone: its drive stopped by its SM watchdog"},
+    AlarmInfo{alarm::slave_does_not_return, "slave_does_not_return", "The slave does not come back to OP: {a} attempts",
+              "从站未能返回 OP：已尝试 {a} 次", "it refuses a state, its mailbox is dead, or its settings changed",
+              "read the reason behind this text; power-cycle the slave, then restart the bus", ResetRule::self_clearing, Reaction::warn,
+              ""},
+    AlarmInfo{alarm::mailbox_silent, "mailbox_silent", "The slave does not answer in its mailbox", "从站邮箱无应答",
+              "the slave's application hangs; process data still runs",
+              "parameters cannot be read or written: power-cycle the slave when the machine stands", ResetRule::self_clearing,
+              Reaction::warn, ""},
+    AlarmInfo{alarm::other_device_tolerated, "other_device_tolerated", "Another device stands in the slave's place; the others run on",
+              "从站位置上是另一种设备，其余从站继续运行",
+              "the slave was replaced, or cables were swapped; its configuration says on_loss: stop_own_axes", "put the right device there",
+              ResetRule::acknowledge, Reaction::warn, "the slave is gone: its drive stopped by its SM watchdog"},
     AlarmInfo{alarm::dc_out_of_sync, "dc_out_of_sync", "Distributed clocks differ by {a} ns", "分布式时钟偏差 {a} ns",
               "reference times are lost, or a slave's clock is defective", "check the reference slave and lost frames",
               ResetRule::self_clearing, Reaction::warn, "drives supervise SYNC0 themselves"},
@@ -54,6 +103,19 @@ inline constexpr std::array bus_alarms{
               "控制周期未与参考时钟同步（偏差 {a} ns）", "the reference clock does not answer or jumped, or the cycle runs unevenly",
               "check the reference slave, lost frames and the cycle's lateness", ResetRule::self_clearing, Reaction::warn,
               "outputs may miss SYNC0: drives supervise that themselves"},
+    AlarmInfo{alarm::reference_clock_lost, "reference_clock_lost", "No usable time of the reference clock for {a} cycles",
+              "已有 {a} 个周期未收到可用的参考时钟时间",
+              "the reference clock stands still or jumps, or a slave with a clock does not take part",
+              "power-cycle the first slave with distributed clocks; look for another alarm of a slave", ResetRule::self_clearing,
+              Reaction::warn, "the clocks drift apart; drives supervise SYNC0 themselves"},
+    AlarmInfo{alarm::foreign_master, "foreign_master", "Frames of another EtherCAT master are on the cable",
+              "电缆上存在其他 EtherCAT 主站的报文",
+              "a second controller or a configuration tool is connected to the bus, or the cable goes into an office network",
+              "connect the bus to this controller only", ResetRule::self_clearing, Reaction::warn, ""},
+    AlarmInfo{alarm::slave_emergency, "slave_emergency", "The slave sent emergency 0x{a:x} (error register 0x{b:x})",
+              "从站发出紧急报文 0x{a:x}（错误寄存器 0x{b:x}）", "the slave found an error of its own; the code is that of its object 603Fh",
+              "look the code up in the device's manual; goes when the slave says that the error is gone, or starts anew",
+              ResetRule::self_clearing, Reaction::warn, "the drive reacts by its own fault reaction"},
 };
 
 }  // namespace taktwerk::ecat

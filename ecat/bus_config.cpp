@@ -5,7 +5,9 @@
 #include <algorithm>
 
 #include "ecat/bringup/clocks.hpp"
+#include "ecat/bringup/frame_schedule.hpp"
 #include "ecat/bringup/process_data_plan.hpp"
+#include "ecat/dc/sync0_budget.hpp"
 #include "ecat/module_pdos.hpp"
 #include "ecat/place_check.hpp"
 
@@ -18,6 +20,23 @@ constexpr Duration maximum_cycle = std::chrono::milliseconds{100};
 constexpr Duration maximum_watchdog = std::chrono::microseconds{100} * 0xFFFF;
 
 std::string micro(Duration d) { return fmt::format("{} us", to_seconds(d) * 1e6); }
+
+/// The PDOs as far as they are known without the slave: selected, else its factory ones.
+std::vector<PdoDescription> effective(const PdoSelection& selection, const std::vector<PdoDescription>& known,
+                                      const std::vector<std::uint16_t>& assigned) {
+    std::vector<PdoDescription> result;
+    const auto append = [&](std::uint16_t index) {
+        for (const auto& pdo : known)
+            if (pdo.index == index) result.push_back(pdo);
+    };
+    for (const auto& pdo : selection.assigned) {
+        if (pdo.entries.empty()) append(pdo.index);
+        else result.push_back(pdo);
+    }
+    if (selection.assigned.empty())
+        for (const auto index : assigned) append(index);
+    return result;
+}
 
 class Check {
 public:
@@ -81,6 +100,15 @@ private:
 
     void check_clock(const SlaveConfig& slave, const DeviceDescription& device, const std::string& subject) {
         check_shift(subject, slave.sync0_shift);
+        if (slave.sync1 && (*slave.sync1 < Duration{} || *slave.sync1 >= config_.cycle))
+            add("bus.sync1", subject,
+                fmt::format("SYNC1 {} after SYNC0 is not inside the cycle of {}", micro(*slave.sync1), micro(config_.cycle)),
+                "choose a time below the cycle");
+        if (slave.dc && device.dc.supported && time_to_compute(config_, slave) <= Duration{})
+            add("bus.sync0_budget", subject,
+                fmt::format("SYNC0 comes {} after the start of the cycle, but the frames alone need {} to be through",
+                            micro(sync0_shift(config_, slave)), micro(estimated_flight(config_))),
+                "choose a later SYNC0 (sync0_shift) or a longer cycle");
         if (slave.dc && !device.dc.supported)
             add("bus.dc_unsupported", subject, fmt::format("'{}' has no distributed clock", device.name), "set dc: false");
         if (!slave.dc && device.dc.required)
@@ -217,21 +245,6 @@ private:
 
     /// The sizes as far as they are known without the slave: selected, else factory PDOs.
     void check_plan(const SlaveConfig& slave, const DeviceDescription& device, const std::string& subject) {
-        const auto effective = [](const PdoSelection& selection, const std::vector<PdoDescription>& known,
-                                  const std::vector<std::uint16_t>& assigned) {
-            std::vector<PdoDescription> result;
-            const auto append = [&](std::uint16_t index) {
-                for (const auto& pdo : known)
-                    if (pdo.index == index) result.push_back(pdo);
-            };
-            for (const auto& pdo : selection.assigned) {
-                if (pdo.entries.empty()) append(pdo.index);
-                else result.push_back(pdo);
-            }
-            if (selection.assigned.empty())
-                for (const auto index : assigned) append(index);
-            return result;
-        };
         PlanSlave input;
         input.subject = subject;
         input.sync_managers = device.sync_managers;
@@ -250,6 +263,23 @@ private:
 };
 
 }  // namespace
+
+Duration estimated_flight(const BusConfig& config) {
+    std::size_t bytes = 0;
+    for (const auto& slave : config.slaves) {
+        if (!slave.device) continue;
+        const auto offered = pdos_of(*slave.device, slave.modules);
+        bytes += datagram_overhead + (mapped_bits(effective(slave.rx, offered.rx, offered.rx_assigned)) + 7) / 8 +
+                 (mapped_bits(effective(slave.tx, offered.tx, offered.tx_assigned)) + 7) / 8;
+    }
+    bytes += datagram_overhead + 8 + datagram_overhead + 2;  // clock and AL states
+    const std::size_t frames = bytes / frame_capacity + 1;
+    return flight_time(bytes + frames * (ethernet_header_size + ecat_header_size), frames, config.slaves.size());
+}
+
+Duration time_to_compute(const BusConfig& config, const SlaveConfig& slave) {
+    return sync0_shift(config, slave) - estimated_flight(config);
+}
 
 std::vector<Error> check(const BusConfig& config) { return Check{config}.run(); }
 

@@ -90,6 +90,7 @@ struct BusConfig {
     ExtraSlaves extra_slaves = ExtraSlaves::refuse;
     StateTimeouts state_timeouts;
     std::uint16_t lost_frames_limit = 3;  ///< consecutive unanswered cycles until the bus alarm
+    bool lock_required = true;            ///< OP only with the cycle locked to the reference clock; false: no real time, no alarm either
     std::uint8_t acyclic_per_cycle = 4;   ///< datagrams per cycle for SDO, recovery, diagnosis
 };
 
@@ -106,6 +107,17 @@ struct BusConfig {
     if (slave.sm_watchdog > Duration{}) return slave.sm_watchdog;
     return std::max<Duration>(3 * exchange_period(config, slave), std::chrono::milliseconds{10});
 }
+/// What the frames of the fullest cycle need on the wire until the last slave has its outputs: an estimate, from the sizes that are
+/// known without the bus.
+[[nodiscard]] Duration estimated_flight(const BusConfig& config);
+/// What of a slave's SYNC0 shift is left for computing and jitter, when the frames' flight is taken off.
+[[nodiscard]] Duration time_to_compute(const BusConfig& config, const SlaveConfig& slave);
+
+/// What the frames of the fullest cycle need on the wire until the last slave has its outputs: an estimate, from the sizes that are
+/// known without the bus.
+[[nodiscard]] Duration estimated_flight(const BusConfig& config);
+/// What of a slave's SYNC0 shift is left for computing and jitter, when the frames' flight is taken off.
+[[nodiscard]] Duration time_to_compute(const BusConfig& config, const SlaveConfig& slave);
 
 /// Every problem of a configuration, found without a bus.
 [[nodiscard]] std::vector<Error> check(const BusConfig& config);

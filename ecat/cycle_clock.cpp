@@ -69,6 +69,7 @@ CycleClock::Request CycleClock::request(Instant now, std::uint16_t first) noexce
 
 void CycleClock::answer(std::span<const std::byte> data, std::uint16_t wkc, Instant sent) noexcept {
     trusted_ = false;
+    passed_.reset();
     const std::int64_t system = data.size() == 8 ? load_le<std::int64_t>(data) : asked_.data;
     // One that was addressed answers a FPRD; in a FRMW the others count, too, but only the reference changes the data.
     const bool own = asked_.command == Command::FPRD ? wkc == 1 : wkc > 0;
@@ -79,8 +80,12 @@ void CycleClock::answer(std::span<const std::byte> data, std::uint16_t wkc, Inst
     // As the first reference would have said it: where a frame passes another one later, system time is the same.
     if (!reference_.take(sent, system - asked_.behind)) return;
     trusted_ = fresh_ = true;
+    passed_ = system - asked_.behind;
 }
 
-void CycleClock::no_answer() noexcept { reference_.miss(); }
+void CycleClock::no_answer() noexcept {
+    passed_.reset();
+    reference_.miss();
+}
 
 }  // namespace taktwerk::ecat

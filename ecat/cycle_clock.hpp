@@ -38,6 +38,8 @@ public:
     void answer(std::span<const std::byte> data, std::uint16_t wkc, Instant sent) noexcept;
     void no_answer() noexcept;
 
+    /// System time at which the last frame that brought a sample passed the first reference; nothing when the last one did not.
+    [[nodiscard]] std::optional<std::int64_t> passed_reference() const noexcept { return passed_; }
     [[nodiscard]] const ReferenceClock& reference() const noexcept { return reference_; }
     [[nodiscard]] std::optional<std::int64_t> offset() const noexcept { return reference_.offset(); }
     [[nodiscard]] std::int64_t offset_at(Instant t) const noexcept { return reference_.offset_at(t); }
@@ -57,8 +59,9 @@ private:
     Duration correction_{};
     Request asked_;
     std::uint32_t missing_ = 0;  ///< cycles without a sample
-    bool trusted_ = false;       ///< the last answer was the reference's and plausible
-    bool fresh_ = false;         ///< ... since the last steer()
+    std::optional<std::int64_t> passed_;
+    bool trusted_ = false;  ///< the last answer was the reference's and plausible
+    bool fresh_ = false;    ///< ... since the last steer()
 };
 
 }  // namespace taktwerk::ecat

@@ -8,6 +8,7 @@
 
 #include "ecat/alarms.hpp"
 #include "ecat/bringup/bring_up.hpp"
+#include "ecat/bringup/presence.hpp"
 #include "ecat/bringup/watch.hpp"
 #include "ecat/process_data_cycle.hpp"
 
@@ -126,6 +127,8 @@ Master::Phase Master::phase() const noexcept { return static_cast<Phase>(impl_->
 std::string Master::progress() const { return impl_->bus->progress; }
 const Error& Master::failure() const { return impl_->failure; }
 std::span<const std::string> Master::notes() const noexcept { return impl_->bus->notes; }
+Bus& Master::bus() noexcept { return *impl_->bus; }
+std::span<const SlaveEmergency> Master::emergencies() const noexcept { return impl_->bus->emergencies.entries(); }
 
 SdoTicket Master::Impl::add_job(std::size_t slave, std::uint16_t index, std::uint8_t sub, std::optional<std::vector<std::byte>> value) {
     const SdoTicket ticket = next_ticket++;
@@ -219,33 +222,45 @@ void Master::set_tap(void (*tap)(void*, std::span<const std::byte>, Instant, boo
 
 std::size_t Master::active_faults(std::span<AlarmFact> out) const noexcept {
     std::size_t count = 0;
-    const auto raise = [&](AlarmId id, AlarmSource source, std::size_t index, double a = 0, double b = 0) {
-        if (count < out.size()) out[count++] = {id, source, static_cast<std::uint16_t>(index), a, b};
+    const auto raise = [&](AlarmId id) {
+        if (count < out.size()) out[count++] = {id, AlarmSource::bus, 0, 0, 0};
     };
     const Phase now = phase();
-    if (now == Phase::failed) raise(alarm::bringup_failed, AlarmSource::bus, 0);
+    if (now == Phase::failed) raise(alarm::bringup_failed);
     if (now != Phase::operational) {
-        if (now != Phase::failed) raise(alarm::bus_not_operational, AlarmSource::bus, 0);
+        if (now != Phase::failed) raise(alarm::bus_not_operational);
         return count;
     }
-    const auto& seen = statistics();
-    if (!impl_->cycle.link_up()) raise(alarm::link_down, AlarmSource::bus, 0);
-    if (seen.lost_in_a_row >= impl_->config.lost_frames_limit) raise(alarm::frames_lost, AlarmSource::bus, 0, seen.lost_in_a_row);
-    for (std::size_t s = 0; s < slave_count(); ++s) {
-        const auto& state = health(s);
-        if (state.al_state == AlState::unknown) raise(alarm::slave_lost, AlarmSource::slave, s);
-        else if (state.al_state != AlState::op || state.al_error)
-            raise(alarm::slave_left_op, AlarmSource::slave, s, static_cast<double>(state.al_state), state.al_status_code);
-        if (!state.fresh && state.age >= impl_->config.lost_frames_limit)
-            raise(alarm::working_counter_wrong, AlarmSource::slave, s, state.age);
+    bool frames = true;
+    for (const auto& fact : impl_->cycle.faults()) {
+        frames = frames && fact.id != alarm::link_down && fact.id != alarm::frames_lost;
+        if (count < out.size()) out[count++] = fact;
     }
-    constexpr std::int64_t sync_limit_ns = 3000;  // SV33-E P0A.32 default
-    if (seen.dc_difference_ns > sync_limit_ns)
-        raise(alarm::dc_out_of_sync, AlarmSource::bus, 0, static_cast<double>(seen.dc_difference_ns));
+    for (std::size_t s = 0; s < slave_count() && count < out.size(); ++s) {
+        const auto& state = health(s);
+        if (state.emergency_code == 0) continue;
+        out[count++] = {alarm::slave_emergency, AlarmSource::slave, static_cast<std::uint16_t>(s), static_cast<double>(state.emergency_code),
+                        static_cast<double>(state.error_register)};
+    }
+    const auto& seen = statistics();
     const bool in_time = seen.dc_lock == DcLock::locked || seen.dc_lock == DcLock::coasting;
-    if (!in_time && impl_->bus->runs_sync0.load(std::memory_order_relaxed))
-        raise(alarm::dc_not_locked, AlarmSource::bus, 0, static_cast<double>(seen.dc_phase_error_ns));
+    if (frames && !in_time && impl_->bus->runs_sync0.load(std::memory_order_relaxed) && count < out.size())
+        out[count++] = {alarm::dc_not_locked, AlarmSource::bus, 0, static_cast<double>(seen.dc_phase_error_ns), 0};
     return count;
+}
+
+std::string Master::detail(const AlarmFact& fact) const {
+    const auto& slaves = impl_->bus->slaves;
+    if (fact.source != AlarmSource::slave || fact.index >= slaves.size()) return {};
+    switch (fact.id) {
+        case alarm::cable_broken:
+        case alarm::branch_dropped_out:
+        case alarm::slave_lost: return connection_text(*impl_->bus, *slaves[fact.index]);
+        case alarm::other_device:
+        case alarm::other_device_tolerated:
+        case alarm::slave_does_not_return: return slaves[fact.index]->last_trouble;
+        default: return {};
+    }
 }
 
 std::span<const AlarmInfo> Master::alarms() noexcept { return bus_alarms; }

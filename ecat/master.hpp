@@ -29,21 +29,26 @@
 #include "core/result.hpp"
 #include "core/time.hpp"
 #include "ecat/bus_config.hpp"
+#include "ecat/coe/emergency_log.hpp"
 #include "ecat/dc/cycle_servo.hpp"
 #include "ecat/transport/transport.hpp"
 #include "ecat/wire/al_status.hpp"
 
 namespace taktwerk::ecat {
 
+struct Bus;
+
 /// What the cycle knows about a slave's process data. Trivially copyable.
 struct SlaveHealth {
     AlState al_state = AlState::unknown;
     bool al_error = false;
     std::uint16_t al_status_code = 0;
-    bool fresh = false;     ///< its inputs were exchanged in the last receive(), with the right working counter
-    bool due = true;        ///< its sync unit was to be exchanged in that cycle; false between the instants of a slower unit
-    std::uint32_t age = 0;  ///< exchanges missed since they were, in periods of its sync unit
-    Instant latched{};      ///< when its inputs were latched (SYNC0 instant, or frame time); of the last fresh exchange
+    std::uint16_t emergency_code = 0;  ///< of its last emergency; 0: none, or the slave has taken it back
+    std::uint8_t error_register = 0;   ///< 1001h, of that emergency
+    bool fresh = false;                ///< its inputs were exchanged in the last receive(), with the right working counter
+    bool due = true;                   ///< its sync unit was to be exchanged in that cycle; false between the instants of a slower unit
+    std::uint32_t age = 0;             ///< exchanges missed since they were, in periods of its sync unit
+    Instant latched{};                 ///< when its inputs were latched (SYNC0 instant, or frame time); of the last fresh exchange
 };
 
 /// Counters since start; never reset by the master.
@@ -51,6 +56,7 @@ struct BusStatistics {
     std::uint64_t frames_sent = 0, frames_received = 0, frames_lost = 0, frames_late = 0, frames_rejected = 0;
     std::uint64_t frames_foreign = 0;  ///< EtherCAT frames of another master on the cable
     std::uint64_t working_counter_errors = 0, send_errors = 0;
+    std::uint16_t slaves_answering = 0;  ///< in the last cyclic frame that came back
     std::uint32_t lost_in_a_row = 0;
     std::int64_t dc_difference_ns = 0;   ///< worst 092Ch seen in the last service round
     Duration round_trip{};               ///< of the last answered cyclic frame
@@ -58,8 +64,11 @@ struct BusStatistics {
     std::int64_t dc_drift_ppb = 0;       ///< how fast dc_offset_ns changes, ns per s: what the servo follows
     std::int64_t dc_phase_error_ns = 0;  ///< how much later than it should the last frame left, in the reference's time
     Duration dc_correction{};            ///< of the period that follows: what the servo asks for
-    DcLock dc_lock = DcLock::none;       ///< of the master's cycle to the reference clock
-    std::uint64_t dc_rejected = 0;       ///< reference times that were missing or implausible
+    /// From the arrival of a cycle's last byte at a slave to the SYNC0 that is to find it, measured by the reference clock; the
+    /// least of all slaves, in the last cycle and since OP. Below 0: too late. 0 while no slave runs SYNC0.
+    std::int64_t sync0_margin_ns = 0, sync0_margin_least_ns = 0;
+    DcLock dc_lock = DcLock::none;  ///< of the master's cycle to the reference clock
+    std::uint64_t dc_rejected = 0;  ///< reference times that were missing or implausible
 };
 
 /// An SDO request in flight. Obtained from upload()/download(); polled from the service side.
@@ -92,6 +101,10 @@ public:
     [[nodiscard]] const Error& failure() const;
     /// What happened since start() that an engineer wants to read: slaves that fell and came back. Newest last.
     [[nodiscard]] std::span<const std::string> notes() const noexcept;
+    /// What the scripts share, for diagnosis (ecat/diagnosis/): scripts of one's own may run on its port. Valid until start().
+    [[nodiscard]] Bus& bus() noexcept;
+    /// What slaves sent unasked since start(), newest last; the newest hundred. Valid until the next step().
+    [[nodiscard]] std::span<const SlaveEmergency> emergencies() const noexcept;
 
     [[nodiscard]] SdoTicket upload(std::size_t slave, std::uint16_t index, std::uint8_t sub);
     [[nodiscard]] SdoTicket download(std::size_t slave, std::uint16_t index, std::uint8_t sub, std::span<const std::byte> data);
@@ -119,6 +132,8 @@ public:
     [[nodiscard]] Duration period_correction() const noexcept;
     /// The conditions of alarms() that hold now, at most out.size(). Returns how many.
     std::size_t active_faults(std::span<AlarmFact> out) const noexcept;
+    /// More words about one of them, for whoever shows it: which cable, which reason. May be empty. Service side.
+    [[nodiscard]] std::string detail(const AlarmFact& fact) const;
     /// When the drives will apply the outputs that the next send() carries: the next SYNC0, or the send itself without DC.
     [[nodiscard]] Instant outputs_effective(std::size_t slave, Instant send_time) const noexcept;
     /// Called by send() with each frame as it goes out, and by receive() with each as it came in: recorder, pcap. May be null.

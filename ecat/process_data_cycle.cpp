@@ -4,6 +4,7 @@
 
 #include "core/bytes.hpp"
 #include "ecat/dc/propagation.hpp"
+#include "ecat/dc/sync0_budget.hpp"
 
 namespace taktwerk::ecat {
 
@@ -20,6 +21,7 @@ CyclePlan::CyclePlan(const Bus& bus)
       outputs(bus.plan.output_bytes),
       inputs(bus.plan.input_bytes),
       health(bus.slaves.size()),
+      faults(fault_slaves(bus), static_cast<std::uint16_t>(std::max(bus.found.size(), bus.slaves.size())), bus.config.lost_frames_limit),
       frames(bus.plan.frames),
       places(bus.plan.datagrams.size()),
       under_way(bus.plan.units.size(), 0) {
@@ -27,8 +29,8 @@ CyclePlan::CyclePlan(const Bus& bus)
         slaves.push_back(slave.get());
         period.push_back(exchange_period(bus.config, *slave->config));
         delay.push_back(slave->dc_delay);
-        ++state_wkc;
     }
+    state_wkc = static_cast<std::uint16_t>(std::max(bus.found.size(), bus.slaves.size()));
     if (bus.reference) reference = bus.slaves[*bus.reference]->found.station;
 }
 
@@ -48,16 +50,18 @@ void ProcessDataCycle::copy_statistics() noexcept {
     statistics_.frames_lost = s.lost;
     statistics_.frames_late = s.late;
     statistics_.frames_rejected = s.rejected + s.duplicate;
-    statistics_.frames_foreign = s.foreign;
     statistics_.send_errors = s.send_errors;
+    statistics_.frames_foreign = s.foreign;
     statistics_.dc_rejected = clock_.reference().rejected();
     statistics_.dc_offset_ns = clock_.offset().value_or(0);
     statistics_.dc_drift_ppb = clock_.reference().drift_ppb();
     statistics_.dc_lock = clock_.lock();
     statistics_.dc_phase_error_ns = clock_.phase_error();
     statistics_.dc_correction = clock_.correction();
-    if (const auto* link = link_.load(std::memory_order_acquire))
+    if (auto* link = link_.load(std::memory_order_acquire)) {
+        link->foreign_frames.store(s.foreign, std::memory_order_relaxed);
         statistics_.dc_difference_ns = link->dc_difference_ns.load(std::memory_order_relaxed);
+    }
 }
 
 void ProcessDataCycle::pump(Instant now) noexcept {
@@ -70,8 +74,29 @@ void ProcessDataCycle::pump(Instant now) noexcept {
 void ProcessDataCycle::receive(Instant now) noexcept {
     exchange_.receive(now);
     channel_.collect(now);
-    if (auto* cycle = latest_.load(std::memory_order_acquire)) collect_frames(*cycle);
+    auto* cycle = latest_.load(std::memory_order_acquire);
+    if (cycle != nullptr) collect_frames(*cycle);
     copy_statistics();
+    if (cycle != nullptr) find_faults(*cycle);
+}
+
+void ProcessDataCycle::find_faults(CyclePlan& cycle) noexcept {
+    for (std::size_t s = 0; s < cycle.slaves.size(); ++s) {
+        const auto& health = cycle.health[s];
+        const auto& slave = *cycle.slaves[s];
+        cycle.faults.condition(s) = {health.al_state,
+                                     health.al_error,
+                                     health.al_status_code,
+                                     health.age,
+                                     slave.presence.load(std::memory_order_relaxed),
+                                     slave.trouble.load(std::memory_order_relaxed),
+                                     slave.attempts.load(std::memory_order_relaxed),
+                                     slave.mailbox_silent.load(std::memory_order_relaxed)};
+    }
+    const auto* link = link_.load(std::memory_order_acquire);
+    cycle.faults.look({transport_.link_up(), statistics_.lost_in_a_row, statistics_.slaves_answering,
+                       clock_.reference().rejected_in_a_row(), statistics_.dc_difference_ns,
+                       link != nullptr && link->foreign_master.load(std::memory_order_relaxed)});
 }
 
 void ProcessDataCycle::collect_frames(CyclePlan& cycle) noexcept {
@@ -89,13 +114,18 @@ void ProcessDataCycle::collect_frames(CyclePlan& cycle) noexcept {
     give_up_frames(cycle);
 
     statistics_.lost_in_a_row = any_lost_ ? statistics_.lost_in_a_row + 1 : 0;
+    if (auto* link = link_.load(std::memory_order_acquire)) link->lost_in_a_row.store(statistics_.lost_in_a_row, std::memory_order_relaxed);
     for (std::size_t s = 0; s < cycle.slaves.size(); ++s) {
         auto& health = cycle.health[s];
         const std::uint32_t al = cycle.slaves[s]->al.load(std::memory_order_relaxed);
         health.al_state = al_state(static_cast<std::uint16_t>(al));
         health.al_error = (al & al_status_error) != 0;
         health.al_status_code = static_cast<std::uint16_t>(al >> 16);
+        const std::uint32_t emergency = cycle.slaves[s]->mailbox.emergency.load(std::memory_order_relaxed);
+        health.emergency_code = static_cast<std::uint16_t>(emergency);
+        health.error_register = static_cast<std::uint8_t>(emergency >> 16);
         if (!cycle.plan.slaves[s].unit) health.fresh = !any_lost_ && health.al_state != AlState::unknown;
+        cycle.slaves[s]->age.store(health.age, std::memory_order_relaxed);
     }
     if (auto* link = link_.load(std::memory_order_acquire)) {
         const auto good = link->good_in_a_row.load(std::memory_order_relaxed);
@@ -107,17 +137,46 @@ void ProcessDataCycle::collect_frames(CyclePlan& cycle) noexcept {
 void ProcessDataCycle::collect_first_frame(CyclePlan& cycle, SlotId slot) noexcept {
     const bool answered = exchange_.state(slot) == SlotState::answered;
     if (cycle.reference) {
-        if (answered) clock_.answer(exchange_.data(slot, 0), exchange_.wkc(slot, 0), exchange_.sent_at(slot));
+        if (answered) clock_.answer(exchange_.data(slot, 0), exchange_.wkc(slot, 0), exchange_.departed_at(slot));
         else clock_.no_answer();
+        measure_margin(cycle, slot);
     }
     auto* link = link_.load(std::memory_order_acquire);
     if (!answered || link == nullptr) return;
     const auto states = exchange_.data(slot, cycle.state_number);
-    const bool all_answered = exchange_.wkc(slot, cycle.state_number) == cycle.state_wkc;
+    statistics_.slaves_answering = exchange_.wkc(slot, cycle.state_number);
+    link->slaves_answering.store(statistics_.slaves_answering, std::memory_order_relaxed);
+    const bool all_answered = statistics_.slaves_answering == cycle.state_wkc;
     link->states_seen.store(all_answered && states.size() == 2 ? load_le<std::uint16_t>(states) & 0x1Fu : 0u, std::memory_order_relaxed);
     if (cycle.plan.mailbox.size > 0)
         link->mailbox.publish(exchange_.data(slot, cycle.state_number + 1),
                               exchange_.wkc(slot, cycle.state_number + 1) == cycle.plan.mailbox.expected_wkc);
+}
+
+/// From the arrival of the last byte of the frames at each slave to the SYNC0 that was to find them there.
+void ProcessDataCycle::measure_margin(const CyclePlan& cycle, SlotId slot) noexcept {
+    const auto passed = clock_.passed_reference();
+    if (!passed) return;
+    std::size_t bytes = 0, frames = 0;
+    for (const SlotId frame : cycle.frames) {
+        if (frame.generation == 0) continue;
+        bytes += exchange_.frame_size(frame);
+        ++frames;
+    }
+    const std::int64_t through = *passed + flight_time(bytes, frames, 0).count();
+    const std::int64_t due = nanoseconds(exchange_.sent_at(slot)) + clock_.offset_at(exchange_.sent_at(slot));
+    std::optional<std::int64_t> least;
+    for (std::size_t s = 0; s < cycle.slaves.size(); ++s) {
+        const std::int64_t start = sync0_of(cycle, s);
+        if (start == 0 || due < start) continue;
+        const std::int64_t margin = next_sync0(due + 1, start, cycle.period[s].count()) - (through + cycle.delay[s]);
+        least = least ? std::min(*least, margin) : margin;
+    }
+    if (!least) return;
+    statistics_.sync0_margin_ns = *least;
+    if (!operational_.load(std::memory_order_relaxed)) return;
+    statistics_.sync0_margin_least_ns = margin_known_ ? std::min(statistics_.sync0_margin_least_ns, *least) : *least;
+    margin_known_ = true;
 }
 
 bool ProcessDataCycle::answered_exactly(const CyclePlan& cycle, const UnitPlan& unit) noexcept {
@@ -255,6 +314,11 @@ std::span<std::byte> ProcessDataCycle::outputs() noexcept {
 const SlaveHealth& ProcessDataCycle::health(std::size_t slave) const noexcept {
     const auto* cycle = latest_.load(std::memory_order_acquire);
     return cycle != nullptr && slave < cycle->health.size() ? cycle->health[slave] : nothing_;
+}
+
+std::span<const AlarmFact> ProcessDataCycle::faults() const noexcept {
+    const auto* cycle = latest_.load(std::memory_order_acquire);
+    return cycle != nullptr ? cycle->faults.facts() : std::span<const AlarmFact>{};
 }
 
 Instant ProcessDataCycle::outputs_effective(std::size_t slave, Instant send_time) const noexcept {

@@ -14,6 +14,7 @@
 #include "ecat/cycle_clock.hpp"
 #include "ecat/exchange/acyclic_channel.hpp"
 #include "ecat/exchange/exchange.hpp"
+#include "ecat/fault_finder.hpp"
 #include "ecat/master.hpp"
 
 namespace taktwerk::ecat {
@@ -23,7 +24,7 @@ struct CyclePlan {
     explicit CyclePlan(const Bus& bus);
 
     ProcessDataPlan plan;
-    std::vector<const BusSlave*> slaves;
+    std::vector<BusSlave*> slaves;
     std::vector<Duration> period;            ///< of each slave's sync unit
     std::optional<std::uint16_t> reference;  ///< station of the reference clock
     std::vector<std::int64_t> delay;         ///< ns from the reference to each slave
@@ -40,6 +41,7 @@ struct CyclePlan {
     bool sent = false;         ///< and not collected yet
     std::vector<std::byte> outputs, inputs;
     std::vector<SlaveHealth> health;
+    FaultFinder faults;
     std::vector<SlotId> frames;           ///< under way; generation 0: none
     std::vector<Place> places;            ///< of each datagram; valid while its unit is under way
     std::vector<std::uint8_t> under_way;  ///< of each unit
@@ -66,15 +68,17 @@ public:
     [[nodiscard]] std::span<const std::byte> inputs() const noexcept;
     [[nodiscard]] std::span<std::byte> outputs() noexcept;
     [[nodiscard]] const SlaveHealth& health(std::size_t slave) const noexcept;
+    /// What is wrong with a bus in OP, as of the last receive().
+    [[nodiscard]] std::span<const AlarmFact> faults() const noexcept;
     [[nodiscard]] const BusStatistics& statistics() const noexcept { return statistics_; }
     [[nodiscard]] Instant outputs_effective(std::size_t slave, Instant send_time) const noexcept;
     [[nodiscard]] Duration period_correction() const noexcept { return clock_.correction(); }
-    [[nodiscard]] bool link_up() const noexcept { return transport_.link_up(); }
     void set_tap(Exchange::Tap tap, void* context) noexcept { exchange_.set_tap(tap, context); }
 
 private:
     void collect_frames(CyclePlan& cycle) noexcept;
     void collect_first_frame(CyclePlan& cycle, SlotId slot) noexcept;
+    void measure_margin(const CyclePlan& cycle, SlotId slot) noexcept;
     /// All datagrams of the unit or nothing.
     void take_unit(CyclePlan& cycle, const UnitPlan& unit) noexcept;
     [[nodiscard]] bool answered_exactly(const CyclePlan& cycle, const UnitPlan& unit) noexcept;
@@ -82,6 +86,7 @@ private:
     void add_clock(const CyclePlan& cycle, SlotId slot, Instant now) noexcept;
     void add_unit(CyclePlan& cycle, const UnitPlan& unit, FramePacker& packer) noexcept;
     void give_up_frames(CyclePlan& cycle) noexcept;
+    void find_faults(CyclePlan& cycle) noexcept;
     /// SYNC0 of the slave, as machine time follows from it; 0: does not run, or the reference is not known yet.
     [[nodiscard]] std::int64_t sync0_of(const CyclePlan& cycle, std::size_t slave) const noexcept;
     void copy_statistics() noexcept;
@@ -102,6 +107,7 @@ private:
     // Of the cycle.
     bool all_good_ = true;
     bool any_lost_ = false;
+    bool margin_known_ = false;
 };
 
 }  // namespace taktwerk::ecat

@@ -113,6 +113,13 @@ std::string state_json(const runtime::Snapshot& s, const MachineLink& machine) {
         {"send_errors", s.bus.send_errors},
         {"dc_difference_ns", s.bus.dc_difference_ns},
         {"round_trip_ns", count(s.bus.round_trip)},
+        {"dc_lock", ecat::name(s.bus.dc_lock)},
+        {"dc_phase_error_ns", s.bus.dc_phase_error_ns},
+        {"dc_offset_ns", s.bus.dc_offset_ns},
+        {"dc_drift_ppb", s.bus.dc_drift_ppb},
+        {"dc_rejected", s.bus.dc_rejected},
+        {"sync0_margin_ns", s.bus.sync0_margin_ns},
+        {"sync0_margin_least_ns", s.bus.sync0_margin_least_ns},
     };
     auto& slaves = out["slaves"] = Json::array();
     for (std::size_t i = 0; i < s.slaves.size() && i < layout.slaves.size(); ++i)

@@ -4,6 +4,7 @@
 //
 //   tick     i64 scheduled ns, i64 woken ns, u32 missed                                        20 bytes
 //   frame    an Ethernet frame as it came in
+//   departure  nothing but its time: when a frame left, as the transport measured it (the servo follows it)
 //   command  u8 action, u8 owner, u8 mode, u8 flag, u16 axis, u16 index, f64 value, f64 value2,
 //            u32 client, u64 sequence, i64 expires ns                                          44 bytes
 //   object   u16 program, u16 place, u8 outcome, u32 abort code                                9 bytes, then the value read
@@ -22,7 +23,7 @@
 
 namespace taktwerk::runtime {
 
-inline constexpr RecordChannel tick_channel = 1, frame_channel = 2, command_channel = 3, object_channel = 4;
+inline constexpr RecordChannel tick_channel = 1, frame_channel = 2, command_channel = 3, object_channel = 4, departure_channel = 5;
 
 namespace inbox_record {
 template <std::size_t Size>
@@ -79,9 +80,11 @@ inline void record_object(Recorder& recorder, Instant at, std::uint16_t program,
     recorder.append(object_channel, at, bytes.written());
 }
 
-/// For ecat::Master::set_tap; `context` is the Recorder. What the master sends follows from what it received.
+/// For ecat::Master::set_tap; `context` is the Recorder. What the master sends follows from what it received; only when is news.
 inline void record_frame(void* context, std::span<const std::byte> frame, Instant at, bool outgoing) noexcept {
-    if (!outgoing) static_cast<Recorder*>(context)->append(frame_channel, at, frame);
+    auto& recorder = *static_cast<Recorder*>(context);
+    if (outgoing) recorder.append(departure_channel, at, {});
+    else recorder.append(frame_channel, at, frame);
 }
 
 }  // namespace taktwerk::runtime

@@ -42,6 +42,7 @@ ecat::BusConfig bus_of(const MachineConfig& config) {
         bus.lost_frames_limit = static_cast<std::uint16_t>(std::min(bus.lost_frames_limit * relaxed_factor, 60000u));
         for (auto& slave : bus.slaves)
             if (slave.sm_watchdog == Duration{}) slave.sm_watchdog = relaxed_watchdog;
+        bus.lock_required = false;
     }
     return bus;
 }

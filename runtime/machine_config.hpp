@@ -115,8 +115,18 @@ struct SimulationEvent {
     std::int64_t value = 0;  ///< input value; 603Fh code; 1 = power on / free, 0 = power off / jammed
 };
 
+/// Where a simulated slave hangs, and how good its clock is. Without one a slave hangs behind port 1 of the slave before it.
+struct SlaveSimulation {
+    std::string slave;
+    std::string behind;                    ///< slave towards the master; empty: the one before it
+    std::uint8_t port = 1;                 ///< 1..3: that slave's socket. A frame takes 3 before 1 before 2
+    double cable = 10;                     ///< metres
+    std::optional<double> drift_ppm = {};  ///< of its clock; instead of the axis' clock_drift
+};
+
 struct SimulationConfig {
     Supervision supervision = Supervision::strict;
+    std::vector<SlaveSimulation> slaves;
     std::vector<SimulationEvent> events;
 };
 

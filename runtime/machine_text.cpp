@@ -104,6 +104,11 @@ AlarmText Machine::describe(const AlarmFact& fact) const {
     out.reaction = text(info->reaction);
     out.reset = text(info->reset);
 
+    if (const auto more = m.bus.detail(fact); info->id >= 0x1000 && info->id < 0x2000 && !more.empty()) {
+        out.english += ": " + more;
+        out.chinese += ":" + more;
+    }
+
     if (fact.id == id(MachineAlarm::program_fault) && fact.index < m.host->programs().size()) {
         if (const auto& why = m.host->programs()[fact.index].fault; !why.empty()) {
             out.english += ": " + why;

@@ -60,15 +60,31 @@ World::World(const MachineConfig& config, Instant start)
     : network_(start), transport_(network_), start_(start), events_(config.simulation.events) {
     std::stable_sort(events_.begin(), events_.end(), [](const auto& a, const auto& b) { return a.at < b.at; });
     const auto present = present_slaves(config);
+    const auto install = [&](const ecat::SlaveConfig& slave, std::unique_ptr<ecat::sim::DeviceModel> model,
+                             ecat::sim::SlaveOptions options) {
+        const auto& wires = config.simulation.slaves;
+        const auto wire = std::find_if(wires.begin(), wires.end(), [&](const SlaveSimulation& w) { return w.slave == slave.name; });
+        if (wire != wires.end() && wire->drift_ppm) options.drift_ppm = *wire->drift_ppm;
+        // A parent that is not there (all its axes `simulated: true`) is bridged: the cable comes from the slave before.
+        auto* parent = wire != wires.end() ? find(wire->behind) : nullptr;
+        auto* before = slaves_.empty() ? nullptr : slaves_.back().slave;
+        if (parent == nullptr) parent = before;
+        const unsigned port = wire != wires.end() ? wire->port : 1;
+        const bool branch = parent != nullptr && network_.port_free(*parent, port);
+        auto& added = branch ? network_.add_behind(*parent, port, slave.device, std::move(model), options)
+                             : network_.add(slave.device, std::move(model), options);
+        if (wire != wires.end()) network_.set_cable_delay(added, ecat::sim::cable_delay(wire->cable));
+        slaves_.push_back({slave.name, &added});
+    };
     for (const auto* slave : cable_order(present)) {
         ecat::sim::SlaveOptions options;
         options.name = slave->name;
         options.alias = slave->alias.value_or(0);
-        slave_names_.push_back(slave->name);
+        options.device_id = slave->device_id;
         if (!slave->device->mailbox) {
             auto model = std::make_unique<ecat::sim::DigitalTerminal>();
             auto* terminal = model.get();
-            network_.add(slave->device, std::move(model), options);
+            install(*slave, std::move(model), options);
             for (const auto& point : config.io)
                 if (point.slave == slave->name) points_.push_back({point, terminal});
             continue;
@@ -97,14 +113,16 @@ World::World(const MachineConfig& config, Instant start)
         auto model = std::make_unique<axes::sim::Cia402Device>(*profile, setups);
         for (std::size_t i = 0; i < names.size(); ++i)
             if (!names[i].empty()) axes_.push_back({names[i], &model->axis(i)});
-        network_.add(slave->device, std::move(model), options);
+        install(*slave, std::move(model), options);
     }
     for (const auto& point : config.io)
         if (point.direction == IoDirection::input && point.simulated) set_input(point.name, *point.simulated != 0);
 }
 
-std::size_t World::place(std::string_view slave) const noexcept {
-    return static_cast<std::size_t>(std::find(slave_names_.begin(), slave_names_.end(), slave) - slave_names_.begin());
+ecat::sim::SimSlave* World::find(std::string_view slave) const noexcept {
+    for (const auto& place : slaves_)
+        if (place.name == slave) return place.slave;
+    return nullptr;
 }
 
 axes::sim::Cia402Axis* World::drive(std::string_view axis) noexcept {
@@ -127,11 +145,11 @@ bool World::output(std::string_view name) const {
 }
 
 void World::set_slave_power(std::string_view slave, bool on) {
-    if (const auto at = place(slave); at < slave_names_.size()) network_.set_power(at, on);
+    if (auto* there = find(slave)) network_.set_power(*there, on);
 }
 
 void World::set_cable(std::string_view slave, bool plugged) {
-    if (const auto at = place(slave); at < slave_names_.size()) network_.set_cable(at, plugged);
+    if (auto* there = find(slave)) network_.set_cable(*there, plugged);
 }
 
 void World::happen(const SimulationEvent& event) {

@@ -38,7 +38,7 @@ public:
     void set_cable(std::string_view slave, bool plugged);
 
 private:
-    [[nodiscard]] std::size_t place(std::string_view slave) const noexcept;
+    [[nodiscard]] ecat::sim::SimSlave* find(std::string_view slave) const noexcept;
     void happen(const SimulationEvent& event);
 
     struct Point {
@@ -52,7 +52,11 @@ private:
     ecat::sim::SimNetwork network_;
     ecat::LoopbackTransport transport_;
     Instant start_;
-    std::vector<std::string> slave_names_;  // in cable order
+    struct SlavePlace {
+        std::string name;
+        ecat::sim::SimSlave* slave;
+    };
+    std::vector<SlavePlace> slaves_;  // in cable order
     std::vector<AxisPlace> axes_;
     std::vector<Point> points_;
     std::vector<SimulationEvent> events_;  // by time

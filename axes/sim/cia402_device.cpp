@@ -1,5 +1,7 @@
 #include "axes/sim/cia402_device.hpp"
 
+#include <algorithm>
+
 namespace taktwerk::axes::sim {
 
 namespace {
@@ -9,6 +11,21 @@ using ecat::sim::Entry;
 std::int64_t value(const Entry* entry) noexcept { return entry ? entry->get() : 0; }
 void put(Entry* entry, std::int64_t v) noexcept {
     if (entry) entry->set(v);
+}
+
+constexpr std::uint16_t status_fault = 1u << 3;
+
+/// 1001h: bit 0 any error, the others by the class of the error code (CiA 301 7.5.2.2 and table of emergency codes).
+std::uint8_t error_register(std::uint16_t code) noexcept {
+    const unsigned generic = 1u << 0;
+    switch (code >> 12) {
+        case 0x2: return generic | 1u << 1;  // current
+        case 0x3: return generic | 1u << 2;  // voltage
+        case 0x4: return generic | 1u << 3;  // temperature
+        case 0x8: return generic | 1u << 4;  // communication, monitoring
+        case 0xF: return generic | 1u << 7;  // vendor's
+        default: return generic;
+    }
 }
 
 }  // namespace
@@ -72,6 +89,7 @@ void Cia402Device::power_on(ecat::sim::ObjectDictionary& dictionary, Instant now
                             at(0x6064), at(0x606C),    at(0x6077),    at(0x60F4), at(0x6062), at(0x603F), at(0x60FD)};
         axes_[i].model->power_on(now);
     }
+    for (auto& axis : axes_) axis.faulted = false;
     alarm_detail_ = detail_index_ ? dictionary.find(detail_index_, detail_sub_) : nullptr;
     operational_ = false;
     exchange(now);  // the inputs show the truth from the first SAFEOP cycle on
@@ -140,17 +158,33 @@ void Cia402Device::exchange(Instant) {
         put(o.demand, out.demand);
         put(o.error_code, out.error_code);
         put(o.digital_inputs, out.digital_inputs);
-        if (alarm_detail_) {
-            std::int64_t detail = out.error_detail;
-            if (out.error_code && detail == 0)
-                for (const auto& row : alarms_)
-                    if (row.code == out.error_code) {
-                        detail = row.detail;
-                        break;
-                    }
-            alarm_detail_->set(detail);
-        }
+        std::int64_t detail = out.error_detail;
+        if (out.error_code && detail == 0)
+            for (const auto& row : alarms_)
+                if (row.code == out.error_code) {
+                    detail = row.detail;
+                    break;
+                }
+        put(alarm_detail_, detail);
+        announce(axis, (out.status & status_fault) != 0, out.error_code, static_cast<std::uint32_t>(detail));
     }
+}
+
+void Cia402Device::announce(OneAxis& axis, bool faulted, std::uint16_t code, std::uint32_t detail) {
+    if (faulted == axis.faulted) return;
+    axis.faulted = faulted;
+    ecat::Emergency emergency;
+    if (faulted) {
+        emergency.code = code;
+        emergency.error_register = error_register(code);
+        // SV33-E manual table 6-19: the error's low byte, then what the panel shows.
+        emergency.data[0] = static_cast<std::byte>(code & 0xFFu);
+        emergency.data[1] = static_cast<std::byte>(detail & 0xFFu);
+        emergency.data[2] = static_cast<std::byte>(detail >> 8 & 0xFFu);
+    } else if (std::any_of(axes_.begin(), axes_.end(), [](const OneAxis& other) { return other.faulted; })) {
+        return;  // 0000h says that no error is left in the device
+    }
+    send_emergency(emergency);
 }
 
 }  // namespace taktwerk::axes::sim

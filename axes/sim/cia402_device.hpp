@@ -52,7 +52,10 @@ private:
     struct OneAxis {
         std::unique_ptr<Cia402Axis> model;
         Objects objects{};
+        bool faulted = false;  ///< as announced
     };
+    /// An emergency when an axis enters FAULT (or its reaction) and code 0000h when the last one has left it.
+    void announce(OneAxis& axis, bool faulted, std::uint16_t code, std::uint32_t detail);
     std::vector<OneAxis> axes_;
     std::uint16_t object_offset_;
     Entry* alarm_detail_ = nullptr;

@@ -129,6 +129,21 @@ Script<Refusal> read_refusal(Bus& bus, BusSlave& slave, AlState asked) {
     co_return refusal;
 }
 
+namespace {
+
+/// A slave whose firmware has not read the last AL control yet does not take the next (ETG.1000.4: the register is locked until
+/// the application has read it): asked again until `deadline`. The last reply.
+Script<Reply> write_al_control(Bus& bus, const BusSlave& slave, std::uint16_t control, Instant deadline) {
+    for (;;) {
+        Reply written = co_await bus.port.fpwr(slave.found.station, reg::al_control, control);
+        const Instant now = co_await time();
+        if (written.lost || written.wkc != 0 || now >= deadline) co_return written;
+        co_await pause(state_poll_period);
+    }
+}
+
+}  // namespace
+
 Script<Result<void>> set_state(Bus& bus, BusSlave& slave, AlState target) {
     Result<std::uint16_t> status = co_await read_al_status(bus, slave);
     if (!status) co_return status.error();
@@ -141,8 +156,8 @@ Script<Result<void>> set_state(Bus& bus, BusSlave& slave, AlState target) {
 
     if ((*status & al_status_error) != 0) {
         const auto acknowledge = static_cast<std::uint16_t>((*status & al_state_mask) | al_control_acknowledge);
-        const Reply written = co_await bus.port.fpwr(slave.found.station, reg::al_control, acknowledge);
-        if (!written.ok()) co_return unanswered(slave.subject, "AL control (0120h)", written);
+        const Reply written = co_await write_al_control(bus, slave, acknowledge, started + timeouts.down);
+        if (written.lost) co_return unanswered(slave.subject, "AL control (0120h)", written);
         for (;;) {
             co_await pause(state_poll_period);
             status = co_await read_al_status(bus, slave);
@@ -158,8 +173,8 @@ Script<Result<void>> set_state(Bus& bus, BusSlave& slave, AlState target) {
     }
 
     const auto control = static_cast<std::uint16_t>(target);
-    const Reply written = co_await bus.port.fpwr(slave.found.station, reg::al_control, control);
-    if (!written.ok()) co_return unanswered(slave.subject, "AL control (0120h)", written);
+    const Reply written = co_await write_al_control(bus, slave, control, started + patience);
+    if (written.lost) co_return unanswered(slave.subject, "AL control (0120h)", written);
     for (;;) {
         status = co_await read_al_status(bus, slave);
         if (!status) co_return status.error();

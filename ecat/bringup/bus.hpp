@@ -37,9 +37,8 @@ struct MailboxBits {
     std::array<std::atomic<std::uint64_t>, MailboxStatusPlan::max_size / 8> words{};
     std::atomic<std::uint32_t> exact{0};  ///< answers to which every slave with a bit contributed; wraps
 
-    [[nodiscard]] bool full(std::uint32_t bit) const noexcept {
-        return bit / 64 < words.size() && ((words[bit / 64].load(std::memory_order_relaxed) >> (bit % 64)) & 1u) != 0;
-    }
+    /// For a slave's mailbox, once its FMMU is programmed.
+    [[nodiscard]] MailboxFlag flag(std::uint32_t bit) const noexcept { return {&words[bit / 64], bit % 64}; }
     /// By the cycle, with the data of the datagram. Real-time safe.
     void publish(std::span<const std::byte> data, bool all_contributed) noexcept {
         for (std::size_t w = 0; w * 8 < data.size() && w < words.size(); ++w) {
@@ -67,13 +66,27 @@ struct CycleLink {
     std::atomic<std::uint16_t> worst_datagram{0};  ///< a datagram whose working counter was wrong last
     std::atomic<std::uint16_t> worst_wkc{0};
     MailboxBits mailbox;
+    std::atomic<std::uint16_t> slaves_answering{0};  ///< working counter of the last BRD that came back
+    std::atomic<std::uint32_t> lost_in_a_row{0};     ///< cycles without an answer
+    std::atomic<std::uint64_t> foreign_frames{0};    ///< EtherCAT frames of another sender
     // Written by the scripts.
     std::atomic<bool> supervise{false};             ///< slaves are in SAFEOP or above: wrong working counters count
     std::atomic<std::int64_t> dc_difference_ns{0};  ///< worst 092Ch
     std::atomic<std::int64_t> dc_phase_ns{-1};      ///< system time of send(), modulo the cycle, that the servo keeps; -1: not fixed
     std::atomic<std::uint32_t> clock_holds{0};      ///< above 0: a reference is being set: read its time, give it to nobody
     std::atomic<std::uint64_t> reference{0};        ///< who serves as reference clock: station + (ns behind the first << 16)
+    std::atomic<bool> foreign_master{false};        ///< foreign frames came in lately, more than a defect explains
 };
+
+/// What the watch heard from a slave at its station address when it asked last.
+enum class Presence : std::uint8_t {
+    answers,
+    unheard,  ///< no frame came back: nothing is known
+    silent,   ///< frames come back, nobody answered
+};
+
+/// Why a slave that is on the cable does not come back to OP.
+enum class ReturnTrouble : std::uint8_t { none, refused, other_device };
 
 /// What a slave's controller and EEPROM said during the scan.
 struct FoundSlave {
@@ -104,7 +117,18 @@ struct BusSlave {
     std::uint64_t dc_offset = 0;     ///< 0920h
     std::int64_t dc_difference = 0;  ///< ns, magnitude of 092Ch when it was read last
 
+    // Of a running bus, for watch and recovery.
+    std::optional<std::uint16_t> position_now;  ///< by the last census; none: not on the cable
+    bool identified = true;                     ///< its EEPROM was read since it was last missed
+    std::string last_trouble;                   ///< why the last attempt to get it back failed
+
+    std::atomic<std::uint32_t> age{0};  ///< written by the cycle: cycles since its process data was exchanged
+
     // Read by the cycle.
+    std::atomic<Presence> presence{Presence::answers};
+    std::atomic<ReturnTrouble> trouble{ReturnTrouble::none};
+    std::atomic<std::uint32_t> attempts{0};  ///< to get it back, in a row
+    std::atomic<bool> mailbox_silent{false};
     std::atomic<std::uint32_t> al{0};          ///< AL status in the low word, status code in the high word
     std::atomic<std::int64_t> sync0_start{0};  ///< an instant of SYNC0 in system time; 0: does not run
     std::atomic<std::uint32_t> recoveries{0};
@@ -126,11 +150,15 @@ struct Bus {
     ProcessDataPlan plan;
     std::optional<std::size_t> reference;  ///< the slave whose clock is the bus' clock
     std::optional<std::int64_t> dc_phase;  ///< system time of a cycle start, modulo the cycle; fixed at the first SYNC0
-    std::atomic<bool> runs_sync0{false};   ///< some slave does: the cycle has to be locked to the reference
+    std::atomic<bool> runs_sync0{false};   ///< some slave does, so the cycle has to be locked to the reference
     std::atomic<BusPhase> phase{BusPhase::idle};
     std::string progress;
+    std::uint32_t census = 0;    ///< how often position_now was taken anew
+    bool census_wanted = false;  ///< a slave does not answer where it should
+    std::uint16_t counted = 0;   ///< slaves on the cable at the last census
     /// Hands the plan to the cycle: from now on process data is exchanged.
     std::function<void()> publish;
+    EmergencyLog emergencies;
     std::vector<std::string> notes;  ///< recoveries and other remarkable things, newest last
 
     void note(const BusSlave& slave, const std::string& doing) { progress = slave.subject + " " + doing; }

@@ -145,15 +145,16 @@ Script<Result<void>> restore_clock(Bus& bus, BusSlave& slave) {
     if (!slave.dc || !bus.reference) co_return Result<void>{};
     auto& reference = *bus.slaves[*bus.reference];
     if (&reference == &slave) {
+        const std::uint16_t position = slave.position_now.value_or(slave.found.position);
         // Without its station address it took the others' part: the frames pulled at its clock. Start its control anew.
-        const Reply calm = co_await bus.port.apwr(slave.found.position, reg::dc_speed_start, std::uint16_t{0x1000});
+        const Reply calm = co_await bus.port.apwr(position, reg::dc_speed_start, std::uint16_t{0x1000});
         if (!calm.ok()) co_return unanswered(slave.subject, "its drift control (0930h)", calm);
-        const Reply local = co_await bus.port.aprd(slave.found.position, reg::dc_system_time, 8);
+        const Reply local = co_await bus.port.aprd(position, reg::dc_system_time, 8);
         if (!local.ok()) co_return unanswered(slave.subject, "its system time (0910h)", local);
-        const Reply old = co_await bus.port.aprd(slave.found.position, reg::dc_system_offset, 8);
+        const Reply old = co_await bus.port.aprd(position, reg::dc_system_offset, 8);
         if (!old.ok()) co_return unanswered(slave.subject, "its clock offset (0920h)", old);
         slave.dc_offset = old.u64() + static_cast<std::uint64_t>(system_time(bus, local.sent_at)) - local.u64();
-        const Reply written = co_await bus.port.apwr(slave.found.position, reg::dc_system_offset, slave.dc_offset);
+        const Reply written = co_await bus.port.apwr(position, reg::dc_system_offset, slave.dc_offset);
         if (!written.ok()) co_return unanswered(slave.subject, "its clock offset (0920h)", written);
         co_return Result<void>{};
     }
@@ -217,8 +218,9 @@ Script<Result<void>> await_clocks(Bus& bus) {
 
 Script<Result<void>> await_lock(Bus& bus) {
     const bool needed = std::any_of(bus.slaves.begin(), bus.slaves.end(), [](const auto& slave) { return slave->config->dc && slave->dc; });
-    bus.runs_sync0.store(bus.reference && needed);
-    if (!bus.reference || !needed) co_return Result<void>{};
+    const bool required = bus.reference && needed && bus.config.lock_required;
+    bus.runs_sync0.store(required);
+    if (!required) co_return Result<void>{};
     bus.progress = "waiting for the cycle to lock to the reference clock";
     const Instant started = co_await time();
     for (;;) {

@@ -23,9 +23,15 @@ const SyncManagerDescription* find_mailbox(const DeviceDescription& device, SmUs
     return nullptr;
 }
 
-Result<void> locate_mailbox(BusSlave& slave) {
+Result<void> locate_mailbox(Bus& bus, BusSlave& slave) {
     auto& mailbox = slave.mailbox;
     mailbox.subject = slave.subject;
+    mailbox.slave = slave.index;
+    mailbox.log = &bus.emergencies;
+    if (const auto& described = slave.device().mailbox) {
+        mailbox.max_pending = described->max_pending;
+        mailbox.complete_access = described->complete_access;
+    }
     mailbox.station = slave.found.station;
     const auto* out = find_mailbox(slave.device(), SmUse::mailbox_out, mailbox.out_sm);
     const auto* in = find_mailbox(slave.device(), SmUse::mailbox_in, mailbox.in_sm);
@@ -55,7 +61,7 @@ Script<Result<void>> write_sync_manager(Bus& bus, BusSlave& slave, std::uint8_t 
 Script<Result<void>> enter_preop(Bus& bus, BusSlave& slave) {
     slave.mailbox.reset();
     if (slave.has_mailbox()) {
-        const Result<void> located = locate_mailbox(slave);
+        const Result<void> located = locate_mailbox(bus, slave);
         if (!located) co_return located;
         SyncManager sm;
         sm.activate = SyncManager::enable;

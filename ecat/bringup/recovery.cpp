@@ -1,36 +1,91 @@
 #include "ecat/bringup/recovery.hpp"
 
+#include <fmt/format.h>
+
 #include "ecat/bringup/al_control.hpp"
 #include "ecat/bringup/clocks.hpp"
 #include "ecat/bringup/scan.hpp"
+#include "ecat/bringup/slave_match.hpp"
 #include "ecat/bringup/slave_setup.hpp"
 
 namespace taktwerk::ecat {
 
 namespace {
 
-/// The slave at this position has another (or no) station address: was it power-cycled, or is it another device?
+Error not_there(const BusSlave& slave) {
+    return Error{"bus.no_slave", slave.subject, "is not on the cable", "check its power and its cable"};
+}
+
+Script<Result<void>> write_address(Bus& bus, BusSlave& slave, std::uint16_t position, std::uint16_t station) {
+    const Reply written = co_await bus.port.apwr(position, reg::station_address, station);
+    if (!written.ok()) co_return unanswered(slave.subject, "its station address (0010h)", written);
+    co_return Result<void>{};
+}
+
+/// Takes the slave's station address from everybody who has it and does not stand in its place.
+Script<void> free_address(Bus& bus, BusSlave& slave) {
+    for (std::uint16_t position = 0; position < bus.counted; ++position) {
+        if (position == slave.position_now) continue;
+        const Reply address = co_await bus.port.aprd(position, reg::station_address, 2);
+        if (address.ok() && address.u16() == slave.found.station) co_await write_address(bus, slave, position, 0);
+    }
+}
+
+/// Gives the slave its station address where it stands now. The reference gets its time before: once it has the address, its
+/// clock is everybody's.
+Script<Result<void>> give_address(Bus& bus, BusSlave& slave, std::uint16_t position) {
+    if (bus.reference != slave.index) co_return co_await write_address(bus, slave, position, slave.found.station);
+    const ClockHold hold{bus};
+    co_await pause(3 * bus.config.cycle);  // frames under way
+    const Result<void> clock = co_await restore_clock(bus, slave);
+    if (!clock) co_return clock;
+    co_return co_await write_address(bus, slave, position, slave.found.station);
+}
+
+/// Somewhere else stands a slave with `other`'s address: was it plugged there? Not when its own place is taken as well; then
+/// somebody has written addresses, and places count.
+Script<bool> moved_here(Bus& bus, const BusSlave& other) {
+    if (!other.position_now) co_return true;
+    const Reply address = co_await bus.port.aprd(*other.position_now, reg::station_address, 2);
+    co_return !address.ok() || address.u16() == other.found.station;
+}
+
+/// The slave does not answer to its station address: was it power-cycled, is it another device, or did somebody change the
+/// address? Whoever has the address of another configured slave is left alone.
 Script<Result<void>> readdress(Bus& bus, BusSlave& slave) {
-    const std::uint16_t position = slave.found.position;
+    const Reply own = co_await bus.port.fprd(slave.found.station, reg::station_address, 2);
+    if (own.lost) co_return unanswered(slave.subject, "its station address (0010h)", own);
+    if (own.ok() && slave.identified) co_return Result<void>{};
+    if (!slave.position_now) co_return not_there(slave);
+    const std::uint16_t position = *slave.position_now;
+    if (own.wkc > 1) co_await free_address(bus, slave);
+
     const Reply address = co_await bus.port.aprd(position, reg::station_address, 2);
     if (!address.ok()) co_return unanswered(slave.subject, "its station address (0010h)", address);
-    if (address.u16() == slave.found.station) co_return Result<void>{};
-    if (bus.reference == slave.index) {
-        const ClockHold hold{bus};
-        co_await pause(3 * bus.config.cycle);  // frames under way
-        const Result<void> clock = co_await restore_clock(bus, slave);
-        if (!clock) co_return clock;
-        const Reply addressed = co_await bus.port.apwr(position, reg::station_address, slave.found.station);
-        if (!addressed.ok()) co_return unanswered(slave.subject, "its station address (0010h)", addressed);
+    for (const auto& other : bus.slaves) {
+        if (other.get() == &slave || address.u16() != other->found.station) continue;
+        const bool moved = co_await moved_here(bus, *other);
+        if (moved)
+            co_return Error{"bus.wrong_place", slave.subject, fmt::format("in its place stands {}", other->subject),
+                            "the cables were swapped: plug them back, or restart the bus"};
     }
-    const Reply written = co_await bus.port.apwr(position, reg::station_address, slave.found.station);
-    if (!written.ok()) co_return unanswered(slave.subject, "its station address (0010h)", written);
-    const FoundSlave found = co_await read_slave(bus.port, position, slave.subject);
-    if (found.error) co_return *found.error;
-    const Result<void> identity = check_identity(slave.subject, slave.device(), found.identity);
-    if (!identity) co_return identity;
+    const Result<void> given = co_await give_address(bus, slave, position);
+    if (!given) co_return given;
+    const FoundSlave found = co_await read_slave(bus.port, slave.found.position, slave.subject);
+    const Result<void> identity = found.error ? Result<void>{*found.error} : check_identity(slave.subject, *slave.config, found.identity);
+    if (!identity) {
+        co_await write_address(bus, slave, position, 0);  // whatever stands there must not be taken for this slave
+        co_return identity;
+    }
+    slave.identified = true;
     slave.found.dl_status = found.dl_status;
     co_return Result<void>{};
+}
+
+Script<bool> reads_as(Bus& bus, std::uint16_t station, std::uint16_t address, const std::vector<std::byte>& wanted, bool& changed) {
+    const Reply reply = co_await bus.port.fprd(station, address, wanted.size());
+    if (reply.ok() && reply.data != wanted) changed = true;
+    co_return reply.ok();
 }
 
 }  // namespace
@@ -79,6 +134,28 @@ Script<Result<void>> recover(Bus& bus, BusSlave& slave) {
     if (!done) co_return done;
     co_await pause(static_cast<std::int64_t>(valid_cycles) * exchange_period(bus.config, *slave.config));
     co_return co_await set_state(bus, slave, AlState::op);
+}
+
+Script<Result<bool>> settings_intact(Bus& bus, BusSlave& slave) {
+    const auto& plan = bus.plan.slaves[slave.index];
+    const std::uint16_t station = slave.found.station;
+    bool changed = false;
+    // What the master writes of a sync manager: start, length, control; status and the slave's own bits change by themselves.
+    constexpr std::size_t settings_of_sm = 5;
+    for (const auto& sm : plan.sync_managers) {
+        std::vector<std::byte> bytes(SyncManager::size);
+        encode(sm.registers, std::span<std::byte, SyncManager::size>{bytes});
+        bytes.resize(settings_of_sm);
+        const bool read = co_await reads_as(bus, station, reg::sync_manager_at(sm.number), bytes, changed);
+        if (!read) co_return not_there(slave);
+    }
+    for (std::size_t n = 0; n < plan.fmmus.size(); ++n) {
+        std::vector<std::byte> bytes(Fmmu::size);
+        encode(plan.fmmus[n], std::span<std::byte, Fmmu::size>{bytes});
+        const bool read = co_await reads_as(bus, station, reg::fmmu_at(static_cast<unsigned>(n)), bytes, changed);
+        if (!read) co_return not_there(slave);
+    }
+    co_return !changed;
 }
 
 }  // namespace taktwerk::ecat

@@ -10,6 +10,10 @@ namespace taktwerk::ecat {
 inline constexpr std::uint32_t valid_cycles = 5;
 
 /// One slave back to OP from whatever it is in. Needs a bus that was operational once. May be called again at any time.
+/// Errors: bus.no_slave (not on the cable: needs a census), bus.wrong_place, bus.wrong_identity, bus.refused_state, ...
 [[nodiscard]] Script<Result<void>> recover(Bus& bus, BusSlave& slave);
+
+/// Do the sync managers and FMMUs of its process data still read as they were written?
+[[nodiscard]] Script<Result<bool>> settings_intact(Bus& bus, BusSlave& slave);
 
 }  // namespace taktwerk::ecat

@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cstdlib>
+
 #include "ecat/bringup/al_control.hpp"
+#include "ecat/bringup/presence.hpp"
 #include "ecat/bringup/recovery.hpp"
 #include "ecat/bringup/reference_role.hpp"
+#include "ecat/coe/sdo_client.hpp"
 #include "ecat/dc/propagation.hpp"
 
 namespace taktwerk::ecat {
@@ -15,57 +18,227 @@ namespace {
 
 constexpr Duration watch_period = std::chrono::milliseconds{100};
 constexpr Duration watch_glance = std::chrono::milliseconds{5};       ///< how soon a state the cycle saw is noticed
-constexpr Duration watch_suspicious = std::chrono::milliseconds{20};  ///< instead of watch_period, while one slave is not in OP
-constexpr Duration retry_period = std::chrono::milliseconds{500};     ///< between two attempts to get a slave back
+constexpr Duration watch_suspicious = std::chrono::milliseconds{20};  ///< instead of watch_period, when the cycle sees something new
+constexpr Duration difference_period = std::chrono::seconds{1};
+constexpr Duration settings_period = std::chrono::seconds{1};  ///< between two looks at the settings of a slave that does not exchange
+constexpr Duration first_retry = std::chrono::milliseconds{500};
+constexpr Duration longest_retry = std::chrono::seconds{8};
+constexpr Duration lasting = std::chrono::seconds{10};             ///< so long in OP, and its earlier falls are forgotten
+constexpr Duration least_census = std::chrono::milliseconds{100};  ///< between two
+constexpr Duration slow_census = std::chrono::seconds{2};          ///< while somebody is missing and the count stays
+constexpr Duration mailbox_period = std::chrono::seconds{5};
+constexpr Duration foreign_window = std::chrono::seconds{1};
+constexpr std::uint64_t foreign_limit = 3;  ///< frames a window: fewer may be our own with a bit flipped in the address
+constexpr auto in_op = static_cast<std::uint32_t>(AlState::op);
 
-Script<void> watch(Bus& bus, BusSlave& slave) {
-    bool reported = false;
-    Instant look = co_await time();
-    Instant last_difference = look;
+/// When to try again: at once the first time, then after ever longer pauses, until the slave has stayed in OP for a while.
+class BackOff {
+public:
+    [[nodiscard]] bool due(Instant now) const noexcept { return now >= next_; }
+    void tried(Instant now) noexcept {
+        next_ = now + pause_;
+        pause_ = std::min(2 * pause_, longest_retry);
+    }
+    void healthy(Instant now) noexcept {
+        if (now - next_ >= lasting) forget();
+    }
+    void forget() noexcept {
+        next_ = Instant{};
+        pause_ = first_retry;
+    }
+
+private:
+    Instant next_ = Instant{};
+    Duration pause_ = first_retry;
+};
+
+Presence presence_of(const Result<std::uint16_t>& status) {
+    if (status) return Presence::answers;
+    return status.error().code == "bus.no_frame" ? Presence::unheard : Presence::silent;
+}
+
+Script<void> read_difference(Bus& bus, BusSlave& slave) {
+    const Reply reply = co_await bus.port.fprd(slave.found.station, reg::dc_difference, 4);
+    if (reply.ok()) slave.dc_difference = std::abs(static_cast<std::int64_t>(dc_difference_ns(reply.u32())));
+    std::int64_t worst = 0;
+    for (const auto& other : bus.slaves) worst = std::max(worst, other->dc_difference);
+    bus.link.dc_difference_ns.store(worst);
+}
+
+std::string fall_text(const BusSlave& slave, const Result<std::uint16_t>& status) {
+    if (!status) return status.error().text();
+    const auto code = static_cast<std::uint16_t>(slave.al.load() >> 16);
+    return fmt::format("{} left OP: status 0x{:04X}, code 0x{:04X} {}", slave.subject, *status, code, al_status_info(code).text);
+}
+
+/// One slave: is it in OP with its own settings? If not, back to OP.
+class SlaveWatch {
+public:
+    SlaveWatch(Bus& bus, BusSlave& slave) : bus_(bus), slave_(slave) {}
+    Script<void> run();
+
+private:
+    Script<void> look_after(Instant now);
+    Script<void> check_settings(Instant now);
+    Script<void> bring_back();
+
+    Bus& bus_;
+    BusSlave& slave_;
+    BackOff back_off_;
+    bool reported_ = false;
+    Instant difference_at_{}, settings_at_{};
+};
+
+Script<void> SlaveWatch::run() {
+    Instant looked = co_await time();
+    std::uint64_t picture = 0;
     for (;;) {
-        Instant now = co_await pause(watch_glance);
-        constexpr auto all_op = static_cast<std::uint32_t>(AlState::op);
-        const bool suspicious = bus.link.states_seen.load() != all_op;
-        if (now < look && !(suspicious && now >= look - watch_period + watch_suspicious)) continue;
-        look = now + watch_period;
+        const Instant now = co_await pause(watch_glance);
+        const std::uint64_t seen = bus_.link.states_seen.load() | (std::uint64_t{bus_.link.slaves_answering.load()} << 32);
+        if (now - looked < (seen != picture ? watch_suspicious : watch_period)) continue;
+        looked = now;
+        picture = seen;
 
-        const Result<std::uint16_t> status = co_await read_al_status(bus, slave);
-        if (!status) slave.al.store(0);
-        if (status && *status == all_op) {
-            reported = false;
-            if (slave.dc && bus.reference != slave.index && now - last_difference >= std::chrono::seconds{1}) {
-                last_difference = now;
-                const Reply reply = co_await bus.port.fprd(slave.found.station, reg::dc_difference, 4);
-                if (reply.ok()) slave.dc_difference = std::abs(static_cast<std::int64_t>(dc_difference_ns(reply.u32())));
-                std::int64_t worst = 0;
-                for (const auto& other : bus.slaves) worst = std::max(worst, other->dc_difference);
-                bus.link.dc_difference_ns.store(worst);
-            }
+        const Result<std::uint16_t> status = co_await read_al_status(bus_, slave_);
+        const Presence presence = presence_of(status);
+        if (presence != slave_.presence.exchange(presence)) {
+            back_off_.forget();
+            slave_.position_now.reset();  // where it was says nothing about where it is, or who it is
+            if (presence == Presence::silent) slave_.identified = false;
+            bus_.census_wanted = bus_.census_wanted || presence == Presence::silent;
+        }
+        // Without its address a slave still exchanges, and the broadcast says that everybody is in OP: its axes need not stop.
+        const bool known_in_op = bus_.link.states_seen.load() == in_op && bus_.link.lost_in_a_row.load() == 0 && slave_.age.load() == 0;
+        if (!status && !known_in_op) slave_.al.store(0);
+        if (presence == Presence::unheard) continue;  // nothing is known; nothing can be done
+        if (status && *status == in_op) {
+            co_await look_after(now);
             continue;
         }
-        if (!reported)
-            bus.remember(status ? fmt::format("{} left OP: status 0x{:04X}, code 0x{:04X} {}", slave.subject, *status,
-                                              slave.al.load() >> 16, al_status_info(static_cast<std::uint16_t>(slave.al.load() >> 16)).text)
-                                : status.error().text());
-        const Result<void> back = co_await recover(bus, slave);
-        if (back) {
-            slave.recoveries.fetch_add(1);
-            bus.remember(slave.subject + " is back in OP");
-            reported = false;
-        } else {
-            if (!reported) bus.remember(back.error().text());
-            reported = true;
-            co_await pause(retry_period);
+        if (!reported_) bus_.remember(fall_text(slave_, status));
+        reported_ = true;
+        if (presence == Presence::silent && !slave_.position_now) continue;
+        if (back_off_.due(now)) co_await bring_back();
+    }
+}
+
+Script<void> SlaveWatch::look_after(Instant now) {
+    reported_ = false;
+    back_off_.healthy(now);
+    slave_.trouble.store(ReturnTrouble::none);
+    slave_.attempts.store(0);
+    if (slave_.dc && bus_.reference != slave_.index && now - difference_at_ >= difference_period) {
+        difference_at_ = now;
+        co_await read_difference(bus_, slave_);
+    }
+    co_await check_settings(now);
+}
+
+/// In OP and not exchanged, although frames come back: somebody else may have written its sync managers or FMMUs.
+Script<void> SlaveWatch::check_settings(Instant now) {
+    const bool stale = slave_.age.load() > 0 && bus_.link.lost_in_a_row.load() == 0;
+    if (!stale || now - settings_at_ < settings_period) co_return;
+    settings_at_ = now;
+    const Result<bool> intact = co_await settings_intact(bus_, slave_);
+    if (!intact || *intact) co_return;
+    bus_.remember(slave_.subject + " has other sync managers or FMMUs than it was given: it is set up again");
+    const Reply down = co_await bus_.port.fpwr(slave_.found.station, reg::al_control, static_cast<std::uint16_t>(AlState::init));
+    if (!down.ok()) co_return;
+    slave_.al.store(static_cast<std::uint32_t>(AlState::init));
+    co_await bring_back();
+}
+
+Script<void> SlaveWatch::bring_back() {
+    const Result<void> back = co_await recover(bus_, slave_);
+    const Instant now = co_await time();
+    back_off_.tried(now);
+    slave_.attempts.fetch_add(1);
+    if (back) {
+        slave_.recoveries.fetch_add(1);
+        slave_.attempts.store(0);
+        slave_.trouble.store(ReturnTrouble::none);
+        slave_.last_trouble.clear();
+        bus_.remember(slave_.subject + " is back in OP");
+        reported_ = false;
+        co_return;
+    }
+    const Error& error = back.error();
+    if (slave_.last_trouble != error.text()) bus_.remember(error.text());
+    slave_.last_trouble = error.text();
+    if (error.code == "bus.wrong_identity") slave_.trouble.store(ReturnTrouble::other_device);
+    else if (error.code != "bus.no_frame" && error.code != "bus.no_slave") slave_.trouble.store(ReturnTrouble::refused);
+    if (error.code == "bus.no_slave" || error.code == "bus.wrong_place") {
+        slave_.position_now.reset();
+        bus_.census_wanted = true;
+    }
+}
+
+Script<void> watch_slave(Bus& bus, BusSlave& slave) {
+    SlaveWatch watch{bus, slave};
+    co_await watch.run();
+}
+
+/// Where everybody is, again whenever the cycle counts another number of slaves or somebody is missed.
+Script<void> watch_places(Bus& bus) {
+    Instant taken = co_await time();
+    for (;;) {
+        const Instant now = co_await pause(watch_glance);
+        if (bus.link.lost_in_a_row.load() != 0 || bus.link.cycles.load() == 0) continue;
+        const bool changed = bus.link.slaves_answering.load() != bus.counted;
+        const bool missing = std::any_of(bus.slaves.begin(), bus.slaves.end(),
+                                         [](const auto& s) { return s->presence.load() == Presence::silent && !s->position_now; });
+        const bool due = (changed || bus.census_wanted) ? now - taken >= least_census : missing && now - taken >= slow_census;
+        if (!due) continue;
+        taken = now;
+        co_await take_census(bus);
+    }
+}
+
+/// Asks a slave for an object that every CoE device has; one slave at a time, a few datagrams in some seconds.
+Script<void> ask_mailbox(Bus& bus, BusSlave& slave) {
+    const Result<std::vector<std::byte>> type = co_await sdo_upload(bus.port, slave.mailbox, 0x1000, 0);
+    const bool spoke = type.ok() || type.error().code == "sdo.abort";
+    const bool mute = !spoke && type.error().code.starts_with("sdo.");  // bus.*: the slave or the frames are away
+    if (mute && !slave.mailbox_silent.exchange(true)) bus.remember(slave.subject + " does not answer in its mailbox: " + type.error().what);
+    if (spoke && slave.mailbox_silent.exchange(false)) bus.remember(slave.subject + " answers in its mailbox again");
+}
+
+Script<void> watch_mailboxes(Bus& bus) {
+    for (;;) {
+        co_await pause(mailbox_period);
+        for (auto& slave : bus.slaves) {
+            if (!slave->has_coe() || slave->al.load() != in_op || bus.link.lost_in_a_row.load() != 0) continue;
+            co_await ask_mailbox(bus, *slave);
         }
+    }
+}
+
+Script<void> watch_senders(Bus& bus) {
+    std::uint64_t before = bus.link.foreign_frames.load();
+    for (;;) {
+        co_await pause(foreign_window);
+        const std::uint64_t seen = bus.link.foreign_frames.load();
+        const bool foreign = seen - before >= foreign_limit;
+        if (foreign && !bus.link.foreign_master.exchange(true)) bus.remember("frames of another EtherCAT master are on the cable");
+        if (!foreign) bus.link.foreign_master.store(false);
+        before = seen;
     }
 }
 
 }  // namespace
 
 Script<void> keep_alive(Bus& bus) {
+    for (auto& slave : bus.slaves) slave->position_now = slave->found.position;
+    bus.counted = bus.link.slaves_answering.load();
     std::vector<Script<void>> scripts;
-    for (auto& slave : bus.slaves) scripts.push_back(watch(bus, *slave));
     scripts.push_back(watch_reference(bus));
+    for (auto& slave : bus.slaves) {
+        scripts.push_back(watch_slave(bus, *slave));
+        if (slave->has_coe()) scripts.push_back(listen(bus.port, slave->mailbox));
+    }
+    scripts.push_back(watch_places(bus));
+    scripts.push_back(watch_mailboxes(bus));
+    scripts.push_back(watch_senders(bus));
     co_await all(std::move(scripts));
 }
 

@@ -16,6 +16,7 @@ using Bytes = std::vector<std::byte>;
 /// With mapped status the slave is asked all the same, rarely: process data may not be exchanged.
 constexpr Duration mapped_status_doubt = std::chrono::milliseconds{20};
 constexpr Duration busy_pause = std::chrono::milliseconds{10};  ///< after "no memory" and "in work"
+constexpr Duration settled = std::chrono::milliseconds{5};      ///< a mapped flag may still show what was just read
 constexpr int drain_limit = 16;                                 ///< messages; a slave that never stops is not waited for
 
 std::uint16_t sm_register(std::uint8_t sm, std::uint16_t offset) { return static_cast<std::uint16_t>(reg::sync_manager_at(sm) + offset); }
@@ -24,29 +25,6 @@ void keep_emergency(MailboxEndpoint& mailbox, const Emergency& emergency, Instan
     const std::uint32_t word = std::uint32_t{emergency.code} | (std::uint32_t{emergency.error_register} << 16);
     mailbox.emergency.store(emergency.code != 0 ? word : 0u, std::memory_order_relaxed);
     if (mailbox.log != nullptr) mailbox.log->keep({mailbox.slave, now, emergency});
-}
-
-/// Puts the message into the slave's mailbox.
-Script<Result<void>> write_message(DatagramPort& port, MailboxEndpoint& mailbox, const MailboxRequest& request, const Bytes& message,
-                                   Instant deadline) {
-    bool perhaps_written = false;
-    for (;;) {
-        const Reply reply = co_await port.fpwr(mailbox.station, mailbox.out_start, message, 1);
-        if (!reply.lost && reply.wkc == 1) co_return Result<void>{};
-        const Instant now = co_await time();
-        if (reply.lost) {
-            perhaps_written = true;  // the slave drops the repeat by its counter
-        } else if (perhaps_written) {
-            co_return Result<void>{};  // full: with the message whose frame did not come back
-        }
-        if (now >= deadline) {
-            if (reply.lost) co_return unanswered(mailbox.subject, request.about, reply);
-            co_return Error{"sdo.mailbox", mailbox.subject,
-                            fmt::format("{}: the slave does not take mailbox messages (its mailbox stays full)", request.about),
-                            "the slave's application hangs or left PREOP: power-cycle it"};
-        }
-        co_await pause(mailbox_poll_period);
-    }
 }
 
 /// The frame with the mailbox's contents got lost: asks the slave to put the same message there again.
@@ -67,17 +45,13 @@ Script<bool> request_repeat(DatagramPort& port, MailboxEndpoint& mailbox, Instan
     }
 }
 
-/// co_await: until the cycle sees the mailbox full, or `limit`.
-class FlagSet final : public Leaf<FlagSet> {
-public:
-    FlagSet(const MailboxFlag& flag, Instant limit) noexcept : flag_(flag), limit_(limit) {}
-    bool ready(Instant now) override { return !flag_.mapped() || flag_.set() || now >= limit_; }
-    void await_resume() const noexcept {}
-
-private:
-    const MailboxFlag& flag_;
-    Instant limit_;
-};
+/// A read leaves once the cycle has seen the mailbox full.
+SendGate when_full(const MailboxEndpoint& mailbox) {
+    SendGate gate;
+    gate.word = mailbox.flag.word;
+    gate.bit = mailbox.flag.bit;
+    return gate;
+}
 
 enum class Status : std::uint8_t { full, empty, unknown };
 
@@ -88,19 +62,25 @@ Script<Status> look(DatagramPort& port, MailboxEndpoint& mailbox, Reply& reply) 
     co_return (static_cast<std::uint8_t>(reply.data[0]) & SyncManager::mailbox_full) != 0 ? Status::full : Status::empty;
 }
 
-/// Takes a message out of a full mailbox. No bytes: it was empty after all.
-Script<Result<Bytes>> take_message(DatagramPort& port, MailboxEndpoint& mailbox, const std::string& about, Instant deadline) {
+/// The message in the answer to a read of the mailbox. No bytes: it was empty.
+Script<Result<Bytes>> message_in(DatagramPort& port, MailboxEndpoint& mailbox, const std::string& about, Reply reply, Instant deadline) {
     for (;;) {
-        Reply reply = co_await port.fprd(mailbox.station, mailbox.in_start, mailbox.in_size, 1);
         if (reply.ok()) co_return std::move(reply.data);
-        if (!reply.lost) co_return Bytes{};
+        if (!reply.lost || reply.held) co_return Bytes{};
         const bool repeated = co_await request_repeat(port, mailbox, deadline);
         if (!repeated) co_return unanswered(mailbox.subject, about, reply);
         Reply status;
         const Status now_full = co_await look(port, mailbox, status);
         if (now_full == Status::unknown) co_return unanswered(mailbox.subject, about, status);
         if (now_full == Status::empty) co_return Bytes{};
+        reply = co_await port.fprd(mailbox.station, mailbox.in_start, mailbox.in_size, 1);
     }
+}
+
+/// Takes a message out of a full mailbox. No bytes: it was empty after all.
+Script<Result<Bytes>> take_message(DatagramPort& port, MailboxEndpoint& mailbox, const std::string& about, Instant deadline) {
+    Reply reply = co_await port.fprd(mailbox.station, mailbox.in_start, mailbox.in_size, 1);
+    co_return co_await message_in(port, mailbox, about, std::move(reply), deadline);
 }
 
 /// Waits for a message and takes it out.
@@ -108,18 +88,18 @@ Script<Result<Bytes>> read_message(DatagramPort& port, MailboxEndpoint& mailbox,
     Duration period = mailbox_poll_period;
     for (;;) {
         Instant now = co_await time();
-        bool full = false;
         if (mailbox.flag.mapped()) {
-            co_await FlagSet{mailbox.flag, std::min(deadline, now + mapped_status_doubt)};
-            full = mailbox.flag.mapped() && mailbox.flag.set();
+            Reply reply = co_await port.fprd_gated(mailbox.station, mailbox.in_start, mailbox.in_size, when_full(mailbox),
+                                                   std::clamp(deadline - now, Duration{}, mapped_status_doubt));
+            if (!reply.held) {
+                Result<Bytes> message = co_await message_in(port, mailbox, request.about, std::move(reply), deadline);
+                if (!message || !message->empty()) co_return message;
+            }
         }
-        if (!full) {
-            Reply reply;
-            const Status status = co_await look(port, mailbox, reply);
-            if (status == Status::unknown) co_return unanswered(mailbox.subject, request.about, reply);
-            full = status == Status::full;
-        }
-        if (full) {
+        Reply reply;
+        const Status status = co_await look(port, mailbox, reply);
+        if (status == Status::unknown) co_return unanswered(mailbox.subject, request.about, reply);
+        if (status == Status::full) {
             Result<Bytes> message = co_await take_message(port, mailbox, request.about, deadline);
             if (!message || !message->empty()) co_return message;
         }
@@ -129,7 +109,8 @@ Script<Result<Bytes>> read_message(DatagramPort& port, MailboxEndpoint& mailbox,
                             fmt::format("{}: no answer within {} ms", request.about, sdo_timeout / std::chrono::milliseconds{1}),
                             "the slave's application is busy or hangs: try again, then power-cycle it"};
         }
-        co_await pause(mailbox.flag.mapped() ? mailbox_poll_period : period);  // mapped: until the cycle looked again
+        if (mailbox.flag.mapped()) continue;
+        co_await pause(period);
         period = std::min(2 * period, mailbox_longest_poll_period);
     }
 }
@@ -195,20 +176,67 @@ Script<Result<void>> await_room(DatagramPort& port, MailboxEndpoint& mailbox, co
     co_return Result<void>{};
 }
 
-Script<Result<void>> post(DatagramPort& port, MailboxEndpoint& mailbox, const MailboxRequest& request, Instant deadline) {
-    const Result<void> room = co_await await_room(port, mailbox, request.about, deadline);
-    if (!room) co_return room;
-    mailbox.counter = next_mailbox_counter(mailbox.counter);
+/// The mailbox with the request in it.
+Result<Bytes> letter(MailboxEndpoint& mailbox, const MailboxRequest& request) {
     Bytes message(mailbox.out_size);
     if (request.payload.size() + mailbox_header_size > message.size())
-        co_return Error{"sdo.protocol", mailbox.subject,
-                        fmt::format("{}: the request does not fit into a mailbox of {} bytes", request.about, message.size()),
-                        "check the mailbox sizes in its profile"};
+        return Error{"sdo.protocol", mailbox.subject,
+                     fmt::format("{}: the request does not fit into a mailbox of {} bytes", request.about, message.size()),
+                     "check the mailbox sizes in its profile"};
+    mailbox.counter = next_mailbox_counter(mailbox.counter);
     std::copy(request.payload.begin(), request.payload.end(), message.begin() + mailbox_header_size);
     finish_mailbox(message, MailboxType::coe, mailbox.counter, request.payload.size());
-    const Result<void> written = co_await write_message(port, mailbox, request, message, deadline);
-    mailbox.last_written = co_await time();
-    co_return written;
+    return message;
+}
+
+Error not_taken(const MailboxEndpoint& mailbox, const MailboxRequest& request, const Reply& written) {
+    if (written.lost) return unanswered(mailbox.subject, request.about, written);
+    return Error{"sdo.mailbox", mailbox.subject,
+                 fmt::format("{}: the slave does not take mailbox messages (its mailbox stays full)", request.about),
+                 "the slave's application hangs or left PREOP: power-cycle it"};
+}
+
+bool answers(const MailboxRequest& request, const Bytes& message) {
+    const auto parsed = parse_mailbox(message);
+    return parsed && parsed->header.type == MailboxType::coe && request.answered_by(parsed->payload);
+}
+
+/// Puts the request into the slave's mailbox and sends the reading of the answer after it without waiting in between: where
+/// the status is mapped it leaves when the mailbox is full, else in the next frame (a read of an empty mailbox changes
+/// nothing). The message that came with it; no bytes: none yet.
+Script<Result<Bytes>> post(DatagramPort& port, MailboxEndpoint& mailbox, const MailboxRequest& request, Instant deadline) {
+    const Result<void> room = co_await await_room(port, mailbox, request.about, deadline);
+    if (!room) co_return room.error();
+    const Result<Bytes> message = letter(mailbox, request);
+    if (!message) co_return message.error();
+    bool perhaps_written = false;
+    for (;;) {
+        Instant now = co_await time();
+        Transfer write = port.fpwr(mailbox.station, mailbox.out_start, *message, 1);
+        write.start(now);
+        SendGate gate = when_full(mailbox);
+        if (!mailbox.flag.mapped()) gate.behind = write.entry();
+        Transfer read = port.fprd_gated(mailbox.station, mailbox.in_start, mailbox.in_size, gate, mapped_status_doubt);
+        if (request.answered_by) read.start(now);
+
+        const Reply written = co_await write;
+        // The frame that comes back full after one that was lost: with the message of the lost one.
+        const bool taken = !written.lost && (written.wkc == 1 || perhaps_written);
+        now = co_await time();
+        if (taken) mailbox.last_written = now;
+        Bytes early;
+        if (request.answered_by && (taken || !read.withdraw())) {
+            Reply reply = co_await read;
+            Result<Bytes> arrived = co_await message_in(port, mailbox, request.about, std::move(reply), deadline);
+            if (!arrived) co_return arrived;
+            early = std::move(*arrived);
+        }
+        if (taken || (written.lost && answers(request, early))) co_return early;  // only the frame of the request got lost
+        if (!early.empty()) (void)sort(mailbox, early, now);                      // something else that waited
+        perhaps_written = perhaps_written || written.lost;                        // the slave drops a repeat by its counter
+        if (now >= deadline) co_return not_taken(mailbox, request, written);
+        co_await pause(mailbox_poll_period);
+    }
 }
 
 Error refused(const MailboxEndpoint& mailbox, const MailboxRequest& request, MailboxErrorDetail detail) {
@@ -222,11 +250,12 @@ struct Answer {
     bool try_again = false;  ///< the slave has no room now
 };
 
-/// Waits for the message that answers the request, skipping others.
-Script<Result<Answer>> await_answer(DatagramPort& port, MailboxEndpoint& mailbox, const MailboxRequest& request, Instant deadline) {
+/// Waits for the message that answers the request, skipping others. `read`: the first that came; no bytes: none yet.
+Script<Result<Answer>> await_answer(DatagramPort& port, MailboxEndpoint& mailbox, const MailboxRequest& request, Result<Bytes> read,
+                                    Instant deadline) {
     mailbox.last_refusal = MailboxErrorDetail::none;
-    for (;;) {
-        const Result<Bytes> read = co_await read_message(port, mailbox, request, deadline);
+    for (;; read = Bytes{}) {
+        if (read->empty()) read = co_await read_message(port, mailbox, request, deadline);
         if (!read) co_return read.error();
         const Instant now = co_await time();
         const Arrival arrival = sort(mailbox, *read, now);
@@ -257,10 +286,10 @@ Script<Result<std::vector<std::byte>>> ask(DatagramPort& port, MailboxEndpoint& 
     const Instant started = co_await time();
     const Instant deadline = started + sdo_timeout;
     for (;;) {
-        const Result<void> written = co_await post(port, mailbox, request, deadline);
-        if (!written) co_return written.error();
+        Result<Bytes> first = co_await post(port, mailbox, request, deadline);
+        if (!first) co_return first.error();
         ++mailbox.unanswered;
-        Result<Answer> answer = co_await await_answer(port, mailbox, request, deadline);
+        Result<Answer> answer = co_await await_answer(port, mailbox, request, std::move(first), deadline);
         if (!answer) co_return answer.error();
         if (!answer->try_again) {
             mailbox.unanswered = 0;  // slaves answer in order: nothing earlier can follow
@@ -274,7 +303,8 @@ Script<Result<std::vector<std::byte>>> ask(DatagramPort& port, MailboxEndpoint& 
 
 Script<Result<std::vector<std::byte>>> await_more(DatagramPort& port, MailboxEndpoint& mailbox, const MailboxRequest& request) {
     const Instant now = co_await time();
-    Result<Answer> answer = co_await await_answer(port, mailbox, request, now + sdo_timeout);
+    Result<Bytes> none = Bytes{};
+    Result<Answer> answer = co_await await_answer(port, mailbox, request, std::move(none), now + sdo_timeout);
     if (!answer) co_return answer.error();
     if (answer->try_again) co_return refused(mailbox, request, mailbox.last_refusal);
     co_return std::move(answer->payload);
@@ -282,7 +312,9 @@ Script<Result<std::vector<std::byte>>> await_more(DatagramPort& port, MailboxEnd
 
 Script<Result<void>> tell(DatagramPort& port, MailboxEndpoint& mailbox, const MailboxRequest& request) {
     const Instant now = co_await time();
-    co_return co_await post(port, mailbox, request, now + sdo_timeout);
+    const Result<Bytes> written = co_await post(port, mailbox, request, now + sdo_timeout);
+    if (!written) co_return written.error();
+    co_return Result<void>{};
 }
 
 Script<Result<void>> read_unasked(DatagramPort& port, MailboxEndpoint& mailbox) {
@@ -291,6 +323,19 @@ Script<Result<void>> read_unasked(DatagramPort& port, MailboxEndpoint& mailbox) 
     const Instant now = co_await time();
     const std::string about = "reading its mailbox";
     co_return co_await drain(port, mailbox, about, now + sdo_timeout);
+}
+
+Script<void> listen(DatagramPort& port, MailboxEndpoint& mailbox) {
+    Instant asked = co_await time();
+    for (;;) {
+        const Instant now = co_await pause(settled);
+        const bool flagged = mailbox.flag.mapped() && mailbox.flag.set();
+        const bool ask_now = !mailbox.flag.mapped() && now - asked >= unasked_poll_period;
+        if (mailbox.lock.taken() || !(flagged || ask_now)) continue;
+        asked = now;
+        const Result<void> read = co_await read_unasked(port, mailbox);
+        (void)read;  // a slave that does not answer is the business of whoever watches its state
+    }
 }
 
 }  // namespace taktwerk::ecat

@@ -82,7 +82,7 @@ inline constexpr Duration mailbox_forgets_after = std::chrono::seconds{10};
 struct MailboxRequest {
     std::string about;               ///< for messages: "reading 1C12h:00"
     std::vector<std::byte> payload;  ///< the CoE message
-    /// Whether a CoE message is the answer; others are skipped.
+    /// Whether a CoE message is the answer; others are skipped. Empty: there will be none.
     std::function<bool(std::span<const std::byte>)> answered_by;
 };
 
@@ -99,5 +99,10 @@ struct MailboxRequest {
 /// Takes the lock and reads out what waits in the mailbox although nobody asked: emergencies, answers that came too late.
 /// Ends when it is empty.
 [[nodiscard]] Script<Result<void>> read_unasked(DatagramPort& port, MailboxEndpoint& mailbox);
+
+/// Without end: read_unasked() whenever something waits and no conversation is going on. Where the status is not mapped the
+/// slave is asked every unasked_poll_period.
+[[nodiscard]] Script<void> listen(DatagramPort& port, MailboxEndpoint& mailbox);
+inline constexpr Duration unasked_poll_period = std::chrono::milliseconds{100};
 
 }  // namespace taktwerk::ecat

@@ -10,6 +10,14 @@ namespace {
 constexpr std::int64_t billion = 1'000'000'000;
 constexpr Duration longest_extrapolation = std::chrono::minutes{1};
 
+/// What comes over the wire may be anything.
+std::int64_t wrapping_difference(std::int64_t a, std::int64_t b) noexcept {
+    return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) - static_cast<std::uint64_t>(b));
+}
+bool far(std::int64_t difference) noexcept {
+    return difference > ReferenceClock::outlier_limit.count() || difference < -ReferenceClock::outlier_limit.count();
+}
+
 }  // namespace
 
 void ReferenceClock::start(Instant sent, std::int64_t offset) noexcept {
@@ -38,15 +46,20 @@ std::int64_t ReferenceClock::offset_at(Instant t) const noexcept {
 }
 
 bool ReferenceClock::take(Instant sent, std::int64_t system_time) noexcept {
-    const std::int64_t offset = system_time - sent.time_since_epoch().count();
-    const std::int64_t step = known_ ? offset - offset_at(sent) : 0;
-    const bool outlier = step > outlier_limit.count() || step < -outlier_limit.count();
-    outliers_ = outlier ? outliers_ + 1 : 0;
-    if (outlier && outliers_ < outliers_until_new_start) {
-        ++rejected_;
-        return false;
+    const std::int64_t offset = wrapping_difference(system_time, sent.time_since_epoch().count());
+    const bool stands = (known_ || outliers_ > 0) && system_time == last_;
+    const bool outlier = stands || (known_ && far(wrapping_difference(offset, offset_at(sent))));
+    last_ = system_time;
+    if (outlier) {
+        outliers_ = stands || far(wrapping_difference(offset, outlier_offset_)) ? 1 : outliers_ + 1;
+        outlier_offset_ = offset;
+        if (outliers_ < outliers_until_new_start) {
+            miss();
+            return false;
+        }
     }
     outliers_ = 0;
+    rejected_in_a_row_ = 0;
     ++samples_;
     if (!known_ || outlier) {
         start(sent, offset);

@@ -15,6 +15,12 @@ struct AcyclicChannel::Entry {
     std::uint16_t wkc = 0;
     std::uint16_t passed = 0;
     Instant sent_at{};
+    // The gate, read by the cycle side before it owns the entry. Should the entry change hands meanwhile it leaves too early.
+    std::atomic<const std::atomic<std::uint64_t>*> gate_word{nullptr};
+    std::atomic<std::uint8_t> gate_bit{0};
+    std::atomic<std::uint8_t> gate_entry{0};   ///< which entry it leaves behind
+    std::atomic<std::uint64_t> gate_order{0};  ///< `order` of that request, plus 1; 0: none
+    std::uint64_t packed_in = 0;               ///< number of the pack() that took it; cycle side alone
     std::array<std::byte, max_datagram_data> data;
 };
 
@@ -39,8 +45,10 @@ AcyclicChannel::Entry* AcyclicChannel::find(EntryId id) const noexcept {
     return entry.generation == id.generation ? &entry : nullptr;
 }
 
-std::optional<EntryId> AcyclicChannel::claim(Command command, Address address, std::size_t size, std::span<const std::byte> data) noexcept {
+std::optional<EntryId> AcyclicChannel::claim(Command command, Address address, std::size_t size, std::span<const std::byte> data,
+                                             const SendGate& gate) noexcept {
     if (size > max_datagram_data) return std::nullopt;
+    if (gate.exists() && gated() >= max_gated) return std::nullopt;
     for (std::size_t i = 0; i < entry_count; ++i) {
         auto& entry = (*entries_)[i];
         if (entry.state.load(std::memory_order_acquire) != State::free) continue;
@@ -50,6 +58,11 @@ std::optional<EntryId> AcyclicChannel::claim(Command command, Address address, s
         entry.command = command;
         entry.address = address;
         entry.size = size;
+        entry.gate_word.store(gate.word, std::memory_order_relaxed);
+        entry.gate_bit.store(static_cast<std::uint8_t>(gate.bit), std::memory_order_relaxed);
+        const auto* ahead = find(gate.behind);
+        entry.gate_entry.store(gate.behind.entry, std::memory_order_relaxed);
+        entry.gate_order.store(ahead != nullptr ? ahead->order.load(std::memory_order_relaxed) + 1 : 0, std::memory_order_relaxed);
         entry.wkc = 0;
         entry.passed = 0;
         const auto end = std::copy(data.begin(), data.end(), entry.data.begin());
@@ -61,11 +74,41 @@ std::optional<EntryId> AcyclicChannel::claim(Command command, Address address, s
 }
 
 std::optional<EntryId> AcyclicChannel::submit(Command command, Address address, std::span<const std::byte> data) noexcept {
-    return claim(command, address, data.size(), data);
+    return claim(command, address, data.size(), data, {});
 }
 
 std::optional<EntryId> AcyclicChannel::submit(Command command, Address address, std::size_t size) noexcept {
-    return claim(command, address, size, {});
+    return claim(command, address, size, {}, {});
+}
+
+std::optional<EntryId> AcyclicChannel::submit_gated(Command command, Address address, std::span<const std::byte> data,
+                                                    const SendGate& gate) noexcept {
+    return claim(command, address, data.size(), data, gate);
+}
+
+std::size_t AcyclicChannel::gated() const noexcept {
+    return static_cast<std::size_t>(std::count_if(entries_->begin(), entries_->end(), [](const Entry& entry) {
+        const bool has_gate =
+            entry.gate_word.load(std::memory_order_relaxed) != nullptr || entry.gate_order.load(std::memory_order_relaxed) != 0;
+        return has_gate && entry.state.load(std::memory_order_acquire) != State::free;
+    }));
+}
+
+bool AcyclicChannel::withdraw(EntryId id) noexcept {
+    auto* entry = find(id);
+    auto seen = State::submitted;
+    return entry != nullptr && entry->state.compare_exchange_strong(seen, State::free, std::memory_order_acq_rel);
+}
+
+bool AcyclicChannel::open(const Entry& entry) const noexcept {
+    if (const auto* word = entry.gate_word.load(std::memory_order_relaxed); word != nullptr) {
+        if ((word->load(std::memory_order_acquire) >> entry.gate_bit.load(std::memory_order_relaxed) & 1u) == 0) return false;
+    }
+    const std::uint64_t behind = entry.gate_order.load(std::memory_order_relaxed);
+    if (behind == 0) return true;
+    const auto& ahead = (*entries_)[entry.gate_entry.load(std::memory_order_relaxed)];
+    if (ahead.order.load(std::memory_order_relaxed) + 1 != behind) return true;  // long gone
+    return ahead.state.load(std::memory_order_acquire) != State::submitted && ahead.packed_in != packs_;
 }
 
 std::optional<AcyclicAnswer> AcyclicChannel::poll(EntryId id) const noexcept {
@@ -112,12 +155,13 @@ std::size_t AcyclicChannel::pack(Instant now, std::size_t max_datagrams) noexcep
     const auto flight = std::find_if(flights_->begin(), flights_->end(), [](const Flight& f) { return f.count == 0; });
     if (flight == flights_->end()) return 0;
     std::optional<SlotId> slot;
+    ++packs_;
     const std::size_t limit = std::min(max_datagrams, max_datagrams_a_frame);
     while (flight->count < limit) {
         Entry* next = nullptr;
         std::uint64_t lowest = 0;
         for (auto& entry : *entries_) {
-            if (entry.state.load(std::memory_order_acquire) != State::submitted) continue;
+            if (entry.state.load(std::memory_order_acquire) != State::submitted || !open(entry)) continue;
             const auto order = entry.order.load(std::memory_order_relaxed);
             if (next == nullptr || order < lowest) next = &entry, lowest = order;
         }
@@ -130,6 +174,7 @@ std::size_t AcyclicChannel::pack(Instant now, std::size_t max_datagrams) noexcep
             finish(static_cast<std::size_t>(next - entries_->data()), State::submitted);
             break;
         }
+        next->packed_in = packs_;
         const auto datagram = exchange_.add(*slot, next->command, next->address, next->size);
         std::copy_n(next->data.begin(), next->size, datagram->data.begin());
         flight->entries[flight->count++] = static_cast<std::uint8_t>(next - entries_->data());

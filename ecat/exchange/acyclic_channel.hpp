@@ -6,7 +6,7 @@
 //               if (auto answer = channel.poll(*id)) { ...; channel.release(*id); }
 //     cycle:    exchange.receive(now); channel.collect(now);  ...process data...  channel.pack(now, 4);
 //
-// Entries leave in the order of their submission.
+// Entries leave in the order of their submission; one that waits for its gate is passed by those behind it.
 
 #include <array>
 #include <atomic>
@@ -28,6 +28,14 @@ struct EntryId {
     friend bool operator==(EntryId, EntryId) = default;
 };
 
+/// What a request waits for before it leaves. Nothing: it leaves at once.
+struct SendGate {
+    const std::atomic<std::uint64_t>* word = nullptr;  ///< leaves only while this bit is set; outlives the request
+    unsigned bit = 0;
+    EntryId behind{};  ///< leaves only in a later frame than this request, however that one ends
+    [[nodiscard]] bool exists() const noexcept { return word != nullptr || behind.generation != 0; }
+};
+
 /// How a request ended.
 struct AcyclicAnswer {
     bool lost = false;  ///< no answer within the timeout, or the link did not take the frame
@@ -42,6 +50,7 @@ public:
     static constexpr std::size_t entry_count = 32;
     static constexpr std::size_t max_frames = 4;  ///< frames under way at the same time
     static constexpr std::size_t max_datagrams_a_frame = 16;
+    static constexpr std::size_t max_gated = entry_count / 2;  ///< requests with a gate; the others must not run out of entries
 
     /// `exchange` outlives the channel. Allocates here. `timeout`: after it a frame's requests are lost.
     explicit AcyclicChannel(Exchange& exchange, Duration timeout = std::chrono::milliseconds{20});
@@ -54,6 +63,11 @@ public:
     [[nodiscard]] std::optional<EntryId> submit(Command command, Address address, std::span<const std::byte> data) noexcept;
     /// A command that only reads `size` bytes.
     [[nodiscard]] std::optional<EntryId> submit(Command command, Address address, std::size_t size) noexcept;
+    /// Either, when its gate opens. Nothing also when max_gated of them exist.
+    [[nodiscard]] std::optional<EntryId> submit_gated(Command command, Address address, std::span<const std::byte> data,
+                                                      const SendGate& gate) noexcept;
+    /// Takes a request back that has not left, and gives its entry back. False: it has left, or is stale.
+    [[nodiscard]] bool withdraw(EntryId id) noexcept;
     /// Nothing while it is under way; then the answer, as often as asked, until release(). A stale id reads as lost.
     [[nodiscard]] std::optional<AcyclicAnswer> poll(EntryId id) const noexcept;
     /// Gives the entry back, also while it is under way (its answer is then dropped).
@@ -72,7 +86,11 @@ private:
     struct Entry;
     struct Flight;
     [[nodiscard]] Entry* find(EntryId id) const noexcept;
-    std::optional<EntryId> claim(Command command, Address address, std::size_t size, std::span<const std::byte> data) noexcept;
+    std::optional<EntryId> claim(Command command, Address address, std::size_t size, std::span<const std::byte> data,
+                                 const SendGate& gate) noexcept;
+    [[nodiscard]] std::size_t gated() const noexcept;
+    /// By the cycle: nothing keeps the request from leaving.
+    [[nodiscard]] bool open(const Entry& entry) const noexcept;
     void finish(std::size_t entry, State outcome) noexcept;
 
     Exchange& exchange_;
@@ -80,6 +98,7 @@ private:
     std::unique_ptr<std::array<Entry, entry_count>> entries_;
     std::unique_ptr<std::array<Flight, max_frames>> flights_;
     std::uint64_t order_ = 0;  ///< service side
+    std::uint64_t packs_ = 0;  ///< cycle side: pack() calls
 };
 
 }  // namespace taktwerk::ecat

@@ -46,7 +46,7 @@ struct Exchange::Slot {
     SlotState state = SlotState::free;
     FrameKind kind = FrameKind::cyclic;
     bool echoed = false;
-    Instant sent_at{}, arrived_at{};
+    Instant sent_at{}, departed_at{}, arrived_at{};
 
     [[nodiscard]] bool fits_answer(FrameReader& reader, Datagram datagram) noexcept;
 };
@@ -124,7 +124,7 @@ std::optional<DatagramRef> Exchange::add(SlotId id, Command command, Address add
 bool Exchange::send(SlotId id, Instant now) noexcept {
     auto* slot = find(id);
     if (slot == nullptr || slot->state != SlotState::building) return false;
-    slot->sent_at = now;
+    slot->sent_at = slot->departed_at = now;
     const auto frame = slot->builder->finish();
     slot->size = frame.size();
     if (slot->count == 0 || !transport_.send(frame, now)) {
@@ -132,10 +132,11 @@ bool Exchange::send(SlotId id, Instant now) noexcept {
         ++statistics_.send_errors;
         return false;
     }
+    slot->departed_at = transport_.departure(now);
     slot->state = SlotState::sent;
     past_[first_index(slot->generation)] = Past::in_flight;
     ++statistics_.sent;
-    if (tap_ != nullptr) tap_(tap_context_, frame, now, true);
+    if (tap_ != nullptr) tap_(tap_context_, frame, slot->departed_at, true);
     return true;
 }
 
@@ -283,6 +284,16 @@ std::uint16_t Exchange::slaves_passed(SlotId id, std::size_t number) const noexc
     const auto* slot = find(id);
     if (slot == nullptr || slot->state != SlotState::answered || number >= slot->count) return 0;
     return slot->layout[number].passed;
+}
+
+Instant Exchange::departed_at(SlotId id) const noexcept {
+    const auto* slot = find(id);
+    return slot != nullptr ? slot->departed_at : Instant{};
+}
+
+std::size_t Exchange::frame_size(SlotId id) const noexcept {
+    const auto* slot = find(id);
+    return slot != nullptr ? slot->size : 0;
 }
 
 Instant Exchange::sent_at(SlotId id) const noexcept {

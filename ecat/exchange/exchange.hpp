@@ -101,6 +101,10 @@ public:
     /// How far ADP of an AP or B command was incremented: the number of slaves that the datagram passed. 0 unless answered.
     [[nodiscard]] std::uint16_t slaves_passed(SlotId id, std::size_t number) const noexcept;
     [[nodiscard]] Instant sent_at(SlotId id) const noexcept;
+    /// When the frame really left, as the transport measured it; sent_at() where it does not.
+    [[nodiscard]] Instant departed_at(SlotId id) const noexcept;
+    /// Bytes of the finished frame, without FCS; 0 before send().
+    [[nodiscard]] std::size_t frame_size(SlotId id) const noexcept;
     /// From send() to arrival; 0 unless answered.
     [[nodiscard]] Duration round_trip(SlotId id) const noexcept;
     /// Frees the slot. A frame that was sent and not answered counts as lost; its answer will count as late.
@@ -109,7 +113,7 @@ public:
     [[nodiscard]] const ExchangeStatistics& statistics() const noexcept { return statistics_; }
 
     using Tap = void (*)(void* context, std::span<const std::byte> frame, Instant at, bool outgoing) noexcept;
-    /// Sees each frame as it goes out and each as it came in, rejected ones too. May be null.
+    /// Sees each frame as it goes out (`at`: its departure) and each as it came in, rejected ones too. May be null.
     void set_tap(Tap tap, void* context) noexcept;
 
 private:

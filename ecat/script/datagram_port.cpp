@@ -8,22 +8,39 @@ Transfer::~Transfer() {
     if (entry_) channel_.release(*entry_);
 }
 
+std::optional<EntryId> Transfer::submit() noexcept {
+    return gate_.exists() ? channel_.submit_gated(command_, address_, data_, gate_) : channel_.submit(command_, address_, data_);
+}
+
+bool Transfer::withdraw() noexcept {
+    if (!entry_ || !channel_.withdraw(*entry_)) return false;
+    entry_.reset();
+    return true;
+}
+
 bool Transfer::ready(Instant now) {
-    if (!give_up_at_) give_up_at_ = now + DatagramPort::patience;
+    if (!give_up_at_) give_up_at_ = now + wait_.value_or(DatagramPort::patience);
     if (!entry_) {
-        entry_ = channel_.submit(command_, address_, data_);
-        if (!entry_) return now >= *give_up_at_;  // all entries taken: wait for one
-        return false;
+        entry_ = submit();
+        reply_.held = !entry_;
+        return !entry_ && now >= *give_up_at_;  // all entries taken: wait for one
     }
     const auto answer = channel_.poll(*entry_);
     if (!answer && now < *give_up_at_) return false;
+    if (!answer && wait_) {
+        if (withdraw()) {
+            reply_.held = true;
+            return true;
+        }
+        if (now < *give_up_at_ + DatagramPort::patience) return false;  // it has left after all
+    }
     if (answer && !answer->lost) {
-        reply_ = Reply{false, answer->wkc, answer->slaves_passed, {answer->data.begin(), answer->data.end()}, answer->sent_at};
+        reply_ = Reply{false, false, answer->wkc, answer->slaves_passed, {answer->data.begin(), answer->data.end()}, answer->sent_at};
     }
     channel_.release(*entry_);
     entry_.reset();
     if (reply_.lost && --attempts_ > 0 && now < *give_up_at_) {
-        entry_ = channel_.submit(command_, address_, data_);
+        entry_ = submit();
         return false;
     }
     return true;

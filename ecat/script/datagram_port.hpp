@@ -24,7 +24,8 @@ namespace taktwerk::ecat {
 
 /// How a datagram ended.
 struct Reply {
-    bool lost = true;  ///< no frame came back in time, after all attempts
+    bool lost = true;   ///< no frame came back in time, after all attempts
+    bool held = false;  ///< it never left: what it waited for did not come
     std::uint16_t wkc = 0;
     std::uint16_t slaves_passed = 0;  ///< AP and B commands
     std::vector<std::byte> data;
@@ -43,21 +44,33 @@ struct Reply {
 /// What co_await gives a Reply for.
 class Transfer final : public Leaf<Transfer> {
 public:
-    Transfer(AcyclicChannel& channel, Command command, Address address, std::vector<std::byte> data, unsigned attempts)
-        : channel_(channel), command_(command), address_(address), data_(std::move(data)), attempts_(attempts) {}
+    Transfer(AcyclicChannel& channel, Command command, Address address, std::vector<std::byte> data, unsigned attempts,
+             const SendGate& gate = {}, std::optional<Duration> wait = {})
+        : channel_(channel), command_(command), address_(address), data_(std::move(data)), attempts_(attempts), gate_(gate), wait_(wait) {}
     ~Transfer();
     Transfer(const Transfer&) = delete;
     Transfer& operator=(const Transfer&) = delete;
+
+    /// Submits it already; await it later. For transfers that go together.
+    void start(Instant now) { (void)ready(now); }
+    /// In the channel; generation 0: not (yet).
+    [[nodiscard]] EntryId entry() const noexcept { return entry_.value_or(EntryId{}); }
+    /// Takes a started transfer back. False: it has left (or never started), await it.
+    bool withdraw() noexcept;
 
     bool ready(Instant now) override;
     Reply await_resume() { return std::move(reply_); }
 
 private:
+    std::optional<EntryId> submit() noexcept;
+
     AcyclicChannel& channel_;
     Command command_;
     Address address_;
     std::vector<std::byte> data_;
     unsigned attempts_;
+    SendGate gate_;
+    std::optional<Duration> wait_;  ///< for the gate
     std::optional<EntryId> entry_;
     std::optional<Instant> give_up_at_;
     Reply reply_;
@@ -73,6 +86,10 @@ public:
 
     [[nodiscard]] Transfer fprd(std::uint16_t station, std::uint16_t address, std::size_t size, unsigned attempts = default_attempts) {
         return read(Command::FPRD, Address::physical(station, address), size, attempts);
+    }
+    /// Leaves when the gate opens, once; after `wait` it is held. What was read is never thrown away unseen.
+    [[nodiscard]] Transfer fprd_gated(std::uint16_t station, std::uint16_t address, std::size_t size, const SendGate& gate, Duration wait) {
+        return Transfer{channel_, Command::FPRD, Address::physical(station, address), std::vector<std::byte>(size), 1, gate, wait};
     }
     [[nodiscard]] Transfer fpwr(std::uint16_t station, std::uint16_t address, std::span<const std::byte> data,
                                 unsigned attempts = default_attempts) {

@@ -255,6 +255,7 @@ public:
     };
     [[nodiscard]] Acquire acquire() noexcept { return Acquire{*this}; }
     void release() noexcept { taken_ = false; }
+    [[nodiscard]] bool taken() const noexcept { return taken_; }
 
 private:
     bool taken_ = false;

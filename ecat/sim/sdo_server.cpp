@@ -61,13 +61,17 @@ std::span<const std::byte> SdoServer::value_of(const Entry& entry) noexcept {
 }
 
 std::size_t SdoServer::upload(const SdoMessage& request, std::span<std::byte> out) noexcept {
-    Entry* entry = nullptr;
     reset();
-    if (const auto code = locate(request.index, request.sub, entry); code != 0) return abort(out, request.index, request.sub, code);
-    if (request.complete_access) return abort(out, request.index, request.sub, sdo_abort::no_complete_access);
-    if (entry->access() == Access::wo) return abort(out, request.index, request.sub, sdo_abort::write_only);
-    const auto value = value_of(*entry);
-    const std::size_t size = encode_upload_response(out, request.index, request.sub, value);
+    std::span<const std::byte> value;
+    if (request.complete_access) {
+        if (const auto code = collect(request.index, request.sub, value); code != 0) return abort(out, request.index, request.sub, code);
+    } else {
+        Entry* entry = nullptr;
+        if (const auto code = locate(request.index, request.sub, entry); code != 0) return abort(out, request.index, request.sub, code);
+        if (entry->access() == Access::wo) return abort(out, request.index, request.sub, sdo_abort::write_only);
+        value = value_of(*entry);
+    }
+    const std::size_t size = encode_upload_response(out, request.index, request.sub, value, request.complete_access);
     const std::size_t carried = value.size() <= 4 && !value.empty() ? value.size() : size - std::min(size, sdo_initiate_size);
     if (carried < value.size()) {
         transfer_ = Transfer::upload;
@@ -97,10 +101,14 @@ std::size_t SdoServer::download(const SdoMessage& request, bool size_given, std:
     Entry* entry = nullptr;
     auto data = request.data;
     reset();
+    complete_ = request.complete_access;
     const auto refuse = [&](std::uint32_t code) { return abort(out, request.index, request.sub, code); };
-    if (const auto code = locate(request.index, request.sub, entry); code != 0) return refuse(code);
-    if (request.complete_access) return refuse(sdo_abort::no_complete_access);
-    if (entry->access() == Access::ro) return refuse(sdo_abort::read_only);
+    if (complete_) {
+        if (const auto code = refuse_complete(request.index, request.sub); code != 0) return refuse(code);
+    } else {
+        if (const auto code = locate(request.index, request.sub, entry); code != 0) return refuse(code);
+        if (entry->access() == Access::ro) return refuse(sdo_abort::read_only);
+    }
     if (!request.expedited && request.complete_size > request.data.size()) {
         if (request.complete_size > value_.size()) return refuse(sdo_abort::out_of_memory);
         transfer_ = Transfer::download;
@@ -110,12 +118,14 @@ std::size_t SdoServer::download(const SdoMessage& request, bool size_given, std:
         std::copy(request.data.begin(), request.data.end(), value_.begin());
         done_ = request.data.size();
         total_ = request.complete_size;
+    } else if (complete_) {
+        if (const auto code = store_complete(request.index, request.sub, data, state, now); code != 0) return refuse(code);
     } else {
         // Expedited without a size: four bytes came, the object's own size counts.
         if (request.expedited && !size_given) data = data.first(std::min(data.size(), entry->byte_size()));
         if (const auto code = store(*entry, data, state, now); code != 0) return refuse(code);
     }
-    return encode_download_response(out, request.index, request.sub);
+    return encode_download_response(out, request.index, request.sub, complete_);
 }
 
 std::size_t SdoServer::download_segment(const SdoMessage& request, std::span<std::byte> out, EsmState state, Instant now) noexcept {
@@ -126,9 +136,14 @@ std::size_t SdoServer::download_segment(const SdoMessage& request, std::span<std
     done_ += request.data.size();
     if (request.last) {
         if (done_ < total_) return abort(out, index_, sub_, sdo_abort::too_short);
-        Entry* entry = nullptr;
-        auto code = locate(index_, sub_, entry);
-        if (code == 0) code = store(*entry, {value_.data(), total_}, state, now);
+        std::uint32_t code = 0;
+        if (complete_) {
+            code = store_complete(index_, sub_, {value_.data(), total_}, state, now);
+        } else {
+            Entry* entry = nullptr;
+            code = locate(index_, sub_, entry);
+            if (code == 0) code = store(*entry, {value_.data(), total_}, state, now);
+        }
         if (code != 0) return abort(out, index_, sub_, code);
         reset();
     }
@@ -155,6 +170,10 @@ std::uint32_t SdoServer::store(Entry& entry, std::span<const std::byte> data, Es
         const unsigned drop = 64u - entry.bits();
         value = std::bit_cast<std::int64_t>(raw << drop) >> drop;
     }
+    return store_value(entry, value, state, now);
+}
+
+std::uint32_t SdoServer::store_value(Entry& entry, std::int64_t value, EsmState state, Instant now) noexcept {
     if (entry.type() == DataType::BOOL && value > 1) return sdo_abort::value_too_high;
     if (entry.maximum() && value > *entry.maximum()) return sdo_abort::value_too_high;
     if (entry.minimum() && value < *entry.minimum()) return sdo_abort::value_too_low;

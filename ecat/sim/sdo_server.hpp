@@ -1,6 +1,6 @@
 #pragma once
 // The SDO server: one request payload in, one response payload out. Expedited, normal and segmented transfers in both
-// directions; no complete access. Source: ETG.1000.6 5.6.2, SV33-E manual 6.2.8.
+// directions, of entries and, where the description says so, of whole objects. Source: ETG.1000.6 5.6.2, SV33-E manual 6.2.8.
 
 #include <cstdint>
 #include <span>
@@ -37,6 +37,16 @@ private:
     [[nodiscard]] std::uint32_t locate(std::uint16_t index, std::uint8_t sub, Entry*& entry) noexcept;
     /// Abort code of writing `data`; 0: written.
     [[nodiscard]] std::uint32_t store(Entry& entry, std::span<const std::byte> data, EsmState state, Instant now) noexcept;
+    [[nodiscard]] std::uint32_t store_value(Entry& entry, std::int64_t value, EsmState state, Instant now) noexcept;
+
+    // Complete access (sdo_server_complete.cpp). Each returns an abort code; 0: done.
+    [[nodiscard]] std::uint32_t refuse_complete(std::uint16_t index, std::uint8_t first) const noexcept;
+    [[nodiscard]] std::uint32_t collect(std::uint16_t index, std::uint8_t first, std::span<const std::byte>& value) noexcept;
+    /// All entries or none.
+    [[nodiscard]] std::uint32_t store_complete(std::uint16_t index, std::uint8_t first, std::span<const std::byte> data, EsmState state,
+                                               Instant now) noexcept;
+    [[nodiscard]] std::uint32_t store_entries(std::span<const Entry> object, std::uint8_t first, std::span<const std::byte> data,
+                                              EsmState state, Instant now) noexcept;
     [[nodiscard]] std::span<const std::byte> value_of(const Entry& entry) noexcept;
 
     static constexpr std::size_t largest_value = 4096;
@@ -54,6 +64,7 @@ private:
     std::uint16_t index_ = 0;
     std::uint8_t sub_ = 0;
     bool toggle_ = false;
+    bool complete_ = false;         // the download in progress
     std::vector<std::byte> value_;  // of a segmented transfer
     std::size_t done_ = 0, total_ = 0;
 };

@@ -12,7 +12,7 @@ bool strikes(std::uint32_t& counter) noexcept {
 }
 }  // namespace
 
-LoopbackTransport::LoopbackTransport(FrameSink& sink, std::size_t slots, const MacAddress& mac) : sink_(sink), slots_(slots), mac_(mac) {}
+LoopbackTransport::LoopbackTransport(FrameSink& sink, std::size_t slots, const MacAddress& mac) : sink_(&sink), slots_(slots), mac_(mac) {}
 
 LoopbackTransport::Slot* LoopbackTransport::free_slot() noexcept {
     for (auto& slot : slots_)
@@ -34,12 +34,12 @@ bool LoopbackTransport::send(std::span<const std::byte> frame, Instant now) noex
     if (faults.link_down || frame.empty() || frame.size() > max_frame_size) return false;
     Slot* slot = free_slot();
     if (slot == nullptr) return false;
-    sink_.advance(now);
+    sink_->advance(now);
     if (strikes(faults.drop_requests)) return true;
 
     std::copy(frame.begin(), frame.end(), slot->bytes.begin());
     const auto bytes = std::span{slot->bytes}.first(frame.size());
-    const auto flight = sink_.process(bytes, now);
+    const auto flight = sink_->process(bytes, now);
     if (!flight || strikes(faults.drop_answers)) return true;
 
     slot->size = frame.size();
@@ -67,8 +67,17 @@ bool LoopbackTransport::send(std::span<const std::byte> frame, Instant now) noex
     return true;
 }
 
+void LoopbackTransport::inject(std::span<const std::byte> frame, Instant arrival) noexcept {
+    Slot* slot = free_slot();
+    if (slot == nullptr || frame.empty() || frame.size() > max_frame_size) return;
+    std::copy(frame.begin(), frame.end(), slot->bytes.begin());
+    slot->size = frame.size();
+    slot->arrival = arrival;
+    slot->order = order_++;
+}
+
 std::optional<ReceivedFrame> LoopbackTransport::receive(std::span<std::byte> buffer, Instant now) noexcept {
-    sink_.advance(now);
+    sink_->advance(now);
     if (faults.link_down) return std::nullopt;
     Slot* slot = earliest();
     if (slot == nullptr || slot->arrival > now) return std::nullopt;

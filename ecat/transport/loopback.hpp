@@ -48,6 +48,10 @@ public:
     [[nodiscard]] MacAddress mac() const noexcept override { return mac_; }
     [[nodiscard]] bool link_up() const noexcept override { return !faults.link_down; }
 
+    /// From now on frames go to `sink` (which outlives the transport): a test puts something between cable and slaves.
+    void plug_into(FrameSink& sink) noexcept { sink_ = &sink; }
+    /// A frame that this master did not send arrives: somebody else is on the cable. Dropped when all slots are waiting.
+    void inject(std::span<const std::byte> frame, Instant arrival) noexcept;
     /// When the next frame will arrive; nothing is on its way: nullopt. For tests that step to the event.
     [[nodiscard]] std::optional<Instant> next_arrival() const noexcept;
 
@@ -64,7 +68,7 @@ private:
     [[nodiscard]] Slot* free_slot() noexcept;
     [[nodiscard]] Slot* earliest() noexcept;
 
-    FrameSink& sink_;
+    FrameSink* sink_;
     std::vector<Slot> slots_;
     MacAddress mac_;
     std::uint64_t order_ = 0;

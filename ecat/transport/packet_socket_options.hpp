@@ -8,17 +8,19 @@
 #include <string_view>
 #include <vector>
 
+#include "core/clock.hpp"
 #include "core/time.hpp"
 
 namespace taktwerk::ecat {
 
 struct RawSocketOptions {
-    int priority = 7;            ///< SO_PRIORITY: 0..6 without privilege, 7 needs CAP_NET_ADMIN
-    bool skip_queueing = true;   ///< PACKET_QDISC_BYPASS: straight to the driver. False: through tc, e.g. to shape a test
-    bool exclusive = true;       ///< take the interface's lock; false only for a listener beside the master
-    Duration busy_poll{};        ///< SO_BUSY_POLL, whole us: a receive looks into the NIC's queue itself. 0 = off; needs CAP_NET_ADMIN
-    bool receive_stamps = true;  ///< arrival as the kernel saw it, else the time at which receive() asked
-    bool send_stamps = false;    ///< measure how long frames take from send() to the driver; some us a frame in the kernel
+    int priority = 7;              ///< SO_PRIORITY: 0..6 without privilege, 7 needs CAP_NET_ADMIN
+    bool skip_queueing = true;     ///< PACKET_QDISC_BYPASS: straight to the driver. False: through tc, e.g. to shape a test
+    bool exclusive = true;         ///< take the interface's lock; false only for a listener beside the master
+    Duration busy_poll{};          ///< SO_BUSY_POLL, whole us: a receive looks into the NIC's queue itself. 0 = off; needs CAP_NET_ADMIN
+    bool receive_stamps = true;    ///< arrival as the kernel saw it, else the time at which receive() asked
+    bool send_stamps = false;      ///< measure how long frames take from send() to the driver; some us a frame in the kernel
+    const Clock* clock = nullptr;  ///< reads the time at which a frame leaves; outlives the transport. Null: as send() was told
 };
 
 struct RawSocketReport {

@@ -176,6 +176,7 @@ Result<std::unique_ptr<RawSocketTransport>> RawSocketTransport::open(std::string
 
     std::unique_ptr<RawSocketTransport> transport{
         new RawSocketTransport{std::string{interface}, socket.release(), lock.release(), mac, std::move(report)}};
+    transport->clock_ = options.clock;
     transport->refresh();
     return transport;
 }
@@ -189,6 +190,7 @@ RawSocketTransport::~RawSocketTransport() {
 }
 
 bool RawSocketTransport::send(std::span<const std::byte> frame, Instant now) noexcept {
+    if (clock_ != nullptr) departed_ = clock_->now();
     if (::send(socket_, frame.data(), frame.size(), MSG_DONTWAIT) != static_cast<ssize_t>(frame.size())) return false;
     if (report_.stamps_sending) sent_at_ns_[next_send_++ % remembered_sends].store(nanoseconds(now), std::memory_order_relaxed);
     return true;

@@ -48,6 +48,7 @@ public:
 
     /// One system call. False: no carrier, queue full, interface gone.
     bool send(std::span<const std::byte> frame, Instant now) noexcept override;
+    [[nodiscard]] Instant departure(Instant now) const noexcept override { return clock_ != nullptr ? departed_ : now; }
     /// One system call (without PACKET_IGNORE_OUTGOING, before Linux 4.20: one more for each own frame).
     std::optional<ReceivedFrame> receive(std::span<std::byte> buffer, Instant now) noexcept override;
     [[nodiscard]] MacAddress mac() const noexcept override { return mac_; }
@@ -78,6 +79,8 @@ private:
     int lock_;  ///< -1 when not exclusive
     MacAddress mac_;
     RawSocketReport report_;
+    const Clock* clock_ = nullptr;
+    Instant departed_{};
     std::atomic<bool> link_up_{false};
     std::atomic<std::int64_t> realtime_minus_machine_ns_{0};
     RawSocketStatistics statistics_;

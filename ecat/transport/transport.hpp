@@ -21,6 +21,9 @@ public:
     virtual ~Transport() = default;
     /// Sends one frame without FCS. False when the link did not take it (down, full): the caller counts it. Real-time safe.
     virtual bool send(std::span<const std::byte> frame, Instant now) noexcept = 0;
+    /// When the frame that send() took last really left; `now` of that call where nobody measures it. What the reference clock
+    /// stamps is compared with this, not with the instant at which the cycle was due.
+    [[nodiscard]] virtual Instant departure(Instant now) const noexcept { return now; }
     /// One frame that has arrived by `now`, or nothing. Never blocks. Real-time safe.
     virtual std::optional<ReceivedFrame> receive(std::span<std::byte> buffer, Instant now) noexcept = 0;
     [[nodiscard]] virtual MacAddress mac() const noexcept = 0;

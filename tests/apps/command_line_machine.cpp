@@ -128,9 +128,11 @@ TEST_F(CommandLine, AMissingNetworkInterfaceIsABusError) {
     EXPECT_EQ(command({"sim", machines + "minimal.yaml", "--nic", "nonic7"}).code, exit_bus);
 }
 
-// The one run in real time: commands over the socket, then SIGTERM in the middle of a motion.
+// The one run in real time: commands over the socket, then SIGTERM in the middle of a motion. A host that stalls for some tens of
+// milliseconds may delay the motion, but not stop it.
 TEST_F(CommandLine, ARunningMachineIsOperatedAndEndsAlongItsRamp) {
-    Child runtime({taktwerk, "run", private_machine(), "--trace", path("real.csv")});
+    const auto relaxed = file("machines/relaxed.yaml", text_of(private_machine()) + "simulation: { supervision: relaxed }\n");
+    Child runtime({taktwerk, "run", relaxed, "--trace", path("real.csv")});
     ASSERT_TRUE(runtime.says("running, manual mode", 20s)) << runtime.text();
 
     const auto refused = to_machine({"jog", "x", "--velocity", "5", "--for", "100ms"});

@@ -10,6 +10,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "config/drive_loader.hpp"
+
 namespace taktwerk::config {
 namespace {
 
@@ -280,6 +282,54 @@ TEST(MachineLoader, ProcessDataIsTheProfilesOrTheMachines) {
     EXPECT_FALSE(b.position.has_value());
 }
 
+TEST(MachineLoader, TheBusSaysWhoIsWhereHowFastAndWhatIfItIsGone) {
+    auto options = without_programs();
+    options.drive_dirs.push_back(source + "/tests/config/good");
+    const auto bus = must_load(source + "/tests/config/good/bus.yaml", options).machine.bus;
+    EXPECT_EQ(bus.extra_slaves, ecat::ExtraSlaves::ignore);
+    EXPECT_EQ(bus.state_timeouts.preop, 4s);
+    EXPECT_EQ(bus.state_timeouts.safeop, 10s) << "the default";
+    EXPECT_EQ(bus.state_timeouts.op, 500ms);
+    ASSERT_EQ(bus.sync_units.size(), 1u);
+    EXPECT_EQ(bus.sync_units[0].name, "slow");
+    EXPECT_EQ(bus.sync_units[0].divisor, 4);
+
+    ASSERT_EQ(bus.slaves.size(), 2u);
+    const auto& robot = bus.slaves[0];
+    EXPECT_FALSE(robot.position.has_value());
+    EXPECT_EQ(robot.device_id, 7);
+    EXPECT_EQ(robot.revision_rule, ecat::RevisionRule::exact);
+    EXPECT_EQ(robot.on_loss, ecat::LossPolicy::stop_own_axes);
+    EXPECT_EQ(robot.sync_unit, "slow");
+    EXPECT_EQ(robot.pdi_watchdog, 20ms);
+    ASSERT_EQ(robot.modules.size(), 2u);
+    EXPECT_EQ(robot.modules[0].slot, 1);
+    EXPECT_EQ(robot.modules[0].module, "csp");
+    const auto& y = bus.slaves[1];
+    EXPECT_EQ(y.alias, 3);
+    EXPECT_EQ(y.sync1, 250us);
+    EXPECT_EQ(y.sync_start, ecat::SyncStart::in_safeop);
+    EXPECT_FALSE(y.revision_rule.has_value());
+}
+
+TEST(DriveLoader, AModularDriveHasSlotsModulesGapsAndASyncManagerPerPdo) {
+    const auto loaded = load_drive(source + "/tests/config/good/modular_drive.yaml");
+    ASSERT_TRUE(std::holds_alternative<LoadedDrive>(loaded)) << one_a_line(std::get<std::vector<Error>>(loaded));
+    const auto& device = *std::get<LoadedDrive>(loaded).device;
+    EXPECT_EQ(device.revision_rule, ecat::RevisionRule::at_least);
+    EXPECT_EQ(device.slots.count, 2);
+    EXPECT_EQ(device.slots.index_increment, 0x800);
+    EXPECT_EQ(device.slots.pdo_increment, 0x40);
+    ASSERT_EQ(device.slots.modules.size(), 1u);
+    EXPECT_EQ(device.slots.modules[0].name, "csp");
+    EXPECT_EQ(device.slots.modules[0].ident, 0x11u);
+    ASSERT_EQ(device.slots.modules[0].rx_pdos.size(), 1u);
+    EXPECT_THAT(device.slots.modules[0].rx_pdos[0].entries, ElementsAre(ecat::PdoEntry{0x6040, 0, 16}, ecat::PdoEntry{0x607A, 0, 32}));
+    ASSERT_EQ(device.tx_pdos.size(), 1u);
+    EXPECT_EQ(device.tx_pdos[0].sync_manager, 4);
+    EXPECT_THAT(device.tx_pdos[0].entries, ElementsAre(ecat::PdoEntry{0, 0, 3}, ecat::PdoEntry{0x60FD, 0, 16}, ecat::PdoEntry{0, 0, 5}));
+}
+
 TEST(MachineLoader, PointsAreObjectsOfTheirSlave) {
     const auto loaded = must_load(source + "/tests/config/good/units.yaml");
     ASSERT_EQ(loaded.machine.io.size(), 2u);
@@ -288,6 +338,15 @@ TEST(MachineLoader, PointsAreObjectsOfTheirSlave) {
     EXPECT_TRUE(loaded.machine.io[0].inverted);
     EXPECT_EQ(loaded.machine.io[0].simulated, 1);
     EXPECT_EQ(loaded.machine.io[1].index, 0x60FD);
+}
+
+TEST(MachineLoader, SlavesAreExchangedAtTheRateOfTheirSyncUnit) {
+    const auto bus = must_load(source + "/tests/config/good/sync_units.yaml").machine.bus;
+    ASSERT_EQ(bus.slaves.size(), 3u);
+    EXPECT_EQ(ecat::exchange_period(bus, bus.slaves[0]), 1ms);
+    EXPECT_EQ(ecat::exchange_period(bus, bus.slaves[1]), 10ms);
+    EXPECT_EQ(ecat::exchange_period(bus, bus.slaves[2]), 10ms);
+    EXPECT_EQ(bus.slaves[1].sync_unit, "station");
 }
 
 TEST(MachineLoader, SimulateReplacesTheInterfaceOnly) {
@@ -331,6 +390,30 @@ TEST(MachineLoader, ErrorsOfADriveFileNameThatFile) {
     const auto errors = must_fail(path, options);
     EXPECT_THAT(one_a_line(errors), HasSubstr("broken.yaml:3:1: there is no key `vender` here. did you mean `vendor`?"));
     for (const auto& error : errors) EXPECT_THAT(error.subject, HasSubstr("broken.yaml")) << error.text();
+}
+
+// A bus for other people's masters: no axis, and slaves that do not stand in a line.
+TEST(MachineLoader, AFileMayDescribeOnlyABusAndWhereItsSlavesHang) {
+    const auto path = written("bus_only.yaml",
+                              "version: 1\nname: tree\ncycle: 1 ms\nbus:\n  interface: simulated\n  slaves:\n"
+                              "    - {name: junction, terminal: {inputs: 8}}\n"
+                              "    - {name: y_drive, profile: sv33-e, alias: 7}\n"
+                              "    - {name: lamp, terminal: {outputs: 8}}\n"
+                              "simulation:\n  slaves:\n"
+                              "    y_drive: {behind: junction, port: 3, cable: 25, drift: -40 ppm}\n"
+                              "    lamp: {behind: junction}\n");
+    const auto loaded = must_load(path);
+
+    EXPECT_TRUE(loaded.machine.axes.empty());
+    const auto& wires = loaded.machine.simulation.slaves;
+    ASSERT_EQ(wires.size(), 2u);
+    EXPECT_EQ(wires[0].slave, "y_drive");
+    EXPECT_EQ(wires[0].behind, "junction");
+    EXPECT_EQ(wires[0].port, 3);
+    EXPECT_EQ(wires[0].cable, 25.0);
+    EXPECT_EQ(wires[0].drift_ppm, -40.0);
+    EXPECT_EQ(wires[1].port, 1);
+    EXPECT_FALSE(wires[1].drift_ppm);
 }
 
 }  // namespace

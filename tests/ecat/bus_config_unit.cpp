@@ -56,6 +56,14 @@ TEST_P(BadBusConfig, IsFoundWithoutABusAndSaysWhatToDo) {
     }
 }
 
+// Servo: 1701h 6 bytes and 1B01h 6 bytes; terminal: 1 and 1; a datagram has 12 bytes of its own. With clock (8) and AL states (2):
+// (12 + 12) + (12 + 2) + (12 + 8) + (12 + 2) = 72, headers 16, preamble and gap 24: 112 bytes of 80 ns = 8.96 us, and 1 us a slave.
+TEST(Sync0Budget, IsWhatTheFramesLeaveOfTheShift) {
+    const BusConfig config = good();
+    EXPECT_EQ(estimated_flight(config), 8'960ns + 2us);
+    EXPECT_EQ(time_to_compute(config, config.slaves[0]), 500us - 10'960ns);
+}
+
 StartupSdo quick_stop(std::int64_t value) {
     StartupSdo sdo;
     sdo.index = 0x6085;
@@ -70,6 +78,8 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"bus.lost_frames_limit", [](BusConfig& c) { c.lost_frames_limit = 0; }},
         Case{"bus.acyclic_per_cycle", [](BusConfig& c) { c.acyclic_per_cycle = 0; }},
         Case{"bus.sync0_shift", [](BusConfig& c) { c.slaves[0].sync0_shift = 1ms; }},
+        Case{"bus.sync0_budget", [](BusConfig& c) { c.slaves[0].sync0_shift = 9us; }},
+        Case{"bus.sync1", [](BusConfig& c) { c.slaves[0].sync1 = 1ms; }}, Case{"bus.sync1", [](BusConfig& c) { c.slaves[0].sync1 = -1ns; }},
         Case{"bus.duplicate_sync_unit",
              [](BusConfig& c) {
                  c.slaves[1].sync_unit = "io";

@@ -223,6 +223,18 @@ TEST(DcOutOfSync, IsRaisedWhenASlavesClockDiffersAndEndsWithIt) {
     EXPECT_THAT(faults(*bus), Not(Contains(alarm::dc_out_of_sync)));
 }
 
+// 500 us from sending to SYNC0. The frame passes the reference after 50 ns of cable and the second slave 650 ns later; it is 14 + 2
+// + (12 + 8) + 2 (12 + 12) + (12 + 2) = 98 bytes, with 24 of overhead 122, so 9760 ns until its last byte is there.
+TEST(Sync0Margin, IsMeasuredByTheReferenceClock) {
+    auto bus = line_of({0, 0});
+    ASSERT_TRUE(bus->bring_up()) << bus->why();
+    bus->run_for(100ms);
+    const auto& seen = bus->master->statistics();
+    EXPECT_NEAR(static_cast<double>(seen.sync0_margin_ns), 500'000 - 650 - 9'760, 2'000);
+    EXPECT_LE(seen.sync0_margin_least_ns, seen.sync0_margin_ns);
+    EXPECT_GT(seen.sync0_margin_least_ns, 480'000);
+}
+
 TEST(Sync1, FollowsSync0AtItsDistance) {
     auto bus = line_of({0});
     bus->config.slaves[0].sync1 = 125us;

@@ -11,6 +11,7 @@
 #include "ecat/sim/object_dictionary.hpp"
 #include "ecat/sim/sim_network.hpp"
 #include "ecat/transport/loopback.hpp"
+#include "tests/ecat/tampered_cable.hpp"
 
 namespace taktwerk::ecat::test {
 
@@ -83,6 +84,7 @@ public:
         ++exchanges;
     }
     void outputs_lost(Instant) override { ++watchdogs; }
+    void raise(const Emergency& emergency) { send_emergency(emergency); }
     Instant last_exchange{};
     int exchanges = 0, watchdogs = 0;
 
@@ -104,7 +106,7 @@ private:
 /// `devices`: "s" a servo, "t" a terminal, in the order of the cable.
 class TestBus {
 public:
-    explicit TestBus(const std::string& devices, Duration cycle = 1ms) : network(Instant{}), transport(network) {
+    explicit TestBus(const std::string& devices, Duration cycle = 1ms) : network(Instant{}), cable(network), transport(cable) {
         config.cycle = cycle;
         for (std::size_t i = 0; i < devices.size(); ++i) {
             const bool servo = devices[i] == 's';
@@ -159,6 +161,7 @@ public:
 
     BusConfig config;
     sim::SimNetwork network;
+    TamperedCable cable;
     LoopbackTransport transport;
     std::unique_ptr<Master> master;
     std::function<void()> on_cycle;

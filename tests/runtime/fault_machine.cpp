@@ -106,6 +106,25 @@ TEST_F(Fault, ASilentSlaveStopsTheMachineAndComesBackAfterItsPower) {
     m().expect_no_jump();
 }
 
+// y's drive may be lost: x runs on, y's axis stops. The terminal with the emergency stop stands before it.
+TEST_F(Fault, WhoMayDropOutStopsOnlyItsOwnAxes) {
+    auto config = machine_config(2);
+    config.bus.slaves[1].on_loss = ecat::LossPolicy::stop_own_axes;
+    config.bus.slaves[1].position = 2;
+    config.bus.slaves[2].position = 1;
+    start(std::move(config));
+    m().world.set_slave_power("y_drive", false);
+    m().run(300ms);
+    EXPECT_EQ(m().axis(0).state, AxisState::DiscreteMotion) << m().alarms();
+    EXPECT_EQ(m().axis(1).state, AxisState::ErrorStop);
+    EXPECT_TRUE(m().has_alarm(ecat::alarm::slave_dropped_out)) << m().alarms();
+
+    m().world.set_slave_power("y_drive", true);
+    EXPECT_TRUE(m().until([&] { return m().axis(1).online; }, 20s)) << m().machine->bus_progress();
+    EXPECT_TRUE(m().until([&] { return m().axis(0).in_position; }, 10s)) << "x has gone all its way";
+    m().expect_no_jump();
+}
+
 TEST_F(Fault, TwoLostFramesMakeNoDifferenceButAreCounted) {
     start();
     const auto lost = m().state().bus.frames_lost;

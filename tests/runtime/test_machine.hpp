@@ -11,6 +11,7 @@
 #include "runtime/machine.hpp"
 #include "runtime/virtual_runner.hpp"
 #include "runtime/world.hpp"
+#include "tests/ecat/tampered_cable.hpp"
 #include "tests/machines/plain_machine.hpp"
 
 namespace taktwerk::runtime::testing {
@@ -28,7 +29,8 @@ struct AxisWatch {
 
 class TestMachine {
 public:
-    explicit TestMachine(MachineConfig config) : clock(Instant{} + 1s), world(config, clock.now()) {
+    explicit TestMachine(MachineConfig config) : clock(Instant{} + 1s), world(config, clock.now()), cable(world.network()) {
+        world.transport().plug_into(cable);
         auto built = Machine::build(std::move(config), world.transport());
         if (auto* errors = std::get_if<1>(&built)) {
             for (const auto& error : *errors) ADD_FAILURE() << error.text();
@@ -124,6 +126,7 @@ public:
 
     VirtualClock clock;
     World world;
+    ecat::test::TamperedCable cable;
     std::unique_ptr<Machine> machine;
     std::unique_ptr<VirtualRunner> runner;
     std::vector<AxisWatch> watch;

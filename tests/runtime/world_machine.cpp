@@ -122,5 +122,21 @@ TEST(IoPoints, AnObjectThatIsNotMappedIsNamedWhenTheMachineIsArmed) {
     EXPECT_NE(up.error().text().find("io point 'button'"), std::string::npos) << up.error().text();
 }
 
+TEST(World, HangsItsSlavesWhereTheConfigurationSays) {
+    auto config = machine_config(3);  // x, y, z and a terminal, in a line
+    const std::string first = config.bus.slaves[0].name, last = config.bus.slaves[2].name;
+    config.simulation.slaves = {{config.bus.slaves[1].name, first, 3, 100, 25.0}, {last, first, 1, 10, {}}};
+    World world{config, Instant{} + 1s};
+    auto& network = world.network();
+
+    // Port 3 comes before port 1, so the order stays; the second slave no longer carries the third.
+    world.set_cable(config.bus.slaves[1].name, false);
+    EXPECT_EQ(network.reachable(), network.size() - 1);
+    EXPECT_EQ(network.slave(1).options().drift_ppm, 25.0);
+    world.set_cable(config.bus.slaves[1].name, true);
+    world.set_cable(last, false);
+    EXPECT_EQ(network.reachable(), 2u) << "what follows the last of the branch is gone with it";
+}
+
 }  // namespace
 }  // namespace taktwerk::runtime::testing

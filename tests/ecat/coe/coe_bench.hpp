@@ -67,9 +67,16 @@ public:
         for (int i = 0; i < steps && !runner.done(); ++i) {
             step();
             runner.step(now);
-            channel->pack(now, 16);
+            pack();
         }
         return result ? std::move(*result) : Result<T>{Error{"test.hangs", "", "the script does not end", ""}};
+    }
+    /// Sends what the scripts submitted; loses a frame when its number comes.
+    void pack() {
+        const bool hit = frames + 1 == lose_request || frames + 1 == lose_answer;
+        if (hit) (frames + 1 == lose_request ? transport->faults.drop_requests : transport->faults.drop_answers) = 1;
+        if (channel->pack(now, 16) > 0) ++frames;
+        else if (hit) transport->faults = {};
     }
     void step() {
         now += 1ms;
@@ -93,6 +100,8 @@ public:
     EmergencyLog log;
     MailboxEndpoint mailbox;
     Instant now{};
+    std::size_t frames = 0;                         ///< sent
+    std::size_t lose_request = 0, lose_answer = 0;  ///< number of the frame, from 1; 0: none
 };
 
 }  // namespace taktwerk::ecat::test

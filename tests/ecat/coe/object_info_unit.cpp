@@ -165,7 +165,7 @@ TEST(ObjectInfo, AnEmergencyBetweenFragmentsIsKeptAndTheListCompletes) {
             raised = true;
         }
         runner.step(bench.now);
-        bench.channel->pack(bench.now, 16);
+        bench.pack();
     }
 
     ASSERT_TRUE(list && *list);

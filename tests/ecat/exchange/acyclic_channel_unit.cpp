@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <atomic>
 #include <thread>
 
 #include "core/bytes.hpp"
@@ -171,6 +173,80 @@ TEST_F(AcyclicChannelTest, ServiceAndCycleShareTheEntriesWithoutLocks) {
     service.join();
     for (int i = 0; i < 3; ++i) cycle();
     EXPECT_EQ(channel.in_use(), 0u);
+}
+
+// Bit 3 of a word that somebody else sets: the request waits for it, those behind it do not.
+TEST_F(AcyclicChannelTest, AGatedRequestLeavesWhenItsBitIsSet) {
+    std::atomic<std::uint64_t> word{0};
+    SendGate gate;
+    gate.word = &word;
+    gate.bit = 3;
+    const std::array<std::byte, 2> data{};
+    const auto gated = channel.submit_gated(Command::FPRD, Address::physical(0x1001, 0x0130), data, gate);
+    ASSERT_TRUE(gated);
+    const auto other = read(0x0110);
+
+    EXPECT_EQ(cycle(), 1u);
+    cycle();
+    EXPECT_TRUE(channel.poll(other));
+    EXPECT_FALSE(channel.poll(*gated));
+
+    word.store(0x08);
+    EXPECT_EQ(cycle(), 1u);
+    cycle();
+    EXPECT_TRUE(channel.poll(*gated));
+}
+
+TEST_F(AcyclicChannelTest, ARequestBehindAnotherLeavesInALaterFrame) {
+    const auto first = read(0x0110);
+    SendGate gate;
+    gate.behind = first;
+    const std::array<std::byte, 2> data{};
+    const auto second = channel.submit_gated(Command::FPRD, Address::physical(0x1001, 0x0130), data, gate);
+    ASSERT_TRUE(second);
+    read(0x0120);
+
+    EXPECT_EQ(cycle(), 2u) << "the first and the third";
+    EXPECT_EQ(cycle(), 1u) << "the second, although the first is not released";
+    cycle();
+    EXPECT_TRUE(channel.poll(*second));
+}
+
+TEST_F(AcyclicChannelTest, ARequestBehindOneThatIsGoneLeavesAtOnce) {
+    const auto first = read(0x0110);
+    cycle();
+    cycle();
+    channel.release(first);
+    SendGate gate;
+    gate.behind = first;
+    const std::array<std::byte, 2> data{};
+    ASSERT_TRUE(channel.submit_gated(Command::FPRD, Address::physical(0x1001, 0x0130), data, gate));
+    EXPECT_EQ(cycle(), 1u);
+}
+
+TEST_F(AcyclicChannelTest, OnlyWhatHasNotLeftCanBeWithdrawn) {
+    const auto waits = read(0x0110);
+    EXPECT_TRUE(channel.withdraw(waits));
+    EXPECT_EQ(channel.in_use(), 0u);
+    EXPECT_EQ(cycle(), 0u);
+
+    const auto left = read(0x0110);
+    cycle();
+    EXPECT_FALSE(channel.withdraw(left));
+    cycle();
+    EXPECT_TRUE(channel.poll(left)) << "its answer is not lost";
+}
+
+TEST_F(AcyclicChannelTest, GatedRequestsLeaveRoomForOthers) {
+    std::atomic<std::uint64_t> word{0};
+    SendGate gate;
+    gate.word = &word;
+    const std::array<std::byte, 2> data{};
+    std::size_t taken = 0;
+    while (taken < 100 && channel.submit_gated(Command::FPRD, Address::physical(0x1001, 0x0130), data, gate)) ++taken;
+    EXPECT_EQ(taken, AcyclicChannel::max_gated);
+    EXPECT_LT(AcyclicChannel::max_gated, AcyclicChannel::entry_count);
+    read(0x0110);
 }
 
 }  // namespace

@@ -1,0 +1,64 @@
+#include "ecat/diagnosis/mailbox_access.hpp"
+
+#include <array>
+
+#include "ecat/bringup/al_control.hpp"
+#include "ecat/bringup/slave_setup.hpp"
+#include "ecat/wire/registers.hpp"
+
+namespace taktwerk::ecat {
+
+namespace {
+
+bool is(const Result<void>& result, const char* code) { return !result && result.error().code == code; }
+
+}  // namespace
+
+Script<Result<void>> open_mailbox(Bus& bus, BusSlave& slave) {
+    if (!slave.has_coe())
+        co_return Error{"sdo.no_mailbox", slave.subject, "has no CoE mailbox: it has no objects to read or write",
+                        "its process data is fixed; see `taktwerk bus pdo`"};
+    const Result<std::uint16_t> status = co_await read_al_status(bus, slave);
+    if (!status) co_return status.error();
+    const AlState state = al_state(*status);
+    if (state == AlState::init || state == AlState::unknown) co_return co_await enter_preop(bus, slave);
+    if (state == AlState::boot)
+        co_return Error{"sdo.no_mailbox", slave.subject, "is in BOOT: it takes firmware, not SDOs", "take it to INIT, then try again"};
+
+    const Reply reply = co_await bus.port.fprd(slave.found.station, reg::sync_manager, 2 * SyncManager::size);
+    if (!reply.ok()) co_return unanswered(slave.subject, "its mailbox sync managers (0800h)", reply);
+    const std::span<const std::byte> bytes{reply.data};
+    const SyncManager out = decode_sync_manager(bytes.first<SyncManager::size>());
+    const SyncManager in = decode_sync_manager(bytes.subspan<SyncManager::size, SyncManager::size>());
+    if (!out.enabled() || !in.enabled() || !out.is_mailbox() || !in.is_mailbox())
+        co_return Error{"sdo.no_mailbox", slave.subject, "its mailbox sync managers are not set up, although it is beyond INIT",
+                        "take it to INIT first: taktwerk bus state init"};
+    auto& mailbox = slave.mailbox;
+    mailbox.subject = slave.subject;
+    mailbox.station = slave.found.station;
+    mailbox.out_start = out.start;
+    mailbox.out_size = out.length;
+    mailbox.in_start = in.start;
+    mailbox.in_size = in.length;
+    mailbox.out_sm = 0;
+    mailbox.in_sm = 1;
+    mailbox.repeat_toggle = (in.activate & SyncManager::repeat_request) != 0;
+    co_return Result<void>{};
+}
+
+Script<Result<std::vector<std::byte>>> read_object(Bus& bus, BusSlave& slave, std::uint16_t index, std::uint8_t sub, SdoAccess access) {
+    const bool first = slave.mailbox.counter == 0;
+    Result<std::vector<std::byte>> value = co_await sdo_upload(bus.port, slave.mailbox, index, sub, access);
+    if (!value && first && value.error().code == "sdo.timeout") value = co_await sdo_upload(bus.port, slave.mailbox, index, sub, access);
+    co_return value;
+}
+
+Script<Result<void>> write_object(Bus& bus, BusSlave& slave, std::uint16_t index, std::uint8_t sub, std::vector<std::byte> value,
+                                  SdoAccess access) {
+    const bool first = slave.mailbox.counter == 0;
+    Result<void> written = co_await sdo_download(bus.port, slave.mailbox, index, sub, value, access);
+    if (first && is(written, "sdo.timeout")) written = co_await sdo_download(bus.port, slave.mailbox, index, sub, value, access);
+    co_return written;
+}
+
+}  // namespace taktwerk::ecat

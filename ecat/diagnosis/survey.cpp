@@ -1,0 +1,225 @@
+#include "ecat/diagnosis/survey.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "ecat/bringup/scan.hpp"
+#include "ecat/bringup/sii_reader.hpp"
+#include "ecat/wire/registers.hpp"
+
+namespace taktwerk::ecat {
+
+namespace {
+
+constexpr std::size_t counter_bytes = reg::lost_links + 4 - reg::rx_errors;
+
+std::uint8_t byte_at(const Reply& reply, std::size_t offset) noexcept {
+    return offset < reply.data.size() ? static_cast<std::uint8_t>(reply.data[offset]) : std::uint8_t{0};
+}
+
+/// Address and AL state by position: what works on every bus.
+Script<void> greet(DatagramPort& port, std::uint16_t position, SurveyedSlave& slave) {
+    slave.found.position = position;
+    const Reply address = co_await port.aprd(position, reg::station_address, 2);
+    const Reply al = co_await port.aprd(position, reg::al_status, 6);
+    if (!address.ok() || !al.ok()) {
+        slave.found.error = unanswered(fmt::format("slave {}", position), "its station address (0010h)", address.ok() ? al : address);
+        co_return;
+    }
+    slave.found.station = address.u16();
+    slave.state = al_state(al.u16());
+    slave.al_error = (al.u16() & al_status_error) != 0;
+    slave.al_code = al.u16(4);
+}
+
+/// Everything else, by station address.
+Script<void> question(DatagramPort& port, SurveyedSlave& slave) {
+    if (slave.found.error) co_return;
+    const std::uint16_t position = slave.found.position, station = slave.found.station;
+    if (station != station_at(position)) {
+        slave.found.error = Error{"bus.foreign_address", fmt::format("slave {}", position),
+                                  fmt::format("has the station address {:04X}h of another master and is {}", station, name(slave.state)),
+                                  "end that master, then scan again"};
+        co_return;
+    }
+    const std::string subject = fmt::format("slave {}", position);
+    slave.found = co_await read_slave(port, position, subject);
+    if (slave.found.error) co_return;
+    const Reply description = co_await port.fprd(station, reg::port_descriptor, 1);
+    for (unsigned p = 0; p < ports_per_slave; ++p) {
+        auto& each = slave.ports[p];
+        if (description.ok()) each.kind = static_cast<PortKind>((byte_at(description, 0) >> (2 * p)) & 3u);
+        each.link = dl_signal(slave.found.dl_status, p);
+        each.open = dl_port_open(slave.found.dl_status, p);
+    }
+    co_await read_counters(port, slave);
+    Result<Sii> whole = co_await read_whole_sii(port, station, subject);
+    if (!whole) co_return;  // who it is was read; what it can do beyond that stays unknown
+    slave.found.sii = std::move(*whole);
+    const auto& sii = slave.found.sii;
+    if (!sii.general) co_return;
+    slave.device_name = std::string{sii.string(sii.general->name)};
+    slave.order_name = std::string{sii.string(sii.general->order)};
+    slave.ebus_current = sii.general->ebus_current;
+}
+
+Script<void> ask_device_id(DatagramPort& port, SurveyedSlave& slave) {
+    slave.found.device_id = co_await read_device_id(port, slave.found.station);
+}
+
+/// E-bus: each coupler starts a budget, each terminal takes from it. Slaves stand in the order of the cable.
+void sum_currents(Survey& survey) {
+    std::optional<int> left;
+    for (auto& slave : survey.slaves) {
+        const bool on_ebus = std::any_of(slave.ports.begin(), slave.ports.end(), [](const auto& p) { return p.kind == PortKind::ebus; });
+        const int current = slave.ebus_current.value_or(0);
+        if (current < 0) left = -current;
+        else if (!on_ebus) left.reset();
+        else if (left) *left -= current;
+        if (on_ebus || current < 0) slave.ebus_left = left;
+    }
+}
+
+bool addresses_are_ours(const Survey& survey) {
+    return std::all_of(survey.slaves.begin(), survey.slaves.end(), [](const SurveyedSlave& slave) {
+        return slave.found.error || slave.found.station == station_at(slave.found.position);
+    });
+}
+
+}  // namespace
+
+std::string_view name(PortKind kind) noexcept {
+    switch (kind) {
+        case PortKind::ebus: return "E-bus";
+        case PortKind::mii: return "MII";
+        case PortKind::not_configured: return "not configured";
+        case PortKind::none: break;
+    }
+    return "none";
+}
+
+bool SurveyedSlave::dc() const noexcept { return (found.features & feature::dc) != 0; }
+
+std::string SurveyedSlave::protocols() const {
+    constexpr std::array<std::pair<std::uint16_t, std::string_view>, 6> all{{{sii_protocol::coe, "CoE"},
+                                                                             {sii_protocol::foe, "FoE"},
+                                                                             {sii_protocol::eoe, "EoE"},
+                                                                             {sii_protocol::soe, "SoE"},
+                                                                             {sii_protocol::aoe, "AoE"},
+                                                                             {sii_protocol::voe, "VoE"}}};
+    std::string text;
+    for (const auto& [bit, word] : all)
+        if ((found.sii.mailbox_protocols & bit) != 0) text += (text.empty() ? "" : ", ") + std::string{word};
+    return text;
+}
+
+std::string Survey::subject(std::size_t position) const {
+    const std::string name = position < slaves.size() ? slaves[position].name : std::string{};
+    return name.empty() ? fmt::format("slave {}", position) : fmt::format("slave {} '{}'", position, name);
+}
+
+Script<bool> read_counters(DatagramPort& port, SurveyedSlave& slave) {
+    const Reply reply = co_await port.fprd(slave.found.station, reg::rx_errors, counter_bytes);
+    const Reply watchdog = co_await port.fprd(slave.found.station, reg::sm_watchdog_count, 1);
+    if (watchdog.ok()) slave.sm_watchdogs = byte_at(watchdog, 0);
+    if (!reply.ok()) co_return false;
+    for (unsigned p = 0; p < ports_per_slave; ++p) {
+        auto& counters = slave.ports[p].counters;
+        counters.invalid_frames = byte_at(reply, 2 * p);
+        counters.rx_errors = byte_at(reply, 2 * p + 1);
+        counters.forwarded_errors = byte_at(reply, reg::forwarded_rx_errors - reg::rx_errors + p);
+        counters.lost_links = byte_at(reply, reg::lost_links - reg::rx_errors + p);
+    }
+    slave.processing_unit_errors = byte_at(reply, reg::processing_unit_errors - reg::rx_errors);
+    slave.pdi_errors = byte_at(reply, reg::pdi_errors - reg::rx_errors);
+    co_return true;
+}
+
+Script<Result<Survey>> survey(DatagramPort& port) {
+    Survey result;
+    const Reply count = co_await port.brd(reg::type, 1);
+    if (count.lost) co_return unanswered("bus", "the count of slaves", count);
+    if (count.wkc == 0)
+        co_return Error{"bus.empty", "bus", "frames come back, but no slave answered",
+                        "check the power of the slaves and that the cable goes to the IN port of the first"};
+    result.slaves.resize(count.wkc);
+
+    std::vector<Script<void>> scripts;
+    for (std::uint16_t p = 0; p < count.wkc; ++p) scripts.push_back(greet(port, p, result.slaves[p]));
+    co_await all(std::move(scripts));
+    for (const auto& slave : result.slaves) result.highest_state = std::max(result.highest_state, slave.state);
+
+    if (result.highest_state < AlState::safeop) {
+        co_await port.bwr(reg::eeprom_configuration, std::uint8_t{2});  // from an application that holds it
+        co_await port.bwr(reg::eeprom_configuration, std::uint8_t{0});
+        if (!addresses_are_ours(result))
+            for (auto& slave : result.slaves) {
+                const Reply written = co_await port.apwr(slave.found.position, reg::station_address, station_at(slave.found.position));
+                if (written.ok()) slave.found.station = station_at(slave.found.position);
+            }
+    }
+
+    std::vector<Script<void>> questions;
+    for (auto& slave : result.slaves) questions.push_back(question(port, slave));
+    co_await all(std::move(questions));
+
+    std::vector<std::uint16_t> links;
+    for (const auto& slave : result.slaves) links.push_back(slave.found.dl_status);
+    const bool all_read =
+        std::none_of(result.slaves.begin(), result.slaves.end(), [](const SurveyedSlave& s) { return s.found.error.has_value(); });
+    if (all_read) {
+        Result<Topology> tree = build_topology(links);
+        if (tree) result.topology = std::move(*tree);
+        else result.remarks.push_back(tree.error());
+    }
+    sum_currents(result);
+    co_return result;
+}
+
+Script<Result<void>> read_device_ids(DatagramPort& port, Survey& survey) {
+    std::vector<Script<void>> scripts;
+    for (auto& slave : survey.slaves)
+        if (!slave.found.error) scripts.push_back(ask_device_id(port, slave));
+    co_await all(std::move(scripts));
+    co_return Result<void>{};
+}
+
+void compare_with(const BusConfig& config, Survey& survey) {
+    std::set<std::size_t> named;
+    for (const auto& wanted : config.slaves) {
+        const auto at = std::find_if(survey.slaves.begin(), survey.slaves.end(), [&](const SurveyedSlave& slave) {
+            if (wanted.position) return slave.found.position == *wanted.position;
+            if (wanted.alias) return !slave.found.error && slave.found.alias == *wanted.alias;
+            return wanted.device_id && slave.found.device_id == wanted.device_id;
+        });
+        if (at == survey.slaves.end()) {
+            const std::string where = wanted.position ? fmt::format("at position {}", *wanted.position)
+                                      : wanted.alias  ? fmt::format("with alias {}", *wanted.alias)
+                                                      : fmt::format("with device id {}", wanted.device_id.value_or(0));
+            survey.remarks.push_back(Error{
+                "bus.missing_slave", fmt::format("slave '{}' ({})", wanted.name, wanted.device->name),
+                fmt::format("there is no slave {}: the cable has {}, configured are {}", where, survey.slaves.size(), config.slaves.size()),
+                wanted.position ? fmt::format("check power and cable behind slave {}", survey.slaves.size() - 1)
+                                : "set it in the slave and power-cycle it, or address it by position"});
+            continue;
+        }
+        auto& slave = *at;
+        named.insert(slave.found.position);
+        slave.name = wanted.name;
+        slave.expected = wanted.device->name;
+        if (slave.found.error) continue;
+        const Result<void> same = check_identity(survey.subject(slave.found.position), wanted, slave.found.identity);
+        if (!same) slave.mismatch = same.error();
+    }
+    if (config.slaves.empty()) return;
+    for (const auto& slave : survey.slaves)
+        if (!named.contains(slave.found.position))
+            survey.remarks.push_back(Error{"bus.unexpected_slave", fmt::format("slave {}", slave.found.position),
+                                           "is on the cable but not in the configuration",
+                                           config.extra_slaves == ExtraSlaves::ignore ? "it stays as it is: extra slaves are ignored"
+                                                                                      : "add it to the configuration or unplug it"});
+}
+
+}  // namespace taktwerk::ecat

@@ -1,0 +1,186 @@
+// What a survey reads from simulated slaves, and that it leaves the bus as it was.
+
+#include "ecat/diagnosis/survey.hpp"
+
+#include <gmock/gmock.h>
+
+#include "ecat/bringup/scan.hpp"
+#include "ecat/diagnosis/clock_report.hpp"
+#include "ecat/diagnosis/port_errors.hpp"
+#include "tests/ecat/diagnosis/probed_bus.hpp"
+
+namespace taktwerk::ecat {
+namespace {
+
+using namespace std::chrono_literals;
+using test::ProbedBus;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+TEST(Survey, ReadsIdentityStateAndPortsOfEverySlave) {
+    ProbedBus bus{"sts"};
+
+    const Survey found = bus.look();
+
+    ASSERT_THAT(found.slaves, SizeIs(3));
+    const auto& servo = found.slaves[0];
+    EXPECT_FALSE(servo.found.error) << servo.found.error->text();
+    EXPECT_EQ(servo.found.identity.vendor, 0x7FBu);  // SV33-E manual
+    EXPECT_EQ(servo.found.identity.product, 0x000C0108u);
+    EXPECT_EQ(servo.found.station, station_at(0));
+    EXPECT_EQ(servo.state, AlState::init);
+    EXPECT_TRUE(servo.dc());
+    EXPECT_TRUE(servo.has_mailbox());
+    EXPECT_TRUE(servo.ports[0].open);
+    EXPECT_TRUE(servo.ports[1].open);
+    EXPECT_FALSE(servo.ports[2].open);
+    EXPECT_FALSE(found.slaves[1].has_mailbox());
+    EXPECT_FALSE(found.slaves[2].ports[1].open) << "the last of the line";
+    ASSERT_TRUE(found.topology);
+    EXPECT_EQ(found.topology->slaves[2].parent, 1u);
+    EXPECT_THAT(found.remarks, IsEmpty());
+}
+
+TEST(Survey, EightSlavesTakeLessThanASecondOfMachineTime) {
+    ProbedBus bus{"ssssssss"};
+    const Survey found = bus.look();
+    EXPECT_THAT(found.slaves, SizeIs(8));
+    EXPECT_LT(bus.now - Instant{}, 1s);
+}
+
+TEST(Survey, ABusInOpGoesOnUndisturbed) {
+    // The survey's datagrams travel with the process data of a running cycle.
+    ProbedBus bus{"st"};
+    auto running = bus.probe(bus.config);
+    const auto up = running.bring_up();
+    ASSERT_TRUE(up) << up.error().text();
+    const int exchanges = bus.servo(0).exchanges;
+    const Instant before = bus.now;
+
+    const auto found = running.run(survey(running.port()));
+
+    ASSERT_TRUE(found) << found.error().text();
+    EXPECT_EQ(found->highest_state, AlState::op);
+    EXPECT_FALSE(found->slaves[0].found.error);
+    EXPECT_EQ(bus.state(0), sim::EsmState::op);
+    EXPECT_EQ(bus.state(1), sim::EsmState::op);
+    EXPECT_GE(bus.servo(0).exchanges - exchanges, (bus.now - before) / 1ms - 1) << "one exchange a cycle, as before";
+    EXPECT_EQ(running.master().statistics().working_counter_errors, 0u);
+}
+
+TEST(Survey, WithoutSlavesOrCableItSaysSo) {
+    ProbedBus bus{"s"};
+    bus.network.set_cable(0, false);
+    auto looking = bus.probe();
+    const auto silent = looking.run(survey(looking.port()));
+    ASSERT_FALSE(silent);
+    EXPECT_EQ(silent.error().code, "bus.no_frame");
+}
+
+TEST(Survey, AnAddressOfAnotherMasterIsKeptWhileSlavesAreOperating) {
+    ProbedBus bus{"t"};
+    ASSERT_TRUE(bus.bring_up()) << bus.why();
+    auto other = bus.probe();
+    const auto moved = other.run([](DatagramPort& port) -> Script<Result<void>> {
+        co_await port.apwr(0, reg::station_address, std::uint16_t{0x2222});
+        co_return Result<void>{};
+    }(other.port()));
+    ASSERT_TRUE(moved);
+
+    const Survey found = bus.look();
+
+    ASSERT_THAT(found.slaves, SizeIs(1));
+    ASSERT_TRUE(found.slaves[0].found.error);
+    EXPECT_EQ(found.slaves[0].found.error->code, "bus.foreign_address");
+    EXPECT_EQ(found.slaves[0].found.station, 0x2222);
+}
+
+TEST(CompareWith, NamesWhoIsMissingAndWhoIsAnother) {
+    ProbedBus bus{"st"};
+    Survey found = bus.look();
+    BusConfig wanted = bus.config;
+    wanted.slaves[1].device = test::servo_description();  // but a terminal is there
+    SlaveConfig third = wanted.slaves[0];
+    third.name = "c";
+    third.position = 2;
+    wanted.slaves.push_back(third);
+
+    compare_with(wanted, found);
+
+    EXPECT_EQ(found.slaves[0].name, "a");
+    EXPECT_FALSE(found.slaves[0].mismatch);
+    ASSERT_TRUE(found.slaves[1].mismatch);
+    EXPECT_THAT(found.slaves[1].mismatch->text(), HasSubstr("000007FBh"));
+    EXPECT_THAT(found.slaves[1].mismatch->text(), HasSubstr("00000ABCh"));
+    ASSERT_THAT(found.remarks, SizeIs(1));
+    EXPECT_EQ(found.remarks[0].code, "bus.missing_slave");
+    EXPECT_THAT(found.remarks[0].text(), HasSubstr("position 2"));
+}
+
+TEST(PortFindings, NameTheCableBetweenTwoSlaves) {
+    // 12 RX errors and 3 lost links at port 1 of slave 2; behind it hangs slave 3. Forwarded errors alone come from before.
+    ProbedBus bus{"tttt"};
+    Survey found = bus.look();
+    EXPECT_THAT(port_findings(found), IsEmpty());
+    found.slaves[2].name = "y";
+    found.slaves[2].ports[1].counters = {.invalid_frames = 0, .rx_errors = 12, .forwarded_errors = 0, .lost_links = 3};
+    found.slaves[3].ports[0].counters = {.invalid_frames = 4, .rx_errors = 0, .forwarded_errors = 4, .lost_links = 0};
+
+    const auto findings = port_findings(found);
+
+    ASSERT_THAT(findings, SizeIs(2));
+    EXPECT_EQ(findings[0].position, 2u);
+    EXPECT_EQ(findings[0].text,
+              "port 1 of slave 2 'y': 3 lost links, 12 RX errors: the cable between slave 2 'y' and slave 3, or its plugs");
+    EXPECT_THAT(findings[1].text, HasSubstr("from further up the cable"));
+}
+
+TEST(PortFindings, CountersAreReadAndCleared) {
+    // The outputs stay away for longer than the SM watchdog of 10 ms: each slave counts it.
+    ProbedBus bus{"tt"};
+    ASSERT_TRUE(bus.bring_up()) << bus.why();
+    bus.now += 100ms;
+    Survey found = bus.look();
+    ASSERT_EQ(found.slaves[0].sm_watchdogs, 1);
+
+    auto probing = bus.probe();
+    ASSERT_TRUE(probing.run(clear_counters(probing.port(), 2)));
+    ASSERT_TRUE(probing.run(refresh_counters(probing.port(), found)));
+
+    EXPECT_EQ(found.slaves[0].sm_watchdogs, 0);
+    EXPECT_EQ(found.slaves[1].sm_watchdogs, 0);
+    EXPECT_THAT(port_findings(found), IsEmpty());
+}
+
+TEST(ClockReport, ShowsTheReferenceAndSync0InOp) {
+    ProbedBus bus{"sts"};
+    ASSERT_TRUE(bus.bring_up()) << bus.why();
+    const Survey found = bus.look();
+    auto probing = bus.probe();
+
+    const auto clocks = probing.run(read_clocks(probing.port(), found));
+
+    ASSERT_TRUE(clocks);
+    ASSERT_THAT(*clocks, SizeIs(2)) << "the terminal has no clock";
+    EXPECT_TRUE((*clocks)[0].reference);
+    EXPECT_EQ((*clocks)[0].delay, 0u);
+    EXPECT_FALSE((*clocks)[1].reference);
+    EXPECT_GT((*clocks)[1].delay, 0u);
+    EXPECT_TRUE((*clocks)[1].sync0);
+    EXPECT_EQ((*clocks)[1].sync0_cycle, 1ms);
+    EXPECT_THAT(clock_findings(found, *clocks, 3us), IsEmpty());
+}
+
+TEST(ClockReport, ClocksThatNobodySetUpAreCalledFree) {
+    ProbedBus bus{"s"};
+    const Survey found = bus.look();
+    auto probing = bus.probe();
+    const auto clocks = probing.run(read_clocks(probing.port(), found));
+    ASSERT_TRUE(clocks);
+    EXPECT_THAT(clock_findings(found, *clocks, 3us), ElementsAre(HasSubstr("run free")));
+}
+
+}  // namespace
+}  // namespace taktwerk::ecat

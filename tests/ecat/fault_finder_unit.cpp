@@ -1,0 +1,154 @@
+// What is said when: the rules of the fault finder, without a bus. Slaves here are in the order of their positions.
+#include "ecat/fault_finder.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "ecat/alarms.hpp"
+
+namespace taktwerk::ecat {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+constexpr std::uint32_t limit = 3;
+
+/// parents[i]: of slave i; -1: the first.
+struct Finder {
+    explicit Finder(const std::vector<int>& parents, std::vector<LossPolicy> policies = {}) : finder(make(parents, policies)) {
+        count = parents.size();
+        for (std::size_t i = 0; i < count; ++i) finder.condition(i).al_state = AlState::op;
+        bus.slaves_answering = static_cast<std::uint16_t>(count);
+    }
+    static FaultFinder make(const std::vector<int>& parents, const std::vector<LossPolicy>& policies) {
+        std::vector<FaultSlave> slaves;
+        for (std::size_t i = 0; i < parents.size(); ++i) {
+            FaultSlave slave;
+            slave.index = i;
+            if (parents[i] >= 0) slave.parent = static_cast<std::size_t>(parents[i]);
+            if (i < policies.size()) slave.on_loss = policies[i];
+            slaves.push_back(slave);
+        }
+        return FaultFinder{std::move(slaves), static_cast<std::uint16_t>(parents.size()), limit};
+    }
+    /// Slaves that do not answer any more, as the cycle sees them: not exchanged, and not counted.
+    void vanish(std::initializer_list<std::size_t> slaves) {
+        for (const auto s : slaves) finder.condition(s).age = limit;
+        bus.slaves_answering = static_cast<std::uint16_t>(bus.slaves_answering - slaves.size());
+    }
+    std::vector<AlarmId> look() {
+        finder.look(bus);
+        std::vector<AlarmId> ids;
+        for (const auto& fact : finder.facts()) ids.push_back(fact.id);
+        return ids;
+    }
+    FaultFinder finder;
+    BusCondition bus;
+    std::size_t count = 0;
+};
+
+TEST(FaultFinder, SaysNothingOfABusThatIsWell) { EXPECT_THAT((Finder{{-1, 0, 1}}.look()), IsEmpty()); }
+
+TEST(FaultFinder, WithoutFramesOnlyThatIsSaid) {
+    Finder f{{-1, 0, 1}};
+    f.vanish({0, 1, 2});
+    f.bus.lost_in_a_row = limit;
+    EXPECT_THAT(f.look(), ElementsAre(alarm::frames_lost));
+    f.bus.link_up = false;
+    EXPECT_THAT(f.look(), ElementsAre(alarm::link_down));
+    f.bus.lost_in_a_row = limit - 1;
+    f.bus.link_up = true;
+    f.bus.slaves_answering = 3;
+    for (std::size_t i = 0; i < 3; ++i) f.finder.condition(i).age = limit - 1;
+    EXPECT_THAT(f.look(), IsEmpty()) << "up to the limit lost frames are only counted";
+}
+
+// 0 - 1 - 2      behind port 3 of slave 0: 1, 2; behind port 1: 3, 4
+//  \- 3 - 4
+TEST(FaultFinder, EachBranchThatIsGoneIsOneAlarm) {
+    Finder f{{-1, 0, 1, 0, 3}};
+    f.vanish({1, 2, 3, 4});
+    EXPECT_THAT(f.look(), ElementsAre(alarm::cable_broken, alarm::cable_broken));
+    EXPECT_EQ(f.finder.facts()[0].index, 1);
+    EXPECT_EQ(f.finder.facts()[0].a, 2);
+    EXPECT_EQ(f.finder.facts()[1].index, 3);
+}
+
+TEST(FaultFinder, ALeafAloneIsALostSlave) {
+    Finder f{{-1, 0, 1, 0, 3}};
+    f.vanish({4});
+    EXPECT_THAT(f.look(), ElementsAre(alarm::slave_lost));
+    EXPECT_EQ(f.finder.facts()[0].index, 4);
+}
+
+// A coupler has no process data: the cycle misses two slaves and can name one. The watch then asks each.
+TEST(FaultFinder, UntilTheMissingAreNamedTheBusSpeaksForThem) {
+    Finder f{{-1, 0, 1}};
+    f.finder.condition(2).age = limit;
+    f.bus.slaves_answering = 1;
+    EXPECT_THAT(f.look(), ElementsAre(alarm::slaves_missing));
+    EXPECT_EQ(f.finder.facts()[0].a, 2);
+    EXPECT_EQ(f.finder.facts()[0].b, 3);
+    f.finder.condition(1).presence = f.finder.condition(2).presence = Presence::silent;
+    EXPECT_THAT(f.look(), ElementsAre(alarm::cable_broken));
+    EXPECT_EQ(f.finder.facts()[0].index, 1);
+}
+
+TEST(FaultFinder, AGroupStandsUntilItsLastSlaveIsBackInOp) {
+    Finder f{{-1, 0, 1}};
+    f.vanish({1, 2});
+    ASSERT_THAT(f.look(), ElementsAre(alarm::cable_broken));
+    // Plugged in: both answer again, from INIT.
+    f.bus.slaves_answering = 3;
+    f.finder.condition(1).al_state = f.finder.condition(2).al_state = AlState::init;
+    EXPECT_THAT(f.look(), ElementsAre(alarm::cable_broken));
+    f.finder.condition(1) = {.al_state = AlState::op};
+    ASSERT_THAT(f.look(), ElementsAre(alarm::cable_broken));
+    EXPECT_EQ(f.finder.facts()[0].a, 1);
+    f.finder.condition(2) = {.al_state = AlState::op};
+    EXPECT_THAT(f.look(), IsEmpty());
+}
+
+TEST(FaultFinder, TheLossPolicyOfWhoIsGoneDecidesTheKind) {
+    using enum LossPolicy;
+    Finder own{{-1, 0, 1}, {stop_machine, stop_own_axes, stop_own_axes}};
+    own.vanish({1, 2});
+    EXPECT_THAT(own.look(), ElementsAre(alarm::branch_dropped_out));
+    Finder mixed{{-1, 0, 1}, {stop_machine, stop_own_axes, stop_machine}};
+    mixed.vanish({1, 2});
+    EXPECT_THAT(mixed.look(), ElementsAre(alarm::cable_broken));
+    Finder fallen{{-1, 0}, {stop_machine, stop_own_axes}};
+    fallen.finder.condition(1).al_state = AlState::safeop;
+    fallen.finder.condition(1).al_status_code = 0x1B;
+    EXPECT_THAT(fallen.look(), ElementsAre(alarm::slave_dropped_out));
+    EXPECT_EQ(fallen.finder.facts()[0].b, 0x1B);
+}
+
+TEST(FaultFinder, WhoExchangesButDoesNotAnswerHasLostItsAddress) {
+    Finder f{{-1, 0}};
+    f.finder.condition(1).presence = Presence::silent;
+    f.finder.condition(1).al_state = AlState::unknown;
+    EXPECT_THAT(f.look(), ElementsAre(alarm::station_address_lost));
+}
+
+TEST(FaultFinder, AnswersOpAndIsNotExchanged) {
+    Finder f{{-1, 0}};
+    f.finder.condition(1).age = limit;
+    EXPECT_THAT(f.look(), ElementsAre(alarm::working_counter_wrong));
+}
+
+TEST(FaultFinder, TroubleOnTheWayBackIsSaidAlsoOfAGroup) {
+    Finder f{{-1, 0, 1}};
+    f.vanish({1, 2});
+    (void)f.look();
+    f.bus.slaves_answering = 3;
+    f.finder.condition(1).trouble = ReturnTrouble::other_device;
+    f.finder.condition(2).trouble = ReturnTrouble::refused;
+    f.finder.condition(2).attempts = 3;
+    f.finder.condition(2).al_state = AlState::preop;
+    EXPECT_THAT(f.look(), ElementsAre(alarm::cable_broken, alarm::other_device, alarm::slave_does_not_return));
+}
+
+}  // namespace
+}  // namespace taktwerk::ecat

@@ -1,0 +1,377 @@
+// Health is never assumed: each way in which a bus in OP can be unwell, what is said about it, and how it comes back.
+// docs/faults.md is the table; the campaign in tests/runtime/campaign crosses these with every phase.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+
+#include "ecat/alarms.hpp"
+#include "ecat/wire/sii.hpp"
+#include "tests/ecat/test_bus.hpp"
+
+namespace taktwerk::ecat::test {
+namespace {
+
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+/// A controller that is not ours: its datagrams reach the slaves, and its frames are heard by our port.
+void second_master_writes(TestBus& bus, Address address, std::uint16_t value) {
+    std::array<std::byte, min_frame_size> buffer{};
+    FrameBuilder builder{buffer, MacAddress{0x00, 0x11, 0x22, 0x33, 0x44, 0x55}};
+    store_le(builder.add(Command::APWR, 0x40, address, 2), 0, value);
+    (void)builder.finish();
+    (void)bus.network.process(buffer, bus.now);
+    bus.transport.inject(buffer, bus.now);
+}
+
+struct Health : ::testing::Test {
+    std::optional<TestBus> bus;
+    void start(const char* devices, std::size_t tolerated_from = 99) {
+        bus.emplace(devices);
+        for (std::size_t i = tolerated_from; i < bus->config.slaves.size(); ++i) bus->config.slaves[i].on_loss = LossPolicy::stop_own_axes;
+        ASSERT_TRUE(bus->bring_up()) << bus->why();
+        bus->run_for(200ms);
+        ASSERT_THAT(faults(), IsEmpty());
+    }
+    std::vector<AlarmFact> facts() {
+        std::array<AlarmFact, 32> all;
+        const std::size_t count = bus->master->active_faults(all);
+        return {all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count)};
+    }
+    std::vector<AlarmId> faults() {
+        std::vector<AlarmId> ids;
+        for (const auto& fact : facts()) ids.push_back(fact.id);
+        return ids;
+    }
+    bool said_within(AlarmId id, Duration limit) {
+        return bus->run_until(
+            [&] {
+                const auto now = faults();
+                return std::find(now.begin(), now.end(), id) != now.end();
+            },
+            limit);
+    }
+    bool well() {
+        for (std::size_t i = 0; i < bus->config.slaves.size(); ++i)
+            if (bus->state(i) != sim::EsmState::op || !bus->master->health(i).fresh) return false;
+        return faults().empty();
+    }
+    void expect_recovery(Duration limit = 5s) {
+        EXPECT_TRUE(bus->run_until([&] { return well(); }, limit)) << bus->why() << " " << ::testing::PrintToString(faults());
+        bus->run_for(500ms);
+        EXPECT_TRUE(well()) << ::testing::PrintToString(faults());
+    }
+    std::uint64_t acyclic_frames(Duration length) {
+        const auto sent = bus->master->statistics().frames_sent;
+        bus->run_for(length);
+        return bus->master->statistics().frames_sent - sent - static_cast<std::uint64_t>(length / bus->config.cycle);
+    }
+};
+
+// --- slaves that are gone -----------------------------------------------------------------------------------------------------
+
+TEST_F(Health, ACableThatBreaksIsOneAlarmThatNamesItsEnds) {
+    start("ststttst");
+    bus->network.set_cable(3, false);
+    bus->run_for(10ms);
+    ASSERT_THAT(faults(), ElementsAre(alarm::cable_broken));
+    const auto broken = facts().front();
+    EXPECT_EQ(broken.index, 3);
+    EXPECT_EQ(broken.a, 5) << "the slave behind the break and four more";
+    EXPECT_EQ(bus->master->detail(broken), "between slave 2 'c' (sv33-e) port 1 and slave 3 'd' (dio8)");
+    EXPECT_TRUE(bus->master->health(2).fresh) << "who stands before the break exchanges on";
+
+    bus->network.set_cable(3, true);
+    bus->run_until([&] { return !facts().empty() && facts().front().a < 5; }, 5s);
+    EXPECT_THAT(faults(), ElementsAre(alarm::cable_broken)) << "until the last is back it is still this one";
+    expect_recovery();
+    EXPECT_EQ(bus->servo(0).watchdogs, 0) << "the others were not disturbed";
+}
+
+TEST_F(Health, ABreakNearerToTheMasterTakesTheEarlierOneIn) {
+    start("ttttt");
+    bus->network.set_cable(4, false);
+    bus->run_for(100ms);
+    EXPECT_THAT(faults(), ElementsAre(alarm::slave_lost));
+    bus->network.set_cable(2, false);
+    bus->run_for(100ms);
+    ASSERT_THAT(faults(), ElementsAre(alarm::cable_broken));
+    EXPECT_EQ(facts().front().index, 2);
+    EXPECT_EQ(facts().front().a, 3);
+    bus->network.set_cable(2, true);
+    bus->run_for(2s);
+    EXPECT_THAT(faults(), ElementsAre(alarm::slave_lost)) << "the second cable is still out";
+    bus->network.set_cable(4, true);
+    expect_recovery();
+}
+
+// 0 - port 3: 1 - 2, port 1: 3 - 4. With the first branch out, the auto-increment address of slave 1 reaches slave 3.
+TEST_F(Health, InATreeNobodyIsTakenForAnotherWhoseBranchIsOut) {
+    bus.emplace("t");
+    auto& root = bus->network.slave(0);
+    const auto hang = [&](sim::SimSlave& parent, unsigned port) -> sim::SimSlave& {
+        return bus->network.add_behind(parent, port, terminal_description(), std::make_unique<InvertingTerminal>());
+    };
+    auto& b = hang(root, 3);
+    (void)hang(b, 1);
+    auto& d = hang(root, 1);
+    (void)hang(d, 1);
+    for (std::uint16_t position = 1; position < 5; ++position) {
+        auto slave = bus->config.slaves[0];
+        slave.name = std::string(1, static_cast<char>('a' + position));
+        slave.position = position;
+        bus->config.slaves.push_back(slave);
+    }
+    ASSERT_TRUE(bus->bring_up()) << bus->why();
+    bus->run_for(100ms);
+
+    bus->network.set_cable(b, false);
+    bus->run_for(200ms);
+    ASSERT_THAT(faults(), ElementsAre(alarm::cable_broken));
+    EXPECT_EQ(bus->master->detail(facts().front()), "between slave 0 'a' (dio8) port 3 and slave 1 'b' (dio8)");
+    bus->network.set_power(d, false);  // both of its branch lose their addresses
+    bus->run_for(200ms);
+    EXPECT_THAT(faults(), ElementsAre(alarm::cable_broken, alarm::cable_broken));
+    bus->network.set_power(d, true);
+    EXPECT_TRUE(bus->run_until([&] { return faults().size() == 1 && d.state() == sim::EsmState::op; }, 5s));
+    EXPECT_TRUE(bus->master->health(3).fresh);
+    EXPECT_FALSE(bus->master->health(1).fresh);
+    bus->network.set_cable(b, true);
+    expect_recovery();
+}
+
+TEST_F(Health, WhereTheConfigurationSaysSoOnlyItsOwnAxesAreConcerned) {
+    start("stst", 2);
+    bus->network.set_cable(2, false);
+    bus->run_for(10ms);
+    EXPECT_THAT(faults(), ElementsAre(alarm::branch_dropped_out));
+    bus->network.set_cable(2, true);
+    expect_recovery();
+    bus->network.set_power(3, false);
+    bus->run_for(10ms);
+    EXPECT_THAT(faults(), ElementsAre(alarm::slave_dropped_out));
+    EXPECT_EQ(find_alarm(bus_alarms, alarm::branch_dropped_out)->reaction, Reaction::warn);
+    EXPECT_EQ(find_alarm(bus_alarms, alarm::slave_dropped_out)->reaction, Reaction::warn);
+}
+
+TEST_F(Health, ABranchWithOneSlaveThatIsNeededStopsTheMachine) {
+    start("sttt", 2);
+    bus->network.set_cable(1, false);
+    bus->run_for(10ms);
+    EXPECT_THAT(faults(), ElementsAre(alarm::cable_broken));
+}
+
+TEST_F(Health, ASlavePowerCycledTwiceInTheMiddleOfItsReturnComesBack) {
+    for (const Duration pause : {5ms, 30ms, 60ms, 120ms, 250ms}) {
+        start("tst");
+        bus->network.set_power(1, false);
+        bus->run_for(50ms);
+        bus->network.set_power(1, true);
+        bus->run_for(pause);
+        bus->network.set_power(1, false);
+        bus->run_for(20ms);
+        bus->network.set_power(1, true);
+        expect_recovery(10s);
+    }
+}
+
+TEST_F(Health, AnotherDeviceInItsPlaceIsNeverTakenForTheSlave) {
+    start("st");
+    // The terminal's place is taken by a servo: same position, other identity.
+    bus->network.set_power(1, false);
+    bus->run_for(100ms);
+    bus->network.slave(1).controller().eeprom().image()[std::size_t{2} * sii_word::product] = std::byte{0x77};
+    bus->network.set_power(1, true);
+    bus->run_for(3s);
+    EXPECT_THAT(faults(), Contains(alarm::other_device));
+    EXPECT_THAT(bus->master->notes(), Contains(HasSubstr("expected vendor 00000ABCh product 00000808h")));
+    EXPECT_EQ(bus->state(1), sim::EsmState::init) << "not configured, also not at the second attempt";
+    EXPECT_EQ(bus->state(0), sim::EsmState::op);
+}
+
+TEST_F(Health, AnAbsentSlaveCostsLittleTraffic) {
+    start("sttt");
+    bus->network.set_power(1, false);
+    bus->run_for(1s);
+    // Three slaves asked every 100 ms for their AL status, one census in two seconds: under 60 frames a second.
+    EXPECT_LT(acyclic_frames(10s), 600u);
+}
+
+TEST_F(Health, ASlaveThatRefusesToReturnIsTriedEverMoreSeldomAndSaidSo) {
+    start("ts");
+    bus->network.slave(1).refuse_state(sim::EsmState::safeop, 0x001D);
+    bus->network.set_power(1, false);
+    bus->run_for(50ms);
+    bus->network.set_power(1, true);
+    bus->run_for(6s);
+    EXPECT_THAT(faults(), Contains(alarm::slave_does_not_return));
+    for (const auto& fact : facts())
+        if (fact.id == alarm::slave_does_not_return) {
+            EXPECT_THAT(bus->master->detail(fact), HasSubstr("refused SAFEOP: 0x001D"));
+        }
+    bus->run_for(20s);
+    // Then every 8 s; a return takes some 300 register accesses, each in a frame of its own at worst.
+    EXPECT_LT(acyclic_frames(8s), 1200u);
+    EXPECT_EQ(bus->state(0), sim::EsmState::op);
+
+    bus->network.slave(1).refuse_state(sim::EsmState::safeop, 0);
+    expect_recovery(10s);
+}
+
+// --- slaves that are there, but not well ------------------------------------------------------------------------------------------
+
+// reference/ethercat-masters.md F1: LRW does not need station addresses, so its working counter stays right.
+TEST_F(Health, ALostStationAddressIsNoticedAlthoughProcessDataRunsOnAndIsGivenBack) {
+    start("sts");
+    second_master_writes(*bus, Address::position(1, reg::station_address), 0);
+    second_master_writes(*bus, Address::position(2, reg::station_address), 0);
+    bus->run_for(150ms);
+    EXPECT_THAT(faults(), Contains(alarm::station_address_lost));
+    EXPECT_TRUE(bus->master->health(1).fresh);
+    expect_recovery();
+    EXPECT_EQ(bus->servo(2).watchdogs, 0);
+}
+
+TEST_F(Health, TheReferenceClockWithoutItsAddressDoesNotFoolTheMaster) {
+    start("ss");
+    second_master_writes(*bus, Address::position(0, reg::station_address), 0);
+    expect_recovery();
+    EXPECT_LT(std::abs(bus->master->statistics().dc_offset_ns), 100'000);
+    const auto spread = bus->servo(0).last_exchange - bus->servo(1).last_exchange;
+    EXPECT_LT(std::abs(spread.count()), 2000);
+}
+
+TEST_F(Health, SlavesThatSwappedAddressesAreSetRight) {
+    start("ttt");
+    second_master_writes(*bus, Address::position(1, reg::station_address), 0x1003);
+    second_master_writes(*bus, Address::position(2, reg::station_address), 0);
+    bus->run_for(300ms);
+    expect_recovery();
+}
+
+TEST_F(Health, TwoSlavesWithOneAddressAreSetRight) {
+    start("ttt");
+    second_master_writes(*bus, Address::position(1, reg::station_address), 0x1003);
+    bus->run_for(300ms);
+    expect_recovery();
+}
+
+TEST_F(Health, AStateChangedBehindOurBackIsTakenBack) {
+    for (const std::uint16_t state : {std::uint16_t{1}, std::uint16_t{2}, std::uint16_t{4}}) {
+        start("tst");
+        second_master_writes(*bus, Address::position(1, reg::al_control), state);
+        EXPECT_TRUE(said_within(alarm::slave_left_op, 50ms)) << state;
+        expect_recovery();
+        EXPECT_EQ(bus->state(0), sim::EsmState::op);
+    }
+}
+
+TEST_F(Health, SettingsChangedBehindOurBackAreWrittenAgain) {
+    start("tst");
+    second_master_writes(*bus, Address::position(0, reg::fmmu_at(0) + 4), 0);  // the FMMU of the outputs maps nothing
+    bus->run_for(50ms);
+    EXPECT_THAT(faults(), Contains(alarm::working_counter_wrong));
+    expect_recovery();
+}
+
+TEST_F(Health, AnotherMasterIsHeardAndSaidWhileItSends) {
+    start("t");
+    for (int i = 0; i < 1200; ++i) {
+        bus->cycle_once();
+        if (i % 100 == 0) second_master_writes(*bus, Address::position(0, 0x0F80), 0);
+    }
+    EXPECT_THAT(faults(), ElementsAre(alarm::foreign_master));
+    EXPECT_GE(bus->master->statistics().frames_foreign, 12u);
+    EXPECT_EQ(bus->state(0), sim::EsmState::op);
+    bus->run_for(2100ms);
+    EXPECT_THAT(faults(), IsEmpty());
+}
+
+TEST_F(Health, AMailboxThatFellSilentIsNoticedAlthoughNobodyAskedForAnything) {
+    start("ts");
+    bus->network.slave(1).stick_mailbox(true);
+    EXPECT_TRUE(bus->run_until([&] { return !faults().empty(); }, 10s));
+    EXPECT_THAT(faults(), ElementsAre(alarm::mailbox_silent));
+    EXPECT_EQ(bus->state(1), sim::EsmState::op);
+    EXPECT_TRUE(bus->master->health(1).fresh);
+    bus->network.slave(1).stick_mailbox(false);
+    expect_recovery(15s);
+}
+
+// --- frames ---------------------------------------------------------------------------------------------------------------------
+
+TEST_F(Health, AWorkingCounterThatIsTooSmallOrTooLargeKeepsTheOldInputs) {
+    for (const int offset : {-1, +1, +3}) {
+        start("ts");
+        bus->cable.working_counter_offset = offset;
+        bus->run_for(10ms);
+        EXPECT_FALSE(bus->master->health(0).fresh);
+        EXPECT_GE(bus->master->health(0).age, 5u);
+        EXPECT_THAT(faults(), Contains(alarm::working_counter_wrong)) << offset;
+        bus->cable.working_counter_offset = 0;
+        expect_recovery();
+    }
+}
+
+TEST_F(Health, DuplicatedAndReorderedAnswersAreTakenOnceAndInOrder) {
+    start("ts");
+    bus->transport.faults.duplicate_answers = 50;
+    bus->run_for(100ms);
+    EXPECT_GE(bus->master->statistics().frames_rejected, 40u);
+    EXPECT_THAT(faults(), IsEmpty());
+    bus->cable.reorder_by = 1500us;
+    bus->cable.reorder = 10;
+    bus->run_for(100ms);
+    EXPECT_GE(bus->master->statistics().frames_late, 3u);
+    expect_recovery();
+}
+
+TEST_F(Health, LinkDownIsSaidAloneAndTheBusReturns) {
+    start("tst");
+    bus->transport.faults.link_down = true;
+    bus->run_for(500ms);
+    EXPECT_THAT(faults(), ElementsAre(alarm::link_down));
+    EXPECT_NE(bus->state(1), sim::EsmState::op) << "its watchdog has acted";
+    bus->transport.faults.link_down = false;
+    expect_recovery();
+}
+
+TEST_F(Health, AStallOfTheMasterEndsInOpAgain) {
+    for (const Duration stall : {20ms, 200ms, 2000ms}) {
+        start("tst");
+        bus->now += stall;
+        bus->network.advance(bus->now);
+        EXPECT_EQ(bus->state(1), sim::EsmState::safeop) << "SM watchdog of 10 ms";
+        EXPECT_TRUE(said_within(alarm::slave_left_op, 50ms));
+        expect_recovery();
+    }
+}
+
+// --- clocks ---------------------------------------------------------------------------------------------------------------------
+
+TEST_F(Health, AReferenceClockThatStandsIsNotFollowed) {
+    start("ss");
+    const auto offset = bus->master->statistics().dc_offset_ns;
+    bus->cable.freeze_reference_time = true;
+    bus->run_for(200ms);
+    EXPECT_THAT(faults(), ElementsAre(alarm::reference_clock_lost));
+    EXPECT_NEAR(static_cast<double>(bus->master->statistics().dc_offset_ns), static_cast<double>(offset), 1000);
+    bus->cable.freeze_reference_time = false;
+    expect_recovery();
+}
+
+TEST_F(Health, TheReferenceIsStillFollowedWhileAnotherClockIsAway) {
+    start("sts", 2);
+    bus->network.set_power(2, false);
+    bus->run_for(100ms);
+    const auto rejected = bus->master->statistics().dc_rejected;
+    bus->run_for(1s);
+    EXPECT_EQ(bus->master->statistics().dc_rejected, rejected);
+}
+
+}  // namespace
+}  // namespace taktwerk::ecat::test
