@@ -48,8 +48,9 @@ config::LoadResult read_machine_without_programs(const std::string& file, bool s
     return config::load_machine(file, options);
 }
 
-std::optional<LoadedFile> load(const std::string& file, bool simulate) {
-    auto result = read_machine(file, simulate);
+namespace {
+
+std::optional<LoadedFile> printed(config::LoadResult result) {
     if (const auto* errors = std::get_if<std::vector<Error>>(&result)) {
         print_errors(*errors);
         return std::nullopt;
@@ -57,6 +58,13 @@ std::optional<LoadedFile> load(const std::string& file, bool simulate) {
     auto& loaded = std::get<LoadedFile>(result);
     for (const auto& warning : loaded.warnings) print_warning(warning);
     return std::move(loaded);
+}
+
+}  // namespace
+
+std::optional<LoadedFile> load(const std::string& file, bool simulate) { return printed(read_machine(file, simulate)); }
+std::optional<LoadedFile> load_without_programs(const std::string& file, bool simulate) {
+    return printed(read_machine_without_programs(file, simulate));
 }
 
 }  // namespace taktwerk::apps

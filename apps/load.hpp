@@ -22,5 +22,6 @@ using LoadedFile = config::LoadedMachine;
 
 /// Prints warnings, or every problem (then nothing is returned).
 [[nodiscard]] std::optional<LoadedFile> load(const std::string& file, bool simulate);
+[[nodiscard]] std::optional<LoadedFile> load_without_programs(const std::string& file, bool simulate);
 
 }  // namespace taktwerk::apps

@@ -25,6 +25,7 @@ namespace {
 
 struct Options {
     std::string file, nic;
+    bool strict = false;
     double duration_s = 0;
     std::vector<std::string> faults;
 };
@@ -75,7 +76,11 @@ public:
         for (std::size_t i = 0; i < states_.size(); ++i) {
             const auto state = network_.slave(i).state();
             if (state == states_[i]) continue;
-            fmt::print("slave {} '{}' {} -> {}\n", i, network_.slave(i).options().name, name(states_[i]), name(state));
+            auto& slave = network_.slave(i);
+            fmt::print("slave {} '{}' {} -> {}\n", i, slave.options().name, name(states_[i]), name(state));
+            if (states_[i] == ecat::sim::EsmState::preop && state == ecat::sim::EsmState::safeop && slave.runs_without_required_sync0())
+                fmt::print("slave {} '{}' runs without SYNC0; a real {} refuses that (002Dh), as it does here with --strict\n", i,
+                           slave.options().name, slave.description().name);
             std::fflush(stdout);
             states_[i] = state;
         }
@@ -151,7 +156,7 @@ std::uint64_t return_answers(ecat::LoopbackTransport& cable, ecat::RawSocketTran
 }
 
 int play(const Options& options) {
-    auto loaded = load(options.file, true);
+    auto loaded = load_without_programs(options.file, true);
     if (!loaded) return exit_bad_file;
     auto opened = ecat::RawSocketTransport::open(options.nic);
     if (!opened) {
@@ -165,6 +170,8 @@ int play(const Options& options) {
     runtime::World world{loaded->machine, start};
     auto& network = world.network();
     auto& cable = world.transport();
+    for (std::size_t i = 0; i < network.size(); ++i)
+        network.slave(i).require_sync0(options.strict ? ecat::sim::SyncRequirement::as_described : ecat::sim::SyncRequirement::waived);
     StateLog log{network, world, loaded->machine};
     Commands commands{network, cable.faults};
     for (const auto& fault : options.faults)
@@ -215,6 +222,7 @@ void add_sim(CLI::App& app, Action& action) {
     auto options = std::make_shared<Options>();
     sub->add_option("FILE", options->file, "machine file")->required();
     sub->add_option("--nic", options->nic, "network interface, e.g. eth1")->required();
+    sub->add_flag("--strict", options->strict, "slaves that need SYNC0 refuse SAFEOP without it, as real ones do");
     sub->add_option("--fault", options->faults, "what goes wrong: a command as on standard input; may be given several times")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

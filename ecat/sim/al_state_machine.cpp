@@ -212,7 +212,8 @@ bool AlStateMachine::process_sm_fits(unsigned n, std::uint16_t bytes, std::uint1
 
 std::uint16_t AlStateMachine::check_dc() const {
     const Sync0& sync0 = controller_.sync0();
-    if (!controller_.sync0_active()) return description_.dc.required ? no_sync : std::uint16_t{0};
+    const bool required = description_.dc.required && sync_requirement_ == SyncRequirement::as_described;
+    if (!controller_.sync0_active()) return required ? no_sync : std::uint16_t{0};
     if (!sync0.runs()) return no_sync;  // the start time was in the past, or there is no cycle: no pulse will come
     const Duration cycle = sync0.cycle();
     const DcDescription& dc = description_.dc;

@@ -16,6 +16,9 @@
 
 namespace taktwerk::ecat::sim {
 
+/// `waived`: for masters without distributed clocks; the slave then exchanges when outputs arrive.
+enum class SyncRequirement : std::uint8_t { as_described, waived };
+
 class AlStateMachine {
 public:
     /// `coe` and `process_data` are null for slaves without mailbox.
@@ -40,6 +43,9 @@ public:
     /// The master turned a sync manager on or off while the state needs it: INIT with 0016h for a mailbox, PREOP with 001Dh or
     /// 001Eh for process data.
     void check_running(Instant now);
+
+    /// Whether a slave whose description requires SYNC0 refuses SAFEOP without it (002Dh).
+    void require_sync0(SyncRequirement requirement) noexcept { sync_requirement_ = requirement; }
 
     /// Test: entering `to` from below fails with `code` until it is 0 again.
     void refuse_state(EsmState to, std::uint16_t code);
@@ -69,6 +75,7 @@ private:
     bool id_requested_ = false;
     EsmState state_ = EsmState::init;
     bool error_ = false;
+    SyncRequirement sync_requirement_ = SyncRequirement::as_described;
     struct Refusal {
         EsmState to;
         std::uint16_t code;

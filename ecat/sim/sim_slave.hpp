@@ -76,6 +76,9 @@ public:
     void hang(bool hung) noexcept;
     /// The mailbox neither takes nor answers anything until it is released.
     void stick_mailbox(bool stuck) noexcept;
+    /// For masters that know no distributed clocks.
+    void require_sync0(SyncRequirement requirement) noexcept { al_.require_sync0(requirement); }
+    [[nodiscard]] bool runs_without_required_sync0() const noexcept { return description_->dc.required && !controller_.sync0_active(); }
     /// Entering `to` from below fails with this AL status code until it is 0 again.
     void refuse_state(EsmState to, std::uint16_t al_status_code) { al_.refuse_state(to, al_status_code); }
     /// SYNC0 pulses in OP that found no new outputs.

@@ -9,7 +9,7 @@
 #include "ecat/bringup/sii_reader.hpp"
 #include "ecat/exchange/acyclic_channel.hpp"
 #include "tests/ecat/test_bus.hpp"
-#include "tests/ecat/wire/pcapng.hpp"
+#include "tests/ecat/wire/captures.hpp"
 
 namespace taktwerk::ecat::test {
 namespace {

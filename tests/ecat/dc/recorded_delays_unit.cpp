@@ -9,7 +9,7 @@
 #include "ecat/dc/propagation.hpp"
 #include "ecat/wire/frame.hpp"
 #include "ecat/wire/registers.hpp"
-#include "tests/ecat/wire/pcapng.hpp"
+#include "tests/ecat/wire/captures.hpp"
 
 namespace taktwerk::ecat {
 namespace {

@@ -13,7 +13,7 @@
 
 #include "ecat/coe/object_info.hpp"
 #include "tests/ecat/diagnosis/probed_bus.hpp"
-#include "tests/ecat/wire/pcapng.hpp"
+#include "tests/ecat/wire/captures.hpp"
 
 namespace taktwerk::ecat {
 namespace {

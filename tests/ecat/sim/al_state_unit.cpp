@@ -220,6 +220,17 @@ TEST(AlState, ADriveThatNeedsSync0WantsItBeforeSafeop) {
     EXPECT_EQ(code_with_sync0(10'000'000, 1'000'000), 0);
 }
 
+TEST(AlState, ForAMasterWithoutClocksTheNeedOfSync0MayBeWaived) {
+    BusProbe bus;
+    auto description = small_drive();
+    description.dc = {.supported = true, .required = true, .clock_64bit = true, .minimum_cycle = {}, .cycle_multiple = {}};
+    SimSlave& drive = bus.add_drive({}, description);
+    drive.require_sync0(SyncRequirement::waived);
+    bus.to_safeop(0);
+    EXPECT_EQ(drive.state(), EsmState::safeop);
+    EXPECT_TRUE(drive.runs_without_required_sync0());
+}
+
 TEST(AlState, OutputsThatTheDeviceWantsSupervisedMustTriggerTheWatchdog) {
     EXPECT_EQ(safeop_code([](BusProbe& bus) {
                   bus.set_sync_manager(0, 2, 0x1800, 6, 0x24);  // without bit 6

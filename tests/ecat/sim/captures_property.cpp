@@ -6,7 +6,7 @@
 
 #include "ecat/sim/digital_terminal.hpp"
 #include "tests/ecat/sim/bus_probe.hpp"
-#include "tests/ecat/wire/pcapng.hpp"
+#include "tests/ecat/wire/captures.hpp"
 
 namespace taktwerk::ecat::sim {
 namespace {

@@ -9,7 +9,7 @@
 #include "ecat/wire/sdo.hpp"
 #include "ecat/wire/sdo_info.hpp"
 #include "tests/ecat/wire/bytes_of.hpp"
-#include "tests/ecat/wire/pcapng.hpp"
+#include "tests/ecat/wire/captures.hpp"
 
 namespace taktwerk::ecat {
 namespace {

@@ -16,7 +16,7 @@
 #include "ecat/wire/sdo_info.hpp"
 #include "ecat/wire/sii.hpp"
 #include "tests/ecat/wire/bytes_of.hpp"
-#include "tests/ecat/wire/pcapng.hpp"
+#include "tests/ecat/wire/captures.hpp"
 
 namespace taktwerk::ecat {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "core/bytes.hpp"
 #include "tests/ecat/wire/bytes_of.hpp"
-#include "tests/ecat/wire/pcapng.hpp"
+#include "tests/ecat/wire/captures.hpp"
 
 namespace taktwerk::ecat {
 namespace {
