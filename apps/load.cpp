@@ -34,7 +34,11 @@ config::LoadOptions options_for(bool simulate) {
     options.program_path = program_path();
     std::error_code unknown;  // installed below any prefix, the data is found from the executable
     const auto executable = std::filesystem::read_symlink("/proc/self/exe", unknown);
-    if (!unknown) options.data_dirs.push_back((executable.parent_path().parent_path() / "share" / "taktwerk").string());
+    if (!unknown) {
+        const auto above = executable.parent_path().parent_path();
+        options.data_dirs.push_back((above / "share" / "taktwerk").string());
+        options.data_dirs.push_back((above.parent_path() / "config").string());  // in a build folder of the source tree: build/dev/taktwerk
+    }
     return options;
 }
 
