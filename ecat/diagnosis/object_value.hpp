@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/result.hpp"
+#include "ecat/coe_type_number.hpp"
 #include "ecat/device_description.hpp"
 #include "ecat/wire/sdo_info.hpp"
 
@@ -24,7 +25,6 @@ inline constexpr std::uint16_t unknown = 0, integer24 = 0x0010, unsigned24 = 0x0
 [[nodiscard]] std::string type_name(std::uint16_t type);
 /// The number of "u16", "UINT", "string", ...; nothing for other words.
 [[nodiscard]] std::optional<std::uint16_t> type_number(std::string_view word);
-[[nodiscard]] std::uint16_t type_number(DataType type) noexcept;
 /// Words that type_number() takes, for messages.
 [[nodiscard]] std::string known_types();
 

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "core/bytes.hpp"
+#include "ecat/coe_type_number.hpp"
 #include "ecat/wire/sdo.hpp"
 
 namespace taktwerk::ecat::sim {
@@ -11,24 +12,6 @@ namespace taktwerk::ecat::sim {
 namespace {
 
 constexpr std::size_t longest_description = 1024;  ///< fixed part, three values, name
-
-std::uint16_t coe_number(DataType type) noexcept {
-    switch (type) {
-        case DataType::BOOL: return coe_type::boolean;
-        case DataType::I8: return coe_type::integer8;
-        case DataType::I16: return coe_type::integer16;
-        case DataType::I32: return coe_type::integer32;
-        case DataType::I64: return coe_type::integer64;
-        case DataType::U8: return coe_type::unsigned8;
-        case DataType::U16: return coe_type::unsigned16;
-        case DataType::U32: return coe_type::unsigned32;
-        case DataType::U64: return coe_type::unsigned64;
-        case DataType::REAL32: return coe_type::real32;
-        case DataType::REAL64: return coe_type::real64;
-        case DataType::STRING: return coe_type::visible_string;
-    }
-    return 0;
-}
 
 std::uint16_t access_word(const Entry& entry) noexcept {
     std::uint16_t word = 0;
@@ -143,7 +126,7 @@ std::size_t SdoInfoServer::object(std::span<const std::byte> question) noexcept 
     view.max_sub = entries.back().sub();
     const auto [code, data_type] = dictionary_.shape(view.index);
     view.code = static_cast<std::uint8_t>(code);
-    view.data_type = data_type != 0 ? data_type : coe_number(entries.back().type());
+    view.data_type = data_type != 0 ? data_type : type_number(entries.back().type());
     view.name = dictionary_.object_name(view.index);
     return encode_object_description(data_, view);
 }
@@ -158,7 +141,7 @@ std::size_t SdoInfoServer::entry(std::span<const std::byte> question) noexcept {
     EntryDescriptionView view;
     view.index = index;
     view.sub = entry->sub();
-    view.data_type = coe_number(entry->type());
+    view.data_type = type_number(entry->type());
     view.bits = static_cast<std::uint16_t>(entry->bits() != 0 ? entry->bits() : 8 * entry->text().size());
     view.access = access_word(*entry);
     view.name = entry->name();
