@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "apps/plot_data.hpp"
-#include "axes/axis/types.hpp"
+#include "axes/words/types.hpp"
 #include "core/nearest_name.hpp"
 
 namespace taktwerk::apps {

@@ -59,20 +59,32 @@ ErrorId LatchedRequests::reset(AxisRef axis, Owner owner) noexcept {
     return push(request) ? ErrorId::none : ErrorId::queue_full;
 }
 
-ErrorId LatchedRequests::set_position(AxisRef axis, double position, bool relative, Owner owner) noexcept {
+ErrorId LatchedRequests::set(AxisRef axis, const axes::AxisSetting& setting, Owner owner) noexcept {
     if (axis.index >= views_.size()) return ErrorId::invalid_axis;
-    // What the axis itself would say (Axis::set_position), as far as the latched view knows.
+    // What the axis itself would say (Axis::set), as far as the latched view knows.
     const auto& view = views_[axis.index];
     if (view.owner != owner && view.owner != Owner::none) return ErrorId::owned_by_other;
-    if (!std::isfinite(position)) return ErrorId::invalid_position;
-    if (!view.online) return ErrorId::drive_not_ready;
-    if (view.state == AxisState::Homing) return ErrorId::state_forbids;
+    if (const auto* position = std::get_if<axes::SetPosition>(&setting)) {
+        if (!std::isfinite(position->position)) return ErrorId::invalid_position;
+        if (!view.online) return ErrorId::drive_not_ready;
+        if (view.state == AxisState::Homing) return ErrorId::state_forbids;
+    }
     Request request;
-    request.kind = Kind::set_position;
+    request.kind = Kind::set;
     request.axis = axis;
     request.owner = owner;
-    request.value = position;
-    request.relative = relative;
+    request.setting = setting;
+    return push(request) ? ErrorId::none : ErrorId::queue_full;
+}
+
+ErrorId LatchedRequests::update(AxisRef axis, CommandId id, const AxisCommand& command, Owner owner) noexcept {
+    if (axis.index >= views_.size()) return ErrorId::invalid_axis;
+    Request request;
+    request.kind = Kind::update;
+    request.axis = axis;
+    request.id = id;
+    request.command = command;
+    request.owner = owner;
     return push(request) ? ErrorId::none : ErrorId::queue_full;
 }
 
@@ -110,7 +122,8 @@ void LatchedRequests::apply(AxisRequests& axes) noexcept {
                     resets_[r.axis.index] = {RefusedReset::Show::resetting, error};
                 else resets_[r.axis.index] = {};
                 break;
-            case Kind::set_position: axes.set_position(r.axis, r.value, r.relative, r.owner); break;
+            case Kind::set: axes.set(r.axis, r.setting, r.owner); break;
+            case Kind::update: axes.update(r.axis, real_id(r.id), r.command, r.owner); break;
             case Kind::release_stop: axes.release_stop(r.axis, real_id(r.id), r.owner); break;
             case Kind::renew_jog: axes.renew_jog(r.axis, real_id(r.id), r.value, r.owner); break;
         }

@@ -6,7 +6,8 @@
 //   submit        the ledger shows the refusal under the task's id, in one latch (at most half a ledger of them each time; the rest waits)
 //   power         the answer of the last release is returned by the next call
 //   reset         the view shows `resetting`, in the next latch no more, with reset_error saying why
-//   set_position  checked against the latched view in the call; should the axis have changed since, the refusal is lost
+//   set           SetPosition is checked against the latched view in the call; a later refusal of any setting is lost
+//   update        a refusal is lost; the command goes on with its last good values
 //   renew_jog     the lease runs out
 // Real-time safe. Task's side and cycle's side take turns (SlowTask hands over), except renew(), which may run beside the task.
 
@@ -35,7 +36,8 @@ public:
     axes::Submitted submit(axes::AxisRef axis, const axes::AxisCommand& command, axes::Owner owner) noexcept override;
     axes::ErrorId power(axes::AxisRef axis, bool enable, bool positive, bool negative, axes::Owner owner) noexcept override;
     axes::ErrorId reset(axes::AxisRef axis, axes::Owner owner) noexcept override;
-    axes::ErrorId set_position(axes::AxisRef axis, double position, bool relative, axes::Owner owner) noexcept override;
+    axes::ErrorId set(axes::AxisRef axis, const axes::AxisSetting& setting, axes::Owner owner) noexcept override;
+    axes::ErrorId update(axes::AxisRef axis, axes::CommandId id, const axes::AxisCommand& command, axes::Owner owner) noexcept override;
     void release_stop(axes::AxisRef axis, axes::CommandId id, axes::Owner owner) noexcept override;
     axes::ErrorId renew_jog(axes::AxisRef axis, axes::CommandId id, double velocity, axes::Owner owner) noexcept override;
 
@@ -49,7 +51,7 @@ public:
     void clear() noexcept;
 
 private:
-    enum class Kind : std::uint8_t { submit, reset, set_position, release_stop, renew_jog };
+    enum class Kind : std::uint8_t { submit, update, reset, set, release_stop, renew_jog };
     struct Request {
         Kind kind = Kind::submit;
         axes::AxisRef axis;
@@ -57,7 +59,7 @@ private:
         axes::CommandId id = 0;
         axes::Owner owner = axes::Owner::program;
         double value = 0;
-        bool relative = false;
+        axes::AxisSetting setting;
     };
     struct Known {  // what became of a provisional id; forgotten once nothing of it shows any more
         axes::CommandId mine = 0, real = 0;

@@ -17,7 +17,7 @@ namespace taktwerk::runtime {
 namespace {
 
 constexpr std::size_t inbox_size = 64;
-constexpr unsigned relaxed_factor = 100;  // as Supervision documents
+constexpr unsigned relaxed_factor = 100;                       // as Supervision documents
 constexpr Duration shutdown_margin = std::chrono::seconds{5};  // for a drive that does not answer
 constexpr auto no_slave = std::numeric_limits<std::size_t>::max();
 
@@ -85,6 +85,7 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, std::vect
         axes.emplace_back(axis_config, *ports.back(), config.cycle, static_cast<std::uint16_t>(i));
         views.push_back(axes.back().view());
     }
+    for (auto& axis : axes) axis.bind({axes.data(), axes.size(), &tables, io.inputs()});
     operator_power.resize(axes.size());
     requests.bind(axes, views);
     if (!config.emergency_stop.input.empty()) {

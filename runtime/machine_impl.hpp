@@ -46,10 +46,13 @@ public:
         refresh(axis);
         return answer;
     }
-    axes::ErrorId set_position(axes::AxisRef axis, double position, bool relative, axes::Owner owner) noexcept override {
-        const auto answer = direct_.set_position(axis, position, relative, owner);
+    axes::ErrorId set(axes::AxisRef axis, const axes::AxisSetting& setting, axes::Owner owner) noexcept override {
+        const auto answer = direct_.set(axis, setting, owner);
         refresh(axis);
         return answer;
+    }
+    axes::ErrorId update(axes::AxisRef axis, axes::CommandId id, const axes::AxisCommand& command, axes::Owner owner) noexcept override {
+        return direct_.update(axis, id, command, owner);
     }
     void release_stop(axes::AxisRef axis, axes::CommandId id, axes::Owner owner) noexcept override {
         direct_.release_stop(axis, id, owner);
@@ -140,6 +143,7 @@ struct Machine::Impl {
     MachineLayout layout;
     std::vector<std::unique_ptr<axes::DrivePort>> ports;
     std::vector<axes::cia402::Cia402Drive*> drives;  // those of `ports` that are on the bus
+    axes::MotionTables tables;
     std::vector<axes::Axis> axes;
     std::vector<axes::AxisView> views;    // of this scan; what programs and the snapshot read
     std::vector<std::size_t> axis_slave;  // index in the bus configuration; npos for virtual axes

@@ -23,6 +23,7 @@ void Machine::Impl::run_base_task(std::size_t index) noexcept {
     context.requests = &requests;
     context.objects = &objects->of(task.program);
     context.owner = axes::Owner::program;
+    context.tables = &tables;
     context.inputs = io.inputs();
     context.outputs = io.outputs();
     context.parameters = host->parameters();

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "axes/axis/types.hpp"
+#include "axes/words/types.hpp"
 #include "core/fixed_text.hpp"
 #include "core/time.hpp"
 #include "runtime/machine_config.hpp"

@@ -190,6 +190,8 @@ void Axis::publish() noexcept {
     view_.negative_limit_switch = negative_switch_;
     view_.positive_limit_switch = positive_switch_;
     view_.home_switch = feedback_.home_switch;
+    view_.active_kind = queue_.active().command.kind;
+    view_.lock = stop_lock_;
     queue_.publish(view_);
 }
 

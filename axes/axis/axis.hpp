@@ -6,7 +6,7 @@
 //     axis.update(now)          step 4: feedback, drive's state, following error
 //     axis.supervise(now)       step 5: emergency stop, leases; then fetch_alarm() until it says no
 //     axis.submit(...), ...     step 6: requests, validated and answered at once
-//     axis.plan(now, period)    step 7: next set-point, one period of motion time on
+//     axis.plan(now, period)    step 7: next set-point, one period of motion time on (plan_axes: masters before their slaves)
 //     axis.encode(now)          step 8: command to the port
 // view() is up to date after each of them.
 //
@@ -14,6 +14,7 @@
 // first (state Stopping), then Disabled; a second MC_Stop while the first is held is refused; MC_Home only from Standstill; a jog is a
 // discrete motion; a move into a direction that is not permitted is refused.
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -31,6 +32,7 @@
 #include "axes/homing/drive_homing.hpp"
 #include "axes/homing/switch_homing.hpp"
 #include "axes/port/drive_port.hpp"
+#include "axes/tables/motion_tables.hpp"
 
 namespace taktwerk::axes {
 
@@ -42,10 +44,26 @@ enum class OperatingMode : std::uint8_t { automatic, manual, setup };
 ///   stop_and_power_off  power goes when the axis stands     power_off_now  power goes, wherever the axis is: the time is up
 enum class EmergencyStop : std::uint8_t { none, stop, stop_and_power_off, power_off_now };
 
+class Axis;
+
+/// What an axis may follow besides its own commands: the other axes, the tables, the machine's digital points.
+struct MotionScene {
+    const Axis* first = nullptr;
+    std::size_t count = 0;
+    MotionTables* tables = nullptr;
+    std::span<const std::int64_t> inputs;
+
+    /// nullptr for an invalid handle.
+    [[nodiscard]] const Axis* axis(AxisRef ref) const noexcept;
+};
+
 class Axis {
 public:
     /// `config` must have passed check(); `port` must live longer. `cycle` is the period of the axis' sync unit. Not real-time.
     Axis(AxisConfig config, DrivePort& port, Duration cycle, std::uint16_t index = 0);
+
+    /// Before the first cycle; what it names must live as long. An axis without a scene follows no master. Not real-time.
+    void bind(const MotionScene& scene) noexcept { scene_ = scene; }
 
     [[nodiscard]] const AxisConfig& config() const noexcept { return config_; }
     [[nodiscard]] const AxisView& view() const noexcept { return view_; }
@@ -83,7 +101,8 @@ public:
     ErrorId power(bool enable, bool positive, bool negative, Owner owner) noexcept;
     /// Any party may reset: it moves nothing. Outside ErrorStop it acknowledges. Takes as long as the drive needs: see AxisView::resetting.
     ErrorId reset(Owner owner) noexcept;
-    ErrorId set_position(double position, bool relative, Owner owner) noexcept;
+    ErrorId set(const AxisSetting& setting, Owner owner) noexcept;
+    ErrorId update(CommandId id, const AxisCommand& command, Owner owner) noexcept;
     void release_stop(CommandId id, Owner owner) noexcept;
     ErrorId renew_jog(CommandId id, double velocity, Owner owner) noexcept;
 
@@ -121,6 +140,7 @@ private:
     void leave_stopping() noexcept;
 
     // axis_requests.cpp
+    ErrorId set_position(const SetPosition& wanted) noexcept;
     [[nodiscard]] bool may(Owner owner) noexcept;
     [[nodiscard]] ErrorId refuse(const AxisCommand& command) const noexcept;
     [[nodiscard]] ErrorId refuse_state(const AxisCommand& command) const noexcept;
@@ -155,6 +175,7 @@ private:
 
     AxisConfig config_;
     DrivePort& port_;
+    MotionScene scene_;
     std::uint32_t stale_limit_;
     bool endless_;
     Instant now_{};
@@ -213,5 +234,7 @@ private:
     AxisView view_;
     DriveCommand command_;
 };
+
+inline const Axis* MotionScene::axis(AxisRef ref) const noexcept { return ref.index < count ? first + ref.index : nullptr; }
 
 }  // namespace taktwerk::axes

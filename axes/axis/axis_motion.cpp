@@ -103,8 +103,7 @@ ErrorId Axis::set_goal(const AcceptedCommand& accepted) noexcept {
         case CommandKind::jog: aim_at_velocity(signed_velocity(command), dynamics); break;
         case CommandKind::halt:
         case CommandKind::stop: aim(Goal::Kind::stop, 0, dynamics, VelocityLimiter::stopping); break;
-        case CommandKind::none:
-        case CommandKind::home: break;
+        default: return ErrorId::not_supported;
     }
     return ErrorId::none;
 }

@@ -74,9 +74,7 @@ ErrorId Axis::refuse_target(const AxisCommand& command, bool starts_now) const n
             if (config_.homing.kind == HomingKind::none) return ErrorId::not_supported;
             if (config_.homing.kind == HomingKind::drive && !port_.capabilities().drive_homing) return ErrorId::not_supported;
             return ErrorId::none;
-        case CommandKind::none:
-        case CommandKind::halt:
-        case CommandKind::stop: return ErrorId::none;
+        default: return ErrorId::none;
     }
     if (software_limits_hold() && (target > config_.limits.position_max || target < config_.limits.position_min))
         return ErrorId::beyond_software_limit;
@@ -139,12 +137,17 @@ ErrorId Axis::reset(Owner) noexcept {
     return ErrorId::none;
 }
 
-ErrorId Axis::set_position(double position, bool relative, Owner owner) noexcept {
+ErrorId Axis::set(const AxisSetting& setting, Owner owner) noexcept {
     if (!may(owner)) return ErrorId::owned_by_other;
-    if (!std::isfinite(position)) return ErrorId::invalid_position;
+    if (const auto* position = std::get_if<SetPosition>(&setting)) return set_position(*position);
+    return ErrorId::not_supported;
+}
+
+ErrorId Axis::set_position(const SetPosition& wanted) noexcept {
+    if (!std::isfinite(wanted.position)) return ErrorId::invalid_position;
     if (!online()) return ErrorId::drive_not_ready;
     if (state_ == AxisState::Homing) return ErrorId::state_forbids;
-    units_.shift_by(relative ? position : position - units_.to_program(actual_local()));
+    units_.shift_by(wanted.relative ? wanted.position : wanted.position - units_.to_program(actual_local()));
     // The number commanded stays and means the shifted coordinates (P1-200).
     const auto& active = queue_.active();
     if (active.command.kind == CommandKind::move_absolute && goal_.kind == Goal::Kind::position && !begin_pending_) {
@@ -153,6 +156,13 @@ ErrorId Axis::set_position(double position, bool relative, Owner owner) noexcept
     }
     publish();
     return ErrorId::none;
+}
+
+ErrorId Axis::update(CommandId id, const AxisCommand& command, Owner owner) noexcept {
+    if (!may(owner)) return ErrorId::owned_by_other;
+    auto& active = queue_.active();
+    if (id == 0 || id != active.id || command == active.command) return ErrorId::none;
+    return ErrorId::not_supported;
 }
 
 void Axis::release_stop(CommandId id, Owner) noexcept {

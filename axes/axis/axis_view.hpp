@@ -7,8 +7,8 @@
 #include <type_traits>
 
 #include "axes/axis/command.hpp"
-#include "axes/axis/types.hpp"
 #include "axes/port/drive_port.hpp"
+#include "axes/words/types.hpp"
 #include "core/time.hpp"
 
 namespace taktwerk::axes {
@@ -43,7 +43,28 @@ struct AxisView {
     std::uint16_t status_word = 0;
     bool negative_limit_switch = false, positive_limit_switch = false, home_switch = false;
 
+    // modulo axes: positions above are in [0, modulo)
+    double modulo = 0;       ///< u; 0 = linear
+    std::int64_t turns = 0;  ///< whole moduli of the set position since zero
+
+    Override override_factors;
+    /// Standard parameters 2..9 and 12..17 by number (axes/axis/parameters.hpp names all and reads the others from this view).
+    std::array<double, 18> parameters{};
+
+    // beside the axis' own motion
+    double superimposed_covered = 0;            ///< u since its start
+    double phase_shift = 0, phase_covered = 0;  ///< u of the master: in effect now; since the start of the last phasing
+    AxisRef master;                             ///< while coupled
+    CamId selected_cam;                         ///< of the last SelectCam that was done
+    bool sync_started = false;                  ///< MC_GearInPos runs towards its sync point (StartSync)
+    std::uint32_t cam_ends = 0;                 ///< counts ends of the cam's profile (EndOfProfile), also in reverse
+    std::array<double, 2> probe_position{};     ///< u, of the last latch
+    bool homing_procedure = false;              ///< between the first step of Part 5 and MC_FinishHoming
+
     // commands
+    CommandKind active_kind = CommandKind::none;
+    CommandId lock = 0;                             ///< the MC_Stop that holds the axis in Stopping; 0 = none
+    std::array<CommandId, side_slot_count> side{};  ///< running beside the active one, by SideSlot
     CommandId active = 0;
     bool active_in_target = false;
     std::uint8_t queued_count = 0;
@@ -61,6 +82,8 @@ struct AxisView {
     [[nodiscard]] constexpr CommandStatus status(CommandId id, ErrorId* error_out = nullptr) const noexcept {
         if (id == 0) return CommandStatus::unknown;
         if (id == active) return active_in_target ? CommandStatus::in_target : CommandStatus::active;
+        for (const CommandId running : side)
+            if (running == id) return CommandStatus::active;
         for (std::uint8_t i = 0; i < queued_count; ++i)
             if (queued[i] == id) return CommandStatus::queued;
         for (const auto& entry : ledger) {

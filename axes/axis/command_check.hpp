@@ -17,16 +17,25 @@ namespace taktwerk::axes {
 
 [[nodiscard]] constexpr AxisEvent event_of(CommandKind kind) noexcept {
     switch (kind) {
-        case CommandKind::move_velocity: return AxisEvent::continuous;
+        case CommandKind::move_velocity:
+        case CommandKind::move_continuous_absolute:
+        case CommandKind::move_continuous_relative:
+        case CommandKind::velocity_profile:
+        case CommandKind::acceleration_profile:
+        case CommandKind::torque:
+        case CommandKind::external: return AxisEvent::continuous;
+        case CommandKind::gear_in:
+        case CommandKind::gear_in_pos:
+        case CommandKind::cam_in:
+        case CommandKind::combine: return AxisEvent::synchronized;
+        case CommandKind::gear_out:
+        case CommandKind::cam_out: return AxisEvent::decoupled;
         case CommandKind::stop: return AxisEvent::stop;
-        case CommandKind::home: return AxisEvent::home;
-        case CommandKind::none:
-        case CommandKind::move_absolute:
-        case CommandKind::move_relative:
-        case CommandKind::halt:
-        case CommandKind::jog: break;
+        case CommandKind::home:
+        case CommandKind::homing_step: return AxisEvent::home;
+        case CommandKind::move_superimposed: return AxisEvent::superimposed;
+        default: return AxisEvent::discrete;  // a jog ends by itself in Standstill, like a Halt
     }
-    return AxisEvent::discrete;  // a jog ends by itself in Standstill, like a Halt
 }
 
 [[nodiscard]] inline ErrorId check_numbers(const AxisCommand& command) noexcept {
@@ -34,6 +43,7 @@ namespace taktwerk::axes {
         if (!(value >= 0) || std::isinf(value)) return ErrorId::invalid_dynamics;
     switch (command.kind) {
         case CommandKind::none: return ErrorId::invalid_parameter;
+        default: return ErrorId::not_supported;
         case CommandKind::move_absolute:
         case CommandKind::move_relative:
             if (!std::isfinite(command.position)) return ErrorId::invalid_position;

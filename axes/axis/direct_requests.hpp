@@ -25,9 +25,13 @@ public:
         auto* found = find(axis);
         return found ? found->reset(owner) : ErrorId::invalid_axis;
     }
-    ErrorId set_position(AxisRef axis, double position, bool relative, Owner owner) noexcept override {
+    ErrorId set(AxisRef axis, const AxisSetting& setting, Owner owner) noexcept override {
         auto* found = find(axis);
-        return found ? found->set_position(position, relative, owner) : ErrorId::invalid_axis;
+        return found ? found->set(setting, owner) : ErrorId::invalid_axis;
+    }
+    ErrorId update(AxisRef axis, CommandId id, const AxisCommand& command, Owner owner) noexcept override {
+        auto* found = find(axis);
+        return found ? found->update(id, command, owner) : ErrorId::invalid_axis;
     }
     void release_stop(AxisRef axis, CommandId id, Owner owner) noexcept override {
         if (auto* found = find(axis)) found->release_stop(id, owner);

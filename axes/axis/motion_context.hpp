@@ -6,6 +6,7 @@
 
 #include "axes/axis/axis_view.hpp"
 #include "axes/axis/command.hpp"
+#include "axes/tables/motion_tables.hpp"
 #include "core/cycle_context.hpp"
 #include "core/object_access.hpp"
 
@@ -19,7 +20,11 @@ public:
     /// MC_Power's level. Called each scan by whoever holds it; the strongest wish wins: two holders are an error (power_conflict).
     virtual ErrorId power(AxisRef axis, bool enable, bool positive, bool negative, Owner owner) noexcept = 0;
     virtual ErrorId reset(AxisRef axis, Owner owner) noexcept = 0;
-    virtual ErrorId set_position(AxisRef axis, double position, bool relative, Owner owner) noexcept = 0;
+    /// Something of the axis that is no motion, at once: coordinates, parameters, outputs, override, a fed set-point.
+    virtual ErrorId set(AxisRef axis, const AxisSetting& setting, Owner owner) noexcept = 0;
+    /// ContinuousUpdate: the running (or waiting) command `id` goes on with other inputs, of the same kind. Relative inputs keep the
+    /// conditions of its start. Cheap when nothing differs: called each scan. An id that is over: none.
+    virtual ErrorId update(AxisRef axis, CommandId id, const AxisCommand& command, Owner owner) noexcept = 0;
     /// MC_Stop's Execute fell: the lock goes when the axis stands.
     virtual void release_stop(AxisRef axis, CommandId id, Owner owner) noexcept = 0;
     /// Keeps a jog alive; without it the axis stops after its lease.
@@ -34,6 +39,10 @@ struct MotionContext : CycleContext {
     AxisRequests* requests = nullptr;
     Owner owner = Owner::program;
     ObjectAccess* objects = nullptr;  ///< of the bus' devices; nullptr where there is no bus
+    MotionTables* tables = nullptr;   ///< cams, profiles over time, cam switches; nullptr where nobody declared any
+    // One value per declared point of the whole machine, indexed by the handles.
+    std::span<const std::int64_t> inputs;
+    std::span<std::int64_t> outputs;
 
     /// nullptr for an invalid handle: blocks answer with ErrorId::invalid_axis.
     [[nodiscard]] const AxisView* view(AxisRef axis) const noexcept { return axis.index < axes.size() ? &axes[axis.index] : nullptr; }

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "axes/axis/types.hpp"
+#include "axes/words/types.hpp"
 
 namespace taktwerk::axes {
 

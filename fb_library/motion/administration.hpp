@@ -89,7 +89,7 @@ private:
     void start(const MotionContext& ctx) noexcept {
         if (ctx.view(Axis) == nullptr) return core_.refuse(ErrorId::invalid_axis);
         if (ExecutionMode != mcImmediately) return core_.refuse(ErrorId::not_supported);
-        const ErrorId error = ctx.requests->set_position(Axis, Position, Relative, ctx.owner);
+        const ErrorId error = ctx.requests->set(Axis, axes::SetPosition{Position, Relative}, ctx.owner);
         if (error != ErrorId::none) return core_.refuse(error);
         core_.start(Axis);
         start_cycle = ctx.cycle;

@@ -19,8 +19,16 @@ using enum axes::MC_BufferMode;
 using axes::MC_Direction;
 using enum axes::MC_Direction;
 
-/// PLCopen Part 1 v2.0, 3.17. mcQueued is not supported so far.
-enum MC_ExecutionMode : std::uint8_t { mcImmediately, mcQueued };
+using axes::MC_ExecutionMode;
+using enum axes::MC_ExecutionMode;
+using axes::MC_Source;
+using enum axes::MC_Source;
+using axes::MC_StartMode;
+using enum axes::MC_StartMode;
+using axes::MC_SyncMode;
+using enum axes::MC_SyncMode;
+using axes::MC_CombineMode;
+using enum axes::MC_CombineMode;
 
 /// The modes of TwinCAT's MC_Jog, in its order.
 enum MC_JogMode : std::uint8_t {
@@ -37,6 +45,10 @@ inline constexpr std::array<std::string_view, 6> buffer_mode_names{"mcAborting",
 inline constexpr std::array<std::string_view, 4> direction_names{"mcPositiveDirection", "mcShortestWay", "mcNegativeDirection",
                                                                  "mcCurrentDirection"};
 inline constexpr std::array<std::string_view, 2> execution_mode_names{"mcImmediately", "mcQueued"};
+inline constexpr std::array<std::string_view, 3> source_names{"mcCommandedValue", "mcSetValue", "mcActualValue"};
+inline constexpr std::array<std::string_view, 3> start_mode_names{"mcAbsolute", "mcRelative", "mcRampIn"};
+inline constexpr std::array<std::string_view, 3> sync_mode_names{"mcShortest", "mcCatchUp", "mcSlowDown"};
+inline constexpr std::array<std::string_view, 2> combine_mode_names{"mcAddAxes", "mcSubAxes"};
 inline constexpr std::array<std::string_view, 5> jog_mode_names{"mcJogStandardSlow", "mcJogStandardFast", "mcJogContinuous", "mcJogInching",
                                                                 "mcJogInchingModulo"};
 }  // namespace detail
@@ -49,6 +61,10 @@ template <> struct PinTypeOf<MC_Direction> { static constexpr PinType value{PinK
 template <> struct PinTypeOf<MC_ExecutionMode> {
     static constexpr PinType value{PinKind::ENUM, "MC_EXECUTION_MODE", detail::execution_mode_names};
 };
+template <> struct PinTypeOf<MC_Source> { static constexpr PinType value{PinKind::ENUM, "MC_SOURCE", detail::source_names}; };
+template <> struct PinTypeOf<MC_StartMode> { static constexpr PinType value{PinKind::ENUM, "MC_START_MODE", detail::start_mode_names}; };
+template <> struct PinTypeOf<MC_SyncMode> { static constexpr PinType value{PinKind::ENUM, "MC_SYNC_MODE", detail::sync_mode_names}; };
+template <> struct PinTypeOf<MC_CombineMode> { static constexpr PinType value{PinKind::ENUM, "MC_COMBINE_MODE", detail::combine_mode_names}; };
 template <> struct PinTypeOf<MC_JogMode> { static constexpr PinType value{PinKind::ENUM, "MC_JOG_MODE", detail::jog_mode_names}; };
 // clang-format on
 

@@ -91,9 +91,7 @@ public:
         alarms = active ? (alarms | bit) : (alarms & ~bit);
     }
 
-    // Filled by the runtime, one value per declared point of the whole machine, indexed by the handles.
-    std::span<const std::int64_t> inputs;
-    std::span<std::int64_t> outputs;
+    // Filled by the runtime, indexed by the handles.
     std::span<const double> parameters;
     std::uint64_t alarms = 0;
     bool first_scan = false;  ///< first call after start

@@ -11,7 +11,7 @@
 
 #include "apps/exit_code.hpp"
 #include "apps/trace_file.hpp"
-#include "axes/axis/types.hpp"
+#include "axes/words/types.hpp"
 #include "tests/apps/child.hpp"
 
 namespace taktwerk::apps {

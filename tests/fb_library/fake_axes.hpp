@@ -17,8 +17,9 @@ public:
         axes::AxisRef axis{};
         axes::AxisCommand command{};
         axes::CommandId id = 0;
-        bool enable = false, positive = false, negative = false, relative = false;
+        bool enable = false, positive = false, negative = false;
         double value = 0;
+        axes::AxisSetting setting{};
         axes::Owner owner = axes::Owner::none;
     };
 
@@ -77,8 +78,12 @@ public:
         calls.push_back({.what = "reset", .axis = ref, .owner = owner});
         return refuse_with;
     }
-    axes::ErrorId set_position(axes::AxisRef ref, double position, bool relative, axes::Owner owner) noexcept override {
-        calls.push_back({.what = "set_position", .axis = ref, .relative = relative, .value = position, .owner = owner});
+    axes::ErrorId set(axes::AxisRef ref, const axes::AxisSetting& setting, axes::Owner owner) noexcept override {
+        calls.push_back({.what = "set", .axis = ref, .setting = setting, .owner = owner});
+        return refuse_with;
+    }
+    axes::ErrorId update(axes::AxisRef ref, axes::CommandId id, const axes::AxisCommand& command, axes::Owner owner) noexcept override {
+        calls.push_back({.what = "update", .axis = ref, .command = command, .id = id, .owner = owner});
         return refuse_with;
     }
     void release_stop(axes::AxisRef ref, axes::CommandId id, axes::Owner owner) noexcept override {

@@ -264,7 +264,7 @@ TEST_F(Answers, ARefusedResetReachesItsBlock) {
 TEST_F(Answers, SetPositionIsCheckedAgainstTheLatchedView) {
     const auto ask = [&](double position) {
         axes::ErrorId error{};
-        scan([&](TaskContext& ctx) { error = ctx.requests->set_position({0}, position, false, ctx.owner); });
+        scan([&](TaskContext& ctx) { error = ctx.requests->set({0}, axes::SetPosition{position, false}, ctx.owner); });
         return error;
     };
     axes.axis().owner = axes::Owner::program;
@@ -277,7 +277,7 @@ TEST_F(Answers, SetPositionIsCheckedAgainstTheLatchedView) {
     axes.axis().owner = axes::Owner::operator_panel;
     EXPECT_EQ(ask(5), axes::ErrorId::owned_by_other);
     release();
-    EXPECT_EQ(axes.calls_of("set_position").size(), 1u);
+    EXPECT_EQ(axes.calls_of("set").size(), 1u);
 }
 
 TEST_F(Answers, MoreRequestsThanFitAreRefusedAtOnce) {

@@ -71,7 +71,7 @@ TEST_P(RandomAxis, KeepsItsRules) {
             case 11:
             case 12: rig.axis.release_stop(last, owner); break;
             case 13: last = rig.axis.submit(home(pick(-5, 5)), owner).id; break;
-            case 14: (void)rig.axis.set_position(pick(-3, 3), true, owner); break;
+            case 14: (void)rig.axis.set(SetPosition{pick(-3, 3), true}, owner); break;
             case 15: (void)rig.axis.renew_jog(last, pick(-100, 100), owner); break;
             case 16:
                 if (random() % 4 == 0) rig.drive.fault_code = 0x7500;

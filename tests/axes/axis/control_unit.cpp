@@ -14,7 +14,7 @@ TEST(Authority, OthersAreRefusedUntilTheyTakeControl) {
     EXPECT_EQ(rig.view().owner, Owner::program);
     EXPECT_EQ(rig.refuse(absolute(1), Owner::operator_panel), ErrorId::owned_by_other);
     EXPECT_EQ(rig.axis.power(false, true, true, Owner::operator_panel), ErrorId::owned_by_other);
-    EXPECT_EQ(rig.axis.set_position(0, false, Owner::operator_panel), ErrorId::owned_by_other);
+    EXPECT_EQ(rig.axis.set(SetPosition{0, false}, Owner::operator_panel), ErrorId::owned_by_other);
     EXPECT_EQ(rig.view().state, AxisState::Standstill);
 
     rig.axis.take_control(Owner::commissioning);

@@ -47,7 +47,7 @@ TEST(AxisMotion, RelativeMoveCountsFromTheSetPosition) {
     ASSERT_TRUE(rig.run_to(AxisState::Standstill));
     rig.accept(relative(-4));
     rig.run(30);
-    EXPECT_EQ(rig.axis.set_position(1000, true, Owner::program), ErrorId::none);
+    EXPECT_EQ(rig.axis.set(SetPosition{1000, true}, Owner::program), ErrorId::none);
     ASSERT_TRUE(rig.run_to(AxisState::Standstill));
 
     EXPECT_DOUBLE_EQ(rig.view().set_position, 1006);
@@ -62,7 +62,7 @@ TEST(AxisMotion, SetPositionInMotionKeepsTheNumberOfTheTarget) {
     rig.run(500);
     const double before = rig.view().following_error;
     const double offset = 100;
-    EXPECT_EQ(rig.axis.set_position(offset, true, Owner::program), ErrorId::none);
+    EXPECT_EQ(rig.axis.set(SetPosition{offset, true}, Owner::program), ErrorId::none);
     EXPECT_EQ(rig.view().following_error, before);  // P1-198
     EXPECT_EQ(rig.view().state, AxisState::DiscreteMotion);
     const auto counts = rig.drive.last.position;
@@ -83,10 +83,10 @@ TEST(AxisMotion, SetPositionKeepsSetMinusActual) {
     rig.run(300);
     const double lag = rig.view().set_position - rig.view().actual_position;
 
-    EXPECT_EQ(rig.axis.set_position(-5, false, Owner::program), ErrorId::none);
+    EXPECT_EQ(rig.axis.set(SetPosition{-5, false}, Owner::program), ErrorId::none);
     EXPECT_DOUBLE_EQ(rig.view().actual_position, -5);
     EXPECT_NEAR(rig.view().set_position - rig.view().actual_position, lag, 1e-12);
-    EXPECT_EQ(rig.axis.set_position(std::nan(""), false, Owner::program), ErrorId::invalid_position);
+    EXPECT_EQ(rig.axis.set(SetPosition{std::nan(""), false}, Owner::program), ErrorId::invalid_position);
 }
 
 // P1-016: of two aborting commands in one cycle the later wins; the earlier is aborted.

@@ -374,20 +374,19 @@ TEST_F(SetPosition, ShiftsOnceAndIsDoneInTheNextScan) {
     block.Position = 4.5;
     scan();
     EXPECT_TRUE(block.Busy);
-    EXPECT_EQ(last().what, "set_position");
-    EXPECT_EQ(last().value, 4.5);
-    EXPECT_FALSE(last().relative);
+    EXPECT_EQ(last().what, "set");
+    EXPECT_EQ(last().setting, axes::AxisSetting(axes::SetPosition{4.5, false}));
     scan();
     EXPECT_TRUE(block.Done);
     scan();
-    EXPECT_EQ(count("set_position"), 1u);
+    EXPECT_EQ(count("set"), 1u);
 }
 
 TEST_F(SetPosition, PassesRelative) {
     block.Execute = true;
     block.Relative = true;
     scan();
-    EXPECT_TRUE(last().relative);
+    EXPECT_EQ(last().setting, axes::AxisSetting(axes::SetPosition{0, true}));
 }
 
 TEST_F(SetPosition, QueuedIsNotSupportedSoFarAndSaysSo) {

@@ -1,4 +1,4 @@
-#include "axes/axis/types.hpp"
+#include "axes/words/types.hpp"
 
 namespace taktwerk::axes {
 

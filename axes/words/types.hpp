@@ -30,6 +30,15 @@ inline constexpr std::size_t axis_state_count = 8;
 enum MC_Direction : std::uint8_t { mcPositiveDirection, mcShortestWay, mcNegativeDirection, mcCurrentDirection };
 enum MC_BufferMode : std::uint8_t { mcAborting, mcBuffered, mcBlendingLow, mcBlendingPrevious, mcBlendingNext, mcBlendingHigh };
 
+/// Which value of an axis: what its command asks for, the newest output of its profile generator, the newest feedback (P1-051).
+enum MC_Source : std::uint8_t { mcCommandedValue, mcSetValue, mcActualValue };
+/// How MC_CamIn begins: the cam's own coordinates, from where the slave is, or approaching the cam with a ramp.
+enum MC_StartMode : std::uint8_t { mcAbsolute, mcRelative, mcRampIn };
+/// Which way MC_GearInPos gets to its sync point on a modulo slave: the nearest repetition, ahead, or waiting for the next.
+enum MC_SyncMode : std::uint8_t { mcShortest, mcCatchUp, mcSlowDown };
+enum MC_CombineMode : std::uint8_t { mcAddAxes, mcSubAxes };
+enum MC_ExecutionMode : std::uint8_t { mcImmediately, mcQueued };
+
 /// Names one accepted command for ever; 0 = none. Per axis, increasing.
 using CommandId = std::uint32_t;
 
@@ -69,6 +78,34 @@ enum class ErrorId : std::uint16_t {
     object_no_answer = 0x0019,
     object_too_long = 0x001A,
     object_requests_full = 0x001B,
+    // Parameters, outputs, override.
+    unknown_parameter = 0x001C,
+    read_only_parameter = 0x001D,
+    invalid_output = 0x001E,    ///< no such input or output, or number
+    invalid_override = 0x001F,  ///< a factor below 0, above 1 or not finite; 0 for acceleration or jerk
+    // Couplings.
+    invalid_master = 0x0020,   ///< the master is the slave itself, or no axis, or gives no position
+    coupling_loop = 0x0021,    ///< the master depends on this axis
+    invalid_ratio = 0x0022,    ///< a ratio's denominator is 0
+    not_coupled = 0x0023,      ///< the axis is no slave (GearOut, CamOut, Phasing)
+    sync_impossible = 0x0024,  ///< the sync point cannot be reached: already passed, or not with these dynamics
+    master_lost = 0x0025,      ///< the master has no valid position any more
+    // Tables.
+    invalid_table = 0x0026,  ///< no such table, or its points cannot be used
+    no_table_room = 0x0027,  ///< all places for prepared cam tables are taken
+    // Probes.
+    no_such_probe = 0x0028,
+    probe_busy = 0x0029,  ///< another block has armed this probe
+    probe_idle = 0x002A,  ///< AbortTrigger found nothing armed
+    // Homing steps.
+    homing_limit_time = 0x002B,      ///< TimeLimit is over
+    homing_limit_distance = 0x002C,  ///< DistanceLimit is used up
+    homing_limit_torque = 0x002D,    ///< TorqueLimit was reached where it must not be
+    // Modes of the drive.
+    drive_mode_refused = 0x002E,   ///< the drive did not take the mode in time
+    not_at_standstill = 0x002F,    ///< the drive changes its mode at standstill only
+    update_not_possible = 0x0030,  ///< ContinuousUpdate gave values that this command cannot take
 };
+inline constexpr std::size_t error_id_count = 0x0031;
 
 }  // namespace taktwerk::axes

@@ -1,0 +1,76 @@
+#pragma once
+// A cam: the slave's position as a function of the master's. What a program writes (CamSource) and what a slave follows (PreparedCam).
+// Master u and slave u are the axes' own units.
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "axes/words/types.hpp"
+
+namespace taktwerk::axes {
+
+/// How the way from a point to the next one is filled.
+enum class CamSegment : std::uint8_t {
+    linear,   ///< straight: the velocity jumps at the points
+    spline,   ///< cubic spline through a run of such points: position, velocity and acceleration continuous inside the run
+    quintic,  ///< polynomial of fifth order with the velocity and acceleration given at both of its points
+};
+
+/// A point and the segment that begins there. Derivatives are with respect to the master: du/dM, d2u/dM2.
+struct CamPoint {
+    double master = 0, slave = 0;
+    double velocity = 0, acceleration = 0;  ///< quintic segments, and the ends of spline runs
+    CamSegment segment = CamSegment::quintic;
+};
+
+struct CamSource {
+    std::vector<CamPoint> points;  ///< never grows after declaration
+    std::size_t used = 0;          ///< points that count, from the first
+    [[nodiscard]] std::span<const CamPoint> rows() const noexcept { return {points.data(), used}; }
+};
+
+/// Slave position and its derivatives with respect to the master's position.
+struct CamValue {
+    double position = 0;
+    double first = 0;   ///< du/dM
+    double second = 0;  ///< d2u/dM2
+};
+
+/// Ready to follow. The master runs over [0, length] from the first point on; outside of it a cam that is not periodic holds its ends.
+class PreparedCam {
+public:
+    PreparedCam() = default;
+    /// Takes room for so many points. Not real-time.
+    explicit PreparedCam(std::size_t room);
+
+    /// Real-time safe, linear in the number of points: invalid_table when the master does not rise strictly, a number is not finite, there
+    /// are fewer than two points or more than the room.
+    [[nodiscard]] ErrorId prepare(std::span<const CamPoint> points, bool periodic, bool master_absolute, bool slave_absolute) noexcept;
+
+    [[nodiscard]] std::size_t room() const noexcept { return segments_.size(); }
+    [[nodiscard]] bool periodic() const noexcept { return periodic_; }
+    [[nodiscard]] bool master_absolute() const noexcept { return master_absolute_; }
+    [[nodiscard]] bool slave_absolute() const noexcept { return slave_absolute_; }
+    /// First master position of the table, and from there to the last.
+    [[nodiscard]] double begin() const noexcept { return begin_; }
+    [[nodiscard]] double length() const noexcept { return length_; }
+    /// How far the slave is moved by one whole pass.
+    [[nodiscard]] double stroke() const noexcept { return stroke_; }
+
+    /// At `master`, 0 <= master <= length() from the first point on. Bounded: a binary search.
+    [[nodiscard]] CamValue at(double master) const noexcept;
+
+private:
+    /// Polynomial in (master - begin), coefficients from the constant on.
+    struct Segment {
+        double begin = 0;
+        double coefficients[6] = {};
+    };
+    std::vector<Segment> segments_;
+    std::size_t count_ = 0;
+    double begin_ = 0, length_ = 0, stroke_ = 0;
+    bool periodic_ = false, master_absolute_ = true, slave_absolute_ = true;
+};
+
+}  // namespace taktwerk::axes
