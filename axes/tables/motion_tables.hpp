@@ -49,7 +49,8 @@ public:
     static constexpr std::size_t tracks = 32;
 
     // --- before the cycle; not real-time ---------------------------------------------------------------------------------
-    /// `room`: most points it will ever have; at least the number given. Places for two prepared copies of it are taken too.
+    /// `room`: most points it will ever have; at least the number given. Places for three prepared copies of it are taken too: one that
+    /// slaves leave, one that they go to, one to prepare in.
     CamRef add_cam(std::span<const CamPoint> points, std::size_t room = 0);
     TimeTableRef add_time_table(std::span<const TimePoint> rows, std::size_t room = 0);
     CamSwitchRef add_cam_switches(std::span<const CamSwitch> switches, std::size_t room = 0);
@@ -67,8 +68,9 @@ public:
         return found ? std::span<const TrackOptions>{*found} : std::span<const TrackOptions>{};
     }
 
-    /// MC_CamTableSelect: checks the source and makes the coefficients of a copy. A copy that no slave uses gives its place
-    /// to the next one. The work is linear in the number of points.
+    /// MC_CamTableSelect: checks the source and makes the coefficients of a copy. What is the same as a copy already there gets that
+    /// one's id, so any number of slaves share it. Of the copies that no slave uses, the oldest gives its place to the next one. The
+    /// work is linear in the number of points.
     struct Prepared {
         CamId id;
         ErrorId error = ErrorId::none;  ///< invalid_table, no_table_room
@@ -91,6 +93,7 @@ private:
         std::uint16_t source = 0xFFFF;  // only copies of this cam fit here for sure
         std::uint16_t holders = 0;
     };
+    [[nodiscard]] Place* place_of(CamId id) noexcept;
 
     std::vector<CamSource> cams_;
     std::vector<Place> places_;
