@@ -95,16 +95,14 @@ enum class HomingStep : std::uint8_t {
     flying_switch,           ///< passive
     flying_reference_pulse,  ///< passive
 };
-enum class HomingDirection : std::uint8_t { positive, negative, switch_positive, switch_negative };
-enum class HomingSwitchMode : std::uint8_t { on, off, rising_edge, falling_edge, edge_switch_positive, edge_switch_negative };
 
 /// Limits: 0 = none. Velocity, ramps and the distance of `finish` are the command's own.
 struct HomingStepDetails {
     HomingStep step = HomingStep::direct;
-    HomingDirection direction = HomingDirection::positive;
-    HomingSwitchMode switch_mode = HomingSwitchMode::rising_edge;
-    TriggerRef reference;     ///< the switch or the pulse; by default the drive's home switch or index
-    double set_position = 0;  ///< u; NaN: no position is set
+    MC_HomeDirection direction = MC_HomeDirection::mcPositiveDirection;
+    MC_SwitchMode switch_mode = MC_SwitchMode::mcRisingEdge;
+    TriggerRef reference;     ///< the switch or the pulse; `falling`: a switch that is normally closed
+    double set_position = 0;  ///< u; NaN: the coordinates stay
     double torque_limit = 0;  ///< fraction of rated torque
     Duration time_limit{};
     double distance_limit = 0;            ///< u

@@ -39,6 +39,12 @@ enum MC_SyncMode : std::uint8_t { mcShortest, mcCatchUp, mcSlowDown };
 enum MC_CombineMode : std::uint8_t { mcAddAxes, mcSubAxes };
 enum MC_ExecutionMode : std::uint8_t { mcImmediately, mcQueued };
 
+/// PLCopen Part 5: the way a search begins. The last two go by the switch: off, as named; on, the other way.
+enum class MC_HomeDirection : std::uint8_t { mcPositiveDirection, mcNegativeDirection, mcSwitchPositive, mcSwitchNegative };
+/// What ends a search for a switch: its level; its edge in the direction of the search; or, whichever way the axis moves, the edge at the
+/// switch's negative end (mcEdgeSwitchPositive: it rises there in positive direction) or at its positive end (mcEdgeSwitchNegative).
+enum class MC_SwitchMode : std::uint8_t { mcOn, mcOff, mcRisingEdge, mcFallingEdge, mcEdgeSwitchPositive, mcEdgeSwitchNegative };
+
 /// Names one accepted command for ever; 0 = none. Per axis, increasing.
 using CommandId = std::uint32_t;
 
