@@ -41,6 +41,7 @@ public:
     /// System time at which the last frame that brought a sample passed the first reference; nothing when the last one did not.
     [[nodiscard]] std::optional<std::int64_t> passed_reference() const noexcept { return passed_; }
     [[nodiscard]] const ReferenceClock& reference() const noexcept { return reference_; }
+    [[nodiscard]] bool known() const noexcept { return reference_.known(); }
     [[nodiscard]] std::optional<std::int64_t> offset() const noexcept { return reference_.offset(); }
     [[nodiscard]] std::int64_t offset_at(Instant t) const noexcept { return reference_.offset_at(t); }
     [[nodiscard]] DcLock lock() const noexcept { return servo_.lock(); }

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "core/bytes.hpp"
-#include "ecat/dc/propagation.hpp"
 #include "ecat/dc/sync0_budget.hpp"
 
 namespace taktwerk::ecat {
@@ -30,6 +29,7 @@ CyclePlan::CyclePlan(const Bus& bus)
         period.push_back(exchange_period(bus.config, *slave->config));
         delay.push_back(slave->dc_delay);
     }
+    sync0.resize(slaves.size());
     state_wkc = static_cast<std::uint16_t>(std::max(bus.found.size(), bus.slaves.size()));
     if (bus.reference) reference = bus.slaves[*bus.reference]->found.station;
 }
@@ -110,6 +110,7 @@ void ProcessDataCycle::collect_frames(CyclePlan& cycle) noexcept {
     }
     all_good_ = !any_lost_;
     collect_first_frame(cycle, cycle.frames[0]);
+    clock_offset_ = clock_.offset().value_or(0);
     for (const auto& unit : cycle.plan.units) take_unit(cycle, unit);
     give_up_frames(cycle);
 
@@ -154,7 +155,7 @@ void ProcessDataCycle::collect_first_frame(CyclePlan& cycle, SlotId slot) noexce
 }
 
 /// From the arrival of the last byte of the frames at each slave to the SYNC0 that was to find them there.
-void ProcessDataCycle::measure_margin(const CyclePlan& cycle, SlotId slot) noexcept {
+void ProcessDataCycle::measure_margin(CyclePlan& cycle, SlotId slot) noexcept {
     const auto passed = clock_.passed_reference();
     if (!passed) return;
     std::size_t bytes = 0, frames = 0;
@@ -169,7 +170,7 @@ void ProcessDataCycle::measure_margin(const CyclePlan& cycle, SlotId slot) noexc
     for (std::size_t s = 0; s < cycle.slaves.size(); ++s) {
         const std::int64_t start = sync0_of(cycle, s);
         if (start == 0 || due < start) continue;
-        const std::int64_t margin = next_sync0(due + 1, start, cycle.period[s].count()) - (through + cycle.delay[s]);
+        const std::int64_t margin = cycle.sync0[s].next(due + 1, start, cycle.period[s].count()) - (through + cycle.delay[s]);
         least = least ? std::min(*least, margin) : margin;
     }
     if (!least) return;
@@ -227,14 +228,14 @@ void ProcessDataCycle::take_unit(CyclePlan& cycle, const UnitPlan& unit) noexcep
         health.age = 0;
         health.latched = sent;
         if (const std::int64_t start = sync0_of(cycle, s); start != 0) {
-            const std::int64_t system = nanoseconds(sent) + *clock_.offset();
-            if (system >= start) health.latched = Instant{Duration{last_sync0(system, start, cycle.period[s].count()) - *clock_.offset()}};
+            const std::int64_t system = nanoseconds(sent) + clock_offset_;
+            if (system >= start) health.latched = Instant{Duration{cycle.sync0[s].last(system, start, cycle.period[s].count()) - clock_offset_}};
         }
     }
 }
 
 std::int64_t ProcessDataCycle::sync0_of(const CyclePlan& cycle, std::size_t slave) const noexcept {
-    return clock_.offset() ? cycle.slaves[slave]->sync0_start.load(std::memory_order_relaxed) : 0;
+    return clock_.known() ? cycle.slaves[slave]->sync0_start.load(std::memory_order_relaxed) : 0;
 }
 
 void ProcessDataCycle::send(Instant now) noexcept {
@@ -322,14 +323,14 @@ std::span<const AlarmFact> ProcessDataCycle::faults() const noexcept {
 }
 
 Instant ProcessDataCycle::outputs_effective(std::size_t slave, Instant send_time) const noexcept {
-    const auto* cycle = latest_.load(std::memory_order_acquire);
+    auto* cycle = latest_.load(std::memory_order_acquire);
     if (cycle == nullptr || slave >= cycle->slaves.size()) return send_time;
     if (const auto unit = cycle->plan.slaves[slave].unit) send_time += cycle->plan.units[*unit].cycles_until(cycle->number) * config_.cycle;
     const std::int64_t start = sync0_of(*cycle, slave);
     if (start == 0) return send_time;
-    const std::int64_t offset = clock_.offset_at(send_time);
-    const std::int64_t arrival = nanoseconds(send_time) + cycle->delay[slave] + offset;
-    return Instant{Duration{next_sync0(arrival + 1, start, cycle->period[slave].count()) - offset}};
+    if (next_send_.send_time != send_time) next_send_ = {send_time, clock_.offset_at(send_time)};
+    const std::int64_t arrival = nanoseconds(send_time) + cycle->delay[slave] + next_send_.offset;
+    return Instant{Duration{cycle->sync0[slave].next(arrival + 1, start, cycle->period[slave].count()) - next_send_.offset}};
 }
 
 }  // namespace taktwerk::ecat

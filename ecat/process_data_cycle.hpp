@@ -12,6 +12,7 @@
 #include "ecat/bringup/bus.hpp"
 #include "ecat/bringup/frame_schedule.hpp"
 #include "ecat/cycle_clock.hpp"
+#include "ecat/dc/propagation.hpp"
 #include "ecat/exchange/acyclic_channel.hpp"
 #include "ecat/exchange/exchange.hpp"
 #include "ecat/fault_finder.hpp"
@@ -45,6 +46,7 @@ struct CyclePlan {
     std::vector<SlotId> frames;           ///< under way; generation 0: none
     std::vector<Place> places;            ///< of each datagram; valid while its unit is under way
     std::vector<std::uint8_t> under_way;  ///< of each unit
+    std::vector<Sync0Pulse> sync0;        ///< of each slave
     std::size_t state_number = 0;         ///< of BRD AL status in the first frame; the mailbox bits follow it
 };
 
@@ -78,7 +80,7 @@ public:
 private:
     void collect_frames(CyclePlan& cycle) noexcept;
     void collect_first_frame(CyclePlan& cycle, SlotId slot) noexcept;
-    void measure_margin(const CyclePlan& cycle, SlotId slot) noexcept;
+    void measure_margin(CyclePlan& cycle, SlotId slot) noexcept;
     /// All datagrams of the unit or nothing.
     void take_unit(CyclePlan& cycle, const UnitPlan& unit) noexcept;
     [[nodiscard]] bool answered_exactly(const CyclePlan& cycle, const UnitPlan& unit) noexcept;
@@ -105,6 +107,11 @@ private:
     SlaveHealth nothing_;
 
     // Of the cycle.
+    std::int64_t clock_offset_ = 0;  // reference clock minus machine time when the present answers were sent; ns
+    struct {
+        Instant send_time = Instant::min();
+        std::int64_t offset = 0;
+    } mutable next_send_;  // the same when the next frames leave: asked for by every axis
     bool all_good_ = true;
     bool any_lost_ = false;
     bool margin_known_ = false;

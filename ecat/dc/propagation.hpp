@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -65,5 +66,27 @@ struct PropagationDelays {
 [[nodiscard]] constexpr std::int64_t last_sync0(std::int64_t t, std::int64_t start, std::int64_t cycle) noexcept {
     return t - ((t - start) % cycle + cycle) % cycle;
 }
+
+/// SYNC0 of one slave, followed from cycle to cycle: no division while time goes on by a period or less. One thread.
+class Sync0Pulse {
+public:
+    /// As next_sync0(); `cycle` stays the same.
+    [[nodiscard]] std::int64_t next(std::int64_t t, std::int64_t start, std::int64_t cycle) noexcept {
+        if (start == start_ && t > next_ - cycle && t <= next_ + cycle) {
+            if (t > next_) next_ += cycle;
+        } else {
+            start_ = start;
+            next_ = next_sync0(t, start, cycle);
+        }
+        return next_;
+    }
+    /// As last_sync0().
+    [[nodiscard]] std::int64_t last(std::int64_t t, std::int64_t start, std::int64_t cycle) noexcept {
+        return next(t + 1, start, cycle) - cycle;
+    }
+
+private:
+    std::int64_t start_ = 0, next_ = std::numeric_limits<std::int64_t>::min() / 2;
+};
 
 }  // namespace taktwerk::ecat

@@ -33,6 +33,8 @@ public:
         ++rejected_in_a_row_;
     }
 
+    /// There has been a sample.
+    [[nodiscard]] bool known() const noexcept { return known_; }
     /// Reference clock minus machine time, ns, at the last sample; smoothed. Nothing before the first sample.
     [[nodiscard]] std::optional<std::int64_t> offset() const noexcept;
     /// The same at `t`, at most a minute after the last sample; 0 before the first.

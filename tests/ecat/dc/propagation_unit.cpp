@@ -169,5 +169,17 @@ TEST(Sync0Instants, NextAndLastAroundATime) {
     EXPECT_EQ(next_sync0(-10, 500, 1'000), 500) << "before the first SYNC0";
 }
 
+// What the cycle keeps of a slave's SYNC0 answers like the arithmetic, whatever is asked in whichever order: the next cycle, the same
+// instant again, a jump ahead over missed cycles, back, another start after a recovery.
+TEST(Sync0, FollowedFromCycleToCycleIsTheSameGrid) {
+    Sync0Pulse pulse;
+    constexpr std::int64_t cycle = 1'000;
+    for (const std::int64_t start : {500, 777})
+        for (const std::int64_t t : {-10, 499, 500, 501, 1'499, 1'500, 1'501, 2'400, 2'600, 2'601, 9'000, 10'001, 3'000, 3'000, 1}) {
+            EXPECT_EQ(pulse.next(t, start, cycle), next_sync0(t, start, cycle)) << t << " from " << start;
+            EXPECT_EQ(pulse.last(t, start, cycle), last_sync0(t, start, cycle)) << t << " from " << start;
+        }
+}
+
 }  // namespace
 }  // namespace taktwerk::ecat

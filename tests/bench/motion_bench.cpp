@@ -1,0 +1,157 @@
+// What motion costs an axis in each cycle: N axes at 1 kHz, each going to and fro between 0 and 500 u for ever (400 u/s, 500 u/s2) by
+// its own MC_MoveAbsolute, with MC_Power and MC_ReadStatus beside it. The drives are virtual: the figures are axis, blocks and planner.
+// Then the worst case for real time: every axis gets a new target in the same cycle.
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <cstdio>
+#include <memory>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "axes/axis/direct_requests.hpp"
+#include "axes/sim/virtual_drive.hpp"
+#include "fb_library/all_blocks.hpp"
+
+namespace {
+
+using namespace taktwerk;
+using namespace taktwerk::fb;
+using namespace std::chrono_literals;
+
+constexpr Duration period = 1ms;
+
+axes::AxisConfig shuttle_axis() {
+    axes::AxisConfig config;
+    config.name = "x";
+    config.gearing = {.counts_per_revolution = 10000, .motor_revolutions = 1, .load_revolutions = 1, .feed = 10};
+    config.limits = {.velocity = 400, .acceleration = 500, .deceleration = 500, .jerk = 5000};
+    config.require_homed = false;
+    return config;
+}
+
+/// The cycle of DESIGN.md section 3 without a bus.
+class Shuttles {
+public:
+    explicit Shuttles(std::size_t count) : blocks_(count) {
+        axes_.reserve(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            drives_.push_back(std::make_unique<axes::sim::VirtualDrive>(period));
+            axes_.emplace_back(shuttle_axis(), *drives_.back(), period, static_cast<std::uint16_t>(i));
+            auto& b = blocks_[i];
+            b.power.Axis = b.move.Axis = b.status.Axis = axes::AxisRef{static_cast<std::uint16_t>(i)};
+            b.power.Enable = b.status.Enable = true;
+            b.move.Velocity = 400;
+            b.move.Acceleration = b.move.Deceleration = 500;
+            b.move.Jerk = 5000;
+        }
+        requests_ = axes::DirectRequests{axes_};
+        for (auto& axis : axes_) views_.push_back(axis.view());
+        // Not all of them turn in the same cycle.
+        for (std::size_t i = 0; i < 100 + 7 * count; ++i) cycle(i / 7);
+    }
+
+    /// One cycle of the first `moving` axes' programs and of all axes.
+    void cycle(std::size_t moving) noexcept {
+        now_ += period;
+        for (auto& axis : axes_) axis.update(now_);
+        for (auto& axis : axes_) axis.supervise(now_);
+        for (std::size_t i = 0; i < axes_.size(); ++i) views_[i] = axes_[i].view();
+        MotionContext ctx;
+        ctx.now = now_;
+        ctx.period = period;
+        ctx.cycle = ++cycles_;
+        ctx.axes = views_;
+        ctx.requests = &requests_;
+        for (std::size_t i = 0; i < blocks_.size(); ++i) {
+            auto& b = blocks_[i];
+            b.power(ctx);
+            b.status(ctx);
+            if (i >= moving || !b.power.Status) continue;
+            if (b.move.Done || command_all) {
+                b.move.Execute = false;
+                b.move(ctx);
+                b.move.Position = b.move.Position > 250 ? 0 : 500;
+            }
+            b.move.Execute = true;
+            b.move(ctx);
+        }
+        command_all = false;
+        for (auto& axis : axes_) axis.plan(now_, period);
+        for (auto& axis : axes_) axis.encode(now_);
+    }
+    [[nodiscard]] std::size_t in_motion() const noexcept {
+        return static_cast<std::size_t>(
+            std::count_if(axes_.begin(), axes_.end(), [](const auto& a) { return a.view().set_velocity != 0; }));
+    }
+
+    bool command_all = false;
+
+private:
+    struct Blocks {
+        MC_Power power;
+        MC_MoveAbsolute move;
+        MC_ReadStatus status;
+    };
+    std::vector<std::unique_ptr<axes::sim::VirtualDrive>> drives_;
+    std::vector<axes::Axis> axes_;
+    std::vector<axes::AxisView> views_;
+    axes::DirectRequests requests_;
+    std::vector<Blocks> blocks_;
+    Instant now_{};
+    std::uint64_t cycles_ = 0;
+};
+
+double timed(const auto& work) {
+    const auto begin = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - begin).count();
+}
+
+struct Spread {
+    explicit Spread(std::vector<double> all) : ns(std::move(all)) { std::sort(ns.begin(), ns.end()); }
+    [[nodiscard]] double at(double part) const { return ns[static_cast<std::size_t>(part * static_cast<double>(ns.size() - 1))]; }
+    std::vector<double> ns;
+};
+
+void ping_pong(std::size_t count) {
+    Shuttles shuttles{count};
+    const std::size_t cycles = std::max<std::size_t>(4000, 400'000 / count);
+    std::vector<double> ns;
+    ns.reserve(cycles);
+    std::size_t moving = 0;
+    for (std::size_t i = 0; i < cycles; ++i) {
+        ns.push_back(timed([&] { shuttles.cycle(count); }) / static_cast<double>(count));
+        if (i % 64 == 0) moving += shuttles.in_motion();
+    }
+    const Spread spread{std::move(ns)};
+    const double share = 100.0 * static_cast<double>(moving) / static_cast<double>(count * ((cycles + 63) / 64));
+    fmt::print("{:>6} {:>10.1f} {:>10.1f} {:>10.1f} {:>12.1f} {:>11.1f}\n", count, spread.at(0.5), spread.at(0.99), spread.at(0.999),
+               spread.at(1), share);
+}
+
+void burst(std::size_t count) {
+    Shuttles shuttles{count};
+    std::vector<double> us;
+    for (int i = 0; i < 2000; ++i) {
+        for (int k = 0; k < 137; ++k) shuttles.cycle(count);
+        shuttles.command_all = true;
+        us.push_back(timed([&] { shuttles.cycle(count); }) / 1000);
+    }
+    const Spread spread{std::move(us)};
+    fmt::print("{:>6} {:>10.1f} {:>10.1f} {:>10.1f}\n", count, spread.at(0.5), spread.at(0.99), spread.at(1));
+}
+
+}  // namespace
+
+int main() {
+    fmt::print("To and fro with MC_Power, MC_MoveAbsolute, MC_ReadStatus: ns per axis and cycle\n\n");
+    fmt::print("{:>6} {:>10} {:>10} {:>10} {:>12} {:>11}\n", "axes", "p50", "p99", "p99.9", "max", "moving %");
+    for (const std::size_t count : {1, 8, 32, 128, 512}) ping_pong(count);
+    fmt::print("\nAll axes re-commanded in one cycle, from wherever they are: us per cycle\n\n");
+    fmt::print("{:>6} {:>10} {:>10} {:>10}\n", "axes", "p50", "p99", "max");
+    burst(64);
+    return 0;
+}
