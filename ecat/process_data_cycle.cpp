@@ -229,7 +229,8 @@ void ProcessDataCycle::take_unit(CyclePlan& cycle, const UnitPlan& unit) noexcep
         health.latched = sent;
         if (const std::int64_t start = sync0_of(cycle, s); start != 0) {
             const std::int64_t system = nanoseconds(sent) + clock_offset_;
-            if (system >= start) health.latched = Instant{Duration{cycle.sync0[s].last(system, start, cycle.period[s].count()) - clock_offset_}};
+            if (system >= start)
+                health.latched = Instant{Duration{cycle.sync0[s].last(system, start, cycle.period[s].count()) - clock_offset_}};
         }
     }
 }

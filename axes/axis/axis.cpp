@@ -48,7 +48,8 @@ void Axis::update(Instant now) noexcept {
     run_power();
     watch_following_error();
     run_reset();
-    publish();
+    publish_state();
+    publish_feedback();
 }
 
 void Axis::read_feedback() noexcept {
@@ -68,6 +69,7 @@ void Axis::read_feedback() noexcept {
         seeded_ = true;
         anchor_near_actual();
         setpoint_.place(actual_local());
+        publish_setpoint();
     }
     // Switches are wired to the drive's sense of direction.
     const bool inverted = config_.gearing.inverted;
@@ -161,28 +163,32 @@ void Axis::encode(Instant now) noexcept {
 }
 
 void Axis::publish() noexcept {
+    publish_state();
+    publish_feedback();
+    publish_setpoint();
+}
+
+void Axis::publish_state() noexcept {
     view_.state = state_;
     view_.owner = owner_;
     view_.powered = power_.on() && state_ != AxisState::Disabled;
     view_.homed = homed_;
+    view_.error = error_;
+    view_.resetting = resetting_;
+    view_.reset_error = reset_error_;
+    view_.lock = stop_lock_;
+    queue_.publish(view_);
+}
+
+void Axis::publish_feedback() noexcept {
     view_.online = online();
     view_.in_position = in_window_ && now_ - in_window_since_ >= config_.windows.in_position_time;
     view_.warning = feedback_.warning;
-    view_.error = error_;
     view_.drive_error = feedback_.error_code;
-    view_.resetting = resetting_;
-    view_.reset_error = reset_error_;
 
-    const auto& set = setpoint_.state();
-    view_.set_position = units_.to_program(set.position);
-    view_.set_velocity = set.velocity;
-    view_.set_acceleration = set.acceleration;
-    view_.set_jerk = setpoint_.jerk();
     view_.actual_position = units_.to_program(actual_local());
     view_.actual_velocity = feedback_.velocity / units_.counts_per_unit();
     view_.actual_torque = config_.gearing.inverted ? -feedback_.torque : feedback_.torque;
-    view_.target_position = units_.to_program(goal_.kind == Goal::Kind::position ? goal_.value : setpoint_.end().position);
-    view_.limiter = setpoint_.at_rest() ? VelocityLimiter::none : goal_.limiter;
 
     view_.drive_state = feedback_.power;
     view_.drive_mode = feedback_.mode;
@@ -190,9 +196,16 @@ void Axis::publish() noexcept {
     view_.negative_limit_switch = negative_switch_;
     view_.positive_limit_switch = positive_switch_;
     view_.home_switch = feedback_.home_switch;
-    view_.active_kind = queue_.active().command.kind;
-    view_.lock = stop_lock_;
-    queue_.publish(view_);
+}
+
+void Axis::publish_setpoint() noexcept {
+    const auto& set = setpoint_.state();
+    view_.set_position = units_.to_program(set.position);
+    view_.set_velocity = set.velocity;
+    view_.set_acceleration = set.acceleration;
+    view_.set_jerk = setpoint_.jerk();
+    view_.target_position = units_.to_program(goal_.kind == Goal::Kind::position ? goal_.value : setpoint_.end().position);
+    view_.limiter = setpoint_.at_rest() ? VelocityLimiter::none : goal_.limiter;
 }
 
 }  // namespace taktwerk::axes

@@ -121,7 +121,11 @@ private:
     void run_power() noexcept;
     [[nodiscard]] bool power_wanted() const noexcept;
     void watch_following_error() noexcept;
+    // The view in three parts, since a cycle changes them at different points. Who shifts coordinates publishes all.
     void publish() noexcept;
+    void publish_state() noexcept;
+    void publish_feedback() noexcept;
+    void publish_setpoint() noexcept;
     [[nodiscard]] double actual_local() const noexcept { return units_.local(actual_counts_); }
     [[nodiscard]] bool online() const noexcept { return seeded_ && feedback_.online && stale_ <= stale_limit_; }
     [[nodiscard]] bool drive_faulted() const noexcept;

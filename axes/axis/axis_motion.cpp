@@ -21,6 +21,7 @@ void Axis::plan(Instant now, Duration period) noexcept {
         publish();
         return;
     }
+    const bool may_be_homed = state_ == AxisState::Homing;
     step_homing();
     // A velocity command has shown InVelocity for a cycle: what waits behind it takes over (it has no Done, so it counts as aborted).
     if (view_.active_in_target && queue_.active().command.kind == CommandKind::move_velocity && queue_.waiting() > 0) {
@@ -35,7 +36,9 @@ void Axis::plan(Instant now, Duration period) noexcept {
     setpoint_.advance(period);
     guard(before, period);
     complete();
-    publish();
+    publish_state();
+    publish_setpoint();
+    if (may_be_homed) publish_feedback();  // in other coordinates
 }
 
 void Axis::follow_actual(Duration period) noexcept {

@@ -21,6 +21,7 @@ public:
     static constexpr std::size_t capacity = 8;
 
     [[nodiscard]] CommandId next_id() noexcept {
+        changed_ = true;
         if (++last_id_ == 0) ++last_id_;
         return last_id_;
     }
@@ -30,13 +31,18 @@ public:
     [[nodiscard]] std::size_t waiting() const noexcept { return waiting_; }
 
     void activate(const AcceptedCommand& command) noexcept {
+        changed_ = true;
         active_ = command;
         in_target_ = false;
     }
     /// Only when there is room (waiting() < depth of the axis).
-    void push(const AcceptedCommand& command) noexcept { queue_[waiting_++] = command; }
+    void push(const AcceptedCommand& command) noexcept {
+        changed_ = true;
+        queue_[waiting_++] = command;
+    }
     /// Only when waiting() > 0.
     [[nodiscard]] AcceptedCommand pop() noexcept {
+        changed_ = true;
         const auto first = queue_[0];
         for (std::size_t i = 1; i < waiting_; ++i) queue_[i - 1] = queue_[i];
         --waiting_;
@@ -47,22 +53,29 @@ public:
 
     void finish_active(Outcome outcome, ErrorId error = ErrorId::none) noexcept {
         if (active_.id == 0) return;
+        changed_ = true;
         record(active_.id, outcome, error);
         active_ = {};
         in_target_ = false;
     }
     void finish_waiting(Outcome outcome, ErrorId error = ErrorId::none) noexcept {
         for (std::size_t i = 0; i < waiting_; ++i) record(queue_[i].id, outcome, error);
+        changed_ = changed_ || waiting_ > 0;
         waiting_ = 0;
     }
     void record(CommandId id, Outcome outcome, ErrorId error) noexcept {
+        changed_ = true;
         ledger_[ledger_next_] = {id, outcome, error};
         ledger_next_ = static_cast<std::uint8_t>((ledger_next_ + 1) % ledger_.size());
     }
 
-    void publish(AxisView& view) const noexcept {
-        view.active = active_.id;
+    /// Writes what has changed since the last call.
+    void publish(AxisView& view) noexcept {
         view.active_in_target = in_target_;
+        if (!changed_) return;
+        changed_ = false;
+        view.active = active_.id;
+        view.active_kind = active_.command.kind;
         view.queued_count = static_cast<std::uint8_t>(waiting_);
         for (std::size_t i = 0; i < capacity; ++i) view.queued[i] = i < waiting_ ? queue_[i].id : 0;
         view.ledger = ledger_;
@@ -78,6 +91,7 @@ private:
     decltype(AxisView::ledger) ledger_{};
     std::uint8_t ledger_next_ = 0;
     CommandId last_id_ = 0;
+    bool changed_ = true;  // since the last publish()
 };
 
 }  // namespace taktwerk::axes
