@@ -13,6 +13,7 @@
 #include "fb_library/iec/edges.hpp"
 #include "fb_library/iec/timers.hpp"
 #include "fb_library/motion/administration.hpp"
+#include "fb_library/motion/endless_moves.hpp"
 #include "fb_library/motion/home.hpp"
 #include "fb_library/motion/jog.hpp"
 #include "fb_library/motion/moves.hpp"
@@ -34,8 +35,9 @@ struct BlockList {
 using IecBlocks = BlockList<SR, RS, R_TRIG, F_TRIG, CTU, CTU_DINT, CTU_LINT, CTU_UDINT, CTU_ULINT, CTD, CTD_DINT, CTD_LINT, CTD_UDINT,
                             CTD_ULINT, CTUD, CTUD_DINT, CTUD_LINT, CTUD_UDINT, CTUD_ULINT, TP, TON, TOF>;
 
-using MotionBlocks = BlockList<MC_Power, MC_Home, MC_Stop, MC_Halt, MC_MoveAbsolute, MC_MoveRelative, MC_MoveVelocity, MC_Jog,
-                               MC_SetPosition, MC_ReadActualPosition, MC_ReadStatus, MC_ReadAxisError, MC_Reset>;
+using MotionBlocks = BlockList<MC_Power, MC_Home, MC_Stop, MC_Halt, MC_MoveAbsolute, MC_MoveRelative, MC_MoveAdditive, MC_MoveVelocity,
+                               MC_MoveContinuousAbsolute, MC_MoveContinuousRelative, MC_Jog, MC_SetPosition, MC_ReadActualPosition,
+                               MC_ReadStatus, MC_ReadAxisError, MC_Reset>;
 
 using FieldbusBlocks = BlockList<EC_SdoRead, EC_SdoWrite>;
 

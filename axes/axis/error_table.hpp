@@ -98,6 +98,8 @@ inline constexpr std::array<ErrorText, error_id_count> error_texts{{
      "Stop the axis first (MC_Halt)"},
     {ErrorId::update_not_possible, "update_not_possible", "ContinuousUpdate gave values that the running command cannot take",
      "ContinuousUpdate 的新值无法用于当前命令", "Check the inputs; the command goes on with the last good values"},
+    {ErrorId::aborted_by_command, "aborted_by_command", "Another command, or power off, ended this one before it was done",
+     "该命令在完成前被其他命令或断电终止", "Give it again when the axis is free"},
 }};
 // clang-format on
 

@@ -111,7 +111,9 @@ enum class ErrorId : std::uint16_t {
     drive_mode_refused = 0x002E,   ///< the drive did not take the mode in time
     not_at_standstill = 0x002F,    ///< the drive changes its mode at standstill only
     update_not_possible = 0x0030,  ///< ContinuousUpdate gave values that this command cannot take
+    // Blocks without CommandAborted.
+    aborted_by_command = 0x0031,  ///< another command, or power off, ended it before it was done
 };
-inline constexpr std::size_t error_id_count = 0x0031;
+inline constexpr std::size_t error_id_count = 0x0032;
 
 }  // namespace taktwerk::axes

@@ -1,7 +1,6 @@
 #pragma once
 // MC_Reset and MC_SetPosition: PLCopen Part 1 v2.0, 3.31, 3.17. Real-time safe.
 
-#include <array>
 #include <string_view>
 
 #include "fb_library/motion/execute_block.hpp"
@@ -25,14 +24,8 @@ struct MC_Reset : ExecuteBlock<MC_Reset> {
 
     static constexpr std::string_view summary = "Clears the axis' errors: from ErrorStop to Standstill or Disabled.";
     static consteval auto pins() {
-        return std::array{
-            in_out<&Self::Axis>("", "axis acted on"),
-            in<&Self::Execute>("", "a rising edge starts"),
-            out<&Self::Done>("", "the axis is not in ErrorStop (any more)"),
-            out<&Self::Busy>("", "not finished"),
-            out<&Self::Error>("", "refused, or the cause is still there"),
-            out<&Self::ErrorID>("", "why"),
-        };
+        return pin_table(shared<&Self::Axis, &Self::Execute>(), out<&Self::Done>("", "the axis is not in ErrorStop (any more)"),
+                         shared<&Self::Busy>(), out<&Self::Error>("", "refused, or the cause is still there"), shared<&Self::ErrorID>());
     }
 
 private:
@@ -56,8 +49,8 @@ private:
     }
 };
 
-/// Done in the call after the edge, when the views show the new coordinates. ExecutionMode mcQueued is not supported so far.
-struct MC_SetPosition : ExecuteBlock<MC_SetPosition> {
+/// Done when the views show the new coordinates: at once in the call after the edge, queued when its turn came.
+struct MC_SetPosition : SettingBlock<MC_SetPosition> {
     AxisRef Axis{};
     bool Execute = false;
     double Position = 0;
@@ -67,36 +60,15 @@ struct MC_SetPosition : ExecuteBlock<MC_SetPosition> {
     bool Done = false, Busy = false, Error = false;
     ErrorId ErrorID{};
 
-    std::uint64_t start_cycle = 0;  ///< not a pin
-
     static constexpr std::string_view summary = "Shifts the axis' coordinates: set and actual position alike, without motion.";
     static consteval auto pins() {
-        return std::array{
-            in_out<&Self::Axis>("", "axis acted on"),
-            in<&Self::Execute>("", "a rising edge starts"),
-            in<&Self::Position>("u", "the actual position's new value; with Relative added to it"),
-            in<&Self::Relative>("", "Position is a distance"),
-            in<&Self::ExecutionMode>("", "mcQueued is not supported so far and gives Error"),
-            out<&Self::Done>("", "the position has its new value"),
-            out<&Self::Busy>("", "not finished"),
-            out<&Self::Error>("", "refused"),
-            out<&Self::ErrorID>("", "why"),
-        };
+        return pin_table(shared<&Self::Axis, &Self::Execute>(),
+                         in<&Self::Position>("u", "the actual position's new value; with Relative added to it"),
+                         in<&Self::Relative>("", "Position is a distance"), shared<&Self::ExecutionMode>(),
+                         out<&Self::Done>("", "the position has its new value"), outcome<Self>());
     }
 
-private:
-    friend ExecuteBlock<MC_SetPosition>;
-    void start(const MotionContext& ctx) noexcept {
-        if (ctx.view(Axis) == nullptr) return core_.refuse(ErrorId::invalid_axis);
-        if (ExecutionMode != mcImmediately) return core_.refuse(ErrorId::not_supported);
-        const ErrorId error = ctx.requests->set(Axis, axes::SetPosition{Position, Relative}, ctx.owner);
-        if (error != ErrorId::none) return core_.refuse(error);
-        core_.start(Axis);
-        start_cycle = ctx.cycle;
-    }
-    void follow(const MotionContext& ctx) noexcept {
-        if (ctx.cycle != start_cycle) core_.finish();
-    }
+    [[nodiscard]] axes::SetPosition setting() const noexcept { return {Position, Relative}; }
 };
 
 }  // namespace taktwerk::fb

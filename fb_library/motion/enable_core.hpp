@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "fb_library/motion/motion_types.hpp"
+#include "fb_library/motion/shared_pins.hpp"
 
 namespace taktwerk::fb {
 
@@ -44,7 +45,9 @@ public:
     /// Sets whichever of the standard's outputs the block has.
     template <class Block>
     constexpr void publish(Block& block) const noexcept {
-        block.Valid = valid();
+        if constexpr (requires { block.Valid; }) block.Valid = valid();
+        if constexpr (requires { block.Enabled; }) block.Enabled = valid();
+        if constexpr (requires { block.InOperation; }) block.InOperation = valid();
         if constexpr (requires { block.Busy; }) block.Busy = working();
         block.Error = last_.error != ErrorId::none;
         block.ErrorID = last_.error;

@@ -1,13 +1,21 @@
 #pragma once
 // The thin bases of Execute blocks over ExecuteCore.
 //
-// A motion block derives from CommandBlock and says `AxisCommand command() const`; optionally `ErrorId refusal() const` (inputs
-// that this version cannot honour) and `in_target_pin` (Inxxx instead of Done). An administrative block derives from ExecuteBlock and
-// says `start(ctx)` and `follow(ctx)`, both on `core_`; a block that must act on the falling edge says `released(ctx)`.
+//   CommandBlock   a command of the axis: its `kind`, the inputs of the usual names, and `details() const` where the kind has some; taken
+//                  at the edge and, with ContinuousUpdate, in each call. Inxxx instead of Done: `in_target_pin`. The axis acted on is Slave
+//                  where there is one, otherwise Axis.
+//   SettingBlock   something of the axis that is no motion, at once or queued. Says `AxisSetting setting() const` and has ExecutionMode.
+//   ExecuteBlock   everything else: `start(ctx)` and `follow(ctx)`, both on `core_`; a block that must act on the falling edge says
+//                  `released(ctx)`.
+//
+// A block with outputs of its own says `show(ctx)`: it runs last in each call and must be public.
+
+#include <cstdint>
 
 #include "core/time.hpp"
 #include "fb_library/motion/execute_core.hpp"
 #include "fb_library/motion/motion_types.hpp"
+#include "fb_library/motion/shared_pins.hpp"
 
 namespace taktwerk::fb {
 
@@ -24,6 +32,7 @@ struct ExecuteBlock {
             if (edge == ExecuteCore::Edge::falling) block.released(ctx);
         if (core_.running()) block.follow(ctx);
         core_.publish(block);
+        if constexpr (requires { block.show(ctx); }) block.show(ctx);
     }
 
     void warm_start(Instant) noexcept {
@@ -33,27 +42,91 @@ struct ExecuteBlock {
     }
 
 protected:
+    [[nodiscard]] AxisRef acted_on() const noexcept {
+        const Block& block = static_cast<const Block&>(*this);
+        if constexpr (requires { block.Slave; }) return block.Slave;
+        else return block.Axis;
+    }
+
     ExecuteCore core_;
 };
 
 template <class Block>
 struct CommandBlock : ExecuteBlock<Block> {
+    /// The latch of the inputs as they are now.
+    [[nodiscard]] axes::AxisCommand command() const noexcept {
+        const Block& block = static_cast<const Block&>(*this);
+        axes::AxisCommand command{.kind = Block::kind};
+        if constexpr (requires { block.BufferMode; }) command.buffer_mode = block.BufferMode;
+        if constexpr (requires { block.Direction; }) command.direction = block.Direction;
+        if constexpr (requires { block.Position; }) command.position = block.Position;
+        if constexpr (requires { block.Distance; }) command.position = block.Distance;
+        if constexpr (requires { block.PhaseShift; }) command.position = block.PhaseShift;
+        if constexpr (requires { block.Velocity; }) command.velocity = block.Velocity;
+        if constexpr (requires { block.VelocityDiff; }) command.velocity = block.VelocityDiff;
+        if constexpr (requires { block.EndVelocity; }) command.end_velocity = block.EndVelocity;
+        if constexpr (requires { block.Acceleration; }) command.acceleration = block.Acceleration;
+        if constexpr (requires { block.Deceleration; }) command.deceleration = block.Deceleration;
+        if constexpr (requires { block.Jerk; }) command.jerk = block.Jerk;
+        if constexpr (requires { block.details(); }) command.details = block.details();
+        return command;
+    }
+
 protected:
     friend ExecuteBlock<Block>;
 
     void start(const MotionContext& ctx) noexcept {
         const Block& block = static_cast<const Block&>(*this);
+        this->core_.submit(ctx, this->acted_on(), block.command());
         if constexpr (requires { block.ContinuousUpdate; })
-            if (block.ContinuousUpdate) return this->core_.refuse(ErrorId::not_supported);
-        if constexpr (requires { block.refusal(); })
-            if (const ErrorId error = block.refusal(); error != ErrorId::none) return this->core_.refuse(error);
-        this->core_.submit(ctx, block.Axis, block.command());
+            if (block.ContinuousUpdate) this->core_.allow_updates();
     }
 
     void follow(const MotionContext& ctx) noexcept {
+        const Block& block = static_cast<const Block&>(*this);
         if constexpr (requires { Block::in_target_pin; }) this->core_.follow(ctx, Completion::in_target);
         else this->core_.follow(ctx, Completion::done);
+        if constexpr (requires { block.ContinuousUpdate; }) {
+            if (!block.ContinuousUpdate) this->core_.end_updates();
+            if (this->core_.updating()) this->core_.update(ctx, block.command());
+        }
+        if constexpr (!requires { block.CommandAborted; })
+            if (this->core_.aborted()) this->core_.refuse(ErrorId::aborted_by_command);
     }
+};
+
+template <class Block>
+struct SettingBlock : ExecuteBlock<Block> {
+protected:
+    friend ExecuteBlock<Block>;
+
+    void start(const MotionContext& ctx) noexcept {
+        const Block& block = static_cast<const Block&>(*this);
+        const AxisRef axis = this->acted_on();
+        if (ctx.view(axis) == nullptr) return this->core_.refuse(ErrorId::invalid_axis);
+        if (block.ExecutionMode == mcQueued) {
+            const axes::AxisCommand queued{
+                .kind = axes::CommandKind::setting, .buffer_mode = mcBuffered, .details = axes::AxisSetting{block.setting()}};
+            return this->core_.submit(ctx, axis, queued);
+        }
+        if (const ErrorId error = ctx.requests->set(axis, block.setting(), ctx.owner); error != ErrorId::none)
+            return this->core_.refuse(error);
+        this->core_.start(axis);
+        start_cycle_ = ctx.cycle;
+    }
+
+    /// At once: the views of the next scan show it.
+    void follow(const MotionContext& ctx) noexcept {
+        if (this->core_.command() == 0) {
+            if (ctx.cycle != start_cycle_) this->core_.finish();
+            return;
+        }
+        this->core_.follow(ctx, Completion::done);
+        if (this->core_.aborted()) this->core_.refuse(ErrorId::aborted_by_command);
+    }
+
+private:
+    std::uint64_t start_cycle_ = 0;
 };
 
 }  // namespace taktwerk::fb

@@ -7,7 +7,10 @@
 //   * A falling Execute changes nothing in the motion. A new edge while Busy starts anew; the former command's outcome is not shown.
 //   * A new edge that is refused shows Error; what the axis was doing before goes on (an instance's error does not touch the axis).
 //   * A new instance compares with FALSE: Execute TRUE in its first call is an edge.
-//   * ContinuousUpdate is not supported so far: TRUE at the edge is refused with not_supported, never silently ignored.
+//   * ContinuousUpdate TRUE at the edge: from the next call on the inputs go to the axis in each call, as long as it stays TRUE and the
+//     block is Busy; once FALSE it never comes back for this command. Values that the axis refuses show Error; the axis goes on with the
+//     last good ones.
+//   * A command that another one aborts, on a block without CommandAborted, is an Error: aborted_by_command.
 
 #include <cstdint>
 
@@ -31,6 +34,7 @@ public:
         const Edge edge = execute == execute_ ? Edge::none : execute ? Edge::rising : Edge::falling;
         execute_ = execute;
         if (!execute && finished()) phase_ = Phase::idle;
+        if (updates_ == Updates::from_next_call) updates_ = Updates::now;
         return edge;
     }
 
@@ -42,6 +46,18 @@ public:
         axis_ = axis;
         command_ = answer.id;
         phase_ = Phase::waiting;
+        updates_ = Updates::never;
+    }
+
+    // ContinuousUpdate. In the call of the edge the command has the inputs already.
+    constexpr void allow_updates() noexcept {
+        if (running()) updates_ = Updates::from_next_call;
+    }
+    constexpr void end_updates() noexcept { updates_ = Updates::never; }
+    [[nodiscard]] constexpr bool updating() const noexcept { return updates_ == Updates::now && running(); }
+    /// Gives the running command other inputs.
+    void update(const axes::MotionContext& ctx, const axes::AxisCommand& command) noexcept {
+        if (const auto error = ctx.requests->update(axis_, command_, command, ctx.owner); error != axes::ErrorId::none) refuse(error);
     }
 
     /// Reads what became of the command. An id that the view has not seen yet is on its way (a slower task's view is older
@@ -87,6 +103,11 @@ public:
         command_ = 0;
     }
 
+    /// The command controls the axis, or runs beside what does.
+    [[nodiscard]] constexpr bool active() const noexcept { return phase_ == Phase::active || phase_ == Phase::in_target; }
+    [[nodiscard]] constexpr bool in_target() const noexcept { return phase_ == Phase::in_target; }
+    [[nodiscard]] constexpr bool done() const noexcept { return phase_ == Phase::done; }
+    [[nodiscard]] constexpr bool aborted() const noexcept { return phase_ == Phase::aborted; }
     [[nodiscard]] constexpr bool running() const noexcept { return phase_ >= Phase::waiting && phase_ <= Phase::in_target; }
     [[nodiscard]] constexpr bool finished() const noexcept { return phase_ >= Phase::done; }
     /// The axis and command of the last accepted start; 0 = none.
@@ -99,13 +120,14 @@ public:
         if constexpr (requires { block.Done; }) block.Done = phase_ == Phase::done;
         if constexpr (requires { Block::in_target_pin; }) block.*Block::in_target_pin = phase_ == Phase::in_target;
         if constexpr (requires { block.Busy; }) block.Busy = running();
-        if constexpr (requires { block.Active; }) block.Active = phase_ == Phase::active || phase_ == Phase::in_target;
+        if constexpr (requires { block.Active; }) block.Active = active();
         if constexpr (requires { block.CommandAborted; }) block.CommandAborted = phase_ == Phase::aborted;
         block.Error = phase_ == Phase::error;
         block.ErrorID = phase_ == Phase::error ? error_ : axes::ErrorId::none;
     }
 
 private:
+    enum class Updates : std::uint8_t { never, from_next_call, now };
     enum class Phase : std::uint8_t { idle, waiting, active, in_target, done, aborted, error };
 
     axes::CommandId command_ = 0;
@@ -113,6 +135,7 @@ private:
     axes::ErrorId error_ = axes::ErrorId::none;
     Phase phase_ = Phase::idle;
     bool execute_ = false;
+    Updates updates_ = Updates::never;
 };
 
 }  // namespace taktwerk::fb

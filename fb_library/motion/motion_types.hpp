@@ -30,6 +30,27 @@ using enum axes::MC_SyncMode;
 using axes::MC_CombineMode;
 using enum axes::MC_CombineMode;
 
+using axes::CamId;
+using axes::CamRef;
+using axes::CamSwitchRef;
+using axes::InputRef;
+using axes::OutputRef;
+using axes::TimeTableRef;
+using axes::TrackRef;
+using axes::TriggerRef;
+
+// One table over time, three meanings: the pin's type says which (positions, velocities, accelerations). A declared table is assigned
+// as it is: `profile.TimePosition = d.time_table(...)`.
+struct MC_TP_REF : TimeTableRef {
+    constexpr MC_TP_REF(TimeTableRef table = {}) noexcept : TimeTableRef{table} {}
+};
+struct MC_TV_REF : TimeTableRef {
+    constexpr MC_TV_REF(TimeTableRef table = {}) noexcept : TimeTableRef{table} {}
+};
+struct MC_TA_REF : TimeTableRef {
+    constexpr MC_TA_REF(TimeTableRef table = {}) noexcept : TimeTableRef{table} {}
+};
+
 /// The modes of TwinCAT's MC_Jog, in its order.
 enum MC_JogMode : std::uint8_t {
     mcJogStandardSlow,   ///< the axis' configured slow manual velocity; the block's dynamics are ignored
@@ -55,6 +76,16 @@ inline constexpr std::array<std::string_view, 5> jog_mode_names{"mcJogStandardSl
 
 // clang-format off
 template <> struct PinTypeOf<AxisRef> { static constexpr PinType value{PinKind::AXIS_REF, "AXIS_REF"}; };
+template <> struct PinTypeOf<CamRef> { static constexpr PinType value{PinKind::HANDLE, "MC_CAM_REF"}; };
+template <> struct PinTypeOf<CamId> { static constexpr PinType value{PinKind::HANDLE, "MC_CAM_ID"}; };
+template <> struct PinTypeOf<MC_TP_REF> { static constexpr PinType value{PinKind::HANDLE, "MC_TP_REF"}; };
+template <> struct PinTypeOf<MC_TV_REF> { static constexpr PinType value{PinKind::HANDLE, "MC_TV_REF"}; };
+template <> struct PinTypeOf<MC_TA_REF> { static constexpr PinType value{PinKind::HANDLE, "MC_TA_REF"}; };
+template <> struct PinTypeOf<CamSwitchRef> { static constexpr PinType value{PinKind::HANDLE, "MC_CAMSWITCH_REF"}; };
+template <> struct PinTypeOf<TrackRef> { static constexpr PinType value{PinKind::HANDLE, "MC_TRACK_REF"}; };
+template <> struct PinTypeOf<TriggerRef> { static constexpr PinType value{PinKind::HANDLE, "MC_TRIGGER_REF"}; };
+template <> struct PinTypeOf<InputRef> { static constexpr PinType value{PinKind::HANDLE, "MC_INPUT_REF"}; };
+template <> struct PinTypeOf<OutputRef> { static constexpr PinType value{PinKind::HANDLE, "MC_OUTPUT_REF"}; };
 template <> struct PinTypeOf<ErrorId> { static constexpr PinType value{PinKind::WORD, "WORD"}; };
 template <> struct PinTypeOf<MC_BufferMode> { static constexpr PinType value{PinKind::ENUM, "MC_BUFFER_MODE", detail::buffer_mode_names}; };
 template <> struct PinTypeOf<MC_Direction> { static constexpr PinType value{PinKind::ENUM, "MC_DIRECTION", detail::direction_names}; };

@@ -2,7 +2,6 @@
 // MC_ReadStatus, MC_ReadActualPosition, MC_ReadAxisError: PLCopen Part 1 v2.0, 3.27, 3.24, 3.30. Real-time safe.
 // What they give is the axis view of this scan. Values go back to 0 or FALSE whenever Valid is FALSE.
 
-#include <array>
 #include <cstdint>
 #include <string_view>
 
@@ -21,22 +20,12 @@ struct MC_ReadStatus : EnableBlock<MC_ReadStatus> {
 
     static constexpr std::string_view summary = "Gives the axis' state: exactly one of eight outputs is TRUE while Valid.";
     static consteval auto pins() {
-        return std::array{
-            in_out<&Self::Axis>("", "axis read"),
-            in<&Self::Enable>("", "reads while TRUE"),
-            out<&Self::Valid>("", "outputs are valid"),
-            out<&Self::Busy>("", "reading"),
-            out<&Self::Error>("", "cannot read"),
-            out<&Self::ErrorID>("", "why"),
-            out<&Self::ErrorStop>("", "stopped by an axis error; MC_Reset leads out"),
-            out<&Self::Disabled>("", "power off"),
-            out<&Self::Stopping>("", "MC_Stop stops or locks the axis"),
-            out<&Self::Homing>("", "MC_Home runs"),
-            out<&Self::Standstill>("", "power on, nothing to do"),
-            out<&Self::DiscreteMotion>("", "a motion that ends by itself"),
-            out<&Self::ContinuousMotion>("", "a motion without end"),
-            out<&Self::SynchronizedMotion>("", "follows a master"),
-        };
+        return pin_table(shared<&Self::Axis, &Self::Enable>(), reading<Self>(),
+                         out<&Self::ErrorStop>("", "stopped by an axis error; MC_Reset leads out"), out<&Self::Disabled>("", "power off"),
+                         out<&Self::Stopping>("", "MC_Stop stops or locks the axis"), out<&Self::Homing>("", "MC_Home runs"),
+                         out<&Self::Standstill>("", "power on, nothing to do"),
+                         out<&Self::DiscreteMotion>("", "a motion that ends by itself"),
+                         out<&Self::ContinuousMotion>("", "a motion without end"), out<&Self::SynchronizedMotion>("", "follows a master"));
     }
 
 private:
@@ -71,15 +60,8 @@ struct MC_ReadActualPosition : EnableBlock<MC_ReadActualPosition> {
 
     static constexpr std::string_view summary = "Gives the axis' actual position.";
     static consteval auto pins() {
-        return std::array{
-            in_out<&Self::Axis>("", "axis read"),
-            in<&Self::Enable>("", "reads while TRUE"),
-            out<&Self::Valid>("", "Position is valid"),
-            out<&Self::Busy>("", "reading"),
-            out<&Self::Error>("", "cannot read"),
-            out<&Self::ErrorID>("", "why"),
-            out<&Self::Position>("u", "actual position; 0 while not Valid"),
-        };
+        return pin_table(shared<&Self::Axis, &Self::Enable>(), reading<Self>(),
+                         out<&Self::Position>("u", "actual position; 0 while not Valid"));
     }
 
 private:
@@ -102,15 +84,8 @@ struct MC_ReadAxisError : EnableBlock<MC_ReadAxisError> {
 
     static constexpr std::string_view summary = "Gives the error that holds the axis in ErrorStop.";
     static consteval auto pins() {
-        return std::array{
-            in_out<&Self::Axis>("", "axis read"),
-            in<&Self::Enable>("", "reads while TRUE"),
-            out<&Self::Valid>("", "AxisErrorID is valid"),
-            out<&Self::Busy>("", "reading"),
-            out<&Self::Error>("", "cannot read (not: the axis has an error)"),
-            out<&Self::ErrorID>("", "why"),
-            out<&Self::AxisErrorID>("", "alarm id of the axis; 0 = none"),
-        };
+        return pin_table(shared<&Self::Axis, &Self::Enable>(), reading<Self>(),
+                         out<&Self::AxisErrorID>("", "alarm id of the axis; 0 = none"));
     }
 
 private:

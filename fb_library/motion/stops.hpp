@@ -4,7 +4,6 @@
 // MC_Stop locks the axis (state Stopping) while its Execute is TRUE, Done or not; only power off makes it CommandAborted. MC_Halt is an
 // ordinary command: anything may take over during its ramp. Deceleration and Jerk 0 mean the axis' default in both.
 
-#include <array>
 #include <string_view>
 
 #include "fb_library/motion/execute_block.hpp"
@@ -19,23 +18,13 @@ struct MC_Stop : CommandBlock<MC_Stop> {
     bool Done = false, Busy = false, CommandAborted = false, Error = false;
     ErrorId ErrorID{};
 
+    static constexpr auto kind = axes::CommandKind::stop;
     static constexpr std::string_view summary = "Stops the axis, ends whatever it does and locks it while Execute is TRUE.";
     static consteval auto pins() {
-        return std::array{
-            in_out<&Self::Axis>("", "axis acted on"),
-            in<&Self::Execute>("", "a rising edge stops; the axis stays locked while TRUE"),
-            in<&Self::Deceleration>("u/s2", "0 = the axis' default"),
-            in<&Self::Jerk>("u/s3", "0 = the axis' default"),
-            out<&Self::Done>("", "set velocity is zero"),
-            out<&Self::Busy>("", "not finished"),
-            out<&Self::CommandAborted>("", "power went off"),
-            out<&Self::Error>("", "refused, or ended by an axis error"),
-            out<&Self::ErrorID>("", "why"),
-        };
-    }
-
-    [[nodiscard]] axes::AxisCommand command() const noexcept {
-        return {.kind = axes::CommandKind::stop, .deceleration = Deceleration, .jerk = Jerk};
+        return pin_table(shared<&Self::Axis>(),  //
+                         in<&Self::Execute>("", "a rising edge stops; the axis stays locked while TRUE"),
+                         shared<&Self::Deceleration, &Self::Jerk>(), out<&Self::Done>("", "set velocity is zero"), shared<&Self::Busy>(),
+                         out<&Self::CommandAborted>("", "power went off"), shared<&Self::Error, &Self::ErrorID>());
     }
 
 private:
@@ -56,25 +45,11 @@ struct MC_Halt : CommandBlock<MC_Halt> {
     bool Done = false, Busy = false, Active = false, CommandAborted = false, Error = false;
     ErrorId ErrorID{};
 
+    static constexpr auto kind = axes::CommandKind::halt;
     static constexpr std::string_view summary = "Brings the axis to standstill; any other command may take over meanwhile.";
     static consteval auto pins() {
-        return std::array{
-            in_out<&Self::Axis>("", "axis acted on"),
-            in<&Self::Execute>("", "a rising edge starts"),
-            in<&Self::Deceleration>("u/s2", "0 = the axis' default"),
-            in<&Self::Jerk>("u/s3", "0 = the axis' default"),
-            in<&Self::BufferMode>("", "when the command takes effect"),
-            out<&Self::Done>("", "set velocity is zero"),
-            out<&Self::Busy>("", "not finished"),
-            out<&Self::Active>("", "this command controls the axis"),
-            out<&Self::CommandAborted>("", "another command took over, or power went off"),
-            out<&Self::Error>("", "refused, or ended by an axis error"),
-            out<&Self::ErrorID>("", "why"),
-        };
-    }
-
-    [[nodiscard]] axes::AxisCommand command() const noexcept {
-        return {.kind = axes::CommandKind::halt, .buffer_mode = BufferMode, .deceleration = Deceleration, .jerk = Jerk};
+        return pin_table(shared<&Self::Axis, &Self::Execute, &Self::Deceleration, &Self::Jerk, &Self::BufferMode>(),
+                         out<&Self::Done>("", "set velocity is zero"), outcome<Self>());
     }
 };
 

@@ -16,7 +16,7 @@
 
 namespace taktwerk::fb {
 
-/// IEC 61131-3 ed. 3 elementary types (6.4.2), plus an axis handle and enumerations.
+/// IEC 61131-3 ed. 3 elementary types (6.4.2), plus handles and enumerations.
 enum class PinKind : std::uint8_t {
     BOOL,
     SINT,
@@ -30,10 +30,12 @@ enum class PinKind : std::uint8_t {
     REAL,
     LREAL,
     WORD,
-    TIME,      ///< int64 nanoseconds: never wraps in the life of a machine (292 years)
+    DWORD,
+    TIME,        ///< int64 nanoseconds: never wraps in the life of a machine (292 years)
     AXIS_REF,    ///< axes::AxisRef, a handle
     DEVICE_REF,  ///< taktwerk::DeviceRef, a handle
-    ENUM,      ///< unsigned 8 bit; PinType::values names the numbers 0, 1, ...
+    HANDLE,      ///< to something else; PinType::name says to what ("MC_CAM_REF"). Its bytes mean nothing outside the machine
+    ENUM,        ///< unsigned 8 bit; PinType::values names the numbers 0, 1, ...
 };
 
 struct PinType {
@@ -105,20 +107,33 @@ consteval std::string_view type_name() {
     return colons == std::string_view::npos ? whole : whole.substr(colons + 2);
 }
 
+/// An array of T beginning `Shift` bytes into an object.
+template <class T, std::size_t N, std::size_t Shift>
+struct ShiftedSlots {
+    std::byte before[Shift];
+    T slots[N];
+};
+template <class T, std::size_t N>
+struct ShiftedSlots<T, N, 0> {
+    T slots[N];
+};
+
 /// offsetof for a member pointer, as a constant: the member is looked for among the slots of an array laid over the object.
-template <auto M>
+template <auto M, std::size_t Shift = 0>
 consteval std::size_t offset_of() {
     using C = typename MemberOf<decltype(M)>::Class;
     using T = typename MemberOf<decltype(M)>::Type;
     union Overlay {
         C object;
-        T slots[sizeof(C) / sizeof(T) + 1];
+        ShiftedSlots<T, sizeof(C) / sizeof(T) + 1, Shift> laid;
         constexpr Overlay() : object{} {}
     };
     constexpr Overlay overlay{};
     for (std::size_t i = 0; i <= sizeof(C) / sizeof(T); ++i)
-        if (&overlay.slots[i] == &(overlay.object.*M)) return i * sizeof(T);
-    throw "a pin's offset is no multiple of its size";  // not a constant: the build stops here
+        if (&overlay.laid.slots[i] == &(overlay.object.*M)) return Shift + i * sizeof(T);
+    // A handle of 6 bytes lies at a multiple of its alignment, not of 6.
+    if constexpr (Shift + alignof(T) < sizeof(T)) return offset_of<M, Shift + alignof(T)>();
+    else throw "a pin lies nowhere";  // not a constant: the build stops here
 }
 
 template <auto M>
@@ -140,6 +155,27 @@ consteval Pin out(std::string_view unit, std::string_view doc) {
 template <auto Member>
 consteval Pin in_out(std::string_view unit, std::string_view doc) {
     return detail::pin<Member>(PinDirection::in_out, unit, doc);
+}
+
+namespace detail {
+template <class T>
+inline constexpr std::size_t pins_in = 1;
+template <std::size_t N>
+inline constexpr std::size_t pins_in<std::array<Pin, N>> = N;
+}  // namespace detail
+
+/// A table from pins and from runs of pins (`std::array<Pin, N>`), in the order written.
+template <class... Pieces>
+consteval auto pin_table(const Pieces&... pieces) {
+    std::array<Pin, (detail::pins_in<Pieces> + ...)> table{};
+    std::size_t next = 0;
+    const auto append = [&](const auto& piece) {
+        if constexpr (requires { piece.size(); })
+            for (const Pin& pin : piece) table[next++] = pin;
+        else table[next++] = piece;
+    };
+    (append(pieces), ...);
+    return table;
 }
 
 /// A block's name is its type's name, unless it says otherwise (`static constexpr std::string_view block_name`).

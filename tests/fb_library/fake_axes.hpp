@@ -3,6 +3,7 @@
 // begin, as on a real machine: what is submitted in a scan shows in the next one.
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,8 +36,10 @@ public:
 
     axes::AxisView& axis(std::size_t i = 0) { return now_axes[i]; }
 
-    /// The running command ends; a waiting one takes over.
+    /// The command submitted last ends: the one that runs beside the axis' motion when it was of that sort, otherwise the active one,
+    /// and a waiting one takes over.
     void finish(axes::Outcome outcome, axes::ErrorId error = axes::ErrorId::none, std::size_t i = 0) {
+        if (last_slot) return finish_beside(*last_slot, outcome, error, i);
         auto& a = now_axes[i];
         if (a.active != 0) end(a, a.active, outcome, error);
         a.active = 0;
@@ -47,10 +50,15 @@ public:
             --a.queued_count;
         }
     }
-    /// Some other block's command takes the axis.
+    void finish_beside(axes::SideSlot slot, axes::Outcome outcome, axes::ErrorId error = axes::ErrorId::none, std::size_t i = 0) {
+        auto& running = now_axes[i].side[static_cast<std::size_t>(slot)];
+        if (running != 0) end(now_axes[i], running, outcome, error);
+        running = 0;
+    }
+    /// Some other block's command takes the axis, or the place beside its motion that was taken last.
     void take_over(std::size_t i = 0) {
-        begin(now_axes[i], false);
-        now_axes[i].active_in_target = false;
+        if (last_slot) begin_beside(now_axes[i], *last_slot);
+        else begin(now_axes[i], false);
     }
 
     /// Time goes on by one period; the views are taken anew.
@@ -66,7 +74,12 @@ public:
     // AxisRequests
     axes::Submitted submit(axes::AxisRef ref, const axes::AxisCommand& command, axes::Owner owner) noexcept override {
         axes::Submitted answer{0, refuse_with};
-        if (refuse_with == axes::ErrorId::none) answer.id = begin(now_axes[ref.index], command.buffer_mode != axes::mcAborting);
+        if (refuse_with == axes::ErrorId::none) {
+            auto& a = now_axes[ref.index];
+            last_slot = slot_of(command);
+            answer.id = last_slot ? begin_beside(a, *last_slot) : begin(a, command.buffer_mode != axes::mcAborting);
+            a.active_kind = last_slot ? a.active_kind : command.kind;
+        }
         calls.push_back({.what = "submit", .axis = ref, .command = command, .id = answer.id, .owner = owner});
         return answer;
     }
@@ -103,12 +116,38 @@ public:
 
     std::vector<Call> calls;
     axes::ErrorId refuse_with = axes::ErrorId::none, refuse_renewal_with = axes::ErrorId::none;
+    std::optional<axes::SideSlot> last_slot;  ///< of the command submitted last
     axes::MotionContext context;
 
 private:
     static void end(axes::AxisView& a, axes::CommandId id, axes::Outcome outcome, axes::ErrorId error) {
         a.ledger[a.ledger_next] = {id, outcome, error};
         a.ledger_next = static_cast<std::uint8_t>((a.ledger_next + 1) % a.ledger.size());
+    }
+    static std::optional<axes::SideSlot> slot_of(const axes::AxisCommand& command) {
+        using axes::CommandKind;
+        using axes::SideSlot;
+        switch (command.kind) {
+            case CommandKind::move_superimposed:
+            case CommandKind::halt_superimposed: return SideSlot::superimposed;
+            case CommandKind::phasing_absolute:
+            case CommandKind::phasing_relative: return SideSlot::phasing;
+            case CommandKind::touch_probe: {
+                const auto source = std::get<axes::ProbeDetails>(command.details).trigger.source;
+                return source == axes::TriggerSource::probe2 ? SideSlot::probe2 : SideSlot::probe1;
+            }
+            case CommandKind::homing_step: {
+                const auto step = std::get<axes::HomingStepDetails>(command.details).step;
+                const bool passive = step == axes::HomingStep::flying_switch || step == axes::HomingStep::flying_reference_pulse;
+                return passive ? std::optional{SideSlot::passive_homing} : std::nullopt;
+            }
+            default: return std::nullopt;
+        }
+    }
+    static axes::CommandId begin_beside(axes::AxisView& a, axes::SideSlot slot) {
+        auto& running = a.side[static_cast<std::size_t>(slot)];
+        if (running != 0) end(a, running, axes::Outcome::aborted, axes::ErrorId::none);
+        return running = ++a.last_id;
     }
     static axes::CommandId begin(axes::AxisView& a, bool buffered) {
         const axes::CommandId id = ++a.last_id;

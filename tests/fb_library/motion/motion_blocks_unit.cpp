@@ -389,12 +389,23 @@ TEST_F(SetPosition, PassesRelative) {
     EXPECT_EQ(last().setting, axes::AxisSetting(axes::SetPosition{0, true}));
 }
 
-TEST_F(SetPosition, QueuedIsNotSupportedSoFarAndSaysSo) {
+TEST_F(SetPosition, QueuedItIsDoneWhenItsTurnCame) {  // P1-201
+    axes.take_over();                                 // a motion runs
     block.Execute = true;
+    block.Position = 4.5;
     block.ExecutionMode = mcQueued;
     scan();
-    EXPECT_EQ(block.ErrorID, ErrorId::not_supported);
-    EXPECT_TRUE(axes.calls.empty());
+    EXPECT_EQ(last().what, "submit");
+    EXPECT_EQ(std::get<axes::AxisSetting>(last().command.details), axes::AxisSetting(axes::SetPosition{4.5, false}));
+    scan();
+    EXPECT_TRUE(block.Busy);
+    axes.finish(Outcome::done);  // the motion
+    scan();
+    EXPECT_FALSE(block.Done);
+    axes.finish(Outcome::done);
+    scan();
+    EXPECT_TRUE(block.Done);
+    EXPECT_EQ(count("set"), 0u);
 }
 
 // --- reading -------------------------------------------------------------------------------------------------------------

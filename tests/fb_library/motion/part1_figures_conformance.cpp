@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "fb_library/iec/edges.hpp"
+#include "fb_library/motion/endless_moves.hpp"
 #include "fb_library/motion/moves.hpp"
 #include "fb_library/motion/reading.hpp"
 #include "fb_library/motion/stops.hpp"
