@@ -20,15 +20,15 @@ std::uint32_t stale_cycles(const AxisConfig& config, const DriveCapabilities& dr
 Axis::Axis(AxisConfig config, DrivePort& port, Duration cycle, std::uint16_t index)
     : config_(std::move(config)),
       port_(port),
+      cycle_(cycle),
       stale_limit_(stale_cycles(config_, port.capabilities(), cycle)),
       endless_(std::isinf(config_.limits.position_min) && std::isinf(config_.limits.position_max)),
       units_(config_.gearing),
       power_(port.capabilities().enable_delay, config_.enable_timeout),
       alarms_(index) {
     view_.simulated = config_.simulated;
-    const auto& manual = config_.manual;
-    view_.manual_slow = manual.slow > 0 ? manual.slow : 0.05 * config_.limits.velocity;
-    view_.manual_fast = manual.fast > 0 ? manual.fast : 0.25 * config_.limits.velocity;
+    store_parameters();
+    use_parameters();
     publish();
 }
 
@@ -47,6 +47,7 @@ void Axis::update(Instant now) noexcept {
     if (!config_.disabled) watch_drive();
     run_power();
     watch_following_error();
+    watch_probes();
     run_reset();
     publish_state();
     publish_feedback();
@@ -156,6 +157,9 @@ void Axis::encode(Instant now) noexcept {
     const auto& state = setpoint_.state();
     command_.position = seeded_ ? units_.counts(state.position) : feedback_.position;
     command_.velocity = state.velocity * units_.counts_per_unit();
+    probes_.command(command_.probes);
+    command_.digital_outputs = digital_outputs_;
+    command_.digital_output_mask = digital_output_mask_;
     port_.encode(command_, now);
 
     if (power_.follows_actual() || drive_homing_.busy()) history_.clear();
@@ -177,6 +181,8 @@ void Axis::publish_state() noexcept {
     view_.resetting = resetting_;
     view_.reset_error = reset_error_;
     view_.lock = stop_lock_;
+    view_.digital_outputs = digital_outputs_;
+    publish_probes();
     queue_.publish(view_);
 }
 
@@ -196,6 +202,7 @@ void Axis::publish_feedback() noexcept {
     view_.negative_limit_switch = negative_switch_;
     view_.positive_limit_switch = positive_switch_;
     view_.home_switch = feedback_.home_switch;
+    view_.digital_inputs = feedback_.digital_inputs;
 }
 
 void Axis::publish_setpoint() noexcept {

@@ -25,7 +25,10 @@
 #include "axes/axis/command_check.hpp"
 #include "axes/axis/command_queue.hpp"
 #include "axes/axis/following_error.hpp"
+#include "axes/axis/parameters.hpp"
 #include "axes/axis/power_sequence.hpp"
+#include "axes/axis/probe_board.hpp"
+#include "axes/axis/probe_window.hpp"
 #include "axes/axis/setpoint_generator.hpp"
 #include "axes/axis/state_machine.hpp"
 #include "axes/axis/units.hpp"
@@ -171,15 +174,37 @@ private:
     void start_waiting(double late) noexcept;
     void keep_close_to_anchor() noexcept;
 
+    // axis_probes.cpp
+    [[nodiscard]] ProbeBoard::Signals probe_signals() const noexcept;
+    [[nodiscard]] double program_position(const FinePosition& place) const noexcept;
+    Submitted submit_probe(const AxisCommand& command) noexcept;
+    Submitted arm_probe(const ProbeDetails& probe) noexcept;
+    Submitted abort_trigger(const TriggerRef& trigger) noexcept;
+    void end_probe(CommandId id, Outcome outcome, ErrorId error) noexcept;
+    void watch_probes() noexcept;
+    void publish_probes() noexcept;
+
+    // axis_settings.cpp
+    Submitted submit_setting(const AxisCommand& command, Owner owner) noexcept;
+    void carry_out(const AcceptedCommand& setting) noexcept;
+    void carry_out_due_settings() noexcept;
+    ErrorId write_parameter(const WriteParameter& wanted) noexcept;
+    [[nodiscard]] ErrorId refuse_now(const WriteParameter& wanted) const noexcept;
+    [[nodiscard]] bool beyond_reach(double edge, bool positive) const noexcept;
+    void store_parameters() noexcept;
+    void use_parameters() noexcept;
+    ErrorId write_output(const WriteOutput& wanted) noexcept;
+
     // axis_homing.cpp
     ErrorId begin_homing(const AxisCommand& command) noexcept;
     void step_homing() noexcept;
     void end_homing(std::int64_t reference) noexcept;
     void abort_homing() noexcept;
 
-    AxisConfig config_;
+    AxisConfig config_;  // its limits, windows and speeds as they hold now: parameters change them, never above what was configured
     DrivePort& port_;
     MotionScene scene_;
+    Duration cycle_;
     std::uint32_t stale_limit_;
     bool endless_;
     Instant now_{};
@@ -224,6 +249,15 @@ private:
     // authority
     OperatingMode mode_ = OperatingMode::automatic;
     Owner owner_ = Owner::program;
+
+    // probes
+    ProbeBoard probes_;
+    PositionTrack track_;
+    std::uint16_t track_epoch_ = 0;
+    Duration feedback_age_{};
+
+    // outputs of the drive
+    std::uint32_t digital_outputs_ = 0, digital_output_mask_ = 0;
 
     // jog
     Instant jog_renewed_{};

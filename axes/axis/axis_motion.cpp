@@ -23,6 +23,7 @@ void Axis::plan(Instant now, Duration period) noexcept {
     }
     const bool may_be_homed = state_ == AxisState::Homing;
     step_homing();
+    carry_out_due_settings();
     // A velocity command has shown InVelocity for a cycle: what waits behind it takes over (it has no Done, so it counts as aborted).
     if (view_.active_in_target && queue_.active().command.kind == CommandKind::move_velocity && queue_.waiting() > 0) {
         queue_.finish_active(Outcome::aborted);
@@ -230,6 +231,10 @@ void Axis::start_waiting(double late) noexcept {
     if (!moves()) fire(AxisEvent::done);
     while (queue_.waiting() > 0) {
         const auto next = queue_.pop();
+        if (next.command.kind == CommandKind::setting) {
+            carry_out(next);
+            continue;
+        }
         auto error = next_state(state_, event_of(next.command.kind)) ? refuse_target(next.command, true) : ErrorId::state_forbids;
         if (error == ErrorId::none) {
             fire(event_of(next.command.kind));

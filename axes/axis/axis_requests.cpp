@@ -88,6 +88,8 @@ ErrorId Axis::refuse(const AxisCommand& command) const noexcept {
 }
 
 Submitted Axis::submit(const AxisCommand& command, Owner owner) noexcept {
+    if (command.kind == CommandKind::touch_probe || command.kind == CommandKind::abort_trigger) return submit_probe(command);
+    if (command.kind == CommandKind::setting) return submit_setting(command, owner);
     if (!may(owner)) return {0, ErrorId::owned_by_other};
     if (const auto error = refuse(command); error != ErrorId::none) return {0, error};
 
@@ -140,6 +142,8 @@ ErrorId Axis::reset(Owner) noexcept {
 ErrorId Axis::set(const AxisSetting& setting, Owner owner) noexcept {
     if (!may(owner)) return ErrorId::owned_by_other;
     if (const auto* position = std::get_if<SetPosition>(&setting)) return set_position(*position);
+    if (const auto* parameter = std::get_if<WriteParameter>(&setting)) return write_parameter(*parameter);
+    if (const auto* output = std::get_if<WriteOutput>(&setting)) return write_output(*output);
     return ErrorId::not_supported;
 }
 

@@ -36,7 +36,7 @@ struct AxisView {
     double following_error = 0;  ///< set-point in effect at the latch, minus actual
     double target_position = 0;
     VelocityLimiter limiter = VelocityLimiter::none;
-    double manual_slow = 0, manual_fast = 0;  ///< u/s, > 0: the configured jogging speeds (ManualSpeeds, resolved); constant
+    double manual_slow = 0, manual_fast = 0;  ///< u/s, > 0: the jogging speeds (ManualSpeeds, resolved; parameters 1020, 1021)
 
     PowerState drive_state = PowerState::unknown;
     DriveMode drive_mode = DriveMode::none;
@@ -48,8 +48,11 @@ struct AxisView {
     std::int64_t turns = 0;  ///< whole moduli of the set position since zero
 
     Override override_factors;
-    /// Standard parameters 2..9 and 12..17 by number (axes/axis/parameters.hpp names all and reads the others from this view).
-    std::array<double, 18> parameters{};
+    /// The parameters that are stored: 2..9 and 12..17 by number, then those of the vendor (axes/axis/parameters.hpp reads them and all
+    /// others from this view).
+    std::array<double, 32> parameters{};
+    std::uint32_t digital_inputs = 0;   ///< of the drive, raw (60FDh)
+    std::uint32_t digital_outputs = 0;  ///< of the drive, as written (60FEh); bits never written are 0
 
     // beside the axis' own motion
     double superimposed_covered = 0;            ///< u since its start
@@ -58,7 +61,8 @@ struct AxisView {
     CamId selected_cam;                         ///< of the last SelectCam that was done
     bool sync_started = false;                  ///< MC_GearInPos runs towards its sync point (StartSync)
     std::uint32_t cam_ends = 0;                 ///< counts ends of the cam's profile (EndOfProfile), also in reverse
-    std::array<double, 2> probe_position{};     ///< u, of the last latch
+    std::array<double, 2> probe_position{};     ///< u, of the last latch of each probe slot ...
+    std::array<CommandId, 2> probe_latched{};   ///< ... and the command it ended; 0 = none so far
     bool homing_procedure = false;              ///< between the first step of Part 5 and MC_FinishHoming
 
     // commands

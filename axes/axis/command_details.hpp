@@ -74,9 +74,10 @@ struct TimeProfileDetails {
     friend bool operator==(const TimeProfileDetails&, const TimeProfileDetails&) = default;
 };
 
-/// MC_TouchProbe.
+/// MC_TouchProbe; MC_AbortTrigger needs the trigger alone.
 struct ProbeDetails {
     TriggerRef trigger;
+    CommandId replaces = 0;  ///< a probing command that is given up for this one (a block triggered anew); 0 = none
     bool window_only = false;
     double first = 0, last = 0;  ///< u, inclusive; on a modulo axis first > last means the window over the wrap
     friend bool operator==(const ProbeDetails&, const ProbeDetails&) = default;

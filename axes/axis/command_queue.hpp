@@ -40,6 +40,8 @@ public:
         changed_ = true;
         queue_[waiting_++] = command;
     }
+    /// The next in turn; only when waiting() > 0.
+    [[nodiscard]] const AcceptedCommand& front() const noexcept { return queue_[0]; }
     /// Only when waiting() > 0.
     [[nodiscard]] AcceptedCommand pop() noexcept {
         changed_ = true;

@@ -72,6 +72,7 @@ struct DriveCapabilities {
     bool digital_inputs = false;         ///< limits and home are reported (60FDh)
     bool digital_outputs = false;        ///< 60FEh mapped
     std::uint8_t probes = 0;             ///< touch probes with hardware latch
+    std::uint8_t probe_edges = 0b1111;   ///< whose latched position is exchanged: bit 2 * probe rising, bit 2 * probe + 1 falling
     bool drive_homing = false;
     bool motor_has_encoder = true;  ///< false: "actual" is the command (open-loop stepper)
     bool absolute_encoder = false;

@@ -117,13 +117,16 @@ Result<void> Cia402Drive::resolve() {
 }
 
 void Cia402Drive::find_probes() {
-    capabilities_.probes = 0;
+    capabilities_.probes = capabilities_.probe_edges = 0;
     if (!find_output(out_.probe_function, 0x60B8, 0, false) || !find_input(in_.probe_status, 0x60B9, 0, false)) return;
     static constexpr std::uint16_t positions[2][2] = {{0x60BA, 0x60BB}, {0x60BC, 0x60BD}};
     for (std::size_t probe = 0; probe < 2; ++probe) {
         const bool rising = find_input(in_.probe_position[probe][0], positions[probe][0], 0, true);
         const bool falling = find_input(in_.probe_position[probe][1], positions[probe][1], 0, true);
-        if ((rising || falling) && probe < profile_->probes) capabilities_.probes = static_cast<std::uint8_t>(probe + 1);
+        if ((!rising && !falling) || probe >= profile_->probes) continue;
+        capabilities_.probes = static_cast<std::uint8_t>(probe + 1);
+        capabilities_.probe_edges =
+            static_cast<std::uint8_t>(capabilities_.probe_edges | ((rising ? 1u : 0u) | (falling ? 2u : 0u)) << (2 * probe));
     }
 }
 

@@ -3,10 +3,12 @@
 // It notes what would be felt at a real motor: the largest step of the set-point while it was enabled.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <deque>
 #include <limits>
+#include <optional>
 
 #include "axes/port/drive_port.hpp"
 
@@ -43,6 +45,14 @@ public:
     std::int64_t wraps_at_home = 0;  ///< whole ranges of the raw position that the port's unwrapping has counted
     bool homing_fails = false, homing_hangs = false;
     DriveMode forced_mode = DriveMode::none;
+    std::uint32_t inputs = 0;  ///< 60FDh
+    /// A signal on each probe input, on while the motor is between the two counts; and an index pulse at each multiple of `index_distance`.
+    struct ProbeSignal {
+        std::int64_t low = 0, high = -1;
+    };
+    std::array<ProbeSignal, 2> probe_signal{};
+    std::int64_t index_distance = 0;
+    int arming_time = 2;  ///< cycles from the command to the latch waiting
     DriveCapabilities caps;
 
     // what a test reads
@@ -101,6 +111,7 @@ public:
         feedback_.homing_error = homing_error_;
         feedback_.has_inputs = switches;
         feedback_.home_switch = position >= static_cast<double>(home_low) && position <= static_cast<double>(home_high) && switches;
+        feedback_.digital_inputs = inputs;
         feedback_.negative_limit = position <= static_cast<double>(negative_end);
         feedback_.positive_limit = position >= static_cast<double>(positive_end);
         return feedback_;
@@ -130,8 +141,40 @@ private:
         if (power != PowerState::enabled) position += coasting;
         else if (mode_ == DriveMode::homing) step_homing();
         else if (!blocked) position = static_cast<double>(target_at(now - latch_age * cycle) - lag);
+        for (std::size_t i = 0; i < 2; ++i) step_probe(i, std::llround(before), std::llround(position));
         if (mode_ != DriveMode::homing) attained_ = homing_error_ = false;
         velocity_ = (position - before) / to_seconds(cycle);
+    }
+    /// Like CiA 402: the first edge after arming is kept, in continuous mode the newest; disarming forgets it.
+    void step_probe(std::size_t i, std::int64_t from, std::int64_t to) {
+        const auto& wanted = last.probes[i];
+        auto& latch = feedback_.probes[i];
+        armed_for_[i] = wanted.armed ? armed_for_[i] + 1 : 0;
+        latch.armed = armed_for_[i] > arming_time;
+        if (!latch.armed) {
+            latch = {};
+            return;
+        }
+        const auto edge = wanted.index_pulse ? index_between(from, to) : edge_of(probe_signal[i], wanted.edge, from, to);
+        if (!edge || (latch.latched && !wanted.continuous)) return;
+        latch.latched = true;
+        latch.position = *edge - zero;
+        ++latch.count;
+    }
+    [[nodiscard]] static std::optional<std::int64_t> edge_of(const ProbeSignal& signal, ProbeEdge edge, std::int64_t from,
+                                                             std::int64_t to) {
+        const auto on = [&](std::int64_t at) { return signal.low <= at && at <= signal.high; };
+        const bool rising = edge == ProbeEdge::rising;
+        if (on(from) == on(to) || on(to) != rising) return std::nullopt;
+        return (to > from) == rising ? signal.low : signal.high;  // going up it begins at its low end and ends at its high one
+    }
+    [[nodiscard]] std::optional<std::int64_t> index_between(std::int64_t from, std::int64_t to) const {
+        if (index_distance <= 0 || from == to) return std::nullopt;
+        const auto turn = [&](std::int64_t at) {
+            return (at - (((at % index_distance) + index_distance) % index_distance)) / index_distance;
+        };
+        if (turn(from) == turn(to)) return std::nullopt;
+        return std::max(turn(from), turn(to)) * index_distance;
     }
     void step_homing() {
         if (!last.start_homing || attained_ || homing_error_ || homing_hangs) return;
@@ -165,6 +208,7 @@ private:
     DriveFeedback feedback_;
     DriveMode mode_ = DriveMode::cyclic_position;
     int ticks_ = 0, mode_ticks_ = 0;
+    std::array<int, 2> armed_for_{};
     bool attained_ = false, homing_error_ = false, obeyed_ = false;
     std::int64_t last_target_ = 0;
     double velocity_ = 0;
