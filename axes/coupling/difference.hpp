@@ -1,0 +1,42 @@
+#pragma once
+// What a slave still differs from its relation: a motion of its own that runs down. Real-time safe.
+
+#include "axes/planner/plan.hpp"
+#include "core/time.hpp"
+
+namespace taktwerk::axes {
+
+/// What a difference comes to: no velocity (the distance stays, as MC_GearIn wants it), or nothing at all.
+enum class RunDown : std::uint8_t { velocity, position };
+
+class Difference {
+public:
+    /// From `from` on. False when nothing can be planned: the difference then stays as it is.
+    [[nodiscard]] bool begin(const MotionState& from, RunDown target, const SignedLimits& limits) noexcept {
+        const auto plan = target == RunDown::velocity ? plan_to_velocity(from, 0, limits) : plan_to_state(from, {}, limits);
+        if (plan.error != PlanError::none) return false;
+        profile_ = plan.profile;
+        state_ = from;
+        elapsed_ = {};
+        return true;
+    }
+    void clear() noexcept {
+        profile_ = Profile{};
+        state_ = {};
+        elapsed_ = {};
+    }
+    [[nodiscard]] const MotionState& advance(Duration period) noexcept {
+        elapsed_ += period;
+        state_ = profile_.at(to_seconds(elapsed_));
+        return state_;
+    }
+    [[nodiscard]] const MotionState& state() const noexcept { return state_; }
+    [[nodiscard]] bool finished() const noexcept { return to_seconds(elapsed_) >= profile_.duration(); }
+
+private:
+    Profile profile_;
+    MotionState state_;
+    Duration elapsed_{};
+};
+
+}  // namespace taktwerk::axes

@@ -1,0 +1,76 @@
+#pragma once
+// A slave on its master: relation + a difference that runs down, inside the slave's limits. One per axis, real-time safe.
+//
+// However a coupling begins, changes or is disturbed, the slave goes on from the state it has: what it lacks becomes the difference
+// motion. For gears that runs down to no velocity (the distance lost stays lost), for cams and sums to nothing at all. In sync means: no
+// difference left.
+//
+// The slave's own limits are kept in every cycle: a relation that asks for more velocity or acceleration (a straight cam with corners,
+// a master too fast) is not followed further than they allow; the slave falls behind, is not in sync, and runs the difference down
+// again. So |velocity| stays below the limit, and its change in a cycle below acceleration times period, whatever the master does.
+
+#include <cstdint>
+#include <variant>
+
+#include "axes/coupling/cam_curve.hpp"
+#include "axes/coupling/difference.hpp"
+#include "axes/coupling/gear_line.hpp"
+#include "axes/coupling/gear_sum.hpp"
+#include "axes/coupling/sync_approach.hpp"
+#include "core/time.hpp"
+
+namespace taktwerk::axes {
+
+/// The slave's own coordinates: local u from its anchor (axes/axis/units.hpp).
+struct SlaveFrame {
+    std::int64_t anchor = 0;  ///< feeds
+    double feed = 1;          ///< u
+    [[nodiscard]] double local(const EndlessPlace& place) const noexcept {
+        return static_cast<double>(place.feeds - anchor) * feed + place.local;
+    }
+    [[nodiscard]] EndlessPlace place(double local) const noexcept { return {anchor, local}; }
+};
+
+struct FollowerLimits {
+    MotionLimits axis;      ///< never exceeded (but for the jerk)
+    MotionLimits approach;  ///< of the difference motion; its velocity is not used
+};
+
+class Follower {
+public:
+    using Relation = std::variant<GearLine, GearSum, CamCurve>;
+
+    /// The relation counts from the next step() on; what it lacks runs down as `target` says.
+    void begin(const Relation& relation, RunDown target, const FollowerLimits& limits) noexcept;
+    /// As begin(), but first over `approach` (positions in local u of `frame` as it is now) to the sync point.
+    void begin(const Relation& relation, const SyncApproach& approach, const SlaveFrame& frame, const FollowerLimits& limits) noexcept;
+    void set_limits(const FollowerLimits& limits) noexcept { limits_ = limits; }
+
+    /// The slave's next state in local coordinates. `before`: its state one period ago, in the same ones. The masters are where they are now.
+    [[nodiscard]] MotionState step(const EndlessMotion& first, const EndlessMotion& second, const MotionState& before,
+                                   const SlaveFrame& frame, Duration period) noexcept;
+
+    [[nodiscard]] bool in_sync() const noexcept { return in_sync_; }
+    /// On the way to the sync point.
+    [[nodiscard]] bool approaching() const noexcept { return approaching_; }
+    /// The last step was held back by the axis' limits.
+    [[nodiscard]] bool held_back() const noexcept { return held_back_; }
+    /// nullptr while another relation is followed.
+    [[nodiscard]] const CamCurve* cam() const noexcept { return std::get_if<CamCurve>(&relation_); }
+
+private:
+    [[nodiscard]] MotionState wanted(const EndlessMotion& first, const EndlessMotion& second, const SlaveFrame& frame) noexcept;
+    void run_down(const MotionState& slave, const MotionState& relation) noexcept;
+    [[nodiscard]] MotionState held(const MotionState& wanted, const MotionState& before, double period) noexcept;
+
+    Relation relation_;
+    SyncApproach approach_;
+    EndlessPlace approach_origin_;  // of the approach's positions
+    RunDown target_ = RunDown::velocity;
+    FollowerLimits limits_;
+    Difference difference_;
+    bool fresh_ = false;  // the next step is the first one
+    bool approaching_ = false, in_sync_ = false, held_back_ = false;
+};
+
+}  // namespace taktwerk::axes

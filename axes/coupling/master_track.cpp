@@ -1,0 +1,53 @@
+#include "axes/coupling/master_track.hpp"
+
+#include <cmath>
+
+namespace taktwerk::axes {
+
+namespace {
+
+// A tracking filter whose two poles lie at the same place of the unit circle (critically damped): e^(-1 / settling_cycles).
+constexpr double pole = 0.88249690258459546;
+static_assert(MasterTrack::settling_cycles == 8);
+constexpr double position_gain = 1 - pole * pole;
+constexpr double velocity_gain = (1 - pole) * (1 - pole);
+
+}  // namespace
+
+bool MasterTrack::next(const Reading& reading, double period) noexcept {
+    if (!reading.usable) return false;
+    const auto& now = reading.motion;
+    if (!known_) {
+        known_ = true;
+        gap_ = 0;
+        last_ = now.place;
+        filter_ = {now.place, now.velocity, 0};
+    }
+    ++gap_;
+    if (reading.fresh) {
+        // Nothing moves twice as fast as its limit: the place got another number (its zero, another encoder).
+        if (std::abs(way(last_, now.place, reading.feed)) > 2 * reading.largest_velocity * period * gap_) return false;
+        last_ = now.place;
+        gap_ = 0;
+    }
+    if (reading.planned) {
+        out_ = now;
+        filter_ = {now.place, now.velocity, 0};
+        return true;
+    }
+
+    filter_.place.local += filter_.velocity * period;
+    if (reading.fresh) {
+        // The filter keeps the reading's feeds, so its local part stays small.
+        const double error = way(filter_.place, now.place, reading.feed);
+        filter_.place = {now.place.feeds, now.place.local - error};
+        filter_.place.local += position_gain * error;
+        filter_.velocity += velocity_gain * error / period;
+    }
+    out_ = filter_;
+    out_.acceleration = 0;
+    out_.place.local += filter_.velocity * reading.age;
+    return true;
+}
+
+}  // namespace taktwerk::axes
