@@ -50,6 +50,7 @@ private:
     [[nodiscard]] double excess_slope(double x) const noexcept { return ease_ > 0 ? x * ease_ : 1; }
     [[nodiscard]] double way_slope(double x, const Motion& m) const noexcept;
     [[nodiscard]] double enough_for(double missing) const noexcept;
+    [[nodiscard]] double guess_for(double missing) const noexcept;
 
     const Problem& problem_;
     FrameLimits back_limits_;

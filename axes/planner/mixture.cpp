@@ -75,17 +75,20 @@ VelocityRange velocities(double v, const Motion& motion) noexcept {
 
 }  // namespace
 
-double travel_of(double v, const Motion& motion) noexcept {
-    double way = 0;
+Walked walk(double v, const Motion& motion) noexcept {
+    Walked walked{0, 0, std::abs(v)};
     for (const auto& part : {motion.forward.stretches(), motion.backward.stretches()}) {
         for (const Stretch& s : part) {
             v += s.velocity_step;
             if (!(s.duration > 0)) continue;
-            way += s.duration * (v + s.duration * (s.acceleration / 2 + s.duration * (s.jerk / 6)));
+            const double way = s.duration * (v + s.duration * (s.acceleration / 2 + s.duration * (s.jerk / 6)));
+            walked.travel += way;
+            walked.path += std::abs(way);
             v += s.duration * (s.acceleration + s.duration * (s.jerk / 2));
+            walked.top = std::max(walked.top, std::abs(v));
         }
     }
-    return way;
+    return walked;
 }
 
 bool keeps_direction(double v0, const Motion& a, const Motion& b) noexcept {

@@ -6,8 +6,13 @@
 
 namespace taktwerk::axes {
 
-/// Signed way of a motion that begins with velocity v0.
-[[nodiscard]] double travel_of(double v0, const Motion& motion) noexcept;
+/// A motion that begins with velocity v0, gone from its beginning to its end.
+struct Walked {
+    double travel = 0;  ///< signed, u
+    double path = 0;    ///< sum of the ways without regard to sign
+    double top = 0;     ///< highest speed at the end of a stretch, u/s
+};
+[[nodiscard]] Walked walk(double v0, const Motion& motion) noexcept;
 
 /// Both motions move in one and the same direction all the time.
 [[nodiscard]] bool keeps_direction(double v0, const Motion& a, const Motion& b) noexcept;

@@ -61,20 +61,46 @@ double PeakFamily::enough_for(double missing) const noexcept {
     return fall > 0 ? std::min(x, math::cbrt(3 * missing / (ease_ * std::sqrt(ease_ * fall)))) : x;
 }
 
+/// The x whose halves would cover `missing` from and to the floor's velocity c0 >= 0 if each were a climb from rest on top of it: exact
+/// between two ends at rest, a guess otherwise. With the eases r of the rise and f of the fall and the highest acceleration A a climb by
+/// e takes x^3 (r^2/6 + rf/2 + f^2/3) while x <= A, and e^2/2A + e f A/2 + A^3 (r^2 - f^2)/24 beyond.
+double PeakFamily::guess_for(double missing) const noexcept {
+    const double rise = problem_.limits.up.ease;
+    const double fall = problem_.limits.down.ease;
+    const double first = problem_.limits.up.speeding_up;
+    const double second = back_limits_.up.speeding_up;
+    const double v = std::max(floor_velocity_, 0.0);
+    if (ease_ > 0) {
+        const double cube = 2 * (rise * rise / 6 + rise * fall / 2 + fall * fall / 3);
+        double x = math::cbrt(missing / cube);
+        if (v > 0) x = std::min(x, missing / (2 * v * ease_));
+        if (x <= std::min(first, second)) return x;
+    }
+    const double square = 0.5 / first + 0.5 / second;
+    const double linear = fall * (first + second) / 2 + v * (1 / first + 1 / second);
+    const double rest =
+        missing - (first * first * first + second * second * second) * (rise * rise - fall * fall) / 24 - v * ease_ * (first + second) / 2;
+    return parameter(2 * rest / (linear + std::sqrt(linear * linear + 4 * square * rest)));
+}
+
 Found PeakFamily::over_way(double known_to) const noexcept {
     const double way = problem_.way;
+    Found last{true};  // member looked at, as a result
     const auto difference = [&](double x) noexcept -> RootSample {
         const Motion m = at(x);
+        last.parameter = x;
+        last.duration = m.duration();
         return {m.travel() - way, way_slope(x, m), 2 * epsilon * (std::abs(way) + m.path())};
     };
-    const auto result = [&](double x) noexcept -> Found { return {true, x, 0, at(x).duration()}; };
+    const auto result = [&](double x) noexcept -> Found { return x == last.parameter ? last : Found{true, x, 0, at(x).duration()}; };
 
     double low = 0;
     const Motion lowest = at(0);
     double low_travel = lowest.travel();
     const double rounding = known_to + 2 * epsilon * lowest.path();
     if (std::abs(low_travel - way) <= rounding) return {true, 0, 0, lowest.duration()};
-    if (floor_velocity_ < 0 && rate(lowest) < 0) {
+    if (way < low_travel) {
+        if (!(floor_velocity_ < 0 && rate(lowest) < 0)) return {};
         // The way first shrinks: up to where the rate passes 0, which it does before the velocity.
         const double most = std::min(widest_, parameter(-floor_velocity_));
         const double turn = bracketed_root(
@@ -90,17 +116,13 @@ Found PeakFamily::over_way(double known_to) const noexcept {
             0, most, most / 2, true);
         const Motion turning = at(turn);
         const double turn_travel = turning.travel();
-        if (way < low_travel && way >= turn_travel - rounding) {
-            if (way <= turn_travel) return {true, turn, 0, turning.duration()};
-            return result(bracketed_root(difference, 0, turn, turn / 2, false));
-        }
-        low = turn;
-        low_travel = turn_travel;
+        if (way < turn_travel - rounding) return {};
+        if (way <= turn_travel) return {true, turn, 0, turning.duration()};
+        return result(bracketed_root(difference, 0, turn, turn / 2, false));
     }
-    if (way < low_travel) return {};
 
     double high = widest_;
-    // What the lowest motion lacks; where it ends at negative velocity the way back to 0 comes on top.
+    // Where the lowest motion ends at negative velocity, the way back to 0 comes first (and may shrink before it grows).
     if (floor_velocity_ < 0) {
         const double stand = parameter(-floor_velocity_);
         if (stand > low && stand < widest_) {
@@ -111,10 +133,8 @@ Found PeakFamily::over_way(double known_to) const noexcept {
         }
     }
     const double enough = enough_for(way - low_travel);
-    const auto together = [&](double part) noexcept -> double {
-        return ease_ > 0 ? std::sqrt(low * low + part * enough * enough) : low + std::sqrt(part) * enough;
-    };
-    const double sum = together(1) * (1 + 4 * epsilon);
+    const auto above_low = [&](double x) noexcept -> double { return ease_ > 0 ? std::sqrt(low * low + x * x) : low + x; };
+    const double sum = above_low(enough) * (1 + 4 * epsilon);
     if (sum >= widest_) {
         const Motion widest = at(widest_);
         const double rest = way - widest.travel();
@@ -125,8 +145,7 @@ Found PeakFamily::over_way(double known_to) const noexcept {
     } else {
         high = sum;
     }
-    // Two halves share the way: half the cube of x from rest.
-    return result(bracketed_root(difference, low, high, together(0.63), true));
+    return result(bracketed_root(difference, low, high, above_low(guess_for(way - low_travel)), true));
 }
 
 Found PeakFamily::in_time(double time, double slack) const noexcept {

@@ -108,8 +108,8 @@ struct Interval {
     Extremal most;
     Motion least_motion;
     Motion most_motion;
-    double least_way = 0;
-    double most_way = 0;
+    Walked least_walked;
+    Walked most_walked;
 };
 
 std::optional<Interval> reach_in(const Problem& problem, double time, double slack) noexcept {
@@ -119,26 +119,32 @@ std::optional<Interval> reach_in(const Problem& problem, double time, double sla
     if (!i.most.found.found || !i.least.found.found) return std::nullopt;
     i.most_motion = motion_of(problem, i.most);
     i.least_motion = motion_of(problem, i.least);
-    i.most_way = travel_of(problem.v0, i.most_motion);
-    i.least_way = travel_of(problem.v0, i.least_motion);
+    i.most_walked = walk(problem.v0, i.most_motion);
+    i.least_walked = walk(problem.v0, i.least_motion);
     return i;
 }
 
 std::optional<Motion> solve(const Problem& problem, double time, double slack, double known_to) noexcept {
     const auto reach = reach_in(problem, time, slack);
     if (!reach) return std::nullopt;
-    const double scale = std::abs(reach->least_way) + std::abs(reach->most_way) + std::abs(problem.way);
-    const double rounding = known_to + 64 * epsilon * (scale + std::max(std::abs(problem.v0), std::abs(problem.v1)) * time);
-    if (problem.way > reach->most_way + rounding || problem.way < reach->least_way - rounding) return std::nullopt;
-    if (problem.way >= reach->most_way - rounding) return reach->most_motion;
-    if (problem.way <= reach->least_way + rounding) return reach->least_motion;
+    // Each end has rounding errors of its own: the other one may be astronomically far.
+    const auto rounding = [&](const Walked& w) noexcept -> double {
+        return known_to + epsilon * (64 * (std::abs(problem.way) + w.path) + 8 * w.top * time);
+    };
+    const double most = reach->most_walked.travel;
+    const double least = reach->least_walked.travel;
+    const double of_most = rounding(reach->most_walked);
+    const double of_least = rounding(reach->least_walked);
+    if (problem.way > most + of_most || problem.way < least - of_least) return std::nullopt;
+    if (problem.way >= most - of_most) return reach->most_motion;
+    if (problem.way <= least + of_least) return reach->least_motion;
 
     const Plateau plateau{problem, time};
     const double low = plateau_end(problem, reach->least, plateau.released1(), -1);
     const double high = plateau_end(problem, reach->most, plateau.released1(), 1);
     if (auto motion = plateau.between(low, high)) return motion;
     if (!problem.limits.convex() && !keeps_direction(problem.v0, reach->least_motion, reach->most_motion)) return std::nullopt;
-    const double share = (problem.way - reach->least_way) / (reach->most_way - reach->least_way);
+    const double share = (problem.way - least) / (most - least);
     return mixture(reach->least_motion, reach->most_motion, share);
 }
 

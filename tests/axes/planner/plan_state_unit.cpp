@@ -113,5 +113,17 @@ TEST(PlanInTime, AMovingTargetMayBeTooFastToWaitForAndTooSlowToComeRoundTo) {
     EXPECT_EQ(plan_in_time(start, {9, 9, 0}, -1, unit_limits).error, PlanError::invalid_input);
 }
 
+TEST(PlanInTime, AnUnlimitedDirectionDoesNotHideThatTheTimeIsTooShort) {
+    // Without a velocity limit downwards the least far motion of this time is some 1e32 u away; its rounding errors say nothing of the other
+    // end of what can be reached: at most 37998.4 u/s upwards, which takes 9.2e13 s for the 3.5e18 u that braking costs first.
+    const MotionState from{-140010864.90628955, -1158751.9899248963, -1137636.9373533665};
+    const MotionState to{-140010864.90628955, 0, 11496.251321505601};
+    const SignedLimits limits{{37998.403684232551, 137578.12656430079, 20577.614955079251, 1.7464556770239876},
+                              {std::numeric_limits<double>::infinity(), 1148512.2218943115, 70913.392445067162, 1.3465549743825092}};
+    const double fastest = plan_to_state(from, to, limits).profile.duration();
+    EXPECT_NEAR(fastest, 3.499e18 / 37998.4, 0.01 * fastest);
+    EXPECT_EQ(plan_in_time(from, to, 0.97 * fastest, limits).error, PlanError::no_solution);
+}
+
 }  // namespace
 }  // namespace taktwerk::axes
