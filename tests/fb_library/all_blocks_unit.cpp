@@ -24,7 +24,7 @@ PinDirection direction_of(part1::Kind kind) {
     return kind == part1::VAR_INPUT ? PinDirection::in : kind == part1::VAR_OUTPUT ? PinDirection::out : PinDirection::in_out;
 }
 
-/// P1-003: REAL is LREAL everywhere. P1-004: an integer may be wider, WORD may be an unsigned word.
+/// REAL is LREAL everywhere; an integer may be wider, WORD may be an unsigned word.
 bool same_type(std::string_view standard, std::string_view ours) {
     if (standard == "REAL") return ours == "LREAL";
     if (standard == "INT") return ours == "INT" || ours == "DINT";

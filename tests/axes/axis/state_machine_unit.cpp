@@ -39,7 +39,7 @@ constexpr std::array arrows{
     Arrow{ContinuousMotion, E::continuous, ContinuousMotion}, Arrow{SynchronizedMotion, E::continuous, ContinuousMotion},
     Arrow{Standstill, E::synchronized, SynchronizedMotion}, Arrow{DiscreteMotion, E::synchronized, SynchronizedMotion},
     Arrow{ContinuousMotion, E::synchronized, SynchronizedMotion}, Arrow{SynchronizedMotion, E::synchronized, SynchronizedMotion},
-    // MoveSuperimposed changes the state from Standstill only (P1-030); GearOut, CamOut (P1-031)
+    // MoveSuperimposed changes the state from Standstill only; GearOut, CamOut leave SynchronizedMotion
     Arrow{Standstill, E::superimposed, DiscreteMotion}, Arrow{DiscreteMotion, E::superimposed, DiscreteMotion},
     Arrow{ContinuousMotion, E::superimposed, ContinuousMotion}, Arrow{SynchronizedMotion, E::superimposed, SynchronizedMotion},
     Arrow{SynchronizedMotion, E::decoupled, ContinuousMotion},
@@ -53,6 +53,7 @@ std::optional<AxisState> by_figure(AxisState from, E event) {
     return std::nullopt;
 }
 
+// P1-033, P1-030, P1-031, P1-020, P1-036
 TEST(AxisStates, EveryPairIsAsInFigureTwo) {
     for (std::size_t s = 0; s < axis_state_count; ++s)
         for (std::size_t e = 0; e < axis_event_count; ++e) {

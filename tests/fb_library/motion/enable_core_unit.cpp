@@ -1,4 +1,4 @@
-// EnableCore against figures 5 and 6 of PLCopen Part 1 v2.0, 2.2.3 (P1-049, P1-050).
+// EnableCore against figures 5 and 6 of PLCopen Part 1 v2.0, 2.2.3.
 #include "fb_library/motion/enable_core.hpp"
 
 #include <gtest/gtest.h>
@@ -37,6 +37,7 @@ constexpr Reading good = Reading::valid();
 constexpr Reading passing = Reading::unless(ErrorId::drive_not_ready);
 constexpr Reading final_one = Reading::final_error(ErrorId::not_supported);
 
+// P1-049, P1-069
 TEST(EnableCoreFigure5, AnErrorThatClearsItself) {
     replay({{"Enable rises", true, nothing_yet, true, false, false},
             {"some time later", true, good, true, true, false},
@@ -46,6 +47,7 @@ TEST(EnableCoreFigure5, AnErrorThatClearsItself) {
             {"error disappears", true, good, true, true, false}});
 }
 
+// P1-050
 TEST(EnableCoreFigure6, AnErrorThatDoesNotClearItself) {
     replay({{"Enable rises", true, nothing_yet, true, false, false},
             {"some time later", true, good, true, true, false},

@@ -159,7 +159,7 @@ TEST_F(StopFigure, Figure17HaltGivesWay) {
     EXPECT_FALSE(halt.CommandAborted);
 }
 
-// Figure 18 (P1-143): First 6000 at 3000, Second 10000 at 2000, a = d = 3000. 3 s and 2.667 s.
+// Figure 18: First 6000 at 3000, Second 10000 at 2000, a = d = 3000. 3 s and 2.667 s.
 struct AbsoluteFigure : testing::Test {
     AbsoluteFigure() {
         first.Axis = second.Axis = Plc::x;
@@ -178,6 +178,7 @@ struct AbsoluteFigure : testing::Test {
     bool go = false, test = false;
 };
 
+// P1-143, P1-066
 TEST_F(AbsoluteFigure, Figure18LeftSecondStartsOnDoneOfFirst) {
     go = true;
     expect_time(plc.run_until([&] { return first.Done; }, 10s), 3s);
@@ -191,6 +192,7 @@ TEST_F(AbsoluteFigure, Figure18LeftSecondStartsOnDoneOfFirst) {
     EXPECT_FALSE(second.Done);
 }
 
+// P1-143, P1-067
 TEST_F(AbsoluteFigure, Figure18RightSecondInterruptsFirst) {
     go = true;
     plc.run_until([&] { return plc.velocity() >= 3000; }, 10s);
@@ -274,7 +276,7 @@ TEST(ChainFigure, Figure9AnErrorEndsTheChain) {
     EXPECT_FALSE(first.Done || second.Done || third.Error);
 }
 
-// Figures 12 to 14 (P1-113): three MC_MoveVelocity; FB2 starts on FB1.InVelocity AND L and therefore shows for one cycle only.
+// Figures 12 to 14 (P1-113, P1-034, P1-163): three MC_MoveVelocity; FB2 starts on FB1.InVelocity AND L and therefore shows for one cycle only.
 TEST(VelocityFigure, Figure14ThreeInstancesTakeOver) {
     Plc plc;
     MC_MoveVelocity fb1, fb2, fb3;
@@ -305,7 +307,7 @@ TEST(VelocityFigure, Figure14ThreeInstancesTakeOver) {
     plc.run_until([&] { return fb3.InVelocity; }, 1s);
     EXPECT_EQ(plc.velocity(), 0);
     EXPECT_FALSE(fb2.InVelocity);
-    EXPECT_EQ(plc.state(), AxisState::ContinuousMotion) << "P1-034: velocity 0 is no standstill";
+    EXPECT_EQ(plc.state(), AxisState::ContinuousMotion) << "velocity 0 is no standstill";
 }
 
 // Appendix A: FB1 1000 at 100, FB2 2000 at 50.
