@@ -1,0 +1,15 @@
+#pragma once
+// The pictures of docs/motion/, each a run of blocks on real axes.
+
+#include <vector>
+
+#include "tests/motion_figures/figure.hpp"
+
+namespace taktwerk::figures {
+
+[[nodiscard]] std::vector<Figure> moves();
+[[nodiscard]] std::vector<Figure> endless_moves();
+[[nodiscard]] std::vector<Figure> stops();
+[[nodiscard]] std::vector<Figure> buffer_modes();
+
+}  // namespace taktwerk::figures
