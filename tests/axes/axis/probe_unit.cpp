@@ -108,8 +108,10 @@ TEST(Probe, ArmingAnewDoesNotTakeTheFormerLatch) {
     ProbeRig rig;
     const auto first = rig.accept(probe(probe1));
     rig.accept(absolute(20));
-    ASSERT_TRUE(rig.run_until([&] { return rig.status(first) == CommandStatus::done; }));
-    const auto second = rig.accept(probe(probe1));  // in the same cycle: the drive has not been told yet that the first is over
+    CommandId second = 0;
+    rig.program = [&] {  // in the cycle that brings the latch: the drive has not been told yet that it is over
+        if (second == 0 && rig.status(first) == CommandStatus::done) second = rig.accept(probe(probe1));
+    };
     ASSERT_TRUE(rig.run_to(AxisState::Standstill));
     EXPECT_EQ(rig.status(second), CommandStatus::active);
     rig.accept(absolute(0));
