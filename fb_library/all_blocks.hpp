@@ -13,11 +13,17 @@
 #include "fb_library/iec/edges.hpp"
 #include "fb_library/iec/timers.hpp"
 #include "fb_library/motion/administration.hpp"
+#include "fb_library/motion/axis_condition.hpp"
+#include "fb_library/motion/axis_values.hpp"
+#include "fb_library/motion/digital_cam_switch.hpp"
+#include "fb_library/motion/digital_io.hpp"
 #include "fb_library/motion/endless_moves.hpp"
 #include "fb_library/motion/home.hpp"
 #include "fb_library/motion/jog.hpp"
 #include "fb_library/motion/moves.hpp"
+#include "fb_library/motion/parameter_blocks.hpp"
 #include "fb_library/motion/power.hpp"
+#include "fb_library/motion/probes.hpp"
 #include "fb_library/motion/reading.hpp"
 #include "fb_library/motion/stops.hpp"
 
@@ -37,7 +43,10 @@ using IecBlocks = BlockList<SR, RS, R_TRIG, F_TRIG, CTU, CTU_DINT, CTU_LINT, CTU
 
 using MotionBlocks = BlockList<MC_Power, MC_Home, MC_Stop, MC_Halt, MC_MoveAbsolute, MC_MoveRelative, MC_MoveAdditive, MC_MoveVelocity,
                                MC_MoveContinuousAbsolute, MC_MoveContinuousRelative, MC_Jog, MC_SetPosition, MC_ReadActualPosition,
-                               MC_ReadStatus, MC_ReadAxisError, MC_Reset>;
+                               MC_ReadStatus, MC_ReadAxisError, MC_Reset, MC_ReadParameter, MC_ReadBoolParameter, MC_WriteParameter,
+                               MC_WriteBoolParameter, MC_ReadDigitalInput, MC_ReadDigitalOutput, MC_WriteDigitalOutput,
+                               MC_ReadActualVelocity, MC_ReadActualTorque, MC_ReadMotionState, MC_ReadAxisInfo, MC_ReadCommandPosition,
+                               MC_ReadCommandVelocity, MC_ReadCommandAcceleration, MC_DigitalCamSwitch, MC_TouchProbe, MC_AbortTrigger>;
 
 using FieldbusBlocks = BlockList<EC_SdoRead, EC_SdoWrite>;
 

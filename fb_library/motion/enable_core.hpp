@@ -58,8 +58,8 @@ private:
     bool enable_ = false;
 };
 
-/// Base of the reading blocks. The block says `Reading read(const AxisView&)`, which fills its outputs, and `clear()`, which
-/// puts them back; clear() runs whenever Valid is FALSE, so that nobody takes an old value for a new one.
+/// Base of the reading blocks. The block says `Reading read(const AxisView&)`, which fills its outputs (or, public, `read(const
+/// MotionContext&)` when it needs more than its axis), and `clear()`, which puts them back; clear() runs whenever Valid is FALSE, so that nobody takes an old value for a new one.
 template <class Block>
 struct EnableBlock {
     using Self = Block;
@@ -69,8 +69,8 @@ struct EnableBlock {
         Block& block = static_cast<Block&>(*this);
         core_.begin(block.Enable);
         if (core_.working()) {
-            const axes::AxisView* view = ctx.view(block.Axis);
-            core_.took(view != nullptr ? block.read(*view) : Reading::unless(ErrorId::invalid_axis));
+            if constexpr (requires { block.read(ctx); }) core_.took(block.read(ctx));
+            else core_.took(read_axis(block, ctx));
         }
         if (!core_.valid()) block.clear();
         core_.publish(block);
@@ -79,6 +79,11 @@ struct EnableBlock {
     void warm_start(Instant) noexcept {}
 
 protected:
+    [[nodiscard]] static Reading read_axis(Block& block, const MotionContext& ctx) noexcept {
+        const axes::AxisView* view = ctx.view(block.Axis);
+        return view != nullptr ? block.read(*view) : Reading::unless(ErrorId::invalid_axis);
+    }
+
     EnableCore core_;
 };
 

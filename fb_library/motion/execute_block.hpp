@@ -45,7 +45,8 @@ protected:
     [[nodiscard]] AxisRef acted_on() const noexcept {
         const Block& block = static_cast<const Block&>(*this);
         if constexpr (requires { block.Slave; }) return block.Slave;
-        else return block.Axis;
+        else if constexpr (requires { block.Axis; }) return block.Axis;
+        else return block.Output.axis;
     }
 
     ExecuteCore core_;
@@ -112,6 +113,12 @@ protected:
         if (const ErrorId error = ctx.requests->set(axis, block.setting(), ctx.owner); error != ErrorId::none)
             return this->core_.refuse(error);
         this->core_.start(axis);
+        start_cycle_ = ctx.cycle;
+    }
+
+    /// For what is no axis' and has been done in this call.
+    void start_at_once(const MotionContext& ctx) noexcept {
+        this->core_.start({});
         start_cycle_ = ctx.cycle;
     }
 

@@ -38,6 +38,14 @@ enum class PinKind : std::uint8_t {
     ENUM,        ///< unsigned 8 bit; PinType::values names the numbers 0, 1, ...
 };
 
+/// 32 bits that are no number (DWORD).
+struct DWORD {
+    std::uint32_t bits = 0;
+    constexpr DWORD() noexcept = default;
+    constexpr DWORD(std::uint32_t value) noexcept : bits(value) {}
+    constexpr operator std::uint32_t() const noexcept { return bits; }
+};
+
 struct PinType {
     PinKind kind = PinKind::BOOL;
     std::string_view name;                          ///< as the standard spells it: "LREAL", "MC_BUFFER_MODE"
@@ -71,6 +79,7 @@ template <> struct PinTypeOf<std::uint32_t> { static constexpr PinType value{Pin
 template <> struct PinTypeOf<std::uint64_t> { static constexpr PinType value{PinKind::ULINT, "ULINT"}; };
 template <> struct PinTypeOf<float> { static constexpr PinType value{PinKind::REAL, "REAL"}; };
 template <> struct PinTypeOf<double> { static constexpr PinType value{PinKind::LREAL, "LREAL"}; };
+template <> struct PinTypeOf<DWORD> { static constexpr PinType value{PinKind::DWORD, "DWORD"}; };
 template <> struct PinTypeOf<Duration> { static constexpr PinType value{PinKind::TIME, "TIME"}; };
 // clang-format on
 

@@ -95,6 +95,14 @@ protected:
         if constexpr (requires { block.Velocity; }) block.Velocity = 10;
         if constexpr (std::is_same_v<B, MC_Reset>) axes.axis().state = axes::AxisState::ErrorStop;
         if constexpr (IsJog<B>) block.Mode = mcJogContinuous;
+        if constexpr (requires { block.ParameterNumber; }) block.ParameterNumber = axes::enable_limit_positive;  // a BOOL
+        if constexpr (requires { block.Input; }) block.Input.axis = {0};
+        if constexpr (requires { block.Output; }) block.Output.axis = {0};
+        if constexpr (requires { block.Switches; }) {
+            axes.context.tables = &tables;
+            const axes::CamSwitch cams[]{{.track = 1, .first = 0, .last = 1}};
+            block.Switches = tables.add_cam_switches(cams);
+        }
         axes.next_scan();
     }
     /// Which axis it acts on.
@@ -161,6 +169,7 @@ protected:
     bool quiet() const { return !done() && !block.Busy && !aborted() && !block.Error && block.ErrorID == ErrorId::none; }
 
     FakeAxes axes{2};
+    axes::MotionTables tables;
     B block{};
 };
 
