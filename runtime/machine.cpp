@@ -66,6 +66,7 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, std::vect
       }()) {
     const auto on_bus = bus_of(config);
     axes.reserve(config.axes.size());
+    views.resize(config.axes.size());
     for (std::size_t i = 0; i < config.axes.size(); ++i) {
         const auto& binding = config.axes[i];
         std::size_t slave = no_slave;
@@ -82,12 +83,11 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, std::vect
         }
         auto axis_config = binding.axis;
         axis_config.stale_limit = static_cast<std::uint16_t>(std::min<std::uint32_t>(limit(axis_config.stale_limit), 60000));
-        axes.emplace_back(axis_config, *ports.back(), config.cycle, static_cast<std::uint16_t>(i));
-        views.push_back(axes.back().view());
+        axes.emplace_back(axis_config, *ports.back(), config.cycle, static_cast<std::uint16_t>(i), &views[i]);
     }
     for (auto& axis : axes) axis.bind({axes.data(), axes.size(), &tables, io.inputs()});
     operator_power.resize(axes.size());
-    requests.bind(axes, views);
+    requests = axes::DirectRequests{axes};
     if (!config.emergency_stop.input.empty()) {
         estop_input = io.find(IoDirection::input, config.emergency_stop.input);
         const auto& terminal = io.point(IoDirection::input, static_cast<std::size_t>(estop_input)).slave;
@@ -206,7 +206,6 @@ void Machine::Impl::cycle(const CycleTick& tick) noexcept {
         supervise(now, tick);
         steps.done(static_cast<std::size_t>(Step::supervise));
 
-        for (std::size_t i = 0; i < axes.size(); ++i) views[i] = axes[i].view();
         renew_operator_power();
         run_tasks();
         steps.done(static_cast<std::size_t>(Step::tasks));

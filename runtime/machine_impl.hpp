@@ -25,52 +25,6 @@
 
 namespace taktwerk::runtime {
 
-/// Requests of base tasks and operators: straight to the axes, and the views of this scan follow at once.
-class MachineRequests final : public axes::AxisRequests {
-public:
-    void bind(std::span<axes::Axis> axes, std::span<axes::AxisView> views) noexcept {
-        direct_ = axes::DirectRequests{axes};
-        axes_ = axes;
-        views_ = views;
-    }
-    axes::Submitted submit(axes::AxisRef axis, const axes::AxisCommand& command, axes::Owner owner) noexcept override {
-        const auto answer = direct_.submit(axis, command, owner);
-        refresh(axis);
-        return answer;
-    }
-    axes::ErrorId power(axes::AxisRef axis, bool enable, bool positive, bool negative, axes::Owner owner) noexcept override {
-        return direct_.power(axis, enable, positive, negative, owner);
-    }
-    axes::ErrorId reset(axes::AxisRef axis, axes::Owner owner) noexcept override {
-        const auto answer = direct_.reset(axis, owner);
-        refresh(axis);
-        return answer;
-    }
-    axes::ErrorId set(axes::AxisRef axis, const axes::AxisSetting& setting, axes::Owner owner) noexcept override {
-        const auto answer = direct_.set(axis, setting, owner);
-        refresh(axis);
-        return answer;
-    }
-    axes::ErrorId update(axes::AxisRef axis, axes::CommandId id, const axes::AxisCommand& command, axes::Owner owner) noexcept override {
-        return direct_.update(axis, id, command, owner);
-    }
-    void release_stop(axes::AxisRef axis, axes::CommandId id, axes::Owner owner) noexcept override {
-        direct_.release_stop(axis, id, owner);
-        refresh(axis);
-    }
-    axes::ErrorId renew_jog(axes::AxisRef axis, axes::CommandId id, double velocity, axes::Owner owner) noexcept override {
-        return direct_.renew_jog(axis, id, velocity, owner);
-    }
-
-private:
-    void refresh(axes::AxisRef axis) noexcept {
-        if (axis.index < axes_.size()) views_[axis.index] = axes_[axis.index].view();
-    }
-    axes::DirectRequests direct_;
-    std::span<axes::Axis> axes_;
-    std::span<axes::AxisView> views_;
-};
-
 struct Machine::Impl {
     Impl(MachineConfig machine, ecat::Transport& transport, std::vector<Error>& errors);
 
@@ -145,10 +99,10 @@ struct Machine::Impl {
     std::vector<axes::cia402::Cia402Drive*> drives;  // those of `ports` that are on the bus
     axes::MotionTables tables;
     std::vector<axes::Axis> axes;
-    std::vector<axes::AxisView> views;    // of this scan; what programs and the snapshot read
+    std::vector<axes::AxisView> views;    // where the axes keep theirs; what programs read
     std::vector<std::size_t> axis_slave;  // index in the bus configuration; npos for virtual axes
     std::vector<AxisPower> operator_power;
-    MachineRequests requests;
+    axes::DirectRequests requests;  // of base tasks and operators
     std::unique_ptr<ProgramHost> host;
     std::unique_ptr<ObjectRequests> objects;
     std::vector<std::unique_ptr<SlowTask>> slow_tasks;

@@ -17,7 +17,7 @@ std::uint32_t stale_cycles(const AxisConfig& config, const DriveCapabilities& dr
 
 }  // namespace
 
-Axis::Axis(AxisConfig config, DrivePort& port, Duration cycle, std::uint16_t index)
+Axis::Axis(AxisConfig config, DrivePort& port, Duration cycle, std::uint16_t index, AxisView* view)
     : config_(std::move(config)),
       port_(port),
       cycle_(cycle),
@@ -25,7 +25,10 @@ Axis::Axis(AxisConfig config, DrivePort& port, Duration cycle, std::uint16_t ind
       endless_(std::isinf(config_.limits.position_min) && std::isinf(config_.limits.position_max)),
       units_(config_.gearing),
       power_(port.capabilities().enable_delay, config_.enable_timeout),
-      alarms_(index) {
+      alarms_(index),
+      own_view_(view ? nullptr : std::make_unique<AxisView>()),
+      view_(view ? *view : *own_view_) {
+    view_ = {};
     view_.simulated = config_.simulated;
     store_parameters();
     use_parameters();

@@ -16,6 +16,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 
 #include "axes/axis/alarm_board.hpp"
@@ -63,7 +64,8 @@ struct MotionScene {
 class Axis {
 public:
     /// `config` must have passed check(); `port` must live longer. `cycle` is the period of the axis' sync unit. Not real-time.
-    Axis(AxisConfig config, DrivePort& port, Duration cycle, std::uint16_t index = 0);
+    /// `view`: where view() is kept, so that the views of many axes lie side by side; nullptr = with the axis.
+    Axis(AxisConfig config, DrivePort& port, Duration cycle, std::uint16_t index = 0, AxisView* view = nullptr);
 
     /// Before the first cycle; what it names must live as long. An axis without a scene follows no master. Not real-time.
     void bind(const MotionScene& scene) noexcept { scene_ = scene; }
@@ -269,7 +271,8 @@ private:
     double home_coordinate_ = 0;  // u, of the reference
     bool homed_ = false;
 
-    AxisView view_;
+    std::unique_ptr<AxisView> own_view_;
+    AxisView& view_;
     DriveCommand command_;
 };
 

@@ -37,9 +37,10 @@ class Shuttles {
 public:
     explicit Shuttles(std::size_t count) : blocks_(count) {
         axes_.reserve(count);
+        views_.resize(count);
         for (std::size_t i = 0; i < count; ++i) {
             drives_.push_back(std::make_unique<axes::sim::VirtualDrive>(period));
-            axes_.emplace_back(shuttle_axis(), *drives_.back(), period, static_cast<std::uint16_t>(i));
+            axes_.emplace_back(shuttle_axis(), *drives_.back(), period, static_cast<std::uint16_t>(i), &views_[i]);
             auto& b = blocks_[i];
             b.power.Axis = b.move.Axis = b.status.Axis = axes::AxisRef{static_cast<std::uint16_t>(i)};
             b.power.Enable = b.status.Enable = true;
@@ -48,7 +49,6 @@ public:
             b.move.Jerk = 5000;
         }
         requests_ = axes::DirectRequests{axes_};
-        for (auto& axis : axes_) views_.push_back(axis.view());
         // Not all of them turn in the same cycle.
         for (std::size_t i = 0; i < 100 + 7 * count; ++i) cycle(i / 7);
     }
@@ -58,7 +58,6 @@ public:
         now_ += period;
         for (auto& axis : axes_) axis.update(now_);
         for (auto& axis : axes_) axis.supervise(now_);
-        for (std::size_t i = 0; i < axes_.size(); ++i) views_[i] = axes_[i].view();
         MotionContext ctx;
         ctx.now = now_;
         ctx.period = period;
