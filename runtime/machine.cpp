@@ -85,7 +85,6 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, std::vect
         axis_config.stale_limit = static_cast<std::uint16_t>(std::min<std::uint32_t>(limit(axis_config.stale_limit), 60000));
         axes.emplace_back(axis_config, *ports.back(), config.cycle, static_cast<std::uint16_t>(i), &views[i]);
     }
-    for (auto& axis : axes) axis.bind({axes.data(), axes.size(), &tables, io.inputs()});
     operator_power.resize(axes.size());
     requests = axes::DirectRequests{axes};
     if (!config.emergency_stop.input.empty()) {
@@ -98,6 +97,7 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, std::vect
     shutdown_patience = shutdown_margin + 2 * from_seconds(longest_stop);
 
     host = std::make_unique<ProgramHost>(config, io, errors);
+    for (auto& axis : axes) axis.bind({axes.data(), axes.size(), &tables, io.inputs()});  // the programs have declared their tables
     objects = std::make_unique<ObjectRequests>(config.programs.size(), bus.slave_count());
     program_states.assign(config.programs.size(), ProgramState::stopped);
     program_faults.resize(config.programs.size());

@@ -14,6 +14,7 @@
 // first (state Stopping), then Disabled; a second MC_Stop while the first is held is refused; MC_Home only from Standstill; a jog is a
 // discrete motion; a move into a direction that is not permitted is refused.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -32,6 +33,7 @@
 #include "axes/axis/probe_window.hpp"
 #include "axes/axis/setpoint_generator.hpp"
 #include "axes/axis/state_machine.hpp"
+#include "axes/axis/time_curve.hpp"
 #include "axes/axis/units.hpp"
 #include "axes/homing/drive_homing.hpp"
 #include "axes/homing/switch_homing.hpp"
@@ -67,8 +69,12 @@ public:
     /// `view`: where view() is kept, so that the views of many axes lie side by side; nullptr = with the axis.
     Axis(AxisConfig config, DrivePort& port, Duration cycle, std::uint16_t index = 0, AxisView* view = nullptr);
 
-    /// Before the first cycle; what it names must live as long. An axis without a scene follows no master. Not real-time.
-    void bind(const MotionScene& scene) noexcept { scene_ = scene; }
+    /// Before the first cycle; what it names must live as long, and the tables must have been declared (room for them is
+    /// taken here). An axis without a scene follows no master and no table. Not real-time.
+    void bind(const MotionScene& scene) {
+        scene_ = scene;
+        if (scene.tables) profile_.reserve(scene.tables->most_time_rows());
+    }
 
     [[nodiscard]] const AxisConfig& config() const noexcept { return config_; }
     [[nodiscard]] const AxisView& view() const noexcept { return view_; }
@@ -112,9 +118,10 @@ public:
     ErrorId renew_jog(CommandId id, double velocity, Owner owner) noexcept;
 
 private:
-    /// What the set-point is on its way to. `value`: local position u, or velocity u/s.
+    /// What the set-point is on its way to. `value`: local position u, or velocity u/s. `given`: no plan, something else says where it is
+    /// in each cycle (a table over time, a fed set-point, the motor itself).
     struct Goal {
-        enum class Kind : std::uint8_t { rest, position, velocity, stop } kind = Kind::rest;
+        enum class Kind : std::uint8_t { rest, position, velocity, stop, given } kind = Kind::rest;
         double value = 0;
         MotionLimits limits;
         VelocityLimiter limiter = VelocityLimiter::none;
@@ -151,7 +158,7 @@ private:
     // axis_requests.cpp
     ErrorId set_position(const SetPosition& wanted) noexcept;
     [[nodiscard]] bool may(Owner owner) noexcept;
-    [[nodiscard]] ErrorId refuse(const AxisCommand& command) const noexcept;
+    [[nodiscard]] ErrorId refuse(const AxisCommand& command) noexcept;
     [[nodiscard]] ErrorId refuse_state(const AxisCommand& command) const noexcept;
     [[nodiscard]] ErrorId refuse_target(const AxisCommand& command, bool starts_now) const noexcept;
     [[nodiscard]] bool waits(const AxisCommand& command) const noexcept;
@@ -196,6 +203,17 @@ private:
     void store_parameters() noexcept;
     void use_parameters() noexcept;
     ErrorId write_output(const WriteOutput& wanted) noexcept;
+    // axis_profiles.cpp
+    [[nodiscard]] ErrorId refuse_given(const AxisCommand& command, bool starts_now) noexcept;
+    [[nodiscard]] ErrorId make_curve(const AxisCommand& command) noexcept;
+    ErrorId set_goal_given(const AxisCommand& command) noexcept;
+    void start_given(double late) noexcept;
+    void step_given(Duration period) noexcept;
+    void follow_curve(double t) noexcept;
+    [[nodiscard]] ErrorId check_feed(const MotionState& next) const noexcept;
+    ErrorId feed(const SetpointFeed& fed) noexcept;
+    void follow_feed(Duration period) noexcept;
+    void end_feed(ErrorId error) noexcept;
 
     // axis_homing.cpp
     ErrorId begin_homing(const AxisCommand& command) noexcept;
@@ -230,6 +248,27 @@ private:
     FollowingErrorTimer following_timer_;
     Instant in_window_since_{};
     bool in_window_ = false;
+
+    // set-points that no planner makes
+    struct GivenProfile {
+        std::array<TimeCurve, 2> curves;  // the running one, and one to check the next command with
+        std::size_t current = 0;
+        Duration elapsed{};
+        double late = 0;  // s: it began this long before the cycle in which it was started
+
+        void reserve(std::size_t rows);
+        [[nodiscard]] TimeCurve& running() noexcept { return curves[current]; }
+        [[nodiscard]] TimeCurve& spare() noexcept { return curves[1 - current]; }
+        void take_spare() noexcept { current = 1 - current; }
+    };
+    struct Feed {
+        MotionState next;
+        bool fresh = false;     // given since the last plan()
+        bool followed = false;  // the newest set-point was a fed one
+        std::uint32_t missing = 0;
+    };
+    GivenProfile profile_;
+    Feed feed_;
 
     // states and commands
     AxisState state_ = AxisState::Disabled;

@@ -90,6 +90,7 @@ struct AxisConfig {
     bool simulated = false;         ///< its drive is simulated although the bus is real
     std::uint8_t queue_depth = 4;   ///< buffered commands, 1..8
     std::uint16_t stale_limit = 3;  ///< cycles without fresh feedback until the axis stops in error
+    std::uint16_t feed_patience = 3;  ///< cycles without a fed set-point that a moving axis bridges at its velocity; then it brakes
     Duration jog_lease = std::chrono::milliseconds{200};
     Duration enable_timeout = std::chrono::seconds{3};
 };

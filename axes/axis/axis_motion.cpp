@@ -24,8 +24,9 @@ void Axis::plan(Instant now, Duration period) noexcept {
     const bool may_be_homed = state_ == AxisState::Homing;
     step_homing();
     carry_out_due_settings();
-    // A velocity command has shown InVelocity for a cycle: what waits behind it takes over (it has no Done, so it counts as aborted).
-    if (view_.active_in_target && queue_.active().command.kind == CommandKind::move_velocity && queue_.waiting() > 0) {
+    // A command without Done has shown InVelocity (ProfileCompleted, ...) for a cycle: what waits behind it takes over, and it counts as
+    // aborted.
+    if (view_.active_in_target && hands_over_in_target(queue_.active().command.kind) && queue_.waiting() > 0) {
         queue_.finish_active(Outcome::aborted);
         start_waiting(0);
     }
@@ -34,7 +35,12 @@ void Axis::plan(Instant now, Duration period) noexcept {
 
     const MotionState before = setpoint_.state();
     if (goal_pending_) run_goal(0);
-    setpoint_.advance(period);
+    if (goal_.kind == Goal::Kind::given) step_given(period);
+    else setpoint_.advance(period);
+    if (goal_pending_) {  // what was given has ended badly: the axis brakes from where it is
+        run_goal(0);
+        setpoint_.advance(period);
+    }
     guard(before, period);
     complete();
     publish_state();
@@ -107,6 +113,10 @@ ErrorId Axis::set_goal(const AcceptedCommand& accepted) noexcept {
         case CommandKind::jog: aim_at_velocity(signed_velocity(command), dynamics); break;
         case CommandKind::halt:
         case CommandKind::stop: aim(Goal::Kind::stop, 0, dynamics, VelocityLimiter::stopping); break;
+        case CommandKind::position_profile:
+        case CommandKind::velocity_profile:
+        case CommandKind::acceleration_profile:
+        case CommandKind::external: return set_goal_given(command);
         default: return ErrorId::not_supported;
     }
     return ErrorId::none;
@@ -118,6 +128,7 @@ void Axis::run_goal(double late) noexcept {
     Plan plan;
     switch (goal_.kind) {
         case Goal::Kind::rest: return;
+        case Goal::Kind::given: start_given(late); return;
         case Goal::Kind::position: {
             // A new target with gentle dynamics must not carry a fast axis past a software limit on its way back.
             if (software_limits_hold() && from.velocity != 0) {
@@ -200,6 +211,10 @@ bool Axis::guard_software_limits(const MotionState& before) noexcept {
 }
 
 void Axis::complete() noexcept {
+    if (goal_.kind == Goal::Kind::given) {
+        queue_.set_in_target(feed_.followed && queue_.active().command.kind == CommandKind::external);
+        return;
+    }
     if (state_ == AxisState::ContinuousMotion) queue_.set_in_target(setpoint_.finished() && goal_.kind == Goal::Kind::velocity);
     for (std::size_t i = 0; i <= CommandQueue::capacity; ++i)
         if (goal_pending_ || !setpoint_.finished() || !complete_active()) return;

@@ -81,10 +81,11 @@ ErrorId Axis::refuse_target(const AxisCommand& command, bool starts_now) const n
     return !starts_now || permitted(target - here) ? ErrorId::none : ErrorId::interlocked;
 }
 
-ErrorId Axis::refuse(const AxisCommand& command) const noexcept {
+ErrorId Axis::refuse(const AxisCommand& command) noexcept {
     if (const auto error = check_numbers(command); error != ErrorId::none) return error;
     if (const auto error = refuse_state(command); error != ErrorId::none) return error;
-    return refuse_target(command, !waits(command));
+    if (const auto error = refuse_target(command, !waits(command)); error != ErrorId::none) return error;
+    return refuse_given(command, !waits(command));
 }
 
 Submitted Axis::submit(const AxisCommand& command, Owner owner) noexcept {
@@ -144,6 +145,7 @@ ErrorId Axis::set(const AxisSetting& setting, Owner owner) noexcept {
     if (const auto* position = std::get_if<SetPosition>(&setting)) return set_position(*position);
     if (const auto* parameter = std::get_if<WriteParameter>(&setting)) return write_parameter(*parameter);
     if (const auto* output = std::get_if<WriteOutput>(&setting)) return write_output(*output);
+    if (const auto* fed = std::get_if<SetpointFeed>(&setting)) return feed(*fed);
     return ErrorId::not_supported;
 }
 

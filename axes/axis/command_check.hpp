@@ -38,6 +38,32 @@ namespace taktwerk::axes {
     }
 }
 
+/// Kinds without Done whose Inxxx starts what waits behind them (P1-092).
+[[nodiscard]] constexpr bool hands_over_in_target(CommandKind kind) noexcept {
+    switch (kind) {
+        case CommandKind::move_velocity:
+        case CommandKind::velocity_profile:
+        case CommandKind::acceleration_profile:
+        case CommandKind::torque: return true;
+        default: return false;
+    }
+}
+
+/// Details of profiles over time, torque, controller mode.
+[[nodiscard]] inline ErrorId check_details(const AxisCommand& command) noexcept {
+    switch (command.kind) {
+        case CommandKind::position_profile:
+        case CommandKind::velocity_profile:
+        case CommandKind::acceleration_profile: {
+            const auto* profile = std::get_if<TimeProfileDetails>(&command.details);
+            const bool usable = profile && profile->time_scale > 0 && std::isfinite(profile->time_scale) &&
+                                std::isfinite(profile->value_scale) && std::isfinite(profile->offset);
+            return usable ? ErrorId::none : ErrorId::invalid_parameter;
+        }
+        default: return ErrorId::none;
+    }
+}
+
 [[nodiscard]] inline ErrorId check_numbers(const AxisCommand& command) noexcept {
     for (const double value : {command.acceleration, command.deceleration, command.jerk})
         if (!(value >= 0) || std::isinf(value)) return ErrorId::invalid_dynamics;
@@ -59,6 +85,12 @@ namespace taktwerk::axes {
         case CommandKind::home:  // NaN: Position is not given, the configured offset holds
             if (std::isinf(command.position)) return ErrorId::invalid_position;
             break;
+        case CommandKind::position_profile:
+        case CommandKind::velocity_profile:
+        case CommandKind::acceleration_profile:
+            if (const auto error = check_details(command); error != ErrorId::none) return error;
+            break;
+        case CommandKind::external:
         case CommandKind::halt:
         case CommandKind::stop: break;
     }

@@ -100,6 +100,8 @@ inline constexpr std::array<ErrorText, error_id_count> error_texts{{
      "ContinuousUpdate 的新值无法用于当前命令", "Check the inputs; the command goes on with the last good values"},
     {ErrorId::aborted_by_command, "aborted_by_command", "Another command, or power off, ended this one before it was done",
      "该命令在完成前被其他命令或断电终止", "Give it again when the axis is free"},
+    {ErrorId::setpoint_missing, "setpoint_missing", "No set-point came from outside while the axis moved", "轴运动时未收到外部设定值",
+     "Feed a set-point in each cycle until the axis stands, or raise feed_patience"},
 }};
 // clang-format on
 

@@ -9,23 +9,26 @@ namespace taktwerk::axes {
 class SetpointGenerator {
 public:
     [[nodiscard]] const MotionState& state() const noexcept { return state_; }
-    [[nodiscard]] double jerk() const noexcept { return moving_profile_ ? profile_.jerk_at(time()) : 0.0; }
+    [[nodiscard]] double jerk() const noexcept { return moving_profile_ ? profile_.jerk_at(time()) : jerk_; }
 
     /// Stands at `position`, without a profile.
     void place(double position) noexcept {
-        state_ = {position, 0, 0};
-        moving_profile_ = false;
+        set({position, 0, 0});
     }
     /// The same motion seen from another anchor; a profile must follow before the next advance() where it moves.
     void rebase(double position) noexcept {
         state_.position = position;
         moving_profile_ = false;
+        jerk_ = 0;
     }
-    /// Takes back the last advance(); a profile must follow.
-    void restore(const MotionState& state) noexcept {
+    /// Where something else than a profile (a table over time, a fed set-point, the motor itself) has taken the set-point this cycle.
+    void set(const MotionState& state, double jerk = 0) noexcept {
         state_ = state;
         moving_profile_ = false;
+        jerk_ = jerk;
     }
+    /// Takes back the last advance(); a profile must follow.
+    void restore(const MotionState& state) noexcept { set(state); }
     /// `profile` begins at the present state, `late` seconds ago.
     void run(const Profile& profile, double late = 0) noexcept {
         profile_ = profile;
@@ -58,6 +61,7 @@ private:
     MotionState state_;
     Duration elapsed_{};
     double offset_ = 0;
+    double jerk_ = 0;  // without a profile
     bool moving_profile_ = false;
 };
 

@@ -6,6 +6,7 @@
 // Building and declaring: not real-time. Everything else: real-time safe, on the cycle thread or, for a slower task's own tables,
 // on its thread (nobody reads them while it runs: requests apply when it has ended).
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -55,6 +56,13 @@ public:
     TimeTableRef add_time_table(std::span<const TimePoint> rows, std::size_t room = 0);
     CamSwitchRef add_cam_switches(std::span<const CamSwitch> switches, std::size_t room = 0);
     TrackRef add_tracks(std::span<const TrackOptions> options);
+
+    /// Room of the largest table over time: what an axis that follows one needs.
+    [[nodiscard]] std::size_t most_time_rows() const noexcept {
+        std::size_t most = 0;
+        for (const auto& table : times_) most = std::max(most, table.points.size());
+        return most;
+    }
 
     // --- real-time safe; nullptr for an invalid handle -------------------------------------------------------------------
     [[nodiscard]] CamSource* cam(CamRef ref) noexcept { return at(cams_, ref.index); }

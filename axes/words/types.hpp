@@ -113,7 +113,9 @@ enum class ErrorId : std::uint16_t {
     update_not_possible = 0x0030,  ///< ContinuousUpdate gave values that this command cannot take
     // Blocks without CommandAborted.
     aborted_by_command = 0x0031,  ///< another command, or power off, ended it before it was done
+    // Set-points from outside.
+    setpoint_missing = 0x0032,    ///< an axis that is fed from outside moved, and no set-point came any more
 };
-inline constexpr std::size_t error_id_count = 0x0032;
+inline constexpr std::size_t error_id_count = 0x0033;
 
 }  // namespace taktwerk::axes

@@ -1,0 +1,244 @@
+#include "axes/axis/time_curve.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace taktwerk::axes {
+
+namespace {
+
+constexpr double rounding = 1e-9;  // relative: what a limit may be passed by in the last digits
+
+MotionState travel(const MotionState& from, double jerk, double t) noexcept {
+    return {from.position + t * (from.velocity + t * (from.acceleration / 2 + t * (jerk / 6))),
+            from.velocity + t * (from.acceleration + t * (jerk / 2)), from.acceleration + t * jerk};
+}
+
+bool usable(const CurveScale& scale) noexcept {
+    return scale.time > 0 && std::isfinite(scale.time) && std::isfinite(scale.value) && std::isfinite(scale.offset);
+}
+
+/// Times in which the velocity is 0 inside (0, duration); at most two.
+struct Turns {
+    std::array<double, 2> at{};
+    int count = 0;
+};
+Turns turns(const MotionState& start, double jerk, double duration) noexcept {
+    Turns found;
+    const auto note = [&](double t) {
+        if (t > 0 && t < duration) found.at[static_cast<std::size_t>(found.count++)] = t;
+    };
+    const double v = start.velocity, a = start.acceleration;
+    if (jerk == 0) {
+        if (a != 0) note(-v / a);
+        return found;
+    }
+    const double inside = a * a - 2 * jerk * v;
+    if (inside < 0) return found;
+    const double q = -(a + std::copysign(std::sqrt(inside), a));
+    note(q / jerk);
+    if (q != 0) note(2 * v / q);
+    return found;
+}
+
+}  // namespace
+
+void TimeCurve::reserve(std::size_t rows) {
+    room_ = rows;
+    pieces_.reserve(rows + 3);
+    diagonal_.resize(rows + 4);
+    right_.resize(rows + 4);
+}
+
+void TimeCurve::clear() noexcept {
+    pieces_.clear();
+    cursor_ = 0;
+    duration_ = 0;
+}
+
+void TimeCurve::add(double duration, const MotionState& start, double jerk) noexcept {
+    pieces_.push_back({duration_, duration, start, jerk});
+    duration_ += duration;
+}
+
+// Knots 0..m, intervals h_k, accelerations a_k unknown but for the two ends. Continuity of velocity at knot k:
+//   h_{k-1} a_{k-1} + 2 (h_{k-1} + h_k) a_k + h_k a_{k+1} = 6 ((q_{k+1} - q_k) / h_k - (q_k - q_{k-1}) / h_{k-1})
+// The positions of knots 1 and m-1 are free: q_1 = Q_1 + h_0^2 a_1 / 6 with Q_1 = q_0 + h_0 v_0 + h_0^2 a_0 / 3, and the mirror image.
+// They lie so that they stand in their own equation and, where they halve the interval, in no other.
+ErrorId TimeCurve::make_position(const MotionState& from, std::span<const TimePoint> rows, const CurveScale& scale,
+                                 double tolerance) noexcept {
+    clear();
+    smooth_ = true;
+    const auto value = [&](const TimePoint& row) { return scale.value * row.value + scale.offset; };
+    if (rows.empty() || rows.size() > room_ || !usable(scale)) return ErrorId::invalid_table;
+    for (const auto& row : rows)
+        if (!std::isfinite(value(row))) return ErrorId::invalid_table;
+    if (rows.front().delta == Duration::zero()) {
+        if (!(std::abs(value(rows.front()) - from.position) <= tolerance)) return ErrorId::invalid_position;
+        rows = rows.subspan(1);
+    }
+    if (rows.empty()) return ErrorId::invalid_table;
+    for (const auto& row : rows)
+        if (row.delta <= Duration::zero()) return ErrorId::invalid_table;
+
+    // Pieces take the knots; the duration of the last one stands apart.
+    const auto knot = [&](double h, double position) { pieces_.push_back({0, h, {position, 0, 0}, 0}); };
+    const auto seconds = [&](const TimePoint& row) { return to_seconds(row.delta) * scale.time; };
+    const double first = seconds(rows.front()), last = seconds(rows.back());
+    if (rows.size() == 1) {
+        for (int i = 0; i < 3; ++i) knot(first / 3, from.position);
+    } else {
+        knot(first / 2, from.position);
+        knot(first / 2, 0);
+        for (std::size_t i = 0; i + 1 < rows.size(); ++i)
+            knot(i + 2 == rows.size() ? last / 2 : seconds(rows[i + 1]), value(rows[i]));
+        knot(last / 2, 0);
+    }
+    const std::size_t m = pieces_.size();
+    end_ = {value(rows.back()), 0, 0};
+    const auto h = [&](std::size_t k) { return pieces_[k].duration; };
+    const auto q = [&](std::size_t k) -> double { return k == m ? end_.position : pieces_[k].start.position; };
+    const double head = h(0), tail = h(m - 1);
+    pieces_[1].start.position = from.position + head * from.velocity + head * head * from.acceleration / 3;  // Q_1
+    pieces_[m - 1].start.position = end_.position;                                                           // Q_{m-1}
+
+    // Elimination downwards, then upwards.
+    for (std::size_t k = 1; k < m; ++k) {
+        double lower = h(k - 1), upper = h(k), diagonal = 2 * (lower + upper);
+        double right = 6 * ((q(k + 1) - q(k)) / upper - (q(k) - q(k - 1)) / lower);
+        if (k == 1) {
+            diagonal += head + head * head / upper;
+            right -= head * from.acceleration;
+        }
+        if (k == 2) lower -= head * head / lower;
+        if (k + 2 == m) upper -= tail * tail / upper;
+        if (k + 1 == m) diagonal += tail + tail * tail / h(k - 1);
+        if (k > 1) {
+            const double above = h(k - 1) - (k + 1 == m ? tail * tail / h(k - 1) : 0);  // what the row above holds right of its diagonal
+            const double part = lower / diagonal_[k - 1];
+            diagonal -= part * above;
+            right -= part * right_[k - 1];
+        }
+        diagonal_[k] = diagonal;
+        right_[k] = right;
+    }
+    pieces_[0].start.acceleration = from.acceleration;
+    for (std::size_t k = m - 1; k >= 1; --k) {
+        const double upper = h(k) - (k + 2 == m ? tail * tail / h(k) : 0);
+        const double next = k + 1 == m ? 0 : pieces_[k + 1].start.acceleration;
+        pieces_[k].start.acceleration = (right_[k] - (k + 1 == m ? 0 : upper * next)) / diagonal_[k];
+    }
+    pieces_[1].start.position += head * head * pieces_[1].start.acceleration / 6;
+    pieces_[m - 1].start.position += tail * tail * pieces_[m - 1].start.acceleration / 6;
+    for (std::size_t k = 0; k < m; ++k) {
+        auto& piece = pieces_[k];
+        const double next = k + 1 == m ? 0 : pieces_[k + 1].start.acceleration;
+        piece.jerk = (next - piece.start.acceleration) / piece.duration;
+        piece.start.velocity = k == 0 ? from.velocity
+                                      : (q(k + 1) - piece.start.position) / piece.duration -
+                                            piece.duration * (2 * piece.start.acceleration + next) / 6;
+        piece.begin = duration_;
+        duration_ += piece.duration;
+    }
+    return ErrorId::none;
+}
+
+ErrorId TimeCurve::make_velocity(const MotionState& from, std::span<const TimePoint> rows, const CurveScale& scale,
+                                 double tolerance) noexcept {
+    clear();
+    smooth_ = false;
+    if (rows.empty() || rows.size() > room_ || !usable(scale)) return ErrorId::invalid_table;
+    end_ = {from.position, from.velocity, 0};
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const double velocity = scale.value * rows[i].value + scale.offset;
+        if (!std::isfinite(velocity)) return ErrorId::invalid_table;
+        if (i == 0 && rows[i].delta == Duration::zero()) {
+            if (!(std::abs(velocity - from.velocity) <= tolerance)) return ErrorId::invalid_velocity;
+            continue;
+        }
+        const double seconds = to_seconds(rows[i].delta) * scale.time;
+        if (!(seconds > 0)) return ErrorId::invalid_table;
+        add(seconds, {end_.position, end_.velocity, (velocity - end_.velocity) / seconds}, 0);
+        end_ = {end_.position + (end_.velocity + velocity) / 2 * seconds, velocity, 0};
+    }
+    return pieces_.empty() ? ErrorId::invalid_table : ErrorId::none;
+}
+
+ErrorId TimeCurve::make_acceleration(const MotionState& from, std::span<const TimePoint> rows, const CurveScale& scale) noexcept {
+    clear();
+    smooth_ = false;
+    if (rows.empty() || rows.size() > room_ || !usable(scale)) return ErrorId::invalid_table;
+    end_ = {from.position, from.velocity, 0};
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const double acceleration = scale.value * rows[i].value + scale.offset;
+        const double seconds = to_seconds(rows[i].delta) * scale.time;
+        if (!std::isfinite(acceleration) || !(seconds > 0)) return ErrorId::invalid_table;
+        const MotionState start{end_.position, end_.velocity, acceleration};
+        add(seconds, start, 0);
+        end_ = travel(start, 0, seconds);
+        end_.acceleration = 0;
+    }
+    // A profile whose sum is zero ends standing: what is left of the velocity is the rounding of the sum.
+    double swing = 0;
+    for (const auto& piece : pieces_) swing = std::max(swing, std::abs(piece.start.velocity));
+    if (std::abs(end_.velocity) <= 1e-12 * swing) end_.velocity = 0;
+    return ErrorId::none;
+}
+
+ErrorId TimeCurve::check_piece(const Piece& piece, const CurveLimits& limits) const noexcept {
+    const auto& l = limits.motion;
+    const auto beyond = [](double value, double limit) { return !(std::abs(value) <= limit * (1 + rounding)); };
+    const auto stop = travel(piece.start, piece.jerk, piece.duration);
+    if (beyond(piece.start.velocity, l.velocity) || beyond(stop.velocity, l.velocity)) return ErrorId::invalid_velocity;
+    if (piece.jerk != 0) {
+        const double top = -piece.start.acceleration / piece.jerk;
+        if (top > 0 && top < piece.duration && beyond(travel(piece.start, piece.jerk, top).velocity, l.velocity))
+            return ErrorId::invalid_velocity;
+    }
+    if (smooth_ && beyond(piece.jerk, l.jerk)) return ErrorId::invalid_dynamics;
+
+    const auto turned = turns(piece.start, piece.jerk, piece.duration);
+    const auto outside = [&](double p) {
+        const double slack = rounding * std::max(std::abs(p), 1.0);
+        return p > limits.position_max + slack || p < limits.position_min - slack;
+    };
+    if (outside(piece.start.position) || outside(stop.position)) return ErrorId::beyond_software_limit;
+    for (int i = 0; i < turned.count; ++i)
+        if (outside(travel(piece.start, piece.jerk, turned.at[static_cast<std::size_t>(i)]).position)) return ErrorId::beyond_software_limit;
+
+    if (turned.count > 0) {
+        const double both = std::min(l.acceleration, l.deceleration);
+        if (beyond(piece.start.acceleration, both) || beyond(stop.acceleration, both)) return ErrorId::invalid_dynamics;
+        return ErrorId::none;
+    }
+    const double sense = travel(piece.start, piece.jerk, piece.duration / 2).velocity;  // of the whole piece
+    for (const double a : {piece.start.acceleration, stop.acceleration})
+        if (beyond(a, a * sense >= 0 ? l.acceleration : l.deceleration)) return ErrorId::invalid_dynamics;
+    return ErrorId::none;
+}
+
+ErrorId TimeCurve::check(const CurveLimits& limits) const noexcept {
+    for (const auto& piece : pieces_)
+        if (const auto error = check_piece(piece, limits); error != ErrorId::none) return error;
+    return ErrorId::none;
+}
+
+void TimeCurve::seek(double t) noexcept {
+    while (cursor_ + 1 < pieces_.size() && t >= pieces_[cursor_ + 1].begin) ++cursor_;
+}
+
+MotionState TimeCurve::at(double t) noexcept {
+    if (!(t < duration_)) return {end_.position + end_.velocity * (t - duration_), end_.velocity, 0};
+    seek(t);
+    const auto& piece = pieces_[cursor_];
+    return travel(piece.start, piece.jerk, t - piece.begin);
+}
+
+double TimeCurve::jerk_at(double t) noexcept {
+    if (!(t < duration_)) return 0;
+    seek(t);
+    return pieces_[cursor_].jerk;
+}
+
+}  // namespace taktwerk::axes
