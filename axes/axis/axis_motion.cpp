@@ -203,7 +203,7 @@ bool Axis::guard_software_limits(const MotionState& before) noexcept {
 
     // One period ago stopping was still possible: from there the way to the limit ends exactly on it.
     limits.velocity = std::min(limits.velocity, std::max(std::abs(goal_.value), std::abs(before.velocity)));
-    if (queue_.active().command.kind == CommandKind::move_velocity)
+    if (hands_over_in_target(queue_.active().command.kind))
         fail(AxisAlarm::software_limit_reached, units_.to_program(before.position), edge);
     // Also in ErrorStop: its own stop might be softer and pass the limit.
     aim(Goal::Kind::position, edge_local, limits, VelocityLimiter::software_limit);
@@ -217,7 +217,7 @@ void Axis::complete() noexcept {
     }
     if (state_ == AxisState::ContinuousMotion) queue_.set_in_target(setpoint_.finished() && goal_.kind == Goal::Kind::velocity);
     for (std::size_t i = 0; i <= CommandQueue::capacity; ++i)
-        if (goal_pending_ || !setpoint_.finished() || !complete_active()) return;
+        if (goal_pending_ || goal_.kind == Goal::Kind::given || !setpoint_.finished() || !complete_active()) return;
 }
 
 bool Axis::complete_active() noexcept {

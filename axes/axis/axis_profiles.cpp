@@ -11,6 +11,8 @@ namespace taktwerk::axes {
 
 namespace {
 
+constexpr double time_grain = 1e-9;  // s: a sum of times that ends with a cycle ends in it, whatever its last digits
+
 bool is_profile(CommandKind kind) noexcept {
     return kind == CommandKind::position_profile || kind == CommandKind::velocity_profile || kind == CommandKind::acceleration_profile;
 }
@@ -96,7 +98,7 @@ void Axis::step_given(Duration period) noexcept {
 
 void Axis::follow_curve(double t) noexcept {
     auto& curve = profile_.running();
-    if (t < curve.duration()) {
+    if (t + time_grain < curve.duration()) {
         setpoint_.set(curve.at(t), curve.jerk_at(t));
         return;
     }
@@ -105,7 +107,7 @@ void Axis::follow_curve(double t) noexcept {
     const bool position = queue_.active().command.kind == CommandKind::position_profile;
     goal_ = {position ? Goal::Kind::position : Goal::Kind::velocity, position ? end.position : end.velocity, full_limits(config_.limits),
              VelocityLimiter::command};
-    setpoint_.run(Profile{end}, t - curve.duration());
+    setpoint_.run(Profile{end}, std::max(0.0, t - curve.duration()));
     setpoint_.sample();
 }
 

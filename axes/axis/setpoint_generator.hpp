@@ -12,9 +12,7 @@ public:
     [[nodiscard]] double jerk() const noexcept { return moving_profile_ ? profile_.jerk_at(time()) : jerk_; }
 
     /// Stands at `position`, without a profile.
-    void place(double position) noexcept {
-        set({position, 0, 0});
-    }
+    void place(double position) noexcept { set({position, 0, 0}); }
     /// The same motion seen from another anchor; a profile must follow before the next advance() where it moves.
     void rebase(double position) noexcept {
         state_.position = position;

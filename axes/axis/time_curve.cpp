@@ -91,8 +91,7 @@ ErrorId TimeCurve::make_position(const MotionState& from, std::span<const TimePo
     } else {
         knot(first / 2, from.position);
         knot(first / 2, 0);
-        for (std::size_t i = 0; i + 1 < rows.size(); ++i)
-            knot(i + 2 == rows.size() ? last / 2 : seconds(rows[i + 1]), value(rows[i]));
+        for (std::size_t i = 0; i + 1 < rows.size(); ++i) knot(i + 2 == rows.size() ? last / 2 : seconds(rows[i + 1]), value(rows[i]));
         knot(last / 2, 0);
     }
     const std::size_t m = pieces_.size();
@@ -135,9 +134,9 @@ ErrorId TimeCurve::make_position(const MotionState& from, std::span<const TimePo
         auto& piece = pieces_[k];
         const double next = k + 1 == m ? 0 : pieces_[k + 1].start.acceleration;
         piece.jerk = (next - piece.start.acceleration) / piece.duration;
-        piece.start.velocity = k == 0 ? from.velocity
-                                      : (q(k + 1) - piece.start.position) / piece.duration -
-                                            piece.duration * (2 * piece.start.acceleration + next) / 6;
+        piece.start.velocity =
+            k == 0 ? from.velocity
+                   : (q(k + 1) - piece.start.position) / piece.duration - piece.duration * (2 * piece.start.acceleration + next) / 6;
         piece.begin = duration_;
         duration_ += piece.duration;
     }
@@ -205,7 +204,8 @@ ErrorId TimeCurve::check_piece(const Piece& piece, const CurveLimits& limits) co
     };
     if (outside(piece.start.position) || outside(stop.position)) return ErrorId::beyond_software_limit;
     for (int i = 0; i < turned.count; ++i)
-        if (outside(travel(piece.start, piece.jerk, turned.at[static_cast<std::size_t>(i)]).position)) return ErrorId::beyond_software_limit;
+        if (outside(travel(piece.start, piece.jerk, turned.at[static_cast<std::size_t>(i)]).position))
+            return ErrorId::beyond_software_limit;
 
     if (turned.count > 0) {
         const double both = std::min(l.acceleration, l.deceleration);

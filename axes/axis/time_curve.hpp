@@ -22,7 +22,7 @@ namespace taktwerk::axes {
 
 /// value(t) = value * table(t / time) + offset.
 struct CurveScale {
-    double time = 1;    ///< > 0
+    double time = 1;  ///< > 0
     double value = 1;
     double offset = 0;  ///< u, u/s, u/s2
 };
