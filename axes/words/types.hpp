@@ -114,7 +114,7 @@ enum class ErrorId : std::uint16_t {
     // Blocks without CommandAborted.
     aborted_by_command = 0x0031,  ///< another command, or power off, ended it before it was done
     // Set-points from outside.
-    setpoint_missing = 0x0032,    ///< an axis that is fed from outside moved, and no set-point came any more
+    setpoint_missing = 0x0032,  ///< an axis that is fed from outside moved, and no set-point came any more
 };
 inline constexpr std::size_t error_id_count = 0x0033;
 
