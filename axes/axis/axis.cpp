@@ -23,13 +23,14 @@ Axis::Axis(AxisConfig config, DrivePort& port, Duration cycle, std::uint16_t ind
       cycle_(cycle),
       stale_limit_(stale_cycles(config_, port.capabilities(), cycle)),
       endless_(std::isinf(config_.limits.position_min) && std::isinf(config_.limits.position_max)),
-      units_(config_.gearing),
+      units_(config_.gearing, config_.modulo),
       power_(port.capabilities().enable_delay, config_.enable_timeout),
       alarms_(index),
       own_view_(view ? nullptr : std::make_unique<AxisView>()),
       view_(view ? *view : *own_view_) {
     view_ = {};
     view_.simulated = config_.simulated;
+    view_.modulo = config_.modulo;
     store_parameters();
     use_parameters();
     publish();
@@ -214,8 +215,13 @@ void Axis::publish_setpoint() noexcept {
     view_.set_velocity = set.velocity;
     view_.set_acceleration = set.acceleration;
     view_.set_jerk = setpoint_.jerk();
-    view_.target_position = units_.to_program(goal_.kind == Goal::Kind::position ? goal_.value : setpoint_.end().position);
-    view_.limiter = setpoint_.at_rest() ? VelocityLimiter::none : goal_.limiter;
+    view_.turns = units_.turns(set.position);
+    const double rest = setpoint_.layered() ? setpoint_.superimposed().position + setpoint_.superimposed_rest() : 0;
+    view_.target_position = units_.to_program((goal_.kind == Goal::Kind::position ? goal_.value : setpoint_.end().position) + rest);
+    view_.limiter = setpoint_.at_rest() && !held_                 ? VelocityLimiter::none
+                    : override_.velocity < 1 && override_counts() ? VelocityLimiter::override_factor
+                                                                  : goal_.limiter;
+    view_.override_factors = override_;
 }
 
 }  // namespace taktwerk::axes

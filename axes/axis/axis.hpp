@@ -118,13 +118,25 @@ public:
     ErrorId renew_jog(CommandId id, double velocity, Owner owner) noexcept;
 
 private:
-    /// What the set-point is on its way to. `value`: local position u, or velocity u/s. `given`: no plan, something else says where it is
-    /// in each cycle (a table over time, a fed set-point, the motor itself).
+    /// What the base of the set-point is on its way to. `value`: local position u, or velocity u/s. `given`: no plan, something else says where
+    /// it is in each cycle (a table over time, a fed set-point, the motor itself). Limits and velocities are those commanded and allowed; overrides
+    /// enter where the profile is made.
     struct Goal {
         enum class Kind : std::uint8_t { rest, position, velocity, stop, given } kind = Kind::rest;
         double value = 0;
         MotionLimits limits;
         VelocityLimiter limiter = VelocityLimiter::none;
+        bool goes_on = false;     ///< position: passes it with end_velocity and keeps that (MC_MoveContinuous...)
+        double end_velocity = 0;  ///< u/s, signed
+    };
+    /// What runs on top of the base.
+    struct Superimposed {
+        AcceptedCommand accepted;
+        double distance = 0;   ///< u, since its start
+        double covered = 0;    ///< u, before the present profile
+        bool pending = false;  ///< has no profile yet, or one made for another base
+        bool begun = false;
+        bool waiting = false;  ///< the base uses the whole velocity limit
     };
 
     // axis.cpp
@@ -161,27 +173,64 @@ private:
     [[nodiscard]] ErrorId refuse(const AxisCommand& command) noexcept;
     [[nodiscard]] ErrorId refuse_state(const AxisCommand& command) const noexcept;
     [[nodiscard]] ErrorId refuse_target(const AxisCommand& command, bool starts_now) const noexcept;
+    [[nodiscard]] ErrorId refuse_place(double program) const noexcept;
     [[nodiscard]] bool waits(const AxisCommand& command) const noexcept;
     [[nodiscard]] bool permitted(double direction) const noexcept;
-    [[nodiscard]] bool software_limits_hold() const noexcept { return homed_; }
+    [[nodiscard]] bool software_limits_hold() const noexcept { return homed_ && config_.modulo == 0; }
     [[nodiscard]] double velocity_cap() const noexcept;
 
-    // axis_motion.cpp
+    // axis_motion.cpp: one cycle of the set-point
     void follow_actual(Duration period) noexcept;
     void anchor_near_actual() noexcept;
-    [[nodiscard]] double signed_velocity(const AxisCommand& command) const noexcept;
+    void reanchor() noexcept;
+    void keep_close_to_anchor() noexcept;
+    void run_goal(double late) noexcept;
+    [[nodiscard]] Plan plan_way(const MotionState& from, MotionLimits limits) noexcept;
+
+    // axis_goals.cpp: from a command to its goal
     void begin_command() noexcept;
     ErrorId set_goal(const AcceptedCommand& accepted) noexcept;
+    void start_at_base() noexcept;
     void aim(Goal::Kind kind, double value, const MotionLimits& limits, VelocityLimiter limiter) noexcept;
     void aim_at_velocity(double velocity, const MotionLimits& dynamics) noexcept;
-    void run_goal(double late) noexcept;
-    void guard(const MotionState& before, Duration period) noexcept;
-    bool guard_switches() noexcept;
-    bool guard_software_limits(const MotionState& before) noexcept;
+    void aim_at_target(const AxisCommand& command, double target) noexcept;
+    void aim_at_stop(const AxisCommand& command) noexcept;
+    [[nodiscard]] double signed_velocity(const AxisCommand& command, bool backwards) const noexcept;
+    [[nodiscard]] double target_of(const AxisCommand& command, const MotionState& from, bool backwards) const noexcept;
+    [[nodiscard]] double repetition_of(double program, MC_Direction direction, const MotionState& from, bool backwards) const noexcept;
+    [[nodiscard]] bool heads_backwards() const noexcept;
+
+    // axis_queue.cpp: what comes after what
     void complete() noexcept;
     bool complete_active() noexcept;
     void start_waiting(double late) noexcept;
-    void keep_close_to_anchor() noexcept;
+    void hand_over() noexcept;
+    [[nodiscard]] double velocity_at_junction(const MotionState& from, const MotionLimits& limits) const noexcept;
+
+    // axis_guards.cpp: limits that no set-point passes
+    void guard(const MotionState& before, Duration period) noexcept;
+    bool guard_switches() noexcept;
+    bool guard_software_limits(const MotionState& before) noexcept;
+    void brake_inside_limits(const MotionState& from, MotionLimits& limits) const noexcept;
+    [[nodiscard]] bool leaves_limits(const Profile& profile) const noexcept;
+
+    // axis_override.cpp
+    ErrorId set_override(const Override& factors) noexcept;
+    [[nodiscard]] bool override_counts() const noexcept;
+    [[nodiscard]] MotionLimits with_override(const MotionLimits& limits) const noexcept;
+
+    // axis_superimposed.cpp
+    Submitted submit_superimposed(const AxisCommand& command, Owner owner) noexcept;
+    [[nodiscard]] ErrorId refuse_superimposed(const AxisCommand& command) const noexcept;
+    void run_superimposed() noexcept;
+    void complete_superimposed() noexcept;
+    void end_superimposed(Outcome outcome, ErrorId error = ErrorId::none) noexcept;
+
+    // axis_update.cpp: ContinuousUpdate
+    ErrorId update_active(const AxisCommand& command) noexcept;
+    ErrorId update_waiting(AcceptedCommand& waiting, const AxisCommand& command) noexcept;
+    ErrorId update_target(const AxisCommand& command) noexcept;
+    ErrorId update_superimposed(const AxisCommand& command) noexcept;
 
     // axis_probes.cpp
     [[nodiscard]] ProbeBoard::Signals probe_signals() const noexcept;
@@ -243,6 +292,16 @@ private:
     Goal goal_;
     bool begin_pending_ = false;  // the active command has not been turned into a goal yet
     bool goal_pending_ = false;   // the goal has no profile yet
+    bool held_ = false;           // override 0: the axis waits on its way to a position
+    bool watch_limits_ = true;    // the base might pass a software limit
+    bool backwards_ = false;      // sense of the last motion
+    Override override_;
+    Superimposed superimposed_;
+    // The running command's start, for its relative inputs; and the last target of a motion to a position, for MC_MoveAdditive.
+    double origin_ = 0;               // local
+    bool started_backwards_ = false;  // sense of motion there
+    double commanded_target_ = 0;     // local
+    bool has_commanded_target_ = false;
     bool aligned_ = false;
     SetpointHistory history_;
     FollowingErrorTimer following_timer_;

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "axes/axis/rational.hpp"
+
 namespace taktwerk::axes {
 
 namespace {
@@ -52,6 +54,19 @@ void check_limits(Problems& problems, const AxisLimits& limits) {
         problems.add("limits.position_min", "must be below limits.position_max", "Exchange the two, or leave both out");
 }
 
+void check_modulo(Problems& problems, const AxisConfig& config) {
+    if (config.modulo == 0) return;
+    if (!(config.modulo > 0) || std::isinf(config.modulo)) {
+        problems.add("modulo", "must be a finite number above 0", "Give the range of positions in u, or leave it out for a linear axis");
+        return;
+    }
+    if (config.gearing.feed > 0 && !rational_of(config.modulo / config.gearing.feed))
+        problems.add("modulo", "is no simple ratio of gearing.feed, so turns would drift",
+                     "Write both as exact as the mechanics are, such as feed 360 deg and modulo 360 deg");
+    if (!std::isinf(config.limits.position_min) || !std::isinf(config.limits.position_max))
+        problems.add("modulo", "excludes software limits: the axis has no ends", "Remove limits.position_min and limits.position_max");
+}
+
 void check_homing(Problems& problems, const HomingConfig& homing) {
     if (homing.kind == HomingKind::none || homing.kind == HomingKind::set_here) return;
     if (homing.timeout <= Duration::zero())
@@ -70,6 +85,7 @@ std::vector<Error> check(const AxisConfig& config) {
     Problems problems(config.name);
     if (config.name.empty()) problems.add("name", "is empty", "Give the axis a name");
     check_gearing(problems, config.gearing);
+    check_modulo(problems, config);
     check_limits(problems, config.limits);
     check_homing(problems, config.homing);
     problems.not_negative("defaults.acceleration", config.defaults.acceleration, "the limit");

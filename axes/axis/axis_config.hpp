@@ -79,6 +79,7 @@ struct AxisConfig {
     std::string name;
     std::string unit = "mm";
     Gearing gearing;
+    double modulo = 0;  ///< u: program positions repeat after it (360 deg); a whole or simple part of the feed; 0 = linear
     AxisLimits limits;
     AxisDefaults defaults;
     FollowingErrorWatch following;

@@ -112,7 +112,7 @@ void Axis::follow_curve(double t) noexcept {
 }
 
 ErrorId Axis::check_feed(const MotionState& next) const noexcept {
-    const auto& from = setpoint_.state();
+    const auto& from = setpoint_.base();
     const double period = to_seconds(cycle_);
     const double velocity = std::min(config_.limits.velocity, velocity_cap()) * (1 + 1e-9);
     const double change = std::max(config_.limits.acceleration, config_.limits.deceleration) * period * (1 + 1e-9);
@@ -157,9 +157,9 @@ void Axis::follow_feed(Duration period) noexcept {
         return;
     }
     feed_.followed = false;
-    const auto& now = setpoint_.state();
+    const auto now = setpoint_.base();
     if (now.velocity == 0) {  // an axis that stands misses nothing
-        setpoint_.place(now.position);
+        setpoint_.set({now.position, 0, 0});
         return;
     }
     if (++feed_.missing > config_.feed_patience) {

@@ -31,7 +31,8 @@ bool Axis::permitted(double direction) const noexcept {
 }
 
 bool Axis::waits(const AxisCommand& command) const noexcept {
-    return command.buffer_mode == mcBuffered && (queue_.has_active() || state_ == AxisState::Stopping);
+    if (command.buffer_mode == mcAborting) return false;
+    return queue_.has_active() || state_ == AxisState::Stopping || queue_.beside(SideSlot::superimposed) != 0;
 }
 
 ErrorId Axis::refuse_state(const AxisCommand& command) const noexcept {
@@ -50,25 +51,43 @@ ErrorId Axis::refuse_state(const AxisCommand& command) const noexcept {
     return next_state(state_, event_of(command.kind)) ? ErrorId::none : ErrorId::state_forbids;
 }
 
+/// `program` as a target: inside the range of a modulo axis, inside the software limits.
+ErrorId Axis::refuse_place(double program) const noexcept {
+    if (config_.modulo > 0) return program >= 0 && program < config_.modulo ? ErrorId::none : ErrorId::invalid_position;
+    const bool beyond = program > config_.limits.position_max || program < config_.limits.position_min;
+    return software_limits_hold() && beyond ? ErrorId::beyond_software_limit : ErrorId::none;
+}
+
 ErrorId Axis::refuse_target(const AxisCommand& command, bool starts_now) const noexcept {
-    double target = 0;  // program coordinate
-    const double here = units_.to_program(setpoint_.state().position);
+    // Coordinates of the total: what is superimposed is part of where the axis is.
+    const auto& here = setpoint_.state();
+    double way = 0;
     switch (command.kind) {
         case CommandKind::move_absolute:
+        case CommandKind::move_continuous_absolute:
             if (config_.require_homed && !homed_) return ErrorId::not_homed;
-            target = command.position;
+            if (const auto error = refuse_place(command.position); error != ErrorId::none) return error;
+            way = repetition_of(command.position, command.direction, here, heads_backwards()) - here.position;
             break;
         case CommandKind::move_relative:
+        case CommandKind::move_continuous_relative:
+        case CommandKind::move_additive: {
             if (!starts_now) return ErrorId::none;  // it is checked where it begins
-            target = here + command.position;
+            const bool adds = command.kind == CommandKind::move_additive && has_commanded_target_;
+            const double from = adds ? commanded_target_ + setpoint_.superimposed().position : here.position;
+            way = from + command.position - here.position;
+            if (config_.modulo > 0) break;
+            if (const auto error = refuse_place(units_.to_program(from) + command.position); error != ErrorId::none) return error;
             break;
+        }
         case CommandKind::move_velocity:
         case CommandKind::jog: {
             if (!starts_now) return ErrorId::none;
-            const double way = signed_velocity(command);
-            if (!permitted(way)) return ErrorId::interlocked;
-            const bool outward = (way > 0 && here >= config_.limits.position_max) || (way < 0 && here <= config_.limits.position_min);
-            return software_limits_hold() && outward ? ErrorId::beyond_software_limit : ErrorId::none;
+            way = signed_velocity(command, heads_backwards());
+            const double program = units_.to_program(here.position);
+            const bool outward = (way > 0 && program >= config_.limits.position_max) || (way < 0 && program <= config_.limits.position_min);
+            if (permitted(way) && software_limits_hold() && outward) return ErrorId::beyond_software_limit;
+            break;
         }
         case CommandKind::home:
             if (config_.homing.kind == HomingKind::none) return ErrorId::not_supported;
@@ -76,9 +95,7 @@ ErrorId Axis::refuse_target(const AxisCommand& command, bool starts_now) const n
             return ErrorId::none;
         default: return ErrorId::none;
     }
-    if (software_limits_hold() && (target > config_.limits.position_max || target < config_.limits.position_min))
-        return ErrorId::beyond_software_limit;
-    return !starts_now || permitted(target - here) ? ErrorId::none : ErrorId::interlocked;
+    return !starts_now || permitted(way) ? ErrorId::none : ErrorId::interlocked;
 }
 
 ErrorId Axis::refuse(const AxisCommand& command) noexcept {
@@ -92,14 +109,21 @@ Submitted Axis::submit(const AxisCommand& command, Owner owner) noexcept {
     if (command.kind == CommandKind::touch_probe || command.kind == CommandKind::abort_trigger) return submit_probe(command);
     if (command.kind == CommandKind::setting) return submit_setting(command, owner);
     if (!may(owner)) return {0, ErrorId::owned_by_other};
+    if (command.kind == CommandKind::move_superimposed || command.kind == CommandKind::halt_superimposed)
+        return submit_superimposed(command, owner);
+    // Commands of one cycle are taken one after another (P1-016): this one adds to the target of the one before.
+    if (begin_pending_ && command.kind == CommandKind::move_additive) begin_command();
     if (const auto error = refuse(command); error != ErrorId::none) return {0, error};
 
     const AcceptedCommand accepted{queue_.next_id(), owner, command};
     if (waits(command)) {
         queue_.push(accepted);
+        // It may let the running move, or one behind it, pass its end without a stop.
+        if (command.buffer_mode != mcBuffered && goal_.kind == Goal::Kind::position && !begin_pending_) goal_pending_ = true;
     } else {
         queue_.finish_active(Outcome::aborted);
         queue_.finish_waiting(Outcome::aborted);
+        end_superimposed(Outcome::aborted);
         abort_homing();
         queue_.activate(accepted);
         if (state_ != AxisState::Stopping) fire(event_of(command.kind));
@@ -146,6 +170,7 @@ ErrorId Axis::set(const AxisSetting& setting, Owner owner) noexcept {
     if (const auto* parameter = std::get_if<WriteParameter>(&setting)) return write_parameter(*parameter);
     if (const auto* output = std::get_if<WriteOutput>(&setting)) return write_output(*output);
     if (const auto* fed = std::get_if<SetpointFeed>(&setting)) return feed(*fed);
+    if (const auto* factors = std::get_if<Override>(&setting)) return set_override(*factors);
     return ErrorId::not_supported;
 }
 
@@ -153,22 +178,20 @@ ErrorId Axis::set_position(const SetPosition& wanted) noexcept {
     if (!std::isfinite(wanted.position)) return ErrorId::invalid_position;
     if (!online()) return ErrorId::drive_not_ready;
     if (state_ == AxisState::Homing) return ErrorId::state_forbids;
-    units_.shift_by(wanted.relative ? wanted.position : wanted.position - units_.to_program(actual_local()));
+    double delta = wanted.relative ? wanted.position : wanted.position - units_.to_program(actual_local());
+    if (config_.modulo > 0) delta = std::remainder(delta, config_.modulo);  // the same place whichever repetition: the nearest
+    units_.shift_by(delta);
     // The number commanded stays and means the shifted coordinates (P1-200).
     const auto& active = queue_.active();
-    if (active.command.kind == CommandKind::move_absolute && goal_.kind == Goal::Kind::position && !begin_pending_) {
-        goal_.value = units_.to_local(active.command.position);
-        goal_pending_ = true;
+    const bool to_position = goal_.kind == Goal::Kind::position && goal_.limiter != VelocityLimiter::software_limit && !begin_pending_;
+    if (to_position) goal_pending_ = true;  // limits and what waits behind have moved too
+    if (to_position &&
+        (active.command.kind == CommandKind::move_absolute || active.command.kind == CommandKind::move_continuous_absolute)) {
+        goal_.value = config_.modulo > 0 ? goal_.value - delta : units_.to_local(active.command.position);
+        commanded_target_ = goal_.value;
     }
     publish();
     return ErrorId::none;
-}
-
-ErrorId Axis::update(CommandId id, const AxisCommand& command, Owner owner) noexcept {
-    if (!may(owner)) return ErrorId::owned_by_other;
-    auto& active = queue_.active();
-    if (id == 0 || id != active.id || command == active.command) return ErrorId::none;
-    return ErrorId::not_supported;
 }
 
 void Axis::release_stop(CommandId id, Owner) noexcept {

@@ -99,6 +99,7 @@ void Axis::use_parameters() noexcept {
     config_.windows.standstill_velocity = p[place_of(standstill_velocity)];
     config_.defaults = {p[place_of(default_acceleration)], p[place_of(default_deceleration)], p[place_of(default_jerk)]};
     config_.manual = {p[place_of(jog_velocity_slow)], p[place_of(jog_velocity_fast)], p[place_of(setup_velocity)]};
+    watch_limits_ = true;
     view_.manual_slow = config_.manual.slow;
     view_.manual_fast = config_.manual.fast;
 }

@@ -17,6 +17,7 @@ constexpr Duration reset_patience = 2s;  // a drive that still reports its fault
 bool Axis::fire(AxisEvent event) noexcept {
     const auto to = next_state(state_, event);
     if (to) state_ = *to;
+    if (state_ != AxisState::DiscreteMotion) has_commanded_target_ = false;  // P1-147: it lives as long as that motion
     return to.has_value();
 }
 
@@ -45,6 +46,7 @@ void Axis::enter_error_stop(AlarmId reason, bool then_power_off) noexcept {
     fire(AxisEvent::axis_error);
     queue_.finish_active(Outcome::error, static_cast<ErrorId>(reason));
     queue_.finish_waiting(Outcome::error, ErrorId::aborted_by_axis_error);
+    end_superimposed(Outcome::error, ErrorId::aborted_by_axis_error);
     stop_lock_ = 0;
     off_when_stopped_ = begin_pending_ = false;
     abort_homing();
@@ -54,6 +56,7 @@ void Axis::enter_error_stop(AlarmId reason, bool then_power_off) noexcept {
 void Axis::stop_on_own_account(bool then_power_off) noexcept {
     queue_.finish_active(Outcome::aborted);
     queue_.finish_waiting(Outcome::aborted);
+    end_superimposed(Outcome::aborted);
     stop_lock_ = 0;
     begin_pending_ = false;
     off_when_stopped_ = off_when_stopped_ || then_power_off;
@@ -65,6 +68,8 @@ void Axis::stop_on_own_account(bool then_power_off) noexcept {
 void Axis::switch_off() noexcept {
     queue_.finish_active(Outcome::aborted);
     queue_.finish_waiting(Outcome::aborted);
+    end_superimposed(Outcome::aborted);
+    end_superimposed(Outcome::aborted);
     stop_lock_ = 0;
     off_when_stopped_ = begin_pending_ = false;
     power_dropping_ = true;

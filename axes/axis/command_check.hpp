@@ -38,13 +38,39 @@ namespace taktwerk::axes {
     }
 }
 
-/// Kinds without Done whose Inxxx starts what waits behind them (P1-092).
+/// A motion to a position that ends there.
+[[nodiscard]] constexpr bool ends_at_position(CommandKind kind) noexcept {
+    return kind == CommandKind::move_absolute || kind == CommandKind::move_relative || kind == CommandKind::move_additive;
+}
+[[nodiscard]] constexpr bool moves_continuously(CommandKind kind) noexcept {
+    return kind == CommandKind::move_continuous_absolute || kind == CommandKind::move_continuous_relative;
+}
+
+/// PLCopen table 4, second column. A jog lives by its lease and waits for nobody.
+[[nodiscard]] constexpr bool can_be_buffered(CommandKind kind) noexcept {
+    switch (kind) {
+        case CommandKind::stop:
+        case CommandKind::jog:
+        case CommandKind::move_superimposed:
+        case CommandKind::halt_superimposed:
+        case CommandKind::gear_out:
+        case CommandKind::cam_out: return false;
+        default: return true;
+    }
+}
+
+/// PLCopen table 4, last column: commands without Done, which hand over to a waiting one by an Inxxx output. It is shown for a cycle first.
 [[nodiscard]] constexpr bool hands_over_in_target(CommandKind kind) noexcept {
     switch (kind) {
         case CommandKind::move_velocity:
+        case CommandKind::move_continuous_absolute:
+        case CommandKind::move_continuous_relative:
+        case CommandKind::torque:
         case CommandKind::velocity_profile:
         case CommandKind::acceleration_profile:
-        case CommandKind::torque: return true;
+        case CommandKind::gear_in:
+        case CommandKind::gear_in_pos:
+        case CommandKind::combine: return true;
         default: return false;
     }
 }
@@ -72,8 +98,16 @@ namespace taktwerk::axes {
         default: return ErrorId::not_supported;
         case CommandKind::move_absolute:
         case CommandKind::move_relative:
+        case CommandKind::move_additive:
+        case CommandKind::move_continuous_absolute:
+        case CommandKind::move_continuous_relative:
             if (!std::isfinite(command.position)) return ErrorId::invalid_position;
             if (!(command.velocity > 0) || std::isinf(command.velocity)) return ErrorId::invalid_velocity;
+            if (!std::isfinite(command.end_velocity)) return ErrorId::invalid_velocity;
+            break;
+        case CommandKind::move_superimposed:  // VelocityDiff 0: what the axis' limit leaves
+            if (!std::isfinite(command.position)) return ErrorId::invalid_position;
+            if (!(command.velocity >= 0) || std::isinf(command.velocity)) return ErrorId::invalid_velocity;
             break;
         case CommandKind::move_velocity:
             if (!std::isfinite(command.velocity)) return ErrorId::invalid_velocity;
@@ -92,11 +126,11 @@ namespace taktwerk::axes {
             break;
         case CommandKind::external:
         case CommandKind::halt:
+        case CommandKind::halt_superimposed:
         case CommandKind::stop: break;
     }
-    if (command.buffer_mode != mcAborting && command.buffer_mode != mcBuffered) return ErrorId::buffer_mode_not_supported;
-    if (command.buffer_mode == mcBuffered && (command.kind == CommandKind::stop || command.kind == CommandKind::jog))
-        return ErrorId::buffer_mode_not_supported;  // PLCopen table 4: MC_Stop cannot be buffered
+    if (command.buffer_mode > mcBlendingHigh) return ErrorId::buffer_mode_not_supported;
+    if (command.buffer_mode != mcAborting && !can_be_buffered(command.kind)) return ErrorId::buffer_mode_not_supported;
     return ErrorId::none;
 }
 

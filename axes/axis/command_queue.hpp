@@ -51,6 +51,22 @@ public:
         return first;
     }
 
+    /// In order; i < waiting().
+    [[nodiscard]] AcceptedCommand& waiting_at(std::size_t i) noexcept { return queue_[i]; }
+    [[nodiscard]] const AcceptedCommand& waiting_at(std::size_t i) const noexcept { return queue_[i]; }
+
+    // Beside the active one: a place per slot.
+    [[nodiscard]] CommandId beside(SideSlot slot) const noexcept { return side_[static_cast<std::size_t>(slot)]; }
+    void occupy(SideSlot slot, CommandId id) noexcept {
+        changed_ = true;
+        side_[static_cast<std::size_t>(slot)] = id;
+    }
+    void finish_beside(SideSlot slot, Outcome outcome, ErrorId error = ErrorId::none) noexcept {
+        auto& id = side_[static_cast<std::size_t>(slot)];
+        if (id != 0) record(id, outcome, error);
+        id = 0;
+    }
+
     void set_in_target(bool reached) noexcept { in_target_ = reached; }
 
     void finish_active(Outcome outcome, ErrorId error = ErrorId::none) noexcept {
@@ -80,6 +96,8 @@ public:
         view.active_kind = active_.command.kind;
         view.queued_count = static_cast<std::uint8_t>(waiting_);
         for (std::size_t i = 0; i < capacity; ++i) view.queued[i] = i < waiting_ ? queue_[i].id : 0;
+        constexpr auto superimposed = static_cast<std::size_t>(SideSlot::superimposed);
+        view.side[superimposed] = side_[superimposed];
         view.ledger = ledger_;
         view.ledger_next = ledger_next_;
         view.last_id = last_id_;
@@ -90,6 +108,7 @@ private:
     bool in_target_ = false;
     std::array<AcceptedCommand, capacity> queue_{};
     std::size_t waiting_ = 0;
+    std::array<CommandId, side_slot_count> side_{};
     decltype(AxisView::ledger) ledger_{};
     std::uint8_t ledger_next_ = 0;
     CommandId last_id_ = 0;

@@ -1,5 +1,9 @@
 #pragma once
-// Where the set-point is now and where the running profile takes it. Advances in motion time: exactly one period per call.
+// Where the set-point is now and where it goes. Advances in motion time: exactly one period per call.
+//
+// Two layers, each with a profile of its own. The base is the motion of the axis' command; a superimposed motion adds its contribution
+// and takes nothing from the base, whose times stay what they are (P1-155). What a superimposed motion has covered stays as an offset between base
+// and total until somebody folds it into the base. Without it the two are the same and cost nothing more.
 
 #include "axes/planner/plan.hpp"
 #include "core/time.hpp"
@@ -8,26 +12,47 @@ namespace taktwerk::axes {
 
 class SetpointGenerator {
 public:
+    /// What the drive gets.
     [[nodiscard]] const MotionState& state() const noexcept { return state_; }
-    [[nodiscard]] double jerk() const noexcept { return moving_profile_ ? profile_.jerk_at(time()) : jerk_; }
+    /// Without what is superimposed: the coordinates of the command's goal.
+    [[nodiscard]] const MotionState& base() const noexcept { return layered_ ? base_ : state_; }
+    /// The part superimposed, in u from where it was folded last.
+    [[nodiscard]] MotionState superimposed() const noexcept { return layered_ ? contribution() : MotionState{}; }
+    [[nodiscard]] bool layered() const noexcept { return layered_; }
+    [[nodiscard]] double jerk() const noexcept {
+        const double base = moving_profile_ ? profile_.jerk_at(time()) : jerk_;
+        return layered_ ? base + layer_.jerk_at(to_seconds(layer_elapsed_)) : base;
+    }
 
-    /// Stands at `position`, without a profile.
-    void place(double position) noexcept { set({position, 0, 0}); }
-    /// The same motion seen from another anchor; a profile must follow before the next advance() where it moves.
+    // --- the base --------------------------------------------------------------------------------------------------------
+    /// Stands at `position`, without any profile.
+    void place(double position) noexcept {
+        layered_ = false;
+        set({position, 0, 0});
+    }
+    /// The same motion seen from another anchor: every position is `delta` more, the base's is `position`. A profile must follow before the
+    /// next advance() where it moves.
     void rebase(double position) noexcept {
-        state_.position = position;
+        const double delta = position - base().position;
+        if (layered_) {
+            base_.position = position;
+            state_.position += delta;
+        } else state_.position = position;
         moving_profile_ = false;
         jerk_ = 0;
     }
-    /// Where something else than a profile (a table over time, a fed set-point, the motor itself) has taken the set-point this cycle.
-    void set(const MotionState& state, double jerk = 0) noexcept {
-        state_ = state;
+    /// Where something else than a profile (a master, a table over time, a fed set-point, the motor itself) has taken the base this cycle.
+    void set(const MotionState& base, double jerk = 0) noexcept {
         moving_profile_ = false;
         jerk_ = jerk;
+        set_base(base);
     }
-    /// Takes back the last advance(); a profile must follow.
-    void restore(const MotionState& state) noexcept { set(state); }
-    /// `profile` begins at the present state, `late` seconds ago.
+    /// Takes the total as it was before the last advance(), without layers; a profile must follow.
+    void restore(const MotionState& total) noexcept {
+        layered_ = false;
+        set(total);
+    }
+    /// `profile` begins at base(), `late` seconds ago.
     void run(const Profile& profile, double late = 0) noexcept {
         profile_ = profile;
         offset_ = late;
@@ -37,23 +62,87 @@ public:
     /// One period on.
     void advance(Duration period) noexcept {
         elapsed_ += period;
+        advance_superimposed(period);
         sample();
     }
     /// Takes the present time of the profile again, after run(profile, late).
     void sample() noexcept {
-        if (moving_profile_) state_ = profile_.at(time());
+        if (layered_) set_base(moving_profile_ ? profile_.at(time()) : base_);
+        else if (moving_profile_) state_ = profile_.at(time());
     }
     /// The profile has reached its end state (a velocity profile then moves on).
     [[nodiscard]] bool finished() const noexcept { return !moving_profile_ || time() >= profile_.duration(); }
     /// Seconds since the profile reached its end; only when finished().
     [[nodiscard]] double overtime() const noexcept { return moving_profile_ ? time() - profile_.duration() : 0.0; }
-    [[nodiscard]] const MotionState& end() const noexcept { return moving_profile_ ? profile_.end() : state_; }
-    /// Goes to the profile's end state: where the next command of a queue begins.
-    void go_to_end() noexcept { state_ = end(); }
-    [[nodiscard]] bool at_rest() const noexcept { return state_.velocity == 0 && state_.acceleration == 0; }
+    [[nodiscard]] const MotionState& end() const noexcept { return moving_profile_ ? profile_.end() : base(); }
+    /// The base goes to the profile's end state: where the next command of a queue begins.
+    void go_to_end() noexcept { set_base(end()); }
+    /// Neither layer moves.
+    [[nodiscard]] bool at_rest() const noexcept {
+        if (!layered_) return rests(state_);
+        return rests(base_) && rests(contribution());
+    }
+    /// Largest |velocity| that the base is going to have, u/s.
+    [[nodiscard]] double base_speed() const noexcept {
+        return moving_profile_ ? profile_.max_speed() : (base().velocity < 0 ? -base().velocity : base().velocity);
+    }
+
+    // --- the superimposed layer ------------------------------------------------------------------------------------------
+    /// `profile` begins at superimposed().
+    void superimpose(const Profile& profile) noexcept {
+        if (!layered_) base_ = state_;
+        layered_ = true;
+        layer_ = profile;
+        layer_elapsed_ = Duration{};
+        layer_origin_ = 0;  // what was folded is out of the contribution, and so out of the profile's coordinates
+    }
+    /// Way since the last superimpose(), u.
+    [[nodiscard]] double superimposed_way() const noexcept {
+        return layered_ ? layer_.at(to_seconds(layer_elapsed_)).position - layer_.start().position : 0.0;
+    }
+    /// For a base that is set in each cycle: before set().
+    void advance_superimposed(Duration period) noexcept {
+        if (layered_) layer_elapsed_ += period;
+    }
+    [[nodiscard]] bool superimposed_finished() const noexcept { return !layered_ || to_seconds(layer_elapsed_) >= layer_.duration(); }
+    /// How far the contribution still goes, u.
+    [[nodiscard]] double superimposed_rest() const noexcept {
+        return layered_ ? layer_.end().position - layer_.at(to_seconds(layer_elapsed_)).position : 0.0;
+    }
+    /// The way covered so far becomes part of the base; what still moves goes on. A profile of the base must follow where it moves. Returns the way.
+    double fold_covered() noexcept {
+        if (!layered_) return 0;
+        const double covered = contribution().position;
+        layer_origin_ += covered;
+        base_.position = state_.position;
+        moving_profile_ = false;
+        if (superimposed_finished()) layered_ = false;
+        return covered;
+    }
+    /// One motion again: the total. A profile must follow where it moves.
+    void fold() noexcept {
+        if (!layered_) return;
+        layered_ = moving_profile_ = false;
+        jerk_ = 0;
+    }
 
 private:
+    [[nodiscard]] static bool rests(const MotionState& state) noexcept { return state.velocity == 0 && state.acceleration == 0; }
     [[nodiscard]] double time() const noexcept { return offset_ + to_seconds(elapsed_); }
+    [[nodiscard]] MotionState contribution() const noexcept {
+        auto part = layer_.at(to_seconds(layer_elapsed_));
+        part.position -= layer_origin_;
+        return part;
+    }
+    void set_base(const MotionState& base) noexcept {
+        if (!layered_) {
+            state_ = base;
+            return;
+        }
+        base_ = base;
+        const auto part = contribution();
+        state_ = {base.position + part.position, base.velocity + part.velocity, base.acceleration + part.acceleration};
+    }
 
     Profile profile_;
     MotionState state_;
@@ -61,6 +150,12 @@ private:
     double offset_ = 0;
     double jerk_ = 0;  // without a profile
     bool moving_profile_ = false;
+    bool layered_ = false;
+
+    MotionState base_;  // only while layered
+    Profile layer_;
+    Duration layer_elapsed_{};
+    double layer_origin_ = 0;  // of the layer's profile: what has been folded
 };
 
 }  // namespace taktwerk::axes

@@ -54,6 +54,19 @@ Profile::Profile(const MotionState& start, std::span<const Stretch> forward, std
     }
 }
 
+bool Profile::append(const Profile& next) noexcept {
+    if (count_ + next.count_ > max_pieces) return false;
+    for (int i = 0; i < next.count_; ++i) {
+        Piece piece = next.pieces_[static_cast<std::size_t>(i)];
+        piece.end_time += duration_;
+        piece.anchor_time += duration_;
+        pieces_[static_cast<std::size_t>(count_++)] = piece;
+    }
+    duration_ += next.duration_;
+    end_ = next.end_;
+    return true;
+}
+
 MotionState Profile::on_piece(int i, double t) const noexcept {
     const Piece& piece = pieces_[static_cast<std::size_t>(i)];
     return travel(piece.anchor, piece.jerk, t - piece.anchor_time);

@@ -28,8 +28,8 @@ struct Stretch {
 /// the last bit; start and target meet somewhere inside with an error of a few units in the last place.
 class Profile {
 public:
-    /// Two to brake into the limits and seven for each of the two legs of a reversal.
-    static constexpr int max_pieces = 16;
+    /// Two to brake into the limits and seven for each of the two legs of a reversal; three more for a ramp appended.
+    static constexpr int max_pieces = 19;
 
     /// Stands still at position 0.
     Profile() noexcept = default;
@@ -40,6 +40,9 @@ public:
     /// From `start` through `forward` (counted from the start) and then `backward` (counted back from `end`). Together at most
     /// max_pieces; what does not fit, or lasts no time, is left out. The two must meet: that is the planner's business.
     Profile(const MotionState& start, std::span<const Stretch> forward, std::span<const Stretch> backward, const MotionState& end) noexcept;
+
+    /// Goes on with `next`, which begins in this profile's end state. False, and nothing done, where its pieces do not fit.
+    bool append(const Profile& next) noexcept;
 
     /// The state `t` seconds after the start. At or before 0: the start state. At duration(): the end state, exactly. Later: moving on
     /// with the end's velocity, without acceleration (a move to rest holds its target exactly).

@@ -298,7 +298,7 @@ TEST(AxisMotion, WrongParametersLeaveTheAxisAlone) {
     bad.acceleration = 0;
     bad.jerk = inf;
     EXPECT_EQ(rig.refuse(bad), ErrorId::invalid_dynamics);
-    EXPECT_EQ(rig.refuse(absolute(1, 10, mcBlendingLow)), ErrorId::buffer_mode_not_supported);
+    EXPECT_EQ(rig.refuse(absolute(1, 10, static_cast<MC_BufferMode>(6))), ErrorId::buffer_mode_not_supported);
     EXPECT_EQ(rig.refuse({.kind = CommandKind::move_velocity, .direction = mcShortestWay, .velocity = 1}),
               ErrorId::invalid_direction);  // P1-165
     EXPECT_EQ(rig.refuse({}), ErrorId::invalid_parameter);

@@ -1,0 +1,139 @@
+// From a command to its goal: where to, how fast, and from which start. One case per kind of command in set_goal.
+
+#include <algorithm>
+#include <cmath>
+
+#include "axes/axis/axis.hpp"
+
+namespace taktwerk::axes {
+
+void Axis::begin_command() noexcept {
+    begin_pending_ = false;
+    const auto error = set_goal(queue_.active());
+    if (error == ErrorId::none) return;
+    queue_.finish_active(Outcome::error, error);
+    start_waiting(0);
+}
+
+ErrorId Axis::set_goal(const AcceptedCommand& accepted) noexcept {
+    const auto command = accepted.command;
+    switch (command.kind) {
+        case CommandKind::home: return begin_homing(command);
+        case CommandKind::move_absolute:
+        case CommandKind::move_relative:
+        case CommandKind::move_additive:
+        case CommandKind::move_continuous_absolute:
+        case CommandKind::move_continuous_relative:
+            start_at_base();
+            if (command.kind == CommandKind::move_additive && has_commanded_target_) origin_ = commanded_target_;
+            aim_at_target(command, target_of(command, setpoint_.base(), started_backwards_));
+            break;
+        case CommandKind::move_velocity:
+        case CommandKind::jog:
+            start_at_base();
+            has_commanded_target_ = false;
+            aim_at_velocity(signed_velocity(command, started_backwards_), dynamics_of(command, config_.limits, config_.defaults));
+            break;
+        case CommandKind::halt:
+        case CommandKind::stop:
+            start_at_base();
+            aim_at_stop(command);
+            break;
+        case CommandKind::position_profile:
+        case CommandKind::velocity_profile:
+        case CommandKind::acceleration_profile:
+        case CommandKind::external: start_at_base(); return set_goal_given(command);
+        default: return ErrorId::not_supported;
+    }
+    return ErrorId::none;
+}
+
+/// The command begins here: with what was superimposed so far, near the anchor. A goal must follow.
+void Axis::start_at_base() noexcept {
+    commanded_target_ += setpoint_.fold_covered();
+    if (endless_) reanchor();
+    origin_ = setpoint_.base().position;
+    started_backwards_ = heads_backwards();
+}
+
+bool Axis::heads_backwards() const noexcept {
+    const double velocity = setpoint_.base().velocity;
+    return velocity != 0 ? velocity < 0 : backwards_;
+}
+
+void Axis::aim(Goal::Kind kind, double value, const MotionLimits& limits, VelocityLimiter limiter) noexcept {
+    goal_ = {kind, value, limits, limiter};
+    goal_pending_ = watch_limits_ = true;
+    held_ = false;
+}
+
+void Axis::aim_at_velocity(double velocity, const MotionLimits& dynamics) noexcept {
+    const auto allowed = allowed_speed(std::abs(velocity), config_.limits.velocity, velocity_cap());
+    const auto limiter = velocity == 0 ? VelocityLimiter::stopping : allowed.limiter;
+    aim(Goal::Kind::velocity, std::copysign(allowed.speed, velocity), dynamics, limiter);
+}
+
+/// `target` is local.
+void Axis::aim_at_target(const AxisCommand& command, double target) noexcept {
+    auto dynamics = dynamics_of(command, config_.limits, config_.defaults);
+    const auto allowed = allowed_speed(command.velocity, config_.limits.velocity, velocity_cap());
+    dynamics.velocity = allowed.speed;
+    aim(Goal::Kind::position, target, dynamics, allowed.limiter);
+    if (moves_continuously(command.kind)) {
+        const auto end = allowed_speed(std::abs(command.end_velocity), config_.limits.velocity, velocity_cap());
+        goal_.goes_on = true;
+        goal_.end_velocity = std::copysign(end.speed, command.end_velocity);
+        return;
+    }
+    commanded_target_ = target;
+    has_commanded_target_ = true;
+}
+
+void Axis::aim_at_stop(const AxisCommand& command) noexcept {
+    auto dynamics = dynamics_of(command, config_.limits, config_.defaults);
+    // A stop that comes while the axis speeds up takes the acceleration away first. With a smaller jerk than the acceleration was built
+    // up with, the axis would get faster after the stop than it was ever meant to.
+    const auto& now = setpoint_.base();
+    const bool running = goal_.kind == Goal::Kind::position || goal_.kind == Goal::Kind::velocity;
+    if (now.velocity * now.acceleration > 0 && running) dynamics.jerk = std::max(dynamics.jerk, goal_.limits.jerk);
+    aim(Goal::Kind::stop, 0, dynamics, VelocityLimiter::stopping);
+}
+
+double Axis::signed_velocity(const AxisCommand& command, bool backwards) const noexcept {
+    if (command.kind != CommandKind::move_velocity) return command.velocity;
+    const bool negative = command.direction == mcNegativeDirection || (command.direction == mcCurrentDirection && backwards);
+    return negative ? -command.velocity : command.velocity;
+}
+
+/// Local target of a motion to a position that begins at `from`.
+double Axis::target_of(const AxisCommand& command, const MotionState& from, bool backwards) const noexcept {
+    const bool absolute = command.kind == CommandKind::move_absolute || command.kind == CommandKind::move_continuous_absolute;
+    if (!absolute) return origin_ + command.position;
+    return repetition_of(command.position, command.direction, from, backwards);
+}
+
+/// Which repetition of a modulo axis' position is meant: the first from `from` in the direction; the next one after where the axis can
+/// stop, when it already moves that way with a direction it must keep (P1-095).
+double Axis::repetition_of(double program, MC_Direction direction, const MotionState& from, bool backwards) const noexcept {
+    const double place = units_.to_local(program);
+    const double modulo = units_.modulo();
+    if (!(modulo > 0)) return place;
+
+    constexpr double same_place = 1e-10;  // moduli: rounding must not send the axis round once more
+    double ahead = std::fmod(place - from.position, modulo);
+    if (ahead < 0) ahead += modulo;
+    if (ahead < same_place * modulo || modulo - ahead < same_place * modulo) ahead = 0;
+    if (direction == mcCurrentDirection) direction = backwards ? mcNegativeDirection : mcPositiveDirection;
+    const bool back = direction == mcNegativeDirection || (direction == mcShortestWay && ahead > modulo / 2);
+    double way = back && ahead > 0 ? ahead - modulo : ahead;
+    if (direction != mcShortestWay && from.velocity * (back ? -1 : 1) > 0) {
+        auto limits = with_override(goal_.limits);
+        limits.velocity = config_.limits.velocity;
+        const double stop = std::abs(stopping_distance(from, limits)) * (1 - 1e-9);
+        const double missing = stop - std::abs(way);
+        if (missing > 0) way += (back ? -modulo : modulo) * std::ceil(missing / modulo);
+    }
+    return place + modulo * std::round((from.position + way - place) / modulo);
+}
+
+}  // namespace taktwerk::axes

@@ -1,0 +1,106 @@
+// Limits that no set-point passes, whatever made it: switches, permitted directions, software limits. They look at the total.
+
+#include <algorithm>
+#include <cmath>
+
+#include "axes/axis/axis.hpp"
+
+namespace taktwerk::axes {
+
+namespace {
+
+/// More than a stop from there takes, whatever its acceleration is on: cheap, for every cycle.
+double stops_within(const MotionState& state, const AxisLimits& limits) noexcept {
+    const double ease = 1 / limits.jerk;
+    const double a = std::abs(state.acceleration);
+    const double speed = std::abs(state.velocity) + a * a * ease / 2;
+    return speed * (a * ease + (speed / limits.deceleration + std::max(limits.deceleration, a) * ease));
+}
+
+}  // namespace
+
+void Axis::guard(const MotionState& before, Duration period) noexcept {
+    if (state_ == AxisState::Homing) return;
+    if ((goal_.kind == Goal::Kind::rest || goal_.kind == Goal::Kind::stop) && !setpoint_.layered()) return;
+    if (!guard_switches() && !guard_software_limits(before)) return;
+    setpoint_.restore(before);
+    run_goal(0);
+    setpoint_.advance(period);
+}
+
+bool Axis::guard_switches() noexcept {
+    const double velocity = setpoint_.state().velocity;
+    if ((velocity > 0 && positive_switch_) || (velocity < 0 && negative_switch_)) {
+        fail(velocity > 0 ? AxisAlarm::positive_limit_switch : AxisAlarm::negative_limit_switch,
+             units_.to_program(setpoint_.state().position));
+        aim(Goal::Kind::stop, 0, stop_limits(config_.limits), VelocityLimiter::stopping);  // also on the way to a software limit
+    } else if ((velocity > 0 && !permit_positive_) || (velocity < 0 && !permit_negative_)) {
+        queue_.finish_active(Outcome::error, ErrorId::interlocked);
+        stop_on_own_account(false);
+    } else return false;
+    return true;
+}
+
+bool Axis::guard_software_limits(const MotionState& before) noexcept {
+    if (!(watch_limits_ || setpoint_.layered()) || !software_limits_hold() || goal_.limiter == VelocityLimiter::software_limit)
+        return false;
+    const auto& next = setpoint_.state();
+    if (next.velocity == 0) return false;
+    const double edge = next.velocity > 0 ? config_.limits.position_max : config_.limits.position_min;
+    const double edge_local = units_.to_local(edge);
+    const double room = next.velocity > 0 ? edge_local - next.position : next.position - edge_local;
+    if (room > stops_within(next, config_.limits)) return false;
+
+    auto limits = full_limits(config_.limits);
+    // What is planned to end on the limit must not be taken for more because of its last digits.
+    const double surely = goal_.kind == Goal::Kind::velocity ? 1 : 1 - 1e-9;
+    if (std::abs(stopping_distance(next, limits)) * surely <= room) return false;
+
+    // One period ago stopping was still possible: from there the way to the limit ends exactly on it.
+    limits.velocity = std::min(limits.velocity, std::max(std::abs(next.velocity), std::abs(before.velocity)));
+    // A jog ends there and is done; whatever else was to go further is cut off.
+    if (state_ != AxisState::ErrorStop && queue_.active().command.kind != CommandKind::jog)
+        fail(AxisAlarm::software_limit_reached, units_.to_program(before.position), edge);
+    end_superimposed(Outcome::error, ErrorId::beyond_software_limit);
+    // Also in ErrorStop: its own stop might be softer and pass the limit.
+    aim(Goal::Kind::position, edge_local, limits, VelocityLimiter::software_limit);
+    return true;
+}
+
+/// Ramps that would carry the axis past a software limit become as hard as the axis can.
+void Axis::brake_inside_limits(const MotionState& from, MotionLimits& limits) const noexcept {
+    if (!software_limits_hold() || from.velocity == 0) return;
+    const double edge = from.velocity > 0 ? config_.limits.position_max : config_.limits.position_min;
+    const double edge_local = units_.to_local(edge);
+    const double room = from.velocity > 0 ? edge_local - from.position : from.position - edge_local;
+    if (room > stops_within(from, {.deceleration = limits.deceleration, .jerk = limits.jerk})) return;
+    if (std::abs(stopping_distance(from, limits)) <= room) return;
+    limits.deceleration = std::max(limits.deceleration, config_.limits.deceleration);
+    limits.jerk = std::max(limits.jerk, config_.limits.jerk);
+}
+
+/// Does it go further than both its ends and the software limits?
+bool Axis::leaves_limits(const Profile& profile) const noexcept {
+    if (!software_limits_hold()) return false;
+    const double low = units_.to_local(config_.limits.position_min);
+    const double high = units_.to_local(config_.limits.position_max);
+    const auto outside = [&](double position) noexcept { return position < low || position > high; };
+    if (profile.end().velocity != 0) return true;  // it goes on
+    for (int i = 0; i < profile.piece_count(); ++i) {
+        const double begin = profile.piece_begin(i);
+        const double length = profile.piece_end(i) - begin;
+        const auto first = profile.on_piece(i, begin);
+        const auto last = profile.on_piece(i, begin + length);
+        // Inside a piece the position turns where the velocity is 0; no further away than the way at its highest speed.
+        const double jerk = profile.piece_jerk(i);
+        const double top = jerk != 0 ? -first.acceleration / jerk : -1;  // where the acceleration is 0
+        const double extreme = top > 0 && top < length ? first.velocity + first.acceleration * top / 2 : first.velocity;
+        const double most = length * std::max({std::abs(first.velocity), std::abs(last.velocity), std::abs(extreme)});
+        const bool turns = first.velocity * last.velocity < 0 || first.velocity * extreme < 0;
+        if (i > 0 && outside(first.position)) return true;
+        if (turns && (outside(first.position - most) || outside(first.position + most))) return true;
+    }
+    return false;
+}
+
+}  // namespace taktwerk::axes

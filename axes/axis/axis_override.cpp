@@ -1,0 +1,37 @@
+// MC_SetOverride: factors on what commands ask for. They act at once, by planning anew from the present state.
+
+#include <cmath>
+
+#include "axes/axis/axis.hpp"
+
+namespace taktwerk::axes {
+
+ErrorId Axis::set_override(const Override& factors) noexcept {
+    const auto in_range = [](double factor) noexcept { return factor >= 0 && factor <= 1; };
+    if (!in_range(factors.velocity) || !in_range(factors.acceleration) || !in_range(factors.jerk)) return ErrorId::invalid_override;
+    if (factors.acceleration == 0 || factors.jerk == 0) return ErrorId::invalid_override;
+    if (factors == override_) return ErrorId::none;  // called each scan
+    override_ = factors;
+    if (override_counts() && !begin_pending_) goal_pending_ = true;
+    if (queue_.beside(SideSlot::superimposed) != 0) superimposed_.pending = true;
+    publish();
+    return ErrorId::none;
+}
+
+/// Not where the axis follows a master (P1-208) or a table over time (P1-211), stops, or searches its reference with velocities of its own.
+bool Axis::override_counts() const noexcept {
+    const auto kind = queue_.active().command.kind;
+    if (kind == CommandKind::velocity_profile || kind == CommandKind::acceleration_profile) return false;
+    const bool moves = goal_.kind == Goal::Kind::position || goal_.kind == Goal::Kind::velocity;
+    const bool commanded = state_ == AxisState::DiscreteMotion || state_ == AxisState::ContinuousMotion;
+    return moves && commanded && goal_.limiter != VelocityLimiter::software_limit;
+}
+
+/// Ramps only: what a velocity means depends on the kind of motion.
+MotionLimits Axis::with_override(const MotionLimits& limits) const noexcept {
+    if (!override_counts()) return limits;
+    return {limits.velocity, limits.acceleration * override_.acceleration, limits.deceleration * override_.acceleration,
+            limits.jerk * override_.jerk};
+}
+
+}  // namespace taktwerk::axes

@@ -1,0 +1,106 @@
+// MC_MoveSuperimposed and MC_HaltSuperimposed: a motion of its own on top of the base, which keeps its command, its state and its times.
+//
+// The velocity is held down to what the axis' limit leaves beside the base; where the base uses all of it the superimposed motion waits.
+// Ramps are on top of the base's (P1-155).
+
+#include <algorithm>
+#include <cmath>
+
+#include "axes/axis/axis.hpp"
+
+namespace taktwerk::axes {
+
+ErrorId Axis::refuse_superimposed(const AxisCommand& command) const noexcept {
+    if (const auto error = check_numbers(command); error != ErrorId::none) return error;
+    if (state_ == AxisState::Disabled) return ErrorId::not_powered;
+    if (state_ == AxisState::ErrorStop) return ErrorId::in_error_stop;
+    if (emergency_ != EmergencyStop::none) return ErrorId::interlocked;
+    if (!next_state(state_, AxisEvent::superimposed)) return ErrorId::state_forbids;
+    if (command.kind == CommandKind::halt_superimposed) return ErrorId::none;
+    if (!permitted(command.position)) return ErrorId::interlocked;
+    // Where both are known to end. Everything else is stopped at the limit when it comes there.
+    const bool ends = goal_.kind == Goal::Kind::rest || (goal_.kind == Goal::Kind::position && !goal_.goes_on);
+    if (!ends || begin_pending_ || config_.modulo > 0) return ErrorId::none;
+    const double base_end = goal_.kind == Goal::Kind::position ? goal_.value : setpoint_.base().position;
+    return refuse_place(units_.to_program(base_end + setpoint_.superimposed().position + command.position));
+}
+
+Submitted Axis::submit_superimposed(const AxisCommand& command, Owner owner) noexcept {
+    if (const auto error = refuse_superimposed(command); error != ErrorId::none) return {0, error};
+    const AcceptedCommand accepted{queue_.next_id(), owner, command};
+    const bool running = queue_.beside(SideSlot::superimposed) != 0;
+    queue_.finish_beside(SideSlot::superimposed, Outcome::aborted);
+    if (command.kind == CommandKind::halt_superimposed && !running) {
+        queue_.record(accepted.id, Outcome::done, ErrorId::none);  // there is nothing to halt
+    } else {
+        queue_.occupy(SideSlot::superimposed, accepted.id);
+        superimposed_ = {.accepted = accepted, .distance = command.position, .pending = true};
+        if (command.kind == CommandKind::move_superimposed) {
+            view_.superimposed_covered = 0;
+            if (state_ == AxisState::Standstill) fire(AxisEvent::superimposed);  // P1-030
+        }
+    }
+    publish();
+    return {accepted.id, ErrorId::none};
+}
+
+void Axis::run_superimposed() noexcept {
+    auto& own = superimposed_;
+    own.pending = false;
+    own.covered = own.begun ? own.covered + setpoint_.superimposed_way() : 0;
+    own.begun = true;
+    own.waiting = false;
+    const auto& command = own.accepted.command;
+    const auto part = setpoint_.superimposed();
+    auto limits = dynamics_of(command, config_.limits, config_.defaults);
+    const bool follows_master = state_ == AxisState::SynchronizedMotion;
+    if (!follows_master) {
+        limits.acceleration *= override_.acceleration;
+        limits.deceleration *= override_.acceleration;
+        limits.jerk *= override_.jerk;
+    }
+    Plan plan;
+    if (command.kind == CommandKind::halt_superimposed) {
+        plan = plan_stop(part, limits);
+    } else {
+        const double rest = own.distance - own.covered;
+        const double base_way = setpoint_.end().position - setpoint_.base().position + setpoint_.end().velocity;
+        const double left = base_way * rest > 0 ? config_.limits.velocity - setpoint_.base_speed() : config_.limits.velocity;
+        double speed = std::min(command.velocity > 0 ? command.velocity : config_.limits.velocity, velocity_cap());
+        speed = std::min(speed * (follows_master ? 1 : override_.velocity), left);
+        constexpr double least = 1e-6;  // of the limit: as good as none
+        own.waiting = !(speed > least * config_.limits.velocity);
+        if (!own.waiting) limits.velocity = speed;
+        plan = own.waiting ? plan_stop(part, limits) : plan_to_position(part, part.position + rest, limits);
+    }
+    if (plan.error != PlanError::none) {
+        fail(AxisAlarm::planner_refused, units_.to_program(setpoint_.state().position), part.velocity);
+        if (goal_pending_) run_goal(0);
+        return;
+    }
+    setpoint_.superimpose(plan.profile);
+}
+
+void Axis::complete_superimposed() noexcept {
+    auto& own = superimposed_;
+    if (own.pending) return;
+    if (own.accepted.command.kind == CommandKind::move_superimposed) {
+        view_.superimposed_covered = own.covered + setpoint_.superimposed_way();
+        const bool base_rests = setpoint_.base().velocity == 0 && setpoint_.base().acceleration == 0;
+        if (own.waiting) own.pending = base_rests && override_.velocity > 0;
+    }
+    if (own.waiting || !setpoint_.superimposed_finished()) return;
+    queue_.finish_beside(SideSlot::superimposed, Outcome::done);
+    if (state_ == AxisState::DiscreteMotion && !queue_.has_active() && !moves()) start_waiting(0);
+}
+
+/// From here on there is one motion again. A goal must follow where it moves.
+void Axis::end_superimposed(Outcome outcome, ErrorId error) noexcept {
+    queue_.finish_beside(SideSlot::superimposed, outcome, error);
+    superimposed_.pending = superimposed_.waiting = false;
+    if (!setpoint_.layered()) return;
+    commanded_target_ += setpoint_.superimposed().position;
+    setpoint_.fold();
+}
+
+}  // namespace taktwerk::axes
