@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "axes/axis/plan_order.hpp"
 #include "axes/drives/cia402/homing_startup.hpp"
 #include "axes/sim/virtual_drive.hpp"
 #include "runtime/inbox_record.hpp"
@@ -210,7 +211,7 @@ void Machine::Impl::cycle(const CycleTick& tick) noexcept {
         run_tasks();
         steps.done(static_cast<std::size_t>(Step::tasks));
 
-        for (auto& axis : axes) axis.plan(now, config.cycle);
+        axes::plan_axes(axes, now, config.cycle);
         steps.done(static_cast<std::size_t>(Step::plan));
 
         const Instant send_time = at_tick ? now + config.cycle : now;

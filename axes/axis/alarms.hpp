@@ -27,8 +27,9 @@ enum class AxisAlarm : AlarmId {
     emergency_stop = 0x300F,
     stopped_by_machine = 0x3010,
     planner_refused = 0x3011,
+    master_lost = 0x3012,
 };
-inline constexpr std::size_t axis_alarm_count = 17;
+inline constexpr std::size_t axis_alarm_count = 18;
 
 [[nodiscard]] constexpr AlarmId id(AxisAlarm alarm) noexcept { return static_cast<AlarmId>(alarm); }
 
@@ -119,6 +120,11 @@ inline constexpr std::array<AlarmInfo, axis_alarm_count> axis_alarms{{
      "A number in limits or command is beyond what can be calculated with",
      "Check the limits of the axis; report this, it should not happen",
      ResetRule::reset, Reaction::power_off, "The drive's communication watchdog stops it"},
+    {id(AxisAlarm::master_lost), "master_lost",
+     "The master (axis {a}) has no valid position any more", "主轴(轴 {a})不再有有效位置",
+     "The master's drive or encoder left the bus, or its position jumped: it was homed, or moves faster than its velocity limit",
+     "Check the master's drive and bus; reset, then couple again",
+     ResetRule::reset, Reaction::stop_axis, "The drive's communication watchdog stops it"},
 }};
 // clang-format on
 

@@ -24,6 +24,7 @@ Axis::Axis(AxisConfig config, DrivePort& port, Duration cycle, std::uint16_t ind
       stale_limit_(stale_cycles(config_, port.capabilities(), cycle)),
       endless_(std::isinf(config_.limits.position_min) && std::isinf(config_.limits.position_max)),
       units_(config_.gearing, config_.modulo),
+      index_(index),
       power_(port.capabilities().enable_delay, config_.enable_timeout),
       alarms_(index),
       own_view_(view ? nullptr : std::make_unique<AxisView>()),
@@ -187,6 +188,7 @@ void Axis::publish_state() noexcept {
     view_.lock = stop_lock_;
     view_.digital_outputs = digital_outputs_;
     publish_probes();
+    publish_coupling();
     queue_.publish(view_);
 }
 

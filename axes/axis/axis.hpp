@@ -26,6 +26,7 @@
 #include "axes/axis/command.hpp"
 #include "axes/axis/command_check.hpp"
 #include "axes/axis/command_queue.hpp"
+#include "axes/axis/coupling_state.hpp"
 #include "axes/axis/following_error.hpp"
 #include "axes/axis/parameters.hpp"
 #include "axes/axis/power_sequence.hpp"
@@ -61,6 +62,17 @@ struct MotionScene {
 
     /// nullptr for an invalid handle.
     [[nodiscard]] const Axis* axis(AxisRef ref) const noexcept;
+};
+
+/// Axes that an axis follows now or will by commands it has; some may be named twice.
+struct MasterList {
+    std::array<AxisRef, 2 * (2 + 1 + CommandQueue::capacity)> axes;
+    std::size_t count = 0;
+};
+/// For plan_axes (plan_order.hpp): where it is on its way through the axes.
+struct PlanMark {
+    bool begun = false, planned = false;
+    Axis* slave = nullptr;
 };
 
 class Axis {
@@ -107,6 +119,12 @@ public:
     void take_control(Owner owner) noexcept;
     void release_control(Owner owner) noexcept;
 
+    // --- couplings ----------------------------------------------------------------------------------------------------------
+    /// This axis as its slaves see it: the set-point of this cycle once plan() has run, or the newest measured position.
+    [[nodiscard]] MasterTrack::Reading as_master(MC_Source source) const noexcept;
+    [[nodiscard]] MasterList masters() const noexcept;
+    [[nodiscard]] PlanMark& plan_mark() noexcept { return plan_mark_; }
+
     // --- requests (AxisRequests of motion_context.hpp, for one axis) -----------------------------------------------------
     Submitted submit(const AxisCommand& command, Owner owner) noexcept;
     ErrorId power(bool enable, bool positive, bool negative, Owner owner) noexcept;
@@ -122,7 +140,7 @@ private:
     /// it is in each cycle (a table over time, a fed set-point, the motor itself). Limits and velocities are those commanded and allowed; overrides
     /// enter where the profile is made.
     struct Goal {
-        enum class Kind : std::uint8_t { rest, position, velocity, stop, given } kind = Kind::rest;
+        enum class Kind : std::uint8_t { rest, position, velocity, stop, given, coupled } kind = Kind::rest;
         double value = 0;
         MotionLimits limits;
         VelocityLimiter limiter = VelocityLimiter::none;
@@ -264,6 +282,45 @@ private:
     void follow_feed(Duration period) noexcept;
     void end_feed(ErrorId error) noexcept;
 
+    // axis_coupling.cpp
+    [[nodiscard]] ErrorId refuse_coupling(const AxisCommand& command) const noexcept;
+    [[nodiscard]] ErrorId refuse_master(AxisRef ref, MC_Source source) const noexcept;
+    [[nodiscard]] bool follows_me(const Axis& master) const noexcept;
+    [[nodiscard]] bool waits_for_ever() const noexcept;
+    ErrorId select_cam(const SelectCam& wanted) noexcept;
+    ErrorId join(const AcceptedCommand& accepted) noexcept;
+    void plan_link(CommandId id, const AxisCommand& command) noexcept;
+    void drop(Link& link) noexcept;
+    ErrorId update_coupling(const AxisCommand& command) noexcept;
+    [[nodiscard]] bool read_masters(Link& link, Duration period) noexcept;
+    [[nodiscard]] EndlessMotion seen(const Link& link, std::size_t master) const noexcept;
+    void settle_couplings() noexcept;
+    void follow_masters(Duration period) noexcept;
+    void step_coupled(Duration period) noexcept;
+    void complete_coupled() noexcept;
+    void publish_coupling() noexcept;
+    [[nodiscard]] SlaveFrame slave_frame() const noexcept { return {units_.anchor(), units_.feed()}; }
+
+    // axis_coupling_start.cpp
+    void find_start(Link& link) const noexcept;
+    [[nodiscard]] bool starts_now(Link& link) const noexcept;
+    [[nodiscard]] FollowerLimits follower_limits(const AxisCommand& command) const noexcept;
+    ErrorId engage(Duration period) noexcept;
+    ErrorId begin_gear(const Link& link) noexcept;
+    ErrorId begin_sum(const Link& link) noexcept;
+    ErrorId begin_gear_in_pos(const Link& link, const EndlessMotion& first) noexcept;
+    ErrorId begin_cam(Link& link, const EndlessMotion& first) noexcept;
+    ErrorId approach_to(const Link& link, const EndlessMotion& master, double master_feed, const CurvePoint& end,
+                        SyncApproach& approach) const noexcept;
+
+    // axis_phasing.cpp
+    Submitted submit_phasing(const AxisCommand& command, Owner owner) noexcept;
+    [[nodiscard]] ErrorId refuse_phasing(const AxisCommand& command) const noexcept;
+    void begin_phasing(const AcceptedCommand& accepted) noexcept;
+    void complete_phasing() noexcept;
+    void end_phasing(Outcome outcome) noexcept;
+    void clear_phase() noexcept;
+
     // axis_homing.cpp
     ErrorId begin_homing(const AxisCommand& command) noexcept;
     void step_homing() noexcept;
@@ -328,6 +385,12 @@ private:
     };
     GivenProfile profile_;
     Feed feed_;
+    CouplingState coupling_;
+    PlanMark plan_mark_;
+    std::uint16_t index_;
+    mutable std::uint32_t walks_ = 0;  // of follows_me
+    mutable std::uint64_t walk_ = 0;   // the last one that came by here
+    mutable const Axis* walk_back_ = nullptr;
 
     // states and commands
     AxisState state_ = AxisState::Disabled;

@@ -86,11 +86,12 @@ struct AxisConfig {
     PositionWindows windows;
     HomingConfig homing;
     ManualSpeeds manual;
-    bool require_homed = true;        ///< absolute moves need a homed axis
-    bool disabled = false;            ///< left out while commissioning: its drive is never enabled
-    bool simulated = false;           ///< its drive is simulated although the bus is real
-    std::uint8_t queue_depth = 4;     ///< buffered commands, 1..8
-    std::uint16_t stale_limit = 3;    ///< cycles without fresh feedback until the axis stops in error
+    bool require_homed = true;      ///< absolute moves need a homed axis
+    bool disabled = false;          ///< left out while commissioning: its drive is never enabled
+    bool encoder = false;           ///< only measures: no drive to enable, takes no motion, may be a master (limits.velocity: its fastest)
+    bool simulated = false;         ///< its drive is simulated although the bus is real
+    std::uint8_t queue_depth = 4;   ///< buffered commands, 1..8
+    std::uint16_t stale_limit = 3;  ///< cycles without fresh feedback until the axis stops in error
     std::uint16_t feed_patience = 3;  ///< cycles without a fed set-point that a moving axis bridges at its velocity; then it brakes
     Duration jog_lease = std::chrono::milliseconds{200};
     Duration enable_timeout = std::chrono::seconds{3};

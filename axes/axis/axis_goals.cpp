@@ -43,6 +43,12 @@ ErrorId Axis::set_goal(const AcceptedCommand& accepted) noexcept {
         case CommandKind::velocity_profile:
         case CommandKind::acceleration_profile:
         case CommandKind::external: start_at_base(); return set_goal_given(command);
+        case CommandKind::gear_in:
+        case CommandKind::gear_in_pos:
+        case CommandKind::cam_in:
+        case CommandKind::combine:
+        case CommandKind::gear_out:
+        case CommandKind::cam_out: return join(accepted);
         default: return ErrorId::not_supported;
     }
     return ErrorId::none;

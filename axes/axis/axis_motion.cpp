@@ -18,6 +18,7 @@ void Axis::plan(Instant now, Duration period) noexcept {
     now_ = now;
     if (power_.follows_actual() || drive_homing_.busy()) {
         follow_actual(period);
+        settle_couplings();
         step_homing();
         publish();
         return;
@@ -28,13 +29,15 @@ void Axis::plan(Instant now, Duration period) noexcept {
     if (view_.active_in_target && queue_.waiting() > 0) hand_over();
     if (begin_pending_) begin_command();
     keep_close_to_anchor();
+    follow_masters(period);
 
     const MotionState before = setpoint_.state();
     if (goal_pending_) run_goal(0);
     if (superimposed_.pending) run_superimposed();
-    if (goal_.kind == Goal::Kind::given) {
+    if (goal_.kind == Goal::Kind::given || goal_.kind == Goal::Kind::coupled) {
         setpoint_.advance_superimposed(period);
-        step_given(period);
+        if (goal_.kind == Goal::Kind::given) step_given(period);
+        else step_coupled(period);
     } else setpoint_.advance(period);
     if (goal_pending_) {  // what was given has ended badly: the axis brakes from where it is
         run_goal(0);
@@ -42,6 +45,7 @@ void Axis::plan(Instant now, Duration period) noexcept {
     }
     guard(before, period);
     complete();
+    complete_phasing();
     if (queue_.beside(SideSlot::superimposed) != 0) complete_superimposed();
     if (const double velocity = setpoint_.state().velocity; velocity != 0) backwards_ = velocity < 0;
     publish_state();
@@ -70,7 +74,8 @@ void Axis::run_goal(double late) noexcept {
     auto limits = with_override(goal_.limits);
     Plan plan;
     switch (goal_.kind) {
-        case Goal::Kind::rest: return;
+        case Goal::Kind::rest:
+        case Goal::Kind::coupled: return;
         case Goal::Kind::given: start_given(late); return;
         case Goal::Kind::position: plan = plan_way(from, limits); break;
         case Goal::Kind::velocity:

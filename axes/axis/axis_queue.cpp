@@ -16,6 +16,10 @@ void Axis::hand_over() noexcept {
 }
 
 void Axis::complete() noexcept {
+    if (goal_.kind == Goal::Kind::coupled) {
+        complete_coupled();
+        return;
+    }
     if (goal_.kind == Goal::Kind::given) {
         queue_.set_in_target(feed_.followed && queue_.active().command.kind == CommandKind::external);
         return;

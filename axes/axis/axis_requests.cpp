@@ -48,6 +48,7 @@ ErrorId Axis::refuse_state(const AxisCommand& command) const noexcept {
     // A stop whose Execute has fallen may be followed by another; one that is held locks the axis.
     if (stopping && command.kind == CommandKind::stop)
         return stop_lock_ == 0 && !off_when_stopped_ ? ErrorId::none : ErrorId::state_forbids;
+    if (uncouples(command.kind)) return ErrorId::none;  // has a word of its own (refuse_coupling)
     return next_state(state_, event_of(command.kind)) ? ErrorId::none : ErrorId::state_forbids;
 }
 
@@ -101,12 +102,15 @@ ErrorId Axis::refuse_target(const AxisCommand& command, bool starts_now) const n
 ErrorId Axis::refuse(const AxisCommand& command) noexcept {
     if (const auto error = check_numbers(command); error != ErrorId::none) return error;
     if (const auto error = refuse_state(command); error != ErrorId::none) return error;
+    if (waits(command) && waits_for_ever()) return ErrorId::buffer_mode_not_supported;
+    if (const auto error = refuse_coupling(command); error != ErrorId::none) return error;
     if (const auto error = refuse_target(command, !waits(command)); error != ErrorId::none) return error;
     return refuse_given(command, !waits(command));
 }
 
 Submitted Axis::submit(const AxisCommand& command, Owner owner) noexcept {
     if (command.kind == CommandKind::touch_probe || command.kind == CommandKind::abort_trigger) return submit_probe(command);
+    if (shifts_phase(command.kind)) return submit_phasing(command, owner);
     if (command.kind == CommandKind::setting) return submit_setting(command, owner);
     if (!may(owner)) return {0, ErrorId::owned_by_other};
     if (command.kind == CommandKind::move_superimposed || command.kind == CommandKind::halt_superimposed)
@@ -171,6 +175,7 @@ ErrorId Axis::set(const AxisSetting& setting, Owner owner) noexcept {
     if (const auto* output = std::get_if<WriteOutput>(&setting)) return write_output(*output);
     if (const auto* fed = std::get_if<SetpointFeed>(&setting)) return feed(*fed);
     if (const auto* factors = std::get_if<Override>(&setting)) return set_override(*factors);
+    if (const auto* cam = std::get_if<SelectCam>(&setting)) return select_cam(*cam);
     return ErrorId::not_supported;
 }
 

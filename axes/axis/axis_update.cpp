@@ -55,6 +55,9 @@ ErrorId Axis::update_active(const AxisCommand& command) noexcept {
             aim_at_velocity(velocity, dynamics_of(command, config_.limits, config_.defaults));
             break;
         }
+        case CommandKind::gear_in:
+        case CommandKind::cam_in:
+        case CommandKind::combine: error = update_coupling(command); break;
         default: return ErrorId::not_supported;
     }
     if (error == ErrorId::none) active.command = command;

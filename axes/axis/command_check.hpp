@@ -126,6 +126,12 @@ namespace taktwerk::axes {
             break;
         case CommandKind::external:
         case CommandKind::halt:
+        case CommandKind::gear_in:
+        case CommandKind::gear_in_pos:
+        case CommandKind::cam_in:
+        case CommandKind::combine:
+        case CommandKind::gear_out:
+        case CommandKind::cam_out:
         case CommandKind::halt_superimposed:
         case CommandKind::stop: break;
     }

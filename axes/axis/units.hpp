@@ -76,6 +76,8 @@ public:
         return left;
     }
     [[nodiscard]] double feed() const noexcept { return feed_; }
+    /// Whole feeds: local 0 is there.
+    [[nodiscard]] std::int64_t anchor() const noexcept { return anchor_; }
 
 private:
     struct Wrapped {

@@ -44,6 +44,7 @@ public:
     void begin(const Relation& relation, RunDown target, const FollowerLimits& limits) noexcept;
     /// As begin(), but first over `approach` (positions in local u of `frame` as it is now) to the sync point.
     void begin(const Relation& relation, const SyncApproach& approach, const SlaveFrame& frame, const FollowerLimits& limits) noexcept;
+    /// They may change at any time; a difference that runs already keeps its own.
     void set_limits(const FollowerLimits& limits) noexcept { limits_ = limits; }
 
     /// The slave's next state in local coordinates. `before`: its state one period ago, in the same ones. The masters are where they are now.

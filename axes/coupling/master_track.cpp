@@ -24,9 +24,10 @@ bool MasterTrack::next(const Reading& reading, double period) noexcept {
         filter_ = {now.place, now.velocity, 0};
     }
     ++gap_;
+    const double passed = period * gap_;  // since the last fresh one
     if (reading.fresh) {
         // Nothing moves twice as fast as its limit: the place got another number (its zero, another encoder).
-        if (std::abs(way(last_, now.place, reading.feed)) > 2 * reading.largest_velocity * period * gap_) return false;
+        if (std::abs(way(last_, now.place, reading.feed)) > 2 * reading.largest_velocity * passed) return false;
         last_ = now.place;
         gap_ = 0;
     }
@@ -36,13 +37,14 @@ bool MasterTrack::next(const Reading& reading, double period) noexcept {
         return true;
     }
 
-    filter_.place.local += filter_.velocity * period;
+    // A reading that is not fresh has become older instead.
     if (reading.fresh) {
+        filter_.place.local += filter_.velocity * passed;
         // The filter keeps the reading's feeds, so its local part stays small.
         const double error = way(filter_.place, now.place, reading.feed);
         filter_.place = {now.place.feeds, now.place.local - error};
         filter_.place.local += position_gain * error;
-        filter_.velocity += velocity_gain * error / period;
+        filter_.velocity += velocity_gain * error / passed;
     }
     out_ = filter_;
     out_.acceleration = 0;

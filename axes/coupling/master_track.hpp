@@ -6,6 +6,7 @@
 // which the slave's set-point acts, and bridged with it while no fresh one arrives.
 
 #include "axes/coupling/endless.hpp"
+#include "core/time.hpp"
 
 namespace taktwerk::axes {
 
@@ -19,7 +20,8 @@ public:
         bool usable = false;          ///< the axis has a position that means something now
         bool fresh = true;            ///< it is new in this cycle
         bool planned = true;          ///< comes from a profile: velocity and acceleration belong to it exactly
-        double age = 0;               ///< s to extrapolate
+        Instant taken{};              ///< when it was there
+        double age = 0;               ///< s to extrapolate, from `taken` on
         double feed = 1;              ///< u
         double largest_velocity = 0;  ///< u/s that the axis can have: a step beyond twice of it in a cycle is no motion
     };

@@ -126,6 +126,7 @@ TEST(MasterTrack, NoiseIsDampedAndGapsAreBridged) {
         const double noise = (static_cast<double>(random() % 2001) - 1000) * 1e-5;  // +-0.01 u
         auto in = reading(0.02 * i + noise, 0);
         in.fresh = i % 50 != 7 && i % 50 != 8;
+        in.age = i % 50 == 7 ? 0.001 : i % 50 == 8 ? 0.002 : 0;
         ASSERT_TRUE(track.next(in, 0.001));
         const double seen = track.motion().place.local;
         if (i > 300)

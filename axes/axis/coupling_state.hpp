@@ -1,0 +1,74 @@
+#pragma once
+// What an axis keeps of a coupling: the one it runs in, the one that waits to begin, and the phasing between.
+
+#include <array>
+#include <cstdint>
+
+#include "axes/axis/command.hpp"
+#include "axes/axis/command_queue.hpp"
+#include "axes/coupling/follower.hpp"
+#include "axes/coupling/master_track.hpp"
+#include "axes/coupling/phase_shift.hpp"
+
+namespace taktwerk::axes {
+
+/// Whom a command follows; invalid handles where it follows nobody (or only one).
+struct MasterChoice {
+    std::array<AxisRef, 2> axes;
+    std::array<MC_Source, 2> sources{mcSetValue, mcSetValue};
+};
+[[nodiscard]] inline MasterChoice masters_of(const AxisCommand& command) noexcept {
+    if (const auto* gear = std::get_if<GearDetails>(&command.details)) return {{gear->master, {}}, {gear->source, mcSetValue}};
+    if (const auto* point = std::get_if<GearInPosDetails>(&command.details)) return {{point->master, {}}, {point->source, mcSetValue}};
+    if (const auto* cam = std::get_if<CamDetails>(&command.details)) return {{cam->master, {}}, {cam->source, mcSetValue}};
+    if (const auto* sum = std::get_if<CombineDetails>(&command.details))
+        return {{sum->master1, sum->master2}, {sum->source1, sum->source2}};
+    return {};
+}
+
+/// Kinds of a slave: SynchronizedMotion.
+[[nodiscard]] constexpr bool couples(CommandKind kind) noexcept {
+    return kind == CommandKind::gear_in || kind == CommandKind::gear_in_pos || kind == CommandKind::cam_in || kind == CommandKind::combine;
+}
+[[nodiscard]] constexpr bool uncouples(CommandKind kind) noexcept { return kind == CommandKind::gear_out || kind == CommandKind::cam_out; }
+[[nodiscard]] constexpr bool shifts_phase(CommandKind kind) noexcept {
+    return kind == CommandKind::phasing_absolute || kind == CommandKind::phasing_relative;
+}
+
+/// One coupling: its command, and its masters as they are followed.
+struct Link {
+    CommandId id = 0;  ///< 0: none
+    AxisCommand command;
+    MasterChoice masters;
+    std::array<MasterTrack, 2> tracks;
+    CamId cam;  ///< held in the tables
+
+    // Where its relative inputs count from; ContinuousUpdate keeps it.
+    bool started = false;
+    bool chained = false;  ///< master_start is known already: the end of the cam before
+    EndlessPlace master_start, second_start, slave_start;
+    double table_start = 0;  ///< u of the table
+
+    // Until the master crosses `begin` in the sense `sense`, the motion before goes on.
+    bool waits = false;
+    double sense = 1;
+    EndlessPlace begin, sync;
+    bool tracked = false;  ///< `ahead` is known
+    double ahead = 0;      ///< u to `begin` in the last cycle, in that sense
+};
+
+struct CouplingState {
+    Link running;  ///< followed while the goal is `coupled`
+    Link next;     ///< of the active command, not begun yet
+    Follower follower;
+    std::uint32_t cam_ends = 0;       ///< shown
+    std::uint32_t cam_ends_seen = 0;  ///< of the running cam
+
+    PhaseShift phase;
+    AxisRef phase_master;     ///< whose position is shifted
+    AcceptedCommand phasing;  ///< running; id 0: none
+    std::array<AcceptedCommand, 4> phasing_queue{};
+    std::size_t phasing_waiting = 0;
+};
+
+}  // namespace taktwerk::axes
