@@ -205,6 +205,10 @@ Table<AxisBinding> axis_table() {
     f.push_back(field("drive_axis", &AxisBinding::drive_axis, integer<std::uint8_t>(0, 63), "axis of a drive that has several, from 0"));
     std::vector<Field<A>> own{
         required(field("gearing", &A::gearing, section(gearing_table()), "counts and unit")),
+        with_default(
+            field("modulo", &A::modulo, quantity(Dimension::position, 0),
+                  "positions repeat after it (a rotary axis: 360 deg); whole or a simple part of gearing.feed; without software limits"),
+            "none: a linear axis"),
         required(field("limits", &A::limits, section(limits_table()), "velocity, acceleration, jerk, travel")),
         field("defaults", &A::defaults, section(defaults_table()), "dynamics where a block says 0"),
         field_at<A>(

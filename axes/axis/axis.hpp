@@ -172,7 +172,9 @@ private:
     [[nodiscard]] bool online() const noexcept { return seeded_ && feedback_.online && stale_ <= stale_limit_; }
     [[nodiscard]] bool drive_faulted() const noexcept;
     [[nodiscard]] bool drive_stands() const noexcept;
-    [[nodiscard]] bool moves() const noexcept { return !setpoint_.at_rest() || drive_homing_.busy(); }
+    [[nodiscard]] bool moves() const noexcept {
+        return !setpoint_.at_rest() || drive_homing_.busy() || queue_.beside(SideSlot::superimposed) != 0;
+    }
 
     // axis_states.cpp
     bool fire(AxisEvent event) noexcept;
@@ -231,6 +233,7 @@ private:
     bool guard_software_limits(const MotionState& before) noexcept;
     void brake_inside_limits(const MotionState& from, MotionLimits& limits) const noexcept;
     [[nodiscard]] bool leaves_limits(const Profile& profile) const noexcept;
+    [[nodiscard]] bool sum_stays_inside() const noexcept;
 
     // axis_override.cpp
     ErrorId set_override(const Override& factors) noexcept;

@@ -42,10 +42,11 @@ bool Axis::guard_switches() noexcept {
 }
 
 bool Axis::guard_software_limits(const MotionState& before) noexcept {
-    if (!(watch_limits_ || setpoint_.layered()) || !software_limits_hold() || goal_.limiter == VelocityLimiter::software_limit)
+    const bool base_might_pass = watch_limits_ && goal_.kind != Goal::Kind::rest;
+    if (!(base_might_pass || setpoint_.layered()) || !software_limits_hold() || goal_.limiter == VelocityLimiter::software_limit)
         return false;
     const auto& next = setpoint_.state();
-    if (next.velocity == 0) return false;
+    if (next.velocity == 0 || (!base_might_pass && sum_stays_inside())) return false;
     const double edge = next.velocity > 0 ? config_.limits.position_max : config_.limits.position_min;
     const double edge_local = units_.to_local(edge);
     const double room = next.velocity > 0 ? edge_local - next.position : next.position - edge_local;
@@ -65,6 +66,19 @@ bool Axis::guard_software_limits(const MotionState& before) noexcept {
     // Also in ErrorStop: its own stop might be softer and pass the limit.
     aim(Goal::Kind::position, edge_local, limits, VelocityLimiter::software_limit);
     return true;
+}
+
+/// Both layers are on their way to rest, and whatever part of its way each has done, the sum is inside: then it may brake with both ramps
+/// at once, harder than the axis would alone.
+bool Axis::sum_stays_inside() const noexcept {
+    if (setpoint_.end().velocity != 0) return false;
+    const double base = setpoint_.base().position, part = setpoint_.superimposed().position;
+    const double base_way = setpoint_.end().position - base, part_way = setpoint_.superimposed_rest();
+    const double highest = base + part + std::max(base_way, 0.0) + std::max(part_way, 0.0);
+    const double lowest = base + part + std::min(base_way, 0.0) + std::min(part_way, 0.0);
+    const double rounding = 1e-12 * (std::abs(highest) + std::abs(lowest));
+    return highest <= units_.to_local(config_.limits.position_max) + rounding &&
+           lowest >= units_.to_local(config_.limits.position_min) - rounding;
 }
 
 /// Ramps that would carry the axis past a software limit become as hard as the axis can.

@@ -83,13 +83,11 @@ void Axis::run_superimposed() noexcept {
 
 void Axis::complete_superimposed() noexcept {
     auto& own = superimposed_;
-    if (own.pending) return;
-    if (own.accepted.command.kind == CommandKind::move_superimposed) {
+    if (!own.begun) return;
+    if (own.accepted.command.kind == CommandKind::move_superimposed)
         view_.superimposed_covered = own.covered + setpoint_.superimposed_way();
-        const bool base_rests = setpoint_.base().velocity == 0 && setpoint_.base().acceleration == 0;
-        if (own.waiting) own.pending = base_rests && override_.velocity > 0;
-    }
-    if (own.waiting || !setpoint_.superimposed_finished()) return;
+    if (own.waiting && setpoint_.base().velocity == 0 && setpoint_.base().acceleration == 0) own.pending = override_.velocity > 0;
+    if (own.pending || own.waiting || !setpoint_.superimposed_finished()) return;
     queue_.finish_beside(SideSlot::superimposed, Outcome::done);
     if (state_ == AxisState::DiscreteMotion && !queue_.has_active() && !moves()) start_waiting(0);
 }

@@ -1,0 +1,294 @@
+// MC_MoveSuperimposed and MC_HaltSuperimposed. PLCopen Part 1 v2.0, sections 3.8 and 3.9.
+
+#include "tests/axes/axis/axis_rig.hpp"
+
+namespace taktwerk::axes::test {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+AxisConfig trapezoids() {
+    auto config = plain_axis();
+    config.limits = {.velocity = 1000, .acceleration = 1000, .deceleration = 1000, .jerk = infinity};
+    return config;
+}
+AxisCommand superimposed(double distance, double velocity = 20) {
+    return {.kind = CommandKind::move_superimposed, .position = distance, .velocity = velocity};
+}
+AxisCommand halt_superimposed() { return {.kind = CommandKind::halt_superimposed}; }
+
+// P1-150, P1-155, P1-156, P1-157: the underlying move keeps its command and its time, the set-point is the sum in each cycle; a twin without the
+// addition says what the base is.
+TEST(Superimposed, AddsToTheBaseAndLeavesItAlone) {
+    Rig rig(trapezoids()), twin(trapezoids());
+    rig.power_on();
+    twin.power_on();
+    const auto base = rig.accept(absolute(100, 50));
+    twin.accept(absolute(100, 50));
+    rig.run(500);
+    twin.run(500);
+    const auto extra = rig.accept(superimposed(10));
+    EXPECT_EQ(rig.status(base), CommandStatus::active);
+    EXPECT_EQ(rig.status(extra), CommandStatus::active);
+    double covered = 0;
+    bool done = false;
+    while (twin.view().state != AxisState::Standstill) {
+        rig.step();
+        twin.step();
+        ASSERT_GE(rig.view().superimposed_covered, covered);
+        covered = rig.view().superimposed_covered;
+        ASSERT_NEAR(rig.view().set_position, twin.view().set_position + covered, 1e-9);
+        done = done || rig.status(extra) == CommandStatus::done;
+    }
+    EXPECT_TRUE(done);
+    EXPECT_EQ(rig.status(base), CommandStatus::done);  // in the same cycle as the twin's
+    EXPECT_EQ(covered, 10);
+    EXPECT_DOUBLE_EQ(rig.view().set_position, 110);
+    EXPECT_EQ(rig.view().state, AxisState::Standstill);
+}
+
+// P1-160 (figure 23): the addition outlasts the underlying motion, which is done at its usual time; the end is 60. The axis stays in
+// DiscreteMotion until nothing moves (U-08).
+TEST(Superimposed, GoesOnAfterTheBaseHasEnded) {
+    Rig rig(trapezoids()), twin(trapezoids());
+    rig.power_on();
+    twin.power_on();
+    const auto base = rig.accept(absolute(50, 50));
+    const auto same = twin.accept(absolute(50, 50));
+    rig.run(800);
+    twin.run(800);
+    const auto extra = rig.accept(superimposed(10));
+    while (twin.status(same) != CommandStatus::done) {
+        rig.step();
+        twin.step();
+    }
+    EXPECT_EQ(rig.status(base), CommandStatus::done);
+    EXPECT_EQ(rig.status(extra), CommandStatus::active);
+    EXPECT_EQ(rig.view().state, AxisState::DiscreteMotion);
+    ASSERT_TRUE(rig.run_to(AxisState::Standstill));
+    EXPECT_EQ(rig.status(extra), CommandStatus::done);
+    EXPECT_DOUBLE_EQ(rig.view().set_position, 60);
+}
+
+// P1-154, P1-030: from Standstill it is a relative move, cycle by cycle.
+TEST(Superimposed, InStandstillActsAsRelativeMove) {
+    Rig rig(plain_axis()), twin(plain_axis());
+    rig.power_on();
+    twin.power_on();
+    rig.accept(absolute(5));
+    twin.accept(absolute(5));
+    ASSERT_TRUE(rig.run_to(AxisState::Standstill));
+    ASSERT_TRUE(twin.run_to(AxisState::Standstill));
+    rig.accept(superimposed(-7, 30));
+    twin.accept(relative(-7, 30));
+    EXPECT_EQ(rig.view().state, AxisState::DiscreteMotion);
+    for (int i = 0; i < 400; ++i) {
+        rig.step();
+        twin.step();
+        ASSERT_NEAR(rig.view().set_position, twin.view().set_position, 1e-12) << i;
+        ASSERT_EQ(rig.view().state, twin.view().state) << i;
+    }
+    EXPECT_EQ(rig.view().state, AxisState::Standstill);
+}
+
+// P1-151: an aborting command ends both, and goes on from the sum without a jump; a waiting one ends neither.
+TEST(Superimposed, AbortingCommandEndsBothAWaitingOneNeither) {
+    for (const auto mode : {mcAborting, mcBuffered}) {
+        Rig rig(trapezoids());
+        rig.power_on();
+        const auto base = rig.accept(absolute(100, 50));
+        rig.run(200);
+        const auto extra = rig.accept(superimposed(30));
+        rig.run(200);
+        ASSERT_NEAR(rig.view().set_velocity, 70, 1e-9);
+        const auto next = rig.accept(absolute(200, 50, mode));
+        if (mode == mcAborting) {
+            EXPECT_EQ(rig.status(base), CommandStatus::aborted);
+            EXPECT_EQ(rig.status(extra), CommandStatus::aborted);
+            rig.step();
+            EXPECT_NEAR(rig.view().set_velocity, 69, 1e-9);  // 1000 u/s2 down to the new command's 50
+        } else {
+            EXPECT_EQ(rig.status(base), CommandStatus::active);
+            EXPECT_EQ(rig.status(extra), CommandStatus::active);
+            EXPECT_EQ(rig.status(next), CommandStatus::queued);
+        }
+        ASSERT_TRUE(rig.run_to(AxisState::Standstill));
+        EXPECT_DOUBLE_EQ(rig.view().set_position, 200);  // an absolute target, begun after the addition was complete
+        EXPECT_LE(rig.largest_step, 0.0701);
+    }
+}
+
+// P1-152: a second one replaces the first only, and goes on from its velocity: nothing of the first's rest is made up.
+TEST(Superimposed, SecondReplacesOnlyTheFirst) {
+    Rig rig(trapezoids());
+    rig.power_on();
+    const auto base = rig.accept(absolute(100, 50));
+    rig.run(200);
+    const auto first = rig.accept(superimposed(10));
+    rig.run(300);
+    const double covered = rig.view().superimposed_covered;
+    ASSERT_GT(covered, 1);
+    ASSERT_LT(covered, 9);
+    const auto second = rig.accept(superimposed(4));
+    EXPECT_EQ(rig.status(first), CommandStatus::aborted);
+    EXPECT_EQ(rig.status(second), CommandStatus::active);
+    EXPECT_EQ(rig.status(base), CommandStatus::active);
+    ASSERT_TRUE(rig.run_to(AxisState::Standstill));
+    EXPECT_DOUBLE_EQ(rig.view().superimposed_covered, 4);
+    EXPECT_NEAR(rig.view().set_position, 100 + covered + 4, 1e-9);
+}
+
+// P1-161: halting ends the addition, the base goes on; done when the added velocity is zero.
+TEST(Superimposed, HaltEndsTheAdditionOnly) {
+    Rig rig(trapezoids());
+    rig.power_on();
+    const auto base = rig.accept(at_velocity(50));
+    rig.run(200);
+    const auto extra = rig.accept(superimposed(100));
+    rig.run(200);
+    auto gentle = halt_superimposed();
+    gentle.deceleration = 100;
+    const auto halted = rig.accept(gentle);
+    EXPECT_EQ(rig.status(extra), CommandStatus::aborted);
+    EXPECT_EQ(rig.status(halted), CommandStatus::active);
+    EXPECT_EQ(rig.status(base), CommandStatus::in_target);
+    rig.run(199);
+    EXPECT_EQ(rig.status(halted), CommandStatus::active);  // 20 u/s with 100 u/s2: 0.2 s
+    rig.run(2);
+    EXPECT_EQ(rig.status(halted), CommandStatus::done);
+    EXPECT_NEAR(rig.view().set_velocity, 50, 1e-12);
+    EXPECT_EQ(rig.view().state, AxisState::ContinuousMotion);
+    // Nothing runs: done at once (U-24).
+    EXPECT_EQ(rig.status(rig.accept(halt_superimposed())), CommandStatus::done);
+}
+
+// P1-166: InVelocity looks at the command's own part.
+TEST(Superimposed, InVelocityIsTheBasesOwn) {
+    Rig rig(trapezoids());
+    rig.power_on();
+    const auto base = rig.accept(at_velocity(50));
+    rig.run(200);
+    rig.accept(superimposed(10));
+    for (int i = 0; i < 700; ++i) {
+        rig.step();
+        ASSERT_EQ(rig.status(base), CommandStatus::in_target) << i;
+    }
+    EXPECT_EQ(rig.view().state, AxisState::ContinuousMotion);  // P1-153
+}
+
+// P1-158 (figure 21, ways scaled by 1/10, the third given before the second has ended): the end lies between two and three additions, at
+// the base plus what was covered.
+TEST(Superimposed, ThreeTimesTheLastBeforeTheSecondEnded) {
+    Rig rig(trapezoids());
+    rig.power_on();
+    rig.accept(relative(1000, 300));
+    rig.run(500);
+    const auto first = rig.accept(superimposed(100, 100));
+    rig.run(1200);
+    EXPECT_EQ(rig.status(first), CommandStatus::done);
+    rig.accept(superimposed(100, 100));
+    rig.run(500);
+    const double covered = rig.view().superimposed_covered;
+    rig.accept(superimposed(100, 100));
+    ASSERT_TRUE(rig.run_to(AxisState::Standstill));
+    EXPECT_NEAR(rig.view().set_position, 1000 + 100 + covered + 100, 1e-9);
+    EXPECT_GT(rig.view().set_position, 1200);
+    EXPECT_LT(rig.view().set_position, 1300);
+}
+
+// The axis' velocity limit holds for the sum: 990 of 1000 u/s used by the base leave 10; where it uses all, the addition waits for its end.
+TEST(Superimposed, VelocityIsWhatTheLimitLeaves) {
+    for (const double speed : {990.0, 1000.0}) {
+        Rig rig(trapezoids());
+        rig.power_on();
+        const auto base = rig.accept(absolute(3000, speed));
+        rig.run(1500);
+        const auto extra = rig.accept(superimposed(5, 50));
+        double fastest = 0;
+        ASSERT_TRUE(rig.run_until([&] {
+            fastest = std::max(fastest, rig.view().set_velocity);
+            return rig.view().state == AxisState::Standstill;
+        }));
+        EXPECT_LE(fastest, 1000 * (1 + 1e-12));
+        EXPECT_EQ(rig.status(base), CommandStatus::done);
+        EXPECT_EQ(rig.status(extra), CommandStatus::done);
+        EXPECT_DOUBLE_EQ(rig.view().set_position, 3005);
+    }
+}
+
+// P1-096: blended moves and an addition: the set-point is the sum of both in each cycle.
+TEST(Superimposed, SumsWithBlendedMoves) {
+    Rig rig(trapezoids()), twin(trapezoids());
+    for (auto* one : {&rig, &twin}) {
+        one->power_on();
+        one->accept(relative(50, 50));
+        one->accept(relative(50, 80, mcBlendingHigh));
+        one->run(600);
+    }
+    rig.accept(superimposed(20, 20));
+    for (int i = 0; i < 2000; ++i) {
+        rig.step();
+        twin.step();
+        ASSERT_NEAR(rig.view().set_position, twin.view().set_position + rig.view().superimposed_covered, 1e-9) << i;
+    }
+    EXPECT_NEAR(rig.view().set_position, 120, 1e-9);
+}
+
+// No sum passes a software limit: what is known to end behind it is refused, what comes there is stopped on it.
+TEST(Superimposed, SumStopsOnTheSoftwareLimit) {
+    auto config = trapezoids();
+    config.limits.position_min = -10;
+    config.limits.position_max = 100;
+    config.homing.kind = HomingKind::set_here;
+    Rig rig(config);
+    rig.power_on();
+    rig.accept(home(0));
+    rig.run(3);
+    rig.accept(absolute(95, 50));
+    EXPECT_EQ(rig.status(rig.accept(superimposed(5))), CommandStatus::active);
+    rig.run(1);
+    EXPECT_EQ(rig.refuse(superimposed(6)), ErrorId::beyond_software_limit);
+    ASSERT_TRUE(rig.run_to(AxisState::Standstill));
+    EXPECT_DOUBLE_EQ(rig.view().set_position, 100);
+
+    rig.accept(absolute(0, 50));
+    ASSERT_TRUE(rig.run_to(AxisState::Standstill));
+    rig.accept(at_velocity(50));
+    rig.run(500);
+    const auto extra = rig.accept(superimposed(200, 30));
+    double farthest = 0;
+    ASSERT_TRUE(rig.run_until([&] {
+        farthest = std::max(farthest, rig.view().set_position);
+        return rig.view().state == AxisState::ErrorStop && rig.view().set_velocity == 0;
+    }));
+    EXPECT_DOUBLE_EQ(rig.view().set_position, 100);
+    EXPECT_LE(farthest, 100 * (1 + 1e-15));
+    EXPECT_EQ(rig.status(extra), CommandStatus::error);
+}
+
+TEST(Superimposed, StatesAndNumbersThatForbidIt) {
+    Rig rig;
+    EXPECT_EQ(rig.refuse(superimposed(1)), ErrorId::not_powered);
+    rig.power_on();
+    EXPECT_EQ(rig.refuse(superimposed(std::nan(""))), ErrorId::invalid_position);
+    EXPECT_EQ(rig.refuse(superimposed(1, -1)), ErrorId::invalid_velocity);
+    auto buffered = superimposed(1);
+    buffered.buffer_mode = mcBuffered;
+    EXPECT_EQ(rig.refuse(buffered), ErrorId::buffer_mode_not_supported);  // P1-092
+    const auto locked = rig.accept(stop());
+    EXPECT_EQ(rig.refuse(superimposed(1)), ErrorId::state_forbids);
+    rig.run(2);
+    rig.axis.release_stop(locked, Owner::program);
+    EXPECT_EQ(rig.view().state, AxisState::Standstill);
+    // MC_Stop and power off end it too.
+    const auto extra = rig.accept(superimposed(50));
+    rig.run(100);
+    rig.enable = false;
+    rig.step();
+    EXPECT_EQ(rig.status(extra), CommandStatus::aborted);
+    ASSERT_TRUE(rig.run_to(AxisState::Disabled));
+    rig.expect_no_jump();
+}
+
+}  // namespace
+}  // namespace taktwerk::axes::test
