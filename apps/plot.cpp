@@ -25,7 +25,7 @@ namespace {
 
 struct Options {
     std::string file, output, title;
-    std::vector<std::string> axes;
+    std::vector<std::string> axes, bits;
     double from_s = 0, to_s = 0;
     bool following_error = false;
 };
@@ -113,7 +113,8 @@ int plot(const Options& options) {
                         options.axes,
                         options.from_s,
                         options.to_s,
-                        options.following_error};
+                        options.following_error,
+                        options.bits};
     if (request.output.empty()) request.output = std::filesystem::path(file).replace_extension(".svg").string();
     std::error_code ignored;
     if (std::filesystem::equivalent(request.output, file, ignored))
@@ -144,6 +145,9 @@ void add_plot(CLI::App& app, Action& action) {
     sub->add_option("--axis", options->axes, "only these axes, e.g. --axis x,y")->delimiter(',');
     add_duration(*sub, "--from", options->from_s, "from this time of the trace on, e.g. 2s");
     add_duration(*sub, "--to", options->to_s, "until this time of the trace");
+    sub->add_option("--bits", options->bits,
+                    "only these inputs, outputs and BOOLs of programs below the axes, e.g. --bits in.start,feeder.busy")
+        ->delimiter(',');
     sub->add_option("--title", options->title, "headline; default: the trace's name");
     sub->add_flag("--following-error", options->following_error, "a panel more for each axis");
     sub->callback([&action, options] { action = [options] { return plot(*options); }; });

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <iterator>
 
 #include <fmt/format.h>
@@ -15,7 +16,8 @@ namespace taktwerk::apps {
 namespace {
 
 // Pixels. The width is what a screen or a page shows without scaling.
-constexpr double width = 1200, left = 120, right = 18, head = 64, foot = 62, axis_head = 30, band_height = 18, gap = 9, axis_gap = 38;
+constexpr double width = 1200, left = 120, right = 18, head = 64, foot = 62, axis_head = 30, band_height = 18, gap = 9, axis_gap = 38,
+                 bit_height = 15;
 constexpr double plot_width = width - left - right;
 constexpr std::size_t bins = 700;
 
@@ -36,6 +38,8 @@ constexpr std::array<StateLook, axes::axis_state_count> looks{{
 }};
 constexpr const char* emergency_colour = "#ffd9d6";
 constexpr const char* error_colour = "#fdeede";
+constexpr const char* command_colour = "#2f8f5b";
+constexpr const char* bit_colour = "#4a7ba6";
 constexpr int error_state = static_cast<int>(axes::AxisState::ErrorStop);
 
 const StateLook& look(int state) { return looks[static_cast<std::size_t>(std::clamp(state, 0, static_cast<int>(looks.size()) - 1))]; }
@@ -47,6 +51,7 @@ struct Curve {
     const std::vector<double>* values;
     const char *title, *colour;
     double line;
+    bool commanded = false;  ///< steps, and only where a motion has a target
 };
 struct Panel {
     std::string quantity, unit;
@@ -63,6 +68,10 @@ std::vector<Panel> panels_of(const AxisTrace& axis, bool following_error) {
         {"acceleration", u + "/s²", 74, {{&axis.set_acceleration, "", "#14507f", 1.2}}},
         {"jerk", u + "/s³", 74, {{&axis.set_jerk, "", "#14507f", 1.2}}},
     };
+    if (!axis.target_position.empty()) {
+        auto& curves = out.front().curves;
+        curves.insert(curves.begin(), {&axis.target_position, "commanded", command_colour, 1.2, true});
+    }
     if (following_error) out.insert(out.begin() + 1, {"following error", u, 74, {{&axis.following_error, "", "#a03050", 1.2}}});
     return out;
 }
@@ -114,7 +123,7 @@ public:
                     span.from, span.to, colour);
     }
 
-    void reset_panel() { line("unset label; unset object; unset xtics; unset ytics; unset key; unset xlabel"); }
+    void reset_panel() { line("unset label; unset object; unset arrow; unset xtics; unset ytics; unset key; unset xlabel"); }
 
     void time_tics(bool with_numbers) {
         const auto t = ticks(from_, to_, 13);
@@ -152,18 +161,23 @@ public:
         double low = HUGE_VAL, high = -HUGE_VAL;
         std::string plots;
         for (const auto& curve : panel.curves) {
-            const auto points = decimate(trace_.time_s, *curve.values, rows_, bins);
             const auto block = fmt::format("$data{}", ++blocks_);
             line("{} << EOD", block);
-            for (const auto& point : points) {
-                line("{:.6f} {:.9g}", point.t, point.value);
-                low = std::min(low, point.value);
-                high = std::max(high, point.value);
+            // Each run of rows is a line of its own: between targets there is nothing to draw.
+            for (const auto& run : curve.commanded ? with_a_target(axis) : std::vector<Window>{rows_}) {
+                for (const auto& point : decimate(trace_.time_s, *curve.values, run, bins)) {
+                    line("{:.6f} {:.9g}", point.t, point.value);
+                    low = std::min(low, point.value);
+                    high = std::max(high, point.value);
+                }
+                line("");
             }
             line("EOD");
-            plots += fmt::format("{}{} using 1:2 with lines lw {} lc rgb \"{}\" {}", plots.empty() ? "" : ", ", block, curve.line,
-                                 curve.colour, *curve.title ? "title " + quoted(curve.title) : std::string("notitle"));
+            plots += fmt::format("{}{} using 1:2 with {} lw {} lc rgb \"{}\" {} {}", plots.empty() ? "" : ", ", block,
+                                 curve.commanded ? "steps" : "lines", curve.line, curve.colour, curve.commanded ? "dt (4,3)" : "",
+                                 *curve.title ? "title " + quoted(curve.title) : std::string("notitle"));
         }
+        hand_overs(axis);
         const auto t = ticks(low, high, panel.height > 100 ? 6 : 5);
         std::string list;
         for (const double at : t.at) list += fmt::format("{}{} {:.9g}", list.empty() ? "" : ", ", quoted(tick_text(at, t.step)), at);
@@ -177,11 +191,53 @@ public:
         line("plot {}", plots);
     }
 
+    /// Dashed, where one command takes the axis from another. Where they are too dense to be told apart there is one.
+    void hand_overs(const AxisTrace& axis) {
+        const double least = 3 * (to_ - from_) / plot_width;
+        double before = from_ - least;
+        for (auto row = rows_.first + 1; !axis.active.empty() && row < rows_.last; ++row) {
+            const double old = axis.active[row - 1], now = axis.active[row], at = trace_.time_s[row];
+            if (old == now || old == 0 || now == 0 || at - before < least) continue;
+            line("set arrow from first {0:.6f}, graph 0 to first {0:.6f}, graph 1 nohead back lw 0.8 dt (2,3) lc rgb \"#8a949e\"", at);
+            before = at;
+        }
+    }
+
+    /// TRUE as a bar.
+    void bit(const BitTrace& trace, double top, bool last) {
+        reset_panel();
+        margins(top, top + bit_height);
+        line("set yrange [0:1]; unset grid; set border {} lc rgb \"#b0b8c0\"", 1);
+        for (const auto& span : spans(trace_.time_s, trace.value, rows_, 2 * bins, same))
+            if (span.value != 0)
+                line(
+                    "set object rectangle from first {:.6f}, graph 0.12 to first {:.6f}, graph 0.8 front fillcolor rgb \"{}\" fillstyle "
+                    "solid "
+                    "noborder",
+                    span.from, span.to, bit_colour);
+        label(left - 8, top + bit_height / 2, trace.name, "right", 9, "#404040");
+        if (last) time_tics(true);
+        line("plot NaN notitle");
+    }
+
     std::string& text() { return text_; }
     double from() const { return from_; }
     double to() const { return to_; }
 
 private:
+    [[nodiscard]] std::vector<Window> with_a_target(const AxisTrace& axis) const {
+        constexpr int homing = static_cast<int>(axes::AxisState::Homing), discrete = static_cast<int>(axes::AxisState::DiscreteMotion);
+        const auto has = [&](std::size_t row) { return axis.state[row] == discrete || axis.state[row] == homing; };
+        std::vector<Window> runs;
+        for (auto row = rows_.first; row < rows_.last; ++row) {
+            if (!has(row)) continue;
+            const auto first = row;
+            while (row < rows_.last && has(row)) ++row;
+            runs.push_back({first, row});
+        }
+        return runs;
+    }
+
     const Trace& trace_;
     Window rows_;
     double height_, from_ = 0, to_ = 0;
@@ -210,6 +266,29 @@ void legend(Script& script, const Trace& trace, const std::vector<const AxisTrac
         if (seen[i]) entry(looks[i].colour, axes::name(looks[i].state));
     if (seen[static_cast<std::size_t>(error_state)]) entry(error_colour, "axis in error");
     if (emergency) entry(emergency_colour, "emergency stop");
+}
+
+/// Those asked for, or those that change in the window.
+Result<std::vector<const BitTrace*>> chosen_bits(const Trace& trace, const std::vector<std::string>& wanted, Window rows) {
+    std::vector<const BitTrace*> out;
+    for (const auto& bit : trace.bits) {
+        const auto first = bit.value.begin() + static_cast<std::ptrdiff_t>(rows.first);
+        const auto last = bit.value.begin() + static_cast<std::ptrdiff_t>(rows.last);
+        if (wanted.empty() && std::adjacent_find(first, last, std::not_equal_to<>{}) != last) out.push_back(&bit);
+    }
+    for (const auto& name : wanted) {
+        const auto found = std::find_if(trace.bits.begin(), trace.bits.end(), [&](const auto& bit) { return bit.name == name; });
+        if (found != trace.bits.end()) {
+            out.push_back(&*found);
+            continue;
+        }
+        std::vector<std::string> names;
+        for (const auto& bit : trace.bits) names.push_back(bit.name);
+        const auto near = nearest_name(name, names);
+        return Error{"plot.unknown_bit", "--bits " + name, "the trace has no BOOL of this name",
+                     near.empty() ? fmt::format("It has: {}.", fmt::join(names, ", ")) : fmt::format("Did you mean '{}'?", near)};
+    }
+    return out;
 }
 
 Result<std::vector<const AxisTrace*>> chosen(const Trace& trace, const std::vector<std::string>& wanted) {
@@ -242,7 +321,10 @@ Result<std::string> plot_script(const Trace& trace, const PlotRequest& request) 
                      fmt::format("the trace has no cycles there; it is {:.3f} s long", trace.time_s.back()),
                      "Choose a part inside the trace."};
 
-    double height = head + foot;
+    auto bit_traces = chosen_bits(trace, request.bits, rows);
+    if (!bit_traces) return bit_traces.error();
+
+    double height = head + foot + (bit_traces->empty() ? 0 : static_cast<double>(bit_traces->size()) * bit_height + axis_gap);
     for (const auto* axis : *axes) {
         height += axis_head + band_height + axis_gap;
         for (const auto& panel : panels_of(*axis, request.following_error)) height += panel.height + gap;
@@ -284,6 +366,10 @@ Result<std::string> plot_script(const Trace& trace, const PlotRequest& request) 
         script.line("plot NaN notitle");
         script.line("set border 3 lc rgb \"#909090\"; set grid");
         top = panel_top - gap + axis_gap;
+    }
+    for (const auto* bit : *bit_traces) {
+        script.bit(*bit, top, bit == bit_traces->back());
+        top += bit_height;
     }
     script.line("unset multiplot; unset output");
     return std::move(script.text());

@@ -12,10 +12,11 @@ namespace taktwerk::apps {
 
 struct PlotRequest {
     std::string title;
-    std::string output;             ///< SVG file
-    std::vector<std::string> axes;  ///< names; empty = all
-    double from_s = 0, to_s = 0;    ///< since the first row; to 0 = until the end
-    bool following_error = false;   ///< a panel more
+    std::string output;               ///< SVG file
+    std::vector<std::string> axes;    ///< names; empty = all
+    double from_s = 0, to_s = 0;      ///< since the first row; to 0 = until the end
+    bool following_error = false;     ///< a panel more
+    std::vector<std::string> bits{};  ///< names of BOOLs to draw below the axes; empty = all that change in the window
 };
 
 /// Errors: plot.unknown_axis, plot.empty_window.

@@ -12,8 +12,9 @@ namespace {
 struct Quantity {
     std::string_view column, per;
 };
-constexpr Quantity quantities[] = {{"set_position", ""},    {"set_velocity", "/s"},    {"set_acceleration", "/s2"}, {"set_jerk", "/s3"},
-                                   {"actual_position", ""}, {"actual_velocity", "/s"}, {"following_error", ""}};
+constexpr Quantity quantities[] = {{"set_position", ""},    {"set_velocity", "/s"},  {"set_acceleration", "/s2"},
+                                   {"set_jerk", "/s3"},     {"actual_position", ""}, {"actual_velocity", "/s"},
+                                   {"following_error", ""}, {"target_position", ""}};
 
 /// "[mm/s]" for the columns of an axis that have its unit, empty for others.
 std::string unit_of(std::string_view column, const runtime::MachineLayout& layout) {

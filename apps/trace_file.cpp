@@ -1,5 +1,6 @@
 #include "apps/trace_file.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
@@ -27,6 +28,11 @@ constexpr AxisColumn axis_columns[] = {
     {"set_acceleration", &AxisTrace::set_acceleration},
     {"set_jerk", &AxisTrace::set_jerk},
     {"following_error", &AxisTrace::following_error},
+};
+/// Not in every trace.
+constexpr AxisColumn later_columns[] = {
+    {"target_position", &AxisTrace::target_position},
+    {"active", &AxisTrace::active},
 };
 
 Error error(std::string code, const std::string& subject, std::string what, std::string remedy) {
@@ -71,13 +77,26 @@ std::vector<AxisTrace> axes_of(const std::vector<Heading>& columns) {
 /// Where each column of the file goes; nullptr for what no plot shows.
 Result<std::vector<Column*>> targets(Trace& trace, const std::vector<Heading>& columns, const std::string& name) {
     std::map<std::string, Column*> wanted{{"time_s", &trace.time_s}, {"emergency_stop", &trace.emergency_stop}};
-    for (auto& axis : trace.axes)
+    std::map<std::string, Column*> welcome;
+    for (auto& axis : trace.axes) {
         for (const auto& column : axis_columns) wanted[axis.name + "." + std::string(column.name)] = &(axis.*column.member);
+        for (const auto& column : later_columns) welcome[axis.name + "." + std::string(column.name)] = &(axis.*column.member);
+    }
+    const auto of_an_axis = [&](const std::string& column) {
+        return std::any_of(trace.axes.begin(), trace.axes.end(), [&](const auto& axis) { return column.rfind(axis.name + ".", 0) == 0; });
+    };
+    for (const auto& column : columns)
+        if (wanted.count(column.name) == 0 && column.name != "alarms" && !of_an_axis(column.name)) trace.bits.push_back({column.name, {}});
+    for (auto& bit : trace.bits) welcome[bit.name] = &bit.value;
     std::vector<Column*> out;
     for (const auto& column : columns) {
-        const auto found = wanted.find(column.name);
-        out.push_back(found == wanted.end() ? nullptr : found->second);
-        if (found != wanted.end()) wanted.erase(found);
+        if (const auto found = wanted.find(column.name); found != wanted.end()) {
+            out.push_back(found->second);
+            wanted.erase(found);
+        } else {
+            const auto also = welcome.find(column.name);
+            out.push_back(also == welcome.end() ? nullptr : also->second);
+        }
     }
     if (trace.axes.empty())
         return error("not_a_trace", name, "no column is called AXIS.set_position", "Give a file that `taktwerk run --trace` has written.");
@@ -136,6 +155,10 @@ Result<Trace> parse_trace(std::string_view text, const std::string& name) {
     if (trace.time_s.empty())
         return error("empty", name, "the trace has a heading but no cycles",
                      "The machine ended before its first cycle: see what `taktwerk run` said.");
+    const auto is_no_bit = [](const BitTrace& bit) {
+        return std::any_of(bit.value.begin(), bit.value.end(), [](double value) { return value != 0 && value != 1; });
+    };
+    trace.bits.erase(std::remove_if(trace.bits.begin(), trace.bits.end(), is_no_bit), trace.bits.end());
     const double start = trace.time_s.front();
     double last = 0;
     for (std::size_t i = 0; i < trace.time_s.size(); ++i) {

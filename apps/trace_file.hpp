@@ -13,13 +13,22 @@ namespace taktwerk::apps {
 struct AxisTrace {
     std::string name, unit;  ///< unit "u" when the trace does not say
     std::vector<double> state, set_position, actual_position, set_velocity, actual_velocity, set_acceleration, set_jerk, following_error;
+    std::vector<double> target_position;  ///< where the commanded motion ends; empty in traces of older versions
+    std::vector<double> active;           ///< number of the command in control, 0 = none; empty in traces of older versions
+};
+
+/// A column that belongs to no axis and is 0 or 1 all the time: an input, an output, a monitored BOOL of a program.
+struct BitTrace {
+    std::string name;  ///< "in.start", "feeder.running"
+    std::vector<double> value;
 };
 
 struct Trace {
     std::vector<double> time_s;          ///< since the first row
     std::vector<double> emergency_stop;  ///< 0 or 1
     std::vector<AxisTrace> axes;
-    bool cut_off = false;  ///< the last line is incomplete: the writer was killed
+    std::vector<BitTrace> bits;  ///< in the order of the file
+    bool cut_off = false;        ///< the last line is incomplete: the writer was killed
 };
 
 /// Errors: trace.open, trace.not_a_trace, trace.bad_line (with its number), trace.empty.

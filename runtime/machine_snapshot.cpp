@@ -53,8 +53,9 @@ void Machine::Impl::take_snapshot() noexcept {
 std::vector<std::string> Machine::Impl::trace_columns() const {
     std::vector<std::string> columns{"time_s", "emergency_stop", "alarms"};
     for (const auto& axis : layout.axes)
-        for (const char* what : {"state", "set_position", "set_velocity", "set_acceleration", "set_jerk", "actual_position",
-                                 "actual_velocity", "actual_torque", "following_error", "drive_state", "homed", "error"})
+        for (const char* what :
+             {"state", "set_position", "set_velocity", "set_acceleration", "set_jerk", "actual_position", "actual_velocity",
+              "actual_torque", "following_error", "target_position", "active", "drive_state", "homed", "error"})
             columns.push_back(axis.name + "." + what);
     for (const auto& input : layout.inputs) columns.push_back("in." + input);
     for (const auto& output : layout.outputs) columns.push_back("out." + output);
@@ -84,6 +85,8 @@ void Machine::Impl::take_trace() noexcept {
         put(v.actual_velocity);
         put(v.actual_torque);
         put(v.following_error);
+        put(v.target_position);
+        put(v.active);
         put(static_cast<double>(v.drive_state));
         put(v.homed ? 1 : 0);
         put(v.error);

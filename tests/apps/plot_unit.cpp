@@ -59,6 +59,23 @@ TEST(TraceFile, DamageIsNamedWithItsLine) {
     EXPECT_EQ(read_trace("/nowhere/trace.csv").error().code, "trace.open");
 }
 
+const std::string later_heading =
+    "time_s,emergency_stop,alarms,x.state,x.set_position[mm],x.set_velocity[mm/s],x.set_acceleration,x.set_jerk,x.actual_position,"
+    "x.actual_velocity,x.following_error,x.target_position[mm],x.active,in.start,out.level,feeder.busy\n";
+
+// x.active is no bit although it is 0 and 1 here: it is the axis' own. out.level is none for it is 7 once.
+TEST(TraceFile, WhatIsZeroOrOneAllTheTimeAndOfNoAxisIsABit) {
+    const auto trace = parse_trace(later_heading + "1,0,0,3,0,0,0,0,0,0,0,100,0,0,0,1\n2,0,0,3,0,0,0,0,0,0,0,100,1,1,7,1\n", "t.csv");
+
+    ASSERT_TRUE(trace) << trace.error().text();
+    ASSERT_EQ(trace->bits.size(), 2u);
+    EXPECT_EQ(trace->bits[0].name, "in.start");
+    EXPECT_THAT(trace->bits[0].value, ElementsAre(0, 1));
+    EXPECT_EQ(trace->bits[1].name, "feeder.busy");
+    EXPECT_THAT(trace->axes[0].active, ElementsAre(0, 1));
+    EXPECT_THAT(trace->axes[0].target_position, ElementsAre(100, 100));
+}
+
 TEST(PlotData, NoPeakIsLostHoweverNarrow) {
     std::vector<double> time, values;
     for (int i = 0; i < 100000; ++i) {
@@ -143,6 +160,31 @@ TEST(PlotScript, AskedForWhatTheTraceDoesNotHave) {
     EXPECT_TRUE(plot_script(*trace, request));
     request.from_s = 5;
     EXPECT_EQ(plot_script(*trace, request).error().code, "plot.empty_window");
+}
+
+// Two commands one after the other, the second takes the axis from the first at 3 s; the program's bit does not change.
+TEST(PlotScript, DrawsTargetsHandOversAndTheBitsThatChange) {
+    const auto trace = parse_trace(later_heading +
+                                       "1,0,0,1,0,0,0,0,0,0,0,0,0,0,0,1\n2,0,0,3,0,0,0,0,0,0,0,100,5,1,7,1\n"
+                                       "4,0,0,3,0,0,0,0,0,0,0,200,6,0,7,1\n6,0,0,1,0,0,0,0,0,0,0,200,0,0,7,1\n",
+                                   "t.csv");
+    ASSERT_TRUE(trace);
+
+    const auto script = plot_script(*trace, {"t", "t.svg", {}, 0, 0, false});
+
+    ASSERT_TRUE(script);
+    EXPECT_THAT(*script, HasSubstr("title \"commanded\""));
+    EXPECT_THAT(*script, HasSubstr("set arrow from first 3.000000"));
+    EXPECT_THAT(*script, ::testing::Not(HasSubstr("set arrow from first 1.000000"))) << "nothing was taken from anybody there";
+    EXPECT_THAT(*script, HasSubstr("set label \"in.start\""));
+    EXPECT_THAT(*script, ::testing::Not(HasSubstr("feeder.busy")));
+
+    PlotRequest named{"t", "t.svg", {}, 0, 0, false, {"feeder.busy"}};
+    const auto asked = plot_script(*trace, named);
+    ASSERT_TRUE(asked);
+    EXPECT_THAT(*asked, HasSubstr("feeder.busy"));
+    named.bits = {"in.stat"};
+    EXPECT_EQ(plot_script(*trace, named).error().code, "plot.unknown_bit");
 }
 
 TEST(PlotScript, TextsOfTheOutsideCannotLeaveTheirQuotes) {
