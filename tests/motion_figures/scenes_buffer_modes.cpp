@@ -33,6 +33,10 @@ Figure three_moves(const std::string& name, MC_BufferMode mode) {
 
 }  // namespace
 
-std::vector<Figure> buffer_modes() { return {three_moves("aborting", mcAborting), three_moves("buffered", mcBuffered)}; }
+std::vector<Figure> buffer_modes() {
+    return {three_moves("aborting", mcAborting),          three_moves("buffered", mcBuffered),
+            three_moves("blending-low", mcBlendingLow),   three_moves("blending-previous", mcBlendingPrevious),
+            three_moves("blending-next", mcBlendingNext), three_moves("blending-high", mcBlendingHigh)};
+}
 
 }  // namespace taktwerk::figures

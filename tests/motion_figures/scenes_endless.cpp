@@ -26,8 +26,23 @@ Figure move_velocity() {
     return stage.figure("move-velocity");
 }
 
+Figure move_continuous(const std::string& name, double end_velocity) {
+    Stage stage;
+    MC_MoveContinuousAbsolute cut;
+    cut.Axis = Stage::ref();
+    cut.Position = 80, cut.EndVelocity = end_velocity, cut.Velocity = 100, cut.Acceleration = cut.Deceleration = 250;
+    stage.block("cut", cut);
+    stage.run(200ms);
+    cut.Execute = true;
+    stage.run_until([&] { return cut.InEndVelocity; });
+    stage.run(700ms);
+    return stage.figure(name);
+}
+
 }  // namespace
 
-std::vector<Figure> endless_moves() { return {move_velocity()}; }
+std::vector<Figure> endless_moves() {
+    return {move_velocity(), move_continuous("move-continuous", 30), move_continuous("move-continuous-back", -50)};
+}
 
 }  // namespace taktwerk::figures

@@ -4,12 +4,14 @@
 #include <deque>
 #include <functional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "axes/axis/axis.hpp"
 #include "axes/axis/direct_requests.hpp"
 #include "axes/axis/motion_context.hpp"
 #include "fb_library/motion/power.hpp"
+#include "fb_library/motion/stops.hpp"
 #include "tests/axes/axis/fake_drive.hpp"
 #include "tests/motion_figures/figure.hpp"
 
@@ -34,6 +36,8 @@ public:
 
     static constexpr axes::AxisRef ref(std::uint16_t index = 0) { return {index}; }
     [[nodiscard]] const axes::AxisView& view(std::uint16_t index = 0) const { return axes_[index].view(); }
+    /// To be filled before the first scan.
+    [[nodiscard]] axes::MotionTables& tables() { return tables_; }
     [[nodiscard]] axes::test::FakeDrive& drive(std::uint16_t index = 0) { return drives_[index]; }
 
     /// Shows `value` as a bar, in the colour of the block named last.
@@ -62,11 +66,7 @@ public:
         calls_.push_back([&block](const fb::MotionContext& ctx) { block(ctx); });
         // MC_Stop has no Active: it controls the axis from its edge on.
         if constexpr (requires { block.Active; }) controls_.push_back({colour, &block.Active, nullptr});
-        else if constexpr (requires {
-                               block.Execute;
-                               block.Busy;
-                           })
-            controls_.push_back({colour, &block.Busy, &block.Execute});
+        else if constexpr (std::is_same_v<Block, fb::MC_Stop>) controls_.push_back({colour, &block.Busy, &block.Execute});
     }
     /// Before the blocks are called.
     std::function<void(const fb::MotionContext&)> before;
