@@ -302,6 +302,39 @@ TEST_P(RandomCalls, OneStateAndOneBlockInControl) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomCalls, testing::Range(1u, 6u));
 
+// Figures 10 and 11 (P1-111): one instance, 10, 20 and 0 u/s; InVelocity falls with each edge and goes on after Execute fell.
+TEST(VelocityFigure11, OneInstanceThreeVelocities) {
+    Plc plc;
+    MC_MoveVelocity run;
+    run.Axis = Plc::x;
+    run.Acceleration = run.Deceleration = 100;
+    plc.program = [&](const MotionContext& ctx) { run(ctx); };
+    struct Part {
+        double velocity;
+        Duration ramp;
+        bool execute_falls_in_the_ramp;
+    };
+    for (const Part& part : {Part{10, 100ms, false}, Part{20, 100ms, true}, Part{0, 200ms, true}}) {
+        run.Velocity = part.velocity;
+        run.Execute = true;
+        plc.scan();
+        EXPECT_FALSE(run.InVelocity) << "from the edge on, " << part.velocity;
+        EXPECT_FALSE(run.CommandAborted) << "by its own next edge";
+        plc.run_for(50ms);
+        EXPECT_FALSE(run.InVelocity);
+        if (part.execute_falls_in_the_ramp) run.Execute = false;
+        const auto rest = plc.run_until([&] { return run.InVelocity; }, 1s);
+        EXPECT_GE(rest + 51ms, part.ramp);
+        EXPECT_LE(rest + 51ms, part.ramp + 3ms);
+        EXPECT_EQ(plc.velocity(), part.velocity);
+        run.Execute = false;
+        plc.run_for(20ms);
+        EXPECT_TRUE(run.InVelocity) << "also after Execute fell";
+        EXPECT_TRUE(run.Busy && run.Active);
+    }
+    EXPECT_EQ(plc.state(), AxisState::ContinuousMotion);
+}
+
 // Figure 24 (P1-167): First V 3000, Second V 2000; Second on (First.InVelocity AND Next) OR Test.
 TEST(VelocityFigure24, SecondAfterAndInsteadOfFirst) {
     Plc plc;
