@@ -46,7 +46,7 @@ struct Watched : Rig {
             [&] {
                 while (next < ids.size() && status(ids[next]) == CommandStatus::done) {
                     joints[next] = {to_seconds(now - begin), view().set_position, view().set_velocity, before};
-                    // P1-314: Active passes over in the cycle of Done.
+                    // Active passes over in the cycle of Done.
                     if (++next < ids.size()) {
                         EXPECT_TRUE(status(ids[next]) == CommandStatus::active || status(ids[next]) == CommandStatus::in_target);
                     }
@@ -59,7 +59,7 @@ struct Watched : Rig {
     }
 };
 
-// P1-310, P1-088: appendix A, example 4. 10.625 + 20 + 10.625 s; 50 at both joints and between them.
+// P1-310, P1-088, P1-314: appendix A, example 4. 10.625 + 20 + 10.625 s; 50 at both joints and between them.
 TEST(Blending, LowTakesTheLowerOfBothVelocities) {
     Watched rig(trapezoids());
     rig.power_on();
@@ -76,7 +76,7 @@ TEST(Blending, LowTakesTheLowerOfBothVelocities) {
     EXPECT_EQ(rig.farthest, 3000);
 }
 
-// P1-311, P1-089: example 5. 100 at 1000, 50 at 2000; 10.5 + 19.875 + 10.625 s.
+// P1-311, P1-089, P1-314: example 5. 100 at 1000, 50 at 2000; 10.5 + 19.875 + 10.625 s.
 TEST(Blending, PreviousKeepsTheVelocityOfTheFirst) {
     Watched rig(trapezoids());
     rig.power_on();
@@ -91,7 +91,7 @@ TEST(Blending, PreviousKeepsTheVelocityOfTheFirst) {
     EXPECT_EQ(rig.farthest, 3000);
 }
 
-// P1-312, P1-090: example 6. Brakes to 50 inside the first, speeds up to 100 inside the second; 10.625 + 19.5 + 10.5 s.
+// P1-312, P1-090, P1-314: example 6. Brakes to 50 inside the first, speeds up to 100 inside the second; 10.625 + 19.5 + 10.5 s.
 TEST(Blending, NextHasTheVelocityOfTheSecondAtTheJoint) {
     Watched rig(trapezoids());
     rig.power_on();
@@ -106,7 +106,7 @@ TEST(Blending, NextHasTheVelocityOfTheSecondAtTheJoint) {
     EXPECT_EQ(rig.farthest, 3000);
 }
 
-// P1-313, P1-091: example 7. 100 at both joints, 50 between them: the second exceeds its own velocity before 2000; 10.5 + 19.75 + 10.5 s.
+// P1-313, P1-091, P1-314: example 7. 100 at both joints, 50 between them: the second exceeds its own velocity before 2000; 10.5 + 19.75 + 10.5 s.
 TEST(Blending, HighTakesTheHigherOfBothVelocities) {
     Watched rig(trapezoids());
     rig.power_on();

@@ -1,4 +1,4 @@
-// Modulo axes: positions that repeat, directions, turns without end. PLCopen Part 1 v2.0, section 3.5 and P1-095.
+// Modulo axes: positions that repeat, directions, turns without end. PLCopen Part 1 v2.0, section 3.5.
 
 #include "axes/axis/rational.hpp"
 #include "tests/axes/axis/axis_rig.hpp"
