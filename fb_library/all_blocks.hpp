@@ -15,17 +15,27 @@
 #include "fb_library/motion/administration.hpp"
 #include "fb_library/motion/axis_condition.hpp"
 #include "fb_library/motion/axis_values.hpp"
+#include "fb_library/motion/camming.hpp"
+#include "fb_library/motion/combine_axes.hpp"
+#include "fb_library/motion/controller_mode.hpp"
 #include "fb_library/motion/digital_cam_switch.hpp"
 #include "fb_library/motion/digital_io.hpp"
 #include "fb_library/motion/endless_moves.hpp"
+#include "fb_library/motion/external_setpoints.hpp"
+#include "fb_library/motion/gearing.hpp"
 #include "fb_library/motion/home.hpp"
 #include "fb_library/motion/jog.hpp"
 #include "fb_library/motion/moves.hpp"
+#include "fb_library/motion/override.hpp"
 #include "fb_library/motion/parameter_blocks.hpp"
+#include "fb_library/motion/phasing.hpp"
 #include "fb_library/motion/power.hpp"
 #include "fb_library/motion/probes.hpp"
 #include "fb_library/motion/reading.hpp"
 #include "fb_library/motion/stops.hpp"
+#include "fb_library/motion/superimposed.hpp"
+#include "fb_library/motion/time_profiles.hpp"
+#include "fb_library/motion/torque_control.hpp"
 
 namespace taktwerk::fb {
 
@@ -38,22 +48,33 @@ struct BlockList {
     using as = Other<Blocks...>;
 };
 
+namespace detail {
+template <class... A, class... B>
+BlockList<A..., B...> joined(BlockList<A...>, BlockList<B...>);
+}  // namespace detail
+
 using IecBlocks = BlockList<SR, RS, R_TRIG, F_TRIG, CTU, CTU_DINT, CTU_LINT, CTU_UDINT, CTU_ULINT, CTD, CTD_DINT, CTD_LINT, CTD_UDINT,
                             CTD_ULINT, CTUD, CTUD_DINT, CTUD_LINT, CTUD_UDINT, CTUD_ULINT, TP, TON, TOF>;
 
-using MotionBlocks = BlockList<MC_Power, MC_Home, MC_Stop, MC_Halt, MC_MoveAbsolute, MC_MoveRelative, MC_MoveAdditive, MC_MoveVelocity,
-                               MC_MoveContinuousAbsolute, MC_MoveContinuousRelative, MC_Jog, MC_SetPosition, MC_ReadActualPosition,
-                               MC_ReadStatus, MC_ReadAxisError, MC_Reset, MC_ReadParameter, MC_ReadBoolParameter, MC_WriteParameter,
-                               MC_WriteBoolParameter, MC_ReadDigitalInput, MC_ReadDigitalOutput, MC_WriteDigitalOutput,
-                               MC_ReadActualVelocity, MC_ReadActualTorque, MC_ReadMotionState, MC_ReadAxisInfo, MC_ReadCommandPosition,
-                               MC_ReadCommandVelocity, MC_ReadCommandAcceleration, MC_DigitalCamSwitch, MC_TouchProbe, MC_AbortTrigger>;
+/// Part 1, sections 3.1 to 3.18.
+using AxisBlocks = BlockList<MC_Power, MC_Home, MC_Stop, MC_Halt, MC_MoveAbsolute, MC_MoveRelative, MC_MoveAdditive, MC_MoveSuperimposed,
+                             MC_HaltSuperimposed, MC_MoveVelocity, MC_MoveContinuousAbsolute, MC_MoveContinuousRelative, MC_TorqueControl,
+                             MC_PositionProfile, MC_VelocityProfile, MC_AccelerationProfile, MC_SetPosition, MC_SetOverride>;
+/// 3.19 to 3.34.
+using AdministrativeBlocks =
+    BlockList<MC_ReadParameter, MC_ReadBoolParameter, MC_WriteParameter, MC_WriteBoolParameter, MC_ReadDigitalInput, MC_ReadDigitalOutput,
+              MC_WriteDigitalOutput, MC_ReadActualPosition, MC_ReadActualVelocity, MC_ReadActualTorque, MC_ReadStatus, MC_ReadMotionState,
+              MC_ReadAxisInfo, MC_ReadAxisError, MC_Reset, MC_DigitalCamSwitch, MC_TouchProbe, MC_AbortTrigger>;
+/// 4.2 to 4.10.
+using CouplingBlocks = BlockList<MC_CamTableSelect, MC_CamIn, MC_CamOut, MC_GearIn, MC_GearOut, MC_GearInPos, MC_PhasingAbsolute,
+                                 MC_PhasingRelative, MC_CombineAxes>;
+/// Of vendors, under their names.
+using VendorBlocks = BlockList<MC_Jog, MC_ReadCommandPosition, MC_ReadCommandVelocity, MC_ReadCommandAcceleration, MC_SetControllerMode,
+                               MC_ExtSetPointGenEnable, MC_ExtSetPointGenFeed, MC_ExtSetPointGenDisable>;
 
 using FieldbusBlocks = BlockList<EC_SdoRead, EC_SdoWrite>;
 
 namespace detail {
-template <class... A, class... B>
-BlockList<A..., B...> joined(BlockList<A...>, BlockList<B...>);
-
 template <class... Blocks>
 consteval bool names_differ(BlockList<Blocks...>) {
     constexpr auto& types = BlockList<Blocks...>::types;
@@ -64,6 +85,8 @@ consteval bool names_differ(BlockList<Blocks...>) {
 }
 }  // namespace detail
 
+using MotionBlocks =
+    decltype(detail::joined(detail::joined(AxisBlocks{}, AdministrativeBlocks{}), detail::joined(CouplingBlocks{}, VendorBlocks{})));
 using AllBlocks = decltype(detail::joined(detail::joined(IecBlocks{}, MotionBlocks{}), FieldbusBlocks{}));
 static_assert(detail::names_differ(AllBlocks{}));
 

@@ -20,26 +20,31 @@ CommandId LatchedRequests::real_id(CommandId mine) const noexcept {
     return 0;
 }
 
-void LatchedRequests::remember(const Known& known) noexcept {
+void LatchedRequests::remember(const Request& request, Submitted answer) noexcept {
     if (known_count_ == known_.size()) {
         std::move(known_.begin() + 1, known_.end(), known_.begin());
         --known_count_;
     }
-    known_[known_count_++] = known;
+    const auto fate = answer.error != ErrorId::none ? Known::Fate::refused : answer.id != 0 ? Known::Fate::accepted : Known::Fate::done;
+    known_[known_count_++] = {request.id, answer.id, request.axis.index, fate, false, answer.error};
+}
+
+Submitted LatchedRequests::push_with_id(Request& request) noexcept {
+    next_ = (next_ + 1) & ~provisional;
+    request.id = next_ | provisional;
+    if (!push(request)) return {0, ErrorId::queue_full};
+    auto& view = views_[request.axis.index];
+    if (view.queued_count < view.queued.size()) view.queued[view.queued_count++] = request.id;
+    return {request.id, ErrorId::none};
 }
 
 Submitted LatchedRequests::submit(AxisRef axis, const AxisCommand& command, Owner owner) noexcept {
     if (axis.index >= views_.size()) return {0, ErrorId::invalid_axis};
-    next_ = (next_ + 1) & ~provisional;
     Request request;
     request.axis = axis;
     request.command = command;
-    request.id = next_ | provisional;
     request.owner = owner;
-    if (!push(request)) return {0, ErrorId::queue_full};
-    auto& view = views_[axis.index];
-    if (view.queued_count < view.queued.size()) view.queued[view.queued_count++] = request.id;
-    return {request.id, ErrorId::none};
+    return push_with_id(request);
 }
 
 ErrorId LatchedRequests::power(AxisRef axis, bool enable, bool positive, bool negative, Owner owner) noexcept {
@@ -59,22 +64,22 @@ ErrorId LatchedRequests::reset(AxisRef axis, Owner owner) noexcept {
     return push(request) ? ErrorId::none : ErrorId::queue_full;
 }
 
-ErrorId LatchedRequests::set(AxisRef axis, const axes::AxisSetting& setting, Owner owner) noexcept {
-    if (axis.index >= views_.size()) return ErrorId::invalid_axis;
+Submitted LatchedRequests::set(AxisRef axis, const axes::AxisSetting& setting, Owner owner) noexcept {
+    if (axis.index >= views_.size()) return {0, ErrorId::invalid_axis};
     // What the axis itself would say (Axis::set), as far as the latched view knows.
     const auto& view = views_[axis.index];
-    if (view.owner != owner && view.owner != Owner::none) return ErrorId::owned_by_other;
+    if (view.owner != owner && view.owner != Owner::none) return {0, ErrorId::owned_by_other};
     if (const auto* position = std::get_if<axes::SetPosition>(&setting)) {
-        if (!std::isfinite(position->position)) return ErrorId::invalid_position;
-        if (!view.online) return ErrorId::drive_not_ready;
-        if (view.state == AxisState::Homing) return ErrorId::state_forbids;
+        if (!std::isfinite(position->position)) return {0, ErrorId::invalid_position};
+        if (!view.online) return {0, ErrorId::drive_not_ready};
+        if (view.state == AxisState::Homing) return {0, ErrorId::state_forbids};
     }
     Request request;
     request.kind = Kind::set;
     request.axis = axis;
     request.owner = owner;
     request.setting = setting;
-    return push(request) ? ErrorId::none : ErrorId::queue_full;
+    return push_with_id(request);
 }
 
 ErrorId LatchedRequests::update(AxisRef axis, CommandId id, const AxisCommand& command, Owner owner) noexcept {
@@ -112,17 +117,13 @@ void LatchedRequests::apply(AxisRequests& axes) noexcept {
     for (std::size_t i = 0; i < count_; ++i) {
         const auto& r = requests_[i];
         switch (r.kind) {
-            case Kind::submit: {
-                const auto answer = axes.submit(r.axis, r.command, r.owner);
-                remember({r.id, answer.id, r.axis.index, answer.error, false});
-                break;
-            }
+            case Kind::submit: remember(r, axes.submit(r.axis, r.command, r.owner)); break;
             case Kind::reset:
                 if (const auto error = axes.reset(r.axis, r.owner); error != ErrorId::none)
                     resets_[r.axis.index] = {RefusedReset::Show::resetting, error};
                 else resets_[r.axis.index] = {};
                 break;
-            case Kind::set: axes.set(r.axis, r.setting, r.owner); break;
+            case Kind::set: remember(r, axes.set(r.axis, r.setting, r.owner)); break;
             case Kind::update: axes.update(r.axis, real_id(r.id), r.command, r.owner); break;
             case Kind::release_stop: axes.release_stop(r.axis, real_id(r.id), r.owner); break;
             case Kind::renew_jog: axes.renew_jog(r.axis, real_id(r.id), r.value, r.owner); break;
@@ -152,6 +153,11 @@ bool LatchedRequests::translate(const Known& known, const AxisView& real, AxisVi
     if (view.active == known.real) view.active = known.mine;
     for (std::size_t q = 0; q < view.queued_count; ++q)
         if (view.queued[q] == known.real) view.queued[q] = known.mine;
+    for (auto& beside : view.side)
+        if (beside == known.real) beside = known.mine;
+    for (auto& latched : view.probe_latched)
+        if (latched == known.real) latched = known.mine;
+    if (view.lock == known.real) view.lock = known.mine;
     for (auto& entry : view.ledger)
         if (entry.id == known.real) entry.id = known.mine;
     return true;
@@ -159,13 +165,13 @@ bool LatchedRequests::translate(const Known& known, const AxisView& real, AxisVi
 
 bool LatchedRequests::tell(Known& known, std::uint8_t& told, AxisView& view) noexcept {
     if (known.told) return false;
-    if (told == most_refusals) {  // to its block it is still on its way
+    if (told == most_told) {  // to its block it is still on its way
         if (static_cast<std::int32_t>(view.last_id - known.mine) >= 0) view.last_id = known.mine - 1;
         return true;
     }
     ++told;
     known.told = true;
-    view.ledger[view.ledger_next] = {known.mine, Outcome::error, known.refused};
+    view.ledger[view.ledger_next] = {known.mine, known.fate == Known::Fate::done ? Outcome::done : Outcome::error, known.error};
     view.ledger_next = static_cast<std::uint8_t>((view.ledger_next + 1) % view.ledger.size());
     return true;
 }
@@ -194,10 +200,11 @@ void LatchedRequests::latch(std::span<const AxisView> real, std::span<AxisView> 
         }
         wishes_[i].answer = held_[i].answer;
     }
-    // Real outcomes first: a refusal takes the place of the oldest entry of the ledger.
-    keep_if([&](Known& k) { return k.refused != ErrorId::none || translate(k, real[k.axis], task_views[k.axis]); });
+    // Real outcomes first: an answer takes the place of the oldest entry of the ledger.
+    using Fate = Known::Fate;
+    keep_if([&](Known& k) { return k.fate != Fate::accepted || translate(k, real[k.axis], task_views[k.axis]); });
     std::fill(told_.begin(), told_.end(), std::uint8_t{0});
-    keep_if([&](Known& k) { return k.refused == ErrorId::none || tell(k, told_[k.axis], task_views[k.axis]); });
+    keep_if([&](Known& k) { return k.fate == Fate::accepted || tell(k, told_[k.axis], task_views[k.axis]); });
 }
 
 void LatchedRequests::clear() noexcept {

@@ -6,7 +6,7 @@
 //   submit        the ledger shows the refusal under the task's id, in one latch (at most half a ledger of them each time; the rest waits)
 //   power         the answer of the last release is returned by the next call
 //   reset         the view shows `resetting`, in the next latch no more, with reset_error saying why
-//   set           SetPosition is checked against the latched view in the call; a later refusal of any setting is lost
+//   set           gets an id like a command: the ledger shows done or the refusal. SetPosition is checked in the call, too
 //   update        a refusal is lost; the command goes on with its last good values
 //   renew_jog     the lease runs out
 // Real-time safe. Task's side and cycle's side take turns (SlowTask hands over), except renew(), which may run beside the task.
@@ -36,7 +36,7 @@ public:
     axes::Submitted submit(axes::AxisRef axis, const axes::AxisCommand& command, axes::Owner owner) noexcept override;
     axes::ErrorId power(axes::AxisRef axis, bool enable, bool positive, bool negative, axes::Owner owner) noexcept override;
     axes::ErrorId reset(axes::AxisRef axis, axes::Owner owner) noexcept override;
-    axes::ErrorId set(axes::AxisRef axis, const axes::AxisSetting& setting, axes::Owner owner) noexcept override;
+    axes::Submitted set(axes::AxisRef axis, const axes::AxisSetting& setting, axes::Owner owner) noexcept override;
     axes::ErrorId update(axes::AxisRef axis, axes::CommandId id, const axes::AxisCommand& command, axes::Owner owner) noexcept override;
     void release_stop(axes::AxisRef axis, axes::CommandId id, axes::Owner owner) noexcept override;
     axes::ErrorId renew_jog(axes::AxisRef axis, axes::CommandId id, double velocity, axes::Owner owner) noexcept override;
@@ -62,10 +62,12 @@ private:
         axes::AxisSetting setting;
     };
     struct Known {  // what became of a provisional id; forgotten once nothing of it shows any more
-        axes::CommandId mine = 0, real = 0;
+        enum class Fate : std::uint8_t { accepted, done, refused };
+        axes::CommandId mine = 0, real = 0;  // real: while accepted
         std::uint16_t axis = 0xFFFF;
-        axes::ErrorId refused = axes::ErrorId::none;
+        Fate fate = Fate::accepted;
         bool told = false;
+        axes::ErrorId error = axes::ErrorId::none;
     };
     struct PowerWish {
         bool given = false, enable = false, positive = true, negative = true;
@@ -78,13 +80,15 @@ private:
     };
     /// What an axis shows of commands: active, queued, finished.
     static constexpr std::size_t known_per_axis = 32;
-    static constexpr std::uint8_t most_refusals = std::tuple_size_v<decltype(axes::AxisView::ledger)> / 2;
+    static constexpr std::uint8_t most_told = std::tuple_size_v<decltype(axes::AxisView::ledger)> / 2;
 
     bool push(const Request& request) noexcept;
-    void remember(const Known& known) noexcept;
+    /// Takes a request with an id of its own: in the task's view it is queued from now on.
+    [[nodiscard]] axes::Submitted push_with_id(Request& request) noexcept;
+    void remember(const Request& request, axes::Submitted answer) noexcept;
     /// Puts the task's id in place of the axis' one; false when the axis has forgotten the command.
     [[nodiscard]] static bool translate(const Known& known, const axes::AxisView& real, axes::AxisView& view) noexcept;
-    /// Enters a refusal in the ledger, `told` in this latch so far; false when it has been shown already.
+    /// Enters what was answered at once in the ledger, `told` in this latch so far; false when it has been shown already.
     [[nodiscard]] static bool tell(Known& known, std::uint8_t& told, axes::AxisView& view) noexcept;
     template <class Keep>
     void keep_if(Keep keep) noexcept;

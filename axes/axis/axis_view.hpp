@@ -59,6 +59,7 @@ struct AxisView {
     double phase_shift = 0, phase_covered = 0;  ///< u of the master: in effect now; since the start of the last phasing
     AxisRef master;                             ///< while coupled
     CamId selected_cam;                         ///< of the last SelectCam that was done
+    SelectCam selected_as;                      ///< that SelectCam
     bool sync_started = false;                  ///< MC_GearInPos runs towards its sync point (StartSync)
     std::uint32_t cam_ends = 0;                 ///< counts ends of the cam's profile (EndOfProfile), also in reverse
     std::array<double, 2> probe_position{};     ///< u, of the last latch of each probe slot ...

@@ -25,9 +25,9 @@ public:
         auto* found = find(axis);
         return found ? found->reset(owner) : ErrorId::invalid_axis;
     }
-    ErrorId set(AxisRef axis, const AxisSetting& setting, Owner owner) noexcept override {
+    Submitted set(AxisRef axis, const AxisSetting& setting, Owner owner) noexcept override {
         auto* found = find(axis);
-        return found ? found->set(setting, owner) : ErrorId::invalid_axis;
+        return {0, found ? found->set(setting, owner) : ErrorId::invalid_axis};
     }
     ErrorId update(AxisRef axis, CommandId id, const AxisCommand& command, Owner owner) noexcept override {
         auto* found = find(axis);

@@ -20,8 +20,9 @@ public:
     /// MC_Power's level. Called each scan by whoever holds it; the strongest wish wins: two holders are an error (power_conflict).
     virtual ErrorId power(AxisRef axis, bool enable, bool positive, bool negative, Owner owner) noexcept = 0;
     virtual ErrorId reset(AxisRef axis, Owner owner) noexcept = 0;
-    /// Something of the axis that is no motion, at once: coordinates, parameters, outputs, override, a fed set-point.
-    virtual ErrorId set(AxisRef axis, const AxisSetting& setting, Owner owner) noexcept = 0;
+    /// Something of the axis that is no motion, at once: coordinates, parameters, outputs, override, a fed set-point. Id 0 without an
+    /// error: done (the next scan's views show it). With an id (a slower task): the views say what it came to, as of a command.
+    virtual Submitted set(AxisRef axis, const AxisSetting& setting, Owner owner) noexcept = 0;
     /// ContinuousUpdate: the running (or waiting) command `id` goes on with other inputs, of the same kind. Relative inputs keep the
     /// conditions of its start. Cheap when nothing differs: called each scan. An id that is over: none.
     virtual ErrorId update(AxisRef axis, CommandId id, const AxisCommand& command, Owner owner) noexcept = 0;

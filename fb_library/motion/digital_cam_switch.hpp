@@ -53,9 +53,6 @@ private:
     static constexpr std::uint16_t no_point = 0xFFFF;
     static constexpr std::uint32_t drive_tracks = 0xFFFF, first_drive_bit = 16;
 
-    [[nodiscard]] static ErrorId error_of(ErrorId answer) noexcept { return answer; }
-    [[nodiscard]] static ErrorId error_of(const axes::Submitted& answer) noexcept { return answer.error; }
-
     [[nodiscard]] Reading run(const MotionContext& ctx) noexcept {
         const axes::AxisView* view = ctx.view(Axis);
         if (view == nullptr) return Reading::unless(ErrorId::invalid_axis);
@@ -107,7 +104,7 @@ private:
             const auto mask = 1u << bit;
             if (((fresh | (levels_ ^ tracks)) & touched & mask) == 0) continue;
             const axes::WriteOutput output{static_cast<std::int32_t>(first_drive_bit + bit), (tracks & mask) != 0};
-            if (const auto error = error_of(ctx.requests->set(Outputs.axis, output, ctx.owner)); error != ErrorId::none) return error;
+            if (const auto error = ctx.requests->set(Outputs.axis, output, ctx.owner).error; error != ErrorId::none) return error;
         }
         return ErrorId::none;
     }

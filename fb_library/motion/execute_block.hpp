@@ -41,7 +41,7 @@ struct ExecuteBlock {
         core_.publish(block);
     }
 
-protected:
+    /// A block that picks its axis otherwise says so by a function of this name.
     [[nodiscard]] AxisRef acted_on() const noexcept {
         const Block& block = static_cast<const Block&>(*this);
         if constexpr (requires { block.Slave; }) return block.Slave;
@@ -49,6 +49,7 @@ protected:
         else return block.Output.axis;
     }
 
+protected:
     ExecuteCore core_;
 };
 
@@ -78,7 +79,7 @@ protected:
 
     void start(const MotionContext& ctx) noexcept {
         const Block& block = static_cast<const Block&>(*this);
-        this->core_.submit(ctx, this->acted_on(), block.command());
+        this->core_.submit(ctx, block.acted_on(), block.command());
         if constexpr (requires { block.ContinuousUpdate; })
             if (block.ContinuousUpdate) this->core_.allow_updates();
     }
@@ -103,17 +104,11 @@ protected:
 
     void start(const MotionContext& ctx) noexcept {
         const Block& block = static_cast<const Block&>(*this);
-        const AxisRef axis = this->acted_on();
+        const AxisRef axis = block.acted_on();
         if (ctx.view(axis) == nullptr) return this->core_.refuse(ErrorId::invalid_axis);
-        if (block.ExecutionMode == mcQueued) {
-            const axes::AxisCommand queued{
-                .kind = axes::CommandKind::setting, .buffer_mode = mcBuffered, .details = axes::AxisSetting{block.setting()}};
-            return this->core_.submit(ctx, axis, queued);
-        }
-        if (const ErrorId error = ctx.requests->set(axis, block.setting(), ctx.owner); error != ErrorId::none)
-            return this->core_.refuse(error);
-        this->core_.start(axis);
-        start_cycle_ = ctx.cycle;
+        if (block.ExecutionMode == mcImmediately) return set_at_once(ctx, axis, block.setting());
+        this->core_.submit(ctx, axis,
+                           {.kind = axes::CommandKind::setting, .buffer_mode = mcBuffered, .details = axes::AxisSetting{block.setting()}});
     }
 
     /// For what is no axis' and has been done in this call.
@@ -122,14 +117,18 @@ protected:
         start_cycle_ = ctx.cycle;
     }
 
-    /// At once: the views of the next scan show it.
     void follow(const MotionContext& ctx) noexcept {
-        if (this->core_.command() == 0) {
+        if (this->core_.command() == 0) {  // done at once: the views of the next scan show it
             if (ctx.cycle != start_cycle_) this->core_.finish();
             return;
         }
         this->core_.follow(ctx, Completion::done);
         if (this->core_.aborted()) this->core_.refuse(ErrorId::aborted_by_command);
+    }
+
+    void set_at_once(const MotionContext& ctx, AxisRef axis, const axes::AxisSetting& setting) noexcept {
+        this->core_.set(ctx, axis, setting);
+        start_cycle_ = ctx.cycle;
     }
 
 private:

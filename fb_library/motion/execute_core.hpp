@@ -49,6 +49,14 @@ public:
         updates_ = Updates::never;
     }
 
+    /// Gives the axis a setting: command() is 0 when it is done at once, otherwise the id to follow.
+    void set(const axes::MotionContext& ctx, axes::AxisRef axis, const axes::AxisSetting& setting) noexcept {
+        const axes::Submitted answer = ctx.requests->set(axis, setting, ctx.owner);
+        if (answer.error != axes::ErrorId::none) return refuse(answer.error);
+        start(axis);
+        command_ = answer.id;
+    }
+
     // ContinuousUpdate. In the call of the edge the command has the inputs already.
     constexpr void allow_updates() noexcept {
         if (running()) updates_ = Updates::from_next_call;

@@ -7,9 +7,9 @@
 //   * Releasing halts with Deceleration and Jerk, then Done for one call.
 //   * After Error or CommandAborted both inputs must be released before it moves again.
 //   * Slow and fast take the axis' configured manual velocities and default dynamics; continuous takes the block's, and follows Velocity.
-//   * Inching moves by Position once per press and finishes also when released; Done stays while the input is TRUE.
+//   * Inching moves by Position once per press and finishes also when released; Done stays while the input is TRUE. Inching modulo moves
+//     to the next multiple of Position; on a modulo axis the multiples begin anew at 0 of each turn.
 
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <string_view>
@@ -38,23 +38,17 @@ struct MC_Jog {
     static constexpr std::string_view summary = "Moves the axis by hand, as long as an input is TRUE.";
     static consteval auto pins() {
         using Self = MC_Jog;
-        return std::array{
-            in_out<&Self::Axis>("", "axis acted on"),
-            in<&Self::JogForward>("", "moves in positive direction while TRUE; wins over JogBackwards"),
-            in<&Self::JogBackwards>("", "moves in negative direction while TRUE"),
-            in<&Self::Mode>("", "which speed, or inching; taken when pressed"),
-            in<&Self::Position>("u", "inching: distance, > 0"),
-            in<&Self::Velocity>("u/s", "continuous, inching: > 0; continuous follows changes"),
-            in<&Self::Acceleration>("u/s2", "continuous, inching; 0 = the axis' default"),
-            in<&Self::Deceleration>("u/s2", "continuous, inching; 0 = the axis' default"),
-            in<&Self::Jerk>("u/s3", "continuous, inching; 0 = the axis' default"),
-            out<&Self::Done>("", "standing again after a jog"),
-            out<&Self::Busy>("", "moving or braking"),
-            out<&Self::Active>("", "this block controls the axis"),
-            out<&Self::CommandAborted>("", "another command took over, or power went off"),
-            out<&Self::Error>("", "refused, or ended by an axis error"),
-            out<&Self::ErrorID>("", "why"),
-        };
+        return pin_table(shared<&Self::Axis>(), in<&Self::JogForward>("", "moves in positive direction while TRUE; wins over JogBackwards"),
+                         in<&Self::JogBackwards>("", "moves in negative direction while TRUE"),
+                         in<&Self::Mode>("", "which speed, or inching; taken when pressed"),
+                         in<&Self::Position>("u", "inching: distance, > 0; inching modulo: what the target is a multiple of"),
+                         in<&Self::Velocity>("u/s", "continuous, inching: > 0; continuous follows changes"),
+                         in<&Self::Acceleration>("u/s2", "continuous, inching; 0 = the axis' default"),
+                         in<&Self::Deceleration>("u/s2", "continuous, inching; 0 = the axis' default"),
+                         in<&Self::Jerk>("u/s3", "continuous, inching; 0 = the axis' default"),
+                         out<&Self::Done>("", "standing again after a jog"), out<&Self::Busy>("", "moving or braking"),
+                         out<&Self::Active>("", "this block controls the axis"),
+                         shared<&Self::CommandAborted, &Self::Error, &Self::ErrorID>());
     }
 
     void operator()(const MotionContext& ctx) noexcept {
@@ -63,7 +57,7 @@ struct MC_Jog {
         if (core.running()) {
             press.released = !hold;
             core.follow(ctx, Completion::done);  // first: a command that someone else has ended is not to be renewed or halted
-            if (core.running() && press.mode != mcJogInching) keep_moving_or_halt(ctx);
+            if (core.running() && !inches(press.mode)) keep_moving_or_halt(ctx);
         }
         core.publish(*this);
     }
@@ -75,16 +69,16 @@ struct MC_Jog {
 private:
     void start(const MotionContext& ctx) noexcept {
         press = {.sense = static_cast<std::int8_t>(JogForward ? 1 : -1), .mode = Mode, .released = false, .halting = false};
-        if (Mode > mcJogInching) return core.refuse(ErrorId::not_supported);
+        if (Mode > mcJogInchingModulo) return core.refuse(ErrorId::invalid_parameter);
         const axes::AxisView* view = ctx.view(Axis);
         if (view == nullptr) return core.refuse(ErrorId::invalid_axis);
         const double velocity = speed(*view);
         if (!(velocity > 0) || !std::isfinite(velocity)) return core.refuse(ErrorId::invalid_velocity);
-        if (Mode == mcJogInching) {
-            if (!(Position > 0)) return core.refuse(ErrorId::invalid_position);
+        if (inches(Mode)) {
+            if (!(Position > 0) || !std::isfinite(Position)) return core.refuse(ErrorId::invalid_position);
             return core.submit(ctx, Axis,
                                {.kind = axes::CommandKind::move_relative,
-                                .position = press.sense * Position,
+                                .position = Mode == mcJogInching ? press.sense * Position : to_next_multiple(*view),
                                 .velocity = velocity,
                                 .acceleration = Acceleration,
                                 .deceleration = Deceleration,
@@ -114,6 +108,21 @@ private:
                    error != ErrorId::none) {
             core.refuse(error);
         }
+    }
+
+    [[nodiscard]] static constexpr bool inches(MC_JogMode mode) noexcept { return mode == mcJogInching || mode == mcJogInchingModulo; }
+
+    /// From the set position; one that stands on a multiple, within a millionth of Position, goes to the next.
+    [[nodiscard]] double to_next_multiple(const axes::AxisView& view) const noexcept {
+        constexpr double on_it = 1e-6;
+        const double here = view.set_position / Position;
+        double target = Position * (press.sense > 0 ? std::floor(here + on_it) + 1 : std::ceil(here - on_it) - 1);
+        if (view.modulo > 0) {
+            const double highest = Position * (std::ceil(view.modulo / Position - on_it) - 1);  // below the end of the turn
+            if (target > highest) target = view.modulo;
+            if (target < 0) target = highest - view.modulo;
+        }
+        return target - view.set_position;
     }
 
     [[nodiscard]] double speed(const axes::AxisView& view) const noexcept {

@@ -57,8 +57,11 @@ enum MC_JogMode : std::uint8_t {
     mcJogStandardFast,   ///< the same with the fast one
     mcJogContinuous,     ///< the block's dynamics, as long as the input is TRUE
     mcJogInching,        ///< Position as a distance, once per press
-    mcJogInchingModulo,  ///< not supported so far
+    mcJogInchingModulo,  ///< to the next multiple of Position, once per press
 };
+
+/// The loop that the drive closes (MC_SetControllerMode).
+enum MC_ControllerMode : std::uint8_t { mcPositionControl, mcVelocityControl, mcTorqueControl };
 
 namespace detail {
 inline constexpr std::array<std::string_view, 6> buffer_mode_names{"mcAborting",         "mcBuffered",     "mcBlendingLow",
@@ -72,6 +75,7 @@ inline constexpr std::array<std::string_view, 3> sync_mode_names{"mcShortest", "
 inline constexpr std::array<std::string_view, 2> combine_mode_names{"mcAddAxes", "mcSubAxes"};
 inline constexpr std::array<std::string_view, 5> jog_mode_names{"mcJogStandardSlow", "mcJogStandardFast", "mcJogContinuous", "mcJogInching",
                                                                 "mcJogInchingModulo"};
+inline constexpr std::array<std::string_view, 3> controller_mode_names{"mcPositionControl", "mcVelocityControl", "mcTorqueControl"};
 }  // namespace detail
 
 // clang-format off
@@ -96,6 +100,9 @@ template <> struct PinTypeOf<MC_Source> { static constexpr PinType value{PinKind
 template <> struct PinTypeOf<MC_StartMode> { static constexpr PinType value{PinKind::ENUM, "MC_START_MODE", detail::start_mode_names}; };
 template <> struct PinTypeOf<MC_SyncMode> { static constexpr PinType value{PinKind::ENUM, "MC_SYNC_MODE", detail::sync_mode_names}; };
 template <> struct PinTypeOf<MC_CombineMode> { static constexpr PinType value{PinKind::ENUM, "MC_COMBINE_MODE", detail::combine_mode_names}; };
+template <> struct PinTypeOf<MC_ControllerMode> {
+    static constexpr PinType value{PinKind::ENUM, "MC_CONTROLLER_MODE", detail::controller_mode_names};
+};
 template <> struct PinTypeOf<MC_JogMode> { static constexpr PinType value{PinKind::ENUM, "MC_JOG_MODE", detail::jog_mode_names}; };
 // clang-format on
 

@@ -91,9 +91,10 @@ public:
         calls.push_back({.what = "reset", .axis = ref, .owner = owner});
         return refuse_with;
     }
-    axes::ErrorId set(axes::AxisRef ref, const axes::AxisSetting& setting, axes::Owner owner) noexcept override {
+    axes::Submitted set(axes::AxisRef ref, const axes::AxisSetting& setting, axes::Owner owner) noexcept override {
         calls.push_back({.what = "set", .axis = ref, .setting = setting, .owner = owner});
-        return refuse_with;
+        if (refuse_with == axes::ErrorId::none) take(now_axes[ref.index], setting);
+        return {0, refuse_with};
     }
     axes::ErrorId update(axes::AxisRef ref, axes::CommandId id, const axes::AxisCommand& command, axes::Owner owner) noexcept override {
         calls.push_back({.what = "update", .axis = ref, .command = command, .id = id, .owner = owner});
@@ -120,6 +121,14 @@ public:
     axes::MotionContext context;
 
 private:
+    /// Settings that blocks read back.
+    void take(axes::AxisView& a, const axes::AxisSetting& setting) {
+        if (const auto* factors = std::get_if<axes::Override>(&setting)) a.override_factors = *factors;
+        if (const auto* select = std::get_if<axes::SelectCam>(&setting)) {
+            a.selected_as = *select;
+            a.selected_cam = {++last_cam};
+        }
+    }
     static void end(axes::AxisView& a, axes::CommandId id, axes::Outcome outcome, axes::ErrorId error) {
         a.ledger[a.ledger_next] = {id, outcome, error};
         a.ledger_next = static_cast<std::uint8_t>((a.ledger_next + 1) % a.ledger.size());
@@ -164,6 +173,7 @@ private:
     }
 
     std::vector<axes::AxisView> now_axes, seen;
+    std::uint32_t last_cam = 0;
 };
 
 }  // namespace taktwerk::fb

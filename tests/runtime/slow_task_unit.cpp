@@ -264,7 +264,7 @@ TEST_F(Answers, ARefusedResetReachesItsBlock) {
 TEST_F(Answers, SetPositionIsCheckedAgainstTheLatchedView) {
     const auto ask = [&](double position) {
         axes::ErrorId error{};
-        scan([&](TaskContext& ctx) { error = ctx.requests->set({0}, axes::SetPosition{position, false}, ctx.owner); });
+        scan([&](TaskContext& ctx) { error = ctx.requests->set({0}, axes::SetPosition{position, false}, ctx.owner).error; });
         return error;
     };
     axes.axis().owner = axes::Owner::program;
