@@ -97,7 +97,7 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, std::vect
     for (const auto& binding : config.axes) longest_stop = std::max(longest_stop, stop_seconds(binding.axis.limits));
     shutdown_patience = shutdown_margin + 2 * from_seconds(longest_stop);
 
-    host = std::make_unique<ProgramHost>(config, io, errors);
+    host = std::make_unique<ProgramHost>(config, io, tables, errors);
     for (auto& axis : axes) axis.bind({axes.data(), axes.size(), &tables, io.inputs()});  // the programs have declared their tables
     objects = std::make_unique<ObjectRequests>(config.programs.size(), bus.slave_count());
     program_states.assign(config.programs.size(), ProgramState::stopped);
@@ -119,7 +119,7 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, std::vect
         slow_task_places.push_back(i);
         slow_tasks.push_back(std::make_unique<SlowTask>(task, host->programs()[task.program].instance.get(), std::move(variables),
                                                         axes.size(), io.inputs().size(), io.outputs().size(), host->parameters().size(),
-                                                        objects->of(task.program)));
+                                                        objects->of(task.program), tables));
     }
     task_overruns.assign(slow_tasks.size(), 0);
     base_scans.assign(base_tasks.size(), 0);

@@ -1,5 +1,6 @@
 #include "runtime/program_host.hpp"
 
+#include <cmath>
 #include <exception>
 
 #include <fmt/format.h>
@@ -12,8 +13,9 @@ namespace taktwerk::runtime {
 /// Answers a program's declarations from the configuration and notes every problem.
 class ProgramHost::Collector final : public Declaration {
 public:
-    Collector(ProgramHost& host, const MachineConfig& config, const IoImage& io, std::size_t program, std::vector<Error>& errors)
-        : host_(host), config_(config), io_(io), program_(program), errors_(errors) {}
+    Collector(ProgramHost& host, const MachineConfig& config, const IoImage& io, axes::MotionTables& tables, std::size_t program,
+              std::vector<Error>& errors)
+        : host_(host), config_(config), io_(io), tables_(tables), program_(program), errors_(errors) {}
 
     AxisRef axis(std::string_view name) override {
         std::vector<std::string> names;
@@ -60,6 +62,28 @@ public:
             {program.name, std::string(name), std::string(spec.unit), std::string(spec.doc), spec.minimum, spec.maximum, value});
         parameter_names_.emplace_back(name);
         return {static_cast<std::uint16_t>(host_.parameters_.size() - 1)};
+    }
+
+    axes::CamRef cam(std::string_view name, std::span<const axes::CamPoint> points, std::size_t room) override {
+        if (const auto why = unusable(points); !why.empty()) bad_table("cam", name, why);
+        return tables_.add_cam(points, room);
+    }
+    axes::TimeTableRef time_table(std::string_view name, std::span<const axes::TimePoint> rows, std::size_t room) override {
+        if (const auto why = unusable(rows); !why.empty()) bad_table("time table", name, why);
+        return tables_.add_time_table(rows, room);
+    }
+    axes::CamSwitchRef cam_switches(std::string_view name, std::span<const axes::CamSwitch> switches, std::size_t room) override {
+        if (const auto why = unusable(switches); !why.empty()) bad_table("list of cam switches", name, why);
+        return tables_.add_cam_switches(switches, room);
+    }
+    axes::TrackRef tracks(std::string_view name, std::span<const axes::TrackOptions> options) override {
+        if (options.size() > axes::MotionTables::tracks)
+            bad_table("list of tracks", name,
+                      fmt::format("it has {} tracks, at most {} are possible", options.size(), axes::MotionTables::tracks));
+        for (std::size_t i = 0; i < options.size(); ++i)
+            if (!(options[i].hysteresis >= 0) || std::isinf(options[i].hysteresis))
+                bad_table("list of tracks", name, fmt::format("track {}: the hysteresis is {}", i + 1, options[i].hysteresis));
+        return tables_.add_tracks(options);
     }
 
     void alarm(std::uint8_t number, Reaction reaction, std::string_view english, std::string_view chinese,
@@ -111,6 +135,42 @@ private:
                 direction == IoDirection::input ? "io.inputs" : "io.outputs");
         return 0xFFFF;
     }
+    // Why a table cannot be used; empty = it can, or it has no points yet.
+    static std::string unusable(std::span<const axes::CamPoint> points) {
+        if (points.empty()) return {};
+        if (points.size() == 1) return "it has one point, and needs two";
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const auto& p = points[i];
+            for (const double value : {p.master, p.slave, p.velocity, p.acceleration})
+                if (!std::isfinite(value)) return fmt::format("point {} has a value that is no finite number", i + 1);
+            if (i > 0 && !(p.master > points[i - 1].master))
+                return fmt::format("point {}: the master's position {} is not beyond {}", i + 1, p.master, points[i - 1].master);
+        }
+        return {};
+    }
+    static std::string unusable(std::span<const axes::TimePoint> rows) {
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            if (!std::isfinite(rows[i].value)) return fmt::format("row {} has a value that is no finite number", i + 1);
+            if (rows[i].delta < Duration::zero() || (i > 0 && rows[i].delta == Duration::zero()))
+                return fmt::format("row {}: its time after the row before is not above zero", i + 1);
+        }
+        return {};
+    }
+    static std::string unusable(std::span<const axes::CamSwitch> switches) {
+        for (std::size_t i = 0; i < switches.size(); ++i) {
+            const auto& s = switches[i];
+            if (s.track < 1 || s.track > axes::MotionTables::tracks)
+                return fmt::format("switch {} is on track {}; tracks are 1 to {}", i + 1, s.track, axes::MotionTables::tracks);
+            if (!std::isfinite(s.first) || !std::isfinite(s.last))
+                return fmt::format("switch {} has a position that is no finite number", i + 1);
+            if (s.mode == axes::CamSwitchMode::time && s.duration <= Duration::zero())
+                return fmt::format("switch {} switches by time and has no duration", i + 1);
+        }
+        return {};
+    }
+    void bad_table(std::string_view kind, std::string_view name, std::string_view why) {
+        problem("program.table", fmt::format("{} '{}' cannot be used: {}", kind, name, why), "correct the declaration in the program");
+    }
     void problem(std::string code, std::string what, std::string remedy) {
         errors_.push_back(
             {std::move(code), fmt::format("program '{}'", config_.programs[program_].name), std::move(what), std::move(remedy)});
@@ -127,12 +187,13 @@ private:
     ProgramHost& host_;
     const MachineConfig& config_;
     const IoImage& io_;
+    axes::MotionTables& tables_;
     std::size_t program_;
     std::vector<Error>& errors_;
     std::vector<std::string> parameter_names_, task_names_;
 };
 
-ProgramHost::ProgramHost(const MachineConfig& config, const IoImage& io, std::vector<Error>& errors) {
+ProgramHost::ProgramHost(const MachineConfig& config, const IoImage& io, axes::MotionTables& tables, std::vector<Error>& errors) {
     for (std::size_t i = 0; i < config.programs.size(); ++i) {
         const auto& program = config.programs[i];
         programs_.push_back({program, ProgramLibrary::Instance{nullptr, {}}, 0, std::vector<AlarmDeclared>(64), {}});
@@ -152,7 +213,7 @@ ProgramHost::ProgramHost(const MachineConfig& config, const IoImage& io, std::ve
             continue;
         }
         programs_.back().instance = std::move(*instance);
-        Collector collector{*this, config, io, i, errors};
+        Collector collector{*this, config, io, tables, i, errors};
         try {
             programs_.back().instance->declare(collector);
             collector.check_configuration();

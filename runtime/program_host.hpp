@@ -39,8 +39,9 @@ public:
         std::string fault;                       ///< why it stopped by itself; set with state fault
     };
 
-    /// Loads and declares everything; problems are added to `errors` (all of them). `io` gives the point names.
-    ProgramHost(const MachineConfig& config, const IoImage& io, std::vector<Error>& errors);
+    /// Loads and declares everything; problems are added to `errors` (all of them). `io` gives the point names; declared tables go to
+    /// `tables`.
+    ProgramHost(const MachineConfig& config, const IoImage& io, axes::MotionTables& tables, std::vector<Error>& errors);
     ~ProgramHost();
 
     [[nodiscard]] std::vector<Loaded>& programs() noexcept { return programs_; }

@@ -7,13 +7,14 @@
 namespace taktwerk::runtime {
 
 SlowTask::SlowTask(const ProgramHost::Task& task, Program* program, std::vector<ProgramHost::Variable> variables, std::size_t axes,
-                   std::size_t inputs, std::size_t outputs, std::size_t parameters, ObjectAccess& objects)
+                   std::size_t inputs, std::size_t outputs, std::size_t parameters, ObjectAccess& objects, axes::MotionTables& tables)
     : task_(task),
       program_(program),
       divisor_(task.config.divisor),
       variable_sources_(std::move(variables)),
       requests_(axes),
       objects_(objects),
+      tables_(tables),
       views_(axes),
       inputs_(inputs),
       outputs_(outputs),
@@ -59,6 +60,7 @@ bool SlowTask::run_if_released() noexcept {
     context.axes = views_;
     context.requests = &requests_;
     context.objects = &objects_;
+    context.tables = &tables_;
     context.inputs = inputs_;
     context.outputs = outputs_;
     context.parameters = parameters_;

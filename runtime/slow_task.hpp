@@ -20,7 +20,7 @@ public:
     enum class State : std::uint8_t { idle, released, running, done };
 
     SlowTask(const ProgramHost::Task& task, Program* program, std::vector<ProgramHost::Variable> variables, std::size_t axes,
-             std::size_t inputs, std::size_t outputs, std::size_t parameters, ObjectAccess& objects);
+             std::size_t inputs, std::size_t outputs, std::size_t parameters, ObjectAccess& objects, axes::MotionTables& tables);
 
     // --- cycle thread ---------------------------------------------------------------------------------------------------------
     [[nodiscard]] bool due(std::uint64_t cycle) const noexcept { return cycle % divisor_ == 0; }
@@ -62,6 +62,7 @@ private:
     std::atomic<State> state_{State::idle};
     LatchedRequests requests_;
     ObjectAccess& objects_;
+    axes::MotionTables& tables_;
     std::vector<axes::AxisView> views_;
     std::vector<std::int64_t> inputs_, outputs_, outputs_at_release_;
     std::vector<double> parameters_, variable_values_, variables_applied_;

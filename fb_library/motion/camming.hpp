@@ -11,7 +11,7 @@
 namespace taktwerk::fb {
 
 /// Acts through Slave, or through Master when Slave names no axis. The id is the one of this block's own selection: when another block
-/// selects through the same axis in the same scan, the later call comes first and this one asks again.
+/// selects through the same axis in the same scan, the later call is served first and this one asks again.
 struct MC_CamTableSelect : SettingBlock<MC_CamTableSelect> {
     AxisRef Master{}, Slave{};
     CamRef CamTable{};
@@ -37,14 +37,11 @@ struct MC_CamTableSelect : SettingBlock<MC_CamTableSelect> {
     [[nodiscard]] AxisRef acted_on() const noexcept { return Slave.valid() ? Slave : Master; }
 
     axes::SelectCam wanted{};  ///< of the edge; not a pin
-    CamId before{};            ///< what the axis had selected then; not a pin
 
 private:
     using Base = SettingBlock<MC_CamTableSelect>;
     friend ExecuteBlock<MC_CamTableSelect>;
     void start(const MotionContext& ctx) noexcept {
-        const axes::AxisView* view = ctx.view(acted_on());
-        before = view != nullptr ? view->selected_cam : CamId{};
         wanted = setting();
         Base::start(ctx);
     }
@@ -52,12 +49,8 @@ private:
         Base::follow(ctx);
         if (!core_.done()) return;
         const axes::AxisView* view = ctx.view(core_.axis());
-        if (view->selected_cam != before && view->selected_as == wanted) CamTableID = view->selected_cam;
-        else select_again(ctx);
-    }
-    void select_again(const MotionContext& ctx) noexcept {
-        before = ctx.view(core_.axis())->selected_cam;
-        set_at_once(ctx, core_.axis(), wanted);
+        if (view->selected_as == wanted) CamTableID = view->selected_cam;
+        else set_at_once(ctx, core_.axis(), wanted);
     }
 };
 

@@ -72,6 +72,9 @@ enum class VariableType : std::uint8_t { boolean, int32, int64, uint16, uint32, 
 
 /// What a task function is handed: the motion context (time, axis views, requests) plus the task's own view of I/O points and
 /// parameters. Real-time safe throughout. Lives as long as the call: keep no reference to it.
+///
+/// `tables` holds the declared tables; a task edits only its own program's, and a program with several tasks each table in one task only.
+/// In a slower task a table must rest while a command that names it waits for its turn: the axis reads it when that begins.
 class TaskContext : public axes::MotionContext {
 public:
     [[nodiscard]] bool get(Input<bool> point) const noexcept { return value_at(inputs, point.index) != 0; }
@@ -123,6 +126,30 @@ public:
     virtual Input<std::int64_t> input_word(std::string_view name) = 0;
     virtual Output<std::int64_t> output_word(std::string_view name) = 0;
     virtual Parameter parameter(std::string_view name, const ParameterSpec& spec) = 0;
+
+    // Tables that blocks and axes follow. The name is for messages. `room`: the most points it will ever have, when the program edits it
+    // while the machine runs (TaskContext::tables); room is taken here, once. Points that cannot be used are an error of the machine
+    // file's check; a table without points may be filled later.
+    virtual axes::CamRef cam(std::string_view name, std::span<const axes::CamPoint> points, std::size_t room = 0) = 0;
+    /// For MC_PositionProfile, MC_VelocityProfile, MC_AccelerationProfile.
+    virtual axes::TimeTableRef time_table(std::string_view name, std::span<const axes::TimePoint> rows, std::size_t room = 0) = 0;
+    /// For MC_DigitalCamSwitch: its switches, and options of the tracks 1, 2, ... (at most 32).
+    virtual axes::CamSwitchRef cam_switches(std::string_view name, std::span<const axes::CamSwitch> switches, std::size_t room = 0) = 0;
+    virtual axes::TrackRef tracks(std::string_view name, std::span<const axes::TrackOptions> options) = 0;
+
+    // References for MC_ReadDigitalInput, MC_ReadDigitalOutput, MC_WriteDigitalOutput, MC_DigitalCamSwitch, MC_TouchProbe.
+    /// A point of the machine.
+    axes::InputRef input_ref(std::string_view name) { return {.point = input_word(name).index}; }
+    axes::OutputRef output_ref(std::string_view name) { return {.point = output_word(name).index}; }
+    /// The digital inputs and outputs of an axis' drive.
+    axes::InputRef drive_inputs(std::string_view axis_name) { return {.axis = axis(axis_name)}; }
+    axes::OutputRef drive_outputs(std::string_view axis_name) { return {.axis = axis(axis_name)}; }
+    /// One bit of an input of the machine as a trigger: rising edge, unless `falling` is set in what is returned. Triggers of the drive
+    /// itself need no declaration: `TriggerRef{.source = TriggerSource::probe1}`.
+    axes::TriggerRef trigger_input(std::string_view name, std::uint8_t bit = 0) {
+        return {.source = axes::TriggerSource::input, .point = input_word(name).index, .bit = bit};
+    }
+
     /// `number` 0..63; reaction as in core/alarm.hpp. An alarm that is raised but not declared is not shown.
     virtual void alarm(std::uint8_t number, Reaction reaction, std::string_view english, std::string_view chinese,
                        std::string_view remedy) = 0;

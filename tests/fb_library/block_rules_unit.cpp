@@ -90,8 +90,8 @@ template <class B>
 class Bench : public testing::Test {
 protected:
     Bench() {
-        aim(0);
         if constexpr (requires { block.Master; }) block.Master = {1};
+        aim(0);
         if constexpr (requires { block.Velocity; }) block.Velocity = 10;
         if constexpr (std::is_same_v<B, MC_Reset>) axes.axis().state = axes::AxisState::ErrorStop;
         if constexpr (IsJog<B>) block.Mode = mcJogContinuous;
@@ -109,6 +109,7 @@ protected:
     }
     /// Which axis it acts on.
     void aim(std::uint16_t index) {
+        if constexpr (requires { block.CamTable; }) block.Master = {index};  // either of the two will do
         if constexpr (requires { block.Slave; }) block.Slave = {index};
         else if constexpr (requires { block.Axis; }) block.Axis = {index};
     }

@@ -76,7 +76,7 @@ public:
         axes::Submitted answer{0, refuse_with};
         if (refuse_with == axes::ErrorId::none) {
             auto& a = now_axes[ref.index];
-            last_slot = slot_of(command);
+            last_slot = command.buffer_mode == axes::mcAborting ? slot_of(command) : std::nullopt;
             answer.id = last_slot ? begin_beside(a, *last_slot) : begin(a, command.buffer_mode != axes::mcAborting);
             a.active_kind = last_slot ? a.active_kind : command.kind;
         }

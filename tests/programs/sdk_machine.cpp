@@ -76,7 +76,8 @@ TEST_F(Sdk, ProgramIsLoadedAndItsNamesAreResolved) {
 
     std::vector<Error> errors;
     const IoImage io{config.io};
-    ProgramHost host{config, io, errors};
+    axes::MotionTables tables;
+    ProgramHost host{config, io, tables, errors};
 
     for (const auto& error : errors) ADD_FAILURE() << error.text();
     ASSERT_EQ(host.tasks().size(), 1u);

@@ -144,7 +144,8 @@ TEST_F(ProgramFile, EachBadOneOfAMachineIsOneErrorThatNamesTheProgram) {
     std::vector<Error> errors;
     const IoImage io{{}};
 
-    const ProgramHost host{config, io, errors};
+    axes::MotionTables tables;
+    const ProgramHost host{config, io, tables, errors};
 
     ASSERT_EQ(errors.size(), 3u);
     EXPECT_EQ(errors[0].code, "program.constructor");

@@ -27,7 +27,7 @@ struct Body final : Program {
 };
 
 struct Slow : testing::Test {
-    Slow() : task{host_task(), &body, {{VariableType::real, &body.shown, 0}}, 1, 1, 2, 1, objects.of(0)} {}
+    Slow() : task{host_task(), &body, {{VariableType::real, &body.shown, 0}}, 1, 1, 2, 1, objects.of(0), tables} {}
 
     static ProgramHost::Task host_task() {
         ProgramHost::Task t;
@@ -52,6 +52,7 @@ struct Slow : testing::Test {
     std::vector<double> parameters{0};
     std::uint64_t alarms = 0;
     ObjectRequests objects{1, 0};
+    axes::MotionTables tables;
     SlowTask task;
 };
 

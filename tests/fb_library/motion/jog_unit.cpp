@@ -229,11 +229,49 @@ TEST_F(Jog, InchingMovesTheDistanceOncePerPressAndFinishesWhenReleased) {
     EXPECT_TRUE(renewed().empty());
 }
 
-TEST_F(Jog, ModuloInchingIsNotSupportedSoFarAndSaysSo) {
+// To multiples of 2.5: by hand calculation.
+TEST_F(Jog, ModuloInchingGoesToTheNextMultipleOfPosition) {
+    struct Case {
+        double from;
+        bool forward;
+        double distance, modulo;
+    };
+    for (const auto& c : {Case{1, true, 1.5, 0}, Case{1, false, -1, 0}, Case{2.5, true, 2.5, 0}, Case{2.5, false, -2.5, 0},
+                          Case{0, false, -2.5, 0}, Case{-1, true, 1, 0}, Case{-1, false, -1.5, 0},
+                          // a hair beside a multiple, as after a move there: on to the next
+                          Case{2.5 - 1e-9, true, 2.5 + 1e-9, 0}, Case{2.5 + 1e-9, false, -2.5 - 1e-9, 0},
+                          // modulo 9: multiples 0, 2.5, 5, 7.5, then 0 of the next turn
+                          Case{8, true, 1, 9}, Case{7.5, true, 1.5, 9}, Case{8, false, -0.5, 9}, Case{0, false, -1.5, 9},
+                          // modulo 10: the last multiple is 7.5, not 10
+                          Case{7.5, true, 2.5, 10}, Case{0, false, -2.5, 10}}) {
+        FakeAxes fresh;
+        fresh.axis().set_position = c.from;
+        fresh.axis().modulo = c.modulo;
+        fresh.next_scan();
+        MC_Jog jog = block;
+        jog.Mode = mcJogInchingModulo;
+        jog.Position = 2.5;
+        (c.forward ? jog.JogForward : jog.JogBackwards) = true;
+        jog(fresh.context);
+        const auto command = fresh.calls_of("submit").at(0).command;
+        EXPECT_EQ(command.kind, CommandKind::move_relative);
+        EXPECT_EQ(command.velocity, 10);
+        EXPECT_NEAR(command.position, c.distance, 1e-12) << c.from << (c.forward ? " forward" : " backwards") << " modulo " << c.modulo;
+    }
+}
+
+TEST_F(Jog, ModuloInchingFinishesAlsoWhenReleased) {
     block.Mode = mcJogInchingModulo;
+    block.Position = 2.5;
     block.JogForward = true;
     scan();
-    EXPECT_EQ(block.ErrorID, ErrorId::not_supported);
+    block.JogForward = false;
+    scan();
+    EXPECT_TRUE(block.Busy);
+    axes.finish(Outcome::done);
+    scan();
+    EXPECT_TRUE(block.Done);
+    EXPECT_EQ(submitted().size(), 1u);
 }
 
 }  // namespace

@@ -82,6 +82,10 @@ public:
     Input<std::int64_t> input_word(std::string_view) override { return {}; }
     Output<std::int64_t> output_word(std::string_view) override { return {}; }
     Parameter parameter(std::string_view, const ParameterSpec&) override { return {}; }
+    axes::CamRef cam(std::string_view, std::span<const axes::CamPoint>, std::size_t) override { return {}; }
+    axes::TimeTableRef time_table(std::string_view, std::span<const axes::TimePoint>, std::size_t) override { return {}; }
+    axes::CamSwitchRef cam_switches(std::string_view, std::span<const axes::CamSwitch>, std::size_t) override { return {}; }
+    axes::TrackRef tracks(std::string_view, std::span<const axes::TrackOptions>) override { return {}; }
     void alarm(std::uint8_t, Reaction, std::string_view, std::string_view, std::string_view) override {}
     void add(std::string_view, VariableType, const void*, std::string_view, std::string_view) override {}
     void add_task(std::string_view, TaskFunction function) override { functions.push_back(function); }
