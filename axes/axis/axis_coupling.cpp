@@ -137,7 +137,10 @@ bool Axis::waits_for_ever() const noexcept {
 ErrorId Axis::select_cam(const SelectCam& wanted) noexcept {
     if (!scene_.tables) return ErrorId::invalid_table;
     const auto made = scene_.tables->prepare(wanted.source, wanted.periodic, wanted.master_absolute, wanted.slave_absolute);
-    if (made.error == ErrorId::none) view_.selected_cam = made.id;
+    if (made.error == ErrorId::none) {
+        view_.selected_cam = made.id;
+        view_.selected_as = wanted;
+    }
     return made.error;
 }
 
