@@ -8,13 +8,44 @@ namespace {
 
 using namespace taktwerk;
 using namespace taktwerk::fb;
-using namespace std::chrono_literals;
 
-constexpr double z_up = 10, z_down = 90;  // mm
+constexpr double z_up = 10, z_down = 90, z_speed = 150;  // mm, mm/s
 struct Place {
     double x, y;  // mm
 };
 constexpr Place pick{60, 40}, place{520, 260};
+
+/// An axis and the blocks that work on it.
+struct Joint {
+    AxisRef axis;
+    MC_Power power;
+    MC_Reset reset;
+    MC_Home home;
+    MC_MoveAbsolute move;
+
+    [[nodiscard]] bool failed(const TaskContext& ctx) const { return ctx.view(axis)->state == axes::AxisState::ErrorStop; }
+    [[nodiscard]] bool homed(const TaskContext& ctx) const { return ctx.view(axis)->homed; }
+    [[nodiscard]] bool there() const { return move.Done; }
+
+    void find_home(const TaskContext& ctx) { home.Execute = !homed(ctx); }
+    void go(const TaskContext& ctx, double position, double velocity) {
+        move.Execute = false;  // so that the next call sees an edge
+        move(ctx);
+        move.Position = position;
+        move.Velocity = velocity;
+        move.Execute = true;
+    }
+    void call(const TaskContext& ctx, bool reset_errors) {
+        power.Axis = reset.Axis = home.Axis = move.Axis = axis;
+        power.Enable = true;
+        power(ctx);
+        reset.Execute = reset_errors || reset.Busy;
+        reset(ctx);
+        home(ctx);
+        move(ctx);
+        if (!home.Busy) home.Execute = false;
+    }
+};
 
 class PickAndPlace final : public Program {
     enum Step : std::int32_t {
@@ -31,27 +62,21 @@ class PickAndPlace final : public Program {
         raise = 100
     };
 
-    AxisRef x_, y_, z_;
+    Joint x_, y_, z_;
     Input<bool> start_;
     Output<bool> lamp_, gripper_;
     Parameter speed_, grip_time_;
-
-    MC_Power power_x_, power_y_, power_z_;
-    MC_Reset reset_x_, reset_y_, reset_z_;
-    MC_Home home_x_, home_y_, home_z_;
-    MC_MoveAbsolute move_x_, move_y_, move_z_;
     R_TRIG start_pressed_;
     TON grip_;
-    CTU cycles_;
 
     std::int32_t step_ = waiting;
     std::int64_t pieces_ = 0;
 
 public:
     void declare(Declaration& d) override {
-        x_ = d.axis("x");
-        y_ = d.axis("y");
-        z_ = d.axis("z");
+        x_.axis = d.axis("x");
+        y_.axis = d.axis("y");
+        z_.axis = d.axis("z");
         start_ = d.input("start_button");
         lamp_ = d.output("lamp_run");
         gripper_ = d.output("gripper");
@@ -71,126 +96,87 @@ public:
     }
 
     void scan(TaskContext& ctx) {
-        const bool ready = power_axes(ctx);
         start_pressed_.CLK = ctx.get(start_);
         start_pressed_(ctx);
 
-        const bool error = in_error(ctx, x_) || in_error(ctx, y_) || in_error(ctx, z_);
+        const bool error = x_.failed(ctx) || y_.failed(ctx) || z_.failed(ctx);
+        const bool ready = x_.power.Status && y_.power.Status && z_.power.Status;
         ctx.alarm(0, error);
         if (error || !ready) step_ = waiting;  // whatever was moving has been stopped by its axis
-        reset_axes(ctx, error && start_pressed_.Q);
+        else run_sequence(ctx);
 
-        run_sequence(ctx, ready && !error);
-
+        for (Joint* joint : {&x_, &y_, &z_}) joint->call(ctx, error && start_pressed_.Q);
+        grip_.IN = step_ == close || step_ == open;
+        grip_.PT = from_seconds(ctx.get(grip_time_));
+        grip_(ctx);
         ctx.set(lamp_, step_ != waiting);
     }
 
 private:
-    static bool in_error(const TaskContext& ctx, AxisRef axis) { return ctx.view(axis)->state == axes::AxisState::ErrorStop; }
-
-    bool power_axes(TaskContext& ctx) {
-        bool all = true;
-        const auto power = [&](MC_Power& block, AxisRef axis) {
-            block.Axis = axis;
-            block.Enable = true;
-            block(ctx);
-            all = all && block.Status;
-        };
-        power(power_x_, x_);
-        power(power_y_, y_);
-        power(power_z_, z_);
-        return all;
-    }
-
-    void reset_axes(TaskContext& ctx, bool execute) {
-        const auto reset = [&](MC_Reset& block, AxisRef axis) {
-            block.Axis = axis;
-            block.Execute = execute || block.Busy;
-            block(ctx);
-        };
-        reset(reset_x_, x_);
-        reset(reset_y_, y_);
-        reset(reset_z_, z_);
-    }
-
-    void run_sequence(TaskContext& ctx, bool ready) {
-        const double xy = ctx.get(speed_);
-        const auto homed = [&](AxisRef axis) { return ctx.view(axis)->homed; };
-
+    /// Each step waits for what the one before has begun, begins the next motion and hands over.
+    void run_sequence(TaskContext& ctx) {
         switch (step_) {
             case waiting:
-                if (ready && (start_pressed_.Q || (pieces_ == 0 && ctx.get(start_)))) step_ = homing_z;
+                if (!start_pressed_.Q && !(pieces_ == 0 && ctx.get(start_))) break;
+                z_.find_home(ctx);  // z first: nothing must hang down while x and y search
+                step_ = homing_z;
                 break;
-            case homing_z:  // z first: nothing must hang down while x and y search
-                if (homed(z_) || home_z_.Done) step_ = homing_xy;
+            case homing_z:
+                if (!z_.homed(ctx)) break;
+                x_.find_home(ctx);
+                y_.find_home(ctx);
+                step_ = homing_xy;
                 break;
             case homing_xy:
-                if ((homed(x_) || home_x_.Done) && (homed(y_) || home_y_.Done)) step_ = above_pick;
+                if (x_.homed(ctx) && y_.homed(ctx)) travel(ctx, pick, above_pick);
                 break;
             case above_pick:
-                if (move_x_.Done && move_y_.Done && move_z_.Done) step_ = down_pick;
+                if (x_.there() && y_.there() && z_.there()) lower(ctx, down_pick);
                 break;
             case down_pick:
-                if (move_z_.Done) step_ = close;
+                if (z_.there()) grip(ctx, true, close);
                 break;
             case close:
-                ctx.set(gripper_, true);
-                if (grip_.Q) step_ = lift;
+                if (grip_.Q) lift_up(ctx, lift);
                 break;
             case lift:
-                if (move_z_.Done) step_ = carry;
+                if (z_.there()) travel(ctx, place, carry);
                 break;
             case carry:
-                if (move_x_.Done && move_y_.Done) step_ = down_place;
+                if (x_.there() && y_.there()) lower(ctx, down_place);
                 break;
             case down_place:
-                if (move_z_.Done) step_ = open;
+                if (z_.there()) grip(ctx, false, open);
                 break;
             case open:
-                ctx.set(gripper_, false);
-                if (grip_.Q) {
-                    ++pieces_;
-                    step_ = raise;
-                }
+                if (!grip_.Q) break;
+                ++pieces_;
+                lift_up(ctx, raise);
                 break;
             case raise:
-                if (move_z_.Done) step_ = above_pick;
+                if (z_.there()) travel(ctx, pick, above_pick);
                 break;
             default: step_ = waiting;
         }
-
-        home(ctx, home_z_, z_, step_ == homing_z && !homed(z_));
-        home(ctx, home_x_, x_, step_ == homing_xy && !homed(x_));
-        home(ctx, home_y_, y_, step_ == homing_xy && !homed(y_));
-
-        const bool at_pick = step_ == above_pick;
-        const auto& target = at_pick ? pick : place;
-        move(ctx, move_x_, x_, target.x, xy, at_pick || step_ == carry);
-        move(ctx, move_y_, y_, target.y, xy, at_pick || step_ == carry);
-        const bool down = step_ == down_pick || step_ == down_place;
-        const bool up = at_pick || step_ == lift || step_ == raise;
-        move(ctx, move_z_, z_, down ? z_down : z_up, 150, down || up);
-
-        grip_.IN = step_ == close || step_ == open;
-        grip_.PT = from_seconds(ctx.get(grip_time_));
-        grip_(ctx);
     }
 
-    static void home(TaskContext& ctx, MC_Home& block, AxisRef axis, bool execute) {
-        block.Axis = axis;
-        block.Position = 0;
-        block.Execute = execute;
-        block(ctx);
+    void travel(TaskContext& ctx, const Place& to, Step next) {
+        x_.go(ctx, to.x, ctx.get(speed_));
+        y_.go(ctx, to.y, ctx.get(speed_));
+        if (next == above_pick) z_.go(ctx, z_up, z_speed);  // after homing it is anywhere
+        step_ = next;
     }
-
-    /// A new step means a new edge: the block sees Execute fall for the scan in which the step changed.
-    void move(TaskContext& ctx, MC_MoveAbsolute& block, AxisRef axis, double position, double velocity, bool execute) {
-        block.Axis = axis;
-        block.Velocity = velocity;
-        const bool new_target = execute && block.Position != position;
-        block.Position = position;
-        block.Execute = execute && !new_target;
-        block(ctx);
+    void lower(TaskContext& ctx, Step next) {
+        z_.go(ctx, z_down, z_speed);
+        step_ = next;
+    }
+    void lift_up(TaskContext& ctx, Step next) {
+        z_.go(ctx, z_up, z_speed);
+        step_ = next;
+    }
+    void grip(TaskContext& ctx, bool closed, Step next) {
+        ctx.set(gripper_, closed);
+        step_ = next;
     }
 };
 
