@@ -1,18 +1,23 @@
 // What motion costs an axis in each cycle: N axes at 1 kHz, each going to and fro between 0 and 500 u for ever (400 u/s, 500 u/s2) by
 // its own MC_MoveAbsolute, with MC_Power and MC_ReadStatus beside it. The drives are virtual: the figures are axis, blocks and planner.
-// Then the worst case for real time: every axis gets a new target in the same cycle.
+// Then the worst case for real time: every axis gets a new target in the same cycle; and what a slave of a gear, of a cam, and a superimposed
+// motion cost. Nothing may be allocated while it is measured: the guard ends the program.
 
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "axes/axis/direct_requests.hpp"
+#include "axes/axis/plan_order.hpp"
 #include "axes/sim/virtual_drive.hpp"
+#include "core/guard/allocation_guard.hpp"
 #include "fb_library/all_blocks.hpp"
 
 namespace {
@@ -78,7 +83,7 @@ public:
             b.move(ctx);
         }
         command_all = false;
-        for (auto& axis : axes_) axis.plan(now_, period);
+        axes::plan_axes(axes_, now_, period);
         for (auto& axis : axes_) axis.encode(now_);
     }
     [[nodiscard]] std::size_t in_motion() const noexcept {
@@ -103,7 +108,63 @@ private:
     std::uint64_t cycles_ = 0;
 };
 
+/// A master at 100 u/s and `count` axes after it, each with the same command.
+class Followers {
+public:
+    explicit Followers(std::size_t count) {
+        std::vector<axes::CamPoint> points;
+        for (int i = 0; i <= 100; ++i)  // a stroke of 20 u and back over 100 u of the master
+            points.push_back({1.0 * i, 20.0 * (i <= 50 ? i : 100 - i) / 50.0, 0, 0, axes::CamSegment::spline});
+        cam_ = tables_.add_cam(points);
+        axes_.reserve(count + 1);
+        for (std::size_t i = 0; i <= count; ++i) {
+            drives_.push_back(std::make_unique<axes::sim::VirtualDrive>(period));
+            axes_.emplace_back(shuttle_axis(), *drives_.back(), period, static_cast<std::uint16_t>(i));
+        }
+        for (auto& axis : axes_) axis.bind({axes_.data(), axes_.size(), &tables_, {}});
+        for (int i = 0; i < 100; ++i) cycle();
+    }
+    void cycle() noexcept {
+        now_ += period;
+        for (auto& axis : axes_) {
+            axis.update(now_);
+            axis.supervise(now_);
+            axis.power(true, true, true, axes::Owner::program);
+        }
+        axes::plan_axes(axes_, now_, period);
+        for (auto& axis : axes_) axis.encode(now_);
+    }
+    void run_master() { submit(0, {.kind = axes::CommandKind::move_velocity, .velocity = 100}); }
+    void gear() { for_slaves({.kind = axes::CommandKind::gear_in, .details = axes::GearDetails{axes::AxisRef{0}, {1, 2}, mcSetValue}}); }
+    void cam() {
+        const auto id = tables_.prepare(cam_, true, false, false).id;
+        for_slaves(
+            {.kind = axes::CommandKind::cam_in, .details = axes::CamDetails{.master = axes::AxisRef{0}, .table = id, .start = mcRelative}});
+    }
+    void superimpose() { for_slaves({.kind = axes::CommandKind::move_superimposed, .position = 1e6, .velocity = 1}); }
+    void run_all() { for_slaves({.kind = axes::CommandKind::move_velocity, .velocity = 100}); }
+
+private:
+    void submit(std::size_t axis, const axes::AxisCommand& command) {
+        if (const auto answer = axes_[axis].submit(command, axes::Owner::program); answer.error != ErrorId::none) {
+            fmt::print(stderr, "axis {} refuses: {}\n", axis, static_cast<int>(answer.error));
+            std::exit(1);
+        }
+    }
+    void for_slaves(const axes::AxisCommand& command) {
+        for (std::size_t i = 1; i < axes_.size(); ++i) submit(i, command);
+        for (int i = 0; i < 2000; ++i) cycle();
+    }
+
+    axes::MotionTables tables_;
+    axes::CamRef cam_;
+    std::vector<std::unique_ptr<axes::sim::VirtualDrive>> drives_;
+    std::vector<axes::Axis> axes_;
+    Instant now_{};
+};
+
 double timed(const auto& work) {
+    const NoAllocationScope guard{NoAllocationScope::On::allocation_abort};
     const auto begin = std::chrono::steady_clock::now();
     work();
     return std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - begin).count();
@@ -143,6 +204,16 @@ void burst(std::size_t count) {
     fmt::print("{:>6} {:>10.1f} {:>10.1f} {:>10.1f}\n", count, spread.at(0.5), spread.at(0.99), spread.at(1));
 }
 
+void following(std::string_view what, const auto& begin) {
+    constexpr std::size_t count = 64;
+    Followers followers{count};
+    begin(followers);
+    std::vector<double> ns;
+    for (int i = 0; i < 10000; ++i) ns.push_back(timed([&] { followers.cycle(); }) / static_cast<double>(count + 1));
+    const Spread spread{std::move(ns)};
+    fmt::print("{:<14} {:>8.1f} {:>10.1f} {:>10.1f}\n", what, spread.at(0.5), spread.at(0.99), spread.at(1));
+}
+
 }  // namespace
 
 int main() {
@@ -152,5 +223,12 @@ int main() {
     fmt::print("\nAll axes re-commanded in one cycle, from wherever they are: us per cycle\n\n");
     fmt::print("{:>6} {:>10} {:>10} {:>10}\n", "axes", "p50", "p99", "max");
     burst(64);
+    fmt::print("\n64 axes after a master, without blocks: ns per axis and cycle\n\n");
+    fmt::print("{:<14} {:>8} {:>10} {:>10}\n", "", "p50", "p99", "max");
+    following("standing", [](Followers&) {});
+    following("at velocity", [](Followers& f) { f.run_all(); });
+    following("geared", [](Followers& f) { f.run_master(), f.gear(); });
+    following("on a cam", [](Followers& f) { f.run_master(), f.cam(); });
+    following("superimposed", [](Followers& f) { f.run_all(), f.superimpose(); });
     return 0;
 }
