@@ -123,6 +123,8 @@ public:
     /// This axis as its slaves see it: the set-point of this cycle once plan() has run, or the newest measured position.
     [[nodiscard]] MasterTrack::Reading as_master(MC_Source source) const noexcept;
     [[nodiscard]] MasterList masters() const noexcept;
+    /// False: masters() is empty. Cheap.
+    [[nodiscard]] bool may_follow() const noexcept;
     [[nodiscard]] PlanMark& plan_mark() noexcept { return plan_mark_; }
 
     // --- requests (AxisRequests of motion_context.hpp, for one axis) -----------------------------------------------------

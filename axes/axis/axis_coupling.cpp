@@ -49,6 +49,8 @@ MasterTrack::Reading Axis::as_master(MC_Source source) const noexcept {
     return reading;
 }
 
+bool Axis::may_follow() const noexcept { return coupling_.used() || couples(queue_.active().command.kind) || queue_.waiting() > 0; }
+
 MasterList Axis::masters() const noexcept {
     MasterList list;
     const auto add = [&](const MasterChoice& choice) noexcept {
@@ -246,6 +248,7 @@ void Axis::settle_couplings() noexcept {
 }
 
 void Axis::follow_masters(Duration period) noexcept {
+    if (!coupling_.used()) return;
     settle_couplings();
     if (coupling_.running.id == 0 && coupling_.next.id == 0) return;
     const auto lost = [&](Link& link) noexcept { return link.id != 0 && !read_masters(link, period); };
@@ -289,6 +292,8 @@ void Axis::complete_coupled() noexcept {
 }
 
 void Axis::publish_coupling() noexcept {
+    if (!coupling_.used() && !coupling_.shown) return;
+    coupling_.shown = coupling_.used();  // what is over is shown once more, as gone
     const bool coupled = goal_.kind == Goal::Kind::coupled && coupling_.running.id != 0;
     const auto& link = coupled ? coupling_.running : coupling_.next;
     view_.master = link.id != 0 ? link.masters.axes[0] : AxisRef{};

@@ -60,6 +60,7 @@ void Axis::watch_probes() noexcept {
         track_.add(feedback_.latched, feedback_.position);
         feedback_age_ = now_ - feedback_.latched;
     }
+    if (!probes_.armed()) return;
     probes_.observe(probe_signals());
     for (std::size_t i = 0; i < ProbeBoard::places; ++i) {
         const auto id = probes_.id(i);

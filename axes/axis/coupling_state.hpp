@@ -69,6 +69,10 @@ struct CouplingState {
     AcceptedCommand phasing;  ///< running; id 0: none
     std::array<AcceptedCommand, 4> phasing_queue{};
     std::size_t phasing_waiting = 0;
+
+    /// Anything of it is alive.
+    [[nodiscard]] bool used() const noexcept { return running.id != 0 || next.id != 0 || phasing.id != 0 || phase_master.valid(); }
+    bool shown = false;  ///< the view shows something of it
 };
 
 }  // namespace taktwerk::axes

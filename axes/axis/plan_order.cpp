@@ -11,7 +11,7 @@ void plan_axes(std::span<Axis> axes, Instant now, Duration period) noexcept {
             auto& mark = at->plan_mark();
             mark.begun = true;
             Axis* before = nullptr;
-            if (!mark.planned) {
+            if (!mark.planned && at->may_follow()) {
                 const auto masters = at->masters();
                 for (std::size_t i = 0; i < masters.count && !before; ++i) {
                     const auto index = masters.axes[i].index;

@@ -40,7 +40,9 @@ public:
     [[nodiscard]] CommandId release(const TriggerRef& trigger) noexcept;
     void release(CommandId id) noexcept;
 
-    /// Once per cycle, after the feedback. At most one event of each place; see event().
+    /// Some probe waits.
+    [[nodiscard]] bool armed() const noexcept { return places_[0].id != 0 || places_[1].id != 0; }
+    /// Once per cycle in which one is armed, after the feedback. At most one event of each place; see event().
     void observe(const Signals& now) noexcept;
     /// Where the event of this cycle was, if there was one: it is for the caller to release() the place or to let it wait on.
     [[nodiscard]] std::optional<FinePosition> event(std::size_t place) const noexcept { return places_[place].event; }
