@@ -234,6 +234,7 @@ private:
     bool guard_switches() noexcept;
     bool guard_software_limits(const MotionState& before) noexcept;
     void brake_inside_limits(const MotionState& from, MotionLimits& limits) const noexcept;
+    void release_below_limit(const MotionState& from, MotionLimits& limits) const noexcept;
     [[nodiscard]] bool leaves_limits(const Profile& profile) const noexcept;
     [[nodiscard]] bool sum_stays_inside() const noexcept;
 

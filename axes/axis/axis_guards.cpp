@@ -93,6 +93,17 @@ void Axis::brake_inside_limits(const MotionState& from, MotionLimits& limits) co
     limits.jerk = std::max(limits.jerk, config_.limits.jerk);
 }
 
+/// The acceleration the axis has now was built up with another jerk. Taken away with a smaller one it would carry the velocity beyond the
+/// axis' limit: then it is taken away as fast as that needs.
+void Axis::release_below_limit(const MotionState& from, MotionLimits& limits) const noexcept {
+    if (!(from.velocity * from.acceleration > 0)) return;
+    const double room = config_.limits.velocity - std::abs(from.velocity);
+    const double needed = from.acceleration * from.acceleration / 2;
+    if (needed <= limits.jerk * room) return;
+    constexpr double surely = 1 + 1e-9;
+    limits.jerk = std::max(limits.jerk, room > 0 ? std::min(surely * needed / room, config_.limits.jerk) : config_.limits.jerk);
+}
+
 /// Does it go further than both its ends and the software limits?
 bool Axis::leaves_limits(const Profile& profile) const noexcept {
     if (!software_limits_hold()) return false;

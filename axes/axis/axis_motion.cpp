@@ -72,6 +72,7 @@ void Axis::run_goal(double late) noexcept {
     goal_pending_ = held_ = false;
     const auto from = setpoint_.base();
     auto limits = with_override(goal_.limits);
+    release_below_limit(from, limits);
     Plan plan;
     switch (goal_.kind) {
         case Goal::Kind::rest:
