@@ -31,6 +31,7 @@ void Cia402Axis::power_on(Instant now) noexcept {
     last_control_ = 0;
     encoder_failed_ = winding_down_ = false;
     brake_closed_ = has_brake();
+    probes_ = {};
     homing_.abort();
     enter(State::disabled);
 }
@@ -293,7 +294,9 @@ void Cia402Axis::inner_step() noexcept {
         }
     }
     step_brake();
+    const double before = plant_.position();
     plant_.step(dt, torque_);
+    step_probes(before);
 
     if (state_ == State::fault_reaction && (personality_.fault_stop == FaultStop::coast || stands())) enter(State::fault);
     if (state_ == State::quick_stop && personality_.quick_stop_leaves && demand_.velocity == 0 && stands()) enter(State::disabled);
@@ -302,6 +305,15 @@ void Cia402Axis::inner_step() noexcept {
     if (state_ == State::enabled && personality_.following_error_limit > 0 && (mode_ == 8 || mode_ == 6) &&
         std::abs(demand_.position - plant_.position()) > personality_.following_error_limit)
         raise(personality_.following_error_alarm);
+}
+
+/// In the drive's counts, as the latched position is; the index pulse is the encoder's own.
+void Cia402Axis::step_probes(double before) noexcept {
+    for (std::size_t i = 0; i < probes_.size(); ++i) {
+        const auto& signal = plant_.config().probe[i];
+        probes_[i].motion(before - zero_, plant_.position() - zero_, {signal.from - zero_, signal.to - zero_},
+                          static_cast<double>(personality_.counts_per_revolution));
+    }
 }
 
 void Cia402Axis::advance(Instant now) noexcept {
@@ -314,6 +326,7 @@ void Cia402Axis::advance(Instant now) noexcept {
 void Cia402Axis::exchange(const AxisInputs& in, Duration cycle, AxisOutputs& out) noexcept {
     select_mode(in);
     command(in);
+    for (std::size_t i = 0; i < probes_.size(); ++i) probes_[i].command(static_cast<std::uint8_t>(in.probe_function >> (8 * i)));
     if (state_ == State::enabled) take_targets(in, cycle);
     fill(out);
 }
@@ -355,6 +368,11 @@ void Cia402Axis::fill(AxisOutputs& out) const noexcept {
     out.following_error = out.demand - out.position;
     out.error_code = error_code_;
     out.error_detail = error_detail_;
+    for (std::size_t i = 0; i < probes_.size(); ++i) {
+        out.probe_status = static_cast<std::uint16_t>(out.probe_status | probes_[i].status() << (8 * i));
+        out.probe_rising[i] = probes_[i].rising();
+        out.probe_falling[i] = probes_[i].falling();
+    }
     out.digital_inputs = (plant_.negative_limit() ? 1u : 0u) | (plant_.positive_limit() ? 2u : 0u) | (plant_.home_switch() ? 4u : 0u);
 }
 

@@ -3,12 +3,14 @@
 // plant. It answers because it computes. Knows no bus: axes/sim/cia402_device.hpp copies objects in and out.
 // Sources: CiA 402-2; what differs per drive is in Personality, with the manual's section in the drive sheets.
 
+#include <array>
 #include <cstdint>
 
 #include "axes/port/drive_profile.hpp"
 #include "axes/sim/homing_run.hpp"
 #include "axes/sim/plant.hpp"
 #include "axes/sim/servo_loop.hpp"
+#include "axes/sim/touch_probe.hpp"
 #include "core/time.hpp"
 
 namespace taktwerk::axes::sim {
@@ -68,6 +70,7 @@ struct AxisInputs {
     std::int64_t velocity_offset = 0, torque_offset = 0;
     HomingSettings homing;
     std::int64_t home_offset = 0;
+    std::uint16_t probe_function = 0;
 };
 
 /// Objects that the drive answers.
@@ -78,6 +81,8 @@ struct AxisOutputs {
     std::uint16_t error_code = 0;
     std::uint32_t error_detail = 0;
     std::uint32_t digital_inputs = 0;
+    std::uint16_t probe_status = 0;
+    std::int64_t probe_rising[2] = {}, probe_falling[2] = {};
 };
 
 class Cia402Axis {
@@ -140,6 +145,7 @@ private:
     [[nodiscard]] bool stands() const noexcept;
     void wind_down() noexcept;
     void step_brake() noexcept;
+    void step_probes(double before) noexcept;
     void fill(AxisOutputs& out) const noexcept;
     [[nodiscard]] std::uint16_t status_word() const noexcept;
 
@@ -147,6 +153,7 @@ private:
     Plant plant_;
     ServoLoop loop_;
     HomingRun homing_;
+    std::array<TouchProbe, 2> probes_;
     State state_ = State::not_ready;
     Instant now_{};
     double zero_ = 0;  ///< plant position at which the drive counts 0

@@ -84,9 +84,31 @@ void Cia402Device::power_on(ecat::sim::ObjectDictionary& dictionary, Instant now
         const auto at = [&](unsigned index, std::uint8_t sub = 0) {
             return dictionary.find(static_cast<std::uint16_t>(index + i * object_offset_), sub);
         };
-        axes_[i].objects = {at(0x6040), at(0x6060),    at(0x607A),    at(0x60FF), at(0x6071), at(0x60B1), at(0x60B2),
-                            at(0x6098), at(0x6099, 1), at(0x6099, 2), at(0x609A), at(0x607C), at(0x6041), at(0x6061),
-                            at(0x6064), at(0x606C),    at(0x6077),    at(0x60F4), at(0x6062), at(0x603F), at(0x60FD)};
+        axes_[i].objects = {at(0x6040),
+                            at(0x6060),
+                            at(0x607A),
+                            at(0x60FF),
+                            at(0x6071),
+                            at(0x60B1),
+                            at(0x60B2),
+                            at(0x6098),
+                            at(0x6099, 1),
+                            at(0x6099, 2),
+                            at(0x609A),
+                            at(0x607C),
+                            at(0x6041),
+                            at(0x6061),
+                            at(0x6064),
+                            at(0x606C),
+                            at(0x6077),
+                            at(0x60F4),
+                            at(0x6062),
+                            at(0x603F),
+                            at(0x60FD),
+                            at(0x60B8),
+                            at(0x60B9),
+                            {at(0x60BA), at(0x60BC)},
+                            {at(0x60BB), at(0x60BD)}};
         axes_[i].model->power_on(now);
     }
     for (auto& axis : axes_) axis.faulted = false;
@@ -143,6 +165,7 @@ void Cia402Device::exchange(Instant) {
             in.target_torque = value(o.target_torque);
             in.velocity_offset = value(o.velocity_offset);
             in.torque_offset = value(o.torque_offset);
+            in.probe_function = static_cast<std::uint16_t>(value(o.probe_function));
         }
         in.homing = {value(o.homing_method), static_cast<double>(value(o.homing_fast)), static_cast<double>(value(o.homing_slow)),
                      static_cast<double>(value(o.homing_acceleration))};
@@ -158,6 +181,11 @@ void Cia402Device::exchange(Instant) {
         put(o.demand, out.demand);
         put(o.error_code, out.error_code);
         put(o.digital_inputs, out.digital_inputs);
+        put(o.probe_status, out.probe_status);
+        for (std::size_t i = 0; i < 2; ++i) {
+            put(o.probe_rising[i], out.probe_rising[i]);
+            put(o.probe_falling[i], out.probe_falling[i]);
+        }
         std::int64_t detail = out.error_detail;
         if (out.error_code && detail == 0)
             for (const auto& row : alarms_)

@@ -22,6 +22,10 @@ struct PlantConfig {
     double negative_limit = -std::numeric_limits<double>::infinity();  ///< switch active below
     double positive_limit = std::numeric_limits<double>::infinity();   ///< switch active above
     double home_from = 1, home_to = 0;                                 ///< switch active in between; from > to = no switch
+    struct Signal {
+        double from = 1, to = 0;
+    };
+    Signal probe[2];  ///< what the drive's probe inputs see, active in between; from > to = never
 };
 
 }  // namespace taktwerk::axes::sim

@@ -1,0 +1,85 @@
+// The latch of a simulated drive: which edge, which count, once or again. Bits: SV33-E 3.4.4(1).
+#include <gtest/gtest.h>
+
+#include "axes/sim/touch_probe.hpp"
+#include "tests/axes/sim/axis_bench.hpp"
+
+namespace taktwerk::axes::sim {
+namespace {
+
+constexpr ProbeSignal signal{100.5, 200};
+
+TouchProbe probe(std::uint8_t function) {
+    TouchProbe made;
+    made.command(function);
+    return made;
+}
+
+TEST(TouchProbe, KeepsTheCountAtTheEdge) {
+    auto p = probe(0x11);  // enable, rising
+    p.motion(90, 110, signal, 1000);
+    EXPECT_EQ(p.status(), 0b011);
+    EXPECT_EQ(p.rising(), 100);
+    p.motion(210, 150, signal, 1000);
+    EXPECT_EQ(p.rising(), 100) << "the first only";
+}
+
+TEST(TouchProbe, FromAboveTheRisingEdgeIsTheUpperEnd) {
+    auto p = probe(0x11);
+    p.motion(210, 150, signal, 1000);
+    EXPECT_EQ(p.rising(), 200);
+}
+
+TEST(TouchProbe, FallingEdgeAndBothInOneStep) {
+    auto p = probe(0x31);
+    p.motion(90, 250, signal, 1000);
+    EXPECT_EQ(p.status(), 0b111);
+    EXPECT_EQ(p.rising(), 100);
+    EXPECT_EQ(p.falling(), 200);
+}
+
+TEST(TouchProbe, ContinuousKeepsTheNewest) {
+    auto p = probe(0x13);
+    p.motion(90, 110, signal, 1000);
+    p.motion(110, 210, signal, 1000);
+    p.motion(210, 150, signal, 1000);
+    EXPECT_EQ(p.rising(), 200);
+}
+
+TEST(TouchProbe, IndexPulseOncePerRevolution) {
+    auto p = probe(0x15);
+    p.motion(-20, -10, signal, 1000);
+    EXPECT_EQ(p.status(), 1);
+    p.motion(-10, 10, signal, 1000);
+    EXPECT_EQ(p.status(), 3);
+    EXPECT_EQ(p.rising(), 0);
+}
+
+TEST(TouchProbe, WithoutItsEnableBitItForgets) {
+    auto p = probe(0x11);
+    p.motion(90, 110, signal, 1000);
+    p.command(0x10);
+    EXPECT_EQ(p.status(), 0);
+    p.motion(210, 150, signal, 1000);
+    EXPECT_EQ(p.status(), 0);
+}
+
+TEST(TouchProbe, OfARunningAxisLatchesBetweenTwoExchanges) {
+    auto plant = table();
+    plant.probe[1] = {12345.6, 20000};
+    Bench b{plant};
+    b.enable();
+    b.in.probe_function = 0x1100;  // probe 2: enable, rising
+    b.run(2);
+    EXPECT_EQ(b.out.probe_status, 0x0100);
+    for (int i = 0; i < 400 && b.out.probe_status == 0x0100; ++i) {
+        b.in.target_position += 50;
+        b.cycle();
+    }
+    EXPECT_EQ(b.out.probe_status, 0x0300);
+    EXPECT_EQ(b.out.probe_rising[1], 12345);
+    EXPECT_GT(b.out.position, 12345) << "the axis has gone on";
+}
+
+}  // namespace
+}  // namespace taktwerk::axes::sim
