@@ -176,6 +176,60 @@ Table<AxisSimulation> simulation_table() {
             {}};
 }
 
+Table<axes::ControlConfig> control_table() {
+    using C = axes::ControlConfig;
+    using Mode = axes::ControlMode;
+    return {
+        "control",
+        "How set-points become the drive's targets.",
+        {
+            field("mode", &C::mode, choice<Mode>({{"position", Mode::position}, {"velocity", Mode::velocity}}),
+                  "where the position loop is closed. position: in the drive (CSP) · velocity: here, the drive runs in CSV"),
+            with_default(field("kv", &C::kv, number(0), "mode velocity: position gain in 1/s (u/s for each u of following error)"), ""),
+            field("feed_forward", &C::feed_forward, number(0, 2),
+                  "part of the set velocity given to the drive: as its target in mode velocity, as 60B1h (where mapped) in mode position"),
+            field("torque_feed_forward", &C::torque_feed_forward, number(0, 2),
+                  "part of the torque that the set acceleration needs, as 60B2h (where mapped)"),
+            with_default(
+                field("rated_acceleration", &C::rated_acceleration, quantity(Dimension::acceleration, 0),
+                      "what rated torque gives the axis, friction apart: for torque feed-forward and the limits of torque control"),
+                "unknown"),
+            with_default(field("output_limit", &C::output_limit, quantity(Dimension::velocity, 0),
+                               "mode velocity: highest velocity given to the drive"),
+                         "1.2 times the limit"),
+        },
+        {},
+        {}};
+}
+
+Table<axes::PitchPoint> pitch_table() {
+    using P = axes::PitchPoint;
+    return {"pitch",
+            "One point of the table of pitch errors.",
+            {
+                required(field("at", &P::position, quantity(Dimension::position), "position of the load, as homed")),
+                required(field("add", &P::correction, quantity(Dimension::position), "what the motor needs more to get it there")),
+            },
+            {},
+            {}};
+}
+
+Table<axes::CompensationConfig> compensation_table() {
+    using C = axes::CompensationConfig;
+    return {"compensation",
+            "What the mechanics lack between motor and load. Programs do not see it.",
+            {
+                field("backlash", &C::backlash, quantity(Dimension::position, 0),
+                      "the motor's way from one flank to the other, added at a reversal"),
+                field("velocity", &C::velocity, quantity(Dimension::velocity, 0), "how fast a correction comes in"),
+                with_default(field("pitch", &C::pitch, list(section(pitch_table())),
+                                   "errors of the pitch by position, linear in between, constant beyond; active once homed"),
+                             ""),
+            },
+            {},
+            {}};
+}
+
 /// The axis' own unit, which all its quantities are read in.
 Codec<std::string> axis_unit() {
     Codec<std::string> c;
@@ -217,12 +271,16 @@ Table<AxisBinding> axis_table() {
         field("in_position", &A::windows, section(in_position_table()), "when a motion is finished"),
         field("homing", &A::homing, section(homing_table()), "how the axis finds its reference"),
         field("manual", &A::manual, section(manual_table()), "jogging speeds"),
+        field("control", &A::control, section(control_table()), "position loop and feed-forward"),
+        field("compensation", &A::compensation, section(compensation_table()), "backlash and pitch errors"),
         field("require_homed", &A::require_homed, boolean(), "absolute moves need a homed axis"),
         field("disabled", &A::disabled, boolean(), "left out while commissioning: its drive is never enabled"),
         field("simulated", &A::simulated, boolean(), "its drive is simulated although the bus is real"),
         field("queue_depth", &A::queue_depth, integer<std::uint8_t>(1, 8), "buffered motions"),
         field("stale_limit", &A::stale_limit, integer<std::uint16_t>(1, 1000),
               "cycles without fresh feedback until the axis stops in error"),
+        field("feed_patience", &A::feed_patience, integer<std::uint16_t>(0, 1000),
+              "set-points from outside that may miss in a row while the axis moves; then it brakes"),
         field("jog_lease", &A::jog_lease, duration(std::chrono::milliseconds{1}, std::chrono::seconds{5}),
               "a jogging client must repeat its command within this time"),
         field("enable_timeout", &A::enable_timeout, duration(std::chrono::milliseconds{1}, std::chrono::seconds{60}),

@@ -79,6 +79,46 @@ void check_homing(Problems& problems, const HomingConfig& homing) {
         problems.add("homing.latch_velocity", "is above homing.search_velocity", "The edge is taken slowly: give a smaller value");
 }
 
+void check_control(Problems& problems, const ControlConfig& control) {
+    if (control.mode == ControlMode::velocity && !(control.kv > 0 && std::isfinite(control.kv)))
+        problems.add("control.kv", "must be above 0 where control.mode is velocity",
+                     "Give the position gain in 1/s, such as 20; below a tenth of the cycle rate");
+    if (!(control.feed_forward >= 0 && control.feed_forward <= 2))
+        problems.add("control.feed_forward", "must be from 0 to 2", "Leave it out for 1");
+    if (!(control.torque_feed_forward >= 0 && control.torque_feed_forward <= 2))
+        problems.add("control.torque_feed_forward", "must be from 0 to 2", "Leave it out for 0, or give 1");
+    if (!(control.rated_acceleration >= 0) || std::isinf(control.rated_acceleration))
+        problems.add("control.rated_acceleration", "must be a finite number, not negative", "Give a value in u/s2, or leave it out");
+    if (control.torque_feed_forward > 0 && control.rated_acceleration == 0)
+        problems.add("control.torque_feed_forward", "needs control.rated_acceleration",
+                     "Give the acceleration that rated torque gives the axis: rated torque / inertia, in u/s2");
+    problems.not_negative("control.output_limit", control.output_limit, "1.2 times the velocity limit");
+}
+
+void check_compensation(Problems& problems, const CompensationConfig& compensation) {
+    if (!(compensation.backlash >= 0) || std::isinf(compensation.backlash))
+        problems.add("compensation.backlash", "must be a finite distance, not negative", "Give the motor's way between the flanks in u");
+    problems.positive("compensation.velocity", compensation.velocity, "u/s");
+    const auto& pitch = compensation.pitch;
+    for (std::size_t i = 0; i < pitch.size(); ++i) {
+        if (!std::isfinite(pitch[i].position) || !std::isfinite(pitch[i].correction)) {
+            problems.add("compensation.pitch", "holds a number that is not finite", "Correct the table");
+            return;
+        }
+        if (i == 0) continue;
+        const double before = pitch[i - 1].position, here = pitch[i].position;
+        if (!(here > before)) {
+            problems.add("compensation.pitch", "has positions that do not rise", "Sort the table by position; each position once");
+            return;
+        }
+        if (!(here + pitch[i].correction > before + pitch[i - 1].correction)) {
+            problems.add("compensation.pitch", "turns the motion round: corrected positions do not rise",
+                         "Corrections must differ by less than the distance of their points; check the unit");
+            return;
+        }
+    }
+}
+
 }  // namespace
 
 std::vector<Error> check(const AxisConfig& config) {
@@ -88,6 +128,8 @@ std::vector<Error> check(const AxisConfig& config) {
     check_modulo(problems, config);
     check_limits(problems, config.limits);
     check_homing(problems, config.homing);
+    check_control(problems, config.control);
+    check_compensation(problems, config.compensation);
     problems.not_negative("defaults.acceleration", config.defaults.acceleration, "the limit");
     problems.not_negative("defaults.deceleration", config.defaults.deceleration, "the limit");
     problems.not_negative("defaults.jerk", config.defaults.jerk, "the limit");

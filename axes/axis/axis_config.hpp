@@ -75,6 +75,36 @@ struct ManualSpeeds {
     double setup_velocity = 0;  ///< u/s, cap in set-up mode; 0 = slow
 };
 
+/// Where the position loop is closed.
+enum class ControlMode : std::uint8_t {
+    position,  ///< in the drive (CSP)
+    velocity,  ///< here: the drive runs in CSV
+};
+
+struct ControlConfig {
+    ControlMode mode = ControlMode::position;
+    double kv = 0;                   ///< 1/s, mode velocity: u/s for each u of following error, > 0
+    double feed_forward = 1;         ///< part of the set velocity given to the drive: as its target in mode velocity, as 60B1h in position
+    double torque_feed_forward = 0;  ///< part of the torque that the set acceleration needs, as 60B2h; needs rated_acceleration
+    double rated_acceleration = 0;   ///< u/s2 that rated torque gives the axis, friction apart; 0 = unknown
+    double output_limit = 0;         ///< u/s, of the velocity given in mode velocity; 0 = 1.2 times the velocity limit
+
+    /// Rated torques per u/s2; 0 = unknown.
+    [[nodiscard]] double inertia() const noexcept { return rated_acceleration > 0 ? 1 / rated_acceleration : 0; }
+};
+
+/// One measured point of the screw: what to add to the set-point so that the load stands at `position`. u, machine coordinates (as
+/// homed; MC_SetPosition does not move them).
+struct PitchPoint {
+    double position = 0, correction = 0;
+};
+
+struct CompensationConfig {
+    double backlash = 0;            ///< u, >= 0: the motor's way from one flank to the other
+    double velocity = 1;            ///< u/s, > 0: how fast a correction comes in
+    std::vector<PitchPoint> pitch;  ///< positions rise; corrected positions too. Active once homed
+};
+
 struct AxisConfig {
     std::string name;
     std::string unit = "mm";
@@ -86,6 +116,8 @@ struct AxisConfig {
     PositionWindows windows;
     HomingConfig homing;
     ManualSpeeds manual;
+    ControlConfig control;
+    CompensationConfig compensation;
     bool require_homed = true;      ///< absolute moves need a homed axis
     bool disabled = false;          ///< left out while commissioning: its drive is never enabled
     bool encoder = false;           ///< only measures: no drive to enable, takes no motion, may be a master (limits.velocity: its fastest)

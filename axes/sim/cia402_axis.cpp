@@ -72,7 +72,7 @@ void Cia402Axis::enter(State state) noexcept {
         demand_ = {plant_.position(), 0, 0};
         target_ = plant_.position();
         steps_left_ = 0;
-        velocity_demand_ = torque_demand_ = 0;
+        velocity_demand_ = torque_demand_ = torque_offset_ = 0;
         strikes_ = 0;
         loop_.reset();
     }
@@ -168,6 +168,7 @@ void Cia402Axis::select_mode(const AxisInputs& in) noexcept {
     const bool known = in.mode == 3 || in.mode == 4 || in.mode == 6 || in.mode == 8 || in.mode == 9 || in.mode == 10;
     if (!known) return;
     if (mode_ == 6 && homing_.state() == HomingRun::State::moving) return;  // no other mode while homing runs (SV33-E 3.4.3)
+    if (mode_ == 4 || mode_ == 10) loop_.take_over(torque_);
     mode_ = in.mode;
     homing_.abort();
     homing_attained_ = homing_error_ = false;
@@ -175,7 +176,7 @@ void Cia402Axis::select_mode(const AxisInputs& in) noexcept {
     demand_ = {plant_.position(), 0, 0};
     target_ = plant_.position();
     steps_left_ = 0;
-    velocity_demand_ = torque_demand_ = 0;
+    velocity_demand_ = torque_demand_ = torque_offset_ = 0;
 }
 
 void Cia402Axis::take_position_target(const AxisInputs& in, double seconds) noexcept {
@@ -214,6 +215,8 @@ void Cia402Axis::take_position_target(const AxisInputs& in, double seconds) noex
 }
 
 void Cia402Axis::take_targets(const AxisInputs& in, Duration cycle) noexcept {
+    const double torque_offset = static_cast<double>(in.torque_offset) / personality_.torque_rated_raw * plant_.config().rated_torque;
+    torque_offset_ = mode_ == 8 || mode_ == 9 ? torque_offset : 0;
     switch (mode_) {
         case 8: take_position_target(in, to_seconds(cycle)); break;
         case 3:
@@ -226,8 +229,13 @@ void Cia402Axis::take_targets(const AxisInputs& in, Duration cycle) noexcept {
             break;
         case 4:
         case 10:
+            if (too_early()) {
+                if (in.target_torque != 0) ++early_commands_;
+                break;
+            }
             torque_demand_ =
-                static_cast<double>(in.target_torque + in.torque_offset) / personality_.torque_rated_raw * plant_.config().rated_torque;
+                static_cast<double>(in.target_torque) / personality_.torque_rated_raw * plant_.config().rated_torque + torque_offset;
+            fastest_ = static_cast<double>(in.maximum_velocity) / personality_.velocity_counts_per_unit;
             break;
         case 6: {
             const bool start = (in.control & 0x10u) != 0;
@@ -274,9 +282,10 @@ void Cia402Axis::inner_step() noexcept {
             stop_step(dt, personality_.quick_stop_deceleration);
             torque_ = loop_.velocity_control(plant_, demand_.velocity, 0, torque_limit(), dt);
         } else if (mode_ == 4 || mode_ == 10) {
-            torque_ = std::clamp(torque_demand_, -torque_limit(), torque_limit());
+            torque_ = ServoLoop::torque_control(plant_, torque_demand_, fastest_, torque_limit());
         } else if (mode_ == 3 || mode_ == 9) {
             torque_ = loop_.velocity_control(plant_, velocity_demand_, 0, torque_limit(), dt);
+            torque_ = std::clamp(torque_ + torque_offset_, -torque_limit(), torque_limit());
         } else {
             if (mode_ == 6 && homing_.state() != HomingRun::State::idle) {
                 homing_.step(dt, switches(), plant_.position());
@@ -291,6 +300,7 @@ void Cia402Axis::inner_step() noexcept {
                 demand_.velocity = 0;
             }
             torque_ = loop_.position_control(plant_, demand_, quantised() + zero_, torque_limit(), dt);
+            torque_ = std::clamp(torque_ + torque_offset_, -torque_limit(), torque_limit());
         }
     }
     step_brake();
@@ -352,7 +362,8 @@ std::uint16_t Cia402Axis::status_word() const noexcept {
         if (homing_error_) word |= bit(13);
     } else {
         if (state_ == State::enabled && stands() && std::abs(demand_.position - plant_.position()) < 10) word |= bit(10);
-        if (mode_ == 8 && personality_.csp_following_bits && state_ == State::enabled) word |= bit(12);
+        const bool cyclic = mode_ == 8 || mode_ == 9 || mode_ == 10;
+        if (cyclic && personality_.csp_following_bits && state_ == State::enabled) word |= bit(12);
     }
     if (personality_.home_found_bit_15 && homed_) word |= bit(15);
     return word;

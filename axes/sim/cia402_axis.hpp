@@ -68,6 +68,7 @@ struct AxisInputs {
     std::int64_t mode = 0;
     std::int64_t target_position = 0, target_velocity = 0, target_torque = 0;
     std::int64_t velocity_offset = 0, torque_offset = 0;
+    std::int64_t maximum_velocity = 0;  ///< 607Fh: bounds the speed in the torque modes; 0 = no limit
     HomingSettings homing;
     std::int64_t home_offset = 0;
     std::uint16_t probe_function = 0;
@@ -162,7 +163,8 @@ private:
     double demand_step_ = 0;       ///< counts per second towards the newest target
     double target_ = 0;            ///< newest CSP target, plant coordinates
     std::int64_t steps_left_ = 0;  ///< inner steps until the target is reached
-    double torque_ = 0, torque_demand_ = 0, velocity_demand_ = 0;
+    double torque_ = 0, torque_demand_ = 0, torque_offset_ = 0, velocity_demand_ = 0;
+    double fastest_ = 0;  ///< counts/s, torque modes; 0 = no limit
     std::uint16_t last_control_ = 0, error_code_ = 0;
     std::uint32_t error_detail_ = 0;
     bool error_resettable_ = true, main_power_ = true, operational_ = false, homed_ = false, warning_ = false;

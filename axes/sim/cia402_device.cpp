@@ -91,6 +91,7 @@ void Cia402Device::power_on(ecat::sim::ObjectDictionary& dictionary, Instant now
                             at(0x6071),
                             at(0x60B1),
                             at(0x60B2),
+                            at(0x607F),
                             at(0x6098),
                             at(0x6099, 1),
                             at(0x6099, 2),
@@ -166,6 +167,7 @@ void Cia402Device::exchange(Instant) {
             in.velocity_offset = value(o.velocity_offset);
             in.torque_offset = value(o.torque_offset);
             in.probe_function = static_cast<std::uint16_t>(value(o.probe_function));
+            in.maximum_velocity = value(o.maximum_velocity);
         }
         in.homing = {value(o.homing_method), static_cast<double>(value(o.homing_fast)), static_cast<double>(value(o.homing_slow)),
                      static_cast<double>(value(o.homing_acceleration))};

@@ -45,7 +45,7 @@ public:
 private:
     using Entry = ecat::sim::Entry;
     struct Objects {
-        Entry *control, *mode, *target_position, *target_velocity, *target_torque, *velocity_offset, *torque_offset;
+        Entry *control, *mode, *target_position, *target_velocity, *target_torque, *velocity_offset, *torque_offset, *maximum_velocity;
         Entry *homing_method, *homing_fast, *homing_slow, *homing_acceleration, *home_offset;
         Entry *status, *mode_display, *position, *velocity, *torque, *following_error, *demand, *error_code, *digital_inputs;
         Entry *probe_function, *probe_status, *probe_rising[2], *probe_falling[2];

@@ -2,6 +2,8 @@
 // The control loops inside a simulated drive: position P with velocity feed-forward, velocity PI with acceleration
 // feed-forward, torque limit. Gains are those of a plainly tuned servo; they give a small, honest following error.
 
+#include <algorithm>
+
 #include "axes/sim/plant.hpp"
 
 namespace taktwerk::axes::sim {
@@ -31,7 +33,18 @@ public:
         integral_ += plant.torque_for(integral_gain * error) * dt;  // only while unlimited: no wind-up
         return raw;
     }
+    /// Torque as demanded, taken back where the motor gets faster than `fastest` counts/s (0 = no limit).
+    [[nodiscard]] static double torque_control(const Plant& plant, double wanted, double fastest, double limit) noexcept {
+        double torque = std::clamp(wanted, -limit, limit);
+        if (fastest > 0) {
+            torque = std::min(torque, plant.torque_for(velocity_gain * (fastest - plant.velocity())));
+            torque = std::max(torque, plant.torque_for(velocity_gain * (-fastest - plant.velocity())));
+        }
+        return std::clamp(torque, -limit, limit);
+    }
     void reset() noexcept { integral_ = 0; }
+    /// Goes on from a torque that somebody else gave: the motor feels no change of the mode.
+    void take_over(double torque) noexcept { integral_ = torque; }
 
 private:
     double integral_ = 0;

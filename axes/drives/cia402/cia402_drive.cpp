@@ -153,6 +153,7 @@ void Cia402Drive::collect_starting_values() {
             if (sdo.index == entry.index && sdo.sub == entry.sub) value = sdo.value;
         const auto signal = bus_.output(slave_, entry.index, entry.sub);
         if (signal && value != 0) starting_values_.emplace_back(*signal, value);
+        if (entry.index == object(0x607F) && entry.sub == 0) velocity_limit_at_start_ = value;
     }
 }
 

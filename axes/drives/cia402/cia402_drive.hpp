@@ -82,6 +82,7 @@ private:
     DriveCapabilities capabilities_;
     DriveFeedback feedback_;
     std::vector<std::pair<Signal, std::int64_t>> starting_values_;
+    std::int64_t velocity_limit_at_start_ = 0;  // 607Fh raw, 0 = unknown
     bool started_ = false;
 
     bool was_online_ = false, position_seeded_ = false;

@@ -16,6 +16,9 @@ constexpr std::uint32_t reset_low_cycles = 4;
 constexpr std::uint32_t reset_high_cycles = 4;
 constexpr std::uint32_t reset_wait_cycles = 100;
 
+bool cyclic(DriveMode mode) noexcept {
+    return mode == DriveMode::cyclic_position || mode == DriveMode::cyclic_velocity || mode == DriveMode::cyclic_torque;
+}
 bool position_mode(DriveMode mode) noexcept { return mode == DriveMode::cyclic_position || mode == DriveMode::profile_position; }
 bool velocity_mode(DriveMode mode) noexcept { return mode == DriveMode::cyclic_velocity || mode == DriveMode::profile_velocity; }
 bool torque_mode(DriveMode mode) noexcept { return mode == DriveMode::cyclic_torque || mode == DriveMode::profile_torque; }
@@ -85,8 +88,11 @@ void Cia402Drive::encode(const DriveCommand& command, Instant now) noexcept {
     write_signal(image, out_.control.signal, word);
     write_signal(image, out_.mode.signal, mode_code(mode));
 
-    // Until the drive follows in this mode its target is its own actual position: enabling and mode switches never step.
-    const bool follows = feedback_.power == PowerState::enabled && mode_confirmed && command.power == PowerRequest::on;
+    // Until the drive follows in this mode its target is its own actual position: enabling and mode switches never step. From one cyclic
+    // mode into another the targets of both are the command's: a motor that turns would feel an actual value, old as it is, as a step.
+    const bool changes_over = cyclic(feedback_.mode) && cyclic(command.mode);
+    const bool follows =
+        feedback_.power == PowerState::enabled && (mode_confirmed || changes_over) && command.power == PowerRequest::on;
     write_targets(image, command, follows);
     write_limits(image, command);
     if (out_.digital.mapped()) {
@@ -99,12 +105,15 @@ void Cia402Drive::encode(const DriveCommand& command, Instant now) noexcept {
 
 void Cia402Drive::write_targets(std::span<std::byte> image, const DriveCommand& command, bool follows) const noexcept {
     // Positions wrap like the drive's own: the low bits, not a saturated value.
-    write_signal(image, out_.target_position.signal, follows && position_mode(command.mode) ? command.position : feedback_.position);
+    const bool in_position_mode = position_mode(command.mode) || feedback_.mode == DriveMode::cyclic_position;
+    write_signal(image, out_.target_position.signal, follows && in_position_mode ? command.position : feedback_.position);
     const double velocity = follows ? command.velocity * profile_->velocity_counts_per_unit : 0.0;
-    out_.target_velocity.write(image, velocity_mode(command.mode) ? velocity : 0);
+    const bool in_velocity_mode = velocity_mode(command.mode) || feedback_.mode == DriveMode::cyclic_velocity;
+    out_.target_velocity.write(image, in_velocity_mode ? velocity : 0);
     out_.velocity_offset.write(image, position_mode(command.mode) ? velocity : 0);
     const double torque = follows ? command.torque * profile_->torque_rated_raw : 0.0;
-    out_.target_torque.write(image, torque_mode(command.mode) ? torque : 0);
+    const bool in_torque_mode = torque_mode(command.mode) || feedback_.mode == DriveMode::cyclic_torque;
+    out_.target_torque.write(image, in_torque_mode ? torque : 0);
     out_.torque_offset.write(image, torque_mode(command.mode) ? 0 : torque);
 }
 
@@ -118,6 +127,8 @@ void Cia402Drive::write_limits(std::span<std::byte> image, const DriveCommand& c
     // The rest stays as the start-up list or the last command left it while nothing is asked for: zero would mean "never move".
     if (std::isfinite(command.velocity_limit))
         out_.velocity_limit.write(image, command.velocity_limit * profile_->velocity_counts_per_unit);
+    else if (velocity_limit_at_start_ != 0)  // the limit of a torque command must not slow down what comes after it
+        out_.velocity_limit.write(image, static_cast<double>(velocity_limit_at_start_));
     if (command.acceleration > 0) out_.profile_acceleration.write(image, command.acceleration);
     if (command.deceleration > 0) out_.profile_deceleration.write(image, command.deceleration);
     if (command.torque_slope > 0) out_.torque_slope.write(image, command.torque_slope * profile_->torque_rated_raw);
