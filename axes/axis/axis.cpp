@@ -15,6 +15,9 @@ std::uint32_t stale_cycles(const AxisConfig& config, const DriveCapabilities& dr
     return static_cast<std::uint32_t>(config.stale_limit * polls);
 }
 
+/// A tenth of the cycle rate: see TorqueControl.
+double torque_bandwidth(Duration cycle) { return cycle > Duration::zero() ? 0.1 / to_seconds(cycle) : 0; }
+
 }  // namespace
 
 Axis::Axis(AxisConfig config, DrivePort& port, Duration cycle, std::uint16_t index, AxisView* view)
@@ -25,6 +28,10 @@ Axis::Axis(AxisConfig config, DrivePort& port, Duration cycle, std::uint16_t ind
       endless_(std::isinf(config_.limits.position_min) && std::isinf(config_.limits.position_max)),
       units_(config_.gearing, config_.modulo),
       index_(index),
+      own_mode_(config_.control.mode == ControlMode::velocity ? DriveMode::cyclic_velocity : DriveMode::cyclic_position),
+      former_mode_(own_mode_),
+      torque_(config_.control.inertia(), torque_bandwidth(cycle)),
+      compensation_(config_.compensation),
       power_(port.capabilities().enable_delay, config_.enable_timeout),
       alarms_(index),
       own_view_(view ? nullptr : std::make_unique<AxisView>()),
@@ -43,6 +50,13 @@ bool Axis::drive_faulted() const noexcept {
 
 bool Axis::drive_stands() const noexcept {
     return std::abs(feedback_.velocity) <= config_.windows.standstill_velocity * std::abs(units_.counts_per_unit());
+}
+
+double Axis::actual_local() const noexcept {
+    const double motor = units_.local(actual_counts_);
+    if (compensation_.none()) return motor;
+    const double machine = units_.machine(motor);
+    return motor + (compensation_.load(machine) - machine);
 }
 
 void Axis::update(Instant now) noexcept {
@@ -96,8 +110,8 @@ void Axis::watch_drive() noexcept {
         // The detail that tells shared codes apart is read acyclically and comes later (P21.08 of the SV33-E).
         if (feedback_.error_code != 0) alarms_.renumber(AxisAlarm::drive_fault, feedback_.error_code, port_.alarm().detail);
     } else if (asked && feedback_.power == PowerState::unknown) fail(AxisAlarm::drive_unknown_state, feedback_.status_word);
-    else if (power_.on() && !drive_homing_.busy() && feedback_.mode != DriveMode::cyclic_position)
-        fail(AxisAlarm::drive_mode_mismatch, static_cast<double>(feedback_.mode), static_cast<double>(DriveMode::cyclic_position));
+    else if (power_.on() && !drive_homing_.busy() && !mode_changes() && feedback_.mode != wanted_mode())
+        fail(AxisAlarm::drive_mode_mismatch, static_cast<double>(feedback_.mode), static_cast<double>(wanted_mode()));
 }
 
 bool Axis::power_wanted() const noexcept {
@@ -116,7 +130,7 @@ void Axis::run_power() noexcept {
     const auto event = power_.step({.wanted = power_wanted(),
                                     .aligned = aligned_,
                                     .online = online(),
-                                    .mode_confirmed = feedback_.mode == DriveMode::cyclic_position || drive_homing_.busy(),
+                                    .mode_confirmed = feedback_.mode == wanted_mode() || drive_homing_.busy(),
                                     .drive = feedback_.power,
                                     .now = now_});
     if (power_.phase() == PowerSequence::Phase::off) power_dropping_ = false;
@@ -137,7 +151,7 @@ void Axis::run_power() noexcept {
 
 void Axis::watch_following_error() noexcept {
     const bool follows = power_.follows_actual() || drive_homing_.busy();
-    if (follows) {
+    if (follows || mode_phase_ != ModePhase::steady) {  // in torque the set-point follows the motor
         view_.following_error = 0;
         following_timer_.clear();
         in_window_ = false;
@@ -157,17 +171,16 @@ void Axis::encode(Instant now) noexcept {
     command_ = {};
     command_.power = power_.request();
     command_.reset_fault = resetting_ && drive_faulted();
-    command_.mode = drive_homing_.mode();
     command_.start_homing = drive_homing_.start_level();
-    const auto& state = setpoint_.state();
-    command_.position = seeded_ ? units_.counts(state.position) : feedback_.position;
-    command_.velocity = state.velocity * units_.counts_per_unit();
+    const auto& set = setpoint_.state();
+    if (!compensation_.none()) compensation_.step(units_.machine(set.position), set.velocity, homed_, cycle_);
+    fill_targets();
     probes_.command(command_.probes);
     command_.digital_outputs = digital_outputs_;
     command_.digital_output_mask = digital_output_mask_;
     port_.encode(command_, now);
 
-    if (power_.follows_actual() || drive_homing_.busy()) history_.clear();
+    if (power_.follows_actual() || drive_homing_.busy() || mode_phase_ != ModePhase::steady) history_.clear();
     else history_.record(port_.setpoint_effective(now), command_.position);
 }
 

@@ -26,6 +26,7 @@
 #include "axes/axis/command.hpp"
 #include "axes/axis/command_check.hpp"
 #include "axes/axis/command_queue.hpp"
+#include "axes/axis/compensation.hpp"
 #include "axes/axis/coupling_state.hpp"
 #include "axes/axis/following_error.hpp"
 #include "axes/axis/parameters.hpp"
@@ -35,6 +36,7 @@
 #include "axes/axis/setpoint_generator.hpp"
 #include "axes/axis/state_machine.hpp"
 #include "axes/axis/time_curve.hpp"
+#include "axes/axis/torque_control.hpp"
 #include "axes/axis/units.hpp"
 #include "axes/homing/drive_homing.hpp"
 #include "axes/homing/switch_homing.hpp"
@@ -170,7 +172,7 @@ private:
     void publish_state() noexcept;
     void publish_feedback() noexcept;
     void publish_setpoint() noexcept;
-    [[nodiscard]] double actual_local() const noexcept { return units_.local(actual_counts_); }
+    [[nodiscard]] double actual_local() const noexcept;
     [[nodiscard]] bool online() const noexcept { return seeded_ && feedback_.online && stale_ <= stale_limit_; }
     [[nodiscard]] bool drive_faulted() const noexcept;
     [[nodiscard]] bool drive_stands() const noexcept;
@@ -276,6 +278,27 @@ private:
     void store_parameters() noexcept;
     void use_parameters() noexcept;
     ErrorId write_output(const WriteOutput& wanted) noexcept;
+    // axis_modes.cpp
+    enum class ModePhase : std::uint8_t { steady, entering, torque, leaving, changing };
+    [[nodiscard]] DriveMode wanted_mode() const noexcept;
+    [[nodiscard]] bool mode_changes() const noexcept { return mode_phase_ != ModePhase::steady && mode_phase_ != ModePhase::torque; }
+    [[nodiscard]] bool torque_wanted() const noexcept;
+    [[nodiscard]] ErrorId refuse_mode(const AxisCommand& command, bool starts_now) const noexcept;
+    [[nodiscard]] double torque_of(const AxisCommand& command) const noexcept;
+    void begin_torque(const AxisCommand& command) noexcept;
+    void begin_mode_change(const AxisCommand& command) noexcept;
+    void go_mode(ModePhase phase) noexcept;
+    [[nodiscard]] bool mode_confirmed() noexcept;
+    bool step_mode(Duration period) noexcept;
+    bool enter_torque(bool confirmed, bool late, Duration period) noexcept;
+    bool run_torque(Duration period) noexcept;
+    void guard_torque() noexcept;
+    bool change_mode(bool confirmed, bool late) noexcept;
+    void stop_or_stand() noexcept;
+    [[nodiscard]] double motor_velocity() const noexcept;
+    void follow_motor() noexcept;
+    void fill_targets() noexcept;
+
     // axis_profiles.cpp
     [[nodiscard]] ErrorId refuse_given(const AxisCommand& command, bool starts_now) noexcept;
     [[nodiscard]] ErrorId make_curve(const AxisCommand& command) noexcept;
@@ -397,6 +420,18 @@ private:
     mutable std::uint32_t walks_ = 0;  // of follows_me
     mutable std::uint64_t walk_ = 0;   // the last one that came by here
     mutable const Axis* walk_back_ = nullptr;
+
+    // mode of the drive
+    DriveMode own_mode_;     // position or velocity
+    DriveMode former_mode_;  // before set_controller_mode
+    ModePhase mode_phase_ = ModePhase::steady;
+    Instant mode_since_{}, mode_seen_at_{};
+    bool mode_waits_ = false;     // for standstill of the motor, before it is asked for
+    bool mode_seen_ = false;      // the drive shows the wanted mode
+    bool torque_idle_ = false;    // set_controller_mode has chosen torque: without a command it is 0
+    double torque_velocity_ = 0;  // u/s, limit of the torque command
+    TorqueControl torque_;
+    Compensation compensation_;
 
     // states and commands
     AxisState state_ = AxisState::Disabled;

@@ -49,6 +49,11 @@ ErrorId Axis::set_goal(const AcceptedCommand& accepted) noexcept {
         case CommandKind::combine:
         case CommandKind::gear_out:
         case CommandKind::cam_out: return join(accepted);
+        case CommandKind::torque:
+            start_at_base();
+            begin_torque(command);
+            break;
+        case CommandKind::set_controller_mode: begin_mode_change(command); break;
         default: return ErrorId::not_supported;
     }
     return ErrorId::none;

@@ -16,7 +16,7 @@ ErrorId Axis::begin_homing(const AxisCommand& command) noexcept {
     switch (homing.kind) {
         case HomingKind::none: return ErrorId::not_supported;
         case HomingKind::set_here: end_homing(actual_counts_); break;
-        case HomingKind::drive: drive_homing_.start(now_, homing.timeout, port_.capabilities().mode_change_delay); break;
+        case HomingKind::drive: drive_homing_.start(now_, homing.timeout, port_.capabilities().mode_change_delay, own_mode_); break;
         case HomingKind::home_switch:
             switch_homing_.start({.search_velocity = homing.search_velocity,
                                   .latch_velocity = homing.latch_velocity,
@@ -73,7 +73,7 @@ void Axis::step_homing() noexcept {
 }
 
 void Axis::end_homing(std::int64_t reference) noexcept {
-    units_.set_program(reference, home_coordinate_);
+    units_.set_program(reference, home_coordinate_ + compensation_.offset());
     homed_ = true;
     switch_homing_.cancel();
     goal_ = {};

@@ -27,6 +27,11 @@ void Axis::plan(Instant now, Duration period) noexcept {
     step_homing();
     carry_out_due_settings();
     if (view_.active_in_target && queue_.waiting() > 0) hand_over();
+    if (mode_phase_ != ModePhase::steady && step_mode(period)) {
+        publish_state();
+        publish_setpoint();
+        return;
+    }
     if (begin_pending_) begin_command();
     keep_close_to_anchor();
     follow_masters(period);
@@ -64,6 +69,8 @@ void Axis::follow_actual(Duration period) noexcept {
     aligned_ = drive_homing_.busy() || std::abs(way) <= most;
     setpoint_.place(aligned_ ? actual_local() : setpoint_.state().position + std::copysign(most, way));
     if (!power_.follows_actual()) return;
+    mode_phase_ = ModePhase::steady;
+    torque_idle_ = mode_waits_ = false;
     goal_ = {};
     goal_pending_ = begin_pending_ = held_ = false;
 }

@@ -29,7 +29,7 @@ ErrorId Axis::make_curve(const AxisCommand& command) noexcept {
     const auto* table = scene_.tables ? scene_.tables->time_table(details.table) : nullptr;
     if (!table) return ErrorId::invalid_table;
     auto& curve = profile_.spare();
-    const auto& from = setpoint_.state();
+    const auto& from = setpoint_.base();
     const CurveScale scale{details.time_scale, details.value_scale, details.offset};
     ErrorId error = ErrorId::none;
     switch (command.kind) {
@@ -81,6 +81,7 @@ ErrorId Axis::set_goal_given(const AxisCommand& command) noexcept {
 }
 
 void Axis::start_given(double late) noexcept {
+    if (queue_.active().command.kind == CommandKind::torque) setpoint_.run(Profile{setpoint_.base()}, late);
     if (!is_profile(queue_.active().command.kind)) return;
     profile_.elapsed = Duration{};
     profile_.late = late;
@@ -94,6 +95,7 @@ void Axis::step_given(Duration period) noexcept {
         return;
     }
     if (queue_.active().command.kind == CommandKind::external) follow_feed(period);
+    else setpoint_.advance(period);  // torque, until the drive has taken its mode
 }
 
 void Axis::follow_curve(double t) noexcept {

@@ -73,6 +73,7 @@ void Axis::start_waiting(double late) noexcept {
             continue;
         }
         auto error = next_state(state_, event_of(next.command.kind)) ? refuse_target(next.command, true) : ErrorId::state_forbids;
+        if (error == ErrorId::none) error = refuse_mode(next.command, true);
         if (error == ErrorId::none) {
             fire(event_of(next.command.kind));
             queue_.activate(next);

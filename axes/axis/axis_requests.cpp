@@ -105,6 +105,7 @@ ErrorId Axis::refuse(const AxisCommand& command) noexcept {
     if (waits(command) && waits_for_ever()) return ErrorId::buffer_mode_not_supported;
     if (const auto error = refuse_coupling(command); error != ErrorId::none) return error;
     if (const auto error = refuse_target(command, !waits(command)); error != ErrorId::none) return error;
+    if (const auto error = refuse_mode(command, !waits(command)); error != ErrorId::none) return error;
     return refuse_given(command, !waits(command));
 }
 

@@ -58,6 +58,10 @@ ErrorId Axis::update_active(const AxisCommand& command) noexcept {
         case CommandKind::gear_in:
         case CommandKind::cam_in:
         case CommandKind::combine: error = update_coupling(command); break;
+        case CommandKind::torque:
+            if (!permitted(torque_of(command))) return ErrorId::interlocked;
+            begin_torque(command);
+            break;
         default: return ErrorId::not_supported;
     }
     if (error == ErrorId::none) active.command = command;

@@ -86,6 +86,15 @@ namespace taktwerk::axes {
                                 std::isfinite(profile->value_scale) && std::isfinite(profile->offset);
             return usable ? ErrorId::none : ErrorId::invalid_parameter;
         }
+        case CommandKind::torque: {
+            const auto* torque = std::get_if<TorqueDetails>(&command.details);
+            if (!torque || !std::isfinite(torque->torque) || !(torque->ramp >= 0)) return ErrorId::invalid_parameter;
+            return command.velocity >= 0 && std::isfinite(command.velocity) ? ErrorId::none : ErrorId::invalid_velocity;  // P1-181
+        }
+        case CommandKind::set_controller_mode: {
+            const bool whole = command.position >= 0 && command.position <= 255 && command.position == std::floor(command.position);
+            return whole ? ErrorId::none : ErrorId::invalid_parameter;
+        }
         default: return ErrorId::none;
     }
 }
@@ -122,6 +131,8 @@ namespace taktwerk::axes {
         case CommandKind::position_profile:
         case CommandKind::velocity_profile:
         case CommandKind::acceleration_profile:
+        case CommandKind::torque:
+        case CommandKind::set_controller_mode:
             if (const auto error = check_details(command); error != ErrorId::none) return error;
             break;
         case CommandKind::external:

@@ -58,11 +58,21 @@ public:
     /// Whole moduli since zero was set; 0 on a linear axis.
     [[nodiscard]] std::int64_t turns(double local) const noexcept { return modulo_ > 0 ? in_modulo(local).turns - zero_turns_ : 0; }
 
+    /// Program coordinate without what MC_SetPosition has shifted since the axis was homed: where the mechanics are.
+    [[nodiscard]] double machine(double local) const noexcept {
+        const double position = to_program(local) - user_shift_;
+        return modulo_ > 0 ? position - std::floor(position / modulo_) * modulo_ : position;
+    }
+
     /// Program coordinates grow by `delta`; nothing moves.
-    void shift_by(double delta) noexcept { shift_ += delta; }
+    void shift_by(double delta) noexcept {
+        shift_ += delta;
+        user_shift_ += delta;
+    }
     /// The place `at` [counts] gets the program coordinate `program`; nothing moves.
     void set_program(std::int64_t at, double program) noexcept {
         shift_ += program - to_program(local(at));
+        user_shift_ = 0;
         if (modulo_ > 0) zero_turns_ = in_modulo(local(at)).turns;
     }
 
@@ -122,6 +132,7 @@ private:
     std::int64_t anchor_counts_ = 0;
     double anchor_fraction_ = 0;  // of a count
     double shift_ = 0;            // u
+    double user_shift_ = 0;       // u, part of it
 };
 
 }  // namespace taktwerk::axes

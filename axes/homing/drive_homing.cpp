@@ -14,7 +14,8 @@ constexpr Duration patience = 2s;
 
 }  // namespace
 
-void DriveHoming::start(Instant now, Duration timeout, Duration mode_delay) noexcept {
+void DriveHoming::start(Instant now, Duration timeout, Duration mode_delay, DriveMode back) noexcept {
+    back_ = back;
     timeout_ = timeout;
     mode_delay_ = mode_delay;
     begun_ = now;
@@ -55,7 +56,7 @@ DriveHoming::Result DriveHoming::step(const DriveFeedback& feedback, bool stands
             if ((feedback.fresh && stands) || late) go(Phase::leaving, now);
             return Result::none;
         case Phase::leaving:
-            if (feedback.fresh && feedback.mode == DriveMode::cyclic_position) go(Phase::settling, now);
+            if (feedback.fresh && feedback.mode == back_) go(Phase::settling, now);
             else if (late) {
                 result_ = Result::failed;
                 go(Phase::settling, now);

@@ -17,12 +17,12 @@ public:
         entering,   ///< mode homing asked for, not confirmed yet
         searching,  ///< started; the drive moves
         braking,    ///< start taken back after an error or an abort; the drive ends its motion
-        leaving,    ///< mode cyclic position asked for, not confirmed yet
+        leaving,    ///< the axis' own mode asked for, not confirmed yet
         settling,   ///< confirmed; the drive's dwell after a change of mode
     };
 
-    /// `timeout` bounds the search; `mode_delay` is the drive's dwell after a change of mode.
-    void start(Instant now, Duration timeout, Duration mode_delay) noexcept;
+    /// `timeout` bounds the search; `mode_delay` is the drive's dwell after a change of mode; `back` the mode it runs in afterwards.
+    void start(Instant now, Duration timeout, Duration mode_delay, DriveMode back = DriveMode::cyclic_position) noexcept;
     /// Ends it early: result `aborted` once the drive stands and is back in cyclic position.
     void abort(Instant now) noexcept;
     /// Forgets it at once: the drive has no power any more.
@@ -34,8 +34,7 @@ public:
     [[nodiscard]] bool busy() const noexcept { return phase_ != Phase::idle; }
     [[nodiscard]] Phase phase() const noexcept { return phase_; }
     [[nodiscard]] DriveMode mode() const noexcept {
-        return phase_ == Phase::entering || phase_ == Phase::searching || phase_ == Phase::braking ? DriveMode::homing
-                                                                                                   : DriveMode::cyclic_position;
+        return phase_ == Phase::entering || phase_ == Phase::searching || phase_ == Phase::braking ? DriveMode::homing : back_;
     }
     [[nodiscard]] bool start_level() const noexcept { return phase_ == Phase::searching; }
 
@@ -51,6 +50,7 @@ private:
 
     Phase phase_ = Phase::idle;
     Result result_ = Result::none;
+    DriveMode back_ = DriveMode::cyclic_position;
     Instant since_{}, begun_{};
     Duration timeout_{}, mode_delay_{};
     bool seen_unattained_ = false;

@@ -91,8 +91,7 @@ void Cia402Drive::encode(const DriveCommand& command, Instant now) noexcept {
     // Until the drive follows in this mode its target is its own actual position: enabling and mode switches never step. From one cyclic
     // mode into another the targets of both are the command's: a motor that turns would feel an actual value, old as it is, as a step.
     const bool changes_over = cyclic(feedback_.mode) && cyclic(command.mode);
-    const bool follows =
-        feedback_.power == PowerState::enabled && (mode_confirmed || changes_over) && command.power == PowerRequest::on;
+    const bool follows = feedback_.power == PowerState::enabled && (mode_confirmed || changes_over) && command.power == PowerRequest::on;
     write_targets(image, command, follows);
     write_limits(image, command);
     if (out_.digital.mapped()) {

@@ -1,5 +1,6 @@
 #pragma once
 // A drive small enough to check by eye: it follows its set-point exactly, `dead_cycles` late, and knows power, faults, switches and a homing.
+// In cyclic torque it is a mass with friction and a load; in cyclic velocity it turns as fast as it is told.
 // It notes what would be felt at a real motor: the largest step of the set-point while it was enabled.
 
 #include <algorithm>
@@ -45,7 +46,11 @@ public:
     std::int64_t wraps_at_home = 0;  ///< whole ranges of the raw position that the port's unwrapping has counted
     bool homing_fails = false, homing_hangs = false;
     DriveMode forced_mode = DriveMode::none;
-    std::uint32_t inputs = 0;  ///< 60FDh
+    int mode_delay = 2;  ///< cycles until it has taken a mode
+    bool refuses_torque_mode = false;
+    double rated_acceleration = 2e6;  ///< counts/s2 that rated torque gives the free motor
+    double load = 0, friction = 0;    ///< rated torques: pulls to negative; against motion
+    std::uint32_t inputs = 0;         ///< 60FDh
     /// A signal on each probe input, on while the motor is between the two counts; and an index pulse at each multiple of `index_distance`.
     struct ProbeSignal {
         std::int64_t low = 0, high = -1;
@@ -81,7 +86,7 @@ public:
         if (obeys) largest_step = std::max<std::int64_t>(largest_step, std::abs(target - from));
         obeyed_ = obeys;
         last_target_ = target;
-        sent_.push_back({setpoint_effective(now), target});
+        sent_.push_back({setpoint_effective(now), target, command.velocity, command.torque});
         if (sent_.size() > 64) sent_.pop_front();
         last = command;
     }
@@ -107,6 +112,7 @@ public:
         feedback_.position_epoch = epoch;
         feedback_.position = std::llround(position) - zero;
         feedback_.velocity = velocity_;
+        feedback_.torque = mode_ == DriveMode::cyclic_torque ? torque_ : load;
         feedback_.homing_attained = attained_;
         feedback_.homing_error = homing_error_;
         feedback_.has_inputs = switches;
@@ -134,16 +140,18 @@ private:
     }
     void step_mode() {
         if (last.mode == mode_) mode_ticks_ = 0;
-        else if (++mode_ticks_ >= 2) mode_ = last.mode;
+        else if (++mode_ticks_ >= mode_delay && !(refuses_torque_mode && last.mode == DriveMode::cyclic_torque)) mode_ = last.mode;
     }
     void step_motor(Instant now) {
         const double before = position;
         if (power != PowerState::enabled) position += coasting;
         else if (mode_ == DriveMode::homing) step_homing();
+        else if (mode_ == DriveMode::cyclic_torque) step_torque(now);
+        else if (mode_ == DriveMode::cyclic_velocity) position += at(now - latch_age * cycle).velocity * to_seconds(cycle);
         else if (!blocked) position = static_cast<double>(target_at(now - latch_age * cycle) - lag);
         for (std::size_t i = 0; i < 2; ++i) step_probe(i, std::llround(before), std::llround(position));
         if (mode_ != DriveMode::homing) attained_ = homing_error_ = false;
-        velocity_ = (position - before) / to_seconds(cycle);
+        if (power != PowerState::enabled || mode_ != DriveMode::cyclic_torque) velocity_ = (position - before) / to_seconds(cycle);
     }
     /// Like CiA 402: the first edge after arming is kept, in continuous mode the newest; disarming forgets it.
     void step_probe(std::size_t i, std::int64_t from, std::int64_t to) {
@@ -176,6 +184,19 @@ private:
         if (turn(from) == turn(to)) return std::nullopt;
         return std::max(turn(from), turn(to)) * index_distance;
     }
+    void step_torque(Instant now) {
+        torque_ = at(now - (latch_age + 1) * cycle).torque;  // what held during the cycle that ended at the latch
+        constexpr int parts = 8;
+        const double dt = to_seconds(cycle) / parts;
+        for (int i = 0; i < parts; ++i) {
+            const double driving = torque_ - load;
+            const double against = velocity_ != 0 ? std::copysign(friction, velocity_) : std::clamp(driving, -friction, friction);
+            const double next = velocity_ + (driving - against) * rated_acceleration * dt;
+            // Friction stops a motion, it does not reverse it.
+            velocity_ = velocity_ != 0 && next * velocity_ < 0 && std::abs(driving) <= friction ? 0 : next;
+            position += velocity_ * dt;
+        }
+    }
     void step_homing() {
         if (!last.start_homing || attained_ || homing_error_ || homing_hangs) return;
         const std::int64_t way = homing_place - std::llround(position);
@@ -203,7 +224,15 @@ private:
     struct Sent {
         Instant effective{};
         std::int64_t target = 0;
+        double velocity = 0, torque = 0;
     };
+    /// The newest command in effect at `t`.
+    [[nodiscard]] Sent at(Instant t) const {
+        Sent found;
+        for (const auto& sent : sent_)
+            if (sent.effective <= t) found = sent;
+        return found;
+    }
     std::deque<Sent> sent_;
     DriveFeedback feedback_;
     DriveMode mode_ = DriveMode::cyclic_position;
@@ -211,7 +240,7 @@ private:
     std::array<int, 2> armed_for_{};
     bool attained_ = false, homing_error_ = false, obeyed_ = false;
     std::int64_t last_target_ = 0;
-    double velocity_ = 0;
+    double velocity_ = 0, torque_ = 0;
 };
 
 }  // namespace taktwerk::axes::test

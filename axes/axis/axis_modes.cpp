@@ -1,0 +1,285 @@
+// The cyclic mode the drive runs in. Each axis has one of its own, position or velocity (the position loop is closed here then), and
+// stays in it for every motion. Only MC_Home by the drive, MC_TorqueControl and an explicit set_controller_mode change the mode.
+//
+//   steady -> entering -> torque -> leaving -> steady      MC_TorqueControl and whatever ends it
+//   steady -> changing -> steady                           set_controller_mode, at standstill
+//
+// In torque the set-point follows the motor, so that leaving it begins where the motor is and as fast as it is.
+
+#include <algorithm>
+#include <cmath>
+
+#include "axes/axis/axis.hpp"
+
+namespace taktwerk::axes {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Duration mode_patience = 500ms;  // a drive that has not taken its mode after this and its own delay will not
+constexpr double dead_cycles = 5;          // from seeing that a torque must end to the first cycle that brakes
+
+bool cyclic(DriveMode mode) noexcept {
+    return mode == DriveMode::cyclic_position || mode == DriveMode::cyclic_velocity || mode == DriveMode::cyclic_torque;
+}
+/// Ends motion: taken in any mode, whatever the drive demands for a change.
+bool only_stops(CommandKind kind) noexcept { return kind == CommandKind::stop || kind == CommandKind::halt; }
+
+}  // namespace
+
+DriveMode Axis::wanted_mode() const noexcept {
+    if (drive_homing_.busy()) return drive_homing_.mode();
+    if (mode_waits_) return mode_phase_ == ModePhase::changing ? former_mode_ : own_mode_;
+    return mode_phase_ == ModePhase::entering || mode_phase_ == ModePhase::torque ? DriveMode::cyclic_torque : own_mode_;
+}
+
+bool Axis::torque_wanted() const noexcept {
+    if (queue_.active().command.kind == CommandKind::torque) return true;
+    return torque_idle_ && !queue_.has_active() && state_ == AxisState::Standstill;
+}
+
+// --- what is accepted ---------------------------------------------------------------------------------------------------------
+
+ErrorId Axis::refuse_mode(const AxisCommand& command, bool starts_now) const noexcept {
+    const auto& drive = port_.capabilities();
+    const bool in_torque = mode_phase_ == ModePhase::entering || mode_phase_ == ModePhase::torque;
+    // At the end of a move the motor is a little behind its set-point: then the change waits for it.
+    const bool stands = setpoint_.at_rest() && (!in_torque || drive_stands());
+    // Out of torque in motion this drive can only be braked first.
+    if (starts_now && in_torque && drive.mode_change_at_standstill && !stands && command.kind != CommandKind::torque &&
+        !only_stops(command.kind))
+        return ErrorId::not_at_standstill;
+    if (command.kind == CommandKind::torque) {
+        if (!drive.has(DriveMode::cyclic_torque)) return ErrorId::not_supported;
+        const bool bounded = config_.control.inertia() > 0 || (drive.velocity_limit && !drive.mode_change_at_standstill);
+        if (!bounded) return ErrorId::not_supported;  // nobody would keep the velocity in its limit
+        if (!starts_now) return ErrorId::none;
+        if (drive.mode_change_at_standstill && !in_torque && !stands) return ErrorId::not_at_standstill;
+        return permitted(torque_of(command)) ? ErrorId::none : ErrorId::interlocked;
+    }
+    if (command.kind != CommandKind::set_controller_mode) return ErrorId::none;
+    const auto mode = static_cast<DriveMode>(static_cast<std::uint8_t>(command.position));
+    if (!cyclic(mode) || !drive.has(mode)) return ErrorId::not_supported;
+    if (mode == DriveMode::cyclic_velocity && !(config_.control.kv > 0)) return ErrorId::not_supported;  // no position loop
+    return !starts_now || stands ? ErrorId::none : ErrorId::not_at_standstill;
+}
+
+double Axis::torque_of(const AxisCommand& command) const noexcept {
+    const double torque = std::get<TorqueDetails>(command.details).torque;
+    switch (command.direction) {
+        case mcNegativeDirection: return -torque;
+        case mcCurrentDirection: return setpoint_.state().velocity < 0 ? -torque : torque;
+        case mcPositiveDirection:
+        case mcShortestWay: break;
+    }
+    return torque;
+}
+
+// --- begin --------------------------------------------------------------------------------------------------------------------
+
+void Axis::begin_torque(const AxisCommand& command) noexcept {
+    const auto& details = std::get<TorqueDetails>(command.details);
+    const auto dynamics = dynamics_of(command, config_.limits, config_.defaults);
+    const double wanted = command.velocity == 0 ? config_.limits.velocity : command.velocity;
+    const auto allowed = allowed_speed(wanted, config_.limits.velocity, velocity_cap());
+    torque_velocity_ = allowed.speed;
+    const double torque = torque_of(command);
+    // A negative torque in a given direction brakes motion in it and does not turn it round (P1-184, P1-187).
+    auto sense = TorqueSense::both;
+    if (details.torque < 0 && command.direction != mcShortestWay)
+        sense = torque < 0 ? TorqueSense::only_positive : TorqueSense::only_negative;
+    torque_.command(torque, details.ramp, {allowed.speed, dynamics.acceleration, dynamics.deceleration}, sense);
+    torque_idle_ = false;
+    aim(Goal::Kind::given, 0, full_limits(config_.limits), allowed.limiter);
+    if (mode_phase_ == ModePhase::torque || mode_phase_ == ModePhase::entering) return;
+    go_mode(ModePhase::entering);
+    mode_waits_ = port_.capabilities().mode_change_at_standstill;
+}
+
+void Axis::begin_mode_change(const AxisCommand& command) noexcept {
+    const auto mode = static_cast<DriveMode>(static_cast<std::uint8_t>(command.position));
+    goal_ = {};
+    goal_pending_ = false;
+    if (mode == DriveMode::cyclic_torque) {
+        torque_.command(0, 0, {config_.limits.velocity, config_.limits.acceleration, config_.limits.deceleration}, TorqueSense::both);
+        torque_velocity_ = config_.limits.velocity;
+    } else {
+        former_mode_ = own_mode_;
+        own_mode_ = mode;
+    }
+    torque_idle_ = mode == DriveMode::cyclic_torque;
+    go_mode(torque_idle_ ? ModePhase::entering : ModePhase::changing);
+    mode_waits_ = true;
+}
+
+void Axis::go_mode(ModePhase phase) noexcept {
+    mode_phase_ = phase;
+    mode_since_ = now_;
+    mode_seen_ = mode_waits_ = false;
+}
+
+// --- each cycle ---------------------------------------------------------------------------------------------------------------
+
+/// The drive has shown the wanted mode for as long as it wants before commands.
+bool Axis::mode_confirmed() noexcept {
+    if (!feedback_.fresh) return false;
+    const bool there = feedback_.mode == wanted_mode();
+    if (there && !mode_seen_) mode_seen_at_ = now_;
+    mode_seen_ = there;
+    return there && now_ - mode_seen_at_ >= port_.capabilities().mode_change_delay;
+}
+
+/// True: this cycle's set-point is made.
+bool Axis::step_mode(Duration period) noexcept {
+    if (mode_waits_) {
+        if (drive_stands()) mode_waits_ = false;
+        else mode_since_ = now_;
+    }
+    const bool confirmed = !mode_waits_ && mode_confirmed();
+    const bool late = now_ - mode_since_ >= mode_patience + port_.capabilities().mode_change_delay;
+    switch (mode_phase_) {
+        case ModePhase::steady: return false;
+        case ModePhase::entering: return enter_torque(confirmed, late, period);
+        case ModePhase::torque: return run_torque(period);
+        case ModePhase::leaving:
+            if (torque_wanted()) {  // again
+                go_mode(ModePhase::entering);
+                return step_mode(period);
+            }
+            if (confirmed) {  // the set-point goes on from the last one the drive was given
+                mode_phase_ = ModePhase::steady;
+                if (goal_.kind != Goal::Kind::rest && goal_.kind != Goal::Kind::given) goal_pending_ = true;
+                else if (!begin_pending_ && !goal_pending_) stop_or_stand();
+                return false;
+            }
+            follow_motor();
+            if (!late) return true;
+            mode_phase_ = ModePhase::steady;
+            setpoint_.place(actual_local());
+            fail(AxisAlarm::drive_mode_mismatch, static_cast<double>(feedback_.mode), static_cast<double>(own_mode_));
+            return false;
+        case ModePhase::changing: return change_mode(confirmed, late);
+    }
+    return false;
+}
+
+bool Axis::enter_torque(bool confirmed, bool late, Duration period) noexcept {
+    const bool by_command = queue_.active().command.kind == CommandKind::set_controller_mode;
+    if (!torque_wanted() && !by_command) {
+        go_mode(ModePhase::leaving);
+        return step_mode(period);
+    }
+    if (confirmed) {
+        go_mode(ModePhase::torque);
+        torque_.start(view_.actual_torque, motor_velocity());
+        if (by_command) {
+            queue_.finish_active(Outcome::done);
+            start_waiting(0);
+        }
+        return step_mode(period);
+    }
+    if (late) {
+        torque_idle_ = false;
+        queue_.finish_active(Outcome::error, ErrorId::drive_mode_refused);
+        go_mode(ModePhase::leaving);
+        stop_on_own_account(false);
+        return step_mode(period);
+    }
+    return false;  // meanwhile the axis goes on as it did, in its own mode
+}
+
+bool Axis::run_torque(Duration period) noexcept {
+    const auto& drive = port_.capabilities();
+    if (!torque_wanted()) {
+        if (!drive.mode_change_at_standstill || drive_stands()) {
+            go_mode(ModePhase::leaving);
+            torque_idle_ = false;
+            return step_mode(period);
+        }
+        const bool error = state_ == AxisState::ErrorStop;
+        torque_.brake(error ? stop_limits(config_.limits).deceleration
+                            : dynamics_of(queue_.active().command, config_.limits, config_.defaults).deceleration);
+    } else if (begin_pending_) {
+        begin_command();
+    }
+    if (queue_.active().command.kind == CommandKind::torque) goal_pending_ = false;
+    follow_motor();
+    (void)torque_.step(motor_velocity(), period);
+    guard_torque();
+    queue_.set_in_target(queue_.active().command.kind == CommandKind::torque && torque_.in_torque() && !feedback_.internal_limit);
+    return true;
+}
+
+/// As the guards of planned motion, but early by what leaving torque takes.
+void Axis::guard_torque() noexcept {
+    if (state_ == AxisState::ErrorStop || state_ == AxisState::Stopping || guard_switches() || !software_limits_hold()) return;
+    auto reach = setpoint_.state();
+    if (reach.velocity == 0) return;
+    reach.position += reach.velocity * (dead_cycles * to_seconds(cycle_) + to_seconds(port_.capabilities().mode_change_delay));
+    const double end = units_.to_program(reach.position + stopping_distance(reach, stop_limits(config_.limits)));
+    const double edge = reach.velocity > 0 ? config_.limits.position_max : config_.limits.position_min;
+    if (reach.velocity > 0 ? end > edge : end < edge)
+        fail(AxisAlarm::software_limit_reached, units_.to_program(setpoint_.state().position), edge);
+}
+
+bool Axis::change_mode(bool confirmed, bool late) noexcept {
+    if (queue_.active().command.kind != CommandKind::set_controller_mode) {  // ended by something else, which begins in the new mode
+        go_mode(ModePhase::leaving);
+        return true;
+    }
+    if (confirmed) {
+        mode_phase_ = ModePhase::steady;
+        queue_.finish_active(Outcome::done);
+        start_waiting(0);
+        return false;
+    }
+    if (!late) return true;
+    own_mode_ = former_mode_;
+    queue_.finish_active(Outcome::error, ErrorId::drive_mode_refused);
+    go_mode(ModePhase::leaving);
+    stop_on_own_account(false);
+    return true;
+}
+
+/// Out of torque with nothing to do: the motor may still turn.
+void Axis::stop_or_stand() noexcept {
+    if (drive_stands()) setpoint_.place(setpoint_.state().position);
+    else stop_on_own_account(false);
+}
+
+double Axis::motor_velocity() const noexcept { return drive_stands() ? 0 : feedback_.velocity / units_.counts_per_unit(); }
+
+/// Where the motor will be when this cycle's set-point takes effect.
+void Axis::follow_motor() noexcept {
+    const double velocity = motor_velocity();
+    const double ahead = velocity * to_seconds(port_.setpoint_effective(now_) - feedback_.latched);
+    setpoint_.set({actual_local() + ahead, velocity, 0});
+}
+
+// --- to the drive -------------------------------------------------------------------------------------------------------------
+
+void Axis::fill_targets() noexcept {
+    const auto& set = setpoint_.state();
+    const auto& control = config_.control;
+    const double counts = units_.counts_per_unit();
+    const double sense = config_.gearing.inverted ? -1 : 1;
+    command_.mode = wanted_mode();
+    command_.position = seeded_ ? units_.counts(set.position + compensation_.offset()) : feedback_.position;
+    command_.velocity = control.feed_forward * set.velocity * counts;
+    command_.torque = sense * control.torque_feed_forward * control.inertia() * set.acceleration;
+    if (own_mode_ == DriveMode::cyclic_velocity) {
+        const bool closed = mode_phase_ == ModePhase::steady && online() && !power_.follows_actual();
+        const double limit = control.output_limit > 0 ? control.output_limit : 1.2 * config_.limits.velocity;
+        const double velocity = mode_phase_ == ModePhase::leaving
+                                    ? set.velocity
+                                    : control.feed_forward * set.velocity + (closed ? control.kv * view_.following_error : 0);
+        command_.velocity = std::clamp(velocity, -limit, limit) * counts;
+    }
+    if (mode_phase_ == ModePhase::entering) command_.torque = feedback_.torque;  // what the motor has when it takes the mode
+    if (mode_phase_ != ModePhase::torque) return;
+    command_.torque = sense * torque_.torque();
+    command_.velocity_limit = torque_velocity_ * std::abs(counts);
+}
+
+}  // namespace taktwerk::axes
