@@ -52,7 +52,7 @@ TEST(Backlash, AReversalAddsItSlowlyAndProgramsDoNotSeeIt) {
     EXPECT_LE(most, 2 + 1);  // 2 u/s are 2 counts per cycle; rounding
     EXPECT_EQ(rig.view().set_position, 5);
     EXPECT_EQ(rig.drive.last.position, 4950);
-    rig.run(10);
+    rig.run(20);
     EXPECT_NEAR(rig.view().actual_position, 5, 1e-9) << "read on the same flank";
     EXPECT_TRUE(rig.view().in_position);
 
