@@ -255,6 +255,59 @@ TEST(Cia402Mode, TheTargetIsTheActualPositionUntilTheDriveFollowsInThisMode) {
     EXPECT_EQ(rig.got(0x607A), -4321);
 }
 
+// From one cyclic mode into another a turning motor must feel nothing: both targets are the command's until 6061h has changed.
+TEST(Cia402Mode, BetweenCyclicModesTheTargetsOfBothAreTheCommands) {
+    DriveRig rig;
+    rig.profile.modes = {DriveMode::cyclic_position, DriveMode::cyclic_velocity, DriveMode::cyclic_torque, DriveMode::homing};
+    rig.rx.push_back({0x60FF, 0});
+    rig.rx.push_back({0x6071, 0});
+    ASSERT_TRUE(rig.build()) << rig.refusal.text();
+    rig.command.power = PowerRequest::on;
+    rig.enabled();
+    rig.put(0x6064, -4321);
+    rig.command.position = 777;
+    rig.command.velocity = 1500;
+    rig.command.torque = 0.25;
+    rig.run(6);
+    EXPECT_EQ(rig.got(0x6071), 0) << "nobody asked for torque";
+
+    rig.command.mode = DriveMode::cyclic_torque;
+    rig.run(6);
+    EXPECT_EQ(rig.got(0x6060), 10);
+    EXPECT_EQ(rig.got(0x607A), 777) << "as long as the drive is in CSP";
+    EXPECT_EQ(rig.got(0x6071), 250);
+    rig.mode(10);
+    rig.run(6);
+    EXPECT_EQ(rig.got(0x6071), 250);
+
+    rig.command.mode = DriveMode::cyclic_velocity;
+    rig.run(6);
+    EXPECT_EQ(rig.got(0x60FF), 1500);
+    EXPECT_EQ(rig.got(0x6071), 250) << "as long as the drive is in CST";
+    rig.mode(9);
+    rig.run(6);
+    EXPECT_EQ(rig.got(0x6071), 0);
+}
+
+// The velocity limit of a torque command goes with it: 607Fh bounds other modes, too.
+TEST(Cia402Mode, TheVelocityLimitIsGivenBackAfterTorque) {
+    DriveRig rig;
+    rig.rx.push_back({0x607F, 0});
+    ecat::StartupSdo fastest;
+    fastest.index = 0x607F;
+    fastest.value = 90'000;
+    rig.startup = {fastest};
+    ASSERT_TRUE(rig.build()) << rig.refusal.text();
+    rig.run(3);
+    EXPECT_EQ(rig.got(0x607F), 90'000);
+    rig.command.velocity_limit = 20'000;
+    rig.run(3);
+    EXPECT_EQ(rig.got(0x607F), 20'000);
+    rig.command.velocity_limit = std::numeric_limits<double>::infinity();
+    rig.run(3);
+    EXPECT_EQ(rig.got(0x607F), 90'000);
+}
+
 // SV33-E 3.4.3(2) bit 12; SE-808X 3.2.6 reserves it.
 TEST(Cia402Mode, ADriveThatDoesNotFollowSaysSo) {
     DriveRig rig;
