@@ -175,7 +175,7 @@ TEST(TorqueControl, BrakingEndsAtStandstillWithTheDeceleration) {
     plant.run(static_cast<int>(from / 300 * 1000 * 0.8));
     EXPECT_GT(plant.velocity, 0);
     plant.run(static_cast<int>(from / 300 * 1000 * 0.3) + 100);
-    EXPECT_NEAR(plant.velocity, 0, 0.01);
+    EXPECT_NEAR(plant.velocity, 0, 0.1) << "the default window of standstill, in which an axis leaves torque";
     EXPECT_GT(plant.slowest, -0.01);
     EXPECT_GT(plant.steepest_down, -300 * 1.1);
 }

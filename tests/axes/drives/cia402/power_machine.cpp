@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <limits>
+
 #include "tests/axes/drives/cia402/scripted_drive.hpp"
 
 namespace taktwerk::axes::cia402::test {
