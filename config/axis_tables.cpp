@@ -275,6 +275,8 @@ Table<AxisBinding> axis_table() {
         field("compensation", &A::compensation, section(compensation_table()), "backlash and pitch errors"),
         field("require_homed", &A::require_homed, boolean(), "absolute moves need a homed axis"),
         field("disabled", &A::disabled, boolean(), "left out while commissioning: its drive is never enabled"),
+        field("encoder", &A::encoder, boolean(),
+              "it only measures (`limits.velocity`: its fastest): never powered, takes no motion, may be the master of other axes"),
         field("simulated", &A::simulated, boolean(), "its drive is simulated although the bus is real"),
         field("queue_depth", &A::queue_depth, integer<std::uint8_t>(1, 8), "buffered motions"),
         field("stale_limit", &A::stale_limit, integer<std::uint16_t>(1, 1000),

@@ -63,7 +63,7 @@ void Axis::update(Instant now) noexcept {
     now_ = now;
     power_calls_ = 0;
     read_feedback();
-    if (!config_.disabled) watch_drive();
+    if (!config_.disabled && !config_.encoder) watch_drive();
     run_power();
     watch_following_error();
     watch_probes();
@@ -116,7 +116,7 @@ void Axis::watch_drive() noexcept {
 
 bool Axis::power_wanted() const noexcept {
     using Phase = PowerSequence::Phase;
-    if (config_.disabled) return false;
+    if (config_.disabled || config_.encoder) return false;
     const bool drive_on = power_.phase() == Phase::on || power_.phase() == Phase::settling;
     switch (state_) {
         case AxisState::Disabled: return power_wish_ && !power_dropping_ && emergency_ == EmergencyStop::none;

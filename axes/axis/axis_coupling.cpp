@@ -183,6 +183,7 @@ void Axis::plan_link(CommandId id, const AxisCommand& command) noexcept {
     const double since = std::abs(way(before->end(), now.place, scene_.axis(link.masters.axes[0])->units_.feed()));
     link.chained = since <= 2 * std::abs(now.velocity) * to_seconds(cycle_);
     link.master_start = before->end();
+    link.slave_start = before->slave_end();
 }
 
 void Axis::drop(Link& link) noexcept {

@@ -69,9 +69,11 @@ ErrorId Axis::engage(Duration period) noexcept {
     const auto first = earlier(seen(link, 0), to_seconds(period));
     const auto second = link.masters.axes[1].valid() ? earlier(seen(link, 1), to_seconds(period)) : EndlessMotion{};
     if (!link.started) {
-        if (!link.chained) link.master_start = first.place;
         link.second_start = second.place;
-        link.slave_start = slave_frame().place(setpoint_.base().position);
+        if (!link.chained) {
+            link.master_start = first.place;
+            link.slave_start = slave_frame().place(setpoint_.base().position);
+        }
     }
     auto error = ErrorId::not_supported;
     switch (link.command.kind) {

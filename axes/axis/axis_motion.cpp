@@ -68,6 +68,7 @@ void Axis::follow_actual(Duration period) noexcept {
     const double most = config_.limits.velocity * to_seconds(period);
     aligned_ = drive_homing_.busy() || std::abs(way) <= most;
     setpoint_.place(aligned_ ? actual_local() : setpoint_.state().position + std::copysign(most, way));
+    if (endless_ && std::abs(actual_local()) >= far_from_anchor * units_.feed()) reanchor();  // an encoder turns for years
     if (!power_.follows_actual()) return;
     mode_phase_ = ModePhase::steady;
     torque_idle_ = mode_waits_ = false;

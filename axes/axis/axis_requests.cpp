@@ -100,6 +100,7 @@ ErrorId Axis::refuse_target(const AxisCommand& command, bool starts_now) const n
 }
 
 ErrorId Axis::refuse(const AxisCommand& command) noexcept {
+    if (config_.encoder) return ErrorId::not_supported;  // nothing there that moves
     if (const auto error = check_numbers(command); error != ErrorId::none) return error;
     if (const auto error = refuse_state(command); error != ErrorId::none) return error;
     if (waits(command) && waits_for_ever()) return ErrorId::buffer_mode_not_supported;
@@ -147,6 +148,7 @@ Submitted Axis::submit(const AxisCommand& command, Owner owner) noexcept {
 ErrorId Axis::power(bool enable, bool positive, bool negative, Owner owner) noexcept {
     if (!may(owner)) return ErrorId::owned_by_other;
     if (++power_calls_ > 1) return ErrorId::power_conflict;
+    if (enable && config_.encoder) return ErrorId::not_supported;
     if (enable && config_.disabled) return ErrorId::drive_not_ready;
     permit_positive_ = positive;
     permit_negative_ = negative;

@@ -45,7 +45,7 @@ struct Link {
 
     // Where its relative inputs count from; ContinuousUpdate keeps it.
     bool started = false;
-    bool chained = false;  ///< master_start is known already: the end of the cam before
+    bool chained = false;  ///< the starts are known already: the end of the cam before
     EndlessPlace master_start, second_start, slave_start;
     double table_start = 0;  ///< u of the table
 

@@ -26,6 +26,10 @@ CamCurve::Spot CamCurve::locate(const EndlessPlace& master) noexcept {
     return {passes_.whole() + static_cast<std::int64_t>(more), std::clamp(from - more * pass_length_, 0.0, pass_length_)};
 }
 
+EndlessPlace CamCurve::slave_end() const noexcept {
+    return {fit_.slave_origin.feeds, fit_.slave_origin.local + fit_.slave_scaling * (cam_->at(held_).position - fit_.table_origin)};
+}
+
 EndlessMotion CamCurve::at(const EndlessMotion& master) noexcept {
     const auto spot = locate(master.place);
     const std::int64_t before = seen_ ? pass_ : spot.pass;

@@ -37,6 +37,8 @@ public:
     [[nodiscard]] bool over() const noexcept { return phase_ == Phase::over; }
     /// The master's place at the end by which the cam was left last: where a cam that is chained to it begins.
     [[nodiscard]] const EndlessPlace& end() const noexcept { return end_; }
+    /// Where the cam leaves the slave there; only when over().
+    [[nodiscard]] EndlessPlace slave_end() const noexcept;
     void shift(double delta) noexcept { fit_.slave_origin.local += delta; }
 
 private:

@@ -17,7 +17,8 @@ constexpr double velocity_gain = (1 - pole) * (1 - pole);
 bool MasterTrack::next(const Reading& reading, double period) noexcept {
     if (!reading.usable) return false;
     const auto& now = reading.motion;
-    if (!known_) {
+    const bool first = !known_;
+    if (first) {
         known_ = true;
         gap_ = 0;
         last_ = now.place;
@@ -38,7 +39,7 @@ bool MasterTrack::next(const Reading& reading, double period) noexcept {
     }
 
     // A reading that is not fresh has become older instead.
-    if (reading.fresh) {
+    if (reading.fresh && !first) {
         filter_.place.local += filter_.velocity * passed;
         // The filter keeps the reading's feeds, so its local part stays small.
         const double error = way(filter_.place, now.place, reading.feed);

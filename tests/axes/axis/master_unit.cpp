@@ -1,0 +1,221 @@
+// Masters: measured ones, encoders, and those that get lost.
+
+#include "tests/axes/axis/coupling_rig.hpp"
+
+namespace taktwerk::axes::test {
+namespace {
+
+AxisConfig encoder() {
+    auto config = plain_slave();
+    config.encoder = true;
+    return config;
+}
+
+AxisCommand measured(AxisCommand command) {
+    std::get<GearDetails>(command.details).source = mcActualValue;
+    return command;
+}
+
+TEST(Encoder, IsNeverPoweredAndTakesNoMotion) {
+    CouplingRig rig({encoder()});
+    rig.start();
+    EXPECT_EQ(rig.axes[0].power(true, true, true, Owner::program), ErrorId::not_supported);
+    rig.run(10);
+    EXPECT_EQ(rig.view(0).state, AxisState::Disabled);
+    EXPECT_EQ(rig.axes[0].drive_command().power, PowerRequest::off);
+    for (const auto& command : {absolute(1), at_velocity(1), halt(), stop(), jog(1), home(0)})
+        EXPECT_EQ(rig.refuse(0, command), ErrorId::not_supported);
+    rig.drives[0]->position = 1234;
+    rig.run(5);
+    EXPECT_NEAR(rig.view(0).actual_position, 1.234, 1e-9);
+}
+
+// An encoder that turns steadily: 20 counts a cycle are 20 u/s. The slave's set-point is where the encoder is when the slave's drive
+// acts on it: one cycle from latch to arrival, one from sending to effect.
+// P1-278
+TEST(Encoder, IsFollowedAtTheInstantOfTheSlavesSetPoint) {
+    CouplingRig rig({encoder(), plain_slave()});
+    rig.start();
+    rig.drives[0]->coasting = 20;
+    rig.run(300);
+    const auto id = rig.accept(1, measured(gear_in(0)));
+    ASSERT_TRUE(rig.run_to_sync(1, id, 500));
+    EXPECT_NEAR(rig.view(1).set_velocity, 20, 1e-6);
+    // The lost distance is settled at the start; from then on both go the same way.
+    const double apart = rig.view(1).set_position - rig.view(0).actual_position;
+    for (int i = 0; i < 2000; ++i) {
+        rig.step();
+        ASSERT_NEAR(rig.view(1).set_position - rig.view(0).actual_position, apart, 1e-6);
+        ASSERT_EQ(rig.status(1, id), CommandStatus::in_target);
+    }
+    rig.expect_no_jump();
+}
+
+// Extrapolation, seen where it cannot hide in an offset: a cam is a matter of places. A hump of 10 over 20, entered absolutely.
+// P1-252
+TEST(Encoder, DeadTimeIsMadeUp) {
+    CouplingRig rig({encoder(), plain_slave()});
+    const auto table =
+        rig.tables.add_cam(std::vector<CamPoint>{{.master = 0, .slave = 0}, {.master = 10, .slave = 3}, {.master = 20, .slave = 0}});
+    rig.start();
+    ASSERT_EQ(rig.axes[1].set(SelectCam{table, true}, Owner::program), ErrorId::none);
+    const auto id = rig.view(1).selected_cam;
+    rig.drives[0]->coasting = 20;
+    rig.run(300);
+    auto command = cam_in(0, id);
+    std::get<CamDetails>(command.details).source = mcActualValue;
+    const auto cam = rig.accept(1, command);
+    ASSERT_TRUE(rig.run_to_sync(1, cam, 2000));
+    rig.run(300);
+    for (int i = 0; i < 2000; ++i) {
+        rig.step();
+        // The motor's place now is latched as one cycle old; the set-point acts one cycle later: two cycles of 20 u/s.
+        const double then = rig.view(0).actual_position + 20 * 0.002;
+        ASSERT_NEAR(rig.view(1).set_position, rig.tables.prepared(id)->at(std::fmod(then, 20)).position, 1e-5) << i;
+    }
+    rig.expect_no_jump();
+}
+
+// Noise of the measurement reaches the slave with the actual source only.
+// P1-278
+TEST(Encoder, NoiseComesWithTheActualSourceOnly) {
+    for (const auto source : {mcSetValue, mcActualValue}) {
+        CouplingRig rig(2);
+        rig.start();
+        rig.accept(0, at_velocity(20));
+        rig.run(100);
+        auto command = gear_in(0);
+        std::get<GearDetails>(command.details).source = source;
+        const auto id = rig.accept(1, command);
+        ASSERT_TRUE(rig.run_to_sync(1, id, 1000));
+        rig.run(200);
+        double least = 1e9, most = -1e9;
+        for (int i = 0; i < 1000; ++i) {
+            rig.drives[0]->lag = i * 7919 % 5 - 2;  // counts
+            rig.step();
+            least = std::min(least, rig.view(1).set_velocity);
+            most = std::max(most, rig.view(1).set_velocity);
+        }
+        if (source == mcSetValue) {
+            EXPECT_NEAR(most - least, 0, 1e-9);
+        } else {
+            EXPECT_GT(most - least, 1e-3);
+        }
+        EXPECT_LT(most - least, 2);  // raw, 4 counts in a cycle would be 4 u/s
+        rig.expect_no_jump();
+    }
+}
+
+// A measured master whose feedback stops: a short gap is bridged, a long one ends the coupling in an error, along the slave's own ramp.
+TEST(Master, LossOfFeedbackStopsTheSlave) {
+    CouplingRig rig({encoder(), plain_slave()});
+    rig.start();
+    rig.drives[0]->coasting = 30;
+    rig.run(100);
+    const auto id = rig.accept(1, measured(gear_in(0)));
+    ASSERT_TRUE(rig.run_to_sync(1, id, 1000));
+    rig.run(100);
+    rig.drives[0]->silent = true;
+    rig.run(2);
+    rig.drives[0]->silent = false;
+    rig.run(50);
+    EXPECT_EQ(rig.status(1, id), CommandStatus::in_target);
+    EXPECT_NEAR(rig.view(1).set_velocity, 30, 0.01);
+
+    rig.drives[0]->offline = true;
+    rig.step();
+    EXPECT_EQ(rig.view(1).state, AxisState::ErrorStop);
+    EXPECT_EQ(rig.error_of(1, id), ErrorId::master_lost);
+    EXPECT_TRUE(rig.raised(1, AxisAlarm::master_lost));
+    rig.run(100);
+    EXPECT_EQ(rig.view(1).set_velocity, 0);
+    rig.expect_no_jump();
+
+    rig.drives[0]->offline = false;
+    rig.run(5);
+    EXPECT_EQ(rig.axes[1].reset(Owner::program), ErrorId::none);
+    ASSERT_TRUE(rig.run_until([&] { return rig.view(1).state == AxisState::Standstill; }, 100));
+    ASSERT_TRUE(rig.run_to_sync(1, rig.accept(1, measured(gear_in(0))), 1000));
+    rig.expect_no_jump();
+}
+
+// A master's drive fails: the master stops along its error ramp, and a slave of its set-points goes with it to the end.
+TEST(Master, ASlaveOfSetPointsFollowsItsMasterIntoTheErrorStop) {
+    CouplingRig rig(2);
+    rig.start();
+    rig.accept(0, at_velocity(40));
+    const auto id = rig.accept(1, gear_in(0));
+    ASSERT_TRUE(rig.run_to_sync(1, id));
+    rig.run(100);
+    const double apart = rig.view(1).set_position - rig.view(0).set_position;
+    rig.drives[0]->blocked = true;
+    rig.axes[0].stop_for_error(0x3001, false);
+    for (int i = 0; i < 60; ++i) {
+        rig.step();
+        ASSERT_NEAR(rig.view(1).set_position - rig.view(0).set_position, apart, 1e-9);
+    }
+    EXPECT_EQ(rig.view(0).state, AxisState::ErrorStop);
+    EXPECT_EQ(rig.view(1).state, AxisState::SynchronizedMotion);
+    EXPECT_EQ(rig.view(1).set_velocity, 0);
+    rig.expect_no_jump();
+}
+
+// The master's place gets another number while it is coupled: no slave may go there.
+TEST(Master, AJumpOfTheMastersPlaceIsALoss) {
+    CouplingRig rig({encoder(), plain_slave()});
+    rig.start();
+    rig.run(20);
+    const auto id = rig.accept(1, measured(gear_in(0)));
+    rig.run(100);
+    rig.drives[0]->position += 50'000;
+    rig.run(2);
+    EXPECT_EQ(rig.error_of(1, id), ErrorId::master_lost);
+    EXPECT_EQ(rig.view(1).state, AxisState::ErrorStop);
+    EXPECT_NEAR(rig.view(1).set_position, 0, 1e-6);
+    rig.expect_no_jump();
+}
+
+// MC_SetPosition gives places other numbers and moves nothing: neither the slave of the master nor the slave itself (U-19).
+TEST(Master, SetPositionDisturbsNoCoupling) {
+    CouplingRig rig(2);
+    rig.start();
+    rig.accept(0, at_velocity(20));
+    const auto id = rig.accept(1, gear_in(0));
+    ASSERT_TRUE(rig.run_to_sync(1, id));
+    rig.run(10);
+    const auto counts = [&](std::size_t axis) { return rig.axes[axis].drive_command().position; };
+    const auto apart = counts(1) - counts(0);
+    EXPECT_EQ(rig.axes[0].set(SetPosition{500}, Owner::program), ErrorId::none);
+    rig.run(10);
+    EXPECT_EQ(rig.axes[1].set(SetPosition{-70, true}, Owner::program), ErrorId::none);
+    for (int i = 0; i < 200; ++i) {
+        rig.step();
+        ASSERT_LE(std::abs(counts(1) - counts(0) - apart), 1);
+        ASSERT_EQ(rig.status(1, id), CommandStatus::in_target);
+    }
+}
+
+// A coupling that runs for ever: the axes move their anchors, the slave stays where the ratio says, to the count. Ten thousand turns
+// with the ratio 1/3 between feeds of 10 and 10.
+TEST(Master, EndlessAxesDoNotDrift) {
+    auto fast = plain_slave();
+    fast.gearing.feed = 0.1;  // ten turns a second at 1 u/s: anchors move often
+    fast.gearing.counts_per_revolution = 100;
+    CouplingRig rig({fast, fast});
+    rig.start();
+    const auto id = rig.accept(1, gear_in(0, 1, 3));
+    rig.run(3);
+    rig.accept(0, at_velocity(99));
+    for (int i = 0; i < 12000; ++i) {
+        rig.step();
+        const double master = static_cast<double>(rig.axes[0].drive_command().position);
+        const double slave = static_cast<double>(rig.axes[1].drive_command().position);
+        ASSERT_NEAR(slave, master / 3, 1.01) << i;
+    }
+    EXPECT_EQ(rig.status(1, id), CommandStatus::in_target);
+    EXPECT_GT(rig.axes[0].drive_command().position, 1'100'000);  // 11000 turns
+    rig.expect_no_jump();
+}
+
+}  // namespace
+}  // namespace taktwerk::axes::test

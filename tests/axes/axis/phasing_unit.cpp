@@ -1,0 +1,150 @@
+// MC_PhasingAbsolute, MC_PhasingRelative: the master's position as the slave sees it.
+
+#include "tests/axes/axis/coupling_rig.hpp"
+
+namespace taktwerk::axes::test {
+namespace {
+
+constexpr auto absolutely = CommandKind::phasing_absolute, relatively = CommandKind::phasing_relative;
+
+struct PhasedRig : CouplingRig {
+    PhasedRig() : CouplingRig(2) {
+        start();
+        accept(0, at_velocity(20));
+        run(100);
+        gear = accept(1, gear_in(0, 2, 1));
+        EXPECT_TRUE(run_to_sync(1, gear));
+        offset = view(1).set_position - 2 * view(0).set_position;
+    }
+    CommandId gear = 0;
+    double offset = 0;
+    /// slave = 2 * (master + shift) + offset
+    [[nodiscard]] double shift() const { return (view(1).set_position - offset) / 2 - view(0).set_position; }
+};
+
+// 5 u at 25 u/s and 400 u/s2 (twice of it is what the slave can): 62.5 ms up, 137.5 ms, 62.5 ms down; the coupling stays active beside it.
+// P1-290, P1-291, P1-292, P1-294, P1-295, P1-297
+TEST(Phasing, AbsoluteShiftsToTheValueAndStays) {
+    PhasedRig rig;
+    auto command = phasing(absolutely, 5, 25);
+    command.acceleration = command.deceleration = 400;
+    const auto phase = rig.accept(1, command);
+    int cycles = 0;
+    while (rig.status(1, phase) == CommandStatus::active && cycles < 1000) {
+        rig.step();
+        ++cycles;
+        ASSERT_NEAR(rig.shift(), rig.view(1).phase_shift, 1e-9);
+        ASSERT_NEAR(rig.view(1).phase_shift, rig.view(1).phase_covered, 1e-12);
+        ASSERT_LE(rig.view(1).set_velocity, 2 * (20 + 25) + 1e-9);
+        ASSERT_EQ(rig.status(1, rig.gear), CommandStatus::in_target);
+        ASSERT_EQ(rig.view(1).state, AxisState::SynchronizedMotion);
+    }
+    EXPECT_EQ(rig.status(1, phase), CommandStatus::done);
+    EXPECT_NEAR(cycles, 263, 1);
+    for (int i = 0; i < 1000; ++i) {
+        rig.step();
+        ASSERT_NEAR(rig.shift(), 5, 1e-9);
+    }
+    rig.accept(1, command);
+    for (int i = 0; i < 100; ++i) {
+        rig.step();
+        ASSERT_NEAR(rig.shift(), 5, 1e-9);
+    }
+}
+
+// P1-293, P1-295
+TEST(Phasing, RelativeAddsToTheShift) {
+    PhasedRig rig;
+    rig.accept(1, phasing(relatively, 4, 25));
+    rig.run(400);
+    rig.accept(1, phasing(relatively, -1.5, 25));
+    rig.run(10);
+    EXPECT_LT(rig.view(1).phase_covered, 0);
+    rig.run(400);
+    EXPECT_NEAR(rig.shift(), 2.5, 1e-9);
+    EXPECT_NEAR(rig.view(1).phase_covered, -1.5, 1e-9);
+    rig.expect_no_jump();
+}
+
+// The slave's limit of 1000 u/s2 would be 2000 with the ratio 2: the phasing asks for what the slave can.
+TEST(Phasing, ANewOneTakesOverAndABufferedOneWaits) {
+    PhasedRig rig;
+    auto gentle = phasing(relatively, 10, 20);
+    gentle.acceleration = gentle.deceleration = 400;
+    const auto first = rig.accept(1, gentle);
+    rig.run(50);
+    gentle.position = -3;
+    const auto second = rig.accept(1, gentle);  // from where the first one is
+    EXPECT_EQ(rig.status(1, first), CommandStatus::aborted);
+    const double there = rig.view(1).phase_shift;
+    gentle.kind = absolutely;
+    gentle.position = 1;
+    gentle.buffer_mode = mcBuffered;
+    const auto third = rig.accept(1, gentle);
+    const auto status = rig.view(1).status(third);
+    EXPECT_NE(status, CommandStatus::active);
+    double farthest = there;
+    ASSERT_TRUE(rig.run_until([&] {
+        farthest = std::max(farthest, rig.view(1).phase_shift);
+        return rig.status(1, second) == CommandStatus::done;
+    }));
+    EXPECT_NEAR(rig.shift(), there - 3, 1e-9);
+    EXPECT_GT(farthest, there);
+    ASSERT_TRUE(rig.run_until([&] { return rig.status(1, third) == CommandStatus::done; }));
+    EXPECT_NEAR(rig.shift(), 1, 1e-9);
+    rig.expect_no_jump();
+}
+
+TEST(Phasing, NeedsACoupling) {
+    CouplingRig rig(2);
+    rig.start();
+    EXPECT_EQ(rig.refuse(1, phasing(absolutely, 1, 10)), ErrorId::not_coupled);
+    rig.accept(1, at_velocity(10));
+    EXPECT_EQ(rig.refuse(1, phasing(absolutely, 1, 10)), ErrorId::not_coupled);
+    rig.accept(1, gear_in(0));
+    EXPECT_EQ(rig.refuse(1, phasing(absolutely, std::nan(""), 10)), ErrorId::invalid_position);
+    EXPECT_EQ(rig.refuse(1, phasing(absolutely, 1, -1)), ErrorId::invalid_velocity);
+}
+
+// The end of the coupling is the end of its phasing; the next coupling sees the master as it is. Another ratio keeps the shift.
+TEST(Phasing, EndsWithTheCoupling) {
+    PhasedRig rig;
+    rig.accept(1, phasing(absolutely, 3, 25));
+    rig.run(300);
+    const auto other = rig.accept(1, gear_in(0, 1, 1));
+    ASSERT_TRUE(rig.run_until([&] { return rig.status(1, other) == CommandStatus::in_target; }));
+    EXPECT_EQ(rig.view(1).phase_shift, 3);
+    const auto late = rig.accept(1, phasing(relatively, 3, 5));
+    rig.run(20);
+    rig.accept(1, halt());
+    rig.run(2);
+    EXPECT_EQ(rig.status(1, late), CommandStatus::aborted);
+    EXPECT_EQ(rig.view(1).phase_shift, 0);
+    rig.expect_no_jump();
+}
+
+// With a cam, phasing moves the curve in time, a superimposed motion moves it in place: slave(t) = f(master + shift).
+// P1-296, P1-299
+TEST(Phasing, ShiftsACamAlongTheMaster) {
+    CouplingRig rig(2);
+    const auto table =
+        rig.tables.add_cam(std::vector<CamPoint>{{.master = 0, .slave = 0}, {.master = 10, .slave = 4}, {.master = 20, .slave = 0}});
+    rig.start();
+    ASSERT_EQ(rig.axes[1].set(SelectCam{table, true}, Owner::program), ErrorId::none);
+    const auto id = rig.view(1).selected_cam;
+    rig.accept(0, at_velocity(15));
+    rig.accept(1, cam_in(0, id));
+    rig.run(300);
+    const auto phase = rig.accept(1, phasing(absolutely, 7, 20));
+    ASSERT_TRUE(rig.run_until([&] { return rig.status(1, phase) == CommandStatus::done; }));
+    rig.run(300);
+    for (int i = 0; i < 3000; ++i) {
+        rig.step();
+        const double at = std::fmod(rig.view(0).set_position + 7, 20);
+        ASSERT_NEAR(rig.view(1).set_position, rig.tables.prepared(id)->at(at).position, 1e-9);
+    }
+    rig.expect_no_jump();
+}
+
+}  // namespace
+}  // namespace taktwerk::axes::test
