@@ -88,6 +88,9 @@ std::vector<Error> check(const MachineConfig& config) {
         const auto subject = fmt::format("axes.{}", binding.axis.name);
         for (auto& error : axes::check(binding.axis)) errors.push_back(std::move(error));
         if (binding.slave.empty()) {
+            if (binding.axis.encoder)
+                problems.add("axis.encoder", subject + ".encoder", "there is nothing that measures",
+                             "name the `slave` whose position is meant, or remove `encoder`");
             if (binding.axis.homing.kind != axes::HomingKind::none && binding.axis.homing.kind != axes::HomingKind::set_here)
                 problems.add("axis.homing", subject + ".homing", "a virtual axis (without `slave`) has no switches",
                              "use `kind: set_here`");
