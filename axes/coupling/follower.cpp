@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/math.hpp"
+
 namespace taktwerk::axes {
 
 namespace {
@@ -12,6 +14,16 @@ constexpr double rounding = 1e-9;
 
 MotionState sum(const MotionState& a, const MotionState& b) noexcept {
     return {a.position + b.position, a.velocity + b.velocity, a.acceleration + b.acceleration};
+}
+
+/// The acceleration from which whatever takes the slave over can go on inside its limits: a relation may have any for a moment.
+double tame(const MotionState& state, const MotionLimits& limits) noexcept {
+    const bool faster = state.velocity * state.acceleration >= 0;
+    double most = faster ? limits.acceleration : limits.deceleration;
+    // The jerk takes it away while the velocity still grows: v + a^2 / (2 j) is to stay below the limit.
+    if (faster && std::isfinite(limits.jerk))
+        most = std::min(most, math::sqrt(2 * limits.jerk * std::max(0.0, limits.velocity - std::abs(state.velocity))));
+    return std::clamp(state.acceleration, -most, most);
 }
 
 /// Room for the difference beside the relation's own motion.
@@ -106,7 +118,8 @@ MotionState Follower::step(const EndlessMotion& first, const EndlessMotion& seco
         fresh_ = false;
     }
     const auto want = sum(relation, difference_.advance(period));
-    const auto out = held(want, before, seconds);
+    auto out = held(want, before, seconds);
+    out.acceleration = tame(out, limits_.axis);
     if (held_back_) run_down(out, relation);
     in_sync_ = !approaching_ && !held_back_ && difference_.finished();
     if (in_sync_ && difference_.state().position != 0) {
