@@ -32,7 +32,7 @@ struct GearInPosDetails {
     MC_SyncMode mode = mcShortest;
     double master_sync_position = 0;   ///< u of the master
     double slave_sync_position = 0;    ///< u
-    double master_start_distance = 0;  ///< u of the master, >= 0; 0 = begin at once
+    double master_start_distance = 0;  ///< u of the master, signed: crossed in this sense; 0 = begin at once
     friend bool operator==(const GearInPosDetails&, const GearInPosDetails&) = default;
 };
 
@@ -44,7 +44,7 @@ struct CamDetails {
     MC_Source source = mcSetValue;
     double master_offset = 0, slave_offset = 0;    ///< u of master, u
     double master_scaling = 1, slave_scaling = 1;  ///< factors
-    double master_start_distance = 0;              ///< u of the master; 0 = begin at once
+    double master_start_distance = 0;              ///< u of the master, signed as above; 0 = begin at once
     double master_sync_position = 0;               ///< u of the master, where the cam is entered after a start distance
     friend bool operator==(const CamDetails&, const CamDetails&) = default;
 };
