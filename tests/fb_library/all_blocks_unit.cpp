@@ -37,7 +37,7 @@ std::map<std::string, std::vector<part1::StandardPin>> standard_blocks() {
     return blocks;
 }
 
-// P1-001, P1-002, P1-003, P1-004, P1-098
+// P1-001, P1-002, P1-003, P1-004, P1-013, P1-098
 TEST(PinTables, HaveEveryPinOfPart1InItsOrderAndNoOther) {
     const auto standard = standard_blocks();
     for (const BlockType& type : MotionBlocks::types) {

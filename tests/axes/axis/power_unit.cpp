@@ -64,7 +64,7 @@ TEST(AxisPower, IsNotAskedForBeforeTheSetpointHasComeBack) {
     rig.expect_no_jump();
 }
 
-// A bus that comes up late is no enable timeout: the time runs from when the drive can be asked.
+// P1-022: a bus that comes up late is no enable timeout (the time runs from when the drive can be asked), and no Standstill without feedback.
 TEST(AxisPower, WaitsForALateBusWithoutAnError) {
     auto config = plain_axis();
     config.enable_timeout = 100ms;
