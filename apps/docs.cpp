@@ -22,11 +22,12 @@ struct Page {
     const char* name;
     std::string (*text)();
 };
-constexpr std::array<Page, 4> pages{{
+constexpr std::array<Page, 5> pages{{
     {"blocks", fb::block_reference_markdown},
     {"configuration", config::reference_page},
     {"alarms", alarm_reference_markdown},
     {"errors", error_reference_markdown},
+    {"parameters", parameter_reference_markdown},
 }};
 
 int write_page(const std::string& name, const std::string& output) {

@@ -8,6 +8,7 @@
 
 #include "axes/axis/alarms.hpp"
 #include "axes/axis/error_table.hpp"
+#include "axes/axis/parameters.hpp"
 #include "ecat/alarms.hpp"
 #include "runtime/alarms.hpp"
 
@@ -31,6 +32,18 @@ std::string_view words(ResetRule reset) {
         case ResetRule::acknowledge: return "`taktwerk ack`, once the cause is gone";
         case ResetRule::reset: return "`taktwerk reset` or MC_Reset, once the cause is gone";
         case ResetRule::restart: return "power cycle of the device, or restart of the runtime";
+    }
+    return "";
+}
+
+std::string range_of(const axes::ParameterInfo& parameter) {
+    const auto upper = [&] { return parameter.at_most != 0 ? fmt::format(", at most parameter {}", parameter.at_most) : std::string{}; };
+    switch (parameter.range) {
+        case axes::ParameterRange::read_only: return "read only";
+        case axes::ParameterRange::finite: return "any finite value" + upper();
+        case axes::ParameterRange::not_negative: return "0 or more" + upper();
+        case axes::ParameterRange::positive: return "above 0" + upper();
+        case axes::ParameterRange::boolean: return "FALSE, TRUE";
     }
     return "";
 }
@@ -71,6 +84,22 @@ std::string error_reference_markdown() {
     for (const auto& error : axes::error_texts)
         fmt::format_to(std::back_inserter(page), "| {:04X}h | {} | {} | {} | {} |\n", static_cast<unsigned>(error.id), error.name,
                        error.english, error.chinese, error.remedy);
+    return page;
+}
+
+std::string parameter_reference_markdown() {
+    std::string page =
+        "# Parameters of an axis\n\n"
+        "Generated from the parameter table (`taktwerk docs parameters`). Read and written by number: MC_ReadParameter,\n"
+        "MC_ReadBoolParameter, MC_WriteParameter, MC_WriteBoolParameter. 1 to 17 are PLCopen's (Part 1, table 5), 1000 and above\n"
+        "Taktwerk's own. What is written holds at once, or in its turn behind the commands that wait (`mcQueued`), and until the\n"
+        "runtime starts again: the machine file is the memory. u is the axis' configured unit. BOOL parameters read as 0 or 1 through\n"
+        "the REAL blocks.\n\n"
+        "| no. | name | type | unit | may be written with | |\n|---|---|---|---|---|---|\n";
+    for (const auto& parameter : axes::parameter_table)
+        fmt::format_to(std::back_inserter(page), "| {} | {} | {} | {} | {} | {} |\n", parameter.number, parameter.name,
+                       parameter.type == axes::ParameterType::boolean ? "BOOL" : "REAL", parameter.unit, range_of(parameter),
+                       parameter.doc);
     return page;
 }
 

@@ -9,5 +9,7 @@ namespace taktwerk::apps {
 [[nodiscard]] std::string alarm_reference_markdown();
 /// Every ErrorID of the blocks.
 [[nodiscard]] std::string error_reference_markdown();
+/// Every parameter of an axis by number.
+[[nodiscard]] std::string parameter_reference_markdown();
 
 }  // namespace taktwerk::apps

@@ -168,6 +168,7 @@ void Cia402Device::exchange(Instant) {
             in.torque_offset = value(o.torque_offset);
             in.probe_function = static_cast<std::uint16_t>(value(o.probe_function));
             in.maximum_velocity = value(o.maximum_velocity);
+            in.probe_function = static_cast<std::uint16_t>(value(o.probe_function));
         }
         in.homing = {value(o.homing_method), static_cast<double>(value(o.homing_fast)), static_cast<double>(value(o.homing_slow)),
                      static_cast<double>(value(o.homing_acceleration))};

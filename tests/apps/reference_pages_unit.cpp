@@ -22,6 +22,7 @@ TEST(ReferencePages, EqualTheGeneratedText) {
     EXPECT_EQ(committed("blocks.md"), fb::block_reference_markdown()) << "taktwerk docs blocks -o docs/reference/blocks.md";
     EXPECT_EQ(committed("alarms.md"), alarm_reference_markdown()) << "taktwerk docs alarms -o docs/reference/alarms.md";
     EXPECT_EQ(committed("errors.md"), error_reference_markdown()) << "taktwerk docs errors -o docs/reference/errors.md";
+    EXPECT_EQ(committed("parameters.md"), parameter_reference_markdown()) << "taktwerk docs parameters -o docs/reference/parameters.md";
 }
 
 }  // namespace
