@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "axes/axis/parameters.hpp"
+
 namespace taktwerk::runtime {
 
 using namespace axes;
@@ -74,6 +76,8 @@ Submitted LatchedRequests::set(AxisRef axis, const axes::AxisSetting& setting, O
         if (!view.online) return {0, ErrorId::drive_not_ready};
         if (view.state == AxisState::Homing) return {0, ErrorId::state_forbids};
     }
+    if (const auto* parameter = std::get_if<axes::WriteParameter>(&setting))
+        if (const auto error = axes::check_write(view, *parameter); error != ErrorId::none) return {0, error};
     Request request;
     request.kind = Kind::set;
     request.axis = axis;
@@ -117,7 +121,12 @@ void LatchedRequests::apply(AxisRequests& axes) noexcept {
     for (std::size_t i = 0; i < count_; ++i) {
         const auto& r = requests_[i];
         switch (r.kind) {
-            case Kind::submit: remember(r, axes.submit(r.axis, r.command, r.owner)); break;
+            case Kind::submit: {
+                auto command = r.command;
+                if (auto* probe = std::get_if<axes::ProbeDetails>(&command.details)) probe->replaces = real_id(probe->replaces);
+                remember(r, axes.submit(r.axis, command, r.owner));
+                break;
+            }
             case Kind::reset:
                 if (const auto error = axes.reset(r.axis, r.owner); error != ErrorId::none)
                     resets_[r.axis.index] = {RefusedReset::Show::resetting, error};

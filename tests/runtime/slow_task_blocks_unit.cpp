@@ -7,6 +7,7 @@
 #include "fb_library/motion/camming.hpp"
 #include "fb_library/motion/moves.hpp"
 #include "fb_library/motion/override.hpp"
+#include "fb_library/motion/parameter_blocks.hpp"
 #include "fb_library/motion/probes.hpp"
 #include "fb_library/motion/superimposed.hpp"
 #include "runtime/latched_requests.hpp"
@@ -201,6 +202,29 @@ TEST_F(SlowTaskBlocks, UpdatesReachTheCommandUnderItsRealId) {
     ASSERT_EQ(updates.size(), 1u);
     EXPECT_EQ(updates[0].id, submitted[0].id);
     EXPECT_EQ(updates[0].command.position, 5);
+}
+
+TEST_F(SlowTaskBlocks, AProbeTriggeredAnewNamesItsFormerCommandAsTheAxisKnowsIt) {
+    fb::MC_TouchProbe probe;
+    probe.Axis = {0};
+    for (const bool level : {true, false, true}) {
+        probe.Execute = level;
+        probe(ctx);
+        release();
+    }
+    const auto commands = axes.calls_of("submit");
+    ASSERT_EQ(commands.size(), 2u);
+    EXPECT_EQ(std::get<axes::ProbeDetails>(commands[0].command.details).replaces, 0u);
+    EXPECT_EQ(std::get<axes::ProbeDetails>(commands[1].command.details).replaces, commands[0].id);
+}
+
+TEST_F(SlowTaskBlocks, AParameterThatCannotBeWrittenIsRefusedAtOnce) {
+    fb::MC_WriteParameter write;
+    write.Axis = {0};
+    write.ParameterNumber = 8;
+    write.Execute = true;
+    write(ctx);
+    EXPECT_EQ(write.ErrorID, axes::ErrorId::read_only_parameter);
 }
 
 }  // namespace
