@@ -40,6 +40,11 @@ std::string homing_text(const axes::HomingConfig& homing) {
         case axes::HomingKind::none: return "none";
         case axes::HomingKind::drive: return fmt::format("by the drive, method {}", homing.method);
         case axes::HomingKind::home_switch: return fmt::format("home switch, {} direction", homing.negative ? "negative" : "positive");
+        case axes::HomingKind::limit_switch: return fmt::format("{} limit switch", homing.negative ? "negative" : "positive");
+        case axes::HomingKind::block: return fmt::format("fixed stop, {} direction", homing.negative ? "negative" : "positive");
+        case axes::HomingKind::reference_pulse:
+            return fmt::format("home switch and index pulse, {} direction", homing.negative ? "negative" : "positive");
+        case axes::HomingKind::absolute: return "absolute encoder";
         case axes::HomingKind::set_here: return "where it stands";
     }
     return "";

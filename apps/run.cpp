@@ -30,7 +30,7 @@ namespace {
 using namespace runtime;
 
 struct Options {
-    std::string file, trace, pcap;
+    std::string file, trace, pcap, retain;
     bool simulate = false, virtual_time = false, json = false, quiet = false;
     double duration_s = 0;
 };
@@ -261,6 +261,8 @@ void add_run(CLI::App& app, Action& action) {
     sub->add_flag("--simulate", options->simulate, "simulated bus and drives, whatever the file says");
     sub->add_flag("--virtual-time", options->virtual_time, "as fast as the CPU allows, bit-identical each time (simulated only)");
     add_duration(*sub, "--duration", options->duration_s, "machine time, e.g. 60s; default: until stopped");
+    sub->add_option("--retain", options->retain,
+                    "keep the positions of axes with absolute encoders in this directory, also on a simulated bus");
     sub->add_option("--trace", options->trace, "write every cycle to this CSV file (see `taktwerk plot`)");
     sub->add_option("--pcap", options->pcap, "write every frame of the bus to this file, for Wireshark and tshark");
     sub->add_flag("--json", options->json, "events as one JSON object a line");
@@ -269,6 +271,7 @@ void add_run(CLI::App& app, Action& action) {
         action = [options] {
             auto loaded = load(options->file, options->simulate || options->virtual_time);
             if (!loaded) return static_cast<int>(exit_bad_file);
+            if (!options->retain.empty()) loaded->machine.retain = options->retain;
             return options->virtual_time ? run_virtual(std::move(*loaded), *options) : run_real(std::move(*loaded), *options);
         };
     });

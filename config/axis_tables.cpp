@@ -88,6 +88,36 @@ Table<axes::PositionWindows> in_position_table() {
             {}};
 }
 
+Table<axes::CodedMarks> marks_table() {
+    using M = axes::CodedMarks;
+    return {
+        "marks",
+        "A scale with distance-coded reference marks, in counts of the drive.",
+        {
+            required(field("spacing", &M::spacing, integer<std::int64_t>(4, 1LL << 31), "between two fixed marks")),
+            required(field("step", &M::step, integer<std::int64_t>(1, 1LL << 31), "by which one gap between marks differs from the next")),
+        },
+        {},
+        {}};
+}
+
+Table<axes::PositionMemory> memory_table() {
+    using E = axes::PositionMemory;
+    return {"position_memory",
+            "What the encoder knows after power was off.",
+            {
+                field("absolute", &E::absolute, boolean(),
+                      "it keeps its position: the axis loses its reference neither with the bus nor, with `retain`, with power"),
+                with_default(field("range", &E::range, integer<std::int64_t>(1, std::int64_t{1} << 53),
+                                   "counts after which its position begins anew: turns it can count times counts per turn"),
+                             "that of the drive's position, 2^32 mostly"),
+                field("moved_while_off", &E::moved_while_off, quantity(Dimension::position, 0),
+                      "moved further than this without power, the axis must be homed again"),
+            },
+            {},
+            {}};
+}
+
 Table<axes::HomingConfig> homing_table() {
     using H = axes::HomingConfig;
     using Kind = axes::HomingKind;
@@ -95,20 +125,31 @@ Table<axes::HomingConfig> homing_table() {
         "homing",
         "How the axis finds its reference.",
         {
-            required(
-                field("kind", &H::kind,
-                      choice<Kind>(
-                          {{"none", Kind::none}, {"drive", Kind::drive}, {"home_switch", Kind::home_switch}, {"set_here", Kind::set_here}}),
-                      "drive: the drive's own method · home_switch: by the runtime, with the home switch · set_here: where it stands · "
-                      "none: MC_Home is refused")),
+            required(field(
+                "kind", &H::kind,
+                choice<Kind>({{"none", Kind::none},
+                              {"drive", Kind::drive},
+                              {"home_switch", Kind::home_switch},
+                              {"limit_switch", Kind::limit_switch},
+                              {"block", Kind::block},
+                              {"reference_pulse", Kind::reference_pulse},
+                              {"absolute", Kind::absolute},
+                              {"set_here", Kind::set_here}}),
+                "drive: the drive's own method · by the runtime: home_switch · limit_switch, back to its edge · block: against a fixed "
+                "stop · reference_pulse: home switch, then on to the encoder's index · absolute: the encoder's zero, no motion · "
+                "set_here: where it stands · none: MC_Home is refused")),
             with_default(field("method", &H::method, integer<std::int8_t>(-128, 127), "kind drive: number of the method (6098h)"), ""),
             field("search_velocity", &H::search_velocity, quantity(Dimension::velocity, 0), "to the switch"),
             field("latch_velocity", &H::latch_velocity, quantity(Dimension::velocity, 0), "to its edge, slowly"),
             field("acceleration", &H::acceleration, quantity(Dimension::acceleration, 0), "while homing"),
             field("offset", &H::offset, quantity(Dimension::position), "coordinate of the reference where MC_Home gives none"),
             field("direction", &H::negative, choice<bool>({{"negative", true}, {"positive", false}}),
-                  "kind home_switch: where the search starts"),
+                  "by the runtime: where the search starts"),
             field("timeout", &H::timeout, duration(std::chrono::milliseconds{1}), "homing that takes longer has failed"),
+            with_default(field("torque", &H::torque, number(0, 10), "kind block: torque at the stop, as a fraction of the rated one"), ""),
+            field("block_velocity", &H::block_velocity, quantity(Dimension::velocity, 0), "kind block: slower than this it is at the stop"),
+            field("block_time", &H::block_time, duration(), "kind block: torque and standstill last so long"),
+            field("marks", &H::marks, section(marks_table()), "for MC_StepDistanceCoded"),
         },
         {},
         {}};
@@ -270,6 +311,7 @@ Table<AxisBinding> axis_table() {
             "supervision; without it the following error is not watched"),
         field("in_position", &A::windows, section(in_position_table()), "when a motion is finished"),
         field("homing", &A::homing, section(homing_table()), "how the axis finds its reference"),
+        field("position_memory", &A::memory, section(memory_table()), "what its encoder knows after power was off"),
         field("manual", &A::manual, section(manual_table()), "jogging speeds"),
         field("control", &A::control, section(control_table()), "position loop and feed-forward"),
         field("compensation", &A::compensation, section(compensation_table()), "backlash and pitch errors"),

@@ -46,6 +46,11 @@ public:
     LoadedMachine assemble() {
         LoadedMachine out{std::move(file_.machine), std::move(file_.hmi), {}};
         if (options_.simulate) out.machine.bus.interface.clear();
+        // Simulated drives forget where they were, and what a real machine keeps is none of theirs.
+        auto& retain = out.machine.retain;
+        if (out.machine.bus.interface.empty()) retain.clear();
+        else if (!retain.empty() && fs::path(retain).is_relative())
+            retain = (fs::path(path_).parent_path() / retain).lexically_normal().string();
         out.machine.bus.cycle = out.machine.cycle;
         for (std::size_t i = 0; i < file_.slaves.size(); ++i) {
             add_slave(out, file_.slaves[i], i);

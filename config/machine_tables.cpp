@@ -362,6 +362,11 @@ Table<MachineFile> machine_table() {
         "watch", [](F & m) -> auto& { return m.machine.watch; }, section(watch_table()), "when the cycle comes too late"));
     f.push_back(field_at<F>(
         "realtime", [](F & m) -> auto& { return m.machine.realtime; }, section(realtime_table()), "what is asked of the operating system"));
+    f.push_back(with_default(field_at<F>(
+                                 "retain", [](F & m) -> auto& { return m.machine.retain; }, text(),
+                                 "directory in which the positions of axes with absolute encoders are kept over a time without power; "
+                                 "relative to this file"),
+                             "none: they are homed after each start"));
     f.push_back(field_at<F>(
         "commands_per_cycle", [](F & m) -> auto& { return m.machine.commands_per_cycle; }, integer<std::uint8_t>(1, 64),
         "operator commands taken per cycle"));

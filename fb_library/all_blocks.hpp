@@ -24,6 +24,9 @@
 #include "fb_library/motion/external_setpoints.hpp"
 #include "fb_library/motion/gearing.hpp"
 #include "fb_library/motion/home.hpp"
+#include "fb_library/motion/homing_ends.hpp"
+#include "fb_library/motion/homing_passive.hpp"
+#include "fb_library/motion/homing_steps.hpp"
 #include "fb_library/motion/jog.hpp"
 #include "fb_library/motion/moves.hpp"
 #include "fb_library/motion/override.hpp"
@@ -72,6 +75,11 @@ using CouplingBlocks = BlockList<MC_CamTableSelect, MC_CamIn, MC_CamOut, MC_Gear
 using VendorBlocks = BlockList<MC_Jog, MC_ReadCommandPosition, MC_ReadCommandVelocity, MC_ReadCommandAcceleration, MC_SetControllerMode,
                                MC_ExtSetPointGenEnable, MC_ExtSetPointGenFeed, MC_ExtSetPointGenDisable>;
 
+/// PLCopen Part 5: homing step by step.
+using HomingBlocks =
+    BlockList<MC_StepAbsoluteSwitch, MC_StepLimitSwitch, MC_StepBlock, MC_StepReferencePulse, MC_StepDistanceCoded, MC_HomeDirect,
+              MC_HomeAbsolute, MC_FinishHoming, MC_StepReferenceFlyingSwitch, MC_StepReferenceFlyingRefPulse, MC_AbortPassiveHoming>;
+
 using FieldbusBlocks = BlockList<EC_SdoRead, EC_SdoWrite>;
 
 namespace detail {
@@ -87,7 +95,7 @@ consteval bool names_differ(BlockList<Blocks...>) {
 
 using MotionBlocks =
     decltype(detail::joined(detail::joined(AxisBlocks{}, AdministrativeBlocks{}), detail::joined(CouplingBlocks{}, VendorBlocks{})));
-using AllBlocks = decltype(detail::joined(detail::joined(IecBlocks{}, MotionBlocks{}), FieldbusBlocks{}));
+using AllBlocks = decltype(detail::joined(detail::joined(detail::joined(IecBlocks{}, MotionBlocks{}), HomingBlocks{}), FieldbusBlocks{}));
 static_assert(detail::names_differ(AllBlocks{}));
 
 [[nodiscard]] constexpr std::span<const BlockType> all_block_types() noexcept { return AllBlocks::types; }

@@ -52,6 +52,8 @@ std::string block_reference_markdown() {
     for (const BlockType& type : IecBlocks::types) append_block(page, type);
     page += "\n## PLCopen motion\n";
     for (const BlockType& type : MotionBlocks::types) append_block(page, type);
+    page += "\n## PLCopen homing\n";
+    for (const BlockType& type : HomingBlocks::types) append_block(page, type);
 
     page += "\n## Fieldbus\n";
     for (const BlockType& type : FieldbusBlocks::types) append_block(page, type);

@@ -16,10 +16,12 @@ enum class MachineAlarm : AlarmId {
     stopped_by_signal = 0x6005,
     alarm_log_full = 0x6006,
     late_wakeups = 0x6007,
+    positions_lost = 0x6008,
+    positions_not_kept = 0x6009,
 };
 [[nodiscard]] constexpr AlarmId id(MachineAlarm alarm) noexcept { return static_cast<AlarmId>(alarm); }
 
-inline constexpr std::array<AlarmInfo, 7> machine_alarms{{
+inline constexpr std::array<AlarmInfo, 9> machine_alarms{{
     {id(MachineAlarm::emergency_stop), "emergency_stop", "Emergency stop: the axes stop along their ramps, then power goes off",
      "急停:各轴沿减速斜坡停止,随后断开动力", "The emergency stop button is pressed, or its circuit is open",
      "Release the button, acknowledge, then enable again", ResetRule::acknowledge, Reaction::power_off,
@@ -67,6 +69,24 @@ inline constexpr std::array<AlarmInfo, 7> machine_alarms{{
      "See `taktwerk run` messages about real time; the machine runs on",
      ResetRule::self_clearing,
      Reaction::none,
+     {}},
+    {id(MachineAlarm::positions_lost),
+     "positions_lost",
+     "The kept positions of the axes cannot be read: axes with absolute encoders are not homed",
+     "无法读取保存的轴位置:带绝对值编码器的轴未回零",
+     "Both files in the directory of `retain` are torn or altered, as by a failing disk",
+     "Home the axes; check the disk",
+     ResetRule::self_clearing,
+     Reaction::warn,
+     {}},
+    {id(MachineAlarm::positions_not_kept),
+     "positions_not_kept",
+     "The positions of the axes cannot be written: after the next power-off they are not homed",
+     "无法写入轴位置:下次断电后各轴将未回零",
+     "The directory of `retain` cannot be written, or its disk is full",
+     "Make room, or give `retain` a directory that the runtime may write",
+     ResetRule::self_clearing,
+     Reaction::warn,
      {}},
 }};
 static_assert(alarm_table_is_sound(machine_alarms));

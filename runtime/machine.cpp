@@ -86,6 +86,10 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, std::vect
         axis_config.stale_limit = static_cast<std::uint16_t>(std::min<std::uint32_t>(limit(axis_config.stale_limit), 60000));
         axes.emplace_back(axis_config, *ports.back(), config.cycle, static_cast<std::uint16_t>(i), &views[i]);
     }
+    if (!config.retain.empty()) {
+        positions = std::make_unique<PositionKeeper>(config.retain, config.axes);
+        positions->restore(axes);
+    }
     operator_power.resize(axes.size());
     requests = axes::DirectRequests{axes};
     if (!config.emergency_stop.input.empty()) {
@@ -233,6 +237,7 @@ void Machine::Impl::cycle(const CycleTick& tick) noexcept {
         statistics.lateness_max = std::max(statistics.lateness_max, statistics.lateness);
         take_snapshot();
         if (trace) take_trace();
+        if (positions) positions->watch(axes, now, shutting_down);
     }
     steps.done(static_cast<std::size_t>(Step::snapshot));
     steps.end();
@@ -264,6 +269,7 @@ void Machine::service(Instant now) {
     for (auto& port : impl_->ports) port->step(now);
     impl_->objects->step(impl_->bus);
     impl_->service_programs();
+    if (impl_->positions) impl_->positions->step(now);
 }
 Result<void> Machine::arm() { return impl_->arm(); }
 bool Machine::bus_operational() const noexcept { return impl_->bus.phase() == ecat::Master::Phase::operational; }

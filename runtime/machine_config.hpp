@@ -144,6 +144,9 @@ struct MachineConfig {
     CycleWatch watch;
     RealtimeConfig realtime;
     SimulationConfig simulation;
+    /// Directory in which the positions of axes with absolute encoders are kept; empty: they are not. Simulated drives forget theirs with
+    /// the process, so a run on a simulated bus wants none or one of its own.
+    std::string retain;
     std::uint8_t commands_per_cycle = 4;  ///< K operator commands drained per cycle
 };
 

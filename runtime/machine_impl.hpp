@@ -20,6 +20,7 @@
 #include "runtime/io_image.hpp"
 #include "runtime/machine.hpp"
 #include "runtime/object_requests.hpp"
+#include "runtime/position_keeper.hpp"
 #include "runtime/program_host.hpp"
 #include "runtime/slow_task.hpp"
 
@@ -105,6 +106,7 @@ struct Machine::Impl {
     axes::DirectRequests requests;  // of base tasks and operators
     std::unique_ptr<ProgramHost> host;
     std::unique_ptr<ObjectRequests> objects;
+    std::unique_ptr<PositionKeeper> positions;  // nullptr: nothing is kept
     std::vector<std::unique_ptr<SlowTask>> slow_tasks;
     std::vector<std::size_t> base_tasks, slow_task_places;  // indices into host->tasks(), task_statistics, layout.tasks
     std::vector<std::uint64_t> base_scans;                  // since start, per base task

@@ -78,6 +78,8 @@ void Machine::Impl::supervise(Instant, const CycleTick& tick) noexcept {
     watch_cycle(tick);
     watch_programs();
     raise_bus_alarms();
+    if (positions && positions->lost()) raise(MachineAlarm::positions_lost, AlarmSource::machine, 0, 0, 0);
+    if (positions && positions->failing()) raise(MachineAlarm::positions_not_kept, AlarmSource::machine, 0, 0, 0);
 
     auto level = axes::EmergencyStop::none;
     if (emergency)

@@ -104,6 +104,7 @@ World::World(const MachineConfig& config, Instant start)
             auto& setup = setups[binding.drive_axis];
             setup.plant = plant_of(binding);
             setup.personality = axes::sim::personality_of(*profile, setup.plant.counts_per_revolution);
+            setup.personality.absolute_encoder = binding.axis.memory.absolute;
             // Three motor turns of following error, and set-points within 6000 turns/min: what a drive of this class guards.
             setup.personality.following_error_limit = 3.0 * static_cast<double>(setup.plant.counts_per_revolution);
             setup.personality.maximum_velocity = 100.0 * static_cast<double>(setup.plant.counts_per_revolution);

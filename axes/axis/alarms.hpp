@@ -28,8 +28,10 @@ enum class AxisAlarm : AlarmId {
     stopped_by_machine = 0x3010,
     planner_refused = 0x3011,
     master_lost = 0x3012,
+    moved_while_off = 0x3013,
+    retained_gearing_differs = 0x3014,
 };
-inline constexpr std::size_t axis_alarm_count = 18;
+inline constexpr std::size_t axis_alarm_count = 20;
 
 [[nodiscard]] constexpr AlarmId id(AxisAlarm alarm) noexcept { return static_cast<AlarmId>(alarm); }
 
@@ -125,6 +127,16 @@ inline constexpr std::array<AlarmInfo, axis_alarm_count> axis_alarms{{
      "The master's drive or encoder left the bus, or its position jumped: it was homed, or moves faster than its velocity limit",
      "Check the master's drive and bus; reset, then couple again",
      ResetRule::reset, Reaction::stop_axis, "The drive's communication watchdog stops it"},
+    {id(AxisAlarm::moved_while_off), "moved_while_off",
+     "The axis moved {a} u without power (permitted {b} u): it is not homed", "断电期间轴移动了 {a} u(允许 {b} u):轴未回零",
+     "It was pushed or sank, motor or encoder were changed, or the encoder lost its turns",
+     "Home the axis; when such a way is normal, raise position_memory.moved_while_off",
+     ResetRule::acknowledge, Reaction::warn, ""},
+    {id(AxisAlarm::retained_gearing_differs), "retained_gearing_differs",
+     "The retained position belongs to another gearing: the axis is not homed", "保存的位置属于另一套传动比:轴未回零",
+     "The gearing of the axis was changed in the machine file since it was homed last",
+     "Home the axis",
+     ResetRule::acknowledge, Reaction::warn, ""},
 }};
 // clang-format on
 

@@ -74,7 +74,7 @@ void Axis::update(Instant now) noexcept {
 
 void Axis::read_feedback() noexcept {
     feedback_ = port_.decode(now_);
-    if (!feedback_.online && !port_.capabilities().absolute_encoder) homed_ = false;  // it may come back with another zero
+    if (!feedback_.online && !absolute_encoder()) homed_ = false;  // it may come back with another zero
     if (!feedback_.fresh) {
         if (stale_ < 0xFFFFFFFF) ++stale_;
         return;
@@ -86,6 +86,7 @@ void Axis::read_feedback() noexcept {
     const bool other_zero = feedback_.position_epoch != position_epoch_;
     if (!seeded_ || (other_zero && power_.follows_actual()) || drive_homing_.busy()) position_epoch_ = feedback_.position_epoch;
     if (!seeded_ || (other_zero && power_.follows_actual() && !drive_homing_.busy())) {
+        if (!seeded_) apply_retained();
         seeded_ = true;
         anchor_near_actual();
         setpoint_.place(actual_local());
@@ -159,7 +160,11 @@ void Axis::watch_following_error() noexcept {
     }
     if (!feedback_.fresh) return;
     view_.following_error = history_.error_at(feedback_.latched, feedback_.position) / units_.counts_per_unit();
-    const bool exceeded = following_timer_.exceeded(view_.following_error, feedback_.latched, config_.following);
+    // Pressed against a block the set-point runs ahead; that is no error until the axis has caught up.
+    if (step_run_.presses()) lag_forgiven_ = true;
+    else if (std::abs(view_.following_error) <= config_.following.window) lag_forgiven_ = false;
+    if (lag_forgiven_) following_timer_.clear();
+    const bool exceeded = !lag_forgiven_ && following_timer_.exceeded(view_.following_error, feedback_.latched, config_.following);
     if (exceeded && state_ != AxisState::ErrorStop) fail(AxisAlarm::following_error, view_.following_error, config_.following.window);
 
     const bool inside = setpoint_.at_rest() && std::abs(setpoint_.state().position - actual_local()) <= config_.windows.in_position;
@@ -178,6 +183,9 @@ void Axis::encode(Instant now) noexcept {
     probes_.command(command_.probes);
     command_.digital_outputs = digital_outputs_;
     command_.digital_output_mask = digital_output_mask_;
+    if (latch_.armed()) command_.probes[latch_.probe()] = latch_.command();
+    if (step_run_.presses() && port_.capabilities().torque_limits)
+        command_.torque_limit_positive = command_.torque_limit_negative = block_torque_;
     port_.encode(command_, now);
 
     if (power_.follows_actual() || drive_homing_.busy() || mode_phase_ != ModePhase::steady) history_.clear();
@@ -199,6 +207,8 @@ void Axis::publish_state() noexcept {
     view_.resetting = resetting_;
     view_.reset_error = reset_error_;
     view_.lock = stop_lock_;
+    view_.homing_procedure = homing_procedure_;
+    view_.side[static_cast<std::size_t>(SideSlot::passive_homing)] = passive_.id;
     view_.digital_outputs = digital_outputs_;
     publish_probes();
     publish_coupling();

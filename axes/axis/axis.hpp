@@ -33,12 +33,15 @@
 #include "axes/axis/power_sequence.hpp"
 #include "axes/axis/probe_board.hpp"
 #include "axes/axis/probe_window.hpp"
+#include "axes/axis/retained_position.hpp"
 #include "axes/axis/setpoint_generator.hpp"
 #include "axes/axis/state_machine.hpp"
 #include "axes/axis/time_curve.hpp"
 #include "axes/axis/torque_control.hpp"
 #include "axes/axis/units.hpp"
 #include "axes/homing/drive_homing.hpp"
+#include "axes/homing/drive_latch.hpp"
+#include "axes/homing/step_run.hpp"
 #include "axes/homing/switch_homing.hpp"
 #include "axes/port/drive_port.hpp"
 #include "axes/tables/motion_tables.hpp"
@@ -107,8 +110,11 @@ public:
     [[nodiscard]] bool fetch_alarm(AlarmFact& fact) noexcept { return alarms_.fetch(fact); }
     /// Those that hold now.
     [[nodiscard]] std::span<const AlarmFact> active_alarms() const noexcept { return alarms_.active(); }
-    /// Acknowledges what needs no reset (jog_lease_expired).
-    void acknowledge_alarms() noexcept { alarms_.clear(AxisAlarm::jog_lease_expired); }
+    /// Acknowledges what needs no reset.
+    void acknowledge_alarms() noexcept {
+        for (const auto alarm : {AxisAlarm::jog_lease_expired, AxisAlarm::moved_while_off, AxisAlarm::retained_gearing_differs})
+            alarms_.clear(alarm);
+    }
     /// Stops in ErrorStop because of something elsewhere; `reason` is the other alarm. With `then_power_off` power goes when it stands.
     /// An axis that is Disabled and stays so is left alone.
     void stop_for_error(AlarmId reason, bool then_power_off) noexcept;
@@ -120,6 +126,12 @@ public:
     /// The new owner has the axis at once, but it stops before it takes motion. Returning it gives it to the mode's default owner.
     void take_control(Owner owner) noexcept;
     void release_control(Owner owner) noexcept;
+
+    /// What must be kept for the next time power comes; `homed` is false where nothing can be.
+    [[nodiscard]] RetainedPosition retained() const noexcept;
+    /// Before the first cycle: what was kept, and the gearing that held then. With the first position the axis is homed again, unless the
+    /// gearing has changed or the axis was moved without power (alarms say so). Nothing on an axis without an absolute encoder.
+    void restore(const RetainedPosition& position, const Gearing& gearing) noexcept;
 
     // --- couplings ----------------------------------------------------------------------------------------------------------
     /// This axis as its slaves see it: the set-point of this cycle once plan() has run, or the newest measured position.
@@ -193,6 +205,7 @@ private:
 
     // axis_requests.cpp
     ErrorId set_position(const SetPosition& wanted) noexcept;
+    void shift_coordinates(double delta) noexcept;
     [[nodiscard]] bool may(Owner owner) noexcept;
     [[nodiscard]] ErrorId refuse(const AxisCommand& command) noexcept;
     [[nodiscard]] ErrorId refuse_state(const AxisCommand& command) const noexcept;
@@ -351,10 +364,41 @@ private:
     void clear_phase() noexcept;
 
     // axis_homing.cpp
+    [[nodiscard]] ErrorId refuse_home() const noexcept;
     ErrorId begin_homing(const AxisCommand& command) noexcept;
     void step_homing() noexcept;
+    void set_coordinate(std::int64_t at, double coordinate) noexcept;
     void end_homing(std::int64_t reference) noexcept;
     void abort_homing() noexcept;
+    void search_home_switch() noexcept;
+    void run_home_search() noexcept;
+    [[nodiscard]] MotionLimits homing_dynamics() const noexcept;
+    [[nodiscard]] StepSettings home_search() const noexcept;
+    [[nodiscard]] bool absolute_encoder() const noexcept { return config_.memory.absolute || port_.capabilities().absolute_encoder; }
+    [[nodiscard]] std::int64_t encoder_range() const noexcept;
+    [[nodiscard]] std::int64_t encoder_zero() const noexcept;
+
+    // axis_retained.cpp
+    void apply_retained() noexcept;
+
+    // axis_homing_steps.cpp
+    [[nodiscard]] ErrorId refuse_reference(const TriggerRef& reference) const noexcept;
+    [[nodiscard]] ErrorId refuse_step(const HomingStepDetails& step, bool starts_now) const noexcept;
+    [[nodiscard]] bool reference_level(const TriggerRef& reference) const noexcept;
+    void arm_latch(const TriggerRef& reference, bool continuous) noexcept;
+    ErrorId begin_homing_step(const AxisCommand& command) noexcept;
+    [[nodiscard]] SearchInput search_input(const TriggerRef& reference) noexcept;
+    void drive_step(const TriggerRef& reference, const MotionLimits& dynamics) noexcept;
+    void follow_homing_step() noexcept;
+    void guard_finish() noexcept;
+    void end_homing_step(ErrorId error) noexcept;
+    bool complete_homing_step() noexcept;
+
+    // axis_passive_homing.cpp
+    Submitted submit_passive(const AxisCommand& command, Owner owner) noexcept;
+    [[nodiscard]] ErrorId refuse_passive(const AxisCommand& command) const noexcept;
+    void watch_passive_homing() noexcept;
+    void end_passive_homing(Outcome outcome, ErrorId error = ErrorId::none) noexcept;
 
     AxisConfig config_;  // its limits, windows and speeds as they hold now: parameters change them, never above what was configured
     DrivePort& port_;
@@ -472,6 +516,21 @@ private:
     SwitchHoming switch_homing_;
     double home_coordinate_ = 0;  // u, of the reference
     bool homed_ = false;
+    RetainedPosition retained_;  // waits for the first position; `homed` false: nothing to restore
+    StepRun step_run_;
+    DriveLatch latch_;
+    bool homing_procedure_ = false;  // between the first step and the one that ends it
+    bool step_succeeded_ = false;    // the last one; without it the procedure cannot be finished
+    double block_torque_ = 0;        // fraction of rated torque while pressing against a block
+    bool lag_forgiven_ = false;      // the set-point was ahead of an axis that could not follow
+
+    struct PassiveHoming {
+        CommandId id = 0;
+        HomingStepDetails step;
+        EdgeWatch edge{};
+        Instant since{};
+        std::int64_t from = 0;  // counts
+    } passive_;
 
     std::unique_ptr<AxisView> own_view_;
     AxisView& view_;

@@ -68,15 +68,24 @@ void check_modulo(Problems& problems, const AxisConfig& config) {
 }
 
 void check_homing(Problems& problems, const HomingConfig& homing) {
-    if (homing.kind == HomingKind::none || homing.kind == HomingKind::set_here) return;
+    const auto& marks = homing.marks;
+    if ((marks.spacing != 0 || marks.step != 0) && !marks.valid())
+        problems.add("homing.marks", "cannot be those of a distance-coded scale",
+                     "spacing is an even multiple of step, four steps or more: see the data sheet of the scale");
+    const auto kind = homing.kind;
+    if (kind == HomingKind::none || kind == HomingKind::set_here || kind == HomingKind::absolute) return;
     if (homing.timeout <= Duration::zero())
         problems.add("homing.timeout", "must be above 0", "Give the longest time homing may take, such as 60 s");
-    if (homing.kind != HomingKind::home_switch) return;
+    if (kind == HomingKind::drive) return;
     problems.positive("homing.search_velocity", homing.search_velocity, "u/s (the sense is homing.negative)");
     problems.positive("homing.latch_velocity", homing.latch_velocity, "u/s");
     problems.positive("homing.acceleration", homing.acceleration, "u/s2");
     if (homing.latch_velocity > homing.search_velocity)
         problems.add("homing.latch_velocity", "is above homing.search_velocity", "The edge is taken slowly: give a smaller value");
+    if (kind != HomingKind::block) return;
+    problems.positive("homing.torque", homing.torque, "fractions of the rated torque");
+    problems.positive("homing.block_velocity", homing.block_velocity, "u/s");
+    if (homing.block_time < Duration::zero()) problems.add("homing.block_time", "must not be negative", "Leave it out for 50 ms");
 }
 
 void check_control(Problems& problems, const ControlConfig& control) {
@@ -138,6 +147,9 @@ std::vector<Error> check(const AxisConfig& config) {
     if (config.following.time < Duration::zero()) problems.add("following.time", "must not be negative", "Give a time such as 10 ms");
     if (!(config.windows.in_position > 0)) problems.add("windows.in_position", "must be above 0", "Give the window in u");
     problems.not_negative("windows.standstill_velocity", config.windows.standstill_velocity, "exact standstill");
+    if (config.memory.range < 0)
+        problems.add("position_memory.range", "must not be negative", "Leave it out for that of the drive's position");
+    problems.not_negative("position_memory.moved_while_off", config.memory.moved_while_off, "not a count");
     problems.not_negative("manual.slow", config.manual.slow, "5 % of the velocity limit");
     problems.not_negative("manual.fast", config.manual.fast, "25 % of the velocity limit");
     problems.not_negative("manual.setup_velocity", config.manual.setup_velocity, "manual.slow");

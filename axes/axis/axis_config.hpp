@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "axes/homing/coded_marks.hpp"
 #include "core/result.hpp"
 #include "core/time.hpp"
 
@@ -53,10 +54,14 @@ struct PositionWindows {
 };
 
 enum class HomingKind : std::uint8_t {
-    none,         ///< MC_Home is refused
-    drive,        ///< the drive's own method (6098h)
-    home_switch,  ///< master-side: search the home switch edge, back off slowly (see axes/homing/README.md)
-    set_here,     ///< the present position becomes Position, without motion
+    none,             ///< MC_Home is refused
+    drive,            ///< the drive's own method (6098h)
+    home_switch,      ///< master-side: search the home switch edge, back off slowly (see axes/homing/README.md)
+    set_here,         ///< the present position becomes Position, without motion
+    limit_switch,     ///< master-side: to a limit switch, then slowly back: the edge where it lets go
+    block,            ///< master-side: against a fixed stop
+    reference_pulse,  ///< master-side: as home_switch, then slowly on to the encoder's index pulse
+    absolute,         ///< the absolute encoder knows: its zero becomes Position, without motion
 };
 
 struct HomingConfig {
@@ -68,6 +73,18 @@ struct HomingConfig {
     double offset = 0;            ///< u: coordinate of the reference when MC_Home.Position is not given
     bool negative = true;         ///< master-side: search in negative direction
     Duration timeout = std::chrono::seconds{60};
+    // block
+    double torque = 0;                                    ///< fraction of rated torque that is there when the stop is reached
+    double block_velocity = 1;                            ///< u/s: slower than this counts as blocked
+    Duration block_time = std::chrono::milliseconds{50};  ///< torque and standstill must last so long
+    CodedMarks marks{};                                   ///< of the scale, for MC_StepDistanceCoded
+};
+
+/// How the encoder behaves when power goes.
+struct PositionMemory {
+    bool absolute = false;       ///< it keeps its position; so does the axis its coordinates, where they are retained
+    std::int64_t range = 0;      ///< counts after which it begins anew; 0 = those of the drive's position (2^32 mostly)
+    double moved_while_off = 1;  ///< u: moved further than this without power, the axis must be homed again
 };
 
 struct ManualSpeeds {
@@ -115,6 +132,7 @@ struct AxisConfig {
     FollowingErrorWatch following;
     PositionWindows windows;
     HomingConfig homing;
+    PositionMemory memory;
     ManualSpeeds manual;
     ControlConfig control;
     CompensationConfig compensation;

@@ -19,6 +19,7 @@ ErrorId Axis::set_goal(const AcceptedCommand& accepted) noexcept {
     const auto command = accepted.command;
     switch (command.kind) {
         case CommandKind::home: return begin_homing(command);
+        case CommandKind::homing_step: return begin_homing_step(command);
         case CommandKind::move_absolute:
         case CommandKind::move_relative:
         case CommandKind::move_additive:

@@ -7,6 +7,44 @@
 
 namespace taktwerk::axes {
 
+ErrorId Axis::refuse_home() const noexcept {
+    const auto& drive = port_.capabilities();
+    switch (config_.homing.kind) {
+        case HomingKind::none: return ErrorId::not_supported;
+        case HomingKind::drive: return drive.drive_homing ? ErrorId::none : ErrorId::not_supported;
+        case HomingKind::limit_switch: return drive.digital_inputs ? ErrorId::none : ErrorId::not_supported;
+        case HomingKind::reference_pulse: return refuse_reference({.source = TriggerSource::index_pulse});
+        case HomingKind::absolute: return absolute_encoder() ? ErrorId::none : ErrorId::not_supported;
+        case HomingKind::home_switch:
+        case HomingKind::set_here:
+        case HomingKind::block: break;
+    }
+    return ErrorId::none;
+}
+
+/// What the kinds that are built from one step search for.
+StepSettings Axis::home_search() const noexcept {
+    const auto& homing = config_.homing;
+    StepSettings run{.velocity = homing.search_velocity, .time_limit = homing.timeout};
+    switch (homing.kind) {
+        case HomingKind::limit_switch:
+            run.search = LimitSearch(MC_SwitchMode::mcFallingEdge, !homing.negative);
+            run.fine_velocity = homing.latch_velocity;
+            break;
+        case HomingKind::reference_pulse:  // the way on which the home switch's edge was left
+            run.search = PulseSearch(homing.negative);
+            run.velocity = homing.latch_velocity;
+            break;
+        default:
+            run.search = BlockSearch({.positive = !homing.negative,
+                                      .torque = homing.torque,
+                                      .velocity_limit = homing.block_velocity,
+                                      .time = homing.block_time});
+            break;
+    }
+    return run;
+}
+
 ErrorId Axis::begin_homing(const AxisCommand& command) noexcept {
     const auto& homing = config_.homing;
     home_coordinate_ = std::isnan(command.position) ? homing.offset : command.position;
@@ -16,19 +54,36 @@ ErrorId Axis::begin_homing(const AxisCommand& command) noexcept {
     switch (homing.kind) {
         case HomingKind::none: return ErrorId::not_supported;
         case HomingKind::set_here: end_homing(actual_counts_); break;
+        case HomingKind::absolute: end_homing(encoder_zero()); break;
         case HomingKind::drive: drive_homing_.start(now_, homing.timeout, port_.capabilities().mode_change_delay, own_mode_); break;
         case HomingKind::home_switch:
+        case HomingKind::reference_pulse:
             switch_homing_.start({.search_velocity = homing.search_velocity,
                                   .latch_velocity = homing.latch_velocity,
                                   .negative = homing.negative,
                                   .timeout = homing.timeout},
                                  now_);
             break;
+        case HomingKind::block: block_torque_ = homing.torque; [[fallthrough]];
+        case HomingKind::limit_switch: step_run_.start(home_search(), now_, actual_counts_); break;
     }
     return ErrorId::none;
 }
 
+std::int64_t Axis::encoder_range() const noexcept {
+    if (config_.memory.range > 0) return config_.memory.range;
+    const auto bits = std::min<unsigned>(port_.capabilities().position_bits, 62);
+    return std::int64_t{1} << bits;
+}
+
+/// counts; the encoder's (or the drive's) own zero. Its raw position may have wrapped: zero is the nearest multiple of the range.
+std::int64_t Axis::encoder_zero() const noexcept {
+    const auto range = static_cast<double>(encoder_range());
+    return static_cast<std::int64_t>(std::round(static_cast<double>(actual_counts_) / range) * range);
+}
+
 void Axis::step_homing() noexcept {
+    watch_passive_homing();
     if (drive_homing_.busy()) {
         if (power_.follows_actual()) drive_homing_.cancel();
         switch (drive_homing_.step(feedback_, drive_stands(), now_)) {
@@ -48,6 +103,12 @@ void Axis::step_homing() noexcept {
         }
         return;
     }
+    if (queue_.active().command.kind == CommandKind::homing_step) follow_homing_step();
+    else if (step_run_.busy()) run_home_search();
+    else search_home_switch();
+}
+
+void Axis::search_home_switch() noexcept {
     if (!switch_homing_.busy()) return;
     switch_homing_.step({.fresh = feedback_.fresh,
                          .home_switch = feedback_.home_switch,
@@ -57,25 +118,52 @@ void Axis::step_homing() noexcept {
                          .standing = setpoint_.at_rest() && !goal_pending_,
                          .now = now_});
     switch (switch_homing_.phase()) {
-        case SwitchHoming::Phase::finished: end_homing(switch_homing_.reference()); return;
+        case SwitchHoming::Phase::finished:
+            if (config_.homing.kind == HomingKind::reference_pulse) {
+                switch_homing_.cancel();
+                arm_latch({.source = TriggerSource::index_pulse}, false);
+                step_run_.start(home_search(), now_, actual_counts_);
+            } else end_homing(switch_homing_.reference());
+            return;
         case SwitchHoming::Phase::failed: fail(AxisAlarm::homing_failed, static_cast<double>(switch_homing_.failed_in()), 0); return;
         case SwitchHoming::Phase::timed_out: fail(AxisAlarm::homing_timeout, to_seconds(config_.homing.timeout)); return;
         default: break;
     }
     const bool on_course = goal_.kind == Goal::Kind::velocity && goal_.value == switch_homing_.velocity();
     if (on_course) return;
+    // Homing has velocities of its own; only the axis' limit holds them down.
+    const double speed = std::min(std::abs(switch_homing_.velocity()), config_.limits.velocity);
+    aim(Goal::Kind::velocity, std::copysign(speed, switch_homing_.velocity()), homing_dynamics(), VelocityLimiter::command);
+}
+
+MotionLimits Axis::homing_dynamics() const noexcept {
     auto dynamics = full_limits(config_.limits);
     dynamics.acceleration = choose(config_.homing.acceleration, 0, dynamics.acceleration);
     dynamics.deceleration = choose(config_.homing.acceleration, 0, dynamics.deceleration);
-    // Homing has velocities of its own; only the axis' limit holds them down.
-    const double speed = std::min(std::abs(switch_homing_.velocity()), config_.limits.velocity);
-    aim(Goal::Kind::velocity, std::copysign(speed, switch_homing_.velocity()), dynamics, VelocityLimiter::command);
+    return dynamics;
 }
 
+void Axis::run_home_search() noexcept {
+    auto dynamics = homing_dynamics();
+    dynamics.velocity = std::min(config_.homing.search_velocity, dynamics.velocity);
+    drive_step({.source = TriggerSource::index_pulse}, dynamics);
+    switch (step_run_.result()) {
+        case StepRun::End::none: return;
+        case StepRun::End::found: end_homing(step_run_.place()); return;
+        case StepRun::End::time_limit: fail(AxisAlarm::homing_timeout, to_seconds(config_.homing.timeout)); break;
+        default: fail(AxisAlarm::homing_failed, static_cast<double>(step_run_.result()), 0); break;
+    }
+}
+
+/// The motor's place `at` is the load's `coordinate`, whatever compensation adds on the way between them.
+void Axis::set_coordinate(std::int64_t at, double coordinate) noexcept { units_.set_program(at, coordinate + compensation_.offset()); }
+
 void Axis::end_homing(std::int64_t reference) noexcept {
-    units_.set_program(reference, home_coordinate_ + compensation_.offset());
+    set_coordinate(reference, home_coordinate_);
     homed_ = true;
     switch_homing_.cancel();
+    step_run_.cancel();
+    latch_.release();
     goal_ = {};
     queue_.finish_active(Outcome::done);
     start_waiting(0);
@@ -83,6 +171,8 @@ void Axis::end_homing(std::int64_t reference) noexcept {
 
 void Axis::abort_homing() noexcept {
     switch_homing_.cancel();
+    if (step_run_.busy()) latch_.release();
+    step_run_.cancel();
     if (power_.follows_actual()) drive_homing_.cancel();
     else drive_homing_.abort(now_);
 }

@@ -23,7 +23,7 @@ void Axis::plan(Instant now, Duration period) noexcept {
         publish();
         return;
     }
-    const bool may_be_homed = state_ == AxisState::Homing;
+    const bool may_be_homed = state_ == AxisState::Homing || passive_.id != 0;
     step_homing();
     carry_out_due_settings();
     if (view_.active_in_target && queue_.waiting() > 0) hand_over();

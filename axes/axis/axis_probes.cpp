@@ -30,6 +30,8 @@ Submitted Axis::arm_probe(const ProbeDetails& probe) noexcept {
     if (probe.replaces != 0) end_probe(probe.replaces, Outcome::aborted, ErrorId::none);  // whatever comes of the new one
     if (const auto error = check_window(probe, view_.modulo); error != ErrorId::none) return {0, error};
     if (!online()) return {0, ErrorId::drive_not_ready};
+    const bool by_level = probe.trigger.source == TriggerSource::home_switch || probe.trigger.source == TriggerSource::input;
+    if (latch_.armed() && !by_level) return {0, ErrorId::probe_busy};  // homing has the drive's latches
     const auto id = queue_.next_id();
     const auto error = probes_.arm(id, probe, port_.capabilities(), probe_signals());
     return error == ErrorId::none ? Submitted{id, error} : Submitted{0, error};

@@ -51,6 +51,7 @@ bool Axis::complete_active() noexcept {
         run_goal(late);
         return false;
     }
+    if (state_ == AxisState::Homing && kind == CommandKind::homing_step) return complete_homing_step();
     if (state_ != AxisState::DiscreteMotion || kind == CommandKind::none || goal_.kind == Goal::Kind::rest) return false;
     if (goal_.kind == Goal::Kind::velocity && goal_.value != 0) {  // a jog at its speed
         queue_.set_in_target(true);
@@ -65,7 +66,7 @@ bool Axis::complete_active() noexcept {
 }
 
 void Axis::start_waiting(double late) noexcept {
-    if (!moves()) fire(AxisEvent::done);
+    if (!moves() && !homing_procedure_) fire(AxisEvent::done);
     while (queue_.waiting() > 0) {
         const auto next = queue_.pop();
         if (next.command.kind == CommandKind::setting) {
@@ -83,7 +84,7 @@ void Axis::start_waiting(double late) noexcept {
                 return;
             }
             queue_.finish_active(Outcome::error, error);
-            if (!moves()) fire(AxisEvent::done);
+            if (!moves() && !homing_procedure_) fire(AxisEvent::done);
         } else queue_.record(next.id, Outcome::error, error);
     }
     const auto& base = setpoint_.base();

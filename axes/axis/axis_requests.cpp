@@ -49,6 +49,8 @@ ErrorId Axis::refuse_state(const AxisCommand& command) const noexcept {
     if (stopping && command.kind == CommandKind::stop)
         return stop_lock_ == 0 && !off_when_stopped_ ? ErrorId::none : ErrorId::state_forbids;
     if (uncouples(command.kind)) return ErrorId::none;  // has a word of its own (refuse_coupling)
+    // MC_Home's own search is no step: only MC_Stop ends it early.
+    if (command.kind == CommandKind::homing_step && state_ == AxisState::Homing && !homing_procedure_) return ErrorId::state_forbids;
     return next_state(state_, event_of(command.kind)) ? ErrorId::none : ErrorId::state_forbids;
 }
 
@@ -90,10 +92,11 @@ ErrorId Axis::refuse_target(const AxisCommand& command, bool starts_now) const n
             if (permitted(way) && software_limits_hold() && outward) return ErrorId::beyond_software_limit;
             break;
         }
-        case CommandKind::home:
-            if (config_.homing.kind == HomingKind::none) return ErrorId::not_supported;
-            if (config_.homing.kind == HomingKind::drive && !port_.capabilities().drive_homing) return ErrorId::not_supported;
-            return ErrorId::none;
+        case CommandKind::home: return refuse_home();
+        case CommandKind::homing_step: {
+            const auto* step = std::get_if<HomingStepDetails>(&command.details);
+            return step ? refuse_step(*step, starts_now) : ErrorId::invalid_parameter;
+        }
         default: return ErrorId::none;
     }
     return !starts_now || permitted(way) ? ErrorId::none : ErrorId::interlocked;
@@ -114,6 +117,7 @@ Submitted Axis::submit(const AxisCommand& command, Owner owner) noexcept {
     if (command.kind == CommandKind::touch_probe || command.kind == CommandKind::abort_trigger) return submit_probe(command);
     if (shifts_phase(command.kind)) return submit_phasing(command, owner);
     if (command.kind == CommandKind::setting) return submit_setting(command, owner);
+    if (beside(command)) return submit_passive(command, owner);
     if (!may(owner)) return {0, ErrorId::owned_by_other};
     if (command.kind == CommandKind::move_superimposed || command.kind == CommandKind::halt_superimposed)
         return submit_superimposed(command, owner);
@@ -186,7 +190,13 @@ ErrorId Axis::set_position(const SetPosition& wanted) noexcept {
     if (!std::isfinite(wanted.position)) return ErrorId::invalid_position;
     if (!online()) return ErrorId::drive_not_ready;
     if (state_ == AxisState::Homing) return ErrorId::state_forbids;
-    double delta = wanted.relative ? wanted.position : wanted.position - units_.to_program(actual_local());
+    shift_coordinates(wanted.relative ? wanted.position : wanted.position - units_.to_program(actual_local()));
+    publish();
+    return ErrorId::none;
+}
+
+/// Program coordinates grow by `delta`; nothing moves, but the way to an absolute target becomes another.
+void Axis::shift_coordinates(double delta) noexcept {
     if (config_.modulo > 0) delta = std::remainder(delta, config_.modulo);  // the same place whichever repetition: the nearest
     units_.shift_by(delta);
     // The number commanded stays and means the shifted coordinates (P1-200).
@@ -198,8 +208,6 @@ ErrorId Axis::set_position(const SetPosition& wanted) noexcept {
         goal_.value = config_.modulo > 0 ? goal_.value - delta : units_.to_local(active.command.position);
         commanded_target_ = goal_.value;
     }
-    publish();
-    return ErrorId::none;
 }
 
 void Axis::release_stop(CommandId id, Owner) noexcept {

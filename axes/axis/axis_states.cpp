@@ -18,6 +18,12 @@ bool Axis::fire(AxisEvent event) noexcept {
     const auto to = next_state(state_, event);
     if (to) state_ = *to;
     if (state_ != AxisState::DiscreteMotion) has_commanded_target_ = false;  // P1-147: it lives as long as that motion
+    if (to && event == AxisEvent::homing_step) {
+        homing_procedure_ = true;
+        step_succeeded_ = false;
+    } else if (state_ != AxisState::Homing) {
+        homing_procedure_ = step_succeeded_ = false;
+    }
     return to.has_value();
 }
 
@@ -73,6 +79,7 @@ void Axis::switch_off() noexcept {
     stop_lock_ = 0;
     off_when_stopped_ = begin_pending_ = false;
     power_dropping_ = true;
+    abort_homing();
     goal_ = {};
     fire(AxisEvent::power_off);
 }

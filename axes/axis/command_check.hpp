@@ -10,6 +10,7 @@
 #include "axes/axis/axis_config.hpp"
 #include "axes/axis/axis_view.hpp"
 #include "axes/axis/command.hpp"
+#include "axes/axis/homing_step_check.hpp"
 #include "axes/axis/state_machine.hpp"
 #include "axes/planner/motion.hpp"
 
@@ -31,8 +32,8 @@ namespace taktwerk::axes {
         case CommandKind::gear_out:
         case CommandKind::cam_out: return AxisEvent::decoupled;
         case CommandKind::stop: return AxisEvent::stop;
-        case CommandKind::home:
-        case CommandKind::homing_step: return AxisEvent::home;
+        case CommandKind::home: return AxisEvent::home;
+        case CommandKind::homing_step: return AxisEvent::homing_step;
         case CommandKind::move_superimposed: return AxisEvent::superimposed;
         default: return AxisEvent::discrete;  // a jog ends by itself in Standstill, like a Halt
     }
@@ -134,6 +135,9 @@ namespace taktwerk::axes {
         case CommandKind::torque:
         case CommandKind::set_controller_mode:
             if (const auto error = check_details(command); error != ErrorId::none) return error;
+            break;
+        case CommandKind::homing_step:
+            if (const auto error = check_step(command); error != ErrorId::none) return error;
             break;
         case CommandKind::external:
         case CommandKind::halt:

@@ -102,7 +102,7 @@ struct HomingStepDetails {
     HomingStep step = HomingStep::direct;
     MC_HomeDirection direction = MC_HomeDirection::mcPositiveDirection;
     MC_SwitchMode switch_mode = MC_SwitchMode::mcRisingEdge;
-    TriggerRef reference;     ///< the switch or the pulse; `falling`: a switch that is normally closed
+    TriggerRef reference{};   ///< the switch or the pulse; `falling`: a switch that is normally closed
     double set_position = 0;  ///< u; NaN: the coordinates stay
     double torque_limit = 0;  ///< fraction of rated torque
     Duration time_limit{};

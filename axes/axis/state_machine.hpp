@@ -27,8 +27,9 @@ enum class AxisEvent : std::uint8_t {
     synchronized,     ///< slave of GearIn, CamIn, ...
     superimposed,     ///< MoveSuperimposed: a motion of its own only from Standstill
     decoupled,        ///< GearOut, CamOut
+    homing_step,      ///< a step of PLCopen Part 5: Homing lasts from the first one to MC_FinishHoming
 };
-inline constexpr std::size_t axis_event_count = 14;
+inline constexpr std::size_t axis_event_count = 15;
 
 namespace state_table {
 
@@ -39,15 +40,15 @@ inline constexpr AxisState Error = ErrorStop, Off = Disabled, Stop = Stopping, H
 
 // clang-format off
 inline constexpr std::array<std::array<AxisState, axis_event_count>, axis_state_count> rows{{
-    // error  off   rst_u rst_p  power  st_fin stop  home  done   discr  cont  sync  super  decoupled
-    {Error,   Off,  no,   no,    Still, no,    no,   no,   no,    no,    no,   no,   no,    no},    // Disabled
-    {Error,   Off,  no,   no,    no,    no,    Stop, Home, no,    Discr, Cont, Sync, Discr, no},    // Standstill
-    {Error,   Off,  no,   no,    no,    no,    Stop, no,   Still, no,    no,   no,   no,    no},    // Homing
-    {Error,   Off,  no,   no,    no,    no,    Stop, no,   Still, Discr, Cont, Sync, Discr, no},    // DiscreteMotion
-    {Error,   Off,  no,   no,    no,    no,    Stop, no,   no,    Discr, Cont, Sync, Cont,  no},    // ContinuousMotion
-    {Error,   Off,  no,   no,    no,    no,    Stop, no,   no,    Discr, Cont, Sync, Sync,  Cont},  // SynchronizedMotion
-    {Error,   Off,  no,   no,    no,    Still, no,   no,   no,    no,    no,   no,   no,    no},    // Stopping
-    {Error,   no,   Off,  Still, no,    no,    no,   no,   no,    no,    no,   no,   no,    no},    // ErrorStop
+    // error  off   rst_u rst_p  power  st_fin stop  home  done   discr  cont  sync  super  decpl step
+    {Error,   Off,  no,   no,    Still, no,    no,   no,   no,    no,    no,   no,   no,    no,   no},    // Disabled
+    {Error,   Off,  no,   no,    no,    no,    Stop, Home, no,    Discr, Cont, Sync, Discr, no,   Home},  // Standstill
+    {Error,   Off,  no,   no,    no,    no,    Stop, no,   Still, no,    no,   no,   no,    no,   Home},  // Homing
+    {Error,   Off,  no,   no,    no,    no,    Stop, no,   Still, Discr, Cont, Sync, Discr, no,   no},    // DiscreteMotion
+    {Error,   Off,  no,   no,    no,    no,    Stop, no,   no,    Discr, Cont, Sync, Cont,  no,   no},    // ContinuousMotion
+    {Error,   Off,  no,   no,    no,    no,    Stop, no,   no,    Discr, Cont, Sync, Sync,  Cont, no},    // SynchronizedMotion
+    {Error,   Off,  no,   no,    no,    Still, no,   no,   no,    no,    no,   no,   no,    no,   no},    // Stopping
+    {Error,   no,   Off,  Still, no,    no,    no,   no,   no,    no,    no,   no,   no,    no,   no},    // ErrorStop
 }};
 // clang-format on
 
@@ -61,7 +62,7 @@ consteval bool sound() {
     return true;
 }
 static_assert(sound());
-static_assert(static_cast<std::size_t>(AxisEvent::decoupled) + 1 == axis_event_count);
+static_assert(static_cast<std::size_t>(AxisEvent::homing_step) + 1 == axis_event_count);
 static_assert(static_cast<std::size_t>(ErrorStop) + 1 == axis_state_count);
 
 }  // namespace state_table

@@ -88,6 +88,8 @@ public:
     [[nodiscard]] double feed() const noexcept { return feed_; }
     /// Whole feeds: local 0 is there.
     [[nodiscard]] std::int64_t anchor() const noexcept { return anchor_; }
+    /// u: the program coordinate of count 0; on a modulo axis with the whole moduli since zero was set.
+    [[nodiscard]] double shift() const noexcept { return shift_ - static_cast<double>(zero_turns_) * modulo_; }
 
 private:
     struct Wrapped {

@@ -14,7 +14,7 @@
 namespace taktwerk::axes {
 
 struct StepSettings {
-    std::variant<SwitchSearch, LimitSearch, BlockSearch, PulseSearch, CodedSearch> search;
+    std::variant<SwitchSearch, LimitSearch, BlockSearch, PulseSearch, CodedSearch> search{};
     double velocity = 0;       ///< u/s, > 0
     double fine_velocity = 0;  ///< u/s, where the edge is taken; 0 = velocity
     // 0 = no limit

@@ -60,7 +60,7 @@ struct CommandBlock : ExecuteBlock<Block> {
         const Block& block = static_cast<const Block&>(*this);
         axes::AxisCommand command{.kind = Block::kind};
         if constexpr (requires { block.BufferMode; }) command.buffer_mode = block.BufferMode;
-        if constexpr (requires { block.Direction; }) command.direction = block.Direction;
+        if constexpr (requires { command.direction = block.Direction; }) command.direction = block.Direction;
         if constexpr (requires { block.Position; }) command.position = block.Position;
         if constexpr (requires { block.Distance; }) command.position = block.Distance;
         if constexpr (requires { block.PhaseShift; }) command.position = block.PhaseShift;

@@ -76,7 +76,7 @@ template <class B>
     b.ExecutionMode;
 } > {};
 
-using WorkBlocks = Filter<StartsWork, MotionBlocks>::type;  // Execute blocks and MC_Jog
+using WorkBlocks = Filter<StartsWork, decltype(detail::joined(MotionBlocks{}, HomingBlocks{}))>::type;  // Execute blocks and MC_Jog
 using CommandBlocks = Filter<Commands, AllBlocks>::type;    // those of them that command an axis
 using ExecuteBlocks = Filter<HasExecute, AllBlocks>::type;  // without MC_Jog, whose inputs are levels
 using EnableBlocks = Filter<HasEnable, AllBlocks>::type;

@@ -42,6 +42,10 @@ public:
     bool switches = false;
     std::int64_t home_low = 0, home_high = 0;  ///< home switch on between
     std::int64_t negative_end = std::numeric_limits<std::int64_t>::min(), positive_end = std::numeric_limits<std::int64_t>::max();
+    std::int64_t negative_stop = std::numeric_limits<std::int64_t>::min() / 2,
+                 positive_stop = std::numeric_limits<std::int64_t>::max() / 2;  ///< the motor cannot pass
+    double stiffness = 0.001;                                                   ///< rated torques per count that a stop holds it back
+    std::int64_t index_at = 0;                                                  ///< the index pulses are moved by so many counts
     std::int64_t homing_speed = 5, homing_place = -2000;
     std::int64_t wraps_at_home = 0;  ///< whole ranges of the raw position that the port's unwrapping has counted
     bool homing_fails = false, homing_hangs = false;
@@ -112,7 +116,7 @@ public:
         feedback_.position_epoch = epoch;
         feedback_.position = std::llround(position) - zero;
         feedback_.velocity = velocity_;
-        feedback_.torque = mode_ == DriveMode::cyclic_torque ? torque_ : load;
+        feedback_.torque = mode_ == DriveMode::cyclic_torque ? torque_ : load + held_back_;
         feedback_.homing_attained = attained_;
         feedback_.homing_error = homing_error_;
         feedback_.has_inputs = switches;
@@ -148,7 +152,12 @@ private:
         else if (mode_ == DriveMode::homing) step_homing();
         else if (mode_ == DriveMode::cyclic_torque) step_torque(now);
         else if (mode_ == DriveMode::cyclic_velocity) position += at(now - latch_age * cycle).velocity * to_seconds(cycle);
-        else if (!blocked) position = static_cast<double>(target_at(now - latch_age * cycle) - lag);
+        else if (!blocked) {
+            const auto target = target_at(now - latch_age * cycle) - lag;
+            const auto held = std::clamp(target, negative_stop, positive_stop);
+            position = static_cast<double>(held);
+            held_back_ = stiffness * static_cast<double>(target - held);
+        }
         for (std::size_t i = 0; i < 2; ++i) step_probe(i, std::llround(before), std::llround(position));
         if (mode_ != DriveMode::homing) attained_ = homing_error_ = false;
         if (power != PowerState::enabled || mode_ != DriveMode::cyclic_torque) velocity_ = (position - before) / to_seconds(cycle);
@@ -163,7 +172,8 @@ private:
             latch = {};
             return;
         }
-        const auto edge = wanted.index_pulse ? index_between(from, to) : edge_of(probe_signal[i], wanted.edge, from, to);
+        const auto edge =
+            wanted.index_pulse ? index_between(from - index_at, to - index_at) : edge_of(probe_signal[i], wanted.edge, from, to);
         if (!edge || (latch.latched && !wanted.continuous)) return;
         latch.latched = true;
         latch.position = *edge - zero;
@@ -182,7 +192,7 @@ private:
             return (at - (((at % index_distance) + index_distance) % index_distance)) / index_distance;
         };
         if (turn(from) == turn(to)) return std::nullopt;
-        return std::max(turn(from), turn(to)) * index_distance;
+        return std::max(turn(from), turn(to)) * index_distance + index_at;
     }
     void step_torque(Instant now) {
         torque_ = at(now - (latch_age + 1) * cycle).torque;  // what held during the cycle that ended at the latch
@@ -241,6 +251,7 @@ private:
     bool attained_ = false, homing_error_ = false, obeyed_ = false;
     std::int64_t last_target_ = 0;
     double velocity_ = 0, torque_ = 0;
+    double held_back_ = 0;  // torque against a hard stop
 };
 
 }  // namespace taktwerk::axes::test

@@ -43,6 +43,8 @@ constexpr std::array arrows{
     Arrow{Standstill, E::superimposed, DiscreteMotion}, Arrow{DiscreteMotion, E::superimposed, DiscreteMotion},
     Arrow{ContinuousMotion, E::superimposed, ContinuousMotion}, Arrow{SynchronizedMotion, E::superimposed, SynchronizedMotion},
     Arrow{SynchronizedMotion, E::decoupled, ContinuousMotion},
+    // Part 5: a step leads into Homing, and from one step to the next the axis stays there; nowhere else
+    Arrow{Standstill, E::homing_step, Homing}, Arrow{Homing, E::homing_step, Homing},
 };
 // clang-format on
 
