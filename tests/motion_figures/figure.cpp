@@ -17,7 +17,7 @@ constexpr double plot = width - left - right;
 constexpr double tolerance = 0.12;
 
 constexpr std::array<const char*, 6> block_colours{"#1f6fb2", "#d9730d", "#2f8f5b", "#8a4fa8", "#b0313f", "#5b6b7b"};
-constexpr const char* idle_colour = "#8a949e";
+constexpr const char* idle_colour = "#56616b";
 constexpr const char* master_colour = "#9aa3ab";
 constexpr const char* actual_colour = "#f4c08a";
 constexpr const char* plain_colour = "#14507f";
@@ -141,7 +141,7 @@ private:
             put("<text x=\"{}\" y=\"{}\" text-anchor=\"end\" font-size=\"10\" fill=\"#667\">{:.6g}</text>", px(left - 6),
                 px(y(k * step) + 3.5), k == 0 ? 0.0 : k * step);
         }
-        double label_y = -1e9;
+        std::vector<double> labels;
         for (const auto& curve : panel.curves) {
             std::vector<double> pixels;
             for (const double value : curve.values) pixels.push_back(y(value));
@@ -154,8 +154,8 @@ private:
                      curve.ink == Ink::actual ? 4 : 1.6);
             if (curve.label.empty()) continue;
             double at = pixels.back() + 3.5;
-            if (std::abs(at - label_y) < 11) at = label_y + 11;
-            label_y = at;
+            while (std::any_of(labels.begin(), labels.end(), [&](double other) { return std::abs(at - other) < 10.9; })) at += 1;
+            labels.push_back(at);
             put("<text x=\"{}\" y=\"{}\" font-size=\"10\" fill=\"#556\">{}</text>", px(left + plot + 5), px(at), curve.label);
         }
     }

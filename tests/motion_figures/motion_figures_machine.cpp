@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -18,6 +19,8 @@ namespace {
 namespace fs = std::filesystem;
 const fs::path pages = fs::path{TAKTWERK_SOURCE_DIR} / "docs/motion";
 
+constexpr std::array all_scenes{moves, endless_moves, stops, buffer_modes, superimposed, couplings, time_profiles};
+
 std::string text_of(const fs::path& path) {
     std::ifstream file(path);
     std::ostringstream text;
@@ -25,17 +28,26 @@ std::string text_of(const fs::path& path) {
     return text.str();
 }
 
+/// First of all, so that the tests below judge what is there then.
+class Regeneration : public ::testing::Environment {
+    void SetUp() override {
+        if (std::getenv("TAKTWERK_REGENERATE") == nullptr) return;
+        for (const auto scenes : all_scenes)
+            for (const auto& figure : scenes()) std::ofstream{pages / "figures" / (figure.name + ".svg")} << svg(figure);
+    }
+};
+const auto* const regeneration = ::testing::AddGlobalTestEnvironment(new Regeneration);
+
 class Pictures : public ::testing::TestWithParam<std::vector<Figure> (*)()> {};
 
 TEST_P(Pictures, ShowWhatTheBlocksDoToday) {
     for (const auto& figure : GetParam()()) {
         const auto file = pages / "figures" / (figure.name + ".svg");
-        if (std::getenv("TAKTWERK_REGENERATE") != nullptr) std::ofstream{file} << svg(figure);
         EXPECT_TRUE(text_of(file) == svg(figure)) << file << " is old: ./dev figures writes it; look at the difference";
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, Pictures, ::testing::Values(moves, endless_moves, stops, buffer_modes));
+INSTANTIATE_TEST_SUITE_P(Of, Pictures, ::testing::ValuesIn(all_scenes));
 
 // Every picture stands on a page, and no page shows a picture that is not there.
 TEST(MotionPages, ShowEachPictureOnce) {

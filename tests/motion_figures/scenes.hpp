@@ -11,5 +11,8 @@ namespace taktwerk::figures {
 [[nodiscard]] std::vector<Figure> endless_moves();
 [[nodiscard]] std::vector<Figure> stops();
 [[nodiscard]] std::vector<Figure> buffer_modes();
+[[nodiscard]] std::vector<Figure> superimposed();
+[[nodiscard]] std::vector<Figure> couplings();
+[[nodiscard]] std::vector<Figure> time_profiles();
 
 }  // namespace taktwerk::figures

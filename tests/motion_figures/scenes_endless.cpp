@@ -1,4 +1,5 @@
 #include "fb_library/motion/endless_moves.hpp"
+#include "fb_library/motion/override.hpp"
 #include "tests/motion_figures/scenes.hpp"
 #include "tests/motion_figures/stage.hpp"
 
@@ -39,10 +40,35 @@ Figure move_continuous(const std::string& name, double end_velocity) {
     return stage.figure(name);
 }
 
+/// Figure 36 of the standard, in short.
+Figure set_override() {
+    Stage stage;
+    MC_MoveVelocity run;
+    MC_SetOverride factors;
+    run.Axis = factors.Axis = Stage::ref();
+    run.Velocity = 80, run.Acceleration = run.Deceleration = 200;
+    stage.block("run", run);
+    stage.block("override", factors);
+    stage.run(200ms);
+    run.Execute = true;
+    stage.run_until([&] { return run.InVelocity; });
+    stage.run(300ms);
+    factors.VelFactor = 0.5;
+    factors.Enable = true;
+    stage.run(600ms);
+    factors.VelFactor = 0;
+    stage.run(600ms);
+    factors.VelFactor = 1;
+    stage.run(200ms);
+    factors.Enable = false;
+    stage.run(600ms);
+    return stage.figure("set-override");
+}
+
 }  // namespace
 
 std::vector<Figure> endless_moves() {
-    return {move_velocity(), move_continuous("move-continuous", 30), move_continuous("move-continuous-back", -50)};
+    return {move_velocity(), set_override(), move_continuous("move-continuous", 30), move_continuous("move-continuous-back", -50)};
 }
 
 }  // namespace taktwerk::figures

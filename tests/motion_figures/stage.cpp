@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "axes/axis/plan_order.hpp"
+
 namespace taktwerk::figures {
 namespace {
 
@@ -35,7 +37,7 @@ Stage::Stage(const std::vector<axes::AxisConfig>& configs) {
         drives_.emplace_back(period);
         axes_.emplace_back(configs[i], drives_.back(), period, static_cast<std::uint16_t>(i));
     }
-    for (auto& axis : axes_) axis.bind({axes_.data(), axes_.size(), &tables_, {}});
+    bind();
     requests_ = axes::DirectRequests{axes_};
     powers_.resize(axes_.size());
     for (std::size_t i = 0; i < powers_.size(); ++i) {
@@ -45,6 +47,17 @@ Stage::Stage(const std::vector<axes::AxisConfig>& configs) {
     for (int i = 0; i < 1000; ++i) cycle();
     for (const auto& power : powers_)
         if (!power.Status) throw std::runtime_error("the axes of a figure did not get power");
+}
+
+/// Axes take the room for their tables when they are bound.
+void Stage::bind() {
+    for (auto& axis : axes_) axis.bind({axes_.data(), axes_.size(), &tables_, {}});
+}
+
+axes::TimeTableRef Stage::time_table(const std::vector<axes::TimePoint>& rows) {
+    const auto table = tables_.add_time_table(rows);
+    bind();
+    return table;
 }
 
 void Stage::bar(const std::string& label, const bool& value) { bars_.push_back({label, std::max(blocks_ - 1, 0), &value, {}}); }
@@ -74,7 +87,7 @@ void Stage::cycle() {
     for (auto& power : powers_) power(ctx);
     if (before) before(ctx);
     for (const auto& call : calls_) call(ctx);
-    for (auto& axis : axes_) axis.plan(now_, period);
+    axes::plan_axes(axes_, now_, period);
     for (auto& axis : axes_) axis.encode(now_);
 }
 

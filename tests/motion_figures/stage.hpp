@@ -36,8 +36,9 @@ public:
 
     static constexpr axes::AxisRef ref(std::uint16_t index = 0) { return {index}; }
     [[nodiscard]] const axes::AxisView& view(std::uint16_t index = 0) const { return axes_[index].view(); }
-    /// To be filled before the first scan.
-    [[nodiscard]] axes::MotionTables& tables() { return tables_; }
+    /// Before the first scan.
+    axes::CamRef cam(const std::vector<axes::CamPoint>& points) { return tables_.add_cam(points); }
+    axes::TimeTableRef time_table(const std::vector<axes::TimePoint>& rows);
     [[nodiscard]] axes::test::FakeDrive& drive(std::uint16_t index = 0) { return drives_[index]; }
 
     /// Shows `value` as a bar, in the colour of the block named last.
@@ -58,13 +59,15 @@ public:
         if constexpr (requires { block.InEndVelocity; }) add("InEndVelocity", block.InEndVelocity);
         if constexpr (requires { block.InGear; }) add("InGear", block.InGear);
         if constexpr (requires { block.InSync; }) add("InSync", block.InSync);
+        if constexpr (requires { block.Enabled; }) add("Enabled", block.Enabled);
         if constexpr (requires { block.InTorque; }) add("InTorque", block.InTorque);
         if constexpr (requires { block.ProfileCompleted; }) add("ProfileCompleted", block.ProfileCompleted);
         if constexpr (requires { block.EndOfProfile; }) add("EndOfProfile", block.EndOfProfile);
         if constexpr (requires { block.CommandAborted; }) add("CommandAborted", block.CommandAborted);
         if constexpr (requires { block.Error; }) add("Error", block.Error);
         calls_.push_back([&block](const fb::MotionContext& ctx) { block(ctx); });
-        // MC_Stop has no Active: it controls the axis from its edge on.
+        // The curve is the first axis'. MC_Stop has no Active: it controls the axis from its edge on.
+        if (!acts_on_the_first(block)) return;
         if constexpr (requires { block.Active; }) controls_.push_back({colour, &block.Active, nullptr});
         else if constexpr (std::is_same_v<Block, fb::MC_Stop>) controls_.push_back({colour, &block.Busy, &block.Execute});
     }
@@ -89,6 +92,11 @@ public:
     [[nodiscard]] Figure figure(const std::string& name);
 
 private:
+    template <class Block>
+    static bool acts_on_the_first(const Block& block) {
+        if constexpr (requires { block.Slave; }) return block.Slave == ref();
+        else return block.Axis == ref();
+    }
     struct Bar {
         std::string label;
         int block = 0;
@@ -99,6 +107,7 @@ private:
         int block = 0;
         const bool *active = nullptr, *held = nullptr;
     };
+    void bind();
     void cycle();
     void note();
 
