@@ -1,0 +1,110 @@
+#pragma once
+// A machine of config/machines/ with its example program, on simulated drives and real frames in virtual time: as `taktwerk run` builds it.
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "config/machine_loader.hpp"
+#include "runtime/virtual_runner.hpp"
+#include "runtime/world.hpp"
+
+namespace taktwerk::testing {
+
+using namespace std::chrono_literals;
+
+class ExampleMachine {
+public:
+    explicit ExampleMachine(const std::string& name) {
+        config::LoadOptions options;
+        options.simulate = true;
+        options.drive_dirs.emplace_back(TAKTWERK_SOURCE_DIR "/config/drives");
+        options.program_path.emplace_back(TAKTWERK_BINARY_DIR "/programs");
+        auto loaded = config::load_machine(TAKTWERK_SOURCE_DIR "/config/machines/" + name + ".yaml", options);
+        if (const auto* errors = std::get_if<1>(&loaded)) {
+            for (const auto& error : *errors) ADD_FAILURE() << error.text();
+            return;
+        }
+        auto config = std::move(std::get<0>(loaded).machine);
+        world_ = std::make_unique<runtime::World>(config, clock_.now());
+        auto built = runtime::Machine::build(std::move(config), world_->transport());
+        if (const auto* errors = std::get_if<1>(&built)) {
+            for (const auto& error : *errors) ADD_FAILURE() << error.text();
+            return;
+        }
+        machine_ = std::move(std::get<0>(built));
+        runner_ = std::make_unique<runtime::VirtualRunner>(*machine_, *world_, clock_);
+        runner_->after_cycle = [this](Instant) {
+            if (latest_ = machine_->latest(); latest_ != nullptr && each_cycle) each_cycle();
+        };
+        const auto up = runner_->bring_up();
+        if (!up) ADD_FAILURE() << up.error().text();
+        up_ = up.ok();
+    }
+    ~ExampleMachine() {
+        each_cycle = {};
+        if (up_) runner_->shut_down();
+    }
+    ExampleMachine(const ExampleMachine&) = delete;
+    ExampleMachine& operator=(const ExampleMachine&) = delete;
+
+    /// Looks after every cycle.
+    std::function<void()> each_cycle;
+
+    [[nodiscard]] bool up() const { return up_; }
+    void run(Duration time) { runner_->run_for(time); }
+    bool until(const std::function<bool()>& condition, Duration most) { return runner_->run_until(condition, most); }
+
+    [[nodiscard]] const axes::AxisView& axis(const std::string& name) const {
+        const auto& axes = machine_->layout().axes;
+        for (std::size_t i = 0; i < axes.size(); ++i)
+            if (axes[i].name == name) return latest_->axes[i];
+        throw std::runtime_error("no axis " + name);
+    }
+    [[nodiscard]] bool output(const std::string& name) const {
+        const auto& names = machine_->layout().outputs;
+        for (std::size_t i = 0; i < names.size(); ++i)
+            if (names[i] == name) return latest_->outputs[i] != 0;
+        throw std::runtime_error("no output " + name);
+    }
+    [[nodiscard]] double variable(const std::string& name) const {
+        const auto& variables = machine_->layout().variables;
+        for (std::size_t i = 0; i < variables.size(); ++i)
+            if (variables[i].name == name) return latest_->variables[i];
+        throw std::runtime_error("no variable " + name);
+    }
+    /// What the operator would do.
+    void set_parameter(const std::string& name, double value) {
+        const auto& parameters = machine_->layout().parameters;
+        for (std::size_t i = 0; i < parameters.size(); ++i) {
+            if (parameters[i].name != name) continue;
+            runtime::OperatorCommand command;
+            command.action = runtime::OperatorAction::set_parameter;
+            command.index = static_cast<std::uint16_t>(i);
+            command.value = value;
+            command.sequence = ++sequence_;
+            command.expires = clock_.now() + 1s;
+            EXPECT_TRUE(machine_->submit(command));
+            return;
+        }
+        throw std::runtime_error("no parameter " + name);
+    }
+    [[nodiscard]] std::string alarms() const {
+        std::string all;
+        for (std::size_t i = 0; i < latest_->alarm_count; ++i) all += std::to_string(latest_->alarms[i].fact.id) + " ";
+        return all;
+    }
+
+private:
+    VirtualClock clock_;
+    std::unique_ptr<runtime::World> world_;
+    std::unique_ptr<runtime::Machine> machine_;
+    std::unique_ptr<runtime::VirtualRunner> runner_;
+    const runtime::Snapshot* latest_ = nullptr;
+    std::uint64_t sequence_ = 0;
+    bool up_ = false;
+};
+
+}  // namespace taktwerk::testing
