@@ -77,7 +77,7 @@ void check_homing(Problems& problems, const HomingConfig& homing) {
     if (homing.timeout <= Duration::zero())
         problems.add("homing.timeout", "must be above 0", "Give the longest time homing may take, such as 60 s");
     if (kind == HomingKind::drive) return;
-    problems.positive("homing.search_velocity", homing.search_velocity, "u/s (the sense is homing.negative)");
+    problems.positive("homing.search_velocity", homing.search_velocity, "u/s, above 0 either way; the sense is `direction`");
     problems.positive("homing.latch_velocity", homing.latch_velocity, "u/s");
     problems.positive("homing.acceleration", homing.acceleration, "u/s2");
     if (homing.latch_velocity > homing.search_velocity)

@@ -237,6 +237,71 @@ TEST(MachineLoader, UnitsAreConvertedToTheAxisOwn) {
     EXPECT_TRUE(table.disabled);
 }
 
+// Units: 9 m/min are 150 mm/s, a pitch of -15 um is -0.015 mm. What is left out keeps its default.
+TEST(MachineLoader, AnAxisHasItsPositionLoopCompensationAndMemory) {
+    const auto machine = must_load(source + "/tests/config/good/axes.yaml").machine;
+    ASSERT_EQ(machine.axes.size(), 4u);
+    const auto& loop = machine.axes[0].axis;
+    EXPECT_EQ(loop.control.mode, axes::ControlMode::velocity);
+    EXPECT_EQ(loop.control.kv, 25);
+    EXPECT_EQ(loop.control.feed_forward, 0.9);
+    EXPECT_EQ(loop.control.torque_feed_forward, 0.5);
+    EXPECT_EQ(loop.control.rated_acceleration, 2000);
+    EXPECT_DOUBLE_EQ(loop.control.output_limit, 150);
+    EXPECT_DOUBLE_EQ(loop.compensation.backlash, 0.02);
+    EXPECT_EQ(loop.compensation.velocity, 2);
+    ASSERT_EQ(loop.compensation.pitch.size(), 2u);
+    EXPECT_EQ(loop.compensation.pitch[0].position, -10);
+    EXPECT_EQ(loop.compensation.pitch[1].position, 100);
+    EXPECT_DOUBLE_EQ(loop.compensation.pitch[1].correction, -0.015);
+    EXPECT_EQ(loop.feed_patience, 0);
+    EXPECT_TRUE(loop.memory.absolute);
+    EXPECT_EQ(loop.memory.range, 1 << 24);
+    EXPECT_EQ(loop.memory.moved_while_off, 5);
+
+    const auto& plain = machine.axes[3].axis;
+    EXPECT_EQ(plain.control.mode, axes::ControlMode::position);
+    EXPECT_EQ(plain.control.feed_forward, 1);
+    EXPECT_TRUE(plain.compensation.pitch.empty());
+    EXPECT_EQ(plain.feed_patience, 3);
+    EXPECT_FALSE(plain.memory.absolute);
+    EXPECT_EQ(plain.modulo, 0);
+    EXPECT_FALSE(plain.encoder);
+    EXPECT_EQ(machine.axes[1].axis.modulo, 360);
+    EXPECT_TRUE(machine.axes[2].axis.encoder);
+}
+
+TEST(MachineLoader, EachKindOfHomingHasItsValues) {
+    const auto machine = must_load(source + "/tests/config/good/axes.yaml").machine;
+    ASSERT_EQ(machine.axes.size(), 4u);
+    const auto homing = [&](std::size_t i) { return machine.axes[i].axis.homing; };
+    EXPECT_EQ(homing(0).kind, axes::HomingKind::block);
+    EXPECT_FALSE(homing(0).negative);
+    EXPECT_EQ(homing(0).torque, 0.3);
+    EXPECT_EQ(homing(0).block_velocity, 2);
+    EXPECT_EQ(homing(0).block_time, 80ms);
+    EXPECT_EQ(homing(1).kind, axes::HomingKind::reference_pulse);
+    EXPECT_EQ(homing(1).search_velocity, 20);
+    EXPECT_EQ(homing(1).latch_velocity, 1);
+    EXPECT_EQ(homing(1).marks.spacing, 1000);
+    EXPECT_EQ(homing(1).marks.step, 5);
+    EXPECT_EQ(homing(2).kind, axes::HomingKind::absolute);
+    EXPECT_EQ(homing(2).offset, 3);
+    EXPECT_EQ(homing(3).kind, axes::HomingKind::limit_switch);
+    EXPECT_TRUE(homing(3).negative);
+    EXPECT_EQ(homing(3).acceleration, 200);
+    EXPECT_EQ(homing(3).timeout, 30s);
+}
+
+// Kept positions are those of real drives: beside the machine file, and nowhere while the bus is simulated.
+TEST(MachineLoader, RetainIsRelativeToTheFileAndNotForSimulatedDrives) {
+    auto options = without_programs();
+    const auto path = source + "/tests/config/good/axes.yaml";
+    EXPECT_EQ(must_load(path, options).machine.retain, source + "/tests/config/good/kept");
+    options.simulate = true;
+    EXPECT_EQ(must_load(path, options).machine.retain, "");
+}
+
 TEST(MachineLoader, TasksRunAtWholeCycles) {
     const auto loaded = must_load(source + "/tests/config/good/units.yaml");
     ASSERT_EQ(loaded.machine.tasks.size(), 4u);
