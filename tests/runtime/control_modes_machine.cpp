@@ -1,0 +1,185 @@
+// Position loop of the axis over a drive in CSV, and torque over a drive in CST: blocks, real frames, simulated drives.
+
+#include <algorithm>
+#include <cmath>
+
+#include "fb_library/all_blocks.hpp"
+#include "tests/runtime/test_machine.hpp"
+#include "tests/runtime/test_program.hpp"
+
+namespace taktwerk::runtime::testing {
+namespace {
+
+using namespace fb;
+
+/// Powers x, makes its place 100 mm, and then does one thing after the other as the test presses the button.
+class Moves : public Program {
+public:
+    AxisRef x;
+    MC_Power power;
+    MC_Home home;
+    MC_MoveAbsolute move;
+    Input<bool> button;
+    bool ready = false;
+    void declare(Declaration& d) override {
+        x = d.axis("x");
+        button = d.input("button");
+        d.monitor("ready", ready);
+        d.monitor("done", move.Done);
+        d.monitor("aborted", aborted);
+        d.monitor("in_target", in_target);
+        d.task<&Moves::scan>("main");
+    }
+    void scan(TaskContext& ctx) {
+        power.Axis = home.Axis = move.Axis = x;
+        power.Enable = true;
+        power(ctx);
+        home.Execute = power.Status;
+        home.Position = 100;
+        home(ctx);
+        ready = ready || home.Done;
+        pressed = ctx.get(button);
+        first(ctx);
+        move.Position = 600;
+        move.Velocity = 100;
+        move.Execute = ready && pressed;
+        move(ctx);
+    }
+    virtual void first(TaskContext& ctx) = 0;
+
+protected:
+    bool pressed = false, aborted = false, in_target = false;
+};
+
+class VelocityThenMove final : public Moves {
+    MC_MoveVelocity run;
+    void first(TaskContext& ctx) override {
+        run.Axis = x;
+        run.Velocity = 100;
+        run.Execute = ready;
+        run(ctx);
+        in_target = run.InVelocity;
+        aborted = run.CommandAborted;
+    }
+};
+
+class TorqueThenMove final : public Moves {
+    MC_TorqueControl push;
+    void first(TaskContext& ctx) override {
+        push.Axis = x;
+        push.Torque = 0.2;
+        push.TorqueRamp = 0.5;
+        push.Velocity = 60;
+        push.Execute = ready;
+        push(ctx);
+        in_target = push.InTorque;
+        aborted = push.CommandAborted;
+    }
+};
+
+/// A servo that also takes velocities and torques (60FFh, 6071h mapped). 10 mm a turn; mechanics of the simulation's defaults:
+/// 1.27 N m on 2e-4 kg m2 are 6350 rad/s2 or 10106 mm/s2 at rated torque.
+MachineConfig versatile(const ProgramEntry* (*program)()) {
+    auto config = with_program(1, program);
+    auto device = std::make_shared<ecat::DeviceDescription>(*servo_device());
+    const auto target = [&](std::uint16_t index, ecat::DataType type, std::uint8_t bits) {
+        auto object = *std::find_if(device->objects.begin(), device->objects.end(), [](const auto& o) { return o.index == 0x607A; });
+        object.index = index;
+        object.type = type;
+        device->objects.push_back(object);
+        device->rx_pdos[0].entries.push_back({index, 0, bits});
+    };
+    target(0x60FF, ecat::DataType::I32, 32);
+    target(0x6071, ecat::DataType::I16, 16);
+    auto profile = std::make_shared<axes::DriveProfile>(*servo_profile());
+    profile->modes.push_back(axes::DriveMode::cyclic_velocity);
+    profile->modes.push_back(axes::DriveMode::cyclic_torque);
+    config.bus.slaves[0].device = device;
+    auto& binding = config.axes[0];
+    binding.profile = profile;
+    binding.simulation.start = 50;
+    binding.axis.homing.kind = axes::HomingKind::set_here;
+    binding.axis.control.rated_acceleration = 10106;
+    return config;
+}
+
+/// Set position less where the motor really is, u: with the dead time of the bus in it.
+double true_lag(TestMachine& m) { return m.axis(0).set_position - (m.world.drive("x")->plant().position() / 1000 + 50); }
+
+// 100 / 50 = 2 mm of lag without feed-forward, none with it. What the simulation knows of the motor agrees: the lags differ by just that.
+TEST(VelocityDrive, LagsByVelocityOverGainWithoutFeedForwardAndNotAtAllWithIt) {
+    double lag[2] = {};
+    for (const int feed_forward : {0, 1}) {
+        auto config = versatile(&entry_of<VelocityThenMove>);
+        config.axes[0].axis.control.mode = axes::ControlMode::velocity;
+        config.axes[0].axis.control.kv = 50;
+        config.axes[0].axis.control.feed_forward = feed_forward;
+        TestMachine m{std::move(config)};
+        ASSERT_TRUE(m.up());
+        ASSERT_TRUE(m.until([&] { return variable(m, "in_target") != 0; }, 5s)) << m.alarms();
+        m.run(1s);
+        EXPECT_EQ(m.axis(0).drive_mode, axes::DriveMode::cyclic_velocity);
+        EXPECT_NEAR(m.axis(0).actual_velocity, 100, 0.5);
+        EXPECT_NEAR(m.axis(0).following_error, feed_forward == 1 ? 0 : 2, 0.03);
+        lag[feed_forward] = true_lag(m);
+
+        m.world.set_input("button", true);
+        ASSERT_TRUE(m.until([&] { return variable(m, "done") != 0; }, 10s)) << m.alarms();
+        EXPECT_NE(variable(m, "aborted"), 0);
+        m.run(500ms);
+        EXPECT_NEAR(m.axis(0).actual_position, 600, 0.02);
+        EXPECT_NEAR(true_lag(m), 0, 0.02);
+        EXPECT_TRUE(m.axis(0).in_position);
+        EXPECT_EQ(m.alarms(), "");
+    }
+    EXPECT_NEAR(lag[0] - lag[1], 2, 0.03);
+}
+
+// Against a jammed axis the torque rises by 0.5 / s to 0.2: 0.4 s. Set free, the axis runs at the velocity limit with what friction takes:
+// 0.05 N m + 0.001 N m s/rad * 37.7 rad/s = 0.0877 N m, 0.069 of the rated one. A move takes over in motion without a bump.
+// P1-180, P1-182
+TEST(TorqueDrive, RampsHoldsItsVelocityLimitAndGoesOnIntoAMove) {
+    TestMachine m{versatile(&entry_of<TorqueThenMove>)};
+    ASSERT_TRUE(m.up());
+    auto& drive = *m.world.drive("x");
+    drive.jam(true);
+    ASSERT_TRUE(m.until([&] { return m.axis(0).drive_mode == axes::DriveMode::cyclic_torque; }, 5s)) << m.alarms();
+    ASSERT_TRUE(m.until([&] { return m.axis(0).actual_torque > 0.05; }, 1s));
+    m.run(200ms);  // 0.1 more
+    EXPECT_NEAR(m.axis(0).actual_torque, 0.15, 0.003);
+    EXPECT_EQ(variable(m, "in_target"), 0);
+    m.run(150ms);
+    EXPECT_NEAR(m.axis(0).actual_torque, 0.2, 1e-9);
+    EXPECT_NE(variable(m, "in_target"), 0);
+    EXPECT_NEAR(m.axis(0).actual_position, 100, 0.01);
+
+    double fastest = 0;
+    m.on_cycle = [&] { fastest = std::max(fastest, drive.plant().velocity() / 1000); };
+    drive.jam(false);
+    m.run(1s);
+    EXPECT_NEAR(drive.plant().velocity() / 1000, 60, 1);
+    EXPECT_LT(fastest, 66);
+    EXPECT_NEAR(m.axis(0).actual_torque, 0.069, 0.005);
+
+    double slowest = 1e9, hardest = 0, before = drive.plant().velocity() / 1000;
+    m.on_cycle = [&] {
+        const double now = drive.plant().velocity() / 1000;
+        slowest = std::min(slowest, now);
+        hardest = std::max(hardest, std::abs(now - before));
+        before = now;
+    };
+    m.world.set_input("button", true);
+    ASSERT_TRUE(m.until([&] { return m.axis(0).set_velocity > 99; }, 1s)) << m.alarms();
+    EXPECT_EQ(m.axis(0).drive_mode, axes::DriveMode::cyclic_position);
+    EXPECT_NE(variable(m, "aborted"), 0);
+    EXPECT_GT(slowest, 55);
+    EXPECT_LT(hardest, 1.5 * 5);  // 5000 mm/s2 are 5 mm/s in a cycle; the loop of the drive follows with some overshoot
+    ASSERT_TRUE(m.until([&] { return variable(m, "done") != 0; }, 10s)) << m.alarms();
+    m.run(200ms);
+    EXPECT_NEAR(m.axis(0).actual_position, 600, 0.02);
+    m.expect_no_jump();
+    EXPECT_EQ(m.alarms(), "");
+}
+
+}  // namespace
+}  // namespace taktwerk::runtime::testing
