@@ -75,6 +75,23 @@ TEST(AxisOverride, ZeroHoldsTheMotionWithoutStandstill) {
     EXPECT_LE(rig.largest_velocity, 50 * (1 + 1e-12));
 }
 
+// P1-203, P1-209: a velocity command that is held at 0 is not "in velocity" although its profile has ended; it is again after the hold.
+TEST(AxisOverride, ZeroIsNoVelocityReached) {
+    OverrideRig rig;
+    const auto id = rig.accept(at_velocity(100));
+    rig.run(200);
+    ASSERT_EQ(rig.status(id), CommandStatus::in_target);
+    EXPECT_EQ(rig.factors(0), ErrorId::none);
+    rig.run(200);
+    EXPECT_EQ(rig.view().set_velocity, 0);
+    EXPECT_EQ(rig.view().state, AxisState::ContinuousMotion);
+    EXPECT_EQ(rig.status(id), CommandStatus::active);
+
+    EXPECT_EQ(rig.factors(1), ErrorId::none);
+    rig.run(200);
+    EXPECT_EQ(rig.status(id), CommandStatus::in_target);
+}
+
 // P1-206: what is allowed; a refused call changes nothing.
 TEST(AxisOverride, RefusesWhatTheStandardForbids) {
     OverrideRig rig;
