@@ -28,6 +28,8 @@ Json axis_json(const axes::AxisView& axis, const runtime::MachineLayout::AxisInf
         {"homed", axis.homed},
         {"in_position", axis.in_position},
         {"has_job", axis.active != 0},
+        {"command", word(axis.active_kind)},  // whose block moves it: who blocks, when another is refused
+        {"held_by_stop", axis.lock != 0},
         {"queued", axis.queued_count},
         {"resetting", axis.resetting},
         {"warning", axis.warning},
@@ -43,6 +45,8 @@ Json axis_json(const axes::AxisView& axis, const runtime::MachineLayout::AxisInf
         {"target_position", axis.target_position},
         {"following_error", axis.following_error},
         {"velocity_limiter", word(axis.limiter)},
+        {"override", axis.override_factors.velocity},
+        {"turns", axis.turns},
         {"drive_state", name(axis.drive_state)},
         {"drive_mode", name(axis.drive_mode)},
         {"status_word", axis.status_word},

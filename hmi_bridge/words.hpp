@@ -15,6 +15,8 @@ namespace taktwerk::hmi {
 [[nodiscard]] std::string_view word(runtime::ProgramState state) noexcept;
 [[nodiscard]] std::string_view word(ecat::Master::Phase phase) noexcept;
 [[nodiscard]] std::string_view word(axes::VelocityLimiter limiter) noexcept;
+/// What moves the axis, by the name of its block: "MC_MoveAbsolute"; "" for none.
+[[nodiscard]] std::string_view word(axes::CommandKind kind) noexcept;
 [[nodiscard]] std::string_view word(AlarmSource source) noexcept;
 [[nodiscard]] std::string_view word(Reaction reaction) noexcept;
 [[nodiscard]] std::string_view word(VariableType type) noexcept;

@@ -152,6 +152,8 @@ TEST_F(RequestsTest, ARequestThatSaysWhenItWasSentIsJudgedByItsAge) {
 TEST_F(RequestsTest, StateCarriesNamesUnitsAndAlarmTexts) {
     machine.snapshot.axes[0].state = axes::AxisState::DiscreteMotion;
     machine.snapshot.axes[0].actual_position = 12.5;
+    machine.snapshot.axes[0].active_kind = axes::CommandKind::gear_in_pos;
+    machine.snapshot.axes[1].lock = 7;
     machine.snapshot.alarms.resize(4);
     machine.snapshot.alarms[0].standing = true;
     machine.snapshot.alarms[0].reaction = Reaction::stop_axis;
@@ -167,6 +169,10 @@ TEST_F(RequestsTest, StateCarriesNamesUnitsAndAlarmTexts) {
     EXPECT_EQ(state["axes"][0]["unit"], "mm");
     EXPECT_EQ(state["axes"][0]["state"], "DiscreteMotion");
     EXPECT_EQ(state["axes"][0]["actual_position"], 12.5);
+    EXPECT_EQ(state["axes"][0]["command"], "MC_GearInPos");
+    EXPECT_EQ(state["axes"][0]["held_by_stop"], false);
+    EXPECT_EQ(state["axes"][1]["held_by_stop"], true);
+    EXPECT_EQ(state["axes"][1]["command"], "");
     EXPECT_EQ(state["inputs"]["estop_ok"], 1);
     EXPECT_EQ(state["outputs"]["lamp_run"], 1);
     EXPECT_EQ(state["programs"][0]["state"], "running");
