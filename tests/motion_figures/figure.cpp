@@ -11,7 +11,7 @@ namespace taktwerk::figures {
 namespace {
 
 // Pixels. The page of a browser or of a printed manual shows this width as it is.
-constexpr double width = 760, left = 132, right = 58, top = 12, state_height = 16, panel_gap = 12, bit_height = 15, bits_gap = 30,
+constexpr double width = 760, left = 144, right = 58, top = 12, state_height = 16, panel_gap = 12, bit_height = 15, bits_gap = 30,
                  block_gap = 5, foot = 8;
 constexpr double plot = width - left - right;
 constexpr double tolerance = 0.12;

@@ -29,7 +29,7 @@ struct Panel {
 /// A BOOL over time, TRUE as a bar. Those that are never TRUE are left out.
 struct Trace {
     std::string label;
-    int block = 0;  ///< whose colour; the order in which blocks were named
+    int block = 0;  ///< whose colour; the order in which blocks were named; -1 = grey
     std::vector<bool> on;
 };
 

@@ -9,13 +9,15 @@
 namespace taktwerk::figures {
 namespace {
 
-double value_of(const axes::AxisView& view, Quantity quantity) {
+double value_of(const axes::AxisView& view, const axes::test::FakeDrive& drive, Quantity quantity) {
     switch (quantity) {
         case Quantity::position: return view.set_position;
         case Quantity::velocity: return view.set_velocity;
         case Quantity::acceleration: return view.set_acceleration;
         case Quantity::actual_position: return view.actual_position;
         case Quantity::actual_velocity: return view.actual_velocity;
+        case Quantity::actual_torque: return view.actual_torque;
+        case Quantity::given_torque: return drive.last.torque;
     }
     return 0;
 }
@@ -60,7 +62,9 @@ axes::TimeTableRef Stage::time_table(const std::vector<axes::TimePoint>& rows) {
     return table;
 }
 
-void Stage::bar(const std::string& label, const bool& value) { bars_.push_back({label, std::max(blocks_ - 1, 0), &value, {}}); }
+void Stage::bar(const std::string& label, const bool& value) {
+    bars_.push_back({label, std::max(blocks_ - 1, 0), [&value] { return value; }, {}});
+}
 
 void Stage::show(const std::string& quantity, const std::string& unit, double height, const std::vector<Shown>& curves) {
     Panel panel{quantity, unit, height, {}};
@@ -97,10 +101,12 @@ void Stage::note() {
         if (*control.active || (control.held != nullptr && *control.held)) owner = control.block;
     figure_.owner.push_back(owner);
     figure_.state.emplace_back(axes::name(view().state));
-    for (auto& bar : bars_) bar.on.push_back(*bar.value);
+    for (auto& bar : bars_) bar.on.push_back(bar.value());
     for (std::size_t p = 0; p < shown_.size(); ++p)
-        for (std::size_t c = 0; c < shown_[p].size(); ++c)
-            figure_.panels[p].curves[c].values.push_back(value_of(view(shown_[p][c].axis), shown_[p][c].quantity));
+        for (std::size_t c = 0; c < shown_[p].size(); ++c) {
+            const auto& [axis, quantity, ink, label, value] = shown_[p][c];
+            figure_.panels[p].curves[c].values.push_back(value != nullptr ? *value : value_of(view(axis), drives_[axis], quantity));
+        }
 }
 
 void Stage::scan() {

@@ -20,7 +20,7 @@ namespace taktwerk::figures {
 using namespace std::chrono_literals;
 
 /// What a picture shows of an axis.
-enum class Quantity { position, velocity, acceleration, actual_position, actual_velocity };
+enum class Quantity { position, velocity, acceleration, actual_position, actual_velocity, actual_torque, given_torque };
 
 class Stage {
 public:
@@ -39,18 +39,35 @@ public:
     /// Before the first scan.
     axes::CamRef cam(const std::vector<axes::CamPoint>& points) { return tables_.add_cam(points); }
     axes::TimeTableRef time_table(const std::vector<axes::TimePoint>& rows);
+    axes::CamSwitchRef cam_switches(const std::vector<axes::CamSwitch>& switches) { return tables_.add_cam_switches(switches); }
+    axes::TrackRef tracks(const std::vector<axes::TrackOptions>& options) { return tables_.add_tracks(options); }
     [[nodiscard]] axes::test::FakeDrive& drive(std::uint16_t index = 0) { return drives_[index]; }
 
     /// Shows `value` as a bar, in the colour of the block named last.
     void bar(const std::string& label, const bool& value);
+    /// What belongs to no block: a switch, a track.
+    void signal(const std::string& label, std::function<bool()> value) { bars_.push_back({label, -1, std::move(value), {}}); }
     /// A block that is called in each scan and shown; its outputs become bars as far as they are ever TRUE. The first axis' curve has
     /// its colour while it is Active.
     template <class Block>
     void block(const std::string& label, Block& block) {
+        const int colour = blocks_;
+        beside(label, block);
+        // The curve is the first axis'. MC_Stop has no Active: it controls the axis from its edge on.
+        if (!acts_on_the_first(block)) return;
+        if constexpr (requires { block.Active; }) controls_.push_back({colour, &block.Active, nullptr});
+        else if constexpr (std::is_same_v<Block, fb::MC_Stop>) controls_.push_back({colour, &block.Busy, &block.Execute});
+    }
+    /// The same for one that never controls the axis.
+    template <class Block>
+    void beside(const std::string& label, Block& block) {
         const int colour = blocks_++;
-        const auto add = [&](const char* pin, const bool& value) { bars_.push_back({label + "." + pin, colour, &value, {}}); };
+        const auto add = [&](const char* pin, const bool& value) {
+            bars_.push_back({label + "." + pin, colour, [&value] { return value; }, {}});
+        };
         if constexpr (requires { block.Execute; }) add("Execute", block.Execute);
         if constexpr (requires { block.Enable; }) add("Enable", block.Enable);
+        if constexpr (requires { block.JogForward; }) add("JogForward", block.JogForward), add("JogBackwards", block.JogBackwards);
         if constexpr (requires { block.Busy; }) add("Busy", block.Busy);
         if constexpr (requires { block.Active; }) add("Active", block.Active);
         if constexpr (requires { block.StartSync; }) add("StartSync", block.StartSync);
@@ -60,16 +77,13 @@ public:
         if constexpr (requires { block.InGear; }) add("InGear", block.InGear);
         if constexpr (requires { block.InSync; }) add("InSync", block.InSync);
         if constexpr (requires { block.Enabled; }) add("Enabled", block.Enabled);
+        if constexpr (requires { block.InOperation; }) add("InOperation", block.InOperation);
         if constexpr (requires { block.InTorque; }) add("InTorque", block.InTorque);
         if constexpr (requires { block.ProfileCompleted; }) add("ProfileCompleted", block.ProfileCompleted);
         if constexpr (requires { block.EndOfProfile; }) add("EndOfProfile", block.EndOfProfile);
         if constexpr (requires { block.CommandAborted; }) add("CommandAborted", block.CommandAborted);
         if constexpr (requires { block.Error; }) add("Error", block.Error);
         calls_.push_back([&block](const fb::MotionContext& ctx) { block(ctx); });
-        // The curve is the first axis'. MC_Stop has no Active: it controls the axis from its edge on.
-        if (!acts_on_the_first(block)) return;
-        if constexpr (requires { block.Active; }) controls_.push_back({colour, &block.Active, nullptr});
-        else if constexpr (std::is_same_v<Block, fb::MC_Stop>) controls_.push_back({colour, &block.Busy, &block.Execute});
     }
     /// Before the blocks are called.
     std::function<void(const fb::MotionContext&)> before;
@@ -86,6 +100,7 @@ public:
         Quantity quantity{};
         Ink ink = Ink::owner;
         std::string label{};
+        const double* value = nullptr;  ///< shown instead of the axis
     };
     void show(const std::string& quantity, const std::string& unit, double height, const std::vector<Shown>& curves);
     /// What was noted, with the panels asked for; position and velocity of the first axis when none was.
@@ -100,7 +115,7 @@ private:
     struct Bar {
         std::string label;
         int block = 0;
-        const bool* value = nullptr;
+        std::function<bool()> value;
         std::vector<bool> on;
     };
     struct Control {
