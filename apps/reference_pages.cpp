@@ -60,6 +60,13 @@ void append_table(std::string& page, std::string_view title, std::string_view nu
     }
 }
 
+void append_error(std::string& page, const axes::ErrorText& error) {
+    auto out = std::back_inserter(page);
+    fmt::format_to(out, "\n## {:04X}h {}\n\n", static_cast<unsigned>(error.id), error.name);
+    fmt::format_to(out, "{}\n\n* Cause: {}\n* Remedy: {}\n\n", error.english.text, error.english.cause, error.english.remedy);
+    fmt::format_to(out, "{}\n\n* 原因：{}\n* 措施：{}\n", error.chinese.text, error.chinese.cause, error.chinese.remedy);
+}
+
 }  // namespace
 
 std::string alarm_reference_markdown() {
@@ -77,13 +84,10 @@ std::string alarm_reference_markdown() {
 std::string error_reference_markdown() {
     std::string page =
         "# Errors of function blocks\n\n"
-        "Generated from the error table (`taktwerk docs errors`). These are answers to a command: the axis itself is untouched. Numbers "
-        "from\n"
-        "3000h on are the axis' own errors and stand in alarms.md.\n\n"
-        "| ErrorID | name | meaning | 含义 | what to do |\n|---|---|---|---|---|\n";
-    for (const auto& error : axes::error_texts)
-        fmt::format_to(std::back_inserter(page), "| {:04X}h | {} | {} | {} | {} |\n", static_cast<unsigned>(error.id), error.name,
-                       error.english, error.chinese, error.remedy);
+        "Generated from the error table (`taktwerk docs errors`). These are answers to a command: unless the cause says otherwise the "
+        "axis\n"
+        "itself is untouched. Numbers from 3000h on are the axis' own errors and stand in alarms.md.\n";
+    for (const auto& error : axes::error_texts) append_error(page, error);
     return page;
 }
 

@@ -83,8 +83,8 @@ Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::strin
             break;
         case Answer::refused_by_axis:
             if (const auto* text = axes::find_error(answer.error); text && answer.error != axes::ErrorId::none) {
-                error.what = fmt::format("{} ({})", text->english, text->name);
-                error.remedy = fmt::format("{}.", text->remedy);
+                error.what = fmt::format("{} ({}): {}", text->english.text, text->name, text->english.cause);
+                error.remedy = fmt::format("{}.", text->english.remedy);
             } else {
                 error.what = fmt::format("the axis refused it with error 0x{:04X}", static_cast<unsigned>(answer.error));
                 error.remedy = "See the alarms of the axis.";

@@ -265,6 +265,7 @@ TEST_F(GatewayTest, RefusalsOfTheMachineComeBackInWords) {
     const auto refused = outcome(request(CommandKind::home, "x"), Answer::refused_by_axis, axes::ErrorId::not_powered);
     EXPECT_EQ(refused.error.subject, "axis x");
     EXPECT_THAT(refused.error.what, HasSubstr("The axis is disabled"));
+    EXPECT_THAT(refused.error.what, HasSubstr("power stage is off")) << "the cause is missing";
     EXPECT_THAT(refused.error.remedy, HasSubstr("Enable it"));
 
     for (const auto answer : {Answer::unknown_name, Answer::bad_value, Answer::stale, Answer::wrong_mode, Answer::not_possible_now,
