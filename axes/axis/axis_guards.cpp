@@ -94,10 +94,10 @@ void Axis::brake_inside_limits(const MotionState& from, MotionLimits& limits) co
 }
 
 /// The acceleration the axis has now was built up with another jerk. Taken away with a smaller one it would carry the velocity beyond the
-/// axis' limit: then it is taken away as fast as that needs.
+/// axis' limit, also through zero to the one of the other sense: then it is taken away as fast as that needs.
 void Axis::release_below_limit(const MotionState& from, MotionLimits& limits) const noexcept {
-    if (!(from.velocity * from.acceleration > 0)) return;
-    const double room = config_.limits.velocity - std::abs(from.velocity);
+    if (from.acceleration == 0) return;
+    const double room = config_.limits.velocity - (from.acceleration > 0 ? from.velocity : -from.velocity);
     const double needed = from.acceleration * from.acceleration / 2;
     if (needed <= limits.jerk * room) return;
     constexpr double surely = 1 + 1e-9;

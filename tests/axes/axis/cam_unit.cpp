@@ -157,6 +157,40 @@ TEST(Cam, StartDistanceAndSyncPosition) {
     rig.expect_no_jump();
 }
 
+// The same for a slave that moves, with and against the master: its motion goes on until the master is there, and it meets the cam.
+// P1-266
+TEST(Cam, AMovingSlaveGoesOnUntilTheStartDistance) {
+    for (const double initial : {4.0, -3.0}) {
+        CamRig rig(hump(0, 20, 5));
+        rig.start();
+        const auto id = select(rig, 1, rig.table, true);
+        auto command = cam_in(0, id);
+        auto& details = std::get<CamDetails>(command.details);
+        details.master_start_distance = 14;
+        details.master_sync_position = 24;
+        rig.accept(1, at_velocity(initial));
+        rig.run(100);
+        const auto cam = rig.accept(1, command);
+        rig.accept(0, at_velocity(20));
+        double place = rig.view(1).set_position;
+        while (rig.view(0).set_position < 60) {
+            rig.step();
+            const double master = rig.view(0).set_position;
+            ASSERT_EQ(rig.view(1).state, AxisState::SynchronizedMotion);
+            ASSERT_EQ(rig.view(1).sync_started, master >= 10 && master < 24) << master;
+            ASSERT_EQ(rig.status(1, cam) == CommandStatus::in_target, master >= 24) << master;
+            place += initial * 1e-3;
+            if (master < 10) {
+                ASSERT_NEAR(rig.view(1).set_velocity, initial, 1e-9);
+                ASSERT_NEAR(rig.view(1).set_position, place, 1e-9);
+            } else if (master >= 24) {
+                ASSERT_NEAR(rig.view(1).set_position, rig.expected(id, master, 20), 1e-9) << master;
+            }
+        }
+        rig.expect_no_jump();
+    }
+}
+
 // P1-269
 TEST(Cam, AnotherTableTakesOverOnTheFly) {
     CamRig rig(hump(0, 20, 5));
@@ -307,6 +341,48 @@ TEST(Cam, CamOutKeepsTheVelocity) {
     }
     EXPECT_EQ(rig.status(1, out), CommandStatus::done);
     EXPECT_EQ(rig.status(1, cam), CommandStatus::aborted);
+    rig.expect_no_jump();
+}
+
+// Figure 22: slave and master are modulo 360, the cam takes the slave a turn further per turn of the master. A twin without the addition
+// says what the cam is: the velocities differ by the addition's (20 u/s at 100 u/s2: 0.2 s up, 2.3 s, 0.2 s down), then not any more,
+// and the places by 50 from then on, over the wraps of both.
+// P1-159
+TEST(Cam, ASuperimposedMotionLeavesAnOffset) {
+    auto rotary = plain_slave();
+    rotary.gearing = {.counts_per_revolution = 36000, .motor_revolutions = 1, .load_revolutions = 1, .feed = 360};
+    rotary.modulo = 360;
+    rotary.limits = {.velocity = 2000, .acceleration = 20000, .deceleration = 20000, .jerk = std::numeric_limits<double>::infinity()};
+    const std::vector<CamPoint> points{{.master = 0, .slave = 0}, {.master = 120, .slave = 80}, {.master = 360, .slave = 360}};
+    CouplingRig rig({rotary, rotary, rotary});  // master, slave, twin
+    const auto table = rig.tables.add_cam(points);
+    rig.start();
+    const auto id = select(rig, 1, table, true);
+    rig.accept(0, at_velocity(300));
+    rig.run(100);
+    const auto cam = rig.accept(1, cam_in(0, id)), same = rig.accept(2, cam_in(0, id));
+    ASSERT_TRUE(
+        rig.run_until([&] { return rig.status(1, cam) == CommandStatus::in_target && rig.status(2, same) == CommandStatus::in_target; }));
+    rig.run(200);
+    const auto added =
+        rig.accept(1, {.kind = CommandKind::move_superimposed, .position = 50, .velocity = 20, .acceleration = 100, .deceleration = 100});
+    const auto turns = rig.view(2).turns;
+    double way = 0;
+    for (int i = 1; i <= 12000; ++i) {
+        rig.step();
+        const double addition = i <= 200 ? 0.1 * i : i <= 2500 ? 20 : i <= 2700 ? 0.1 * (2700 - i) : 0;
+        const double before = i <= 1 ? 0 : i <= 201 ? 0.1 * (i - 1) : i <= 2501 ? 20 : i <= 2700 ? 0.1 * (2701 - i) : 0;
+        way += (addition + before) / 2 * 1e-3;
+        ASSERT_NEAR(rig.view(1).set_velocity, rig.view(2).set_velocity + addition, 1e-6) << i;
+        double apart = rig.view(1).set_position - rig.view(2).set_position - way;
+        apart -= 360 * std::round(apart / 360);
+        ASSERT_NEAR(apart, 0, 1e-6) << i;
+        ASSERT_EQ(rig.status(1, added) == CommandStatus::done, i >= 2700) << i;
+        ASSERT_EQ(rig.status(1, cam), CommandStatus::in_target) << i;
+        ASSERT_EQ(rig.view(1).state, AxisState::SynchronizedMotion);
+    }
+    EXPECT_NEAR(way, 50, 1e-9);
+    EXPECT_GE(rig.view(2).turns, turns + 9);
     rig.expect_no_jump();
 }
 

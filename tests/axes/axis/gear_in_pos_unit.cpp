@@ -1,5 +1,8 @@
 // MC_GearInPos: a sync point that is met exactly, and what happens before it.
 
+#include <algorithm>
+#include <iterator>
+
 #include "tests/axes/axis/coupling_rig.hpp"
 
 namespace taktwerk::axes::test {
@@ -200,9 +203,9 @@ AxisConfig rotary() {
 }
 
 // Modulo axes: the first sync point farther away than the distance; CatchUp takes the slave's image ahead, SlowDown the one behind.
-// P1-287, P1-288
+// P1-288
 TEST(GearInPos, ModuloAxesChooseTheirImages) {
-    double way[2] = {}, effort[2] = {};
+    double way[2] = {};
     for (const auto mode : {mcSlowDown, mcCatchUp}) {
         CouplingRig rig({rotary(), rotary()});
         rig.start();
@@ -212,7 +215,7 @@ TEST(GearInPos, ModuloAxesChooseTheirImages) {
         auto command = gear_in_pos(0, 120, 300, 300);
         std::get<GearInPosDetails>(command.details).mode = mode;
         const auto id = rig.accept(1, command);
-        double master_way = 0, slave_way = 0, energy = 0;
+        double master_way = 0, slave_way = 0;
         bool started = false;
         while (rig.status(1, id) != CommandStatus::in_target && master_way < 2000) {
             rig.step();
@@ -224,7 +227,6 @@ TEST(GearInPos, ModuloAxesChooseTheirImages) {
                 }
                 started = true;
                 slave_way += rig.view(1).set_velocity * 1e-3;
-                energy += rig.view(1).set_acceleration * rig.view(1).set_acceleration;
             }
         }
         ASSERT_EQ(rig.status(1, id), CommandStatus::in_target);
@@ -233,11 +235,99 @@ TEST(GearInPos, ModuloAxesChooseTheirImages) {
         apart -= 360 * std::round(apart / 360);
         EXPECT_NEAR(apart, 0, 1e-9);
         way[mode == mcCatchUp] = slave_way;
-        effort[mode == mcCatchUp] = energy;
         rig.expect_no_jump();
     }
     EXPECT_NEAR(way[1] - way[0], 360, 1);  // the images are a turn apart
-    EXPECT_LT(effort[0], effort[1]);
+}
+
+/// A way into sync with a master at 200 u/s, 1:1, both modulo 360. It takes 240 u of the master, 1.2 s. Without hurry the slave would go
+/// the mean of both velocities for that time; the sync position asked for lies `beyond` u further than that.
+struct WayIntoSync {
+    static constexpr double master = 200, length = 240, seconds = length / master;
+
+    WayIntoSync(double initial, double beyond, MC_SyncMode mode) {
+        CouplingRig rig({rotary(), rotary()});
+        rig.start();
+        rig.accept(0, at_velocity(master));
+        rig.accept(1, at_velocity(initial));
+        rig.run(500);
+        const auto turn = [](double place) { return place - 360 * std::floor(place / 360); };
+        auto command = gear_in_pos(0, turn(rig.view(0).set_position + length),
+                                   turn(rig.view(1).set_position + (initial + master) / 2 * seconds + beyond), 0);
+        std::get<GearInPosDetails>(command.details).mode = mode;
+        const auto id = rig.accept(1, command);
+        velocities.push_back(rig.view(1).set_velocity);
+        for (int i = 0; i < 1200 && rig.status(1, id) != CommandStatus::in_target; ++i) {
+            rig.step();
+            velocities.push_back(rig.view(1).set_velocity);
+        }
+        EXPECT_EQ(rig.status(1, id), CommandStatus::in_target);
+        EXPECT_NEAR(velocities.back(), master, 1e-9);
+        for (std::size_t i = 1; i < velocities.size(); ++i) {
+            const double change = velocities[i] - velocities[i - 1];
+            way += (velocities[i] + velocities[i - 1]) / 2 * 1e-3;
+            effort += change * change;
+        }
+        rig.expect_no_jump();
+    }
+    [[nodiscard]] bool rises() const { return std::is_sorted(velocities.begin(), velocities.end()); }
+    [[nodiscard]] bool falls() const { return std::is_sorted(velocities.rbegin(), velocities.rend()); }
+    /// Up to one highest velocity, and down from there.
+    [[nodiscard]] bool has_one_maximum() const {
+        const auto top = std::max_element(velocities.begin(), velocities.end());
+        return std::is_sorted(velocities.begin(), top + 1) && std::is_sorted(velocities.rbegin(), std::make_reverse_iterator(top));
+    }
+    [[nodiscard]] double fastest() const { return *std::max_element(velocities.begin(), velocities.end()); }
+
+    std::vector<double> velocities;
+    double way = 0;     ///< u
+    double effort = 0;  ///< sum of the squared changes of velocity
+};
+
+// Figure 45. 6 u behind where the slave would come to: SlowDown takes that image and only nears the master's velocity; CatchUp takes the
+// one a turn further, for which the slave has to get faster than both. From a lower velocity and from a higher one.
+// P1-286
+TEST(GearInPos, SlowDownNearsTheMastersVelocityAndCatchUpExceedsBoth) {
+    for (const double initial : {100.0, 300.0}) {
+        const double natural = (initial + 200) / 2 * 1.2;
+        const WayIntoSync slow(initial, -6, mcSlowDown), fast(initial, -6, mcCatchUp);
+        EXPECT_TRUE(initial < 200 ? slow.rises() : slow.falls()) << initial;
+        EXPECT_NEAR(slow.way, natural - 6, 1e-3);
+        EXPECT_TRUE(fast.has_one_maximum()) << initial;
+        EXPECT_GT(fast.fastest(), std::max(initial, 200.0) + 100);
+        EXPECT_NEAR(fast.way, natural + 354, 1e-3);
+    }
+}
+
+// Figure 47. The slave runs against the master and turns: CatchUp to the upper image, SlowDown to the lower one.
+// P1-289
+TEST(GearInPos, ASlaveThatRunsAgainstTheMasterTurns) {
+    const double natural = (-100.0 + 200) / 2 * 1.2;
+    const WayIntoSync slow(-100, -6, mcSlowDown), fast(-100, -6, mcCatchUp);
+    EXPECT_NEAR(slow.velocities.front(), -100, 1e-9);
+    EXPECT_TRUE(slow.rises());  // from -100 to 200: through zero once
+    EXPECT_NEAR(slow.way, natural - 6, 1e-3);
+    EXPECT_NEAR(fast.velocities.front(), -100, 1e-9);
+    EXPECT_TRUE(fast.has_one_maximum());
+    EXPECT_GT(fast.fastest(), 300);
+    EXPECT_NEAR(fast.way, natural + 354, 1e-3);
+}
+
+// The squared acceleration over the way is a constant for the change of velocity, and grows with the square of the distance between the
+// image and the place that the slave would come to anyway. So SlowDown takes less than CatchUp where its image is the nearer one, and
+// more where it is not: with images a turn apart, ahead and behind (P1-288), no choice makes it less everywhere. Shortest is the lesser.
+// P1-287
+TEST(GearInPos, SlowDownTakesLessEnergyWhereItsImageIsTheNearerOne) {
+    for (const double initial : {100.0, 300.0, -100.0})
+        for (const double behind : {6.0, 90.0, 170.0, 190.0, 270.0}) {
+            const WayIntoSync slow(initial, -behind, mcSlowDown), fast(initial, -behind, mcCatchUp), nearest(initial, -behind, mcShortest);
+            EXPECT_NEAR(fast.way - slow.way, 360, 1e-3);
+            EXPECT_EQ(slow.effort < fast.effort, behind < 180) << initial << " " << behind;
+            EXPECT_DOUBLE_EQ(nearest.effort, std::min(slow.effort, fast.effort)) << initial << " " << behind;
+            // By parts: v' = 6x(1-x) (d + 10k (1-2x)), k the missing distance per second: the integral is 6/5 d^2 + 120/7 k^2, per second.
+            const double d = 200 - initial, k = behind / 1.2;
+            EXPECT_NEAR(slow.effort / 1e-3, (6.0 / 5 * d * d + 120.0 / 7 * k * k) / 1.2, 0.01 * slow.effort / 1e-3);
+        }
 }
 
 // A gear between modulo axes runs over the wrap of both.

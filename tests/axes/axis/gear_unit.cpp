@@ -331,6 +331,66 @@ TEST(Combine, TheSlaveMovesWithBothMasters) {
     }
 }
 
+// A sum as the master of another: the third axis meets its sync point on it. Axes wired against their order.
+// P1-302
+TEST(Combine, TheSumIsAMasterItself) {
+    CouplingRig rig(4);  // follower, sum, two masters
+    rig.start();
+    rig.accept(2, at_velocity(15));
+    rig.accept(3, at_velocity(-5));
+    const auto sum = rig.accept(1, combine(2, 3, mcAddAxes, {2, 1}, {1, 1}));  // 25 u/s
+    const auto id = rig.accept(0, gear_in_pos(1, 30, 12, 20));
+    while (rig.view(1).set_position < 60) {
+        rig.step();
+        const double master = rig.view(1).set_position;
+        if (master < 10) {
+            ASSERT_EQ(rig.view(0).set_position, 0);
+        }
+        ASSERT_EQ(rig.status(0, id) == CommandStatus::in_target, master >= 30) << master;
+        if (master >= 30) {
+            ASSERT_NEAR(rig.view(0).set_position, 12 + master - 30, 1e-9);
+            ASSERT_NEAR(rig.view(0).set_velocity, 25, 1e-9);
+        }
+    }
+    EXPECT_EQ(rig.status(1, sum), CommandStatus::in_target);
+    EXPECT_EQ(rig.view(0).state, AxisState::SynchronizedMotion);
+    EXPECT_EQ(rig.view(1).state, AxisState::SynchronizedMotion);
+    rig.expect_no_jump();
+}
+
+// Each master has a source of its own: the noise of a master's measurement comes with its own actual source only.
+// P1-302
+TEST(Combine, EachMasterHasItsOwnSource) {
+    for (const std::size_t measured : {0u, 1u})
+        for (const std::size_t noisy : {0u, 1u}) {
+            CouplingRig rig(3);
+            rig.start();
+            rig.accept(0, at_velocity(10));
+            rig.accept(1, at_velocity(20));
+            rig.run(100);
+            auto command = combine(0, 1);
+            auto& details = std::get<CombineDetails>(command.details);
+            (measured == 0 ? details.source1 : details.source2) = mcActualValue;
+            const auto id = rig.accept(2, command);
+            ASSERT_TRUE(rig.run_to_sync(2, id, 1000));
+            rig.run(200);
+            double least = 1e9, most = -1e9;
+            for (int i = 0; i < 1000; ++i) {
+                rig.drives[noisy]->lag = i * 7919 % 5 - 2;  // counts
+                rig.step();
+                least = std::min(least, rig.view(2).set_velocity);
+                most = std::max(most, rig.view(2).set_velocity);
+            }
+            EXPECT_NEAR((least + most) / 2, 30, 0.5);
+            if (measured == noisy) {
+                EXPECT_GT(most - least, 1e-3);
+            } else {
+                EXPECT_LT(most - least, 1e-5);
+            }
+            rig.expect_no_jump();
+        }
+}
+
 TEST(Combine, EachMasterAndRatioIsChecked) {
     CouplingRig rig(3);
     rig.start();

@@ -137,5 +137,23 @@ TEST(StopJerk, LessJerkDoesNotCarryTheAxisBeyondItsLimit) {
     EXPECT_NEAR(rig.view().set_velocity, 100, 1e-9);
 }
 
+// The same while it brakes hard: the acceleration carries it through zero, and must not carry it beyond the limit of the other sense.
+TEST(StopJerk, LessJerkWhileItBrakesDoesNotCarryTheAxisBeyondItsLimitBackwards) {
+    Rig rig;
+    rig.power_on();
+    rig.accept(at_velocity(90));
+    ASSERT_TRUE(rig.run_until([&] { return rig.view().set_velocity > 89.9; }));
+    rig.run(100);
+    rig.accept(at_velocity(-20));
+    ASSERT_TRUE(rig.run_until([&] { return rig.view().set_velocity < 20; }));
+    ASSERT_LT(rig.view().set_acceleration, -900);
+    auto soft = at_velocity(-20);
+    soft.jerk = 1000;  // alone it would lose 500 u/s more
+    rig.accept(soft);
+    rig.run(2000);
+    EXPECT_LE(rig.largest_velocity, 100 * (1 + 1e-9));
+    EXPECT_NEAR(rig.view().set_velocity, -20, 1e-9);
+}
+
 }  // namespace
 }  // namespace taktwerk::axes::test

@@ -123,26 +123,97 @@ TEST(Phasing, EndsWithTheCoupling) {
     rig.expect_no_jump();
 }
 
-// With a cam, phasing moves the curve in time, a superimposed motion moves it in place: slave(t) = f(master + shift).
+/// A cam of humps of 4 over 20, entered absolutely, the master at 15 u/s.
+struct HumpRig : CouplingRig {
+    HumpRig() : CouplingRig(2) {
+        const auto table =
+            tables.add_cam(std::vector<CamPoint>{{.master = 0, .slave = 0}, {.master = 10, .slave = 4}, {.master = 20, .slave = 0}});
+        start();
+        EXPECT_EQ(axes[1].set(SelectCam{table, true}, Owner::program), ErrorId::none);
+        cam = view(1).selected_cam;
+        accept(0, at_velocity(15));
+        coupled = accept(1, cam_in(0, cam));
+        run(300);
+    }
+    /// What the table says for a master `shift` further on.
+    [[nodiscard]] CamValue hump(double shift = 0) const { return tables.prepared(cam)->at(std::fmod(view(0).set_position + shift, 20)); }
+    CamId cam;
+    CommandId coupled = 0;
+};
+
+// With a cam, phasing moves the curve in time: slave(t) = f(master + shift), position and velocity.
 // P1-296, P1-299
 TEST(Phasing, ShiftsACamAlongTheMaster) {
-    CouplingRig rig(2);
-    const auto table =
-        rig.tables.add_cam(std::vector<CamPoint>{{.master = 0, .slave = 0}, {.master = 10, .slave = 4}, {.master = 20, .slave = 0}});
-    rig.start();
-    ASSERT_EQ(rig.axes[1].set(SelectCam{table, true}, Owner::program), ErrorId::none);
-    const auto id = rig.view(1).selected_cam;
-    rig.accept(0, at_velocity(15));
-    rig.accept(1, cam_in(0, id));
-    rig.run(300);
+    HumpRig rig;
     const auto phase = rig.accept(1, phasing(absolutely, 7, 20));
     ASSERT_TRUE(rig.run_until([&] { return rig.status(1, phase) == CommandStatus::done; }));
     rig.run(300);
     for (int i = 0; i < 3000; ++i) {
         rig.step();
-        const double at = std::fmod(rig.view(0).set_position + 7, 20);
-        ASSERT_NEAR(rig.view(1).set_position, rig.tables.prepared(id)->at(at).position, 1e-9);
+        ASSERT_NEAR(rig.view(1).set_position, rig.hump(7).position, 1e-9);
+        ASSERT_NEAR(rig.view(1).set_velocity, rig.hump(7).first * 15, 1e-9);
     }
+    rig.expect_no_jump();
+}
+
+// The other half: a superimposed motion of as much moves the same curve in place, and not in time: slave(t) = f(master) + distance.
+// P1-296
+TEST(Phasing, WhereASuperimposedMotionShiftsTheSlave) {
+    HumpRig rig;
+    const AxisCommand extra{
+        .kind = CommandKind::move_superimposed, .position = 7, .velocity = 20, .acceleration = 200, .deceleration = 200};
+    const auto added = rig.accept(1, extra);
+    ASSERT_TRUE(rig.run_until([&] { return rig.status(1, added) == CommandStatus::done; }));
+    rig.run(300);
+    for (int i = 0; i < 3000; ++i) {
+        rig.step();
+        ASSERT_NEAR(rig.view(1).set_position, rig.hump().position + 7, 1e-9);
+        ASSERT_NEAR(rig.view(1).set_velocity, rig.hump().first * 15, 1e-9);
+        ASSERT_EQ(rig.view(1).phase_shift, 0);
+        ASSERT_EQ(rig.status(1, rig.coupled), CommandStatus::in_target);
+    }
+    rig.expect_no_jump();
+}
+
+// Figure 48: both modulo 360, gear 1:1, the master at 200 u/s; a shift of 90 at 50 u/s and 100 u/s2: 0.5 s up, 1.3 s, 0.5 s down.
+// P1-298
+TEST(Phasing, Figure48AShiftOverTheWrap) {
+    auto rotary = plain_slave();
+    rotary.gearing = {.counts_per_revolution = 36000, .motor_revolutions = 1, .load_revolutions = 1, .feed = 360};
+    rotary.modulo = 360;
+    rotary.limits = {.velocity = 1000, .acceleration = 1000, .deceleration = 1000, .jerk = std::numeric_limits<double>::infinity()};
+    CouplingRig rig({rotary, rotary});
+    rig.start();
+    rig.accept(0, at_velocity(200));
+    rig.run(300);
+    const auto gear = rig.accept(1, gear_in(0));
+    ASSERT_TRUE(rig.run_to_sync(1, gear));
+    const auto apart = [&] {
+        const double way = rig.view(1).set_position - rig.view(0).set_position;
+        return way - 360 * std::floor(way / 360);
+    };
+    const double before = apart();
+    auto command = phasing(absolutely, 90, 50);
+    command.acceleration = command.deceleration = 100;
+    const auto phase = rig.accept(1, command);
+    for (int i = 1; i <= 2300; ++i) {
+        ASSERT_EQ(rig.status(1, phase), CommandStatus::active) << i;
+        rig.step();
+        const double trapezoid = i <= 500 ? 0.1 * i : i <= 1800 ? 50 : 0.1 * (2300 - i);
+        ASSERT_NEAR(rig.view(1).set_velocity, 200 + trapezoid, 1e-6) << i;
+        ASSERT_NEAR(rig.view(0).set_velocity, 200, 1e-9);
+    }
+    rig.step();
+    EXPECT_EQ(rig.status(1, phase), CommandStatus::done);
+    const auto turns = rig.view(0).turns;
+    for (int i = 0; i < 10000; ++i) {
+        rig.step();
+        double shift = apart() - before - 90;
+        shift -= 360 * std::round(shift / 360);
+        ASSERT_NEAR(shift, 0, 1e-9) << i;
+        ASSERT_NEAR(rig.view(1).set_velocity, 200, 1e-9);
+    }
+    EXPECT_GE(rig.view(0).turns, turns + 5);
     rig.expect_no_jump();
 }
 
