@@ -211,6 +211,7 @@ private:
     [[nodiscard]] ErrorId refuse_state(const AxisCommand& command) const noexcept;
     [[nodiscard]] ErrorId refuse_target(const AxisCommand& command, bool starts_now) const noexcept;
     [[nodiscard]] ErrorId refuse_place(double program) const noexcept;
+    [[nodiscard]] ErrorId refuse_place(const AxisCommand& command) const noexcept;
     [[nodiscard]] bool waits(const AxisCommand& command) const noexcept;
     [[nodiscard]] bool permitted(double direction) const noexcept;
     [[nodiscard]] bool software_limits_hold() const noexcept { return homed_ && config_.modulo == 0; }
@@ -234,7 +235,7 @@ private:
     void aim_at_stop(const AxisCommand& command) noexcept;
     [[nodiscard]] double signed_velocity(const AxisCommand& command, bool backwards) const noexcept;
     [[nodiscard]] double target_of(const AxisCommand& command, const MotionState& from, bool backwards) const noexcept;
-    [[nodiscard]] double repetition_of(double program, MC_Direction direction, const MotionState& from, bool backwards) const noexcept;
+    [[nodiscard]] double repetition_of(const AxisCommand& command, const MotionState& from, bool backwards) const noexcept;
     [[nodiscard]] bool heads_backwards() const noexcept;
 
     // axis_queue.cpp: what comes after what

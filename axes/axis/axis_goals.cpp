@@ -121,17 +121,20 @@ double Axis::signed_velocity(const AxisCommand& command, bool backwards) const n
 double Axis::target_of(const AxisCommand& command, const MotionState& from, bool backwards) const noexcept {
     const bool absolute = command.kind == CommandKind::move_absolute || command.kind == CommandKind::move_continuous_absolute;
     if (!absolute) return origin_ + command.position;
-    return repetition_of(command.position, command.direction, from, backwards);
+    return repetition_of(command, from, backwards);
 }
 
 /// Which repetition of a modulo axis' position is meant: the first from `from` in the direction; the next one after where the axis can
-/// stop, when it already moves that way with a direction it must keep (P1-095).
-double Axis::repetition_of(double program, MC_Direction direction, const MotionState& from, bool backwards) const noexcept {
-    const double place = units_.to_local(program);
+/// stop, when it already moves that way with a direction it must keep (P1-095). WholeTurns come on top.
+double Axis::repetition_of(const AxisCommand& command, const MotionState& from, bool backwards) const noexcept {
     const double modulo = units_.modulo();
-    if (!(modulo > 0)) return place;
+    if (!(modulo > 0)) return units_.to_local(command.position);
 
     constexpr double same_place = 1e-10;  // moduli: rounding must not send the axis round once more
+    const bool with_turns = std::holds_alternative<WholeTurns>(command.details);
+    const double turns = with_turns ? std::floor(command.position / modulo + same_place) : 0;
+    const double place = units_.to_local(command.position - turns * modulo);
+    auto direction = command.direction;
     double ahead = std::fmod(place - from.position, modulo);
     if (ahead < 0) ahead += modulo;
     if (ahead < same_place * modulo || modulo - ahead < same_place * modulo) ahead = 0;
@@ -145,7 +148,8 @@ double Axis::repetition_of(double program, MC_Direction direction, const MotionS
         const double missing = stop - std::abs(way);
         if (missing > 0) way += (back ? -modulo : modulo) * std::ceil(missing / modulo);
     }
-    return place + modulo * std::round((from.position + way - place) / modulo);
+    const double extra = direction == mcShortestWay ? 0 : back ? -turns : turns;
+    return place + modulo * (std::round((from.position + way - place) / modulo) + extra);
 }
 
 }  // namespace taktwerk::axes

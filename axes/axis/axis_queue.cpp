@@ -125,7 +125,7 @@ double Axis::velocity_at_junction(const MotionState& from, const MotionLimits& l
         } else if (ends_at_position(command.kind) || moves_continuously(command.kind)) {
             const bool absolute = command.kind == CommandKind::move_absolute || command.kind == CommandKind::move_continuous_absolute;
             // Its turn on a modulo axis is the one that it would take from a stop, as Buffered.
-            const double target = absolute ? repetition_of(command.position, command.direction, place, backwards) - superimposed
+            const double target = absolute ? repetition_of(command, place, backwards) - superimposed
                                            : place.position + command.position;
             const double sense = target - place.position;
             if (!permitted(sense) || (software_limits_hold() && refuse_place(units_.to_program(target)) != ErrorId::none)) break;

@@ -61,6 +61,12 @@ ErrorId Axis::refuse_place(double program) const noexcept {
     return software_limits_hold() && beyond ? ErrorId::beyond_software_limit : ErrorId::none;
 }
 
+ErrorId Axis::refuse_place(const AxisCommand& command) const noexcept {
+    if (!std::holds_alternative<WholeTurns>(command.details)) return refuse_place(command.position);
+    if (!(config_.modulo > 0)) return ErrorId::not_supported;
+    return command.position >= 0 ? ErrorId::none : ErrorId::invalid_position;
+}
+
 ErrorId Axis::refuse_target(const AxisCommand& command, bool starts_now) const noexcept {
     // Coordinates of the total: what is superimposed is part of where the axis is.
     const auto& here = setpoint_.state();
@@ -69,8 +75,8 @@ ErrorId Axis::refuse_target(const AxisCommand& command, bool starts_now) const n
         case CommandKind::move_absolute:
         case CommandKind::move_continuous_absolute:
             if (config_.require_homed && !homed_) return ErrorId::not_homed;
-            if (const auto error = refuse_place(command.position); error != ErrorId::none) return error;
-            way = repetition_of(command.position, command.direction, here, heads_backwards()) - here.position;
+            if (const auto error = refuse_place(command); error != ErrorId::none) return error;
+            way = repetition_of(command, here, heads_backwards()) - here.position;
             break;
         case CommandKind::move_relative:
         case CommandKind::move_continuous_relative:

@@ -81,7 +81,7 @@ ErrorId Axis::update_target(const AxisCommand& command) noexcept {
     double target = goal_.value;
     if (!same_target) {
         if (absolute) {
-            if (const auto error = refuse_place(command.position); error != ErrorId::none) return error;
+            if (const auto error = refuse_place(command); error != ErrorId::none) return error;
         }
         target = target_of(command, from, heads_backwards());
         if (!absolute && config_.modulo == 0) {

@@ -11,7 +11,7 @@ namespace taktwerk::axes {
 enum class CommandKind : std::uint8_t {
     none,
     // to a position: DiscreteMotion
-    move_absolute,  ///< position
+    move_absolute,  ///< position; WholeTurns or no details
     move_relative,  ///< position = distance, from the set position at activation
     move_additive,  ///< position = distance, from the last commanded target (P1-147, P1-148)
     halt,

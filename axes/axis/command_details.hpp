@@ -11,6 +11,12 @@
 
 namespace taktwerk::axes {
 
+/// MC_MoveModulo, with move_absolute on a modulo axis: the position may be beyond the modulo, >= 0. What it is beyond are whole turns on
+/// top of the way there, in the sense of that way; the shortest way makes none.
+struct WholeTurns {
+    friend bool operator==(const WholeTurns&, const WholeTurns&) = default;
+};
+
 /// MC_GearIn: the slave's velocity is numerator / denominator times the master's.
 struct GearRatio {
     std::int32_t numerator = 1;
@@ -152,6 +158,6 @@ struct SelectCam {
 using AxisSetting = std::variant<SetPosition, WriteParameter, WriteOutput, Override, SetpointFeed, SelectCam>;
 
 using CommandDetails = std::variant<std::monostate, GearDetails, GearInPosDetails, CamDetails, CombineDetails, TorqueDetails,
-                                    TimeProfileDetails, ProbeDetails, HomingStepDetails, AxisSetting>;
+                                    TimeProfileDetails, ProbeDetails, HomingStepDetails, AxisSetting, WholeTurns>;
 
 }  // namespace taktwerk::axes

@@ -1,5 +1,6 @@
 #pragma once
-// Moves that end by themselves: MC_MoveAbsolute, MC_MoveRelative, MC_MoveAdditive. PLCopen Part 1 v2.0, 3.5 to 3.7. Real-time safe.
+// Moves that end by themselves: MC_MoveAbsolute, MC_MoveRelative, MC_MoveAdditive, PLCopen Part 1 v2.0, 3.5 to 3.7; MC_MoveModulo, with
+// the pins of TwinCAT's block of that name. Real-time safe.
 //
 // The axis checks the inputs and answers in the call of the edge: velocity 0 or beyond range, a negative acceleration, ... give Error
 // at once. Acceleration, Deceleration, Jerk 0 mean the axis' default.
@@ -73,6 +74,32 @@ struct MC_MoveAdditive : CommandBlock<MC_MoveAdditive> {
                          shared<&Self::Acceleration, &Self::Deceleration, &Self::Jerk, &Self::BufferMode>(),
                          out<&Self::Done>("", "target reached by the set-point, standing"), outcome<Self>());
     }
+};
+
+/// Not of PLCopen. What Position is beyond the modulo are whole turns in the direction, on top of the way to the place: from 90 deg forwards
+/// to 450 is one turn, to 0 are 270 deg, to 360 are 630. The shortest way makes no turns. Only for modulo axes.
+struct MC_MoveModulo : CommandBlock<MC_MoveModulo> {
+    AxisRef Axis{};
+    bool Execute = false;
+    double Position = 0, Velocity = 0, Acceleration = 0, Deceleration = 0, Jerk = 0;
+    MC_Direction Direction = mcPositiveDirection;
+    MC_BufferMode BufferMode = mcAborting;
+
+    bool Done = false, Busy = false, Active = false, CommandAborted = false, Error = false;
+    ErrorId ErrorID{};
+
+    static constexpr auto kind = axes::CommandKind::move_absolute;
+    static constexpr std::string_view summary = "Moves a modulo axis to a position and any number of whole turns further.";
+    static consteval auto pins() {
+        return pin_table(shared<&Self::Axis, &Self::Execute>(),
+                         in<&Self::Position>("u", "place in the modulo, plus the modulo times the number of turns; >= 0"),
+                         in<&Self::Velocity>("u/s", "largest velocity, > 0; need not be reached"),
+                         shared<&Self::Acceleration, &Self::Deceleration, &Self::Jerk>(),
+                         in<&Self::Direction>("", "of the way and the turns; mcShortestWay makes no turns"), shared<&Self::BufferMode>(),
+                         out<&Self::Done>("", "target reached by the set-point, standing"), outcome<Self>());
+    }
+
+    [[nodiscard]] axes::WholeTurns details() const noexcept { return {}; }
 };
 
 }  // namespace taktwerk::fb

@@ -68,6 +68,10 @@ const std::map<std::string, std::string>& other_documents() {
         {"MC_Jog",
          "Axis | JogForward JogBackwards Mode Position Velocity Acceleration Deceleration Jerk | "
          "Done Busy Active CommandAborted Error ErrorID"},
+        // As there, without Options.
+        {"MC_MoveModulo",
+         "Axis | Execute Position Velocity Acceleration Deceleration Jerk Direction BufferMode | "
+         "Done Busy Active CommandAborted Error ErrorID"},
         // our own, in the form of Part 1's MC_ReadActualPosition
         {"MC_ReadCommandPosition", "Axis | Enable | Valid Busy Error ErrorID Position"},
         {"MC_ReadCommandVelocity", "Axis | Enable | Valid Busy Error ErrorID Velocity"},

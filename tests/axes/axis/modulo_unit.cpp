@@ -117,6 +117,71 @@ TEST(Modulo, TargetsOutsideTheRangeAreRefused) {
     EXPECT_EQ(rig.axis.update(id, turn_to(360, mcPositiveDirection), Owner::program), ErrorId::invalid_position);
 }
 
+AxisCommand whole_turns_to(double position, MC_Direction direction) {
+    auto command = turn_to(position, direction);
+    command.details = WholeTurns{};
+    return command;
+}
+
+// MC_MoveModulo from 90: the way to the place in the direction, and a turn for each whole modulo.
+TEST(ModuloTurns, AreMadeOnTopOfTheWayInItsDirection) {
+    struct Case {
+        double target;
+        MC_Direction direction;
+        double way;
+    };
+    for (const auto& c : {Case{0, mcPositiveDirection, 270}, Case{360, mcPositiveDirection, 630}, Case{720, mcPositiveDirection, 990},
+                          Case{90, mcPositiveDirection, 0}, Case{450, mcPositiveDirection, 360}, Case{100, mcPositiveDirection, 10},
+                          Case{0, mcNegativeDirection, -90}, Case{360, mcNegativeDirection, -450}, Case{450, mcNegativeDirection, -360},
+                          Case{90, mcNegativeDirection, 0}, Case{500, mcShortestWay, 50}, Case{360 + 350, mcShortestWay, -100},
+                          Case{460, mcCurrentDirection, 370}}) {
+        Table rig;
+        rig.turned(turn_to(90, mcPositiveDirection));
+        EXPECT_NEAR(rig.turned(whole_turns_to(c.target, c.direction)), c.way, count) << c.target << ' ' << c.direction;
+        EXPECT_NEAR(rig.view().set_position, std::fmod(c.target, 360), 1e-9);
+    }
+}
+
+// 0.3 / 0.1 is a little less than 3: three turns all the same.
+TEST(ModuloTurns, AreCountedWholeWhereTheDivisionRounds) {
+    auto config = table();
+    config.gearing.feed = 1;
+    config.modulo = 0.1;
+    config.limits = {.velocity = 1, .acceleration = 10, .deceleration = 10, .jerk = infinity};
+    Rig rig(config);
+    rig.power_on();
+    auto command = whole_turns_to(0.3, mcPositiveDirection);
+    command.velocity = 1;
+    rig.accept(command);
+    ASSERT_TRUE(rig.run_to(AxisState::Standstill));
+    EXPECT_NEAR(static_cast<double>(rig.drive.last.position), 0.3 * 70000 / 3, 1);
+}
+
+TEST(ModuloTurns, NeedAModuloAxisAndAPositionThatIsNotNegative) {
+    Table rig;
+    EXPECT_EQ(rig.refuse(whole_turns_to(-1, mcPositiveDirection)), ErrorId::invalid_position);
+    EXPECT_EQ(rig.refuse(whole_turns_to(infinity, mcPositiveDirection)), ErrorId::invalid_position);
+    Rig linear;
+    linear.power_on();
+    auto command = whole_turns_to(10, mcPositiveDirection);
+    command.velocity = 10;
+    EXPECT_EQ(linear.refuse(command), ErrorId::not_supported);
+}
+
+// Behind another move they count from its end; blended too.
+TEST(ModuloTurns, CountFromTheEndOfTheMoveBefore) {
+    for (const auto mode : {mcBuffered, mcBlendingHigh}) {
+        Table rig;
+        const auto from = rig.drive.last.position;
+        rig.accept(turn_to(300, mcPositiveDirection));
+        auto next = whole_turns_to(370, mcPositiveDirection);
+        next.buffer_mode = mode;
+        rig.accept(next);
+        ASSERT_TRUE(rig.run_to(AxisState::Standstill));
+        EXPECT_NEAR(static_cast<double>(rig.drive.last.position - from) * count, 300 + 70 + 360, count);
+    }
+}
+
 // MC_MoveRelative turns as often as it is told, and back.
 TEST(Modulo, RelativeMovesTurnAnyNumberOfTimes) {
     Table rig;

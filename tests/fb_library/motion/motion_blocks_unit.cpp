@@ -69,6 +69,25 @@ TEST_F(MoveAbsolute, OfTwoInOneScanTheLaterWins) {
     EXPECT_TRUE(other.Active);
 }
 
+using MoveModulo = MotionBench<MC_MoveModulo>;
+TEST_F(MoveModulo, CommandsAnAbsoluteMoveWithWholeTurns) {
+    block.Execute = true;
+    block.Position = 450, block.Velocity = 3, block.Acceleration = 4, block.Deceleration = 5, block.Jerk = 6;
+    block.Direction = mcNegativeDirection;
+    block.BufferMode = mcBuffered;
+    scan();
+    const auto& c = last().command;
+    EXPECT_EQ(c.kind, CommandKind::move_absolute);
+    EXPECT_TRUE(std::holds_alternative<axes::WholeTurns>(c.details));
+    EXPECT_EQ(c.position, 450);
+    EXPECT_EQ(c.velocity, 3);
+    EXPECT_EQ(c.acceleration, 4);
+    EXPECT_EQ(c.deceleration, 5);
+    EXPECT_EQ(c.jerk, 6);
+    EXPECT_EQ(c.direction, mcNegativeDirection);
+    EXPECT_EQ(c.buffer_mode, mcBuffered);
+}
+
 using MoveRelative = MotionBench<MC_MoveRelative>;
 TEST_F(MoveRelative, CommandsWhatThePinsSay) {
     block.Execute = true;
