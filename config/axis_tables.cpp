@@ -189,6 +189,26 @@ Table<axes::AxisDefaults> defaults_table() {
             {}};
 }
 
+Table<runtime::PrintedMarks> printed_marks_table() {
+    using M = runtime::PrintedMarks;
+    Table<M> table{"marks",
+                   "Marks along the axis, such as print on a web, seen by a sensor that is wired to probe 1 of the simulated drive.",
+                   {
+                       required(field("every", &M::every, quantity(Dimension::position, 0), "from one mark to the next")),
+                       required(field("length", &M::length, quantity(Dimension::position, 0), "of a mark")),
+                       field("first", &M::first, quantity(Dimension::position), "where a mark begins"),
+                   },
+                   {},
+                   {}};
+    table.after = [](Reader& reader, const Node& node, M& m) {
+        if (m.length > 0 && m.length < m.every) return;
+        reader.problem(node.at, "config.out_of_range",
+                       fmt::format("`{}`: a mark must be longer than 0 and shorter than `every`", reader.path()),
+                       "give `length` the length of one mark, such as 3 mm, and `every` the distance from one beginning to the next");
+    };
+    return table;
+}
+
 Table<AxisSimulation> simulation_table() {
     using S = AxisSimulation;
     return {"simulation",
@@ -211,6 +231,7 @@ Table<AxisSimulation> simulation_table() {
                 field_via<S>(
                     "home_switch", interval(Dimension::position),
                     [](S& s, const Interval& v) { s.home_from = v.first, s.home_to = v.second; }, "active in between", "none"),
+                field("marks", &S::marks, section(printed_marks_table()), "marks along the axis, seen by a sensor at probe 1 of the drive"),
                 field("clock_drift", &S::clock_drift_ppm, quantity(Dimension::ratio_ppm), "how wrong the drive's clock runs"),
             },
             {},

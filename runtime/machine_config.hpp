@@ -22,6 +22,11 @@ enum class SendMode : std::uint8_t {
     at_tick,     ///< at the start of the next cycle: constant send time, one cycle more dead time
 };
 
+/// What a sensor sees that is wired to probe 1 of the simulated drive. u, machine coordinates.
+struct PrintedMarks {
+    double first = 0, every = 0, length = 0;  ///< every = 0: none
+};
+
 /// Simulation of one axis' mechanics, in the axis' own unit; used with --simulate or `simulated: true`.
 struct AxisSimulation {
     double inertia = 2e-4, viscous_friction = 1e-3, coulomb_friction = 0.05, load_torque = 0;  ///< SI at the motor shaft
@@ -30,6 +35,7 @@ struct AxisSimulation {
     std::optional<double> negative_stop, positive_stop;                                        ///< u: hard stops
     std::optional<double> negative_limit, positive_limit;                                      ///< u: limit switches
     std::optional<double> home_from, home_to;                                                  ///< u: home switch active in between
+    PrintedMarks marks;
     double clock_drift_ppm = 0;
 };
 

@@ -320,7 +320,8 @@ void Cia402Axis::inner_step() noexcept {
 /// In the drive's counts, as the latched position is; the index pulse is the encoder's own.
 void Cia402Axis::step_probes(double before) noexcept {
     for (std::size_t i = 0; i < probes_.size(); ++i) {
-        const auto& signal = plant_.config().probe[i];
+        const auto& seen = plant_.config().probe[i];
+        const auto signal = blank_ ? ProbeSignal{} : nearest({seen.from, seen.to}, seen.every, plant_.position());
         probes_[i].motion(before - zero_, plant_.position() - zero_, {signal.from - zero_, signal.to - zero_},
                           static_cast<double>(personality_.counts_per_revolution));
     }

@@ -115,6 +115,8 @@ public:
     void fail(Failure failure) noexcept;
     void main_power(bool on) noexcept;
     void jam(bool jammed) noexcept { plant_.jam(jammed); }
+    /// Nothing in front of the sensors at the probes, such as a web without print.
+    void blank(bool blank) noexcept { blank_ = blank; }
 
     [[nodiscard]] const Plant& plant() const noexcept { return plant_; }
     [[nodiscard]] State state() const noexcept { return state_; }
@@ -155,6 +157,7 @@ private:
     ServoLoop loop_;
     HomingRun homing_;
     std::array<TouchProbe, 2> probes_;
+    bool blank_ = false;
     State state_ = State::not_ready;
     Instant now_{};
     double zero_ = 0;  ///< plant position at which the drive counts 0

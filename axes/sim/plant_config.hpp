@@ -24,6 +24,7 @@ struct PlantConfig {
     double home_from = 1, home_to = 0;                                 ///< switch active in between; from > to = no switch
     struct Signal {
         double from = 1, to = 0;
+        double every = 0;  ///< it repeats, as marks on a web do; 0 = there is one
     };
     Signal probe[2];  ///< what the drive's probe inputs see, active in between; from > to = never
 };

@@ -14,6 +14,13 @@ struct ProbeSignal {
     double from = 1, to = 0;
 };
 
+/// Of a signal that repeats every so many counts the one nearest to `at`; 0 = there is one only.
+[[nodiscard]] inline ProbeSignal nearest(const ProbeSignal& signal, double every, double at) noexcept {
+    if (!(every > 0)) return signal;
+    const double shift = every * std::round((at - (signal.from + signal.to) / 2) / every);
+    return {signal.from + shift, signal.to + shift};
+}
+
 class TouchProbe {
 public:
     /// Bits 0..7 of 60B8h.

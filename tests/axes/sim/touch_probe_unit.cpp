@@ -24,6 +24,13 @@ TEST(TouchProbe, KeepsTheCountAtTheEdge) {
     EXPECT_EQ(p.rising(), 100) << "the first only";
 }
 
+// Marks of 100.5 to 200, every 1000: also 1100.5 to 1200 and -899.5 to -800.
+TEST(TouchProbe, SignalsThatRepeatAreSeenAtEachRepetition) {
+    EXPECT_EQ(nearest(signal, 1000, 1090).from, 1100.5);
+    EXPECT_EQ(nearest(signal, 1000, -790).to, -800);
+    EXPECT_EQ(nearest(signal, 0, 1090).from, 100.5) << "does not repeat";
+}
+
 TEST(TouchProbe, FromAboveTheRisingEdgeIsTheUpperEnd) {
     auto p = probe(0x11);
     p.motion(210, 150, signal, 1000);

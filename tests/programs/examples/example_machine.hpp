@@ -91,9 +91,20 @@ public:
         }
         throw std::runtime_error("no parameter " + name);
     }
+    /// The hardware behind the bus: what really moves.
+    [[nodiscard]] runtime::World& world() { return *world_; }
+    /// Where the mechanics of an axis really are, in its unit, machine coordinates.
+    [[nodiscard]] double place(const std::string& name) {
+        for (const auto& binding : machine_->config().axes)
+            if (binding.axis.name == name) return world_->drive(name)->plant().position() / binding.axis.gearing.counts_per_unit();
+        throw std::runtime_error("no axis " + name);
+    }
     [[nodiscard]] std::string alarms() const {
         std::string all;
-        for (std::size_t i = 0; i < latest_->alarm_count; ++i) all += std::to_string(latest_->alarms[i].fact.id) + " ";
+        for (std::size_t i = 0; i < latest_->alarm_count; ++i) {
+            const auto words = machine_->describe(latest_->alarms[i].fact);
+            all += words.source + ": " + words.english + "; ";
+        }
         return all;
     }
 
