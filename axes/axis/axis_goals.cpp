@@ -142,7 +142,7 @@ double Axis::repetition_of(const AxisCommand& command, const MotionState& from, 
     const bool back = direction == mcNegativeDirection || (direction == mcShortestWay && ahead > modulo / 2);
     double way = back && ahead > 0 ? ahead - modulo : ahead;
     if (direction != mcShortestWay && from.velocity * (back ? -1 : 1) > 0) {
-        auto limits = with_override(goal_.limits);
+        auto limits = with_override(dynamics_of(command, config_.limits, config_.defaults));
         limits.velocity = config_.limits.velocity;
         const double stop = std::abs(stopping_distance(from, limits)) * (1 - 1e-9);
         const double missing = stop - std::abs(way);

@@ -172,7 +172,7 @@ bool Axis::enter_torque(bool confirmed, bool late, Duration period) noexcept {
     }
     if (confirmed) {
         go_mode(ModePhase::torque);
-        torque_.start(view_.actual_torque, motor_velocity());
+        torque_.start(view_.actual_torque, motor_velocity(), setpoint_.state().acceleration);
         if (by_command) {
             queue_.finish_active(Outcome::done);
             start_waiting(0);

@@ -5,12 +5,12 @@
 
 namespace taktwerk::axes {
 
-void TorqueControl::start(double torque_now, double velocity_now) noexcept {
+void TorqueControl::start(double torque_now, double velocity_now, double acceleration_now) noexcept {
     ramped_ = torque_ = torque_now;
     high_ = velocity_now;
     low_ = -velocity_now;
     observed_velocity_ = velocity_now;
-    observed_load_ = 0;
+    observed_load_ = torque_now - inertia_ * acceleration_now;
     braking_ = in_torque_ = limited_ = false;
 }
 

@@ -30,8 +30,9 @@ public:
     /// inertia that is wrong by a factor of two.
     TorqueControl(double inertia, double bandwidth) noexcept : inertia_(inertia), bandwidth_(bandwidth) {}
 
-    /// From the torque and velocity of this moment. While it runs, start() changes the command without a step.
-    void start(double torque_now, double velocity_now) noexcept;
+    /// From the torque, velocity and acceleration of this moment: what the acceleration does not account for is load, so that a web's
+    /// pull or a hanging weight is held from the first cycle on.
+    void start(double torque_now, double velocity_now, double acceleration_now = 0) noexcept;
     void command(double torque, double ramp, const TorqueLimits& limits, TorqueSense sense) noexcept;
     /// Ends the motion with the deceleration instead: both bounds close in on standstill. Without an inertia: torque 0.
     void brake(double deceleration) noexcept;

@@ -223,6 +223,26 @@ TEST(Modulo, ATargetTooNearToStopIsMetATurnLater) {
     }
 }
 
+// P1-095: whether it can stop in time is a matter of the new command's own deceleration. From 1000 deg/s with 1000 deg/s2 it takes 500 deg,
+// so a target 20 deg ahead is met two turns later; with the axis' own deceleration it would be met at once.
+TEST(Modulo, AGentleDecelerationNeedsMoreTurns) {
+    Table rig;
+    rig.accept(at_velocity(1000));
+    rig.run(777);
+    ASSERT_EQ(rig.view().set_velocity, 1000);
+    const auto from = rig.axis.drive_command().position;
+    auto command = turn_to(std::fmod(rig.view().set_position + 20, 360), mcPositiveDirection);
+    command.deceleration = 1000;
+    rig.accept(command);
+    bool reversed = false;
+    ASSERT_TRUE(rig.run_until([&] {
+        reversed = reversed || rig.view().set_velocity < 0;
+        return rig.view().state == AxisState::Standstill;
+    }));
+    EXPECT_FALSE(reversed);
+    EXPECT_NEAR(static_cast<double>(rig.drive.last.position - from) * count, 740, 2 * count);
+}
+
 // A fixed direction against the motion: the axis has to turn, then goes to the first repetition seen from where the command came.
 TEST(Modulo, FixedDirectionAgainstTheMotionTurns) {
     Table rig;

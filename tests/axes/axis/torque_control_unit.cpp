@@ -150,6 +150,20 @@ TEST(TorqueControl, AnOverhaulingLoadIsHeldAtTheLimit) {
     EXPECT_NEAR(plant.control.torque(), 0.4, 0.01);
 }
 
+// Taken over at standstill with the torque that holds it, a load does not fall for a moment while the observer finds out.
+TEST(TorqueControl, AHeldLoadIsHeldFromTheFirstCycle) {
+    Plant plant;
+    plant.load = 0.3;
+    plant.seen.assign(2, 0);
+    plant.acting.assign(1, 0.3);
+    plant.control.start(0.3, 0);
+    plant.control.command(0.3, 0, {.velocity = 10, .acceleration = 100, .deceleration = 100}, TorqueSense::both);
+    plant.run(200);
+    EXPECT_NEAR(plant.fastest, 0, 1e-9);
+    EXPECT_NEAR(plant.slowest, 0, 1e-9);
+    EXPECT_NEAR(plant.control.torque(), 0.3, 1e-12);
+}
+
 TEST(TorqueControl, AnInertiaThatIsWrongByTwoIsForgiven) {
     for (const double believed : {Plant::inertia / 2, Plant::inertia * 2}) {
         Plant plant(believed);

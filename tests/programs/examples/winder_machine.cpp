@@ -97,9 +97,16 @@ TEST(Winder, HoldsTheTensionAtStandstillWithoutAJump) {
 
     m.world().set_input("run", true);
     ASSERT_TRUE(m.until([&] { return m.variable("step") != holding; }, 1s)) << m.alarms();
-    ASSERT_TRUE(m.until([&] { return m.axis("winder").set_velocity != 0; }, 1s)) << m.alarms();
+    double handover = 0;  // without the torque that accelerates the roll once it turns
+    ASSERT_TRUE(m.until(
+        [&] {
+            if (m.axis("winder").set_velocity == 0) handover = watch.largest_torque_step;
+            return m.axis("winder").set_velocity != 0;
+        },
+        1s))
+        << m.alarms();
     EXPECT_NEAR(watch.roll, at, 0.002);
-    EXPECT_LE(watch.largest_torque_step, ramp * period + 0.003) << "rated torques in a cycle; 0.001 is what the drive shows";
+    EXPECT_LE(handover, ramp * period + 0.003) << "rated torques in a cycle; 0.001 is what the drive shows";
     ASSERT_TRUE(m.until([&] { return m.axis("line").set_velocity >= 500 - 1e-9; }, 5s)) << m.alarms();
     EXPECT_LT(std::abs(watch.speed_error()), 1e-3);
     EXPECT_LE(watch.largest_kink, acceleration * period * 1.000001);
