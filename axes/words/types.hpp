@@ -52,7 +52,7 @@ using CommandId = std::uint32_t;
 enum class Owner : std::uint8_t { none, program, operator_panel, commissioning };
 [[nodiscard]] std::string_view name(Owner owner) noexcept;
 
-/// Stable error numbers of blocks and axes (docs/errors.md); texts in axes/axis/error_table.hpp.
+/// Stable error numbers of blocks and axes (docs/reference/errors.md); texts in axes/axis/error_texts.hpp.
 /// 0x0001..: command errors (the axis is untouched). 0x3xxx: axis errors (the alarm ids of axes/axis/alarms.hpp).
 enum class ErrorId : std::uint16_t {
     none = 0,
