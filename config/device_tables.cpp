@@ -152,29 +152,101 @@ Table<DeviceDescription> pdo_section_table() {
             {}};
 }
 
-Table<ObjectEntry> object_table() {
-    using O = ObjectEntry;
-    constexpr auto low = std::numeric_limits<std::int64_t>::min(), high = std::numeric_limits<std::int64_t>::max();
-    return {
+constexpr auto i64_low = std::numeric_limits<std::int64_t>::min(), i64_high = std::numeric_limits<std::int64_t>::max();
+
+Codec<axes::ParameterEffect> parameter_effect() {
+    using E = axes::ParameterEffect;
+    return choice<E>({{"at_once", E::at_once},
+                      {"at_standstill", E::at_standstill},
+                      {"when_enabled", E::when_enabled},
+                      {"after_restart", E::after_restart}});
+}
+
+Codec<axes::ParameterChange> parameter_change() {
+    using C = axes::ParameterChange;
+    return choice<C>({{"any_time", C::any_time}, {"disabled", C::disabled}, {"never", C::never}});
+}
+
+}  // namespace
+
+Table<ObjectRow> object_table() {
+    using R = ObjectRow;
+    const auto object = [](R& r) -> ObjectEntry& { return r.object; };
+    const auto parameter = [](R& r) -> axes::DriveParameter& { return r.parameter; };
+    Table<R> table{
         "objects",
-        "One object of the dictionary.",
+        "One object of the dictionary, or one parameter of the drive.",
         {
-            required(field_via<O>(
-                "object", object_address(), [](O& o, const ObjectAddress& a) { o.index = a.index, o.sub = a.sub; }, "index and sub-index")),
-            required(field("name", &O::name, text(), "its name")),
-            required(field("type", &O::type, data_type(), "its type")),
-            field("access", &O::access, choice<Access>({{"ro", Access::ro}, {"rw", Access::rw}, {"wo", Access::wo}}), "by SDO"),
-            field("map", &O::mappable,
-                  choice<Mappable>({{"no", Mappable::no}, {"rx", Mappable::rx}, {"tx", Mappable::tx}, {"both", Mappable::both}}),
-                  "into which PDOs"),
-            field("value", &O::value, integer<std::int64_t>(low, high), "default"),
-            field("minimum", &O::minimum, maybe(integer<std::int64_t>(low, high)), "least value that the drive accepts"),
-            field("maximum", &O::maximum, maybe(integer<std::int64_t>(low, high)), "greatest value that the drive accepts"),
-            field("text", &O::text, text(), "default of a STRING"),
+            field_via<R>(
+                "object", object_address(),
+                [](R& r, const ObjectAddress& a) {
+                    r.object.index = a.index, r.object.sub = a.sub;
+                    r.parameter.address = {a.index, a.sub};
+                },
+                "index and sub-index"),
+            field_via<R>(
+                "register", integer<std::uint16_t>(0, u16),
+                [](R& r, const std::uint16_t& number) {
+                    r.parameter.address = {number, 0}, r.is_register = true;
+                },
+                "number of a register, for drives without a dictionary"),
+            required(field_at<R>(
+                "name", [object](R & r) -> auto& { return object(r).name; }, text(), "its name in English")),
+            field_at<R>(
+                "parameter", [parameter](R & r) -> auto& { return parameter(r).parameter; }, text(),
+                "what the manual calls it: P05.10, PA17, Pr098"),
+            field_at<R>(
+                "chinese", [parameter](R & r) -> auto& { return parameter(r).chinese; }, text(), "its name as the manual prints it"),
+            required(field_at<R>(
+                "type", [object](R & r) -> auto& { return object(r).type; }, data_type(), "its type")),
+            field_at<R>(
+                "access", [object](R & r) -> auto& { return object(r).access; },
+                choice<Access>({{"ro", Access::ro}, {"rw", Access::rw}, {"wo", Access::wo}}), "by SDO"),
+            field_at<R>(
+                "map", [object](R & r) -> auto& { return object(r).mappable; },
+                choice<Mappable>({{"no", Mappable::no}, {"rx", Mappable::rx}, {"tx", Mappable::tx}, {"both", Mappable::both}}),
+                "into which PDOs"),
+            field_at<R>(
+                "value", [object](R & r) -> auto& { return object(r).value; }, integer<std::int64_t>(i64_low, i64_high), "default, raw"),
+            field_at<R>(
+                "minimum", [object](R & r) -> auto& { return object(r).minimum; }, maybe(integer<std::int64_t>(i64_low, i64_high)),
+                "least value that the drive accepts, raw"),
+            field_at<R>(
+                "maximum", [object](R & r) -> auto& { return object(r).maximum; }, maybe(integer<std::int64_t>(i64_low, i64_high)),
+                "greatest value that the drive accepts, raw"),
+            field_at<R>(
+                "text", [object](R & r) -> auto& { return object(r).text; }, text(), "default of a STRING"),
+            field_at<R>(
+                "unit", [parameter](R & r) -> auto& { return parameter(r).unit; }, text(), "of the value times `scale`: ms, %, rpm"),
+            field_at<R>(
+                "scale", [parameter](R & r) -> auto& { return parameter(r).scale; }, number(), "what one raw count is in `unit`"),
+            field_at<R>(
+                "meaning", [parameter](R & r) -> auto& { return parameter(r).meaning; }, text(), "of the values, where they are a choice"),
+            field_at<R>(
+                "effective", [parameter](R & r) -> auto& { return parameter(r).effect; }, parameter_effect(), "when a new value counts"),
+            field_at<R>(
+                "change", [parameter](R & r) -> auto& { return parameter(r).change; }, parameter_change(), "when the drive takes a write"),
+            field_at<R>(
+                "section", [parameter](R & r) -> auto& { return parameter(r).section; }, text(), "of the manual"),
         },
         {},
         {}};
+    table.after = [](Reader& reader, const Node& node, R& row) {
+        if (row.parameter.address.index == 0 && row.object.index == 0 && !row.is_register)
+            reader.problem(node.at, "config.object_address", "a row needs its `object:` or its `register:`",
+                           "add `object: 2005h:0B`, or `register: 98` for a drive without a dictionary");
+        row.parameter.name = row.object.name;
+        row.parameter.bits = ecat::bit_size(row.object.type);
+        row.parameter.is_signed = ecat::is_signed(row.object.type);
+        row.parameter.value = row.object.value;
+        row.parameter.minimum = row.object.minimum;
+        row.parameter.maximum = row.object.maximum;
+        if (row.object.access == Access::ro) row.parameter.change = axes::ParameterChange::never;
+    };
+    return table;
 }
+
+namespace {
 
 Table<ecat::DcDescription> dc_table() {
     using D = ecat::DcDescription;
@@ -260,8 +332,6 @@ std::vector<Field<DeviceDescription>> device_fields() {
         field("fmmus", &DeviceDescription::fmmus, integer<std::uint8_t>(1, 16), "of the controller"),
         field("sync_manager_count", &DeviceDescription::sync_manager_count, integer<std::uint8_t>(1, 16), "of the controller"),
         field("process_ram", &DeviceDescription::process_ram, integer<std::uint16_t>(1, u16), "bytes from 1000h"),
-        required(
-            field("objects", &DeviceDescription::objects, list(section(object_table())), "of the dictionary, as far as they are used")),
         required(field_at<DeviceDescription>(
             "pdo", [](DeviceDescription& d) -> DeviceDescription& { return d; }, section(pdo_section_table()),
             "process data as the drive offers it")),

@@ -4,12 +4,21 @@
 
 #include <vector>
 
+#include "axes/port/drive_parameter.hpp"
 #include "config/field_table.hpp"
 #include "ecat/device_description.hpp"
 
 namespace taktwerk::config {
 
 [[nodiscard]] std::vector<Field<ecat::DeviceDescription>> device_fields();
+
+/// One row of `objects`: what bus and simulator need of it, and what people do.
+struct ObjectRow {
+    ecat::ObjectEntry object;
+    axes::DriveParameter parameter;
+    bool is_register = false;  ///< not an object: belongs to a drive without a dictionary
+};
+[[nodiscard]] Table<ObjectRow> object_table();
 
 /// An object in a PDO; its bits are looked up later unless given.
 [[nodiscard]] Codec<ecat::PdoEntry> pdo_entry();

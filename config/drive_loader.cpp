@@ -19,6 +19,16 @@ void load_alarms(const std::string& path, axes::DriveProfile& profile, std::vect
     profile.alarms.insert(profile.alarms.end(), file.alarms.begin(), file.alarms.end());
 }
 
+void load_objects(const std::string& path, DriveFile& drive, std::vector<Error>& errors) {
+    auto document = read_document(path);
+    Reader reader(path);
+    reader.errors() = std::move(document.errors);
+    ObjectFile file;
+    if (document.root.kind != Node::Kind::null) read_table(reader, document.root, object_file_table(), file);
+    errors.insert(errors.end(), reader.errors().begin(), reader.errors().end());
+    add_objects(drive, file.objects);
+}
+
 ecat::PdoSelection chosen(const std::vector<PdoChoice>& choices, const std::vector<ecat::PdoDescription>& available) {
     ecat::PdoSelection out;
     for (const auto& choice : choices)
@@ -38,9 +48,10 @@ std::variant<LoadedDrive, std::vector<Error>> load_drive(const std::string& path
     reader.errors() = std::move(document.errors);
     DriveFile file;
     if (document.root.kind != Node::Kind::null) read_table(reader, document.root, drive_table(), file);
+    const auto beside = [&](const std::string& name) { return (std::filesystem::path(path).parent_path() / name).string(); };
+    if (!file.object_file.empty()) load_objects(beside(file.object_file), file, reader.errors());
     const auto startup = resolve_startup(reader, path, file.startup, file.device);
-    if (!file.alarm_file.empty())
-        load_alarms((std::filesystem::path(path).parent_path() / file.alarm_file).string(), file.profile, reader.errors());
+    if (!file.alarm_file.empty()) load_alarms(beside(file.alarm_file), file.profile, reader.errors());
     if (!reader.errors().empty()) return std::move(reader.errors());
 
     file.device.name = file.profile.name;

@@ -1,5 +1,7 @@
 #include "config/drive_tables.hpp"
 
+#include <limits>
+
 #include <fmt/format.h>
 
 #include "config/codecs.hpp"
@@ -63,21 +65,68 @@ Codec<axes::DriveAlarmKind> alarm_kind() {
                       {"power_cycle_pending", K::power_cycle_pending}});
 }
 
+Codec<DriveMode> drive_mode() {
+    return choice<DriveMode>({{"pp", DriveMode::profile_position},
+                              {"pv", DriveMode::profile_velocity},
+                              {"pt", DriveMode::profile_torque},
+                              {"hm", DriveMode::homing},
+                              {"csp", DriveMode::cyclic_position},
+                              {"csv", DriveMode::cyclic_velocity},
+                              {"cst", DriveMode::cyclic_torque}});
+}
+
+/// An object, or a register by its number.
+Codec<axes::ParameterAddress> parameter_address() {
+    Codec<axes::ParameterAddress> c;
+    const auto address = object_address();
+    c.shape = address.shape;
+    c.read = [read = address.read](Reader& reader, const Node& node, axes::ParameterAddress& out) {
+        ObjectAddress value;
+        if (!read(reader, node, value)) return false;
+        out = {value.index, value.sub};
+        return true;
+    };
+    return c;
+}
+
+Table<axes::DriveHazard> hazard_table() {
+    using H = axes::DriveHazard;
+    using C = axes::HazardCondition;
+    return {"hazards",
+            "What is dangerous about the drive in a machine that forgot something; `taktwerk check` warns of it.",
+            {
+                required(field("when", &H::when,
+                               choice<C>({{"always", C::always},
+                                          {"not_written", C::not_written},
+                                          {"not_set_to", C::not_set_to},
+                                          {"set_to", C::set_to},
+                                          {"mapped", C::mapped},
+                                          {"not_mapped", C::not_mapped},
+                                          {"mode_mapped", C::mode_mapped},
+                                          {"homed_by_drive", C::homed_by_drive},
+                                          {"no_software_limits", C::no_software_limits},
+                                          {"absolute_homing", C::absolute_homing}}),
+                               "what makes it a hazard of this machine (axes/port/drive_hazard.hpp)")),
+                field("objects", &H::objects, list(parameter_address()), "that the condition looks at"),
+                field("values", &H::values,
+                      list(integer<std::int64_t>(std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max())),
+                      "that the condition compares with"),
+                field("mode", &H::mode, drive_mode(), "that the condition looks at"),
+                required(field("text", &H::text, text(), "what happens, in one sentence")),
+                field("remedy", &H::remedy, text(), "what to write or wire"),
+                required(field("section", &H::section, text(), "of the manual")),
+            },
+            {},
+            {}};
+}
+
 Table<DriveProfile> motion_table() {
     using P = DriveProfile;
     return {
         "motion",
         "What the drive means to an axis.",
         {
-            required(field("modes", &P::modes,
-                           list(choice<DriveMode>({{"pp", DriveMode::profile_position},
-                                                   {"pv", DriveMode::profile_velocity},
-                                                   {"pt", DriveMode::profile_torque},
-                                                   {"hm", DriveMode::homing},
-                                                   {"csp", DriveMode::cyclic_position},
-                                                   {"csv", DriveMode::cyclic_velocity},
-                                                   {"cst", DriveMode::cyclic_torque}})),
-                           "modes of operation that we use of it (6060h)")),
+            required(field("modes", &P::modes, list(drive_mode()), "modes of operation that we use of it (6060h)")),
             field("homing_methods", &P::homing_methods, list(integer<std::int8_t>(-128, 127)), "6098h values that the manual documents"),
             field("velocity_counts_per_unit", &P::velocity_counts_per_unit, number(), "606Ch and 60FFh raw = counts/s times this"),
             field("torque_rated_raw", &P::torque_rated_raw, number(), "6077h and 6071h raw value of rated torque"),
@@ -87,6 +136,11 @@ Table<DriveProfile> motion_table() {
             with_default(
                 field("minimum_cycle_csp", &P::minimum_cycle_csp, duration(), "shortest cycle in cyclic synchronous position mode"),
                 "not stated"),
+            with_default(
+                field("minimum_cycle_csv", &P::minimum_cycle_csv, duration(), "shortest cycle in cyclic synchronous velocity mode"),
+                "not stated"),
+            with_default(field("minimum_cycle_cst", &P::minimum_cycle_cst, duration(), "shortest cycle in cyclic synchronous torque mode"),
+                         "not stated"),
             field("enable_delay", &P::enable_delay, duration(), "motion waits this long after enabling (brake)"),
             field("mode_change_delay", &P::mode_change_delay, duration(), "set-points wait this long after a mode change"),
             field("enable_timeout", &P::enable_timeout, duration(), "enabling that takes longer has failed"),
@@ -132,6 +186,7 @@ Table<DriveAlarmText> alarm_row_table() {
                 field("warning", &A::warning, boolean(), "the drive goes on"),
                 field("whole_drive", &A::whole_drive, boolean(), "common to all axes of the drive"),
                 field("kind", &A::kind, alarm_kind(), "what it means, whatever its number"),
+                field("section", &A::section, text(), "of the manual"),
             },
             {},
             {}};
@@ -221,6 +276,9 @@ Table<DriveFile> drive_table() {
     f.push_back(required(field_at<F>(
         "title", [](F & d) -> auto& { return d.profile.title; }, text(), "for people")));
     include_fields(f, device, Table<DeviceDescription>{{}, {}, device_fields(), {}, {}});
+    f.push_back(required(field("objects", &F::objects, list(section(object_table())),
+                               "of the dictionary: all that is mapped or that the runtime writes; the others may stand in `object_file`")));
+    f.push_back(field("object_file", &F::object_file, text(), "file beside this one with the other objects, where they are many"));
     f.push_back(required(field_at<F>(
         "mapping", [](F& d) -> F& { return d; }, section(mapping_table()), "what the runtime maps")));
     f.push_back(required(field("motion", &F::profile, section(motion_table()), "what it means to an axis")));
@@ -240,9 +298,25 @@ Table<DriveFile> drive_table() {
         "alarms", [](F & d) -> auto& { return d.profile.alarms; }, list(section(alarm_row_table())), "the drive's alarms"));
     f.push_back(field("alarm_file", &F::alarm_file, text(), "file beside this one with the alarms, where they are many"));
     f.push_back(field_at<F>(
+        "hazards", [](F & d) -> auto& { return d.profile.hazards; }, list(section(hazard_table())),
+        "what is dangerous about it; `taktwerk check` warns of it"));
+    f.push_back(field_at<F>(
+        "storage", [](F & d) -> auto& { return d.profile.storage; },
+        choice<axes::ParameterStorage>({{"not_stated", axes::ParameterStorage::not_stated},
+                                        {"each_write", axes::ParameterStorage::each_write},
+                                        {"on_request", axes::ParameterStorage::on_request},
+                                        {"never", axes::ParameterStorage::never}}),
+        "how parameters get into its EEPROM"));
+    f.push_back(field_at<F>(
+        "storage_switch", [](F & d) -> auto& { return d.profile.storage_switch; }, parameter_address(),
+        "while this object is 0 writes are not stored"));
+    f.push_back(field_at<F>(
+        "questions", [](F & d) -> auto& { return d.profile.questions; }, list(text()), "what only the vendor or a real drive can answer"));
+    f.push_back(field_at<F>(
         "assumed", [](F & d) -> auto& { return d.profile.assumed; }, list(text()),
         "what the manual leaves open and this file took, in words"));
     table.after = [](Reader& reader, const Node&, F& file) {
+        add_objects(file, file.objects);
         const PdoResolver resolver(reader, file.device);
         for (auto& pdo : file.device.rx_pdos)
             for (auto& entry : pdo.entries) resolver.resolve(entry, true, "pdo.rx");
@@ -262,6 +336,22 @@ Table<DriveFile> drive_table() {
         check_rules(resolver, file.tx, file.device.tx_pdos, file.device.tx_rules, "mapping.tx");
     };
     return table;
+}
+
+void add_objects(DriveFile& file, const std::vector<ObjectRow>& rows) {
+    for (const auto& row : rows) {
+        if (!row.is_register) file.device.objects.push_back(row.object);
+        file.profile.parameters.push_back(row.parameter);
+    }
+}
+
+Table<ObjectFile> object_file_table() {
+    using O = ObjectFile;
+    return {"object file",
+            "Objects and parameters of one drive type.",
+            {version_field(&O::version), required(field("objects", &O::objects, list(section(object_table())), "as in the drive file"))},
+            {},
+            {}};
 }
 
 Table<AlarmFile> alarm_table() {

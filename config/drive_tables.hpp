@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "axes/port/drive_profile.hpp"
+#include "config/device_tables.hpp"
 #include "config/startup_entry.hpp"
 #include "ecat/device_description.hpp"
 
@@ -22,7 +23,13 @@ struct DriveFile {
     axes::DriveProfile profile;
     std::vector<PdoChoice> rx, tx;
     std::vector<StartupEntry> startup;
-    std::string alarm_file;
+    std::vector<ObjectRow> objects;
+    std::string alarm_file, object_file;
+};
+
+struct ObjectFile {
+    std::int64_t version = 0;
+    std::vector<ObjectRow> objects;
 };
 
 struct AlarmFile {
@@ -38,6 +45,9 @@ Field<T> version_field(std::int64_t T::*member);
 
 [[nodiscard]] Table<DriveFile> drive_table();
 [[nodiscard]] Table<AlarmFile> alarm_table();
+[[nodiscard]] Table<ObjectFile> object_file_table();
+/// Gives the rows to the dictionary and to the list of parameters.
+void add_objects(DriveFile& file, const std::vector<ObjectRow>& rows);
 [[nodiscard]] Codec<std::int64_t> version_number();
 
 template <class T>

@@ -45,7 +45,7 @@ Profile::Profile(const MotionState& start, std::span<const Stretch> forward, std
             // The acceleration arrives exactly where the last stretch leads to the end's; without a jerk limit it may end elsewhere.
             const double arrives = s.end_acceleration();
             const bool continues =
-                std::abs(arrives - state.acceleration) <= 1e-6 * (std::abs(s.acceleration) + std::abs(s.duration * s.jerk));
+                std::abs(arrives - state.acceleration) <= 1e-12 * (std::abs(s.acceleration) + std::abs(s.duration * s.jerk));
             if (!continues || s.jerk == 0) state.acceleration = arrives;
             pieces_[static_cast<std::size_t>(i)].anchor = state;
             state = travel(state, s.jerk, -s.duration);

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "axes/port/drive_alarm_kind.hpp"
+#include "axes/port/drive_hazard.hpp"
+#include "axes/port/drive_parameter.hpp"
 #include "axes/port/drive_port.hpp"
 #include "core/time.hpp"
 
@@ -39,6 +41,15 @@ struct DriveAlarmText {
     bool warning = false;
     bool whole_drive = false;  ///< common to all axes of the drive (TSVM 603Fh 71..96)
     DriveAlarmKind kind = DriveAlarmKind::other;
+    std::string section;  ///< of the manual
+};
+
+/// How parameters get into the EEPROM.
+enum class ParameterStorage : std::uint8_t {
+    not_stated,
+    each_write,  ///< every write wears it, unless `storage_switch` says otherwise (SV33-E P05.10)
+    on_request,  ///< by DriveService::save_parameters (SE-808X 1010h, XP200 function 41h)
+    never,       ///< writes are lost at power off: the maker's own tool stores (TSVM)
 };
 
 struct DriveProfile {
@@ -51,7 +62,7 @@ struct DriveProfile {
     std::uint8_t position_bits = 32;
     std::uint8_t probes = 0;
     bool motor_has_encoder = true;
-    Duration minimum_cycle_csp{};
+    Duration minimum_cycle_csp{}, minimum_cycle_csv{}, minimum_cycle_cst{};  ///< 0: not stated
     Duration enable_delay{}, mode_change_delay{}, enable_timeout = std::chrono::seconds{2};
     bool mode_change_at_standstill = false;
     Duration mode_change_interval{};  ///< least time between two changes of 6060h (TSVM 5.4.1: 20 ms)
@@ -72,7 +83,12 @@ struct DriveProfile {
     std::uint16_t alarm_detail_index = 0;  ///< object that tells ambiguous 603Fh apart (P21.08 = 2021h:09); 0 = none
     std::uint8_t alarm_detail_sub = 0;
     std::vector<DriveAlarmText> alarms;
-    std::vector<std::string> assumed;  ///< what the manual leaves open and we took, in words
+    std::vector<DriveParameter> parameters;  ///< all that the manual lists, those of the dictionary included
+    std::vector<DriveHazard> hazards;
+    ParameterStorage storage = ParameterStorage::not_stated;
+    ParameterAddress storage_switch{};   ///< while this object is 0 writes are not stored; index 0: there is none
+    std::vector<std::string> questions;  ///< what only the vendor or a real drive can answer
+    std::vector<std::string> assumed;    ///< what the manual leaves open and we took, in words
 
     [[nodiscard]] bool has(Quirk quirk) const noexcept {
         for (const auto q : quirks)

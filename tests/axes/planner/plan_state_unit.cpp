@@ -79,6 +79,22 @@ TEST(PlanToState, EncoderCountsFarOutMoveByOneCount) {
     EXPECT_NEAR(plan_to_position({-1e9, 0, 0}, -1e9 - 1, counts).profile.duration() / t, 1, tight);
 }
 
+TEST(PlanToState, AJumpOfTheAccelerationIsNoRoundingErrorHoweverSmallItIs) {
+    // Upwards there is no jerk limit. Start and target lie on one parabola of -0.21 u/s2 but for 4.2e-8 u/s2: a jump to take exactly, else the
+    // motion begins at another velocity than the start's.
+    const MotionState from{54.589336490690471, 1.6638484683181414, -0.21045798792946541};
+    const MotionState to{54.620954324746918, 1.6598443528718785, -0.21045793374667865};
+    const SignedLimits limits{{unlimited, 0.19657713275963634, 0.71994492653116149, unlimited},
+                              {unlimited, 0.21045798792946541, 0.29729784701647166, 1.5592683290894588e-05}};
+    const Plan plan = plan_to_state(from, to, limits);
+
+    ASSERT_EQ(plan.error, PlanError::none);
+    EXPECT_NEAR(plan.profile.at(0).velocity, from.velocity, 1e-13);
+    EXPECT_NEAR(plan.profile.at(0).position, from.position, 1e-13);
+    EXPECT_NEAR(plan.profile.at(1e-15).velocity, from.velocity, 1e-13);
+    EXPECT_EQ(plan.profile.at(plan.profile.duration()), to);
+}
+
 TEST(PlanToState, ATargetOutsideTheLimitsIsRefused) {
     EXPECT_EQ(plan_to_state({}, {1, 11, 0}, unit_limits).error, PlanError::target_outside_limits);
     EXPECT_EQ(plan_to_state({}, {1, 0, 2}, unit_limits).error, PlanError::target_outside_limits);
