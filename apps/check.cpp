@@ -1,5 +1,6 @@
 // taktwerk check FILE: everything that can be known without starting: the file, its drives, its programs, and what it means.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -11,6 +12,7 @@
 #include "apps/load.hpp"
 #include "apps/master_gone.hpp"
 #include "apps/taktwerk.hpp"
+#include "runtime/drive_hazards.hpp"
 #include "runtime/machine.hpp"
 #include "runtime/world.hpp"
 
@@ -125,6 +127,40 @@ void print_assumptions(const MachineConfig& config) {
     }
 }
 
+const axes::DriveProfile& profile_of(const MachineConfig& config, const std::string& axis) {
+    return *std::find_if(config.axes.begin(), config.axes.end(), [&](const auto& b) { return b.axis.name == axis; })->profile;
+}
+
+/// One sentence for all axes that it concerns.
+void print_hazards(const MachineConfig& config) {
+    auto left = runtime::drive_hazards(config);
+    if (left.empty()) return;
+    fmt::print("\nHazards that the manuals name, and what to do about them:\n");
+    while (!left.empty()) {
+        const auto* hazard = left.front().hazard;
+        const auto& drive = profile_of(config, left.front().axis).name;
+        std::vector<std::string> axes;
+        for (const auto& other : left)
+            if (other.hazard->text == hazard->text && profile_of(config, other.axis).name == drive) axes.push_back(other.axis);
+        fmt::print("  {} ({} {}): {}.{}\n", fmt::join(axes, ", "), drive, hazard->section, hazard->text,
+                   hazard->remedy.empty() ? "" : fmt::format("\n      {}.", hazard->remedy));
+        std::erase_if(left, [&](const auto& other) {
+            return std::find(axes.begin(), axes.end(), other.axis) != axes.end() && other.hazard->text == hazard->text;
+        });
+    }
+}
+
+Json hazards_json(const MachineConfig& config) {
+    auto out = Json::array();
+    for (const auto& [axis, hazard] : runtime::drive_hazards(config))
+        out.push_back(Json{{"axis", axis},
+                           {"drive", profile_of(config, axis).name},
+                           {"section", hazard->section},
+                           {"what", hazard->text},
+                           {"remedy", hazard->remedy}});
+    return out;
+}
+
 Json summary_json(const MachineConfig& config, const runtime::MachineLayout& layout, const std::vector<Error>& warnings) {
     Json out{{"ok", true}, {"machine", config.name}, {"cycle_us", config.cycle.count() / 1000}, {"interface", config.bus.interface}};
     auto& slaves = out["slaves"] = Json::array();
@@ -146,6 +182,7 @@ Json summary_json(const MachineConfig& config, const runtime::MachineLayout& lay
     }
     out["programs"] = layout.programs;
     out["tasks"] = layout.tasks;
+    out["hazards"] = hazards_json(config);
     out["warnings"] = problems_json(warnings);
     return out;
 }
@@ -185,6 +222,7 @@ int check(const Options& options) {
     else
         fmt::print("\nEmergency stop: input {}; power off when the axes stand, at the latest after {:g} ms. This is no safety function.\n",
                    config.emergency_stop.input, to_seconds(config.emergency_stop.power_off_after) * 1e3);
+    print_hazards(config);
     print_assumptions(config);
     return exit_ok;
 }

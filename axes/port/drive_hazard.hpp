@@ -26,12 +26,28 @@ enum class HazardCondition : std::uint8_t {
 
 struct DriveHazard {
     HazardCondition when = HazardCondition::always;
-    std::vector<ParameterAddress> objects;
-    std::vector<std::int64_t> values;
+    std::vector<ParameterAddress> objects{};
+    std::vector<std::int64_t> values{};
     DriveMode mode = DriveMode::none;
-    std::string text;     ///< what happens, one sentence
-    std::string remedy;   ///< what to write or wire
-    std::string section;  ///< of the manual
+    std::string text{};     ///< what happens, one sentence
+    std::string remedy{};   ///< what to write or wire
+    std::string section{};  ///< of the manual
 };
+
+struct DriveProfile;
+
+/// What a machine does with one drive axis, as far as hazards ask. Addresses as for the first axis of the drive.
+struct DriveUse {
+    struct Written {
+        ParameterAddress address;
+        std::int64_t value = 0;
+    };
+    std::vector<Written> written;                  ///< by start-up lists, in their order
+    std::vector<ParameterAddress> sent, received;  ///< process data
+    bool homed_by_drive = false, absolute_homing = false, software_limits = false;
+};
+
+/// The hazards of the profile that apply, in its order. Not real-time.
+[[nodiscard]] std::vector<const DriveHazard*> hazards_of(const DriveProfile& profile, const DriveUse& use);
 
 }  // namespace taktwerk::axes

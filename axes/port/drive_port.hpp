@@ -207,6 +207,7 @@ struct DriveAlarm {
 struct ParameterAddress {
     std::uint16_t index = 0;
     std::uint8_t sub = 0;
+    friend bool operator==(const ParameterAddress&, const ParameterAddress&) = default;
 };
 /// A service request in flight; 0: refused at once (not supported, or not now).
 using ServiceTicket = std::uint32_t;
