@@ -6,85 +6,16 @@
 #include <array>
 #include <cstdint>
 
-#include "axes/port/drive_profile.hpp"
+#include "axes/sim/axis_objects.hpp"
 #include "axes/sim/homing_run.hpp"
+#include "axes/sim/mode_codes.hpp"
+#include "axes/sim/personality.hpp"
 #include "axes/sim/plant.hpp"
 #include "axes/sim/servo_loop.hpp"
 #include "axes/sim/touch_probe.hpp"
 #include "core/time.hpp"
 
 namespace taktwerk::axes::sim {
-
-/// How a drive takes power from a motor that may still move; SE-808X 605Eh = 0 coasts, SV33-E P04.12 = 2 ramps.
-using FaultStop = DriveStop;
-
-/// Alarms that the drive finds out by itself.
-struct AlarmCode {
-    std::uint16_t code = 0;
-    bool resettable = true;
-    std::uint32_t detail = 0;  ///< what the detail object shows (P21.08)
-};
-
-/// A way in which a drive fails at once, whatever it is doing. How it shows and whether it clears is the personality's.
-enum class Failure : std::uint8_t { overspeed, following_error, undervoltage, overload, encoder, communication };
-
-/// How this drive type behaves where CiA 402 leaves room.
-struct Personality {
-    std::int64_t counts_per_revolution = 10000;
-    double velocity_counts_per_unit = 1.0;  ///< raw 606Ch/60FFh = counts/s * this
-    double torque_rated_raw = 1000.0;
-    bool absolute_encoder = false;  ///< keeps its coordinate over a power cycle
-    bool fault_pattern_f = false;   ///< Fault shows as x0xx1111
-    bool remote_bit = true;         ///< bit 9 set in OP
-    bool internal_limit_bit = true;
-    bool csp_following_bits = true;  ///< bits 12 and 13 in CSP
-    bool home_found_bit_15 = false;
-    bool reset_needs_disable = false;    ///< fault reset only with enable dropped
-    bool limit_stop_is_warning = false;  ///< overtravel: stop with position lock, warning, still enabled
-    bool quick_stop_leaves = true;       ///< after the quick stop: Switch On Disabled by itself
-    FaultStop fault_stop = FaultStop::ramp;
-    FaultStop off_stop = FaultStop::coast;  ///< power taken away by command while it moves
-    /// The holding brake opens this long after enabling; set-points and homing starts before are lost (SV33-E 3.1.2, P05.13).
-    Duration brake_release{};
-    /// After power is taken at standstill the motor holds this long until the brake does (SV33-E P05.14). 0: no brake.
-    Duration brake_hold{};
-    double quick_stop_deceleration = 0;  ///< counts/s2; 0 = torque limit
-    double following_error_limit = 0;    ///< counts; 0 = no check
-    double maximum_velocity = 0;         ///< counts/s; CSP increments beyond 3 times that are counted; 0 = no check
-    double overspeed = 0;                ///< counts/s beyond which the measured speed is an alarm; 0 = no check
-    AlarmCode following_error_alarm{0x8611};
-    AlarmCode increment_alarm{0x0424};
-    AlarmCode undervoltage_alarm{0x3220};
-    AlarmCode communication_alarm{0x7500};
-    AlarmCode overspeed_alarm{0x8400};
-    AlarmCode overload_alarm{0x3230};
-    AlarmCode encoder_alarm{0x7305, false};
-    std::uint16_t negative_limit_code = 0x5444, positive_limit_code = 0x5443;
-};
-
-/// Objects that the master writes.
-struct AxisInputs {
-    std::uint16_t control = 0;
-    std::int64_t mode = 0;
-    std::int64_t target_position = 0, target_velocity = 0, target_torque = 0;
-    std::int64_t velocity_offset = 0, torque_offset = 0;
-    std::int64_t maximum_velocity = 0;  ///< 607Fh: bounds the speed in the torque modes; 0 = no limit
-    HomingSettings homing;
-    std::int64_t home_offset = 0;
-    std::uint16_t probe_function = 0;
-};
-
-/// Objects that the drive answers.
-struct AxisOutputs {
-    std::uint16_t status = 0;
-    std::int64_t mode = 0;
-    std::int64_t position = 0, velocity = 0, torque = 0, following_error = 0, demand = 0;
-    std::uint16_t error_code = 0;
-    std::uint32_t error_detail = 0;
-    std::uint32_t digital_inputs = 0;
-    std::uint16_t probe_status = 0;
-    std::int64_t probe_rising[2] = {}, probe_falling[2] = {};
-};
 
 class Cia402Axis {
 public:
@@ -127,28 +58,49 @@ public:
     [[nodiscard]] bool brake_closed() const noexcept { return brake_closed_; }
 
 private:
-    void command(const AxisInputs& in) noexcept;
-    void enter(State state) noexcept;
-    void select_mode(const AxisInputs& in) noexcept;
-    void take_targets(const AxisInputs& in, Duration cycle) noexcept;
-    void take_position_target(const AxisInputs& in, double seconds) noexcept;
+    static constexpr Duration inner_period = std::chrono::microseconds{125};
+    static constexpr double inner_seconds = 125e-6;
+
+    // cia402_axis.cpp
     void inner_step() noexcept;
-    void stop_step(double dt, double deceleration) noexcept;
-    void homing_finished() noexcept;
+    void step_probes(double before) noexcept;
     [[nodiscard]] double actual() const noexcept { return plant_.position() - zero_; }
     [[nodiscard]] double quantised() const noexcept;
     [[nodiscard]] SwitchStates switches() const noexcept;
     [[nodiscard]] double torque_limit() const noexcept { return plant_.config().rated_torque * plant_.config().maximum_torque; }
-    [[nodiscard]] bool energised() const noexcept {
-        return state_ == State::enabled || state_ == State::quick_stop || winding_down_ ||
-               (state_ == State::fault_reaction && personality_.fault_stop == FaultStop::ramp);
-    }
+    // cia402_power.cpp
+    void command(const AxisInputs& in) noexcept;
+    void enter(State state) noexcept;
+    // cia402_modes.cpp
+    void select_mode(const AxisInputs& in) noexcept;
+    void take_targets(const AxisInputs& in, Duration cycle) noexcept;
+    void forget_targets() noexcept;
+    [[nodiscard]] double enabled_torque(double dt) noexcept;
+    // cia402_cyclic.cpp
+    void take_position_target(const AxisInputs& in, double seconds) noexcept;
+    void take_velocity_target(const AxisInputs& in) noexcept;
+    void take_torque_target(const AxisInputs& in) noexcept;
+    void take_torque_offset(const AxisInputs& in) noexcept;
+    void interpolate(double dt) noexcept;
+    [[nodiscard]] double with_offset(double torque) const noexcept;
+    [[nodiscard]] double torque_of(std::int64_t raw) const noexcept;
+    // cia402_homing.cpp
+    void take_homing_start(const AxisInputs& in) noexcept;
+    void homing_step(double dt) noexcept;
+    void homing_finished() noexcept;
+    // cia402_stopping.cpp
+    [[nodiscard]] double stopping_torque(double dt) noexcept;
+    void stop_step(double dt, double deceleration) noexcept;
+    void end_stop() noexcept;
+    [[nodiscard]] bool energised() const noexcept;
     [[nodiscard]] bool has_brake() const noexcept { return personality_.brake_hold > Duration::zero(); }
-    [[nodiscard]] bool too_early() noexcept;
+    [[nodiscard]] bool too_early() const noexcept { return now_ < commands_from_; }
     [[nodiscard]] bool stands() const noexcept;
     void wind_down() noexcept;
     void step_brake() noexcept;
-    void step_probes(double before) noexcept;
+    // cia402_supervision.cpp
+    void supervise() noexcept;
+    // cia402_status.cpp
     void fill(AxisOutputs& out) const noexcept;
     [[nodiscard]] std::uint16_t status_word() const noexcept;
 

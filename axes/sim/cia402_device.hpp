@@ -14,9 +14,6 @@
 
 namespace taktwerk::axes::sim {
 
-/// What the profile says of the drive's behaviour; the rest of Personality keeps its defaults.
-[[nodiscard]] Personality personality_of(const DriveProfile& profile, std::int64_t counts_per_revolution);
-
 class Cia402Device final : public ecat::sim::DeviceModel {
 public:
     struct AxisSetup {
@@ -44,16 +41,10 @@ public:
 
 private:
     using Entry = ecat::sim::Entry;
-    struct Objects {
-        Entry *control, *mode, *target_position, *target_velocity, *target_torque, *velocity_offset, *torque_offset, *maximum_velocity;
-        Entry *homing_method, *homing_fast, *homing_slow, *homing_acceleration, *home_offset;
-        Entry *status, *mode_display, *position, *velocity, *torque, *following_error, *demand, *error_code, *digital_inputs;
-        Entry *probe_function, *probe_status, *probe_rising[2], *probe_falling[2];
-    };
     struct OneAxis {
         std::unique_ptr<Cia402Axis> model;
-        Objects objects{};
-        bool faulted = false;  ///< as announced
+        std::vector<Entry*> commands, settings, answers;  ///< in the order of object_table.hpp; null: this drive has it not
+        bool faulted = false;                             ///< as announced
     };
     /// An emergency when an axis enters FAULT (or its reaction) and code 0000h when the last one has left it.
     void announce(OneAxis& axis, bool faulted, std::uint16_t code, std::uint32_t detail);

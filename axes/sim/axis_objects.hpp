@@ -1,0 +1,34 @@
+#pragma once
+// The objects of one simulated axis as plain numbers: what the master writes and what the drive answers.
+
+#include <cstdint>
+
+#include "axes/sim/homing_run.hpp"
+
+namespace taktwerk::axes::sim {
+
+/// Objects that the master writes.
+struct AxisInputs {
+    std::uint16_t control = 0;
+    std::int64_t mode = 0;
+    std::int64_t target_position = 0, target_velocity = 0, target_torque = 0;
+    std::int64_t velocity_offset = 0, torque_offset = 0;
+    std::int64_t maximum_velocity = 0;  ///< 607Fh: bounds the speed in the torque modes; 0 = no limit
+    HomingSettings homing;
+    std::int64_t home_offset = 0;
+    std::uint16_t probe_function = 0;
+};
+
+/// Objects that the drive answers.
+struct AxisOutputs {
+    std::uint16_t status = 0;
+    std::int64_t mode = 0;
+    std::int64_t position = 0, velocity = 0, torque = 0, following_error = 0, demand = 0;
+    std::uint16_t error_code = 0;
+    std::uint32_t error_detail = 0;
+    std::uint32_t digital_inputs = 0;
+    std::uint16_t probe_status = 0;
+    std::int64_t probe_rising[2] = {}, probe_falling[2] = {};
+};
+
+}  // namespace taktwerk::axes::sim

@@ -1,0 +1,90 @@
+// The power state machine of CiA 402-2: what the control word asks, what entering a state brings with it.
+
+#include "axes/sim/cia402_axis.hpp"
+
+namespace taktwerk::axes::sim {
+
+void Cia402Axis::power_on(Instant now) noexcept {
+    if (!personality_.absolute_encoder) {
+        zero_ = plant_.position();
+        homed_ = false;
+    }
+    now_ = now;
+    mode_ = 0;
+    error_code_ = 0;
+    error_detail_ = 0;
+    error_resettable_ = true;
+    last_control_ = 0;
+    encoder_failed_ = winding_down_ = false;
+    brake_closed_ = has_brake();
+    probes_ = {};
+    homing_.abort();
+    enter(State::disabled);
+}
+
+void Cia402Axis::enter(State state) noexcept {
+    const bool powered = state_ == State::enabled || state_ == State::quick_stop;
+    if (state == State::enabled) winding_down_ = false;
+    else if (powered && state != State::quick_stop && state != State::fault_reaction && state != State::not_ready) wind_down();
+    else if (state == State::not_ready || state == State::fault_reaction) winding_down_ = false;
+    if (state == State::enabled && state_ != State::enabled) {
+        commands_from_ = now_ + personality_.brake_release;
+        demand_ = {plant_.position(), 0, 0};
+        forget_targets();
+        strikes_ = 0;
+        loop_.reset();
+    }
+    if (state != State::enabled) homing_.abort();
+    if (state == State::quick_stop || state == State::fault_reaction) demand_ = {plant_.position(), plant_.velocity(), 0};
+    state_ = state;
+}
+
+void Cia402Axis::command(const AxisInputs& in) noexcept {
+    const std::uint16_t word = in.control;
+    const bool reset_edge = (word & 0x80u) && !(last_control_ & 0x80u);
+    last_control_ = word;
+    if (state_ == State::fault) {
+        const bool dropped = !personality_.reset_needs_disable || (word & 0x0Fu) != 0x0Fu;
+        const bool cause_gone = !encoder_failed_ && (main_power_ || error_code_ != personality_.undervoltage_alarm.code);
+        if (reset_edge && dropped && error_resettable_ && cause_gone) {
+            error_code_ = 0;
+            error_detail_ = 0;
+            enter(State::disabled);
+        }
+        return;
+    }
+    if (word & 0x80u) return;  // while bit 7 stands nothing else is taken (SV33-E 3.4.1, TSVM 5.3.2)
+    const bool voltage = (word & 0x02u) != 0, quick = (word & 0x04u) == 0;
+    const bool shutdown = voltage && !quick && !(word & 0x01u);
+    const bool switch_on = voltage && !quick && (word & 0x01u);
+    const bool enable = switch_on && (word & 0x08u);
+    switch (state_) {
+        case State::disabled:
+            if (shutdown) enter(State::ready);
+            break;
+        case State::ready:
+            if (!voltage || quick) enter(State::disabled);
+            else if (switch_on && main_power_) enter(State::switched_on);
+            break;
+        case State::switched_on:
+            if (!voltage || quick) enter(State::disabled);
+            else if (shutdown) enter(State::ready);
+            else if (enable && main_power_) enter(State::enabled);
+            break;
+        case State::enabled:
+            if (!voltage) enter(State::disabled);
+            else if (quick) enter(State::quick_stop);
+            else if (shutdown) enter(State::ready);
+            else if (!enable) enter(State::switched_on);
+            break;
+        case State::quick_stop:
+            if (!voltage) enter(State::disabled);
+            else if (enable && !personality_.quick_stop_leaves) enter(State::enabled);
+            break;
+        case State::not_ready:
+        case State::fault_reaction:
+        case State::fault: break;
+    }
+}
+
+}  // namespace taktwerk::axes::sim

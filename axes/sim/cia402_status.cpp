@@ -1,0 +1,60 @@
+// What the drive answers: status word and actual values.
+
+#include <cmath>
+
+#include "axes/sim/cia402_axis.hpp"
+
+namespace taktwerk::axes::sim {
+
+namespace {
+
+constexpr std::uint16_t bit(unsigned n) { return static_cast<std::uint16_t>(1u << n); }
+
+}  // namespace
+
+std::uint16_t Cia402Axis::status_word() const noexcept {
+    std::uint16_t word = 0;
+    switch (state_) {
+        case State::not_ready: word = 0x00; break;
+        case State::disabled: word = 0x40; break;
+        case State::ready: word = 0x21; break;
+        case State::switched_on: word = 0x23; break;
+        case State::enabled: word = 0x27; break;
+        case State::quick_stop: word = 0x07; break;
+        case State::fault_reaction: word = 0x0F; break;
+        case State::fault: word = personality_.fault_pattern_f ? 0x0F : 0x08; break;
+    }
+    if (main_power_) word |= bit(4);
+    if (warning_) word |= bit(7);
+    if (personality_.remote_bit && operational_) word |= bit(9);
+    if (mode_ == mode::homing) {
+        if (stands() && homing_.state() != HomingRun::State::moving && homing_.state() != HomingRun::State::stopping) word |= bit(10);
+        if (homing_attained_) word |= bit(12);
+        if (homing_error_) word |= bit(13);
+    } else {
+        if (state_ == State::enabled && stands() && std::abs(demand_.position - plant_.position()) < 10) word |= bit(10);
+        if (mode::cyclic(mode_) && personality_.csp_following_bits && state_ == State::enabled) word |= bit(12);
+    }
+    if (personality_.home_found_bit_15 && homed_) word |= bit(15);
+    return word;
+}
+
+void Cia402Axis::fill(AxisOutputs& out) const noexcept {
+    out.status = status_word();
+    out.mode = mode_;
+    out.position = encoder_failed_ ? frozen_position_ : static_cast<std::int64_t>(quantised());
+    out.velocity = std::llround(plant_.velocity() * personality_.velocity_counts_per_unit);
+    out.torque = std::llround(torque_ / plant_.config().rated_torque * personality_.torque_rated_raw);
+    out.demand = static_cast<std::int64_t>(std::floor(demand_.position - zero_));
+    out.following_error = out.demand - out.position;
+    out.error_code = error_code_;
+    out.error_detail = error_detail_;
+    for (std::size_t i = 0; i < probes_.size(); ++i) {
+        out.probe_status = static_cast<std::uint16_t>(out.probe_status | probes_[i].status() << (8 * i));
+        out.probe_rising[i] = probes_[i].rising();
+        out.probe_falling[i] = probes_[i].falling();
+    }
+    out.digital_inputs = (plant_.negative_limit() ? 1u : 0u) | (plant_.positive_limit() ? 2u : 0u) | (plant_.home_switch() ? 4u : 0u);
+}
+
+}  // namespace taktwerk::axes::sim

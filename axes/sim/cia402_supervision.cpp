@@ -1,0 +1,52 @@
+// Alarms: those that somebody provokes and those that the drive finds out by itself.
+
+#include <cmath>
+
+#include "axes/sim/cia402_axis.hpp"
+
+namespace taktwerk::axes::sim {
+
+void Cia402Axis::raise(std::uint16_t code, bool resettable, std::uint32_t detail) noexcept {
+    if (state_ == State::fault || state_ == State::fault_reaction) return;  // the first alarm is the one shown
+    error_code_ = code;
+    error_detail_ = detail;
+    error_resettable_ = resettable;
+    enter(energised() ? State::fault_reaction : State::fault);
+}
+
+void Cia402Axis::fail(Failure failure) noexcept {
+    switch (failure) {
+        case Failure::overspeed: raise(personality_.overspeed_alarm); break;
+        case Failure::following_error: raise(personality_.following_error_alarm); break;
+        case Failure::undervoltage: raise(personality_.undervoltage_alarm); break;
+        case Failure::overload: raise(personality_.overload_alarm); break;
+        case Failure::communication: raise(personality_.communication_alarm); break;
+        case Failure::encoder:
+            frozen_position_ = static_cast<std::int64_t>(quantised());
+            encoder_failed_ = true;
+            raise(personality_.encoder_alarm);
+            break;
+    }
+}
+
+void Cia402Axis::main_power(bool on) noexcept {
+    main_power_ = on;
+    if (!on && (state_ == State::enabled || state_ == State::quick_stop)) raise(personality_.undervoltage_alarm);
+}
+
+void Cia402Axis::communication_lost() noexcept {
+    operational_ = false;
+    if (state_ == State::enabled || state_ == State::quick_stop) raise(personality_.communication_alarm);
+    else if (state_ == State::ready || state_ == State::switched_on) enter(State::disabled);
+}
+
+void Cia402Axis::supervise() noexcept {
+    if (state_ != State::enabled) return;
+    if (personality_.overspeed > 0 && std::abs(plant_.velocity()) > personality_.overspeed) raise(personality_.overspeed_alarm);
+    const bool follows_position = mode_ == mode::cyclic_position || mode_ == mode::homing;
+    if (state_ == State::enabled && personality_.following_error_limit > 0 && follows_position &&
+        std::abs(demand_.position - plant_.position()) > personality_.following_error_limit)
+        raise(personality_.following_error_alarm);
+}
+
+}  // namespace taktwerk::axes::sim

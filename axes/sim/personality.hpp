@@ -1,0 +1,61 @@
+#pragma once
+// How a drive type behaves where CiA 402 leaves room. Plain data; what a drive's manual says of it comes from its profile.
+
+#include <cstdint>
+
+#include "axes/port/drive_profile.hpp"
+#include "core/time.hpp"
+
+namespace taktwerk::axes::sim {
+
+/// How a drive takes power from a motor that may still move; SE-808X 605Eh = 0 coasts, SV33-E P04.12 = 2 ramps.
+using FaultStop = DriveStop;
+
+/// Alarms that the drive finds out by itself.
+struct AlarmCode {
+    std::uint16_t code = 0;
+    bool resettable = true;
+    std::uint32_t detail = 0;  ///< what the detail object shows (P21.08)
+};
+
+/// A way in which a drive fails at once, whatever it is doing. How it shows and whether it clears is the personality's.
+enum class Failure : std::uint8_t { overspeed, following_error, undervoltage, overload, encoder, communication };
+
+/// How this drive type behaves where CiA 402 leaves room.
+struct Personality {
+    std::int64_t counts_per_revolution = 10000;
+    double velocity_counts_per_unit = 1.0;  ///< raw 606Ch/60FFh = counts/s * this
+    double torque_rated_raw = 1000.0;
+    bool absolute_encoder = false;  ///< keeps its coordinate over a power cycle
+    bool fault_pattern_f = false;   ///< Fault shows as x0xx1111
+    bool remote_bit = true;         ///< bit 9 set in OP
+    bool internal_limit_bit = true;
+    bool csp_following_bits = true;  ///< bits 12 and 13 in CSP
+    bool home_found_bit_15 = false;
+    bool reset_needs_disable = false;    ///< fault reset only with enable dropped
+    bool limit_stop_is_warning = false;  ///< overtravel: stop with position lock, warning, still enabled
+    bool quick_stop_leaves = true;       ///< after the quick stop: Switch On Disabled by itself
+    FaultStop fault_stop = FaultStop::ramp;
+    FaultStop off_stop = FaultStop::coast;  ///< power taken away by command while it moves
+    /// The holding brake opens this long after enabling; set-points and homing starts before are lost (SV33-E 3.1.2, P05.13).
+    Duration brake_release{};
+    /// After power is taken at standstill the motor holds this long until the brake does (SV33-E P05.14). 0: no brake.
+    Duration brake_hold{};
+    double quick_stop_deceleration = 0;  ///< counts/s2; 0 = torque limit
+    double following_error_limit = 0;    ///< counts; 0 = no check
+    double maximum_velocity = 0;         ///< counts/s; CSP increments beyond 3 times that are counted; 0 = no check
+    double overspeed = 0;                ///< counts/s beyond which the measured speed is an alarm; 0 = no check
+    AlarmCode following_error_alarm{0x8611};
+    AlarmCode increment_alarm{0x0424};
+    AlarmCode undervoltage_alarm{0x3220};
+    AlarmCode communication_alarm{0x7500};
+    AlarmCode overspeed_alarm{0x8400};
+    AlarmCode overload_alarm{0x3230};
+    AlarmCode encoder_alarm{0x7305, false};
+    std::uint16_t negative_limit_code = 0x5444, positive_limit_code = 0x5443;
+};
+
+/// What the profile says of the drive's behaviour; the rest keeps its defaults.
+[[nodiscard]] Personality personality_of(const DriveProfile& profile, std::int64_t counts_per_revolution);
+
+}  // namespace taktwerk::axes::sim
