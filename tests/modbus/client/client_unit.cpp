@@ -1,0 +1,162 @@
+// One transaction at a time on a computed line.
+
+#include "modbus/client/client.hpp"
+
+#include <gtest/gtest.h>
+
+#include "modbus/line/virtual_line.hpp"
+#include "tests/modbus/line/echo_station.hpp"
+
+namespace taktwerk::modbus {
+namespace {
+
+using namespace std::chrono_literals;
+
+struct Rig {
+    VirtualLine line{LineSettings{}};
+    EchoStation station{1};
+    Client client{line, {.answer_timeout = 50ms, .tries = 2}};
+    Instant now{};
+
+    Rig() { line.connect(station); }
+    /// Steps of 1 ms until there is an answer.
+    std::optional<Answer> wait(Duration patience = 2s) {
+        for (const auto until = now + patience; now < until;) {
+            now += 1ms;
+            if (auto answer = client.step(now)) return answer;
+        }
+        return std::nullopt;
+    }
+    Refusal ask(const Request& request) {
+        while (!client.idle(now)) {
+            now += 1ms;
+            (void)client.step(now);
+        }
+        return client.ask(request, now);
+    }
+};
+
+// 16.745 ms on the wire (virtual_line_unit.cpp), seen in the step of the 17th millisecond.
+TEST(ModbusClient, AnswerComesWithItsWordsAndTimes) {
+    Rig rig;
+    ASSERT_EQ(rig.ask(read_status(1, 5, 2)), Refusal::none);
+    const auto answer = rig.wait();
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->outcome, Outcome::answered);
+    EXPECT_EQ(answer->response.words[0], 0x1122);
+    EXPECT_EQ(answer->response.words[1], 0x3344);
+    EXPECT_EQ(answer->took, 17ms);
+    // The drive looked when it had heard (6.589 ms) and before it answered (11.589 ms).
+    EXPECT_GT(answer->sampled, Instant{6'588us});
+    EXPECT_LT(answer->sampled, Instant{12ms});
+    EXPECT_EQ(rig.client.statistics().answered, 1u);
+    EXPECT_EQ(rig.client.statistics().retries, 0u);
+}
+
+// Manual 9.3: 3.5 characters of silence between an answer and the next request: 2.005 ms.
+TEST(ModbusClient, TheLineRestsBetweenFrames) {
+    Rig rig;
+    ASSERT_EQ(rig.ask(clear_alarm(1)), Refusal::none);
+    ASSERT_TRUE(rig.wait());
+    EXPECT_EQ(rig.client.ask(clear_alarm(1), rig.now + 2ms), Refusal::busy);
+    EXPECT_EQ(rig.client.ask(clear_alarm(1), rig.now + 2'006us), Refusal::none);
+    EXPECT_EQ(rig.client.ask(clear_alarm(1), rig.now + 3ms), Refusal::busy);
+}
+
+TEST(ModbusClient, ALostAnswerIsAskedForAgain) {
+    Rig rig;
+    rig.line.lose_answers(1);
+    ASSERT_EQ(rig.ask(write_parameter(1, 138, 100)), Refusal::none);
+    const auto answer = rig.wait();
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->outcome, Outcome::answered);
+    EXPECT_EQ(rig.station.requests.size(), 2u);
+    EXPECT_EQ(rig.client.statistics().retries, 1u);
+    EXPECT_EQ(rig.client.statistics().timeouts, 1u);
+}
+
+TEST(ModbusClient, ADamagedOrShortAnswerIsAskedForAgain) {
+    for (const bool shortened : {false, true}) {
+        Rig rig;
+        shortened ? rig.line.shorten_answers(1) : rig.line.damage_answers(1);
+        ASSERT_EQ(rig.ask(read_status(1, 5, 2)), Refusal::none);
+        const auto answer = rig.wait();
+        ASSERT_TRUE(answer);
+        EXPECT_EQ(answer->outcome, Outcome::answered);
+        EXPECT_EQ(rig.client.statistics().damaged, 1u);
+        EXPECT_EQ(rig.station.requests.size(), 2u);
+    }
+}
+
+// Two tries of 4.6 ms out and 50 ms patience each: a silent drive is known after about 0.12 s.
+TEST(ModbusClient, SilenceHasAnEnd) {
+    Rig rig;
+    rig.line.cut(true);
+    ASSERT_EQ(rig.ask(read_status(1, 5, 2)), Refusal::none);
+    const auto answer = rig.wait();
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->outcome, Outcome::silent);
+    EXPECT_GE(answer->took, 109ms);
+    EXPECT_LE(answer->took, 115ms);
+    EXPECT_EQ(rig.client.statistics().timeouts, 2u);
+}
+
+// Manual 9.6.1, 9.6.2: at most 8 words in one reading; 9.6.4: at most 10 in one writing.
+TEST(ModbusClient, TheDrivesLimitsAreKept) {
+    Rig rig;
+    const std::array<std::uint16_t, 11> words{};
+    EXPECT_EQ(rig.ask(read_status(1, 0, 9)), Refusal::too_many_words);
+    EXPECT_EQ(rig.ask(read_parameters(1, 0, 9)), Refusal::too_many_words);
+    EXPECT_EQ(rig.ask(write_parameters(1, 100, words)), Refusal::too_many_words);
+    EXPECT_EQ(rig.ask(read_status(1, 0, 0)), Refusal::no_words);
+    EXPECT_TRUE(rig.station.requests.empty());
+    EXPECT_EQ(rig.ask(write_parameters(1, 100, std::span{words}.first(10))), Refusal::none);
+}
+
+// Manual 9.6.6: after a save nothing for 5 s. A lost answer to it is not repeated: it wears the memory.
+TEST(ModbusClient, AfterSavingThatStationIsLeftAlone) {
+    Rig rig;
+    EchoStation other{2};
+    rig.line.connect(other);
+    rig.line.lose_answers(1);
+    ASSERT_EQ(rig.ask(save(1)), Refusal::none);
+    const auto answer = rig.wait();
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->outcome, Outcome::silent);
+    EXPECT_EQ(rig.station.requests.size(), 1u);
+    const auto saved = rig.now;
+
+    EXPECT_EQ(rig.ask(read_status(1, 0, 1)), Refusal::saving);
+    EXPECT_EQ(rig.ask(read_status(2, 0, 1)), Refusal::none);
+    ASSERT_TRUE(rig.wait());
+    rig.now = saved + 4'999ms;
+    EXPECT_EQ(rig.ask(read_status(1, 0, 1)), Refusal::saving);
+    rig.now = saved + 5s;
+    EXPECT_EQ(rig.ask(read_status(1, 0, 1)), Refusal::none);
+}
+
+TEST(ModbusClient, AnExceptionIsAnAnswer) {
+    class Refusing final : public Station {
+    public:
+        void advance(Instant) override {}
+        bool hear(std::span<const std::byte> frame, Instant, Frame& answer) override {
+            const auto heard = parse_request(frame);
+            answer = encode_exception(heard.station, heard.function_byte, ExceptionCode::busy);
+            return true;
+        }
+        [[nodiscard]] Duration turnaround() const noexcept override { return {}; }
+        [[nodiscard]] LineSettings line() const noexcept override { return {}; }
+    } station;
+    VirtualLine line{LineSettings{}};
+    line.connect(station);
+    Client client{line};
+    ASSERT_EQ(client.ask(write_parameter(1, 138, 100), Instant{}), Refusal::none);
+    const auto answer = client.step(Instant{1s});
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->outcome, Outcome::exception);
+    EXPECT_EQ(answer->response.exception, ExceptionCode::busy);
+    EXPECT_EQ(client.statistics().retries, 0u);
+}
+
+}  // namespace
+}  // namespace taktwerk::modbus
