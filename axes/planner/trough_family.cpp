@@ -31,7 +31,8 @@ TroughFamily::TroughFamily(const Problem& problem) noexcept : problem_{problem} 
         if (least_square > 0) {
             const double room = difference + square_;
             if (room < -rounding) return;
-            if (std::abs(room) <= rounding) square_ = -difference;
+            // Not where the end has more of it: between them lies at least the time of the rise.
+            if (difference <= 0 && std::abs(room) <= rounding) square_ = -difference;
             widest_ = std::max(difference + square_, 0.0) / (a1 + std::sqrt(std::max(a0 * a0 - square_, 0.0)));
             widest_ = std::min(widest_, a1);
         }

@@ -41,6 +41,7 @@ struct DriveParameter {
     std::string meaning;  ///< of the values, where they are a choice: "0 nothing, 1 parameters, 3 both"
     ParameterEffect effect = ParameterEffect::at_once;
     ParameterChange change = ParameterChange::any_time;
+    bool action = false;  ///< writing it does something (store, restore, clear turns): never part of a saved set
     std::string section;  ///< of the manual
 };
 

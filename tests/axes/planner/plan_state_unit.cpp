@@ -95,6 +95,21 @@ TEST(PlanToState, AJumpOfTheAccelerationIsNoRoundingErrorHoweverSmallItIs) {
     EXPECT_EQ(plan.profile.at(plan.profile.duration()), to);
 }
 
+TEST(PlanToState, ARiseOfTheAccelerationTakesItsTimeThoughTheVelocityDoesNotShowIt) {
+    // Same place and velocity, the start's acceleration higher by 5.3e-5 u/s2: falling by that takes 5.3e-5/3643730 s or more, in which the
+    // motion goes on by 4e-10 u and more: too far for the target, that has to be approached again.
+    const MotionState from{0.0028727206154464178, 27.195542751017054, 5.3482711321579472e-05};
+    const MotionState to{0.0028727206154464178, 27.195542751017054, 4.8808086740571001e-08};
+    const SignedLimits limits{{27.195542751017054, 13967.880397946863, 13967.880397946863, 3643730.8650983591},
+                              {20.149660788200141, 41180.921967568269, 41180.921967568269, 1692798.8900263209}};
+    const Plan plan = plan_to_state(from, to, limits);
+
+    ASSERT_EQ(plan.error, PlanError::none);
+    EXPECT_GT(plan.profile.duration(), 27.2 / 13968);  // at least to standstill
+    EXPECT_NEAR(plan.profile.at(0).acceleration, from.acceleration, 1e-18);
+    EXPECT_EQ(plan.profile.at(plan.profile.duration()), to);
+}
+
 TEST(PlanToState, ATargetOutsideTheLimitsIsRefused) {
     EXPECT_EQ(plan_to_state({}, {1, 11, 0}, unit_limits).error, PlanError::target_outside_limits);
     EXPECT_EQ(plan_to_state({}, {1, 0, 2}, unit_limits).error, PlanError::target_outside_limits);

@@ -1,0 +1,40 @@
+#pragma once
+// Parameters of a drive as its manual and people write them: names (P05.10, 2005h:0B, Pr098), values with units, bytes on the wire.
+// Not real-time.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "axes/port/drive_profile.hpp"
+#include "core/result.hpp"
+
+namespace taktwerk::axes {
+
+/// "P05.10"; an object of the standard "6084h" or "6099h:02".
+[[nodiscard]] std::string name_of(const DriveParameter& parameter);
+
+/// By the manual's name or by its object, upper or lower case. Error drive.no_parameter, with the nearest names.
+[[nodiscard]] Result<const DriveParameter*> find_parameter(const DriveProfile& profile, std::string_view word);
+
+/// "250 ms", "-2", "10.0 %": raw times scale, with as many digits as the scale has.
+[[nodiscard]] std::string value_text(const DriveParameter& parameter, std::int64_t raw);
+/// "0 .. 500 ms"; empty where the manual gives none.
+[[nodiscard]] std::string range_text(const DriveParameter& parameter);
+
+/// A number in the parameter's unit, which may stand behind it, or a raw one in hexadecimal (0x.. or ..h).
+/// Errors: drive.value (no number, another unit, between two steps), drive.out_of_range, drive.read_only.
+[[nodiscard]] Result<std::int64_t> parse_value(const DriveParameter& parameter, std::string_view text);
+
+/// As SDOs and registers carry it: little-endian, `bits` wide. Errors of from_bytes: drive.size.
+[[nodiscard]] std::vector<std::byte> to_bytes(const DriveParameter& parameter, std::int64_t raw);
+[[nodiscard]] Result<std::int64_t> from_bytes(const DriveParameter& parameter, std::span<const std::byte> bytes);
+
+/// Something that a machine sets once and a saved set holds: written and read, no action, no command of the cycle (targets, control
+/// word, mode, outputs).
+[[nodiscard]] bool is_setting(const DriveParameter& parameter) noexcept;
+
+}  // namespace taktwerk::axes

@@ -1,0 +1,130 @@
+// Parameters as people write them: names, units, ranges, bytes.
+
+#include "axes/port/parameter_text.hpp"
+
+#include <gtest/gtest.h>
+
+namespace taktwerk::axes {
+namespace {
+
+DriveParameter brake_release() {  // SV33-E P05.13
+    DriveParameter p;
+    p.address = {0x2005, 0x0E};
+    p.parameter = "P05.13";
+    p.name = "brake release to commands";
+    p.unit = "ms";
+    p.minimum = 0, p.maximum = 500;
+    p.value = 250;
+    return p;
+}
+
+DriveParameter torque_limit() {  // CiA 402 60E0h in 0.1 %
+    DriveParameter p;
+    p.address = {0x60E0, 0};
+    p.name = "positive torque limit";
+    p.unit = "%";
+    p.scale = 0.1;
+    return p;
+}
+
+DriveParameter home_offset() {
+    DriveParameter p;
+    p.address = {0x607C, 0};
+    p.name = "home offset";
+    p.bits = 32;
+    p.is_signed = true;
+    return p;
+}
+
+DriveProfile profile() {
+    DriveProfile out;
+    out.name = "some-drive";
+    out.parameters = {brake_release(), torque_limit(), home_offset()};
+    return out;
+}
+
+TEST(ParameterText, AParameterIsFoundByTheManualsNameOrItsObjectInAnyCase) {
+    const auto drive = profile();
+    EXPECT_EQ((*find_parameter(drive, "P05.13"))->address, (ParameterAddress{0x2005, 0x0E}));
+    EXPECT_EQ((*find_parameter(drive, " p05.13 "))->address, (ParameterAddress{0x2005, 0x0E}));
+    EXPECT_EQ((*find_parameter(drive, "2005h:0e"))->parameter, "P05.13");
+    EXPECT_EQ((*find_parameter(drive, "607Ch"))->name, "home offset");
+    EXPECT_EQ((*find_parameter(drive, "607Ch:00"))->name, "home offset");
+}
+
+TEST(ParameterText, ASlipOfTheKeyboardIsAnsweredByTheNearestName) {
+    const auto found = find_parameter(profile(), "P05.31");
+    ASSERT_FALSE(found);
+    EXPECT_EQ(found.error().code, "drive.no_parameter");
+    EXPECT_NE(found.error().remedy.find("P05.13"), std::string::npos) << found.error().text();
+}
+
+TEST(ParameterText, ValuesAreShownInTheirUnitWithTheDigitsOfOneStep) {
+    EXPECT_EQ(value_text(brake_release(), 250), "250 ms");
+    EXPECT_EQ(value_text(torque_limit(), 1000), "100.0 %");
+    EXPECT_EQ(value_text(torque_limit(), 5), "0.5 %");
+    EXPECT_EQ(value_text(home_offset(), -7), "-7");
+    EXPECT_EQ(range_text(brake_release()), "0 .. 500 ms");
+    EXPECT_EQ(range_text(home_offset()), "");
+    auto fine = torque_limit();
+    fine.scale = 0.01;
+    EXPECT_EQ(value_text(fine, 470), "4.70 %");
+}
+
+TEST(ParameterText, WhatIsWrittenInTheUnitBecomesRaw) {
+    EXPECT_EQ(*parse_value(brake_release(), "300"), 300);
+    EXPECT_EQ(*parse_value(brake_release(), "300 ms"), 300);
+    EXPECT_EQ(*parse_value(torque_limit(), "99.9%"), 999);
+    EXPECT_EQ(*parse_value(torque_limit(), "0x3E7"), 999);
+    EXPECT_EQ(*parse_value(home_offset(), "-12"), -12);
+    EXPECT_EQ(*parse_value(home_offset(), "10h"), 16);
+}
+
+TEST(ParameterText, WhatCannotBeMeantIsRefusedWithAReason) {
+    const auto code = [](const DriveParameter& p, std::string_view text) {
+        const auto value = parse_value(p, text);
+        return value ? std::string("accepted") : value.error().code;
+    };
+    EXPECT_EQ(code(brake_release(), "501"), "drive.out_of_range");
+    EXPECT_EQ(code(brake_release(), "-1"), "drive.out_of_range");
+    EXPECT_EQ(code(brake_release(), "0.3 s"), "drive.value");
+    EXPECT_EQ(code(brake_release(), "fast"), "drive.value");
+    EXPECT_EQ(code(brake_release(), ""), "drive.value");
+    EXPECT_EQ(code(brake_release(), "nan"), "drive.value");
+    EXPECT_EQ(code(brake_release(), "1e300"), "drive.value");
+    EXPECT_EQ(code(torque_limit(), "0.05 %"), "drive.value") << "between two steps";
+    EXPECT_EQ(code(torque_limit(), "6553.6 %"), "drive.out_of_range") << "16 bit end at 6553.5 %";
+    EXPECT_EQ(code(home_offset(), "2147483648"), "drive.out_of_range");
+    auto shown = brake_release();
+    shown.change = ParameterChange::never;
+    EXPECT_EQ(code(shown, "1"), "drive.read_only");
+}
+
+TEST(ParameterText, BytesAreLittleEndianAndKeepTheSign) {
+    using Bytes = std::vector<std::byte>;
+    const auto b = [](int v) { return static_cast<std::byte>(v); };
+    EXPECT_EQ(to_bytes(home_offset(), -2), (Bytes{b(0xFE), b(0xFF), b(0xFF), b(0xFF)}));
+    EXPECT_EQ(*from_bytes(home_offset(), to_bytes(home_offset(), -2)), -2);
+    EXPECT_EQ(*from_bytes(home_offset(), Bytes{b(0xFE), b(0xFF)}), -2) << "a drive may answer in fewer bytes";
+    EXPECT_EQ(*from_bytes(torque_limit(), Bytes{b(0xFE), b(0xFF)}), 0xFFFE);
+    EXPECT_EQ(from_bytes(torque_limit(), Bytes{}).error().code, "drive.size");
+}
+
+TEST(ParameterText, CommandsActionsAndActualValuesAreNoSettings) {
+    EXPECT_TRUE(is_setting(brake_release()));
+    auto p = brake_release();
+    p.action = true;
+    EXPECT_FALSE(is_setting(p));
+    p = brake_release();
+    p.change = ParameterChange::never;
+    EXPECT_FALSE(is_setting(p));
+    p = home_offset();
+    EXPECT_TRUE(is_setting(p));
+    p.address = {0x607A, 0};
+    EXPECT_FALSE(is_setting(p));
+    p.address = {0x1C12, 1};
+    EXPECT_FALSE(is_setting(p));
+}
+
+}  // namespace
+}  // namespace taktwerk::axes
