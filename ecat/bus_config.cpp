@@ -8,6 +8,7 @@
 #include "ecat/bringup/frame_schedule.hpp"
 #include "ecat/bringup/process_data_plan.hpp"
 #include "ecat/dc/sync0_budget.hpp"
+#include "ecat/factory_mapping.hpp"
 #include "ecat/module_pdos.hpp"
 #include "ecat/place_check.hpp"
 
@@ -204,7 +205,8 @@ private:
             add("bus.pdo_mappable", subject,
                 fmt::format("{} '{}' cannot be mapped into {:04X}h", object_text(entry.index, entry.sub), object->name, pdo),
                 "read or write it as an SDO");
-        if (bit_size(object->type) != 0 && bit_size(object->type) != entry.bits)
+        const bool part = entry.bits < bit_size(object->type) && mapped_by_maker(device, entry.index, entry.sub, entry.bits, rx);
+        if (bit_size(object->type) != 0 && bit_size(object->type) != entry.bits && !part)
             add("bus.pdo_bits", subject,
                 fmt::format("{} has {} bits, {:04X}h maps {}", object_text(entry.index, entry.sub), bit_size(object->type), pdo,
                             entry.bits),

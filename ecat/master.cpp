@@ -239,8 +239,8 @@ std::size_t Master::active_faults(std::span<AlarmFact> out) const noexcept {
     for (std::size_t s = 0; s < slave_count() && count < out.size(); ++s) {
         const auto& state = health(s);
         if (state.emergency_code == 0) continue;
-        out[count++] = {alarm::slave_emergency, AlarmSource::slave, static_cast<std::uint16_t>(s), static_cast<double>(state.emergency_code),
-                        static_cast<double>(state.error_register)};
+        out[count++] = {alarm::slave_emergency, AlarmSource::slave, static_cast<std::uint16_t>(s),
+                        static_cast<double>(state.emergency_code), static_cast<double>(state.error_register)};
     }
     const auto& seen = statistics();
     const bool in_time = seen.dc_lock == DcLock::locked || seen.dc_lock == DcLock::coasting;

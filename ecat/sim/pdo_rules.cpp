@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "ecat/factory_mapping.hpp"
 #include "ecat/sim/process_data.hpp"
 #include "ecat/wire/sdo.hpp"
 
@@ -13,13 +14,17 @@ bool lists(const std::vector<PdoDescription>& pdos, std::uint16_t index) noexcep
     return std::any_of(pdos.begin(), pdos.end(), [&](const PdoDescription& pdo) { return pdo.index == index; });
 }
 
-std::uint32_t refuse_mapping_entry(const ObjectDictionary& dictionary, std::int64_t value, bool rx) noexcept {
+std::uint32_t refuse_mapping_entry(const DeviceDescription& description, const ObjectDictionary& dictionary, std::int64_t value,
+                                   bool rx) noexcept {
     const auto raw = static_cast<std::uint32_t>(value);
     const auto index = static_cast<std::uint16_t>(raw >> 16);
     const auto bits = raw & 0xFFu;
     if (index == 0) return 0;  // a gap, or an entry cleared
-    const Entry* target = dictionary.find(index, static_cast<std::uint8_t>(raw >> 8));
-    if (target == nullptr || target->bits() != bits) return sdo_abort::not_mappable;
+    const auto sub = static_cast<std::uint8_t>(raw >> 8);
+    const Entry* target = dictionary.find(index, sub);
+    if (target == nullptr) return sdo_abort::not_mappable;
+    if (target->bits() != bits && (bits > target->bits() || !mapped_by_maker(description, index, sub, bits, rx)))
+        return sdo_abort::not_mappable;
     const Mappable wanted = rx ? Mappable::rx : Mappable::tx;
     return target->mappable() == wanted || target->mappable() == Mappable::both ? 0 : sdo_abort::not_mappable;
 }
@@ -47,7 +52,7 @@ std::uint32_t refuse_pdo_write(const DeviceDescription& description, const Objec
         case EntryRole::plain: break;
         case EntryRole::mapping_entry:
             if (dictionary.value(index, 0) != 0) return sdo_abort::sub0_not_zero;
-            return refuse_mapping_entry(dictionary, value, rx);
+            return refuse_mapping_entry(description, dictionary, value, rx);
         case EntryRole::assign_entry:
             if (dictionary.value(index, 0) != 0) return sdo_abort::sub0_not_zero;
             return value == 0 || may_be_assigned(static_cast<std::uint16_t>(value)) ? 0 : sdo_abort::value_range;

@@ -37,7 +37,7 @@ bool ProcessData::resolve(unsigned sync_manager, Window& window) {
             const auto index = static_cast<std::uint16_t>(raw >> 16);
             if (index != 0) {
                 Entry* entry = dictionary_.find(index, static_cast<std::uint8_t>(raw >> 8));
-                if (entry == nullptr || entry->bits() != bits) return false;
+                if (entry == nullptr || entry->bits() < bits) return false;  // fewer: the low ones
                 window.copies.push_back({entry, Signal{bit, bits, entry->is_signed()}});
             }
             bit += bits;

@@ -1,13 +1,13 @@
 // The drive files against their manuals: master and simulator share what is loaded from them, so these literals are typed from
 // the manuals (section beside each), never taken from the files.
 
-#include "config/drive_loader.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <set>
+
+#include "tests/config/loaded_drive.hpp"
 
 namespace taktwerk::config {
 namespace {
@@ -17,50 +17,6 @@ using axes::DriveMode;
 using axes::Quirk;
 using ecat::PdoEntry;
 using testing::ElementsAre;
-
-LoadedDrive drive(const std::string& name) {
-    auto loaded = load_drive(std::string(TAKTWERK_SOURCE_DIR) + "/config/drives/" + name + ".yaml");
-    if (const auto* errors = std::get_if<std::vector<Error>>(&loaded)) {
-        for (const auto& error : *errors) ADD_FAILURE() << error.text();
-        return {std::make_shared<ecat::DeviceDescription>(), std::make_shared<axes::DriveProfile>(), {}, {}, {}};
-    }
-    return std::get<LoadedDrive>(loaded);
-}
-
-std::size_t bytes(const std::vector<ecat::PdoDescription>& pdos, std::uint16_t index) {
-    std::size_t bits = 0;
-    for (const auto& pdo : pdos)
-        if (pdo.index == index)
-            for (const auto& entry : pdo.entries) bits += entry.bits;
-    return bits / 8;
-}
-
-std::size_t bytes(const ecat::PdoSelection& selection) {
-    std::size_t bits = 0;
-    for (const auto& pdo : selection.assigned)
-        for (const auto& entry : pdo.entries) bits += entry.bits;
-    return bits / 8;
-}
-
-std::set<std::uint16_t> objects(const ecat::PdoSelection& selection) {
-    std::set<std::uint16_t> out;
-    for (const auto& pdo : selection.assigned)
-        for (const auto& entry : pdo.entries) out.insert(entry.index);
-    return out;
-}
-
-std::int64_t default_of(const ecat::DeviceDescription& device, std::uint16_t index, std::uint8_t sub = 0) {
-    for (const auto& object : device.objects)
-        if (object.index == index && object.sub == sub) return object.value;
-    ADD_FAILURE() << std::hex << index << ":" << int{sub} << " is not listed";
-    return -1;
-}
-
-const axes::DriveAlarmText* alarm(const axes::DriveProfile& profile, std::string_view panel) {
-    for (const auto& row : profile.alarms)
-        if (row.panel == panel) return &row;
-    return nullptr;
-}
 
 // --- SV33-E -----------------------------------------------------------------------------------------------------------------
 
@@ -214,80 +170,6 @@ TEST(Sv33E, AlarmsHaveTheCodesAndNamesOfTheManual) {
     // Tables 5-2 (71 codes, E.228 printed twice) and 5-3 (13 codes).
     EXPECT_EQ(std::count_if(profile.alarms.begin(), profile.alarms.end(), [](const auto& a) { return !a.warning; }), 71);
     EXPECT_EQ(std::count_if(profile.alarms.begin(), profile.alarms.end(), [](const auto& a) { return a.warning; }), 13);
-}
-
-// --- SE-808X ------------------------------------------------------------------------------------------------------------------
-
-TEST(Se808x, SaysWhoItIs) {
-    const auto d = drive("se-808x");
-    EXPECT_EQ(d.device->device_name, "Hollysys_Step");  // 4.2, 1008h
-    EXPECT_EQ(d.device->identity.vendor, 0x00000AB6u);  // 4.1
-    EXPECT_EQ(d.device->identity.product, 0x00001000u);
-    EXPECT_EQ(d.device->identity.revision, 0x00010001u);
-    EXPECT_EQ(default_of(*d.device, 0x1000), 0x00040192);  // 4.1, printed with one digit too many
-}
-
-TEST(Se808x, ItsFactoryImageIs23And15Bytes) {
-    const auto d = drive("se-808x");
-    const auto& device = *d.device;
-    EXPECT_THAT(device.rx_assigned, ElementsAre(0x1600, 0x1601, 0x1602, 0x1603));  // 4.2
-    EXPECT_THAT(device.tx_assigned, ElementsAre(0x1A00, 0x1A01, 0x1A02, 0x1A03));
-    std::size_t out = 0, in = 0;
-    for (const auto pdo : device.rx_assigned) out += bytes(device.rx_pdos, pdo);
-    for (const auto pdo : device.tx_assigned) in += bytes(device.tx_pdos, pdo);
-    EXPECT_EQ(out, 23u);                        // 3.1.1: 24 + 96 + 32 + 32 bits
-    EXPECT_EQ(in, 15u);                         // 3.1.2: 24 + 64 + 16 + 16 bits
-    EXPECT_EQ(device.rx_rules.max_entries, 4);  // 4.2
-    EXPECT_EQ(device.rx_rules.max_assigned, 4);
-    EXPECT_THAT(device.tx_pdos[2].entries, ElementsAre(PdoEntry{0x60FD, 0, 16}));  // 3.1.2: 60FD0010h
-}
-
-TEST(Se808x, TheMappingLeavesOutWhatCyclicZerosWouldOverride) {
-    const auto d = drive("se-808x");
-    for (const int object : {0x6081, 0x6083, 0x6084, 0x60FF})
-        EXPECT_EQ(objects(d.rx).count(static_cast<std::uint16_t>(object)), 0u) << std::hex << object;
-    EXPECT_THAT(objects(d.rx), ElementsAre(0x6040, 0x6060, 0x607A));
-    EXPECT_THAT(objects(d.tx), testing::IsSupersetOf({0x6041, 0x6061, 0x6064, 0x606C, 0x603F, 0x60FD}));
-    for (const auto& pdo : d.tx.assigned) EXPECT_LE(pdo.entries.size(), 4u);
-}
-
-TEST(Se808x, WhatItMeansToAnAxis) {
-    const auto d = drive("se-808x");
-    EXPECT_EQ(d.profile->minimum_cycle_csp, 500us);                               // 1.2
-    EXPECT_THAT(d.profile->homing_methods, ElementsAre(17, 18, 19, 20, 21, 22));  // 3.2.7
-    EXPECT_TRUE(d.profile->has(Quirk::fault_low_nibble_f));                       // 3.2.2.2
-    EXPECT_TRUE(d.profile->has(Quirk::no_remote_bit));
-    EXPECT_TRUE(d.profile->has(Quirk::no_internal_limit_bit));
-    EXPECT_TRUE(d.profile->has(Quirk::csp_bits_12_13_reserved));
-    EXPECT_FALSE(d.profile->motor_has_encoder);         // 4.4: 2000h:11 = 2, open loop
-    EXPECT_EQ(d.profile->input_bit_negative_limit, 0);  // 4.3, 60FDh
-    EXPECT_EQ(d.profile->input_bit_positive_limit, 1);
-    EXPECT_EQ(d.profile->input_bit_home, 2);
-    EXPECT_EQ(default_of(*d.device, 0x6098), 20);  // 4.3
-    EXPECT_EQ(default_of(*d.device, 0x6099, 1), 10000);
-    EXPECT_EQ(default_of(*d.device, 0x609A), 30000);
-    EXPECT_EQ(default_of(*d.device, 0x6085), 30000);
-    EXPECT_EQ(default_of(*d.device, 0x605E), 0);
-    EXPECT_EQ(default_of(*d.device, 0x2000, 0x02), 10000);  // 4.4
-    EXPECT_EQ(default_of(*d.device, 0x2000, 0x11), 2);
-    EXPECT_EQ(default_of(*d.device, 0x2000, 0x15), 90);
-}
-
-TEST(Se808x, AlarmsAreTheNineOfTheManual) {
-    const auto d = drive("se-808x");
-    const auto& alarms = d.profile->alarms;
-    const std::pair<std::uint16_t, const char*> rows[] = {
-        // 5.1
-        {0x5552, "硬件中点错误"}, {0x7122, "未接电机线错误"},    {0x3221, "欠压错误"},
-        {0x3211, "过压错误"},     {0x5551, "E2prom 错误"},       {0x8611, "位置超差错误"},
-        {0x8311, "过载错误"},     {0x7500, "EtherCAT 通信错误"}, {0x5553, "霍尔信号异常"},
-    };
-    ASSERT_EQ(alarms.size(), std::size(rows));
-    for (std::size_t i = 0; i < alarms.size(); ++i) {
-        EXPECT_EQ(alarms[i].code, rows[i].first);
-        EXPECT_EQ(alarms[i].chinese, rows[i].second);
-        EXPECT_TRUE(alarms[i].resettable);
-    }
 }
 
 TEST(EveryDrive, SaysInWordsWhatItAssumes) {

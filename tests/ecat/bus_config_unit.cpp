@@ -200,6 +200,28 @@ TEST(Modules, AreCheckedAgainstTheDevice) {
     EXPECT_THAT(problems, Contains(Field(&Error::what, HasSubstr("has no module 'pp'"))));
 }
 
+// SE-808X 3.1.2: the factory maps 16 of the 32 bits of 60FDh. What the maker mapped may stay; another part of an object may not.
+TEST(BusConfig, FewerBitsThanAnObjectHasAreTakenOnlyWhereTheFactoryMapsThem) {
+    BusConfig config = good();
+    auto device = std::make_shared<DeviceDescription>(*config.slaves[0].device);
+    ObjectEntry inputs;
+    inputs.index = 0x60FD;
+    inputs.name = "digital inputs";
+    inputs.type = DataType::U32;
+    inputs.access = Access::ro;
+    inputs.mappable = Mappable::tx;
+    device->objects.push_back(inputs);
+    device->tx_pdos.push_back({0x1A02, false, {{0x60FD, 0, 16}}});
+    config.slaves[0].device = device;
+
+    config.slaves[0].tx.assigned = {{0x1A02, false, {{0x60FD, 0, 16}}}};
+    EXPECT_THAT(check(config), IsEmpty());
+    config.slaves[0].tx.assigned = {{0x1A02, false, {{0x60FD, 0, 8}}}};
+    EXPECT_THAT(check(config), with_code("bus.pdo_bits"));
+    config.slaves[0].tx.assigned = {{0x1A02, false, {{0x60FD, 0, 64}}}};
+    EXPECT_THAT(check(config), with_code("bus.pdo_bits"));
+}
+
 TEST(BusConfig, AllProblemsAreReportedAtOnceAndNameTheSlave) {
     BusConfig config = good();
     config.slaves[0].dc = false;
