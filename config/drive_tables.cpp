@@ -62,6 +62,9 @@ Codec<axes::DriveAlarmKind> alarm_kind() {
                       {"battery_low", K::battery_low},
                       {"reference_lost", K::reference_lost},
                       {"turn_overflow", K::turn_overflow},
+                      {"homing_timeout", K::homing_timeout},
+                      {"homing_limit", K::homing_limit},
+                      {"homing_method", K::homing_method},
                       {"power_cycle_pending", K::power_cycle_pending}});
 }
 
@@ -131,6 +134,14 @@ Table<DriveProfile> motion_table() {
             field("velocity_counts_per_unit", &P::velocity_counts_per_unit, number(), "606Ch and 60FFh raw = counts/s times this"),
             field("torque_rated_raw", &P::torque_rated_raw, number(), "6077h and 6071h raw value of rated torque"),
             field("position_bits", &P::position_bits, integer<std::uint8_t>(8, 64), "width of the raw position"),
+            field("homing_timeout", &P::homing_timeout, parameter_address(), "object that bounds the drive's own homing"),
+            field("homing_timeout_unit", &P::homing_timeout_unit, duration(), "of that object"),
+            field("encoder_turn_bits", &P::encoder_turn_bits, integer<std::uint8_t>(0, 32),
+                  "width of an absolute encoder's turn counter; 0: not stated"),
+            field("clear_turns", &P::clear_turns, parameter_address(), "object that makes the encoder forget its turns"),
+            field("clear_turns_value", &P::clear_turns_value, integer<std::int64_t>(0, 65535), "written to that object"),
+            field("clear_turns_control", &P::clear_turns_control, integer<std::uint16_t>(0, 0xFFFF),
+                  "bits of 6040h that make the encoder forget its turns"),
             field("probes", &P::probes, integer<std::uint8_t>(0, 2), "touch probes"),
             field("motor_has_encoder", &P::motor_has_encoder, boolean(), "false: the actual position is the command"),
             with_default(
@@ -290,7 +301,10 @@ Table<DriveFile> drive_table() {
                             {"no_remote_bit", Quirk::no_remote_bit},
                             {"no_internal_limit_bit", Quirk::no_internal_limit_bit},
                             {"csp_bits_12_13_reserved", Quirk::csp_bits_12_13_reserved},
-                            {"disable_may_coast", Quirk::disable_may_coast}})),
+                            {"disable_may_coast", Quirk::disable_may_coast},
+                            {"probe_toggle_bits", Quirk::probe_toggle_bits},
+                            {"homing_limit_is_fault", Quirk::homing_limit_is_fault},
+                            {"homing_19_starts_negative", Quirk::homing_19_starts_negative}})),
         "deviations from CiA 402, by name (axes/port/drive_profile.hpp)"));
     f.push_back(
         field("startup", &F::startup, list(section(startup_table())), "SDOs written on every bring-up, before those of the machine"));

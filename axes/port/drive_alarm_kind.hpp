@@ -21,6 +21,9 @@ enum class DriveAlarmKind : std::uint8_t {
     battery_low,     ///< of the encoder; the position still holds
     reference_lost,  ///< turns or zero are gone: home again
     turn_overflow,
+    homing_timeout,       ///< the drive's own homing took too long (SV33-E A.425)
+    homing_limit,         ///< the drive's own homing met a limit switch that it did not look for (SV-DA200 Er25-6)
+    homing_method,        ///< the drive does not know the homing method (SV33-E A.D35, SV-DA200 Er05-4)
     power_cycle_pending,  ///< a parameter takes effect after a restart only
 };
 

@@ -179,6 +179,9 @@ struct DriveFeedback {
     bool follows_target = true;  ///< statusword bit 12 in cyclic modes, where it means that
     /// Counts each time the position's zero may have become another: the drive was away and came back, homed, or lost its turns.
     std::uint16_t position_epoch = 0;
+    /// Counts each time the drive lost what homing gave it: its turns were cleared, or an alarm says so. The axis is unreferenced then.
+    std::uint16_t reference_epoch = 0;
+    bool homing_setup_refused = false;  ///< DriveCommand::homing could not be written: no start is sent until it is taken back
     /// The drive has acknowledged all that encode() asked that changes its state; false: still under way (polled drives).
     bool commands_acknowledged = true;
     std::uint32_t profile_accepted = 0;  ///< sequence of the last profile set-point the drive has taken

@@ -23,8 +23,11 @@ enum class Quirk : std::uint8_t {
     no_internal_limit_bit,      ///< statusword bit 11 is unsupported (SE-808X 3.2.2.2)
     csp_bits_12_13_reserved,    ///< no "following" and "following error" bits in CSP (SE-808X 3.2.6)
     disable_may_coast,          ///< Shutdown / Disable voltage may cut power at once: ramp to zero before (SV33-E 3.4.1)
+    probe_toggle_bits,          ///< 60B9h bits 6, 7, 14, 15 change with each latch in continuous mode (SV-DA200 3.8.3)
+    homing_limit_is_fault,      ///< a limit switch that homing does not look for is a fault (SV-DA200 Er25-6), not only bit 13
+    homing_19_starts_negative,  ///< method 19 sets out in negative direction from beside the switch (SV-DA200 3.4.6, the table), as 21 of CiA 402
 };
-inline constexpr std::size_t quirk_count = 7;
+inline constexpr std::size_t quirk_count = 10;
 
 /// How a drive brings its motor to rest by itself.
 enum class DriveStop : std::uint8_t {
@@ -79,6 +82,13 @@ struct DriveProfile {
     std::uint16_t object_offset = 0x0800, pdo_offset = 0x40;  ///< per further axis of a multi-axis drive
     std::uint8_t axes = 1;
     std::uint8_t input_bit_negative_limit = 0, input_bit_positive_limit = 1, input_bit_home = 2;  ///< in 60FDh
+    ParameterAddress homing_timeout{};                       ///< object that bounds the drive's own homing (SV33-E P13.49); index 0: none
+    Duration homing_timeout_unit = std::chrono::seconds{1};  ///< of that object (SV33-E: 10 ms)
+    std::uint8_t encoder_turn_bits = 0;  ///< width of an absolute encoder's turn counter (SV33-E 3.1.4: 16); 0: not stated
+    // How the encoder is told to forget its turns (DriveService::clear_multi_turn): one of the two; neither: the drive cannot.
+    ParameterAddress clear_turns{};         ///< object that is written (SV33-E P20.05)
+    std::int64_t clear_turns_value = 0;     ///< ... with this value (SV33-E: 2)
+    std::uint16_t clear_turns_control = 0;  ///< bit of 6040h that is set for a while (TSVM 5.3.2: bit 12)
     std::vector<Quirk> quirks;
     std::uint16_t alarm_detail_index = 0;  ///< object that tells ambiguous 603Fh apart (P21.08 = 2021h:09); 0 = none
     std::uint8_t alarm_detail_sub = 0;
