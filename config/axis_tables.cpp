@@ -231,6 +231,12 @@ Table<AxisSimulation> simulation_table() {
                 field_via<S>(
                     "home_switch", interval(Dimension::position),
                     [](S& s, const Interval& v) { s.home_from = v.first, s.home_to = v.second; }, "active in between", "none"),
+                field("index_pulse", &S::index_pulse, quantity(Dimension::position),
+                      "where one of the encoder's index pulses stands; there is one each motor turn"),
+                field("battery", &S::battery,
+                      choice<axes::sim::Battery>(
+                          {{"good", axes::sim::Battery::good}, {"low", axes::sim::Battery::low}, {"empty", axes::sim::Battery::empty}}),
+                      "of an absolute encoder; with an empty one the drive has lost its turns at power-on"),
                 field("marks", &S::marks, section(printed_marks_table()), "marks along the axis, seen by a sensor at probe 1 of the drive"),
                 field("clock_drift", &S::clock_drift_ppm, quantity(Dimension::ratio_ppm), "how wrong the drive's clock runs"),
             },

@@ -9,6 +9,7 @@
 
 #include "axes/axis/axis_config.hpp"
 #include "axes/port/drive_profile.hpp"
+#include "axes/sim/plant_config.hpp"
 #include "core/result.hpp"
 #include "core/time.hpp"
 #include "ecat/bus_config.hpp"
@@ -35,6 +36,8 @@ struct AxisSimulation {
     std::optional<double> negative_stop, positive_stop;                                        ///< u: hard stops
     std::optional<double> negative_limit, positive_limit;                                      ///< u: limit switches
     std::optional<double> home_from, home_to;                                                  ///< u: home switch active in between
+    double index_pulse = 0;  ///< u: where one of the encoder's index pulses stands; there is one each motor turn
+    axes::sim::Battery battery = axes::sim::Battery::good;  ///< of an absolute encoder
     PrintedMarks marks;
     double clock_drift_ppm = 0;
 };

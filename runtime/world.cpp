@@ -35,6 +35,8 @@ axes::sim::PlantConfig plant_of(const AxisBinding& binding) {
         plant.home_from = std::min(counts(*simulation.home_from), counts(*simulation.home_to));
         plant.home_to = std::max(counts(*simulation.home_from), counts(*simulation.home_to));
     }
+    plant.index_pulse = counts(simulation.index_pulse);
+    plant.battery = simulation.battery;
     if (const auto& marks = simulation.marks; marks.every > 0) {
         const double begin = counts(marks.first), end = counts(marks.first + marks.length);
         plant.probe[0] = {std::min(begin, end), std::max(begin, end), std::abs(counts(marks.every))};

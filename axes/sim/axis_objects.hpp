@@ -16,6 +16,7 @@ struct AxisInputs {
     std::int64_t maximum_velocity = 0;  ///< 607Fh: bounds the speed in the torque modes; 0 = no limit
     HomingSettings homing;
     std::int64_t home_offset = 0;
+    std::int64_t home_position_method = 0;  ///< 60E6h: 0 the reference gets 607Ch, 1 it gets its old position + 607Ch
     std::uint16_t probe_function = 0;
 };
 

@@ -6,16 +6,25 @@
 
 namespace taktwerk::axes::sim {
 
-Cia402Axis::Cia402Axis(const PlantConfig& plant, const Personality& personality) : personality_(personality), plant_(plant) {}
+Cia402Axis::Cia402Axis(const PlantConfig& plant, const Personality& personality)
+    : personality_(personality),
+      plant_(plant),
+      probes_{TouchProbe(personality.probe_toggle), TouchProbe(personality.probe_toggle)},
+      encoder_(static_cast<double>(personality.counts_per_revolution), plant.index_pulse, personality.encoder_turn_bits),
+      battery_(plant.battery),
+      stored_shift_(-plant.index_pulse) {}
 
 double Cia402Axis::quantised() const noexcept { return std::floor(actual()); }
+
+IndexPulses Cia402Axis::index_pulses() const noexcept {
+    return {plant_.config().index_pulse, static_cast<double>(personality_.counts_per_revolution)};
+}
 
 SwitchStates Cia402Axis::switches() const noexcept { return {plant_.negative_limit(), plant_.positive_limit(), plant_.home_switch()}; }
 
 void Cia402Axis::inner_step() noexcept {
     const double dt = inner_seconds;
-    torque_ = 0;
-    if (energised()) torque_ = state_ == State::enabled ? enabled_torque(dt) : stopping_torque(dt);
+    torque_ = !energised() ? 0 : state_ == State::enabled ? enabled_torque(dt) : stopping_torque(dt);
     step_brake();
     const double before = plant_.position();
     plant_.step(dt, torque_);
@@ -24,13 +33,14 @@ void Cia402Axis::inner_step() noexcept {
     supervise();
 }
 
-/// In the drive's counts, as the latched position is; the index pulse is the encoder's own.
+/// In the drive's counts, as the latched position is.
 void Cia402Axis::step_probes(double before) noexcept {
+    auto pulses = index_pulses();
+    pulses.at -= zero_;
     for (std::size_t i = 0; i < probes_.size(); ++i) {
         const auto& seen = plant_.config().probe[i];
         const auto signal = blank_ ? ProbeSignal{} : nearest({seen.from, seen.to}, seen.every, plant_.position());
-        probes_[i].motion(before - zero_, plant_.position() - zero_, {signal.from - zero_, signal.to - zero_},
-                          static_cast<double>(personality_.counts_per_revolution));
+        probes_[i].motion(before - zero_, plant_.position() - zero_, {signal.from - zero_, signal.to - zero_}, pulses);
     }
 }
 
@@ -46,6 +56,7 @@ void Cia402Axis::exchange(const AxisInputs& in, Duration cycle, AxisOutputs& out
     command(in);
     for (std::size_t i = 0; i < probes_.size(); ++i) probes_[i].command(static_cast<std::uint8_t>(in.probe_function >> (8 * i)));
     if (state_ == State::enabled) take_targets(in, cycle);
+    homing_bit_ = (in.control & 0x10u) != 0;
     fill(out);
 }
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 
+#include "axes/sim/absolute_encoder.hpp"
 #include "axes/sim/axis_objects.hpp"
 #include "axes/sim/homing_run.hpp"
 #include "axes/sim/mode_codes.hpp"
@@ -49,6 +50,13 @@ public:
     /// Nothing in front of the sensors at the probes, such as a web without print.
     void blank(bool blank) noexcept { blank_ = blank; }
 
+    /// Of an absolute encoder; what an empty one has lost shows at the next power_on().
+    void battery(Battery state) noexcept { battery_ = state; }
+    /// The encoder's own service, refused while the motor has power: what it complains of is forgotten, and its turns if asked for (SV33-E
+    /// P20.05 = 1, 2; TSVM control word bit 12 does the second).
+    void reset_encoder() noexcept;
+    void clear_turns() noexcept;
+
     [[nodiscard]] const Plant& plant() const noexcept { return plant_; }
     [[nodiscard]] State state() const noexcept { return state_; }
     /// Largest CSP target step between two exchanges while enabled, counts. What a jump of the master would show in.
@@ -66,6 +74,7 @@ private:
     void step_probes(double before) noexcept;
     [[nodiscard]] double actual() const noexcept { return plant_.position() - zero_; }
     [[nodiscard]] double quantised() const noexcept;
+    [[nodiscard]] IndexPulses index_pulses() const noexcept;
     [[nodiscard]] SwitchStates switches() const noexcept;
     [[nodiscard]] double torque_limit() const noexcept { return plant_.config().rated_torque * plant_.config().maximum_torque; }
     // cia402_power.cpp
@@ -87,7 +96,14 @@ private:
     // cia402_homing.cpp
     void take_homing_start(const AxisInputs& in) noexcept;
     void homing_step(double dt) noexcept;
-    void homing_finished() noexcept;
+    void homing_failed() noexcept;
+    void homing_attained() noexcept;
+    [[nodiscard]] HomingView homing_view() const noexcept;
+    // cia402_encoder.cpp
+    void wake_encoder() noexcept;
+    void watch_encoder() noexcept;
+    void read_encoder() noexcept;
+    [[nodiscard]] bool battery_warns() const noexcept;
     // cia402_stopping.cpp
     [[nodiscard]] double stopping_torque(double dt) noexcept;
     void stop_step(double dt, double deceleration) noexcept;
@@ -99,6 +115,8 @@ private:
     void wind_down() noexcept;
     void step_brake() noexcept;
     // cia402_supervision.cpp
+    void raise_or_warn(const AlarmCode& alarm) noexcept;
+    void end_warning() noexcept;
     void supervise() noexcept;
     // cia402_status.cpp
     void fill(AxisOutputs& out) const noexcept;
@@ -123,8 +141,12 @@ private:
     std::uint16_t last_control_ = 0, error_code_ = 0;
     std::uint32_t error_detail_ = 0;
     bool error_resettable_ = true, main_power_ = true, operational_ = false, homed_ = false, warning_ = false;
-    bool homing_attained_ = false, homing_error_ = false;
-    std::int64_t home_offset_ = 0;
+    bool homing_attained_ = false, homing_error_ = false, homing_bit_ = false;
+    std::int64_t home_offset_ = 0, home_position_method_ = 0;
+    AbsoluteEncoder encoder_;
+    Battery battery_;
+    double stored_shift_ = 0;      ///< EEPROM: what an absolute encoder reads where the drive counts 0
+    AlarmCode encoder_complaint_;  ///< stands until reset_encoder(); code 0: none
     std::uint32_t strikes_ = 0;
     double largest_increment_ = 0;
     Instant commands_from_{};    ///< the brake is open from here on

@@ -37,7 +37,12 @@ std::uint8_t error_register(std::uint16_t code) noexcept {
 }  // namespace
 
 Cia402Device::Cia402Device(const DriveProfile& profile, const std::vector<AxisSetup>& axes)
-    : object_offset_(profile.object_offset),
+    : homing_timeout_(profile.homing_timeout),
+      clear_turns_(profile.clear_turns),
+      homing_timeout_unit_(to_seconds(profile.homing_timeout_unit)),
+      clear_turns_value_(profile.clear_turns_value),
+      clear_turns_control_(profile.clear_turns_control),
+      object_offset_(profile.object_offset),
       detail_index_(profile.alarm_detail_index),
       detail_sub_(profile.alarm_detail_sub),
       alarms_(profile.alarms),
@@ -58,6 +63,9 @@ void Cia402Device::power_on(ecat::sim::ObjectDictionary& dictionary, Instant now
         axes_[i].commands = find(command_objects());
         axes_[i].settings = find(setting_objects());
         axes_[i].answers = find(answer_objects());
+        const auto own = [&](ParameterAddress a) { return a.index ? at(a.index, a.sub) : nullptr; };
+        axes_[i].homing_timeout = own(homing_timeout_);
+        axes_[i].clear_turns = own(clear_turns_);
         axes_[i].model->power_on(now);
     }
     for (auto& axis : axes_) axis.faulted = false;
@@ -107,6 +115,8 @@ void Cia402Device::exchange(Instant) {
         AxisInputs in;
         if (operational_) take(command_objects(), axis.commands, in);
         take(setting_objects(), axis.settings, in);
+        if (axis.homing_timeout) in.homing.time_limit = static_cast<double>(axis.homing_timeout->get()) * homing_timeout_unit_;
+        serve_encoder(axis, in.control);
         AxisOutputs out;
         axis.model->exchange(in, cycle_, out);
         for (std::size_t i = 0; i < axis.answers.size(); ++i) put(axis.answers[i], answer_objects()[i].value(out));
@@ -120,6 +130,16 @@ void Cia402Device::exchange(Instant) {
         put(alarm_detail_, detail);
         announce(axis, (out.status & status_fault) != 0, out.error_code, static_cast<std::uint32_t>(detail));
     }
+}
+
+void Cia402Device::serve_encoder(OneAxis& axis, std::uint16_t control) {
+    const bool asked = (control & clear_turns_control_) != 0;
+    if (asked && !axis.clear_asked) axis.model->clear_turns();
+    axis.clear_asked = asked;
+    if (!axis.clear_turns || axis.clear_turns->get() == 0) return;
+    if (axis.clear_turns->get() == clear_turns_value_) axis.model->clear_turns();
+    else axis.model->reset_encoder();
+    axis.clear_turns->set(0);
 }
 
 void Cia402Device::announce(OneAxis& axis, bool faulted, std::uint16_t code, std::uint32_t detail) {

@@ -44,11 +44,18 @@ private:
     struct OneAxis {
         std::unique_ptr<Cia402Axis> model;
         std::vector<Entry*> commands, settings, answers;  ///< in the order of object_table.hpp; null: this drive has it not
-        bool faulted = false;                             ///< as announced
+        Entry *homing_timeout = nullptr, *clear_turns = nullptr;
+        bool clear_asked = false;  ///< the control word's bit stood in the exchange before
+        bool faulted = false;      ///< as announced
     };
     /// An emergency when an axis enters FAULT (or its reaction) and code 0000h when the last one has left it.
     void announce(OneAxis& axis, bool faulted, std::uint16_t code, std::uint32_t detail);
+    void serve_encoder(OneAxis& axis, std::uint16_t control);
     std::vector<OneAxis> axes_;
+    ParameterAddress homing_timeout_, clear_turns_;
+    double homing_timeout_unit_;  ///< s
+    std::int64_t clear_turns_value_;
+    std::uint16_t clear_turns_control_;
     std::uint16_t object_offset_;
     Entry* alarm_detail_ = nullptr;
     std::uint16_t detail_index_;

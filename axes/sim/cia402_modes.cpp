@@ -10,10 +10,11 @@ void Cia402Axis::select_mode(const AxisInputs& in) noexcept {
     const bool known = in.mode == mode::profile_velocity || in.mode == mode::profile_torque || in.mode == mode::homing ||
                        in.mode == mode::cyclic_position || in.mode == mode::cyclic_velocity || in.mode == mode::cyclic_torque;
     if (!known) return;
-    if (mode_ == mode::homing && homing_.state() == HomingRun::State::moving) return;  // no other while homing runs (SV33-E 3.4.3)
+    if (mode_ == mode::homing && homing_.busy()) return;  // no other while homing runs (SV33-E 3.4.3)
     if (mode::of_torque(mode_)) loop_.take_over(torque_);
     mode_ = in.mode;
-    homing_.abort();
+    end_warning();
+    homing_.cancel();
     homing_attained_ = homing_error_ = false;
     // A switch never moves: the new mode starts where the axis is.
     demand_ = {plant_.position(), 0, 0};

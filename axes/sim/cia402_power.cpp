@@ -5,10 +5,6 @@
 namespace taktwerk::axes::sim {
 
 void Cia402Axis::power_on(Instant now) noexcept {
-    if (!personality_.absolute_encoder) {
-        zero_ = plant_.position();
-        homed_ = false;
-    }
     now_ = now;
     mode_ = 0;
     error_code_ = 0;
@@ -17,9 +13,10 @@ void Cia402Axis::power_on(Instant now) noexcept {
     last_control_ = 0;
     encoder_failed_ = winding_down_ = false;
     brake_closed_ = has_brake();
-    probes_ = {};
-    homing_.abort();
+    for (auto& probe : probes_) probe.command(0);
+    homing_.cancel();
     enter(State::disabled);
+    wake_encoder();
 }
 
 void Cia402Axis::enter(State state) noexcept {
@@ -34,7 +31,7 @@ void Cia402Axis::enter(State state) noexcept {
         strikes_ = 0;
         loop_.reset();
     }
-    if (state != State::enabled) homing_.abort();
+    if (state != State::enabled) homing_.cancel();
     if (state == State::quick_stop || state == State::fault_reaction) demand_ = {plant_.position(), plant_.velocity(), 0};
     state_ = state;
 }
@@ -45,7 +42,8 @@ void Cia402Axis::command(const AxisInputs& in) noexcept {
     last_control_ = word;
     if (state_ == State::fault) {
         const bool dropped = !personality_.reset_needs_disable || (word & 0x0Fu) != 0x0Fu;
-        const bool cause_gone = !encoder_failed_ && (main_power_ || error_code_ != personality_.undervoltage_alarm.code);
+        const bool cause_gone =
+            !encoder_failed_ && encoder_complaint_.code == 0 && (main_power_ || error_code_ != personality_.undervoltage_alarm.code);
         if (reset_edge && dropped && error_resettable_ && cause_gone) {
             error_code_ = 0;
             error_detail_ = 0;

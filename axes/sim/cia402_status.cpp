@@ -25,10 +25,10 @@ std::uint16_t Cia402Axis::status_word() const noexcept {
         case State::fault: word = personality_.fault_pattern_f ? 0x0F : 0x08; break;
     }
     if (main_power_) word |= bit(4);
-    if (warning_) word |= bit(7);
+    if (warning_ || battery_warns()) word |= bit(7);
     if (personality_.remote_bit && operational_) word |= bit(9);
     if (mode_ == mode::homing) {
-        if (stands() && homing_.state() != HomingRun::State::moving && homing_.state() != HomingRun::State::stopping) word |= bit(10);
+        if (stands() && !homing_.busy()) word |= bit(10);
         if (homing_attained_) word |= bit(12);
         if (homing_error_) word |= bit(13);
     } else {
@@ -49,6 +49,10 @@ void Cia402Axis::fill(AxisOutputs& out) const noexcept {
     out.following_error = out.demand - out.position;
     out.error_code = error_code_;
     out.error_detail = error_detail_;
+    if (error_code_ == 0 && battery_warns()) {
+        out.error_code = personality_.battery_low_alarm.code;
+        out.error_detail = personality_.battery_low_alarm.detail;
+    }
     for (std::size_t i = 0; i < probes_.size(); ++i) {
         out.probe_status = static_cast<std::uint16_t>(out.probe_status | probes_[i].status() << (8 * i));
         out.probe_rising[i] = probes_[i].rising();

@@ -14,6 +14,21 @@ void Cia402Axis::raise(std::uint16_t code, bool resettable, std::uint32_t detail
     enter(energised() ? State::fault_reaction : State::fault);
 }
 
+void Cia402Axis::raise_or_warn(const AlarmCode& alarm) noexcept {
+    if (alarm.code == 0) return;
+    if (!alarm.warning) return raise(alarm);
+    warning_ = true;
+    error_code_ = alarm.code;
+    error_detail_ = alarm.detail;
+}
+
+void Cia402Axis::end_warning() noexcept {
+    if (!warning_) return;
+    warning_ = false;
+    error_code_ = 0;
+    error_detail_ = 0;
+}
+
 void Cia402Axis::fail(Failure failure) noexcept {
     switch (failure) {
         case Failure::overspeed: raise(personality_.overspeed_alarm); break;
@@ -41,6 +56,7 @@ void Cia402Axis::communication_lost() noexcept {
 }
 
 void Cia402Axis::supervise() noexcept {
+    watch_encoder();
     if (state_ != State::enabled) return;
     if (personality_.overspeed > 0 && std::abs(plant_.velocity()) > personality_.overspeed) raise(personality_.overspeed_alarm);
     const bool follows_position = mode_ == mode::cyclic_position || mode_ == mode::homing;

@@ -26,6 +26,7 @@ constexpr InputObject settings[] = {
     {0x6099, 2, [](In& in, Value v) { in.homing.slow = static_cast<double>(v); }},
     {0x609A, 0, [](In& in, Value v) { in.homing.acceleration = static_cast<double>(v); }},
     {0x607C, 0, [](In& in, Value v) { in.home_offset = v; }},
+    {0x60E6, 0, [](In& in, Value v) { in.home_position_method = v; }},
 };
 
 constexpr OutputObject answers[] = {

@@ -13,6 +13,13 @@ Personality personality_of(const DriveProfile& profile, std::int64_t counts_per_
     p.fault_pattern_f = profile.has(Quirk::fault_low_nibble_f);
     p.reset_needs_disable = profile.has(Quirk::fault_reset_needs_disable);
     p.limit_stop_is_warning = profile.has(Quirk::limit_stop_is_warning);
+    if (!profile.homing_methods.empty()) p.homing_methods = 0;
+    for (const int method : profile.homing_methods)
+        if (method >= -2 && method < 62) p.homing_methods |= std::uint64_t{1} << (method + 2);
+    p.homing_limit_is_fault = profile.has(Quirk::homing_limit_is_fault);
+    p.homing_19_starts_negative = profile.has(Quirk::homing_19_starts_negative);
+    p.probe_toggle = profile.has(Quirk::probe_toggle_bits) ? ProbeToggle::bits_6_and_7 : ProbeToggle::none;
+    p.encoder_turn_bits = profile.encoder_turn_bits;
     p.fault_stop = profile.fault_stop;
     p.off_stop = profile.off_stop;
     p.quick_stop_leaves = profile.quick_stop_leaves;
@@ -22,7 +29,7 @@ Personality personality_of(const DriveProfile& profile, std::int64_t counts_per_
     const auto own = [&](DriveAlarmKind kind, AlarmCode& alarm) {
         for (const auto& row : profile.alarms)
             if (row.kind == kind) {
-                alarm = {row.code, row.resettable, row.detail};
+                alarm = {row.code, row.resettable, row.detail, row.warning};
                 return;
             }
     };
@@ -33,6 +40,12 @@ Personality personality_of(const DriveProfile& profile, std::int64_t counts_per_
     own(DriveAlarmKind::overspeed, p.overspeed_alarm);
     own(DriveAlarmKind::overload, p.overload_alarm);
     own(DriveAlarmKind::encoder, p.encoder_alarm);
+    own(DriveAlarmKind::homing_timeout, p.homing_timeout_alarm);
+    own(DriveAlarmKind::homing_limit, p.homing_limit_alarm);
+    own(DriveAlarmKind::homing_method, p.homing_method_alarm);
+    own(DriveAlarmKind::battery_low, p.battery_low_alarm);
+    own(DriveAlarmKind::reference_lost, p.reference_lost_alarm);
+    own(DriveAlarmKind::turn_overflow, p.turn_overflow_alarm);
     AlarmCode limit;
     own(DriveAlarmKind::negative_limit, limit);
     if (limit.code) p.negative_limit_code = limit.code;

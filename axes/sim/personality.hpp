@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "axes/port/drive_profile.hpp"
+#include "axes/sim/touch_probe.hpp"
 #include "core/time.hpp"
 
 namespace taktwerk::axes::sim {
@@ -16,6 +17,7 @@ struct AlarmCode {
     std::uint16_t code = 0;
     bool resettable = true;
     std::uint32_t detail = 0;  ///< what the detail object shows (P21.08)
+    bool warning = false;      ///< the drive goes on
 };
 
 /// A way in which a drive fails at once, whatever it is doing. How it shows and whether it clears is the personality's.
@@ -32,9 +34,14 @@ struct Personality {
     bool internal_limit_bit = true;
     bool csp_following_bits = true;  ///< bits 12 and 13 in CSP
     bool home_found_bit_15 = false;
-    bool reset_needs_disable = false;    ///< fault reset only with enable dropped
-    bool limit_stop_is_warning = false;  ///< overtravel: stop with position lock, warning, still enabled
-    bool quick_stop_leaves = true;       ///< after the quick stop: Switch On Disabled by itself
+    bool reset_needs_disable = false;                  ///< fault reset only with enable dropped
+    bool limit_stop_is_warning = false;                ///< overtravel: stop with position lock, warning, still enabled
+    bool quick_stop_leaves = true;                     ///< after the quick stop: Switch On Disabled by itself
+    std::uint64_t homing_methods = ~std::uint64_t{0};  ///< that it knows: bit method + 2
+    bool homing_limit_is_fault = false;                ///< homing that meets a limit: homing_limit_alarm; else statusword bit 13 alone
+    bool homing_19_starts_negative = false;
+    ProbeToggle probe_toggle = ProbeToggle::none;
+    std::uint8_t encoder_turn_bits = 0;  ///< of an absolute encoder; 0: it never begins anew
     FaultStop fault_stop = FaultStop::ramp;
     FaultStop off_stop = FaultStop::coast;  ///< power taken away by command while it moves
     /// The holding brake opens this long after enabling; set-points and homing starts before are lost (SV33-E 3.1.2, P05.13).
@@ -52,6 +59,9 @@ struct Personality {
     AlarmCode overspeed_alarm{0x8400};
     AlarmCode overload_alarm{0x3230};
     AlarmCode encoder_alarm{0x7305, false};
+    // Code 0: this drive has no such alarm; statusword bit 13 tells alone, and a lost turn shows in the position only.
+    AlarmCode homing_timeout_alarm, homing_limit_alarm, homing_method_alarm;
+    AlarmCode battery_low_alarm, reference_lost_alarm, turn_overflow_alarm;
     std::uint16_t negative_limit_code = 0x5444, positive_limit_code = 0x5443;
 };
 

@@ -7,6 +7,13 @@
 
 namespace taktwerk::axes::sim {
 
+/// Of an absolute encoder, which counts its turns on while the drive is off.
+enum class Battery : std::uint8_t {
+    good,
+    low,    ///< still holds the turns
+    empty,  ///< turns are forgotten when the drive loses power
+};
+
 struct PlantConfig {
     std::int64_t counts_per_revolution = 10000;
     double inertia = 2e-4;           ///< kg m2, motor and load together
@@ -22,6 +29,8 @@ struct PlantConfig {
     double negative_limit = -std::numeric_limits<double>::infinity();  ///< switch active below
     double positive_limit = std::numeric_limits<double>::infinity();   ///< switch active above
     double home_from = 1, home_to = 0;                                 ///< switch active in between; from > to = no switch
+    double index_pulse = 0;                                            ///< one of the encoder's index pulses; one each revolution
+    Battery battery = Battery::good;
     struct Signal {
         double from = 1, to = 0;
         double every = 0;  ///< it repeats, as marks on a web do; 0 = there is one

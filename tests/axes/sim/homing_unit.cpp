@@ -1,7 +1,6 @@
-// Homing by the drive: every method of SV33-E manual 3.4.3(9) and SE-808X manual 3.2.7 from every start.
+// Homing by the drive beyond where it ends (homing_walk_unit.cpp): start and end of the run, halt, time limit, offsets, modes.
 
 #include <cmath>
-#include <string>
 
 #include <gtest/gtest.h>
 
@@ -11,141 +10,105 @@ namespace taktwerk::axes::sim {
 namespace {
 
 constexpr double fast = 40000, slow = 4000, acceleration = 400000;
-constexpr std::int64_t home_offset = 700;
+constexpr unsigned attained = 1u << 12, error = 1u << 13, warning = 1u << 7, standing = 1u << 10;
 
-enum class Ends { negative_edge, positive_edge, home_low, home_high, error };
-
-constexpr double where(Ends ends) {
-    switch (ends) {
-        case Ends::negative_edge: return -50000;
-        case Ends::positive_edge: return 50000;
-        case Ends::home_low: return 0;
-        case Ends::home_high: return 5000;
-        case Ends::error: break;
-    }
-    return 0;
-}
-
-struct HomingCase {
-    int method;
-    double start;        // machine coordinate
-    bool first_forward;  // which way it sets out
-    Ends ends;
-    friend void PrintTo(const HomingCase& c, std::ostream* out) { *out << "method " << c.method << " from " << c.start; }
-};
-
-// By hand from the tables: for each method left of the home switch, on it, right of it, at the negative and at the positive limit.
-// "error": methods 19..22 that meet a limit before the home switch. Neither manual says what happens then; the simulated drive
-// stops and reports a homing error, so that a machine that relies on more is found out.
-class Homing : public ::testing::TestWithParam<HomingCase> {
-protected:
-    static PlantConfig at(double start) {
-        auto plant = table();
-        plant.start = start;
-        return plant;
-    }
-    /// A servo hunts by a few counts around its place; it goes nowhere.
-    static void expect_rest(Bench& b) {
-        const double place = b.axis.plant().position();
-        b.run(500);
-        EXPECT_NEAR(b.axis.plant().position(), place, 5.0) << "it stands at the end";
-    }
-    void begin(Bench& b) {
-        b.in.homing = {GetParam().method, fast, slow, acceleration};
-        b.in.home_offset = home_offset;
-        b.enable();
-        b.in.mode = 6;
-        b.run(3);
-        ASSERT_EQ(b.out.mode, 6);
-        b.in.control = 0x1F;
-    }
-};
-
-TEST_P(Homing, EndsWhereTheTableSaysAndSetsOutTheRightWay) {
-    const auto& c = GetParam();
-    Bench b{at(c.start)};
-    begin(b);
-    const double before = b.axis.plant().position();
-    double most = 0, steepest = 0, last = 0;
-    bool set_out = false;
-    for (int i = 0; i < 20000 && !(b.out.status & 0x3000u); ++i) {
-        b.cycle();
-        const double moved = b.axis.plant().position() - before;
-        if (!set_out && std::abs(moved) > 20) {
-            set_out = true;
-            EXPECT_EQ(moved > 0, c.first_forward);
-        }
-        const double speed = b.axis.plant().velocity();
-        most = std::max(most, std::abs(speed));
-        steepest = std::max(steepest, std::abs(speed - last) / 1e-3);
-        last = speed;
-    }
-    b.run(300);
-
-    // 6099h:01 and 609Ah bound the whole run (SV33-E 3.4.3(9)); a servo overshoots its ramp a little.
-    EXPECT_LE(most, fast * 1.1);
-    EXPECT_LE(steepest, acceleration * 1.3);
-    expect_rest(b);
-    if (c.ends == Ends::error) {
-        EXPECT_TRUE(b.out.status & (1u << 13));
-        EXPECT_FALSE(b.out.status & (1u << 12));
-        return;
-    }
-    ASSERT_TRUE(b.out.status & (1u << 12)) << "attained";
-    EXPECT_TRUE(b.out.status & (1u << 10));
-    EXPECT_FALSE(b.out.status & (1u << 13));
-    // The edge has the coordinate of 607Ch (60E6h = 0): the actual position tells where it was taken. One inner step is half a count
-    // at 4000 counts/s, five at 40000.
-    const double edge = b.axis.plant().position() - static_cast<double>(b.out.position) + static_cast<double>(home_offset);
-    EXPECT_NEAR(edge, where(c.ends), 8.0);
-}
-
-TEST_P(Homing, StopsWhenTheStartBitIsTakenBack) {
-    Bench b{at(GetParam().start)};
-    begin(b);
-    b.run(40);
-    b.command(0x000F, 300);
-    expect_rest(b);
-    EXPECT_FALSE(b.out.status & (1u << 12)) << "an aborted homing has found nothing";
-}
-
-INSTANTIATE_TEST_SUITE_P(Methods17To22, Homing,
-                         ::testing::Values(
-                             // 17: back to the negative limit switch, forward until it is left.
-                             HomingCase{17, -20000, false, Ends::negative_edge}, HomingCase{17, 2500, false, Ends::negative_edge},
-                             HomingCase{17, 20000, false, Ends::negative_edge}, HomingCase{17, -50500, true, Ends::negative_edge},
-                             HomingCase{17, 50500, false, Ends::negative_edge},
-                             // 18: its mirror.
-                             HomingCase{18, -20000, true, Ends::positive_edge}, HomingCase{18, 2500, true, Ends::positive_edge},
-                             HomingCase{18, 20000, true, Ends::positive_edge}, HomingCase{18, -50500, true, Ends::positive_edge},
-                             HomingCase{18, 50500, false, Ends::positive_edge},
-                             // 19: forward onto the home switch, back until it is left: its lower edge.
-                             HomingCase{19, -20000, true, Ends::home_low}, HomingCase{19, 2500, false, Ends::home_low},
-                             HomingCase{19, 20000, true, Ends::error}, HomingCase{19, -50500, true, Ends::home_low},
-                             HomingCase{19, 50500, true, Ends::error},
-                             // 20: forward until the home switch comes on: its lower edge.
-                             HomingCase{20, -20000, true, Ends::home_low}, HomingCase{20, 2500, false, Ends::home_low},
-                             HomingCase{20, 20000, true, Ends::error}, HomingCase{20, -50500, true, Ends::home_low},
-                             HomingCase{20, 50500, true, Ends::error},
-                             // 21: back onto the home switch, forward until it is left: its upper edge.
-                             HomingCase{21, -20000, false, Ends::error}, HomingCase{21, 2500, true, Ends::home_high},
-                             HomingCase{21, 20000, false, Ends::home_high}, HomingCase{21, -50500, false, Ends::error},
-                             HomingCase{21, 50500, false, Ends::home_high},
-                             // 22: back until the home switch comes on: its upper edge.
-                             HomingCase{22, -20000, false, Ends::error}, HomingCase{22, 2500, true, Ends::home_high},
-                             HomingCase{22, 20000, false, Ends::home_high}, HomingCase{22, -50500, false, Ends::error},
-                             HomingCase{22, 50500, false, Ends::home_high}));
-
-// SV33-E A.D35: "non-existent"; 35 and those with the index pulse are not simulated yet.
-TEST(HomingRun, AnUnknownMethodIsAHomingError) {
-    Bench b;
-    b.in.homing = {15, fast, slow, acceleration};
+/// On the table of axis_bench.hpp, in homing mode, about to start.
+Bench ready(std::int64_t method, Personality personality = {}, PlantConfig plant = table()) {
+    Bench b{plant, personality};
+    b.in.homing = {.method = method, .fast = fast, .slow = slow, .acceleration = acceleration};
     b.enable();
     b.in.mode = 6;
     b.run(3);
-    b.command(0x1F);
-    EXPECT_TRUE(b.out.status & (1u << 13));
-    EXPECT_FALSE(b.out.status & (1u << 12));
+    EXPECT_EQ(b.out.mode, 6);
+    return b;
+}
+
+void expect_rest(Bench& b) {
+    const double place = b.axis.plant().position();
+    b.run(300);
+    EXPECT_NEAR(b.axis.plant().position(), place, 5.0) << "a servo hunts by a few counts; it goes nowhere";
+}
+
+// CiA 402-2, SV33-E table 3-70: rising edge starts, falling edge ends. It slows down with 609Ah: from 40000 that takes 100 ms, 2000 counts.
+TEST(HomingRun, BreaksOffWithItsOwnRampWhenTheStartBitFalls) {
+    auto b = ready(18);
+    b.command(0x1F, 300);
+    const double from = b.axis.plant().position();
+    EXPECT_GT(b.axis.plant().velocity(), 0.9 * fast);
+    b.command(0x0F, 200);
+    EXPECT_NEAR(b.axis.plant().position() - from, fast * fast / (2 * acceleration), 150);
+    expect_rest(b);
+    EXPECT_FALSE(b.out.status & (attained | error));
+    EXPECT_TRUE(b.out.status & standing);
+}
+
+// CiA 402-2: interrupted. The bit that still stands is no new edge.
+TEST(HomingRun, HaltBreaksItOffAndNeedsANewEdge) {
+    auto b = ready(18);
+    b.command(0x1F, 300);
+    b.command(0x11F, 300);
+    expect_rest(b);
+    EXPECT_FALSE(b.out.status & (attained | error));
+    b.command(0x1F, 100);
+    expect_rest(b);
+    b.command(0x0F);
+    b.command(0x1F, 100);
+    EXPECT_GT(b.axis.plant().velocity(), 0) << "from a new edge on it runs";
+}
+
+TEST(HomingRun, ABitThatStoodBeforeTheModeIsNoStart) {
+    Bench b;
+    b.in.homing = {.method = 18, .fast = fast, .slow = slow, .acceleration = acceleration};
+    b.enable();
+    b.command(0x1F, 5);
+    b.in.mode = 6;
+    b.run(100);
+    EXPECT_EQ(b.axis.plant().velocity(), 0);
+}
+
+TEST(HomingRun, ASpeedOrAccelerationOfZeroIsAHomingError) {
+    for (int zero = 0; zero < 3; ++zero) {
+        auto b = ready(18);
+        (zero == 0 ? b.in.homing.fast : zero == 1 ? b.in.homing.slow : b.in.homing.acceleration) = 0;
+        b.command(0x1F, 50);
+        EXPECT_TRUE(b.out.status & error) << zero;
+        EXPECT_EQ(b.axis.plant().velocity(), 0) << zero;
+    }
+}
+
+// SV33-E 3.4.3(9) B): 60E6h = 0 gives home the coordinate 607Ch, 1 its former position plus 607Ch. The edge stands at 50000, where the
+// drive counts 50000 too (incremental, started at 0).
+TEST(HomingRun, TheOffsetIsHomeOrIsAddedAsIn60E6) {
+    for (const std::int64_t way : {0, 1}) {
+        auto b = ready(18);
+        b.in.home_offset = 1234;
+        b.in.home_position_method = way;
+        b.command(0x1F, 5000);
+        ASSERT_TRUE(b.out.status & attained);
+        const double edge = 50000 - (b.axis.plant().position() - static_cast<double>(b.out.position));
+        EXPECT_NEAR(edge, way == 0 ? 1234 : 50000 + 1234, 2.0);
+    }
+}
+
+// SV33-E 3.4.3(9) A), 5.5: P13.49 ends the search with A.425, which is a warning: the drive stays enabled.
+TEST(HomingRun, TheTimeLimitIsAWarning) {
+    Personality p;
+    p.homing_timeout_alarm = {.code = 0x0425, .detail = 0x0425, .warning = true};
+    auto b = ready(18, p);
+    b.in.homing.time_limit = 0.5;
+    b.command(0x1F, 499);
+    EXPECT_FALSE(b.out.status & error);
+    b.run(5);
+    EXPECT_TRUE(b.out.status & error);
+    EXPECT_TRUE(b.out.status & warning);
+    EXPECT_EQ(b.out.error_code, 0x0425);
+    EXPECT_EQ(b.state(), 0x27u) << "Operation enabled";
+    b.run(200);
+    expect_rest(b);
+    b.command(0x0F);
+    b.in.homing.time_limit = 0;
+    b.command(0x1F, 50);
+    EXPECT_FALSE(b.out.status & (error | warning)) << "a new start forgets it";
 }
 
 // A machine whose limit switch is broken: the axis runs into its stop and the drive's own following error ends it.
@@ -156,27 +119,26 @@ TEST(HomingRun, AHardStopInsteadOfTheSwitchTripsTheFollowingError) {
     plant.negative_stop = -50000;
     Personality p;
     p.following_error_limit = 5000;
-    Bench b{plant, p};
-    b.in.homing = {17, fast, slow, acceleration};
-    b.enable();
-    b.in.mode = 6;
-    b.run(3);
+    auto b = ready(17, p, plant);
     b.command(0x1F, 2000);
     EXPECT_EQ(b.out.error_code, 0x8611);
-    EXPECT_FALSE(b.out.status & (1u << 12));
+    EXPECT_FALSE(b.out.status & attained);
 }
 
-// SV33-E 3.4.3: while homing runs no other mode may be entered.
+// SV33-E 3.4.3(9): while homing runs no other mode may be entered; when it is over or broken off, it may.
 TEST(HomingRun, NoOtherModeIsEnteredWhileItRuns) {
-    Bench b;
-    b.in.homing = {18, fast, slow, acceleration};
-    b.enable();
-    b.in.mode = 6;
-    b.run(3);
+    auto b = ready(18);
     b.command(0x1F, 100);
     b.in.mode = 8;
     b.run(10);
     EXPECT_EQ(b.out.mode, 6);
+    b.in.mode = 6;
+    b.run(5000);
+    ASSERT_TRUE(b.out.status & attained);
+    b.in.mode = 8;
+    b.in.target_position = b.out.position;
+    b.run(3);
+    EXPECT_EQ(b.out.mode, 8);
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ TEST(Brake, AHomingStartBeforeItOpensIsLostToo) {
     p.brake_release = 250ms;
     p.brake_hold = 150ms;
     Bench b{table(), p};
-    b.in.homing = {18, 40000, 4000, 400000};
+    b.in.homing = {.method = 18, .fast = 40000, .slow = 4000, .acceleration = 400000};
     b.enable();
     b.in.mode = 6;
     b.run(3);

@@ -8,6 +8,7 @@ namespace taktwerk::axes::sim {
 namespace {
 
 constexpr ProbeSignal signal{100.5, 200};
+constexpr IndexPulses pulses{0, 1000};
 
 TouchProbe probe(std::uint8_t function) {
     TouchProbe made;
@@ -17,10 +18,10 @@ TouchProbe probe(std::uint8_t function) {
 
 TEST(TouchProbe, KeepsTheCountAtTheEdge) {
     auto p = probe(0x11);  // enable, rising
-    p.motion(90, 110, signal, 1000);
+    p.motion(90, 110, signal, pulses);
     EXPECT_EQ(p.status(), 0b011);
     EXPECT_EQ(p.rising(), 100);
-    p.motion(210, 150, signal, 1000);
+    p.motion(210, 150, signal, pulses);
     EXPECT_EQ(p.rising(), 100) << "the first only";
 }
 
@@ -33,13 +34,13 @@ TEST(TouchProbe, SignalsThatRepeatAreSeenAtEachRepetition) {
 
 TEST(TouchProbe, FromAboveTheRisingEdgeIsTheUpperEnd) {
     auto p = probe(0x11);
-    p.motion(210, 150, signal, 1000);
+    p.motion(210, 150, signal, pulses);
     EXPECT_EQ(p.rising(), 200);
 }
 
 TEST(TouchProbe, FallingEdgeAndBothInOneStep) {
     auto p = probe(0x31);
-    p.motion(90, 250, signal, 1000);
+    p.motion(90, 250, signal, pulses);
     EXPECT_EQ(p.status(), 0b111);
     EXPECT_EQ(p.rising(), 100);
     EXPECT_EQ(p.falling(), 200);
@@ -47,27 +48,27 @@ TEST(TouchProbe, FallingEdgeAndBothInOneStep) {
 
 TEST(TouchProbe, ContinuousKeepsTheNewest) {
     auto p = probe(0x13);
-    p.motion(90, 110, signal, 1000);
-    p.motion(110, 210, signal, 1000);
-    p.motion(210, 150, signal, 1000);
+    p.motion(90, 110, signal, pulses);
+    p.motion(110, 210, signal, pulses);
+    p.motion(210, 150, signal, pulses);
     EXPECT_EQ(p.rising(), 200);
 }
 
 TEST(TouchProbe, IndexPulseOncePerRevolution) {
     auto p = probe(0x15);
-    p.motion(-20, -10, signal, 1000);
+    p.motion(-20, -10, signal, pulses);
     EXPECT_EQ(p.status(), 1);
-    p.motion(-10, 10, signal, 1000);
+    p.motion(-10, 10, signal, pulses);
     EXPECT_EQ(p.status(), 3);
     EXPECT_EQ(p.rising(), 0);
 }
 
 TEST(TouchProbe, WithoutItsEnableBitItForgets) {
     auto p = probe(0x11);
-    p.motion(90, 110, signal, 1000);
+    p.motion(90, 110, signal, pulses);
     p.command(0x10);
     EXPECT_EQ(p.status(), 0);
-    p.motion(210, 150, signal, 1000);
+    p.motion(210, 150, signal, pulses);
     EXPECT_EQ(p.status(), 0);
 }
 

@@ -1,0 +1,51 @@
+// What the drive counts from: the place of an incremental encoder at power-on, or what an absolute one reads and homing has stored.
+
+#include "axes/sim/cia402_axis.hpp"
+
+namespace taktwerk::axes::sim {
+
+void Cia402Axis::read_encoder() noexcept { zero_ = plant_.position() - encoder_.reading(plant_.position()) + stored_shift_; }
+
+void Cia402Axis::wake_encoder() noexcept {
+    encoder_complaint_ = {};
+    if (!personality_.absolute_encoder) {
+        zero_ = plant_.position();
+        homed_ = false;
+        return;
+    }
+    if (battery_ == Battery::empty) {
+        encoder_.forget_turns(plant_.position());
+        homed_ = false;
+        encoder_complaint_ = personality_.reference_lost_alarm;
+    }
+    read_encoder();
+    raise_or_warn(encoder_complaint_);
+}
+
+void Cia402Axis::watch_encoder() noexcept {
+    if (!personality_.absolute_encoder || encoder_complaint_.code != 0 || personality_.turn_overflow_alarm.code == 0) return;
+    if (!encoder_.overflowed(plant_.position())) return;
+    homed_ = false;
+    encoder_complaint_ = personality_.turn_overflow_alarm;
+    raise_or_warn(encoder_complaint_);
+}
+
+bool Cia402Axis::battery_warns() const noexcept {
+    return personality_.absolute_encoder && battery_ == Battery::low && personality_.battery_low_alarm.code != 0;
+}
+
+void Cia402Axis::reset_encoder() noexcept {
+    if (energised()) return;
+    if (encoder_.overflowed(plant_.position()) && encoder_complaint_.code != 0) return;  // only fewer turns help
+    encoder_complaint_ = {};
+}
+
+void Cia402Axis::clear_turns() noexcept {
+    if (energised() || !personality_.absolute_encoder) return;
+    encoder_.forget_turns(plant_.position());
+    encoder_complaint_ = {};
+    homed_ = false;
+    read_encoder();
+}
+
+}  // namespace taktwerk::axes::sim
