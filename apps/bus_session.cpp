@@ -29,6 +29,8 @@ constexpr Duration refresh_period = 100ms;
 
 /// The tool's exit code for what went wrong.
 int code_of(const Error& error) {
+    if (error.code == "drive.not_taken" || error.code == "drive.cannot_store" || error.code == "drive.not_reset") return exit_refused;
+    if (error.code.rfind("drive.", 0) == 0) return exit_usage;
     if (error.code == "bus.no_such_slave" || error.code == "sdo.value" || error.code == "bus.not_confirmed") return exit_usage;
     if (error.code == "sdo.abort" || error.code == "bus.refused_state") return exit_refused;
     if (error.code == "capture.write") return exit_bad_file;

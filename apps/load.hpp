@@ -20,6 +20,9 @@ using LoadedFile = config::LoadedMachine;
 /// The same for whoever looks at the bus alone: programs need not be built.
 [[nodiscard]] config::LoadResult read_machine_without_programs(const std::string& file, bool simulate);
 
+/// Where drive files are looked up for this machine file, or without one (empty).
+[[nodiscard]] std::vector<std::string> drive_folders(const std::string& machine_file);
+
 /// Prints warnings, or every problem (then nothing is returned).
 [[nodiscard]] std::optional<LoadedFile> load(const std::string& file, bool simulate);
 [[nodiscard]] std::optional<LoadedFile> load_without_programs(const std::string& file, bool simulate);

@@ -43,6 +43,7 @@ int run(int argc, char** argv) {
     add_monitor(app, action);
     add_operate(app, action);
     add_bus(app, action);
+    add_drive(app, action);
     add_plot(app, action);
     add_sim(app, action);
     add_docs(app, action);

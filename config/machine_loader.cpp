@@ -27,16 +27,6 @@ std::string joined(const std::vector<std::string>& words) {
     return out.empty() ? "none" : out;
 }
 
-std::vector<std::string> drive_folders(const std::string& machine_file, const LoadOptions& options) {
-    auto folders = options.drive_dirs;
-    folders.push_back((fs::path(machine_file).parent_path() / ".." / "drives").lexically_normal().string());
-    for (const auto& data : options.data_dirs) folders.push_back((fs::path(data) / "drives").lexically_normal().string());
-#ifdef TAKTWERK_DATA_DIR
-    folders.push_back((fs::path(TAKTWERK_DATA_DIR) / "drives").string());
-#endif
-    return folders;
-}
-
 /// Puts names, profiles and terminals together.
 class Assembly {
 public:
@@ -369,6 +359,16 @@ LoadResult load(const std::string& path, Document document, const LoadOptions& o
 }
 
 }  // namespace
+
+std::vector<std::string> drive_folders(const std::string& machine_file, const LoadOptions& options) {
+    auto folders = options.drive_dirs;
+    folders.push_back((fs::path(machine_file).parent_path() / ".." / "drives").lexically_normal().string());
+    for (const auto& data : options.data_dirs) folders.push_back((fs::path(data) / "drives").lexically_normal().string());
+#ifdef TAKTWERK_DATA_DIR
+    folders.push_back((fs::path(TAKTWERK_DATA_DIR) / "drives").string());
+#endif
+    return folders;
+}
 
 LoadResult load_machine(const std::string& path, const LoadOptions& options) { return load(path, read_document(path), options); }
 

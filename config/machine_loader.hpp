@@ -35,6 +35,8 @@ struct LoadedMachine {
 using LoadResult = std::variant<LoadedMachine, std::vector<Error>>;
 
 [[nodiscard]] LoadResult load_machine(const std::string& path, const LoadOptions& options = {});
+/// Where the drive files of a machine are looked up, in this order.
+[[nodiscard]] std::vector<std::string> drive_folders(const std::string& machine_file, const LoadOptions& options);
 /// The same for a text that stands, or could stand, at `path`.
 [[nodiscard]] LoadResult load_machine_text(const std::string& path, std::string_view text, const LoadOptions& options = {});
 

@@ -1,0 +1,50 @@
+#pragma once
+// The sub-commands of `taktwerk drive`, by idea; what they share is in drive_access.hpp. Their texts are made by pure functions, so that
+// tests read them.
+
+#include <string>
+#include <vector>
+
+#include "apps/drive_access.hpp"
+#include "config/parameter_set.hpp"
+
+namespace taktwerk::apps {
+
+void add_drive_identify(CLI::App& drive, Action& action);
+void add_drive_params(CLI::App& drive, Action& action);
+void add_drive_values(CLI::App& drive, Action& action);  ///< get, set
+void add_drive_sets(CLI::App& drive, Action& action);    ///< save, restore, diff
+void add_drive_alarms(CLI::App& drive, Action& action);  ///< alarms, reset
+
+/// Where writes go. A drive that stores every write is told not to, unless its user wants it: an EEPROM takes some 100,000 writes.
+enum class Storing : std::uint8_t { volatile_only, asked };
+
+struct Change {
+    const axes::DriveParameter* parameter = nullptr;
+    std::int64_t from = 0, to = 0;
+};
+
+/// Writes what differs, reads each back, and stores at the end where that was asked. Says what it does on standard error; with JSON only
+/// on failure. Returns what was changed before an error, too.
+struct Written {
+    std::vector<Change> changes;
+    std::vector<std::string> notes;  ///< for the user: EEPROM, restarts
+    std::optional<Error> error;
+};
+[[nodiscard]] Written write_values(DriveAccess& drive, const std::vector<config::ParameterSet::Value>& values, Storing storing);
+
+/// A table of parameters; `values` empty or as many as parameters.
+[[nodiscard]] std::string params_text(const std::vector<const axes::DriveParameter*>& parameters,
+                                      const std::vector<std::optional<std::int64_t>>& values, Colours colours);
+/// "P05.13 (brake release)  250 ms -> 300 ms".
+[[nodiscard]] std::string changes_text(const std::vector<Change>& changes, Colours colours);
+[[nodiscard]] Json change_json(const Change& change);
+[[nodiscard]] Json parameter_json(const axes::DriveParameter& parameter);
+
+/// The row of the profile for what the drive shows; nothing: the code is unknown.
+[[nodiscard]] const axes::DriveAlarmText* find_alarm(const axes::DriveProfile& profile, std::uint16_t code,
+                                                     std::optional<std::uint32_t> detail);
+[[nodiscard]] std::string alarm_text(const std::string& subject, std::uint16_t code, std::optional<std::uint32_t> detail,
+                                     const axes::DriveAlarmText* alarm, Colours colours);
+
+}  // namespace taktwerk::apps

@@ -1,0 +1,140 @@
+// taktwerk drive alarms, reset: what the drive complains of, in its manual's words, and clearing it.
+
+#include <fmt/format.h>
+
+#include "apps/drive.hpp"
+#include "apps/exit_code.hpp"
+#include "axes/port/parameter_text.hpp"
+
+namespace taktwerk::apps {
+
+namespace {
+
+constexpr axes::ParameterAddress error_code{0x603F, 0};
+
+struct Present {
+    std::uint16_t code = 0;
+    std::optional<std::uint32_t> detail;
+    const axes::DriveAlarmText* alarm = nullptr;
+};
+
+std::uint64_t number(const std::vector<std::byte>& bytes) {
+    std::uint64_t out = 0;
+    for (std::size_t i = 0; i < bytes.size() && i < 8; ++i) out |= std::to_integer<std::uint64_t>(bytes[i]) << (8 * i);
+    return out;
+}
+
+Result<Present> read_alarm(DriveAccess& drive) {
+    const auto& profile = drive.profile();
+    const auto code = drive.read_bytes(error_code);
+    if (!code) return code.error();
+    Present out;
+    out.code = static_cast<std::uint16_t>(number(*code));
+    if (out.code != 0 && profile.alarm_detail_index != 0)
+        if (const auto detail = drive.read_bytes({profile.alarm_detail_index, profile.alarm_detail_sub}))
+            out.detail = static_cast<std::uint32_t>(number(*detail));
+    if (out.code != 0) out.alarm = find_alarm(profile, out.code, out.detail);
+    return out;
+}
+
+Json alarm_json(const DriveAccess& drive, const Present& present) {
+    Json out{{"drive", drive.subject()}, {"code", present.code}};
+    if (present.detail) out["detail"] = *present.detail;
+    if (const auto* alarm = present.alarm) {
+        out["panel"] = alarm->panel;
+        out["english"] = alarm->english;
+        out["chinese"] = alarm->chinese;
+        out["cause"] = alarm->cause;
+        out["remedy"] = alarm->remedy;
+        out["resettable"] = alarm->resettable;
+        out["warning"] = alarm->warning;
+    }
+    return out;
+}
+
+int alarms(const DriveOptions& options) {
+    return with_drive(options, [&](DriveAccess& drive) {
+        const auto present = read_alarm(drive);
+        if (!present) return fail(*options.bus, present.error());
+        if (options.bus->json) print_json(alarm_json(drive, *present));
+        else fmt::print("{}", alarm_text(drive.subject(), present->code, present->detail, present->alarm, colours_of_output()));
+        return static_cast<int>(exit_ok);
+    });
+}
+
+/// The whole list of a kind of drive.
+int list(const DriveOptions& options) {
+    const auto profile = profile_named(options, options.profile);
+    if (!profile) return fail(*options.bus, profile.error());
+    if (options.bus->json) {
+        auto out = Json::array();
+        for (const auto& alarm : (*profile)->alarms)
+            out.push_back(Json{{"code", alarm.code},
+                               {"detail", alarm.detail},
+                               {"panel", alarm.panel},
+                               {"english", alarm.english},
+                               {"chinese", alarm.chinese},
+                               {"cause", alarm.cause},
+                               {"remedy", alarm.remedy},
+                               {"resettable", alarm.resettable},
+                               {"warning", alarm.warning}});
+        print_json(out);
+        return exit_ok;
+    }
+    TextTable table{{{"panel"}, {"603Fh"}, {"name", TextTable::Column::Side::left, 44}, {"名称"}, {"cleared by"}}};
+    for (const auto& alarm : (*profile)->alarms)
+        table.add({Cell{alarm.panel, Tone::strong}, Cell{fmt::format("{:04X}h", alarm.code)}, Cell{alarm.english}, Cell{alarm.chinese},
+                   Cell{alarm.warning      ? "itself (warning)"
+                        : alarm.resettable ? "reset"
+                                           : "power cycle"}});
+    fmt::print("{}: {}\n\n{}", (*profile)->title, count_text((*profile)->alarms.size(), "alarm"), table.text(colours_of_output()));
+    return exit_ok;
+}
+
+}  // namespace
+
+const axes::DriveAlarmText* find_alarm(const axes::DriveProfile& profile, std::uint16_t code, std::optional<std::uint32_t> detail) {
+    const axes::DriveAlarmText* by_code = nullptr;
+    for (const auto& alarm : profile.alarms) {
+        if (alarm.code != code) continue;
+        if (alarm.detail != 0 && detail && alarm.detail == *detail) return &alarm;
+        if (!by_code && (alarm.detail == 0 || !detail)) by_code = &alarm;
+    }
+    return by_code;
+}
+
+std::string alarm_text(const std::string& subject, std::uint16_t code, std::optional<std::uint32_t> detail,
+                       const axes::DriveAlarmText* alarm, Colours colours) {
+    if (code == 0) return subject + ": " + toned("no alarm", Tone::good, colours) + "\n";
+    const auto number = fmt::format("603Fh = {:04X}h{}", code, detail ? fmt::format(", detail {:04X}h", *detail) : "");
+    if (!alarm)
+        return fmt::format("{}: {}\n  {}\n", subject, toned("unknown alarm", Tone::bad, colours),
+                           number + ": not in the drive's alarm list; see its manual");
+    auto out = fmt::format(
+        "{}: {}\n  {}\n", subject,
+        toned(fmt::format("{} {} {}", alarm->panel, alarm->english, alarm->chinese), alarm->warning ? Tone::warning : Tone::bad, colours),
+        number);
+    if (!alarm->cause.empty()) out += "  cause:  " + wrapped(alarm->cause, 10) + "\n";
+    if (!alarm->remedy.empty()) out += "  remedy: " + wrapped(alarm->remedy, 10) + "\n";
+    out += alarm->warning      ? "  a warning: it goes by itself\n"
+           : alarm->resettable ? "  a fault reset (MC_Reset, `taktwerk reset`) clears it when the cause is gone\n"
+                               : "  only switching the drive off and on clears it\n";
+    return out;
+}
+
+void add_drive_alarms(CLI::App& drive, Action& action) {
+    auto* sub = drive.add_subcommand("alarms", "the alarm that stands, in the manual's words; without a drive: all of --profile");
+    auto options = add_drive_options(*sub);
+    sub->add_option("DRIVE", options->drive, "position or name on the bus; none: the manual's list of --profile");
+    sub->add_option("--axis", options->axis, "of a drive with several axes, from 1")->check(CLI::Range(1, 8));
+    sub->callback([&action, options] {
+        action = [options] {
+            if (!options->drive.empty()) return alarms(*options);
+            if (!options->profile.empty()) return list(*options);
+            return fail(*options->bus, Error{"drive.value", "", "say which drive on the bus, or --profile NAME for the manual's list",
+                                             "`taktwerk drive identify` lists the drives"});
+        };
+    });
+}
+
+}  // namespace taktwerk::apps

@@ -1,0 +1,78 @@
+// taktwerk drive identify: which kind of drive each slave is, and what its file assumes.
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "apps/drive.hpp"
+#include "apps/exit_code.hpp"
+#include "ecat/bringup/slave_match.hpp"
+
+namespace taktwerk::apps {
+
+namespace {
+
+struct Identified {
+    std::string subject, found, device;
+    std::vector<std::string> fitting;
+};
+
+int show(const DriveOptions& options, const std::vector<Identified>& slaves) {
+    const auto profiles = known_profiles(options);
+    const auto profile_of = [&](const std::string& name) -> const axes::DriveProfile* {
+        for (const auto& profile : profiles)
+            if (profile->name == name) return profile.get();
+        return nullptr;
+    };
+    if (options.bus->json) {
+        auto out = Json::array();
+        for (const auto& slave : slaves) out.push_back(Json{{"slave", slave.subject}, {"says", slave.device}, {"profiles", slave.fitting}});
+        print_json(out);
+        return exit_ok;
+    }
+    const auto colours = colours_of_output();
+    for (const auto& slave : slaves) {
+        fmt::print("{}: {}{}\n", toned(slave.subject, Tone::strong, colours), slave.found,
+                   slave.device.empty() ? "" : fmt::format(", says '{}'", slave.device));
+        if (slave.fitting.empty()) fmt::print("  no drive file has this identity\n");
+        for (const auto& name : slave.fitting) {
+            const auto* profile = profile_of(name);
+            fmt::print("  {}: {}, {}\n", toned(name, Tone::good, colours), profile->title, profile->vendor);
+            if (slaves.size() > 1) continue;
+            if (!profile->assumed.empty()) fmt::print("  its file assumes, because the manual leaves it open:\n");
+            for (const auto& sentence : profile->assumed) fmt::print("    {}\n", wrapped(sentence, 4));
+        }
+    }
+    return exit_ok;
+}
+
+int identify(const DriveOptions& options) {
+    return with_bus(*options.bus, [&](BusSession& session) {
+        const Result<ecat::Survey> found = session.look();
+        if (!found) return fail(*options.bus, found.error());
+        std::vector<std::size_t> positions;
+        if (options.drive.empty()) {
+            for (std::size_t i = 0; i < found->slaves.size(); ++i) positions.push_back(i);
+        } else {
+            const auto position = find_slave(*found, options.drive);
+            if (!position) return fail(*options.bus, position.error());
+            positions.push_back(*position);
+        }
+        std::vector<Identified> slaves;
+        for (const auto position : positions) {
+            const auto& slave = found->slaves[position];
+            slaves.push_back({found->subject(position), ecat::found_text(slave.found), slave.device_name, profiles_of(options, slave)});
+        }
+        return show(options, slaves);
+    });
+}
+
+}  // namespace
+
+void add_drive_identify(CLI::App& drive, Action& action) {
+    auto* sub = drive.add_subcommand("identify", "which kind of drive each slave is");
+    auto options = add_drive_options(*sub);
+    sub->add_option("DRIVE", options->drive, "position or name on the bus; default: all");
+    sub->callback([&action, options] { action = [options] { return identify(*options); }; });
+}
+
+}  // namespace taktwerk::apps
