@@ -95,9 +95,9 @@ std::string range_text(const DriveParameter& parameter) {
     if (!parameter.minimum && !parameter.maximum) return {};
     DriveParameter bare = parameter;
     bare.unit.clear();
+    if (!bare.minimum && !bare.is_signed) bare.minimum = 0;
     const auto shown = [&](const std::optional<std::int64_t>& bound) { return bound ? value_text(bare, *bound) : std::string("..."); };
-    return fmt::format("{} .. {}{}{}", shown(parameter.minimum), shown(parameter.maximum), parameter.unit.empty() ? "" : " ",
-                       parameter.unit);
+    return fmt::format("{} .. {}{}{}", shown(bare.minimum), shown(bare.maximum), parameter.unit.empty() ? "" : " ", parameter.unit);
 }
 
 Result<std::int64_t> parse_value(const DriveParameter& parameter, std::string_view text) {

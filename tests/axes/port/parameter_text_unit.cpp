@@ -66,6 +66,9 @@ TEST(ParameterText, ValuesAreShownInTheirUnitWithTheDigitsOfOneStep) {
     EXPECT_EQ(value_text(home_offset(), -7), "-7");
     EXPECT_EQ(range_text(brake_release()), "0 .. 500 ms");
     EXPECT_EQ(range_text(home_offset()), "");
+    auto bounded = torque_limit();
+    bounded.maximum = 5000;
+    EXPECT_EQ(range_text(bounded), "0.0 .. 500.0 %") << "an unsigned value begins at 0";
     auto fine = torque_limit();
     fine.scale = 0.01;
     EXPECT_EQ(value_text(fine, 470), "4.70 %");

@@ -1,0 +1,189 @@
+// `taktwerk drive` as a commissioning engineer meets it, on the simulated drives of the demo machine.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "apps/drive.hpp"
+#include "apps/exit_code.hpp"
+#include "apps/taktwerk.hpp"
+
+namespace taktwerk::apps {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const std::string demo = std::string(TAKTWERK_SOURCE_DIR) + "/config/machines/demo.yaml";
+
+struct Outcome {
+    int code;
+    std::string out, err;
+    [[nodiscard]] Json json() const { return Json::parse(out); }
+};
+
+Outcome drive(std::vector<std::string> words) {
+    words.insert(words.begin(), {"taktwerk", "drive"});
+    std::vector<char*> argv;
+    for (auto& word : words) argv.push_back(word.data());
+    ::testing::internal::CaptureStdout();
+    ::testing::internal::CaptureStderr();
+    const int code = run(static_cast<int>(argv.size()), argv.data());
+    std::fflush(stdout);
+    return {code, ::testing::internal::GetCapturedStdout(), ::testing::internal::GetCapturedStderr()};
+}
+
+/// SV33-E 'x_drive' and 'y_drive', SE-808X 'z_drive', terminal 'io'; each call begins with drives as they left the factory.
+Outcome on_demo(std::vector<std::string> words) {
+    words.insert(words.end(), {"--machine", demo, "--simulate"});
+    return drive(std::move(words));
+}
+
+class DriveSets : public ::testing::Test {
+protected:
+    DriveSets() {
+        auto pattern = (std::filesystem::temp_directory_path() / "taktwerk-test-XXXXXX").string();
+        folder_ = ::mkdtemp(pattern.data());
+    }
+    ~DriveSets() override { std::filesystem::remove_all(folder_); }
+    [[nodiscard]] std::string path(const std::string& name) const { return folder_ + "/" + name; }
+    static std::string text_of(const std::string& path) {
+        std::ifstream in(path);
+        return {std::istreambuf_iterator<char>(in), {}};
+    }
+
+private:
+    std::string folder_;
+};
+
+TEST(DriveCommand, IdentifyNamesTheKindOfEachDriveByItsIdentity) {
+    const auto all = on_demo({"identify"});
+    EXPECT_EQ(all.code, exit_ok) << all.err;
+    EXPECT_THAT(all.out,
+                AllOf(HasSubstr("'x_drive'"), HasSubstr("sv33-e: "), HasSubstr("se-808x: "), HasSubstr("no drive file has this identity")));
+    EXPECT_THAT(all.out, HasSubstr("vendor 00000AB6h product 00001000h"));  // SE-808X manual 4.1
+
+    const auto one = on_demo({"identify", "z_drive", "--json"}).json();
+    ASSERT_EQ(one.size(), 1u);
+    EXPECT_EQ(one[0]["profiles"], Json::array({"se-808x"}));
+}
+
+TEST(DriveCommand, ParametersAreReadByTheManualsNamesInTheManualsUnits) {
+    const auto brake = on_demo({"get", "x_drive", "P05.13", "2005h:0E"});
+    EXPECT_EQ(brake.code, exit_ok) << brake.err;
+    EXPECT_THAT(brake.out, HasSubstr("= 250 ms\n"));  // SV33-E 7.2: P05.13 has 250 ms
+    const auto json = on_demo({"get", "z_drive", "2000h:01", "--json"}).json();
+    EXPECT_EQ(json[0]["shown"], "1.0 A");  // SE-808X 4.4: 10 times 0.1 A
+}
+
+TEST(DriveCommand, ParamsListsTheManualWithAndWithoutADrive) {
+    const auto paper = drive({"params", "--profile", "sv33-e", "--filter", "P05", "--machine", demo});
+    EXPECT_EQ(paper.code, exit_ok) << paper.err;
+    EXPECT_THAT(paper.out, AllOf(HasSubstr("P05.13"), HasSubstr("0 .. 500 ms"), Not(HasSubstr("P04."))));
+    const auto real = on_demo({"params", "x_drive", "--filter", "P05.1", "--json"}).json();
+    ASSERT_FALSE(real.empty());
+    for (const auto& row : real) EXPECT_EQ(row["parameter"].get<std::string>().rfind("P05.1", 0), 0u);
+    EXPECT_EQ(drive({"params", "--profile", "sv33-e", "--filter", "P99", "--machine", demo}).code, exit_usage);
+    EXPECT_THAT(drive({"params", "--profile", "sv33", "--machine", demo}).err, HasSubstr("there is: "));
+    EXPECT_EQ(drive({"params"}).code, exit_usage);
+}
+
+TEST(DriveCommand, ASetValueIsReadBackAndTheEepromIsSpared) {
+    const auto set = on_demo({"set", "x_drive", "P05.13=300 ms"});
+    EXPECT_EQ(set.code, exit_ok) << set.err;
+    EXPECT_THAT(set.out, AllOf(HasSubstr("250 ms"), HasSubstr("300 ms"), HasSubstr("do not wear the EEPROM"), HasSubstr("--store")));
+
+    const auto stored = on_demo({"set", "x_drive", "P05.13=300", "--store"});
+    EXPECT_EQ(stored.code, exit_ok) << stored.err;
+    EXPECT_THAT(stored.out, AllOf(HasSubstr("stored in the EEPROM"), Not(HasSubstr("do not wear"))));
+
+    const auto same = on_demo({"set", "x_drive", "P05.13=250"});
+    EXPECT_EQ(same.code, exit_ok);
+    EXPECT_EQ(same.out, "nothing to change\n") << "not even the switch is written";
+}
+
+TEST(DriveCommand, WhatCannotBeMeantIsRefusedBeforeAnythingIsWritten) {
+    const auto refused = [](const std::string& assignment, const std::string& why) {
+        const auto set = on_demo({"set", "x_drive", "P05.14=200", assignment});
+        EXPECT_EQ(set.code, exit_usage) << assignment;
+        EXPECT_THAT(set.err, HasSubstr(why)) << assignment;
+        EXPECT_THAT(set.out, Not(HasSubstr("P05.14"))) << "nothing is half done";
+    };
+    refused("P05.13=501", "give 0 .. 500 ms");
+    refused("P05.13=1 s", "is not in ms");
+    refused("P05.13", "has no '='");
+    refused("P05.99=1", "no such parameter");
+    refused("603Fh=1", "read-only");
+    EXPECT_THAT(on_demo({"get", "w_drive", "P05.13"}).err, HasSubstr("there is no such slave"));
+    EXPECT_THAT(on_demo({"get", "io", "P05.13"}).err, HasSubstr("--profile"));
+    EXPECT_THAT(on_demo({"get", "x_drive", "P05.13", "--axis", "2"}).err, HasSubstr("sv33-e has 1 axis"));
+    EXPECT_EQ(drive({"get", "0", "P05.13"}).code, exit_usage) << "no bus was named";
+}
+
+TEST_F(DriveSets, AWholeSetGoesToAFileAndBack) {
+    const auto file = path("x.yaml");
+    EXPECT_EQ(on_demo({"save", "x_drive", file, "--all"}).code, exit_ok);
+    auto text = text_of(file);
+    EXPECT_THAT(text, AllOf(HasSubstr("drive: sv33-e"), HasSubstr("P05.13: 250 ms"), HasSubstr("6084h: ")));
+    EXPECT_THAT(text, AllOf(Not(HasSubstr("607Ah")), Not(HasSubstr("6040h")))) << "a target is no setting";
+    EXPECT_THAT(on_demo({"diff", "x_drive", file}).out, HasSubstr("as " + file));
+
+    text.replace(text.find("P05.13: 250 ms"), 14, "P05.13: 275 ms");
+    std::ofstream(file) << text;
+    const auto diff = on_demo({"diff", "x_drive", file, "--json"}).json();
+    EXPECT_FALSE(diff["same"]);
+    ASSERT_EQ(diff["differences"].size(), 1u);
+    EXPECT_EQ(diff["differences"][0],
+              (Json{{"parameter", "P05.13"}, {"name", diff["differences"][0]["name"]}, {"from", "275 ms"}, {"to", "250 ms"}}));
+
+    const auto restored = on_demo({"restore", "x_drive", file, "--json"}).json();
+    EXPECT_TRUE(restored["ok"]);
+    ASSERT_EQ(restored["changes"].size(), 1u) << "only what differs is written";
+    EXPECT_EQ(restored["changes"][0]["to"], "275 ms");
+}
+
+TEST_F(DriveSets, TheSetOfAnotherDriveOrABrokenFileChangesNothing) {
+    std::ofstream(path("z.yaml")) << "version: 1\ndrive: se-808x\nparameters: { '2000h:01': 2.0 A }\n";
+    const auto other = on_demo({"restore", "x_drive", path("z.yaml")});
+    EXPECT_EQ(other.code, exit_bad_file);
+    EXPECT_THAT(other.err, HasSubstr("these are parameters of se-808x, the drive is sv33-e"));
+    std::ofstream(path("bad.yaml")) << "version: 1\ndrive: sv33-e\nparameters: { P05.13: 900 ms, P05.77: 1 }\n";
+    const auto bad = on_demo({"restore", "x_drive", path("bad.yaml")});
+    EXPECT_EQ(bad.code, exit_bad_file);
+    EXPECT_THAT(bad.err, AllOf(HasSubstr("bad.yaml:3:"), HasSubstr("900 ms"), HasSubstr("P05.77")));
+    EXPECT_EQ(on_demo({"restore", "x_drive", path("none.yaml")}).code, exit_bad_file);
+    EXPECT_NE(on_demo({"save", "x_drive", path("no/such/folder.yaml")}).code, exit_ok);
+}
+
+TEST(DriveCommand, TheAlarmListReadsInBothLanguages) {
+    const auto alarms = drive({"alarms", "--profile", "se-808x", "--machine", demo});
+    EXPECT_EQ(alarms.code, exit_ok) << alarms.err;
+    EXPECT_THAT(alarms.out, AllOf(HasSubstr("8611h"), HasSubstr("位置超差错误")));  // SE-808X 5.1
+    EXPECT_THAT(on_demo({"alarms", "x_drive"}).out, HasSubstr("no alarm"));
+}
+
+TEST(DriveCommand, AnAlarmSaysWhatItIsWhyItCameAndWhatClearsIt) {
+    axes::DriveProfile profile;
+    axes::DriveAlarmText stuck, phase, warm;
+    stuck.code = 0x7500, stuck.detail = 0x11, stuck.panel = "E.011", stuck.english = "start", stuck.resettable = false;
+    phase.code = 0x7500, phase.detail = 0x12, phase.panel = "E.012", phase.english = "version", phase.remedy = "new firmware";
+    warm.code = 0x4310, warm.panel = "A.1", warm.english = "warm", warm.warning = true;
+    profile.alarms = {stuck, phase, warm};
+    EXPECT_EQ(find_alarm(profile, 0x7500, 0x12)->panel, "E.012");
+    EXPECT_EQ(find_alarm(profile, 0x7500, std::nullopt)->panel, "E.011") << "without the detail the first of its code";
+    EXPECT_EQ(find_alarm(profile, 0x7500, 0x99), nullptr) << "a detail that the manual does not list is no other alarm";
+    EXPECT_EQ(find_alarm(profile, 0x4310, 5)->panel, "A.1");
+    const auto shown = [&](std::uint16_t code, std::optional<std::uint32_t> detail) {
+        return alarm_text("x", code, detail, find_alarm(profile, code, detail), Colours::off);
+    };
+    EXPECT_THAT(shown(0x7500, 0x11), AllOf(HasSubstr("E.011 start"), HasSubstr("off and on")));
+    EXPECT_THAT(shown(0x7500, 0x12), AllOf(HasSubstr("new firmware"), HasSubstr("MC_Reset")));
+    EXPECT_THAT(shown(0x4310, std::nullopt), HasSubstr("goes by itself"));
+    EXPECT_THAT(shown(0x1234, std::nullopt), HasSubstr("not in the drive's alarm list"));
+}
+
+}  // namespace
+}  // namespace taktwerk::apps
