@@ -39,6 +39,7 @@ public:
 
     /// "eth1", "simulated bus of 'demo'".
     [[nodiscard]] const std::string& where() const noexcept { return where_; }
+    [[nodiscard]] Instant now() const { return clock_->now(); }
     [[nodiscard]] bool simulated() const noexcept { return world_ != nullptr; }
     /// What the machine file says; empty without one.
     [[nodiscard]] const ecat::BusConfig& configured() const noexcept { return configured_; }

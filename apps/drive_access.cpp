@@ -7,6 +7,7 @@
 
 #include "apps/exit_code.hpp"
 #include "apps/load.hpp"
+#include "axes/drives/cia402/cia402_drive.hpp"
 #include "axes/port/parameter_text.hpp"
 #include "config/drive_library.hpp"
 #include "ecat/bringup/slave_match.hpp"
@@ -97,7 +98,7 @@ std::vector<std::string> profiles_of(const DriveOptions& options, const ecat::Su
 }
 
 std::string DriveAccess::subject() const {
-    return profile_->axes > 1 ? fmt::format("{}, axis {} of {}", slave_.subject, axis_, profile_->axes) : slave_.subject;
+    return profile_->axes > 1 ? fmt::format("{}, axis {} of {}", slave_->subject, axis_, profile_->axes) : slave_->subject;
 }
 
 std::uint16_t DriveAccess::index_of(const axes::ParameterAddress& address) const noexcept {
@@ -106,7 +107,7 @@ std::uint16_t DriveAccess::index_of(const axes::ParameterAddress& address) const
 }
 
 Result<std::vector<std::byte>> DriveAccess::read_bytes(const axes::ParameterAddress& address) {
-    return session_.probe().run(upload(session_.bus(), slave_, index_of(address), address.sub));
+    return session_.probe().run(upload(session_.bus(), *slave_, index_of(address), address.sub));
 }
 
 Result<std::int64_t> DriveAccess::read(const axes::DriveParameter& parameter) {
@@ -117,7 +118,40 @@ Result<std::int64_t> DriveAccess::read(const axes::DriveParameter& parameter) {
 
 Result<void> DriveAccess::write(const axes::DriveParameter& parameter, std::int64_t raw) {
     return session_.probe().run(
-        download(session_.bus(), slave_, index_of(parameter.address), parameter.address.sub, axes::to_bytes(parameter, raw)));
+        download(session_.bus(), *slave_, index_of(parameter.address), parameter.address.sub, axes::to_bytes(parameter, raw)));
+}
+
+Result<bool> DriveAccess::reset_fault(Duration patience) {
+    const auto& configured = session_.configured();
+    const auto position = slave_->found.position;
+    if (configured.slaves.empty())
+        return Error{"drive.not_reset", subject(), "a reset needs process data, and no machine file says which", "give --machine FILE"};
+    if (auto up = session_.bring_up(survey_); !up) return up.error();
+    const auto slave = slave_at(session_, survey_, position);
+    if (!slave) return slave.error();
+    slave_ = *slave;
+    const Duration cycle = configured.cycle;
+    axes::cia402::Cia402Drive port(session_.probe().master(), slave_->index, static_cast<std::uint8_t>(axis_ - 1), profile_, cycle);
+    if (auto resolved = port.resolve(); !resolved) return resolved.error();
+    axes::DriveCommand command;  // power off, at rest
+    const auto round = [&](bool reset) -> Result<axes::DriveFeedback> {
+        if (auto ran = session_.probe().run_for(cycle); !ran) return ran.error();
+        const auto feedback = port.decode(session_.now());
+        command.position = feedback.position;
+        command.reset_fault = reset;
+        port.encode(command, session_.now());
+        return feedback;
+    };
+    for (Duration spent{}; spent < patience; spent += cycle) {
+        const auto feedback = round(true);
+        if (!feedback) return feedback.error();
+        if (feedback->online && feedback->power != axes::PowerState::unknown && !feedback->fault) {
+            for (int i = 0; i < 10; ++i) (void)round(false);  // bit 7 back to 0
+            return true;
+        }
+    }
+    (void)round(false);
+    return false;
 }
 
 void DriveAccess::wait(Duration time) { (void)session_.probe().run_for(time); }  // interrupted: the next access says so
@@ -139,7 +173,7 @@ int with_drive(const DriveOptions& options, const std::function<int(DriveAccess&
         session.adopt(*found);
         const Result<ecat::BusSlave*> slave = slave_at(session, *found, *position);
         if (!slave) return refuse(slave.error());
-        DriveAccess access(session, **slave, *profile, options.axis);
+        DriveAccess access(session, *found, **slave, *profile, options.axis);
         return work(access);
     });
 }

@@ -24,8 +24,9 @@ void add_drive_choice(CLI::App& sub, DriveOptions& options);
 
 class DriveAccess {
 public:
-    DriveAccess(BusSession& session, ecat::BusSlave& slave, std::shared_ptr<const axes::DriveProfile> profile, int axis)
-        : session_(session), slave_(slave), profile_(std::move(profile)), axis_(axis) {}
+    DriveAccess(BusSession& session, const ecat::Survey& survey, ecat::BusSlave& slave, std::shared_ptr<const axes::DriveProfile> profile,
+                int axis)
+        : session_(session), survey_(survey), slave_(&slave), profile_(std::move(profile)), axis_(axis) {}
 
     [[nodiscard]] const axes::DriveProfile& profile() const noexcept { return *profile_; }
     /// "slave 0 'x_drive' (sv33-e)", with the axis where there are several.
@@ -35,13 +36,17 @@ public:
     [[nodiscard]] Result<std::vector<std::byte>> read_bytes(const axes::ParameterAddress& address);
     [[nodiscard]] Result<std::int64_t> read(const axes::DriveParameter& parameter);
     [[nodiscard]] Result<void> write(const axes::DriveParameter& parameter, std::int64_t raw);
+    /// Brings the bus up as the machine file has it, asks the drive by its control word to forget its fault (disabled, targets at rest),
+    /// and ends when it has or after `patience`. True: no fault any more.
+    [[nodiscard]] Result<bool> reset_fault(Duration patience);
     /// Bus time, so that drives keep up with what they store.
     void wait(Duration time);
 
 private:
     [[nodiscard]] std::uint16_t index_of(const axes::ParameterAddress& address) const noexcept;
     BusSession& session_;
-    ecat::BusSlave& slave_;
+    const ecat::Survey& survey_;
+    ecat::BusSlave* slave_;
     std::shared_ptr<const axes::DriveProfile> profile_;
     int axis_;
 };

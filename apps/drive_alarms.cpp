@@ -11,6 +11,7 @@ namespace taktwerk::apps {
 namespace {
 
 constexpr axes::ParameterAddress error_code{0x603F, 0};
+constexpr Duration reset_patience = std::chrono::seconds{3};  // several attempts of the port
 
 struct Present {
     std::uint16_t code = 0;
@@ -58,6 +59,32 @@ int alarms(const DriveOptions& options) {
         if (!present) return fail(*options.bus, present.error());
         if (options.bus->json) print_json(alarm_json(drive, *present));
         else fmt::print("{}", alarm_text(drive.subject(), present->code, present->detail, present->alarm, colours_of_output()));
+        return static_cast<int>(exit_ok);
+    });
+}
+
+int reset(const DriveOptions& options) {
+    return with_drive(options, [&](DriveAccess& drive) {
+        const auto before = read_alarm(drive);
+        if (!before) return fail(*options.bus, before.error());
+        if (before->code == 0) {
+            if (options.bus->json) print_json(Json{{"ok", true}, {"drive", drive.subject()}, {"cleared", false}});
+            else fmt::print("{}: no alarm, nothing to reset\n", drive.subject());
+            return static_cast<int>(exit_ok);
+        }
+        const auto* alarm = before->alarm;
+        const auto name = alarm ? fmt::format("{} {}", alarm->panel, alarm->english) : fmt::format("603Fh = {:04X}h", before->code);
+        if (alarm && !alarm->resettable)
+            return fail(*options.bus, Error{"drive.not_reset", drive.subject(),
+                                            fmt::format("only switching the drive off and on clears {}", name), alarm->remedy});
+        const auto done = drive.reset_fault(reset_patience);
+        if (!done) return fail(*options.bus, done.error());
+        if (!*done)
+            return fail(*options.bus,
+                        Error{"drive.not_reset", drive.subject(), fmt::format("{} stands again or still: its cause is not gone", name),
+                              alarm ? alarm->remedy : "see the drive's manual"});
+        if (options.bus->json) print_json(Json{{"ok", true}, {"drive", drive.subject()}, {"cleared", true}, {"alarm", name}});
+        else fmt::print("{}: {} cleared\n", drive.subject(), name);
         return static_cast<int>(exit_ok);
     });
 }
@@ -135,6 +162,12 @@ void add_drive_alarms(CLI::App& drive, Action& action) {
                                              "`taktwerk drive identify` lists the drives"});
         };
     });
+
+    auto* resetting = drive.add_subcommand("reset", "clear the drive's fault: brings the bus to OP, with everything disabled");
+    auto reset_options = add_drive_options(*resetting);
+    add_drive_choice(*resetting, *reset_options);
+    resetting->add_flag("--yes", reset_options->bus->yes, "do not ask before outputs are driven");
+    resetting->callback([&action, reset_options] { action = [reset_options] { return reset(*reset_options); }; });
 }
 
 }  // namespace taktwerk::apps

@@ -165,6 +165,41 @@ TEST(DriveCommand, TheAlarmListReadsInBothLanguages) {
     EXPECT_THAT(on_demo({"alarms", "x_drive"}).out, HasSubstr("no alarm"));
 }
 
+/// minimal.yaml with a fault at once: SV33-E, which needs enable dropped first (5.1).
+class DriveWithFault : public DriveSets {
+protected:
+    Outcome command(std::uint16_t code, std::vector<std::string> words) {
+        namespace fs = std::filesystem;
+        const fs::path source = std::string(TAKTWERK_SOURCE_DIR) + "/config";
+        fs::create_directories(path("machines"));
+        if (!fs::exists(path("drives"))) fs::create_directory_symlink(source / "drives", path("drives"));
+        std::ofstream(path("machines/x.yaml")) << text_of(source / "machines/minimal.yaml")
+                                               << "simulation: { events: [ { at: 1 ms, drive_fault: x, code: " << code << " } ] }\n";
+        words.insert(words.end(), {"--machine", path("machines/x.yaml"), "--simulate"});
+        return drive(std::move(words));
+    }
+};
+
+TEST_F(DriveWithFault, TheAlarmThatStandsIsReadInTheManualsWords) {
+    const auto alarms = command(0x3130, {"alarms", "x_drive"});  // SV33-E 5.2: E.217, input phase lost
+    EXPECT_EQ(alarms.code, exit_ok) << alarms.err;
+    EXPECT_THAT(alarms.out,
+                AllOf(HasSubstr("E.217"), HasSubstr("输入缺相故障"), HasSubstr("cause:"), HasSubstr("remedy:"), HasSubstr("MC_Reset")));
+}
+
+TEST_F(DriveWithFault, AResetGoesThroughTheControlWord) {
+    const auto reset = command(0x3130, {"reset", "x_drive"});
+    EXPECT_EQ(reset.code, exit_ok) << reset.err;
+    EXPECT_THAT(reset.out, AllOf(HasSubstr("E.217"), HasSubstr("cleared")));
+    EXPECT_THAT(on_demo({"reset", "x_drive"}).out, HasSubstr("nothing to reset"));
+}
+
+TEST_F(DriveWithFault, WhatOnlyAPowerCycleClearsIsNotEvenTried) {
+    const auto reset = command(0x5530, {"reset", "x_drive"});  // SV33-E 5.2: E.017, parameter storage
+    EXPECT_EQ(reset.code, exit_refused);
+    EXPECT_THAT(reset.err, HasSubstr("off and on"));
+}
+
 TEST(DriveCommand, AnAlarmSaysWhatItIsWhyItCameAndWhatClearsIt) {
     axes::DriveProfile profile;
     axes::DriveAlarmText stuck, phase, warm;
