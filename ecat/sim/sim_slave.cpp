@@ -104,6 +104,7 @@ void SimSlave::fire(Instant now) noexcept {
     }
     if (coe_ && coe_->next_event() <= now) {
         settle(now);
+        if (!al_.exchanging()) model_->exchange(now);  // an SDO sees the present in PREOP, too
         coe_->step(al_.state(), now);
     }
     handle_events(now);
