@@ -47,15 +47,20 @@ std::variant<LoadedDrive, std::vector<Error>> load_drive(const std::string& path
     Reader reader(path);
     reader.errors() = std::move(document.errors);
     DriveFile file;
-    if (document.root.kind != Node::Kind::null) read_table(reader, document.root, drive_table(), file);
+    const bool serial = document.root.find("carried_by") != nullptr;
+    if (document.root.kind != Node::Kind::null) read_table(reader, document.root, serial ? serial_drive_table() : drive_table(), file);
     const auto beside = [&](const std::string& name) { return (std::filesystem::path(path).parent_path() / name).string(); };
     if (!file.object_file.empty()) load_objects(beside(file.object_file), file, reader.errors());
     const auto startup = resolve_startup(reader, path, file.startup, file.device);
     if (!file.alarm_file.empty()) load_alarms(beside(file.alarm_file), file.profile, reader.errors());
     if (!reader.errors().empty()) return std::move(reader.errors());
 
-    file.device.name = file.profile.name;
     LoadedDrive drive;
+    if (serial) {
+        drive.profile = std::make_shared<const axes::DriveProfile>(std::move(file.profile));
+        return drive;
+    }
+    file.device.name = file.profile.name;
     drive.rx = chosen(file.rx, file.device.rx_pdos);
     drive.tx = chosen(file.tx, file.device.tx_pdos);
     drive.startup = startup;

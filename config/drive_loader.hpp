@@ -13,7 +13,7 @@
 namespace taktwerk::config {
 
 struct LoadedDrive {
-    std::shared_ptr<const ecat::DeviceDescription> device;
+    std::shared_ptr<const ecat::DeviceDescription> device;  ///< nullptr: on a serial line
     std::shared_ptr<const axes::DriveProfile> profile;
     ecat::PdoSelection rx, tx;              ///< the runtime's own mapping
     std::vector<ecat::StartupSdo> startup;  ///< before those of the machine

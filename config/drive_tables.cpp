@@ -276,11 +276,11 @@ Codec<std::int64_t> version_number() {
     return c;
 }
 
-Table<DriveFile> drive_table() {
+namespace {
+
+/// Who it is: the first lines of every drive file.
+void add_identity_fields(std::vector<Field<DriveFile>>& f) {
     using F = DriveFile;
-    const auto device = [](F& f) -> DeviceDescription& { return f.device; };
-    Table<F> table{"drive file", "What one drive type is (for master and simulator) and what it means to an axis.", {}, {}, {}};
-    auto& f = table.fields;
     f.push_back(version_field(&F::version));
     f.push_back(required(field_at<F>(
         "name", [](F & d) -> auto& { return d.profile.name; }, name(), "as machines name it: `profile: sv33-e`")));
@@ -288,12 +288,11 @@ Table<DriveFile> drive_table() {
         "vendor", [](F & d) -> auto& { return d.profile.vendor; }, text(), "for people")));
     f.push_back(required(field_at<F>(
         "title", [](F & d) -> auto& { return d.profile.title; }, text(), "for people")));
-    include_fields(f, device, Table<DeviceDescription>{{}, {}, device_fields(), {}, {}});
-    f.push_back(required(field("objects", &F::objects, list(section(object_table())),
-                               "of the dictionary: all that is mapped or that the runtime writes; the others may stand in `object_file`")));
-    f.push_back(field("object_file", &F::object_file, text(), "file beside this one with the other objects, where they are many"));
-    f.push_back(required(field_at<F>(
-        "mapping", [](F& d) -> F& { return d; }, section(mapping_table()), "what the runtime maps")));
+}
+
+/// What it means to an axis and to people, whatever carries it.
+void add_profile_fields(std::vector<Field<DriveFile>>& f) {
+    using F = DriveFile;
     f.push_back(required(field("motion", &F::profile, section(motion_table()), "what it means to an axis")));
     f.push_back(field_at<F>(
         "quirks", [](F & d) -> auto& { return d.profile.quirks; },
@@ -308,8 +307,6 @@ Table<DriveFile> drive_table() {
                             {"homing_limit_is_fault", Quirk::homing_limit_is_fault},
                             {"homing_19_starts_negative", Quirk::homing_19_starts_negative}})),
         "deviations from CiA 402, by name (axes/port/drive_profile.hpp)"));
-    f.push_back(
-        field("startup", &F::startup, list(section(startup_table())), "SDOs written on every bring-up, before those of the machine"));
     f.push_back(field_at<F>(
         "alarms", [](F & d) -> auto& { return d.profile.alarms; }, list(section(alarm_row_table())), "the drive's alarms"));
     f.push_back(field("alarm_file", &F::alarm_file, text(), "file beside this one with the alarms, where they are many"));
@@ -331,6 +328,25 @@ Table<DriveFile> drive_table() {
     f.push_back(field_at<F>(
         "assumed", [](F & d) -> auto& { return d.profile.assumed; }, list(text()),
         "what the manual leaves open and this file took, in words"));
+}
+
+}  // namespace
+
+Table<DriveFile> drive_table() {
+    using F = DriveFile;
+    const auto device = [](F& f) -> DeviceDescription& { return f.device; };
+    Table<F> table{"drive file", "What one drive type is (for master and simulator) and what it means to an axis.", {}, {}, {}};
+    auto& f = table.fields;
+    add_identity_fields(f);
+    include_fields(f, device, Table<DeviceDescription>{{}, {}, device_fields(), {}, {}});
+    f.push_back(required(field("objects", &F::objects, list(section(object_table())),
+                               "of the dictionary: all that is mapped or that the runtime writes; the others may stand in `object_file`")));
+    f.push_back(field("object_file", &F::object_file, text(), "file beside this one with the other objects, where they are many"));
+    f.push_back(required(field_at<F>(
+        "mapping", [](F& d) -> F& { return d; }, section(mapping_table()), "what the runtime maps")));
+    f.push_back(
+        field("startup", &F::startup, list(section(startup_table())), "SDOs written on every bring-up, before those of the machine"));
+    add_profile_fields(f);
     table.after = [](Reader& reader, const Node&, F& file) {
         add_objects(file, file.objects);
         const PdoResolver resolver(reader, file.device);
@@ -351,6 +367,24 @@ Table<DriveFile> drive_table() {
         check_rules(resolver, file.rx, file.device.rx_pdos, file.device.rx_rules, "mapping.rx");
         check_rules(resolver, file.tx, file.device.tx_pdos, file.device.tx_rules, "mapping.tx");
     };
+    return table;
+}
+
+Table<DriveFile> serial_drive_table() {
+    using F = DriveFile;
+    Table<F> table{"serial drive file",
+                   "A drive type on a serial line: it has parameters and alarms, but no dictionary and no process data.",
+                   {},
+                   {},
+                   {}};
+    auto& f = table.fields;
+    add_identity_fields(f);
+    f.push_back(required(field("carried_by", &F::carrier, choice<SerialCarrier>({{"xp200_modbus", SerialCarrier::xp200_modbus}}),
+                               "how it is reached: Modbus RTU as the XP200 speaks it")));
+    f.push_back(field("objects", &F::objects, list(section(object_table())), "its parameters, each by its `register`"));
+    f.push_back(field("object_file", &F::object_file, text(), "file beside this one with the parameters, where they are many"));
+    add_profile_fields(f);
+    table.after = [](Reader&, const Node&, F& file) { add_objects(file, file.objects); };
     return table;
 }
 

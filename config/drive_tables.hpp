@@ -17,7 +17,11 @@ struct PdoChoice {
     std::vector<ecat::PdoEntry> objects;
 };
 
+/// What speaks to a drive on a serial line.
+enum class SerialCarrier : std::uint8_t { none, xp200_modbus };
+
 struct DriveFile {
+    SerialCarrier carrier = SerialCarrier::none;
     std::int64_t version = 0;
     ecat::DeviceDescription device;
     axes::DriveProfile profile;
@@ -44,6 +48,8 @@ template <class T>
 Field<T> version_field(std::int64_t T::*member);
 
 [[nodiscard]] Table<DriveFile> drive_table();
+/// For files with `carried_by`.
+[[nodiscard]] Table<DriveFile> serial_drive_table();
 [[nodiscard]] Table<AlarmFile> alarm_table();
 [[nodiscard]] Table<ObjectFile> object_file_table();
 /// Gives the rows to the dictionary and to the list of parameters.

@@ -189,6 +189,7 @@ std::string reference_page() {
         "print them, `2005h:0B` with the sub-index in hexadecimal, or `0x2005:11` with it in decimal. YAML anchors and aliases work.\n\n";
     page.section(*machine_table().info(), "", 2);
     page.section(*drive_table().info(), "", 2);
+    page.section(*serial_drive_table().info(), "", 2);
     page.section(*alarm_table().info(), "", 2);
     while (page.text_.size() > 1 && page.text_[page.text_.size() - 2] == '\n') page.text_.pop_back();
     return page.text_;
