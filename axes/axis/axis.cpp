@@ -15,8 +15,23 @@ std::uint32_t stale_cycles(const AxisConfig& config, const DriveCapabilities& dr
     return static_cast<std::uint32_t>(config.stale_limit * polls);
 }
 
+/// The mode it runs in for every motion. A drive that takes no set-point each cycle makes its own ramps.
+DriveMode own_mode(const AxisConfig& config, const DriveCapabilities& drive) {
+    if (config.control.mode == ControlMode::position) return DriveMode::cyclic_position;
+    return drive.setpoints == SetpointClass::low_dynamics ? DriveMode::profile_velocity : DriveMode::cyclic_velocity;
+}
+
 /// A tenth of the cycle rate: see TorqueControl.
 double torque_bandwidth(Duration cycle) { return cycle > Duration::zero() ? 0.1 / to_seconds(cycle) : 0; }
+
+/// The history is as long as the dead time of a bus. For a slow line it keeps one set-point in several cycles.
+bool remembers(const DriveCapabilities& drive, Instant now, Duration cycle) {
+    if (drive.setpoints == SetpointClass::cyclic) return true;
+    constexpr int kept = 12;  // set-points for a worst latency, of SetpointHistory::depth
+    const Duration spacing = std::max<Duration>((drive.command_latency + drive.feedback_period) / kept, cycle);
+    const auto at = now.time_since_epoch();
+    return at / spacing != (at - cycle) / spacing;
+}
 
 }  // namespace
 
@@ -28,7 +43,7 @@ Axis::Axis(AxisConfig config, DrivePort& port, Duration cycle, std::uint16_t ind
       endless_(std::isinf(config_.limits.position_min) && std::isinf(config_.limits.position_max)),
       units_(config_.gearing, config_.modulo),
       index_(index),
-      own_mode_(config_.control.mode == ControlMode::velocity ? DriveMode::cyclic_velocity : DriveMode::cyclic_position),
+      own_mode_(own_mode(config_, port.capabilities())),
       former_mode_(own_mode_),
       torque_(config_.control.inertia(), torque_bandwidth(cycle)),
       compensation_(config_.compensation),
@@ -119,10 +134,13 @@ bool Axis::power_wanted() const noexcept {
     using Phase = PowerSequence::Phase;
     if (config_.disabled || config_.encoder) return false;
     const bool drive_on = power_.phase() == Phase::on || power_.phase() == Phase::settling;
+    // A slow line stops the motor later than the set-point.
+    const bool still_slows_down = port_.capabilities().setpoints == SetpointClass::low_dynamics && online() && !drive_stands();
     switch (state_) {
         case AxisState::Disabled: return power_wish_ && !power_dropping_ && emergency_ == EmergencyStop::none;
         case AxisState::ErrorStop:
-            return drive_on && emergency_ != EmergencyStop::power_off_now && (moves() || (power_wish_ && !off_after_error_));
+            return drive_on && emergency_ != EmergencyStop::power_off_now &&
+                   (moves() || still_slows_down || (power_wish_ && !off_after_error_));
         default: return true;  // these states end in Disabled before power goes
     }
 }
@@ -189,7 +207,7 @@ void Axis::encode(Instant now) noexcept {
     port_.encode(command_, now);
 
     if (power_.follows_actual() || drive_homing_.busy() || mode_phase_ != ModePhase::steady) history_.clear();
-    else history_.record(port_.setpoint_effective(now), command_.position);
+    else if (remembers(port_.capabilities(), now, cycle_)) history_.record(port_.setpoint_effective(now), command_.position);
 }
 
 void Axis::publish() noexcept {

@@ -268,7 +268,14 @@ void Axis::fill_targets() noexcept {
     command_.position = seeded_ ? units_.counts(set.position + compensation_.offset()) : feedback_.position;
     command_.velocity = control.feed_forward * set.velocity * counts;
     command_.torque = sense * control.torque_feed_forward * control.inertia() * set.acceleration;
-    if (own_mode_ == DriveMode::cyclic_velocity) {
+    if (port_.capabilities().setpoints == SetpointClass::low_dynamics) {
+        // Told to stop, the drive ramps by itself: one word on the line ends the motion, whatever becomes of the line then.
+        command_.halt = goal_.kind == Goal::Kind::stop;
+        const double deceleration = command_.halt ? goal_.limits.deceleration : config_.limits.deceleration;
+        command_.acceleration = config_.limits.acceleration * std::abs(counts);
+        command_.deceleration = deceleration * std::abs(counts);
+    }
+    if (own_mode_ == DriveMode::cyclic_velocity || own_mode_ == DriveMode::profile_velocity) {
         const bool closed = mode_phase_ == ModePhase::steady && online() && !power_.follows_actual();
         const double limit = control.output_limit > 0 ? control.output_limit : 1.2 * config_.limits.velocity;
         const double velocity = mode_phase_ == ModePhase::leaving

@@ -49,6 +49,10 @@ void Axis::plan(Instant now, Duration period) noexcept {
         setpoint_.advance(period);
     }
     guard(before, period);
+    // A drive that was told to stop holds no place of ours: where it comes to rest is where the axis is.
+    if (port_.capabilities().setpoints == SetpointClass::low_dynamics && goal_.kind == Goal::Kind::stop && !goal_pending_ &&
+        setpoint_.finished() && online() && drive_stands() && feedback_.commands_acknowledged)
+        setpoint_.place(actual_local());
     complete();
     complete_phasing();
     if (queue_.beside(SideSlot::superimposed) != 0) complete_superimposed();

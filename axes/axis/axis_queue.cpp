@@ -33,6 +33,12 @@ void Axis::complete() noexcept {
 
 bool Axis::complete_active() noexcept {
     const auto kind = queue_.active().command.kind;
+    if (port_.capabilities().setpoints == SetpointClass::low_dynamics && online()) {  // the motor follows late: it has to be there
+        const bool stops = goal_.kind == Goal::Kind::stop || (goal_.kind == Goal::Kind::velocity && goal_.value == 0);
+        const bool arrives = goal_.kind == Goal::Kind::position && ends_at_position(kind) && queue_.waiting() == 0;
+        if ((stops || arrives) && !(drive_stands() && feedback_.commands_acknowledged)) return false;
+        if (arrives && std::abs(setpoint_.end().position - actual_local()) > config_.windows.in_position) return false;
+    }
     if (state_ == AxisState::Stopping) {
         if (goal_.kind != Goal::Kind::stop) return false;
         setpoint_.go_to_end();
@@ -125,8 +131,7 @@ double Axis::velocity_at_junction(const MotionState& from, const MotionLimits& l
         } else if (ends_at_position(command.kind) || moves_continuously(command.kind)) {
             const bool absolute = command.kind == CommandKind::move_absolute || command.kind == CommandKind::move_continuous_absolute;
             // Its turn on a modulo axis is the one that it would take from a stop, as Buffered.
-            const double target = absolute ? repetition_of(command, place, backwards) - superimposed
-                                           : place.position + command.position;
+            const double target = absolute ? repetition_of(command, place, backwards) - superimposed : place.position + command.position;
             const double sense = target - place.position;
             if (!permitted(sense) || (software_limits_hold() && refuse_place(units_.to_program(target)) != ErrorId::none)) break;
             move.way = sense;

@@ -110,6 +110,11 @@ ErrorId Axis::refuse_target(const AxisCommand& command, bool starts_now) const n
 
 ErrorId Axis::refuse(const AxisCommand& command) noexcept {
     if (config_.encoder) return ErrorId::not_supported;  // nothing there that moves
+    // A set-point for each cycle does not get through a slow line.
+    const bool each_cycle = couples(command.kind) || command.kind == CommandKind::external ||
+                            command.kind == CommandKind::position_profile || command.kind == CommandKind::velocity_profile ||
+                            command.kind == CommandKind::acceleration_profile;
+    if (each_cycle && port_.capabilities().setpoints == SetpointClass::low_dynamics) return ErrorId::not_supported;
     if (const auto error = check_numbers(command); error != ErrorId::none) return error;
     if (const auto error = refuse_state(command); error != ErrorId::none) return error;
     if (waits(command) && waits_for_ever()) return ErrorId::buffer_mode_not_supported;

@@ -1,0 +1,51 @@
+#pragma once
+// What crosses between the cycle and the schedule of the line, each way as the newest value (core/latest_value.hpp). Plain data.
+
+#include <cstdint>
+
+#include "axes/port/drive_port.hpp"
+#include "core/time.hpp"
+
+namespace taktwerk::axes::xp200 {
+
+/// Cycle to line: what the drive shall do. In the drive's own units; `sequence` grows with every change.
+struct Wish {
+    PowerRequest power = PowerRequest::off;
+    bool reset = false;
+    bool halt = false;  ///< ramp to rest, whatever `speed` says
+    bool torque_mode = false;
+    std::int16_t speed = 0;               ///< r/min
+    std::int16_t torque = 0;              ///< % of rated
+    std::int16_t speed_limit = 0;         ///< r/min, torque mode; 0 = leave
+    std::int16_t up_ms = 0, down_ms = 0;  ///< ms for 1000 r/min; 0 = leave
+    std::uint32_t sequence = 0;
+
+    [[nodiscard]] bool asks_the_same(const Wish& other) const noexcept {
+        return power == other.power && reset == other.reset && halt == other.halt && torque_mode == other.torque_mode &&
+               speed == other.speed && torque == other.torque && speed_limit == other.speed_limit && up_ms == other.up_ms &&
+               down_ms == other.down_ms;
+    }
+};
+
+/// Line to cycle: what the drive said last.
+struct Sample {
+    std::uint32_t number = 0;  ///< grows with each new position
+    bool online = false;
+    bool saving = false;  ///< it stores parameters and is silent meanwhile
+    Instant heard{};      ///< newest answer
+    Instant sampled{};    ///< when the position was taken
+    std::int64_t position = 0;
+    double velocity = 0;  ///< counts/s
+    double torque = 0;    ///< fraction of rated
+    std::uint16_t alarm = 0;
+    bool running = false;  ///< RUN: energised
+    bool torque_mode = false;
+    bool setup_refused = false;
+    bool home = false, negative_limit = false, positive_limit = false;
+    std::uint16_t inputs = 0;        ///< conducting terminals, bit 0 = DI1
+    std::uint16_t outputs = 0;       ///< conducting terminals, bit 0 = DO1
+    std::uint16_t epoch = 0;         ///< grows when the position's zero may be another
+    std::uint32_t acknowledged = 0;  ///< all of the wish with this sequence is done
+};
+
+}  // namespace taktwerk::axes::xp200
