@@ -30,8 +30,12 @@ enum class AxisAlarm : AlarmId {
     master_lost = 0x3012,
     moved_while_off = 0x3013,
     retained_gearing_differs = 0x3014,
+    drive_homing_failed = 0x3015,
+    drive_homing_timeout = 0x3016,
+    drive_homing_refused = 0x3017,
+    reference_lost = 0x3018,
 };
-inline constexpr std::size_t axis_alarm_count = 20;
+inline constexpr std::size_t axis_alarm_count = 24;
 
 [[nodiscard]] constexpr AlarmId id(AxisAlarm alarm) noexcept { return static_cast<AlarmId>(alarm); }
 
@@ -136,6 +140,26 @@ inline constexpr std::array<AlarmInfo, axis_alarm_count> axis_alarms{{
      "The retained position belongs to another gearing: the axis is not homed", "保存的位置属于另一套传动比:轴未回零",
      "The gearing of the axis was changed in the machine file since it was homed last",
      "Home the axis",
+     ResetRule::acknowledge, Reaction::warn, ""},
+    {id(AxisAlarm::drive_homing_failed), "drive_homing_failed",
+     "The drive ended its homing method {a} with an error (drive code 0x{b:x})", "驱动器回零方式 {a} 出错结束(驱动器代码 0x{b:x})",
+     "It met a limit switch before its home switch, does not know the method, or one of its homing speeds is zero",
+     "Check that the search starts towards the switch, the wiring and polarity of the switches at the drive, and homing.method; then reset",
+     ResetRule::reset, Reaction::stop_axis, "The drive's communication watchdog stops it"},
+    {id(AxisAlarm::drive_homing_timeout), "drive_homing_timeout",
+     "The drive did not end its homing method {a} within {b} s", "驱动器回零方式 {a} 在 {b} 秒内未完成",
+     "Switch or index pulse do not come, the homing speeds are too low, or the drive never took the start",
+     "Watch the drive's inputs while it searches; raise homing.search_velocity or homing.timeout; then reset and home again",
+     ResetRule::reset, Reaction::stop_axis, "The drive's communication watchdog stops it"},
+    {id(AxisAlarm::drive_homing_refused), "drive_homing_refused",
+     "The drive did not take homing method {a} or its speeds: homing was not started", "驱动器不接受回零方式 {a} 或其速度:未启动回零",
+     "It refused 6098h, 6099h or 609Ah by SDO, or reads them back otherwise",
+     "Choose a method that the drive's manual lists, and speeds within its range; then reset",
+     ResetRule::reset, Reaction::stop_axis, "The drive's communication watchdog stops it"},
+    {id(AxisAlarm::reference_lost), "reference_lost",
+     "The drive lost its reference (drive code 0x{a:x}): the axis is not homed", "驱动器丢失参考点(驱动器代码 0x{a:x}):轴未回零",
+     "Its encoder lost or exceeded its turns, its battery was empty, or the turns were cleared on request",
+     "Remove the cause named by the drive's alarm text; home the axis",
      ResetRule::acknowledge, Reaction::warn, ""},
 }};
 // clang-format on

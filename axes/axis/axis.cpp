@@ -90,6 +90,8 @@ void Axis::update(Instant now) noexcept {
 void Axis::read_feedback() noexcept {
     feedback_ = port_.decode(now_);
     if (!feedback_.online && !absolute_encoder()) homed_ = false;  // it may come back with another zero
+    if (feedback_.reference_epoch != reference_epoch_) lose_reference();
+    reference_epoch_ = feedback_.reference_epoch;
     if (!feedback_.fresh) {
         if (stale_ < 0xFFFFFFFF) ++stale_;
         return;
@@ -120,6 +122,10 @@ void Axis::watch_drive() noexcept {
 
     if (feedback_.warning) fail(AxisAlarm::drive_warning, feedback_.error_code);
     else alarms_.clear(AxisAlarm::drive_warning);
+    if (feedback_.fault || feedback_.warning) {
+        const auto kind = port_.alarm().kind;
+        if (kind == DriveAlarmKind::reference_lost || kind == DriveAlarmKind::turn_overflow) lose_reference();
+    }
 
     if (drive_faulted()) {
         fail(AxisAlarm::drive_fault, feedback_.error_code, port_.alarm().detail);
@@ -195,6 +201,7 @@ void Axis::encode(Instant now) noexcept {
     command_.power = power_.request();
     command_.reset_fault = resetting_ && drive_faulted();
     command_.start_homing = drive_homing_.start_level();
+    command_.homing = drive_homing_setup();
     const auto& set = setpoint_.state();
     if (!compensation_.none()) compensation_.step(units_.machine(set.position), set.velocity, homed_, cycle_);
     fill_targets();

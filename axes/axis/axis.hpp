@@ -371,6 +371,8 @@ private:
     void set_coordinate(std::int64_t at, double coordinate) noexcept;
     void end_homing(std::int64_t reference) noexcept;
     void abort_homing() noexcept;
+    [[nodiscard]] DriveHomingSetup drive_homing_setup() const noexcept;
+    void lose_reference() noexcept;
     void search_home_switch() noexcept;
     void run_home_search() noexcept;
     [[nodiscard]] MotionLimits homing_dynamics() const noexcept;
@@ -414,7 +416,7 @@ private:
     bool seeded_ = false;      // an actual position has arrived
     std::uint32_t stale_ = 0;  // cycles since the last one
     std::int64_t actual_counts_ = 0;
-    std::uint16_t position_epoch_ = 0;
+    std::uint16_t position_epoch_ = 0, reference_epoch_ = 0;
     bool negative_switch_ = false, positive_switch_ = false;
 
     // motion

@@ -86,6 +86,7 @@ void Axis::step_homing() noexcept {
     watch_passive_homing();
     if (drive_homing_.busy()) {
         if (power_.follows_actual()) drive_homing_.cancel();
+        if (feedback_.homing_setup_refused && state_ == AxisState::Homing) fail(AxisAlarm::drive_homing_refused, config_.homing.method);
         switch (drive_homing_.step(feedback_, drive_stands(), now_)) {
             case DriveHoming::Result::attained: {
                 // The drive's own zero is the reference. Its raw position may have wrapped on the way: zero is the nearest multiple.
@@ -95,9 +96,11 @@ void Axis::step_homing() noexcept {
                 break;
             }
             case DriveHoming::Result::failed:
-                fail(AxisAlarm::homing_failed, static_cast<double>(DriveHoming::Phase::searching), feedback_.error_code);
+                if (!feedback_.homing_setup_refused) fail(AxisAlarm::drive_homing_failed, config_.homing.method, feedback_.error_code);
                 break;
-            case DriveHoming::Result::timed_out: fail(AxisAlarm::homing_timeout, to_seconds(config_.homing.timeout)); break;
+            case DriveHoming::Result::timed_out:
+                fail(AxisAlarm::drive_homing_timeout, config_.homing.method, to_seconds(config_.homing.timeout));
+                break;
             case DriveHoming::Result::aborted:
             case DriveHoming::Result::none: break;
         }
@@ -106,6 +109,22 @@ void Axis::step_homing() noexcept {
     if (queue_.active().command.kind == CommandKind::homing_step) follow_homing_step();
     else if (step_run_.busy()) run_home_search();
     else search_home_switch();
+}
+
+/// What the port makes sure of before it starts the drive's homing. Nothing: the start-up list has it.
+DriveHomingSetup Axis::drive_homing_setup() const noexcept {
+    if (!drive_homing_.busy() || !port_.capabilities().homing_per_run) return {};
+    const double scale = std::abs(units_.counts_per_unit());
+    const auto& homing = config_.homing;
+    return {homing.method, homing.search_velocity * scale, homing.latch_velocity * scale, homing.acceleration * scale};
+}
+
+/// What homing gave is gone, and so is what was kept of it.
+void Axis::lose_reference() noexcept {
+    if (!homed_ && !retained_.homed) return;
+    homed_ = false;
+    retained_ = {};
+    fail(AxisAlarm::reference_lost, feedback_.error_code);
 }
 
 void Axis::search_home_switch() noexcept {

@@ -40,6 +40,8 @@ void AlarmReader::note(bool present, std::uint16_t code, bool warning) noexcept 
 void AlarmReader::look_up() noexcept {
     alarm_.entry = -1;
     alarm_.resettable = true;
+    alarm_.kind = DriveAlarmKind::other;
+    const bool pending = request_ != 0 && !alarm_.detail_known;
     bool any_resettable = false;
     for (std::size_t i = 0; i < profile_.alarms.size(); ++i) {
         const auto& row = profile_.alarms[i];
@@ -54,6 +56,8 @@ void AlarmReader::look_up() noexcept {
             alarm_.kind = row.kind;
         } else {
             alarm_.resettable = any_resettable;
+            // Alarms that share a code mean different things: which one it is, is known with the detail only.
+            if (pending && row.kind != alarm_.kind) alarm_.kind = DriveAlarmKind::other;
         }
         if (exact) break;
     }

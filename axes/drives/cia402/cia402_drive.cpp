@@ -39,6 +39,10 @@ Cia402Drive::Cia402Drive(ecat::Master& bus, std::size_t slave, std::uint8_t axis
     c.enable_delay = profile_->enable_delay;
     c.mode_change_delay = profile_->mode_change_delay;
     c.mode_change_at_standstill = profile_->mode_change_at_standstill;
+    if (profile_->clear_turns.index != 0 || profile_->clear_turns_control != 0)
+        c.services = static_cast<std::uint8_t>(c.services | 1u << static_cast<unsigned>(DriveService::clear_multi_turn));
+    if (profile_->has(Quirk::probe_toggle_bits))
+        for (auto& probe : probes_) probe.use_toggle_bits();
     c.reports_following = !profile_->has(Quirk::csp_bits_12_13_reserved);
 }
 
@@ -111,6 +115,7 @@ Result<void> Cia402Drive::resolve() {
     capabilities_.digital_inputs = find_input(in_.digital, 0x60FD, 0, false);
     feedback_.has_inputs = capabilities_.digital_inputs;
     find_probes();
+    find_homing_setup();
     drop_modes_without_target();
     collect_starting_values();
     return {};
@@ -128,6 +133,31 @@ void Cia402Drive::find_probes() {
         capabilities_.probe_edges =
             static_cast<std::uint8_t>(capabilities_.probe_edges | ((rising ? 1u : 0u) | (falling ? 2u : 0u)) << (2 * probe));
     }
+}
+
+/// Settings can be written per run where the drive has all four objects and none of them is overwritten by each frame.
+void Cia402Drive::find_homing_setup() {
+    static constexpr std::pair<std::uint16_t, std::uint8_t> wanted[HomingSetup::count] = {
+        {0x6098, 0}, {0x6099, 1}, {0x6099, 2}, {0x609A, 0}};
+    capabilities_.homing_per_run = false;
+    const auto& slave = bus_.slave(slave_);
+    if (!capabilities_.drive_homing || !slave.device) return;
+    std::array<HomingSetup::Object, HomingSetup::count> objects;
+    HomingSetup::Values at_start{};
+    for (std::size_t i = 0; i < HomingSetup::count; ++i) {
+        const auto [base, sub] = wanted[i];
+        const auto index = object(base);
+        if (bus_.maps_output(slave_, index, sub)) return;
+        const auto& entries = slave.device->objects;
+        const auto entry =
+            std::find_if(entries.begin(), entries.end(), [&, s = sub](const auto& e) { return e.index == index && e.sub == s; });
+        if (entry == entries.end()) return;
+        objects[i] = {index, sub, static_cast<std::uint8_t>(ecat::bit_size(entry->type) / 8), entry->access != ecat::Access::wo};
+        for (const auto& sdo : slave.startup)
+            if (sdo.index == index && sdo.sub == sub) at_start[i] = sdo.value;
+    }
+    homing_setup_.configure(objects, at_start);
+    capabilities_.homing_per_run = true;
 }
 
 void Cia402Drive::drop_modes_without_target() noexcept {
@@ -159,7 +189,10 @@ void Cia402Drive::collect_starting_values() {
 
 DriveAlarm Cia402Drive::alarm() const noexcept { return alarm_.alarm(); }
 
-void Cia402Drive::step(Instant) { alarm_.step(bus_, slave_); }
+void Cia402Drive::step(Instant) {
+    alarm_.step(bus_, slave_);
+    if (capabilities_.homing_per_run) homing_setup_.step(bus_, slave_);
+}
 
 ServiceTicket Cia402Drive::read_parameter(ParameterAddress address) { return bus_.upload(slave_, object(address.index), address.sub); }
 
@@ -169,7 +202,30 @@ ServiceTicket Cia402Drive::write_parameter(ParameterAddress address, std::vector
     return bus_.download(slave_, object(address.index), address.sub, value);
 }
 
+ServiceTicket Cia402Drive::start_service(DriveService service) {
+    if (service != DriveService::clear_multi_turn || !capabilities_.has(service) || !turns_.permitted()) return 0;
+    const auto address = profile_->clear_turns;
+    if (address.index == 0) {
+        turns_.begin(true);
+        return TurnClearing::by_control_word;
+    }
+    std::size_t bytes = 2;
+    if (const auto& device = bus_.slave(slave_).device)
+        for (const auto& entry : device->objects)
+            if (entry.index == object(address.index) && entry.sub == address.sub) bytes = ecat::bit_size(entry.type) / 8;
+    std::vector<std::byte> value;
+    for (std::size_t i = 0; i < bytes; ++i)
+        value.push_back(static_cast<std::byte>(static_cast<std::uint64_t>(profile_->clear_turns_value) >> (8 * i) & 0xFFu));
+    const auto ticket = write_parameter(address, std::move(value));
+    if (ticket != 0) turns_.begin(false);
+    return ticket;
+}
+
 std::optional<Result<ServiceAnswer>> Cia402Drive::service_answer(ServiceTicket ticket) {
+    if (ticket == TurnClearing::by_control_word) {
+        if (turns_.pulsing()) return std::nullopt;
+        return Result<ServiceAnswer>{ServiceAnswer{}};
+    }
     auto answer = bus_.poll(ticket);
     if (!answer) return std::nullopt;
     if (!answer->ok()) return Result<ServiceAnswer>{answer->error()};

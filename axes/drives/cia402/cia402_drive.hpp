@@ -12,8 +12,10 @@
 #include <vector>
 
 #include "axes/drives/cia402/alarm_reader.hpp"
+#include "axes/drives/cia402/homing_setup.hpp"
 #include "axes/drives/cia402/mapped_output.hpp"
 #include "axes/drives/cia402/probe_latch.hpp"
+#include "axes/drives/cia402/turn_clearing.hpp"
 #include "axes/port/drive_port.hpp"
 #include "axes/port/drive_profile.hpp"
 #include "core/process_image.hpp"
@@ -42,6 +44,7 @@ public:
     void step(Instant now) override;
     [[nodiscard]] ServiceTicket read_parameter(ParameterAddress address) override;
     [[nodiscard]] ServiceTicket write_parameter(ParameterAddress address, std::vector<std::byte> value) override;
+    [[nodiscard]] ServiceTicket start_service(DriveService service) override;
     [[nodiscard]] std::optional<Result<ServiceAnswer>> service_answer(ServiceTicket ticket) override;
 
 private:
@@ -59,6 +62,7 @@ private:
     [[nodiscard]] bool find_output(MappedOutput& output, std::uint16_t index, std::uint8_t sub, bool is_signed) const;
     [[nodiscard]] bool find_input(Signal& signal, std::uint16_t index, std::uint8_t sub, bool is_signed) const;
     void find_probes();
+    void find_homing_setup();
     void drop_modes_without_target() noexcept;
     void collect_starting_values();
     void decode_motion() noexcept;
@@ -97,6 +101,8 @@ private:
     std::optional<Instant> homing_since_;  // bit 4 was set; attained bits of an earlier homing are ignored
     bool homing_cleared_ = false;
     std::array<ProbeLatch, 2> probes_{};
+    HomingSetup homing_setup_;
+    TurnClearing turns_;
     AlarmReader alarm_;
 };
 

@@ -29,7 +29,13 @@ const DriveFeedback& Cia402Drive::decode(Instant now) noexcept {
     feedback_.fresh = health.fresh;
     feedback_.age = health.age;
     feedback_.online = health.al_state == ecat::AlState::op && !health.al_error;
+    if (turns_.begun()) {
+        ++feedback_.reference_epoch;
+        ++feedback_.position_epoch;
+    }
     if (!feedback_.online) {
+        homing_setup_.forget();
+        turns_.note(PowerState::unknown);
         was_online_ = false;
         position_at_ = {};
     }
@@ -40,6 +46,7 @@ const DriveFeedback& Cia402Drive::decode(Instant now) noexcept {
     const auto status = static_cast<std::uint16_t>(read_signal(image, in_.status));
     feedback_.status_word = status;
     feedback_.power = power_state(status, fault_quirk_);
+    if (feedback_.online) turns_.note(feedback_.power);
     feedback_.fault = (status & bit_fault) != 0;
     feedback_.warning = (status & bit_warning) != 0;
     feedback_.main_power = (status & bit_voltage) != 0;

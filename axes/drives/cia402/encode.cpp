@@ -77,7 +77,12 @@ void Cia402Drive::encode(const DriveCommand& command, Instant now) noexcept {
     }
     const auto mode = mode_to_send(command.mode, now);
     const bool mode_confirmed = feedback_.mode == command.mode && mode == command.mode;
-    const auto word = control_word(command, mode_confirmed);
+    if (command.mode != DriveMode::homing) homing_setup_.release();
+    const bool set_up = command.mode != DriveMode::homing || homing_setup_.ready(command.homing);
+    feedback_.homing_setup_refused = homing_setup_.refused();
+    auto word = control_word(command, mode_confirmed);
+    if (!set_up) word = static_cast<std::uint16_t>(word & ~homing_start);
+    if (turns_.bit(now)) word = static_cast<std::uint16_t>(word | profile_->clear_turns_control);
     const bool homing_runs = (word & homing_start) != 0 && command.mode == DriveMode::homing;
     if (!homing_runs) {
         homing_since_.reset();

@@ -23,7 +23,7 @@ std::vector<ecat::StartupSdo> homing_startup(const AxisConfig& axis, const Drive
         return sdo;
     };
     using ecat::DataType;
-    return {
+    std::vector<ecat::StartupSdo> list{
         // 6098h is write-only on some drives (SE-808X 3.2.7): never read back.
         entry(0x6098, 0, DataType::I8, axis.homing.method, false),
         entry(0x6099, 1, DataType::U32, counts(axis.homing.search_velocity)),
@@ -31,6 +31,13 @@ std::vector<ecat::StartupSdo> homing_startup(const AxisConfig& axis, const Drive
         entry(0x609A, 0, DataType::U32, counts(axis.homing.acceleration)),
         entry(0x607C, 0, DataType::I32, 0),
     };
+    // Left at 1, the reference would keep its old coordinate (SV33-E table 3-75).
+    const auto& known = profile.parameters;
+    if (std::any_of(known.begin(), known.end(), [](const auto& p) { return p.address.index == 0x60E6; })) {
+        list.push_back(entry(0x60E6, 0, DataType::U8, 0));
+        list.back().if_changed = true;
+    }
+    return list;
 }
 
 }  // namespace taktwerk::axes::cia402

@@ -13,6 +13,9 @@ namespace taktwerk::axes::cia402 {
 
 class ProbeLatch {
 public:
+    /// Bits 6 and 7 of the status change with each latch of the continuous mode (SV-DA200 3.8.3).
+    void use_toggle_bits() noexcept { toggles_ = true; }
+
     /// Bits 0..7 of 60B8h for this cycle.
     [[nodiscard]] std::uint8_t function(const ProbeCommand& wanted) noexcept {
         const auto setting = setting_of(wanted);
@@ -45,8 +48,10 @@ public:
             return false;
         }
         const bool latched = (status & (rising_ ? 2u : 4u)) != 0;
-        // In continuous mode the bit stays: the next latch shows by its position (SV33-E has no toggle bits).
-        const bool another = latched && (!out.latched || raw != raw_);
+        // In continuous mode the bit stays: the next latch shows by its toggle bit where the drive has one, else by its position alone.
+        const bool toggle = toggles_ && (status & (rising_ ? 64u : 128u)) != 0;
+        const bool another = latched && (!out.latched || raw != raw_ || toggle != toggle_);
+        toggle_ = toggle;
         out.latched = latched;
         raw_ = raw;
         if (another) ++out.count;
@@ -68,7 +73,7 @@ private:
 
     Phase phase_ = Phase::off;
     std::uint8_t setting_ = 0;
-    bool rising_ = true, drive_enabled_ = false;
+    bool rising_ = true, drive_enabled_ = false, toggles_ = false, toggle_ = false;
     std::int64_t raw_ = 0;
 };
 

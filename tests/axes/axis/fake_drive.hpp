@@ -63,6 +63,9 @@ public:
     std::int64_t index_distance = 0;
     int arming_time = 2;  ///< cycles from the command to the latch waiting
     DriveCapabilities caps;
+    std::uint16_t reference_epoch = 0;
+    bool refuses_homing_setup = false;
+    DriveAlarmKind alarm_kind = DriveAlarmKind::other;
 
     // what a test reads
     double position = 0;  ///< of the motor, counts; what homing sets to zero is `zero`
@@ -78,6 +81,7 @@ public:
         known.code = fault_code;
         known.detail = alarm_detail;
         known.resettable = resettable;
+        known.kind = alarm_kind;
         return known;
     }
 
@@ -114,6 +118,8 @@ public:
         feedback_.warning = warning;
         feedback_.error_code = fault_code;
         feedback_.position_epoch = epoch;
+        feedback_.reference_epoch = reference_epoch;
+        feedback_.homing_setup_refused = refuses_homing_setup && last.homing.method != 0;
         feedback_.position = std::llround(position) - zero;
         feedback_.velocity = velocity_;
         feedback_.torque = mode_ == DriveMode::cyclic_torque ? torque_ : load + held_back_;

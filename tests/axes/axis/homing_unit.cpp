@@ -107,7 +107,7 @@ TEST(HomeByDrive, ErrorOfTheDriveIsAnAxisError) {
     rig.power_on();
     const auto id = rig.accept(home(0));
     ASSERT_TRUE(rig.run_to(AxisState::ErrorStop, 2000));
-    EXPECT_TRUE(rig.raised(AxisAlarm::homing_failed));
+    EXPECT_TRUE(rig.raised(AxisAlarm::drive_homing_failed));
     EXPECT_EQ(rig.status(id), CommandStatus::error);
     EXPECT_FALSE(rig.view().homed);
     rig.run(10);
@@ -123,7 +123,81 @@ TEST(HomeByDrive, TakingTooLongIsAnAxisError) {
     rig.power_on();
     rig.accept(home(0));
     ASSERT_TRUE(rig.run_to(AxisState::ErrorStop, 400));
-    EXPECT_TRUE(rig.raised(AxisAlarm::homing_timeout));
+    EXPECT_TRUE(rig.raised(AxisAlarm::drive_homing_timeout));
+}
+
+// The axis asks in counts for what its own configuration says; the port sees to it. 20 u/s, 1 u/s, 100 u/s2 at 1000 counts a u.
+TEST(HomeByDrive, GivesThePortItsMethodAndSpeeds) {
+    auto config = homing_by(HomingKind::drive);
+    config.homing.method = -1;
+    Rig rig(config, [](FakeDrive& drive) {
+        drive.homing_hangs = true;
+        drive.caps.homing_per_run = true;
+    });
+    rig.power_on();
+    EXPECT_EQ(rig.drive.last.homing.method, 0);
+    rig.accept(home(0));
+    ASSERT_TRUE(rig.run_until([&] { return rig.drive.last.start_homing; }, 100));
+    EXPECT_EQ(rig.drive.last.homing.method, -1);
+    EXPECT_DOUBLE_EQ(rig.drive.last.homing.search_velocity, 20'000);
+    EXPECT_DOUBLE_EQ(rig.drive.last.homing.latch_velocity, 1'000);
+    EXPECT_DOUBLE_EQ(rig.drive.last.homing.acceleration, 100'000);
+}
+
+TEST(HomeByDrive, SettingsThatTheDriveRefusesAreAnErrorOfTheirOwn) {
+    auto config = homing_by(HomingKind::drive);
+    config.homing.method = 15;
+    Rig rig(config, [](FakeDrive& drive) {
+        drive.homing_hangs = drive.refuses_homing_setup = true;
+        drive.caps.homing_per_run = true;
+    });
+    rig.power_on();
+    const auto id = rig.accept(home(0));
+    ASSERT_TRUE(rig.run_to(AxisState::ErrorStop, 200));
+    EXPECT_TRUE(rig.raised(AxisAlarm::drive_homing_refused));
+    EXPECT_EQ(rig.status(id), CommandStatus::error);
+    rig.run(300);
+    EXPECT_FALSE(rig.raised(AxisAlarm::drive_homing_failed)) << "one error, one alarm";
+    rig.axis.reset(Owner::program);
+    EXPECT_TRUE(rig.run_to(AxisState::Standstill, 300));
+}
+
+// Turns cleared, or an alarm that says the reference is gone (SV33-E E.917): absolute moves are refused until the axis is homed again.
+class LostReference : public ::testing::Test {
+protected:
+    void SetUp() override {
+        rig.power_on();
+        rig.accept(home(0));
+        rig.step();
+        ASSERT_TRUE(rig.view().homed);
+    }
+    Rig rig{homing_by(HomingKind::set_here)};
+};
+
+TEST_F(LostReference, OnRequestItIsNoLongerHomed) {
+    ++rig.drive.reference_epoch;
+    rig.run(2);
+    EXPECT_FALSE(rig.view().homed);
+    EXPECT_TRUE(rig.raised(AxisAlarm::reference_lost));
+    EXPECT_EQ(rig.refuse(absolute(5)), ErrorId::not_homed);
+    rig.accept(home(0));
+    rig.run(3);
+    EXPECT_TRUE(rig.view().homed);
+}
+
+TEST_F(LostReference, ByAnAlarmOfTheDriveItIsNoLongerHomed) {
+    rig.drive.fault_code = 0x7305;
+    rig.drive.alarm_kind = DriveAlarmKind::reference_lost;
+    rig.run(5);
+    EXPECT_FALSE(rig.view().homed);
+    EXPECT_TRUE(rig.raised(AxisAlarm::reference_lost));
+}
+
+TEST_F(LostReference, OtherAlarmsKeepIt) {
+    rig.drive.fault_code = 0x7305;
+    rig.drive.alarm_kind = DriveAlarmKind::battery_low;
+    rig.run(5);
+    EXPECT_TRUE(rig.view().homed);
 }
 
 TEST(HomeByDrive, PowerLossWhileTheDriveSearchesEndsIt) {

@@ -72,6 +72,30 @@ TEST(TouchProbe, WithoutItsEnableBitItForgets) {
     EXPECT_EQ(p.status(), 0);
 }
 
+TEST(TouchProbe, IndexPulsesStandWhereTheEncoderHasThem) {
+    auto p = probe(0x17);  // enable, continuous, index, rising
+    p.motion(100, 400, signal, {250, 1000});
+    EXPECT_EQ(p.rising(), 250);
+    p.motion(400, -800, signal, {250, 1000});
+    EXPECT_EQ(p.rising(), -750) << "of two pulses the later one";
+}
+
+// SV-DA200 3.8.3: bits 6 and 7 toggle with each latch, in continuous mode only.
+TEST(TouchProbe, ToggleBitsChangeWithEachLatchInContinuousMode) {
+    TouchProbe p(ProbeToggle::bits_6_and_7);
+    p.command(0x33);  // enable, continuous, both edges
+    p.motion(90, 110, signal, pulses);
+    EXPECT_EQ(p.status(), 0b0100'0011);
+    p.motion(110, 210, signal, pulses);
+    EXPECT_EQ(p.status(), 0b1100'0111);
+    p.motion(210, 150, signal, pulses);
+    EXPECT_EQ(p.status(), 0b1000'0111);
+    p.command(0);
+    p.command(0x31);
+    p.motion(90, 110, signal, pulses);
+    EXPECT_EQ(p.status(), 0b0000'0011) << "single: no toggling";
+}
+
 TEST(TouchProbe, OfARunningAxisLatchesBetweenTwoExchanges) {
     auto plant = table();
     plant.probe[1] = {12345.6, 20000};

@@ -33,7 +33,8 @@ inline ecat::ObjectEntry object(std::uint16_t index, std::uint8_t sub = 0) {
         {0x6064, DataType::I32}, {0x606C, DataType::I32}, {0x6071, DataType::I16}, {0x6072, DataType::U16}, {0x6077, DataType::I16},
         {0x607A, DataType::I32}, {0x607F, DataType::U32}, {0x6083, DataType::U32}, {0x60B1, DataType::I32}, {0x60B2, DataType::I16},
         {0x60B8, DataType::U16}, {0x60B9, DataType::U16}, {0x60BA, DataType::I32}, {0x60BB, DataType::I32}, {0x60E0, DataType::U16},
-        {0x60E1, DataType::U16}, {0x60FD, DataType::U32}, {0x60FF, DataType::I32}, {0x2021, DataType::U16}, {0x2005, DataType::U16}};
+        {0x60E1, DataType::U16}, {0x60FD, DataType::U32}, {0x60FF, DataType::I32}, {0x2021, DataType::U16}, {0x2005, DataType::U16},
+        {0x6098, DataType::I8},  {0x6099, DataType::U32}, {0x609A, DataType::U32}, {0x2020, DataType::U16}};
     ecat::ObjectEntry e;
     e.index = index;
     e.sub = sub;
@@ -42,6 +43,7 @@ inline ecat::ObjectEntry object(std::uint16_t index, std::uint8_t sub = 0) {
     e.type = types.at(base);
     e.mappable = ecat::Mappable::both;
     if (base == 0x6072 || base == 0x60E0 || base == 0x60E1) e.value = e.maximum.emplace(5000);  // SV33-E 7.3
+    if (base == 0x6098) e.minimum = -2, e.maximum = 35;                                         // SV33-E 7.3
     if (base == 0x6083) e.value = 100;
     if (base == 0x607F) e.value = 100'000'000;
     return e;

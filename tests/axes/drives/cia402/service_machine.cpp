@@ -184,6 +184,21 @@ TEST_F(Probe, ContinuousLatchesAreCounted) {
     EXPECT_EQ(rig.feedback().probes[0].position, 250);
 }
 
+// SV-DA200 3.8.3: bit 6 changes with each latch, so that a second one at the same count shows too.
+TEST(ProbeToggle, TellsLatchesAtTheSameCountApart) {
+    ProbeLatch latch;
+    latch.use_toggle_bits();
+    const ProbeCommand wanted{.armed = true, .continuous = true};
+    ProbeFeedback seen;
+    for (int i = 0; i < 4; ++i) (void)latch.function(wanted);
+    EXPECT_FALSE(latch.take(0b0000'0001, 0, seen));
+    EXPECT_TRUE(latch.take(0b0100'0011, 500, seen));
+    EXPECT_FALSE(latch.take(0b0100'0011, 500, seen));
+    EXPECT_TRUE(latch.take(0b0000'0011, 500, seen));
+    EXPECT_EQ(seen.count, 2);
+    EXPECT_TRUE(latch.take(0b0000'0011, 600, seen)) << "two latches between two looks: the bit is back, the position is not";
+}
+
 // Disarmed for one cycle only, and a drive that takes its time: the latch of the arming before is still shown.
 TEST_F(Probe, RearmingForgetsTheOldLatch) {
     rig.command.probes[0].armed = true;
