@@ -171,7 +171,12 @@ protected:
         rig.step();
         ASSERT_TRUE(rig.view().homed);
     }
-    Rig rig{homing_by(HomingKind::set_here)};
+    static AxisConfig needs_reference() {
+        auto config = homing_by(HomingKind::set_here);
+        config.require_homed = true;
+        return config;
+    }
+    Rig rig{needs_reference()};
 };
 
 TEST_F(LostReference, OnRequestItIsNoLongerHomed) {
