@@ -324,7 +324,10 @@ Table<AxisBinding> axis_table() {
     f.push_back(required(field_at<AxisBinding>(
         "unit", [](AxisBinding& b) -> std::string& { return b.axis.unit; }, axis_unit(), "the unit u of the axis")));
     f.push_back(with_default(field("slave", &AxisBinding::slave, name(), "slave that drives it; without one the axis is virtual"), ""));
-    f.push_back(field("drive_axis", &AxisBinding::drive_axis, integer<std::uint8_t>(0, 63), "axis of a drive that has several, from 0"));
+    f.push_back(field_via<AxisBinding>(
+        "axis", integer<std::uint8_t>(1, 64),
+        [](AxisBinding& b, const std::uint8_t& n) { b.drive_axis = static_cast<std::uint8_t>(n - 1); },
+        "which axis of a drive that has several, from 1 as its manual counts", "1 where the drive has one"));
     std::vector<Field<A>> own{
         required(field("gearing", &A::gearing, section(gearing_table()), "counts and unit")),
         with_default(

@@ -190,6 +190,10 @@ Table<ObjectRow> object_table() {
                     r.parameter.address = {number, 0}, r.is_register = true;
                 },
                 "number of a register, for drives without a dictionary"),
+            field_at<R>(
+                "reach", [parameter](R & r) -> auto& { return parameter(r).reach; },
+                choice<axes::ParameterReach>({{"bus", axes::ParameterReach::bus}, {"maker_tool", axes::ParameterReach::maker_tool}}),
+                "maker_tool: panel or PC tool alone, the manual prints no address"),
             required(field_at<R>(
                 "name", [object](R & r) -> auto& { return object(r).name; }, text(), "its name in English")),
             field_at<R>(
@@ -235,9 +239,14 @@ Table<ObjectRow> object_table() {
         {},
         {}};
     table.after = [](Reader& reader, const Node& node, R& row) {
-        if (row.parameter.address.index == 0 && row.object.index == 0 && !row.is_register)
+        const bool addressed = row.object.index != 0 || row.is_register;
+        const bool tool = row.parameter.reach == axes::ParameterReach::maker_tool;
+        if (!addressed && !tool)
             reader.problem(node.at, "config.object_address", "a row needs its `object:` or its `register:`",
-                           "add `object: 2005h:0B`, or `register: 98` for a drive without a dictionary");
+                           "add `object: 2005h:0B`, `register: 98` for a drive without a dictionary, or `reach: maker_tool`");
+        if (tool && (addressed || row.parameter.parameter.empty()))
+            reader.problem(node.at, "config.object_address", "what only the maker's tool reaches has a `parameter:` and no address",
+                           "write `parameter: PA17`, and remove `object:` or `reach:`");
         row.parameter.name = row.object.name;
         row.parameter.bits = ecat::bit_size(row.object.type);
         row.parameter.is_signed = ecat::is_signed(row.object.type);
@@ -271,7 +280,8 @@ Table<ecat::ModuleDescription> module_table() {
     return {"slots.modules.<name>",
             "A module: PDOs and ident, as in slot 0.",
             {
-                required(field("ident", &M::ident, integer<std::uint32_t>(1, u32), "written to F030h, found in F050h")),
+                with_default(field("ident", &M::ident, integer<std::uint32_t>(1, u32), "written to F030h, found in F050h"),
+                             "not stated: neither is looked at"),
                 field("rx", &M::rx_pdos, list(section(pdo_table())), "PDOs to the drive"),
                 field("tx", &M::tx_pdos, list(section(pdo_table())), "PDOs from the drive"),
             },

@@ -2,8 +2,11 @@
 
 #include <filesystem>
 
+#include <fmt/format.h>
+
 #include "config/drive_tables.hpp"
 #include "config/pdo_selection.hpp"
+#include "ecat/module_pdos.hpp"
 
 namespace taktwerk::config {
 
@@ -40,6 +43,18 @@ ecat::PdoSelection chosen(const std::vector<PdoChoice>& choices, const std::vect
     return out;
 }
 
+/// The same module in every slot.
+std::vector<ecat::ModuleSelection> in_every_slot(Reader& reader, const DriveFile& file) {
+    std::vector<ecat::ModuleSelection> out;
+    if (file.module.empty()) return out;
+    const auto& slots = file.device.slots;
+    if (ecat::find_module(slots, file.module) == nullptr)
+        reader.problem(reader.find("mapping.module"), "config.mapping", fmt::format("`slots.modules` has no module '{}'", file.module),
+                       "name one of them");
+    for (std::uint8_t slot = 0; slot < slots.count; ++slot) out.push_back({slot, file.module});
+    return out;
+}
+
 }  // namespace
 
 std::variant<LoadedDrive, std::vector<Error>> load_drive(const std::string& path) {
@@ -51,6 +66,7 @@ std::variant<LoadedDrive, std::vector<Error>> load_drive(const std::string& path
     if (document.root.kind != Node::Kind::null) read_table(reader, document.root, serial ? serial_drive_table() : drive_table(), file);
     const auto beside = [&](const std::string& name) { return (std::filesystem::path(path).parent_path() / name).string(); };
     if (!file.object_file.empty()) load_objects(beside(file.object_file), file, reader.errors());
+    const auto modules = in_every_slot(reader, file);
     const auto startup = resolve_startup(reader, path, file.startup, file.device);
     if (!file.alarm_file.empty()) load_alarms(beside(file.alarm_file), file.profile, reader.errors());
     if (!reader.errors().empty()) return std::move(reader.errors());
@@ -63,6 +79,7 @@ std::variant<LoadedDrive, std::vector<Error>> load_drive(const std::string& path
     file.device.name = file.profile.name;
     drive.rx = chosen(file.rx, file.device.rx_pdos);
     drive.tx = chosen(file.tx, file.device.tx_pdos);
+    drive.modules = modules;
     drive.startup = startup;
     drive.device = std::make_shared<const ecat::DeviceDescription>(std::move(file.device));
     drive.profile = std::make_shared<const axes::DriveProfile>(std::move(file.profile));

@@ -15,8 +15,9 @@ namespace taktwerk::config {
 struct LoadedDrive {
     std::shared_ptr<const ecat::DeviceDescription> device;  ///< nullptr: on a serial line
     std::shared_ptr<const axes::DriveProfile> profile;
-    ecat::PdoSelection rx, tx;              ///< the runtime's own mapping
-    std::vector<ecat::StartupSdo> startup;  ///< before those of the machine
+    ecat::PdoSelection rx, tx;                     ///< the runtime's own mapping
+    std::vector<ecat::StartupSdo> startup;         ///< before those of the machine
+    std::vector<ecat::ModuleSelection> modules{};  ///< of a modular drive, one in each slot
 };
 
 /// All problems at once, each with file, line and column.

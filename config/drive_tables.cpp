@@ -19,6 +19,8 @@ using ecat::DeviceDescription;
 using ecat::Mappable;
 
 constexpr std::int64_t u16 = 0xFFFF, u32 = 0xFFFFFFFF;
+/// Objects below belong to the communication, not to an axis.
+constexpr std::uint16_t first_axis_object = 0x2000;
 
 Table<PdoChoice> choice_table() {
     using P = PdoChoice;
@@ -37,7 +39,8 @@ Table<DriveFile> mapping_table() {
     return {"mapping",
             "What the runtime assigns and maps, unless a machine asks for something else.",
             {required(field("rx", &F::rx, list(section(choice_table())), "to the drive")),
-             required(field("tx", &F::tx, list(section(choice_table())), "from the drive"))},
+             required(field("tx", &F::tx, list(section(choice_table())), "from the drive")),
+             with_default(field("module", &F::module, name(), "of a modular drive: what is put into every slot"), "none")},
             {},
             {}};
 }
@@ -65,7 +68,11 @@ Codec<axes::DriveAlarmKind> alarm_kind() {
                       {"homing_timeout", K::homing_timeout},
                       {"homing_limit", K::homing_limit},
                       {"homing_method", K::homing_method},
-                      {"power_cycle_pending", K::power_cycle_pending}});
+                      {"power_cycle_pending", K::power_cycle_pending},
+                      {"mode_not_set", K::mode_not_set},
+                      {"left_operational", K::left_operational},
+                      {"link_changed", K::link_changed},
+                      {"torque_overload", K::torque_overload}});
 }
 
 Codec<DriveMode> drive_mode() {
@@ -164,6 +171,16 @@ Table<DriveProfile> motion_table() {
                   "of 6041h, all set before Enable Operation"),
             field("brake_release", &P::brake_release, duration(), "after enabling the brake still holds: the drive loses earlier commands"),
             field("brake_hold", &P::brake_hold, duration(), "after disabling at standstill the motor holds until the brake does"),
+            field("brake_moving_wait", &P::brake_moving_wait, duration(),
+                  "power gone in motion: the brake closes after this at the latest"),
+            field("brake_moving_speed", &P::brake_moving_speed, number(), "rpm below which it closes at once"),
+            field("self_test", &P::self_test, duration(), "Not Ready To Switch On lasts this long after power-on"),
+            field("deaf_after_enable", &P::deaf_after_enable, duration(), "set-points are not obeyed this long after enabling"),
+            field("missed_frames_allowed", &P::missed_frames_allowed, integer<std::uint8_t>(0, 255),
+                  "in a row in OP, one more is its communication alarm; 0: not counted"),
+            field("overspeed_limit", &P::overspeed_limit, number(), "of the motor's maximum speed, beyond it an alarm; 0: none"),
+            field("torque_overload", &P::torque_overload, number(), "rated torques, for longer than `torque_overload_time` an alarm"),
+            field("torque_overload_time", &P::torque_overload_time, duration(), "how long more torque than `torque_overload` is allowed"),
             field("off_stop", &P::off_stop, drive_stop(), "power taken away while it moves"),
             field("fault_stop", &P::fault_stop, drive_stop(), "its reaction to a fault"),
             field("quick_stop_leaves", &P::quick_stop_leaves, boolean(), "Quick Stop Active ends by itself"),
@@ -305,7 +322,12 @@ void add_profile_fields(std::vector<Field<DriveFile>>& f) {
                             {"disable_may_coast", Quirk::disable_may_coast},
                             {"probe_toggle_bits", Quirk::probe_toggle_bits},
                             {"homing_limit_is_fault", Quirk::homing_limit_is_fault},
-                            {"homing_19_starts_negative", Quirk::homing_19_starts_negative}})),
+                            {"homing_19_starts_negative", Quirk::homing_19_starts_negative},
+                            {"fault_reaction_02b6", Quirk::fault_reaction_02b6},
+                            {"alarm_sets_warning_bit", Quirk::alarm_sets_warning_bit},
+                            {"remote_bit_from_preop", Quirk::remote_bit_from_preop},
+                            {"quick_stop_bit_rests_high", Quirk::quick_stop_bit_rests_high},
+                            {"cyclic_bit_10_reserved", Quirk::cyclic_bit_10_reserved}})),
         "deviations from CiA 402, by name (axes/port/drive_profile.hpp)"));
     f.push_back(field_at<F>(
         "alarms", [](F & d) -> auto& { return d.profile.alarms; }, list(section(alarm_row_table())), "the drive's alarms"));
@@ -390,8 +412,15 @@ Table<DriveFile> serial_drive_table() {
 
 void add_objects(DriveFile& file, const std::vector<ObjectRow>& rows) {
     for (const auto& row : rows) {
-        if (!row.is_register) file.device.objects.push_back(row.object);
         file.profile.parameters.push_back(row.parameter);
+        if (!row.is_object()) continue;
+        file.device.objects.push_back(row.object);
+        if (row.object.index < first_axis_object) continue;
+        for (unsigned axis = 1; axis < file.profile.axes; ++axis) {
+            auto further = row.object;
+            further.index = static_cast<std::uint16_t>(further.index + axis * file.profile.object_offset);
+            file.device.objects.push_back(std::move(further));
+        }
     }
 }
 

@@ -28,6 +28,7 @@ struct DriveFile {
     std::vector<PdoChoice> rx, tx;
     std::vector<StartupEntry> startup;
     std::vector<ObjectRow> objects;
+    std::string module;  ///< for every slot of a modular drive
     std::string alarm_file, object_file;
 };
 

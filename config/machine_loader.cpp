@@ -55,6 +55,7 @@ public:
         for (auto& binding : out.machine.axes)
             for (const auto& [name, profile] : profiles_)
                 if (name == binding.slave) binding.profile = profile;
+        for (const auto& binding : out.machine.axes) check_axis_is_named(binding);
         for (const auto& entry : file_.inputs) add_point(out, entry, runtime::IoDirection::input);
         for (const auto& entry : file_.outputs) add_point(out, entry, runtime::IoDirection::output);
         for (const auto& entry : file_.programs) add_program(out, entry);
@@ -94,6 +95,17 @@ private:
         out.machine.bus.slaves.push_back(std::move(slave));
     }
 
+    /// Of a drive with several axes each axis of the machine says which one it is.
+    void check_axis_is_named(const runtime::AxisBinding& binding) {
+        const auto here = "axes." + binding.axis.name;
+        if (!binding.profile || binding.profile->axes == 1 || reader_.has(here + ".axis")) return;
+        problem(
+            here, "axis.drive_axis_missing",
+            fmt::format("slave '{}' ({}) has {} axes: which one is meant?", binding.slave, binding.profile->name, binding.profile->axes),
+            fmt::format("add `axis:`, 1 to {}", binding.profile->axes));
+        reader_.mark_bad(here + ".axis");
+    }
+
     /// What others will say about this slave follows from what was said already.
     void forgive(const std::string& slave, const std::vector<runtime::AxisBinding>& axes) {
         reader_.mark_bad(fmt::format("slave '{}'", slave));
@@ -117,16 +129,21 @@ private:
             return;
         }
         slave.device = drive->device;
-        slave.rx = selection(*drive, PdoWay::rx, entry, here + ".pdo.rx");
-        slave.tx = selection(*drive, PdoWay::tx, entry, here + ".pdo.tx");
+        // The drive's own choice stands in the slots that the machine says nothing about.
+        for (const auto& standard : drive->modules)
+            if (std::none_of(slave.modules.begin(), slave.modules.end(), [&](const auto& m) { return m.slot == standard.slot; }))
+                slave.modules.push_back(standard);
+        slave.rx = selection(*drive, slave.modules, PdoWay::rx, entry, here + ".pdo.rx");
+        slave.tx = selection(*drive, slave.modules, PdoWay::tx, entry, here + ".pdo.tx");
         slave.startup = drive->startup;
         profiles_.emplace_back(entry.name, drive->profile);
     }
 
-    ecat::PdoSelection selection(const LoadedDrive& drive, PdoWay way, const SlaveEntry& entry, const std::string& here) {
+    ecat::PdoSelection selection(const LoadedDrive& drive, const std::vector<ecat::ModuleSelection>& modules, PdoWay way,
+                                 const SlaveEntry& entry, const std::string& here) {
         const auto& wanted = way == PdoWay::rx ? entry.rx : entry.tx;
         if (wanted.empty()) return way == PdoWay::rx ? drive.rx : drive.tx;
-        auto chosen = select_pdos(*drive.device, entry.modules, way, wanted);
+        auto chosen = select_pdos(*drive.device, modules, way, wanted);
         if (chosen) return std::move(*chosen);
         problem(here, chosen.error().code, chosen.error().what, chosen.error().remedy);
         return {};

@@ -25,6 +25,8 @@ public:
 
     /// The position of "axes.x.limits.velocity", or of the nearest section around it that stands in the file.
     [[nodiscard]] Position find(std::string_view path) const;
+    /// Whether the file has this key.
+    [[nodiscard]] bool has(std::string_view path) const { return positions_.contains(path); }
     /// Another name for a place, as the floors' checks call it.
     void also_known_as(std::string path, Position at) { positions_.emplace(std::move(path), at); }
     /// Complaints about this place would only repeat a problem reported elsewhere.

@@ -107,7 +107,7 @@ enum class RevisionRule : std::uint8_t {
 /// One valid content of a slot (ETG.5001). Its PDOs are those of slot 0; each further slot adds SlotDescription's increments.
 struct ModuleDescription {
     std::string name;         ///< how a configuration chooses it
-    std::uint32_t ident = 0;  ///< written to F030h, found in F050h
+    std::uint32_t ident = 0;  ///< written to F030h, found in F050h; 0: not known, neither is looked at
     std::vector<PdoDescription> rx_pdos, tx_pdos;
 };
 

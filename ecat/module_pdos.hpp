@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -49,6 +50,29 @@ struct DevicePdos {
         add(module->tx_pdos, out.tx, out.tx_assigned);
     }
     return out;
+}
+
+/// The device as its firmware knows it: the PDOs of every module in every slot stand beside its own, none of them assigned. Of modules
+/// that use the same PDO numbers the first one's default is there.
+[[nodiscard]] inline DeviceDescription with_slots_filled(DeviceDescription device) {
+    const auto add = [&](const PdoDescription& pdo, std::vector<PdoDescription>& to) {
+        if (std::none_of(to.begin(), to.end(), [&](const PdoDescription& other) { return other.index == pdo.index; })) to.push_back(pdo);
+    };
+    for (std::uint8_t slot = 0; slot < device.slots.count; ++slot)
+        for (const auto& module : device.slots.modules) {
+            for (const auto& pdo : module.rx_pdos) add(in_slot(pdo, device.slots, slot), device.rx_pdos);
+            for (const auto& pdo : module.tx_pdos) add(in_slot(pdo, device.slots, slot), device.tx_pdos);
+        }
+    return device;
+}
+
+/// The slot in which `pdo` is one of `of_module` (numbers as in slot 0); none: it is the device's own.
+[[nodiscard]] inline std::optional<std::uint8_t> slot_of(const SlotDescription& slots, const std::vector<PdoDescription>& of_module,
+                                                         std::uint16_t pdo) noexcept {
+    for (std::uint8_t slot = 0; slot < slots.count; ++slot)
+        for (const auto& own : of_module)
+            if (own.index + slot * slots.pdo_increment == pdo) return slot;
+    return std::nullopt;
 }
 
 }  // namespace taktwerk::ecat

@@ -103,9 +103,9 @@ std::vector<Error> check(const MachineConfig& config) {
             continue;
         }
         if (!taken.insert({binding.slave, binding.drive_axis}).second)
-            problems.add("axis.drive_axis_taken", subject + ".drive_axis",
+            problems.add("axis.drive_axis_taken", subject + ".axis",
                          fmt::format("axis {} of slave '{}' already belongs to another axis", binding.drive_axis + 1, binding.slave),
-                         "give each axis its own drive axis");
+                         "give each axis an `axis` of its own");
         if (!binding.profile) {
             problems.add("axis.no_profile", subject + ".slave", fmt::format("slave '{}' has no drive profile", binding.slave),
                          "give the slave a `profile:`; a terminal cannot carry an axis");
@@ -113,8 +113,10 @@ std::vector<Error> check(const MachineConfig& config) {
         }
         const auto& profile = *binding.profile;
         if (binding.drive_axis >= profile.axes)
-            problems.add("axis.drive_axis", subject + ".drive_axis", fmt::format("{} has {} axes", profile.name, profile.axes),
-                         fmt::format("choose 0 to {}", profile.axes - 1));
+            problems.add("axis.drive_axis", subject + ".axis",
+                         fmt::format("{} has {} {}, there is no axis {}", profile.name, profile.axes, profile.axes == 1 ? "axis" : "axes",
+                                     binding.drive_axis + 1),
+                         profile.axes == 1 ? "remove `axis`" : fmt::format("choose 1 to {}", profile.axes));
         if (exchange_period_of(config, binding.slave) < profile.minimum_cycle_csp)
             problems.add("axis.cycle_too_short", "cycle",
                          fmt::format("{} (axis {}) needs at least {} us in cyclic synchronous position mode", profile.name,

@@ -25,6 +25,10 @@ enum class DriveAlarmKind : std::uint8_t {
     homing_limit,         ///< the drive's own homing met a limit switch that it did not look for (SV-DA200 Er25-6)
     homing_method,        ///< the drive does not know the homing method (SV33-E A.D35, SV-DA200 Er05-4)
     power_cycle_pending,  ///< a parameter takes effect after a restart only
+    mode_not_set,         ///< enabled without a mode of operation (TSVM 43)
+    left_operational,     ///< the bus left OP while the drive was enabled (TSVM 44)
+    link_changed,         ///< a network port lost or found its link (TSVM 92)
+    torque_overload,      ///< more torque than the user allows, for too long (TSVM 29)
 };
 
 }  // namespace taktwerk::axes

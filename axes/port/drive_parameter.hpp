@@ -27,12 +27,19 @@ enum class ParameterChange : std::uint8_t {
     never,     ///< read-only
 };
 
+/// Who can reach it.
+enum class ParameterReach : std::uint8_t {
+    bus,         ///< by its address
+    maker_tool,  ///< panel or PC tool alone: the manual prints no address (TSVM 6.1, column "-")
+};
+
 struct DriveParameter {
-    ParameterAddress address;  ///< of the first axis
-    std::string parameter;     ///< as the manual calls it: "P05.10", "PA17", "Pr098"; empty: an object of the standard, by its number
-    std::string name;          ///< in English
-    std::string chinese;       ///< as printed; empty: not printed
-    std::uint8_t bits = 16;    ///< width on the wire; 0: text
+    ParameterAddress address;  ///< of the first axis; 0 where only the maker's tool reaches it
+    ParameterReach reach = ParameterReach::bus;
+    std::string parameter;   ///< as the manual calls it: "P05.10", "PA17", "Pr098"; empty: an object of the standard, by its number
+    std::string name;        ///< in English
+    std::string chinese;     ///< as printed; empty: not printed
+    std::uint8_t bits = 16;  ///< width on the wire; 0: text
     bool is_signed = false;
     std::int64_t value = 0;  ///< factory value, raw
     std::optional<std::int64_t> minimum{}, maximum{};

@@ -26,8 +26,13 @@ enum class Quirk : std::uint8_t {
     probe_toggle_bits,          ///< 60B9h bits 6, 7, 14, 15 change with each latch in continuous mode (SV-DA200 3.8.3)
     homing_limit_is_fault,      ///< a limit switch that homing does not look for is a fault (SV-DA200 Er25-6), not only bit 13
     homing_19_starts_negative,  ///< method 19 sets out in negative direction from beside the switch (SV-DA200 3.4.6, the table), as 21 of CiA 402
+    fault_reaction_02b6,        ///< Fault Reaction shows as 02B6h, without bit 3 and like no state (TSVM 5.3.1, transition 13)
+    alarm_sets_warning_bit,     ///< bit 7 stands with every alarm, faults among them (TSVM 5.3.2)
+    remote_bit_from_preop,      ///< bit 9 stands from PREOP on, not only in OP (TSVM 5.3.2)
+    quick_stop_bit_rests_high,  ///< bit 5 stands in Switch On Disabled and in the fault states too (TSVM 5.3.1: 0270h, 02B6h)
+    cyclic_bit_10_reserved,     ///< no "target reached" in the cyclic modes (TSVM 5.3.2: 1237h)
 };
-inline constexpr std::size_t quirk_count = 10;
+inline constexpr std::size_t quirk_count = 15;
 
 /// How a drive brings its motor to rest by itself.
 enum class DriveStop : std::uint8_t {
@@ -75,6 +80,14 @@ struct DriveProfile {
     // What the drive does by itself; the simulator plays it, the axis plans with it.
     Duration brake_release{};                ///< after enabling the brake still holds: earlier commands are lost (SV33-E P05.13)
     Duration brake_hold{};                   ///< after disabling at standstill the motor holds until the brake does (SV33-E P05.14)
+    Duration brake_moving_wait{};            ///< power gone in motion: the brake closes after this at the latest (TSVM PA48)
+    double brake_moving_speed = 0;           ///< rpm: it closes as soon as the motor is slower (TSVM PA49); 0: at standstill
+    Duration self_test{};                    ///< Not Ready To Switch On lasts this long after power-on
+    Duration deaf_after_enable{};            ///< set-points are not obeyed this long after enabling (TSVM 5.3.1: 100 ms)
+    std::uint8_t missed_frames_allowed = 0;  ///< in a row in OP; one more is its communication alarm (TSVM 7.1.1: 3); 0: not counted
+    double overspeed_limit = 0;              ///< of the motor's maximum speed, beyond it an alarm (TSVM PA23: 1.0); 0: none
+    double torque_overload = 0;              ///< rated torques; for longer than `torque_overload_time` an alarm (TSVM PA30, PA31); 0: none
+    Duration torque_overload_time{};
     DriveStop off_stop = DriveStop::coast;   ///< power taken away while it moves (SV33-E P04.12 = 2: ramp)
     DriveStop fault_stop = DriveStop::ramp;  ///< fault reaction (SE-808X 605Eh = 0: coast)
     bool quick_stop_leaves = true;           ///< Quick Stop Active ends by itself in Switch On Disabled (SE-808X 3.2.1: it stays)

@@ -75,8 +75,9 @@ Result<const DriveParameter*> find_parameter(const DriveProfile& profile, std::s
     std::vector<std::string> names;
     for (const auto& parameter : profile.parameters) {
         const auto object = lower(object_text(parameter.address));
-        const bool first_entry = parameter.address.sub == 0 && wanted == object + ":00";
-        if (wanted == lower(name_of(parameter)) || wanted == object || first_entry) return &parameter;
+        const bool addressed = parameter.reach == ParameterReach::bus;
+        const bool first_entry = addressed && parameter.address.sub == 0 && wanted == object + ":00";
+        if (wanted == lower(name_of(parameter)) || (addressed && wanted == object) || first_entry) return &parameter;
         names.push_back(name_of(parameter));
     }
     const auto near = nearest_name(std::string(trimmed(word)), names);
@@ -101,6 +102,9 @@ std::string range_text(const DriveParameter& parameter) {
 }
 
 Result<std::int64_t> parse_value(const DriveParameter& parameter, std::string_view text) {
+    if (parameter.reach == ParameterReach::maker_tool)
+        return Error{"drive.no_address", name_of(parameter), fmt::format("{} has no address on the bus", parameter.name),
+                     "set it at the drive's panel or with its maker's tool, and save it there"};
     if (parameter.change == ParameterChange::never)
         return Error{"drive.read_only", name_of(parameter), fmt::format("{} is read-only", parameter.name), "nothing can be written to it"};
     const auto whole = trimmed(text);
@@ -152,6 +156,7 @@ Result<std::int64_t> from_bytes(const DriveParameter& parameter, std::span<const
 }
 
 bool is_setting(const DriveParameter& parameter) noexcept {
+    if (parameter.reach == ParameterReach::maker_tool) return false;
     if (parameter.change == ParameterChange::never || parameter.action || parameter.bits == 0) return false;
     const auto index = parameter.address.index;
     if (index >= 0x1000 && index < 0x2000) return false;  // communication: the master's own

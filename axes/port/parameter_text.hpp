@@ -26,7 +26,7 @@ namespace taktwerk::axes {
 [[nodiscard]] std::string range_text(const DriveParameter& parameter);
 
 /// A number in the parameter's unit, which may stand behind it, or a raw one in hexadecimal (0x.. or ..h).
-/// Errors: drive.value (no number, another unit, between two steps), drive.out_of_range, drive.read_only.
+/// Errors: drive.value (no number, another unit, between two steps), drive.out_of_range, drive.read_only, drive.no_address.
 [[nodiscard]] Result<std::int64_t> parse_value(const DriveParameter& parameter, std::string_view text);
 
 /// As SDOs and registers carry it: little-endian, `bits` wide. Errors of from_bytes: drive.size.

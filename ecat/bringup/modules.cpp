@@ -35,6 +35,8 @@ Script<Result<void>> configure_modules(Bus& bus, BusSlave& slave) {
     const auto& slots = slave.device().slots;
     if (slots.count == 0 || slave.config->modules.empty() || !slave.has_coe()) co_return Result<void>{};
     const std::vector<std::uint32_t> idents = chosen_idents(slave);
+    // Modules whose manual names no ident are a matter of the PDO assignment alone.
+    if (std::all_of(idents.begin(), idents.end(), [](auto ident) { return ident == 0; })) co_return Result<void>{};
     bus.note(slave, "choosing its modules");
 
     std::vector<std::vector<std::byte>> entries;

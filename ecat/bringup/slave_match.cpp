@@ -31,6 +31,11 @@ RevisionRule rule_of(const SlaveConfig& slave) { return slave.revision_rule.valu
 
 Result<void> check(const std::string& subject, const DeviceDescription& device, RevisionRule rule, const Identity& found) {
     if (fits(device, rule, found)) return {};
+    if (device.identity.vendor == 0 && device.identity.product == 0)
+        return Error{
+            "bus.wrong_identity", subject,
+            fmt::format("nobody has told how a '{}' identifies itself, found {}", device.name, identity_text(found, RevisionRule::exact)),
+            "compare with the drive's type plate, then write what was found under `identity:` of its drive file"};
     std::string expected = identity_text(device.identity, rule);
     for (const auto& other : device.also_accepted) expected += " or " + identity_text(other, rule);
     if (fits(device, RevisionRule::any, found))

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 
+#include "ecat/module_pdos.hpp"
+
 namespace taktwerk::ecat::sim {
 
 ProcessData::ProcessData(const DeviceDescription& description, ObjectDictionary& dictionary)
-    : dictionary_(dictionary), windows_(description.sync_managers.size()) {
+    : description_(description), dictionary_(dictionary), windows_(description.sync_managers.size()) {
     for (std::size_t n = 0; n < windows_.size(); ++n) {
         windows_[n].use = description.sync_managers[n].use;
         const PdoRules& rules = windows_[n].use == SmUse::outputs ? description.rx_rules : description.tx_rules;
@@ -17,7 +19,28 @@ std::uint16_t ProcessData::resolve() {
     constexpr std::uint16_t invalid_input_mapping = 0x0024, invalid_output_mapping = 0x0025;
     for (unsigned n = 0; n < windows_.size(); ++n)
         if (!resolve(n, windows_[n])) return windows_[n].use == SmUse::outputs ? invalid_output_mapping : invalid_input_mapping;
+    if (!every_slot_holds_a_module(SmUse::outputs)) return invalid_output_mapping;
+    if (!every_slot_holds_a_module(SmUse::inputs)) return invalid_input_mapping;
     return 0;
+}
+
+// TSVM 5.2.5: each axis, a slot, has to have one valid module. What refuses it otherwise is not stated.
+bool ProcessData::every_slot_holds_a_module(SmUse use) const {
+    const auto& slots = description_.slots;
+    std::vector<PdoDescription> of_modules;
+    for (const auto& module : slots.modules)
+        for (const auto& pdo : use == SmUse::outputs ? module.rx_pdos : module.tx_pdos) of_modules.push_back(pdo);
+    if (of_modules.empty()) return true;
+    std::vector<bool> filled(slots.count, false);
+    for (std::size_t n = 0; n < windows_.size(); ++n) {
+        if (windows_[n].use != use) continue;
+        const auto pdos = dictionary_.value(assignment_object(n), 0);
+        for (std::int64_t p = 1; p <= pdos; ++p) {
+            const auto pdo = static_cast<std::uint16_t>(dictionary_.value(assignment_object(n), static_cast<std::uint8_t>(p)));
+            if (const auto slot = slot_of(slots, of_modules, pdo)) filled[*slot] = true;
+        }
+    }
+    return std::all_of(filled.begin(), filled.end(), [](bool is) { return is; });
 }
 
 bool ProcessData::resolve(unsigned sync_manager, Window& window) {

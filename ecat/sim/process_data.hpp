@@ -17,7 +17,8 @@ class ProcessData {
 public:
     ProcessData(const DeviceDescription& description, ObjectDictionary& dictionary);
 
-    /// AL status code: 0, 0025h (output mapping) or 0024h (input mapping) when an assigned PDO does not resolve.
+    /// AL status code: 0, 0025h (output mapping) or 0024h (input mapping) when an assigned PDO does not resolve, or when a slot of a
+    /// modular slave has no PDO of a module assigned.
     [[nodiscard]] std::uint16_t resolve();
     /// Of one sync manager; 0 for those that carry no process data.
     [[nodiscard]] std::uint16_t bytes(unsigned sync_manager) const noexcept;
@@ -39,7 +40,9 @@ private:
         std::uint16_t bytes = 0;
     };
     [[nodiscard]] bool resolve(unsigned sync_manager, Window& window);
+    [[nodiscard]] bool every_slot_holds_a_module(SmUse use) const;
 
+    const DeviceDescription& description_;
     ObjectDictionary& dictionary_;
     std::vector<Window> windows_;  // by sync manager; mailboxes have an empty one
 };

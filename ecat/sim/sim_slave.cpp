@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "ecat/module_pdos.hpp"
 #include "ecat/sim/sii_image.hpp"
 
 namespace taktwerk::ecat::sim {
@@ -39,7 +40,8 @@ DeviceDescription dictionary_source(const DeviceDescription& description) {
 }  // namespace
 
 SimSlave::SimSlave(std::shared_ptr<const DeviceDescription> description, std::unique_ptr<DeviceModel> model, SlaveOptions options)
-    : description_(std::move(description)),
+    : description_(description->slots.count == 0 ? std::move(description)
+                                                 : std::make_shared<const DeviceDescription>(with_slots_filled(*description))),
       model_(std::move(model)),
       options_(std::move(options)),
       controller_(settings_of(*description_, options_), EepromInterface{sii_image(*description_, options_.alias, general_flags(options_)),

@@ -41,7 +41,7 @@ TEST(MachineCheck, TwoAxesOnOneDriveAxis) {
 TEST(MachineCheck, ADriveAxisThatTheDriveLacks) {
     const auto error = problem([](MachineConfig& m) { m.axes[1].drive_axis = 1; });
     EXPECT_EQ(error.code, "axis.drive_axis");
-    EXPECT_TRUE(contains(error.text(), "choose 0 to 0")) << error.text();
+    EXPECT_TRUE(contains(error.text(), "there is no axis 2")) << error.text();
 }
 
 TEST(MachineCheck, AnAxisOnASlaveWithoutProfile) {
