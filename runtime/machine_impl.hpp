@@ -79,6 +79,7 @@ struct Machine::Impl {
     void watch_cycle(const CycleTick& tick) noexcept;
     void watch_programs() noexcept;
     void raise_bus_alarms() noexcept;
+    void stop_axes_of_faulted_drives() noexcept;
     void raise(MachineAlarm alarm, AlarmSource source, std::uint16_t index, double a, double b) noexcept;
     void raise_fact(const AlarmFact& fact, std::span<const AlarmInfo> table) noexcept;
     void react() noexcept;

@@ -114,12 +114,13 @@ World::World(const MachineConfig& config, Instant start)
             // Three motor turns of following error, and set-points within 6000 turns/min: what a drive of this class guards.
             setup.personality.following_error_limit = 3.0 * static_cast<double>(setup.plant.counts_per_revolution);
             setup.personality.maximum_velocity = 100.0 * static_cast<double>(setup.plant.counts_per_revolution);
+            setup.personality.overspeed = profile->overspeed_limit * setup.personality.maximum_velocity;
             names[binding.drive_axis] = binding.axis.name;
             options.drift_ppm = binding.simulation.clock_drift_ppm;
         }
         auto model = std::make_unique<axes::sim::Cia402Device>(*profile, setups);
         for (std::size_t i = 0; i < names.size(); ++i)
-            if (!names[i].empty()) axes_.push_back({names[i], &model->axis(i)});
+            if (!names[i].empty()) axes_.push_back({names[i], &model->axis(i), model.get(), i});
         install(*slave, std::move(model), options);
     }
     for (const auto& point : config.io)
@@ -132,10 +133,15 @@ ecat::sim::SimSlave* World::find(std::string_view slave) const noexcept {
     return nullptr;
 }
 
-axes::sim::Cia402Axis* World::drive(std::string_view axis) noexcept {
-    for (auto& place : axes_)
-        if (place.name == axis) return place.axis;
+const World::AxisPlace* World::place(std::string_view axis) const noexcept {
+    for (const auto& place : axes_)
+        if (place.name == axis) return &place;
     return nullptr;
+}
+
+axes::sim::Cia402Axis* World::drive(std::string_view axis) noexcept {
+    const auto* found = place(axis);
+    return found ? found->axis : nullptr;
 }
 
 void World::set_input(std::string_view name, bool value) {
@@ -165,10 +171,10 @@ void World::happen(const SimulationEvent& event) {
         case Kind::input: set_input(event.target, event.value != 0); break;
         case Kind::slave_power: set_slave_power(event.target, event.value != 0); break;
         case Kind::drive_fault:
-            if (auto* axis = drive(event.target)) axis->raise(static_cast<std::uint16_t>(event.value));
+            if (const auto* axis = place(event.target)) axis->device->raise(axis->index, static_cast<std::uint16_t>(event.value));
             break;
         case Kind::main_power:
-            if (auto* axis = drive(event.target)) axis->main_power(event.value != 0);
+            if (const auto* axis = place(event.target)) axis->device->main_power(event.value != 0);
             break;
         case Kind::jam:
             if (auto* axis = drive(event.target)) axis->jam(event.value == 0);

@@ -48,7 +48,10 @@ private:
     struct AxisPlace {
         std::string name;
         axes::sim::Cia402Axis* axis = nullptr;
+        axes::sim::Cia402Device* device = nullptr;
+        std::size_t index = 0;  ///< of the axis in its drive
     };
+    [[nodiscard]] const AxisPlace* place(std::string_view axis) const noexcept;
     ecat::sim::SimNetwork network_;
     ecat::LoopbackTransport transport_;
     Instant start_;

@@ -30,7 +30,9 @@ void Cia402Axis::inner_step() noexcept {
     plant_.step(dt, torque_);
     step_probes(before);
     end_stop();
+    end_self_test();
     supervise();
+    watch_torque();
 }
 
 /// In the drive's counts, as the latched position is.

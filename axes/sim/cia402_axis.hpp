@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "axes/sim/absolute_encoder.hpp"
 #include "axes/sim/axis_objects.hpp"
@@ -27,7 +28,8 @@ public:
     void power_on(Instant now) noexcept;
     /// Control supply gone: the motor is free, the state machine gone.
     void power_off() noexcept {
-        operational_ = false;
+        operational_ = reachable_ = false;
+        self_test_ends_.reset();
         enter(State::not_ready);
     }
     /// Physics up to `now`.
@@ -37,6 +39,12 @@ public:
     /// The bus left OP or fell silent.
     void communication_lost() noexcept;
     void operational(bool op) noexcept { operational_ = op; }
+    /// PREOP or above: the control word can be reached.
+    void reachable(bool is) noexcept { reachable_ = is; }
+    /// The master took the bus out of OP (TSVM 7.2, alarm 44), where the drive tells that from silence.
+    void left_operational() noexcept;
+    /// An alarm of the whole drive. It goes before the axis' own, which shows again once the other is reset (TSVM 7.1).
+    void raise_common(const AlarmCode& alarm) noexcept;
 
     // --- the outside world -----------------------------------------------------------------------------------------------
     /// An alarm of the drive; `resettable` false needs a power cycle. It stays until it is reset.
@@ -59,6 +67,7 @@ public:
 
     [[nodiscard]] const Plant& plant() const noexcept { return plant_; }
     [[nodiscard]] State state() const noexcept { return state_; }
+    [[nodiscard]] std::uint16_t error_code() const noexcept { return error_code_; }
     /// Largest CSP target step between two exchanges while enabled, counts. What a jump of the master would show in.
     [[nodiscard]] double largest_increment() const noexcept { return largest_increment_; }
     /// Set-points and homing starts that came before the brake was open and were lost. A careful master causes none.
@@ -79,6 +88,7 @@ private:
     [[nodiscard]] double torque_limit() const noexcept { return plant_.config().rated_torque * plant_.config().maximum_torque; }
     // cia402_power.cpp
     void command(const AxisInputs& in) noexcept;
+    void end_self_test() noexcept;
     void enter(State state) noexcept;
     // cia402_modes.cpp
     void select_mode(const AxisInputs& in) noexcept;
@@ -118,6 +128,9 @@ private:
     void raise_or_warn(const AlarmCode& alarm) noexcept;
     void end_warning() noexcept;
     void supervise() noexcept;
+    void watch_torque() noexcept;
+    // cia402_common_alarm.cpp
+    [[nodiscard]] bool uncover_alarm() noexcept;
     // cia402_status.cpp
     void fill(AxisOutputs& out) const noexcept;
     [[nodiscard]] std::uint16_t status_word() const noexcept;
@@ -149,7 +162,13 @@ private:
     AlarmCode encoder_complaint_;  ///< stands until reset_encoder(); code 0: none
     std::uint32_t strikes_ = 0;
     double largest_increment_ = 0;
-    Instant commands_from_{};    ///< the brake is open from here on
+    Instant commands_from_{};  ///< set-points are obeyed from here on
+    Instant brake_opens_{};
+    std::optional<Instant> self_test_ends_;
+    bool reachable_ = false;
+    bool common_alarm_ = false;  ///< the alarm shown is the whole drive's
+    AlarmCode hidden_alarm_;     ///< the axis' own behind it; code 0: none
+    Duration overload_lasts_{};  ///< above Personality::torque_overload
     bool winding_down_ = false;  ///< power is to go, but the motor still stops or holds for the brake
     Instant winding_down_until_{};
     bool brake_closed_ = false, encoder_failed_ = false;

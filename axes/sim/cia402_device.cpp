@@ -46,7 +46,9 @@ Cia402Device::Cia402Device(const DriveProfile& profile, const std::vector<AxisSe
       detail_index_(profile.alarm_detail_index),
       detail_sub_(profile.alarm_detail_sub),
       alarms_(profile.alarms),
-      minimum_cycle_(profile.minimum_cycle_csp) {
+      minimum_cycle_(profile.minimum_cycle_csp),
+      missed_allowed_(profile.missed_frames_allowed) {
+    if (!axes.empty()) missed_alarm_ = axes[0].personality.communication_alarm, link_alarm_ = axes[0].personality.link_alarm;
     for (const auto& setup : axes) axes_.emplace_back().model = std::make_unique<Cia402Axis>(setup.plant, setup.personality);
 }
 
@@ -68,7 +70,10 @@ void Cia402Device::power_on(ecat::sim::ObjectDictionary& dictionary, Instant now
         axes_[i].clear_turns = own(clear_turns_);
         axes_[i].model->power_on(now);
     }
-    for (auto& axis : axes_) axis.faulted = false;
+    for (auto& axis : axes_) axis.faulted = false, axis.common = 0;
+    missed_frames_ = dictionary.find(0x1C32, 0x0B);
+    missed_before_ = missed_frames_ ? missed_frames_->get() : 0;
+    missed_in_a_row_ = 0;
     alarm_detail_ = detail_index_ ? dictionary.find(detail_index_, detail_sub_) : nullptr;
     operational_ = false;
     exchange(now);  // the inputs show the truth from the first SAFEOP cycle on
@@ -95,8 +100,9 @@ std::uint16_t Cia402Device::refuse(ecat::sim::EsmState from, ecat::sim::EsmState
 void Cia402Device::entered(ecat::sim::EsmState state, Instant) {
     const bool op = state == ecat::sim::EsmState::op;
     for (auto& axis : axes_) {
-        if (operational_ && !op) axis.model->communication_lost();
+        if (operational_ && !op) axis.model->left_operational();
         axis.model->operational(op);
+        axis.model->reachable(state != ecat::sim::EsmState::init);
     }
     operational_ = op;
 }
@@ -111,6 +117,8 @@ void Cia402Device::advance(Instant now) {
 }
 
 void Cia402Device::exchange(Instant) {
+    count_missed_frames();
+    share_common_alarm();
     for (auto& axis : axes_) {
         AxisInputs in;
         if (operational_) take(command_objects(), axis.commands, in);

@@ -36,6 +36,14 @@ public:
         refused_code_ = al_status_code;
     }
 
+    void link_changed(Instant now) override;
+    /// The supply of the main circuit, one for all axes.
+    void main_power(bool on) noexcept {
+        for (auto& axis : axes_) axis.model->main_power(on);
+    }
+    /// An alarm by its number, with what the profile says of it: of the whole drive, or of one axis.
+    void raise(std::size_t axis, std::uint16_t code) noexcept;
+
     [[nodiscard]] Cia402Axis& axis(std::size_t index) { return *axes_[index].model; }
     [[nodiscard]] std::size_t axis_count() const noexcept { return axes_.size(); }
 
@@ -47,10 +55,15 @@ private:
         Entry *homing_timeout = nullptr, *clear_turns = nullptr;
         bool clear_asked = false;  ///< the control word's bit stood in the exchange before
         bool faulted = false;      ///< as announced
+        std::uint16_t common = 0;  ///< alarm of the whole drive that it shows
     };
     /// An emergency when an axis enters FAULT (or its reaction) and code 0000h when the last one has left it.
     void announce(OneAxis& axis, bool faulted, std::uint16_t code, std::uint32_t detail);
     void serve_encoder(OneAxis& axis, std::uint16_t control);
+    [[nodiscard]] AlarmCode alarm_of(std::uint16_t code) const noexcept;
+    void raise_in_all(const AlarmCode& alarm) noexcept;
+    void count_missed_frames() noexcept;
+    void share_common_alarm() noexcept;
     std::vector<OneAxis> axes_;
     ParameterAddress homing_timeout_, clear_turns_;
     double homing_timeout_unit_;  ///< s
@@ -64,6 +77,11 @@ private:
     Duration minimum_cycle_;
     Duration cycle_{std::chrono::milliseconds{1}};
     bool operational_ = false;
+    Entry* missed_frames_ = nullptr;  ///< 1C32h:0B, SYNC0 that found no new outputs
+    std::int64_t missed_before_ = 0;
+    std::uint32_t missed_in_a_row_ = 0;
+    std::uint8_t missed_allowed_;  ///< 0: not counted
+    AlarmCode missed_alarm_, link_alarm_;
     ecat::sim::EsmState refused_state_ = ecat::sim::EsmState::op;
     std::uint16_t refused_code_ = 0;
 };

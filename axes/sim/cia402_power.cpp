@@ -1,5 +1,7 @@
 // The power state machine of CiA 402-2: what the control word asks, what entering a state brings with it.
 
+#include <algorithm>
+
 #include "axes/sim/cia402_axis.hpp"
 
 namespace taktwerk::axes::sim {
@@ -15,6 +17,18 @@ void Cia402Axis::power_on(Instant now) noexcept {
     brake_closed_ = has_brake();
     for (auto& probe : probes_) probe.command(0);
     homing_.cancel();
+    hidden_alarm_ = {};
+    common_alarm_ = false;
+    overload_lasts_ = {};
+    enter(State::not_ready);
+    self_test_ends_ = now + personality_.self_test;
+    end_self_test();
+}
+
+/// TSVM 5.3.1, transitions 1 and 13: an error found while starting leads to Fault at once.
+void Cia402Axis::end_self_test() noexcept {
+    if (!self_test_ends_ || now_ < *self_test_ends_) return;
+    self_test_ends_.reset();
     enter(State::disabled);
     wake_encoder();
 }
@@ -25,7 +39,8 @@ void Cia402Axis::enter(State state) noexcept {
     else if (powered && state != State::quick_stop && state != State::fault_reaction && state != State::not_ready) wind_down();
     else if (state == State::not_ready || state == State::fault_reaction) winding_down_ = false;
     if (state == State::enabled && state_ != State::enabled) {
-        commands_from_ = now_ + personality_.brake_release;
+        brake_opens_ = now_ + personality_.brake_release;
+        commands_from_ = now_ + std::max(personality_.brake_release, personality_.deaf_after_enable);
         demand_ = {plant_.position(), 0, 0};
         forget_targets();
         strikes_ = 0;
@@ -47,7 +62,7 @@ void Cia402Axis::command(const AxisInputs& in) noexcept {
         if (reset_edge && dropped && error_resettable_ && cause_gone) {
             error_code_ = 0;
             error_detail_ = 0;
-            enter(State::disabled);
+            if (!uncover_alarm()) enter(State::disabled);
         }
         return;
     }

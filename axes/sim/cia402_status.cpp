@@ -13,6 +13,8 @@ constexpr std::uint16_t bit(unsigned n) { return static_cast<std::uint16_t>(1u <
 }  // namespace
 
 std::uint16_t Cia402Axis::status_word() const noexcept {
+    if (state_ == State::not_ready) return 0;
+    if (state_ == State::fault_reaction && personality_.fault_reaction_02b6) return 0x02B6;
     std::uint16_t word = 0;
     switch (state_) {
         case State::not_ready: word = 0x00; break;
@@ -25,14 +27,18 @@ std::uint16_t Cia402Axis::status_word() const noexcept {
         case State::fault: word = personality_.fault_pattern_f ? 0x0F : 0x08; break;
     }
     if (main_power_) word |= bit(4);
+    const bool faulted = state_ == State::fault_reaction || state_ == State::fault;
+    if (personality_.quick_stop_bit_rests_high && (faulted || state_ == State::disabled)) word |= bit(5);
+    if (faulted && personality_.alarm_sets_warning_bit) word |= bit(7);
     if (warning_ || battery_warns()) word |= bit(7);
-    if (personality_.remote_bit && operational_) word |= bit(9);
+    if (personality_.remote_bit && (operational_ || (personality_.remote_bit_from_preop && reachable_))) word |= bit(9);
     if (mode_ == mode::homing) {
         if (stands() && !homing_.busy()) word |= bit(10);
         if (homing_attained_) word |= bit(12);
         if (homing_error_) word |= bit(13);
     } else {
-        if (state_ == State::enabled && stands() && std::abs(demand_.position - plant_.position()) < 10) word |= bit(10);
+        const bool reports_target = personality_.target_reached_in_cyclic || !mode::cyclic(mode_);
+        if (reports_target && state_ == State::enabled && stands() && std::abs(demand_.position - plant_.position()) < 10) word |= bit(10);
         if (mode::cyclic(mode_) && personality_.csp_following_bits && state_ == State::enabled) word |= bit(12);
     }
     if (personality_.home_found_bit_15 && homed_) word |= bit(15);

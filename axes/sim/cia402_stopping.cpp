@@ -23,7 +23,7 @@ void Cia402Axis::step_brake() noexcept {
         if (!stands()) winding_down_until_ = now_ + personality_.brake_hold;
         else if (now_ >= winding_down_until_) winding_down_ = false;
     }
-    brake_closed_ = has_brake() && stands() && (state_ == State::enabled ? now_ < commands_from_ : !energised());
+    brake_closed_ = has_brake() && stands() && (state_ == State::enabled ? now_ < brake_opens_ : !energised());
     plant_.hold(brake_closed_);
 }
 

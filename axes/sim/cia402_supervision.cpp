@@ -55,6 +55,15 @@ void Cia402Axis::communication_lost() noexcept {
     else if (state_ == State::ready || state_ == State::switched_on) enter(State::disabled);
 }
 
+/// TSVM 7.2, alarm 29.
+void Cia402Axis::watch_torque() noexcept {
+    const bool above = personality_.torque_overload > 0 && state_ == State::enabled &&
+                       std::abs(torque_) > personality_.torque_overload * plant_.config().rated_torque;
+    overload_lasts_ = above ? overload_lasts_ + inner_period : Duration{};
+    if (above && overload_lasts_ > personality_.torque_overload_time && personality_.torque_overload_alarm.code)
+        raise(personality_.torque_overload_alarm);
+}
+
 void Cia402Axis::supervise() noexcept {
     watch_encoder();
     if (state_ != State::enabled) return;

@@ -29,7 +29,7 @@ Personality personality_of(const DriveProfile& profile, std::int64_t counts_per_
     const auto own = [&](DriveAlarmKind kind, AlarmCode& alarm) {
         for (const auto& row : profile.alarms)
             if (row.kind == kind) {
-                alarm = {row.code, row.resettable, row.detail, row.warning};
+                alarm = {row.code, row.resettable, row.detail, row.warning, row.whole_drive};
                 return;
             }
     };
@@ -46,6 +46,18 @@ Personality personality_of(const DriveProfile& profile, std::int64_t counts_per_
     own(DriveAlarmKind::battery_low, p.battery_low_alarm);
     own(DriveAlarmKind::reference_lost, p.reference_lost_alarm);
     own(DriveAlarmKind::turn_overflow, p.turn_overflow_alarm);
+    own(DriveAlarmKind::left_operational, p.left_operational_alarm);
+    own(DriveAlarmKind::link_changed, p.link_alarm);
+    own(DriveAlarmKind::torque_overload, p.torque_overload_alarm);
+    p.fault_reaction_02b6 = profile.has(Quirk::fault_reaction_02b6);
+    p.alarm_sets_warning_bit = profile.has(Quirk::alarm_sets_warning_bit);
+    p.remote_bit_from_preop = profile.has(Quirk::remote_bit_from_preop);
+    p.quick_stop_bit_rests_high = profile.has(Quirk::quick_stop_bit_rests_high);
+    p.target_reached_in_cyclic = !profile.has(Quirk::cyclic_bit_10_reserved);
+    p.self_test = profile.self_test;
+    p.deaf_after_enable = profile.deaf_after_enable;
+    p.torque_overload = profile.torque_overload;
+    p.torque_overload_time = profile.torque_overload_time;
     AlarmCode limit;
     own(DriveAlarmKind::negative_limit, limit);
     if (limit.code) p.negative_limit_code = limit.code;

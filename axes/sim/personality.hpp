@@ -18,6 +18,7 @@ struct AlarmCode {
     bool resettable = true;
     std::uint32_t detail = 0;  ///< what the detail object shows (P21.08)
     bool warning = false;      ///< the drive goes on
+    bool whole_drive = false;  ///< stands in every axis, before the axis' own (TSVM 7.1)
 };
 
 /// A way in which a drive fails at once, whatever it is doing. How it shows and whether it clears is the personality's.
@@ -62,6 +63,17 @@ struct Personality {
     // Code 0: this drive has no such alarm; statusword bit 13 tells alone, and a lost turn shows in the position only.
     AlarmCode homing_timeout_alarm, homing_limit_alarm, homing_method_alarm;
     AlarmCode battery_low_alarm, reference_lost_alarm, turn_overflow_alarm;
+    // A drive like the TSVM-D6, sections of its manual.
+    bool fault_reaction_02b6 = false;        ///< Fault Reaction reads 02B6h (5.3.1)
+    bool alarm_sets_warning_bit = false;     ///< bit 7 with every alarm (5.3.2)
+    bool remote_bit_from_preop = false;      ///< bit 9 from PREOP on (5.3.2)
+    bool quick_stop_bit_rests_high = false;  ///< bit 5 in Switch On Disabled and the fault states (5.3.1)
+    bool target_reached_in_cyclic = true;    ///< bit 10 in the cyclic modes
+    Duration self_test{};                    ///< Not Ready To Switch On after power-on
+    Duration deaf_after_enable{};            ///< set-points that come earlier are lost (5.3.1)
+    double torque_overload = 0;              ///< rated torques; longer than `torque_overload_time` is an alarm (PA30, PA31); 0 = no check
+    Duration torque_overload_time{};
+    AlarmCode left_operational_alarm, link_alarm, torque_overload_alarm;  ///< code 0: the drive has none
     std::uint16_t negative_limit_code = 0x5444, positive_limit_code = 0x5443;
 };
 

@@ -59,6 +59,9 @@ public:
     /// Physical time passes up to `now` (also between exchanges; never backwards). Allocation-free.
     virtual void advance(Instant now) { (void)now; }
 
+    /// A network port lost or found its link, in PREOP or above.
+    virtual void link_changed(Instant now) { (void)now; }
+
     /// The SM watchdog expired in OP: the controller goes to SAFEOP with 001Bh.
     virtual void outputs_lost(Instant now) { (void)now; }
 

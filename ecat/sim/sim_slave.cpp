@@ -63,12 +63,20 @@ void SimSlave::power_on(Instant now) {
     dictionary_.reset();
     powered_ = true;
     hung_ = outputs_valid_ = false;
+    links_.reset();
     al_due_ = never;
     settled_ = now;
     missed_outputs_ = 0;
     model_->power_on(dictionary_, now);
     al_.power_on(now);
     schedule();
+}
+
+void SimSlave::set_links(std::uint8_t links) noexcept {
+    const bool changed = links_ && *links_ != links;
+    links_ = links;
+    controller_.set_links(links);
+    if (changed && !hung_ && al_.state() != EsmState::init) model_->link_changed(settled_);
 }
 
 void SimSlave::power_off(Instant now) {

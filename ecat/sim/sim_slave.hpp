@@ -55,6 +55,9 @@ public:
     /// Brings the device model to `now`.
     void settle(Instant now) noexcept;
 
+    /// Which ports have a link: a bit each.
+    void set_links(std::uint8_t links) noexcept;
+
     // --- for tests and for whoever plays with the machine ---------------------------------------------------------------------
     [[nodiscard]] EsmState state() const noexcept { return al_.state(); }
     [[nodiscard]] SlaveController& controller() noexcept { return controller_; }
@@ -104,7 +107,8 @@ private:
     std::vector<std::byte> raw_;     // of a slave without dictionary, all its sync managers of one direction in a row
     bool powered_ = false;
     bool hung_ = false;
-    bool outputs_valid_ = false;  // outputs arrived since SAFEOP was entered
+    std::optional<std::uint8_t> links_;  // known since power-on
+    bool outputs_valid_ = false;         // outputs arrived since SAFEOP was entered
     Instant al_due_ = never;
     Instant settled_{};
     Instant next_event_ = never;

@@ -59,7 +59,7 @@ void Wiring::number(Place& place) {
 void Wiring::update() noexcept {
     for (const auto& place : places_) {
         place->arrives = 0;
-        if (place->slave->powered()) place->slave->controller().set_links(links_of(*place));
+        if (place->slave->powered()) place->slave->set_links(links_of(*place));
     }
     route_.clear();
     flight_.reset();
