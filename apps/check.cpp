@@ -131,6 +131,8 @@ const axes::DriveProfile& profile_of(const MachineConfig& config, const std::str
     return *std::find_if(config.axes.begin(), config.axes.end(), [&](const auto& b) { return b.axis.name == axis; })->profile;
 }
 
+std::string sentence(const std::string& text) { return text.empty() || text.back() == '.' ? text : text + "."; }
+
 /// One sentence for all axes that it concerns.
 void print_hazards(const MachineConfig& config) {
     auto left = runtime::drive_hazards(config);
@@ -142,8 +144,8 @@ void print_hazards(const MachineConfig& config) {
         std::vector<std::string> axes;
         for (const auto& other : left)
             if (other.hazard->text == hazard->text && profile_of(config, other.axis).name == drive) axes.push_back(other.axis);
-        fmt::print("  {} ({} {}): {}.{}\n", fmt::join(axes, ", "), drive, hazard->section, hazard->text,
-                   hazard->remedy.empty() ? "" : fmt::format("\n      {}.", hazard->remedy));
+        fmt::print("  {} ({} {}): {}{}\n", fmt::join(axes, ", "), drive, hazard->section, sentence(hazard->text),
+                   hazard->remedy.empty() ? "" : fmt::format("\n      {}", sentence(hazard->remedy)));
         std::erase_if(left, [&](const auto& other) {
             return std::find(axes.begin(), axes.end(), other.axis) != axes.end() && other.hazard->text == hazard->text;
         });
