@@ -10,10 +10,10 @@ Cia402Axis::Cia402Axis(const PlantConfig& plant, const Personality& personality)
     : personality_(personality),
       plant_(plant),
       probes_{TouchProbe(personality.probe_toggle), TouchProbe(personality.probe_toggle)},
+      profile_position_(personality.profile_buffer, personality.pp_bit_5_blends ? BitFive::blends : BitFive::replaces),
       encoder_(static_cast<double>(personality.counts_per_revolution), plant.index_pulse, personality.encoder_turn_bits),
       battery_(plant.battery),
-      stored_shift_(-plant.index_pulse),
-      profile_position_(personality.profile_buffer, personality.pp_bit_5_blends ? BitFive::blends : BitFive::replaces) {}
+      stored_shift_(-plant.index_pulse) {}
 
 double Cia402Axis::quantised() const noexcept { return std::floor(actual()); }
 

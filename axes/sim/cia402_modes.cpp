@@ -65,8 +65,12 @@ void Cia402Axis::take_targets(const AxisInputs& in, Duration cycle) noexcept {
 double Cia402Axis::enabled_torque(double dt) noexcept {
     if (mode_ == mode::profile_torque) ramp_torque(dt);
     if (mode::of_torque(mode_)) return ServoLoop::torque_control(plant_, torque_demand_, fastest_, torque_limit());
-    if (ramps_velocity()) ramp_velocity(dt);
-    if (mode::of_velocity(mode_)) return with_offset(loop_.velocity_control(plant_, velocity_demand_, 0, torque_limit(), dt));
+    if (mode::of_velocity(mode_)) {
+        const double before = velocity_demand_;
+        if (ramps_velocity()) ramp_velocity(dt);
+        const double acceleration = ramps_velocity() ? (velocity_demand_ - before) / dt : 0;  // a jump of the master's is none
+        return with_offset(loop_.velocity_control(plant_, velocity_demand_, acceleration, torque_limit(), dt));
+    }
     if (mode_ == mode::homing && homing_.state() != HomingRun::State::idle) homing_step(dt);
     else if (mode_ == mode::profile_position) demand_ = profile_position_.step(dt);
     else interpolate(dt);

@@ -24,7 +24,7 @@ Personality personality_of(const DriveProfile& profile, std::int64_t counts_per_
     p.off_stop = profile.off_stop;
     p.quick_stop_leaves = profile.quick_stop_leaves;
     p.stops = profile.stops;
-    p.modes = 0;
+    if (!profile.modes.empty()) p.modes = 0;
     for (const auto mode : profile.modes) p.modes = static_cast<std::uint16_t>(p.modes | (1u << static_cast<unsigned>(mode)));
     p.mode_violation = profile.mode_violation;
     p.mode_change_at_standstill = profile.mode_change_at_standstill;
