@@ -70,6 +70,7 @@ Codec<axes::DriveAlarmKind> alarm_kind() {
                       {"homing_method", K::homing_method},
                       {"power_cycle_pending", K::power_cycle_pending},
                       {"mode_not_set", K::mode_not_set},
+                      {"mode_change", K::mode_change},
                       {"left_operational", K::left_operational},
                       {"link_changed", K::link_changed},
                       {"torque_overload", K::torque_overload}});
@@ -130,6 +131,55 @@ Table<axes::DriveHazard> hazard_table() {
             {}};
 }
 
+Table<axes::StopWay> stop_way_table() {
+    using W = axes::StopWay;
+    using B = axes::StopBy;
+    using T = axes::StopThen;
+    return {
+        "stops.ways",
+        "One value of a stop option.",
+        {
+            field("value", &W::value, integer<std::int16_t>(-32768, 32767), "of the option's object"),
+            with_default(field("modes", &W::modes, list(drive_mode()), "in which it means that; the first row that fits counts"), "all"),
+            required(field("by", &W::by,
+                           choice<B>({{"coast", B::coast},
+                                      {"dynamic_brake", B::dynamic_brake},
+                                      {"ramp", B::ramp},
+                                      {"quick_ramp", B::quick_ramp},
+                                      {"torque_slope", B::torque_slope},
+                                      {"emergency_torque", B::emergency_torque},
+                                      {"zero_speed", B::zero_speed}}),
+                           "how the motor is slowed down (axes/port/drive_stop.hpp)")),
+            required(field("then", &W::then,
+                           choice<T>({{"free", T::free}, {"lock", T::lock}, {"clamp", T::clamp}, {"dynamic_brake", T::dynamic_brake}}),
+                           "what holds it afterwards")),
+        },
+        {},
+        {}};
+}
+
+Table<axes::StopOption> stop_option_table() {
+    using O = axes::StopOption;
+    using S = axes::StopCause;
+    return {"stops",
+            "How the drive stops by itself for one cause.",
+            {
+                required(field("cause", &O::cause,
+                               choice<S>({{"quick_stop", S::quick_stop},
+                                          {"off", S::off},
+                                          {"shutdown", S::shutdown},
+                                          {"disable", S::disable},
+                                          {"halt", S::halt},
+                                          {"fault", S::fault},
+                                          {"overtravel", S::overtravel}}),
+                               "what makes it stop")),
+                with_default(field("object", &O::object, parameter_address(), "that chooses the way"), "the only row counts"),
+                required(field("ways", &O::ways, list(section(stop_way_table())), "what the manual says of each value")),
+            },
+            {},
+            {}};
+}
+
 Table<DriveProfile> motion_table() {
     using P = DriveProfile;
     return {
@@ -167,6 +217,12 @@ Table<DriveProfile> motion_table() {
             field("mode_change_at_standstill", &P::mode_change_at_standstill, boolean(), "modes change only while it stands"),
             field("mode_change_interval", &P::mode_change_interval, duration(), "least time between two changes of 6060h"),
             field("mode_indeterminate", &P::mode_indeterminate, duration(), "6061h means nothing this long after a change of 6060h"),
+            field("mode_violation", &P::mode_violation,
+                  choice<axes::ModeViolation>({{"obeyed", axes::ModeViolation::obeyed},
+                                               {"ignored", axes::ModeViolation::ignored},
+                                               {"alarm", axes::ModeViolation::alarm}}),
+                  "what a change of mode leads to that comes too soon or in motion"),
+            field("profile_buffer", &P::profile_buffer, integer<std::uint8_t>(1, 64), "set-points that PP takes behind the running one"),
             field("enable_status_bits", &P::enable_status_bits, integer<std::uint16_t>(0, u16),
                   "of 6041h, all set before Enable Operation"),
             field("brake_release", &P::brake_release, duration(), "after enabling the brake still holds: the drive loses earlier commands"),
@@ -327,8 +383,20 @@ void add_profile_fields(std::vector<Field<DriveFile>>& f) {
                             {"alarm_sets_warning_bit", Quirk::alarm_sets_warning_bit},
                             {"remote_bit_from_preop", Quirk::remote_bit_from_preop},
                             {"quick_stop_bit_rests_high", Quirk::quick_stop_bit_rests_high},
-                            {"cyclic_bit_10_reserved", Quirk::cyclic_bit_10_reserved}})),
+                            {"cyclic_bit_10_reserved", Quirk::cyclic_bit_10_reserved},
+                            {"pp_bit_5_blends", Quirk::pp_bit_5_blends},
+                            {"pp_shared_ramp", Quirk::pp_shared_ramp},
+                            {"pp_stop_forgets", Quirk::pp_stop_forgets},
+                            {"csv_ramps", Quirk::csv_ramps},
+                            {"pv_bits_12_13_reserved", Quirk::pv_bits_12_13_reserved},
+                            {"velocity_window_in_rpm", Quirk::velocity_window_in_rpm}})),
         "deviations from CiA 402, by name (axes/port/drive_profile.hpp)"));
+    f.push_back(field_at<F>(
+        "stops", [](F & d) -> auto& { return d.profile.stops; }, list(section(stop_option_table())),
+        "how it stops by itself, as far as the manual documents options; they go before `off_stop`, `fault_stop`, `quick_stop_leaves`"));
+    f.push_back(field_at<F>(
+        "emergency_torque", [](F & d) -> auto& { return d.profile.emergency_torque; }, parameter_address(),
+        "object with the torque of stops by emergency_torque"));
     f.push_back(field_at<F>(
         "alarms", [](F & d) -> auto& { return d.profile.alarms; }, list(section(alarm_row_table())), "the drive's alarms"));
     f.push_back(field("alarm_file", &F::alarm_file, text(), "file beside this one with the alarms, where they are many"));

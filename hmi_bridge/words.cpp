@@ -93,6 +93,10 @@ std::string_view word(axes::CommandKind value) noexcept {
         case axes::CommandKind::abort_trigger: return "MC_AbortTrigger";
         case axes::CommandKind::setting: return "a queued setting";
         case axes::CommandKind::set_controller_mode: return "MC_SetControllerMode";
+        case axes::CommandKind::drive_move_absolute: return "Drive_MoveAbsolute";
+        case axes::CommandKind::drive_move_relative: return "Drive_MoveRelative";
+        case axes::CommandKind::drive_move_velocity: return "Drive_MoveVelocity";
+        case axes::CommandKind::drive_torque: return "Drive_Torque";
     }
     return "unknown";
 }

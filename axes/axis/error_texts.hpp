@@ -246,6 +246,10 @@ inline constexpr std::array<ErrorText, error_id_count> error_texts{{
      {"No set-point came from outside while the axis moved", "The program or its task paused for more cycles than feed_patience bridges; the axis brakes",
       "Feed a set-point in each cycle until the axis stands, or raise feed_patience"},
      {"轴运动时未收到外部设定值", "程序或其任务中断的周期数超过 feed_patience；轴开始制动", "在轴静止之前每个周期都给出设定值，或增大 feed_patience"}},
+    {ErrorId::drive_setpoint_refused, "drive_setpoint_refused",
+     {"The drive did not take a set-point of its own profile", "It did not acknowledge the set-point (statusword bit 12), or refused the speed or a ramp written before it",
+      "Check the alarms of the drive, its profile objects (6081h, 6083h, 6084h, 6087h) and that its mode is the profile's"},
+     {"驱动器未接受其自身轨迹的设定值", "驱动器未应答设定值（状态字第 12 位），或拒绝了此前写入的速度或斜坡", "检查驱动器报警、轨迹对象（6081h、6083h、6084h、6087h）以及当前模式"}},
 }};
 // clang-format on
 

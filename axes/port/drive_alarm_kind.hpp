@@ -24,6 +24,7 @@ enum class DriveAlarmKind : std::uint8_t {
     homing_timeout,       ///< the drive's own homing took too long (SV33-E A.425)
     homing_limit,         ///< the drive's own homing met a limit switch that it did not look for (SV-DA200 Er25-6)
     homing_method,        ///< the drive does not know the homing method (SV33-E A.D35, SV-DA200 Er05-4)
+    mode_change,          ///< a change of mode that the drive does not take
     power_cycle_pending,  ///< a parameter takes effect after a restart only
     mode_not_set,         ///< enabled without a mode of operation (TSVM 43)
     left_operational,     ///< the bus left OP while the drive was enabled (TSVM 44)

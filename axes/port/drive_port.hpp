@@ -120,9 +120,10 @@ struct DriveHomingSetup {
     double acceleration = 0;                         ///< counts/s2
 };
 
-/// A set-point for a drive that makes its own profile (PP). A changed `sequence` announces a new one; the port does the
-/// handshake (6040h bit 4 against 6041h bit 12) and answers with DriveFeedback::profile_accepted. Target, speed and ramps are
-/// the command's position, velocity, acceleration and deceleration.
+/// A set-point for a drive that makes its own profile (PP, PV, PT). A changed `sequence` announces a new one; the port brings speed and
+/// ramps to the drive first, does the handshake of PP (6040h bit 4 against 6041h bit 12) and answers with DriveFeedback::profile_accepted.
+/// Target, speed and ramps are the command's position, velocity, torque, acceleration, deceleration and torque_slope; they must not
+/// change while the sequence does not. One that is never accepted was refused.
 struct ProfileSetpoint {
     std::uint32_t sequence = 0;  ///< 0: none
     bool relative = false;

@@ -10,6 +10,7 @@
 #include "axes/port/drive_hazard.hpp"
 #include "axes/port/drive_parameter.hpp"
 #include "axes/port/drive_port.hpp"
+#include "axes/port/drive_stop.hpp"
 #include "core/time.hpp"
 
 namespace taktwerk::axes {
@@ -31,13 +32,20 @@ enum class Quirk : std::uint8_t {
     remote_bit_from_preop,      ///< bit 9 stands from PREOP on, not only in OP (TSVM 5.3.2)
     quick_stop_bit_rests_high,  ///< bit 5 stands in Switch On Disabled and in the fault states too (TSVM 5.3.1: 0270h, 02B6h)
     cyclic_bit_10_reserved,     ///< no "target reached" in the cyclic modes (TSVM 5.3.2: 1237h)
+    pp_bit_5_blends,            ///< control word bit 5 in PP: go on to the next set-point at full speed, not at once (SE-808X 3.2.4)
+    pp_shared_ramp,             ///< in PP 6083h is the deceleration too, 6084h is not used (SV-DA200 3.2.3)
+    pp_stop_forgets,            ///< after a halt or quick stop in PP nothing goes on: the set-points are gone (SV-DA200 3.2.7)
+    csv_ramps,                  ///< CSV applies 6083h and 6084h on top of the master's profile (SV-DA200 3.6)
+    pv_bits_12_13_reserved,     ///< no "speed zero" bit in PV (SE-808X 3.2.2.2, SV33-E 3.4.3(7))
+    velocity_window_in_rpm,     ///< 606Dh is in r/min (SV33-E 7.3)
 };
-inline constexpr std::size_t quirk_count = 15;
+inline constexpr std::size_t quirk_count = 21;
 
-/// How a drive brings its motor to rest by itself.
-enum class DriveStop : std::uint8_t {
-    coast,  ///< power off at once, the motor runs out
-    ramp,   ///< decelerates, then power off
+/// What a drive does that gets a change of mode which its manual forbids.
+enum class ModeViolation : std::uint8_t {
+    obeyed,   ///< it changes all the same
+    ignored,  ///< the old mode stays (TSVM 5.4.1: "may not switch")
+    alarm,    ///< a fault of the kind mode_change (TSVM 5.4.1: "or may raise an abnormality")
 };
 
 struct DriveAlarmText {
@@ -73,8 +81,10 @@ struct DriveProfile {
     Duration minimum_cycle_csp{}, minimum_cycle_csv{}, minimum_cycle_cst{};  ///< 0: not stated
     Duration enable_delay{}, mode_change_delay{}, enable_timeout = std::chrono::seconds{2};
     bool mode_change_at_standstill = false;
-    Duration mode_change_interval{};  ///< least time between two changes of 6060h (TSVM 5.4.1: 20 ms)
-    Duration mode_indeterminate{};    ///< 6061h means nothing this long after a change of 6060h (TSVM 5.4.1: 2 ms)
+    Duration mode_change_interval{};                       ///< least time between two changes of 6060h (TSVM 5.4.1: 20 ms)
+    Duration mode_indeterminate{};                         ///< 6061h means nothing this long after a change of 6060h (TSVM 5.4.1: 2 ms)
+    ModeViolation mode_violation = ModeViolation::obeyed;  ///< sooner than `mode_change_interval`, or in motion
+    std::uint8_t profile_buffer = 1;                       ///< set-points that PP takes behind the running one (SV33-E 1, SV-DA200 8)
     std::uint16_t enable_status_bits =
         0;  ///< of 6041h, all set before Enable Operation (SV-DA200 3.1.2: bit 8 DC locked, bit 4 main power)
     // What the drive does by itself; the simulator plays it, the axis plans with it.
@@ -91,7 +101,10 @@ struct DriveProfile {
     DriveStop off_stop = DriveStop::coast;   ///< power taken away while it moves (SV33-E P04.12 = 2: ramp)
     DriveStop fault_stop = DriveStop::ramp;  ///< fault reaction (SE-808X 605Eh = 0: coast)
     bool quick_stop_leaves = true;           ///< Quick Stop Active ends by itself in Switch On Disabled (SE-808X 3.2.1: it stays)
-    bool csp_interpolates = true;            ///< reaches a CSP target one cycle after the SYNC0 that brought it
+    std::vector<StopOption> stops;           ///< options that the manual documents; they go before the three above
+    ParameterAddress
+        emergency_torque{};        ///< object with the torque of StopBy::emergency_torque, per `torque_rated_raw`; index 0: all there is
+    bool csp_interpolates = true;  ///< reaches a CSP target one cycle after the SYNC0 that brought it
     std::uint16_t object_offset = 0x0800, pdo_offset = 0x40;  ///< per further axis of a multi-axis drive
     std::uint8_t axes = 1;
     std::uint8_t input_bit_negative_limit = 0, input_bit_positive_limit = 1, input_bit_home = 2;  ///< in 60FDh

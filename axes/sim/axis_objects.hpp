@@ -1,11 +1,15 @@
 #pragma once
 // The objects of one simulated axis as plain numbers: what the master writes and what the drive answers.
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "axes/sim/homing_run.hpp"
 
 namespace taktwerk::axes::sim {
+
+inline constexpr std::size_t most_stop_options = 8;
 
 /// Objects that the master writes.
 struct AxisInputs {
@@ -18,6 +22,14 @@ struct AxisInputs {
     std::int64_t home_offset = 0;
     std::int64_t home_position_method = 0;  ///< 60E6h: 0 the reference gets 607Ch, 1 it gets its old position + 607Ch
     std::uint16_t probe_function = 0;
+    std::int64_t maximum_motor_speed = 0;                                                   ///< 6080h, r/min: bounds it too; 0 = no limit
+    std::int64_t profile_velocity = 0, profile_acceleration = 0, profile_deceleration = 0;  ///< 6081h, 6083h, 6084h
+    std::int64_t quick_stop_deceleration = 0;                                               ///< 6085h
+    std::int64_t torque_slope = -1;                                                         ///< 6087h, per s; -1: no such object, at once
+    std::int64_t position_window = -1, position_window_time = 0;                            ///< 6067h, 6068h ms; -1: no such object
+    std::int64_t velocity_window = -1, velocity_window_time = 0;                            ///< 606Dh, 606Eh ms
+    std::int64_t emergency_torque = 0;                          ///< of StopBy::emergency_torque; 0 = all there is
+    std::array<std::int64_t, most_stop_options> stop_values{};  ///< of Personality::stops, in their order
 };
 
 /// Objects that the drive answers.

@@ -10,6 +10,7 @@ Cia402Axis::Cia402Axis(const PlantConfig& plant, const Personality& personality)
     : personality_(personality),
       plant_(plant),
       probes_{TouchProbe(personality.probe_toggle), TouchProbe(personality.probe_toggle)},
+      profile_position_(personality.profile_buffer, personality.pp_bit_5_blends ? BitFive::blends : BitFive::replaces),
       encoder_(static_cast<double>(personality.counts_per_revolution), plant.index_pulse, personality.encoder_turn_bits),
       battery_(plant.battery),
       stored_shift_(-plant.index_pulse) {}
@@ -24,13 +25,15 @@ SwitchStates Cia402Axis::switches() const noexcept { return {plant_.negative_lim
 
 void Cia402Axis::inner_step() noexcept {
     const double dt = inner_seconds;
-    torque_ = !energised() ? 0 : state_ == State::enabled ? enabled_torque(dt) : stopping_torque(dt);
+    if (energised()) torque_ = state_ == State::enabled && !halted_ ? enabled_torque(dt) : stopping_torque(dt);
+    else torque_ = phases_shorted_ ? brake_torque() : 0;
     step_brake();
     const double before = plant_.position();
     plant_.step(dt, torque_);
     step_probes(before);
     end_stop();
     end_self_test();
+    watch_target();
     supervise();
     watch_torque();
 }
@@ -54,8 +57,10 @@ void Cia402Axis::advance(Instant now) noexcept {
 }
 
 void Cia402Axis::exchange(const AxisInputs& in, Duration cycle, AxisOutputs& out) noexcept {
+    settings_ = in;
     select_mode(in);
     command(in);
+    take_halt(in);
     for (std::size_t i = 0; i < probes_.size(); ++i) probes_[i].command(static_cast<std::uint8_t>(in.probe_function >> (8 * i)));
     if (state_ == State::enabled) take_targets(in, cycle);
     homing_bit_ = (in.control & 0x10u) != 0;

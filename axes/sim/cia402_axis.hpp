@@ -1,5 +1,5 @@
 #pragma once
-// One axis of a simulated CiA 402 drive: power state machine, CSP, CSV, CST and homing, alarms, in front of a servo loop and a
+// One axis of a simulated CiA 402 drive: power state machine, modes of operation, ways of stopping, alarms, in front of a servo loop and a
 // plant. It answers because it computes. Knows no bus: axes/sim/cia402_device.hpp copies objects in and out.
 // Sources: CiA 402-2; what differs per drive is in Personality, with the manual's section in the drive sheets.
 
@@ -13,6 +13,7 @@
 #include "axes/sim/mode_codes.hpp"
 #include "axes/sim/personality.hpp"
 #include "axes/sim/plant.hpp"
+#include "axes/sim/profile_position.hpp"
 #include "axes/sim/servo_loop.hpp"
 #include "axes/sim/touch_probe.hpp"
 #include "core/time.hpp"
@@ -75,6 +76,13 @@ public:
     [[nodiscard]] bool brake_closed() const noexcept { return brake_closed_; }
 
 private:
+    /// How the motor comes to rest now. `ramp` counts/s2; at_once: the demanded speed is 0 from the start.
+    struct StopOrder {
+        StopBy by = StopBy::zero_speed;
+        StopThen then = StopThen::free;
+        double ramp = 0;
+        bool at_once = true;
+    };
     static constexpr Duration inner_period = std::chrono::microseconds{125};
     static constexpr double inner_seconds = 125e-6;
 
@@ -93,6 +101,7 @@ private:
     // cia402_modes.cpp
     void select_mode(const AxisInputs& in) noexcept;
     void take_targets(const AxisInputs& in, Duration cycle) noexcept;
+    [[nodiscard]] bool may_change_mode() noexcept;
     void forget_targets() noexcept;
     [[nodiscard]] double enabled_torque(double dt) noexcept;
     // cia402_cyclic.cpp
@@ -114,15 +123,31 @@ private:
     void watch_encoder() noexcept;
     void read_encoder() noexcept;
     [[nodiscard]] bool battery_warns() const noexcept;
+    // cia402_profile.cpp
+    void take_profile_position(const AxisInputs& in) noexcept;
+    void take_profile_velocity(const AxisInputs& in) noexcept;
+    void take_profile_torque(const AxisInputs& in) noexcept;
+    void ramp_velocity(double dt) noexcept;
+    void ramp_torque(double dt) noexcept;
+    [[nodiscard]] bool ramps_velocity() const noexcept;
+    [[nodiscard]] double speed_limit(const AxisInputs& in) const noexcept;
+    [[nodiscard]] bool profile_reached() const noexcept;
+    void watch_target() noexcept;
     // cia402_stopping.cpp
+    [[nodiscard]] StopOrder stop_for(StopCause cause) const noexcept;
+    [[nodiscard]] StopOrder undocumented_stop(StopCause cause) const noexcept;
+    [[nodiscard]] double ramp_of(StopBy by) const noexcept;
+    void begin_stop(const StopOrder& order) noexcept;
+    void take_halt(const AxisInputs& in) noexcept;
     [[nodiscard]] double stopping_torque(double dt) noexcept;
-    void stop_step(double dt, double deceleration) noexcept;
+    [[nodiscard]] double slowing_torque(double dt) noexcept;
+    [[nodiscard]] double brake_torque() const noexcept;
     void end_stop() noexcept;
     [[nodiscard]] bool energised() const noexcept;
     [[nodiscard]] bool has_brake() const noexcept { return personality_.brake_hold > Duration::zero(); }
     [[nodiscard]] bool too_early() const noexcept { return now_ < commands_from_; }
     [[nodiscard]] bool stands() const noexcept;
-    void wind_down() noexcept;
+    void wind_down(StopCause cause) noexcept;
     void step_brake() noexcept;
     // cia402_supervision.cpp
     void raise_or_warn(const AlarmCode& alarm) noexcept;
@@ -134,6 +159,7 @@ private:
     // cia402_status.cpp
     void fill(AxisOutputs& out) const noexcept;
     [[nodiscard]] std::uint16_t status_word() const noexcept;
+    [[nodiscard]] std::uint16_t profile_bits() const noexcept;
 
     Personality personality_;
     Plant plant_;
@@ -146,8 +172,17 @@ private:
     double zero_ = 0;  ///< plant position at which the drive counts 0
     std::int64_t mode_ = 0;
     Demand demand_;
-    double demand_step_ = 0;       ///< counts per second towards the newest target
-    double target_ = 0;            ///< newest CSP target, plant coordinates
+    double demand_step_ = 0;  ///< counts per second towards the newest target
+    double target_ = 0;       ///< newest CSP target, plant coordinates
+    AxisInputs settings_;     ///< as of the last exchange
+    StopOrder stop_;
+    bool stop_done_ = false, halted_ = false, phases_shorted_ = false;
+    ProfilePosition profile_position_;
+    double velocity_target_ = 0, torque_target_ = 0;  ///< of the profile modes: what the ramps lead to
+    bool limited_ = false;                            ///< bit 11: a target was clipped
+    bool target_reached_ = false;
+    Instant in_window_since_{};
+    std::optional<Instant> mode_changed_at_;
     std::int64_t steps_left_ = 0;  ///< inner steps until the target is reached
     double torque_ = 0, torque_demand_ = 0, torque_offset_ = 0, velocity_demand_ = 0;
     double fastest_ = 0;  ///< counts/s, torque modes; 0 = no limit

@@ -64,7 +64,8 @@ void Cia402Axis::take_velocity_target(const AxisInputs& in) noexcept {
         if (in.target_velocity != 0) ++early_commands_;
         return;
     }
-    velocity_demand_ = static_cast<double>(in.target_velocity + in.velocity_offset) / personality_.velocity_counts_per_unit;
+    velocity_target_ = static_cast<double>(in.target_velocity + in.velocity_offset) / personality_.velocity_counts_per_unit;
+    if (!ramps_velocity()) velocity_demand_ = velocity_target_;
 }
 
 void Cia402Axis::take_torque_target(const AxisInputs& in) noexcept {
@@ -73,7 +74,8 @@ void Cia402Axis::take_torque_target(const AxisInputs& in) noexcept {
         return;
     }
     torque_demand_ = torque_of(in.target_torque + in.torque_offset);
-    fastest_ = static_cast<double>(in.maximum_velocity) / personality_.velocity_counts_per_unit;
+    const double limit = speed_limit(in);
+    fastest_ = std::isfinite(limit) ? limit : 0;
 }
 
 void Cia402Axis::take_torque_offset(const AxisInputs& in) noexcept {

@@ -46,6 +46,8 @@ Cia402Device::Cia402Device(const DriveProfile& profile, const std::vector<AxisSe
       detail_index_(profile.alarm_detail_index),
       detail_sub_(profile.alarm_detail_sub),
       alarms_(profile.alarms),
+      stops_(profile.stops),
+      emergency_torque_(profile.emergency_torque),
       minimum_cycle_(profile.minimum_cycle_csp),
       missed_allowed_(profile.missed_frames_allowed) {
     if (!axes.empty()) missed_alarm_ = axes[0].personality.communication_alarm, link_alarm_ = axes[0].personality.link_alarm;
@@ -68,6 +70,10 @@ void Cia402Device::power_on(ecat::sim::ObjectDictionary& dictionary, Instant now
         const auto own = [&](ParameterAddress a) { return a.index ? at(a.index, a.sub) : nullptr; };
         axes_[i].homing_timeout = own(homing_timeout_);
         axes_[i].clear_turns = own(clear_turns_);
+        axes_[i].stop_values.clear();
+        for (const auto& stop : stops_)
+            axes_[i].stop_values.push_back(stop.object.index ? at(stop.object.index, stop.object.sub) : nullptr);
+        axes_[i].emergency_torque = emergency_torque_.index ? at(emergency_torque_.index, emergency_torque_.sub) : nullptr;
         axes_[i].model->power_on(now);
     }
     for (auto& axis : axes_) axis.faulted = false, axis.common = 0;
@@ -125,6 +131,9 @@ void Cia402Device::exchange(Instant) {
         take(setting_objects(), axis.settings, in);
         if (axis.homing_timeout) in.homing.time_limit = static_cast<double>(axis.homing_timeout->get()) * homing_timeout_unit_;
         serve_encoder(axis, in.control);
+        for (std::size_t i = 0; i < axis.stop_values.size() && i < most_stop_options; ++i)
+            if (axis.stop_values[i]) in.stop_values[i] = axis.stop_values[i]->get();
+        if (axis.emergency_torque) in.emergency_torque = axis.emergency_torque->get();
         AxisOutputs out;
         axis.model->exchange(in, cycle_, out);
         for (std::size_t i = 0; i < axis.answers.size(); ++i) put(axis.answers[i], answer_objects()[i].value(out));

@@ -56,6 +56,8 @@ private:
         bool clear_asked = false;  ///< the control word's bit stood in the exchange before
         bool faulted = false;      ///< as announced
         std::uint16_t common = 0;  ///< alarm of the whole drive that it shows
+        std::vector<Entry*> stop_values;  ///< in the order of the profile's stops
+        Entry* emergency_torque = nullptr;
     };
     /// An emergency when an axis enters FAULT (or its reaction) and code 0000h when the last one has left it.
     void announce(OneAxis& axis, bool faulted, std::uint16_t code, std::uint32_t detail);
@@ -74,6 +76,8 @@ private:
     std::uint16_t detail_index_;
     std::uint8_t detail_sub_;
     std::vector<DriveAlarmText> alarms_;
+    std::vector<StopOption> stops_;
+    ParameterAddress emergency_torque_;
     Duration minimum_cycle_;
     Duration cycle_{std::chrono::milliseconds{1}};
     bool operational_ = false;

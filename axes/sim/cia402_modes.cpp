@@ -1,21 +1,39 @@
 // Which mode is active, which targets it takes, and who makes the torque in it. The modes themselves: cia402_cyclic.cpp,
-// cia402_homing.cpp.
+// cia402_profile.cpp, cia402_homing.cpp.
 
 #include "axes/sim/cia402_axis.hpp"
 
 namespace taktwerk::axes::sim {
 
+/// False: the drive does not take this change now. TSVM 5.4.1: at standstill, and so long after the last one.
+bool Cia402Axis::may_change_mode() noexcept {
+    const bool too_soon = mode_changed_at_ && now_ - *mode_changed_at_ < personality_.mode_change_interval;
+    const bool moves = personality_.mode_change_at_standstill && state_ == State::enabled && !stands();
+    if (!too_soon && !moves) return true;
+    switch (personality_.mode_violation) {
+        case ModeViolation::obeyed: return true;
+        case ModeViolation::ignored: break;
+        case ModeViolation::alarm:
+            if (personality_.mode_change_alarm.code) raise(personality_.mode_change_alarm);
+            break;
+    }
+    return false;
+}
+
+/// 0 and what the drive does not have leave the mode as it is (TSVM 5.4.1 rule 7).
 void Cia402Axis::select_mode(const AxisInputs& in) noexcept {
     if (in.mode == mode_) return;
-    const bool known = in.mode == mode::profile_velocity || in.mode == mode::profile_torque || in.mode == mode::homing ||
-                       in.mode == mode::cyclic_position || in.mode == mode::cyclic_velocity || in.mode == mode::cyclic_torque;
-    if (!known) return;
+    const auto wanted = mode::meaning(in.mode);
+    if (wanted == DriveMode::none || !(personality_.modes >> static_cast<unsigned>(wanted) & 1u)) return;
     if (mode_ == mode::homing && homing_.busy()) return;  // no other while homing runs (SV33-E 3.4.3)
+    if (!may_change_mode()) return;
     if (mode::of_torque(mode_)) loop_.take_over(torque_);
     mode_ = in.mode;
+    mode_changed_at_ = now_;
     end_warning();
     homing_.cancel();
     homing_attained_ = homing_error_ = false;
+    halted_ = false;
     // A switch never moves: the new mode starts where the axis is.
     demand_ = {plant_.position(), 0, 0};
     forget_targets();
@@ -24,16 +42,20 @@ void Cia402Axis::select_mode(const AxisInputs& in) noexcept {
 void Cia402Axis::forget_targets() noexcept {
     target_ = plant_.position();
     steps_left_ = 0;
-    velocity_demand_ = torque_demand_ = torque_offset_ = 0;
+    velocity_demand_ = ramps_velocity() && !stands() ? plant_.velocity() : 0;  // a ramp begins at the speed there is
+    velocity_target_ = torque_target_ = torque_demand_ = torque_offset_ = 0;
+    profile_position_.reset(plant_.position());
+    limited_ = target_reached_ = false;
 }
 
 void Cia402Axis::take_targets(const AxisInputs& in, Duration cycle) noexcept {
     take_torque_offset(in);
     switch (mode_) {
         case mode::cyclic_position: take_position_target(in, to_seconds(cycle)); break;
-        case mode::profile_velocity:
+        case mode::profile_position: take_profile_position(in); break;
+        case mode::profile_velocity: take_profile_velocity(in); break;
         case mode::cyclic_velocity: take_velocity_target(in); break;
-        case mode::profile_torque:
+        case mode::profile_torque: take_profile_torque(in); break;
         case mode::cyclic_torque: take_torque_target(in); break;
         case mode::homing: take_homing_start(in); break;
         default: break;
@@ -41,9 +63,16 @@ void Cia402Axis::take_targets(const AxisInputs& in, Duration cycle) noexcept {
 }
 
 double Cia402Axis::enabled_torque(double dt) noexcept {
+    if (mode_ == mode::profile_torque) ramp_torque(dt);
     if (mode::of_torque(mode_)) return ServoLoop::torque_control(plant_, torque_demand_, fastest_, torque_limit());
-    if (mode::of_velocity(mode_)) return with_offset(loop_.velocity_control(plant_, velocity_demand_, 0, torque_limit(), dt));
+    if (mode::of_velocity(mode_)) {
+        const double before = velocity_demand_;
+        if (ramps_velocity()) ramp_velocity(dt);
+        const double acceleration = ramps_velocity() ? (velocity_demand_ - before) / dt : 0;  // a jump of the master's is none
+        return with_offset(loop_.velocity_control(plant_, velocity_demand_, acceleration, torque_limit(), dt));
+    }
     if (mode_ == mode::homing && homing_.state() != HomingRun::State::idle) homing_step(dt);
+    else if (mode_ == mode::profile_position) demand_ = profile_position_.step(dt);
     else interpolate(dt);
     return with_offset(loop_.position_control(plant_, demand_, quantised() + zero_, torque_limit(), dt));
 }

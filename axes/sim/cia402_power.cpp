@@ -13,7 +13,8 @@ void Cia402Axis::power_on(Instant now) noexcept {
     error_detail_ = 0;
     error_resettable_ = true;
     last_control_ = 0;
-    encoder_failed_ = winding_down_ = false;
+    encoder_failed_ = winding_down_ = phases_shorted_ = false;
+    mode_changed_at_.reset();
     brake_closed_ = has_brake();
     for (auto& probe : probes_) probe.command(0);
     homing_.cancel();
@@ -36,7 +37,8 @@ void Cia402Axis::end_self_test() noexcept {
 void Cia402Axis::enter(State state) noexcept {
     const bool powered = state_ == State::enabled || state_ == State::quick_stop;
     if (state == State::enabled) winding_down_ = false;
-    else if (powered && state != State::quick_stop && state != State::fault_reaction && state != State::not_ready) wind_down();
+    else if (powered && state != State::quick_stop && state != State::fault_reaction && state != State::not_ready)
+        wind_down(state == State::ready ? StopCause::shutdown : state == State::switched_on ? StopCause::disable : StopCause::off);
     else if (state == State::not_ready || state == State::fault_reaction) winding_down_ = false;
     if (state == State::enabled && state_ != State::enabled) {
         brake_opens_ = now_ + personality_.brake_release;
@@ -47,7 +49,10 @@ void Cia402Axis::enter(State state) noexcept {
         loop_.reset();
     }
     if (state != State::enabled) homing_.cancel();
-    if (state == State::quick_stop || state == State::fault_reaction) demand_ = {plant_.position(), plant_.velocity(), 0};
+    if (state != State::enabled) halted_ = false;
+    if (state == State::enabled || state == State::not_ready) phases_shorted_ = false;
+    if (state == State::quick_stop) begin_stop(stop_for(StopCause::quick_stop));
+    if (state == State::fault_reaction) begin_stop(stop_for(StopCause::fault));
     state_ = state;
 }
 
@@ -82,6 +87,8 @@ void Cia402Axis::command(const AxisInputs& in) noexcept {
         case State::switched_on:
             if (!voltage || quick) enter(State::disabled);
             else if (shutdown) enter(State::ready);
+            else if (enable && main_power_ && mode_ == mode::none && personality_.mode_not_set_alarm.code)
+                raise(personality_.mode_not_set_alarm);
             else if (enable && main_power_) enter(State::enabled);
             break;
         case State::enabled:
@@ -92,7 +99,7 @@ void Cia402Axis::command(const AxisInputs& in) noexcept {
             break;
         case State::quick_stop:
             if (!voltage) enter(State::disabled);
-            else if (enable && !personality_.quick_stop_leaves) enter(State::enabled);
+            else if (enable && stop_.then != StopThen::free) enter(State::enabled);
             break;
         case State::not_ready:
         case State::fault_reaction:

@@ -36,6 +36,8 @@ std::uint16_t Cia402Axis::status_word() const noexcept {
         if (stands() && !homing_.busy()) word |= bit(10);
         if (homing_attained_) word |= bit(12);
         if (homing_error_) word |= bit(13);
+    } else if (mode_ == mode::profile_position || mode_ == mode::profile_velocity || mode_ == mode::profile_torque) {
+        word |= profile_bits();
     } else {
         const bool reports_target = personality_.target_reached_in_cyclic || !mode::cyclic(mode_);
         if (reports_target && state_ == State::enabled && stands() && std::abs(demand_.position - plant_.position()) < 10) word |= bit(10);
@@ -45,12 +47,28 @@ std::uint16_t Cia402Axis::status_word() const noexcept {
     return word;
 }
 
+std::uint16_t Cia402Axis::profile_bits() const noexcept {
+    std::uint16_t word = 0;
+    if (target_reached_) word |= bit(10);
+    if (limited_ && personality_.internal_limit_bit) word |= bit(11);
+    if (mode_ == mode::profile_position && profile_position_.acknowledges()) word |= bit(12);
+    if (mode_ == mode::profile_velocity && personality_.pv_speed_zero_bit && stands()) word |= bit(12);
+    const double limit = personality_.following_error_limit;
+    if (mode_ == mode::profile_position && limit > 0 && std::abs(demand_.position - plant_.position()) > limit) word |= bit(13);
+    return word;
+}
+
 void Cia402Axis::fill(AxisOutputs& out) const noexcept {
     out.status = status_word();
     out.mode = mode_;
     out.position = encoder_failed_ ? frozen_position_ : static_cast<std::int64_t>(quantised());
     out.velocity = std::llround(plant_.velocity() * personality_.velocity_counts_per_unit);
     out.torque = std::llround(torque_ / plant_.config().rated_torque * personality_.torque_rated_raw);
+    if (mode_changed_at_ && now_ - *mode_changed_at_ < personality_.mode_indeterminate) {  // whatever lies there (TSVM 5.4.1 rule 3)
+        out.mode = -86;
+        out.velocity = ~out.velocity;
+        out.torque = ~out.torque;
+    }
     out.demand = static_cast<std::int64_t>(std::floor(demand_.position - zero_));
     out.following_error = out.demand - out.position;
     out.error_code = error_code_;

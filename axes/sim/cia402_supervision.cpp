@@ -68,7 +68,7 @@ void Cia402Axis::supervise() noexcept {
     watch_encoder();
     if (state_ != State::enabled) return;
     if (personality_.overspeed > 0 && std::abs(plant_.velocity()) > personality_.overspeed) raise(personality_.overspeed_alarm);
-    const bool follows_position = mode_ == mode::cyclic_position || mode_ == mode::homing;
+    const bool follows_position = mode_ == mode::cyclic_position || mode_ == mode::homing || mode_ == mode::profile_position;
     if (state_ == State::enabled && personality_.following_error_limit > 0 && follows_position &&
         std::abs(demand_.position - plant_.position()) > personality_.following_error_limit)
         raise(personality_.following_error_alarm);

@@ -27,6 +27,16 @@ constexpr InputObject settings[] = {
     {0x609A, 0, [](In& in, Value v) { in.homing.acceleration = static_cast<double>(v); }},
     {0x607C, 0, [](In& in, Value v) { in.home_offset = v; }},
     {0x60E6, 0, [](In& in, Value v) { in.home_position_method = v; }},
+    {0x6080, 0, [](In& in, Value v) { in.maximum_motor_speed = v; }},
+    {0x6081, 0, [](In& in, Value v) { in.profile_velocity = v; }},
+    {0x6083, 0, [](In& in, Value v) { in.profile_acceleration = v; }},
+    {0x6084, 0, [](In& in, Value v) { in.profile_deceleration = v; }},
+    {0x6085, 0, [](In& in, Value v) { in.quick_stop_deceleration = v; }},
+    {0x6087, 0, [](In& in, Value v) { in.torque_slope = v; }},
+    {0x6067, 0, [](In& in, Value v) { in.position_window = v; }},
+    {0x6068, 0, [](In& in, Value v) { in.position_window_time = v; }},
+    {0x606D, 0, [](In& in, Value v) { in.velocity_window = v; }},
+    {0x606E, 0, [](In& in, Value v) { in.velocity_window_time = v; }},
 };
 
 constexpr OutputObject answers[] = {

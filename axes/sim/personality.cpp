@@ -23,6 +23,20 @@ Personality personality_of(const DriveProfile& profile, std::int64_t counts_per_
     p.fault_stop = profile.fault_stop;
     p.off_stop = profile.off_stop;
     p.quick_stop_leaves = profile.quick_stop_leaves;
+    p.stops = profile.stops;
+    if (!profile.modes.empty()) p.modes = 0;
+    for (const auto mode : profile.modes) p.modes = static_cast<std::uint16_t>(p.modes | (1u << static_cast<unsigned>(mode)));
+    p.mode_violation = profile.mode_violation;
+    p.mode_change_at_standstill = profile.mode_change_at_standstill;
+    p.mode_change_interval = profile.mode_change_interval;
+    p.mode_indeterminate = profile.mode_indeterminate;
+    p.profile_buffer = profile.profile_buffer;
+    p.pp_bit_5_blends = profile.has(Quirk::pp_bit_5_blends);
+    p.pp_shared_ramp = profile.has(Quirk::pp_shared_ramp);
+    p.pp_stop_forgets = profile.has(Quirk::pp_stop_forgets);
+    p.csv_ramps = profile.has(Quirk::csv_ramps);
+    p.pv_speed_zero_bit = !profile.has(Quirk::pv_bits_12_13_reserved);
+    p.velocity_window_in_rpm = profile.has(Quirk::velocity_window_in_rpm);
     p.brake_release = profile.brake_release;
     p.brake_hold = profile.brake_hold;
     // The first row of a kind is this drive's own alarm for it; kinds that the profile does not mark keep the usual codes.
@@ -58,6 +72,8 @@ Personality personality_of(const DriveProfile& profile, std::int64_t counts_per_
     p.deaf_after_enable = profile.deaf_after_enable;
     p.torque_overload = profile.torque_overload;
     p.torque_overload_time = profile.torque_overload_time;
+    own(DriveAlarmKind::mode_not_set, p.mode_not_set_alarm);
+    own(DriveAlarmKind::mode_change, p.mode_change_alarm);
     AlarmCode limit;
     own(DriveAlarmKind::negative_limit, limit);
     if (limit.code) p.negative_limit_code = limit.code;

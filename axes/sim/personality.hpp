@@ -2,6 +2,7 @@
 // How a drive type behaves where CiA 402 leaves room. Plain data; what a drive's manual says of it comes from its profile.
 
 #include <cstdint>
+#include <vector>
 
 #include "axes/port/drive_profile.hpp"
 #include "axes/sim/touch_probe.hpp"
@@ -50,9 +51,21 @@ struct Personality {
     /// After power is taken at standstill the motor holds this long until the brake does (SV33-E P05.14). 0: no brake.
     Duration brake_hold{};
     double quick_stop_deceleration = 0;  ///< counts/s2; 0 = torque limit
-    double following_error_limit = 0;    ///< counts; 0 = no check
-    double maximum_velocity = 0;         ///< counts/s; CSP increments beyond 3 times that are counted; 0 = no check
-    double overspeed = 0;                ///< counts/s beyond which the measured speed is an alarm; 0 = no check
+    std::vector<StopOption> stops;       ///< documented options; they go before off_stop, fault_stop and quick_stop_leaves
+    // Modes of operation.
+    std::uint16_t modes = 0xFFFF;  ///< bit per DriveMode that the drive has
+    ModeViolation mode_violation = ModeViolation::obeyed;
+    bool mode_change_at_standstill = false;
+    Duration mode_change_interval{}, mode_indeterminate{};
+    AlarmCode mode_not_set_alarm{0}, mode_change_alarm{0};  ///< code 0: the drive has none
+    std::uint8_t profile_buffer = 1;
+    bool pp_bit_5_blends = false, pp_shared_ramp = false, pp_stop_forgets = false;
+    bool csv_ramps = false;
+    bool pv_speed_zero_bit = true;  ///< bit 12 in PV
+    bool velocity_window_in_rpm = false;
+    double following_error_limit = 0;  ///< counts; 0 = no check
+    double maximum_velocity = 0;       ///< counts/s; CSP increments beyond 3 times that are counted; 0 = no check
+    double overspeed = 0;              ///< counts/s beyond which the measured speed is an alarm; 0 = no check
     AlarmCode following_error_alarm{0x8611};
     AlarmCode increment_alarm{0x0424};
     AlarmCode undervoltage_alarm{0x3220};

@@ -114,8 +114,9 @@ enum class ErrorId : std::uint16_t {
     // Blocks without CommandAborted.
     aborted_by_command = 0x0031,  ///< another command, or power off, ended it before it was done
     // Set-points from outside.
-    setpoint_missing = 0x0032,  ///< an axis that is fed from outside moved, and no set-point came any more
+    setpoint_missing = 0x0032,        ///< an axis that is fed from outside moved, and no set-point came any more
+    drive_setpoint_refused = 0x0033,  ///< the drive did not take a set-point of its own profile in time
 };
-inline constexpr std::size_t error_id_count = 0x0033;
+inline constexpr std::size_t error_id_count = 0x0034;
 
 }  // namespace taktwerk::axes

@@ -117,6 +117,8 @@ Result<void> Cia402Drive::resolve() {
     find_probes();
     find_homing_setup();
     drop_modes_without_target();
+    capabilities_.profile_buffer = capabilities_.has(DriveMode::profile_position) ? profile_->profile_buffer : std::uint8_t{0};
+    find_ramps();
     collect_starting_values();
     return {};
 }
@@ -160,6 +162,21 @@ void Cia402Drive::find_homing_setup() {
     capabilities_.homing_per_run = true;
 }
 
+/// What of a profile's speed and ramps goes by SDO: the drive has it and it is not mapped.
+void Cia402Drive::find_ramps() {
+    const auto& device = bus_.slave(slave_).device;
+    if (!device) return;
+    const auto use = [&](RampWriter::Ramp ramp, const MappedOutput& mapped, std::uint16_t base) {
+        if (mapped.mapped()) return;
+        for (const auto& entry : device->objects)
+            if (entry.index == object(base) && entry.sub == 0) ramps_.use(ramp, entry.index, ecat::bit_size(entry.type) / 8u);
+    };
+    use(RampWriter::velocity, out_.profile_velocity, 0x6081);
+    use(RampWriter::acceleration, out_.profile_acceleration, 0x6083);
+    use(RampWriter::deceleration, out_.profile_deceleration, 0x6084);
+    use(RampWriter::torque_slope, out_.torque_slope, 0x6087);
+}
+
 void Cia402Drive::drop_modes_without_target() noexcept {
     const auto needs = [&](DriveMode mode, const MappedOutput& target) {
         if (!target.mapped()) capabilities_.modes = static_cast<std::uint16_t>(capabilities_.modes & ~(1u << static_cast<unsigned>(mode)));
@@ -191,6 +208,7 @@ DriveAlarm Cia402Drive::alarm() const noexcept { return alarm_.alarm(); }
 
 void Cia402Drive::step(Instant) {
     alarm_.step(bus_, slave_);
+    ramps_.step(bus_, slave_);
     if (capabilities_.homing_per_run) homing_setup_.step(bus_, slave_);
 }
 

@@ -15,6 +15,8 @@
 #include "axes/drives/cia402/homing_setup.hpp"
 #include "axes/drives/cia402/mapped_output.hpp"
 #include "axes/drives/cia402/probe_latch.hpp"
+#include "axes/drives/cia402/profile_handshake.hpp"
+#include "axes/drives/cia402/ramp_writer.hpp"
 #include "axes/drives/cia402/turn_clearing.hpp"
 #include "axes/port/drive_port.hpp"
 #include "axes/port/drive_profile.hpp"
@@ -65,12 +67,15 @@ private:
     void find_homing_setup();
     void drop_modes_without_target() noexcept;
     void collect_starting_values();
+    void find_ramps();
     void decode_motion() noexcept;
     void decode_homing(std::uint16_t status, Instant now) noexcept;
     void decode_probes() noexcept;
     [[nodiscard]] std::uint16_t control_word(const DriveCommand& command, bool mode_confirmed) noexcept;
     [[nodiscard]] std::uint16_t fault_reset_word() noexcept;
     [[nodiscard]] DriveMode mode_to_send(DriveMode wanted, Instant now) noexcept;
+    [[nodiscard]] bool profile_prepared(const DriveCommand& command, bool follows) noexcept;
+    void hold_profile_target(DriveCommand& command, bool follows, bool prepared) noexcept;
     void write_targets(std::span<std::byte> image, const DriveCommand& command, bool follows) const noexcept;
     void write_limits(std::span<std::byte> image, const DriveCommand& command) const noexcept;
     void write_probes(std::span<std::byte> image, const DriveCommand& command) noexcept;
@@ -103,6 +108,9 @@ private:
     std::array<ProbeLatch, 2> probes_{};
     HomingSetup homing_setup_;
     TurnClearing turns_;
+    ProfileHandshake handshake_;
+    RampWriter ramps_;
+    double held_velocity_ = 0, held_torque_ = 0;  // target of PV and PT while ramps for the next are being written
     AlarmReader alarm_;
 };
 

@@ -36,6 +36,7 @@ const DriveFeedback& Cia402Drive::decode(Instant now) noexcept {
     if (!feedback_.online) {
         homing_setup_.forget();
         turns_.note(PowerState::unknown);
+        if (was_online_) ramps_.forget();
         was_online_ = false;
         position_at_ = {};
     }

@@ -20,6 +20,9 @@ bool cyclic(DriveMode mode) noexcept {
     return mode == DriveMode::cyclic_position || mode == DriveMode::cyclic_velocity || mode == DriveMode::cyclic_torque;
 }
 bool position_mode(DriveMode mode) noexcept { return mode == DriveMode::cyclic_position || mode == DriveMode::profile_position; }
+bool profile_mode(DriveMode mode) noexcept {
+    return mode == DriveMode::profile_position || mode == DriveMode::profile_velocity || mode == DriveMode::profile_torque;
+}
 bool velocity_mode(DriveMode mode) noexcept { return mode == DriveMode::cyclic_velocity || mode == DriveMode::profile_velocity; }
 bool torque_mode(DriveMode mode) noexcept { return mode == DriveMode::cyclic_torque || mode == DriveMode::profile_torque; }
 
@@ -90,14 +93,25 @@ void Cia402Drive::encode(const DriveCommand& command, Instant now) noexcept {
     } else if (!homing_since_) {
         homing_since_ = now;
     }
-    write_signal(image, out_.control.signal, word);
     write_signal(image, out_.mode.signal, mode_code(mode));
 
     // Until the drive follows in this mode its target is its own actual position: enabling and mode switches never step. From one cyclic
     // mode into another the targets of both are the command's: a motor that turns would feel an actual value, old as it is, as a step.
     const bool changes_over = cyclic(feedback_.mode) && cyclic(command.mode);
     const bool follows = feedback_.power == PowerState::enabled && (mode_confirmed || changes_over) && command.power == PowerRequest::on;
-    write_targets(image, command, follows);
+    if (profile_mode(command.mode)) {
+        auto held = command;
+        const bool prepared = profile_prepared(command, follows);
+        if (command.mode == DriveMode::profile_position && prepared)
+            word |= handshake_.bits(command.profile, feedback_.status_word, feedback_.fresh, now);
+        hold_profile_target(held, follows, prepared);
+        write_targets(image, held, follows);
+    } else {
+        handshake_.reset();
+        held_velocity_ = held_torque_ = 0;
+        write_targets(image, command, follows);
+    }
+    write_signal(image, out_.control.signal, word);
     write_limits(image, command);
     if (out_.digital.mapped()) {
         const auto before = static_cast<std::uint32_t>(read_signal(image, out_.digital.signal));
@@ -107,6 +121,39 @@ void Cia402Drive::encode(const DriveCommand& command, Instant now) noexcept {
     if (out_.probe_function.mapped()) write_probes(image, command);
 }
 
+/// Speed and ramps of the set-point are in the drive, or go with this frame, and the drive is in the mode to take it.
+bool Cia402Drive::profile_prepared(const DriveCommand& command, bool follows) noexcept {
+    if (!follows) {
+        handshake_.reset();
+        return false;
+    }
+    const auto sequence = command.profile.sequence;
+    if (sequence == 0) return true;
+    const auto raw = [](double value) { return static_cast<std::uint32_t>(std::llround(std::clamp(std::abs(value), 0.0, 4294967295.0))); };
+    const bool position = command.mode == DriveMode::profile_position;
+    const auto at_least_one = [&](double value) { return value > 0 ? std::max<std::uint32_t>(1, raw(value)) : 0u; };
+    ramps_.ask(sequence, {position ? at_least_one(std::abs(command.velocity) * profile_->velocity_counts_per_unit) : 0u,
+                          at_least_one(command.acceleration), at_least_one(command.deceleration),
+                          at_least_one(command.torque_slope * profile_->torque_rated_raw)});
+    return ramps_.written(sequence);
+}
+
+/// In PV and PT the target is the set-point: the old one stays until its ramps are there.
+void Cia402Drive::hold_profile_target(DriveCommand& command, bool follows, bool prepared) noexcept {
+    if (!follows) held_velocity_ = held_torque_ = 0;
+    if (command.mode == DriveMode::profile_position) {
+        feedback_.profile_accepted = handshake_.accepted();
+        return;
+    }
+    if (prepared) {
+        held_velocity_ = command.velocity;
+        held_torque_ = command.torque;
+        feedback_.profile_accepted = command.profile.sequence;
+    }
+    command.velocity = held_velocity_;
+    command.torque = held_torque_;
+}
+
 void Cia402Drive::write_targets(std::span<std::byte> image, const DriveCommand& command, bool follows) const noexcept {
     // Positions wrap like the drive's own: the low bits, not a saturated value.
     const bool in_position_mode = position_mode(command.mode) || feedback_.mode == DriveMode::cyclic_position;
@@ -114,11 +161,11 @@ void Cia402Drive::write_targets(std::span<std::byte> image, const DriveCommand& 
     const double velocity = follows ? command.velocity * profile_->velocity_counts_per_unit : 0.0;
     const bool in_velocity_mode = velocity_mode(command.mode) || feedback_.mode == DriveMode::cyclic_velocity;
     out_.target_velocity.write(image, in_velocity_mode ? velocity : 0);
-    out_.velocity_offset.write(image, position_mode(command.mode) ? velocity : 0);
+    out_.velocity_offset.write(image, command.mode == DriveMode::cyclic_position ? velocity : 0);
     const double torque = follows ? command.torque * profile_->torque_rated_raw : 0.0;
     const bool in_torque_mode = torque_mode(command.mode) || feedback_.mode == DriveMode::cyclic_torque;
     out_.target_torque.write(image, in_torque_mode ? torque : 0);
-    out_.torque_offset.write(image, torque_mode(command.mode) ? 0 : torque);
+    out_.torque_offset.write(image, torque_mode(command.mode) || profile_mode(command.mode) ? 0 : torque);
 }
 
 void Cia402Drive::write_limits(std::span<std::byte> image, const DriveCommand& command) const noexcept {

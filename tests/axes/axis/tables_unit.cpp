@@ -82,7 +82,7 @@ TEST(ErrorTexts, AreFoundByTheirNumber) {
 // Programs and screens know errors by these: neither a number nor a name may change, new ones come at the end.
 TEST(ErrorTexts, NumbersAndNamesStayWhatTheyAre) {
     // clang-format off
-    constexpr std::array<std::string_view, 51> names{
+    constexpr std::array<std::string_view, 52> names{
         "none", "invalid_axis", "not_powered", "in_error_stop", "state_forbids", "invalid_velocity", "invalid_dynamics",
         "invalid_position", "beyond_software_limit", "queue_full", "owned_by_other", "not_supported", "not_homed",
         "buffer_mode_not_supported", "invalid_direction", "mode_forbids", "drive_not_ready", "reset_failed", "homing_failed",
@@ -91,7 +91,7 @@ TEST(ErrorTexts, NumbersAndNamesStayWhatTheyAre) {
         "invalid_override", "invalid_master", "coupling_loop", "invalid_ratio", "not_coupled", "sync_impossible", "master_lost",
         "invalid_table", "no_table_room", "no_such_probe", "probe_busy", "probe_idle", "homing_limit_time", "homing_limit_distance",
         "homing_limit_torque", "drive_mode_refused", "not_at_standstill", "update_not_possible", "aborted_by_command",
-        "setpoint_missing"};
+        "setpoint_missing", "drive_setpoint_refused"};
     // clang-format on
     ASSERT_GE(error_texts.size(), names.size());
     for (std::size_t i = 0; i < names.size(); ++i) EXPECT_EQ(error_texts[i].name, names[i]) << i;

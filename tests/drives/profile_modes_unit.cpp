@@ -1,0 +1,100 @@
+// The profile modes and ways of stopping as the drives' own files describe them.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/drives/drive_bench.hpp"
+
+namespace taktwerk::axes::sim {
+namespace {
+
+constexpr unsigned reached = 0x0400, acknowledged = 0x1000;
+
+void profile(DriveBench& drive, std::int64_t mode) {
+    drive.pdo(0x6060, mode);
+    drive.pdo(0x6081, 20000);
+    drive.pdo(0x6083, 100000);
+    drive.pdo(0x6084, 100000);
+    drive.enable();
+}
+
+// SV33-E 3.4.3(5), 8.5.4: 6081h is 0 from the factory, so nothing moves although the set-point is acknowledged.
+TEST(Sv33eProfilePosition, WithFactorySettingsNothingMoves) {
+    DriveBench drive{"sv33-e"};
+    drive.pdo(0x6060, 1);
+    drive.enable();
+    drive.pdo(0x607A, 5000);
+    drive.control(31, 300);
+    EXPECT_NE(drive.status() & acknowledged, 0u);
+    EXPECT_NEAR(static_cast<double>(drive.position()), 0, 1);
+}
+
+// SV33-E 8.5.4: 31 for an absolute target, 95 for a relative one.
+TEST(Sv33eProfilePosition, AbsoluteBy31RelativeBy95) {
+    DriveBench drive{"sv33-e"};
+    profile(drive, 1);
+    drive.pdo(0x607A, 5000);
+    drive.control(31);
+    ASSERT_NE(drive.status() & acknowledged, 0u);
+    drive.control(15);
+    ASSERT_EQ(drive.status() & acknowledged, 0u);
+    ASSERT_TRUE(drive.run_until([&] { return (drive.status() & reached) != 0; }, 2s));
+    drive.pdo(0x607A, 3000);
+    drive.control(95);
+    drive.control(15);
+    ASSERT_TRUE(drive.run_until([&] { return (drive.status() & reached) != 0; }, 2s));
+    drive.run(200);
+    EXPECT_NEAR(static_cast<double>(drive.position()), 8000, 5);
+}
+
+// SE-808X 3.2.4: bit 5 = 1 keeps the speed at the first target; 6081h, 6083h, 6084h are taken as they stand.
+TEST(Se808xProfilePosition, BitFiveBlends) {
+    DriveBench drive{"se-808x"};
+    profile(drive, 1);
+    drive.pdo(0x607A, 8000);
+    drive.control(0x1F);
+    drive.control(0x0F);
+    drive.pdo(0x607A, 16000);
+    drive.control(0x3F);
+    drive.control(0x0F);
+    ASSERT_TRUE(drive.run_until([&] { return drive.position() >= 7000; }, 2s));
+    std::int64_t slowest = 20000;
+    while (drive.position() < 12000) {
+        drive.cycle();
+        slowest = std::min(slowest, drive.read(0x606C));
+    }
+    EXPECT_GT(slowest, 19500);
+}
+
+// SV33-E 3.1.8 table 3-18: halt with 605Dh = 1 ramps by 6084h in PV and keeps the position. v^2 / 2a = 2000 counts.
+TEST(Sv33eStops, HaltInProfileVelocityRampsBy6084) {
+    DriveBench drive{"sv33-e"};
+    profile(drive, 3);
+    drive.pdo(0x60FF, 20000);
+    drive.run(400);
+    const auto from = drive.position();
+    drive.control(0x10F, 600);
+    EXPECT_NEAR(static_cast<double>(drive.position() - from), 2000, 100);
+    EXPECT_EQ(drive.status() & 0x6Fu, 0x27u);
+}
+
+// SV33-E 3.1.8 table 3-17: 605Ah = 2 ramps by 6085h and lets go, 6 keeps the position; 605Ah takes 0 to 7 only (7.3).
+TEST(Sv33eStops, QuickStopByItsOptionCode) {
+    for (const int value : {2, 6}) {
+        DriveBench drive{"sv33-e"};
+        profile(drive, 3);
+        ASSERT_EQ(drive.sdo(0x605A, 0, value), 0u);
+        EXPECT_NE(drive.sdo(0x605A, 0, 8), 0u);
+        drive.pdo(0x6085, 200000);
+        drive.pdo(0x60FF, 20000);
+        drive.run(400);
+        const auto from = drive.position();
+        drive.control(0x02, 400);
+        EXPECT_NEAR(static_cast<double>(drive.position() - from), 1000, 100) << value;
+        EXPECT_EQ(drive.status() & 0x4Fu, value == 2 ? 0x40u : 0x07u);
+    }
+}
+
+}  // namespace
+}  // namespace taktwerk::axes::sim
