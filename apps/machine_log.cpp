@@ -39,6 +39,25 @@ void MachineLog::say(Instant now, const std::string& event, const std::string& w
     std::fflush(stdout);
 }
 
+void MachineLog::say_alarm(Instant now, const AlarmText& words) {
+    const auto headline = fmt::format("{}: {} [{}]", words.source, words.english, words.reaction);
+    if (json_) {
+        fmt::print("{{\"t\":{:.3f},\"event\":\"ALARM\",\"text\":{},\"name\":{},\"chinese\":{},\"cause\":{},\"remedy\":{},\"reset\":{}}}\n",
+                   to_seconds(now - start_), json_text(headline), json_text(words.name), json_text(words.chinese), json_text(words.cause),
+                   json_text(words.remedy), json_text(words.reset));
+        std::fflush(stdout);
+        return;
+    }
+    say(now, "ALARM", headline);
+    const auto more = [](std::string_view before, const std::string& text) {
+        if (!text.empty()) fmt::print("{:13}{:<9} {}{}\n", "", "", before, text);
+    };
+    more("", words.chinese);
+    more("why: ", words.cause);
+    more("-> ", words.remedy.empty() ? words.remedy : fmt::format("{} ({})", words.remedy, words.reset));
+    std::fflush(stdout);
+}
+
 void MachineLog::alarms(Instant now, const Snapshot& s) {
     const auto same = [](const AlarmFact& a, const AlarmFact& b) { return a.id == b.id && a.source == b.source && a.index == b.index; };
     for (std::size_t i = 0; i < s.alarm_count; ++i) {
@@ -59,12 +78,7 @@ void MachineLog::alarms(Instant now, const Snapshot& s) {
         if (!is_new || !alarm.standing) continue;
         const auto words = machine_.describe(alarm.fact);
         if (words.name == "stopped_by_signal") continue;  // whoever ends the run knows it
-        say(now, "ALARM", fmt::format("{}: {} [{}]", words.source, words.english, words.reaction));
-        if (!json_) {
-            fmt::print("{:13}{:<9} {}\n", "", "", words.chinese);
-            fmt::print("{:13}{:<9} -> {} ({})\n", "", "", words.remedy, words.reset);
-            std::fflush(stdout);
-        }
+        say_alarm(now, words);
     }
     std::erase_if(known_, [&](const Known& k) {
         for (std::size_t i = 0; i < s.alarm_count; ++i)

@@ -20,6 +20,7 @@ public:
 
 private:
     void alarms(Instant now, const runtime::Snapshot& snapshot);
+    void say_alarm(Instant now, const runtime::AlarmText& words);
 
     struct Known {
         AlarmFact fact;

@@ -46,7 +46,7 @@ public:
     }
 
 private:
-    static constexpr std::size_t lines_an_alarm = 3, every = 1000;
+    static constexpr std::size_t lines_an_alarm = 4, every = 1000;
     bool fits(const Lines& lines) const { return size_.rows == 0 || lines.size() <= size_.rows; }
 
     static Lines joined(const std::vector<Lines>& parts) {
@@ -152,8 +152,11 @@ private:
             out.push_back(paint(standing ? colour::red : colour::yellow, cut(text, size_.columns)));
             if (const auto chinese = alarm.at("chinese").get<std::string>(); !chinese.empty())
                 out.push_back(cut("   " + chinese, size_.columns));
+            if (const auto cause = alarm.at("cause").get<std::string>(); !cause.empty())
+                out.push_back(cut("   why: " + cause, size_.columns));
+            const auto reset = alarm.at("reset").get<std::string>();
             if (const auto remedy = alarm.at("remedy").get<std::string>(); !remedy.empty())
-                out.push_back(cut("   -> " + remedy, size_.columns));
+                out.push_back(cut(reset.empty() ? "   -> " + remedy : fmt::format("   -> {} ({})", remedy, reset), size_.columns));
         }
         return out;
     }

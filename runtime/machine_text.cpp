@@ -7,6 +7,7 @@
 
 #include "axes/axis/alarms.hpp"
 #include "ecat/alarms.hpp"
+#include "runtime/drive_alarm_words.hpp"
 #include "runtime/machine_impl.hpp"
 
 namespace taktwerk::runtime {
@@ -117,22 +118,11 @@ AlarmText Machine::describe(const AlarmFact& fact) const {
     }
 
     // A drive's own alarm has its words in the profile.
-    const bool of_drive = fact.id == axes::id(axes::AxisAlarm::drive_fault) || fact.id == axes::id(axes::AxisAlarm::drive_warning);
-    if (of_drive && fact.index < m.config.axes.size() && m.config.axes[fact.index].profile) {
-        const axes::DriveAlarmText* found = nullptr;
-        for (const auto& row : m.config.axes[fact.index].profile->alarms) {
-            if (row.code != static_cast<std::uint16_t>(fact.a)) continue;
-            if (!found || row.detail == static_cast<std::uint32_t>(fact.b)) found = &row;
-        }
-        if (found) {
-            const std::string panel = found->panel.empty() ? "" : found->panel + " ";
-            out.english += fmt::format(": {}{}", panel, found->english);
-            out.chinese += fmt::format(":{}{}", panel, found->chinese);
-            if (!found->cause.empty()) out.cause = found->cause;
-            if (!found->remedy.empty()) out.remedy = found->remedy;
-            if (!found->resettable) out.reset = text(ResetRule::restart);
-        }
-    }
+    const bool fault = fact.id == axes::id(axes::AxisAlarm::drive_fault), warning = fact.id == axes::id(axes::AxisAlarm::drive_warning);
+    if ((fault || warning) && fact.index < m.config.axes.size())
+        tell_drive_alarm(out, m.config.axes[fact.index],
+                         {static_cast<std::uint16_t>(fact.a), fault ? static_cast<std::uint32_t>(fact.b) : 0,
+                          fault ? ReportedAlarm::Kind::fault : ReportedAlarm::Kind::warning});
     return out;
 }
 

@@ -39,7 +39,9 @@ Json alarm(const std::string& source) {
     return Json{{"source", source},
                 {"english", "The drive reports fault 0x3130"},
                 {"chinese", "驱动器报告故障 0x3130"},
+                {"cause", "A phase is missing"},
                 {"remedy", "Check the mains"},
+                {"reset", "reset"},
                 {"standing", true},
                 {"acknowledged", false},
                 {"count", 1}};
@@ -85,7 +87,8 @@ TEST(MonitorScreen, ThreeAxesWithAlarmsFitAPlainTerminal) {
     EXPECT_THAT(lines, Contains(HasSubstr("missed 3")));
     EXPECT_THAT(lines, Contains(HasSubstr("axis a1: The drive reports fault 0x3130")));
     EXPECT_THAT(lines, Contains(HasSubstr("驱动器报告故障 0x3130")));
-    EXPECT_THAT(lines, Contains(HasSubstr("-> Check the mains")));
+    EXPECT_THAT(lines, Contains(HasSubstr("why: A phase is missing")));
+    EXPECT_THAT(lines, Contains(HasSubstr("-> Check the mains (reset)")));
     EXPECT_THAT(lines, Contains(HasSubstr("step=30")));
     EXPECT_THAT(lines, Contains(HasSubstr("speed=400 mm/s")));
     EXPECT_THAT(lines, Contains(HasSubstr("estop_ok=1")));

@@ -73,7 +73,7 @@ TEST_F(Fault, ADriveFaultStopsItsAxisAloneAndShowsTheDrivesOwnWords) {
     EXPECT_EQ(m().axis(0).drive_error, 0x3130);
     EXPECT_EQ(m().axis(1).state, AxisState::Standstill) << "the other axis is not concerned";
     EXPECT_TRUE(m().has_alarm(id(AxisAlarm::drive_fault)));
-    EXPECT_NE(m().alarms().find("E.999 phase failure"), std::string::npos) << m().alarms();
+    EXPECT_NE(m().alarms().find("panel E.999: phase failure"), std::string::npos) << m().alarms();
 
     recover();
     m().expect_no_jump();

@@ -1,7 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <set>
+#include <string_view>
+
 #include "axes/port/drive_port.hpp"
 #include "axes/port/drive_profile.hpp"
+#include "axes/port/quirk_table.hpp"
 
 namespace taktwerk::axes {
 namespace {
@@ -26,6 +30,15 @@ TEST(DriveProfile, KnowsItsQuirks) {
     profile.quirks = {Quirk::no_remote_bit};
     EXPECT_TRUE(profile.has(Quirk::no_remote_bit));
     EXPECT_FALSE(profile.has(Quirk::disable_may_coast));
+}
+
+TEST(QuirkTable, NamesAndExplainsAQuirkOnce) {
+    std::set<std::string_view> names;
+    for (const auto& row : quirk_table) {
+        EXPECT_EQ(find_quirk(row.quirk), &row) << row.name;
+        EXPECT_TRUE(names.insert(row.name).second) << row.name;
+        EXPECT_FALSE(row.doc.empty()) << row.name;
+    }
 }
 
 }  // namespace

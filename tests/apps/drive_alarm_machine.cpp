@@ -1,0 +1,108 @@
+// A drive's alarm as a person reads it in the machine log, in `taktwerk monitor` and over LCM: axis, drive, panel, name in English and
+// Chinese, cause, remedy, and whether MC_Reset clears it.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "apps/machine_log.hpp"
+#include "apps/monitor_screen.hpp"
+#include "hmi_bridge/json_state.hpp"
+#include "hmi_bridge/memory_bus.hpp"
+#include "hmi_bridge/publisher.hpp"
+#include "hmi_bridge/runtime_link.hpp"
+#include "taktwerk_lcm/alarm_list_v1_t.hpp"
+#include "tests/runtime/test_machine.hpp"
+
+namespace taktwerk::apps {
+namespace {
+
+using namespace std::chrono_literals;
+using runtime::testing::machine_config;
+using runtime::testing::TestMachine;
+using testing::Contains;
+using testing::HasSubstr;
+
+// The test drive with one more alarm, that only a power cycle clears.
+runtime::MachineConfig config() {
+    auto out = machine_config(1);
+    auto profile = std::make_shared<axes::DriveProfile>(*out.axes[0].profile);
+    profile->name = "servo-7";
+    axes::DriveAlarmText storage;
+    storage.code = 0x5530, storage.panel = "E.017", storage.english = "parameter storage", storage.chinese = "参数存储故障";
+    storage.cause = "EEPROM damaged", storage.remedy = "restore the parameters", storage.resettable = false;
+    profile->alarms.push_back(storage);
+    out.axes[0].profile = profile;
+    return out;
+}
+
+struct DriveAlarm : testing::Test {
+    TestMachine m{config()};
+    void SetUp() override {
+        ASSERT_TRUE(m.up());
+        m.enable(0);
+    }
+    void raise(std::uint16_t code, bool resettable) {
+        m.world.drive("x")->raise(code, resettable);
+        m.run(100ms);
+    }
+};
+
+TEST_F(DriveAlarm, IsCompleteInTheMachineLog) {
+    MachineLog log(*m.machine, m.clock.now(), false);
+    raise(0x3130, true);
+    testing::internal::CaptureStdout();
+    log.step(m.clock.now(), &m.state());
+    const auto said = testing::internal::GetCapturedStdout();
+    EXPECT_THAT(said, HasSubstr("axis x: servo-7 'x_drive' reports fault 3130h, panel E.999: phase failure [the axis stops]\n"));
+    EXPECT_THAT(said, HasSubstr("servo-7 'x_drive' 报告故障 3130h,面板 E.999:缺相\n"));
+    EXPECT_THAT(said, HasSubstr("why: a phase is missing\n"));
+    EXPECT_THAT(said, HasSubstr("-> check the supply (MC_Reset clears it once its cause is gone)\n"));
+}
+
+TEST_F(DriveAlarm, IsCompleteInTheMachineLogForScripts) {
+    MachineLog log(*m.machine, m.clock.now(), true);
+    raise(0x5530, false);
+    testing::internal::CaptureStdout();
+    log.step(m.clock.now(), &m.state());
+    const auto said = testing::internal::GetCapturedStdout();
+    EXPECT_THAT(said,
+                HasSubstr(R"("event":"ALARM","text":"axis x: servo-7 'x_drive' reports fault 5530h, panel E.017: parameter storage )"));
+    EXPECT_THAT(said, HasSubstr(R"("chinese":"servo-7 'x_drive' 报告故障 5530h,面板 E.017:参数存储故障")"));
+    EXPECT_THAT(said, HasSubstr(R"("cause":"EEPROM damaged","remedy":"restore the parameters")"));
+    EXPECT_THAT(said, HasSubstr(R"("reset":"MC_Reset cannot clear it: switch the drive off and on")"));
+}
+
+TEST_F(DriveAlarm, IsCompleteOnTheMonitor) {
+    raise(0x5530, false);
+    const hmi::RuntimeLink link(*m.machine);
+    const auto state = nlohmann::ordered_json::parse(hmi::state_json(m.state(), link));
+    const auto lines = monitor_screen(state, nlohmann::ordered_json{{"cycle_ns", 1000000}}, {120, 50, false});
+    EXPECT_THAT(lines, Contains(HasSubstr("axis x: servo-7 'x_drive' reports fault 5530h, panel E.017: parameter storage")));
+    EXPECT_THAT(lines, Contains(HasSubstr("报告故障 5530h,面板 E.017:参数存储故障")));
+    EXPECT_THAT(lines, Contains(HasSubstr("why: EEPROM damaged")));
+    EXPECT_THAT(lines, Contains(HasSubstr("-> restore the parameters (MC_Reset cannot clear it: switch the drive off and on)")));
+}
+
+TEST_F(DriveAlarm, IsCompleteOverLcm) {
+    raise(0x3130, true);
+    const hmi::RuntimeLink link(*m.machine);
+    hmi::MemoryBus bus;
+    hmi::Publisher publisher(bus, link, 50.0, false, [] { return std::int64_t{1}; });
+    publisher.step(&m.state(), m.clock.now());
+
+    taktwerk_lcm::alarm_list_v1_t list;
+    for (const auto& message : bus.published)
+        if (message.channel == "TAKTWERK_TEST_ALARM_LIST")
+            ASSERT_GT(list.decode(message.bytes.data(), 0, static_cast<int>(message.bytes.size())), 0);
+    ASSERT_EQ(list.alarm.size(), 1u);
+    const auto& alarm = list.alarm[0];
+    EXPECT_EQ(alarm.source_text, "axis x");
+    EXPECT_EQ(alarm.english, "servo-7 'x_drive' reports fault 3130h, panel E.999: phase failure");
+    EXPECT_EQ(alarm.chinese, "servo-7 'x_drive' 报告故障 3130h,面板 E.999:缺相");
+    EXPECT_EQ(alarm.cause, "a phase is missing");
+    EXPECT_EQ(alarm.remedy, "check the supply");
+    EXPECT_EQ(alarm.reset, "MC_Reset clears it once its cause is gone");
+}
+
+}  // namespace
+}  // namespace taktwerk::apps
