@@ -10,6 +10,7 @@
 #include "axes/port/drive_hazard.hpp"
 #include "axes/port/drive_parameter.hpp"
 #include "axes/port/drive_port.hpp"
+#include "axes/port/drive_setting.hpp"
 #include "core/time.hpp"
 
 namespace taktwerk::axes {
@@ -31,8 +32,12 @@ enum class Quirk : std::uint8_t {
     remote_bit_from_preop,      ///< bit 9 stands from PREOP on, not only in OP (TSVM 5.3.2)
     quick_stop_bit_rests_high,  ///< bit 5 stands in Switch On Disabled and in the fault states too (TSVM 5.3.1: 0270h, 02B6h)
     cyclic_bit_10_reserved,     ///< no "target reached" in the cyclic modes (TSVM 5.3.2: 1237h)
+    clock_bit_8,                ///< statusword bit 8: the drive's clock follows SYNC0 (SV-DA200 3.1.2)
+    standstill_bit_14,          ///< statusword bit 14: the motor stands (SV-DA200 3.1.2)
+    limit_stop_is_fault,        ///< overtravel in a position mode is a fault (SV-DA200 5.3, Er21)
+    torque_offset_not_in_torque,  ///< 60B2h counts in all modes but those of torque (SV-DA200 4.10)
 };
-inline constexpr std::size_t quirk_count = 15;
+inline constexpr std::size_t quirk_count = 19;
 
 /// How a drive brings its motor to rest by itself.
 enum class DriveStop : std::uint8_t {
@@ -108,6 +113,9 @@ struct DriveProfile {
     std::vector<DriveAlarmText> alarms;
     std::vector<DriveParameter> parameters;  ///< all that the manual lists, those of the dictionary included
     std::vector<DriveHazard> hazards;
+    std::vector<RequiredSetting> required_settings;  ///< checked by DrivePort::setup_problems()
+    DriveUnits units;
+    BehaviourObjects behaviour;
     ParameterStorage storage = ParameterStorage::not_stated;
     ParameterAddress storage_switch{};   ///< while this object is 0 writes are not stored; index 0: there is none
     std::vector<std::string> questions;  ///< what only the vendor or a real drive can answer

@@ -3,6 +3,7 @@
 // units, timing, bit positions. One object per axis; a six-axis drive gives six, each at its object offset.
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -15,6 +16,7 @@
 #include "axes/drives/cia402/homing_setup.hpp"
 #include "axes/drives/cia402/mapped_output.hpp"
 #include "axes/drives/cia402/probe_latch.hpp"
+#include "axes/drives/cia402/settings_check.hpp"
 #include "axes/drives/cia402/turn_clearing.hpp"
 #include "axes/port/drive_port.hpp"
 #include "axes/port/drive_profile.hpp"
@@ -46,6 +48,7 @@ public:
     [[nodiscard]] ServiceTicket write_parameter(ParameterAddress address, std::vector<std::byte> value) override;
     [[nodiscard]] ServiceTicket start_service(DriveService service) override;
     [[nodiscard]] std::optional<Result<ServiceAnswer>> service_answer(ServiceTicket ticket) override;
+    [[nodiscard]] std::vector<std::string> setup_problems() const override { return settings_.problems(); }
 
 private:
     struct Outputs {
@@ -104,6 +107,9 @@ private:
     HomingSetup homing_setup_;
     TurnClearing turns_;
     AlarmReader alarm_;
+    SettingsCheck settings_;
+    std::uint16_t enable_bits_ = 0;     // of 6041h, all set before Enable Operation
+    std::atomic<bool> enabled_{false};  // for the service side
 };
 
 }  // namespace taktwerk::axes::cia402
