@@ -270,6 +270,7 @@ Table<ecat::DcDescription> dc_table() {
                 field("clock_64bit", &D::clock_64bit, boolean(), "width of the clock"),
                 with_default(field("minimum_cycle", &D::minimum_cycle, duration(), "shortest SYNC0 cycle"), "not stated"),
                 with_default(field("cycle_multiple", &D::cycle_multiple, duration(), "the cycle must be a multiple of it"), "any"),
+                with_default(field("cycles", &D::cycles, list(duration()), "the only SYNC0 cycles that it knows"), "any"),
             },
             {},
             {}};

@@ -6,6 +6,7 @@
 
 #include "config/codecs.hpp"
 #include "config/device_tables.hpp"
+#include "config/setting_tables.hpp"
 
 namespace taktwerk::config {
 
@@ -59,6 +60,7 @@ Codec<axes::DriveAlarmKind> alarm_kind() {
                       {"overload", K::overload},
                       {"encoder", K::encoder},
                       {"communication", K::communication},
+                      {"sync_lost", K::sync_lost},
                       {"negative_limit", K::negative_limit},
                       {"positive_limit", K::positive_limit},
                       {"emergency_stop", K::emergency_stop},
@@ -84,20 +86,6 @@ Codec<DriveMode> drive_mode() {
                               {"csp", DriveMode::cyclic_position},
                               {"csv", DriveMode::cyclic_velocity},
                               {"cst", DriveMode::cyclic_torque}});
-}
-
-/// An object, or a register by its number.
-Codec<axes::ParameterAddress> parameter_address() {
-    Codec<axes::ParameterAddress> c;
-    const auto address = object_address();
-    c.shape = address.shape;
-    c.read = [read = address.read](Reader& reader, const Node& node, axes::ParameterAddress& out) {
-        ObjectAddress value;
-        if (!read(reader, node, value)) return false;
-        out = {value.index, value.sub};
-        return true;
-    };
-    return c;
 }
 
 Table<axes::DriveHazard> hazard_table() {
@@ -389,7 +377,11 @@ void add_profile_fields(std::vector<Field<DriveFile>>& f) {
                             {"pp_stop_forgets", Quirk::pp_stop_forgets},
                             {"csv_ramps", Quirk::csv_ramps},
                             {"pv_bits_12_13_reserved", Quirk::pv_bits_12_13_reserved},
-                            {"velocity_window_in_rpm", Quirk::velocity_window_in_rpm}})),
+                            {"velocity_window_in_rpm", Quirk::velocity_window_in_rpm},
+                            {"clock_bit_8", Quirk::clock_bit_8},
+                            {"standstill_bit_14", Quirk::standstill_bit_14},
+                            {"limit_stop_is_fault", Quirk::limit_stop_is_fault},
+                            {"torque_offset_not_in_torque", Quirk::torque_offset_not_in_torque}})),
         "deviations from CiA 402, by name (axes/port/drive_profile.hpp)"));
     f.push_back(field_at<F>(
         "stops", [](F & d) -> auto& { return d.profile.stops; }, list(section(stop_option_table())),
@@ -403,6 +395,14 @@ void add_profile_fields(std::vector<Field<DriveFile>>& f) {
     f.push_back(field_at<F>(
         "hazards", [](F & d) -> auto& { return d.profile.hazards; }, list(section(hazard_table())),
         "what is dangerous about it; `taktwerk check` warns of it"));
+    f.push_back(field_at<F>(
+        "required_settings", [](F & d) -> auto& { return d.profile.required_settings; }, list(section(required_setting_table())),
+        "objects without whose value the drive must not be enabled"));
+    f.push_back(field_at<F>(
+        "units", [](F & d) -> auto& { return d.profile.units; }, section(units_table()), "an object that chooses the drive's units"));
+    f.push_back(field_at<F>(
+        "behaviour", [](F & d) -> auto& { return d.profile.behaviour; }, section(behaviour_table()),
+        "objects that the simulated drive obeys"));
     f.push_back(field_at<F>(
         "storage", [](F & d) -> auto& { return d.profile.storage; },
         choice<axes::ParameterStorage>({{"not_stated", axes::ParameterStorage::not_stated},

@@ -132,6 +132,14 @@ private:
                 fmt::format("'{}' needs a multiple of {}, it is exchanged every {}", device.name, micro(device.dc.cycle_multiple),
                             micro(sync0_cycle)),
                 "choose another bus cycle");
+        if (!device.dc.cycles.empty() &&
+            std::find(device.dc.cycles.begin(), device.dc.cycles.end(), sync0_cycle) == device.dc.cycles.end()) {
+            std::string known;
+            for (const auto cycle : device.dc.cycles) known += (known.empty() ? "" : ", ") + micro(cycle);
+            add("bus.cycle_unknown", subject,
+                fmt::format("'{}' knows the cycles {} only, it is exchanged every {}", device.name, known, micro(sync0_cycle)),
+                "choose one of them");
+        }
     }
 
     void check_modules(const SlaveConfig& slave, const DeviceDescription& device, const std::string& subject) {

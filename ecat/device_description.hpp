@@ -81,6 +81,7 @@ struct DcDescription {
     bool clock_64bit = true;
     Duration minimum_cycle{};   ///< 0 = not stated
     Duration cycle_multiple{};  ///< the cycle must be a multiple of it; 0 = any
+    std::vector<Duration> cycles{};  ///< the only cycles that the slave knows; empty = any
 };
 
 struct MailboxDescription {

@@ -117,6 +117,12 @@ AlarmText Machine::describe(const AlarmFact& fact) const {
         }
     }
 
+    if (fact.id == axes::id(axes::AxisAlarm::drive_setup_refused) && fact.index < m.ports.size())
+        for (const auto& problem : m.ports[fact.index]->setup_problems()) {
+            out.english += ": " + problem;
+            out.chinese += ":" + problem;
+        }
+
     // A drive's own alarm has its words in the profile.
     const bool fault = fact.id == axes::id(axes::AxisAlarm::drive_fault), warning = fact.id == axes::id(axes::AxisAlarm::drive_warning);
     if ((fault || warning) && fact.index < m.config.axes.size())

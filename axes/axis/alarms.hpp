@@ -34,8 +34,9 @@ enum class AxisAlarm : AlarmId {
     drive_homing_timeout = 0x3016,
     drive_homing_refused = 0x3017,
     reference_lost = 0x3018,
+    drive_setup_refused = 0x3019,
 };
-inline constexpr std::size_t axis_alarm_count = 24;
+inline constexpr std::size_t axis_alarm_count = 25;
 
 [[nodiscard]] constexpr AlarmId id(AxisAlarm alarm) noexcept { return static_cast<AlarmId>(alarm); }
 
@@ -161,6 +162,11 @@ inline constexpr std::array<AlarmInfo, axis_alarm_count> axis_alarms{{
      "Its encoder lost or exceeded its turns, its battery was empty, or the turns were cleared on request",
      "Remove the cause named by the drive's alarm text; home the axis",
      ResetRule::acknowledge, Reaction::warn, ""},
+    {id(AxisAlarm::drive_setup_refused), "drive_setup_refused",
+     "The drive is not enabled: its own parameters do not fit this machine", "驱动器未使能:其自身参数与本机配置不符",
+     "A parameter of the drive that decides how it takes commands has another value than this machine needs",
+     "The log names the parameter, its value and what to set; set it, restart the drive where it says so, then reset",
+     ResetRule::reset, Reaction::stop_axis, "The drive stays without power"},
 }};
 // clang-format on
 

@@ -131,7 +131,8 @@ void Axis::watch_drive() noexcept {
         fail(AxisAlarm::drive_fault, feedback_.error_code, port_.alarm().detail);
         // The detail that tells shared codes apart is read acyclically and comes later (P21.08 of the SV33-E).
         if (feedback_.error_code != 0) alarms_.renumber(AxisAlarm::drive_fault, feedback_.error_code, port_.alarm().detail);
-    } else if (asked && feedback_.power == PowerState::unknown) fail(AxisAlarm::drive_unknown_state, feedback_.status_word);
+    } else if (asked && feedback_.setup_refused) fail(AxisAlarm::drive_setup_refused);
+    else if (asked && feedback_.power == PowerState::unknown) fail(AxisAlarm::drive_unknown_state, feedback_.status_word);
     else if (power_.on() && !drive_homing_.busy() && !mode_changes() && feedback_.mode != wanted_mode())
         fail(AxisAlarm::drive_mode_mismatch, static_cast<double>(feedback_.mode), static_cast<double>(wanted_mode()));
 }

@@ -15,6 +15,7 @@ enum class DriveAlarmKind : std::uint8_t {
     overload,
     encoder,
     communication,  ///< the bus or line fell silent
+    sync_lost,      ///< SYNC0 no longer comes
     negative_limit,
     positive_limit,
     emergency_stop,  ///< an input of the drive

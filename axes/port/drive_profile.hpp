@@ -11,6 +11,7 @@
 #include "axes/port/drive_parameter.hpp"
 #include "axes/port/drive_port.hpp"
 #include "axes/port/drive_stop.hpp"
+#include "axes/port/drive_setting.hpp"
 #include "core/time.hpp"
 
 namespace taktwerk::axes {
@@ -38,8 +39,12 @@ enum class Quirk : std::uint8_t {
     csv_ramps,                  ///< CSV applies 6083h and 6084h on top of the master's profile (SV-DA200 3.6)
     pv_bits_12_13_reserved,     ///< no "speed zero" bit in PV (SE-808X 3.2.2.2, SV33-E 3.4.3(7))
     velocity_window_in_rpm,     ///< 606Dh is in r/min (SV33-E 7.3)
+    clock_bit_8,                ///< statusword bit 8: the drive's clock follows SYNC0 (SV-DA200 3.1.2)
+    standstill_bit_14,          ///< statusword bit 14: the motor stands (SV-DA200 3.1.2)
+    limit_stop_is_fault,        ///< overtravel in a position mode is a fault (SV-DA200 5.3, Er21)
+    torque_offset_not_in_torque,  ///< 60B2h counts in all modes but those of torque (SV-DA200 4.10)
 };
-inline constexpr std::size_t quirk_count = 21;
+inline constexpr std::size_t quirk_count = 25;
 
 /// What a drive does that gets a change of mode which its manual forbids.
 enum class ModeViolation : std::uint8_t {
@@ -121,6 +126,9 @@ struct DriveProfile {
     std::vector<DriveAlarmText> alarms;
     std::vector<DriveParameter> parameters;  ///< all that the manual lists, those of the dictionary included
     std::vector<DriveHazard> hazards;
+    std::vector<RequiredSetting> required_settings;  ///< checked by DrivePort::setup_problems()
+    DriveUnits units;
+    BehaviourObjects behaviour;
     ParameterStorage storage = ParameterStorage::not_stated;
     ParameterAddress storage_switch{};   ///< while this object is 0 writes are not stored; index 0: there is none
     std::vector<std::string> questions;  ///< what only the vendor or a real drive can answer

@@ -18,6 +18,8 @@ struct AxisInputs {
     std::int64_t target_position = 0, target_velocity = 0, target_torque = 0;
     std::int64_t velocity_offset = 0, torque_offset = 0;
     std::int64_t maximum_velocity = 0;  ///< 607Fh: bounds the speed in the torque modes; 0 = no limit
+    static constexpr std::int64_t no_limit = -1;
+    std::int64_t torque_limit = no_limit, torque_limit_positive = no_limit, torque_limit_negative = no_limit;  ///< 6072h, 60E0h, 60E1h
     HomingSettings homing;
     std::int64_t home_offset = 0;
     std::int64_t home_position_method = 0;  ///< 60E6h: 0 the reference gets 607Ch, 1 it gets its old position + 607Ch

@@ -2,7 +2,9 @@
 
 #include "axes/sim/cia402_axis.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace taktwerk::axes::sim {
 
@@ -13,7 +15,9 @@ Cia402Axis::Cia402Axis(const PlantConfig& plant, const Personality& personality)
       profile_position_(personality.profile_buffer, personality.pp_bit_5_blends ? BitFive::blends : BitFive::replaces),
       encoder_(static_cast<double>(personality.counts_per_revolution), plant.index_pulse, personality.encoder_turn_bits),
       battery_(plant.battery),
-      stored_shift_(-plant.index_pulse) {}
+      stored_shift_(-plant.index_pulse) {
+    take_torque_limits({});
+}
 
 double Cia402Axis::quantised() const noexcept { return std::floor(actual()); }
 
@@ -27,6 +31,7 @@ void Cia402Axis::inner_step() noexcept {
     const double dt = inner_seconds;
     if (energised()) torque_ = state_ == State::enabled && !halted_ ? enabled_torque(dt) : stopping_torque(dt);
     else torque_ = phases_shorted_ ? brake_torque() : 0;
+    torque_ = std::clamp(torque_, torque_least_, torque_most_);
     step_brake();
     const double before = plant_.position();
     plant_.step(dt, torque_);
@@ -43,10 +48,31 @@ void Cia402Axis::step_probes(double before) noexcept {
     auto pulses = index_pulses();
     pulses.at -= zero_;
     for (std::size_t i = 0; i < probes_.size(); ++i) {
-        const auto& seen = plant_.config().probe[i];
-        const auto signal = blank_ ? ProbeSignal{} : nearest({seen.from, seen.to}, seen.every, plant_.position());
+        const auto signal = probe_signal(i);
         probes_[i].motion(before - zero_, plant_.position() - zero_, {signal.from - zero_, signal.to - zero_}, pulses);
     }
+}
+
+ProbeSignal Cia402Axis::probe_signal(std::size_t probe) const noexcept {
+    const auto& seen = plant_.config().probe[probe];
+    return blank_ ? ProbeSignal{} : nearest({seen.from, seen.to}, seen.every, plant_.position());
+}
+
+bool Cia402Axis::probe_input(std::size_t probe) const noexcept {
+    const auto signal = probe_signal(probe);
+    return signal.from <= plant_.position() && plant_.position() <= signal.to;
+}
+
+bool Cia402Axis::at_index_pulse() const noexcept {
+    const auto pulses = index_pulses();
+    return std::abs(std::remainder(plant_.position() - pulses.at, pulses.every)) < 0.5;
+}
+
+/// In every mode (SV-DA200 2.1 note 9). A limit is a number without sign, the negative one too.
+void Cia402Axis::take_torque_limits(const AxisInputs& in) noexcept {
+    const auto limit = [&](std::int64_t raw) { return raw < 0 ? std::numeric_limits<double>::infinity() : torque_of(raw); };
+    torque_most_ = std::min({torque_limit(), limit(in.torque_limit), limit(in.torque_limit_positive)});
+    torque_least_ = -std::min({torque_limit(), limit(in.torque_limit), limit(in.torque_limit_negative)});
 }
 
 void Cia402Axis::advance(Instant now) noexcept {
@@ -58,6 +84,7 @@ void Cia402Axis::advance(Instant now) noexcept {
 
 void Cia402Axis::exchange(const AxisInputs& in, Duration cycle, AxisOutputs& out) noexcept {
     settings_ = in;
+    take_torque_limits(in);
     select_mode(in);
     command(in);
     take_halt(in);

@@ -59,6 +59,11 @@ public:
     /// Nothing in front of the sensors at the probes, such as a web without print.
     void blank(bool blank) noexcept { blank_ = blank; }
 
+    /// Objects by which the drive changes while it runs: its unit of velocity (raw = counts/s times this) and what following error is an
+    /// alarm [counts; 0 = none].
+    void velocity_unit(double counts_per_unit) noexcept { personality_.velocity_counts_per_unit = counts_per_unit; }
+    void following_limit(double counts) noexcept { personality_.following_error_limit = counts; }
+
     /// Of an absolute encoder; what an empty one has lost shows at the next power_on().
     void battery(Battery state) noexcept { battery_ = state; }
     /// The encoder's own service, refused while the motor has power: what it complains of is forgotten, and its turns if asked for (SV33-E
@@ -74,6 +79,10 @@ public:
     /// Set-points and homing starts that came before the brake was open and were lost. A careful master causes none.
     [[nodiscard]] std::uint32_t early_commands() const noexcept { return early_commands_; }
     [[nodiscard]] bool brake_closed() const noexcept { return brake_closed_; }
+    [[nodiscard]] bool stands() const noexcept;
+    /// What the drive's input for this probe sees, and whether the encoder stands on its index pulse.
+    [[nodiscard]] bool probe_input(std::size_t probe) const noexcept;
+    [[nodiscard]] bool at_index_pulse() const noexcept;
 
 private:
     /// How the motor comes to rest now. `ramp` counts/s2; at_once: the demanded speed is 0 from the start.
@@ -89,6 +98,8 @@ private:
     // cia402_axis.cpp
     void inner_step() noexcept;
     void step_probes(double before) noexcept;
+    void take_torque_limits(const AxisInputs& in) noexcept;
+    [[nodiscard]] ProbeSignal probe_signal(std::size_t probe) const noexcept;
     [[nodiscard]] double actual() const noexcept { return plant_.position() - zero_; }
     [[nodiscard]] double quantised() const noexcept;
     [[nodiscard]] IndexPulses index_pulses() const noexcept;
@@ -146,7 +157,6 @@ private:
     [[nodiscard]] bool energised() const noexcept;
     [[nodiscard]] bool has_brake() const noexcept { return personality_.brake_hold > Duration::zero(); }
     [[nodiscard]] bool too_early() const noexcept { return now_ < commands_from_; }
-    [[nodiscard]] bool stands() const noexcept;
     void wind_down(StopCause cause) noexcept;
     void step_brake() noexcept;
     // cia402_supervision.cpp
@@ -185,7 +195,8 @@ private:
     std::optional<Instant> mode_changed_at_;
     std::int64_t steps_left_ = 0;  ///< inner steps until the target is reached
     double torque_ = 0, torque_demand_ = 0, torque_offset_ = 0, velocity_demand_ = 0;
-    double fastest_ = 0;  ///< counts/s, torque modes; 0 = no limit
+    double torque_most_ = 0, torque_least_ = 0;  ///< N m, what the limits leave of it
+    double fastest_ = 0;                         ///< counts/s, torque modes; 0 = no limit
     std::uint16_t last_control_ = 0, error_code_ = 0;
     std::uint32_t error_detail_ = 0;
     bool error_resettable_ = true, main_power_ = true, operational_ = false, homed_ = false, warning_ = false;

@@ -43,6 +43,8 @@ Cia402Device::Cia402Device(const DriveProfile& profile, const std::vector<AxisSe
       clear_turns_value_(profile.clear_turns_value),
       clear_turns_control_(profile.clear_turns_control),
       object_offset_(profile.object_offset),
+      tunnel_(profile.behaviour.parameter_tunnel),
+      bus_state_address_(profile.behaviour.bus_state),
       detail_index_(profile.alarm_detail_index),
       detail_sub_(profile.alarm_detail_sub),
       alarms_(profile.alarms),
@@ -51,7 +53,11 @@ Cia402Device::Cia402Device(const DriveProfile& profile, const std::vector<AxisSe
       minimum_cycle_(profile.minimum_cycle_csp),
       missed_allowed_(profile.missed_frames_allowed) {
     if (!axes.empty()) missed_alarm_ = axes[0].personality.communication_alarm, link_alarm_ = axes[0].personality.link_alarm;
-    for (const auto& setup : axes) axes_.emplace_back().model = std::make_unique<Cia402Axis>(setup.plant, setup.personality);
+    for (const auto& setup : axes) {
+        auto& axis = axes_.emplace_back();
+        axis.model = std::make_unique<Cia402Axis>(setup.plant, setup.personality);
+        axis.behaviour = std::make_unique<Behaviour>(profile);
+    }
 }
 
 void Cia402Device::power_on(ecat::sim::ObjectDictionary& dictionary, Instant now) {
@@ -75,12 +81,15 @@ void Cia402Device::power_on(ecat::sim::ObjectDictionary& dictionary, Instant now
             axes_[i].stop_values.push_back(stop.object.index ? at(stop.object.index, stop.object.sub) : nullptr);
         axes_[i].emergency_torque = emergency_torque_.index ? at(emergency_torque_.index, emergency_torque_.sub) : nullptr;
         axes_[i].model->power_on(now);
+        axes_[i].behaviour->power_on(dictionary, now);
     }
     for (auto& axis : axes_) axis.faulted = false, axis.common = 0;
     missed_frames_ = dictionary.find(0x1C32, 0x0B);
     missed_before_ = missed_frames_ ? missed_frames_->get() : 0;
     missed_in_a_row_ = 0;
     alarm_detail_ = detail_index_ ? dictionary.find(detail_index_, detail_sub_) : nullptr;
+    tunnel_.power_on(dictionary);
+    bus_state_ = bus_state_address_.index ? dictionary.find(bus_state_address_.index, bus_state_address_.sub) : nullptr;
     operational_ = false;
     exchange(now);  // the inputs show the truth from the first SAFEOP cycle on
 }
@@ -95,6 +104,7 @@ void Cia402Device::power_off(Instant now) {
 
 std::uint16_t Cia402Device::refuse(ecat::sim::EsmState from, ecat::sim::EsmState to, const ecat::sim::SyncSettings& settings) {
     if (settings.sync0_active) cycle_ = settings.sync0_cycle;
+    for (auto& axis : axes_) axis.behaviour->synchronised(settings.sync0_active);
     if (refused_code_ != 0 && to == refused_state_) return refused_code_;
     // 0036h: invalid SYNC0 cycle time (ETG.1000.6 table of AL status codes).
     if (to == ecat::sim::EsmState::safeop && from == ecat::sim::EsmState::preop && settings.sync0_active &&
@@ -103,12 +113,14 @@ std::uint16_t Cia402Device::refuse(ecat::sim::EsmState from, ecat::sim::EsmState
     return 0;
 }
 
-void Cia402Device::entered(ecat::sim::EsmState state, Instant) {
+void Cia402Device::entered(ecat::sim::EsmState state, Instant now) {
+    put(bus_state_, 10 + static_cast<std::int64_t>(state));  // SV-DA200 2.1 note 13
     const bool op = state == ecat::sim::EsmState::op;
     for (auto& axis : axes_) {
         if (operational_ && !op) axis.model->left_operational();
         axis.model->operational(op);
         axis.model->reachable(state != ecat::sim::EsmState::init);
+        axis.behaviour->operational(op, now);
     }
     operational_ = op;
 }
@@ -119,13 +131,19 @@ void Cia402Device::outputs_lost(Instant) {
 }
 
 void Cia402Device::advance(Instant now) {
-    for (auto& axis : axes_) axis.model->advance(now);
+    for (auto& axis : axes_) {
+        axis.model->advance(now);
+        axis.behaviour->watch(*axis.model, now);
+    }
 }
 
-void Cia402Device::exchange(Instant) {
+void Cia402Device::written(std::uint16_t index, std::uint8_t sub, Instant) { tunnel_.written(index, sub); }
+
+void Cia402Device::exchange(Instant now) {
     count_missed_frames();
     share_common_alarm();
     for (auto& axis : axes_) {
+        axis.behaviour->exchange_due(cause_, now);
         AxisInputs in;
         if (operational_) take(command_objects(), axis.commands, in);
         take(setting_objects(), axis.settings, in);
@@ -134,8 +152,10 @@ void Cia402Device::exchange(Instant) {
         for (std::size_t i = 0; i < axis.stop_values.size() && i < most_stop_options; ++i)
             if (axis.stop_values[i]) in.stop_values[i] = axis.stop_values[i]->get();
         if (axis.emergency_torque) in.emergency_torque = axis.emergency_torque->get();
+        axis.behaviour->obey(in, *axis.model);
         AxisOutputs out;
         axis.model->exchange(in, cycle_, out);
+        axis.behaviour->show(out, *axis.model);
         for (std::size_t i = 0; i < axis.answers.size(); ++i) put(axis.answers[i], answer_objects()[i].value(out));
         std::int64_t detail = out.error_detail;
         if (out.error_code && detail == 0)
@@ -147,6 +167,7 @@ void Cia402Device::exchange(Instant) {
         put(alarm_detail_, detail);
         announce(axis, (out.status & status_fault) != 0, out.error_code, static_cast<std::uint32_t>(detail));
     }
+    cause_ = {};
 }
 
 void Cia402Device::serve_encoder(OneAxis& axis, std::uint16_t control) {

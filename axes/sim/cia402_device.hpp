@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "axes/port/drive_profile.hpp"
+#include "axes/sim/behaviour.hpp"
 #include "axes/sim/cia402_axis.hpp"
+#include "axes/sim/parameter_tunnel.hpp"
 #include "ecat/sim/device_model.hpp"
 #include "ecat/sim/object_dictionary.hpp"
 
@@ -26,7 +28,9 @@ public:
     void power_off(Instant now) override;
     std::uint16_t refuse(ecat::sim::EsmState from, ecat::sim::EsmState to, const ecat::sim::SyncSettings& settings) override;
     void entered(ecat::sim::EsmState state, Instant now) override;
+    void exchange_due(const ecat::sim::ExchangeCause& cause) override { cause_ = cause; }
     void exchange(Instant now) override;
+    void written(std::uint16_t index, std::uint8_t sub, Instant now) override;
     void advance(Instant now) override;
     void outputs_lost(Instant now) override;
 
@@ -45,12 +49,15 @@ public:
     void raise(std::size_t axis, std::uint16_t code) noexcept;
 
     [[nodiscard]] Cia402Axis& axis(std::size_t index) { return *axes_[index].model; }
+    /// What the objects that change a drive's behaviour make of this axis.
+    [[nodiscard]] Behaviour& behaviour(std::size_t index) { return *axes_[index].behaviour; }
     [[nodiscard]] std::size_t axis_count() const noexcept { return axes_.size(); }
 
 private:
     using Entry = ecat::sim::Entry;
     struct OneAxis {
         std::unique_ptr<Cia402Axis> model;
+        std::unique_ptr<Behaviour> behaviour;
         std::vector<Entry*> commands, settings, answers;  ///< in the order of object_table.hpp; null: this drive has it not
         Entry *homing_timeout = nullptr, *clear_turns = nullptr;
         bool clear_asked = false;  ///< the control word's bit stood in the exchange before
@@ -72,7 +79,10 @@ private:
     std::int64_t clear_turns_value_;
     std::uint16_t clear_turns_control_;
     std::uint16_t object_offset_;
-    Entry* alarm_detail_ = nullptr;
+    ParameterTunnel tunnel_;
+    ParameterAddress bus_state_address_;
+    Entry *alarm_detail_ = nullptr, *bus_state_ = nullptr;
+    ecat::sim::ExchangeCause cause_;
     std::uint16_t detail_index_;
     std::uint8_t detail_sub_;
     std::vector<DriveAlarmText> alarms_;

@@ -21,6 +21,9 @@ constexpr InputObject commands[] = {
 };
 
 constexpr InputObject settings[] = {
+    {0x6072, 0, [](In& in, Value v) { in.torque_limit = v; }},
+    {0x60E0, 0, [](In& in, Value v) { in.torque_limit_positive = v; }},
+    {0x60E1, 0, [](In& in, Value v) { in.torque_limit_negative = v; }},
     {0x6098, 0, [](In& in, Value v) { in.homing.method = v; }},
     {0x6099, 1, [](In& in, Value v) { in.homing.fast = static_cast<double>(v); }},
     {0x6099, 2, [](In& in, Value v) { in.homing.slow = static_cast<double>(v); }},

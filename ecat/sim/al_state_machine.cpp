@@ -219,6 +219,7 @@ std::uint16_t AlStateMachine::check_dc() const {
     const DcDescription& dc = description_.dc;
     if (cycle < dc.minimum_cycle) return invalid_sync0_cycle;
     if (dc.cycle_multiple > Duration::zero() && cycle % dc.cycle_multiple != Duration::zero()) return invalid_sync0_cycle;
+    if (!dc.cycles.empty() && std::find(dc.cycles.begin(), dc.cycles.end(), cycle) == dc.cycles.end()) return invalid_sync0_cycle;
     return 0;
 }
 

@@ -23,6 +23,12 @@ struct SyncSettings {
     std::uint16_t output_bytes = 0, input_bytes = 0;
 };
 
+/// What brings an exchange of process data about.
+struct ExchangeCause {
+    bool outputs = false;  ///< new ones came since the last exchange: a frame may be late or lost
+    bool sync0 = false;    ///< SYNC0 fired
+};
+
 /// Where an application puts its emergencies: the mailbox sends them as soon as it is free.
 class EmergencyPort {
 public:
@@ -55,6 +61,9 @@ public:
     /// Process data is due: the mapped RxPDO objects hold the newest outputs; after return the TxPDO objects are copied to
     /// the inputs. Called at SYNC0 when it runs, else when outputs arrive. Allocation-free.
     virtual void exchange(Instant now) = 0;
+
+    /// Before each exchange() in OP.
+    virtual void exchange_due(const ExchangeCause& cause) { (void)cause; }
 
     /// Physical time passes up to `now` (also between exchanges; never backwards). Allocation-free.
     virtual void advance(Instant now) { (void)now; }

@@ -158,6 +158,7 @@ void SimSlave::exchange(Instant now) noexcept {
         if (missed_entry_ != nullptr) missed_entry_->set(std::min<std::int64_t>(missed_outputs_, 0xFFFF));
     }
     if (op && outputs_valid_) load_outputs();
+    if (op) model_->exchange_due({.outputs = fresh, .sync0 = controller_.sync0_runs()});
     model_->exchange(now);
     if (description_->mailbox) store_inputs();
     else latch_raw_inputs();

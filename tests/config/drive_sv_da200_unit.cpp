@@ -103,9 +103,8 @@ TEST(SvDa200, WhatTheRuntimeMapsKeepsToTenObjectsAPdo) {
     for (const auto& entry : drive().rx.assigned[0].entries) EXPECT_NE(entry.index, 0x60B2) << "would override P2.44 (4.10)";
 }
 
-TEST(SvDa200, CyclesStartAt250Microseconds) {  // 2.1 item 4
-    EXPECT_EQ(drive().device->dc.minimum_cycle, 250us);
-    EXPECT_EQ(drive().device->dc.cycle_multiple, 250us);
+TEST(SvDa200, KnowsSixCyclesOnly) {  // 2.1 item 4
+    EXPECT_THAT(drive().device->dc.cycles, ElementsAre(250us, 500us, 1ms, 2ms, 4ms, 8ms));
     EXPECT_TRUE(drive().device->dc.supported);
     EXPECT_FALSE(drive().device->dc.required);  // 2.1 item 3: 0 is free run
 }
@@ -116,7 +115,7 @@ TEST(SvDa200, ModesAndHomingMethodsAreThoseDescribed) {
                                               DriveMode::cyclic_position, DriveMode::cyclic_velocity, DriveMode::cyclic_torque));
     EXPECT_THAT(drive().profile->homing_methods, ElementsAre(1, 2, 3, 4, 17, 18, 19, 20, 35));  // 3.4.6
     EXPECT_EQ(object(0x6502).value, 0x3A5);                                                     // bits 0, 2, 5, 7, 8, 9: 2.3
-    EXPECT_EQ(drive().profile->enable_status_bits, 0x0010);                                     // 3.1.2: bit 4 main power
+    EXPECT_EQ(drive().profile->enable_status_bits, 0x0110);                                     // 3.1.2: bit 4 main power, bit 8 clock
 }
 
 TEST(SvDa200, ObjectsOfTheProfileHaveTheTypesOfTheGuide) {  // 4.3
@@ -275,18 +274,40 @@ TEST(SvDa200, WhatIsPrintedOfValuesAndEffects) {
     for (const int index : {0x2419, 0x241A, 0x241B}) EXPECT_EQ(effect(index), ParameterEffect::at_once) << std::hex << index;
 }
 
-// --- What is written at every bring-up ----------------------------------------------------------------------------------------
+// --- Settings that decide ------------------------------------------------------------------------------------------------------
 
-TEST(SvDa200, TargetsArePositionsUnitsAreCountsAndHaltHolds) {
-    const auto written = [](std::uint16_t index) -> std::int64_t {
-        for (const auto& sdo : drive().startup)
-            if (sdo.index == index) return sdo.value;
-        ADD_FAILURE() << std::hex << index << " is not written";
-        return 99;
-    };
-    EXPECT_EQ(written(0x2025), 1);   // 3.3.2: absolute
-    EXPECT_EQ(written(0x2419), 1);   // 2.1 note 3: CIA402 Unit
-    EXPECT_EQ(written(0x605D), -1);  // 3.2.7: stops and holds
+TEST(SvDa200, UnitsFollowP425) {  // 2.1 note 3, note 8, 4.6
+    const auto& units = drive().profile->units;
+    EXPECT_EQ(units.object.index, 0x2419);
+    EXPECT_EQ(units.counts_per_revolution.index, 0x2016);
+    ASSERT_EQ(units.variants.size(), 4u);
+    for (int value = 0; value < 4; ++value) {
+        const auto& v = units.variants[static_cast<std::size_t>(value)];
+        EXPECT_EQ(v.value, value);
+        EXPECT_EQ(v.velocity, value == 0 ? axes::VelocityUnit::rpm : axes::VelocityUnit::profile);
+        EXPECT_EQ(v.acceleration, value == 0 ? axes::AccelerationUnit::time : axes::AccelerationUnit::counts);
+        EXPECT_EQ(v.zero_limits_count, value == 2);
+        EXPECT_EQ(v.index_before_inputs, value == 2);
+        EXPECT_EQ(v.index_probe, value != 3);
+    }
+}
+
+TEST(SvDa200, SettingsThatForbidEnablingAreChecked) {
+    std::set<std::uint16_t> checked;
+    for (const auto& row : drive().profile->required_settings) {
+        checked.insert(row.object.index);
+        if (row.object.index == 0x2003) {  // 2.1 item 1
+            EXPECT_THAT(row.values, ElementsAre(8));
+        }
+        if (row.object.index == 0x2025) {  // 3.3.2, 3.3.4
+            EXPECT_THAT(row.values, ElementsAre(1));
+        }
+        if (row.object.index == 0x2407) {  // 2.1 item 4
+            EXPECT_THAT(row.cycles, ElementsAre(250us, 500us, 1ms, 2ms, 4ms, 8ms));
+        }
+        EXPECT_FALSE(row.remedy.empty());
+    }
+    EXPECT_THAT(checked, ElementsAre(0x2003, 0x2025, 0x2407, 0x2408, 0x2419));
 }
 
 // --- Alarms [5.2, 5.3] ------------------------------------------------------------------------------------------------------------
@@ -350,6 +371,7 @@ TEST(SvDa200, AlarmsAreAsPrinted) {
         EXPECT_EQ(alarm(row.panel).chinese, row.chinese) << row.panel;
         EXPECT_EQ(alarm(row.panel).resettable, row.resettable) << row.panel;
     }
+    EXPECT_EQ(alarm("Er24-a").kind, DriveAlarmKind::sync_lost);
     EXPECT_EQ(alarm("Er21-0").kind, DriveAlarmKind::positive_limit);
     EXPECT_EQ(alarm("Er02-7").kind, DriveAlarmKind::reference_lost);
 }

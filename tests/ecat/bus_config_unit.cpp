@@ -110,6 +110,12 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"bus.dc_required", [](BusConfig& c) { c.slaves[0].dc = false; }},
         Case{"bus.dc_unsupported", [](BusConfig& c) { c.slaves[1].dc = true; }},
         Case{"bus.cycle_multiple", [](BusConfig& c) { c.cycle = 200us; }},
+        Case{"bus.cycle_unknown",  // a multiple of 125 us, but none of those the drive knows
+             [](BusConfig& c) {
+                 auto device = std::make_shared<DeviceDescription>(*c.slaves[0].device);
+                 device->dc.cycles = {500us, 2ms};
+                 c.slaves[0].device = device;
+             }},
         Case{"bus.cycle_too_short", [](BusConfig& c) { c.cycle = 100us; }},
         Case{"bus.sm_watchdog", [](BusConfig& c) { c.slaves[0].sm_watchdog = 1ms; }},
         Case{"bus.sm_watchdog", [](BusConfig& c) { c.slaves[0].sm_watchdog = 7s; }},  // 65535 * 100 us = 6.5535 s

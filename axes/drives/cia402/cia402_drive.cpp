@@ -2,6 +2,8 @@
 
 #include "axes/drives/cia402/cia402_drive.hpp"
 
+#include "axes/drives/cia402/words.hpp"
+
 #include <algorithm>
 #include <utility>
 
@@ -28,7 +30,8 @@ Cia402Drive::Cia402Drive(ecat::Master& bus, std::size_t slave, std::uint8_t axis
       profile_(std::move(profile)),
       interpolation_(profile_->csp_interpolates ? cycle : Duration{}),
       fault_quirk_(profile_->has(Quirk::fault_low_nibble_f)),
-      alarm_(*profile_, profile_->alarm_detail_index ? of_axis(profile_->alarm_detail_index, axis, *profile_) : std::uint16_t{0}) {
+      alarm_(*profile_, profile_->alarm_detail_index ? of_axis(profile_->alarm_detail_index, axis, *profile_) : std::uint16_t{0}),
+      settings_(*profile_, static_cast<std::uint16_t>(axis * profile_->object_offset), cycle) {
     auto& c = capabilities_;
     for (const auto mode : profile_->modes) c.modes = static_cast<std::uint16_t>(c.modes | (1u << static_cast<unsigned>(mode)));
     c.drive_homing = !profile_->homing_methods.empty() && c.has(DriveMode::homing);
@@ -114,6 +117,9 @@ Result<void> Cia402Drive::resolve() {
     (void)find_input(in_.error, 0x603F, 0, false);
     capabilities_.digital_inputs = find_input(in_.digital, 0x60FD, 0, false);
     feedback_.has_inputs = capabilities_.digital_inputs;
+    // A clock that nobody synchronises never shows in bit 8.
+    const auto clock_bit = profile_->has(Quirk::clock_bit_8) && !bus_.slave(slave_).dc ? bit_clock : std::uint16_t{0};
+    enable_bits_ = static_cast<std::uint16_t>(profile_->enable_status_bits & ~clock_bit);
     find_probes();
     find_homing_setup();
     drop_modes_without_target();
@@ -210,6 +216,7 @@ void Cia402Drive::step(Instant) {
     alarm_.step(bus_, slave_);
     ramps_.step(bus_, slave_);
     if (capabilities_.homing_per_run) homing_setup_.step(bus_, slave_);
+    settings_.step(bus_, slave_);
 }
 
 ServiceTicket Cia402Drive::read_parameter(ParameterAddress address) { return bus_.upload(slave_, object(address.index), address.sub); }
@@ -217,7 +224,12 @@ ServiceTicket Cia402Drive::read_parameter(ParameterAddress address) { return bus
 ServiceTicket Cia402Drive::write_parameter(ParameterAddress address, std::vector<std::byte> value) {
     // The next frame would overwrite it, and some drives take that badly (SV33-E 6.2.8, TSVM 5.2.5).
     if (bus_.maps_output(slave_, object(address.index), address.sub)) return 0;
-    return bus_.download(slave_, object(address.index), address.sub, value);
+    // Units that change under a moving axis would make its next set-point another one (SV-DA200 2.1 note 1: at once).
+    const auto& units = profile_->units.object;
+    if (units.index != 0 && address.index == units.index && address.sub == units.sub && enabled_.load(std::memory_order_relaxed)) return 0;
+    const auto ticket = bus_.download(slave_, object(address.index), address.sub, value);
+    settings_.changed(address);  // read again, behind this write
+    return ticket;
 }
 
 ServiceTicket Cia402Drive::start_service(DriveService service) {

@@ -3,6 +3,7 @@
 // units, timing, bit positions. One object per axis; a six-axis drive gives six, each at its object offset.
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -17,6 +18,7 @@
 #include "axes/drives/cia402/probe_latch.hpp"
 #include "axes/drives/cia402/profile_handshake.hpp"
 #include "axes/drives/cia402/ramp_writer.hpp"
+#include "axes/drives/cia402/settings_check.hpp"
 #include "axes/drives/cia402/turn_clearing.hpp"
 #include "axes/port/drive_port.hpp"
 #include "axes/port/drive_profile.hpp"
@@ -48,6 +50,7 @@ public:
     [[nodiscard]] ServiceTicket write_parameter(ParameterAddress address, std::vector<std::byte> value) override;
     [[nodiscard]] ServiceTicket start_service(DriveService service) override;
     [[nodiscard]] std::optional<Result<ServiceAnswer>> service_answer(ServiceTicket ticket) override;
+    [[nodiscard]] std::vector<std::string> setup_problems() const override { return settings_.problems(); }
 
 private:
     struct Outputs {
@@ -112,6 +115,9 @@ private:
     RampWriter ramps_;
     double held_velocity_ = 0, held_torque_ = 0;  // target of PV and PT while ramps for the next are being written
     AlarmReader alarm_;
+    SettingsCheck settings_;
+    std::uint16_t enable_bits_ = 0;     // of 6041h, all set before Enable Operation
+    std::atomic<bool> enabled_{false};  // for the service side
 };
 
 }  // namespace taktwerk::axes::cia402

@@ -33,6 +33,8 @@ const DriveFeedback& Cia402Drive::decode(Instant now) noexcept {
         ++feedback_.reference_epoch;
         ++feedback_.position_epoch;
     }
+    settings_.online(feedback_.online);
+    feedback_.setup_refused = settings_.verdict() == SettingsCheck::Verdict::refused;
     if (!feedback_.online) {
         homing_setup_.forget();
         turns_.note(PowerState::unknown);
@@ -48,6 +50,7 @@ const DriveFeedback& Cia402Drive::decode(Instant now) noexcept {
     feedback_.status_word = status;
     feedback_.power = power_state(status, fault_quirk_);
     if (feedback_.online) turns_.note(feedback_.power);
+    enabled_.store(feedback_.power == PowerState::enabled, std::memory_order_relaxed);
     feedback_.fault = (status & bit_fault) != 0;
     feedback_.warning = (status & bit_warning) != 0;
     feedback_.main_power = (status & bit_voltage) != 0;
@@ -97,7 +100,7 @@ void Cia402Drive::decode_motion() noexcept {
     }
 
     if (in_.velocity.mapped()) {
-        feedback_.velocity = static_cast<double>(read_signal(image, in_.velocity)) / profile_->velocity_counts_per_unit;
+        feedback_.velocity = static_cast<double>(read_signal(image, in_.velocity)) / settings_.velocity_counts_per_unit();
     } else if (position_at_ == Instant{}) {
         feedback_.velocity = 0;
     } else if (feedback_.latched > position_at_) {

@@ -52,8 +52,8 @@ std::uint16_t Cia402Drive::control_word(const DriveCommand& command, bool mode_c
                                                                                                        : towards_off(feedback_.power);
         case PowerRequest::on: break;
     }
-    const auto needed = profile_->enable_status_bits;
-    const bool may_enable = mode_confirmed && (feedback_.status_word & needed) == needed;
+    const bool may_enable =
+        mode_confirmed && (feedback_.status_word & enable_bits_) == enable_bits_ && settings_.verdict() == SettingsCheck::Verdict::fits;
     std::uint16_t word = towards_enabled(feedback_.power, may_enable);
     if (feedback_.power == PowerState::enabled) {
         if (command.mode == DriveMode::homing && mode_confirmed && command.start_homing) word |= homing_start;
@@ -158,7 +158,7 @@ void Cia402Drive::write_targets(std::span<std::byte> image, const DriveCommand& 
     // Positions wrap like the drive's own: the low bits, not a saturated value.
     const bool in_position_mode = position_mode(command.mode) || feedback_.mode == DriveMode::cyclic_position;
     write_signal(image, out_.target_position.signal, follows && in_position_mode ? command.position : feedback_.position);
-    const double velocity = follows ? command.velocity * profile_->velocity_counts_per_unit : 0.0;
+    const double velocity = follows ? command.velocity * settings_.velocity_counts_per_unit() : 0.0;
     const bool in_velocity_mode = velocity_mode(command.mode) || feedback_.mode == DriveMode::cyclic_velocity;
     out_.target_velocity.write(image, in_velocity_mode ? velocity : 0);
     out_.velocity_offset.write(image, command.mode == DriveMode::cyclic_position ? velocity : 0);
@@ -177,14 +177,14 @@ void Cia402Drive::write_limits(std::span<std::byte> image, const DriveCommand& c
     out_.torque_max.write(image, std::min(positive, negative));
     // The rest stays as the start-up list or the last command left it while nothing is asked for: zero would mean "never move".
     if (std::isfinite(command.velocity_limit))
-        out_.velocity_limit.write(image, command.velocity_limit * profile_->velocity_counts_per_unit);
+        out_.velocity_limit.write(image, command.velocity_limit * settings_.velocity_counts_per_unit());
     else if (velocity_limit_at_start_ != 0)  // the limit of a torque command must not slow down what comes after it
         out_.velocity_limit.write(image, static_cast<double>(velocity_limit_at_start_));
     if (command.acceleration > 0) out_.profile_acceleration.write(image, command.acceleration);
     if (command.deceleration > 0) out_.profile_deceleration.write(image, command.deceleration);
     if (command.torque_slope > 0) out_.torque_slope.write(image, command.torque_slope * profile_->torque_rated_raw);
     if (command.mode == DriveMode::profile_position && command.velocity != 0)
-        out_.profile_velocity.write(image, std::abs(command.velocity) * profile_->velocity_counts_per_unit);
+        out_.profile_velocity.write(image, std::abs(command.velocity) * settings_.velocity_counts_per_unit());
 }
 
 void Cia402Drive::write_probes(std::span<std::byte> image, const DriveCommand& command) noexcept {

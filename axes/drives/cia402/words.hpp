@@ -22,6 +22,7 @@ inline constexpr std::uint16_t halt = 0x0100;
 inline constexpr std::uint16_t bit_fault = 1u << 3;
 inline constexpr std::uint16_t bit_voltage = 1u << 4;
 inline constexpr std::uint16_t bit_warning = 1u << 7;
+inline constexpr std::uint16_t bit_clock = 1u << 8;  ///< where the drive has it: its clock follows SYNC0
 inline constexpr std::uint16_t bit_target_reached = 1u << 10;
 inline constexpr std::uint16_t bit_internal_limit = 1u << 11;
 inline constexpr std::uint16_t bit_follows_target = 1u << 12;  ///< cyclic modes; SE-808X and SV-DA200 leave it open

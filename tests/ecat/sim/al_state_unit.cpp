@@ -220,6 +220,25 @@ TEST(AlState, ADriveThatNeedsSync0WantsItBeforeSafeop) {
     EXPECT_EQ(code_with_sync0(10'000'000, 1'000'000), 0);
 }
 
+// SV-DA200 2.1: 250 us, 500 us, 1 ms, 2 ms, 4 ms and 8 ms are the only cycles.
+TEST(AlState, ADriveThatKnowsSomeCyclesOnlyRefusesAllOthers) {
+    const auto code = [](std::uint32_t cycle) {
+        auto description = dc_drive();
+        description.dc.cycles = {250us, 500us, 1ms, 2ms, 4ms, 8ms};
+        return safeop_code(
+            [&](BusProbe& bus) {
+                bus.process_managers(0);
+                bus.write(0, 0x0990, le<std::int64_t>(bus.value<std::int64_t>(0, 0x0910) + 10'000'000));
+                bus.write(0, 0x09A0, le<std::uint32_t>(cycle));
+                bus.write(0, 0x0981, bytes({0x03}));
+            },
+            description);
+    };
+    EXPECT_EQ(code(750'000), 0x0036) << "a multiple of 125 us, but no cycle of this drive";
+    EXPECT_EQ(code(500'000), 0);
+    EXPECT_EQ(code(8'000'000), 0);
+}
+
 TEST(AlState, ForAMasterWithoutClocksTheNeedOfSync0MayBeWaived) {
     BusProbe bus;
     auto description = small_drive();

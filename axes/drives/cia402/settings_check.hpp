@@ -1,0 +1,69 @@
+#pragma once
+// What a drive's own parameters must be before it may be enabled, and the units they choose: read by SDO each time the drive comes
+// into OP. The cycle asks and waits for the verdict, the service side reads: two threads, atomics, nothing waits.
+// Sources: SV-DA200 2.1; general over DriveProfile::required_settings and DriveProfile::units.
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "axes/port/drive_profile.hpp"
+#include "core/time.hpp"
+#include "ecat/master.hpp"
+
+namespace taktwerk::axes::cia402 {
+
+class SettingsCheck {
+public:
+    enum class Verdict : std::uint8_t { unknown, fits, refused };
+
+    /// `offset` is added to the objects of a further axis. Profile and bus outlive the check.
+    SettingsCheck(const DriveProfile& profile, std::uint16_t offset, Duration cycle);
+
+    // --- in the cycle; real-time safe ---------------------------------------------------------------------------------
+    /// Whether the drive is in OP; what is known of its parameters ends when it leaves.
+    void online(bool now) noexcept;
+    /// `unknown` as long as the reading goes on: the drive is not enabled meanwhile.
+    [[nodiscard]] Verdict verdict() const noexcept;
+    /// 606Ch, 60FFh, 607Fh raw = counts/s times this, in the units that the drive is in.
+    [[nodiscard]] double velocity_counts_per_unit() const noexcept { return velocity_.load(std::memory_order_relaxed); }
+
+    // --- service side ---------------------------------------------------------------------------------------------------
+    void step(ecat::Master& bus, std::size_t slave);
+    /// An object that was read may have changed: it is read again before the drive is enabled next.
+    void changed(ParameterAddress address) noexcept;
+    /// In words, with value, remedy and section of the manual.
+    [[nodiscard]] const std::vector<std::string>& problems() const noexcept { return problems_; }
+
+private:
+    struct Reading {
+        ParameterAddress object;
+        std::int64_t value = 0;
+        bool known = false;
+    };
+    void want(ParameterAddress object);
+    [[nodiscard]] const Reading* reading(ParameterAddress object) const noexcept;
+    void judge(const ecat::SlaveConfig& slave);
+    void judge_units(const ecat::SlaveConfig& slave);
+    [[nodiscard]] bool is_signed(const ecat::SlaveConfig& slave, ParameterAddress object) const noexcept;
+
+    const DriveProfile& profile_;
+    std::uint16_t offset_;
+    Duration cycle_;
+    std::vector<Reading> readings_;
+
+    // Written by the cycle (coming into OP) and the service side (changed); each count is one reading of all objects.
+    std::atomic<std::uint32_t> wanted_{0};
+    std::atomic<std::uint64_t> judged_{0};  // count << 8 | verdict
+    std::atomic<double> velocity_;
+    bool online_ = false;
+
+    std::uint32_t under_way_ = 0;  // the count that is being read; 0: none
+    std::size_t next_ = 0;
+    ecat::SdoTicket ticket_ = 0;
+    std::vector<std::string> problems_;
+};
+
+}  // namespace taktwerk::axes::cia402

@@ -1,0 +1,81 @@
+#pragma once
+// Objects of a drive with which its behaviour changes: those that must have a certain value before it may be enabled, the one
+// that chooses its units, and those that the simulated drive obeys. Which object does what comes from the drive file; what it
+// does is code. Plain data; read at start, never in the cycle.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "axes/port/drive_port.hpp"
+#include "core/time.hpp"
+
+namespace taktwerk::axes {
+
+/// In which machines a required setting counts.
+enum class SettingApplies : std::uint8_t {
+    always,
+    with_clocks,     ///< the slave runs on SYNC0
+    without_clocks,  ///< it runs free
+};
+
+/// With another value the drive must not be enabled. Read by SDO each time the drive comes into OP.
+struct RequiredSetting {
+    ParameterAddress object;
+    std::vector<std::int64_t> values;  ///< raw; any of them
+    std::vector<Duration> cycles;      ///< instead of `values`: raw value n means the cycle in place n, which must be the one of the bus
+    SettingApplies when = SettingApplies::always;
+    std::string text;     ///< what the object is and what goes wrong otherwise, in one sentence
+    std::string remedy;   ///< what to write, and when it takes effect
+    std::string section;  ///< of the manual
+};
+
+enum class VelocityUnit : std::uint8_t {
+    profile,  ///< DriveProfile::velocity_counts_per_unit
+    rpm,      ///< revolutions of the motor per minute (SV-DA200 P4.25 = 0)
+};
+enum class AccelerationUnit : std::uint8_t {
+    counts,  ///< counts/s2
+    time,    ///< ms from standstill to rated speed (SV-DA200 P4.25 = 0); greater is gentler
+};
+
+/// What one value of the unit object makes of the drive.
+struct UnitVariant {
+    std::int64_t value = 0;
+    VelocityUnit velocity = VelocityUnit::profile;
+    AccelerationUnit acceleration = AccelerationUnit::counts;
+    bool zero_limits_count = false;    ///< torque limits of 0 are never ignored, whatever the limit masks say (SV-DA200 P4.25 = 2)
+    bool index_before_inputs = false;  ///< 60FDh: bit 16 is the index pulse, the inputs follow from bit 17 on, bit 25 is emergency stop
+    bool index_probe = true;           ///< touch probes can latch on the index pulse
+};
+
+struct DriveUnits {
+    ParameterAddress object{};                 ///< chooses the variant; index 0: the units never change
+    ParameterAddress counts_per_revolution{};  ///< of the motor, in the drive's position unit
+    std::vector<UnitVariant> variants;
+};
+
+/// An analogue output that the bus sets: its volts are value / gain while the selection is 0.
+struct AnalogueOutput {
+    ParameterAddress value{}, selection{}, gain{};
+    ParameterAddress monitor{};  ///< shows the voltage in mV
+};
+
+/// Objects that the simulated drive obeys; index 0: this drive has no such object.
+struct BehaviourObjects {
+    ParameterAddress bus_control{};  ///< unless it reads `bus_control_value`, control word and mode mean nothing
+    std::int64_t bus_control_value = 0;
+    ParameterAddress absolute_targets{};    ///< 0: a target in CSP is an increment each cycle; 1: a position
+    ParameterAddress limit_masks{};         ///< bit 0: torque limits of 0 are ignored, bit 1: a speed limit of 0 is
+    ParameterAddress lost_target_cycles{};  ///< CSP goes on by the last increment for so many cycles without process data
+    ParameterAddress lost_data_time{};      ///< ms without process data until the alarm; while enabled only
+    ParameterAddress sync_type{};           ///< 2: SYNC0 is watched while enabled; 0: free run
+    ParameterAddress output_control{};      ///< 1: 60FEh drives the outputs
+    std::vector<AnalogueOutput> analogue_outputs{};
+    ParameterAddress bus_state{};          ///< shows 10 + AL state
+    ParameterAddress parameter_tunnel{};   ///< sub 1 address (index << 8 | sub), sub 2 value, sub 3 result
+    ParameterAddress following_limit{};    ///< counts of following error that are an alarm; 0: no check
+    ParameterAddress probe_input[2] = {};  ///< must be 0 for the probe's input to latch
+};
+
+}  // namespace taktwerk::axes

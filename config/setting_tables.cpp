@@ -1,0 +1,133 @@
+#include "config/setting_tables.hpp"
+
+#include <limits>
+
+#include "config/codecs.hpp"
+
+namespace taktwerk::config {
+
+namespace {
+
+Codec<std::int64_t> raw_value() {
+    return integer<std::int64_t>(std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max());
+}
+
+Table<axes::UnitVariant> unit_variant_table() {
+    using U = axes::UnitVariant;
+    using V = axes::VelocityUnit;
+    using A = axes::AccelerationUnit;
+    return {
+        "units.variants",
+        "What one value of the unit object makes of the drive.",
+        {
+            required(field("value", &U::value, raw_value(), "of the unit object")),
+            field("velocity", &U::velocity, choice<V>({{"profile", V::profile}, {"rpm", V::rpm}}),
+                  "unit of 606Ch, 60FFh, 607Fh; profile: motion.velocity_counts_per_unit"),
+            field("acceleration", &U::acceleration, choice<A>({{"counts", A::counts}, {"time", A::time}}),
+                  "unit of 6083h, 6084h, 609Ah; time: ms to rated speed"),
+            field("zero_limits_count", &U::zero_limits_count, boolean(), "torque limits of 0 hold the motor, whatever the limit masks say"),
+            field("index_before_inputs", &U::index_before_inputs, boolean(),
+                  "60FDh shows the index pulse in bit 16, the inputs from 17 on"),
+            field("index_probe", &U::index_probe, boolean(), "touch probes can latch on the index pulse"),
+        },
+        {},
+        {}};
+}
+
+Table<axes::AnalogueOutput> analogue_output_table() {
+    using A = axes::AnalogueOutput;
+    const auto object = parameter_address();
+    return {"behaviour.analogue_outputs",
+            "An analogue output that the bus sets: value / gain volts while the selection is 0.",
+            {
+                required(field("value", &A::value, object, "what the bus writes")),
+                required(field("selection", &A::selection, object, "0: the bus sets the output")),
+                required(field("gain", &A::gain, object, "divides the value")),
+                field("monitor", &A::monitor, object, "shows the voltage in mV"),
+            },
+            {},
+            {}};
+}
+
+}  // namespace
+
+Codec<axes::ParameterAddress> parameter_address() {
+    Codec<axes::ParameterAddress> c;
+    const auto address = object_address();
+    c.shape = address.shape;
+    c.read = [read = address.read](Reader& reader, const Node& node, axes::ParameterAddress& out) {
+        ObjectAddress value;
+        if (!read(reader, node, value)) return false;
+        out = {value.index, value.sub};
+        return true;
+    };
+    return c;
+}
+
+Table<axes::RequiredSetting> required_setting_table() {
+    using R = axes::RequiredSetting;
+    using A = axes::SettingApplies;
+    Table<R> table{"required_settings",
+                   "An object without whose value the drive must not be enabled; read each time the drive comes into OP.",
+                   {
+                       required(field("object", &R::object, parameter_address(), "that is read")),
+                       with_default(field("values", &R::values, list(raw_value()), "any of them will do"), "any"),
+                       with_default(field("cycles", &R::cycles, list(duration()),
+                                          "instead of values: the object holds the place (from 0) of the bus cycle in this list"),
+                                    "none"),
+                       field("when", &R::when,
+                             choice<A>({{"always", A::always}, {"with_clocks", A::with_clocks}, {"without_clocks", A::without_clocks}}),
+                             "whether it counts only with, or without, SYNC0 on the slave"),
+                       required(field("text", &R::text, text(), "what goes wrong with another value, in one sentence")),
+                       required(field("remedy", &R::remedy, text(), "what to write, and when it takes effect")),
+                       required(field("section", &R::section, text(), "of the manual")),
+                   },
+                   {},
+                   {}};
+    table.after = [](Reader& reader, const Node& node, R& row) {
+        if (row.values.empty() == row.cycles.empty())
+            reader.problem(node.at, "config.required_setting", "a required setting has either `values` or `cycles`", "write one of them");
+    };
+    return table;
+}
+
+Table<axes::DriveUnits> units_table() {
+    using U = axes::DriveUnits;
+    return {
+        "units",
+        "An object of the drive that chooses its units; the runtime reads it and scales accordingly.",
+        {
+            required(field("object", &U::object, parameter_address(), "that chooses")),
+            field("counts_per_revolution", &U::counts_per_revolution, parameter_address(), "object with the counts of a motor revolution"),
+            required(field("variants", &U::variants, list(section(unit_variant_table())), "by its value")),
+        },
+        {},
+        {}};
+}
+
+Table<axes::BehaviourObjects> behaviour_table() {
+    using B = axes::BehaviourObjects;
+    Table<B> table{"behaviour", "Objects that the simulated drive obeys.", {}, {}, {}};
+    auto& f = table.fields;
+    const auto object = parameter_address();
+    f.push_back(field("bus_control", &B::bus_control, object, "unless it holds `bus_control_value`, control word and mode mean nothing"));
+    f.push_back(field("bus_control_value", &B::bus_control_value, raw_value(), "see bus_control"));
+    f.push_back(field("absolute_targets", &B::absolute_targets, object, "0: a target in CSP is an increment, 1: a position"));
+    f.push_back(field("limit_masks", &B::limit_masks, object, "bit 0: torque limits of 0 are ignored, bit 1: a speed limit of 0 is"));
+    f.push_back(field("lost_target_cycles", &B::lost_target_cycles, object, "cycles that CSP goes on without process data"));
+    f.push_back(field("lost_data_time", &B::lost_data_time, object, "ms without process data until the alarm, while enabled"));
+    f.push_back(field("sync_type", &B::sync_type, object, "2: SYNC0 is watched while enabled, 0: free run"));
+    f.push_back(field("output_control", &B::output_control, object, "1: 60FEh drives the outputs"));
+    f.push_back(field("analogue_outputs", &B::analogue_outputs, list(section(analogue_output_table())), "that the bus sets"));
+    f.push_back(field("bus_state", &B::bus_state, object, "shows 10 + AL state"));
+    f.push_back(field("parameter_tunnel", &B::parameter_tunnel, object,
+                      "array that reaches any object: sub 1 index << 8 | sub-index, sub 2 value, sub 3 result"));
+    f.push_back(field("following_limit", &B::following_limit, object, "counts of following error that are an alarm, 0: no check"));
+    f.push_back(field_at<B>(
+        "probe_input_1", [](B & b) -> auto& { return b.probe_input[0]; }, object, "must be 0 for the input of probe 1 to latch"));
+    f.push_back(field_at<B>(
+        "probe_input_2", [](B & b) -> auto& { return b.probe_input[1]; }, object, "must be 0 for the input of probe 2 to latch"));
+    return table;
+}
+
+}  // namespace taktwerk::config
