@@ -7,6 +7,9 @@
 
 namespace taktwerk::axes::sim {
 
+/// When 607Dh counts: SV33-E P05.43.
+enum class SoftwareLimits : std::uint8_t { off, on, after_homing };
+
 /// Objects that the master writes.
 struct AxisInputs {
     std::uint16_t control = 0;
@@ -18,6 +21,9 @@ struct AxisInputs {
     std::int64_t home_offset = 0;
     std::int64_t home_position_method = 0;  ///< 60E6h: 0 the reference gets 607Ch, 1 it gets its old position + 607Ch
     std::uint16_t probe_function = 0;
+    std::int64_t following_error_window = 0;  ///< 6065h; 0: as the personality says, FFFFFFFFh: no check
+    std::int64_t software_minimum = 0, software_maximum = 0;
+    SoftwareLimits software_limits = SoftwareLimits::off;
 };
 
 /// Objects that the drive answers.

@@ -12,7 +12,8 @@ Cia402Axis::Cia402Axis(const PlantConfig& plant, const Personality& personality)
       probes_{TouchProbe(personality.probe_toggle), TouchProbe(personality.probe_toggle)},
       encoder_(static_cast<double>(personality.counts_per_revolution), plant.index_pulse, personality.encoder_turn_bits),
       battery_(plant.battery),
-      stored_shift_(-plant.index_pulse) {}
+      stored_shift_(-plant.index_pulse),
+      causes_(personality.alarms.size(), false) {}
 
 double Cia402Axis::quantised() const noexcept { return std::floor(actual()); }
 
@@ -52,6 +53,11 @@ void Cia402Axis::advance(Instant now) noexcept {
 }
 
 void Cia402Axis::exchange(const AxisInputs& in, Duration cycle, AxisOutputs& out) noexcept {
+    constexpr std::int64_t no_check = 0xFFFFFFFF;  // CiA 402-2, 6065h
+    following_limit_ = in.following_error_window == 0          ? personality_.following_error_limit
+                       : in.following_error_window == no_check ? 0
+                                                               : static_cast<double>(in.following_error_window);
+    limited_ = false;
     select_mode(in);
     command(in);
     for (std::size_t i = 0; i < probes_.size(); ++i) probes_[i].command(static_cast<std::uint8_t>(in.probe_function >> (8 * i)));

@@ -34,10 +34,19 @@ std::uint8_t error_register(std::uint16_t code) noexcept {
     }
 }
 
+/// Of any mode: the drive does not know yet which one will be asked for.
+Duration shortest_cycle(const DriveProfile& profile) noexcept {
+    Duration shortest{};
+    for (const auto cycle : {profile.minimum_cycle_csp, profile.minimum_cycle_csv, profile.minimum_cycle_cst})
+        if (cycle > Duration::zero() && (shortest == Duration::zero() || cycle < shortest)) shortest = cycle;
+    return shortest;
+}
+
 }  // namespace
 
 Cia402Device::Cia402Device(const DriveProfile& profile, const std::vector<AxisSetup>& axes)
-    : homing_timeout_(profile.homing_timeout),
+    : parameters_(profile),
+      homing_timeout_(profile.homing_timeout),
       clear_turns_(profile.clear_turns),
       homing_timeout_unit_(to_seconds(profile.homing_timeout_unit)),
       clear_turns_value_(profile.clear_turns_value),
@@ -46,11 +55,12 @@ Cia402Device::Cia402Device(const DriveProfile& profile, const std::vector<AxisSe
       detail_index_(profile.alarm_detail_index),
       detail_sub_(profile.alarm_detail_sub),
       alarms_(profile.alarms),
-      minimum_cycle_(profile.minimum_cycle_csp) {
+      minimum_cycle_(shortest_cycle(profile)) {
     for (const auto& setup : axes) axes_.emplace_back().model = std::make_unique<Cia402Axis>(setup.plant, setup.personality);
 }
 
 void Cia402Device::power_on(ecat::sim::ObjectDictionary& dictionary, Instant now) {
+    parameters_.power_on(dictionary);
     for (std::size_t i = 0; i < axes_.size(); ++i) {
         const auto at = [&](unsigned index, std::uint8_t sub) {
             return dictionary.find(static_cast<std::uint16_t>(index + i * object_offset_), sub);
@@ -67,6 +77,7 @@ void Cia402Device::power_on(ecat::sim::ObjectDictionary& dictionary, Instant now
         axes_[i].homing_timeout = own(homing_timeout_);
         axes_[i].clear_turns = own(clear_turns_);
         axes_[i].model->power_on(now);
+        parameters_.check_settings(static_cast<unsigned>(i), *axes_[i].model);
     }
     for (auto& axis : axes_) axis.faulted = false;
     alarm_detail_ = detail_index_ ? dictionary.find(detail_index_, detail_sub_) : nullptr;
@@ -110,13 +121,23 @@ void Cia402Device::advance(Instant now) {
     for (auto& axis : axes_) axis.model->advance(now);
 }
 
-void Cia402Device::exchange(Instant) {
+std::uint32_t Cia402Device::refuse_write(std::uint16_t index, std::uint8_t sub, std::int64_t value) {
+    return parameters_.refuse(index, sub, value, axes_[parameters_.axis_of(index)].model->powered());
+}
+
+void Cia402Device::written(std::uint16_t index, std::uint8_t sub, Instant now) {
+    parameters_.written(index, sub, now, *axes_[parameters_.axis_of(index)].model);
+}
+
+void Cia402Device::exchange(Instant now) {
+    parameters_.step(now, *axes_.front().model);
     for (auto& axis : axes_) {
         AxisInputs in;
         if (operational_) take(command_objects(), axis.commands, in);
         take(setting_objects(), axis.settings, in);
         if (axis.homing_timeout) in.homing.time_limit = static_cast<double>(axis.homing_timeout->get()) * homing_timeout_unit_;
         serve_encoder(axis, in.control);
+        in.software_limits = parameters_.software_limits();
         AxisOutputs out;
         axis.model->exchange(in, cycle_, out);
         for (std::size_t i = 0; i < axis.answers.size(); ++i) put(axis.answers[i], answer_objects()[i].value(out));

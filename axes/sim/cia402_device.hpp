@@ -9,6 +9,7 @@
 
 #include "axes/port/drive_profile.hpp"
 #include "axes/sim/cia402_axis.hpp"
+#include "axes/sim/drive_parameters.hpp"
 #include "ecat/sim/device_model.hpp"
 #include "ecat/sim/object_dictionary.hpp"
 
@@ -29,6 +30,8 @@ public:
     void exchange(Instant now) override;
     void advance(Instant now) override;
     void outputs_lost(Instant now) override;
+    std::uint32_t refuse_write(std::uint16_t index, std::uint8_t sub, std::int64_t value) override;
+    void written(std::uint16_t index, std::uint8_t sub, Instant now) override;
 
     /// From now on the drive refuses this state with this AL status code; code 0: no more.
     void refuse_state(ecat::sim::EsmState state, std::uint16_t al_status_code) noexcept {
@@ -37,6 +40,7 @@ public:
     }
 
     [[nodiscard]] Cia402Axis& axis(std::size_t index) { return *axes_[index].model; }
+    [[nodiscard]] const ParameterStore& parameters() const noexcept { return parameters_.store(); }
     [[nodiscard]] std::size_t axis_count() const noexcept { return axes_.size(); }
 
 private:
@@ -52,6 +56,7 @@ private:
     void announce(OneAxis& axis, bool faulted, std::uint16_t code, std::uint32_t detail);
     void serve_encoder(OneAxis& axis, std::uint16_t control);
     std::vector<OneAxis> axes_;
+    DriveParameters parameters_;
     ParameterAddress homing_timeout_, clear_turns_;
     double homing_timeout_unit_;  ///< s
     std::int64_t clear_turns_value_;

@@ -15,8 +15,13 @@ void Cia402Axis::power_on(Instant now) noexcept {
     brake_closed_ = has_brake();
     for (auto& probe : probes_) probe.command(0);
     homing_.cancel();
+    warnings_.clear();
+    powered_at_ = now;
+    heat_ = 0;
+    stalled_ = {};
     enter(State::disabled);
     wake_encoder();
+    show_causes();
 }
 
 void Cia402Axis::enter(State state) noexcept {
@@ -42,13 +47,7 @@ void Cia402Axis::command(const AxisInputs& in) noexcept {
     last_control_ = word;
     if (state_ == State::fault) {
         const bool dropped = !personality_.reset_needs_disable || (word & 0x0Fu) != 0x0Fu;
-        const bool cause_gone =
-            !encoder_failed_ && encoder_complaint_.code == 0 && (main_power_ || error_code_ != personality_.undervoltage_alarm.code);
-        if (reset_edge && dropped && error_resettable_ && cause_gone) {
-            error_code_ = 0;
-            error_detail_ = 0;
-            enter(State::disabled);
-        }
+        if (reset_edge && dropped) reset_alarm();
         return;
     }
     if (word & 0x80u) return;  // while bit 7 stands nothing else is taken (SV33-E 3.4.1, TSVM 5.3.2)
@@ -67,6 +66,7 @@ void Cia402Axis::command(const AxisInputs& in) noexcept {
         case State::switched_on:
             if (!voltage || quick) enter(State::disabled);
             else if (shutdown) enter(State::ready);
+            else if (enable && main_power_ && starts_too_fast()) raise(personality_.start_speed_alarm);
             else if (enable && main_power_) enter(State::enabled);
             break;
         case State::enabled:

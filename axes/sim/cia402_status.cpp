@@ -25,7 +25,7 @@ std::uint16_t Cia402Axis::status_word() const noexcept {
         case State::fault: word = personality_.fault_pattern_f ? 0x0F : 0x08; break;
     }
     if (main_power_) word |= bit(4);
-    if (warning_ || battery_warns()) word |= bit(7);
+    if (warning_ || battery_warns() || warnings_.any()) word |= bit(7);
     if (personality_.remote_bit && operational_) word |= bit(9);
     if (mode_ == mode::homing) {
         if (stands() && !homing_.busy()) word |= bit(10);
@@ -35,6 +35,7 @@ std::uint16_t Cia402Axis::status_word() const noexcept {
         if (state_ == State::enabled && stands() && std::abs(demand_.position - plant_.position()) < 10) word |= bit(10);
         if (mode::cyclic(mode_) && personality_.csp_following_bits && state_ == State::enabled) word |= bit(12);
     }
+    if (limited_ && personality_.internal_limit_bit) word |= bit(11);
     if (personality_.home_found_bit_15 && homed_) word |= bit(15);
     return word;
 }
@@ -52,6 +53,10 @@ void Cia402Axis::fill(AxisOutputs& out) const noexcept {
     if (error_code_ == 0 && battery_warns()) {
         out.error_code = personality_.battery_low_alarm.code;
         out.error_detail = personality_.battery_low_alarm.detail;
+    }
+    if (error_code_ == 0 && warnings_.any()) {
+        out.error_code = warnings_.shown().code;
+        out.error_detail = warnings_.shown().detail;
     }
     for (std::size_t i = 0; i < probes_.size(); ++i) {
         out.probe_status = static_cast<std::uint16_t>(out.probe_status | probes_[i].status() << (8 * i));

@@ -27,6 +27,9 @@ constexpr InputObject settings[] = {
     {0x609A, 0, [](In& in, Value v) { in.homing.acceleration = static_cast<double>(v); }},
     {0x607C, 0, [](In& in, Value v) { in.home_offset = v; }},
     {0x60E6, 0, [](In& in, Value v) { in.home_position_method = v; }},
+    {0x6065, 0, [](In& in, Value v) { in.following_error_window = v; }},
+    {0x607D, 1, [](In& in, Value v) { in.software_minimum = v; }},
+    {0x607D, 2, [](In& in, Value v) { in.software_maximum = v; }},
 };
 
 constexpr OutputObject answers[] = {

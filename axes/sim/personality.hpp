@@ -2,6 +2,8 @@
 // How a drive type behaves where CiA 402 leaves room. Plain data; what a drive's manual says of it comes from its profile.
 
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "axes/port/drive_profile.hpp"
 #include "axes/sim/touch_probe.hpp"
@@ -18,6 +20,14 @@ struct AlarmCode {
     bool resettable = true;
     std::uint32_t detail = 0;  ///< what the detail object shows (P21.08)
     bool warning = false;      ///< the drive goes on
+};
+
+/// An alarm of the profile, to be provoked by what the panel shows or by its kind.
+struct AlarmRow {
+    std::string panel{};
+    AlarmCode alarm{};
+    DriveAlarmKind kind = DriveAlarmKind::other;
+    bool warning = false, clears_itself = false;
 };
 
 /// A way in which a drive fails at once, whatever it is doing. How it shows and whether it clears is the personality's.
@@ -63,6 +73,12 @@ struct Personality {
     AlarmCode homing_timeout_alarm, homing_limit_alarm, homing_method_alarm;
     AlarmCode battery_low_alarm, reference_lost_alarm, turn_overflow_alarm;
     std::uint16_t negative_limit_code = 0x5444, positive_limit_code = 0x5443;
+    std::vector<AlarmRow> alarms{};  ///< all of the profile
+    double start_speed = 0;          ///< counts/s; enabling a faster motor is an alarm (SV33-E E.417); 0 = no check
+    AlarmCode start_speed_alarm{0x0417};
+    Duration stall_time{};  ///< at the torque limit without turning; longer is an alarm (SV33-E P08.18); 0 = no check
+    AlarmCode stall_alarm{0x7121};
+    double overload_seconds = 0;  ///< at twice the rated torque until the overload alarm, by I2t; 0 = no check
 };
 
 /// What the profile says of the drive's behaviour; the rest keeps its defaults.
