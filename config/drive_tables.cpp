@@ -75,7 +75,17 @@ Codec<axes::DriveAlarmKind> alarm_kind() {
                       {"mode_change", K::mode_change},
                       {"left_operational", K::left_operational},
                       {"link_changed", K::link_changed},
-                      {"torque_overload", K::torque_overload}});
+                      {"torque_overload", K::torque_overload},
+                      {"parameter_storage", K::parameter_storage},
+                      {"cycle_setting", K::cycle_setting},
+                      {"sync_lost", K::sync_lost},
+                      {"limits_crossed", K::limits_crossed},
+                      {"home_outside_limits", K::home_outside_limits},
+                      {"start_too_fast", K::start_too_fast},
+                      {"enabled_twice", K::enabled_twice},
+                      {"phase_lost", K::phase_lost},
+                      {"safe_torque_off", K::safe_torque_off},
+                      {"stall", K::stall}});
 }
 
 Codec<DriveMode> drive_mode() {
@@ -257,10 +267,44 @@ Table<DriveAlarmText> alarm_row_table() {
                 field("cause", &A::cause, text(), "why it comes"),
                 field("remedy", &A::remedy, text(), "what to do"),
                 field("resettable", &A::resettable, boolean(), "false: only a power cycle clears it"),
+                field("clears_itself", &A::clears_itself, boolean(), "with its cause, without a reset"),
                 field("warning", &A::warning, boolean(), "the drive goes on"),
                 field("whole_drive", &A::whole_drive, boolean(), "common to all axes of the drive"),
                 field("kind", &A::kind, alarm_kind(), "what it means, whatever its number"),
                 field("section", &A::section, text(), "of the manual"),
+            },
+            {},
+            {}};
+}
+
+Table<axes::DriveOrderObject> order_table() {
+    using O = axes::DriveOrderObject;
+    using D = axes::DriveOrder;
+    return {"orders",
+            "A parameter that is a command.",
+            {
+                required(field("order", &O::order,
+                               choice<D>({{"emergency_stop", D::emergency_stop},
+                                          {"reset_alarm", D::reset_alarm},
+                                          {"save_parameters", D::save_parameters},
+                                          {"restore_parameters", D::restore_parameters}}),
+                               "what the drive does (axes/port/drive_profile.hpp)")),
+                required(field("object", &O::address, parameter_address(), "that is written")),
+                field("value", &O::value, integer<std::int64_t>(0, u32), "that gives the order"),
+            },
+            {},
+            {}};
+}
+
+Table<axes::AlarmHistoryObjects> history_table() {
+    using H = axes::AlarmHistoryObjects;
+    return {"alarm_history",
+            "Where the drive shows its earlier alarms.",
+            {
+                required(field("select", &H::select, parameter_address(), "0 the present alarm, 1 the latest before it, and so on")),
+                required(field("code", &H::code, parameter_address(), "as the object of `alarm_detail` shows it")),
+                field("time", &H::time, parameter_address(), "since power-on, 0.1 s"),
+                field("speed", &H::speed, parameter_address(), "of the motor at that time, rpm"),
             },
             {},
             {}};
@@ -392,6 +436,14 @@ void add_profile_fields(std::vector<Field<DriveFile>>& f) {
     f.push_back(field_at<F>(
         "alarms", [](F & d) -> auto& { return d.profile.alarms; }, list(section(alarm_row_table())), "the drive's alarms"));
     f.push_back(field("alarm_file", &F::alarm_file, text(), "file beside this one with the alarms, where they are many"));
+    f.push_back(field_at<F>(
+        "alarm_history", [](F & d) -> auto& { return d.profile.alarm_history; }, section(history_table()),
+        "where the drive shows its earlier alarms"));
+    f.push_back(field_at<F>(
+        "limits_switch", [](F & d) -> auto& { return d.profile.limits_switch; }, parameter_address(),
+        "object that switches the drive's software limits: 0 off, 1 on, 2 on after homing"));
+    f.push_back(field_at<F>(
+        "orders", [](F & d) -> auto& { return d.profile.orders; }, list(section(order_table())), "parameters that are commands"));
     f.push_back(field_at<F>(
         "hazards", [](F & d) -> auto& { return d.profile.hazards; }, list(section(hazard_table())),
         "what is dangerous about it; `taktwerk check` warns of it"));

@@ -59,10 +59,29 @@ struct DriveAlarmText {
     std::string panel;         ///< what the drive's own display shows: "E.200.0"
     std::string english, chinese, cause, remedy;
     bool resettable = true;
+    bool clears_itself = false;  ///< with its cause, without a reset (SV33-E E.218), as all warnings do
     bool warning = false;
     bool whole_drive = false;  ///< common to all axes of the drive (TSVM 603Fh 71..96)
     DriveAlarmKind kind = DriveAlarmKind::other;
     std::string section;  ///< of the manual
+};
+
+/// What a drive does when a certain value is written to one of its parameters.
+enum class DriveOrder : std::uint8_t {
+    emergency_stop,      ///< as its input does, until another value is written (SV33-E P20.02)
+    reset_alarm,         ///< (SV33-E P20.03)
+    save_parameters,     ///< (SE-808X 1010h:01 = 65766173h)
+    restore_parameters,  ///< factory values, from the next power-on (SV33-E P05.01, SE-808X 1011h:01 = 64616F6Ch)
+};
+struct DriveOrderObject {
+    DriveOrder order{};
+    ParameterAddress address{};
+    std::int64_t value = 1;
+};
+
+/// Where a drive shows its earlier alarms: `select` chooses one, the others show it. Index 0: it does not.
+struct AlarmHistoryObjects {
+    ParameterAddress select{}, code{}, time{}, speed{};
 };
 
 /// How parameters get into the EEPROM.
@@ -124,6 +143,9 @@ struct DriveProfile {
     std::uint16_t alarm_detail_index = 0;  ///< object that tells ambiguous 603Fh apart (P21.08 = 2021h:09); 0 = none
     std::uint8_t alarm_detail_sub = 0;
     std::vector<DriveAlarmText> alarms;
+    AlarmHistoryObjects alarm_history;
+    ParameterAddress limits_switch{};        ///< object that switches 607Dh: 0 off, 1 on, 2 on after homing (SV33-E P05.43); index 0: none
+    std::vector<DriveOrderObject> orders;    ///< parameters that are commands: never stored
     std::vector<DriveParameter> parameters;  ///< all that the manual lists, those of the dictionary included
     std::vector<DriveHazard> hazards;
     std::vector<RequiredSetting> required_settings;  ///< checked by DrivePort::setup_problems()

@@ -11,6 +11,8 @@ namespace taktwerk::axes::sim {
 
 inline constexpr std::size_t most_stop_options = 8;
 
+/// When 607Dh counts: SV33-E P05.43.
+enum class SoftwareLimits : std::uint8_t { off, on, after_homing };
 /// Objects that the master writes.
 struct AxisInputs {
     std::uint16_t control = 0;
@@ -32,6 +34,9 @@ struct AxisInputs {
     std::int64_t velocity_window = -1, velocity_window_time = 0;                            ///< 606Dh, 606Eh ms
     std::int64_t emergency_torque = 0;                          ///< of StopBy::emergency_torque; 0 = all there is
     std::array<std::int64_t, most_stop_options> stop_values{};  ///< of Personality::stops, in their order
+    std::int64_t following_error_window = 0;  ///< 6065h; 0: as the personality says, FFFFFFFFh: no check
+    std::int64_t software_minimum = 0, software_maximum = 0;
+    SoftwareLimits software_limits = SoftwareLimits::off;
 };
 
 /// Objects that the drive answers.

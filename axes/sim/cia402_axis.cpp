@@ -15,7 +15,8 @@ Cia402Axis::Cia402Axis(const PlantConfig& plant, const Personality& personality)
       profile_position_(personality.profile_buffer, personality.pp_bit_5_blends ? BitFive::blends : BitFive::replaces),
       encoder_(static_cast<double>(personality.counts_per_revolution), plant.index_pulse, personality.encoder_turn_bits),
       battery_(plant.battery),
-      stored_shift_(-plant.index_pulse) {
+      stored_shift_(-plant.index_pulse),
+      causes_(personality.alarms.size(), false) {
     take_torque_limits({});
 }
 
@@ -85,6 +86,11 @@ void Cia402Axis::advance(Instant now) noexcept {
 void Cia402Axis::exchange(const AxisInputs& in, Duration cycle, AxisOutputs& out) noexcept {
     settings_ = in;
     take_torque_limits(in);
+    constexpr std::int64_t no_check = 0xFFFFFFFF;  // CiA 402-2, 6065h
+    following_limit_ = in.following_error_window == 0          ? personality_.following_error_limit
+                       : in.following_error_window == no_check ? 0
+                                                               : static_cast<double>(in.following_error_window);
+    limited_ = false;
     select_mode(in);
     command(in);
     take_halt(in);

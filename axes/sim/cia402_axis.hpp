@@ -4,10 +4,14 @@
 // Sources: CiA 402-2; what differs per drive is in Personality, with the manual's section in the drive sheets.
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
+#include <string_view>
+#include <vector>
 
 #include "axes/sim/absolute_encoder.hpp"
+#include "axes/sim/alarm_history.hpp"
 #include "axes/sim/axis_objects.hpp"
 #include "axes/sim/homing_run.hpp"
 #include "axes/sim/mode_codes.hpp"
@@ -16,6 +20,7 @@
 #include "axes/sim/profile_position.hpp"
 #include "axes/sim/servo_loop.hpp"
 #include "axes/sim/touch_probe.hpp"
+#include "axes/sim/warning_list.hpp"
 #include "core/time.hpp"
 
 namespace taktwerk::axes::sim {
@@ -54,6 +59,14 @@ public:
     /// One of the failures every drive knows, with this drive's own alarm. An encoder that failed shows the same position for
     /// ever after, until power_on().
     void fail(Failure failure) noexcept;
+    /// The cause of an alarm of the profile is there until it is released: `panel` is what the drive's display shows, E.216. False:
+    /// the profile has no such alarm. A fault can be reset only without its cause, a warning goes with it.
+    bool provoke(std::string_view panel) noexcept;
+    void release(std::string_view panel) noexcept;
+    /// The same by kind, with the profile's first alarm of that kind; nothing where it has none.
+    void cause(DriveAlarmKind kind, bool present) noexcept;
+    /// As control word bit 7 does, from another side (a parameter, a digital input).
+    void reset_alarm() noexcept;
     void main_power(bool on) noexcept;
     void jam(bool jammed) noexcept { plant_.jam(jammed); }
     /// Nothing in front of the sensors at the probes, such as a web without print.
@@ -83,6 +96,11 @@ public:
     /// What the drive's input for this probe sees, and whether the encoder stands on its index pulse.
     [[nodiscard]] bool probe_input(std::size_t probe) const noexcept;
     [[nodiscard]] bool at_index_pulse() const noexcept;
+    /// The motor is powered: parameters that change at standstill only are refused.
+    [[nodiscard]] bool powered() const noexcept { return energised(); }
+    [[nodiscard]] const AlarmHistory& history() const noexcept { return history_; }
+    [[nodiscard]] bool alarm_stands() const noexcept { return error_code_ != 0 || warnings_.any(); }
+    [[nodiscard]] double counts_per_revolution() const noexcept { return static_cast<double>(personality_.counts_per_revolution); }
 
 private:
     /// How the motor comes to rest now. `ramp` counts/s2; at_once: the demanded speed is 0 from the start.
@@ -117,6 +135,7 @@ private:
     [[nodiscard]] double enabled_torque(double dt) noexcept;
     // cia402_cyclic.cpp
     void take_position_target(const AxisInputs& in, double seconds) noexcept;
+    [[nodiscard]] double within_software_limits(double wanted, const AxisInputs& in) noexcept;
     void take_velocity_target(const AxisInputs& in) noexcept;
     void take_torque_target(const AxisInputs& in) noexcept;
     void take_torque_offset(const AxisInputs& in) noexcept;
@@ -158,14 +177,27 @@ private:
     [[nodiscard]] bool has_brake() const noexcept { return personality_.brake_hold > Duration::zero(); }
     [[nodiscard]] bool too_early() const noexcept { return now_ < commands_from_; }
     void wind_down(StopCause cause) noexcept;
+    [[nodiscard]] bool starts_too_fast() const noexcept {
+        return personality_.start_speed > 0 && std::abs(plant_.velocity()) > personality_.start_speed;
+    }
     void step_brake() noexcept;
     // cia402_supervision.cpp
     void raise_or_warn(const AlarmCode& alarm) noexcept;
     void end_warning() noexcept;
     void supervise() noexcept;
     void watch_torque() noexcept;
+    void supervise_torque() noexcept;
     // cia402_common_alarm.cpp
     [[nodiscard]] bool uncover_alarm() noexcept;
+    // cia402_causes.cpp
+    void begin_cause(std::size_t row) noexcept;
+    void end_cause(std::size_t row) noexcept;
+    void show_cause(const AlarmRow& row) noexcept;
+    void show_causes() noexcept;
+    [[nodiscard]] bool cause_lasts() const noexcept;
+    [[nodiscard]] bool shows(const AlarmCode& alarm) const noexcept;
+    void remember(const AlarmCode& alarm) noexcept;
+    void clear_fault() noexcept;
     // cia402_status.cpp
     void fill(AxisOutputs& out) const noexcept;
     [[nodiscard]] std::uint16_t status_word() const noexcept;
@@ -220,6 +252,13 @@ private:
     bool brake_closed_ = false, encoder_failed_ = false;
     std::int64_t frozen_position_ = 0;
     std::uint32_t early_commands_ = 0;
+    std::vector<bool> causes_;  ///< of each alarm of the personality
+    WarningList warnings_;
+    AlarmHistory history_;
+    Instant powered_at_{};
+    double following_limit_ = 0;  ///< counts; 0 = no check
+    double heat_ = 0;             ///< I2t above the rated torque, in (rated torques)2 seconds
+    Duration stalled_{};
 };
 
 }  // namespace taktwerk::axes::sim

@@ -9,13 +9,14 @@ namespace taktwerk::axes::sim {
 
 namespace {
 
-constexpr std::uint32_t allowed_strikes = 3;  // SV33-E E.424: "several times"
-constexpr double increment_factor = 3.0;      // SV33-E P0A.33, default 3
+// SV33-E E.424, "several times above the single maximum speed"; how often: P0A.33, 3 times from the factory.
+constexpr std::uint32_t allowed_strikes = 3;
+constexpr double increment_factor = 1.0;
 
 }  // namespace
 
 void Cia402Axis::take_position_target(const AxisInputs& in, double seconds) noexcept {
-    const double wanted = static_cast<double>(in.target_position) + zero_;
+    const double wanted = within_software_limits(static_cast<double>(in.target_position), in) + zero_;
     const double increment = std::abs(wanted - target_);
     if (too_early()) {  // the drive does not listen yet; what was lost shows as a leap afterwards
         if (increment >= 1) ++early_commands_;
@@ -47,6 +48,15 @@ void Cia402Axis::take_position_target(const AxisInputs& in, double seconds) noex
     target_ = wanted;
     steps_left_ = std::max<std::int64_t>(1, std::llround(seconds / inner_seconds));
     demand_step_ = (target_ - demand_.position) / (static_cast<double>(steps_left_) * inner_seconds);
+}
+
+/// SV33-E 3.4.4(2): in the position modes a target beyond 607Dh is moved to the limit, and nothing else happens.
+double Cia402Axis::within_software_limits(double wanted, const AxisInputs& in) noexcept {
+    const bool on = in.software_limits == SoftwareLimits::on || (in.software_limits == SoftwareLimits::after_homing && homed_);
+    if (!on || in.software_minimum >= in.software_maximum) return wanted;
+    const double held = std::clamp(wanted, static_cast<double>(in.software_minimum), static_cast<double>(in.software_maximum));
+    limited_ = held != wanted;
+    return held;
 }
 
 void Cia402Axis::interpolate(double dt) noexcept {

@@ -34,10 +34,19 @@ std::uint8_t error_register(std::uint16_t code) noexcept {
     }
 }
 
+/// Of any mode: the drive does not know yet which one will be asked for.
+Duration shortest_cycle(const DriveProfile& profile) noexcept {
+    Duration shortest{};
+    for (const auto cycle : {profile.minimum_cycle_csp, profile.minimum_cycle_csv, profile.minimum_cycle_cst})
+        if (cycle > Duration::zero() && (shortest == Duration::zero() || cycle < shortest)) shortest = cycle;
+    return shortest;
+}
+
 }  // namespace
 
 Cia402Device::Cia402Device(const DriveProfile& profile, const std::vector<AxisSetup>& axes)
-    : homing_timeout_(profile.homing_timeout),
+    : parameters_(profile),
+      homing_timeout_(profile.homing_timeout),
       clear_turns_(profile.clear_turns),
       homing_timeout_unit_(to_seconds(profile.homing_timeout_unit)),
       clear_turns_value_(profile.clear_turns_value),
@@ -50,7 +59,7 @@ Cia402Device::Cia402Device(const DriveProfile& profile, const std::vector<AxisSe
       alarms_(profile.alarms),
       stops_(profile.stops),
       emergency_torque_(profile.emergency_torque),
-      minimum_cycle_(profile.minimum_cycle_csp),
+      minimum_cycle_(shortest_cycle(profile)),
       missed_allowed_(profile.missed_frames_allowed) {
     if (!axes.empty()) missed_alarm_ = axes[0].personality.communication_alarm, link_alarm_ = axes[0].personality.link_alarm;
     for (const auto& setup : axes) {
@@ -61,6 +70,7 @@ Cia402Device::Cia402Device(const DriveProfile& profile, const std::vector<AxisSe
 }
 
 void Cia402Device::power_on(ecat::sim::ObjectDictionary& dictionary, Instant now) {
+    parameters_.power_on(dictionary);
     for (std::size_t i = 0; i < axes_.size(); ++i) {
         const auto at = [&](unsigned index, std::uint8_t sub) {
             return dictionary.find(static_cast<std::uint16_t>(index + i * object_offset_), sub);
@@ -82,6 +92,7 @@ void Cia402Device::power_on(ecat::sim::ObjectDictionary& dictionary, Instant now
         axes_[i].emergency_torque = emergency_torque_.index ? at(emergency_torque_.index, emergency_torque_.sub) : nullptr;
         axes_[i].model->power_on(now);
         axes_[i].behaviour->power_on(dictionary, now);
+        parameters_.check_settings(static_cast<unsigned>(i), *axes_[i].model);
     }
     for (auto& axis : axes_) axis.faulted = false, axis.common = 0;
     missed_frames_ = dictionary.find(0x1C32, 0x0B);
@@ -137,11 +148,19 @@ void Cia402Device::advance(Instant now) {
     }
 }
 
-void Cia402Device::written(std::uint16_t index, std::uint8_t sub, Instant) { tunnel_.written(index, sub); }
+std::uint32_t Cia402Device::refuse_write(std::uint16_t index, std::uint8_t sub, std::int64_t value) {
+    return parameters_.refuse(index, sub, value, axes_[parameters_.axis_of(index)].model->powered());
+}
+
+void Cia402Device::written(std::uint16_t index, std::uint8_t sub, Instant now) {
+    parameters_.written(index, sub, now, *axes_[parameters_.axis_of(index)].model);
+    tunnel_.written(index, sub);
+}
 
 void Cia402Device::exchange(Instant now) {
     count_missed_frames();
     share_common_alarm();
+    parameters_.step(now, *axes_.front().model);
     for (auto& axis : axes_) {
         axis.behaviour->exchange_due(cause_, now);
         AxisInputs in;
@@ -153,6 +172,7 @@ void Cia402Device::exchange(Instant now) {
             if (axis.stop_values[i]) in.stop_values[i] = axis.stop_values[i]->get();
         if (axis.emergency_torque) in.emergency_torque = axis.emergency_torque->get();
         axis.behaviour->obey(in, *axis.model);
+        in.software_limits = parameters_.software_limits();
         AxisOutputs out;
         axis.model->exchange(in, cycle_, out);
         axis.behaviour->show(out, *axis.model);

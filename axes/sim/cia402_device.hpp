@@ -10,6 +10,7 @@
 #include "axes/port/drive_profile.hpp"
 #include "axes/sim/behaviour.hpp"
 #include "axes/sim/cia402_axis.hpp"
+#include "axes/sim/drive_parameters.hpp"
 #include "axes/sim/parameter_tunnel.hpp"
 #include "ecat/sim/device_model.hpp"
 #include "ecat/sim/object_dictionary.hpp"
@@ -30,9 +31,10 @@ public:
     void entered(ecat::sim::EsmState state, Instant now) override;
     void exchange_due(const ecat::sim::ExchangeCause& cause) override { cause_ = cause; }
     void exchange(Instant now) override;
-    void written(std::uint16_t index, std::uint8_t sub, Instant now) override;
     void advance(Instant now) override;
     void outputs_lost(Instant now) override;
+    std::uint32_t refuse_write(std::uint16_t index, std::uint8_t sub, std::int64_t value) override;
+    void written(std::uint16_t index, std::uint8_t sub, Instant now) override;
 
     /// From now on the drive refuses this state with this AL status code; code 0: no more.
     void refuse_state(ecat::sim::EsmState state, std::uint16_t al_status_code) noexcept {
@@ -49,6 +51,7 @@ public:
     void raise(std::size_t axis, std::uint16_t code) noexcept;
 
     [[nodiscard]] Cia402Axis& axis(std::size_t index) { return *axes_[index].model; }
+    [[nodiscard]] const ParameterStore& parameters() const noexcept { return parameters_.store(); }
     /// What the objects that change a drive's behaviour make of this axis.
     [[nodiscard]] Behaviour& behaviour(std::size_t index) { return *axes_[index].behaviour; }
     [[nodiscard]] std::size_t axis_count() const noexcept { return axes_.size(); }
@@ -74,6 +77,7 @@ private:
     void count_missed_frames() noexcept;
     void share_common_alarm() noexcept;
     std::vector<OneAxis> axes_;
+    DriveParameters parameters_;
     ParameterAddress homing_timeout_, clear_turns_;
     double homing_timeout_unit_;  ///< s
     std::int64_t clear_turns_value_;

@@ -38,12 +38,15 @@ void Cia402Axis::reset_encoder() noexcept {
     if (energised()) return;
     if (encoder_.overflowed(plant_.position()) && encoder_complaint_.code != 0) return;  // only fewer turns help
     encoder_complaint_ = {};
+    cause(DriveAlarmKind::reference_lost, false);
 }
 
 void Cia402Axis::clear_turns() noexcept {
     if (energised() || !personality_.absolute_encoder) return;
     encoder_.forget_turns(plant_.position());
     encoder_complaint_ = {};
+    cause(DriveAlarmKind::reference_lost, false);
+    cause(DriveAlarmKind::turn_overflow, false);
     homed_ = false;
     read_encoder();
 }

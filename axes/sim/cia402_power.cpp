@@ -30,8 +30,13 @@ void Cia402Axis::power_on(Instant now) noexcept {
 void Cia402Axis::end_self_test() noexcept {
     if (!self_test_ends_ || now_ < *self_test_ends_) return;
     self_test_ends_.reset();
+    warnings_.clear();
+    powered_at_ = now_;
+    heat_ = 0;
+    stalled_ = {};
     enter(State::disabled);
     wake_encoder();
+    show_causes();
 }
 
 void Cia402Axis::enter(State state) noexcept {
@@ -62,13 +67,7 @@ void Cia402Axis::command(const AxisInputs& in) noexcept {
     last_control_ = word;
     if (state_ == State::fault) {
         const bool dropped = !personality_.reset_needs_disable || (word & 0x0Fu) != 0x0Fu;
-        const bool cause_gone =
-            !encoder_failed_ && encoder_complaint_.code == 0 && (main_power_ || error_code_ != personality_.undervoltage_alarm.code);
-        if (reset_edge && dropped && error_resettable_ && cause_gone) {
-            error_code_ = 0;
-            error_detail_ = 0;
-            if (!uncover_alarm()) enter(State::disabled);
-        }
+        if (reset_edge && dropped) reset_alarm();
         return;
     }
     if (word & 0x80u) return;  // while bit 7 stands nothing else is taken (SV33-E 3.4.1, TSVM 5.3.2)
@@ -89,6 +88,7 @@ void Cia402Axis::command(const AxisInputs& in) noexcept {
             else if (shutdown) enter(State::ready);
             else if (enable && main_power_ && mode_ == mode::none && personality_.mode_not_set_alarm.code)
                 raise(personality_.mode_not_set_alarm);
+            else if (enable && main_power_ && starts_too_fast()) raise(personality_.start_speed_alarm);
             else if (enable && main_power_) enter(State::enabled);
             break;
         case State::enabled:

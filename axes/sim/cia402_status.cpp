@@ -30,8 +30,8 @@ std::uint16_t Cia402Axis::status_word() const noexcept {
     const bool faulted = state_ == State::fault_reaction || state_ == State::fault;
     if (personality_.quick_stop_bit_rests_high && (faulted || state_ == State::disabled)) word |= bit(5);
     if (faulted && personality_.alarm_sets_warning_bit) word |= bit(7);
-    if (warning_ || battery_warns()) word |= bit(7);
     if (personality_.remote_bit && (operational_ || (personality_.remote_bit_from_preop && reachable_))) word |= bit(9);
+    if (warning_ || battery_warns() || warnings_.any()) word |= bit(7);
     if (mode_ == mode::homing) {
         if (stands() && !homing_.busy()) word |= bit(10);
         if (homing_attained_) word |= bit(12);
@@ -43,6 +43,7 @@ std::uint16_t Cia402Axis::status_word() const noexcept {
         if (reports_target && state_ == State::enabled && stands() && std::abs(demand_.position - plant_.position()) < 10) word |= bit(10);
         if (mode::cyclic(mode_) && personality_.csp_following_bits && state_ == State::enabled) word |= bit(12);
     }
+    if (limited_ && personality_.internal_limit_bit) word |= bit(11);
     if (personality_.home_found_bit_15 && homed_) word |= bit(15);
     return word;
 }
@@ -50,7 +51,6 @@ std::uint16_t Cia402Axis::status_word() const noexcept {
 std::uint16_t Cia402Axis::profile_bits() const noexcept {
     std::uint16_t word = 0;
     if (target_reached_) word |= bit(10);
-    if (limited_ && personality_.internal_limit_bit) word |= bit(11);
     if (mode_ == mode::profile_position && profile_position_.acknowledges()) word |= bit(12);
     if (mode_ == mode::profile_velocity && personality_.pv_speed_zero_bit && stands()) word |= bit(12);
     const double limit = personality_.following_error_limit;
@@ -76,6 +76,10 @@ void Cia402Axis::fill(AxisOutputs& out) const noexcept {
     if (error_code_ == 0 && battery_warns()) {
         out.error_code = personality_.battery_low_alarm.code;
         out.error_detail = personality_.battery_low_alarm.detail;
+    }
+    if (error_code_ == 0 && warnings_.any()) {
+        out.error_code = warnings_.shown().code;
+        out.error_detail = warnings_.shown().detail;
     }
     for (std::size_t i = 0; i < probes_.size(); ++i) {
         out.probe_status = static_cast<std::uint16_t>(out.probe_status | probes_[i].status() << (8 * i));

@@ -1,5 +1,6 @@
 // Alarms: those that somebody provokes and those that the drive finds out by itself.
 
+#include <algorithm>
 #include <cmath>
 
 #include "axes/sim/cia402_axis.hpp"
@@ -11,6 +12,7 @@ void Cia402Axis::raise(std::uint16_t code, bool resettable, std::uint32_t detail
     error_code_ = code;
     error_detail_ = detail;
     error_resettable_ = resettable;
+    remember({code, resettable, detail});
     enter(energised() ? State::fault_reaction : State::fault);
 }
 
@@ -66,12 +68,25 @@ void Cia402Axis::watch_torque() noexcept {
 
 void Cia402Axis::supervise() noexcept {
     watch_encoder();
+    supervise_torque();
     if (state_ != State::enabled) return;
     if (personality_.overspeed > 0 && std::abs(plant_.velocity()) > personality_.overspeed) raise(personality_.overspeed_alarm);
     const bool follows_position = mode_ == mode::cyclic_position || mode_ == mode::homing || mode_ == mode::profile_position;
-    if (state_ == State::enabled && personality_.following_error_limit > 0 && follows_position &&
-        std::abs(demand_.position - plant_.position()) > personality_.following_error_limit)
+    if (state_ == State::enabled && following_limit_ > 0 && follows_position &&
+        std::abs(demand_.position - plant_.position()) > following_limit_)
         raise(personality_.following_error_alarm);
+}
+
+void Cia402Axis::supervise_torque() noexcept {
+    const double load = torque_ / plant_.config().rated_torque;
+    heat_ = std::max(0.0, heat_ + (load * load - 1) * inner_seconds);
+    // Twice the rated torque for `overload_seconds` gives 3 rated torques2 s a second above what the motor sheds.
+    if (state_ == State::enabled && personality_.overload_seconds > 0 && heat_ > 3 * personality_.overload_seconds)
+        raise(personality_.overload_alarm);
+    const bool stuck = std::abs(torque_) >= 0.999 * torque_limit() && stands();
+    stalled_ = stuck ? stalled_ + inner_period : Duration{};
+    if (state_ == State::enabled && personality_.stall_time > Duration::zero() && stalled_ >= personality_.stall_time)
+        raise(personality_.stall_alarm);
 }
 
 }  // namespace taktwerk::axes::sim

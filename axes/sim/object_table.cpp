@@ -40,6 +40,9 @@ constexpr InputObject settings[] = {
     {0x6068, 0, [](In& in, Value v) { in.position_window_time = v; }},
     {0x606D, 0, [](In& in, Value v) { in.velocity_window = v; }},
     {0x606E, 0, [](In& in, Value v) { in.velocity_window_time = v; }},
+    {0x6065, 0, [](In& in, Value v) { in.following_error_window = v; }},
+    {0x607D, 1, [](In& in, Value v) { in.software_minimum = v; }},
+    {0x607D, 2, [](In& in, Value v) { in.software_maximum = v; }},
 };
 
 constexpr OutputObject answers[] = {

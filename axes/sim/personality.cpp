@@ -80,6 +80,15 @@ Personality personality_of(const DriveProfile& profile, std::int64_t counts_per_
     limit = {};
     own(DriveAlarmKind::positive_limit, limit);
     if (limit.code) p.positive_limit_code = limit.code;
+    own(DriveAlarmKind::start_too_fast, p.start_speed_alarm);
+    AlarmCode stall;
+    own(DriveAlarmKind::stall, stall);
+    if (stall.code) {
+        p.stall_alarm = stall;
+        p.stall_time = std::chrono::milliseconds{200};  // SV33-E P08.18
+    }
+    for (const auto& row : profile.alarms)
+        p.alarms.push_back({row.panel, {row.code, row.resettable, row.detail}, row.kind, row.warning, row.clears_itself});
     return p;
 }
 

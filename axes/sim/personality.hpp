@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <vector>
+#include <string>
 
 #include "axes/port/drive_profile.hpp"
 #include "axes/sim/touch_probe.hpp"
@@ -20,6 +21,14 @@ struct AlarmCode {
     std::uint32_t detail = 0;  ///< what the detail object shows (P21.08)
     bool warning = false;      ///< the drive goes on
     bool whole_drive = false;  ///< stands in every axis, before the axis' own (TSVM 7.1)
+};
+
+/// An alarm of the profile, to be provoked by what the panel shows or by its kind.
+struct AlarmRow {
+    std::string panel{};
+    AlarmCode alarm{};
+    DriveAlarmKind kind = DriveAlarmKind::other;
+    bool warning = false, clears_itself = false;
 };
 
 /// A way in which a drive fails at once, whatever it is doing. How it shows and whether it clears is the personality's.
@@ -88,6 +97,12 @@ struct Personality {
     Duration torque_overload_time{};
     AlarmCode left_operational_alarm, link_alarm, torque_overload_alarm;  ///< code 0: the drive has none
     std::uint16_t negative_limit_code = 0x5444, positive_limit_code = 0x5443;
+    std::vector<AlarmRow> alarms{};  ///< all of the profile
+    double start_speed = 0;          ///< counts/s; enabling a faster motor is an alarm (SV33-E E.417); 0 = no check
+    AlarmCode start_speed_alarm{0x0417};
+    Duration stall_time{};  ///< at the torque limit without turning; longer is an alarm (SV33-E P08.18); 0 = no check
+    AlarmCode stall_alarm{0x7121};
+    double overload_seconds = 0;  ///< at twice the rated torque until the overload alarm, by I2t; 0 = no check
 };
 
 /// What the profile says of the drive's behaviour; the rest keeps its defaults.

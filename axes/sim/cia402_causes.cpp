@@ -1,0 +1,82 @@
+// Alarms with a cause outside of the drive: somebody opens the STO circuit, a battery is empty, a parameter waits for a restart.
+// The cause lasts until it is released; a fault can be reset only without it, a warning goes with it (SV33-E 5.2, 5.3, 5.6).
+
+#include <algorithm>
+
+#include "axes/sim/cia402_axis.hpp"
+
+namespace taktwerk::axes::sim {
+
+bool Cia402Axis::provoke(std::string_view panel) noexcept {
+    const auto& rows = personality_.alarms;
+    const auto row = std::find_if(rows.begin(), rows.end(), [&](const AlarmRow& r) { return r.panel == panel; });
+    if (row == rows.end()) return false;
+    begin_cause(static_cast<std::size_t>(row - rows.begin()));
+    return true;
+}
+
+void Cia402Axis::release(std::string_view panel) noexcept {
+    for (std::size_t i = 0; i < causes_.size(); ++i)
+        if (personality_.alarms[i].panel == panel) end_cause(i);
+}
+
+void Cia402Axis::cause(DriveAlarmKind kind, bool present) noexcept {
+    for (std::size_t i = 0; i < causes_.size(); ++i) {
+        if (personality_.alarms[i].kind != kind) continue;
+        if (!present && causes_[i]) end_cause(i);
+        if (!present) continue;
+        if (!causes_[i]) begin_cause(i);
+        return;  // the first row of a kind is the drive's own
+    }
+}
+
+void Cia402Axis::begin_cause(std::size_t i) noexcept {
+    causes_[i] = true;
+    if (state_ != State::not_ready) show_cause(personality_.alarms[i]);
+}
+
+void Cia402Axis::show_cause(const AlarmRow& row) noexcept {
+    if (row.warning) {
+        if (warnings_.set(row.alarm)) remember(row.alarm);
+        return;
+    }
+    raise(row.alarm);
+    // Safe torque off means what it says, whatever the drive does at other faults.
+    if (row.kind == DriveAlarmKind::safe_torque_off && state_ == State::fault_reaction) enter(State::fault);
+}
+
+void Cia402Axis::end_cause(std::size_t i) noexcept {
+    causes_[i] = false;
+    const auto& row = personality_.alarms[i];
+    if (row.warning) warnings_.clear(row.alarm);
+    else if (row.clears_itself && state_ == State::fault && shows(row.alarm)) clear_fault();
+}
+
+void Cia402Axis::show_causes() noexcept {
+    for (std::size_t i = 0; i < causes_.size(); ++i)
+        if (causes_[i]) show_cause(personality_.alarms[i]);
+}
+
+bool Cia402Axis::cause_lasts() const noexcept {
+    for (std::size_t i = 0; i < causes_.size(); ++i)
+        if (causes_[i] && shows(personality_.alarms[i].alarm)) return true;
+    return encoder_failed_ || encoder_complaint_.code != 0 || (!main_power_ && error_code_ == personality_.undervoltage_alarm.code);
+}
+
+bool Cia402Axis::shows(const AlarmCode& alarm) const noexcept { return error_code_ == alarm.code && error_detail_ == alarm.detail; }
+
+void Cia402Axis::remember(const AlarmCode& alarm) noexcept {
+    history_.remember({alarm.detail ? alarm.detail : alarm.code, now_ - powered_at_, plant_.velocity()});
+}
+
+void Cia402Axis::clear_fault() noexcept {
+    error_code_ = 0;
+    error_detail_ = 0;
+    if (!uncover_alarm()) enter(State::disabled);
+}
+
+void Cia402Axis::reset_alarm() noexcept {
+    if (state_ == State::fault && error_resettable_ && !cause_lasts()) clear_fault();
+}
+
+}  // namespace taktwerk::axes::sim
