@@ -40,11 +40,13 @@ Axis::Axis(AxisConfig config, DrivePort& port, Duration cycle, std::uint16_t ind
       port_(port),
       cycle_(cycle),
       stale_limit_(stale_cycles(config_, port.capabilities(), cycle)),
+      driven_(!config_.disabled && !config_.encoder),
       endless_(std::isinf(config_.limits.position_min) && std::isinf(config_.limits.position_max)),
       units_(config_.gearing, config_.modulo),
       index_(index),
       own_mode_(own_mode(config_, port.capabilities())),
       former_mode_(own_mode_),
+      torque_per_acceleration_((config_.gearing.inverted ? -1.0 : 1.0) * config_.control.torque_feed_forward * config_.control.inertia()),
       torque_(config_.control.inertia(), torque_bandwidth(cycle)),
       compensation_(config_.compensation),
       power_(port.capabilities().enable_delay, config_.enable_timeout),
@@ -52,6 +54,7 @@ Axis::Axis(AxisConfig config, DrivePort& port, Duration cycle, std::uint16_t ind
       own_view_(view ? nullptr : std::make_unique<AxisView>()),
       view_(view ? *view : *own_view_) {
     view_ = {};
+    view_.owner = Owner::program;
     view_.simulated = config_.simulated;
     view_.modulo = config_.modulo;
     store_parameters();
@@ -59,17 +62,12 @@ Axis::Axis(AxisConfig config, DrivePort& port, Duration cycle, std::uint16_t ind
     publish();
 }
 
-bool Axis::drive_faulted() const noexcept {
-    return feedback_.fault || feedback_.power == PowerState::fault || feedback_.power == PowerState::fault_reaction;
-}
-
 bool Axis::drive_stands() const noexcept {
     return std::abs(feedback_.velocity) <= config_.windows.standstill_velocity * std::abs(units_.counts_per_unit());
 }
 
-double Axis::actual_local() const noexcept {
-    const double motor = units_.local(actual_counts_);
-    if (compensation_.none()) return motor;
+/// What the motor's position means for the load, where compensation tells them apart.
+double Axis::compensated(double motor) const noexcept {
     const double machine = units_.machine(motor);
     return motor + (compensation_.load(machine) - machine);
 }
@@ -78,18 +76,21 @@ void Axis::update(Instant now) noexcept {
     now_ = now;
     power_calls_ = 0;
     read_feedback();
-    if (!config_.disabled && !config_.encoder) watch_drive();
-    run_power();
-    watch_following_error();
+    if (!drive_as_wanted()) {
+        if (driven_) watch_drive();
+        run_power();
+    }
+    const double actual = actual_local();
+    watch_following_error(actual);
     watch_probes();
-    run_reset();
-    publish_state();
-    publish_feedback();
+    if (view_.resetting) run_reset();
+    publish_commands();
+    publish_feedback(actual);
 }
 
 void Axis::read_feedback() noexcept {
     feedback_ = port_.decode(now_);
-    if (!feedback_.online && !absolute_encoder()) homed_ = false;  // it may come back with another zero
+    if (!feedback_.online && !absolute_encoder()) view_.homed = false;  // it may come back with another zero
     if (feedback_.reference_epoch != reference_epoch_) lose_reference();
     reference_epoch_ = feedback_.reference_epoch;
     if (!feedback_.fresh) {
@@ -137,19 +138,23 @@ void Axis::watch_drive() noexcept {
         fail(AxisAlarm::drive_mode_mismatch, static_cast<double>(feedback_.mode), static_cast<double>(wanted_mode()));
 }
 
+/// Nothing for watch_drive() and run_power(): power is on and stays on, and the drive says nothing to the contrary.
+bool Axis::drive_as_wanted() const noexcept {
+    const bool well = feedback_.fresh && feedback_.online && feedback_.power == PowerState::enabled && !feedback_.fault &&
+                      !feedback_.warning && feedback_.mode == own_mode_;
+    const bool stays_on = power_.on() && view_.state != AxisState::Disabled && view_.state != AxisState::ErrorStop;
+    return well && stays_on && driven_ && mode_phase_ == ModePhase::steady && !drive_homing_.busy() && alarms_.active().empty();
+}
+
 bool Axis::power_wanted() const noexcept {
     using Phase = PowerSequence::Phase;
-    if (config_.disabled || config_.encoder) return false;
+    if (!driven_) return false;
+    if (view_.state == AxisState::Disabled) return power_wish_ && !power_dropping_ && emergency_ == EmergencyStop::none;
+    if (view_.state != AxisState::ErrorStop) return true;  // these states end in Disabled before power goes
     const bool drive_on = power_.phase() == Phase::on || power_.phase() == Phase::settling;
     // A slow line stops the motor later than the set-point.
     const bool still_slows_down = port_.capabilities().setpoints == SetpointClass::low_dynamics && online() && !drive_stands();
-    switch (state_) {
-        case AxisState::Disabled: return power_wish_ && !power_dropping_ && emergency_ == EmergencyStop::none;
-        case AxisState::ErrorStop:
-            return drive_on && emergency_ != EmergencyStop::power_off_now &&
-                   (moves() || still_slows_down || (power_wish_ && !off_after_error_));
-        default: return true;  // these states end in Disabled before power goes
-    }
+    return drive_on && emergency_ != EmergencyStop::power_off_now && (moves() || still_slows_down || (power_wish_ && !off_after_error_));
 }
 
 void Axis::run_power() noexcept {
@@ -159,6 +164,7 @@ void Axis::run_power() noexcept {
                                     .mode_confirmed = feedback_.mode == wanted_mode() || drive_homing_.busy(),
                                     .drive = feedback_.power,
                                     .now = now_});
+    show_power();
     if (power_.phase() == PowerSequence::Phase::off) power_dropping_ = false;
     switch (event) {
         case PowerSequence::Event::ready: fire(AxisEvent::powered); break;
@@ -168,31 +174,31 @@ void Axis::run_power() noexcept {
         case PowerSequence::Event::lost:
             abort_homing();
             // A fault has its own alarm, and in ErrorStop the power may go for reasons already announced.
-            if (state_ != AxisState::ErrorStop) fail(AxisAlarm::drive_power_lost, static_cast<double>(feedback_.power));
+            if (view_.state != AxisState::ErrorStop) fail(AxisAlarm::drive_power_lost, static_cast<double>(feedback_.power));
             break;
         case PowerSequence::Event::none:
         case PowerSequence::Event::off: break;
     }
 }
 
-void Axis::watch_following_error() noexcept {
-    const bool follows = power_.follows_actual() || drive_homing_.busy();
-    if (follows || mode_phase_ != ModePhase::steady) {  // in torque the set-point follows the motor
+void Axis::watch_following_error(double actual) noexcept {
+    if (follows_motor() || mode_phase_ != ModePhase::steady) {  // in torque the set-point follows the motor
         view_.following_error = 0;
         following_timer_.clear();
         in_window_ = false;
         return;
     }
     if (!feedback_.fresh) return;
-    view_.following_error = history_.error_at(feedback_.latched, feedback_.position) / units_.counts_per_unit();
+    const double error = history_.error_at(feedback_.latched, feedback_.position) / units_.counts_per_unit();
+    view_.following_error = error;
     // Pressed against a block the set-point runs ahead; that is no error until the axis has caught up.
-    if (step_run_.presses()) lag_forgiven_ = true;
-    else if (std::abs(view_.following_error) <= config_.following.window) lag_forgiven_ = false;
-    if (lag_forgiven_) following_timer_.clear();
-    const bool exceeded = !lag_forgiven_ && following_timer_.exceeded(view_.following_error, feedback_.latched, config_.following);
-    if (exceeded && state_ != AxisState::ErrorStop) fail(AxisAlarm::following_error, view_.following_error, config_.following.window);
+    const bool beyond = std::abs(error) > config_.following.window;
+    lag_forgiven_ = step_run_.presses() || (lag_forgiven_ && beyond);
+    if (!beyond || lag_forgiven_) following_timer_.clear();
+    else if (following_timer_.lasts(feedback_.latched, config_.following.time) && view_.state != AxisState::ErrorStop)
+        fail(AxisAlarm::following_error, error, config_.following.window);
 
-    const bool inside = setpoint_.at_rest() && std::abs(setpoint_.state().position - actual_local()) <= config_.windows.in_position;
+    const bool inside = setpoint_.at_rest() && std::abs(setpoint_.state().position - actual) <= config_.windows.in_position;
     if (inside && !in_window_) in_window_since_ = now_;
     in_window_ = inside;
 }
@@ -200,54 +206,42 @@ void Axis::watch_following_error() noexcept {
 void Axis::encode(Instant now) noexcept {
     command_ = {};
     command_.power = power_.request();
-    command_.reset_fault = resetting_ && drive_faulted();
+    command_.reset_fault = view_.resetting && drive_faulted();
     command_.start_homing = drive_homing_.start_level();
     command_.homing = drive_homing_setup();
     const auto& set = setpoint_.state();
-    if (!compensation_.none()) compensation_.step(units_.machine(set.position), set.velocity, homed_, cycle_);
+    if (!compensation_.none()) compensation_.step(units_.machine(set.position), set.velocity, view_.homed, cycle_);
     fill_targets();
     probes_.command(command_.probes);
-    command_.digital_outputs = digital_outputs_;
-    command_.digital_output_mask = digital_output_mask_;
     if (latch_.armed()) command_.probes[latch_.probe()] = latch_.command();
+    command_.digital_outputs = view_.digital_outputs;
+    command_.digital_output_mask = digital_output_mask_;
     if (step_run_.presses() && port_.capabilities().torque_limits)
         command_.torque_limit_positive = command_.torque_limit_negative = block_torque_;
     port_.encode(command_, now);
 
-    if (power_.follows_actual() || drive_homing_.busy() || mode_phase_ != ModePhase::steady) history_.clear();
+    if (follows_motor() || mode_phase_ != ModePhase::steady) history_.clear();
     else if (remembers(port_.capabilities(), now, cycle_)) history_.record(port_.setpoint_effective(now), command_.position);
 }
 
+// --- the view -----------------------------------------------------------------------------------------------------------------
+
 void Axis::publish() noexcept {
-    publish_state();
-    publish_feedback();
-    publish_setpoint();
-}
-
-void Axis::publish_state() noexcept {
-    view_.state = state_;
-    view_.owner = owner_;
-    view_.powered = power_.on() && state_ != AxisState::Disabled;
-    view_.homed = homed_;
-    view_.error = error_;
-    view_.resetting = resetting_;
-    view_.reset_error = reset_error_;
-    view_.lock = stop_lock_;
-    view_.homing_procedure = homing_procedure_;
-    view_.side[static_cast<std::size_t>(SideSlot::passive_homing)] = passive_.id;
-    view_.digital_outputs = digital_outputs_;
+    publish_commands();
     publish_probes();
-    publish_coupling();
-    queue_.publish(view_);
+    show_side(SideSlot::passive_homing, passive_.id);
+    publish_feedback(actual_local());
+    publish_setpoint();
+    view_.override_factors = override_;
 }
 
-void Axis::publish_feedback() noexcept {
+void Axis::publish_feedback(double actual) noexcept {
     view_.online = online();
     view_.in_position = in_window_ && now_ - in_window_since_ >= config_.windows.in_position_time;
     view_.warning = feedback_.warning;
     view_.drive_error = feedback_.error_code;
 
-    view_.actual_position = units_.to_program(actual_local());
+    view_.actual_position = units_.to_program(actual);
     view_.actual_velocity = feedback_.velocity / units_.counts_per_unit();
     view_.actual_torque = config_.gearing.inverted ? -feedback_.torque : feedback_.torque;
 
@@ -262,17 +256,17 @@ void Axis::publish_feedback() noexcept {
 
 void Axis::publish_setpoint() noexcept {
     const auto& set = setpoint_.state();
+    const double rest = setpoint_.layered() ? setpoint_.superimposed().position + setpoint_.superimposed_rest() : 0;
+    const double target = (goal_.kind == Goal::Kind::position ? goal_.value : setpoint_.end().position) + rest;
     view_.set_position = units_.to_program(set.position);
+    view_.target_position = units_.to_program(target);
+    if (units_.modulo() > 0) view_.turns = units_.turns(set.position);
     view_.set_velocity = set.velocity;
     view_.set_acceleration = set.acceleration;
     view_.set_jerk = setpoint_.jerk();
-    view_.turns = units_.turns(set.position);
-    const double rest = setpoint_.layered() ? setpoint_.superimposed().position + setpoint_.superimposed_rest() : 0;
-    view_.target_position = units_.to_program((goal_.kind == Goal::Kind::position ? goal_.value : setpoint_.end().position) + rest);
     view_.limiter = setpoint_.at_rest() && !held_                 ? VelocityLimiter::none
                     : override_.velocity < 1 && override_counts() ? VelocityLimiter::override_factor
                                                                   : goal_.limiter;
-    view_.override_factors = override_;
 }
 
 }  // namespace taktwerk::axes

@@ -138,7 +138,9 @@ public:
     [[nodiscard]] MasterTrack::Reading as_master(MC_Source source) const noexcept;
     [[nodiscard]] MasterList masters() const noexcept;
     /// False: masters() is empty. Cheap.
-    [[nodiscard]] bool may_follow() const noexcept;
+    [[nodiscard]] bool may_follow() const noexcept {
+        return coupling_.shown || couples(queue_.active().command.kind) || queue_.waiting() > 0;
+    }
     [[nodiscard]] PlanMark& plan_mark() noexcept { return plan_mark_; }
 
     // --- requests (AxisRequests of motion_context.hpp, for one axis) -----------------------------------------------------
@@ -175,18 +177,33 @@ private:
 
     // axis.cpp
     void read_feedback() noexcept;
+    [[nodiscard]] bool drive_as_wanted() const noexcept;
     void watch_drive() noexcept;
     void run_power() noexcept;
     [[nodiscard]] bool power_wanted() const noexcept;
-    void watch_following_error() noexcept;
-    // The view in three parts, since a cycle changes them at different points. Who shifts coordinates publishes all.
+    void watch_following_error(double actual) noexcept;
+    // State, errors and the like live in the view itself. The rest is written to it in parts, since a cycle changes them at different points.
+    // Who shifts coordinates publishes all.
     void publish() noexcept;
-    void publish_state() noexcept;
-    void publish_feedback() noexcept;
+    void publish_commands() noexcept {
+        if (coupling_.shown) publish_coupling();
+        queue_.publish(view_);
+    }
+    void publish_feedback(double actual) noexcept;
     void publish_setpoint() noexcept;
-    [[nodiscard]] double actual_local() const noexcept;
+    void show_power() noexcept { view_.powered = power_.on() && view_.state != AxisState::Disabled; }
+    void show_side(SideSlot slot, CommandId id) noexcept { view_.side[static_cast<std::size_t>(slot)] = id; }
+    [[nodiscard]] double compensated(double motor) const noexcept;
+    [[nodiscard]] double actual_local() const noexcept {
+        const double motor = units_.local(actual_counts_);
+        return compensation_.none() ? motor : compensated(motor);
+    }
     [[nodiscard]] bool online() const noexcept { return seeded_ && feedback_.online && stale_ <= stale_limit_; }
-    [[nodiscard]] bool drive_faulted() const noexcept;
+    [[nodiscard]] bool drive_faulted() const noexcept {
+        return feedback_.fault || feedback_.power == PowerState::fault || feedback_.power == PowerState::fault_reaction;
+    }
+    /// The drive takes no set-point from here: it has no power, or homes by itself.
+    [[nodiscard]] bool follows_motor() const noexcept { return power_.follows_actual() || drive_homing_.busy(); }
     [[nodiscard]] bool drive_stands() const noexcept;
     [[nodiscard]] bool moves() const noexcept {
         return !setpoint_.at_rest() || drive_homing_.busy() || queue_.beside(SideSlot::superimposed) != 0;
@@ -214,7 +231,7 @@ private:
     [[nodiscard]] ErrorId refuse_place(const AxisCommand& command) const noexcept;
     [[nodiscard]] bool waits(const AxisCommand& command) const noexcept;
     [[nodiscard]] bool permitted(double direction) const noexcept;
-    [[nodiscard]] bool software_limits_hold() const noexcept { return homed_ && config_.modulo == 0; }
+    [[nodiscard]] bool software_limits_hold() const noexcept { return view_.homed && config_.modulo == 0; }
     [[nodiscard]] double velocity_cap() const noexcept;
 
     // axis_motion.cpp: one cycle of the set-point
@@ -239,6 +256,12 @@ private:
     [[nodiscard]] bool heads_backwards() const noexcept;
 
     // axis_queue.cpp: what comes after what
+    /// Cheap, for every cycle: false where complete() would find nothing.
+    [[nodiscard]] bool may_complete() const noexcept {
+        if (goal_.kind == Goal::Kind::rest) return queue_.has_active();
+        return setpoint_.finished() || goal_.kind == Goal::Kind::given || goal_.kind == Goal::Kind::coupled ||
+               view_.state == AxisState::ContinuousMotion;
+    }
     void complete() noexcept;
     bool complete_active() noexcept;
     void start_waiting(double late) noexcept;
@@ -246,6 +269,12 @@ private:
     [[nodiscard]] double velocity_at_junction(const MotionState& from, const MotionLimits& limits) const noexcept;
 
     // axis_guards.cpp: limits that no set-point passes
+    /// Cheap, for every cycle: false where guard() would find nothing.
+    [[nodiscard]] bool may_meet_limit() const noexcept {
+        const double velocity = setpoint_.state().velocity;
+        const bool barred = velocity > 0 ? positive_switch_ || !permit_positive_ : negative_switch_ || !permit_negative_;
+        return velocity != 0 && (barred || ((watch_limits_ || setpoint_.layered()) && software_limits_hold()));
+    }
     void guard(const MotionState& before, Duration period) noexcept;
     bool guard_switches() noexcept;
     bool guard_software_limits(const MotionState& before) noexcept;
@@ -280,6 +309,7 @@ private:
     Submitted abort_trigger(const TriggerRef& trigger) noexcept;
     void end_probe(CommandId id, Outcome outcome, ErrorId error) noexcept;
     void watch_probes() noexcept;
+    void observe_probes() noexcept;
     void publish_probes() noexcept;
 
     // axis_settings.cpp
@@ -294,7 +324,10 @@ private:
     ErrorId write_output(const WriteOutput& wanted) noexcept;
     // axis_modes.cpp
     enum class ModePhase : std::uint8_t { steady, entering, torque, leaving, changing };
-    [[nodiscard]] DriveMode wanted_mode() const noexcept;
+    [[nodiscard]] DriveMode wanted_mode() const noexcept {
+        return mode_phase_ == ModePhase::steady && !drive_homing_.busy() ? own_mode_ : mode_on_the_way();
+    }
+    [[nodiscard]] DriveMode mode_on_the_way() const noexcept;
     [[nodiscard]] bool mode_changes() const noexcept { return mode_phase_ != ModePhase::steady && mode_phase_ != ModePhase::torque; }
     [[nodiscard]] bool torque_wanted() const noexcept;
     [[nodiscard]] ErrorId refuse_mode(const AxisCommand& command, bool starts_now) const noexcept;
@@ -367,6 +400,10 @@ private:
     // axis_homing.cpp
     [[nodiscard]] ErrorId refuse_home() const noexcept;
     ErrorId begin_homing(const AxisCommand& command) noexcept;
+    /// Some kind of homing is under way, apart from that by the drive.
+    [[nodiscard]] bool homes() const noexcept {
+        return passive_.id != 0 || step_run_.busy() || switch_homing_.busy() || queue_.active().command.kind == CommandKind::homing_step;
+    }
     void step_homing() noexcept;
     void set_coordinate(std::int64_t at, double coordinate) noexcept;
     void end_homing(std::int64_t reference) noexcept;
@@ -408,6 +445,7 @@ private:
     MotionScene scene_;
     Duration cycle_;
     std::uint32_t stale_limit_;
+    bool driven_;  // has a drive that may be enabled
     bool endless_;
     Instant now_{};
 
@@ -473,15 +511,15 @@ private:
     DriveMode former_mode_;  // before set_controller_mode
     ModePhase mode_phase_ = ModePhase::steady;
     Instant mode_since_{}, mode_seen_at_{};
-    bool mode_waits_ = false;     // for standstill of the motor, before it is asked for
-    bool mode_seen_ = false;      // the drive shows the wanted mode
-    bool torque_idle_ = false;    // set_controller_mode has chosen torque: without a command it is 0
-    double torque_velocity_ = 0;  // u/s, limit of the torque command
+    bool mode_waits_ = false;         // for standstill of the motor, before it is asked for
+    bool mode_seen_ = false;          // the drive shows the wanted mode
+    bool torque_idle_ = false;        // set_controller_mode has chosen torque: without a command it is 0
+    double torque_velocity_ = 0;      // u/s, limit of the torque command
+    double torque_per_acceleration_;  // fraction of rated torque for 1 u/s2, fed forward
     TorqueControl torque_;
     Compensation compensation_;
 
     // states and commands
-    AxisState state_ = AxisState::Disabled;
     CommandQueue queue_;
     PowerSequence power_;
     AlarmBoard alarms_;
@@ -490,16 +528,11 @@ private:
     bool off_when_stopped_ = false;  // Stopping on the way to Disabled
     bool power_dropping_ = false;    // Disabled, but the drive has not let go yet
     bool off_after_error_ = false;   // ErrorStop whose reaction is power off
-    CommandId stop_lock_ = 0;        // MC_Stop whose Execute is still TRUE
-    bool resetting_ = false;
     Instant reset_since_{};
-    ErrorId reset_error_ = ErrorId::none;
-    std::uint16_t error_ = 0;
     EmergencyStop emergency_ = EmergencyStop::none;
 
     // authority
     OperatingMode mode_ = OperatingMode::automatic;
-    Owner owner_ = Owner::program;
 
     // probes
     ProbeBoard probes_;
@@ -508,7 +541,7 @@ private:
     Duration feedback_age_{};
 
     // outputs of the drive
-    std::uint32_t digital_outputs_ = 0, digital_output_mask_ = 0;
+    std::uint32_t digital_output_mask_ = 0;
 
     // jog
     Instant jog_renewed_{};
@@ -518,14 +551,12 @@ private:
     DriveHoming drive_homing_;
     SwitchHoming switch_homing_;
     double home_coordinate_ = 0;  // u, of the reference
-    bool homed_ = false;
-    RetainedPosition retained_;  // waits for the first position; `homed` false: nothing to restore
+    RetainedPosition retained_;   // waits for the first position; `homed` false: nothing to restore
     StepRun step_run_;
     DriveLatch latch_;
-    bool homing_procedure_ = false;  // between the first step and the one that ends it
-    bool step_succeeded_ = false;    // the last one; without it the procedure cannot be finished
-    double block_torque_ = 0;        // fraction of rated torque while pressing against a block
-    bool lag_forgiven_ = false;      // the set-point was ahead of an axis that could not follow
+    bool step_succeeded_ = false;  // the last one; without it the procedure cannot be finished
+    double block_torque_ = 0;      // fraction of rated torque while pressing against a block
+    bool lag_forgiven_ = false;    // the set-point was ahead of an axis that could not follow
 
     struct PassiveHoming {
         CommandId id = 0;

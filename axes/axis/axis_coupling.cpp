@@ -10,8 +10,6 @@ namespace taktwerk::axes {
 
 namespace {
 
-constexpr double far_from_anchor = 1024;  // feeds, as for every endless axis (axis_motion.cpp)
-
 template <class... Numbers>
 bool finite(Numbers... numbers) noexcept {
     return (std::isfinite(numbers) && ...);
@@ -48,8 +46,6 @@ MasterTrack::Reading Axis::as_master(MC_Source source) const noexcept {
     reading.taken = now_;
     return reading;
 }
-
-bool Axis::may_follow() const noexcept { return coupling_.used() || couples(queue_.active().command.kind) || queue_.waiting() > 0; }
 
 MasterList Axis::masters() const noexcept {
     MasterList list;
@@ -100,7 +96,7 @@ ErrorId Axis::refuse_master(AxisRef ref, MC_Source source) const noexcept {
 }
 
 ErrorId Axis::refuse_coupling(const AxisCommand& command) const noexcept {
-    if (uncouples(command.kind)) return state_ == AxisState::SynchronizedMotion ? ErrorId::none : ErrorId::not_coupled;
+    if (uncouples(command.kind)) return view_.state == AxisState::SynchronizedMotion ? ErrorId::none : ErrorId::not_coupled;
     if (!couples(command.kind)) return ErrorId::none;
     const auto ratio_error = [](const GearRatio& ratio) noexcept {
         return ratio.denominator == 0 ? ErrorId::invalid_ratio : ErrorId::none;
@@ -166,6 +162,7 @@ ErrorId Axis::join(const AcceptedCommand& accepted) noexcept {
 void Axis::plan_link(CommandId id, const AxisCommand& command) noexcept {
     drop(coupling_.next);
     auto& link = coupling_.next;
+    coupling_.shown = true;
     link.id = id;
     link.command = command;
     link.masters = masters_of(command);
@@ -249,7 +246,6 @@ void Axis::settle_couplings() noexcept {
 }
 
 void Axis::follow_masters(Duration period) noexcept {
-    if (!coupling_.used()) return;
     settle_couplings();
     if (coupling_.running.id == 0 && coupling_.next.id == 0) return;
     const auto lost = [&](Link& link) noexcept { return link.id != 0 && !read_masters(link, period); };
@@ -268,7 +264,7 @@ void Axis::follow_masters(Duration period) noexcept {
 }
 
 void Axis::step_coupled(Duration period) noexcept {
-    if (endless_ && std::abs(setpoint_.base().position) >= far_from_anchor * units_.feed()) reanchor();
+    if (endless_ && units_.far_from_anchor(setpoint_.base().position)) reanchor();
     auto& follower = coupling_.follower;
     follower.set_limits(follower_limits(coupling_.running.command));
     const bool two = coupling_.running.masters.axes[1].valid();
@@ -293,7 +289,6 @@ void Axis::complete_coupled() noexcept {
 }
 
 void Axis::publish_coupling() noexcept {
-    if (!coupling_.used() && !coupling_.shown) return;
     coupling_.shown = coupling_.used();  // what is over is shown once more, as gone
     const bool coupled = goal_.kind == Goal::Kind::coupled && coupling_.running.id != 0;
     const auto& link = coupled ? coupling_.running : coupling_.next;
@@ -302,7 +297,7 @@ void Axis::publish_coupling() noexcept {
     view_.cam_ends = coupling_.cam_ends;
     view_.phase_shift = coupling_.phase.state().position;
     view_.phase_covered = coupling_.phase.covered();
-    view_.side[static_cast<std::size_t>(SideSlot::phasing)] = coupling_.phasing.id;
+    show_side(SideSlot::phasing, coupling_.phasing.id);
 }
 
 }  // namespace taktwerk::axes

@@ -20,7 +20,7 @@ double stops_within(const MotionState& state, const AxisLimits& limits) noexcept
 }  // namespace
 
 void Axis::guard(const MotionState& before, Duration period) noexcept {
-    if (state_ == AxisState::Homing) return;
+    if (view_.state == AxisState::Homing) return;
     if ((goal_.kind == Goal::Kind::rest || goal_.kind == Goal::Kind::stop) && !setpoint_.layered()) return;
     if (!guard_switches() && !guard_software_limits(before)) return;
     setpoint_.restore(before);
@@ -60,7 +60,7 @@ bool Axis::guard_software_limits(const MotionState& before) noexcept {
     // One period ago stopping was still possible: from there the way to the limit ends exactly on it.
     limits.velocity = std::min(limits.velocity, std::max(std::abs(next.velocity), std::abs(before.velocity)));
     // A jog ends there and is done; whatever else was to go further is cut off.
-    if (state_ != AxisState::ErrorStop && queue_.active().command.kind != CommandKind::jog)
+    if (view_.state != AxisState::ErrorStop && queue_.active().command.kind != CommandKind::jog)
         fail(AxisAlarm::software_limit_reached, units_.to_program(before.position), edge);
     end_superimposed(Outcome::error, ErrorId::beyond_software_limit);
     // Also in ErrorStop: its own stop might be softer and pass the limit.

@@ -48,7 +48,7 @@ StepSettings Axis::home_search() const noexcept {
 ErrorId Axis::begin_homing(const AxisCommand& command) noexcept {
     const auto& homing = config_.homing;
     home_coordinate_ = std::isnan(command.position) ? homing.offset : command.position;
-    homed_ = false;
+    view_.homed = false;
     goal_ = {};
     goal_pending_ = false;
     switch (homing.kind) {
@@ -86,12 +86,13 @@ void Axis::step_homing() noexcept {
     watch_passive_homing();
     if (drive_homing_.busy()) {
         if (power_.follows_actual()) drive_homing_.cancel();
-        if (feedback_.homing_setup_refused && state_ == AxisState::Homing) fail(AxisAlarm::drive_homing_refused, config_.homing.method);
+        if (feedback_.homing_setup_refused && view_.state == AxisState::Homing)
+            fail(AxisAlarm::drive_homing_refused, config_.homing.method);
         switch (drive_homing_.step(feedback_, drive_stands(), now_)) {
             case DriveHoming::Result::attained: {
                 // The drive's own zero is the reference. Its raw position may have wrapped on the way: zero is the nearest multiple.
                 const double span = std::ldexp(1.0, port_.capabilities().position_bits);
-                if (state_ == AxisState::Homing)
+                if (view_.state == AxisState::Homing)
                     end_homing(static_cast<std::int64_t>(std::round(static_cast<double>(actual_counts_) / span) * span));
                 break;
             }
@@ -121,8 +122,8 @@ DriveHomingSetup Axis::drive_homing_setup() const noexcept {
 
 /// What homing gave is gone, and so is what was kept of it.
 void Axis::lose_reference() noexcept {
-    if (!homed_ && !retained_.homed) return;
-    homed_ = false;
+    if (!view_.homed && !retained_.homed) return;
+    view_.homed = false;
     retained_ = {};
     fail(AxisAlarm::reference_lost, feedback_.error_code);
 }
@@ -179,7 +180,7 @@ void Axis::set_coordinate(std::int64_t at, double coordinate) noexcept { units_.
 
 void Axis::end_homing(std::int64_t reference) noexcept {
     set_coordinate(reference, home_coordinate_);
-    homed_ = true;
+    view_.homed = true;
     switch_homing_.cancel();
     step_run_.cancel();
     latch_.release();

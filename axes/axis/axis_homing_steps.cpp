@@ -65,7 +65,7 @@ ErrorId Axis::refuse_step(const HomingStepDetails& step, bool starts_now) const 
         case HomingStep::absolute: return absolute_encoder() ? ErrorId::none : ErrorId::not_supported;
         case HomingStep::finish:
             if (!starts_now || step_succeeded_) return ErrorId::none;
-            return homing_procedure_ ? ErrorId::homing_failed : ErrorId::state_forbids;
+            return view_.homing_procedure ? ErrorId::homing_failed : ErrorId::state_forbids;
         case HomingStep::block:
         case HomingStep::direct: break;
     }
@@ -90,7 +90,7 @@ void Axis::arm_latch(const TriggerRef& reference, bool continuous) noexcept {
 
 ErrorId Axis::begin_homing_step(const AxisCommand& command) noexcept {
     const auto& step = details_of(command);
-    homed_ = false;
+    view_.homed = false;
     const auto dynamics = dynamics_of(command, config_.limits, config_.defaults);
     const bool positive = step.direction == MC_HomeDirection::mcPositiveDirection || step.direction == MC_HomeDirection::mcSwitchPositive;
     StepSettings run{.velocity = command.velocity,
@@ -226,8 +226,8 @@ bool Axis::complete_homing_step() noexcept {
     setpoint_.go_to_end();
     if (step.step == HomingStep::direct) set_coordinate(actual_counts_, step.set_position);
     if (step.step == HomingStep::absolute) set_coordinate(encoder_zero(), config_.homing.offset);
-    homing_procedure_ = step_succeeded_ = false;
-    homed_ = true;
+    view_.homing_procedure = step_succeeded_ = false;
+    view_.homed = true;
     goal_ = {};
     queue_.finish_active(Outcome::done);
     start_waiting(0);

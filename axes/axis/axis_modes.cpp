@@ -28,7 +28,7 @@ bool only_stops(CommandKind kind) noexcept { return kind == CommandKind::stop ||
 
 }  // namespace
 
-DriveMode Axis::wanted_mode() const noexcept {
+DriveMode Axis::mode_on_the_way() const noexcept {
     if (drive_homing_.busy()) return drive_homing_.mode();
     if (mode_waits_) return mode_phase_ == ModePhase::changing ? former_mode_ : own_mode_;
     return mode_phase_ == ModePhase::entering || mode_phase_ == ModePhase::torque ? DriveMode::cyclic_torque : own_mode_;
@@ -36,7 +36,7 @@ DriveMode Axis::wanted_mode() const noexcept {
 
 bool Axis::torque_wanted() const noexcept {
     if (queue_.active().command.kind == CommandKind::torque) return true;
-    return torque_idle_ && !queue_.has_active() && state_ == AxisState::Standstill;
+    return torque_idle_ && !queue_.has_active() && view_.state == AxisState::Standstill;
 }
 
 // --- what is accepted ---------------------------------------------------------------------------------------------------------
@@ -197,7 +197,7 @@ bool Axis::run_torque(Duration period) noexcept {
             torque_idle_ = false;
             return step_mode(period);
         }
-        const bool error = state_ == AxisState::ErrorStop;
+        const bool error = view_.state == AxisState::ErrorStop;
         torque_.brake(error ? stop_limits(config_.limits).deceleration
                             : dynamics_of(queue_.active().command, config_.limits, config_.defaults).deceleration);
     } else if (begin_pending_) {
@@ -213,7 +213,7 @@ bool Axis::run_torque(Duration period) noexcept {
 
 /// As the guards of planned motion, but early by what leaving torque takes.
 void Axis::guard_torque() noexcept {
-    if (state_ == AxisState::ErrorStop || state_ == AxisState::Stopping || guard_switches() || !software_limits_hold()) return;
+    if (view_.state == AxisState::ErrorStop || view_.state == AxisState::Stopping || guard_switches() || !software_limits_hold()) return;
     auto reach = setpoint_.state();
     if (reach.velocity == 0) return;
     reach.position += reach.velocity * (dead_cycles * to_seconds(cycle_) + to_seconds(port_.capabilities().mode_change_delay));
@@ -263,11 +263,10 @@ void Axis::fill_targets() noexcept {
     const auto& set = setpoint_.state();
     const auto& control = config_.control;
     const double counts = units_.counts_per_unit();
-    const double sense = config_.gearing.inverted ? -1 : 1;
     command_.mode = wanted_mode();
     command_.position = seeded_ ? units_.counts(set.position + compensation_.offset()) : feedback_.position;
     command_.velocity = control.feed_forward * set.velocity * counts;
-    command_.torque = sense * control.torque_feed_forward * control.inertia() * set.acceleration;
+    command_.torque = torque_per_acceleration_ * set.acceleration;
     if (port_.capabilities().setpoints == SetpointClass::low_dynamics) {
         // Told to stop, the drive ramps by itself: one word on the line ends the motion, whatever becomes of the line then.
         command_.halt = goal_.kind == Goal::Kind::stop;
@@ -285,7 +284,7 @@ void Axis::fill_targets() noexcept {
     }
     if (mode_phase_ == ModePhase::entering) command_.torque = feedback_.torque;  // what the motor has when it takes the mode
     if (mode_phase_ != ModePhase::torque) return;
-    command_.torque = sense * torque_.torque();
+    command_.torque = (config_.gearing.inverted ? -1 : 1) * torque_.torque();
     command_.velocity_limit = torque_velocity_ * std::abs(counts);
 }
 

@@ -8,33 +8,27 @@
 
 namespace taktwerk::axes {
 
-namespace {
-
-constexpr double far_from_anchor = 1024;  // feeds: nearer than this `local` resolves some 1e-13 feeds
-
-}  // namespace
-
 void Axis::plan(Instant now, Duration period) noexcept {
     now_ = now;
-    if (power_.follows_actual() || drive_homing_.busy()) {
+    if (follows_motor()) {
         follow_actual(period);
         settle_couplings();
         step_homing();
         publish();
         return;
     }
-    const bool may_be_homed = state_ == AxisState::Homing || passive_.id != 0;
-    step_homing();
-    carry_out_due_settings();
+    const bool may_be_homed = view_.state == AxisState::Homing || passive_.id != 0;
+    if (homes()) step_homing();
+    if (view_.active_in_target && queue_.waiting() > 0) carry_out_due_settings();
     if (view_.active_in_target && queue_.waiting() > 0) hand_over();
     if (mode_phase_ != ModePhase::steady && step_mode(period)) {
-        publish_state();
+        publish_commands();
         publish_setpoint();
         return;
     }
     if (begin_pending_) begin_command();
-    keep_close_to_anchor();
-    follow_masters(period);
+    if (endless_) keep_close_to_anchor();
+    if (coupling_.shown) follow_masters(period);
 
     const MotionState before = setpoint_.state();
     if (goal_pending_) run_goal(0);
@@ -48,18 +42,18 @@ void Axis::plan(Instant now, Duration period) noexcept {
         run_goal(0);
         setpoint_.advance(period);
     }
-    guard(before, period);
+    if (may_meet_limit()) guard(before, period);
     // A drive that was told to stop holds no place of ours: where it comes to rest is where the axis is.
     if (port_.capabilities().setpoints == SetpointClass::low_dynamics && goal_.kind == Goal::Kind::stop && !goal_pending_ &&
         setpoint_.finished() && online() && drive_stands() && feedback_.commands_acknowledged)
         setpoint_.place(actual_local());
-    complete();
-    complete_phasing();
+    if (may_complete()) complete();
+    if (coupling_.shown) complete_phasing();
     if (queue_.beside(SideSlot::superimposed) != 0) complete_superimposed();
     if (const double velocity = setpoint_.state().velocity; velocity != 0) backwards_ = velocity < 0;
-    publish_state();
+    publish_commands();
     publish_setpoint();
-    if (may_be_homed) publish_feedback();  // in other coordinates
+    if (may_be_homed) publish_feedback(actual_local());  // in other coordinates
 }
 
 void Axis::follow_actual(Duration period) noexcept {
@@ -72,7 +66,7 @@ void Axis::follow_actual(Duration period) noexcept {
     const double most = config_.limits.velocity * to_seconds(period);
     aligned_ = drive_homing_.busy() || std::abs(way) <= most;
     setpoint_.place(aligned_ ? actual_local() : setpoint_.state().position + std::copysign(most, way));
-    if (endless_ && std::abs(actual_local()) >= far_from_anchor * units_.feed()) reanchor();  // an encoder turns for years
+    if (endless_ && units_.far_from_anchor(actual_local())) reanchor();  // an encoder turns for years
     if (!power_.follows_actual()) return;
     mode_phase_ = ModePhase::steady;
     torque_idle_ = mode_waits_ = false;
@@ -136,7 +130,7 @@ Plan Axis::plan_way(const MotionState& from, MotionLimits limits) noexcept {
 
 /// Only while nothing is planned: every local coordinate becomes another.
 void Axis::anchor_near_actual() noexcept {
-    if (std::abs(actual_local()) >= far_from_anchor * units_.feed()) units_.reanchor(actual_local());
+    if (units_.far_from_anchor(actual_local())) units_.reanchor(actual_local());
 }
 
 /// A profile must follow.
@@ -151,8 +145,7 @@ void Axis::reanchor() noexcept {
 }
 
 void Axis::keep_close_to_anchor() noexcept {
-    if (!endless_ || goal_pending_ || goal_.kind != Goal::Kind::velocity || !setpoint_.finished() ||
-        std::abs(setpoint_.base().position) < far_from_anchor * units_.feed())
+    if (goal_pending_ || goal_.kind != Goal::Kind::velocity || !setpoint_.finished() || !units_.far_from_anchor(setpoint_.base().position))
         return;
     reanchor();
     goal_pending_ = true;

@@ -23,7 +23,7 @@ bool Axis::override_counts() const noexcept {
     const auto kind = queue_.active().command.kind;
     if (kind == CommandKind::velocity_profile || kind == CommandKind::acceleration_profile) return false;
     const bool moves = goal_.kind == Goal::Kind::position || goal_.kind == Goal::Kind::velocity;
-    const bool commanded = state_ == AxisState::DiscreteMotion || state_ == AxisState::ContinuousMotion;
+    const bool commanded = view_.state == AxisState::DiscreteMotion || view_.state == AxisState::ContinuousMotion;
     return moves && commanded && goal_.limiter != VelocityLimiter::software_limit;
 }
 

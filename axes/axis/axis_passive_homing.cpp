@@ -27,9 +27,9 @@ bool passed(MC_SwitchMode mode, const EdgeWatch& edge, double velocity) noexcept
 
 ErrorId Axis::refuse_passive(const AxisCommand& command) const noexcept {
     if (const auto error = check_numbers(command); error != ErrorId::none) return error;
-    if (state_ == AxisState::Disabled) return ErrorId::not_powered;
-    if (state_ == AxisState::ErrorStop) return ErrorId::in_error_stop;
-    if (state_ == AxisState::Homing || state_ == AxisState::Stopping) return ErrorId::state_forbids;
+    if (view_.state == AxisState::Disabled) return ErrorId::not_powered;
+    if (view_.state == AxisState::ErrorStop) return ErrorId::in_error_stop;
+    if (view_.state == AxisState::Homing || view_.state == AxisState::Stopping) return ErrorId::state_forbids;
     const auto* step = std::get_if<HomingStepDetails>(&command.details);
     return refuse_step(*step, true);
 }
@@ -55,14 +55,15 @@ void Axis::end_passive_homing(Outcome outcome, ErrorId error) noexcept {
     if (passive_.id == 0) return;
     queue_.record(passive_.id, outcome, error);
     passive_.id = 0;
+    show_side(SideSlot::passive_homing, 0);
     latch_.release();
 }
 
 void Axis::watch_passive_homing() noexcept {
     if (passive_.id == 0) return;
-    if (state_ == AxisState::ErrorStop) return end_passive_homing(Outcome::error, ErrorId::aborted_by_axis_error);
+    if (view_.state == AxisState::ErrorStop) return end_passive_homing(Outcome::error, ErrorId::aborted_by_axis_error);
     // What homes the axis actively, and what takes its power, takes this with it.
-    if (state_ == AxisState::Disabled || state_ == AxisState::Homing) return end_passive_homing(Outcome::aborted);
+    if (view_.state == AxisState::Disabled || view_.state == AxisState::Homing) return end_passive_homing(Outcome::aborted);
     if (!feedback_.fresh) return;
 
     const auto& step = passive_.step;
@@ -75,7 +76,7 @@ void Axis::watch_passive_homing() noexcept {
     const bool seen = latch_.armed() ? latch.has_value() : passed(mode, edge, velocity);
     if (seen) {
         shift_coordinates(step.set_position - units_.to_program(units_.local(latch.value_or(edge.place()))));
-        homed_ = true;
+        view_.homed = true;
         return end_passive_homing(Outcome::done);
     }
     const double way = std::abs(static_cast<double>(feedback_.position - passive_.from) / units_.counts_per_unit());

@@ -28,7 +28,8 @@ ErrorId Axis::refuse_phasing(const AxisCommand& command) const noexcept {
     if (command.buffer_mode != mcAborting && command.buffer_mode != mcBuffered) return ErrorId::buffer_mode_not_supported;
     // Between whom? There must be a master, and it must be the one meant where one is named.
     const auto& link = coupling_.running.id != 0 ? coupling_.running : coupling_.next;
-    if (state_ != AxisState::SynchronizedMotion || (link.id == 0 && !couples(queue_.active().command.kind))) return ErrorId::not_coupled;
+    if (view_.state != AxisState::SynchronizedMotion || (link.id == 0 && !couples(queue_.active().command.kind)))
+        return ErrorId::not_coupled;
     const auto master = link.id != 0 ? link.masters.axes[0] : masters_of(queue_.active().command).axes[0];
     if (const auto named = masters_of(command).axes[0]; named.valid() && named != master) return ErrorId::invalid_master;
     const bool waits = command.buffer_mode == mcBuffered && coupling_.phasing.id != 0;
@@ -47,6 +48,7 @@ void Axis::begin_phasing(const AcceptedCommand& accepted) noexcept {
     limits.velocity = choose(command.velocity, 0, config.limits.velocity);
     const double from = command.kind == CommandKind::phasing_relative ? state.phase.state().position : 0.0;
     if (state.phase.begin(from + command.position, limits)) {
+        state.shown = true;
         state.phasing = accepted;
         state.phase_master = ref;
     } else queue_.record(accepted.id, Outcome::error, ErrorId::invalid_position);

@@ -62,7 +62,10 @@ void Axis::watch_probes() noexcept {
         track_.add(feedback_.latched, feedback_.position);
         feedback_age_ = now_ - feedback_.latched;
     }
-    if (!probes_.armed()) return;
+    if (probes_.armed()) observe_probes();
+}
+
+void Axis::observe_probes() noexcept {
     probes_.observe(probe_signals());
     for (std::size_t i = 0; i < ProbeBoard::places; ++i) {
         const auto id = probes_.id(i);
@@ -79,11 +82,12 @@ void Axis::watch_probes() noexcept {
         view_.probe_latched[i] = id;
         end_probe(id, Outcome::done, ErrorId::none);
     }
+    publish_probes();
 }
 
 void Axis::publish_probes() noexcept {
-    view_.side[static_cast<std::size_t>(SideSlot::probe1)] = probes_.id(0);
-    view_.side[static_cast<std::size_t>(SideSlot::probe2)] = probes_.id(1);
+    show_side(SideSlot::probe1, probes_.id(0));
+    show_side(SideSlot::probe2, probes_.id(1));
 }
 
 }  // namespace taktwerk::axes

@@ -27,7 +27,7 @@ void Axis::complete() noexcept {
     for (std::size_t i = 0; !held_ && i <= CommandQueue::capacity; ++i)
         if (goal_pending_ || goal_.kind == Goal::Kind::given || !setpoint_.finished() || !complete_active()) break;
     const bool to_velocity = goal_.kind == Goal::Kind::velocity;
-    if (state_ == AxisState::ContinuousMotion && (to_velocity || goal_.kind == Goal::Kind::position))
+    if (view_.state == AxisState::ContinuousMotion && (to_velocity || goal_.kind == Goal::Kind::position))
         queue_.set_in_target(to_velocity && setpoint_.finished() && override_.velocity > 0);  // P1-203: at the reduced velocity
 }
 
@@ -39,7 +39,7 @@ bool Axis::complete_active() noexcept {
         if ((stops || arrives) && !(drive_stands() && feedback_.commands_acknowledged)) return false;
         if (arrives && std::abs(setpoint_.end().position - actual_local()) > config_.windows.in_position) return false;
     }
-    if (state_ == AxisState::Stopping) {
+    if (view_.state == AxisState::Stopping) {
         if (goal_.kind != Goal::Kind::stop) return false;
         setpoint_.go_to_end();
         queue_.finish_active(Outcome::done);
@@ -57,8 +57,8 @@ bool Axis::complete_active() noexcept {
         run_goal(late);
         return false;
     }
-    if (state_ == AxisState::Homing && kind == CommandKind::homing_step) return complete_homing_step();
-    if (state_ != AxisState::DiscreteMotion || kind == CommandKind::none || goal_.kind == Goal::Kind::rest) return false;
+    if (view_.state == AxisState::Homing && kind == CommandKind::homing_step) return complete_homing_step();
+    if (view_.state != AxisState::DiscreteMotion || kind == CommandKind::none || goal_.kind == Goal::Kind::rest) return false;
     if (goal_.kind == Goal::Kind::velocity && goal_.value != 0) {  // a jog at its speed
         queue_.set_in_target(true);
         return false;
@@ -72,14 +72,14 @@ bool Axis::complete_active() noexcept {
 }
 
 void Axis::start_waiting(double late) noexcept {
-    if (!moves() && !homing_procedure_) fire(AxisEvent::done);
+    if (!moves() && !view_.homing_procedure) fire(AxisEvent::done);
     while (queue_.waiting() > 0) {
         const auto next = queue_.pop();
         if (next.command.kind == CommandKind::setting) {
             carry_out(next);
             continue;
         }
-        auto error = next_state(state_, event_of(next.command.kind)) ? refuse_target(next.command, true) : ErrorId::state_forbids;
+        auto error = next_state(view_.state, event_of(next.command.kind)) ? refuse_target(next.command, true) : ErrorId::state_forbids;
         if (error == ErrorId::none) error = refuse_mode(next.command, true);
         if (error == ErrorId::none) {
             fire(event_of(next.command.kind));
@@ -90,12 +90,12 @@ void Axis::start_waiting(double late) noexcept {
                 return;
             }
             queue_.finish_active(Outcome::error, error);
-            if (!moves() && !homing_procedure_) fire(AxisEvent::done);
+            if (!moves() && !view_.homing_procedure) fire(AxisEvent::done);
         } else queue_.record(next.id, Outcome::error, error);
     }
     const auto& base = setpoint_.base();
     if (base.velocity != 0 || base.acceleration != 0) {  // what should have gone on here turned out impossible
-        if (state_ == AxisState::ErrorStop) return;
+        if (view_.state == AxisState::ErrorStop) return;
         stop_on_own_account(false);
         run_goal(late);
         return;

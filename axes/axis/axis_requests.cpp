@@ -8,8 +8,8 @@
 namespace taktwerk::axes {
 
 bool Axis::may(Owner owner) noexcept {
-    if (owner_ == Owner::none) owner_ = owner;  // nobody's axis goes to the first who asks
-    return owner == owner_;
+    if (view_.owner == Owner::none) view_.owner = owner;  // nobody's axis goes to the first who asks
+    return owner == view_.owner;
 }
 
 double Axis::velocity_cap() const noexcept {
@@ -32,26 +32,27 @@ bool Axis::permitted(double direction) const noexcept {
 
 bool Axis::waits(const AxisCommand& command) const noexcept {
     if (command.buffer_mode == mcAborting) return false;
-    return queue_.has_active() || state_ == AxisState::Stopping || queue_.beside(SideSlot::superimposed) != 0;
+    return queue_.has_active() || view_.state == AxisState::Stopping || queue_.beside(SideSlot::superimposed) != 0;
 }
 
 ErrorId Axis::refuse_state(const AxisCommand& command) const noexcept {
-    if (state_ == AxisState::Disabled) return ErrorId::not_powered;
-    if (state_ == AxisState::ErrorStop) return ErrorId::in_error_stop;
+    if (view_.state == AxisState::Disabled) return ErrorId::not_powered;
+    if (view_.state == AxisState::ErrorStop) return ErrorId::in_error_stop;
     if (emergency_ != EmergencyStop::none) return ErrorId::interlocked;
-    const bool stopping = state_ == AxisState::Stopping;
+    const bool stopping = view_.state == AxisState::Stopping;
     if (waits(command)) {
-        const bool behind_stop = queue_.active().command.kind == CommandKind::stop || stop_lock_ != 0;
+        const bool behind_stop = queue_.active().command.kind == CommandKind::stop || view_.lock != 0;
         if (stopping && (!behind_stop || off_when_stopped_)) return ErrorId::state_forbids;
         return queue_.waiting() < config_.queue_depth ? ErrorId::none : ErrorId::queue_full;
     }
     // A stop whose Execute has fallen may be followed by another; one that is held locks the axis.
     if (stopping && command.kind == CommandKind::stop)
-        return stop_lock_ == 0 && !off_when_stopped_ ? ErrorId::none : ErrorId::state_forbids;
+        return view_.lock == 0 && !off_when_stopped_ ? ErrorId::none : ErrorId::state_forbids;
     if (uncouples(command.kind)) return ErrorId::none;  // has a word of its own (refuse_coupling)
     // MC_Home's own search is no step: only MC_Stop ends it early.
-    if (command.kind == CommandKind::homing_step && state_ == AxisState::Homing && !homing_procedure_) return ErrorId::state_forbids;
-    return next_state(state_, event_of(command.kind)) ? ErrorId::none : ErrorId::state_forbids;
+    if (command.kind == CommandKind::homing_step && view_.state == AxisState::Homing && !view_.homing_procedure)
+        return ErrorId::state_forbids;
+    return next_state(view_.state, event_of(command.kind)) ? ErrorId::none : ErrorId::state_forbids;
 }
 
 /// `program` as a target: inside the range of a modulo axis, inside the software limits.
@@ -74,7 +75,7 @@ ErrorId Axis::refuse_target(const AxisCommand& command, bool starts_now) const n
     switch (command.kind) {
         case CommandKind::move_absolute:
         case CommandKind::move_continuous_absolute:
-            if (config_.require_homed && !homed_) return ErrorId::not_homed;
+            if (config_.require_homed && !view_.homed) return ErrorId::not_homed;
             if (const auto error = refuse_place(command); error != ErrorId::none) return error;
             way = repetition_of(command, here, heads_backwards()) - here.position;
             break;
@@ -147,8 +148,8 @@ Submitted Axis::submit(const AxisCommand& command, Owner owner) noexcept {
         end_superimposed(Outcome::aborted);
         abort_homing();
         queue_.activate(accepted);
-        if (state_ != AxisState::Stopping) fire(event_of(command.kind));
-        if (command.kind == CommandKind::stop) stop_lock_ = accepted.id;
+        if (view_.state != AxisState::Stopping) fire(event_of(command.kind));
+        if (command.kind == CommandKind::stop) view_.lock = accepted.id;
         begin_pending_ = true;
     }
     if (command.kind == CommandKind::jog) {
@@ -163,8 +164,7 @@ Submitted Axis::submit(const AxisCommand& command, Owner owner) noexcept {
 ErrorId Axis::power(bool enable, bool positive, bool negative, Owner owner) noexcept {
     if (!may(owner)) return ErrorId::owned_by_other;
     if (++power_calls_ > 1) return ErrorId::power_conflict;
-    if (enable && config_.encoder) return ErrorId::not_supported;
-    if (enable && config_.disabled) return ErrorId::drive_not_ready;
+    if (enable && !driven_) return config_.encoder ? ErrorId::not_supported : ErrorId::drive_not_ready;
     permit_positive_ = positive;
     permit_negative_ = negative;
     if (!enable && power_wish_) {
@@ -177,11 +177,11 @@ ErrorId Axis::power(bool enable, bool positive, bool negative, Owner owner) noex
 
 ErrorId Axis::reset(Owner) noexcept {
     acknowledge_alarms();
-    if (state_ != AxisState::ErrorStop) return ErrorId::none;
+    if (view_.state != AxisState::ErrorStop) return ErrorId::none;
     if (emergency_ != EmergencyStop::none) return ErrorId::interlocked;
-    if (!resetting_) reset_since_ = now_;
-    resetting_ = true;
-    reset_error_ = ErrorId::none;
+    if (!view_.resetting) reset_since_ = now_;
+    view_.resetting = true;
+    view_.reset_error = ErrorId::none;
     publish();
     return ErrorId::none;
 }
@@ -200,7 +200,7 @@ ErrorId Axis::set(const AxisSetting& setting, Owner owner) noexcept {
 ErrorId Axis::set_position(const SetPosition& wanted) noexcept {
     if (!std::isfinite(wanted.position)) return ErrorId::invalid_position;
     if (!online()) return ErrorId::drive_not_ready;
-    if (state_ == AxisState::Homing) return ErrorId::state_forbids;
+    if (view_.state == AxisState::Homing) return ErrorId::state_forbids;
     shift_coordinates(wanted.relative ? wanted.position : wanted.position - units_.to_program(actual_local()));
     publish();
     return ErrorId::none;
@@ -222,10 +222,10 @@ void Axis::shift_coordinates(double delta) noexcept {
 }
 
 void Axis::release_stop(CommandId id, Owner) noexcept {
-    if (id == 0 || id != stop_lock_) return;
-    stop_lock_ = 0;
+    if (id == 0 || id != view_.lock) return;
+    view_.lock = 0;
     const bool stands = !moves() && !begin_pending_ && !goal_pending_;
-    if (state_ == AxisState::Stopping && stands) leave_stopping();
+    if (view_.state == AxisState::Stopping && stands) leave_stopping();
     publish();
 }
 
@@ -246,21 +246,21 @@ ErrorId Axis::renew_jog(CommandId id, double velocity, Owner owner) noexcept {
 void Axis::set_mode(OperatingMode mode) noexcept {
     if (mode == mode_) return;
     mode_ = mode;
-    if (state_ != AxisState::Disabled && state_ != AxisState::ErrorStop && moves()) stop_on_own_account(false);
-    release_control(owner_);
+    if (view_.state != AxisState::Disabled && view_.state != AxisState::ErrorStop && moves()) stop_on_own_account(false);
+    release_control(view_.owner);
 }
 
 void Axis::take_control(Owner owner) noexcept {
-    if (owner == owner_) return;
-    owner_ = owner;
+    if (owner == view_.owner) return;
+    view_.owner = owner;
     permit_positive_ = permit_negative_ = true;
-    const bool commanded = queue_.has_active() || queue_.waiting() > 0 || stop_lock_ != 0 || moves();
-    if (commanded && state_ != AxisState::Disabled && state_ != AxisState::ErrorStop) stop_on_own_account(off_when_stopped_);
+    const bool commanded = queue_.has_active() || queue_.waiting() > 0 || view_.lock != 0 || moves();
+    if (commanded && view_.state != AxisState::Disabled && view_.state != AxisState::ErrorStop) stop_on_own_account(off_when_stopped_);
     publish();
 }
 
 void Axis::release_control(Owner owner) noexcept {
-    if (owner != owner_) return;
+    if (owner != view_.owner) return;
     take_control(mode_ == OperatingMode::automatic ? Owner::program : Owner::operator_panel);
     publish();
 }

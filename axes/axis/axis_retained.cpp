@@ -8,7 +8,7 @@ namespace taktwerk::axes {
 
 RetainedPosition Axis::retained() const noexcept {
     if (!seeded_) return retained_;  // what was kept stays until something better is known
-    return {.homed = homed_ && seeded_ && absolute_encoder(),
+    return {.homed = view_.homed && seeded_ && absolute_encoder(),
             .shift = units_.shift(),
             .counts = actual_counts_,
             .at_rest = !moves() && drive_stands()};
@@ -32,7 +32,7 @@ void Axis::apply_retained() noexcept {
     if (told) fail(AxisAlarm::moved_while_off, moved, config_.memory.moved_while_off);
     else {
         units_.shift_by(retained_.shift + static_cast<double>(there - actual_counts_) / units_.counts_per_unit());
-        homed_ = true;
+        view_.homed = true;
     }
     retained_ = {};
 }

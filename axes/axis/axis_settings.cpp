@@ -30,7 +30,8 @@ Submitted Axis::submit_setting(const AxisCommand& command, Owner owner) noexcept
     // What can be said now is said now; the rest when its turn comes.
     if (const auto* parameter = std::get_if<WriteParameter>(setting))
         if (const auto error = check_write(view_, *parameter); error != ErrorId::none) return {0, error};
-    const bool waits = command.buffer_mode == mcBuffered && (queue_.has_active() || queue_.waiting() > 0 || state_ == AxisState::Stopping);
+    const bool waits =
+        command.buffer_mode == mcBuffered && (queue_.has_active() || queue_.waiting() > 0 || view_.state == AxisState::Stopping);
     if (waits && queue_.waiting() >= config_.queue_depth) return {0, ErrorId::queue_full};
     const AcceptedCommand accepted{queue_.next_id(), owner, command};
     if (waits) queue_.push(accepted);
@@ -147,7 +148,7 @@ ErrorId Axis::write_output(const WriteOutput& wanted) noexcept {
     if (wanted.number < 0 || wanted.number >= drive_outputs) return ErrorId::invalid_output;
     const auto bit = 1u << static_cast<unsigned>(wanted.number);
     digital_output_mask_ |= bit;
-    digital_outputs_ = wanted.value ? digital_outputs_ | bit : digital_outputs_ & ~bit;
+    view_.digital_outputs = wanted.value ? view_.digital_outputs | bit : view_.digital_outputs & ~bit;
     publish();
     return ErrorId::none;
 }

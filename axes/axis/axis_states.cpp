@@ -15,14 +15,15 @@ constexpr Duration reset_patience = 2s;  // a drive that still reports its fault
 }  // namespace
 
 bool Axis::fire(AxisEvent event) noexcept {
-    const auto to = next_state(state_, event);
-    if (to) state_ = *to;
-    if (state_ != AxisState::DiscreteMotion) has_commanded_target_ = false;  // P1-147: it lives as long as that motion
+    const auto to = next_state(view_.state, event);
+    if (to) view_.state = *to;
+    show_power();
+    if (view_.state != AxisState::DiscreteMotion) has_commanded_target_ = false;  // P1-147: it lives as long as that motion
     if (to && event == AxisEvent::homing_step) {
-        homing_procedure_ = true;
+        view_.homing_procedure = true;
         step_succeeded_ = false;
-    } else if (state_ != AxisState::Homing) {
-        homing_procedure_ = step_succeeded_ = false;
+    } else if (view_.state != AxisState::Homing) {
+        view_.homing_procedure = step_succeeded_ = false;
     }
     return to.has_value();
 }
@@ -35,25 +36,25 @@ void Axis::fail(AxisAlarm alarm, double a, double b) noexcept {
 }
 
 void Axis::stop_for_error(AlarmId reason, bool then_power_off) noexcept {
-    const bool stays_off = state_ == AxisState::Disabled && !power_wish_;
+    const bool stays_off = view_.state == AxisState::Disabled && !power_wish_;
     if (!stays_off && alarms_.raise(AxisAlarm::stopped_by_machine, reason, 0)) {
         enter_error_stop(id(AxisAlarm::stopped_by_machine), then_power_off);
         publish();
-    } else if (then_power_off && state_ == AxisState::ErrorStop) {
+    } else if (then_power_off && view_.state == AxisState::ErrorStop) {
         off_after_error_ = true;
     }
 }
 
 void Axis::enter_error_stop(AlarmId reason, bool then_power_off) noexcept {
     off_after_error_ = off_after_error_ || then_power_off;
-    if (state_ == AxisState::ErrorStop) return;  // it stops already; the first error is the one shown
-    error_ = reason;
-    reset_error_ = ErrorId::none;
+    if (view_.state == AxisState::ErrorStop) return;  // it stops already; the first error is the one shown
+    view_.error = reason;
+    view_.reset_error = ErrorId::none;
     fire(AxisEvent::axis_error);
     queue_.finish_active(Outcome::error, static_cast<ErrorId>(reason));
     queue_.finish_waiting(Outcome::error, ErrorId::aborted_by_axis_error);
     end_superimposed(Outcome::error, ErrorId::aborted_by_axis_error);
-    stop_lock_ = 0;
+    view_.lock = 0;
     off_when_stopped_ = begin_pending_ = false;
     abort_homing();
     aim(Goal::Kind::stop, 0, stop_limits(config_.limits), VelocityLimiter::stopping);
@@ -63,11 +64,11 @@ void Axis::stop_on_own_account(bool then_power_off) noexcept {
     queue_.finish_active(Outcome::aborted);
     queue_.finish_waiting(Outcome::aborted);
     end_superimposed(Outcome::aborted);
-    stop_lock_ = 0;
+    view_.lock = 0;
     begin_pending_ = false;
     off_when_stopped_ = off_when_stopped_ || then_power_off;
     abort_homing();
-    if (state_ != AxisState::Stopping) fire(AxisEvent::stop);
+    if (view_.state != AxisState::Stopping) fire(AxisEvent::stop);
     aim(Goal::Kind::stop, 0, full_limits(config_.limits), VelocityLimiter::stopping);
 }
 
@@ -76,7 +77,7 @@ void Axis::switch_off() noexcept {
     queue_.finish_waiting(Outcome::aborted);
     end_superimposed(Outcome::aborted);
     end_superimposed(Outcome::aborted);
-    stop_lock_ = 0;
+    view_.lock = 0;
     off_when_stopped_ = begin_pending_ = false;
     power_dropping_ = true;
     abort_homing();
@@ -86,7 +87,7 @@ void Axis::switch_off() noexcept {
 
 void Axis::shut_down() noexcept {
     power_wish_ = false;
-    if (state_ == AxisState::Disabled || state_ == AxisState::ErrorStop) return;  // power_wanted() sees the wish
+    if (view_.state == AxisState::Disabled || view_.state == AxisState::ErrorStop) return;  // power_wanted() sees the wish
     if (moves()) stop_on_own_account(true);
     else switch_off();
     publish();
@@ -97,7 +98,7 @@ void Axis::leave_stopping() noexcept {
         switch_off();
         return;
     }
-    if (stop_lock_ != 0) return;
+    if (view_.lock != 0) return;
     fire(AxisEvent::stop_finished);
     goal_ = {};
     if (queue_.waiting() > 0) start_waiting(0);
@@ -105,13 +106,15 @@ void Axis::leave_stopping() noexcept {
 
 void Axis::supervise(Instant now) noexcept {
     now_ = now;
+    const bool jogs = queue_.active().command.kind == CommandKind::jog;
+    if (emergency_ == EmergencyStop::none && !jogs) return;
     if (emergency_ != EmergencyStop::none) {
-        const bool stays_off = state_ == AxisState::Disabled && !power_wish_ && power_.phase() == PowerSequence::Phase::off;
+        const bool stays_off = view_.state == AxisState::Disabled && !power_wish_ && power_.phase() == PowerSequence::Phase::off;
         if (!stays_off) fail(AxisAlarm::emergency_stop);
-        if (emergency_ >= EmergencyStop::stop_and_power_off) off_after_error_ = state_ == AxisState::ErrorStop;
+        if (emergency_ >= EmergencyStop::stop_and_power_off) off_after_error_ = view_.state == AxisState::ErrorStop;
     }
     watch_jog_lease();
-    if (emergency_ != EmergencyStop::none || queue_.active().command.kind == CommandKind::jog) publish();
+    publish();
 }
 
 void Axis::watch_jog_lease() noexcept {
@@ -124,9 +127,8 @@ void Axis::watch_jog_lease() noexcept {
 }
 
 void Axis::run_reset() noexcept {
-    if (!resetting_) return;
-    if (state_ != AxisState::ErrorStop) {
-        resetting_ = false;
+    if (view_.state != AxisState::ErrorStop) {
+        view_.resetting = false;
         return;
     }
     const bool cause_present = !online() || drive_faulted() || emergency_ != EmergencyStop::none;
@@ -143,15 +145,15 @@ void Axis::run_reset() noexcept {
     }
     const bool hopeless = drive_faulted() && !port_.alarm().resettable;  // the drive says: power cycle
     if (hopeless || now_ - reset_since_ >= reset_patience) {
-        resetting_ = false;
-        reset_error_ = ErrorId::reset_failed;
+        view_.resetting = false;
+        view_.reset_error = ErrorId::reset_failed;
     }
 }
 
 void Axis::end_reset(AxisEvent event) noexcept {
-    resetting_ = false;
-    reset_error_ = ErrorId::none;
-    error_ = 0;
+    view_.resetting = false;
+    view_.reset_error = ErrorId::none;
+    view_.error = 0;
     off_after_error_ = false;
     goal_ = {};
     alarms_.clear_all_but(AxisAlarm::drive_warning);

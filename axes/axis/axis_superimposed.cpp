@@ -12,10 +12,10 @@ namespace taktwerk::axes {
 
 ErrorId Axis::refuse_superimposed(const AxisCommand& command) const noexcept {
     if (const auto error = check_numbers(command); error != ErrorId::none) return error;
-    if (state_ == AxisState::Disabled) return ErrorId::not_powered;
-    if (state_ == AxisState::ErrorStop) return ErrorId::in_error_stop;
+    if (view_.state == AxisState::Disabled) return ErrorId::not_powered;
+    if (view_.state == AxisState::ErrorStop) return ErrorId::in_error_stop;
     if (emergency_ != EmergencyStop::none) return ErrorId::interlocked;
-    if (!next_state(state_, AxisEvent::superimposed)) return ErrorId::state_forbids;
+    if (!next_state(view_.state, AxisEvent::superimposed)) return ErrorId::state_forbids;
     if (command.kind == CommandKind::halt_superimposed) return ErrorId::none;
     if (!permitted(command.position)) return ErrorId::interlocked;
     // Where both are known to end. Everything else is stopped at the limit when it comes there.
@@ -37,7 +37,7 @@ Submitted Axis::submit_superimposed(const AxisCommand& command, Owner owner) noe
         superimposed_ = {.accepted = accepted, .distance = command.position, .pending = true};
         if (command.kind == CommandKind::move_superimposed) {
             view_.superimposed_covered = 0;
-            if (state_ == AxisState::Standstill) fire(AxisEvent::superimposed);  // P1-030
+            if (view_.state == AxisState::Standstill) fire(AxisEvent::superimposed);  // P1-030
         }
     }
     publish();
@@ -53,7 +53,7 @@ void Axis::run_superimposed() noexcept {
     const auto& command = own.accepted.command;
     const auto part = setpoint_.superimposed();
     auto limits = dynamics_of(command, config_.limits, config_.defaults);
-    const bool follows_master = state_ == AxisState::SynchronizedMotion;
+    const bool follows_master = view_.state == AxisState::SynchronizedMotion;
     if (!follows_master) {
         limits.acceleration *= override_.acceleration;
         limits.deceleration *= override_.acceleration;
@@ -89,7 +89,7 @@ void Axis::complete_superimposed() noexcept {
     if (own.waiting && setpoint_.base().velocity == 0 && setpoint_.base().acceleration == 0) own.pending = override_.velocity > 0;
     if (own.pending || own.waiting || !setpoint_.superimposed_finished()) return;
     queue_.finish_beside(SideSlot::superimposed, Outcome::done);
-    if (state_ == AxisState::DiscreteMotion && !queue_.has_active() && !moves()) start_waiting(0);
+    if (view_.state == AxisState::DiscreteMotion && !queue_.has_active() && !moves()) start_waiting(0);
 }
 
 /// From here on there is one motion again. A goal must follow where it moves.

@@ -90,7 +90,11 @@ public:
     /// Writes what has changed since the last call.
     void publish(AxisView& view) noexcept {
         view.active_in_target = in_target_;
-        if (!changed_) return;
+        if (changed_) publish_changes(view);
+    }
+
+private:
+    void publish_changes(AxisView& view) noexcept {
         changed_ = false;
         view.active = active_.id;
         view.active_kind = active_.command.kind;
@@ -103,7 +107,6 @@ public:
         view.last_id = last_id_;
     }
 
-private:
     AcceptedCommand active_;
     bool in_target_ = false;
     std::array<AcceptedCommand, capacity> queue_{};

@@ -16,9 +16,10 @@ namespace taktwerk::axes {
 
 class Compensation {
 public:
-    explicit Compensation(const CompensationConfig& config) noexcept : config_(config) {}
+    explicit Compensation(const CompensationConfig& config) noexcept
+        : config_(config), none_(config.backlash == 0 && config.pitch.empty()) {}
 
-    [[nodiscard]] bool none() const noexcept { return config_.backlash == 0 && config_.pitch.empty(); }
+    [[nodiscard]] bool none() const noexcept { return none_; }
 
     /// One cycle: `position` and `velocity` of the set-point, in machine coordinates; `referenced`: the pitch table's positions mean
     /// something. The offset changes by at most `velocity` of the configuration beyond what the table asks for along the way.
@@ -31,6 +32,7 @@ public:
 
 private:
     CompensationConfig config_;
+    bool none_;
     double backlash_ = 0;  ///< 0 on the flank for positive motion, -distance on the other one
     double pitch_ = 0;     ///< what is added now
     double missing_ = 0;   ///< of the pitch correction: faded out after homing

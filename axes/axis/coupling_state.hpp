@@ -72,7 +72,7 @@ struct CouplingState {
 
     /// Anything of it is alive.
     [[nodiscard]] bool used() const noexcept { return running.id != 0 || next.id != 0 || phasing.id != 0 || phase_master.valid(); }
-    bool shown = false;  ///< the view shows something of it
+    bool shown = false;  ///< the view shows something of it, or has to: false means that nothing is alive
 };
 
 }  // namespace taktwerk::axes

@@ -19,26 +19,23 @@ public:
 
     /// Instants must not fall; one that is not later replaces the newest.
     void record(Instant effective, std::int64_t counts) noexcept {
-        if (count_ > 0 && effective <= at(count_ - 1).effective) {
-            at(count_ - 1).counts = counts;
-            return;
+        if (count_ == 0 || effective > entries_[newest_].effective) {
+            newest_ = (newest_ + 1) % depth;
+            if (count_ < depth) ++count_;
+            entries_[newest_].effective = effective;
         }
-        if (count_ == depth) {
-            first_ = (first_ + 1) % depth;
-            --count_;
-        }
-        at(count_++) = {effective, counts};
+        entries_[newest_].counts = counts;
     }
 
     /// Set-point in effect at `latched`, interpolated, minus `actual`. counts. 0 while nothing is known.
     [[nodiscard]] double error_at(Instant latched, std::int64_t actual) const noexcept {
         if (count_ == 0) return 0;
-        std::size_t i = count_;
-        while (i > 0 && at(i - 1).effective > latched) --i;
-        if (i == 0) return static_cast<double>(at(0).counts - actual);
-        const auto& before = at(i - 1);
-        if (i == count_) return static_cast<double>(before.counts - actual);
-        const auto& after = at(i);
+        std::size_t later = 0;  // how many are
+        while (later < count_ && back(later).effective > latched) ++later;
+        if (later == count_) return static_cast<double>(back(count_ - 1).counts - actual);
+        const auto& before = back(later);
+        if (later == 0) return static_cast<double>(before.counts - actual);
+        const auto& after = back(later - 1);
         const double part =
             static_cast<double>((latched - before.effective).count()) / static_cast<double>((after.effective - before.effective).count());
         return static_cast<double>(before.counts - actual) + part * static_cast<double>(after.counts - before.counts);
@@ -49,25 +46,22 @@ private:
         Instant effective{};
         std::int64_t counts = 0;
     };
-    [[nodiscard]] Entry& at(std::size_t i) noexcept { return entries_[(first_ + i) % depth]; }
-    [[nodiscard]] const Entry& at(std::size_t i) const noexcept { return entries_[(first_ + i) % depth]; }
+    /// `i` before the newest.
+    [[nodiscard]] const Entry& back(std::size_t i) const noexcept { return entries_[(newest_ - i) % depth]; }
 
+    std::size_t newest_ = 0, count_ = 0;
     std::array<Entry, depth> entries_{};
-    std::size_t first_ = 0, count_ = 0;
 };
 
 /// Beyond the window for longer than the configured time.
 class FollowingErrorTimer {
 public:
     void clear() noexcept { beyond_ = false; }
-    [[nodiscard]] bool exceeded(double error, Instant latched, const FollowingErrorWatch& watch) noexcept {
-        if (!(error > watch.window || error < -watch.window)) {
-            beyond_ = false;
-            return false;
-        }
+    /// Beyond it at `latched`: for `time` or longer?
+    [[nodiscard]] bool lasts(Instant latched, Duration time) noexcept {
         if (!beyond_) since_ = latched;
         beyond_ = true;
-        return latched - since_ >= watch.time;
+        return latched - since_ >= time;
     }
 
 private:

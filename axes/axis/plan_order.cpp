@@ -3,7 +3,14 @@
 namespace taktwerk::axes {
 
 void plan_axes(std::span<Axis> axes, Instant now, Duration period) noexcept {
-    for (auto& axis : axes) axis.plan_mark() = {};
+    bool followers = false;
+    for (auto& axis : axes) {
+        const bool follows = axis.may_follow();
+        axis.plan_mark() = {.begun = !follows, .planned = !follows};
+        if (!follows) axis.plan(now, period);
+        followers = followers || follows;
+    }
+    if (!followers) return;
     for (auto& root : axes) {
         // Depth first, with the way back noted in the axes themselves.
         Axis* at = &root;
@@ -11,7 +18,7 @@ void plan_axes(std::span<Axis> axes, Instant now, Duration period) noexcept {
             auto& mark = at->plan_mark();
             mark.begun = true;
             Axis* before = nullptr;
-            if (!mark.planned && at->may_follow()) {
+            if (!mark.planned) {
                 const auto masters = at->masters();
                 for (std::size_t i = 0; i < masters.count && !before; ++i) {
                     const auto index = masters.axes[i].index;

@@ -108,7 +108,7 @@ void ProbeBoard::observe(const Signals& now) noexcept {
     }
 }
 
-void ProbeBoard::command(std::array<ProbeCommand, 2>& latches) noexcept {
+void ProbeBoard::arm_latches(std::array<ProbeCommand, 2>& latches) noexcept {
     for (const auto& place : places_) {
         if (place.id == 0 || place.channel == software || letting_go_[place.channel]) continue;
         const auto& trigger = place.probe.trigger;

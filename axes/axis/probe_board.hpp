@@ -52,7 +52,9 @@ public:
     [[nodiscard]] const ProbeDetails& details(std::size_t place) const noexcept { return places_[place].probe; }
 
     /// Arms the drive's latches. Once per cycle.
-    void command(std::array<ProbeCommand, 2>& latches) noexcept;
+    void command(std::array<ProbeCommand, 2>& latches) noexcept {
+        if (armed() || sent_[0] || sent_[1]) arm_latches(latches);
+    }
 
 private:
     static constexpr std::uint8_t software = 0xFF;
@@ -65,6 +67,7 @@ private:
         std::optional<FinePosition> event;
     };
 
+    void arm_latches(std::array<ProbeCommand, 2>& latches) noexcept;
     [[nodiscard]] bool channel_used(std::uint8_t channel) const noexcept;
     [[nodiscard]] ErrorId choose_channel(const ProbeDetails& probe, const DriveCapabilities& drive, std::uint8_t& channel) const noexcept;
     static void watch_latch(Place& place, const ProbeFeedback& latch) noexcept;

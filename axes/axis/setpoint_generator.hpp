@@ -19,10 +19,7 @@ public:
     /// The part superimposed, in u from where it was folded last.
     [[nodiscard]] MotionState superimposed() const noexcept { return layered_ ? contribution() : MotionState{}; }
     [[nodiscard]] bool layered() const noexcept { return layered_; }
-    [[nodiscard]] double jerk() const noexcept {
-        const double base = moving_profile_ ? profile_.jerk_at(time()) : jerk_;
-        return layered_ ? base + layer_.jerk_at(to_seconds(layer_elapsed_)) : base;
-    }
+    [[nodiscard]] double jerk() const noexcept { return layered_ ? jerk_ + layer_.jerk_at(to_seconds(layer_elapsed_)) : jerk_; }
 
     // --- the base --------------------------------------------------------------------------------------------------------
     /// Stands at `position`, without any profile.
@@ -57,23 +54,30 @@ public:
         profile_ = profile;
         offset_ = late;
         elapsed_ = Duration{};
+        time_ = late;
+        piece_ = 0;
         moving_profile_ = true;
     }
     /// One period on.
     void advance(Duration period) noexcept {
         elapsed_ += period;
+        time_ = offset_ + to_seconds(elapsed_);
         advance_superimposed(period);
         sample();
     }
     /// Takes the present time of the profile again, after run(profile, late).
     void sample() noexcept {
-        if (layered_) set_base(moving_profile_ ? profile_.at(time()) : base_);
-        else if (moving_profile_) state_ = profile_.at(time());
+        if (moving_profile_) {
+            const auto now = profile_.sample(time_, piece_);
+            piece_ = now.piece;
+            jerk_ = now.jerk;
+            set_base(now.state);
+        } else if (layered_) set_base(base_);
     }
     /// The profile has reached its end state (a velocity profile then moves on).
-    [[nodiscard]] bool finished() const noexcept { return !moving_profile_ || time() >= profile_.duration(); }
+    [[nodiscard]] bool finished() const noexcept { return !moving_profile_ || time_ >= profile_.duration(); }
     /// Seconds since the profile reached its end; only when finished().
-    [[nodiscard]] double overtime() const noexcept { return moving_profile_ ? time() - profile_.duration() : 0.0; }
+    [[nodiscard]] double overtime() const noexcept { return moving_profile_ ? time_ - profile_.duration() : 0.0; }
     [[nodiscard]] const MotionState& end() const noexcept { return moving_profile_ ? profile_.end() : base(); }
     /// The base goes to the profile's end state: where the next command of a queue begins.
     void go_to_end() noexcept { set_base(end()); }
@@ -128,7 +132,6 @@ public:
 
 private:
     [[nodiscard]] static bool rests(const MotionState& state) noexcept { return state.velocity == 0 && state.acceleration == 0; }
-    [[nodiscard]] double time() const noexcept { return offset_ + to_seconds(elapsed_); }
     [[nodiscard]] MotionState contribution() const noexcept {
         auto part = layer_.at(to_seconds(layer_elapsed_));
         part.position -= layer_origin_;
@@ -144,13 +147,15 @@ private:
         state_ = {base.position + part.position, base.velocity + part.velocity, base.acceleration + part.acceleration};
     }
 
-    Profile profile_;
     MotionState state_;
+    double jerk_ = 0;  // of the base
     Duration elapsed_{};
     double offset_ = 0;
-    double jerk_ = 0;  // without a profile
+    double time_ = 0;  // s, of the profile: both together
+    int piece_ = 0;    // of the profile, at that time
     bool moving_profile_ = false;
     bool layered_ = false;
+    Profile profile_;
 
     MotionState base_;  // only while layered
     Profile layer_;

@@ -14,6 +14,7 @@
 #include <cstdint>
 
 #include "axes/axis/axis_config.hpp"
+#include "axes/axis/nearest.hpp"
 #include "axes/axis/rational.hpp"
 
 namespace taktwerk::axes {
@@ -28,17 +29,18 @@ public:
           rest_((gearing.counts_per_revolution * gearing.motor_revolutions) % gearing.load_revolutions),
           counts_per_u_(static_cast<double>(gearing.counts_per_revolution) * static_cast<double>(gearing.motor_revolutions) /
                         (static_cast<double>(gearing.load_revolutions) * gearing.feed)),
+          counts_per_unit_(gearing.inverted ? -counts_per_u_ : counts_per_u_),
           inverted_(gearing.inverted),
           modulo_(modulo) {
         if (modulo > 0) per_modulo_ = rational_of(modulo / gearing.feed).value_or(Rational{});
     }
 
     /// counts per u, negative when inverted: for velocities and small differences.
-    [[nodiscard]] double counts_per_unit() const noexcept { return inverted_ ? -counts_per_u_ : counts_per_u_; }
+    [[nodiscard]] double counts_per_unit() const noexcept { return counts_per_unit_; }
 
     /// Nearest count.
     [[nodiscard]] std::int64_t counts(double local) const noexcept {
-        const std::int64_t forward = anchor_counts_ + std::llround(anchor_fraction_ + local * counts_per_u_);
+        const std::int64_t forward = anchor_counts_ + nearest(anchor_fraction_ + local * counts_per_u_);
         return inverted_ ? -forward : forward;
     }
     [[nodiscard]] double local(std::int64_t counts) const noexcept {
@@ -46,9 +48,7 @@ public:
         return (static_cast<double>(forward - anchor_counts_) - anchor_fraction_) / counts_per_u_;
     }
     /// On a modulo axis in [0, modulo).
-    [[nodiscard]] double to_program(double local) const noexcept {
-        return modulo_ > 0 ? in_modulo(local).position : shift_ + static_cast<double>(anchor_) * feed_ + local;
-    }
+    [[nodiscard]] double to_program(double local) const noexcept { return modulo_ > 0 ? in_modulo(local).position : anchor_at_ + local; }
     /// On a modulo axis: one of the places with this coordinate, less than one modulo from the anchor's.
     [[nodiscard]] double to_local(double program) const noexcept {
         return modulo_ > 0 ? (program - shift_) - anchor_in_modulo() : (program - shift_) - static_cast<double>(anchor_) * feed_;
@@ -68,11 +68,13 @@ public:
     void shift_by(double delta) noexcept {
         shift_ += delta;
         user_shift_ += delta;
+        place_anchor();
     }
     /// The place `at` [counts] gets the program coordinate `program`; nothing moves.
     void set_program(std::int64_t at, double program) noexcept {
         shift_ += program - to_program(local(at));
         user_shift_ = 0;
+        place_anchor();
         if (modulo_ > 0) zero_turns_ = in_modulo(local(at)).turns;
     }
 
@@ -83,8 +85,11 @@ public:
         anchor_ += std::llround((local - left) / feed_);
         anchor_counts_ = anchor_ * whole_ + (anchor_ * rest_) / load_;
         anchor_fraction_ = static_cast<double>((anchor_ * rest_) % load_) / static_cast<double>(load_);
+        place_anchor();
         return left;
     }
+    /// Time for reanchor(). Nearer than this, `local` resolves some 1e-13 feeds.
+    [[nodiscard]] bool far_from_anchor(double local) const noexcept { return std::abs(local) >= 1024 * feed_; }
     [[nodiscard]] double feed() const noexcept { return feed_; }
     /// Whole feeds: local 0 is there.
     [[nodiscard]] std::int64_t anchor() const noexcept { return anchor_; }
@@ -92,6 +97,7 @@ public:
     [[nodiscard]] double shift() const noexcept { return shift_ - static_cast<double>(zero_turns_) * modulo_; }
 
 private:
+    void place_anchor() noexcept { anchor_at_ = shift_ + static_cast<double>(anchor_) * feed_; }
     struct Wrapped {
         double position;
         std::int64_t turns;
@@ -125,6 +131,7 @@ private:
     std::int64_t load_;
     std::int64_t whole_, rest_;  // counts per feed = whole + rest / load
     double counts_per_u_;
+    double counts_per_unit_;  // with the sense
     bool inverted_;
     double modulo_;        // u
     Rational per_modulo_;  // feeds
@@ -135,6 +142,7 @@ private:
     double anchor_fraction_ = 0;  // of a count
     double shift_ = 0;            // u
     double user_shift_ = 0;       // u, part of it
+    double anchor_at_ = 0;        // u: program coordinate of the anchor on a linear axis
 };
 
 }  // namespace taktwerk::axes

@@ -6,15 +6,6 @@
 
 namespace taktwerk::axes {
 
-namespace {
-
-MotionState travel(const MotionState& from, double jerk, double t) noexcept {
-    return {from.position + t * (from.velocity + t * (from.acceleration / 2 + t * (jerk / 6))),
-            from.velocity + t * (from.acceleration + t * (jerk / 2)), from.acceleration + t * jerk};
-}
-
-}  // namespace
-
 Profile::Profile(const MotionState& state) noexcept : start_{state.position, state.velocity, 0}, end_{state.position, state.velocity, 0} {}
 
 Profile::Profile(const MotionState& start, std::span<const Stretch> forward, std::span<const Stretch> backward,
@@ -65,27 +56,6 @@ bool Profile::append(const Profile& next) noexcept {
     duration_ += next.duration_;
     end_ = next.end_;
     return true;
-}
-
-MotionState Profile::on_piece(int i, double t) const noexcept {
-    const Piece& piece = pieces_[static_cast<std::size_t>(i)];
-    return travel(piece.anchor, piece.jerk, t - piece.anchor_time);
-}
-
-MotionState Profile::at(double t) const noexcept {
-    if (t == duration_) return end_;
-    if (t > duration_) return {end_.position + end_.velocity * (t - duration_), end_.velocity, 0};
-    if (!(t > 0)) return start_;
-    int i = 0;
-    while (t >= pieces_[static_cast<std::size_t>(i)].end_time) ++i;
-    return on_piece(i, t);
-}
-
-double Profile::jerk_at(double t) const noexcept {
-    if (!(t < duration_)) return 0;
-    int i = 0;
-    while (t >= pieces_[static_cast<std::size_t>(i)].end_time) ++i;
-    return pieces_[static_cast<std::size_t>(i)].jerk;
 }
 
 double Profile::max_speed() const noexcept {

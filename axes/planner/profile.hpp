@@ -46,7 +46,21 @@ public:
 
     /// The state `t` seconds after the start. At or before 0: the start state. At duration(): the end state, exactly. Later: moving on
     /// with the end's velocity, without acceleration (a move to rest holds its target exactly).
-    [[nodiscard]] MotionState at(double t) const noexcept;
+    [[nodiscard]] MotionState at(double t) const noexcept { return sample(t, 0).state; }
+
+    struct Sample {
+        MotionState state;
+        double jerk = 0;  ///< from the right, u/s3; 0 from duration() on
+        int piece = 0;    ///< where the search for a later time may begin
+    };
+    /// at(t) and jerk_at(t) in one. `from`: Sample::piece of an earlier time, or 0: who samples cycle by cycle does not search.
+    [[nodiscard]] Sample sample(double t, int from) const noexcept {
+        if (t == duration_) return {end_, 0, from};
+        if (t > duration_) return {{end_.position + end_.velocity * (t - duration_), end_.velocity, 0}, 0, from};
+        int i = from;
+        while (t >= pieces_[static_cast<std::size_t>(i)].end_time) ++i;
+        return {t > 0 ? on_piece(i, t) : start_, piece_jerk(i), i};
+    }
 
     /// s, >= 0.
     [[nodiscard]] double duration() const noexcept { return duration_; }
@@ -54,7 +68,7 @@ public:
     [[nodiscard]] const MotionState& end() const noexcept { return end_; }
 
     /// The jerk at `t`, from the right; 0 from duration() on. u/s3.
-    [[nodiscard]] double jerk_at(double t) const noexcept;
+    [[nodiscard]] double jerk_at(double t) const noexcept { return sample(t, 0).jerk; }
 
     /// The largest |velocity| on the way. u/s.
     [[nodiscard]] double max_speed() const noexcept;
@@ -65,7 +79,10 @@ public:
     [[nodiscard]] double piece_end(int i) const noexcept { return pieces_[static_cast<std::size_t>(i)].end_time; }
     [[nodiscard]] double piece_jerk(int i) const noexcept { return pieces_[static_cast<std::size_t>(i)].jerk; }
     /// State on piece i at time t (meant for its begin and end, where without a jerk limit the neighbour's acceleration differs).
-    [[nodiscard]] MotionState on_piece(int i, double t) const noexcept;
+    [[nodiscard]] MotionState on_piece(int i, double t) const noexcept {
+        const Piece& piece = pieces_[static_cast<std::size_t>(i)];
+        return travel(piece.anchor, piece.jerk, t - piece.anchor_time);
+    }
 
 private:
     struct Piece {
@@ -75,11 +92,16 @@ private:
         MotionState anchor;
     };
 
-    std::array<Piece, max_pieces> pieces_{};
-    int count_ = 0;
+    [[nodiscard]] static MotionState travel(const MotionState& from, double jerk, double t) noexcept {
+        return {from.position + t * (from.velocity + t * (from.acceleration / 2 + t * (jerk / 6))),
+                from.velocity + t * (from.acceleration + t * (jerk / 2)), from.acceleration + t * jerk};
+    }
+
     double duration_ = 0;
+    int count_ = 0;
     MotionState start_;
     MotionState end_;
+    std::array<Piece, max_pieces> pieces_{};
 };
 
 }  // namespace taktwerk::axes
