@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "axes/port/quirk_table.hpp"
 #include "config/codecs.hpp"
 #include "config/device_tables.hpp"
 #include "config/setting_tables.hpp"
@@ -78,7 +79,6 @@ Codec<axes::DriveAlarmKind> alarm_kind() {
                       {"torque_overload", K::torque_overload},
                       {"parameter_storage", K::parameter_storage},
                       {"cycle_setting", K::cycle_setting},
-                      {"sync_lost", K::sync_lost},
                       {"limits_crossed", K::limits_crossed},
                       {"home_outside_limits", K::home_outside_limits},
                       {"start_too_fast", K::start_too_fast},
@@ -96,6 +96,12 @@ Codec<DriveMode> drive_mode() {
                               {"csp", DriveMode::cyclic_position},
                               {"csv", DriveMode::cyclic_velocity},
                               {"cst", DriveMode::cyclic_torque}});
+}
+
+Codec<Quirk> quirk() {
+    std::vector<std::pair<std::string, Quirk>> names;
+    for (const auto& row : axes::quirk_table) names.emplace_back(row.name, row.quirk);
+    return choice<Quirk>(std::move(names));
 }
 
 Table<axes::DriveHazard> hazard_table() {
@@ -400,33 +406,8 @@ void add_profile_fields(std::vector<Field<DriveFile>>& f) {
     using F = DriveFile;
     f.push_back(required(field("motion", &F::profile, section(motion_table()), "what it means to an axis")));
     f.push_back(field_at<F>(
-        "quirks", [](F & d) -> auto& { return d.profile.quirks; },
-        list(choice<Quirk>({{"fault_low_nibble_f", Quirk::fault_low_nibble_f},
-                            {"fault_reset_needs_disable", Quirk::fault_reset_needs_disable},
-                            {"limit_stop_is_warning", Quirk::limit_stop_is_warning},
-                            {"no_remote_bit", Quirk::no_remote_bit},
-                            {"no_internal_limit_bit", Quirk::no_internal_limit_bit},
-                            {"csp_bits_12_13_reserved", Quirk::csp_bits_12_13_reserved},
-                            {"disable_may_coast", Quirk::disable_may_coast},
-                            {"probe_toggle_bits", Quirk::probe_toggle_bits},
-                            {"homing_limit_is_fault", Quirk::homing_limit_is_fault},
-                            {"homing_19_starts_negative", Quirk::homing_19_starts_negative},
-                            {"fault_reaction_02b6", Quirk::fault_reaction_02b6},
-                            {"alarm_sets_warning_bit", Quirk::alarm_sets_warning_bit},
-                            {"remote_bit_from_preop", Quirk::remote_bit_from_preop},
-                            {"quick_stop_bit_rests_high", Quirk::quick_stop_bit_rests_high},
-                            {"cyclic_bit_10_reserved", Quirk::cyclic_bit_10_reserved},
-                            {"pp_bit_5_blends", Quirk::pp_bit_5_blends},
-                            {"pp_shared_ramp", Quirk::pp_shared_ramp},
-                            {"pp_stop_forgets", Quirk::pp_stop_forgets},
-                            {"csv_ramps", Quirk::csv_ramps},
-                            {"pv_bits_12_13_reserved", Quirk::pv_bits_12_13_reserved},
-                            {"velocity_window_in_rpm", Quirk::velocity_window_in_rpm},
-                            {"clock_bit_8", Quirk::clock_bit_8},
-                            {"standstill_bit_14", Quirk::standstill_bit_14},
-                            {"limit_stop_is_fault", Quirk::limit_stop_is_fault},
-                            {"torque_offset_not_in_torque", Quirk::torque_offset_not_in_torque}})),
-        "deviations from CiA 402, by name (axes/port/drive_profile.hpp)"));
+        "quirks", [](F & d) -> auto& { return d.profile.quirks; }, list(quirk()),
+        "deviations from CiA 402, by name (axes/port/quirk_table.hpp)"));
     f.push_back(field_at<F>(
         "stops", [](F & d) -> auto& { return d.profile.stops; }, list(section(stop_option_table())),
         "how it stops by itself, as far as the manual documents options; they go before `off_stop`, `fault_stop`, `quick_stop_leaves`"));

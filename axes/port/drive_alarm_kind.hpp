@@ -33,7 +33,6 @@ enum class DriveAlarmKind : std::uint8_t {
     torque_overload,      ///< more torque than the user allows, for too long (TSVM 29)
     parameter_storage,    ///< the EEPROM is written too often
     cycle_setting,        ///< the bus cycle is none that the drive takes
-    sync_lost,            ///< SYNC0 or the data that belongs to it fails to come
     limits_crossed,       ///< software limits: minimum not below maximum
     home_outside_limits,  ///< the home offset lies outside the software limits
     start_too_fast,       ///< enabled while the motor turns

@@ -10,8 +10,8 @@
 #include "axes/port/drive_hazard.hpp"
 #include "axes/port/drive_parameter.hpp"
 #include "axes/port/drive_port.hpp"
-#include "axes/port/drive_stop.hpp"
 #include "axes/port/drive_setting.hpp"
+#include "axes/port/drive_stop.hpp"
 #include "core/time.hpp"
 
 namespace taktwerk::axes {
@@ -29,19 +29,19 @@ enum class Quirk : std::uint8_t {
     homing_limit_is_fault,      ///< a limit switch that homing does not look for is a fault (SV-DA200 Er25-6), not only bit 13
     homing_19_starts_negative,  ///< method 19 sets out in negative direction from beside the switch (SV-DA200 3.4.6, the table), as 21 of CiA 402
     fault_reaction_02b6,        ///< Fault Reaction shows as 02B6h, without bit 3 and like no state (TSVM 5.3.1, transition 13)
-    alarm_sets_warning_bit,     ///< bit 7 stands with every alarm, faults among them (TSVM 5.3.2)
-    remote_bit_from_preop,      ///< bit 9 stands from PREOP on, not only in OP (TSVM 5.3.2)
-    quick_stop_bit_rests_high,  ///< bit 5 stands in Switch On Disabled and in the fault states too (TSVM 5.3.1: 0270h, 02B6h)
-    cyclic_bit_10_reserved,     ///< no "target reached" in the cyclic modes (TSVM 5.3.2: 1237h)
-    pp_bit_5_blends,            ///< control word bit 5 in PP: go on to the next set-point at full speed, not at once (SE-808X 3.2.4)
-    pp_shared_ramp,             ///< in PP 6083h is the deceleration too, 6084h is not used (SV-DA200 3.2.3)
-    pp_stop_forgets,            ///< after a halt or quick stop in PP nothing goes on: the set-points are gone (SV-DA200 3.2.7)
-    csv_ramps,                  ///< CSV applies 6083h and 6084h on top of the master's profile (SV-DA200 3.6)
-    pv_bits_12_13_reserved,     ///< no "speed zero" bit in PV (SE-808X 3.2.2.2, SV33-E 3.4.3(7))
-    velocity_window_in_rpm,     ///< 606Dh is in r/min (SV33-E 7.3)
-    clock_bit_8,                ///< statusword bit 8: the drive's clock follows SYNC0 (SV-DA200 3.1.2)
-    standstill_bit_14,          ///< statusword bit 14: the motor stands (SV-DA200 3.1.2)
-    limit_stop_is_fault,        ///< overtravel in a position mode is a fault (SV-DA200 5.3, Er21)
+    alarm_sets_warning_bit,       ///< bit 7 stands with every alarm, faults among them (TSVM 5.3.2)
+    remote_bit_from_preop,        ///< bit 9 stands from PREOP on, not only in OP (TSVM 5.3.2)
+    quick_stop_bit_rests_high,    ///< bit 5 stands in Switch On Disabled and in the fault states too (TSVM 5.3.1: 0270h, 02B6h)
+    cyclic_bit_10_reserved,       ///< no "target reached" in the cyclic modes (TSVM 5.3.2: 1237h)
+    pp_bit_5_blends,              ///< control word bit 5 in PP: go on to the next set-point at full speed, not at once (SE-808X 3.2.4)
+    pp_shared_ramp,               ///< in PP 6083h is the deceleration too, 6084h is not used (SV-DA200 3.2.3)
+    pp_stop_forgets,              ///< after a halt or quick stop in PP nothing goes on: the set-points are gone (SV-DA200 3.2.7)
+    csv_ramps,                    ///< CSV applies 6083h and 6084h on top of the master's profile (SV-DA200 3.6)
+    pv_bits_12_13_reserved,       ///< no "speed zero" bit in PV (SE-808X 3.2.2.2, SV33-E 3.4.3(7))
+    velocity_window_in_rpm,       ///< 606Dh is in r/min (SV33-E 7.3)
+    clock_bit_8,                  ///< statusword bit 8: the drive's clock follows SYNC0 (SV-DA200 3.1.2)
+    standstill_bit_14,            ///< statusword bit 14: the motor stands (SV-DA200 3.1.2)
+    limit_stop_is_fault,          ///< overtravel in a position mode is a fault (SV-DA200 5.3, Er21)
     torque_offset_not_in_torque,  ///< 60B2h counts in all modes but those of torque (SV-DA200 4.10)
 };
 inline constexpr std::size_t quirk_count = 25;

@@ -32,6 +32,16 @@ inline constexpr QuirkInfo quirk_table[] = {
     {Quirk::remote_bit_from_preop, "remote_bit_from_preop", "bit 9 stands from PREOP on, not only in OP"},
     {Quirk::quick_stop_bit_rests_high, "quick_stop_bit_rests_high", "bit 5 stands in Switch On Disabled and in the fault states too"},
     {Quirk::cyclic_bit_10_reserved, "cyclic_bit_10_reserved", "no \"target reached\" in the cyclic modes"},
+    {Quirk::pp_bit_5_blends, "pp_bit_5_blends", "control word bit 5 in PP: go on to the next set-point at full speed, not at once"},
+    {Quirk::pp_shared_ramp, "pp_shared_ramp", "in PP 6083h is the deceleration too, 6084h is not used"},
+    {Quirk::pp_stop_forgets, "pp_stop_forgets", "after a halt or quick stop in PP nothing goes on: the set-points are gone"},
+    {Quirk::csv_ramps, "csv_ramps", "CSV applies 6083h and 6084h on top of the master's profile"},
+    {Quirk::pv_bits_12_13_reserved, "pv_bits_12_13_reserved", "no \"speed zero\" bit in PV"},
+    {Quirk::velocity_window_in_rpm, "velocity_window_in_rpm", "606Dh is in r/min"},
+    {Quirk::clock_bit_8, "clock_bit_8", "statusword bit 8: the drive's clock follows SYNC0"},
+    {Quirk::standstill_bit_14, "standstill_bit_14", "statusword bit 14: the motor stands"},
+    {Quirk::limit_stop_is_fault, "limit_stop_is_fault", "overtravel in a position mode is a fault"},
+    {Quirk::torque_offset_not_in_torque, "torque_offset_not_in_torque", "60B2h counts in all modes but those of torque"},
 };
 
 [[nodiscard]] constexpr const QuirkInfo* find_quirk(Quirk quirk) noexcept {

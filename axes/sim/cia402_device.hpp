@@ -63,9 +63,9 @@ private:
         std::unique_ptr<Behaviour> behaviour;
         std::vector<Entry*> commands, settings, answers;  ///< in the order of object_table.hpp; null: this drive has it not
         Entry *homing_timeout = nullptr, *clear_turns = nullptr;
-        bool clear_asked = false;  ///< the control word's bit stood in the exchange before
-        bool faulted = false;      ///< as announced
-        std::uint16_t common = 0;  ///< alarm of the whole drive that it shows
+        bool clear_asked = false;         ///< the control word's bit stood in the exchange before
+        bool faulted = false;             ///< as announced
+        std::uint16_t common = 0;         ///< alarm of the whole drive that it shows
         std::vector<Entry*> stop_values;  ///< in the order of the profile's stops
         Entry* emergency_torque = nullptr;
     };

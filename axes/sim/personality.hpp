@@ -2,8 +2,8 @@
 // How a drive type behaves where CiA 402 leaves room. Plain data; what a drive's manual says of it comes from its profile.
 
 #include <cstdint>
-#include <vector>
 #include <string>
+#include <vector>
 
 #include "axes/port/drive_profile.hpp"
 #include "axes/sim/touch_probe.hpp"
