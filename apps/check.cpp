@@ -87,7 +87,10 @@ void print_clocks(const MachineConfig& config) {
 void print_axis(const MachineConfig& config, const runtime::AxisBinding& binding) {
     const auto& axis = binding.axis;
     const auto& u = axis.unit;
-    fmt::print("  {:<8} {}{}{}\n", axis.name, binding.slave.empty() ? "virtual" : "drive " + binding.slave,
+    fmt::print("  {:<8} {}{}{}\n", axis.name,
+               !binding.drive.empty()  ? "drive " + binding.drive + " on a serial line"
+               : binding.slave.empty() ? "virtual"
+                                       : "drive " + binding.slave,
                axis.disabled ? "  LEFT OUT" : "", axis.simulated ? "  SIMULATED" : "");
     fmt::print("           velocity {:g} {}/s, acceleration {:g} {}/s2, deceleration {:g} {}/s2, jerk {:g} {}/s3\n", axis.limits.velocity,
                u, axis.limits.acceleration, u, axis.limits.deceleration, u, axis.limits.jerk, u);
@@ -203,7 +206,7 @@ int check(const Options& options) {
 
     // Building the machine loads the programs and compares what they declare; nothing is started.
     runtime::World world{config, Instant{}};
-    auto built = runtime::Machine::build(std::move(loaded.machine), world.transport());
+    auto built = runtime::Machine::build(std::move(loaded.machine), world.transport(), world.serial().lines());
     if (const auto* errors = std::get_if<std::vector<Error>>(&built)) return fail(options, *errors);
     const auto& layout = std::get<0>(built)->layout();
 

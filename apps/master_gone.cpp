@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "axes/drives/xp200/registers.hpp"
+
 namespace taktwerk::apps {
 namespace {
 
@@ -58,12 +60,51 @@ std::string words(const ReactionObject& reaction, std::int64_t value) {
     return "see the drive's manual";
 }
 
+std::optional<std::int64_t> parameter(const axes::xp200::DriveConfig& drive, std::uint16_t number) {
+    for (const auto& p : drive.parameters)
+        if (p.number == number) return p.value;
+    if (drive.profile)
+        for (const auto& row : drive.profile->parameters)
+            if (row.address.index == number) return row.value;
+    return std::nullopt;
+}
+
+/// A drive on a serial line: it does not notice that nobody speaks any more.
+std::vector<std::string> line_gone(const runtime::MachineConfig& config, const runtime::AxisBinding& axis) {
+    namespace pr = axes::xp200::pr;
+    std::vector<std::string> out{"its line falls silent, which the drive does not notice: it goes on at the speed selected last [XP200 9]"};
+    for (const auto& line : config.serial)
+        for (const auto& entry : line.drives) {
+            if (entry.drive.name != axis.drive) continue;
+            if (entry.watchdog_output.empty()) {
+                out.push_back("nothing stops it here: `unsupervised_line: accepted` says that something else does");
+                continue;
+            }
+            Duration watchdog{};
+            for (const auto& point : config.io)
+                for (const auto& slave : config.bus.slaves)
+                    if (point.name == entry.watchdog_output && point.direction == runtime::IoDirection::output && slave.name == point.slave)
+                        watchdog = runtime::sm_watchdog(config, slave);
+            out.push_back(
+                fmt::format("output '{}' falls {:g} ms after the last process data by its terminal's own watchdog; when only the line is "
+                            "silent, the runtime drops it after {:g} ms",
+                            entry.watchdog_output, to_seconds(watchdog) * 1e3, to_seconds(entry.drive.silence) * 1e3));
+            const bool ramps = parameter(entry.drive, pr::emergency_mode) == 1;
+            out.push_back(
+                ramps ? fmt::format("that is EMG: it stays enabled and brakes in {} ms for 1000 r/min (Pr164 = 1, Pr063) [XP200 5.4]",
+                                    parameter(entry.drive, pr::stop_time).value_or(0))
+                      : "that is EMG: the current is cut and it coasts (Pr164 = 0) [XP200 5.4.2]");
+        }
+    return out;
+}
+
 }  // namespace
 
 std::vector<std::string> master_gone(const runtime::MachineConfig& config, const runtime::AxisBinding& axis) {
     std::vector<std::string> out;
-    if (axis.slave.empty()) return {"no drive: nothing moves"};
+    if (axis.slave.empty() && axis.drive.empty()) return {"no drive: nothing moves"};
     if (axis.axis.disabled) return {"left out: its drive is never enabled"};
+    if (!axis.drive.empty()) return line_gone(config, axis);
     const auto slave =
         std::find_if(config.bus.slaves.begin(), config.bus.slaves.end(), [&](const auto& s) { return s.name == axis.slave; });
     if (slave == config.bus.slaves.end()) return out;

@@ -19,6 +19,7 @@
 #include "ecat/transport/raw_socket.hpp"
 #include "hmi_bridge/hmi_bridge.hpp"
 #include "hmi_bridge/runtime_link.hpp"
+#include "modbus/line/tty_line.hpp"
 #include "runtime/alarms.hpp"
 #include "runtime/realtime_runner.hpp"
 #include "runtime/virtual_runner.hpp"
@@ -95,8 +96,8 @@ void finish(ecat::FrameCapture* capture, const Options& options) {
     if (!options.quiet && !options.json) fmt::print("{} frames in {}\n", capture->frames(), options.pcap);
 }
 
-std::unique_ptr<Machine> build(MachineConfig config, ecat::Transport& transport) {
-    auto built = Machine::build(std::move(config), transport);
+std::unique_ptr<Machine> build(MachineConfig config, ecat::Transport& transport, std::vector<modbus::SerialLine*> lines) {
+    auto built = Machine::build(std::move(config), transport, std::move(lines));
     if (auto* errors = std::get_if<1>(&built)) {
         print_errors(*errors);
         return nullptr;
@@ -109,7 +110,7 @@ int run_virtual(LoadedFile loaded, const Options& options) {
     VirtualClock clock{Instant{}};
     World world{loaded.machine, clock.now()};
     std::unique_ptr<ecat::FrameCapture> capture;
-    auto machine = build(std::move(loaded.machine), world.transport());
+    auto machine = build(std::move(loaded.machine), world.transport(), world.serial().lines());
     if (!machine) return exit_bad_file;
     if (auto ok = capture_frames(*machine, options, Duration{}, capture); !ok) {
         print_error(ok.error());
@@ -174,7 +175,20 @@ int run_real(LoadedFile loaded, const Options& options) {
     }
     ecat::Transport& transport = world ? static_cast<ecat::Transport&>(world->transport()) : *nic;
     std::unique_ptr<ecat::FrameCapture> capture;
-    auto machine = build(std::move(loaded.machine), transport);
+    auto lines = world ? world->serial().lines() : std::vector<modbus::SerialLine*>(loaded.machine.serial.size());
+    std::vector<std::unique_ptr<modbus::TtyLine>> ports;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        const auto& line = loaded.machine.serial[i];
+        if (line.device.empty() && lines[i] != nullptr) continue;  // simulated
+        auto opened = modbus::TtyLine::open(line.device, line.settings);
+        if (!opened) {
+            print_error(opened.error());
+            return exit_bus;
+        }
+        lines[i] = opened->get();
+        ports.push_back(std::move(*opened));
+    }
+    auto machine = build(std::move(loaded.machine), transport, std::move(lines));
     if (!machine) return exit_bad_file;
     if (auto ok = capture_frames(*machine, options, calendar_minus_machine_time(), capture); !ok) {
         print_error(ok.error());

@@ -324,6 +324,7 @@ Table<AxisBinding> axis_table() {
     f.push_back(required(field_at<AxisBinding>(
         "unit", [](AxisBinding& b) -> std::string& { return b.axis.unit; }, axis_unit(), "the unit u of the axis")));
     f.push_back(with_default(field("slave", &AxisBinding::slave, name(), "slave that drives it; without one the axis is virtual"), ""));
+    f.push_back(with_default(field("drive", &AxisBinding::drive, name(), "drive on a serial line that moves it, instead of a slave"), ""));
     f.push_back(field_via<AxisBinding>(
         "axis", integer<std::uint8_t>(1, 64),
         [](AxisBinding& b, const std::uint8_t& n) { b.drive_axis = static_cast<std::uint8_t>(n - 1); },

@@ -1,6 +1,7 @@
 #include "config/machine_loader.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <set>
@@ -56,6 +57,7 @@ public:
             for (const auto& [name, profile] : profiles_)
                 if (name == binding.slave) binding.profile = profile;
         for (const auto& binding : out.machine.axes) check_axis_is_named(binding);
+        for (const auto& entry : file_.serial) add_line(out, entry);
         for (const auto& entry : file_.inputs) add_point(out, entry, runtime::IoDirection::input);
         for (const auto& entry : file_.outputs) add_point(out, entry, runtime::IoDirection::output);
         for (const auto& entry : file_.programs) add_program(out, entry);
@@ -106,6 +108,35 @@ private:
         reader_.mark_bad(here + ".axis");
     }
 
+    void add_line(LoadedMachine& out, const SerialLineEntry& entry) {
+        auto line = entry.line;
+        if (options_.simulate) line.device.clear();
+        for (const auto& listed : entry.drives) {
+            const auto here = fmt::format("serial.{}.drives.{}", line.name, listed.drive.drive.name);
+            auto drive = listed.drive;
+            if (const auto* type = drives_.find(listed.profile)) drive.drive.profile = type->profile;
+            else if (!drives_.exists(listed.profile))
+                problem(here + ".profile", "config.unknown_profile",
+                        fmt::format("there is no drive type '{}' (there is: {})", listed.profile, joined(drives_.names())),
+                        "correct the name");
+            if (!drive.drive.profile) reader_.mark_bad(here + ".profile");
+            for (const auto& parameter : listed.parameters) {
+                int number = -1;
+                const auto* begin = parameter.name.data() + 2;
+                const auto* end = parameter.name.data() + parameter.name.size();
+                if (parameter.name.size() == 5 && parameter.name.rfind("Pr", 0) == 0 && std::from_chars(begin, end, number).ptr == end)
+                    drive.drive.parameters.push_back({static_cast<std::uint16_t>(number), parameter.value});
+                else
+                    problem(here + ".parameters." + parameter.name, "config.parameter_name",
+                            fmt::format("`{}` is no parameter's name", parameter.name), "write it as the manual does, such as Pr097");
+            }
+            for (auto& binding : out.machine.axes)
+                if (binding.drive == drive.drive.name) binding.profile = drive.drive.profile;
+            line.drives.push_back(std::move(drive));
+        }
+        out.machine.serial.push_back(std::move(line));
+    }
+
     /// What others will say about this slave follows from what was said already.
     void forgive(const std::string& slave, const std::vector<runtime::AxisBinding>& axes) {
         reader_.mark_bad(fmt::format("slave '{}'", slave));
@@ -126,6 +157,13 @@ private:
                                     joined(names)),
                         near.empty() ? "correct the name, or add its file" : fmt::format("did you mean `{}`?", near));
             }
+            return;
+        }
+        if (!drive->device) {
+            forgive(entry.name, axes);
+            problem(here + ".profile", "config.not_on_the_bus",
+                    fmt::format("{} is a drive on a serial line, not on EtherCAT", entry.profile),
+                    "declare it under `serial.<line>.drives`");
             return;
         }
         slave.device = drive->device;
@@ -262,20 +300,25 @@ private:
     /// runtime::check knows the targets too, but not which event it is.
     void check_events(const runtime::MachineConfig& machine) {
         using Kind = runtime::SimulationEvent::Kind;
-        std::vector<std::string> inputs, slaves, axes;
+        std::vector<std::string> inputs, slaves, axes, lines;
+        for (const auto& line : machine.serial) lines.push_back(line.name);
         for (const auto& point : machine.io)
             if (point.direction == runtime::IoDirection::input) inputs.push_back(point.name);
         for (const auto& slave : machine.bus.slaves) slaves.push_back(slave.name);
         for (const auto& binding : machine.axes) axes.push_back(binding.axis.name);
         for (std::size_t i = 0; i < machine.simulation.events.size(); ++i) {
             const auto& event = machine.simulation.events[i];
-            const auto& known = event.kind == Kind::input ? inputs : event.kind == Kind::slave_power ? slaves : axes;
+            const auto& known = event.kind == Kind::input         ? inputs
+                                : event.kind == Kind::slave_power ? slaves
+                                : event.kind == Kind::serial_line ? lines
+                                                                  : axes;
             if (event.target.empty() || std::find(known.begin(), known.end(), event.target) != known.end()) continue;
             const auto near = nearest_name(event.target, known);
             problem(fmt::format("simulation.events.{}", i), "simulation.unknown_target",
                     fmt::format("there is no {} '{}' (there is: {})",
                                 event.kind == Kind::input         ? "input"
                                 : event.kind == Kind::slave_power ? "slave"
+                                : event.kind == Kind::serial_line ? "serial line"
                                                                   : "axis",
                                 event.target, joined(known)),
                     near.empty() ? "correct the name" : fmt::format("did you mean `{}`?", near));
@@ -295,7 +338,7 @@ private:
             if (axis.simulated && !out.machine.bus.interface.empty())
                 warn(here + ".simulated", "config.axis_simulated", fmt::format("axis {} is simulated on a real bus", axis.name),
                      "remove `simulated` when its drive is there");
-            if (std::isinf(axis.following.window) && !binding.slave.empty())
+            if (std::isinf(axis.following.window) && !(binding.slave.empty() && binding.drive.empty()))
                 warn(here, "config.no_following_error", fmt::format("the following error of axis {} is not watched", axis.name),
                      "add `following_error: {window: ...}`");
         }

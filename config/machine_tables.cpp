@@ -68,6 +68,81 @@ Field<MachineFile> io_field() {
                     });
 }
 
+// --- serial lines -----------------------------------------------------------------------------------------------------------
+
+Codec<axes::xp200::ConductingReads> conducting_reads() {
+    using C = axes::xp200::ConductingReads;
+    return choice<C>({{"zero", C::zero}, {"one", C::one}});
+}
+
+Codec<NamedParameter> parameter_setting() {
+    Codec<NamedParameter> c;
+    const auto whole = integer<std::int64_t>(least, most);
+    c.shape = whole.shape;
+    c.read = [whole](Reader& reader, const Node& node, NamedParameter& out) { return whole.read(reader, node, out.value); };
+    return c;
+}
+
+Table<SerialDriveEntry> serial_drive_entry_table() {
+    using E = SerialDriveEntry;
+    using runtime::UnsupervisedLine;
+    return {
+        "serial.<name>.drives.<name>",
+        "A drive on the line. What happens when the line dies must be said: `watchdog_output`, or `unsupervised_line: accepted`.",
+        {
+            required(field("profile", &E::profile, name(), "its type, such as xp200")),
+            required(field_at<E>(
+                "station", [](E & e) -> auto& { return e.drive.drive.station; }, integer<std::uint8_t>(1, 247), "its address; Pr181")),
+            field("parameters", &E::parameters, by_name(parameter_setting(), [](NamedParameter& p) -> std::string& { return p.name; }),
+                  "what its parameters shall be: `Pr136: 1`. Written when the line comes up, where a write counts at once; else compared"),
+            field_at<E>(
+                "watchdog_output", [](E & e) -> auto& { return e.drive.watchdog_output; }, name(),
+                "output that is on while the line is heard, wired to an input with function -15 (EMG, open = stop)"),
+            field_at<E>(
+                "unsupervised_line", [](E & e) -> auto& { return e.drive.unsupervised_line; },
+                choice<UnsupervisedLine>({{"refused", UnsupervisedLine::refused}, {"accepted", UnsupervisedLine::accepted}}),
+                "accepted: something else stops the axis when the line dies, and whoever writes this answers for it"),
+            field_at<E>(
+                "conducting_inputs", [](E & e) -> auto& { return e.drive.drive.inputs; }, conducting_reads(),
+                "what a conducting input reads in status 0012h"),
+            field_at<E>(
+                "conducting_outputs", [](E & e) -> auto& { return e.drive.drive.outputs; }, conducting_reads(),
+                "what a conducting output reads in status 0013h"),
+            field_at<E>(
+                "silence", [](E & e) -> auto& { return e.drive.drive.silence; }, duration(100ms, 10s),
+                "without an answer for so long the line counts as silent"),
+        },
+        {},
+        {}};
+}
+
+Table<SerialLineEntry> serial_line_table() {
+    using E = SerialLineEntry;
+    using modbus::Parity;
+    return {"serial.<name>",
+            "A serial line (RS-485) with the drives on it.",
+            {
+                with_default(field_at<E>(
+                                 "device", [](E & e) -> auto& { return e.line.device; }, text(), "the port, such as /dev/ttyUSB0"),
+                             "simulated"),
+                field_at<E>(
+                    "baud", [](E & e) -> auto& { return e.line.settings.baud; }, integer<std::uint32_t>(4800, 38400), "as Pr182 says"),
+                field_via<E>(
+                    "format", choice<int>({{"8N1", 0}, {"8E1", 1}, {"8O1", 2}, {"8N2", 3}, {"8E2", 4}, {"8O2", 5}}),
+                    [](E& e, const int& code) {
+                        const int parity = code % 3;
+                        e.line.settings.parity = parity == 0 ? Parity::none : parity == 1 ? Parity::even : Parity::odd;
+                        e.line.settings.stop_bits = code < 3 ? 1 : 2;
+                    },
+                    "as Pr183 says", "8E1"),
+                field("drives", &E::drives,
+                      by_name(section(serial_drive_entry_table()), [](SerialDriveEntry& d) -> std::string& { return d.drive.drive.name; }),
+                      "by name"),
+            },
+            {},
+            {}};
+}
+
 // --- programs -------------------------------------------------------------------------------------------------------------
 
 Codec<TaskPeriod> task_period() {
@@ -177,6 +252,8 @@ constexpr EventWord event_words[] = {
     {"main_power_on", EventKind::main_power, 1, "and gets it back"},
     {"slave_power_off", EventKind::slave_power, 0, "this slave falls silent"},
     {"slave_power_on", EventKind::slave_power, 1, "and comes back"},
+    {"line_cut", EventKind::serial_line, 0, "this serial line carries nothing any more"},
+    {"line_plugged", EventKind::serial_line, 1, "and carries again"},
     {"jam", EventKind::jam, 0, "the mechanics of this axis do not move any more"},
     {"free", EventKind::jam, 1, "and move again"},
 };
@@ -200,9 +277,9 @@ Table<SimulationEvent> event_table() {
         int events = 0;
         for (const auto& word : event_words) events += node.find(word.key) ? 1 : 0;
         if (events != 1)
-            reader.problem(
-                node.at, "config.event", events == 0 ? "the event says when, but not what" : "one event holds several",
-                "give exactly one of input, drive_fault, main_power_off, main_power_on, slave_power_off, slave_power_on, jam, free");
+            reader.problem(node.at, "config.event", events == 0 ? "the event says when, but not what" : "one event holds several",
+                           "give exactly one of input, drive_fault, main_power_off, main_power_on, slave_power_off, slave_power_on, "
+                           "line_cut, line_plugged, jam, free");
         const auto pair = [&](const char* key, const char* value) {
             if ((node.find(key) != nullptr) != (node.find(value) != nullptr))
                 reader.problem(node.at, "config.event", fmt::format("`{}` and `{}` belong together", key, value),
@@ -347,6 +424,9 @@ Table<MachineFile> machine_table() {
         choice<Mode>({{"manual", Mode::manual}, {"setup", Mode::setup}, {"automatic", Mode::automatic}}),
         "mode in which the machine comes up; programs run in automatic"));
     f.push_back(required(bus_field()));
+    f.push_back(field("serial", &F::serial,
+                      by_name(section(serial_line_table()), [](SerialLineEntry& l) -> std::string& { return l.line.name; }),
+                      "serial lines, beside the bus or alone"));
     f.push_back(io_field());
     f.push_back(field_at<F>(
         "axes", [](F & m) -> auto& { return m.machine.axes; },

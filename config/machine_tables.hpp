@@ -33,11 +33,29 @@ struct ProgramFile {
     std::vector<TaskEntry> tasks;
 };
 
+/// `Pr097: 30`.
+struct NamedParameter {
+    std::string name;
+    std::int64_t value = 0;
+};
+
+struct SerialDriveEntry {
+    runtime::SerialDriveConfig drive;  ///< without profile and parameters
+    std::string profile;
+    std::vector<NamedParameter> parameters;
+};
+
+struct SerialLineEntry {
+    runtime::SerialLineConfig line;  ///< without drives
+    std::vector<SerialDriveEntry> drives;
+};
+
 struct MachineFile {
     std::int64_t version = 0;
     runtime::MachineConfig machine;  ///< without slaves, points, tasks and programs
     hmi::HmiConfig hmi;
     std::vector<SlaveEntry> slaves;
+    std::vector<SerialLineEntry> serial;
     std::vector<IoEntry> inputs, outputs;
     std::vector<ProgramFile> programs;
 };

@@ -34,6 +34,11 @@ axes::DriveUse use_of_drive(const MachineConfig& config, const AxisBinding& axis
     use.homed_by_drive = homing.kind == axes::HomingKind::drive;
     use.absolute_homing = homing.kind == axes::HomingKind::absolute;
     use.software_limits = std::isfinite(axis.axis.limits.position_min) && std::isfinite(axis.axis.limits.position_max);
+    for (const auto& line : config.serial)
+        for (const auto& entry : line.drives) {
+            if (axis.drive.empty() || entry.drive.name != axis.drive) continue;
+            for (const auto& parameter : entry.drive.parameters) use.written.push_back({{parameter.number, 0}, parameter.value});
+        }
     const auto slave =
         std::find_if(config.bus.slaves.begin(), config.bus.slaves.end(), [&](const auto& s) { return s.name == axis.slave; });
     if (slave == config.bus.slaves.end() || !slave->device) return use;

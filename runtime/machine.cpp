@@ -52,7 +52,8 @@ ecat::BusConfig bus_of(const MachineConfig& config) {
 
 std::string_view name(Step step) noexcept { return step_names[static_cast<std::size_t>(step)]; }
 
-Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, std::vector<Error>& errors)
+Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, const std::vector<modbus::SerialLine*>& serial_lines,
+                    std::vector<Error>& errors)
     : config(std::move(machine)),
       bus(transport, bus_of(config)),
       io(config.io),
@@ -66,6 +67,7 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, std::vect
           return names;
       }()) {
     const auto on_bus = bus_of(config);
+    build_lines(serial_lines);
     axes.reserve(config.axes.size());
     views.resize(config.axes.size());
     for (std::size_t i = 0; i < config.axes.size(); ++i) {
@@ -74,7 +76,9 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, std::vect
         for (std::size_t s = 0; s < bus.slave_count(); ++s)
             if (!binding.slave.empty() && bus.slave(s).name == binding.slave) slave = s;
         axis_slave.push_back(slave);
-        if (slave == no_slave) {
+        if (serial_drive(binding) != nullptr) {
+            // It stands in `ports`.
+        } else if (slave == no_slave) {
             ports.push_back(std::make_unique<axes::sim::VirtualDrive>(config.cycle));
         } else {
             auto drive = std::make_unique<axes::cia402::Cia402Drive>(bus, slave, binding.drive_axis, binding.profile,
@@ -133,7 +137,8 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, std::vect
     layout.machine = config.name;
     layout.cycle = config.cycle;
     for (std::size_t i = 0; i < axes.size(); ++i)
-        layout.axes.push_back({config.axes[i].axis.name, config.axes[i].axis.unit, config.axes[i].axis.disabled, axis_slave[i] == no_slave,
+        layout.axes.push_back({config.axes[i].axis.name, config.axes[i].axis.unit, config.axes[i].axis.disabled,
+                               axis_slave[i] == no_slave && (config.axes[i].drive.empty() || config.axes[i].axis.simulated),
                                views[i].manual_slow, views[i].manual_fast});
     for (std::size_t s = 0; s < bus.slave_count(); ++s) layout.slaves.push_back(bus.slave(s).name);
     layout.inputs = io.names(IoDirection::input);
@@ -206,6 +211,7 @@ void Machine::Impl::cycle(const CycleTick& tick) noexcept {
         steps.done(static_cast<std::size_t>(Step::decode));
 
         for (std::size_t i = 0; i < axes.size(); ++i) axes[i].update(now);
+        if (recorder) record_samples();
         steps.done(static_cast<std::size_t>(Step::update));
 
         supervise(now, tick);
@@ -213,6 +219,7 @@ void Machine::Impl::cycle(const CycleTick& tick) noexcept {
 
         renew_operator_power();
         run_tasks();
+        hold_watchdog_outputs();
         steps.done(static_cast<std::size_t>(Step::tasks));
 
         axes::plan_axes(axes, now, config.cycle);
@@ -250,10 +257,11 @@ void Machine::Impl::cycle(const CycleTick& tick) noexcept {
 Machine::Machine(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Machine::~Machine() = default;
 
-std::variant<std::unique_ptr<Machine>, std::vector<Error>> Machine::build(MachineConfig config, ecat::Transport& transport) {
+std::variant<std::unique_ptr<Machine>, std::vector<Error>> Machine::build(MachineConfig config, ecat::Transport& transport,
+                                                                          std::vector<modbus::SerialLine*> lines) {
     auto errors = check(config);
     if (!errors.empty()) return errors;
-    auto impl = std::make_unique<Impl>(std::move(config), transport, errors);
+    auto impl = std::make_unique<Impl>(std::move(config), transport, lines, errors);
     if (!errors.empty()) return errors;
     return std::unique_ptr<Machine>(new Machine(std::move(impl)));
 }
@@ -266,6 +274,7 @@ void Machine::stop_bus() { impl_->bus.stop(); }
 void Machine::service(Instant now) {
     impl_->bus.step(now);
     impl_->lay_out_outputs();
+    for (auto& line : impl_->lines) line->step(now);
     for (auto& port : impl_->ports) port->step(now);
     impl_->objects->step(impl_->bus);
     impl_->service_programs();

@@ -16,6 +16,7 @@
 #include "core/stopwatch.hpp"
 #include "core/time.hpp"
 #include "ecat/transport/transport.hpp"
+#include "modbus/line/serial_line.hpp"
 #include "runtime/machine_config.hpp"
 #include "runtime/operator_command.hpp"
 #include "runtime/snapshot.hpp"
@@ -40,7 +41,9 @@ struct AlarmText {
 class Machine {
 public:
     /// Checks everything, loads the programs, takes all memory. `transport` outlives the machine. All problems at once.
-    static std::variant<std::unique_ptr<Machine>, std::vector<Error>> build(MachineConfig config, ecat::Transport& transport);
+    /// `lines`: one for each of `config.serial`, in its order; they outlive the machine too and are used on the service side only.
+    static std::variant<std::unique_ptr<Machine>, std::vector<Error>> build(MachineConfig config, ecat::Transport& transport,
+                                                                            std::vector<modbus::SerialLine*> lines = {});
     ~Machine();
     Machine(const Machine&) = delete;
     Machine& operator=(const Machine&) = delete;

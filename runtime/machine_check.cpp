@@ -83,10 +83,12 @@ std::vector<Error> check(const MachineConfig& config) {
         for (auto& error : ecat::check(bus)) errors.push_back(std::move(error));
     }
 
+    check_serial(config, errors);
     std::set<std::pair<std::string, int>> taken;
     for (const auto& binding : config.axes) {
         const auto subject = fmt::format("axes.{}", binding.axis.name);
         for (auto& error : axes::check(binding.axis)) errors.push_back(std::move(error));
+        if (!binding.drive.empty()) continue;  // see check_serial
         if (binding.slave.empty()) {
             if (binding.axis.encoder)
                 problems.add("axis.encoder", subject + ".encoder", "there is nothing that measures",

@@ -14,6 +14,7 @@
 #include "core/time.hpp"
 #include "ecat/bus_config.hpp"
 #include "programs/api/entry.hpp"
+#include "runtime/serial_config.hpp"
 
 namespace taktwerk::runtime {
 
@@ -45,6 +46,7 @@ struct AxisSimulation {
 struct AxisBinding {
     axes::AxisConfig axis;
     std::string slave;            ///< name in BusConfig; empty: a purely virtual axis
+    std::string drive;            ///< name of a drive on a serial line, instead of a slave
     std::uint8_t drive_axis = 0;  ///< 0-based axis of a multi-axis drive
     std::shared_ptr<const axes::DriveProfile> profile;
     AxisSimulation simulation;
@@ -117,11 +119,11 @@ enum class Supervision : std::uint8_t {
 
 /// Something that happens to the simulated machine at a given machine time: for demos, rehearsals and tests.
 struct SimulationEvent {
-    enum class Kind : std::uint8_t { input, drive_fault, main_power, slave_power, jam };
+    enum class Kind : std::uint8_t { input, drive_fault, main_power, slave_power, jam, serial_line };
     Duration at{};  ///< since start of the run
     Kind kind = Kind::input;
-    std::string target;      ///< input point (input), axis (drive_fault, main_power, jam), slave (slave_power)
-    std::int64_t value = 0;  ///< input value; 603Fh code; 1 = power on / free, 0 = power off / jammed
+    std::string target;      ///< input point (input), axis (drive_fault, main_power, jam), slave (slave_power), line (serial_line)
+    std::int64_t value = 0;  ///< input value; 603Fh code; 1 = power on / free / plugged, 0 = power off / jammed / cut
 };
 
 /// Where a simulated slave hangs, and how good its clock is. Without one a slave hangs behind port 1 of the slave before it.
@@ -145,6 +147,7 @@ struct MachineConfig {
     SendMode send = SendMode::after_plan;
     Mode start_mode = Mode::manual;
     ecat::BusConfig bus;
+    std::vector<SerialLineConfig> serial;
     std::vector<AxisBinding> axes;
     std::vector<IoPoint> io;
     std::vector<TaskConfig> tasks;

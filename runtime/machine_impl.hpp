@@ -8,6 +8,7 @@
 #include "axes/axis/axis.hpp"
 #include "axes/axis/direct_requests.hpp"
 #include "axes/drives/cia402/cia402_drive.hpp"
+#include "axes/drives/xp200/drive_line.hpp"
 #include "axes/port/drive_port.hpp"
 #include "core/latest_value.hpp"
 #include "core/recorder.hpp"
@@ -27,11 +28,17 @@
 namespace taktwerk::runtime {
 
 struct Machine::Impl {
-    Impl(MachineConfig machine, ecat::Transport& transport, std::vector<Error>& errors);
+    Impl(MachineConfig machine, ecat::Transport& transport, const std::vector<modbus::SerialLine*>& lines, std::vector<Error>& errors);
 
     // machine.cpp
     void cycle(const CycleTick& tick) noexcept;
     Result<void> arm();
+
+    // machine_serial.cpp
+    void build_lines(const std::vector<modbus::SerialLine*>& lines);
+    axes::xp200::Xp200Drive* serial_drive(const AxisBinding& binding);
+    void hold_watchdog_outputs() noexcept;
+    void record_samples() noexcept;
 
     // machine_tasks.cpp
     void run_tasks() noexcept;
@@ -99,6 +106,14 @@ struct Machine::Impl {
     MachineLayout layout;
     std::vector<std::unique_ptr<axes::DrivePort>> ports;
     std::vector<axes::cia402::Cia402Drive*> drives;  // those of `ports` that are on the bus
+    struct WatchdogOutput {
+        std::size_t output = 0;  // of io
+        const axes::xp200::Xp200Drive* drive = nullptr;
+    };
+    std::vector<std::unique_ptr<axes::xp200::DriveLine>> lines;
+    std::vector<axes::xp200::Xp200Drive*> serial_drives;  // those of `ports` that are on a line
+    std::vector<std::uint32_t> recorded_samples;          // number of the newest one, per serial drive
+    std::vector<WatchdogOutput> watchdog_outputs;
     axes::MotionTables tables;
     std::vector<axes::Axis> axes;
     std::vector<axes::AxisView> views;    // where the axes keep theirs; what programs read

@@ -65,6 +65,9 @@ std::vector<const ecat::SlaveConfig*> cable_order(const std::vector<ecat::SlaveC
 World::World(const MachineConfig& config, Instant start)
     : network_(start), transport_(network_), start_(start), events_(config.simulation.events) {
     std::stable_sort(events_.begin(), events_.end(), [](const auto& a, const auto& b) { return a.at < b.at; });
+    std::vector<axes::sim::PlantConfig> plants;
+    for (const auto& binding : config.axes) plants.push_back(plant_of(binding));
+    serial_.build(config, plants, start);
     const auto present = present_slaves(config);
     const auto install = [&](const ecat::SlaveConfig& slave, std::unique_ptr<ecat::sim::DeviceModel> model,
                              ecat::sim::SlaveOptions options) {
@@ -167,6 +170,7 @@ void World::set_cable(std::string_view slave, bool plugged) {
 
 void World::happen(const SimulationEvent& event) {
     using Kind = SimulationEvent::Kind;
+    if (serial_.happen(event)) return;
     switch (event.kind) {
         case Kind::input: set_input(event.target, event.value != 0); break;
         case Kind::slave_power: set_slave_power(event.target, event.value != 0); break;
@@ -176,6 +180,7 @@ void World::happen(const SimulationEvent& event) {
         case Kind::main_power:
             if (const auto* axis = place(event.target)) axis->device->main_power(event.value != 0);
             break;
+        case Kind::serial_line: break;
         case Kind::jam:
             if (auto* axis = drive(event.target)) axis->jam(event.value == 0);
             break;
@@ -184,6 +189,7 @@ void World::happen(const SimulationEvent& event) {
 
 void World::apply_events(Instant now) {
     while (next_event_ < events_.size() && start_ + events_[next_event_].at <= now) happen(events_[next_event_++]);
+    serial_.wire([this](const std::string& point) { return output(point); });
 }
 
 }  // namespace taktwerk::runtime

@@ -12,6 +12,7 @@
 #include "ecat/sim/sim_network.hpp"
 #include "ecat/transport/loopback.hpp"
 #include "runtime/machine_config.hpp"
+#include "runtime/serial_world.hpp"
 
 namespace taktwerk::runtime {
 
@@ -22,6 +23,8 @@ public:
 
     [[nodiscard]] ecat::LoopbackTransport& transport() noexcept { return transport_; }
     [[nodiscard]] ecat::sim::SimNetwork& network() noexcept { return network_; }
+    /// The serial lines; serial().lines() is for Machine::build.
+    [[nodiscard]] SerialWorld& serial() noexcept { return serial_; }
 
     /// Lets the configured events happen that are due. Called by whoever runs the cycle, before it.
     void apply_events(Instant now);
@@ -52,6 +55,7 @@ private:
         std::size_t index = 0;  ///< of the axis in its drive
     };
     [[nodiscard]] const AxisPlace* place(std::string_view axis) const noexcept;
+    SerialWorld serial_;
     ecat::sim::SimNetwork network_;
     ecat::LoopbackTransport transport_;
     Instant start_;

@@ -1,0 +1,153 @@
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "axes/drives/xp200/registers.hpp"
+#include "core/nearest_name.hpp"
+#include "runtime/machine_config.hpp"
+
+namespace taktwerk::runtime {
+
+namespace {
+
+constexpr std::uint32_t bauds[] = {4800, 9600, 19200, 38400};  // XP200 manual 9.2, Pr182
+constexpr int highest_station = 247;                           // 9.2
+
+std::string listed(const std::vector<std::string>& names) {
+    std::string out;
+    for (const auto& name : names) out += (out.empty() ? "" : ", ") + name;
+    return out.empty() ? "none" : out;
+}
+
+class SerialCheck {
+public:
+    SerialCheck(const MachineConfig& config, std::vector<Error>& errors) : config_(config), errors_(errors) {
+        for (const auto& point : config.io)
+            if (point.direction == IoDirection::output) outputs_.push_back(point.name);
+    }
+
+    void run() {
+        for (const auto& line : config_.serial) {
+            check_line(line);
+            for (const auto& drive : line.drives) check_drive(line, drive);
+        }
+        for (const auto& binding : config_.axes)
+            if (!binding.drive.empty()) check_axis(binding);
+    }
+
+private:
+    void add(std::string code, std::string subject, std::string what, std::string remedy) {
+        errors_.push_back({std::move(code), std::move(subject), std::move(what), std::move(remedy)});
+    }
+
+    void check_line(const SerialLineConfig& line) {
+        const auto here = "serial." + line.name;
+        if (!lines_.insert(line.name).second) add("config.duplicate_name", here, "the name is used twice", "rename one of them");
+        if (!line.device.empty() && !devices_.insert(line.device).second)
+            add("serial.device_taken", here + ".device", fmt::format("{} already belongs to another line", line.device),
+                "name the other port");
+        if (std::find(std::begin(bauds), std::end(bauds), line.settings.baud) == std::end(bauds))
+            add("serial.baud", here + ".baud", fmt::format("{} baud is no rate of an XP200", line.settings.baud),
+                "choose 4800, 9600, 19200 or 38400, as Pr182 says");
+        std::set<int> stations;
+        for (const auto& drive : line.drives)
+            if (!stations.insert(drive.drive.station).second)
+                add("serial.station_taken", fmt::format("{}.drives.{}.station", here, drive.drive.name),
+                    fmt::format("station {} is there twice: both would answer at once", drive.drive.station),
+                    "give each drive its own Pr181");
+    }
+
+    void check_drive(const SerialLineConfig& line, const SerialDriveConfig& entry) {
+        const auto& drive = entry.drive;
+        const auto here = fmt::format("serial.{}.drives.{}", line.name, drive.name);
+        drives_.push_back(drive.name);
+        if (!names_.insert(drive.name).second) add("config.duplicate_name", here, "the name is used twice", "rename one of them");
+        if (drive.station < 1 || drive.station > highest_station)
+            add("serial.station", here + ".station", "a station is 1 to 247, better 1 to 32", "use the number in Pr181");
+        if (!drive.profile) add("serial.no_profile", here + ".profile", "there is no drive type", "name one, such as xp200");
+        if (entry.watchdog_output.empty()) {
+            if (entry.unsupervised_line != UnsupervisedLine::accepted)
+                add("serial.unsupervised", here,
+                    "when the line or the PC dies, this drive goes on at the speed it was given last; nothing here stops it then",
+                    "wire an output of an EtherCAT terminal to its EMG input and name it in `watchdog_output`; if something else stops the "
+                    "axis, write `unsupervised_line: accepted`");
+        } else if (std::find(outputs_.begin(), outputs_.end(), entry.watchdog_output) == outputs_.end()) {
+            const auto near = nearest_name(entry.watchdog_output, outputs_);
+            add("serial.unknown_output", here + ".watchdog_output",
+                fmt::format("there is no output '{}' (there is: {})", entry.watchdog_output, listed(outputs_)),
+                near.empty() ? "declare it under `io.outputs`" : fmt::format("did you mean '{}'?", near));
+        } else if (!watchdogs_.insert(entry.watchdog_output).second) {
+            add("serial.output_taken", here + ".watchdog_output", "this output already watches another drive", "give each drive its own");
+        }
+        bool limits = false;
+        for (const auto& parameter : drive.parameters) {
+            limits = limits || parameter.number == axes::xp200::pr::limit_use;
+            check_parameter(drive, parameter, here);
+        }
+        if (!limits)
+            add("serial.limit_policy", here + ".parameters",
+                "nothing says whether the drive's limit switches count (Pr097; 33 ignores them)",
+                "write `Pr097: 30` where they are wired, `Pr097: 33` where not");
+    }
+
+    void check_parameter(const axes::xp200::DriveConfig& drive, const axes::xp200::ParameterSetting& wanted, const std::string& here) {
+        if (!drive.profile) return;
+        const auto& rows = drive.profile->parameters;
+        const auto row = std::find_if(rows.begin(), rows.end(), [&](const auto& r) { return r.address.index == wanted.number; });
+        const auto subject = fmt::format("{}.parameters.Pr{:03}", here, wanted.number);
+        if (row == rows.end())
+            add("serial.unknown_parameter", subject, "the manual does not describe it, and reserved ones must not be written", "remove it");
+        else if ((row->minimum && wanted.value < *row->minimum) || (row->maximum && wanted.value > *row->maximum))
+            add("serial.parameter_range", subject,
+                fmt::format("{} is outside {} to {}", wanted.value, row->minimum.value_or(0), row->maximum.value_or(0)),
+                "correct the value");
+    }
+
+    void check_axis(const AxisBinding& binding) {
+        const auto here = "axes." + binding.axis.name;
+        if (!binding.slave.empty()) add("axis.two_drives", here + ".drive", "the axis has a `slave` and a `drive`", "keep one of them");
+        if (std::find(drives_.begin(), drives_.end(), binding.drive) == drives_.end()) {
+            const auto near = nearest_name(binding.drive, drives_);
+            add("axis.unknown_drive", here + ".drive",
+                fmt::format("there is no drive '{}' on a serial line (there is: {})", binding.drive, listed(drives_)),
+                near.empty() ? "correct the name" : fmt::format("did you mean '{}'?", near));
+        } else if (!taken_.insert(binding.drive).second) {
+            add("axis.drive_taken", here + ".drive", fmt::format("drive '{}' already belongs to another axis", binding.drive),
+                "give each axis its own");
+        }
+        const auto& axis = binding.axis;
+        if (axis.control.mode != axes::ControlMode::velocity)
+            add("axis.control", here + ".control", "a drive on a serial line takes no positions, only speeds",
+                "add `control: {mode: velocity, kv: 3}`: the axis closes its position loop over them");
+        else if (axis.control.kv > fastest_loop)
+            add("axis.control", here + ".control.kv",
+                fmt::format("a gain of {:g}/s is too much over a line that answers in tens of milliseconds", axis.control.kv),
+                "use 2 to 5");
+        const double turn = 1 / 60.0 * static_cast<double>(axis.gearing.counts_per_revolution) /
+                            std::abs(axis.gearing.counts_per_unit());  // u/s of 1 r/min
+        if (axis.control.kv > 0 && axis.windows.in_position < 0.5 * turn / axis.control.kv)
+            add("axis.in_position", here + ".in_position.window",
+                fmt::format("a window of {:g} {} cannot be reached: the drive takes whole r/min, and half of one at this kv is {:g} {}",
+                            axis.windows.in_position, axis.unit, 0.5 * turn / axis.control.kv, axis.unit),
+                "widen it, or raise control.kv");
+        using Kind = axes::HomingKind;
+        if (axis.homing.kind == Kind::drive || axis.homing.kind == Kind::absolute || axis.homing.kind == Kind::reference_pulse)
+            add("axis.homing", here + ".homing.kind", "this drive has no homing of its own, no absolute encoder and no latch",
+                "use home_switch, limit_switch, block or set_here");
+    }
+
+    static constexpr double fastest_loop = 8;  // 1/s
+
+    const MachineConfig& config_;
+    std::vector<Error>& errors_;
+    std::vector<std::string> outputs_, drives_;
+    std::set<std::string> lines_, devices_, names_, watchdogs_, taken_;
+};
+
+}  // namespace
+
+void check_serial(const MachineConfig& config, std::vector<Error>& errors) { SerialCheck(config, errors).run(); }
+
+}  // namespace taktwerk::runtime

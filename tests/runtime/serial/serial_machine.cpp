@@ -1,0 +1,285 @@
+// A machine with a drive on a serial line: blocks move it through the line, and when the line falls silent the output that watches over it
+// drops at the terminal and stops the motor.
+
+#include "axes/axis/alarms.hpp"
+#include "fb_library/all_blocks.hpp"
+#include "tests/axes/drives/xp200/plain_profile.hpp"
+#include "tests/runtime/test_machine.hpp"
+#include "tests/runtime/test_program.hpp"
+
+namespace taktwerk::runtime::testing {
+namespace {
+
+using namespace fb;
+using axes::AxisState;
+constexpr std::uint16_t u = 1;
+
+/// x on the bus as ever; u on a line of 38400 baud, 10 mm a turn, watched over by output `u_stop` on the terminal, wired to DI6 (EMG).
+MachineConfig with_line(MachineConfig m) {
+    SerialDriveConfig drive;
+    drive.drive.name = "u_drive";
+    drive.drive.profile = axes::xp200::plain_profile();
+    drive.drive.parameters = {{97, 33}, {105, -15}, {108, 9}, {136, 1}, {164, 1}, {63, 200}};
+    drive.watchdog_output = "u_stop";
+    SerialLineConfig line;
+    line.name = "rs485";
+    line.settings.baud = 38400;
+    line.drives.push_back(drive);
+    m.serial.push_back(line);
+
+    AxisBinding binding;
+    auto& axis = binding.axis;
+    axis.name = "u";
+    axis.gearing = {.counts_per_revolution = 10000, .feed = 10};
+    axis.limits = {.velocity = 100,
+                   .acceleration = 200,
+                   .deceleration = 200,
+                   .jerk = std::numeric_limits<double>::infinity(),
+                   .stop_deceleration = 400};
+    axis.control = {.mode = axes::ControlMode::velocity, .kv = 3};
+    axis.windows = {.in_position = 0.05, .in_position_time = 10ms, .standstill_velocity = 0.1};
+    axis.following = {.window = 10, .time = 50ms};
+    axis.homing.kind = axes::HomingKind::set_here;
+    binding.drive = "u_drive";
+    binding.profile = drive.drive.profile;
+    m.axes.push_back(binding);
+
+    IoPoint point;
+    point.name = "u_stop";
+    point.direction = IoDirection::output;
+    point.slave = "io";
+    point.index = 0x7000;
+    point.sub = 2;
+    m.io.push_back(point);
+    return m;
+}
+
+axes::sim::xp200::Servo& servo(TestMachine& m) { return m.world.serial().drive("u")->servo(); }
+
+bool ready(TestMachine& m) {
+    return m.up() && m.until([&] { return m.axis(u).online; }, 5s);
+}
+
+/// Power, home, a velocity, a jog, a stop, a move: every block that works over such a line, one after the other.
+class AllThatWorks final : public Program {
+public:
+    AxisRef u_axis;
+    MC_Power power;
+    MC_Home home;
+    MC_MoveVelocity run;
+    MC_Stop stop;
+    MC_Jog jog;
+    MC_MoveAbsolute move;
+    MC_GearIn gear;
+    MC_ReadActualPosition read;
+    std::int64_t step = 0, wait = 0;
+    double gear_error = 0, position = 0;
+    void declare(Declaration& d) override {
+        u_axis = d.axis("u");
+        d.monitor("step", step);
+        d.monitor("gear_error", gear_error);
+        d.monitor("position", position, "mm");
+        d.task<&AllThatWorks::scan>("main");
+    }
+    void scan(TaskContext& ctx) {
+        power.Axis = home.Axis = run.Axis = stop.Axis = jog.Axis = move.Axis = gear.Slave = read.Axis = u_axis;
+        gear.Master = u_axis;
+        power.Enable = read.Enable = true;
+        power(ctx);
+        read(ctx);
+        position = read.Position;
+        home.Execute = step >= 1;
+        home(ctx);
+        run.Velocity = 50;
+        run.Execute = step == 2;
+        run(ctx);
+        stop.Deceleration = 200;
+        stop.Execute = step == 3;
+        stop(ctx);
+        jog.JogBackwards = step == 4;
+        jog(ctx);
+        move.Position = 10;
+        move.Velocity = 50;
+        move.Execute = step == 6;
+        move(ctx);
+        gear.RatioNumerator = gear.RatioDenominator = 1;
+        gear.Execute = step == 7;
+        gear(ctx);
+        ++wait;
+        const bool waited = wait > 1500;
+        const bool next = (step == 0 && power.Status) || (step == 1 && home.Done) || (step == 2 && run.InVelocity && waited) ||
+                          (step == 3 && stop.Done) || (step == 4 && waited) || (step == 5 && waited) || (step == 6 && move.Done) ||
+                          (step == 7 && gear.Error);
+        if (step == 7 && gear.Error) gear_error = static_cast<double>(gear.ErrorID);
+        if (next) {
+            ++step;
+            wait = 0;
+        }
+    }
+};
+
+TEST(SerialMachine, BlocksMoveADriveOnALine) {
+    auto config = with_program(1, &entry_of<AllThatWorks>);
+    TestMachine m{with_line(std::move(config))};
+    ASSERT_TRUE(m.up());
+    const auto at = [&](int step) { return m.until([&] { return variable(m, "step") >= step; }, 15s); };
+
+    ASSERT_TRUE(at(1)) << "MC_Power " << m.alarms();
+    EXPECT_TRUE(servo(m).energised());
+    EXPECT_EQ(servo(m).enabled_in_motion(), 0u);
+    ASSERT_TRUE(at(2)) << "MC_Home " << m.alarms();
+    ASSERT_TRUE(at(3)) << "MC_MoveVelocity " << m.alarms();
+    EXPECT_NEAR(servo(m).speed(), 300, 10);
+    ASSERT_TRUE(at(4)) << "MC_Stop " << m.alarms();
+    EXPECT_NEAR(servo(m).speed(), 0, 1);
+    m.run(1s);
+    EXPECT_NEAR(servo(m).speed(), -30, 6) << "MC_Jog: slow, 5 % of 100 mm/s";
+    ASSERT_TRUE(at(6)) << m.alarms();
+    EXPECT_NEAR(servo(m).speed(), 0, 1);
+    ASSERT_TRUE(at(7)) << "MC_MoveAbsolute " << m.alarms();
+    EXPECT_NEAR(variable(m, "position"), 10, 0.06);
+    ASSERT_TRUE(at(8));
+    EXPECT_EQ(variable(m, "gear_error"), static_cast<double>(axes::ErrorId::not_supported)) << "MC_GearIn";
+    EXPECT_EQ(m.axis(u).error, 0);
+}
+
+// Line silent, PC alive: ErrorStop, and the output falls at the terminal; EMG brakes the motor by Pr063 (200 ms for 1000 r/min).
+TEST(SerialMachine, ASilentLineDropsTheOutputAndTheMotorStops) {
+    TestMachine m{with_line(machine_config(1))};
+    ASSERT_TRUE(ready(m)) << m.alarms();
+    EXPECT_TRUE(m.until([&] { return m.world.output("u_stop"); }, 1s));
+    m.enable(u);
+    ASSERT_EQ(m.command(OperatorAction::jog, u, true, 20).answer, Answer::accepted);
+    for (int i = 0; i < 20; ++i) {
+        m.run(50ms);
+        (void)m.command(OperatorAction::jog, u, true, 20);
+    }
+    ASSERT_GT(std::abs(servo(m).speed()), 60);
+    m.world.serial().line("rs485")->cut(true);
+    ASSERT_TRUE(m.until([&] { return !m.world.output("u_stop"); }, 1s));
+    ASSERT_TRUE(m.until([&] { return std::abs(servo(m).speed()) < 1; }, 500ms));
+    ASSERT_TRUE(m.until([&] { return m.axis(u).state == AxisState::ErrorStop; }, 500ms)) << m.alarms();
+    EXPECT_TRUE(m.has_alarm(id(axes::AxisAlarm::axis_feedback_lost)));
+
+    // Back again: the output rises only when the drive has been stopped and disabled; nothing moves by itself.
+    m.world.serial().line("rs485")->cut(false);
+    ASSERT_TRUE(m.until([&] { return m.world.output("u_stop"); }, 3s));
+    EXPECT_EQ(servo(m).parameters()[122], 0);
+    m.run(1s);
+    EXPECT_NEAR(servo(m).speed(), 0, 1);
+}
+
+// PC dead: nobody drops the output any more, but the terminal's own SM watchdog (100 ms) does, and the drive stops.
+TEST(SerialMachine, ADeadPcStopsTheMotorThroughTheTerminalsWatchdog) {
+    TestMachine m{with_line(machine_config(1))};
+    ASSERT_TRUE(ready(m)) << m.alarms();
+    m.enable(u);
+    ASSERT_EQ(m.command(OperatorAction::jog, u, true, 20).answer, Answer::accepted);
+    for (int i = 0; i < 20; ++i) {
+        m.run(50ms);
+        (void)m.command(OperatorAction::jog, u, true, 20);
+    }
+    ASSERT_GT(std::abs(servo(m).speed()), 60);
+    // Only the world lives on: no frame, no request.
+    for (int i = 0; i < 600; ++i) {
+        m.clock.advance(1ms);
+        m.world.network().advance(m.clock.now());
+        m.world.apply_events(m.clock.now());
+        m.world.serial().line("rs485")->advance(m.clock.now());
+    }
+    EXPECT_FALSE(m.world.output("u_stop"));
+    EXPECT_NEAR(servo(m).speed(), 0, 1);
+}
+
+// The same run twice gives the same numbers: the line's times are computed, not measured.
+TEST(SerialMachine, RunsAreBitIdentical) {
+    const auto run = [] {
+        TestMachine m{with_line(machine_config(1))};
+        EXPECT_TRUE(ready(m));
+        m.enable(u);
+        (void)m.command(OperatorAction::jog, u, true, 20);
+        m.run(2s);
+        return std::tuple{servo(m).plant().position(), m.axis(u).actual_position, m.world.serial().line("rs485")->frames()};
+    };
+    EXPECT_EQ(run(), run());
+}
+
+TEST(SerialMachine, AMachineMayHaveALineAlone) {
+    auto config = with_line(machine_config(0));
+    config.bus.slaves.clear();
+    config.io.clear();
+    config.emergency_stop = {};
+    config.serial[0].drives[0].watchdog_output.clear();
+    config.serial[0].drives[0].unsupervised_line = UnsupervisedLine::accepted;
+    TestMachine m{config};
+    ASSERT_TRUE(m.up());
+    ASSERT_TRUE(m.until([&] { return m.axis(0).online; }, 5s));
+    m.enable(0);
+    EXPECT_TRUE(servo(m).energised());
+}
+
+// --- what a configuration must say -------------------------------------------------------------------------------------------------
+
+std::vector<std::string> codes(const MachineConfig& config) {
+    std::vector<std::string> out;
+    for (const auto& error : check(config)) out.push_back(error.code);
+    return out;
+}
+bool complains(const MachineConfig& config, std::string_view code) {
+    const auto all = codes(config);
+    return std::find(all.begin(), all.end(), code) != all.end();
+}
+
+TEST(SerialCheck, AGoodMachineHasNoProblems) { EXPECT_TRUE(codes(with_line(machine_config(1))).empty()); }
+
+TEST(SerialCheck, ALineWithoutSupervisionMustBeAccepted) {
+    auto config = with_line(machine_config(1));
+    config.serial[0].drives[0].watchdog_output.clear();
+    EXPECT_TRUE(complains(config, "serial.unsupervised"));
+    config.serial[0].drives[0].unsupervised_line = UnsupervisedLine::accepted;
+    EXPECT_TRUE(codes(config).empty());
+    config.serial[0].drives[0].watchdog_output = "u_stpo";
+    EXPECT_TRUE(complains(config, "serial.unknown_output"));
+}
+
+TEST(SerialCheck, NamesStationsAndParametersMustMeet) {
+    const auto good = with_line(machine_config(1));
+    auto twice = good;
+    twice.serial[0].drives.push_back(twice.serial[0].drives[0]);
+    EXPECT_TRUE(complains(twice, "serial.station_taken"));
+    EXPECT_TRUE(complains(twice, "config.duplicate_name"));
+    auto unknown = good;
+    unknown.axes[1].drive = "v_drive";
+    EXPECT_TRUE(complains(unknown, "axis.unknown_drive"));
+    auto limits = good;
+    limits.serial[0].drives[0].drive.parameters.erase(limits.serial[0].drives[0].drive.parameters.begin());
+    EXPECT_TRUE(complains(limits, "serial.limit_policy"));
+    auto reserved = good;
+    reserved.serial[0].drives[0].drive.parameters.push_back({13, 1});
+    EXPECT_TRUE(complains(reserved, "serial.unknown_parameter"));
+    auto range = good;
+    range.serial[0].drives[0].drive.parameters.push_back({136, 2});
+    EXPECT_TRUE(complains(range, "serial.parameter_range"));
+    auto baud = good;
+    baud.serial[0].settings.baud = 115200;
+    EXPECT_TRUE(complains(baud, "serial.baud"));
+}
+
+TEST(SerialCheck, AnAxisOverALineNeedsAPositionLoopHere) {
+    const auto good = with_line(machine_config(1));
+    auto csp = good;
+    csp.axes[1].axis.control = {};
+    EXPECT_TRUE(complains(csp, "axis.control"));
+    auto hard = good;
+    hard.axes[1].axis.control.kv = 50;
+    EXPECT_TRUE(complains(hard, "axis.control"));
+    auto narrow = good;  // half a r/min at kv 3: 0.5 / 60 * 10 mm / 3 = 0.028 mm
+    narrow.axes[1].axis.windows.in_position = 0.02;
+    EXPECT_TRUE(complains(narrow, "axis.in_position"));
+    auto homing = good;
+    homing.axes[1].axis.homing.kind = axes::HomingKind::drive;
+    EXPECT_TRUE(complains(homing, "axis.homing"));
+}
+
+}  // namespace
+}  // namespace taktwerk::runtime::testing
