@@ -28,14 +28,16 @@ public:
         const auto work = programs();
         for (const bool details : {true, false}) {
             const auto table = axes(details);
-            auto alarm_lines = alarms(every);
-            Lines out = joined({head, table, alarm_lines, work, points});
-            if (fits(out)) return out;
+            Lines out;
+            for (const std::size_t causes : {every, std::size_t{1}}) {  // the newest alarm keeps its cause longest
+                out = joined({head, table, alarms(every, causes), work, points});
+                if (fits(out)) return out;
+            }
             if (details) continue;
             // The alarms get what the axes leave, at least one of them; programs and I/O what is left then.
             const auto taken = head.size() + table.size() + 2;
             const auto remaining = size_.rows > taken + 1 ? size_.rows - taken - 1 : 0;  // 1: the line that says there are more
-            out = joined({head, table, alarms(std::max<std::size_t>(remaining / lines_an_alarm, 1)), work, points});
+            out = joined({head, table, alarms(std::max<std::size_t>(remaining / lines_an_alarm, 1), 0), work, points});
             if (out.size() > size_.rows) {
                 out.resize(size_.rows);
                 out.back() = paint(colour::dim, cut("… the terminal is too small for the rest", size_.columns));
@@ -46,7 +48,7 @@ public:
     }
 
 private:
-    static constexpr std::size_t lines_an_alarm = 4, every = 1000;
+    static constexpr std::size_t lines_an_alarm = 3, every = 1000;
     bool fits(const Lines& lines) const { return size_.rows == 0 || lines.size() <= size_.rows; }
 
     static Lines joined(const std::vector<Lines>& parts) {
@@ -131,7 +133,8 @@ private:
         return cut(text, size_.columns);
     }
 
-    Lines alarms(std::size_t most) const {
+    /// The newest `most`, the newest `causes` of them with why they came.
+    Lines alarms(std::size_t most, std::size_t causes) const {
         Lines out;
         const auto& list = state_.at("alarms");
         std::size_t shown = 0;
@@ -152,7 +155,7 @@ private:
             out.push_back(paint(standing ? colour::red : colour::yellow, cut(text, size_.columns)));
             if (const auto chinese = alarm.at("chinese").get<std::string>(); !chinese.empty())
                 out.push_back(cut("   " + chinese, size_.columns));
-            if (const auto cause = alarm.at("cause").get<std::string>(); !cause.empty())
+            if (const auto cause = alarm.at("cause").get<std::string>(); !cause.empty() && shown <= causes)
                 out.push_back(cut("   why: " + cause, size_.columns));
             const auto reset = alarm.at("reset").get<std::string>();
             if (const auto remedy = alarm.at("remedy").get<std::string>(); !remedy.empty())
