@@ -96,5 +96,47 @@ TEST(Sv33eStops, QuickStopByItsOptionCode) {
     }
 }
 
+// SV-DA200 3.2.7: eight set-points wait behind the running one; CT-5 and CT-7: 10Fh stops and holds with 605Dh = -1, bit 10 at standstill, and
+// clearing it does not go on.
+TEST(SvDa200ProfilePosition, HaltHoldsAndForgets) {
+    DriveBench drive{"sv-da200"};
+    drive.pdo(0x6060, 1);
+    drive.pdo(0x6081, 20000);
+    drive.pdo(0x6083, 100000);
+    drive.enable();
+    ASSERT_EQ(drive.sdo(0x605D, 0, -1), 0u);
+    drive.pdo(0x607A, 50000);
+    drive.control(0x1F);
+    ASSERT_NE(drive.status() & acknowledged, 0u);
+    drive.control(0x0F, 400);
+    drive.control(0x10F, 200);
+    EXPECT_NE(drive.status() & reached, 0u);
+    EXPECT_EQ(drive.status() & 0x6Fu, 0x27u);
+    const auto at = drive.position();
+    drive.control(0x0F, 500);
+    EXPECT_NEAR(static_cast<double>(drive.position()), static_cast<double>(at), 20);
+    for (int i = 1; i <= 9; ++i) {
+        drive.pdo(0x607A, at + 1000 * i);
+        drive.control(0x1F);
+        drive.control(0x0F);
+        EXPECT_EQ((drive.status() & acknowledged) != 0, i == 9) << i;
+    }
+}
+
+// CT-6: 0Bh stops at once and clamps; the drive stays in Quick Stop Active.
+TEST(SvDa200Stops, QuickStopClamps) {
+    DriveBench drive{"sv-da200"};
+    drive.pdo(0x6060, 3);
+    drive.pdo(0x6083, 100000);
+    drive.pdo(0x6084, 100000);
+    drive.enable();
+    drive.pdo(0x60FF, 20000);
+    drive.run(400);
+    const auto from = drive.position();
+    drive.control(0x0B, 300);
+    EXPECT_EQ(drive.status() & 0x6Fu, 0x07u);
+    EXPECT_LT(drive.position() - from, 500);  // 6084h would take 2000
+}
+
 }  // namespace
 }  // namespace taktwerk::axes::sim
