@@ -69,7 +69,11 @@ std::shared_ptr<const axes::DriveProfile> servo_profile() {
     p->modes = {axes::DriveMode::cyclic_position, axes::DriveMode::homing};
     p->homing_methods = {17, 18, 19, 20, 21, 22};
     p->minimum_cycle_csp = 250us;
-    p->alarms = {{0x3130, 0, "E.999", "phase failure", "缺相", "a phase is missing", "check the supply", true, false, false, axes::DriveAlarmKind::other, {}}};
+    axes::DriveAlarmText phase;
+    phase.code = 0x3130;
+    phase.panel = "E.999", phase.english = "phase failure", phase.chinese = "缺相";
+    phase.cause = "a phase is missing", phase.remedy = "check the supply";
+    p->alarms = {phase};
     return p;
 }
 
