@@ -187,7 +187,7 @@ private:
     void supervise() noexcept;
     void watch_torque() noexcept;
     void supervise_torque() noexcept;
-    // cia402_common_alarm.cpp
+    // cia402_whole_drive.cpp
     [[nodiscard]] bool uncover_alarm() noexcept;
     // cia402_causes.cpp
     void begin_cause(std::size_t row) noexcept;

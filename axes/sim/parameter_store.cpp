@@ -53,7 +53,9 @@ ParameterStore::Refusal ParameterStore::refuse(ParameterAddress at, std::int64_t
 }
 
 bool ParameterStore::stores_writes_to(const Cell& cell) const noexcept {
-    if (storage_ != ParameterStorage::each_write || cell.transient) return false;
+    // Where the manual is silent a written value is kept: an engineer finds it again after switching on (SV-DA200).
+    const bool kept = storage_ == ParameterStorage::each_write || storage_ == ParameterStorage::not_stated;
+    if (!kept || cell.transient) return false;
     return storage_switch_.index == 0 || (value(storage_switch_).value_or(0) & switch_bit(cell.address)) != 0;
 }
 

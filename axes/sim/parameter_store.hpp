@@ -1,6 +1,6 @@
 #pragma once
 // The parameters of a simulated drive over power cycles: what stands in its RAM, what in its EEPROM, and with what it works.
-// Any drive: each write is stored (SV33-E 7.2, P05.10), stored on request (SE-808X 1010h, XP200 function 41h) or never (TSVM).
+// Any drive: each write is stored (SV33-E 7.2, P05.10; and where a manual is silent), stored on request (SE-808X 1010h, XP200 function 41h) or never (TSVM).
 // Knows no bus: whoever has one asks refuse() before write(). Not for the cycle of a real drive; allocates when it is made only.
 
 #include <cstddef>

@@ -92,8 +92,9 @@ TEST_F(DriveAlarm, IsCompleteOverLcm) {
 
     taktwerk_lcm::alarm_list_v1_t list;
     for (const auto& message : bus.published)
-        if (message.channel == "TAKTWERK_TEST_ALARM_LIST")
+        if (message.channel == "TAKTWERK_TEST_ALARM_LIST") {
             ASSERT_GT(list.decode(message.bytes.data(), 0, static_cast<int>(message.bytes.size())), 0);
+        }
     ASSERT_EQ(list.alarm.size(), 1u);
     const auto& alarm = list.alarm[0];
     EXPECT_EQ(alarm.source_text, "axis x");

@@ -60,7 +60,11 @@ protected:
         start();
     }
 
-    void set(std::uint16_t index, std::int64_t value, std::uint8_t sub = 0) { dictionary.find(index, sub)->set(value); }
+    /// Process data; parameters as an SDO does, so that the drive keeps them.
+    void set(std::uint16_t index, std::int64_t value, std::uint8_t sub = 0) {
+        dictionary.find(index, sub)->set(value);
+        if (index < 0x6000) device.written(index, sub, now);
+    }
     std::int64_t get(std::uint16_t index, std::uint8_t sub = 0) { return dictionary.value(index, sub); }
     /// As an SDO does.
     void write(std::uint16_t index, std::int64_t value, std::uint8_t sub = 0) {
@@ -382,6 +386,7 @@ TEST_F(SvDa200, TheBusSetsTheOutputsOnlyWithP428FromARestartOn) {
     run(1);
     EXPECT_EQ(device.behaviour(0).digital_outputs(), 0u) << "P4.28 counts from the restart on (2.1 note 1)";
     restart();
+    set(0x60FE, 1 << 16, 1);  // a command: gone with the power
     run(1);
     EXPECT_EQ(device.behaviour(0).digital_outputs(), 1u) << "bit 16 is DO1";
 }

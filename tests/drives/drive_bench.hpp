@@ -64,6 +64,7 @@ public:
     void cycle() {
         now_ += cycle_;
         device_.advance(now_);
+        device_.exchange_due({.outputs = true, .sync0 = true});
         device_.exchange(now_);
     }
     void run(int cycles) {
