@@ -29,6 +29,10 @@ public:
     }
 
     void run() {
+        if (!config_.serial.empty() && config_.bus.slaves.empty())
+            add("serial.no_bus", "serial",
+                "a machine with a serial line needs a bus too: its cycle runs on it, and so does what watches over the line",
+                "add a digital terminal under `bus.slaves`, and wire one of its outputs to the drive as `watchdog_output`");
         for (const auto& line : config_.serial) {
             check_line(line);
             for (const auto& drive : line.drives) check_drive(line, drive);

@@ -39,6 +39,8 @@ public:
     /// nullptr when the axis is on none.
     [[nodiscard]] axes::sim::xp200::Drive* drive(std::string_view axis) noexcept;
     [[nodiscard]] modbus::VirtualLine* line(std::string_view name) noexcept;
+    /// Drives live on while nobody asks them anything.
+    void advance(Instant now);
 
 private:
     struct Happening {

@@ -422,8 +422,7 @@ TEST_F(SvDa200, TorqueLimitsOfZeroAreIgnoredUntilP443OrOmronUnitsSayOtherwise) {
     set(0x242B, 0x0003);
     set(0x2419, 2);
     EXPECT_FALSE(moves()) << "CIA402 OMRON never masks";
-    set(0x60E0, 1000);
-    set(0x60E1, 1000);
+    for (const int limit : {0x6072, 0x60E0, 0x60E1}) set(static_cast<std::uint16_t>(limit), 1000);
     EXPECT_TRUE(moves());
 }
 

@@ -204,20 +204,6 @@ TEST(SerialMachine, RunsAreBitIdentical) {
     EXPECT_EQ(run(), run());
 }
 
-TEST(SerialMachine, AMachineMayHaveALineAlone) {
-    auto config = with_line(machine_config(0));
-    config.bus.slaves.clear();
-    config.io.clear();
-    config.emergency_stop = {};
-    config.serial[0].drives[0].watchdog_output.clear();
-    config.serial[0].drives[0].unsupervised_line = UnsupervisedLine::accepted;
-    TestMachine m{config};
-    ASSERT_TRUE(m.up());
-    ASSERT_TRUE(m.until([&] { return m.axis(0).online; }, 5s));
-    m.enable(0);
-    EXPECT_TRUE(servo(m).energised());
-}
-
 // --- what a configuration must say -------------------------------------------------------------------------------------------------
 
 std::vector<std::string> codes(const MachineConfig& config) {
@@ -240,6 +226,13 @@ TEST(SerialCheck, ALineWithoutSupervisionMustBeAccepted) {
     EXPECT_TRUE(codes(config).empty());
     config.serial[0].drives[0].watchdog_output = "u_stpo";
     EXPECT_TRUE(complains(config, "serial.unknown_output"));
+}
+
+TEST(SerialCheck, ALineAloneIsNoMachine) {
+    auto config = with_line(machine_config(0));
+    EXPECT_FALSE(complains(config, "serial.no_bus"));
+    config.bus.slaves.clear();
+    EXPECT_TRUE(complains(config, "serial.no_bus"));
 }
 
 TEST(SerialCheck, NamesStationsAndParametersMustMeet) {
