@@ -165,9 +165,14 @@ std::vector<Error> check(const MachineConfig& config) {
         for (const auto& name : inputs) found = found || name == config.emergency_stop.input;
         if (!found) problems.unknown("machine.emergency_stop_input", "emergency_stop.input", "input", config.emergency_stop.input, inputs);
     }
+    std::vector<std::string> lines;
+    for (const auto& line : config.serial) lines.push_back(line.name);
     for (const auto& event : config.simulation.events) {
         using Kind = SimulationEvent::Kind;
-        const auto& known = event.kind == Kind::input ? inputs : event.kind == Kind::slave_power ? slaves : axis_names;
+        const auto& known = event.kind == Kind::input         ? inputs
+                            : event.kind == Kind::slave_power ? slaves
+                            : event.kind == Kind::serial_line ? lines
+                                                              : axis_names;
         bool found = false;
         for (const auto& name : known) found = found || name == event.target;
         if (!found) problems.unknown("simulation.unknown_target", "simulation.events", "target", event.target, known);

@@ -52,7 +52,7 @@ const DriveFeedback& Cia402Drive::decode(Instant now) noexcept {
     if (feedback_.online) turns_.note(feedback_.power);
     enabled_.store(feedback_.power == PowerState::enabled, std::memory_order_relaxed);
     feedback_.fault = (status & bit_fault) != 0;
-    feedback_.warning = (status & bit_warning) != 0;
+    feedback_.warning = (status & bit_warning) != 0 && !feedback_.fault;  // TSVM 5.3.2: bit 7 stands with faults, too
     feedback_.main_power = (status & bit_voltage) != 0;
     feedback_.target_reached = (status & bit_target_reached) != 0;
     feedback_.internal_limit = (status & bit_internal_limit) != 0 && !profile_->has(Quirk::no_internal_limit_bit);
