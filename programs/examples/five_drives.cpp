@@ -93,7 +93,7 @@ class FiveDrives final : public Program {
     // mm and deg, mm/s and deg/s
     Positioning sv33_{20, 300, 200}, da200_{20, 250, 150}, stepper_{10, 100, 40};
     std::array<Positioning, 6> robot_{{{-40, 60, 90}, {-30, 45, 90}, {-50, 50, 120}, {-90, 90, 180}, {-60, 60, 180}, {-180, 180, 270}}};
-    ToAndFro spindle_{60, 600, 90};
+    ToAndFro spindle_{20, 200, 90};
 
     std::int64_t least_strokes_ = 0, failures_ = 0, recoveries_ = 0;
 

@@ -109,6 +109,17 @@ TEST_F(CommandLine, TwoRunsInVirtualTimeWriteTheSameBytes) {
     EXPECT_TRUE(trace == text_of(path("two.csv")));
 }
 
+TEST_F(CommandLine, FiveKindsOfDriveAndASerialLineRunAlikeToo) {
+    for (const char* name : {"one.csv", "two.csv"}) {
+        const auto run =
+            command({"run", machines + "five-drives.yaml", "--simulate", "--virtual-time", "--duration", "30s", "--trace", path(name)}, 60s);
+        ASSERT_EQ(run.code, exit_ok) << run.text;
+    }
+    const auto trace = text_of(path("one.csv"));
+    EXPECT_GT(trace.size(), 1'000'000u);
+    EXPECT_TRUE(trace == text_of(path("two.csv")));
+}
+
 TEST_F(CommandLine, WithoutARunningMachineCommandsSaySo) {
     for (const auto& arguments :
          {std::vector<std::string>{"monitor", "--once"}, {"enable", "x"}, {"jog", "x", "--velocity", "-5"}, {"reset"}}) {

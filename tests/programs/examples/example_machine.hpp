@@ -29,7 +29,7 @@ public:
         }
         auto config = std::move(std::get<0>(loaded).machine);
         world_ = std::make_unique<runtime::World>(config, clock_.now());
-        auto built = runtime::Machine::build(std::move(config), world_->transport());
+        auto built = runtime::Machine::build(std::move(config), world_->transport(), world_->serial().lines());
         if (const auto* errors = std::get_if<1>(&built)) {
             for (const auto& error : *errors) ADD_FAILURE() << error.text();
             return;

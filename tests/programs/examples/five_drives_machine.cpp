@@ -13,7 +13,7 @@ using testing::ExampleMachine;
 TEST(FiveDrives, AllHomeAndMoveAndComeBackAfterTheirFaults) {
     ExampleMachine m{"five-drives"};
     ASSERT_TRUE(m.up());
-    EXPECT_TRUE(m.until([&] { return m.variable("least_strokes") >= 1; }, 8s)) << m.alarms();
+    EXPECT_TRUE(m.until([&] { return m.variable("least_strokes") >= 1; }, 6s)) << m.alarms();
     EXPECT_EQ(m.variable("failures"), 0);
 
     EXPECT_TRUE(m.until([&] { return m.variable("recoveries") >= 12; }, 30s)) << m.alarms();
