@@ -81,9 +81,18 @@ struct MachineLayout {
         bool disabled = false, simulated = false;
         double jog_slow = 0, jog_fast = 0;  ///< u/s
     };
+    struct Block {
+        std::string name;  ///< program.block
+        const std::byte* begin = nullptr;
+        std::size_t size = 0;
+    };
+    /// The declared block that `instance` is or lies in (AxisView::holder); empty = none, or one that its program gave no name.
+    [[nodiscard]] std::string_view block_at(const void* instance) const noexcept;
+
     std::string machine;
     Duration cycle{};
     std::vector<AxisInfo> axes;
+    std::vector<Block> blocks;
     std::vector<std::string> slaves, inputs, outputs, programs, tasks;
     std::vector<Variable> variables;
     std::vector<ParameterInfo> parameters;

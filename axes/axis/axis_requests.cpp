@@ -224,6 +224,7 @@ void Axis::shift_coordinates(double delta) noexcept {
 void Axis::release_stop(CommandId id, Owner) noexcept {
     if (id == 0 || id != view_.lock) return;
     view_.lock = 0;
+    if (!queue_.has_active()) view_.holder = nullptr;
     const bool stands = !moves() && !begin_pending_ && !goal_pending_;
     if (view_.state == AxisState::Stopping && stands) leave_stopping();
     publish();

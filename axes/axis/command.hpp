@@ -66,6 +66,7 @@ struct AxisCommand {
     double acceleration = 0, deceleration = 0, jerk = 0;
     double end_velocity = 0;
     CommandDetails details{};
+    const void* instance = nullptr;  ///< the block that gave it, to be named to people; never followed
     friend bool operator==(const AxisCommand&, const AxisCommand&) = default;
 };
 static_assert(std::is_trivially_copyable_v<AxisCommand>);

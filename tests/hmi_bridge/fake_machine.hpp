@@ -57,8 +57,9 @@ public:
     void request_shutdown() override { shutdown_requested = true; }
 
     /// Answers the newest command.
-    void answer(runtime::Answer verdict, axes::ErrorId error = axes::ErrorId::none, axes::Owner owner = axes::Owner::none) {
-        answers.push_back({submitted.back().client, submitted.back().sequence, verdict, error, owner});
+    void answer(runtime::Answer verdict, axes::ErrorId error = axes::ErrorId::none, axes::Owner owner = axes::Owner::none,
+                const void* holder = nullptr) {
+        answers.push_back({submitted.back().client, submitted.back().sequence, verdict, error, owner, holder});
     }
 
     std::vector<runtime::OperatorCommand> submitted;
