@@ -348,7 +348,8 @@ private:
 
     // axis_profiles.cpp
     [[nodiscard]] ErrorId refuse_given(const AxisCommand& command, bool starts_now) noexcept;
-    [[nodiscard]] ErrorId make_curve(const AxisCommand& command) noexcept;
+    [[nodiscard]] ErrorId make_curve(const AxisCommand& command, double behind = 0) noexcept;
+    [[nodiscard]] ErrorId update_curve(const AxisCommand& command) noexcept;
     ErrorId set_goal_given(const AxisCommand& command) noexcept;
     void start_given(double late) noexcept;
     void step_given(Duration period) noexcept;
@@ -484,7 +485,8 @@ private:
         std::array<TimeCurve, 2> curves;  // the running one, and one to check the next command with
         std::size_t current = 0;
         Duration elapsed{};
-        double late = 0;  // s: it began this long before the cycle in which it was started
+        double late = 0;    // s: it began this long before the cycle in which it was started
+        double behind = 0;  // s of the table that the running curve leaves out
 
         void reserve(std::size_t rows);
         [[nodiscard]] TimeCurve& running() noexcept { return curves[current]; }
