@@ -240,7 +240,7 @@ private:
     void reanchor() noexcept;
     void keep_close_to_anchor() noexcept;
     void run_goal(double late) noexcept;
-    [[nodiscard]] Plan plan_way(const MotionState& from, MotionLimits limits) noexcept;
+    [[nodiscard]] Plan plan_way(const MotionState& from, MotionLimits limits, double most) noexcept;
 
     // axis_goals.cpp: from a command to its goal
     void begin_command() noexcept;
@@ -278,6 +278,7 @@ private:
     void guard(const MotionState& before, Duration period) noexcept;
     bool guard_switches() noexcept;
     bool guard_software_limits(const MotionState& before) noexcept;
+    void brake_as_both_layers(const MotionState& from, double room, MotionLimits& limits) const noexcept;
     void brake_inside_limits(const MotionState& from, MotionLimits& limits) const noexcept;
     void release_below_limit(const MotionState& from, MotionLimits& limits) const noexcept;
     [[nodiscard]] bool leaves_limits(const Profile& profile) const noexcept;
@@ -292,6 +293,7 @@ private:
     Submitted submit_superimposed(const AxisCommand& command, Owner owner) noexcept;
     [[nodiscard]] ErrorId refuse_superimposed(const AxisCommand& command) const noexcept;
     void run_superimposed() noexcept;
+    void wait_for_room(const MotionState& from, MotionLimits limits, Plan& plan) noexcept;
     void complete_superimposed() noexcept;
     void end_superimposed(Outcome outcome, ErrorId error = ErrorId::none) noexcept;
 
@@ -465,6 +467,8 @@ private:
     bool begin_pending_ = false;  // the active command has not been turned into a goal yet
     bool goal_pending_ = false;   // the goal has no profile yet
     bool held_ = false;           // override 0: the axis waits on its way to a position
+    bool summed_ = false;         // two layers in motion became one: until it rests, its ramps may be as hard as both together were
+    double wants_speed_ = 0;      // u/s that the base will have once the superimposed motion has made room; 0: it waits for nothing
     bool watch_limits_ = true;    // the base might pass a software limit
     bool backwards_ = false;      // sense of the last motion
     Override override_;

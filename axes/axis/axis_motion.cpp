@@ -51,6 +51,7 @@ void Axis::plan(Instant now, Duration period) noexcept {
     if (coupling_.shown) complete_phasing();
     if (queue_.beside(SideSlot::superimposed) != 0) complete_superimposed();
     if (const double velocity = setpoint_.state().velocity; velocity != 0) backwards_ = velocity < 0;
+    else if (summed_) summed_ = !setpoint_.at_rest();
     publish_commands();
     publish_setpoint();
     if (may_be_homed) publish_feedback(actual_local());  // in other coordinates
@@ -76,6 +77,7 @@ void Axis::follow_actual(Duration period) noexcept {
 
 void Axis::run_goal(double late) noexcept {
     goal_pending_ = held_ = false;
+    wants_speed_ = 0;
     const auto from = setpoint_.base();
     auto limits = with_override(goal_.limits);
     release_below_limit(from, limits);
@@ -84,7 +86,7 @@ void Axis::run_goal(double late) noexcept {
         case Goal::Kind::rest:
         case Goal::Kind::coupled: return;
         case Goal::Kind::given: start_given(late); return;
-        case Goal::Kind::position: plan = plan_way(from, limits); break;
+        case Goal::Kind::position: plan = plan_way(from, limits, config_.limits.velocity); break;
         case Goal::Kind::velocity:
             plan = plan_to_velocity(from, override_counts() ? goal_.value * override_.velocity : goal_.value, limits);
             watch_limits_ = true;
@@ -95,6 +97,7 @@ void Axis::run_goal(double late) noexcept {
             watch_limits_ = false;
             break;
     }
+    if (setpoint_.layered()) wait_for_room(from, limits, plan);
     if (plan.error != PlanError::none) {
         fail(AxisAlarm::planner_refused, units_.to_program(from.position), from.velocity);
         plan = plan_stop(setpoint_.base(), stop_limits(config_.limits));
@@ -105,7 +108,8 @@ void Axis::run_goal(double late) noexcept {
     if (queue_.beside(SideSlot::superimposed) != 0) superimposed_.pending = true;
 }
 
-Plan Axis::plan_way(const MotionState& from, MotionLimits limits) noexcept {
+/// `most`: u/s that also an end velocity may not pass.
+Plan Axis::plan_way(const MotionState& from, MotionLimits limits, double most) noexcept {
     // A new target with gentle dynamics must not carry a fast axis past a software limit on its way back.
     brake_inside_limits(from, limits);
     if (override_counts()) {
@@ -118,7 +122,8 @@ Plan Axis::plan_way(const MotionState& from, MotionLimits limits) noexcept {
         plan = plan_stop(from, limits);
     } else if (goal_.goes_on) {
         const double factor = override_counts() ? override_.velocity : 1;
-        plan = plan_through(from, {goal_.value, goal_.end_velocity * factor, 0}, limits);
+        const double end = std::clamp(goal_.end_velocity * factor, -most, most);
+        plan = plan_through(from, {goal_.value, end, 0}, limits);
     } else if (const double through = velocity_at_junction(from, limits); through != 0) {
         plan = plan_through(from, {goal_.value, through, 0}, limits);
     } else {
