@@ -104,13 +104,14 @@ void Machine::Impl::supervise(Instant, const CycleTick& tick) noexcept {
 // TSVM 7.1: some alarms have no axis. Whichever axis shows one, the others behind the same slave must not go on; those that show it too
 // stop by themselves.
 void Machine::Impl::stop_axes_of_faulted_drives() noexcept {
-    for (std::size_t i = 0; i < axes.size(); ++i) {
-        const auto alarm = ports[i]->alarm();
-        if (!alarm.whole_drive || alarm.warning) continue;
-        for (std::size_t other = 0; other < axes.size(); ++other)
-            if (other != i && axis_slave[other] == axis_slave[i] && ports[other]->alarm().code == 0)
-                axes[other].stop_for_error(axes::id(axes::AxisAlarm::drive_fault), true);
-    }
+    for (const auto& drive : shared_drives)
+        for (const auto faulted : drive) {
+            const auto alarm = ports[faulted]->alarm();
+            if (!alarm.whole_drive || alarm.warning) continue;
+            for (const auto other : drive)
+                if (other != faulted && ports[other]->alarm().code == 0)
+                    axes[other].stop_for_error(axes::id(axes::AxisAlarm::drive_fault), true);
+        }
 }
 
 void Machine::Impl::raise_bus_alarms() noexcept {
