@@ -58,13 +58,17 @@ inline axes::sim::PlantConfig long_table() {
     return plant;
 }
 
+/// What no profile says because it depends on the motor: its highest speed, how long it bears an overload, what encoder it has.
+using MotorFacts = std::function<void(axes::sim::Personality&)>;
+
 class DriveDesk {
 public:
     /// Powered, in PREOP.
-    explicit DriveDesk(const std::string& name, const axes::sim::PlantConfig& plant = long_table(), Duration cycle_time = 1ms)
+    explicit DriveDesk(const std::string& name, const axes::sim::PlantConfig& plant = long_table(), Duration cycle_time = 1ms,
+                       const MotorFacts& motor = {})
         : drive(drive_of_file(name)),
           dictionary(*drive.device),
-          device(*drive.profile, setups(*drive.profile, plant)),
+          device(*drive.profile, setups(*drive.profile, plant, motor)),
           server_(*drive.device, dictionary, device),
           cycle_(cycle_time) {
         device.power_on(dictionary, now);
@@ -193,9 +197,11 @@ public:
     bool frames = true, sync0 = true;  ///< what the bus brings each cycle
 
 private:
-    static std::vector<axes::sim::Cia402Device::AxisSetup> setups(const axes::DriveProfile& profile, const axes::sim::PlantConfig& plant) {
-        return std::vector<axes::sim::Cia402Device::AxisSetup>(profile.axes,
-                                                               {plant, axes::sim::personality_of(profile, plant.counts_per_revolution)});
+    static std::vector<axes::sim::Cia402Device::AxisSetup> setups(const axes::DriveProfile& profile, const axes::sim::PlantConfig& plant,
+                                                                  const MotorFacts& motor) {
+        auto personality = axes::sim::personality_of(profile, plant.counts_per_revolution);
+        if (motor) motor(personality);
+        return std::vector<axes::sim::Cia402Device::AxisSetup>(profile.axes, {plant, personality});
     }
     std::uint32_t outcome(std::span<const std::byte> request, std::size_t size, std::span<std::byte> answer) {
         const auto length = server_.serve(request.first(size), answer, state, now);
@@ -211,8 +217,9 @@ private:
 /// One that is in OP from the start.
 class RunningDesk : public DriveDesk {
 public:
-    explicit RunningDesk(const std::string& name, const axes::sim::PlantConfig& plant = long_table(), Duration cycle_time = 1ms)
-        : DriveDesk(name, plant, cycle_time) {
+    explicit RunningDesk(const std::string& name, const axes::sim::PlantConfig& plant = long_table(), Duration cycle_time = 1ms,
+                         const MotorFacts& motor = {})
+        : DriveDesk(name, plant, cycle_time, motor) {
         go_operational();
         run(2);
     }
