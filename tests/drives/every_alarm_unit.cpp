@@ -107,6 +107,11 @@ TEST_P(EveryAlarm, ShowsItsNumbersStopsTheMotorOrWarnsAndClearsAsListed) {
     }
 }
 
+TEST(EveryAlarmOfNoList, IsNotProvoked) {
+    MovingDesk desk{"sv33-e"};
+    EXPECT_FALSE(desk.axis().provoke("E.999"));
+}
+
 // TSVM 7.1: common alarms "have no axis number"; each axis leaves Fault by a reset of its own (5.3.1, transition 15).
 TEST(EveryAlarmOfAllAxes, IsResetAxisByAxis) {
     MovingDesk desk{"tsvm-d6"};
