@@ -11,7 +11,8 @@ namespace taktwerk::runtime {
 namespace {
 
 std::string drive_of(const AxisBinding& axis) {
-    return axis.slave.empty() ? axis.profile->name : fmt::format("{} '{}'", axis.profile->name, axis.slave);
+    const auto& name = axis.slave.empty() ? axis.drive : axis.slave;
+    return name.empty() ? axis.profile->name : fmt::format("{} '{}'", axis.profile->name, name);
 }
 
 }  // namespace

@@ -117,7 +117,15 @@ void Machine::Impl::stop_axes_of_faulted_drives() noexcept {
 void Machine::Impl::raise_bus_alarms() noexcept {
     std::array<AlarmFact, AlarmLog::capacity> facts;
     const auto count = bus.active_faults(facts);
-    for (std::size_t i = 0; i < count; ++i) raise_fact(facts[i], ecat::bus_alarms);
+    // A drive's emergency repeats by its number what its axis says in the words of the drive's manual.
+    const auto told_by_an_axis = [this](const AlarmFact& fact) {
+        if (fact.id != ecat::alarm::slave_emergency) return false;
+        for (std::size_t axis = 0; axis < axes.size(); ++axis)
+            if (axis_slave[axis] == fact.index && ports[axis]->alarm().code == static_cast<std::uint16_t>(fact.a)) return true;
+        return false;
+    };
+    for (std::size_t i = 0; i < count; ++i)
+        if (!told_by_an_axis(facts[i])) raise_fact(facts[i], ecat::bus_alarms);
 }
 
 void Machine::Impl::react() noexcept {
