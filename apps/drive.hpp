@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/drive_access.hpp"
+#include "axes/port/find_alarm.hpp"
 #include "config/parameter_set.hpp"
 
 namespace taktwerk::apps {
@@ -41,10 +42,8 @@ struct Written {
 [[nodiscard]] Json change_json(const Change& change);
 [[nodiscard]] Json parameter_json(const axes::DriveParameter& parameter);
 
-/// The row of the profile for what the drive shows; nothing: the code is unknown.
-[[nodiscard]] const axes::DriveAlarmText* find_alarm(const axes::DriveProfile& profile, std::uint16_t code,
-                                                     std::optional<std::uint32_t> detail);
-[[nodiscard]] std::string alarm_text(const std::string& subject, std::uint16_t code, std::optional<std::uint32_t> detail,
-                                     const axes::DriveAlarmText* alarm, Colours colours);
+/// What stands on the drive, in its manual's words; code 0: no alarm.
+[[nodiscard]] std::string alarm_text(const std::string& subject, const axes::DriveProfile& profile, const axes::ShownAlarm& alarm,
+                                     Colours colours);
 
 }  // namespace taktwerk::apps

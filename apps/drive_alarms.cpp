@@ -4,6 +4,7 @@
 
 #include "apps/drive.hpp"
 #include "apps/exit_code.hpp"
+#include "axes/port/alarm_words.hpp"
 #include "axes/port/parameter_text.hpp"
 
 namespace taktwerk::apps {
@@ -13,35 +14,28 @@ namespace {
 constexpr axes::ParameterAddress error_code{0x603F, 0};
 constexpr Duration reset_patience = std::chrono::seconds{3};  // several attempts of the port
 
-struct Present {
-    std::uint16_t code = 0;
-    std::optional<std::uint32_t> detail;
-    const axes::DriveAlarmText* alarm = nullptr;
-};
-
 std::uint64_t number(const std::vector<std::byte>& bytes) {
     std::uint64_t out = 0;
     for (std::size_t i = 0; i < bytes.size() && i < 8; ++i) out |= std::to_integer<std::uint64_t>(bytes[i]) << (8 * i);
     return out;
 }
 
-Result<Present> read_alarm(DriveAccess& drive) {
+Result<axes::ShownAlarm> read_alarm(DriveAccess& drive) {
     const auto& profile = drive.profile();
     const auto code = drive.read_bytes(error_code);
     if (!code) return code.error();
-    Present out;
+    axes::ShownAlarm out;
     out.code = static_cast<std::uint16_t>(number(*code));
     if (out.code != 0 && profile.alarm_detail_index != 0)
         if (const auto detail = drive.read_bytes({profile.alarm_detail_index, profile.alarm_detail_sub}))
             out.detail = static_cast<std::uint32_t>(number(*detail));
-    if (out.code != 0) out.alarm = find_alarm(profile, out.code, out.detail);
     return out;
 }
 
-Json alarm_json(const DriveAccess& drive, const Present& present) {
-    Json out{{"drive", drive.subject()}, {"code", present.code}};
-    if (present.detail) out["detail"] = *present.detail;
-    if (const auto* alarm = present.alarm) {
+Json alarm_json(const DriveAccess& drive, const axes::ShownAlarm& shown) {
+    Json out{{"drive", drive.subject()}, {"code", shown.code}};
+    if (shown.detail) out["detail"] = *shown.detail;
+    if (const auto* alarm = axes::find_alarm(drive.profile(), shown).row; alarm && shown.code != 0) {
         out["panel"] = alarm->panel;
         out["english"] = alarm->english;
         out["chinese"] = alarm->chinese;
@@ -58,7 +52,7 @@ int alarms(const DriveOptions& options) {
         const auto present = read_alarm(drive);
         if (!present) return fail(*options.bus, present.error());
         if (options.bus->json) print_json(alarm_json(drive, *present));
-        else fmt::print("{}", alarm_text(drive.subject(), present->code, present->detail, present->alarm, colours_of_output()));
+        else fmt::print("{}", alarm_text(drive.subject(), drive.profile(), *present, colours_of_output()));
         return static_cast<int>(exit_ok);
     });
 }
@@ -72,7 +66,7 @@ int reset(const DriveOptions& options) {
             else fmt::print("{}: no alarm, nothing to reset\n", drive.subject());
             return static_cast<int>(exit_ok);
         }
-        const auto* alarm = before->alarm;
+        const auto* alarm = axes::find_alarm(drive.profile(), *before).row;
         const auto name = alarm ? fmt::format("{} {}", alarm->panel, alarm->english) : fmt::format("603Fh = {:04X}h", before->code);
         if (alarm && !alarm->resettable)
             return fail(*options.bus, Error{"drive.not_reset", drive.subject(),
@@ -120,32 +114,18 @@ int list(const DriveOptions& options) {
 
 }  // namespace
 
-const axes::DriveAlarmText* find_alarm(const axes::DriveProfile& profile, std::uint16_t code, std::optional<std::uint32_t> detail) {
-    const axes::DriveAlarmText* by_code = nullptr;
-    for (const auto& alarm : profile.alarms) {
-        if (alarm.code != code) continue;
-        if (alarm.detail != 0 && detail && alarm.detail == *detail) return &alarm;
-        if (!by_code && (alarm.detail == 0 || !detail)) by_code = &alarm;
-    }
-    return by_code;
-}
-
-std::string alarm_text(const std::string& subject, std::uint16_t code, std::optional<std::uint32_t> detail,
-                       const axes::DriveAlarmText* alarm, Colours colours) {
-    if (code == 0) return subject + ": " + toned("no alarm", Tone::good, colours) + "\n";
-    const auto number = fmt::format("603Fh = {:04X}h{}", code, detail ? fmt::format(", detail {:04X}h", *detail) : "");
-    if (!alarm)
-        return fmt::format("{}: {}\n  {}\n", subject, toned("unknown alarm", Tone::bad, colours),
-                           number + ": not in the drive's alarm list; see its manual");
-    auto out = fmt::format(
-        "{}: {}\n  {}\n", subject,
-        toned(fmt::format("{} {} {}", alarm->panel, alarm->english, alarm->chinese), alarm->warning ? Tone::warning : Tone::bad, colours),
-        number);
-    if (!alarm->cause.empty()) out += "  cause:  " + wrapped(alarm->cause, 10) + "\n";
-    if (!alarm->remedy.empty()) out += "  remedy: " + wrapped(alarm->remedy, 10) + "\n";
-    out += alarm->warning      ? "  a warning: it goes by itself\n"
-           : alarm->resettable ? "  a fault reset (MC_Reset, `taktwerk reset`) clears it when the cause is gone\n"
-                               : "  only switching the drive off and on clears it\n";
+std::string alarm_text(const std::string& subject, const axes::DriveProfile& profile, const axes::ShownAlarm& alarm, Colours colours) {
+    if (alarm.code == 0) return subject + ": " + toned("no alarm", Tone::good, colours) + "\n";
+    const auto* row = axes::find_alarm(profile, alarm).row;
+    const auto words = axes::words(profile, alarm);
+    auto out = fmt::format("{}: {}\n", subject, toned(words.english, row && row->warning ? Tone::warning : Tone::bad, colours));
+    const auto more = [&](std::string_view before, std::string_view text) {
+        if (!text.empty()) out += fmt::format("  {}{}\n", before, wrapped(text, 10));
+    };
+    if (row) more("        ", row->chinese);
+    more("cause:  ", words.cause);
+    more("remedy: ", words.remedy);
+    more("reset:  ", words.reset);
     return out;
 }
 

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "apps/json_text.hpp"
+#include "axes/axis/alarms.hpp"
 
 namespace taktwerk::apps {
 
@@ -30,6 +31,12 @@ std::string_view text(ProgramState state) {
     return "stopped";
 }
 
+/// What a drive itself announces, by its number and the detail of it.
+bool of_a_drive(const AlarmFact& fact) {
+    return fact.source == AlarmSource::axis &&
+           (fact.id == axes::id(axes::AxisAlarm::drive_fault) || fact.id == axes::id(axes::AxisAlarm::drive_warning));
+}
+
 }  // namespace
 
 void MachineLog::say(Instant now, const std::string& event, const std::string& what) {
@@ -39,16 +46,16 @@ void MachineLog::say(Instant now, const std::string& event, const std::string& w
     std::fflush(stdout);
 }
 
-void MachineLog::say_alarm(Instant now, const AlarmText& words) {
+void MachineLog::say_alarm(Instant now, const std::string& event, const AlarmText& words) {
     const auto headline = fmt::format("{}: {} [{}]", words.source, words.english, words.reaction);
     if (json_) {
-        fmt::print("{{\"t\":{:.3f},\"event\":\"ALARM\",\"text\":{},\"name\":{},\"chinese\":{},\"cause\":{},\"remedy\":{},\"reset\":{}}}\n",
-                   to_seconds(now - start_), json_text(headline), json_text(words.name), json_text(words.chinese), json_text(words.cause),
-                   json_text(words.remedy), json_text(words.reset));
+        fmt::print("{{\"t\":{:.3f},\"event\":{},\"text\":{},\"name\":{},\"chinese\":{},\"cause\":{},\"remedy\":{},\"reset\":{}}}\n",
+                   to_seconds(now - start_), json_text(event), json_text(headline), json_text(words.name), json_text(words.chinese),
+                   json_text(words.cause), json_text(words.remedy), json_text(words.reset));
         std::fflush(stdout);
         return;
     }
-    say(now, "ALARM", headline);
+    say(now, event, headline);
     const auto more = [](std::string_view before, const std::string& text) {
         if (!text.empty()) fmt::print("{:13}{:<9} {}{}\n", "", "", before, text);
     };
@@ -66,19 +73,24 @@ void MachineLog::alarms(Instant now, const Snapshot& s) {
         Known* known = nullptr;
         for (auto& k : known_)
             if (same(k.fact, alarm.fact)) known = &k;
-        // The detail of a drive's alarm is read after the fault: then its words are the right ones.
-        const bool told_more = known && alarm.fact.source == AlarmSource::axis && known->fact.b == 0 && alarm.fact.b != 0 &&
-                               machine_.describe(alarm.fact).name == "drive_fault";
-        const bool is_new = !known || (alarm.standing && !known->standing) || alarm.count != known->count || told_more;
+        const bool is_new = !known || (alarm.standing && !known->standing) || alarm.count != known->count;
+        const bool other_numbers = known && (known->fact.a != alarm.fact.a || known->fact.b != alarm.fact.b);
         if (!known) {
             known_.push_back({});
             known = &known_.back();
         }
-        *known = {alarm.fact, alarm.standing, alarm.count};
-        if (!is_new || !alarm.standing) continue;
+        const auto before = known->fact;
+        known->fact = alarm.fact;
+        known->standing = alarm.standing;
+        known->count = alarm.count;
+        if (!alarm.standing || !(is_new || (other_numbers && of_a_drive(alarm.fact)))) continue;
         const auto words = machine_.describe(alarm.fact);
         if (words.name == "stopped_by_signal") continue;  // whoever ends the run knows it
-        say_alarm(now, words);
+        // The alarm is announced at once, with its code. Where several alarms of the drive share that code, the detail that tells them apart
+        // is read some milliseconds later and completes it; where the code said all, the words are the same and nothing is said.
+        if (!is_new && words.english == known->said) continue;
+        known->said = words.english;
+        say_alarm(now, !is_new && (before.a == alarm.fact.a || before.a == 0) ? "detail" : "ALARM", words);
     }
     std::erase_if(known_, [&](const Known& k) {
         for (std::size_t i = 0; i < s.alarm_count; ++i)

@@ -20,12 +20,13 @@ public:
 
 private:
     void alarms(Instant now, const runtime::Snapshot& snapshot);
-    void say_alarm(Instant now, const runtime::AlarmText& words);
+    void say_alarm(Instant now, const std::string& event, const runtime::AlarmText& words);
 
     struct Known {
         AlarmFact fact;
         bool standing = false;
         std::uint32_t count = 0;
+        std::string said;  // in English
     };
     runtime::Machine& machine_;
     Instant start_;

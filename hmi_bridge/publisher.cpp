@@ -71,6 +71,7 @@ struct AlarmMark {
     std::uint16_t index = 0;
     std::uint32_t count = 0;
     bool standing = false, acknowledged = false;
+    double number = 0, detail = 0;  // of an axis: what makes the text of a drive's alarm complete; others change each cycle
     friend bool operator==(const AlarmMark&, const AlarmMark&) = default;
 };
 
@@ -361,7 +362,9 @@ bool Publisher::Impl::alarms_changed(const runtime::Snapshot& s) {
     present_alarms.clear();
     for (std::size_t i = 0; i < s.alarm_count && i < s.alarms.size(); ++i) {
         const auto& a = s.alarms[i];
-        present_alarms.push_back({a.fact.id, a.fact.source, a.fact.index, a.count, a.standing, a.acknowledged});
+        const bool of_axis = a.fact.source == AlarmSource::axis;
+        present_alarms.push_back(
+            {a.fact.id, a.fact.source, a.fact.index, a.count, a.standing, a.acknowledged, of_axis ? a.fact.a : 0, of_axis ? a.fact.b : 0});
     }
     if (present_alarms == shown_alarms) return false;
     shown_alarms = present_alarms;

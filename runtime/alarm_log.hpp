@@ -20,8 +20,8 @@ public:
     static constexpr std::size_t capacity = 64;
 
     void begin_cycle() noexcept;
-    /// The condition holds in this cycle. `reaction` and `reset` come from the table of the fact's floor. The two numbers kept are
-    /// those of the moment it began to hold.
+    /// The condition holds in this cycle. `reaction` and `reset` come from the table of the fact's floor. The two numbers are those of the
+    /// newest cycle in which it held: they may follow the condition, and a drive tells the detail of an alarm later.
     void raise(const AlarmFact& fact, Reaction reaction, ResetRule reset, Instant now) noexcept;
     void end_cycle(Instant now) noexcept;
 

@@ -48,6 +48,14 @@ ecat::BusConfig bus_of(const MachineConfig& config) {
     return bus;
 }
 
+std::vector<std::vector<std::size_t>> drives_of_several_axes(const std::vector<std::size_t>& axis_slave, std::size_t slaves) {
+    std::vector<std::vector<std::size_t>> out(slaves);
+    for (std::size_t axis = 0; axis < axis_slave.size(); ++axis)
+        if (axis_slave[axis] != no_slave) out[axis_slave[axis]].push_back(axis);
+    std::erase_if(out, [](const auto& drive) { return drive.size() < 2; });
+    return out;
+}
+
 }  // namespace
 
 std::string_view name(Step step) noexcept { return step_names[static_cast<std::size_t>(step)]; }
@@ -90,6 +98,7 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, const std
         axis_config.stale_limit = static_cast<std::uint16_t>(std::min<std::uint32_t>(limit(axis_config.stale_limit), 60000));
         axes.emplace_back(axis_config, *ports.back(), config.cycle, static_cast<std::uint16_t>(i), &views[i]);
     }
+    shared_drives = drives_of_several_axes(axis_slave, bus.slave_count());
     if (!config.retain.empty()) {
         positions = std::make_unique<PositionKeeper>(config.retain, config.axes);
         positions->restore(axes);

@@ -116,8 +116,9 @@ struct Machine::Impl {
     std::vector<WatchdogOutput> watchdog_outputs;
     axes::MotionTables tables;
     std::vector<axes::Axis> axes;
-    std::vector<axes::AxisView> views;    // where the axes keep theirs; what programs read
-    std::vector<std::size_t> axis_slave;  // index in the bus configuration; npos for virtual axes
+    std::vector<axes::AxisView> views;                    // where the axes keep theirs; what programs read
+    std::vector<std::size_t> axis_slave;                  // index in the bus configuration; npos for virtual axes
+    std::vector<std::vector<std::size_t>> shared_drives;  // the axes of each slave that carries more than one
     std::vector<AxisPower> operator_power;
     axes::DirectRequests requests;  // of base tasks and operators
     std::unique_ptr<ProgramHost> host;

@@ -104,19 +104,28 @@ void Machine::Impl::supervise(Instant, const CycleTick& tick) noexcept {
 // TSVM 7.1: some alarms have no axis. Whichever axis shows one, the others behind the same slave must not go on; those that show it too
 // stop by themselves.
 void Machine::Impl::stop_axes_of_faulted_drives() noexcept {
-    for (std::size_t i = 0; i < axes.size(); ++i) {
-        const auto alarm = ports[i]->alarm();
-        if (!alarm.whole_drive || alarm.warning) continue;
-        for (std::size_t other = 0; other < axes.size(); ++other)
-            if (other != i && axis_slave[other] == axis_slave[i] && ports[other]->alarm().code == 0)
-                axes[other].stop_for_error(axes::id(axes::AxisAlarm::drive_fault), true);
-    }
+    for (const auto& drive : shared_drives)
+        for (const auto faulted : drive) {
+            const auto alarm = ports[faulted]->alarm();
+            if (!alarm.whole_drive || alarm.warning) continue;
+            for (const auto other : drive)
+                if (other != faulted && ports[other]->alarm().code == 0)
+                    axes[other].stop_for_error(axes::id(axes::AxisAlarm::drive_fault), true);
+        }
 }
 
 void Machine::Impl::raise_bus_alarms() noexcept {
     std::array<AlarmFact, AlarmLog::capacity> facts;
     const auto count = bus.active_faults(facts);
-    for (std::size_t i = 0; i < count; ++i) raise_fact(facts[i], ecat::bus_alarms);
+    // A drive's emergency repeats by its number what its axis says in the words of the drive's manual.
+    const auto told_by_an_axis = [this](const AlarmFact& fact) {
+        if (fact.id != ecat::alarm::slave_emergency) return false;
+        for (std::size_t axis = 0; axis < axes.size(); ++axis)
+            if (axis_slave[axis] == fact.index && ports[axis]->alarm().code == static_cast<std::uint16_t>(fact.a)) return true;
+        return false;
+    };
+    for (std::size_t i = 0; i < count; ++i)
+        if (!told_by_an_axis(facts[i])) raise_fact(facts[i], ecat::bus_alarms);
 }
 
 void Machine::Impl::react() noexcept {

@@ -125,10 +125,12 @@ AlarmText Machine::describe(const AlarmFact& fact) const {
 
     // A drive's own alarm has its words in the profile.
     const bool fault = fact.id == axes::id(axes::AxisAlarm::drive_fault), warning = fact.id == axes::id(axes::AxisAlarm::drive_warning);
-    if ((fault || warning) && fact.index < m.config.axes.size())
-        tell_drive_alarm(out, m.config.axes[fact.index],
-                         {static_cast<std::uint16_t>(fact.a), fault ? static_cast<std::uint32_t>(fact.b) : 0,
-                          fault ? ReportedAlarm::Kind::fault : ReportedAlarm::Kind::warning});
+    if ((fault || warning) && fact.index < m.config.axes.size()) {
+        axes::ShownAlarm shown{static_cast<std::uint16_t>(fact.a), std::nullopt,
+                               fault ? axes::ShownAlarm::As::fault : axes::ShownAlarm::As::warning};
+        if (fact.b != 0) shown.detail = static_cast<std::uint32_t>(fact.b);  // 0: not read yet, or none
+        tell_drive_alarm(out, m.config.axes[fact.index], shown);
+    }
     return out;
 }
 

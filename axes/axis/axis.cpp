@@ -121,7 +121,13 @@ void Axis::watch_drive() noexcept {
     if (seeded_ && asked && !online()) fail(AxisAlarm::axis_feedback_lost, static_cast<double>(stale_), static_cast<double>(stale_limit_));
     if (!feedback_.fresh || !online()) return;
 
-    if (feedback_.warning) fail(AxisAlarm::drive_warning, feedback_.error_code);
+    // The detail that tells shared codes apart is read beside the cycle and comes later (P21.08 of the SV33-E).
+    const auto announce = [&](AxisAlarm alarm) {
+        const auto detail = port_.alarm().detail;
+        fail(alarm, feedback_.error_code, detail);
+        if (feedback_.error_code != 0) alarms_.renumber(alarm, feedback_.error_code, detail);
+    };
+    if (feedback_.warning) announce(AxisAlarm::drive_warning);
     else alarms_.clear(AxisAlarm::drive_warning);
     if (feedback_.fault || feedback_.warning) {
         const auto kind = port_.alarm().kind;
@@ -129,9 +135,7 @@ void Axis::watch_drive() noexcept {
     }
 
     if (drive_faulted()) {
-        fail(AxisAlarm::drive_fault, feedback_.error_code, port_.alarm().detail);
-        // The detail that tells shared codes apart is read acyclically and comes later (P21.08 of the SV33-E).
-        if (feedback_.error_code != 0) alarms_.renumber(AxisAlarm::drive_fault, feedback_.error_code, port_.alarm().detail);
+        announce(AxisAlarm::drive_fault);
     } else if (asked && feedback_.setup_refused) fail(AxisAlarm::drive_setup_refused);
     else if (asked && feedback_.power == PowerState::unknown) fail(AxisAlarm::drive_unknown_state, feedback_.status_word);
     else if (power_.on() && !drive_homing_.busy() && !mode_changes() && feedback_.mode != wanted_mode())
@@ -173,8 +177,11 @@ void Axis::run_power() noexcept {
             break;
         case PowerSequence::Event::lost:
             abort_homing();
-            // A fault has its own alarm, and in ErrorStop the power may go for reasons already announced.
-            if (view_.state != AxisState::ErrorStop) fail(AxisAlarm::drive_power_lost, static_cast<double>(feedback_.power));
+            // A fault has its own alarm, also between two samples of a drive that is polled; in ErrorStop the power may go for reasons already
+            // announced.
+            if (view_.state == AxisState::ErrorStop) break;
+            if (drive_faulted()) fail(AxisAlarm::drive_fault, feedback_.error_code, port_.alarm().detail);
+            else fail(AxisAlarm::drive_power_lost, static_cast<double>(feedback_.power));
             break;
         case PowerSequence::Event::none:
         case PowerSequence::Event::off: break;

@@ -152,6 +152,7 @@ private:
     void wake_encoder() noexcept;
     void watch_encoder() noexcept;
     void read_encoder() noexcept;
+    [[nodiscard]] bool battery_low() const noexcept;
     [[nodiscard]] bool battery_warns() const noexcept;
     // cia402_profile.cpp
     void take_profile_position(const AxisInputs& in) noexcept;

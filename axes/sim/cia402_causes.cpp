@@ -40,7 +40,8 @@ void Cia402Axis::show_cause(const AlarmRow& row) noexcept {
         if (warnings_.set(row.alarm)) remember(row.alarm);
         return;
     }
-    raise(row.alarm);
+    if (row.alarm.whole_drive) raise_common(row.alarm);
+    else raise(row.alarm);
     // Safe torque off means what it says, whatever the drive does at other faults.
     if (row.kind == DriveAlarmKind::safe_torque_off && state_ == State::fault_reaction) enter(State::fault);
 }
@@ -60,6 +61,7 @@ void Cia402Axis::show_causes() noexcept {
 bool Cia402Axis::cause_lasts() const noexcept {
     for (std::size_t i = 0; i < causes_.size(); ++i)
         if (causes_[i] && shows(personality_.alarms[i].alarm)) return true;
+    if (battery_low() && !personality_.battery_low_alarm.warning && shows(personality_.battery_low_alarm)) return true;
     return encoder_failed_ || encoder_complaint_.code != 0 || (!main_power_ && error_code_ == personality_.undervoltage_alarm.code);
 }
 

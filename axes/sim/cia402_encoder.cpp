@@ -23,6 +23,8 @@ void Cia402Axis::wake_encoder() noexcept {
 }
 
 void Cia402Axis::watch_encoder() noexcept {
+    // Where the manual lists it among the faults it stops the drive (TSVM 7.2, 27; SV-DA200 5.3, Er02-8); SV33-E 5.5 only warns.
+    if (battery_low() && !personality_.battery_low_alarm.warning && state_ != State::not_ready) raise(personality_.battery_low_alarm);
     if (!personality_.absolute_encoder || encoder_complaint_.code != 0 || personality_.turn_overflow_alarm.code == 0) return;
     if (!encoder_.overflowed(plant_.position())) return;
     homed_ = false;
@@ -30,9 +32,11 @@ void Cia402Axis::watch_encoder() noexcept {
     raise_or_warn(encoder_complaint_);
 }
 
-bool Cia402Axis::battery_warns() const noexcept {
+bool Cia402Axis::battery_low() const noexcept {
     return personality_.absolute_encoder && battery_ == Battery::low && personality_.battery_low_alarm.code != 0;
 }
+
+bool Cia402Axis::battery_warns() const noexcept { return battery_low() && personality_.battery_low_alarm.warning; }
 
 void Cia402Axis::reset_encoder() noexcept {
     if (energised()) return;

@@ -88,7 +88,8 @@ Personality personality_of(const DriveProfile& profile, std::int64_t counts_per_
         p.stall_time = std::chrono::milliseconds{200};  // SV33-E P08.18
     }
     for (const auto& row : profile.alarms)
-        p.alarms.push_back({row.panel, {row.code, row.resettable, row.detail}, row.kind, row.warning, row.clears_itself});
+        p.alarms.push_back(
+            {row.panel, {row.code, row.resettable, row.detail, row.warning, row.whole_drive}, row.kind, row.warning, row.clears_itself});
     return p;
 }
 

@@ -28,11 +28,13 @@ AxisBinding axis() {
     return out;
 }
 
+constexpr auto fault = axes::ShownAlarm::As::fault, warning = axes::ShownAlarm::As::warning;
+
 AlarmText general() { return {"axis x", "drive_fault", "general", "一般", "see the manual", "remove it", "the axis stops", "reset"}; }
 
 TEST(DriveAlarmWords, NameDrivePanelAlarmInBothLanguagesCauseRemedyAndReset) {
     auto text = general();
-    tell_drive_alarm(text, axis(), {0x7500, 0x13, ReportedAlarm::Kind::fault});
+    tell_drive_alarm(text, axis(), {0x7500, 0x13, fault});
     EXPECT_EQ(text.source, "axis x");
     EXPECT_EQ(text.name, "drive_fault");
     EXPECT_EQ(text.english, "a-1 'x_drive' reports fault 7500h/13h, panel E.013: interrupt");
@@ -44,21 +46,25 @@ TEST(DriveAlarmWords, NameDrivePanelAlarmInBothLanguagesCauseRemedyAndReset) {
 
 TEST(DriveAlarmWords, SayWhatMcResetCannotClear) {
     auto text = general();
-    tell_drive_alarm(text, axis(), {0x7500, 0x12, ReportedAlarm::Kind::fault});
+    tell_drive_alarm(text, axis(), {0x7500, 0x12, fault});
     EXPECT_EQ(text.english, "a-1 'x_drive' reports fault 7500h/12h, panel E.012: firmware");
     EXPECT_EQ(text.reset, "MC_Reset cannot clear it: switch the drive off and on");
 }
 
-// The detail is read by SDO after the fault: until then the first row of the code speaks.
-TEST(DriveAlarmWords, TakeTheFirstRowOfTheCodeUntilTheDetailIsRead) {
+// The detail is read by SDO after the fault: until then it can be either, and neither cause nor remedy is claimed.
+TEST(DriveAlarmWords, NameAllThatItCanBeUntilTheDetailIsRead) {
     auto text = general();
-    tell_drive_alarm(text, axis(), {0x7500, 0, ReportedAlarm::Kind::fault});
-    EXPECT_EQ(text.english, "a-1 'x_drive' reports fault 7500h, panel E.012: firmware");
+    tell_drive_alarm(text, axis(), {0x7500, std::nullopt, fault});
+    EXPECT_EQ(text.english, "a-1 'x_drive' reports fault 7500h, panel E.012 or E.013");
+    EXPECT_EQ(text.chinese, "a-1 'x_drive' 报告故障 7500h,面板 E.012 或 E.013");
+    EXPECT_EQ(text.cause, "see the manual");
+    EXPECT_EQ(text.remedy, "remove it");
+    EXPECT_EQ(text.reset, "MC_Reset clears some of these, others only switching the drive off and on");
 }
 
 TEST(DriveAlarmWords, OfAWarningGoWithItsCause) {
     auto text = general();
-    tell_drive_alarm(text, axis(), {0x5443, 0, ReportedAlarm::Kind::warning});
+    tell_drive_alarm(text, axis(), {0x5443, std::nullopt, warning});
     EXPECT_EQ(text.english, "a-1 'x_drive' reports warning 5443h, panel A.220: positive limit");
     EXPECT_EQ(text.chinese, "a-1 'x_drive' 报告警告 5443h,面板 A.220:正向超程");
     EXPECT_EQ(text.reset, "goes with its cause");
@@ -66,7 +72,7 @@ TEST(DriveAlarmWords, OfAWarningGoWithItsCause) {
 
 TEST(DriveAlarmWords, SayThatAllAxesOfADriveAreConcernedAndKeepWhatTheRowLeavesOut) {
     auto text = general();
-    tell_drive_alarm(text, axis(), {0x8311, 0, ReportedAlarm::Kind::fault});
+    tell_drive_alarm(text, axis(), {0x8311, std::nullopt, fault});
     EXPECT_EQ(text.english, "a-1 'x_drive' reports fault 8311h: overload (all axes of the drive)");
     EXPECT_EQ(text.cause, "see the manual");
     EXPECT_EQ(text.remedy, "remove it");
@@ -74,15 +80,15 @@ TEST(DriveAlarmWords, SayThatAllAxesOfADriveAreConcernedAndKeepWhatTheRowLeavesO
 
 TEST(DriveAlarmWords, OfANumberThatNobodyListsStillNameDriveAndNumber) {
     auto text = general();
-    tell_drive_alarm(text, axis(), {0x1234, 0, ReportedAlarm::Kind::fault});
-    EXPECT_EQ(text.english, "a-1 'x_drive' reports fault 1234h");
+    tell_drive_alarm(text, axis(), {0x1234, std::nullopt, fault});
+    EXPECT_EQ(text.english, "a-1 'x_drive' reports fault 1234h, not in the drive's alarm list");
     EXPECT_EQ(text.cause, "see the manual");
     EXPECT_EQ(text.reset, "MC_Reset tries to clear it; the drive's list does not name this number");
 }
 
 TEST(DriveAlarmWords, StayGeneralWithoutAProfile) {
     auto text = general();
-    tell_drive_alarm(text, {}, {0x7500, 0, ReportedAlarm::Kind::fault});
+    tell_drive_alarm(text, {}, {0x7500, std::nullopt, fault});
     EXPECT_EQ(text.english, "general");
     EXPECT_EQ(text.reset, "reset");
 }

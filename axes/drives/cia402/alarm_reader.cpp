@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "axes/port/find_alarm.hpp"
+
 namespace taktwerk::axes::cia402 {
 
 void AlarmReader::note(bool present, std::uint16_t code, bool warning) noexcept {
@@ -27,7 +29,10 @@ void AlarmReader::note(bool present, std::uint16_t code, bool warning) noexcept 
         wanted_.store(request_, std::memory_order_release);
         return;
     }
-    alarm_.warning = warning;
+    if (alarm_.warning != warning) {
+        alarm_.warning = warning;
+        look_up();
+    }
     if (alarm_.detail_known || request_ == 0) return;
     const auto answer = answer_.load(std::memory_order_acquire);
     if (static_cast<std::uint32_t>(answer >> 32) != request_) return;
@@ -36,31 +41,15 @@ void AlarmReader::note(bool present, std::uint16_t code, bool warning) noexcept 
     look_up();
 }
 
-// Only when the alarm changes; the table is bounded (a few hundred rows).
+// Only when what the drive shows changes. As long as alarms share the code and the detail is not read, it can be any of them.
 void AlarmReader::look_up() noexcept {
-    alarm_.entry = -1;
-    alarm_.resettable = true;
-    alarm_.kind = DriveAlarmKind::other;
-    const bool pending = request_ != 0 && !alarm_.detail_known;
-    bool any_resettable = false;
-    for (std::size_t i = 0; i < profile_.alarms.size(); ++i) {
-        const auto& row = profile_.alarms[i];
-        if (row.code != alarm_.code) continue;
-        const bool exact = alarm_.detail_known && row.detail == alarm_.detail;
-        any_resettable = any_resettable || row.resettable;
-        if (alarm_.entry < 0 || exact) {
-            alarm_.entry = static_cast<std::int32_t>(i);
-            // Alarms that share a code may differ in this: as long as one of them clears, a reset is worth the attempt.
-            alarm_.resettable = exact ? row.resettable : any_resettable;
-            alarm_.whole_drive = row.whole_drive;
-            alarm_.kind = row.kind;
-        } else {
-            alarm_.resettable = any_resettable;
-            // Alarms that share a code mean different things: which one it is, is known with the detail only.
-            if (pending && row.kind != alarm_.kind) alarm_.kind = DriveAlarmKind::other;
-        }
-        if (exact) break;
-    }
+    ShownAlarm shown{alarm_.code, std::nullopt, alarm_.warning ? ShownAlarm::As::warning : ShownAlarm::As::fault};
+    if (alarm_.detail_known) shown.detail = alarm_.detail;
+    const auto found = find_alarm(profile_, shown);
+    alarm_.entry = found.row ? static_cast<std::int32_t>(found.row - profile_.alarms.data()) : -1;
+    alarm_.resettable = found.resettable;
+    alarm_.whole_drive = found.whole_drive;
+    alarm_.kind = found.kind;
 }
 
 void AlarmReader::step(ecat::Master& bus, std::size_t slave) {

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "axes/port/find_alarm.hpp"
+
 namespace taktwerk::axes::xp200 {
 
 namespace {
@@ -113,13 +115,13 @@ DriveAlarm Xp200Drive::alarm() const noexcept {
     DriveAlarm alarm;
     alarm.code = newest_.alarm;
     alarm.detail_known = true;
-    const auto& rows = config_.profile->alarms;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        if (rows[i].code != alarm.code) continue;
-        alarm.entry = static_cast<std::int32_t>(i);
-        alarm.resettable = rows[i].resettable;
-        alarm.kind = rows[i].kind;
-    }
+    if (alarm.code == 0) return alarm;
+    const auto& profile = *config_.profile;
+    const auto found = find_alarm(profile, {alarm.code, std::nullopt, ShownAlarm::As::fault});
+    if (found.row) alarm.entry = static_cast<std::int32_t>(found.row - profile.alarms.data());
+    alarm.resettable = found.resettable;
+    alarm.whole_drive = found.whole_drive;
+    alarm.kind = found.kind;
     return alarm;
 }
 

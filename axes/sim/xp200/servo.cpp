@@ -42,7 +42,7 @@ void Servo::power_on(Instant now) noexcept {
     state_ = State::starting;
     ready_at_ = now + options_.start_up;
     zero_ = plant_.position();  // incremental: it counts from where it wakes up (1.3, not stated)
-    alarm_ = torn_save_ ? 20 : 0;
+    alarm_ = torn_save_ ? 20 : cause_;
     torn_save_ = encoder_broken_ = port_enable_ = clear_was_on_ = false;
     raw_command_ = 0;
     heat_ = peak_ = 0;
@@ -174,6 +174,7 @@ void Servo::raise(std::uint16_t alarm) noexcept {
 }
 
 void Servo::clear_alarm() noexcept {
+    if (alarm_ == cause_) return;
     for (const auto& [code, clearable] : clearable_)
         if (code == alarm_ && !clearable) return;
     alarm_ = 0;

@@ -54,6 +54,9 @@ public:
     [[nodiscard]] Inputs& inputs() noexcept { return inputs_; }
     [[nodiscard]] bool output(int terminal) const noexcept;  ///< DO1 (0) to DO4 (3) conducts
     void raise(std::uint16_t alarm) noexcept;
+    /// The cause of an alarm is there until it is released: cleared or switched off and on before, the alarm comes again at once.
+    void provoke(std::uint16_t alarm) noexcept { raise(cause_ = alarm); }
+    void release() noexcept { cause_ = 0; }
     void undervoltage() noexcept { raise(3); }
     /// The encoder shows the same position for ever after, until power_on().
     void break_encoder() noexcept;
@@ -104,7 +107,7 @@ private:
     Instant now_{}, ready_at_{}, saving_until_{};
     bool save_pending_ = false, torn_save_ = false;
     bool port_enable_ = false, current_on_ = false, clear_was_on_ = false;
-    std::uint16_t alarm_ = 0;
+    std::uint16_t alarm_ = 0, cause_ = 0;
 
     double zero_ = 0;    // plant position where the counter is 0
     double ramped_ = 0;  // r/min
