@@ -1,14 +1,30 @@
 #pragma once
-// The simulated drive of a drive file on a desk: its dictionary, its SDO server and its model, without slave controller and cable. A test
-// reads and writes objects as the manual's pages say: sdo() with the messages of CoE, pdo() as process data in OP does.
+// The simulated drive of a drive file on a desk: its dictionary, its SDO server and its model, in virtual time, without slave controller,
+// cable and master. For the worked examples of manuals, which are written as "write 6060h = 1, 6040h = 31, watch 6041h". Ranges, access
+// rights, behaviour and alarms are the file's and the simulator's; expectations belong into the test, with the manual's section.
+//
+//     DriveDesk desk{"sv33-e"};                            // config/drives/sv33-e.yaml; powered, in PREOP, 1 ms a cycle
+//     ASSERT_EQ(desk.sdo(0x6081, 0, 100000), 0u);          // by the messages of CoE: 0 or the abort code
+//     desk.go_operational();
+//     desk.pdo(0x6060, 1);                                 // as an RxPDO would: no checks, taken at the next cycle
+//     desk.enable();                                       // 6 - 7 - 15, with the targets at the actual position
+//     desk.pdo(0x607A, 50000);
+//     desk.control(31);
+//     EXPECT_TRUE(desk.status() & 0x1000);                 // 6041h
+//     EXPECT_TRUE(desk.run_until([&] { return desk.status() & 0x0400; }, 2s));
+//     desk.axis().fail(Failure::overload);                 // what may happen to it: Cia402Axis
+//
+// Further axes of a drive are reached by their own object numbers (TSVM: 6840h) and axis(1).
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <memory>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -31,19 +47,33 @@ inline const config::LoadedDrive& drive_of_file(const std::string& name) {
     return known != read.end() ? known->second : read.emplace(name, config::drive(name)).first->second;
 }
 
+/// 10000 counts a turn, no limit in the way, a little friction.
+inline axes::sim::PlantConfig long_table() {
+    axes::sim::PlantConfig plant;
+    plant.counts_per_revolution = 10000;
+    plant.negative_limit = -1e9;
+    plant.positive_limit = 1e9;
+    plant.home_from = 1e9;
+    plant.home_to = 2e9;
+    return plant;
+}
+
 class DriveDesk {
 public:
     /// Powered, in PREOP.
-    DriveDesk(const std::string& name, const axes::sim::PlantConfig& plant, Duration cycle = 1ms)
+    explicit DriveDesk(const std::string& name, const axes::sim::PlantConfig& plant = long_table(), Duration cycle_time = 1ms)
         : drive(drive_of_file(name)),
           dictionary(*drive.device),
           device(*drive.profile, setups(*drive.profile, plant)),
           server_(*drive.device, dictionary, device),
-          cycle_(cycle) {
+          cycle_(cycle_time) {
         device.power_on(dictionary, now);
         enter(EsmState::preop);
     }
+    DriveDesk(const DriveDesk&) = delete;
+    DriveDesk& operator=(const DriveDesk&) = delete;
 
+    // --- objects ----------------------------------------------------------------------------------------------------------
     /// Abort code; 0: written. The value goes with the size of the object.
     std::uint32_t sdo(std::uint16_t index, std::uint8_t sub, std::int64_t value) {
         const auto* entry = dictionary.find(index, sub);
@@ -70,14 +100,24 @@ public:
         const unsigned unused = 64u - entry->bits();
         return entry->is_signed() ? static_cast<std::int64_t>(raw << unused) >> unused : static_cast<std::int64_t>(raw);
     }
-    /// Process data from the master; counts in OP.
-    void pdo(std::uint16_t index, std::int64_t value) { dictionary.find(index, 0)->set(value); }
+    [[nodiscard]] bool has(std::uint16_t index, std::uint8_t sub = 0) { return dictionary.find(index, sub) != nullptr; }
+    /// An RxPDO's value: the low bits that the object holds, taken at the next cycle.
+    void pdo(std::uint16_t index, std::int64_t value, std::uint8_t sub = 0) {
+        auto* entry = dictionary.find(index, sub);
+        if (!entry) throw std::out_of_range("the drive has no object " + std::to_string(index) + ':' + std::to_string(sub));
+        entry->set(value);
+    }
 
-    void enter(EsmState next) {
+    // --- bus --------------------------------------------------------------------------------------------------------------
+    /// What an empty mapping or an unfit cycle would make of it the drive decides: AL status code, 0 accepts.
+    [[nodiscard]] std::uint16_t refuses(EsmState next) {
         ecat::sim::SyncSettings settings;
-        settings.sync0_active = true;
+        settings.sync0_active = sync0;
         settings.sync0_cycle = cycle_;
-        ASSERT_EQ(device.refuse(state, next, settings), 0);
+        return device.refuse(state, next, settings);
+    }
+    void enter(EsmState next) {
+        ASSERT_EQ(refuses(next), 0);
         state = next;
         device.entered(next, now);
     }
@@ -85,18 +125,6 @@ public:
         enter(EsmState::safeop);
         run(1ms);
         enter(EsmState::op);
-    }
-    void run(Duration length) {
-        for (const Instant end = now + length; now < end;) {
-            now += cycle_;
-            device.advance(now);
-            device.exchange(now);
-        }
-    }
-    /// Writes the control word and gives the drive two cycles.
-    void control(std::uint16_t word) {
-        pdo(0x6040, word);
-        run(2 * cycle_);
     }
     /// The control supply goes and comes; afterwards PREOP.
     void power_cycle() {
@@ -109,23 +137,65 @@ public:
         enter(EsmState::preop);
     }
 
-    [[nodiscard]] std::uint16_t status() { return static_cast<std::uint16_t>(read(0x6041)); }
-    /// State bits of the status word, CiA 402-2: 21h ready, 23h switched on, 27h enabled, 08h fault, 40h disabled.
+    // --- time -------------------------------------------------------------------------------------------------------------
+    void cycle() {
+        now += cycle_;
+        device.advance(now);
+        if (state == EsmState::op) device.exchange_due({.outputs = frames, .sync0 = sync0});
+        device.exchange(now);
+    }
+    void run(int cycles) {
+        for (int i = 0; i < cycles; ++i) cycle();
+    }
+    void run(Duration length) {
+        for (const Instant end = now + length; now < end;) cycle();
+    }
+    /// False: `patience` went by.
+    template <typename Condition>
+    bool run_until(Condition condition, Duration patience) {
+        for (const auto end = now + patience; now < end; cycle())
+            if (condition()) return true;
+        return condition();
+    }
+    /// Writes the control word and runs.
+    void control(std::uint16_t word, int cycles = 3) {
+        pdo(0x6040, word);
+        run(cycles);
+    }
+    /// 6 - 7 - 15 for the first axis; then as long as its brake needs.
+    void enable() {
+        control(6);
+        control(7);
+        pdo(0x607A, position());
+        control(15);
+        run(drive.profile->brake_release);
+    }
+
+    [[nodiscard]] unsigned status() { return static_cast<unsigned>(read(0x6041)) & 0xFFFFu; }
+    [[nodiscard]] bool status_bit(unsigned n) { return (status() >> n & 1u) != 0; }
+    /// State bits of the status word, CiA 402-2: 21h ready, 23h switched on, 27h enabled, 07h quick stop, 08h fault, 40h disabled.
     [[nodiscard]] unsigned power_state() {
         const unsigned word = status();
         return (word & 0x40u) != 0 ? word & 0x4Fu : word & 0x6Fu;
     }
-    [[nodiscard]] axes::sim::Cia402Axis& axis() { return device.axis(0); }
+    [[nodiscard]] bool enabled() { return (status() & 0x6Fu) == 0x27u; }
+    [[nodiscard]] bool faulted() { return (status() & 0x4Fu) == 0x08u; }
+    [[nodiscard]] std::int64_t position() { return read(0x6064); }
+    [[nodiscard]] axes::sim::Cia402Axis& axis(std::size_t n = 0) { return device.axis(n); }
+    /// Of the motor, counts/s: whatever unit 606Ch shows it in.
+    [[nodiscard]] double speed() { return axis().plant().velocity(); }
 
     config::LoadedDrive drive;
     ecat::sim::ObjectDictionary dictionary;
     axes::sim::Cia402Device device;
     EsmState state = EsmState::init;
     Instant now{};
+    bool frames = true, sync0 = true;  ///< what the bus brings each cycle
 
 private:
     static std::vector<axes::sim::Cia402Device::AxisSetup> setups(const axes::DriveProfile& profile, const axes::sim::PlantConfig& plant) {
-        return {profile.axes, {plant, axes::sim::personality_of(profile, plant.counts_per_revolution)}};
+        return std::vector<axes::sim::Cia402Device::AxisSetup>(profile.axes,
+                                                               {plant, axes::sim::personality_of(profile, plant.counts_per_revolution)});
     }
     std::uint32_t outcome(std::span<const std::byte> request, std::size_t size, std::span<std::byte> answer) {
         const auto length = server_.serve(request.first(size), answer, state, now);
@@ -136,6 +206,16 @@ private:
 
     ecat::sim::SdoServer server_;
     Duration cycle_;
+};
+
+/// One that is in OP from the start.
+class RunningDesk : public DriveDesk {
+public:
+    explicit RunningDesk(const std::string& name, const axes::sim::PlantConfig& plant = long_table(), Duration cycle_time = 1ms)
+        : DriveDesk(name, plant, cycle_time) {
+        go_operational();
+        run(2);
+    }
 };
 
 }  // namespace taktwerk::test

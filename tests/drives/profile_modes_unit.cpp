@@ -4,14 +4,14 @@
 
 #include <cmath>
 
-#include "tests/drives/drive_bench.hpp"
+#include "tests/drives/drive_desk.hpp"
 
-namespace taktwerk::axes::sim {
+namespace taktwerk::test {
 namespace {
 
 constexpr unsigned reached = 0x0400, acknowledged = 0x1000;
 
-void profile(DriveBench& drive, std::int64_t mode) {
+void profile(RunningDesk& drive, std::int64_t mode) {
     drive.pdo(0x6060, mode);
     drive.pdo(0x6081, 20000);
     drive.pdo(0x6083, 100000);
@@ -21,7 +21,7 @@ void profile(DriveBench& drive, std::int64_t mode) {
 
 // SV33-E 3.4.3(5), 8.5.4: 6081h is 0 from the factory, so nothing moves although the set-point is acknowledged.
 TEST(Sv33eProfilePosition, WithFactorySettingsNothingMoves) {
-    DriveBench drive{"sv33-e"};
+    RunningDesk drive{"sv33-e"};
     drive.pdo(0x6060, 1);
     drive.enable();
     drive.pdo(0x607A, 5000);
@@ -32,7 +32,7 @@ TEST(Sv33eProfilePosition, WithFactorySettingsNothingMoves) {
 
 // SV33-E 8.5.4: 31 for an absolute target, 95 for a relative one.
 TEST(Sv33eProfilePosition, AbsoluteBy31RelativeBy95) {
-    DriveBench drive{"sv33-e"};
+    RunningDesk drive{"sv33-e"};
     profile(drive, 1);
     drive.pdo(0x607A, 5000);
     drive.control(31);
@@ -50,7 +50,7 @@ TEST(Sv33eProfilePosition, AbsoluteBy31RelativeBy95) {
 
 // SE-808X 3.2.4: bit 5 = 1 keeps the speed at the first target; 6081h, 6083h, 6084h are taken as they stand.
 TEST(Se808xProfilePosition, BitFiveBlends) {
-    DriveBench drive{"se-808x"};
+    RunningDesk drive{"se-808x"};
     profile(drive, 1);
     drive.pdo(0x607A, 8000);
     drive.control(0x1F);
@@ -69,7 +69,7 @@ TEST(Se808xProfilePosition, BitFiveBlends) {
 
 // SV33-E 3.1.8 table 3-18: halt with 605Dh = 1 ramps by 6084h in PV and keeps the position. v^2 / 2a = 2000 counts.
 TEST(Sv33eStops, HaltInProfileVelocityRampsBy6084) {
-    DriveBench drive{"sv33-e"};
+    RunningDesk drive{"sv33-e"};
     profile(drive, 3);
     drive.pdo(0x60FF, 20000);
     drive.run(400);
@@ -82,7 +82,7 @@ TEST(Sv33eStops, HaltInProfileVelocityRampsBy6084) {
 // SV33-E 3.1.8 table 3-17: 605Ah = 2 ramps by 6085h and lets go, 6 keeps the position; 605Ah takes 0 to 7 only (7.3).
 TEST(Sv33eStops, QuickStopByItsOptionCode) {
     for (const int value : {2, 6}) {
-        DriveBench drive{"sv33-e"};
+        RunningDesk drive{"sv33-e"};
         profile(drive, 3);
         ASSERT_EQ(drive.sdo(0x605A, 0, value), 0u);
         EXPECT_NE(drive.sdo(0x605A, 0, 8), 0u);
@@ -99,7 +99,7 @@ TEST(Sv33eStops, QuickStopByItsOptionCode) {
 // SV-DA200 3.2.7: eight set-points wait behind the running one; CT-5 and CT-7: 10Fh stops and holds with 605Dh = -1, bit 10 at standstill, and
 // clearing it does not go on.
 TEST(SvDa200ProfilePosition, HaltHoldsAndForgets) {
-    DriveBench drive{"sv-da200"};
+    RunningDesk drive{"sv-da200"};
     drive.pdo(0x6060, 1);
     drive.pdo(0x6081, 20000);
     drive.pdo(0x6083, 100000);
@@ -125,7 +125,7 @@ TEST(SvDa200ProfilePosition, HaltHoldsAndForgets) {
 
 // CT-6: 0Bh stops at once and clamps; the drive stays in Quick Stop Active.
 TEST(SvDa200Stops, QuickStopClamps) {
-    DriveBench drive{"sv-da200"};
+    RunningDesk drive{"sv-da200"};
     drive.pdo(0x6060, 3);
     drive.pdo(0x6083, 100000);
     drive.pdo(0x6084, 100000);
@@ -139,4 +139,4 @@ TEST(SvDa200Stops, QuickStopClamps) {
 }
 
 }  // namespace
-}  // namespace taktwerk::axes::sim
+}  // namespace taktwerk::test

@@ -1,0 +1,59 @@
+// SV-DA200 guide 3.3, 3.6, 3.7: the cyclic modes (CT-8, CT-11, CT-12).
+
+#include "tests/drives/sv_da200.hpp"
+
+namespace taktwerk::test {
+namespace {
+
+TEST_F(SvDa200, CspFollowsAbsoluteTargets) {
+    enable_in(csp);
+    const auto from = position();
+    for (int i = 1; i <= 100; ++i) {
+        pdo(0x607A, from + 20 * i);
+        run(1);
+    }
+    run(100);
+    EXPECT_NEAR(static_cast<double>(position() - from), 2000, 5);
+}
+
+TEST_F(SvDa200, WithP037At0TheSameTargetIsAnIncrementEachCycle) {  // 3.3.2 step 3
+    ASSERT_EQ(sdo(0x2025, 0, 0), 0u);
+    enable_in(csp);
+    const auto from = position();
+    pdo(0x607A, 20);  // never changed: 20 counts a cycle
+    run(100);
+    pdo(0x607A, 0);
+    run(100);
+    EXPECT_NEAR(static_cast<double>(position() - from), 2000, 5);
+}
+
+TEST_F(SvDa200, TorqueModeKeepsToTheSpeedOf607F) {  // 2.1 note 10
+    pdo(0x607F, 30000);
+    enable_in(cst);
+    pdo(0x6071, 300);
+    run(2000);
+    EXPECT_GT(speed(), 20000);
+    EXPECT_LT(speed(), 31000);
+}
+
+TEST_F(SvDa200, AZeroIn607FIsIgnoredOrHoldsTheMotorAsP443Says) {  // 2.1 note 8 bit 1, note 10
+    pdo(0x607F, 0);
+    enable_in(cst);
+    pdo(0x6071, 300);
+    run(1000);
+    EXPECT_GT(speed(), 50000) << "masked: nothing limits the speed";
+
+    ASSERT_EQ(sdo(0x242B, 0, 0x0001), 0u);
+    run(2000);
+    EXPECT_NEAR(speed(), 0, 500) << "not masked: a limit of zero";
+}
+
+TEST_F(SvDa200, TheTorqueOffsetCountsInAllModesButThoseOfTorque) {  // 4.10
+    enable_in(cst);
+    pdo(0x60B2, 300);
+    run(500);
+    EXPECT_NEAR(speed(), 0, 100);
+}
+
+}  // namespace
+}  // namespace taktwerk::test
