@@ -138,9 +138,12 @@ public:
     }
 
     // --- time -------------------------------------------------------------------------------------------------------------
-    void cycle() {
-        now += cycle_;
+    void cycle() { cycle(cycle_); }
+    /// `length` after the one before. Without SYNC0 and frames nothing is exchanged; SYNC0 runs in a drive whose clocks are on.
+    void cycle(Duration length) {
+        now += length;
         device.advance(now);
+        if (state == EsmState::op && !frames && !sync0) return;
         if (state == EsmState::op) device.exchange_due({.outputs = frames, .sync0 = sync0});
         device.exchange(now);
     }
