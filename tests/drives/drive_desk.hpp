@@ -21,6 +21,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <initializer_list>
 #include <map>
 #include <memory>
 #include <span>
@@ -60,11 +61,15 @@ inline axes::sim::PlantConfig long_table() {
 
 class DriveDesk {
 public:
+    /// What the maker's tool sets and no object shows.
+    using Adapt = std::function<void(axes::sim::Personality&)>;
+
     /// Powered, in PREOP.
-    explicit DriveDesk(const std::string& name, const axes::sim::PlantConfig& plant = long_table(), Duration cycle_time = 1ms)
+    explicit DriveDesk(const std::string& name, const axes::sim::PlantConfig& plant = long_table(), Duration cycle_time = 1ms,
+                       const Adapt& adapt = {})
         : drive(drive_of_file(name)),
           dictionary(*drive.device),
-          device(*drive.profile, setups(*drive.profile, plant)),
+          device(*drive.profile, setups(*drive.profile, plant, adapt)),
           server_(*drive.device, dictionary, device),
           cycle_(cycle_time) {
         device.power_on(dictionary, now);
@@ -100,6 +105,11 @@ public:
         const unsigned unused = 64u - entry->bits();
         return entry->is_signed() ? static_cast<std::int64_t>(raw << unused) >> unused : static_cast<std::int64_t>(raw);
     }
+    /// Abort code of an upload; 0: it can be read.
+    std::uint32_t upload_abort(std::uint16_t index, std::uint8_t sub = 0) {
+        std::array<std::byte, 0x80> request{}, answer{};
+        return outcome(request, ecat::encode_upload_request(request, index, sub), answer);
+    }
     [[nodiscard]] bool has(std::uint16_t index, std::uint8_t sub = 0) { return dictionary.find(index, sub) != nullptr; }
     /// An RxPDO's value: the low bits that the object holds, taken at the next cycle.
     void pdo(std::uint16_t index, std::int64_t value, std::uint8_t sub = 0) {
@@ -112,7 +122,7 @@ public:
     /// What an empty mapping or an unfit cycle would make of it the drive decides: AL status code, 0 accepts.
     [[nodiscard]] std::uint16_t refuses(EsmState next) {
         ecat::sim::SyncSettings settings;
-        settings.sync0_active = sync0;
+        settings.sync0_active = arrives.sync0;
         settings.sync0_cycle = cycle_;
         return device.refuse(state, next, settings);
     }
@@ -143,8 +153,8 @@ public:
     void cycle(Duration length) {
         now += length;
         device.advance(now);
-        if (state == EsmState::op && !frames && !sync0) return;
-        if (state == EsmState::op) device.exchange_due({.outputs = frames, .sync0 = sync0});
+        if (state == EsmState::op && !arrives.outputs && !arrives.sync0) return;
+        if (state == EsmState::op) device.exchange_due(arrives);
         device.exchange(now);
     }
     void run(int cycles) {
@@ -164,6 +174,10 @@ public:
     void control(std::uint16_t word, int cycles = 3) {
         pdo(0x6040, word);
         run(cycles);
+    }
+    /// One after the other, as a master walks through the states.
+    void control(std::initializer_list<std::uint16_t> words) {
+        for (const auto word : words) control(word);
     }
     /// 6 - 7 - 15 for the first axis; then as long as its brake needs.
     void enable() {
@@ -193,12 +207,14 @@ public:
     axes::sim::Cia402Device device;
     EsmState state = EsmState::init;
     Instant now{};
-    bool frames = true, sync0 = true;  ///< what the bus brings each cycle
+    ecat::sim::ExchangeCause arrives{.outputs = true, .sync0 = true};  ///< each cycle in OP; what a broken bus leaves out
 
 private:
-    static std::vector<axes::sim::Cia402Device::AxisSetup> setups(const axes::DriveProfile& profile, const axes::sim::PlantConfig& plant) {
-        return std::vector<axes::sim::Cia402Device::AxisSetup>(profile.axes,
-                                                               {plant, axes::sim::personality_of(profile, plant.counts_per_revolution)});
+    static std::vector<axes::sim::Cia402Device::AxisSetup> setups(const axes::DriveProfile& profile, const axes::sim::PlantConfig& plant,
+                                                                  const Adapt& adapt) {
+        auto personality = axes::sim::personality_of(profile, plant.counts_per_revolution);
+        if (adapt) adapt(personality);
+        return std::vector<axes::sim::Cia402Device::AxisSetup>(profile.axes, {plant, personality});
     }
     std::uint32_t outcome(std::span<const std::byte> request, std::size_t size, std::span<std::byte> answer) {
         const auto length = server_.serve(request.first(size), answer, state, now);

@@ -55,14 +55,14 @@ TEST_F(Sv33EAlarms, Sync0ThatDoesNotComeIsLostToo) {
     ASSERT_EQ(desk.sdo(0x200A, p0a31, 4), 0u);
     map_and_start(csp);
     enable();
-    desk.sync0 = false;  // the motor goes on; nothing is exchanged
+    desk.arrives.sync0 = false;  // frames come all the same
     desk.run(4);
-    desk.sync0 = true;
+    desk.arrives.sync0 = true;
     desk.run(2);
     EXPECT_EQ(desk.power_state(), 0x27u) << "four are allowed";
-    desk.sync0 = false;
+    desk.arrives.sync0 = false;
     desk.run(7);
-    desk.sync0 = true;
+    desk.arrives.sync0 = true;
     desk.run(20);
     EXPECT_EQ(desk.read(0x603F), 0x0D32);
 }

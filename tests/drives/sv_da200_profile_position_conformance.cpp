@@ -29,7 +29,7 @@ protected:
         ASSERT_TRUE(run_until([&] { return status_bit(12); }, 10ms)) << "3.2.7 step 4: bit 12 answers bit 4";
         control(ready_word, 1);
     }
-    [[nodiscard]] bool arrives(Duration patience) {
+    [[nodiscard]] bool gets_there(Duration patience) {
         return run_until([&] { return status_bit(10); }, patience);
     }
     [[nodiscard]] double at() { return static_cast<double>(position()); }
@@ -39,10 +39,10 @@ protected:
 TEST_F(SvDa200Pp, SingleRelative) {
     trigger(0x4F, 10000);
     EXPECT_FALSE(status_bit(10));
-    ASSERT_TRUE(arrives(2s));
+    ASSERT_TRUE(gets_there(2s));
     EXPECT_NEAR(at(), 10000, in_place);
     trigger(0x4F, -4000);
-    ASSERT_TRUE(arrives(2s));
+    ASSERT_TRUE(gets_there(2s));
     EXPECT_NEAR(at(), 6000, in_place) << "from where the last one led";
 }
 
@@ -53,10 +53,10 @@ TEST_F(SvDa200Pp, SingleAbsolute) {
     EXPECT_NEAR(speed(), 10000, 600) << "half of the ramp";
     run(200);
     EXPECT_NEAR(speed(), 20000, 300) << "6081h";
-    ASSERT_TRUE(arrives(1s));
+    ASSERT_TRUE(gets_there(1s));
     EXPECT_NEAR(at(), 10000, in_place);
     trigger(0x0F, 2500);
-    ASSERT_TRUE(arrives(2s));
+    ASSERT_TRUE(gets_there(2s));
     EXPECT_NEAR(at(), 2500, in_place);
 }
 
@@ -66,7 +66,7 @@ TEST_F(SvDa200Pp, TheRampDownIs6083hToo) {
     ASSERT_TRUE(run_until([&] { return at() > 8100; }, 1s));
     run(80);
     EXPECT_NEAR(speed(), 11000, 2000);
-    EXPECT_TRUE(arrives(200ms));
+    EXPECT_TRUE(gets_there(200ms));
 }
 
 // 3.2.7, "single point" (bit 5 = 0): the next one waits for the first, and the motor stands between them.
@@ -80,7 +80,7 @@ TEST_F(SvDa200Pp, ASecondSinglePointWaits) {
         stood = stood || (std::abs(at() - 5000) < 50 && std::abs(speed()) < 500);
     }
     EXPECT_TRUE(stood);
-    ASSERT_TRUE(arrives(2s));
+    ASSERT_TRUE(gets_there(2s));
     EXPECT_NEAR(at(), 8000, in_place);
 }
 
@@ -92,7 +92,7 @@ TEST_F(SvDa200Pp, ImmediateRelative) {
     ASSERT_GT(speed(), 19000);
     trigger(0x6F, -16000);
     ASSERT_TRUE(run_until([&] { return speed() < 0; }, 1s)) << "it turns round: 4000 lies behind it";
-    ASSERT_TRUE(arrives(2s));
+    ASSERT_TRUE(gets_there(2s));
     EXPECT_NEAR(at(), 4000, in_place);
 }
 
@@ -104,7 +104,7 @@ TEST_F(SvDa200Pp, ImmediateAbsolute) {
     run(100);
     EXPECT_NEAR(speed(), 20000, 300) << "the same way: nothing slows it down";
     trigger(0x2F, 0);
-    ASSERT_TRUE(arrives(5s));
+    ASSERT_TRUE(gets_there(5s));
     EXPECT_NEAR(at(), 0, in_place) << "only the last target was gone to";
 }
 
@@ -138,7 +138,7 @@ TEST_F(SvDa200Pp, QuickStopClampsAndForgets) {
     EXPECT_TRUE(enabled());
     EXPECT_NEAR(at(), stopped, 20) << "the point has to be triggered again";
     trigger(0x0F, 50000);
-    ASSERT_TRUE(arrives(5s));
+    ASSERT_TRUE(gets_there(5s));
     EXPECT_NEAR(at(), 50000, in_place);
 }
 
@@ -157,7 +157,7 @@ TEST_F(SvDa200Pp, HaltWithMinusOneStopsAndHolds) {
     control(0x0F, 1000);
     EXPECT_NEAR(at(), stopped, 20) << "clearing the bit does not go on";
     trigger(0x0F, 50000);
-    ASSERT_TRUE(arrives(5s));
+    ASSERT_TRUE(gets_there(5s));
     EXPECT_NEAR(at(), 50000, in_place);
 }
 
