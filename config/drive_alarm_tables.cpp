@@ -47,6 +47,7 @@ Codec<axes::DriveAlarmKind> alarm_kind() {
                       {"start_too_fast", K::start_too_fast},
                       {"enabled_twice", K::enabled_twice},
                       {"phase_lost", K::phase_lost},
+                      {"phase_warning", K::phase_warning},
                       {"safe_torque_off", K::safe_torque_off},
                       {"stall", K::stall}});
 }

@@ -29,6 +29,8 @@ Table<axes::UnitVariant> unit_variant_table() {
             field("index_before_inputs", &U::index_before_inputs, boolean(),
                   "60FDh shows the index pulse in bit 16, the inputs from 17 on"),
             field("index_probe", &U::index_probe, boolean(), "touch probes can latch on the index pulse"),
+            field("status_hidden", &U::status_hidden, integer<std::uint16_t>(0, 0xFFFF), "bits of 6041h that stay 0"),
+            field("cyclic_bit_12", &U::cyclic_bit_12, boolean(), "6041h bit 12 in the cyclic modes: the drive follows (CiA 402-2)"),
         },
         {},
         {}};
@@ -44,6 +46,21 @@ Table<axes::AnalogueOutput> analogue_output_table() {
                 required(field("selection", &A::selection, object, "0: the bus sets the output")),
                 required(field("gain", &A::gain, object, "divides the value")),
                 field("monitor", &A::monitor, object, "shows the voltage in mV"),
+            },
+            {},
+            {}};
+}
+
+Table<axes::VirtualInputs> virtual_inputs_table() {
+    using V = axes::VirtualInputs;
+    const auto object = parameter_address();
+    return {"behaviour.virtual_inputs",
+            "Inputs of the drive that exist in its parameters only.",
+            {
+                required(field("enable", &V::enable, object, "1: they count")),
+                required(field("levels", &V::levels, object, "bit n is input n + 1")),
+                required(field("functions", &V::functions, list(object), "of each input, in order")),
+                field("servo_enable", &V::servo_enable, raw_value(), "the function that enables the motor"),
             },
             {},
             {}};
@@ -127,6 +144,11 @@ Table<axes::BehaviourObjects> behaviour_table() {
         "probe_input_1", [](B & b) -> auto& { return b.probe_input[0]; }, object, "must be 0 for the input of probe 1 to latch"));
     f.push_back(field_at<B>(
         "probe_input_2", [](B & b) -> auto& { return b.probe_input[1]; }, object, "must be 0 for the input of probe 2 to latch"));
+    f.push_back(field("sync_losses", &B::sync_losses, object, "SYNC0 in a row that may be missing or out of place"));
+    f.push_back(field("sync_deviation", &B::sync_deviation, object, "ns by which two SYNC0 may be closer or further apart than the cycle"));
+    f.push_back(field("phase_detection", &B::phase_detection, object,
+                      "a missing mains phase is 0: a fault, 1: a warning until the motor is enabled, 2: nothing"));
+    f.push_back(field("virtual_inputs", &B::virtual_inputs, section(virtual_inputs_table()), "that have functions like terminals"));
     return table;
 }
 

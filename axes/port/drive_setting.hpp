@@ -47,6 +47,8 @@ struct UnitVariant {
     bool zero_limits_count = false;    ///< torque limits of 0 are never ignored, whatever the limit masks say (SV-DA200 P4.25 = 2)
     bool index_before_inputs = false;  ///< 60FDh: bit 16 is the index pulse, the inputs follow from bit 17 on, bit 25 is emergency stop
     bool index_probe = true;           ///< touch probes can latch on the index pulse
+    std::uint16_t status_hidden = 0;   ///< bits of 6041h that stay 0, of those that are the vendor's own (SV-DA200 P4.25 = 3)
+    bool cyclic_bit_12 = false;        ///< 6041h bit 12 stands in the cyclic modes while the drive follows, as CiA 402-2 has it
 };
 
 struct DriveUnits {
@@ -59,6 +61,14 @@ struct DriveUnits {
 struct AnalogueOutput {
     ParameterAddress value{}, selection{}, gain{};
     ParameterAddress monitor{};  ///< shows the voltage in mV
+};
+
+/// Inputs that exist in the drive's parameters only, each with a function like that of a terminal (SV33-E VDI1 to VDI16).
+struct VirtualInputs {
+    ParameterAddress enable{};                  ///< 1: they count (P23.00)
+    ParameterAddress levels{};                  ///< bit n is input n + 1 (P20.50)
+    std::vector<ParameterAddress> functions{};  ///< of each input, in order (P23.06, P23.08, ...)
+    std::int64_t servo_enable = 1;              ///< the function that enables the motor (SV33-E 8.1)
 };
 
 /// Objects that the simulated drive obeys; index 0: this drive has no such object.
@@ -76,6 +86,10 @@ struct BehaviourObjects {
     ParameterAddress parameter_tunnel{};   ///< sub 1 address (index << 8 | sub), sub 2 value, sub 3 result
     ParameterAddress following_limit{};    ///< counts of following error that are an alarm; 0: no check
     ParameterAddress probe_input[2] = {};  ///< must be 0 for the probe's input to latch
+    ParameterAddress sync_losses{};        ///< SYNC0 in a row that may be missing or out of place; one more is an alarm (SV33-E P0A.31)
+    ParameterAddress sync_deviation{};     ///< ns between two SYNC0 more or less than the cycle that put one out of place (P0A.32)
+    ParameterAddress phase_detection{};    ///< a missing mains phase is 0 a fault, 1 a warning until enabling, 2 nothing (P08.00)
+    VirtualInputs virtual_inputs{};
 };
 
 }  // namespace taktwerk::axes

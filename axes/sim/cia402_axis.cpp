@@ -30,7 +30,7 @@ SwitchStates Cia402Axis::switches() const noexcept { return {plant_.negative_lim
 
 void Cia402Axis::inner_step() noexcept {
     const double dt = inner_seconds;
-    if (energised()) torque_ = state_ == State::enabled && !halted_ ? enabled_torque(dt) : stopping_torque(dt);
+    if (energised()) torque_ = state_ == State::enabled && !halted_ && travel_stop_ == 0 ? enabled_torque(dt) : stopping_torque(dt);
     else torque_ = phases_shorted_ ? brake_torque() : 0;
     torque_ = std::clamp(torque_, torque_least_, torque_most_);
     step_brake();
@@ -96,6 +96,7 @@ void Cia402Axis::exchange(const AxisInputs& in, Duration cycle, AxisOutputs& out
     take_halt(in);
     for (std::size_t i = 0; i < probes_.size(); ++i) probes_[i].command(static_cast<std::uint8_t>(in.probe_function >> (8 * i)));
     if (state_ == State::enabled) take_targets(in, cycle);
+    watch_travel(in);
     homing_bit_ = (in.control & 0x10u) != 0;
     fill(out);
 }

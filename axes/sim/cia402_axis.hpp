@@ -135,13 +135,19 @@ private:
     [[nodiscard]] double enabled_torque(double dt) noexcept;
     // cia402_cyclic.cpp
     void take_position_target(const AxisInputs& in, double seconds) noexcept;
-    [[nodiscard]] double within_software_limits(double wanted, const AxisInputs& in) noexcept;
     void take_velocity_target(const AxisInputs& in) noexcept;
     void take_torque_target(const AxisInputs& in) noexcept;
     void take_torque_offset(const AxisInputs& in) noexcept;
     void interpolate(double dt) noexcept;
     [[nodiscard]] double with_offset(double torque) const noexcept;
     [[nodiscard]] double torque_of(std::int64_t raw) const noexcept;
+    // cia402_travel.cpp
+    [[nodiscard]] double within_software_limits(double wanted, const AxisInputs& in) noexcept;
+    [[nodiscard]] bool limits_count(const AxisInputs& in) const noexcept;
+    [[nodiscard]] int past_switch() const noexcept;
+    [[nodiscard]] int past_software_limit(const AxisInputs& in) const noexcept;
+    [[nodiscard]] double pushes(const AxisInputs& in) const noexcept;
+    void watch_travel(const AxisInputs& in) noexcept;
     // cia402_homing.cpp
     void take_homing_start(const AxisInputs& in) noexcept;
     void homing_step(double dt) noexcept;
@@ -222,7 +228,8 @@ private:
     bool stop_done_ = false, halted_ = false, phases_shorted_ = false;
     ProfilePosition profile_position_;
     double velocity_target_ = 0, torque_target_ = 0;  ///< of the profile modes: what the ramps lead to
-    bool limited_ = false;                            ///< bit 11: a target was clipped
+    bool limited_ = false;                            ///< bit 11: a target was clipped, or the motor is past a software limit
+    int travel_stop_ = 0;                             ///< -1, 1: stopped behind the negative or positive end of the travel
     bool target_reached_ = false;
     Instant in_window_since_{};
     std::optional<Instant> mode_changed_at_;

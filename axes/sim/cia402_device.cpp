@@ -115,7 +115,7 @@ void Cia402Device::power_off(Instant now) {
 
 std::uint16_t Cia402Device::refuse(ecat::sim::EsmState from, ecat::sim::EsmState to, const ecat::sim::SyncSettings& settings) {
     if (settings.sync0_active) cycle_ = settings.sync0_cycle;
-    for (auto& axis : axes_) axis.behaviour->synchronised(settings.sync0_active);
+    for (auto& axis : axes_) axis.behaviour->synchronised(settings.sync0_active, settings.sync0_cycle);
     if (refused_code_ != 0 && to == refused_state_) return refused_code_;
     // 0036h: invalid SYNC0 cycle time (ETG.1000.6 table of AL status codes).
     if (to == ecat::sim::EsmState::safeop && from == ecat::sim::EsmState::preop && settings.sync0_active &&

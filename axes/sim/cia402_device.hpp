@@ -47,6 +47,10 @@ public:
     void main_power(bool on) noexcept {
         for (auto& axis : axes_) axis.model->main_power(on);
     }
+    /// Its mains have all of their phases.
+    void mains_complete(bool complete) noexcept {
+        for (auto& axis : axes_) axis.behaviour->mains_complete(complete);
+    }
     /// An alarm by its number, with what the profile says of it: of the whole drive, or of one axis.
     void raise(std::size_t axis, std::uint16_t code) noexcept;
 

@@ -37,8 +37,12 @@ void Cia402Axis::take_profile_position(const AxisInputs& in) noexcept {
     target.limits.velocity = std::min(wanted, speed_limit(in));
     target.limits.acceleration = static_cast<double>(in.profile_acceleration);
     target.limits.deceleration = static_cast<double>(personality_.pp_shared_ramp ? in.profile_acceleration : in.profile_deceleration);
-    limited_ = wanted > target.limits.velocity;
+    if (limits_count(in)) {
+        target.lowest = static_cast<double>(in.software_minimum) + zero_;
+        target.highest = static_cast<double>(in.software_maximum) + zero_;
+    }
     profile_position_.exchange(start, five, target);
+    limited_ = wanted > target.limits.velocity || profile_position_.clipped();
 }
 
 void Cia402Axis::take_profile_velocity(const AxisInputs& in) noexcept {

@@ -1,5 +1,6 @@
 #include "axes/sim/profile_position.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace taktwerk::axes::sim {
@@ -11,7 +12,7 @@ void ProfilePosition::reset(double position) noexcept {
 
 void ProfilePosition::forget(double position) noexcept {
     first_ = waiting_ = 0;
-    running_ = false;
+    running_ = clipped_ = false;
     now_ = {position, 0, 0};
     target_ = position;
     elapsed_ = 0;
@@ -23,7 +24,9 @@ void ProfilePosition::exchange(bool new_setpoint, bool bit_five, const ProfileTa
     edge_ = new_setpoint;
     if (rises && (waiting_ < room_ || !running_ || (bit_five && meaning_ == BitFive::replaces))) {
         acknowledged_ = true;
-        target_ = wanted.relative ? target_ + wanted.position : wanted.position;
+        const double asked = wanted.relative ? target_ + wanted.position : wanted.position;
+        target_ = std::clamp(asked, wanted.lowest, wanted.highest);
+        clipped_ = target_ != asked;
         const Setpoint setpoint{target_, wanted.limits, bit_five && meaning_ == BitFive::blends};
         if (!running_ || (bit_five && meaning_ == BitFive::replaces)) {
             waiting_ = 0;

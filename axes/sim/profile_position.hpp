@@ -3,6 +3,7 @@
 // bits 4 new set-point, 5 change set immediately, 6 relative; status word bit 12 acknowledge), SV33-E 3.4.3(5), SV-DA200 3.2.7, SE-808X 3.2.4.
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -14,6 +15,7 @@ namespace taktwerk::axes::sim {
 struct ProfileTarget {
     double position = 0;  ///< counts, plant coordinates; relative: a distance
     bool relative = false;
+    double lowest = -HUGE_VAL, highest = HUGE_VAL;  ///< what lies beyond is moved to it (SV33-E 3.4.4(2))
     TrapezoidLimits limits;
 };
 
@@ -46,6 +48,8 @@ public:
     /// The demand has arrived and nothing waits.
     [[nodiscard]] bool arrived() const noexcept { return !running_ && waiting_ == 0; }
     [[nodiscard]] double target() const noexcept { return target_; }
+    /// The newest set-point was moved to a limit.
+    [[nodiscard]] bool clipped() const noexcept { return clipped_; }
 
 private:
     struct Setpoint {
@@ -65,7 +69,7 @@ private:
     Demand now_;
     double elapsed_ = 0;
     double target_ = 0;  // of the newest set-point: relative ones count from it
-    bool running_ = false, acknowledged_ = false, edge_ = false;
+    bool running_ = false, acknowledged_ = false, edge_ = false, clipped_ = false;
 };
 
 }  // namespace taktwerk::axes::sim

@@ -1,8 +1,6 @@
 // The simulated SV33-E where its manual is definite about parameters, mapping and alarms (V1.1, sections beside each).
 
-#include <gtest/gtest.h>
-
-#include "tests/drives/drive_desk.hpp"
+#include "tests/drives/sv33_e.hpp"
 
 namespace taktwerk::test {
 namespace {
@@ -11,34 +9,6 @@ using State = axes::sim::Cia402Axis::State;
 
 constexpr std::uint32_t cannot_store = 0x08000020, device_state = 0x08000022, sub0_not_zero = 0x06010003, read_only = 0x06010002,
                         too_high = 0x06090031, no_object = 0x06020000, no_subindex = 0x06090011;
-
-axes::sim::PlantConfig motor() {
-    axes::sim::PlantConfig plant;
-    plant.counts_per_revolution = 131072;  // 17 bit, 1.1.2
-    return plant;
-}
-
-class Sv33E : public ::testing::Test {
-protected:
-    DriveDesk desk{"sv33-e", motor()};
-
-    void map_and_start(std::int64_t mode) {
-        ASSERT_EQ(desk.sdo(0x6085, 0, 13'107'200), 0u);
-        desk.go_operational();
-        desk.pdo(0x6060, mode);
-        desk.run(2ms);
-        align();
-    }
-    void align() { desk.pdo(0x607A, desk.read(0x6064)); }
-    void enable() {
-        desk.control(6);
-        desk.control(7);
-        align();
-        desk.control(15);
-        ASSERT_EQ(desk.power_state(), 0x27u);
-        desk.run(300ms);  // P05.13, 250 ms
-    }
-};
 
 // --- Process data [6.2.9.1, 6.2.9.2] -----------------------------------------------------------------------------------------
 
@@ -146,6 +116,42 @@ TEST_F(Sv33E, ManyStoredWritesWarnAndNoneDoWithP0510Off) {
 }
 
 // --- Alarms [5.1 to 5.6] -------------------------------------------------------------------------------------------------------
+
+// Every row of tables 5-2 and 5-3, from the outside; resettable as marked there.
+TEST_F(Sv33E, EveryAlarmShowsItsCodesAndClearsAsItsRowSays) {
+    for (const auto& row : desk.drive.profile->alarms) {
+        DriveDesk fresh{"sv33-e", sv33_e_motor()};
+        fresh.go_operational();
+        ASSERT_TRUE(fresh.axis().provoke(row.panel));
+        fresh.run(2ms);
+        EXPECT_EQ(fresh.read(0x603F), row.code) << row.panel;
+        EXPECT_EQ(fresh.read(0x2021, 0x09), row.detail) << row.panel;
+        if (row.warning) {
+            EXPECT_NE(fresh.power_state(), 0x08u) << row.panel;
+            EXPECT_NE(fresh.status() & 0x80, 0) << row.panel;
+            fresh.axis().release(row.panel);
+            fresh.run(2ms);
+            EXPECT_EQ(fresh.read(0x603F), 0) << row.panel;
+            continue;
+        }
+        EXPECT_EQ(fresh.power_state(), 0x08u) << row.panel;
+        fresh.control(0x80);
+        EXPECT_EQ(fresh.power_state(), 0x08u) << row.panel << ": the cause is still there";
+        fresh.control(0);
+        fresh.axis().release(row.panel);
+        fresh.run(2ms);
+        if (row.panel != "E.218") {  // 5.4: resets itself
+            EXPECT_EQ(fresh.power_state(), 0x08u) << row.panel;
+            fresh.control(0x80);
+        }
+        EXPECT_EQ(fresh.power_state(), row.resettable ? 0x40u : 0x08u) << row.panel;
+        if (row.resettable) continue;
+        fresh.power_cycle();
+        fresh.run(2ms);
+        EXPECT_EQ(fresh.power_state(), 0x40u) << row.panel;
+    }
+    EXPECT_FALSE(desk.axis().provoke("E.999"));
+}
 
 // 5.6: "first remove servo enable, then reset"; by bit 7, by P20.03.
 TEST_F(Sv33E, AFaultIsResetWithTheEnableDropped) {

@@ -52,8 +52,9 @@ std::uint16_t Cia402Drive::control_word(const DriveCommand& command, bool mode_c
                                                                                                        : towards_off(feedback_.power);
         case PowerRequest::on: break;
     }
+    const unsigned awaited = enable_bits_ & ~unsigned{settings_.status_hidden()};
     const bool may_enable =
-        mode_confirmed && (feedback_.status_word & enable_bits_) == enable_bits_ && settings_.verdict() == SettingsCheck::Verdict::fits;
+        mode_confirmed && (feedback_.status_word & awaited) == awaited && settings_.verdict() == SettingsCheck::Verdict::fits;
     std::uint16_t word = towards_enabled(feedback_.power, may_enable);
     if (feedback_.power == PowerState::enabled) {
         if (command.mode == DriveMode::homing && mode_confirmed && command.start_homing) word |= homing_start;
