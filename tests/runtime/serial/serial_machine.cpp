@@ -204,6 +204,33 @@ TEST(SerialMachine, RunsAreBitIdentical) {
     EXPECT_EQ(run(), run());
 }
 
+// --- a line that nobody opened ------------------------------------------------------------------------------------------------------
+
+// The axis must not become a virtual one that moves on the screen only.
+TEST(SerialLines, AnAxisWhoseLineNobodyOpenedIsRefused) {
+    VirtualClock clock{Instant{}};
+    const auto config = with_line(machine_config(1));
+    World world{config, clock.now()};
+    for (const auto& lines : {std::vector<modbus::SerialLine*>{}, std::vector<modbus::SerialLine*>{nullptr}}) {
+        const auto built = Machine::build(config, world.transport(), lines);
+        ASSERT_EQ(built.index(), 1u);
+        const auto& errors = std::get<1>(built);
+        ASSERT_EQ(errors.size(), 1u);
+        EXPECT_EQ(errors[0].code, "serial.no_line");
+        EXPECT_NE(errors[0].text().find("serial.rs485"), std::string::npos) << "where: " << errors[0].text();
+        EXPECT_NE(errors[0].text().find("axis 'u'"), std::string::npos) << "what: " << errors[0].text();
+        EXPECT_NE(errors[0].text().find("`device`"), std::string::npos) << "what to do: " << errors[0].text();
+    }
+}
+
+TEST(SerialLines, ASimulatedAxisNeedsNone) {
+    VirtualClock clock{Instant{}};
+    auto config = with_line(machine_config(1));
+    config.axes[u].axis.simulated = true;
+    World world{config, clock.now()};
+    EXPECT_EQ(Machine::build(config, world.transport()).index(), 0u);
+}
+
 // --- what a configuration must say -------------------------------------------------------------------------------------------------
 
 std::vector<std::string> codes(const MachineConfig& config) {
