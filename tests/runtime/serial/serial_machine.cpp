@@ -191,6 +191,33 @@ TEST(SerialMachine, ADeadPcStopsTheMotorThroughTheTerminalsWatchdog) {
     EXPECT_NEAR(servo(m).speed(), 0, 1);
 }
 
+// Nobody asks a drive that does not answer for half a second at a time: its motor coasts on meanwhile, cycle by cycle, because the service
+// looks at the line. Who runs the cycle, in virtual time or a thread, need not know of serial lines.
+TEST(SerialMachine, AMotorWithoutMainsCoastsOnWhileNobodyAsks) {
+    auto config = with_line(machine_config(1));
+    config.axes[u].simulation.viscous_friction = config.axes[u].simulation.coulomb_friction = 0;
+    TestMachine m{std::move(config)};
+    ASSERT_TRUE(ready(m)) << m.alarms();
+    m.enable(u);
+    ASSERT_EQ(m.command(OperatorAction::jog, u, true, 20).answer, Answer::accepted);
+    for (int i = 0; i < 10; ++i) {
+        m.run(50ms);
+        (void)m.command(OperatorAction::jog, u, true, 20);
+    }
+    ASSERT_GT(std::abs(servo(m).speed()), 20);
+    servo(m).power_off();
+    int still = 0, longest = 0;
+    double before = servo(m).plant().position();
+    for (int i = 0; i < 1500; ++i) {
+        m.run(1ms);
+        still = servo(m).plant().position() == before ? still + 1 : 0;
+        longest = std::max(longest, still);
+        before = servo(m).plant().position();
+    }
+    EXPECT_GT(std::abs(servo(m).speed()), 20) << "nothing brakes it";
+    EXPECT_EQ(longest, 0) << "cycles without motion while the motor turned";
+}
+
 // The same run twice gives the same numbers: the line's times are computed, not measured.
 TEST(SerialMachine, RunsAreBitIdentical) {
     const auto run = [] {
