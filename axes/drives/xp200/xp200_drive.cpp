@@ -158,7 +158,7 @@ ServiceTicket Xp200Drive::write_parameter(ParameterAddress address, std::vector<
     const auto& rows = config_.profile->parameters;
     const auto row = std::find_if(rows.begin(), rows.end(), [&](const auto& p) { return p.address == address; });
     // Reserved parameters must not be written (9.4); those the schedule uses have one writer.
-    if (row == rows.end() || row->change == ParameterChange::never || Schedule::owns(address.index) || value.size() != 2) return 0;
+    if (row == rows.end() || row->change == ParameterChange::never || Settings::owns(address.index) || value.size() != 2) return 0;
     const auto word = static_cast<std::uint16_t>(std::to_integer<unsigned>(value[0]) | (std::to_integer<unsigned>(value[1]) << 8));
     return start(modbus::write_parameter(config_.station, address.index, word));
 }
