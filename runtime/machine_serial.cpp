@@ -65,8 +65,8 @@ void Machine::Impl::hold_watchdog_outputs() noexcept {
 void Machine::Impl::record_samples() noexcept {
     for (std::size_t i = 0; i < serial_drives.size(); ++i) {
         const auto& sample = serial_drives[i]->newest();
-        if (sample.number == recorded_samples[i] && sample.online) continue;
-        recorded_samples[i] = sample.number;
+        if (sample.revision == recorded_samples[i]) continue;
+        recorded_samples[i] = sample.revision;
         record_sample(*recorder, now, static_cast<std::uint16_t>(i), sample);
     }
 }

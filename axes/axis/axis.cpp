@@ -141,7 +141,7 @@ void Axis::watch_drive() noexcept {
 /// Nothing for watch_drive() and run_power(): power is on and stays on, and the drive says nothing to the contrary.
 bool Axis::drive_as_wanted() const noexcept {
     const bool well = feedback_.fresh && feedback_.online && feedback_.power == PowerState::enabled && !feedback_.fault &&
-                      !feedback_.warning && feedback_.mode == own_mode_;
+                      !feedback_.setup_refused && !feedback_.warning && feedback_.mode == own_mode_;
     const bool stays_on = power_.on() && view_.state != AxisState::Disabled && view_.state != AxisState::ErrorStop;
     return well && stays_on && driven_ && mode_phase_ == ModePhase::steady && !drive_homing_.busy() && alarms_.active().empty();
 }
@@ -206,7 +206,7 @@ void Axis::watch_following_error(double actual) noexcept {
 void Axis::encode(Instant now) noexcept {
     command_ = {};
     command_.power = power_.request();
-    command_.reset_fault = view_.resetting && drive_faulted();
+    command_.reset_fault = view_.resetting && (drive_faulted() || feedback_.setup_refused);
     command_.start_homing = drive_homing_.start_level();
     command_.homing = drive_homing_setup();
     const auto& set = setpoint_.state();

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace taktwerk::axes::xp200 {
 
 using namespace std::chrono_literals;
 using modbus::Outcome;
+using std::chrono::milliseconds;
 
 namespace {
 
@@ -53,7 +55,7 @@ bool Schedule::urgent(const Wish& wish) const noexcept {
 std::optional<modbus::Request> Schedule::next(const Wish& wish, Instant now) {
     if (phase_ != Phase::running) return open(now);
     auto request = command(wish, now);
-    if (!request) sample_.acknowledged = wish.sequence;
+    if (!request && (sample_.released || !problems().empty())) sample_.acknowledged = wish.sequence;
     if (request && (urgent(wish) || ++commands_in_a_row_ <= 2)) return request;
     commands_in_a_row_ = 0;
     if (!services_.empty() && ++turn_ % 4 == 0) {
@@ -85,6 +87,7 @@ std::optional<modbus::Request> Schedule::open(Instant now) {
         case Phase::setting:
             if (const auto setting = settings_.unwritten()) return write(setting->number, setting->value);
             settings_.judge();
+            if (sample_.running) watch_release(now);  // read again for a reset: that changes nothing about it
             sample_.setup_refused = !problems().empty();
             phase_ = Phase::running;
             turn_ = 0;
@@ -101,8 +104,13 @@ std::optional<modbus::Request> Schedule::open(Instant now) {
 
 // --- commands -----------------------------------------------------------------------------------------------------------------
 
+bool Schedule::may_enable(const Wish& wish) const noexcept {
+    const bool seen_off = sample_.released && wish.session == sample_.session;
+    return wish.power == PowerRequest::on && seen_off && sample_.alarm == 0 && problems().empty();
+}
+
 std::optional<modbus::Request> Schedule::command(const Wish& wish, Instant now) {
-    const bool on = wish.power == PowerRequest::on && sample_.alarm == 0 && problems().empty();
+    const bool on = may_enable(wish);
     const bool moves = on && sample_.running && !wish.halt && (wish.torque_mode ? wish.torque != 0 : wish.speed != 0);
     if (!moves) {
         selects_.reset();
@@ -113,9 +121,12 @@ std::optional<modbus::Request> Schedule::command(const Wish& wish, Instant now) 
         enable_sent_ = false;
         return ask(Asked::servo, modbus::servo(config_.station, modbus::servo_off));
     }
-    if (wish.reset && (sample_.alarm != 0 || !problems().empty()) && now - clear_tried_ >= clear_again) {
+    if (!wish.reset) read_again_ = true;
+    if (wish.reset && sample_.alarm != 0 && now - clear_tried_ >= clear_again) {
         clear_tried_ = now;
-        if (sample_.alarm != 0) return ask(Asked::clear, modbus::clear_alarm(config_.station));
+        return ask(Asked::clear, modbus::clear_alarm(config_.station));
+    }
+    if (wish.reset && !problems().empty() && std::exchange(read_again_, false)) {
         phase_ = Phase::reading;  // perhaps somebody has put the settings right
         settings_.restart();
         return open(now);
@@ -183,7 +194,11 @@ void Schedule::take(const modbus::Answer& answer, Instant now) {
         return;
     }
     switch (asked) {
-        case Asked::echo: phase_ = Phase::stopping; break;
+        case Asked::echo:
+            phase_ = Phase::stopping;
+            ++sample_.session;
+            sample_.released = false;
+            break;
         case Asked::parameters:
             settings_.learn(answer.request.address, answer.response.values());
             if (phase_ == Phase::reading) settings_.done();
@@ -196,12 +211,13 @@ void Schedule::take(const modbus::Answer& answer, Instant now) {
             break;
         case Asked::servo:
             if (phase_ == Phase::disabling) {
+                disabled_at_ = now;
                 phase_ = Phase::reading;
                 settings_.restart();
             }
             break;
         case Asked::position: take_position(answer, now); break;
-        case Asked::terminals: take_terminals(answer.response.words[0], answer.response.words[1]); break;
+        case Asked::terminals: take_terminals(answer.response.words[0], answer.response.words[1], now); break;
         case Asked::alarm:
             // 255 and 65535: "none" in some tables; the register's coding is not stated (9.5).
             if (std::exchange(look_for_alarm_, false)) sample_.running = false;
@@ -250,7 +266,7 @@ void Schedule::take_position(const modbus::Answer& answer, Instant) {
     ++sample_.number;
 }
 
-void Schedule::take_terminals(std::uint16_t inputs, std::uint16_t outputs) {
+void Schedule::take_terminals(std::uint16_t inputs, std::uint16_t outputs, Instant now) {
     const auto conducting = [](std::uint16_t bits, ConductingReads reads) {
         return static_cast<std::uint16_t>((reads == ConductingReads::one ? bits : ~bits) & 0x3Fu);
     };
@@ -263,6 +279,7 @@ void Schedule::take_terminals(std::uint16_t inputs, std::uint16_t outputs) {
     for (int i = 0; i < output_count; ++i)
         if (std::abs(function(pr::output_function, i)) == static_cast<int>(Output::running))
             take_running(on(pr::output_function, i, sample_.outputs));
+    watch_release(now);
     // CCWL and CWL are on where motion is allowed (4.6); ignored ones say nothing.
     const auto use = settings_.known(pr::limit_use) % 10;
     const auto limit = [&](Input input, bool used) {
@@ -276,6 +293,20 @@ void Schedule::take_terminals(std::uint16_t inputs, std::uint16_t outputs) {
     sample_.negative_limit = limit(Input::cw_allowed, use == 0 || use == 1);
     const auto& profile = *config_.profile;
     sample_.home = ((sample_.inputs >> profile.input_bit_home) & 1u) != 0;
+}
+
+/// Disabled over the line it ramps by Pr063 and holds for its brake (Pr136, Pr166); what has power after that is held on by somebody else:
+/// which of function 42h, SON and Pr120 wins is not stated (9.6.7).
+void Schedule::watch_release(Instant now) {
+    if (!sample_.running && !look_for_alarm_) sample_.released = true;
+    if (sample_.released) return;
+    constexpr Duration margin = 1s;
+    const auto ramp = milliseconds{settings_.known(pr::stop_time) * settings_.known(pr::highest_speed) / 1000};
+    if (now - disabled_at_ < ramp + milliseconds{settings_.known(pr::brake_hold)} + margin) return;
+    settings_.object(
+        "it keeps its power although function 42h disabled it: something else enables it, the input SON most likely. Open that [9.6.7, "
+        "5.5]");
+    sample_.setup_refused = true;
 }
 
 /// Current gone although nobody asked: mostly an alarm. That is read first, so that the axis hears the cause and not the effect.

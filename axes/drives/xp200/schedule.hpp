@@ -5,6 +5,9 @@
 //
 //   closed --echo--> opening: stop, disable, read settings, write settings --> running --silence--> closed
 //
+// Whatever ran before a silence is over before anything else counts: the drive is disabled, and until RUN has been seen off nothing is
+// acknowledged and nothing enabled. A drive that keeps its power all the same is not enabled either; the problems say so.
+//
 // Running, of several things to do the first of: stop, disable, clear, enable, ramps, speed or torque; never more than two commands
 // without looking at the position; parameters that somebody asked for when nothing else waits.
 
@@ -57,14 +60,16 @@ private:
     std::optional<modbus::Request> drive(Drives what, std::int16_t value);
     modbus::Request poll(Instant now);
     void watch_settings();
+    void watch_release(Instant now);
     void take_position(const modbus::Answer& answer, Instant now);
-    void take_terminals(std::uint16_t inputs, std::uint16_t outputs);
+    void take_terminals(std::uint16_t inputs, std::uint16_t outputs, Instant now);
     void take_running(bool running);
     void lost(Instant now);
     [[nodiscard]] modbus::Request ask(Asked what, const modbus::Request& request) noexcept;
     [[nodiscard]] modbus::Request write(std::uint16_t number, std::int64_t value) noexcept;
     [[nodiscard]] bool moves_by_itself() const noexcept;
     [[nodiscard]] bool stands() const noexcept;
+    [[nodiscard]] bool may_enable(const Wish& wish) const noexcept;
 
     const DriveConfig& config_;
     Phase phase_ = Phase::closed;
@@ -74,8 +79,9 @@ private:
     Sample sample_;
     std::optional<std::uint32_t> raw_;  // position as read last
     bool doubtful_ = false;             // the last position leapt
-    Instant last_try_{}, enable_tried_{}, disable_tried_{}, clear_tried_{}, alarm_read_{}, terminals_read_{}, settings_read_{};
-    bool enable_sent_ = false, look_for_alarm_ = false;
+    Instant disabled_at_{}, last_try_{}, enable_tried_{}, disable_tried_{}, clear_tried_{}, alarm_read_{}, terminals_read_{},
+        settings_read_{};
+    bool enable_sent_ = false, look_for_alarm_ = false, read_again_ = false;
     int commands_in_a_row_ = 0, turn_ = 0;
     std::optional<std::uint16_t> selects_;  // Pr122 to be written after the value it selects
 

@@ -13,7 +13,7 @@ constexpr int emergency_open = -15;  // EMG in negative logic: on while the cont
 
 /// What decides how the drive behaves.
 constexpr Settings::Block opening_blocks[] = {{4, 1},   {25, 2},  {60, 4},  {75, 4},  {82, 1},  {97, 2},
-                                              {100, 6}, {108, 4}, {120, 5}, {136, 4}, {145, 3}, {160, 6}};
+                                              {100, 6}, {108, 4}, {120, 5}, {136, 4}, {145, 3}, {160, 7}};
 /// What must not change behind our back.
 constexpr Settings::Block watched_blocks[] = {{4, 1}, {25, 2}, {97, 2}, {120, 5}};
 
@@ -118,6 +118,10 @@ void Settings::judge_terminals() {
             "no input has the function -15 (EMG, open = stop) for the watchdog output: set one of Pr100 to Pr105 to it [5.2, 5.4.2]");
 }
 
+void Settings::object(std::string why) {
+    if (std::find(problems_.begin(), problems_.end(), why) == problems_.end()) problems_.push_back(std::move(why));
+}
+
 // --- running ------------------------------------------------------------------------------------------------------------------
 
 Settings::Block Settings::watched() const noexcept { return watched_blocks[watch_]; }
@@ -126,9 +130,8 @@ void Settings::compare() {
     for (const auto& setting : wanted_) {
         if (!inside(setting.number, watched_blocks[watch_]) || knows(setting.number, setting.value)) continue;
         if (owns(setting.number) && setting.number != pr::speed_source) continue;  // commands use it, and write it again
-        auto text = fmt::format("Pr{:03} was changed to {} while the line was running; it shall be {}", setting.number,
-                                known(setting.number), setting.value);
-        if (std::find(problems_.begin(), problems_.end(), text) == problems_.end()) problems_.push_back(std::move(text));
+        object(fmt::format("Pr{:03} was changed to {} while the line was running; it shall be {}", setting.number, known(setting.number),
+                           setting.value));
     }
     watch_ = (watch_ + 1) % std::size(watched_blocks);
 }

@@ -54,6 +54,8 @@ public:
     /// The block watched() has been learnt. Adds to the problems; the next block's turn.
     void compare();
 
+    /// Something else that forbids enabling it, until judge() is asked again.
+    void object(std::string why);
     /// Why it must not be enabled, in words.
     [[nodiscard]] const std::vector<std::string>& problems() const noexcept { return problems_; }
 

@@ -59,7 +59,7 @@ const DriveFeedback& Xp200Drive::decode(Instant now) noexcept {
     f.age = f.fresh ? 0 : std::min<std::uint32_t>(f.age, 0xFFFFFFFE) + 1;
     // A service thread that hangs is as silent as the line.
     f.online = sample.online && (sample.saving || now - sample.heard < 2 * config_.silence);
-    f.fault = sample.alarm != 0 || (sample.setup_refused && sample.running);
+    f.fault = sample.alarm != 0;
     f.power = f.fault ? PowerState::fault : sample.running ? PowerState::enabled : PowerState::disabled;
     f.mode = sample.torque_mode ? DriveMode::profile_torque : DriveMode::profile_velocity;
     f.error_code = sample.alarm;
@@ -100,6 +100,8 @@ void Xp200Drive::encode(const DriveCommand& command, Instant) noexcept {
             static_cast<std::int16_t>(std::clamp(std::round(turns_per_minute(command.velocity_limit)), 1.0, fastest_setting));
     next.up_ms = ramp_ms(turns_per_minute(command.acceleration));
     next.down_ms = ramp_ms(turns_per_minute(command.deceleration));
+    if (feedback_.online && newest_.released && !newest_.running) seen_off_ = newest_.session;
+    next.session = seen_off_;
     next.sequence = wish_.sequence;
     if (next.asks_the_same(wish_)) return;
     ++next.sequence;
@@ -124,7 +126,7 @@ DriveAlarm Xp200Drive::alarm() const noexcept {
 }
 
 bool Xp200Drive::supervised(Instant now) const noexcept {
-    return newest_.online && now - newest_.heard < config_.silence && !newest_.setup_refused;
+    return newest_.online && newest_.released && now - newest_.heard < config_.silence && !newest_.setup_refused;
 }
 
 // --- the line's side ----------------------------------------------------------------------------------------------------------
@@ -139,6 +141,7 @@ void Xp200Drive::take(const modbus::Answer& answer, Instant now) {
         for (auto& open : open_)
             if (open.ticket == done->first) open.answer = done->second;
     samples_.back() = schedule_.sample();
+    samples_.back().revision = ++revision_;
     samples_.publish();
 }
 

@@ -54,7 +54,8 @@ private:
     DriveFeedback feedback_;
     Sample newest_;
     Wish wish_;
-    std::int16_t speed_ = 0;  // as sent last, for the rounding
+    std::int16_t speed_ = 0;      // as sent last, for the rounding
+    std::uint16_t seen_off_ = 0;  // Wish::session
 
     LatestValue<Wish> wishes_;
     LatestValue<Sample> samples_;
@@ -66,7 +67,7 @@ private:
     };
     std::vector<Open> open_;
     ServiceTicket last_ticket_ = 0;
-    bool was_online_ = false;
+    std::uint32_t revision_ = 0;
 };
 
 }  // namespace taktwerk::axes::xp200
