@@ -21,6 +21,11 @@ DriveMode own_mode(const AxisConfig& config, const DriveCapabilities& drive) {
     return drive.setpoints == SetpointClass::low_dynamics ? DriveMode::profile_velocity : DriveMode::cyclic_velocity;
 }
 
+/// Bounds of velocity that act through a slow line would come too late: there the drive keeps them.
+double torque_inertia(const AxisConfig& config, const DriveCapabilities& drive) {
+    return drive.setpoints == SetpointClass::low_dynamics ? 0 : config.control.inertia();
+}
+
 /// A tenth of the cycle rate: see TorqueControl.
 double torque_bandwidth(Duration cycle) { return cycle > Duration::zero() ? 0.1 / to_seconds(cycle) : 0; }
 
@@ -47,7 +52,7 @@ Axis::Axis(AxisConfig config, DrivePort& port, Duration cycle, std::uint16_t ind
       own_mode_(own_mode(config_, port.capabilities())),
       former_mode_(own_mode_),
       torque_per_acceleration_((config_.gearing.inverted ? -1.0 : 1.0) * config_.control.torque_feed_forward * config_.control.inertia()),
-      torque_(config_.control.inertia(), torque_bandwidth(cycle)),
+      torque_(torque_inertia(config_, port.capabilities()), torque_bandwidth(cycle)),
       compensation_(config_.compensation),
       power_(port.capabilities().enable_delay, config_.enable_timeout),
       alarms_(index),

@@ -40,6 +40,14 @@ modbus::Request Schedule::write(std::uint16_t number, std::int64_t value) noexce
     return ask(Asked::write, modbus::write_parameter(config_.station, number, static_cast<std::uint16_t>(value)));
 }
 
+/// In torque control, and not braking.
+bool Schedule::drives_torque() const noexcept { return settings_.knows(pr::force_4, force::mode); }
+
+/// Torque ends here by EMG: torque 0 would let the motor run out, and a load fall.
+bool Schedule::must_brake(const Wish& wish) const noexcept {
+    return drives_torque() && sample_.running && (wish.halt || wish.power != PowerRequest::on || !wish.torque_mode);
+}
+
 /// An internal speed or torque may be selected.
 bool Schedule::moves_by_itself() const noexcept { return !settings_.knows(pr::force_3, 0); }
 
@@ -49,7 +57,7 @@ bool Schedule::stands() const noexcept {
 }
 
 bool Schedule::urgent(const Wish& wish) const noexcept {
-    return phase_ == Phase::running && (wish.halt || wish.power != PowerRequest::on) && moves_by_itself();
+    return phase_ == Phase::running && (((wish.halt || wish.power != PowerRequest::on) && moves_by_itself()) || must_brake(wish));
 }
 
 std::optional<modbus::Request> Schedule::next(const Wish& wish, Instant now) {
@@ -111,6 +119,7 @@ bool Schedule::may_enable(const Wish& wish) const noexcept {
 
 std::optional<modbus::Request> Schedule::command(const Wish& wish, Instant now) {
     const bool on = may_enable(wish);
+    if (must_brake(wish) || (drives_torque() && sample_.running && !on)) return write(pr::force_4, force::mode + force::emergency);
     const bool moves = on && sample_.running && !wish.halt && (wish.torque_mode ? wish.torque != 0 : wish.speed != 0);
     if (!moves) {
         selects_.reset();
@@ -131,9 +140,9 @@ std::optional<modbus::Request> Schedule::command(const Wish& wish, Instant now) 
         settings_.restart();
         return open(now);
     }
-    if (!on) return std::nullopt;
-    const std::int64_t mode_word = wish.torque_mode ? force::mode : 0;
-    if (!settings_.knows(pr::force_4, mode_word) && (stands() || !settings_.has(pr::force_4))) return write(pr::force_4, mode_word);
+    const std::uint16_t mode = !wish.torque_mode ? 0 : wish.halt ? force::mode + force::emergency : force::mode;
+    if (!on) return sample_.running || settings_.knows(pr::force_4, 0) ? std::nullopt : change_mode(0);
+    if (!settings_.knows(pr::force_4, mode)) return change_mode(mode);
     if (!sample_.running) {
         // At standstill only (5.5 SON), and not before it had its time.
         if (!stands() || now - enable_tried_ < enable_again) return std::nullopt;
@@ -142,12 +151,23 @@ std::optional<modbus::Request> Schedule::command(const Wish& wish, Instant now) 
         return ask(Asked::servo, modbus::servo(config_.station, modbus::servo_on));
     }
     if (selects_) return write(pr::force_3, *selects_);
-    if (wish.up_ms > 0 && !settings_.knows(pr::acceleration_time, wish.up_ms)) return write(pr::acceleration_time, wish.up_ms);
-    if (wish.down_ms > 0 && !settings_.knows(pr::deceleration_time, wish.down_ms)) return write(pr::deceleration_time, wish.down_ms);
+    if (!wish.torque_mode && wish.up_ms > 0 && !settings_.knows(pr::acceleration_time, wish.up_ms))
+        return write(pr::acceleration_time, wish.up_ms);
+    if (!wish.torque_mode && wish.down_ms > 0 && !settings_.knows(pr::deceleration_time, wish.down_ms))
+        return write(pr::deceleration_time, wish.down_ms);
     if (wish.torque_mode && wish.speed_limit > 0 && !settings_.knows(pr::torque_speed_limit, wish.speed_limit))
         return write(pr::torque_speed_limit, wish.speed_limit);
     if (!moves) return std::nullopt;
     return wish.torque_mode ? drive(Drives::torque, wish.torque) : drive(Drives::speed, wish.speed);
+}
+
+/// With nothing selected, so that neither the other mode nor the end of EMG begins with a motion (the selected one runs on then), and at
+/// standstill: a change of CMODE in motion is not described.
+std::optional<modbus::Request> Schedule::change_mode(std::uint16_t word) {
+    selects_.reset();
+    if (moves_by_itself()) return write(pr::force_3, 0);
+    if (!stands() && settings_.has(pr::force_4)) return std::nullopt;
+    return write(pr::force_4, word);
 }
 
 /// The value goes where none is selected, then that is selected: whether a selected one reacts to a write is not stated.
@@ -261,7 +281,7 @@ void Schedule::take_position(const modbus::Answer& answer, Instant) {
     doubtful_ = false;
     sample_.sampled = answer.sampled;
     sample_.torque = static_cast<double>(static_cast<std::int16_t>(words[4])) / 100;
-    sample_.torque_mode = settings_.knows(pr::force_4, force::mode);
+    sample_.torque_mode = drives_torque() || settings_.knows(pr::force_4, force::mode + force::emergency);
     sample_.online = turn_ > 3;  // terminals and alarm have been read once
     ++sample_.number;
 }

@@ -8,6 +8,9 @@
 // Whatever ran before a silence is over before anything else counts: the drive is disabled, and until RUN has been seen off nothing is
 // acknowledged and nothing enabled. A drive that keeps its power all the same is not enabled either; the problems say so.
 //
+// Torque control is CMODE with Pr004 = 5, chosen at standstill. Out of it: EMG first (Pr123, with Pr164 = 1 the drive brakes by Pr063 and keeps
+// its power), then no torque selected, and at standstill back to speed control, whose speed 1 is rest, and out of EMG in one word.
+//
 // Running, of several things to do the first of: stop, disable, clear, enable, ramps, speed or torque; never more than two commands
 // without looking at the position; parameters that somebody asked for when nothing else waits.
 
@@ -70,6 +73,9 @@ private:
     [[nodiscard]] bool moves_by_itself() const noexcept;
     [[nodiscard]] bool stands() const noexcept;
     [[nodiscard]] bool may_enable(const Wish& wish) const noexcept;
+    [[nodiscard]] bool drives_torque() const noexcept;
+    [[nodiscard]] bool must_brake(const Wish& wish) const noexcept;
+    std::optional<modbus::Request> change_mode(std::uint16_t word);
 
     const DriveConfig& config_;
     Phase phase_ = Phase::closed;

@@ -30,7 +30,16 @@ Xp200Drive::Xp200Drive(DriveConfig config, const modbus::LineSettings& line) : c
     const auto& profile = *config_.profile;
     auto& c = capabilities_;
     c.setpoints = SetpointClass::low_dynamics;
-    for (const auto mode : profile.modes) c.modes = static_cast<std::uint16_t>(c.modes | (1u << static_cast<unsigned>(mode)));
+    const auto asks_for = [&](std::uint16_t number, std::int64_t value) {
+        for (const auto& parameter : config_.parameters)
+            if (parameter.number == number && parameter.value == value) return true;
+        return false;
+    };
+    // Torque needs CMODE to choose between speed and torque, and EMG that brakes: the only way out of a torque that is no running out (5.4.1, 5.4.2).
+    const bool torque = asks_for(pr::control_mode, 5) && asks_for(pr::emergency_mode, 1);
+    for (const auto mode : profile.modes)
+        if (mode != DriveMode::profile_torque || torque)
+            c.modes = static_cast<std::uint16_t>(c.modes | (1u << static_cast<unsigned>(mode)));
     c.digital_inputs = true;
     c.position_bits = profile.position_bits;
     c.enable_delay = profile.enable_delay;
@@ -69,6 +78,8 @@ const DriveFeedback& Xp200Drive::decode(Instant now) noexcept {
     f.home_switch = sample.home;
     f.negative_limit = sample.negative_limit;
     f.positive_limit = sample.positive_limit;
+    // Real speed is slightly above the limit where that holds it (5.4.1 Pr078).
+    f.internal_limit = sample.torque_mode && wish_.speed_limit > 0 && std::abs(turns_per_minute(sample.velocity)) >= wish_.speed_limit;
     f.commands_acknowledged = sample.acknowledged == wish_.sequence;
     f.position_epoch = sample.epoch;
     if (!f.fresh) return f;

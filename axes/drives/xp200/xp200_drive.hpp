@@ -2,6 +2,7 @@
 // An XP200 behind DrivePort. The cycle writes a wish and reads the newest sample, both without waiting; the schedule of the line turns the
 // one into requests and the answers into the other, on the service side. Positioning is the axis' business: it closes its loop over speed.
 //
+// Torque where Pr004 = 5 and Pr164 = 1 are asked for (schedule.hpp); its velocity is the drive's to keep (Pr078).
 // Not supported over this port, and refused by the axis or here: cyclic set-points (couplings, cams, fed set-points, profiles over time),
 // homing by the drive, touch probes, torque limits, outputs, clearing turns, restoring defaults.
 

@@ -81,6 +81,7 @@ private:
     [[nodiscard]] bool allowed(bool ccw) const noexcept;
     [[nodiscard]] double wanted_speed() const noexcept;
     [[nodiscard]] double wanted_torque() const noexcept;
+    [[nodiscard]] double limited_by_speed(double torque) const noexcept;
     [[nodiscard]] double most_torque(bool ccw) const noexcept;
     void step() noexcept;
     void run_state() noexcept;

@@ -3,8 +3,7 @@
 
 #include "axes/axis/alarms.hpp"
 #include "fb_library/all_blocks.hpp"
-#include "tests/axes/drives/xp200/plain_profile.hpp"
-#include "tests/runtime/test_machine.hpp"
+#include "tests/runtime/serial/line_machine.hpp"
 #include "tests/runtime/test_program.hpp"
 
 namespace taktwerk::runtime::testing {
@@ -13,46 +12,6 @@ namespace {
 using namespace fb;
 using axes::AxisState;
 constexpr std::uint16_t u = 1;
-
-/// x on the bus as ever; u on a line of 38400 baud, 10 mm a turn, watched over by output `u_stop` on the terminal, wired to DI6 (EMG).
-MachineConfig with_line(MachineConfig m) {
-    SerialDriveConfig drive;
-    drive.drive.name = "u_drive";
-    drive.drive.profile = axes::xp200::plain_profile();
-    drive.drive.parameters = {{97, 33}, {105, -15}, {108, 9}, {136, 1}, {164, 1}, {63, 200}};
-    drive.watchdog_output = "u_stop";
-    SerialLineConfig line;
-    line.name = "rs485";
-    line.settings.baud = 38400;
-    line.drives.push_back(drive);
-    m.serial.push_back(line);
-
-    AxisBinding binding;
-    auto& axis = binding.axis;
-    axis.name = "u";
-    axis.gearing = {.counts_per_revolution = 10000, .feed = 10};
-    axis.limits = {.velocity = 100,
-                   .acceleration = 200,
-                   .deceleration = 200,
-                   .jerk = std::numeric_limits<double>::infinity(),
-                   .stop_deceleration = 400};
-    axis.control = {.mode = axes::ControlMode::velocity, .kv = 3};
-    axis.windows = {.in_position = 0.05, .in_position_time = 10ms, .standstill_velocity = 0.1};
-    axis.following = {.window = 10, .time = 50ms};
-    axis.homing.kind = axes::HomingKind::set_here;
-    binding.drive = "u_drive";
-    binding.profile = drive.drive.profile;
-    m.axes.push_back(binding);
-
-    IoPoint point;
-    point.name = "u_stop";
-    point.direction = IoDirection::output;
-    point.slave = "io";
-    point.index = 0x7000;
-    point.sub = 2;
-    m.io.push_back(point);
-    return m;
-}
 
 axes::sim::xp200::Servo& servo(TestMachine& m) { return m.world.serial().drive("u")->servo(); }
 
@@ -326,6 +285,21 @@ TEST(SerialCheck, AnAxisOverALineNeedsAPositionLoopHere) {
     auto homing = good;
     homing.axes[1].axis.homing.kind = axes::HomingKind::drive;
     EXPECT_TRUE(complains(homing, "axis.homing"));
+}
+
+// Torque control (Pr004 = 5) ends by EMG and Pr063: 200 ms for 1000 r/min are 833 mm/s2 here, 10 mm a turn; the axis counts on 400.
+TEST(SerialCheck, TorqueControlNeedsAWayOut) {
+    auto good = with_line(machine_config(1));
+    auto& parameters = good.serial[0].drives[0].drive.parameters;
+    parameters.push_back({4, 5});
+    EXPECT_TRUE(codes(good).empty());
+    auto coasts = good;
+    std::erase_if(coasts.serial[0].drives[0].drive.parameters, [](const auto& p) { return p.number == 164; });
+    EXPECT_TRUE(complains(coasts, "serial.torque_stop"));
+    auto soft = good;
+    std::erase_if(soft.serial[0].drives[0].drive.parameters, [](const auto& p) { return p.number == 63; });
+    soft.serial[0].drives[0].drive.parameters.push_back({63, 420});  // 397 mm/s2
+    EXPECT_TRUE(complains(soft, "serial.torque_ramp"));
 }
 
 }  // namespace
