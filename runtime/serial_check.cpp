@@ -139,9 +139,9 @@ private:
                 "widen it, or raise control.kv");
         check_torque(binding, here);
         using Kind = axes::HomingKind;
-        if (axis.homing.kind == Kind::drive || axis.homing.kind == Kind::absolute || axis.homing.kind == Kind::reference_pulse)
-            add("axis.homing", here + ".homing.kind", "this drive has no homing of its own, no absolute encoder and no latch",
-                "use home_switch, limit_switch, block or set_here");
+        if (axis.homing.kind == Kind::drive || axis.homing.kind == Kind::absolute)
+            add("axis.homing", here + ".homing.kind", "this drive has no homing of its own and no absolute encoder",
+                "use home_switch, reference_pulse, limit_switch, block or set_here");
     }
 
     /// Pr004 = 5 lets MC_TorqueControl choose torque; EMG is its way out (axes/drives/xp200/schedule.hpp).

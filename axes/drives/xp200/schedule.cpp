@@ -1,3 +1,5 @@
+// What is asked next.
+
 #include "axes/drives/xp200/schedule.hpp"
 
 #include <algorithm>
@@ -7,8 +9,6 @@
 namespace taktwerk::axes::xp200 {
 
 using namespace std::chrono_literals;
-using modbus::Outcome;
-using std::chrono::milliseconds;
 
 namespace {
 
@@ -28,7 +28,7 @@ constexpr Slots torque_slots{pr::torque_1 + 1, pr::torque_1 + 2, force::torque_2
 
 }  // namespace
 
-Schedule::Schedule(const DriveConfig& config) : config_(config), settings_(config) {}
+Schedule::Schedule(const DriveConfig& config) : config_(config), settings_(config), index_(config.counts_per_turn) {}
 
 modbus::Request Schedule::ask(Asked what, const modbus::Request& request) noexcept {
     asked_ = what;
@@ -62,6 +62,7 @@ bool Schedule::urgent(const Wish& wish) const noexcept {
 
 std::optional<modbus::Request> Schedule::next(const Wish& wish, Instant now) {
     if (phase_ != Phase::running) return open(now);
+    follow_latch(wish, now);
     auto request = command(wish, now);
     if (!request && (sample_.released || !problems().empty())) sample_.acknowledged = wish.sequence;
     if (request && (urgent(wish) || ++commands_in_a_row_ <= 2)) return request;
@@ -100,6 +101,7 @@ std::optional<modbus::Request> Schedule::open(Instant now) {
             phase_ = Phase::running;
             turn_ = 0;
             raw_.reset();
+            index_.forget();
             enable_sent_ = false;
             selects_.reset();
             settings_read_ = now;
@@ -190,157 +192,14 @@ modbus::Request Schedule::poll(Instant now) {
         const auto block = settings_.watched();
         return ask(Asked::parameters, modbus::read_parameters(config_.station, block.first, block.count));
     }
+    // Between two positions that are the same, so that all three are of one place.
+    if (rests_ && index_.turned() && !index_.known() && !single_turn_)
+        return ask(Asked::turn, modbus::read_status(config_.station, status::single_turn, 2));
+    if (single_turn_) return ask(Asked::position, modbus::read_status(config_.station, status::position, 5));
     ++turn_;
     if (turn_ % 4 == 1 && !look_for_alarm_) return ask(Asked::terminals, modbus::read_status(config_.station, status::inputs, 2));
     if (turn_ % 4 == 3 || look_for_alarm_) return ask(Asked::alarm, modbus::read_status(config_.station, status::alarm, 1));
     return ask(Asked::position, modbus::read_status(config_.station, status::position, 5));  // position, deviation, torque
-}
-
-void Schedule::take(const modbus::Answer& answer, Instant now) {
-    const auto asked = std::exchange(asked_, Asked::nothing);
-    if (asked == Asked::service) {
-        served_ = {serving_, answer};
-        serving_ = 0;
-    }
-    if (answer.outcome != Outcome::answered && answer.outcome != Outcome::exception) {
-        if (phase_ != Phase::closed && now - sample_.heard >= config_.silence) lost(now);
-        return;
-    }
-    sample_.heard = now;
-    sample_.saving = asked == Asked::service && answer.request.function == modbus::Function::save && answer.outcome == Outcome::answered;
-    if (answer.outcome == Outcome::exception) {
-        // A parameter that the drive does not take: said once, never asked for again in this session.
-        if (phase_ == Phase::setting || phase_ == Phase::reading) settings_.done();
-        return;
-    }
-    switch (asked) {
-        case Asked::echo:
-            phase_ = Phase::stopping;
-            ++sample_.session;
-            sample_.released = false;
-            break;
-        case Asked::parameters:
-            settings_.learn(answer.request.address, answer.response.values());
-            if (phase_ == Phase::reading) settings_.done();
-            else watch_settings();
-            break;
-        case Asked::write:
-            settings_.learn(answer.request.address, std::span{answer.request.words}.first(1));
-            if (phase_ == Phase::stopping) phase_ = Phase::disabling;
-            if (selects_ && answer.request.address == pr::force_3) selects_.reset();
-            break;
-        case Asked::servo:
-            if (phase_ == Phase::disabling) {
-                disabled_at_ = now;
-                phase_ = Phase::reading;
-                settings_.restart();
-            }
-            break;
-        case Asked::position: take_position(answer, now); break;
-        case Asked::terminals: take_terminals(answer.response.words[0], answer.response.words[1], now); break;
-        case Asked::alarm:
-            // 255 and 65535: "none" in some tables; the register's coding is not stated (9.5).
-            if (std::exchange(look_for_alarm_, false)) sample_.running = false;
-            sample_.alarm = answer.response.words[0] == 0xFF || answer.response.words[0] == 0xFFFF ? 0 : answer.response.words[0];
-            break;
-        case Asked::clear:
-        case Asked::service:
-        case Asked::nothing: break;
-    }
-}
-
-/// What somebody may have turned at the panel has been read.
-void Schedule::watch_settings() {
-    settings_.compare();
-    sample_.setup_refused = !problems().empty();
-}
-
-void Schedule::take_position(const modbus::Answer& answer, Instant) {
-    const auto& words = answer.response.words;
-    const auto raw = static_cast<std::uint32_t>(words[0]) | (static_cast<std::uint32_t>(words[1]) << 16);  // low word first (9.5)
-    if (!raw_) {
-        raw_ = raw;
-        sample_.position = static_cast<std::int32_t>(raw);
-        sample_.velocity = 0;
-    } else {
-        const auto way = static_cast<std::int64_t>(static_cast<std::int32_t>(raw - *raw_));
-        const double time = to_seconds(answer.sampled - sample_.sampled);
-        const double fastest = 1.5 * static_cast<double>(std::max<std::int64_t>(settings_.known(pr::highest_speed), 100)) / 60 *
-                               static_cast<double>(config_.counts_per_turn);
-        // Whether both halves are taken at once is not stated: what nobody can have moved is read again first.
-        const bool leaps = std::abs(static_cast<double>(way)) > fastest * time + 1000;
-        if (leaps && !doubtful_) {
-            doubtful_ = true;
-            return;
-        }
-        if (leaps) ++sample_.epoch;
-        raw_ = raw;
-        sample_.position += way;
-        if (time > 0 && !leaps) sample_.velocity = static_cast<double>(way) / time;
-    }
-    doubtful_ = false;
-    sample_.sampled = answer.sampled;
-    sample_.torque = static_cast<double>(static_cast<std::int16_t>(words[4])) / 100;
-    sample_.torque_mode = drives_torque() || settings_.knows(pr::force_4, force::mode + force::emergency);
-    sample_.online = turn_ > 3;  // terminals and alarm have been read once
-    ++sample_.number;
-}
-
-void Schedule::take_terminals(std::uint16_t inputs, std::uint16_t outputs, Instant now) {
-    const auto conducting = [](std::uint16_t bits, ConductingReads reads) {
-        return static_cast<std::uint16_t>((reads == ConductingReads::one ? bits : ~bits) & 0x3Fu);
-    };
-    sample_.inputs = conducting(inputs, config_.inputs);
-    sample_.outputs = conducting(outputs, config_.outputs);
-    const auto function = [&](std::uint16_t first, int terminal) { return settings_.known(static_cast<std::uint16_t>(first + terminal)); };
-    const auto on = [&](std::uint16_t first, int terminal, std::uint16_t bits) {
-        return ((bits >> terminal) & 1u) == (function(first, terminal) >= 0 ? 1u : 0u);
-    };
-    for (int i = 0; i < output_count; ++i)
-        if (std::abs(function(pr::output_function, i)) == static_cast<int>(Output::running))
-            take_running(on(pr::output_function, i, sample_.outputs));
-    watch_release(now);
-    // CCWL and CWL are on where motion is allowed (4.6); ignored ones say nothing.
-    const auto use = settings_.known(pr::limit_use) % 10;
-    const auto limit = [&](Input input, bool used) {
-        if (!used) return false;
-        for (int i = 0; i < input_count; ++i)
-            if (std::abs(function(pr::input_function, i)) == static_cast<int>(input) && on(pr::input_function, i, sample_.inputs))
-                return false;
-        return true;
-    };
-    sample_.positive_limit = limit(Input::ccw_allowed, use == 0 || use == 2);
-    sample_.negative_limit = limit(Input::cw_allowed, use == 0 || use == 1);
-    const auto& profile = *config_.profile;
-    sample_.home = ((sample_.inputs >> profile.input_bit_home) & 1u) != 0;
-}
-
-/// Disabled over the line it ramps by Pr063 and holds for its brake (Pr136, Pr166); what has power after that is held on by somebody else:
-/// which of function 42h, SON and Pr120 wins is not stated (9.6.7).
-void Schedule::watch_release(Instant now) {
-    if (!sample_.running && !look_for_alarm_) sample_.released = true;
-    if (sample_.released) return;
-    constexpr Duration margin = 1s;
-    const auto ramp = milliseconds{settings_.known(pr::stop_time) * settings_.known(pr::highest_speed) / 1000};
-    if (now - disabled_at_ < ramp + milliseconds{settings_.known(pr::brake_hold)} + margin) return;
-    settings_.object(
-        "it keeps its power although function 42h disabled it: something else enables it, the input SON most likely. Open that [9.6.7, "
-        "5.5]");
-    sample_.setup_refused = true;
-}
-
-/// Current gone although nobody asked: mostly an alarm. That is read first, so that the axis hears the cause and not the effect.
-void Schedule::take_running(bool running) {
-    look_for_alarm_ = !running && sample_.running && enable_sent_;
-    if (!look_for_alarm_) sample_.running = running;
-}
-
-void Schedule::lost(Instant now) {
-    phase_ = Phase::closed;
-    last_try_ = now;
-    sample_.online = sample_.running = look_for_alarm_ = false;
-    settings_.forget();
-    settings_.restart();
 }
 
 // --- services -----------------------------------------------------------------------------------------------------------------

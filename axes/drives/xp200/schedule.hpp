@@ -22,6 +22,7 @@
 
 #include "axes/drives/xp200/drive_config.hpp"
 #include "axes/drives/xp200/exchange.hpp"
+#include "axes/drives/xp200/index_pulse.hpp"
 #include "axes/drives/xp200/registers.hpp"
 #include "axes/drives/xp200/settings.hpp"
 #include "modbus/client/client.hpp"
@@ -55,7 +56,7 @@ public:
 
 private:
     enum class Phase : std::uint8_t { closed, stopping, disabling, reading, setting, running };
-    enum class Asked : std::uint8_t { nothing, echo, parameters, write, servo, clear, position, terminals, alarm, service };
+    enum class Asked : std::uint8_t { nothing, echo, parameters, write, servo, clear, position, turn, terminals, alarm, service };
     enum class Drives : std::uint8_t { speed, torque };
 
     std::optional<modbus::Request> open(Instant now);
@@ -65,6 +66,9 @@ private:
     void watch_settings();
     void watch_release(Instant now);
     void take_position(const modbus::Answer& answer, Instant now);
+    void watch_index(Instant now);
+    void show_index(Instant now);
+    void follow_latch(const Wish& wish, Instant now) noexcept;
     void take_terminals(std::uint16_t inputs, std::uint16_t outputs, Instant now);
     void take_running(bool running);
     void lost(Instant now);
@@ -85,8 +89,11 @@ private:
     Sample sample_;
     std::optional<std::uint32_t> raw_;  // position as read last
     bool doubtful_ = false;             // the last position leapt
-    Instant disabled_at_{}, last_try_{}, enable_tried_{}, disable_tried_{}, clear_tried_{}, alarm_read_{}, terminals_read_{},
-        settings_read_{};
+    IndexPulse index_;
+    bool rests_ = false;                       // the last two positions are the same
+    std::optional<std::int64_t> single_turn_;  // read after the last position
+    Instant disabled_at_{}, latch_since_{}, last_try_{}, enable_tried_{}, disable_tried_{}, clear_tried_{}, alarm_read_{},
+        terminals_read_{}, settings_read_{};
     bool enable_sent_ = false, look_for_alarm_ = false, read_again_ = false;
     int commands_in_a_row_ = 0, turn_ = 0;
     std::optional<std::uint16_t> selects_;  // Pr122 to be written after the value it selects

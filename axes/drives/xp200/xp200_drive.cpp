@@ -41,6 +41,8 @@ Xp200Drive::Xp200Drive(DriveConfig config, const modbus::LineSettings& line) : c
         if (mode != DriveMode::profile_torque || torque)
             c.modes = static_cast<std::uint16_t>(c.modes | (1u << static_cast<unsigned>(mode)));
     c.digital_inputs = true;
+    c.probes = 1;  // of the index pulse only (index_pulse.hpp)
+    c.probe_edges = 0;
     c.position_bits = profile.position_bits;
     c.enable_delay = profile.enable_delay;
     c.mode_change_delay = profile.mode_change_delay;
@@ -82,6 +84,13 @@ const DriveFeedback& Xp200Drive::decode(Instant now) noexcept {
     f.internal_limit = sample.torque_mode && wish_.speed_limit > 0 && std::abs(turns_per_minute(sample.velocity)) >= wish_.speed_limit;
     f.commands_acknowledged = sample.acknowledged == wish_.sequence;
     f.position_epoch = sample.epoch;
+    const bool of_this_latch = sample.latch == wish_.latch && (wish_.latch & 1u) != 0;
+    f.homing_error = of_this_latch && sample.no_index;
+    auto& latch = f.probes[0];
+    latch.armed = of_this_latch && sample.latch_armed;
+    latch.latched = latch.armed && sample.latched;
+    latch.count = latch.latched ? 1 : 0;
+    latch.position = sample.latch_at;
     if (!f.fresh) return f;
     f.latched = sample.sampled;
     f.position = sample.position;
@@ -113,6 +122,10 @@ void Xp200Drive::encode(const DriveCommand& command, Instant) noexcept {
     next.down_ms = ramp_ms(turns_per_minute(command.deceleration));
     if (feedback_.online && newest_.released && !newest_.running) seen_off_ = newest_.session;
     next.session = seen_off_;
+    const auto& probe = command.probes[0];
+    const bool waits = probe.armed && probe.index_pulse;
+    next.latch = wish_.latch;
+    if (waits != ((wish_.latch & 1u) != 0)) ++next.latch;
     next.sequence = wish_.sequence;
     if (next.asks_the_same(wish_)) return;
     ++next.sequence;

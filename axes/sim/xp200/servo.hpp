@@ -114,7 +114,7 @@ private:
     double clamp_at_ = 0;  // plant position
     std::int64_t pulses_ = 0, raw_command_ = 0;
     double command_ = 0;  // counts of the plant
-    bool encoder_broken_ = false;
+    bool encoder_broken_ = false, index_seen_ = false;
     std::int64_t frozen_ = 0;
 
     bool brake_released_ = false;

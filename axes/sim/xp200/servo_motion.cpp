@@ -183,7 +183,11 @@ std::uint16_t Servo::status(std::uint16_t index) const noexcept {
     };
     const auto percent = [&](double torque) { return word(100 * torque / plant_.config().rated_torque); };
     const auto turn = static_cast<std::int64_t>(counts_per_turn());
-    const auto in_turn = ((position() % turn) + turn) % turn;
+    // 0 at the index pulse (3.3 note 6). Before the first one since power-on it counts from where it woke up: not stated.
+    const auto since_zero = index_seen_ && !encoder_broken_
+                                ? static_cast<std::int64_t>(std::floor(plant_.position() - plant_.config().index_pulse))
+                                : position();
+    const auto in_turn = ((since_zero % turn) + turn) % turn;
     const auto rated_current = static_cast<double>(p(204));  // 0.1 A
     switch (index) {
         case s::speed: return word(speed());

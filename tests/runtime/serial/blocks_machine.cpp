@@ -153,8 +153,6 @@ TEST(SerialBlocks, WhatCannotWorkSaysNotSupported) {
         {"MC_WriteDigitalOutput", ErrorId::not_supported},
         {"MC_HomeAbsolute", ErrorId::not_supported},
         {"MC_StepDistanceCoded", ErrorId::not_supported},
-        {"MC_StepReferencePulse", ErrorId::no_such_probe},
-        {"MC_StepReferenceFlyingRefPulse", ErrorId::no_such_probe},
         // what this axis is not: it has no modulo
         {"MC_MoveModulo", ErrorId::not_supported},
         // what has nothing to end here
