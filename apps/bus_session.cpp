@@ -27,16 +27,6 @@ using namespace std::chrono_literals;
 constexpr Duration listening_time = 25ms;  // a master that is there sends at least every 10 ms
 constexpr Duration refresh_period = 100ms;
 
-/// The tool's exit code for what went wrong.
-int code_of(const Error& error) {
-    if (error.code == "drive.not_taken" || error.code == "drive.cannot_store" || error.code == "drive.not_reset") return exit_refused;
-    if (error.code.rfind("drive.", 0) == 0) return exit_usage;
-    if (error.code == "bus.no_such_slave" || error.code == "sdo.value" || error.code == "bus.not_confirmed") return exit_usage;
-    if (error.code == "sdo.abort" || error.code == "bus.refused_state") return exit_refused;
-    if (error.code == "capture.write") return exit_bad_file;
-    return exit_bus;
-}
-
 std::string outputs_text(const ecat::Survey& survey, const ecat::BusConfig& config) {
     std::string text;
     for (const auto& slave : config.slaves) {
@@ -213,7 +203,7 @@ Result<void> BusSession::bring_up(const ecat::Survey& survey) {
 }
 
 Result<void> BusSession::close() {
-    closing_ = true;
+    finish_undisturbed();
     if (up_) {
         up_ = false;
         if (auto down = probe_->take_down(); !down) return down;
@@ -225,10 +215,19 @@ Result<void> BusSession::close() {
     return capture_->finish();
 }
 
+int exit_code_for(const Error& error) {
+    if (error.code == "drive.not_taken" || error.code == "drive.cannot_store" || error.code == "drive.not_reset") return exit_refused;
+    if (error.code.rfind("drive.", 0) == 0) return exit_usage;
+    if (error.code == "bus.no_such_slave" || error.code == "sdo.value" || error.code == "bus.not_confirmed") return exit_usage;
+    if (error.code == "sdo.abort" || error.code == "bus.refused_state") return exit_refused;
+    if (error.code == "capture.write") return exit_bad_file;
+    return exit_bus;
+}
+
 int fail(const BusOptions& options, const Error& error) {
     if (options.json) print_json(Json{{"ok", false}, {"error", error_json(error)}});
     else print_error(error);
-    return code_of(error);
+    return exit_code_for(error);
 }
 
 Json error_json(const Error& error) {
@@ -245,7 +244,7 @@ int with_bus(const BusOptions& options, const std::function<int(BusSession&)>& w
     std::fflush(stdout);
     if (auto closed = opening.session->close(); !closed) {
         print_error(closed.error());
-        if (code == exit_ok) code = code_of(closed.error());
+        if (code == exit_ok) code = exit_code_for(closed.error());
     }
     return code;
 }

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "apps/drive.hpp"
+#include "apps/drive_profiles.hpp"
 #include "apps/exit_code.hpp"
 #include "ecat/bringup/slave_match.hpp"
 

@@ -75,7 +75,7 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, const std
           return names;
       }()) {
     const auto on_bus = bus_of(config);
-    build_lines(serial_lines);
+    build_lines(serial_lines, errors);
     axes.reserve(config.axes.size());
     views.resize(config.axes.size());
     for (std::size_t i = 0; i < config.axes.size(); ++i) {
@@ -283,7 +283,8 @@ void Machine::stop_bus() { impl_->bus.stop(); }
 void Machine::service(Instant now) {
     impl_->bus.step(now);
     impl_->lay_out_outputs();
-    for (auto& line : impl_->lines) line->step(now);
+    for (auto& line : impl_->lines)
+        if (line) line->step(now);
     for (auto& port : impl_->ports) port->step(now);
     impl_->objects->step(impl_->bus);
     impl_->service_programs();

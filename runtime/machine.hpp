@@ -41,7 +41,8 @@ struct AlarmText {
 class Machine {
 public:
     /// Checks everything, loads the programs, takes all memory. `transport` outlives the machine. All problems at once.
-    /// `lines`: one for each of `config.serial`, in its order; they outlive the machine too and are used on the service side only.
+    /// `lines`: one for each of `config.serial`, in its order; they outlive the machine too and are used on the service side only. nullptr:
+    /// none, which is an error (serial.no_line) unless every axis on it is simulated.
     static std::variant<std::unique_ptr<Machine>, std::vector<Error>> build(MachineConfig config, ecat::Transport& transport,
                                                                             std::vector<modbus::SerialLine*> lines = {});
     ~Machine();

@@ -111,8 +111,4 @@ modbus::VirtualLine* SerialWorld::line(std::string_view name) noexcept {
     return nullptr;
 }
 
-void SerialWorld::advance(Instant now) {
-    for (auto& line : lines_) line->line.advance(now);
-}
-
 }  // namespace taktwerk::runtime

@@ -1,6 +1,8 @@
 #pragma once
 // The serial lines of a simulated machine: a computed line each, XP200 drives at its end, their contacts wired to the mechanics and to the
-// machine's outputs. Lines and drives live on the service side; what the cycle's side tells them passes through atomics and a ring.
+// machine's outputs. Lines and drives live on the service side: the machine's service steps each line's client, which looks at its line each
+// time, and that is how time passes for the drives, in virtual time and on the service thread alike. What the cycle's side tells them passes
+// through atomics and a ring.
 
 #include <atomic>
 #include <memory>
@@ -39,8 +41,6 @@ public:
     /// nullptr when the axis is on none.
     [[nodiscard]] axes::sim::xp200::Drive* drive(std::string_view axis) noexcept;
     [[nodiscard]] modbus::VirtualLine* line(std::string_view name) noexcept;
-    /// Drives live on while nobody asks them anything.
-    void advance(Instant now);
 
 private:
     struct Happening {
@@ -79,7 +79,10 @@ private:
             follow();
             return line.line.receive(into, now);
         }
-        void discard(Instant now) override { line.line.discard(now); }
+        void discard(Instant now) override {
+            follow();
+            line.line.discard(now);
+        }
         [[nodiscard]] bool present() const noexcept override { return true; }
         void follow() noexcept {
             if (const bool wanted = line.cut.load(std::memory_order_relaxed); wanted != was_cut) line.line.cut(was_cut = wanted);

@@ -23,6 +23,12 @@ constexpr double dead_cycles = 5;          // from seeing that a torque must end
 bool cyclic(DriveMode mode) noexcept {
     return mode == DriveMode::cyclic_position || mode == DriveMode::cyclic_velocity || mode == DriveMode::cyclic_torque;
 }
+bool slow_line(const DriveCapabilities& drive) noexcept { return drive.setpoints == SetpointClass::low_dynamics; }
+DriveMode torque_mode(const DriveCapabilities& drive) noexcept {
+    return slow_line(drive) ? DriveMode::profile_torque : DriveMode::cyclic_torque;
+}
+/// From a word to its effect as the feedback shows it, where that is more than a bus' few cycles.
+Duration round_trip(const DriveCapabilities& drive) noexcept { return drive.command_latency + drive.feedback_period; }
 /// Ends motion: taken in any mode, whatever the drive demands for a change.
 bool only_stops(CommandKind kind) noexcept { return kind == CommandKind::stop || kind == CommandKind::halt; }
 
@@ -31,7 +37,7 @@ bool only_stops(CommandKind kind) noexcept { return kind == CommandKind::stop ||
 DriveMode Axis::mode_on_the_way() const noexcept {
     if (drive_homing_.busy()) return drive_homing_.mode();
     if (mode_waits_) return mode_phase_ == ModePhase::changing ? former_mode_ : own_mode_;
-    return mode_phase_ == ModePhase::entering || mode_phase_ == ModePhase::torque ? DriveMode::cyclic_torque : own_mode_;
+    return mode_phase_ == ModePhase::entering || mode_phase_ == ModePhase::torque ? torque_mode(port_.capabilities()) : own_mode_;
 }
 
 bool Axis::torque_wanted() const noexcept {
@@ -51,8 +57,10 @@ ErrorId Axis::refuse_mode(const AxisCommand& command, bool starts_now) const noe
         !only_stops(command.kind))
         return ErrorId::not_at_standstill;
     if (command.kind == CommandKind::torque) {
-        if (!drive.has(DriveMode::cyclic_torque)) return ErrorId::not_supported;
-        const bool bounded = config_.control.inertia() > 0 || (drive.velocity_limit && !drive.mode_change_at_standstill);
+        if (!drive.has(torque_mode(drive))) return ErrorId::not_supported;
+        // Over a slow line the drive keeps the velocity, and brakes out of its torque by itself when it is told to halt.
+        const bool by_drive = drive.velocity_limit && (slow_line(drive) || !drive.mode_change_at_standstill);
+        const bool bounded = by_drive || (config_.control.inertia() > 0 && !slow_line(drive));
         if (!bounded) return ErrorId::not_supported;  // nobody would keep the velocity in its limit
         if (!starts_now) return ErrorId::none;
         if (drive.mode_change_at_standstill && !in_torque && !stands) return ErrorId::not_at_standstill;
@@ -137,7 +145,8 @@ bool Axis::step_mode(Duration period) noexcept {
         else mode_since_ = now_;
     }
     const bool confirmed = !mode_waits_ && mode_confirmed();
-    const bool late = now_ - mode_since_ >= mode_patience + port_.capabilities().mode_change_delay;
+    const auto& drive = port_.capabilities();
+    const bool late = now_ - mode_since_ >= mode_patience + drive.mode_change_delay + 2 * round_trip(drive);
     switch (mode_phase_) {
         case ModePhase::steady: return false;
         case ModePhase::entering: return enter_torque(confirmed, late, period);
@@ -207,7 +216,11 @@ bool Axis::run_torque(Duration period) noexcept {
     follow_motor();
     (void)torque_.step(motor_velocity(), period);
     guard_torque();
-    queue_.set_in_target(queue_.active().command.kind == CommandKind::torque && torque_.in_torque() && !feedback_.internal_limit);
+    // Over a slow line the drive has it when the word of the cycle before, which was the same, is acknowledged.
+    const double sent = config_.gearing.inverted ? -command_.torque : command_.torque;
+    const bool arrived = !slow_line(drive) || (sent == torque_.torque() && feedback_.commands_acknowledged);
+    queue_.set_in_target(queue_.active().command.kind == CommandKind::torque && torque_.in_torque() && !feedback_.internal_limit &&
+                         arrived);
     return true;
 }
 
@@ -216,7 +229,8 @@ void Axis::guard_torque() noexcept {
     if (view_.state == AxisState::ErrorStop || view_.state == AxisState::Stopping || guard_switches() || !software_limits_hold()) return;
     auto reach = setpoint_.state();
     if (reach.velocity == 0) return;
-    reach.position += reach.velocity * (dead_cycles * to_seconds(cycle_) + to_seconds(port_.capabilities().mode_change_delay));
+    const auto& drive = port_.capabilities();
+    reach.position += reach.velocity * (dead_cycles * to_seconds(cycle_) + to_seconds(drive.mode_change_delay + round_trip(drive)));
     const double end = units_.to_program(reach.position + stopping_distance(reach, stop_limits(config_.limits)));
     const double edge = reach.velocity > 0 ? config_.limits.position_max : config_.limits.position_min;
     if (reach.velocity > 0 ? end > edge : end < edge)
@@ -267,9 +281,10 @@ void Axis::fill_targets() noexcept {
     command_.position = seeded_ ? units_.counts(set.position + compensation_.offset()) : feedback_.position;
     command_.velocity = control.feed_forward * set.velocity * counts;
     command_.torque = torque_per_acceleration_ * set.acceleration;
-    if (port_.capabilities().setpoints == SetpointClass::low_dynamics) {
+    if (slow_line(port_.capabilities())) {
         // Told to stop, the drive ramps by itself: one word on the line ends the motion, whatever becomes of the line then.
-        command_.halt = goal_.kind == Goal::Kind::stop;
+        const bool ends_torque = mode_phase_ == ModePhase::leaving || (mode_phase_ == ModePhase::torque && !torque_wanted());
+        command_.halt = goal_.kind == Goal::Kind::stop || ends_torque;
         const double deceleration = command_.halt ? goal_.limits.deceleration : config_.limits.deceleration;
         command_.acceleration = config_.limits.acceleration * std::abs(counts);
         command_.deceleration = deceleration * std::abs(counts);

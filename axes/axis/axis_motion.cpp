@@ -18,7 +18,7 @@ void Axis::plan(Instant now, Duration period) noexcept {
         return;
     }
     const bool may_be_homed = view_.state == AxisState::Homing || passive_.id != 0;
-    if (homes()) step_homing();
+    if (homes() || latch_.armed()) step_homing();
     if (view_.active_in_target && queue_.waiting() > 0) carry_out_due_settings();
     if (view_.active_in_target && queue_.waiting() > 0) hand_over();
     if (mode_phase_ != ModePhase::steady && step_mode(period)) {

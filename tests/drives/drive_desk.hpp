@@ -59,17 +59,17 @@ inline axes::sim::PlantConfig long_table() {
     return plant;
 }
 
+/// What no profile says because it depends on the motor or the maker's tool sets it: highest speed, how long it bears an overload, encoder.
+using MotorFacts = std::function<void(axes::sim::Personality&)>;
+
 class DriveDesk {
 public:
-    /// What the maker's tool sets and no object shows.
-    using Adapt = std::function<void(axes::sim::Personality&)>;
-
     /// Powered, in PREOP.
     explicit DriveDesk(const std::string& name, const axes::sim::PlantConfig& plant = long_table(), Duration cycle_time = 1ms,
-                       const Adapt& adapt = {})
+                       const MotorFacts& motor = {})
         : drive(drive_of_file(name)),
           dictionary(*drive.device),
-          device(*drive.profile, setups(*drive.profile, plant, adapt)),
+          device(*drive.profile, setups(*drive.profile, plant, motor)),
           server_(*drive.device, dictionary, device),
           cycle_(cycle_time) {
         device.power_on(dictionary, now);
@@ -211,9 +211,9 @@ public:
 
 private:
     static std::vector<axes::sim::Cia402Device::AxisSetup> setups(const axes::DriveProfile& profile, const axes::sim::PlantConfig& plant,
-                                                                  const Adapt& adapt) {
+                                                                  const MotorFacts& motor) {
         auto personality = axes::sim::personality_of(profile, plant.counts_per_revolution);
-        if (adapt) adapt(personality);
+        if (motor) motor(personality);
         return std::vector<axes::sim::Cia402Device::AxisSetup>(profile.axes, {plant, personality});
     }
     std::uint32_t outcome(std::span<const std::byte> request, std::size_t size, std::span<std::byte> answer) {
@@ -230,8 +230,9 @@ private:
 /// One that is in OP from the start.
 class RunningDesk : public DriveDesk {
 public:
-    explicit RunningDesk(const std::string& name, const axes::sim::PlantConfig& plant = long_table(), Duration cycle_time = 1ms)
-        : DriveDesk(name, plant, cycle_time) {
+    explicit RunningDesk(const std::string& name, const axes::sim::PlantConfig& plant = long_table(), Duration cycle_time = 1ms,
+                         const MotorFacts& motor = {})
+        : DriveDesk(name, plant, cycle_time, motor) {
         go_operational();
         run(2);
     }

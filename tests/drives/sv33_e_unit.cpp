@@ -117,42 +117,6 @@ TEST_F(Sv33E, ManyStoredWritesWarnAndNoneDoWithP0510Off) {
 
 // --- Alarms [5.1 to 5.6] -------------------------------------------------------------------------------------------------------
 
-// Every row of tables 5-2 and 5-3, from the outside; resettable as marked there.
-TEST_F(Sv33E, EveryAlarmShowsItsCodesAndClearsAsItsRowSays) {
-    for (const auto& row : desk.drive.profile->alarms) {
-        DriveDesk fresh{"sv33-e", sv33_e_motor()};
-        fresh.go_operational();
-        ASSERT_TRUE(fresh.axis().provoke(row.panel));
-        fresh.run(2ms);
-        EXPECT_EQ(fresh.read(0x603F), row.code) << row.panel;
-        EXPECT_EQ(fresh.read(0x2021, 0x09), row.detail) << row.panel;
-        if (row.warning) {
-            EXPECT_NE(fresh.power_state(), 0x08u) << row.panel;
-            EXPECT_NE(fresh.status() & 0x80, 0) << row.panel;
-            fresh.axis().release(row.panel);
-            fresh.run(2ms);
-            EXPECT_EQ(fresh.read(0x603F), 0) << row.panel;
-            continue;
-        }
-        EXPECT_EQ(fresh.power_state(), 0x08u) << row.panel;
-        fresh.control(0x80);
-        EXPECT_EQ(fresh.power_state(), 0x08u) << row.panel << ": the cause is still there";
-        fresh.control(0);
-        fresh.axis().release(row.panel);
-        fresh.run(2ms);
-        if (row.panel != "E.218") {  // 5.4: resets itself
-            EXPECT_EQ(fresh.power_state(), 0x08u) << row.panel;
-            fresh.control(0x80);
-        }
-        EXPECT_EQ(fresh.power_state(), row.resettable ? 0x40u : 0x08u) << row.panel;
-        if (row.resettable) continue;
-        fresh.power_cycle();
-        fresh.run(2ms);
-        EXPECT_EQ(fresh.power_state(), 0x40u) << row.panel;
-    }
-    EXPECT_FALSE(desk.axis().provoke("E.999"));
-}
-
 // 5.6: "first remove servo enable, then reset"; by bit 7, by P20.03.
 TEST_F(Sv33E, AFaultIsResetWithTheEnableDropped) {
     map_and_start(8);
