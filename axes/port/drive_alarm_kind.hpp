@@ -40,6 +40,7 @@ enum class DriveAlarmKind : std::uint8_t {
     phase_lost,           ///< of the mains
     safe_torque_off,
     stall,
+    overvoltage,  ///< of the supply
 };
 
 }  // namespace taktwerk::axes

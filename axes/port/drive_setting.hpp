@@ -61,6 +61,39 @@ struct AnalogueOutput {
     ParameterAddress monitor{};  ///< shows the voltage in mV
 };
 
+/// Which motor hangs on a drive that turns several kinds (SE-808X 4.4, 2000h:11).
+struct MotorObjects {
+    ParameterAddress type{};              ///< chooses the kind; index 0: one kind only, with an encoder
+    std::vector<std::int64_t> open_loop;  ///< values of it without an encoder: the actual position is the commanded one
+    ParameterAddress standby_current{};   ///< % of the current that an open-loop motor is held with at standstill
+};
+
+/// What a terminal of the drive is wired to.
+enum class InputUse : std::uint8_t { negative_limit, positive_limit, home };
+
+/// The switches on a drive's own terminals, before they become 60FDh.
+struct InputObjects {
+    std::vector<InputUse> terminals;  ///< of input 1, 2, ...; empty: nothing comes between switch and 60FDh
+    ParameterAddress polarity{};      ///< bit 0 is input 1: 0 normally open, 1 normally closed
+    Duration filter{};                ///< an active signal that lasts no longer is not seen
+};
+
+/// What a drive shows of its state and its errors on objects of its own.
+struct StateObjects {
+    struct OfAlarm {
+        std::uint16_t code = 0;  ///< 603Fh
+        std::int64_t value = 0;
+    };
+    ParameterAddress state{};            ///< index 0: none
+    std::int64_t enabled = 0, free = 0;  ///< its values with and without power in the motor
+    std::vector<OfAlarm> alarms;         ///< its values while one of these stands; others show as `free`
+    ParameterAddress error_code{};       ///< as 603Fh
+    ParameterAddress error_sub_code{};   ///< of a communication error: 1 general, 2 SYNC, 3 watchdog
+    ParameterAddress history_next{};     ///< place (from 1) of the record that the next error will be written to
+    ParameterAddress history{};          ///< first record of the ring, the others at the sub-indices behind it
+    std::uint8_t history_length = 0;
+};
+
 /// Objects that the simulated drive obeys; index 0: this drive has no such object.
 struct BehaviourObjects {
     ParameterAddress bus_control{};  ///< unless it reads `bus_control_value`, control word and mode mean nothing
@@ -72,10 +105,14 @@ struct BehaviourObjects {
     ParameterAddress sync_type{};           ///< 2: SYNC0 is watched while enabled; 0: free run
     ParameterAddress output_control{};      ///< 1: 60FEh drives the outputs
     std::vector<AnalogueOutput> analogue_outputs{};
-    ParameterAddress bus_state{};          ///< shows 10 + AL state
-    ParameterAddress parameter_tunnel{};   ///< sub 1 address (index << 8 | sub), sub 2 value, sub 3 result
-    ParameterAddress following_limit{};    ///< counts of following error that are an alarm; 0: no check
-    ParameterAddress probe_input[2] = {};  ///< must be 0 for the probe's input to latch
+    ParameterAddress bus_state{};                          ///< shows 10 + AL state
+    ParameterAddress parameter_tunnel{};                   ///< sub 1 address (index << 8 | sub), sub 2 value, sub 3 result
+    ParameterAddress following_limit{};                    ///< counts of following error that are an alarm; 0: no check
+    ParameterAddress probe_input[2] = {};                  ///< must be 0 for the probe's input to latch
+    ParameterAddress least_voltage{}, greatest_voltage{};  ///< V of the supply, beyond them an alarm
+    MotorObjects motor{};
+    InputObjects inputs{};
+    StateObjects state{};
 };
 
 }  // namespace taktwerk::axes

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "axes/sim/communication_error.hpp"
+
 namespace taktwerk::axes::sim {
 
 namespace {
@@ -32,10 +34,14 @@ void BehaviourValue::power_on(ecat::sim::ObjectDictionary& dictionary, const Dri
 Behaviour::Behaviour(const DriveProfile& profile)
     : profile_(profile),
       lost_data_alarm_(alarm_of(profile, DriveAlarmKind::communication, {0x7500})),
-      lost_sync_alarm_(alarm_of(profile, DriveAlarmKind::sync_lost, {0x8700})),
+      lost_sync_alarm_(alarm_of(profile, DriveAlarmKind::sync_lost, lost_data_alarm_)),
       negative_limit_alarm_(alarm_of(profile, DriveAlarmKind::negative_limit, {0x5444})),
       positive_limit_alarm_(alarm_of(profile, DriveAlarmKind::positive_limit, {0x5443})),
-      velocity_scale_(profile.velocity_counts_per_unit) {}
+      velocity_scale_(profile.velocity_counts_per_unit) {
+    if (profile.behaviour.state.error_sub_code.index == 0) return;
+    lost_data_alarm_.detail = communication_error::general;
+    lost_sync_alarm_.detail = communication_error::sync;
+}
 
 void Behaviour::power_on(ecat::sim::ObjectDictionary& dictionary, Instant now) {
     const auto& b = profile_.behaviour;
