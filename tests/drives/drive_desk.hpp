@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <memory>
 #include <span>
@@ -33,11 +34,14 @@ inline const config::LoadedDrive& drive_of_file(const std::string& name) {
 
 class DriveDesk {
 public:
+    /// What the maker's tool sets and no object shows.
+    using Adapt = std::function<void(axes::sim::Personality&)>;
+
     /// Powered, in PREOP.
-    DriveDesk(const std::string& name, const axes::sim::PlantConfig& plant, Duration cycle = 1ms)
+    DriveDesk(const std::string& name, const axes::sim::PlantConfig& plant, Duration cycle = 1ms, const Adapt& adapt = {})
         : drive(drive_of_file(name)),
           dictionary(*drive.device),
-          device(*drive.profile, setups(*drive.profile, plant)),
+          device(*drive.profile, setups(*drive.profile, plant, adapt)),
           server_(*drive.device, dictionary, device),
           cycle_(cycle) {
         device.power_on(dictionary, now);
@@ -90,6 +94,7 @@ public:
         for (const Instant end = now + length; now < end;) {
             now += cycle_;
             device.advance(now);
+            if (state == EsmState::op) device.exchange_due(arrives);
             device.exchange(now);
         }
     }
@@ -97,6 +102,10 @@ public:
     void control(std::uint16_t word) {
         pdo(0x6040, word);
         run(2 * cycle_);
+    }
+    /// One after the other, as a master walks through the states.
+    void control(std::initializer_list<std::uint16_t> words) {
+        for (const auto word : words) control(word);
     }
     /// The control supply goes and comes; afterwards PREOP.
     void power_cycle() {
@@ -122,10 +131,14 @@ public:
     axes::sim::Cia402Device device;
     EsmState state = EsmState::init;
     Instant now{};
+    ecat::sim::ExchangeCause arrives{.outputs = true, .sync0 = true};  ///< each cycle in OP; what a broken bus leaves out
 
 private:
-    static std::vector<axes::sim::Cia402Device::AxisSetup> setups(const axes::DriveProfile& profile, const axes::sim::PlantConfig& plant) {
-        return {profile.axes, {plant, axes::sim::personality_of(profile, plant.counts_per_revolution)}};
+    static std::vector<axes::sim::Cia402Device::AxisSetup> setups(const axes::DriveProfile& profile, const axes::sim::PlantConfig& plant,
+                                                                  const Adapt& adapt) {
+        auto personality = axes::sim::personality_of(profile, plant.counts_per_revolution);
+        if (adapt) adapt(personality);
+        return {profile.axes, {plant, personality}};
     }
     std::uint32_t outcome(std::span<const std::byte> request, std::size_t size, std::span<std::byte> answer) {
         const auto length = server_.serve(request.first(size), answer, state, now);
