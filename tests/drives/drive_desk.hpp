@@ -74,6 +74,11 @@ public:
         const unsigned unused = 64u - entry->bits();
         return entry->is_signed() ? static_cast<std::int64_t>(raw << unused) >> unused : static_cast<std::int64_t>(raw);
     }
+    /// Abort code of an upload; 0: it can be read.
+    std::uint32_t upload_abort(std::uint16_t index, std::uint8_t sub = 0) {
+        std::array<std::byte, 0x80> request{}, answer{};
+        return outcome(request, ecat::encode_upload_request(request, index, sub), answer);
+    }
     /// Process data from the master; counts in OP.
     void pdo(std::uint16_t index, std::int64_t value) { dictionary.find(index, 0)->set(value); }
 

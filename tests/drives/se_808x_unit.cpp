@@ -41,6 +41,30 @@ protected:
     void reset() { desk.control({0, 0x80, 0}); }
 };
 
+// 4.2, 4.3: Ro, Wo; ranges of 4.2 for mappings and assignments (0 to 4).
+TEST_F(Se808x, ItsObjectsHaveTheAccessOfTheManual) {
+    constexpr std::uint32_t write_only = 0x06010001, read_only = 0x06010002, too_high = 0x06090031;
+    for (const std::uint16_t object : std::initializer_list<std::uint16_t>{0x6040, 0x6060, 0x6098})
+        EXPECT_EQ(desk.upload_abort(object), write_only) << std::hex << object;
+    for (const std::uint8_t sub : std::initializer_list<std::uint8_t>{1, 2, 4, 5, 6, 8, 9, 0xA, 0xB, 0xC, 0x20}) {
+        EXPECT_EQ(desk.sdo(0x1C32, sub, 0), read_only) << int{sub};
+        EXPECT_EQ(desk.sdo(0x1C33, sub, 0), read_only) << int{sub};
+    }
+    EXPECT_EQ(desk.sdo(0x6064, 0, 0), read_only);
+    EXPECT_EQ(desk.sdo(0x1600, 0, 5), too_high);
+    EXPECT_EQ(desk.sdo(0x1C12, 0, 5), too_high);
+    EXPECT_EQ(desk.sdo(0x2000, 1, 71), too_high) << "4.4: 7 A at the most";
+}
+
+// 1.2: "shortest period 500 us". 0036h: invalid SYNC0 cycle (ETG.1000.6).
+TEST_F(Se808x, ShorterCyclesThan500usAreRefused) {
+    const auto verdict = [&](Duration cycle) {
+        return desk.device.refuse(EsmState::preop, EsmState::safeop, {.sync0_active = true, .sync0_cycle = cycle});
+    };
+    EXPECT_EQ(verdict(250us), 0x0036);
+    EXPECT_EQ(verdict(500us), 0);
+}
+
 // 6: write, save (1010h:01), then switch off and on.
 TEST_F(Se808x, ParametersAreLostUnlessTheyAreSaved) {
     ASSERT_EQ(desk.sdo(0x2000, 1, 40), 0u);
