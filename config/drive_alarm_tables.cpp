@@ -49,7 +49,8 @@ Codec<axes::DriveAlarmKind> alarm_kind() {
                       {"phase_lost", K::phase_lost},
                       {"phase_warning", K::phase_warning},
                       {"safe_torque_off", K::safe_torque_off},
-                      {"stall", K::stall}});
+                      {"stall", K::stall},
+                      {"overvoltage", K::overvoltage}});
 }
 
 }  // namespace

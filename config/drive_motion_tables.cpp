@@ -106,6 +106,11 @@ Table<DriveProfile> motion_table() {
             field("clear_turns_value", &P::clear_turns_value, integer<std::int64_t>(0, 65535), "written to that object"),
             field("clear_turns_control", &P::clear_turns_control, integer<std::uint16_t>(0, 0xFFFF),
                   "bits of 6040h that make the encoder forget its turns"),
+            with_default(field("encoder_reset", &P::encoder_reset, parameter_address(),
+                               "object: 1 ends the encoder's fault and its turns, seen at the next power-on"),
+                         "none"),
+            field("battery_low", &P::battery_low, number(), "V of the encoder's battery below which the drive warns; 0: not stated"),
+            field("battery_empty", &P::battery_empty, number(), "V below which the turns are lost at power-off; 0: not stated"),
             field("probes", &P::probes, integer<std::uint8_t>(0, 2), "touch probes"),
             field("motor_has_encoder", &P::motor_has_encoder, boolean(), "false: the actual position is the command"),
             with_default(

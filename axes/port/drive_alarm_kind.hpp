@@ -41,6 +41,7 @@ enum class DriveAlarmKind : std::uint8_t {
     phase_warning,        ///< the same as a warning (SV33-E A.222)
     safe_torque_off,
     stall,
+    overvoltage,  ///< of the supply
 };
 
 }  // namespace taktwerk::axes

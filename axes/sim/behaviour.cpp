@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "axes/sim/communication_error.hpp"
+
 namespace taktwerk::axes::sim {
 
 namespace {
@@ -28,7 +30,7 @@ Behaviour::Behaviour(const DriveProfile& profile)
       bus_control_value_(profile.behaviour.bus_control_value),
       servo_enable_function_(profile.behaviour.virtual_inputs.servo_enable),
       lost_data_alarm_(alarm_of(profile, DriveAlarmKind::communication, {0x7500})),
-      lost_sync_alarm_(alarm_of(profile, DriveAlarmKind::sync_lost, {0x8700})),
+      lost_sync_alarm_(alarm_of(profile, DriveAlarmKind::sync_lost, lost_data_alarm_)),
       negative_limit_alarm_(alarm_of(profile, DriveAlarmKind::negative_limit, {0x5444})),
       positive_limit_alarm_(alarm_of(profile, DriveAlarmKind::positive_limit, {0x5443})),
       bus_control_(profile, profile.behaviour.bus_control),
@@ -49,6 +51,9 @@ Behaviour::Behaviour(const DriveProfile& profile)
     for (const auto& function : profile.behaviour.virtual_inputs.functions) input_functions_.emplace_back(profile, function);
     for (const auto& output : profile.behaviour.analogue_outputs)
         analogue_.push_back({{profile, output.value}, {profile, output.selection}, {profile, output.gain}, output.monitor});
+    if (profile.behaviour.state.error_sub_code.index == 0) return;
+    lost_data_alarm_.detail = communication_error::general;
+    lost_sync_alarm_.detail = communication_error::sync;
 }
 
 void Behaviour::power_on(ecat::sim::ObjectDictionary& dictionary, Instant now) {

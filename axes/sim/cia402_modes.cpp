@@ -35,16 +35,16 @@ void Cia402Axis::select_mode(const AxisInputs& in) noexcept {
     homing_attained_ = homing_error_ = false;
     halted_ = false;
     // A switch never moves: the new mode starts where the axis is.
-    demand_ = {plant_.position(), 0, 0};
+    demand_ = {seen_position(), 0, 0};
     forget_targets();
 }
 
 void Cia402Axis::forget_targets() noexcept {
-    target_ = plant_.position();
+    target_ = seen_position();
     steps_left_ = 0;
-    velocity_demand_ = ramps_velocity() && !stands() ? plant_.velocity() : 0;  // a ramp begins at the speed there is
+    velocity_demand_ = ramps_velocity() && !stands() ? seen_velocity() : 0;  // a ramp begins at the speed there is
     velocity_target_ = torque_target_ = torque_demand_ = torque_offset_ = 0;
-    profile_position_.reset(plant_.position());
+    profile_position_.reset(seen_position());
     limited_ = target_reached_ = false;
 }
 
@@ -69,12 +69,25 @@ double Cia402Axis::enabled_torque(double dt) noexcept {
         const double before = velocity_demand_;
         if (ramps_velocity()) ramp_velocity(dt);
         const double acceleration = ramps_velocity() ? (velocity_demand_ - before) / dt : 0;  // a jump of the master's is none
-        return with_offset(loop_.velocity_control(plant_, velocity_demand_, acceleration, torque_limit(), dt));
+        return with_offset(velocity_torque(velocity_demand_, acceleration, torque_limit(), dt));
     }
     if (mode_ == mode::homing && homing_.state() != HomingRun::State::idle) homing_step(dt);
     else if (mode_ == mode::profile_position) demand_ = profile_position_.step(dt);
     else interpolate(dt);
-    return with_offset(loop_.position_control(plant_, demand_, quantised() + zero_, torque_limit(), dt));
+    return with_offset(position_torque(dt));
+}
+
+double Cia402Axis::position_torque(double dt) noexcept {
+    if (stepper_) return stepper_->torque(plant_, demand_, torque_limit(), dt);
+    return loop_.position_control(plant_, demand_, quantised() + zero_, torque_limit(), dt);
+}
+
+/// Of a motor without an encoder the field turns with that velocity, whatever the rotor does.
+double Cia402Axis::velocity_torque(double velocity, double acceleration, double limit, double dt) noexcept {
+    if (!stepper_) return loop_.velocity_control(plant_, velocity, acceleration, limit, dt);
+    demand_.velocity = velocity;
+    demand_.position += velocity * dt;
+    return stepper_->torque(plant_, demand_, limit, dt);
 }
 
 }  // namespace taktwerk::axes::sim

@@ -41,6 +41,7 @@ void Cia402Axis::take_profile_position(const AxisInputs& in) noexcept {
         target.lowest = static_cast<double>(in.software_minimum) + zero_;
         target.highest = static_cast<double>(in.software_maximum) + zero_;
     }
+    if (reached_told_) profile_position_.reached_was_told();
     profile_position_.exchange(start, five, target);
     limited_ = wanted > target.limits.velocity || profile_position_.clipped();
 }
@@ -103,7 +104,7 @@ bool Cia402Axis::profile_reached() const noexcept {
         case mode::profile_position: {
             if (state_ == State::quick_stop) return stop_done_;  // SV33-E 3.4.3(5)
             const double window = settings_.position_window < 0 ? default_position_window : static_cast<double>(settings_.position_window);
-            return profile_position_.arrived() && std::abs(profile_position_.target() - plant_.position()) <= window;
+            return profile_position_.arrived() && std::abs(profile_position_.reached_target() - seen_position()) <= window;
         }
         case mode::profile_velocity: {
             const double turn = static_cast<double>(personality_.counts_per_revolution);
@@ -111,7 +112,7 @@ bool Cia402Axis::profile_reached() const noexcept {
             const double window = settings_.velocity_window < 0         ? 0.01 * turn
                                   : personality_.velocity_window_in_rpm ? raw * turn / 60.0
                                                                         : raw / personality_.velocity_counts_per_unit;
-            return std::abs(velocity_target_ - plant_.velocity()) <= window;
+            return std::abs(velocity_target_ - seen_velocity()) <= window;
         }
         case mode::profile_torque: return torque_demand_ == torque_target_;
         default: return false;

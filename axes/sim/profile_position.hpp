@@ -36,6 +36,8 @@ public:
     void reset(double position) noexcept;
     /// Each exchange: the level of bit 4, bit 5 and what belongs to them. A rising edge while the buffer is full is lost.
     void exchange(bool new_setpoint, bool bit_five, const ProfileTarget& target) noexcept;
+    /// The master was told that the running set-point is reached; one that waited for that starts.
+    void reached_was_told() noexcept;
     /// One inner step of `dt` seconds.
     Demand step(double dt) noexcept;
     /// After a stop by something else: goes on from `from` to the running target.
@@ -45,9 +47,11 @@ public:
 
     /// Status word bit 12.
     [[nodiscard]] bool acknowledges() const noexcept { return acknowledged_; }
-    /// The demand has arrived and nothing waits.
-    [[nodiscard]] bool arrived() const noexcept { return !running_ && waiting_ == 0; }
+    /// The demand has arrived and nothing waits, or what waits is not yet to start.
+    [[nodiscard]] bool arrived() const noexcept { return !running_; }
     [[nodiscard]] double target() const noexcept { return target_; }
+    /// Where the demand has arrived.
+    [[nodiscard]] double reached_target() const noexcept { return waiting_ > 0 ? active_.target : target_; }
     /// The newest set-point was moved to a limit.
     [[nodiscard]] bool clipped() const noexcept { return clipped_; }
 
@@ -58,6 +62,9 @@ private:
         bool blends = false;
     };
     void start(const Setpoint& setpoint) noexcept;
+    void start_next() noexcept;
+    /// A set-point of a series follows at once, a single one only after the master has the signal of the one before (SE-808X 3.2.4, figure 2).
+    [[nodiscard]] bool next_may_start() const noexcept { return meaning_ != BitFive::blends || buffer_[first_].blends; }
     void plan(const Demand& from) noexcept;
 
     std::size_t room_;
