@@ -22,7 +22,7 @@ public:
     static constexpr Duration patience = std::chrono::seconds{2};
     /// "Target reached" right after a set-point may be that of the one before: believed once it was seen to fall, or after this long.
     static constexpr Duration stale = std::chrono::milliseconds{50};
-    /// Standing off the target by more than the axis' own window, the drive's word alone ends a move after this long.
+    /// Standing off the target by more than the axis' own window, the drive's word alone ends a move after this long, once it was seen to fall.
     static constexpr Duration off_window = std::chrono::milliseconds{500};
     /// On its way out of the mode a motor that still turns is halted after this long.
     static constexpr Duration halts_after = std::chrono::milliseconds{50};
@@ -102,7 +102,9 @@ public:
     /// Velocity or torque: the drive says it has what was asked.
     [[nodiscard]] bool in_target() const noexcept { return reached_; }
     /// The drive stands at the last of its targets. `near`: inside the axis' own window of it.
-    [[nodiscard]] bool arrived(bool near, Instant now) const noexcept { return stands_ && (near || now - stands_since_ >= off_window); }
+    [[nodiscard]] bool arrived(bool near, Instant now) const noexcept {
+        return stands_ && (near || (fell_ && now - stands_since_ >= off_window));
+    }
 
     [[nodiscard]] DriveMode mode() const noexcept { return mode_; }
     [[nodiscard]] bool accepted() const noexcept { return accepted_; }
