@@ -366,6 +366,7 @@ private:
     bool run_drive_profile(Duration period) noexcept;
     bool halt_drive_profile(Duration period) noexcept;
     bool leave_drive_profile(Duration period) noexcept;
+    [[nodiscard]] Duration longest_ramp(double deceleration) const noexcept;
     [[nodiscard]] double drive_target(const AxisCommand& command, const MotionState& from) const noexcept;
     [[nodiscard]] ErrorId refuse_drive_way(const DriveProfileRun::Way& way) const noexcept;
     [[nodiscard]] DriveProfileRun::Setpoint drive_setpoint(const AxisCommand& command, DriveProfileRun::Way& way) const noexcept;

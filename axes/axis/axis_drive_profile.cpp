@@ -239,11 +239,15 @@ void Axis::guard_drive_profile() noexcept {
 
 // --- out of it --------------------------------------------------------------------------------------------------------------------
 
+/// The motor stands by then, if the drive stops along a ramp of its own. `deceleration` u/s2; 0: unknown.
+Duration Axis::longest_ramp(double deceleration) const noexcept {
+    const double seconds = deceleration > 0 ? braking_grace * std::abs(motor_velocity()) / deceleration : 0;
+    return std::min<Duration>(from_seconds(std::min(seconds, to_seconds(longest_braking))) + 500ms, longest_braking);
+}
+
 bool Axis::leave_drive_profile(Duration period) noexcept {
-    const double deceleration = drive_run_.setpoint().deceleration;
-    const double seconds = deceleration > 0 ? braking_grace * std::abs(feedback_.velocity) / deceleration : 0;
     const bool halts = port_.capabilities().mode_change_at_standstill && !drive_stands();
-    drive_run_.leave(now_, std::min<Duration>(from_seconds(std::min(seconds, to_seconds(longest_braking))) + 1s, longest_braking));
+    drive_run_.leave(now_, longest_ramp(drive_run_.setpoint().deceleration / std::abs(units_.counts_per_unit())));
     drive_halt_ = halts;
     go_mode(halts ? ModePhase::profile_halting : ModePhase::leaving);
     return step_mode(period);

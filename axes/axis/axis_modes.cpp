@@ -166,8 +166,8 @@ bool Axis::leave_mode(bool confirmed, bool late, Duration period) noexcept {
         return false;
     }
     follow_motor();
-    if (drive_run_.may_still_turn(now_) && !drive_stands()) {  // it stops along its own ramp first (SV33-E 3.4.3 (7), (8))
-        drive_halt_ = drive_halt_ || drive_run_.turns_too_long(now_);
+    if (drive_run_.may_still_turn(now_) && !drive_stands()) {  // it stops along its own ramp first (SV33-E 3.4.3 (4), (7), (8))
+        drive_halt_ = drive_halt_ || (drive_run_.mode() != DriveMode::none && drive_run_.turns_too_long(now_));
         mode_since_ = now_;
         return true;
     }
@@ -207,6 +207,7 @@ bool Axis::run_torque(Duration period) noexcept {
     const auto& drive = port_.capabilities();
     if (!torque_wanted()) {
         if (!drive.mode_change_at_standstill || drive_stands()) {
+            drive_run_.leave(now_, longest_ramp(config_.limits.deceleration));
             go_mode(ModePhase::leaving);
             torque_idle_ = false;
             return step_mode(period);

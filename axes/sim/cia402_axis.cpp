@@ -30,7 +30,7 @@ SwitchStates Cia402Axis::switches() const noexcept { return {plant_.negative_lim
 
 void Cia402Axis::inner_step() noexcept {
     const double dt = inner_seconds;
-    if (energised()) torque_ = state_ == State::enabled && !halted_ ? enabled_torque(dt) : stopping_torque(dt);
+    if (energised()) torque_ = state_ == State::enabled && !halted_ && !ramps_out_ ? enabled_torque(dt) : stopping_torque(dt);
     else torque_ = phases_shorted_ ? brake_torque() : 0;
     torque_ = std::clamp(torque_, torque_least_, torque_most_);
     step_brake();
