@@ -24,6 +24,8 @@ void Axis::plan(Instant now, Duration period) noexcept {
     if (mode_phase_ != ModePhase::steady && step_mode(period)) {
         publish_commands();
         publish_setpoint();
+        if (mode_phase_ == ModePhase::profile && drive_run_.mode() == DriveMode::profile_position)
+            view_.target_position = units_.to_program(drive_run_.front().target);
         return;
     }
     if (begin_pending_) begin_command();
@@ -69,7 +71,7 @@ void Axis::follow_actual(Duration period) noexcept {
     setpoint_.place(aligned_ ? actual_local() : setpoint_.state().position + std::copysign(most, way));
     if (endless_ && units_.far_from_anchor(actual_local())) reanchor();  // an encoder turns for years
     if (!power_.follows_actual()) return;
-    mode_phase_ = ModePhase::steady;
+    end_drive_profile();
     torque_idle_ = mode_waits_ = false;
     goal_ = {};
     goal_pending_ = begin_pending_ = held_ = false;

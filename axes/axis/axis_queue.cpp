@@ -58,6 +58,10 @@ bool Axis::complete_active() noexcept {
         run_goal(late);
         return false;
     }
+    if (made_by_drive(kind)) {  // the axis has stopped for it
+        ask_for_drive_mode();
+        return false;
+    }
     if (view_.state == AxisState::Homing && kind == CommandKind::homing_step) return complete_homing_step();
     if (view_.state != AxisState::DiscreteMotion || kind == CommandKind::none || goal_.kind == Goal::Kind::rest) return false;
     if (goal_.kind == Goal::Kind::velocity && goal_.value != 0) {  // a jog at its speed
@@ -85,6 +89,10 @@ void Axis::start_waiting(double late) noexcept {
         if (error == ErrorId::none) {
             fire(event_of(next.command.kind));
             queue_.activate(next);
+            if (in_drive_profile()) {  // it begins when the drive takes its set-point, or is back in the axis' own mode
+                begin_pending_ = true;
+                return;
+            }
             error = set_goal(next);
             if (error == ErrorId::none) {
                 if (goal_pending_) run_goal(late);

@@ -109,7 +109,18 @@ ErrorId Axis::refuse_target(const AxisCommand& command, bool starts_now) const n
             if (const auto error = refuse_place(units_.to_program(from) + command.position); error != ErrorId::none) return error;
             break;
         }
+        case CommandKind::drive_move_absolute:
+            if (config_.require_homed && !view_.homed) return ErrorId::not_homed;
+            if (const auto error = refuse_place(command.position); error != ErrorId::none) return error;
+            [[fallthrough]];
+        case CommandKind::drive_move_relative: {
+            if (!starts_now) return ErrorId::none;
+            DriveProfileRun::Way at{.from = actual_local()};
+            at.target = drive_target(command, {at.from, here.velocity, 0});
+            return refuse_drive_way(at);
+        }
         case CommandKind::move_velocity:
+        case CommandKind::drive_move_velocity:
         case CommandKind::jog: {
             if (!starts_now) return ErrorId::none;
             way = signed_velocity(command, heads_backwards());
@@ -130,6 +141,7 @@ ErrorId Axis::refuse_target(const AxisCommand& command, bool starts_now) const n
 
 ErrorId Axis::refuse(const AxisCommand& command) noexcept {
     if (config_.encoder) return ErrorId::not_supported;  // nothing there that moves
+    if (made_by_drive(command.kind) && !drive_makes(command.kind)) return ErrorId::not_supported;
     if (const auto error = check_numbers(command); error != ErrorId::none) return error;
     if (const auto error = refuse_state(command); error != ErrorId::none) return error;
     if (waits(command) && waits_for_ever()) return ErrorId::buffer_mode_not_supported;

@@ -43,8 +43,9 @@ enum class Quirk : std::uint8_t {
     standstill_bit_14,            ///< statusword bit 14: the motor stands (SV-DA200 3.1.2)
     limit_stop_is_fault,          ///< overtravel in a position mode is a fault (SV-DA200 5.3, Er21)
     torque_offset_not_in_torque,  ///< 60B2h counts in all modes but those of torque (SV-DA200 4.10)
+    ramp_before_mode_change,      ///< out of CSV, CST, PV and PT it stops along 6084h first (SV33-E 3.4.3 (3), (4), (7), (8))
 };
-inline constexpr std::size_t quirk_count = 25;
+inline constexpr std::size_t quirk_count = 26;
 
 /// What a drive does that gets a change of mode which its manual forbids.
 enum class ModeViolation : std::uint8_t {

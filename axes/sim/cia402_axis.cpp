@@ -37,7 +37,8 @@ void Cia402Axis::open_loop(std::optional<double> standby) noexcept {
 
 void Cia402Axis::inner_step() noexcept {
     const double dt = inner_seconds;
-    if (energised()) torque_ = state_ == State::enabled && !halted_ && travel_stop_ == 0 ? enabled_torque(dt) : stopping_torque(dt);
+    const bool follows = state_ == State::enabled && !halted_ && !ramps_out_ && travel_stop_ == 0;
+    if (energised()) torque_ = follows ? enabled_torque(dt) : stopping_torque(dt);
     else torque_ = phases_shorted_ ? brake_torque() : 0;
     if (stepper_ && !energised()) {
         demand_.velocity = 0;

@@ -148,6 +148,7 @@ private:
     void take_targets(const AxisInputs& in, Duration cycle) noexcept;
     [[nodiscard]] bool may_change_mode() noexcept;
     void forget_targets() noexcept;
+    [[nodiscard]] bool stops_before_mode_change() noexcept;
     [[nodiscard]] double enabled_torque(double dt) noexcept;
     [[nodiscard]] double position_torque(double dt) noexcept;
     [[nodiscard]] double velocity_torque(double velocity, double acceleration, double limit, double dt) noexcept;
@@ -248,7 +249,7 @@ private:
     double target_ = 0;       ///< newest CSP target, plant coordinates
     AxisInputs settings_;     ///< as of the last exchange
     StopOrder stop_;
-    bool stop_done_ = false, halted_ = false, phases_shorted_ = false;
+    bool stop_done_ = false, halted_ = false, ramps_out_ = false, phases_shorted_ = false;
     ProfilePosition profile_position_;
     double velocity_target_ = 0, torque_target_ = 0;  ///< of the profile modes: what the ramps lead to
     bool limited_ = false;                            ///< bit 11: a target was clipped, or the motor is past a software limit

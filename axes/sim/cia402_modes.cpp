@@ -20,13 +20,32 @@ bool Cia402Axis::may_change_mode() noexcept {
     return false;
 }
 
+/// SV33-E 3.4.3 (3), (4), (7), (8): "a ramp stop is carried out, then the other mode may be entered". By which ramp is not stated: 6084h.
+bool Cia402Axis::stops_before_mode_change() noexcept {
+    const bool position = !mode::of_velocity(mode_) && !mode::of_torque(mode_);
+    if (!personality_.ramp_before_mode_change || state_ != State::enabled || position || stands()) {
+        ramps_out_ = false;
+        return false;
+    }
+    if (!ramps_out_ && !halted_) {
+        const double ramp = ramp_of(StopBy::ramp);
+        begin_stop({StopBy::ramp, StopThen::lock, ramp, ramp <= 0});
+    }
+    ramps_out_ = true;
+    return true;
+}
+
 /// 0 and what the drive does not have leave the mode as it is (TSVM 5.4.1 rule 7).
 void Cia402Axis::select_mode(const AxisInputs& in) noexcept {
-    if (in.mode == mode_) return;
+    if (in.mode == mode_) {
+        if (ramps_out_) velocity_demand_ = plant_.velocity();  // it stays after all
+        ramps_out_ = false;
+        return;
+    }
     const auto wanted = mode::meaning(in.mode);
     if (wanted == DriveMode::none || !(personality_.modes >> static_cast<unsigned>(wanted) & 1u)) return;
     if (mode_ == mode::homing && homing_.busy()) return;  // no other while homing runs (SV33-E 3.4.3)
-    if (!may_change_mode()) return;
+    if (!may_change_mode() || stops_before_mode_change()) return;
     if (mode::of_torque(mode_)) loop_.take_over(torque_);
     mode_ = in.mode;
     mode_changed_at_ = now_;

@@ -57,7 +57,7 @@ void Cia402Axis::enter(State state) noexcept {
         loop_.reset();
     }
     if (state != State::enabled) homing_.cancel();
-    if (state != State::enabled) halted_ = false;
+    if (state != State::enabled) halted_ = ramps_out_ = false;
     if (state == State::enabled || state == State::not_ready) phases_shorted_ = false;
     if (state == State::quick_stop) begin_stop(stop_for(StopCause::quick_stop));
     if (state == State::fault_reaction) begin_stop(stop_for(StopCause::fault));

@@ -37,6 +37,7 @@ Personality personality_of(const DriveProfile& profile, std::int64_t counts_per_
     p.pp_shared_ramp = profile.has(Quirk::pp_shared_ramp);
     p.pp_stop_forgets = profile.has(Quirk::pp_stop_forgets);
     p.csv_ramps = profile.has(Quirk::csv_ramps);
+    p.ramp_before_mode_change = profile.has(Quirk::ramp_before_mode_change);
     p.pv_speed_zero_bit = !profile.has(Quirk::pv_bits_12_13_reserved);
     p.velocity_window_in_rpm = profile.has(Quirk::velocity_window_in_rpm);
     p.brake_release = profile.brake_release;

@@ -73,6 +73,7 @@ struct Personality {
     std::uint8_t profile_buffer = 1;
     bool pp_bit_5_blends = false, pp_shared_ramp = false, pp_stop_forgets = false;
     bool csv_ramps = false;
+    bool ramp_before_mode_change = false;
     bool pv_speed_zero_bit = true;  ///< bit 12 in PV
     bool velocity_window_in_rpm = false;
     double following_error_limit = 0;  ///< counts; 0 = no check
