@@ -12,6 +12,8 @@
 
 #include "apps/exit_code.hpp"
 #include "apps/load.hpp"
+#include "apps/remote.hpp"
+#include "apps/running_machine.hpp"
 #include "apps/stop_signal.hpp"
 #include "apps/taktwerk.hpp"
 #include "core/calendar_distance.hpp"
@@ -66,6 +68,7 @@ private:
             loaded = load_file(options.simulate);
             if (!loaded) return exit_bad_file;
             s.configured_ = loaded->machine.bus;
+            s.machine_socket_ = loaded->hmi.socket;
         }
         const std::string nic = !options.nic.empty() ? options.nic : s.configured_.interface;
         if (nic.empty()) {
@@ -76,7 +79,7 @@ private:
             s.where_ = nic;
             s.clock_ = std::make_unique<SystemClock>();
             auto opened = ecat::RawSocketTransport::open(nic);
-            if (!opened) return fail(options, opened.error());
+            if (!opened) return fail(options, in_other_words(opened.error(), nic));
             s.nic_ = std::move(*opened);
         }
         if (!options.pcap.empty()) {
@@ -87,6 +90,20 @@ private:
         s.deadline_ = s.clock_->now();
         s.new_probe({});
         return exit_ok;
+    }
+
+    /// Two masters on one cable disturb each other; whose machine it is, and that it can be asked, the transport does not know.
+    Error in_other_words(Error error, const std::string& nic) const {
+        if (error.code != "transport.in_use") return error;
+        if (const auto running = machine_on(nic, session->machine_socket_))
+            return Error{"bus.machine_runs", nic,
+                         fmt::format("machine '{}' runs on this interface (process {}); a second master would disturb it", running->name,
+                                     running->process),
+                         fmt::format("`taktwerk drive` can ask the machine itself: say -s {} instead of the bus; or end it first: taktwerk "
+                                     "shutdown -s {}",
+                                     running->socket, running->socket)};
+        error.remedy += "; `taktwerk drive` can ask a running machine itself: say -s MACHINE instead of the bus";
+        return error;
     }
 
     std::optional<LoadedFile> load_file(bool simulate) const {
@@ -216,6 +233,10 @@ Result<void> BusSession::close() {
 }
 
 int exit_code_for(const Error& error) {
+    for (const char* of_machine : {"command.", "socket.", "state.", "request."})
+        if (error.code.rfind(of_machine, 0) == 0) return exit_code_of(error);
+    for (const char* refused : {"drive.not_now", "drive.action", "drive.would_store", "drive.silent", "drive.refused"})
+        if (error.code == refused) return exit_refused;
     if (error.code == "drive.not_taken" || error.code == "drive.cannot_store" || error.code == "drive.not_reset") return exit_refused;
     if (error.code.rfind("drive.", 0) == 0) return exit_usage;
     if (error.code == "bus.no_such_slave" || error.code == "sdo.value" || error.code == "bus.not_confirmed") return exit_usage;

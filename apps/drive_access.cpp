@@ -1,6 +1,8 @@
 #include "apps/drive_access.hpp"
 
+#include "apps/drive_in_machine.hpp"
 #include "apps/drive_over_bus.hpp"
+#include "apps/exit_code.hpp"
 #include "axes/port/parameter_text.hpp"
 
 namespace taktwerk::apps {
@@ -8,12 +10,13 @@ namespace taktwerk::apps {
 std::shared_ptr<DriveOptions> add_drive_options(CLI::App& sub) {
     auto options = std::make_shared<DriveOptions>();
     options->bus = add_bus_options(sub);
+    sub.add_option("-s,--socket", options->socket, "running machine to ask: its name or socket; default, without a bus: the only one");
     sub.add_option("--profile", options->profile, "kind of drive; default: as the machine file or its identity says")->type_name("NAME");
     return options;
 }
 
 void add_drive_choice(CLI::App& sub, DriveOptions& options) {
-    sub.add_option("DRIVE", options.drive, "position or name on the bus")->required();
+    sub.add_option("DRIVE", options.drive, "position or name on the bus; of a running machine also an axis")->required();
     sub.add_option("--axis", options.axis, "of a drive with several axes, from 1")->check(CLI::Range(1, 8));
 }
 
@@ -33,6 +36,13 @@ Result<void> DriveAccess::write(const axes::DriveParameter& parameter, std::int6
     return write_bytes(parameter, axes::to_bytes(parameter, raw), storing);
 }
 
-int with_drive(const DriveOptions& options, const std::function<int(DriveAccess&)>& work) { return with_drive_over_bus(options, work); }
+int with_drive(const DriveOptions& options, const std::function<int(DriveAccess&)>& work) {
+    if (!options.socket.empty() && (!options.bus->nic.empty() || options.bus->simulate)) {
+        fail(*options.bus,
+             Error{"usage", "", "--socket asks a running machine, --nic and --simulate speak to a bus directly", "give one of them"});
+        return exit_usage;
+    }
+    return options.through_machine() ? with_drive_in_machine(options, work) : with_drive_over_bus(options, work);
+}
 
 }  // namespace taktwerk::apps

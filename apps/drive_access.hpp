@@ -1,7 +1,7 @@
 #pragma once
 // The seam of `taktwerk drive`: one axis of one drive, however it is reached, and the choice of the way. Its sub-commands know nothing
-// else. Ways: drive_over_bus.hpp (SDO on a bus that nobody else drives). A further one implements DriveAccess and gets its line in
-// with_drive().
+// else. Ways: drive_in_machine.hpp (through the machine that runs), drive_over_bus.hpp (SDO on a bus that nobody else drives). A further
+// one implements DriveAccess and gets its line in with_drive().
 
 #include <functional>
 #include <memory>
@@ -19,10 +19,14 @@ enum class Storing : std::uint8_t { volatile_only, asked };
 
 struct DriveOptions {
     std::shared_ptr<BusOptions> bus;
-    std::string drive;    ///< position or name on the bus
+    std::string socket;   ///< of the running machine that is asked: its path or the machine's name; empty: the only one
+    std::string drive;    ///< position or name on the bus, or an axis of the running machine
     std::string profile;  ///< instead of the machine file's, or of what the identity says
     int axis = 1;         ///< of a drive with several
     Storing storing = Storing::volatile_only;
+
+    /// A machine that runs is asked when it is named, or when no bus is.
+    [[nodiscard]] bool through_machine() const noexcept { return !socket.empty() || (bus->nic.empty() && bus->machine.empty()); }
 };
 
 /// The options that every sub-command has.

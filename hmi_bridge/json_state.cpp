@@ -172,7 +172,10 @@ std::string layout_json(const runtime::MachineLayout& layout) {
                             {"disabled", axis.disabled},
                             {"simulated", axis.simulated},
                             {"jog_slow", axis.jog_slow},
-                            {"jog_fast", axis.jog_fast}});
+                            {"jog_fast", axis.jog_fast},
+                            {"drive", axis.drive},
+                            {"profile", axis.profile},
+                            {"drive_axis", axis.drive_axis + 1}});
     out["slaves"] = layout.slaves;
     out["inputs"] = layout.inputs;
     out["outputs"] = layout.outputs;

@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "axes/port/drive_port.hpp"
 #include "core/recorder.hpp"
 #include "core/result.hpp"
 #include "core/stopwatch.hpp"
@@ -94,6 +95,9 @@ public:
     [[nodiscard]] const MachineLayout& layout() const noexcept;
     /// Service side.
     [[nodiscard]] AlarmText describe(const AlarmFact& fact) const;
+    /// Service side: parameters and services of an axis' drive, beside the cycle: read_parameter(), write_parameter(), start_service(),
+    /// service_answer() and capabilities() alone are for callers from outside. nullptr: no such axis, or a virtual one.
+    [[nodiscard]] axes::DrivePort* drive_port(std::size_t axis) noexcept;
     /// Service side: what a program threw when it stopped by itself; empty when it did not.
     [[nodiscard]] std::string program_fault(std::size_t program) const;
     [[nodiscard]] const ecat::Master& bus() const noexcept;

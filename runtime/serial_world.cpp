@@ -52,6 +52,7 @@ void SerialWorld::build(const MachineConfig& config, const std::vector<axes::sim
             }
             drive->model.servo().power_on(start);
             line->line.connect(*drive);
+            line->drives.push_back(drive.get());
             drives_.push_back(std::move(drive));
         }
         cables_.push_back(std::make_unique<Cable>(*line));
@@ -97,6 +98,18 @@ bool SerialWorld::happen(const SimulationEvent& event) noexcept {
     for (auto& drive : drives_)
         if (!drive->axis.empty() && drive->axis == event.target) return drive->happenings.try_push({event.kind, event.value});
     return false;
+}
+
+std::vector<modbus::Station*> SerialWorld::stations(std::string_view name) noexcept {
+    std::vector<modbus::Station*> out;
+    for (auto& line : lines_)
+        if (line->name == name) out.assign(line->drives.begin(), line->drives.end());
+    return out;
+}
+
+bool SerialWorld::is_cut(std::string_view name) const noexcept {
+    return std::any_of(lines_.begin(), lines_.end(),
+                       [&](const auto& line) { return line->name == name && line->cut.load(std::memory_order_relaxed); });
 }
 
 axes::sim::xp200::Drive* SerialWorld::drive(std::string_view axis) noexcept {

@@ -37,6 +37,12 @@ public:
             if (!drive->watchdog.empty()) drive->watchdog_on.store(output(drive->watchdog), std::memory_order_relaxed);
     }
 
+    // --- the other end of a line that is really there ------------------------------------------------------------------------
+    /// The drives on a line, for whoever serves them himself (modbus/line/pseudo_terminal.hpp); then nobody may use lines().
+    [[nodiscard]] std::vector<modbus::Station*> stations(std::string_view line) noexcept;
+    /// An event has cut it.
+    [[nodiscard]] bool is_cut(std::string_view line) const noexcept;
+
     // --- hands on, in virtual time only ----------------------------------------------------------------------------------------
     /// nullptr when the axis is on none.
     [[nodiscard]] axes::sim::xp200::Drive* drive(std::string_view axis) noexcept;
@@ -66,6 +72,7 @@ private:
         std::string name;
         modbus::VirtualLine line;
         std::atomic<bool> cut{false};
+        std::vector<WiredDrive*> drives;
     };
     /// What the machine gets: the line, cut when an event says so.
     struct Cable final : modbus::SerialLine {

@@ -80,6 +80,8 @@ struct MachineLayout {
         std::string name, unit;
         bool disabled = false, simulated = false;
         double jog_slow = 0, jog_fast = 0;  ///< u/s
+        std::string drive, profile;         ///< slave, or drive on a serial line, and its kind; empty: a virtual axis
+        int drive_axis = 0;                 ///< of that drive, from 0
     };
     struct Block {
         std::string name;  ///< program.block
@@ -90,6 +92,8 @@ struct MachineLayout {
     [[nodiscard]] std::string_view block_at(const void* instance) const noexcept;
 
     std::string machine;
+    std::string interface;                    ///< of the bus; empty: simulated
+    std::vector<std::string> serial_devices;  ///< of the serial lines that are not simulated
     Duration cycle{};
     std::vector<AxisInfo> axes;
     std::vector<Block> blocks;

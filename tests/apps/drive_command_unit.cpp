@@ -118,7 +118,8 @@ TEST(DriveCommand, WhatCannotBeMeantIsRefusedBeforeAnythingIsWritten) {
     EXPECT_THAT(on_demo({"get", "w_drive", "P05.13"}).err, HasSubstr("there is no such slave"));
     EXPECT_THAT(on_demo({"get", "io", "P05.13"}).err, HasSubstr("--profile"));
     EXPECT_THAT(on_demo({"get", "x_drive", "P05.13", "--axis", "2"}).err, HasSubstr("sv33-e has 1 axis"));
-    EXPECT_EQ(drive({"get", "0", "P05.13"}).code, exit_usage) << "no bus was named";
+    EXPECT_EQ(drive({"get", "0", "P05.13", "-s", "/nowhere/socket"}).code, exit_no_runtime) << "no bus was named: a machine is asked";
+    EXPECT_EQ(drive({"get", "0", "P05.13", "-s", "demo", "--nic", "eth7"}).code, exit_usage) << "one way or the other";
 }
 
 TEST_F(DriveSets, AWholeSetGoesToAFileAndBack) {
