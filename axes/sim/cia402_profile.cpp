@@ -104,7 +104,8 @@ bool Cia402Axis::profile_reached() const noexcept {
         case mode::profile_position: {
             if (state_ == State::quick_stop) return stop_done_;  // SV33-E 3.4.3(5)
             const double window = settings_.position_window < 0 ? default_position_window : static_cast<double>(settings_.position_window);
-            return profile_position_.arrived() && std::abs(profile_position_.reached_target() - seen_position()) <= window;
+            // What the encoder counts: a window of 0 can be met (SV-DA200 6067h has no stated value).
+            return profile_position_.arrived() && std::abs(profile_position_.reached_target() - (quantised() + zero_)) <= window;
         }
         case mode::profile_velocity: {
             const double turn = static_cast<double>(personality_.counts_per_revolution);

@@ -5,19 +5,21 @@
 
 namespace taktwerk::axes::sim {
 
-void MotorBehaviour::power_on(ecat::sim::ObjectDictionary& dictionary, Cia402Axis& axis) {
-    const auto& b = profile_.behaviour;
-    type_.power_on(dictionary, profile_, b.motor.type);
-    standby_.power_on(dictionary, profile_, b.motor.standby_current);
-    polarity_.power_on(dictionary, profile_, b.inputs.polarity);
-    least_.power_on(dictionary, profile_, b.least_voltage);
-    greatest_.power_on(dictionary, profile_, b.greatest_voltage);
+MotorBehaviour::MotorBehaviour(const DriveProfile& profile)
+    : open_loop_(profile.behaviour.motor.open_loop),
+      inputs_(profile.behaviour.inputs),
+      type_(profile, profile.behaviour.motor.type),
+      standby_(profile, profile.behaviour.motor.standby_current),
+      polarity_(profile, profile.behaviour.inputs.polarity),
+      least_(profile, profile.behaviour.least_voltage),
+      greatest_(profile, profile.behaviour.greatest_voltage) {}
 
-    const auto& open_loop = b.motor.open_loop;
-    if (type_.present() && std::find(open_loop.begin(), open_loop.end(), type_.get()) != open_loop.end())
+void MotorBehaviour::power_on(ecat::sim::ObjectDictionary& dictionary, Cia402Axis& axis) {
+    for (auto* value : {&type_, &standby_, &polarity_, &least_, &greatest_}) value->power_on(dictionary);
+    if (type_.present() && std::find(open_loop_.begin(), open_loop_.end(), type_.get()) != open_loop_.end())
         axis.open_loop(standby_.present() ? static_cast<double>(standby_.get()) / 100.0 : 1.0);
     else axis.open_loop(std::nullopt);
-    axis.wire_inputs(b.inputs, polarity_.get());
+    axis.wire_inputs(inputs_, polarity_.get());
 }
 
 void MotorBehaviour::supply(double volts, Cia402Axis& axis) const noexcept {

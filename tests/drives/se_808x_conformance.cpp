@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "tests/drives/drive_bench.hpp"
+#include "tests/drives/drive_desk.hpp"
 
 namespace taktwerk::axes::sim {
 namespace {

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/drives/drive_bench.hpp"
+#include "tests/drives/drive_desk.hpp"
 
 namespace taktwerk::axes::sim {
 namespace {

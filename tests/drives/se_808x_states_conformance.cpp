@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/drives/drive_bench.hpp"
+#include "tests/drives/drive_desk.hpp"
 
 namespace taktwerk::axes::sim {
 namespace {
