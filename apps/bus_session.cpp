@@ -12,6 +12,8 @@
 
 #include "apps/exit_code.hpp"
 #include "apps/load.hpp"
+#include "apps/remote.hpp"
+#include "apps/running_machine.hpp"
 #include "apps/stop_signal.hpp"
 #include "apps/taktwerk.hpp"
 #include "core/calendar_distance.hpp"
@@ -26,16 +28,6 @@ using namespace std::chrono_literals;
 
 constexpr Duration listening_time = 25ms;  // a master that is there sends at least every 10 ms
 constexpr Duration refresh_period = 100ms;
-
-/// The tool's exit code for what went wrong.
-int code_of(const Error& error) {
-    if (error.code == "drive.not_taken" || error.code == "drive.cannot_store" || error.code == "drive.not_reset") return exit_refused;
-    if (error.code.rfind("drive.", 0) == 0) return exit_usage;
-    if (error.code == "bus.no_such_slave" || error.code == "sdo.value" || error.code == "bus.not_confirmed") return exit_usage;
-    if (error.code == "sdo.abort" || error.code == "bus.refused_state") return exit_refused;
-    if (error.code == "capture.write") return exit_bad_file;
-    return exit_bus;
-}
 
 std::string outputs_text(const ecat::Survey& survey, const ecat::BusConfig& config) {
     std::string text;
@@ -76,6 +68,7 @@ private:
             loaded = load_file(options.simulate);
             if (!loaded) return exit_bad_file;
             s.configured_ = loaded->machine.bus;
+            s.machine_socket_ = loaded->hmi.socket;
         }
         const std::string nic = !options.nic.empty() ? options.nic : s.configured_.interface;
         if (nic.empty()) {
@@ -86,7 +79,7 @@ private:
             s.where_ = nic;
             s.clock_ = std::make_unique<SystemClock>();
             auto opened = ecat::RawSocketTransport::open(nic);
-            if (!opened) return fail(options, opened.error());
+            if (!opened) return fail(options, in_other_words(opened.error(), nic));
             s.nic_ = std::move(*opened);
         }
         if (!options.pcap.empty()) {
@@ -97,6 +90,20 @@ private:
         s.deadline_ = s.clock_->now();
         s.new_probe({});
         return exit_ok;
+    }
+
+    /// Two masters on one cable disturb each other; whose machine it is, and that it can be asked, the transport does not know.
+    Error in_other_words(Error error, const std::string& nic) const {
+        if (error.code != "transport.in_use") return error;
+        if (const auto running = machine_on(nic, session->machine_socket_))
+            return Error{"bus.machine_runs", nic,
+                         fmt::format("machine '{}' runs on this interface (process {}); a second master would disturb it", running->name,
+                                     running->process),
+                         fmt::format("`taktwerk drive` can ask the machine itself: say -s {} instead of the bus; or end it first: taktwerk "
+                                     "shutdown -s {}",
+                                     running->socket, running->socket)};
+        error.remedy += "; `taktwerk drive` can ask a running machine itself: say -s MACHINE instead of the bus";
+        return error;
     }
 
     std::optional<LoadedFile> load_file(bool simulate) const {
@@ -213,7 +220,7 @@ Result<void> BusSession::bring_up(const ecat::Survey& survey) {
 }
 
 Result<void> BusSession::close() {
-    closing_ = true;
+    finish_undisturbed();
     if (up_) {
         up_ = false;
         if (auto down = probe_->take_down(); !down) return down;
@@ -225,10 +232,23 @@ Result<void> BusSession::close() {
     return capture_->finish();
 }
 
+int exit_code_for(const Error& error) {
+    for (const char* of_machine : {"command.", "socket.", "state.", "request."})
+        if (error.code.rfind(of_machine, 0) == 0) return exit_code_of(error);
+    for (const char* refused : {"drive.not_now", "drive.action", "drive.would_store", "drive.silent", "drive.refused"})
+        if (error.code == refused) return exit_refused;
+    if (error.code == "drive.not_taken" || error.code == "drive.cannot_store" || error.code == "drive.not_reset") return exit_refused;
+    if (error.code.rfind("drive.", 0) == 0) return exit_usage;
+    if (error.code == "bus.no_such_slave" || error.code == "sdo.value" || error.code == "bus.not_confirmed") return exit_usage;
+    if (error.code == "sdo.abort" || error.code == "bus.refused_state") return exit_refused;
+    if (error.code == "capture.write") return exit_bad_file;
+    return exit_bus;
+}
+
 int fail(const BusOptions& options, const Error& error) {
     if (options.json) print_json(Json{{"ok", false}, {"error", error_json(error)}});
     else print_error(error);
-    return code_of(error);
+    return exit_code_for(error);
 }
 
 Json error_json(const Error& error) {
@@ -245,7 +265,7 @@ int with_bus(const BusOptions& options, const std::function<int(BusSession&)>& w
     std::fflush(stdout);
     if (auto closed = opening.session->close(); !closed) {
         print_error(closed.error());
-        if (code == exit_ok) code = code_of(closed.error());
+        if (code == exit_ok) code = exit_code_for(closed.error());
     }
     return code;
 }

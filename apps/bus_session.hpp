@@ -56,6 +56,8 @@ public:
     [[nodiscard]] Result<void> bring_up(const ecat::Survey& survey);
     /// Asks on the terminal whether slaves may be operated. Without a terminal only --yes counts.
     [[nodiscard]] Result<void> confirm_operation(const ecat::Survey& survey);
+    /// From now on Ctrl-C ends nothing: for what must be put back before the end.
+    void finish_undisturbed() noexcept { closing_ = true; }
     /// Down to INIT if bring_up() got it up; the capture is finished. Also after Ctrl-C.
     [[nodiscard]] Result<void> close();
 
@@ -76,6 +78,7 @@ private:
     Instant deadline_{};
     Instant next_refresh_{};
     std::uint64_t foreign_frames_ = 0;
+    std::string machine_socket_;  ///< that the machine file names; where its machine would be if it ran
     bool up_ = false, closing_ = false;
 };
 
@@ -85,6 +88,7 @@ int with_bus(const BusOptions& options, const std::function<int(BusSession&)>& w
 
 /// Prints it as the options want and gives the exit code it stands for.
 int fail(const BusOptions& options, const Error& error);
+[[nodiscard]] int exit_code_for(const Error& error);
 /// The same as part of an answer.
 [[nodiscard]] Json error_json(const Error& error);
 /// One line on standard output.

@@ -17,22 +17,21 @@ void add_drive_values(CLI::App& drive, Action& action);  ///< get, set
 void add_drive_sets(CLI::App& drive, Action& action);    ///< save, restore, diff
 void add_drive_alarms(CLI::App& drive, Action& action);  ///< alarms, reset
 
-/// Where writes go. A drive that stores every write is told not to, unless its user wants it: an EEPROM takes some 100,000 writes.
-enum class Storing : std::uint8_t { volatile_only, asked };
-
 struct Change {
     const axes::DriveParameter* parameter = nullptr;
     std::int64_t from = 0, to = 0;
 };
 
-/// Writes what differs, reads each back, and stores at the end where that was asked. Says what it does on standard error; with JSON only
-/// on failure. Returns what was changed before an error, too.
 struct Written {
-    std::vector<Change> changes;
+    std::vector<Change> changes;     ///< those before an error, too
     std::vector<std::string> notes;  ///< for the user: EEPROM, restarts
     std::optional<Error> error;
 };
+/// Writes what differs and reads each back. With storing asked everything is stored, whether it differs or not: what is in force may never
+/// have been. The drive's storage switch (SV33-E P05.10) is afterwards as it was, also after an error and Ctrl-C.
 [[nodiscard]] Written write_values(DriveAccess& drive, const std::vector<config::ParameterSet::Value>& values, Storing storing);
+/// Prints it as the options want; returns the exit code.
+int report_written(const BusOptions& options, const DriveAccess& drive, const Written& written);
 
 /// A table of parameters; `values` empty or as many as parameters.
 [[nodiscard]] std::string params_text(const std::vector<const axes::DriveParameter*>& parameters,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "apps/drive.hpp"
+#include "apps/drive_profiles.hpp"
 #include "apps/exit_code.hpp"
 #include "axes/port/alarm_words.hpp"
 #include "axes/port/parameter_text.hpp"
@@ -11,24 +12,14 @@ namespace taktwerk::apps {
 
 namespace {
 
-constexpr axes::ParameterAddress error_code{0x603F, 0};
 constexpr Duration reset_patience = std::chrono::seconds{3};  // several attempts of the port
 
-std::uint64_t number(const std::vector<std::byte>& bytes) {
-    std::uint64_t out = 0;
-    for (std::size_t i = 0; i < bytes.size() && i < 8; ++i) out |= std::to_integer<std::uint64_t>(bytes[i]) << (8 * i);
-    return out;
-}
-
 Result<axes::ShownAlarm> read_alarm(DriveAccess& drive) {
-    const auto& profile = drive.profile();
-    const auto code = drive.read_bytes(error_code);
-    if (!code) return code.error();
+    const auto complaint = drive.complaint();
+    if (!complaint) return complaint.error();
     axes::ShownAlarm out;
-    out.code = static_cast<std::uint16_t>(number(*code));
-    if (out.code != 0 && profile.alarm_detail_index != 0)
-        if (const auto detail = drive.read_bytes({profile.alarm_detail_index, profile.alarm_detail_sub}))
-            out.detail = static_cast<std::uint32_t>(number(*detail));
+    out.code = complaint->code;
+    out.detail = complaint->detail;
     return out;
 }
 

@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include "apps/drive.hpp"
+#include "apps/drive_in_machine.hpp"
+#include "apps/drive_profiles.hpp"
 #include "apps/exit_code.hpp"
 #include "ecat/bringup/slave_match.hpp"
 
@@ -45,7 +47,27 @@ int show(const DriveOptions& options, const std::vector<Identified>& slaves) {
     return exit_ok;
 }
 
+/// What the running machine was configured with; nobody is asked anything on its bus.
+int identify_in_machine(const DriveOptions& options) {
+    const auto machine = drives_of_machine(options.socket);
+    if (!machine) return fail(*options.bus, machine.error());
+    std::vector<MachineDrive> drives = machine->drives;
+    if (!options.drive.empty()) {
+        const auto drive = find_drive(*machine, options.drive, options.axis);
+        if (!drive) return fail(*options.bus, drive.error());
+        drives = {*drive};
+    }
+    std::vector<Identified> out;
+    for (const auto& drive : drives)
+        out.push_back({fmt::format("axis {} ('{}')", drive.axis, drive.drive),
+                       fmt::format("as machine '{}' is configured", machine->machine),
+                       "",
+                       {drive.profile}});
+    return show(options, out);
+}
+
 int identify(const DriveOptions& options) {
+    if (options.through_machine()) return identify_in_machine(options);
     return with_bus(*options.bus, [&](BusSession& session) {
         const Result<ecat::Survey> found = session.look();
         if (!found) return fail(*options.bus, found.error());

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "apps/drive.hpp"
+#include "apps/drive_profiles.hpp"
 #include "apps/exit_code.hpp"
 #include "axes/port/parameter_text.hpp"
 

@@ -17,7 +17,7 @@ using config::ParameterSet;
 struct Options {
     std::shared_ptr<DriveOptions> drive;
     std::string file;
-    bool store = false, all = false;
+    bool all = false;
 };
 
 /// Every setting that the drive answers. What it does not have is left out and counted.
@@ -79,19 +79,8 @@ int restore(const Options& options) {
     return with_drive(*options.drive, [&](DriveAccess& drive) {
         const auto read = config::read_parameter_set(options.file, drive.profile());
         if (const auto* errors = std::get_if<std::vector<Error>>(&read)) return bad_file(options, *errors);
-        const auto written =
-            write_values(drive, std::get<ParameterSet>(read).values, options.store ? Storing::asked : Storing::volatile_only);
-        if (bus.json) {
-            auto json = Json{{"ok", !written.error}, {"drive", drive.subject()}, {"changes", Json::array()}, {"notes", written.notes}};
-            for (const auto& change : written.changes) json["changes"].push_back(change_json(change));
-            if (written.error) json["error"] = error_json(*written.error);
-            print_json(json);
-            return static_cast<int>(written.error ? exit_refused : exit_ok);
-        }
-        fmt::print("{}: {}\n{}", drive.subject(), count_text(written.changes.size(), "value") + " changed",
-                   changes_text(written.changes, colours_of_output()));
-        for (const auto& note : written.notes) fmt::print("{}\n", wrapped(note, 0));
-        return written.error ? fail(bus, *written.error) : static_cast<int>(exit_ok);
+        const auto written = write_values(drive, std::get<ParameterSet>(read).values, options.drive->storing);
+        return report_written(bus, drive, written);
     });
 }
 
@@ -143,7 +132,7 @@ void add_drive_sets(CLI::App& drive, Action& action) {
     restore_options->drive = add_drive_options(*restoring);
     add_drive_choice(*restoring, *restore_options->drive);
     restoring->add_option("FILE", restore_options->file, "as `save` wrote it")->required();
-    restoring->add_flag("--store", restore_options->store, "into the drive's EEPROM, too; without it the values are lost at power off");
+    add_store_option(*restoring, *restore_options->drive);
     restoring->callback([&action, restore_options] { action = [restore_options] { return restore(*restore_options); }; });
 
     auto* comparing = drive.add_subcommand("diff", "how the drive differs from a file, or from the factory's values");

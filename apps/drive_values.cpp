@@ -16,7 +16,6 @@ using Values = std::vector<config::ParameterSet::Value>;
 struct Options {
     std::shared_ptr<DriveOptions> drive;
     std::vector<std::string> words;
-    bool store = false;
 };
 
 std::string text_of(const std::vector<std::byte>& bytes) {
@@ -34,7 +33,7 @@ int get(const Options& options) {
             const auto found = axes::find_parameter(drive.profile(), word);
             if (!found) return fail(bus, found.error());
             const auto& parameter = **found;
-            const auto bytes = drive.read_bytes(parameter.address);
+            const auto bytes = drive.read_bytes(parameter);
             if (!bytes) return fail(bus, bytes.error());
             std::string shown;
             if (parameter.bits == 0) {
@@ -75,18 +74,8 @@ int set(const Options& options) {
     return with_drive(*options.drive, [&](DriveAccess& drive) {
         const auto values = parsed(drive.profile(), options.words);
         if (!values) return fail(bus, values.error());
-        const auto written = write_values(drive, *values, options.store ? Storing::asked : Storing::volatile_only);
-        if (bus.json) {
-            auto json = Json{{"ok", !written.error}, {"drive", drive.subject()}, {"changes", Json::array()}, {"notes", written.notes}};
-            for (const auto& change : written.changes) json["changes"].push_back(change_json(change));
-            if (written.error) json["error"] = error_json(*written.error);
-            print_json(json);
-            return static_cast<int>(written.error ? exit_refused : exit_ok);
-        }
-        fmt::print("{}",
-                   written.changes.empty() && !written.error ? "nothing to change\n" : changes_text(written.changes, colours_of_output()));
-        for (const auto& note : written.notes) fmt::print("{}\n", wrapped(note, 0));
-        return written.error ? fail(bus, *written.error) : static_cast<int>(exit_ok);
+        const auto written = write_values(drive, *values, options.drive->storing);
+        return report_written(bus, drive, written);
     });
 }
 
@@ -105,7 +94,7 @@ void add_drive_values(CLI::App& drive, Action& action) {
     set_options->drive = add_drive_options(*setting);
     add_drive_choice(*setting, *set_options->drive);
     setting->add_option("PARAMETER=VALUE", set_options->words, "P05.13=300, 'P05.13=300 ms', 6084h=0x1000")->required();
-    setting->add_flag("--store", set_options->store, "into the drive's EEPROM, too; without it the values are lost at power off");
+    add_store_option(*setting, *set_options->drive);
     setting->callback([&action, set_options] { action = [set_options] { return set(*set_options); }; });
 }
 

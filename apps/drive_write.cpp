@@ -1,8 +1,11 @@
-// Writing parameters with care for the EEPROM.
+// Writing parameters with care for the EEPROM, and telling what was written.
+
+#include <algorithm>
 
 #include <fmt/format.h>
 
 #include "apps/drive.hpp"
+#include "apps/exit_code.hpp"
 #include "axes/port/parameter_text.hpp"
 
 namespace taktwerk::apps {
@@ -13,9 +16,7 @@ using namespace std::chrono_literals;
 using axes::DriveParameter;
 using axes::ParameterStorage;
 
-constexpr Duration between_stored_writes = 100ms;    // an EEPROM cell needs up to 10 ms; the drive does other things, too
-constexpr Duration after_storing = 5s;               // longest stated: XP200 9.3, 5 s
-constexpr std::int64_t signature_save = 0x65766173;  // "save", CiA 301 1010h
+constexpr Duration between_stored_writes = 100ms;  // an EEPROM cell needs up to 10 ms; the drive does other things, too
 
 const DriveParameter* parameter_at(const axes::DriveProfile& profile, const axes::ParameterAddress& address) {
     for (const auto& parameter : profile.parameters)
@@ -23,31 +24,36 @@ const DriveParameter* parameter_at(const axes::DriveProfile& profile, const axes
     return nullptr;
 }
 
-/// The writing itself; stops at the first failure.
+/// The writing itself; stops at the first failure, and then puts back what it has switched for its own sake.
 class Writer {
 public:
     Writer(DriveAccess& drive, Storing storing) : drive_(drive), profile_(drive.profile()), storing_(storing) {}
 
     Written run(const std::vector<config::ParameterSet::Value>& values) {
-        find_changes(values);
-        if (out_.error || wanted_.empty()) return std::move(out_);
-        if (may_store()) {
-            prepare();
-            for (const auto& change : wanted_) {
-                if (out_.error) break;
-                write(change);
-            }
-            if (!out_.error) finish();
+        find_wanted(values);
+        const bool nothing = wanted_.empty() && storing_ == Storing::volatile_only;
+        if (nothing || values.empty() || !may_store()) return std::move(out_);
+        prepare();
+        for (const auto& change : wanted_) {
+            if (out_.error) break;
+            write(change);
         }
+        put_back();
+        finish();
         return std::move(out_);
     }
 
 private:
-    void find_changes(const std::vector<config::ParameterSet::Value>& values) {
+    [[nodiscard]] bool stores_each() const noexcept {
+        return storing_ == Storing::asked && profile_.storage == ParameterStorage::each_write;
+    }
+
+    void find_wanted(const std::vector<config::ParameterSet::Value>& values) {
         for (const auto& value : values) {
             const auto now = drive_.read(*value.parameter);
-            // What cannot be read is written unseen (SE-808X 6098h).
-            if (now && *now == value.raw) continue;
+            // What is in force may never have been stored: a drive that stores by writing gets it again. What cannot be read is
+            // written unseen (SE-808X 6098h).
+            if (now && *now == value.raw && !stores_each()) continue;
             wanted_.push_back({value.parameter, now ? *now : value.parameter->value, value.raw});
         }
     }
@@ -63,7 +69,7 @@ private:
         return !out_.error;
     }
 
-    /// A drive that stores each write is told not to, or left alone, as asked.
+    /// A drive that stores each write is told not to, or to do it, as asked.
     void prepare() {
         if (profile_.storage != ParameterStorage::each_write) return;
         const auto* sw = profile_.storage_switch.index ? parameter_at(profile_, profile_.storage_switch) : nullptr;
@@ -78,66 +84,79 @@ private:
             return;
         }
         const auto set = [&](std::int64_t value, const std::string& note) {
-            if (auto done = drive_.write(*sw, value); !done) out_.error = done.error();
+            if (auto done = drive_.write(*sw, value, storing_); !done) out_.error = done.error();
             else out_.notes.push_back(note);
         };
         if (storing_ == Storing::volatile_only && *now != 0)
             set(0, fmt::format(
                        "{} was {}: now 0, so that these writes do not wear the EEPROM. They are lost at power off; --store keeps them.",
                        axes::name_of(*sw), *now));
-        if (storing_ == Storing::asked) {
-            restore_switch_ = *now == 0 ? sw : nullptr;
-            if (*now == 0)
-                set(sw->value, fmt::format("{} was 0: {} while these values are stored, then 0 again.", axes::name_of(*sw), sw->value));
+        if (storing_ == Storing::asked && *now == 0) {
+            // Who writes the switch itself decides how it stays.
+            const bool meant = std::any_of(wanted_.begin(), wanted_.end(), [&](const Change& change) { return change.parameter == sw; });
+            if (!meant) switched_ = sw;  // before the write: a drive may have taken what it did not answer
+            set(sw->value, fmt::format("{} was 0: {} while these values are stored{}", axes::name_of(*sw), sw->value,
+                                       meant ? "." : ", then 0 again."));
         }
     }
 
     void write(const Change& change) {
-        if (auto done = drive_.write(*change.parameter, change.to); !done) {
+        if (auto done = drive_.write(*change.parameter, change.to, storing_); !done) {
             out_.error = done.error();
             return;
         }
-        out_.changes.push_back(change);
-        if (const auto back = drive_.read(*change.parameter); back && *back != change.to)
+        if (change.from != change.to) out_.changes.push_back(change);
+        const auto back = drive_.read(*change.parameter);
+        if (back && *back != change.to) {
             out_.error = Error{"drive.not_taken", fmt::format("{} {}", drive_.subject(), axes::name_of(*change.parameter)),
                                fmt::format("{} was written, but it reads {}", axes::value_text(*change.parameter, change.to),
                                            axes::value_text(*change.parameter, *back)),
                                "see in the manual when the drive takes this value"};
+            return;
+        }
+        ++written_;
         if (change.parameter->effect == axes::ParameterEffect::after_restart)
             out_.notes.push_back(fmt::format("{} counts after the drive's next restart.", axes::name_of(*change.parameter)));
-        if (storing_ == Storing::asked && profile_.storage == ParameterStorage::each_write) drive_.wait(between_stored_writes);
+        if (stores_each()) drive_.wait(between_stored_writes);
+    }
+
+    /// Whatever happened, Ctrl-C too: a switch that stays on wears the EEPROM with every write of everybody.
+    void put_back() {
+        if (!switched_) return;
+        drive_.finish_undisturbed();
+        const auto done = drive_.write(*switched_, 0, storing_);
+        if (done) return;
+        const auto name = axes::name_of(*switched_);
+        out_.notes.push_back(
+            fmt::format("{} may still be {}: it could not be set back to 0 ({}). Until it is, every write wears the EEPROM: "
+                        "taktwerk drive set {} {}=0",
+                        name, switched_->value, done.error().what, drive_.word(), name));
+        if (!out_.error) out_.error = done.error();
     }
 
     void finish() {
-        if (restore_switch_)
-            if (auto done = drive_.write(*restore_switch_, 0); !done) out_.error = done.error();
+        if (stores_each()) {
+            out_.notes.push_back(fmt::format("{} stored in the EEPROM.", written_ == wanted_.size()
+                                                                             ? count_text(written_, "value")
+                                                                             : fmt::format("{} of {} values", written_, wanted_.size())));
+            return;
+        }
+        if (out_.error) return;
         if (storing_ != Storing::asked) {
             if (profile_.storage == ParameterStorage::on_request)
                 out_.notes.push_back("The values are lost at power off; --store keeps them.");
             return;
         }
-        if (profile_.storage == ParameterStorage::each_write) {
-            out_.notes.push_back(fmt::format("{} stored in the EEPROM.", count_text(out_.changes.size(), "value")));
-            return;
-        }
-        const auto* store = parameter_at(profile_, {0x1010, 1});
-        if (!store) {
-            out_.error = Error{"drive.cannot_store", drive_.subject(), "has no object 1010h:01 to store by", "leave --store away"};
-            return;
-        }
-        if (auto done = drive_.write(*store, signature_save); !done) {
-            out_.error = done.error();
-            return;
-        }
-        drive_.wait(after_storing);
-        out_.notes.push_back("Stored in the EEPROM, all parameters of the drive at once.");
+        if (auto done = drive_.store_all(); !done) out_.error = done.error();
+        else out_.notes.push_back("Stored in the EEPROM, all parameters of the drive at once.");
     }
 
     DriveAccess& drive_;
     const axes::DriveProfile& profile_;
     Storing storing_;
     std::vector<Change> wanted_;
-    const DriveParameter* restore_switch_ = nullptr;
+    std::size_t written_ = 0;
+    const DriveParameter* switched_ = nullptr;
     Written out_;
 };
 
@@ -145,6 +164,22 @@ private:
 
 Written write_values(DriveAccess& drive, const std::vector<config::ParameterSet::Value>& values, Storing storing) {
     return Writer(drive, storing).run(values);
+}
+
+int report_written(const BusOptions& options, const DriveAccess& drive, const Written& written) {
+    if (options.json) {
+        auto json = Json{{"ok", !written.error}, {"drive", drive.subject()}, {"changes", Json::array()}, {"notes", written.notes}};
+        for (const auto& change : written.changes) json["changes"].push_back(change_json(change));
+        if (written.error) json["error"] = error_json(*written.error);
+        print_json(json);
+        return written.error ? exit_code_for(*written.error) : static_cast<int>(exit_ok);
+    }
+    if (!written.changes.empty())
+        fmt::print("{}: {} changed\n{}", drive.subject(), count_text(written.changes.size(), "value"),
+                   changes_text(written.changes, colours_of_output()));
+    else if (!written.error) fmt::print("{}: nothing to change\n", drive.subject());
+    for (const auto& note : written.notes) fmt::print("{}\n", wrapped(note, 0));
+    return written.error ? fail(options, *written.error) : static_cast<int>(exit_ok);
 }
 
 std::string changes_text(const std::vector<Change>& changes, Colours colours) {

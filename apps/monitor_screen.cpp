@@ -124,6 +124,9 @@ private:
             fmt::format("          {}  drive {}", axis.at("unit").get<std::string>(), axis.at("drive_state").get<std::string>());
         if (const int error = axis.at("drive_error").get<int>()) text += fmt::format(" error {:04X}h", error);
         text += fmt::format("  owner {}", axis.at("owner").get<std::string>());
+        const auto block = axis.at("block").get<std::string>(), command = axis.at("command").get<std::string>();
+        if (!block.empty() || !command.empty())
+            text += fmt::format(" ({}{}{})", command, block.empty() || command.empty() ? "" : " ", block);
         if (axis.at("disabled").get<bool>()) text += "  left out";
         else if (!axis.at("online").get<bool>()) text += "  offline";
         if (axis.at("simulated").get<bool>() && !state_.at("simulated").get<bool>()) text += "  SIMULATED";

@@ -12,6 +12,8 @@
 #include "apps/exit_code.hpp"
 #include "apps/line_input.hpp"
 #include "apps/load.hpp"
+#include "apps/sim_happenings.hpp"
+#include "apps/sim_lines.hpp"
 #include "apps/stop_signal.hpp"
 #include "apps/taktwerk.hpp"
 #include "core/clock.hpp"
@@ -27,7 +29,7 @@ struct Options {
     std::string file, nic;
     bool strict = false;
     double duration_s = 0;
-    std::vector<std::string> faults;
+    std::vector<std::string> faults, serial;
 };
 
 std::string_view name(ecat::sim::EsmState state) {
@@ -97,10 +99,12 @@ private:
     std::vector<Drive> drives_;
 };
 
-/// The language of standard input: that of the faults, and a few words about the simulation itself.
+/// The language of standard input: that of the faults on the bus, what else happens to the machine, and a few words about the simulation
+/// itself.
 class Commands {
 public:
-    Commands(ecat::sim::SimNetwork& network, ecat::FaultPlan& cable) : network_(network), injector_(network, cable) {}
+    Commands(runtime::World& world, const runtime::MachineConfig& machine)
+        : machine_(machine), network_(world.network()), injector_(world.network(), world.transport().faults), happenings_(world) {}
 
     /// False: `quit`.
     bool obey(const std::string& line, Instant now) {
@@ -114,17 +118,28 @@ public:
         return true;
     }
     Result<void> inject(const std::string& line, Instant now) {
+        auto happening = parse_happening(line, machine_);
+        if (happening) {
+            happenings_.take(std::move(*happening), now);
+            return {};
+        }
+        if (happening.error().code != "fault.unknown") return happening.error();
         const auto fault = ecat::sim::parse_fault(line);
         if (!fault) return fault.error();
         return injector_.apply(*fault, now);
     }
-    void step(Instant now) { injector_.step(now); }
-    [[nodiscard]] Instant next_event() const noexcept { return injector_.next_event(); }
+    void step(Instant now) {
+        injector_.step(now);
+        happenings_.step(now);
+    }
+    [[nodiscard]] Instant next_event() const noexcept { return std::min(injector_.next_event(), happenings_.next_event()); }
 
 private:
     static void help() {
         for (const auto& command : ecat::sim::fault_commands())
             fmt::print("  {:<40} {}\n", fmt::format("{} {}", command.word, command.arguments), command.effect);
+        for (const auto& word : happening_words())
+            fmt::print("  {:<40} {}\n", fmt::format("{} {}", word.word, word.arguments), word.effect);
         fmt::print("  {:<40} any of them, later\n", "after TIME COMMAND");
         fmt::print("  {:<40} position, name and state of each slave\n", "slaves");
         fmt::print("  {:<40} ends the simulation\n", "quit");
@@ -135,8 +150,10 @@ private:
             fmt::print("  {:>3} {:<20} {}\n", i, slave.options().name, slave.powered() ? name(slave.state()) : "no power");
         }
     }
+    const runtime::MachineConfig& machine_;
     ecat::sim::SimNetwork& network_;
     ecat::sim::FaultInjector injector_;
+    Happenings happenings_;
 };
 
 /// What comes back to the master, at the time at which it would come back through the slaves. Returns the frames sent.
@@ -173,13 +190,19 @@ int play(const Options& options) {
     for (std::size_t i = 0; i < network.size(); ++i)
         network.slave(i).require_sync0(options.strict ? ecat::sim::SyncRequirement::as_described : ecat::sim::SyncRequirement::waived);
     StateLog log{network, world, loaded->machine};
-    Commands commands{network, cable.faults};
+    Commands commands{world, loaded->machine};
+    auto lines = SimLines::open(loaded->machine, world, options.serial);
+    if (!lines) {
+        print_error(lines.error());
+        return exit_usage;
+    }
     for (const auto& fault : options.faults)
         if (const auto done = commands.inject(fault, start); !done) {
             print_error(done.error());
             return exit_usage;
         }
     LineInput input{STDIN_FILENO};
+    for (const auto& line : (*lines)->lines()) fmt::print("serial line '{}' is {}\n", line.name, line.path);
     fmt::print("{} slaves of '{}' on {}; `help` lists what can go wrong; Ctrl-C ends\n", network.size(), loaded->machine.name, options.nic);
     std::fflush(stdout);
 
@@ -191,9 +214,10 @@ int play(const Options& options) {
         if (options.duration_s > 0 && to_seconds(now - start) > options.duration_s) break;
         const Instant next = std::min({network.next_event(), commands.next_event(), cable.next_arrival().value_or(Instant::max())});
         const Duration wait = std::clamp(next - now, Duration{}, Duration{std::chrono::milliseconds{10}});
-        pollfd ready[] = {{nic.descriptor(), POLLIN, 0}, {input.descriptor(), POLLIN, 0}};
+        std::vector<pollfd> ready{{nic.descriptor(), POLLIN, 0}, {input.descriptor(), POLLIN, 0}};
+        (*lines)->add_to(ready);
         timespec timeout{0, static_cast<long>(wait.count())};
-        ::ppoll(ready, std::size(ready), &timeout, nullptr);
+        ::ppoll(ready.data(), ready.size(), &timeout, nullptr);
         now = clock.now();
         world.apply_events(now);
         commands.step(now);
@@ -205,6 +229,7 @@ int play(const Options& options) {
             now = clock.now();
         }
         answers += return_answers(cable, nic, clock);
+        (*lines)->step(clock.now());
         while (const auto line = input.next()) wanted = wanted && commands.obey(*line, clock.now());
         log.step();
     }
@@ -224,6 +249,9 @@ void add_sim(CLI::App& app, Action& action) {
     sub->add_option("--nic", options->nic, "network interface, e.g. eth1")->required();
     sub->add_flag("--strict", options->strict, "slaves that need SYNC0 refuse SAFEOP without it, as real ones do");
     sub->add_option("--fault", options->faults, "what goes wrong: a command as on standard input; may be given several times")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    sub->add_option("--serial", options->serial, "LINE=PATH: a link to the pseudo-terminal that plays this serial line")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     add_duration(*sub, "--duration", options->duration_s, "default: until Ctrl-C");

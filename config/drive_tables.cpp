@@ -1,26 +1,21 @@
 #include "config/drive_tables.hpp"
 
-#include <limits>
-
 #include <fmt/format.h>
 
-#include "axes/port/quirk_table.hpp"
 #include "config/codecs.hpp"
 #include "config/device_tables.hpp"
+#include "config/drive_alarm_tables.hpp"
+#include "config/drive_motion_tables.hpp"
+#include "config/mapping_check.hpp"
 #include "config/setting_tables.hpp"
 
 namespace taktwerk::config {
 
 namespace {
 
-using axes::DriveAlarmText;
-using axes::DriveMode;
-using axes::DriveProfile;
-using axes::Quirk;
 using ecat::DeviceDescription;
-using ecat::Mappable;
 
-constexpr std::int64_t u16 = 0xFFFF, u32 = 0xFFFFFFFF;
+constexpr std::int64_t u32 = 0xFFFFFFFF;
 /// Objects below belong to the communication, not to an axis.
 constexpr std::uint16_t first_axis_object = 0x2000;
 
@@ -47,242 +42,6 @@ Table<DriveFile> mapping_table() {
             {}};
 }
 
-Codec<axes::DriveStop> drive_stop() {
-    return choice<axes::DriveStop>({{"coast", axes::DriveStop::coast}, {"ramp", axes::DriveStop::ramp}});
-}
-
-Codec<axes::DriveAlarmKind> alarm_kind() {
-    using K = axes::DriveAlarmKind;
-    return choice<K>({{"other", K::other},
-                      {"overspeed", K::overspeed},
-                      {"following_error", K::following_error},
-                      {"setpoint_leap", K::setpoint_leap},
-                      {"undervoltage", K::undervoltage},
-                      {"overload", K::overload},
-                      {"encoder", K::encoder},
-                      {"communication", K::communication},
-                      {"sync_lost", K::sync_lost},
-                      {"negative_limit", K::negative_limit},
-                      {"positive_limit", K::positive_limit},
-                      {"emergency_stop", K::emergency_stop},
-                      {"battery_low", K::battery_low},
-                      {"reference_lost", K::reference_lost},
-                      {"turn_overflow", K::turn_overflow},
-                      {"homing_timeout", K::homing_timeout},
-                      {"homing_limit", K::homing_limit},
-                      {"homing_method", K::homing_method},
-                      {"power_cycle_pending", K::power_cycle_pending},
-                      {"mode_not_set", K::mode_not_set},
-                      {"mode_change", K::mode_change},
-                      {"left_operational", K::left_operational},
-                      {"link_changed", K::link_changed},
-                      {"torque_overload", K::torque_overload},
-                      {"parameter_storage", K::parameter_storage},
-                      {"cycle_setting", K::cycle_setting},
-                      {"limits_crossed", K::limits_crossed},
-                      {"home_outside_limits", K::home_outside_limits},
-                      {"start_too_fast", K::start_too_fast},
-                      {"enabled_twice", K::enabled_twice},
-                      {"phase_lost", K::phase_lost},
-                      {"safe_torque_off", K::safe_torque_off},
-                      {"stall", K::stall}});
-}
-
-Codec<DriveMode> drive_mode() {
-    return choice<DriveMode>({{"pp", DriveMode::profile_position},
-                              {"pv", DriveMode::profile_velocity},
-                              {"pt", DriveMode::profile_torque},
-                              {"hm", DriveMode::homing},
-                              {"csp", DriveMode::cyclic_position},
-                              {"csv", DriveMode::cyclic_velocity},
-                              {"cst", DriveMode::cyclic_torque}});
-}
-
-Codec<Quirk> quirk() {
-    std::vector<std::pair<std::string, Quirk>> names;
-    for (const auto& row : axes::quirk_table) names.emplace_back(row.name, row.quirk);
-    return choice<Quirk>(std::move(names));
-}
-
-Table<axes::DriveHazard> hazard_table() {
-    using H = axes::DriveHazard;
-    using C = axes::HazardCondition;
-    return {"hazards",
-            "What is dangerous about the drive in a machine that forgot something; `taktwerk check` warns of it.",
-            {
-                required(field("when", &H::when,
-                               choice<C>({{"always", C::always},
-                                          {"not_written", C::not_written},
-                                          {"not_set_to", C::not_set_to},
-                                          {"set_to", C::set_to},
-                                          {"mapped", C::mapped},
-                                          {"not_mapped", C::not_mapped},
-                                          {"mode_mapped", C::mode_mapped},
-                                          {"homed_by_drive", C::homed_by_drive},
-                                          {"no_software_limits", C::no_software_limits},
-                                          {"absolute_homing", C::absolute_homing}}),
-                               "what makes it a hazard of this machine (axes/port/drive_hazard.hpp)")),
-                field("objects", &H::objects, list(parameter_address()), "that the condition looks at"),
-                field("values", &H::values,
-                      list(integer<std::int64_t>(std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max())),
-                      "that the condition compares with"),
-                field("mode", &H::mode, drive_mode(), "that the condition looks at"),
-                required(field("text", &H::text, text(), "what happens, in one sentence")),
-                field("remedy", &H::remedy, text(), "what to write or wire"),
-                required(field("section", &H::section, text(), "of the manual")),
-            },
-            {},
-            {}};
-}
-
-Table<axes::StopWay> stop_way_table() {
-    using W = axes::StopWay;
-    using B = axes::StopBy;
-    using T = axes::StopThen;
-    return {
-        "stops.ways",
-        "One value of a stop option.",
-        {
-            field("value", &W::value, integer<std::int16_t>(-32768, 32767), "of the option's object"),
-            with_default(field("modes", &W::modes, list(drive_mode()), "in which it means that; the first row that fits counts"), "all"),
-            required(field("by", &W::by,
-                           choice<B>({{"coast", B::coast},
-                                      {"dynamic_brake", B::dynamic_brake},
-                                      {"ramp", B::ramp},
-                                      {"quick_ramp", B::quick_ramp},
-                                      {"torque_slope", B::torque_slope},
-                                      {"emergency_torque", B::emergency_torque},
-                                      {"zero_speed", B::zero_speed}}),
-                           "how the motor is slowed down (axes/port/drive_stop.hpp)")),
-            required(field("then", &W::then,
-                           choice<T>({{"free", T::free}, {"lock", T::lock}, {"clamp", T::clamp}, {"dynamic_brake", T::dynamic_brake}}),
-                           "what holds it afterwards")),
-        },
-        {},
-        {}};
-}
-
-Table<axes::StopOption> stop_option_table() {
-    using O = axes::StopOption;
-    using S = axes::StopCause;
-    return {"stops",
-            "How the drive stops by itself for one cause.",
-            {
-                required(field("cause", &O::cause,
-                               choice<S>({{"quick_stop", S::quick_stop},
-                                          {"off", S::off},
-                                          {"shutdown", S::shutdown},
-                                          {"disable", S::disable},
-                                          {"halt", S::halt},
-                                          {"fault", S::fault},
-                                          {"overtravel", S::overtravel}}),
-                               "what makes it stop")),
-                with_default(field("object", &O::object, parameter_address(), "that chooses the way"), "the only row counts"),
-                required(field("ways", &O::ways, list(section(stop_way_table())), "what the manual says of each value")),
-            },
-            {},
-            {}};
-}
-
-Table<DriveProfile> motion_table() {
-    using P = DriveProfile;
-    return {
-        "motion",
-        "What the drive means to an axis.",
-        {
-            required(field("modes", &P::modes, list(drive_mode()), "modes of operation that we use of it (6060h)")),
-            field("homing_methods", &P::homing_methods, list(integer<std::int8_t>(-128, 127)), "6098h values that the manual documents"),
-            field("velocity_counts_per_unit", &P::velocity_counts_per_unit, number(), "606Ch and 60FFh raw = counts/s times this"),
-            field("torque_rated_raw", &P::torque_rated_raw, number(), "6077h and 6071h raw value of rated torque"),
-            field("position_bits", &P::position_bits, integer<std::uint8_t>(8, 64), "width of the raw position"),
-            with_default(field("homing_timeout", &P::homing_timeout, parameter_address(), "object that bounds the drive\'s own homing"),
-                         "none"),
-            field("homing_timeout_unit", &P::homing_timeout_unit, duration(), "of that object"),
-            field("encoder_turn_bits", &P::encoder_turn_bits, integer<std::uint8_t>(0, 32),
-                  "width of an absolute encoder's turn counter; 0: not stated"),
-            with_default(field("clear_turns", &P::clear_turns, parameter_address(), "object that makes the encoder forget its turns"),
-                         "none"),
-            field("clear_turns_value", &P::clear_turns_value, integer<std::int64_t>(0, 65535), "written to that object"),
-            field("clear_turns_control", &P::clear_turns_control, integer<std::uint16_t>(0, 0xFFFF),
-                  "bits of 6040h that make the encoder forget its turns"),
-            field("probes", &P::probes, integer<std::uint8_t>(0, 2), "touch probes"),
-            field("motor_has_encoder", &P::motor_has_encoder, boolean(), "false: the actual position is the command"),
-            with_default(
-                field("minimum_cycle_csp", &P::minimum_cycle_csp, duration(), "shortest cycle in cyclic synchronous position mode"),
-                "not stated"),
-            with_default(
-                field("minimum_cycle_csv", &P::minimum_cycle_csv, duration(), "shortest cycle in cyclic synchronous velocity mode"),
-                "not stated"),
-            with_default(field("minimum_cycle_cst", &P::minimum_cycle_cst, duration(), "shortest cycle in cyclic synchronous torque mode"),
-                         "not stated"),
-            field("enable_delay", &P::enable_delay, duration(), "motion waits this long after enabling (brake)"),
-            field("mode_change_delay", &P::mode_change_delay, duration(), "set-points wait this long after a mode change"),
-            field("enable_timeout", &P::enable_timeout, duration(), "enabling that takes longer has failed"),
-            field("mode_change_at_standstill", &P::mode_change_at_standstill, boolean(), "modes change only while it stands"),
-            field("mode_change_interval", &P::mode_change_interval, duration(), "least time between two changes of 6060h"),
-            field("mode_indeterminate", &P::mode_indeterminate, duration(), "6061h means nothing this long after a change of 6060h"),
-            field("mode_violation", &P::mode_violation,
-                  choice<axes::ModeViolation>({{"obeyed", axes::ModeViolation::obeyed},
-                                               {"ignored", axes::ModeViolation::ignored},
-                                               {"alarm", axes::ModeViolation::alarm}}),
-                  "what a change of mode leads to that comes too soon or in motion"),
-            field("profile_buffer", &P::profile_buffer, integer<std::uint8_t>(1, 64), "set-points that PP takes behind the running one"),
-            field("enable_status_bits", &P::enable_status_bits, integer<std::uint16_t>(0, u16),
-                  "of 6041h, all set before Enable Operation"),
-            field("brake_release", &P::brake_release, duration(), "after enabling the brake still holds: the drive loses earlier commands"),
-            field("brake_hold", &P::brake_hold, duration(), "after disabling at standstill the motor holds until the brake does"),
-            field("brake_moving_wait", &P::brake_moving_wait, duration(),
-                  "power gone in motion: the brake closes after this at the latest"),
-            field("brake_moving_speed", &P::brake_moving_speed, number(), "rpm below which it closes at once"),
-            field("self_test", &P::self_test, duration(), "Not Ready To Switch On lasts this long after power-on"),
-            field("deaf_after_enable", &P::deaf_after_enable, duration(), "set-points are not obeyed this long after enabling"),
-            field("missed_frames_allowed", &P::missed_frames_allowed, integer<std::uint8_t>(0, 255),
-                  "in a row in OP, one more is its communication alarm; 0: not counted"),
-            field("overspeed_limit", &P::overspeed_limit, number(), "of the motor's maximum speed, beyond it an alarm; 0: none"),
-            field("torque_overload", &P::torque_overload, number(), "rated torques, for longer than `torque_overload_time` an alarm"),
-            field("torque_overload_time", &P::torque_overload_time, duration(), "how long more torque than `torque_overload` is allowed"),
-            field("off_stop", &P::off_stop, drive_stop(), "power taken away while it moves"),
-            field("fault_stop", &P::fault_stop, drive_stop(), "its reaction to a fault"),
-            field("quick_stop_leaves", &P::quick_stop_leaves, boolean(), "Quick Stop Active ends by itself"),
-            field("csp_interpolates", &P::csp_interpolates, boolean(), "a target is reached one cycle after the SYNC0 that brought it"),
-            field("axes", &P::axes, integer<std::uint8_t>(1, 8), "axes in this drive"),
-            field("object_offset", &P::object_offset, integer<std::uint16_t>(0, u16), "of the objects of each further axis"),
-            field("pdo_offset", &P::pdo_offset, integer<std::uint16_t>(0, u16), "of the PDOs of each further axis"),
-            field("input_bit_negative_limit", &P::input_bit_negative_limit, integer<std::uint8_t>(0, 31), "in 60FDh"),
-            field("input_bit_positive_limit", &P::input_bit_positive_limit, integer<std::uint8_t>(0, 31), "in 60FDh"),
-            field("input_bit_home", &P::input_bit_home, integer<std::uint8_t>(0, 31), "in 60FDh"),
-            field_via<P>(
-                "alarm_detail", object_address(),
-                [](P& p, const ObjectAddress& a) { p.alarm_detail_index = a.index, p.alarm_detail_sub = a.sub; },
-                "object that tells alarms apart which share a 603Fh code", "none"),
-        },
-        {},
-        {}};
-}
-
-Table<DriveAlarmText> alarm_row_table() {
-    using A = DriveAlarmText;
-    return {"alarms",
-            "One alarm of the drive.",
-            {
-                required(field("code", &A::code, integer<std::uint16_t>(1, u16), "603Fh")),
-                with_default(field("detail", &A::detail, integer<std::uint32_t>(0, u32), "value of the detail object"), "the code alone"),
-                field("panel", &A::panel, text(), "what the drive's own display shows"),
-                required(field("english", &A::english, text(), "its name in English")),
-                required(field("chinese", &A::chinese, text(), "its name in Chinese, as the manual prints it")),
-                field("cause", &A::cause, text(), "why it comes"),
-                field("remedy", &A::remedy, text(), "what to do"),
-                field("resettable", &A::resettable, boolean(), "false: only a power cycle clears it"),
-                field("clears_itself", &A::clears_itself, boolean(), "with its cause, without a reset"),
-                field("warning", &A::warning, boolean(), "the drive goes on"),
-                field("whole_drive", &A::whole_drive, boolean(), "common to all axes of the drive"),
-                field("kind", &A::kind, alarm_kind(), "what it means, whatever its number"),
-                field("section", &A::section, text(), "of the manual"),
-            },
-            {},
-            {}};
-}
-
 Table<axes::DriveOrderObject> order_table() {
     using O = axes::DriveOrderObject;
     using D = axes::DriveOrder;
@@ -300,75 +59,6 @@ Table<axes::DriveOrderObject> order_table() {
             },
             {},
             {}};
-}
-
-Table<axes::AlarmHistoryObjects> history_table() {
-    using H = axes::AlarmHistoryObjects;
-    return {"alarm_history",
-            "Where the drive shows its earlier alarms.",
-            {
-                required(field("select", &H::select, parameter_address(), "0 the present alarm, 1 the latest before it, and so on")),
-                required(field("code", &H::code, parameter_address(), "as the object of `alarm_detail` shows it")),
-                field("time", &H::time, parameter_address(), "since power-on, 0.1 s"),
-                field("speed", &H::speed, parameter_address(), "of the motor at that time, rpm"),
-            },
-            {},
-            {}};
-}
-
-/// Fills in the bits of mapped objects and reports objects that the dictionary lacks or that may not be mapped.
-class PdoResolver {
-public:
-    PdoResolver(Reader& reader, const DeviceDescription& device) : reader_(reader), device_(device) {}
-
-    void resolve(ecat::PdoEntry& entry, bool rx, std::string_view place) const {
-        if (entry.index == 0) return;  // a gap
-        const auto* object = find_object(device_, entry.index, entry.sub);
-        const auto shown = show_object(entry.index, entry.sub);
-        if (!object) {
-            report(place, fmt::format("{} is mapped, but `objects` does not list it", shown), "add it to `objects` with its type");
-            return;
-        }
-        if (entry.bits == 0) entry.bits = ecat::bit_size(object->type);
-        if (object->mappable != Mappable::both && object->mappable != (rx ? Mappable::rx : Mappable::tx))
-            report(place, fmt::format("{} cannot be mapped into {}", shown, rx ? "an RxPDO" : "a TxPDO"),
-                   fmt::format("remove it, or correct its `map:` in `objects`"));
-    }
-
-    void report(std::string_view place, std::string what, std::string remedy) const {
-        reader_.problem(reader_.find(place), "config.mapping", std::move(what), std::move(remedy));
-    }
-
-private:
-    Reader& reader_;
-    const DeviceDescription& device_;
-};
-
-void check_rules(const PdoResolver& resolver, const std::vector<PdoChoice>& chosen, const std::vector<ecat::PdoDescription>& available,
-                 const ecat::PdoRules& rules, std::string_view place) {
-    std::size_t bits = 0;
-    if (chosen.size() > rules.max_assigned)
-        resolver.report(place, fmt::format("{} PDOs are assigned, the drive takes {}", chosen.size(), rules.max_assigned), "use fewer");
-    for (const auto& choice : chosen) {
-        const ecat::PdoDescription* pdo = nullptr;
-        for (const auto& a : available)
-            if (a.index == choice.pdo.index) pdo = &a;
-        if (!pdo) {
-            resolver.report(place, fmt::format("PDO {:04X}h is not among those `available`", choice.pdo.index), "correct its number");
-            continue;
-        }
-        if (pdo->fixed && !choice.objects.empty())
-            resolver.report(place, fmt::format("PDO {:04X}h is fixed", choice.pdo.index), "remove its `objects`");
-        const auto& entries = choice.objects.empty() ? pdo->entries : choice.objects;
-        if (entries.size() > rules.max_entries)
-            resolver.report(
-                place, fmt::format("PDO {:04X}h maps {} objects, the drive takes {}", choice.pdo.index, entries.size(), rules.max_entries),
-                "map fewer");
-        for (const auto& e : entries) bits += e.bits;
-    }
-    if ((bits + 7) / 8 > rules.max_bytes)
-        resolver.report(place, fmt::format("{} bytes are mapped, the drive takes {}", (bits + 7) / 8, rules.max_bytes),
-                        "map fewer objects");
 }
 
 }  // namespace
@@ -418,7 +108,7 @@ void add_profile_fields(std::vector<Field<DriveFile>>& f) {
         "alarms", [](F & d) -> auto& { return d.profile.alarms; }, list(section(alarm_row_table())), "the drive's alarms"));
     f.push_back(field("alarm_file", &F::alarm_file, text(), "file beside this one with the alarms, where they are many"));
     f.push_back(field_at<F>(
-        "alarm_history", [](F & d) -> auto& { return d.profile.alarm_history; }, section(history_table()),
+        "alarm_history", [](F & d) -> auto& { return d.profile.alarm_history; }, section(alarm_history_table()),
         "where the drive shows its earlier alarms"));
     f.push_back(field_at<F>(
         "limits_switch", [](F & d) -> auto& { return d.profile.limits_switch; }, parameter_address(),
@@ -472,23 +162,7 @@ Table<DriveFile> drive_table() {
     add_profile_fields(f);
     table.after = [](Reader& reader, const Node&, F& file) {
         add_objects(file, file.objects);
-        const PdoResolver resolver(reader, file.device);
-        for (auto& pdo : file.device.rx_pdos)
-            for (auto& entry : pdo.entries) resolver.resolve(entry, true, "pdo.rx");
-        for (auto& pdo : file.device.tx_pdos)
-            for (auto& entry : pdo.entries) resolver.resolve(entry, false, "pdo.tx");
-        for (auto& module : file.device.slots.modules) {
-            for (auto& pdo : module.rx_pdos)
-                for (auto& entry : pdo.entries) resolver.resolve(entry, true, "slots.modules");
-            for (auto& pdo : module.tx_pdos)
-                for (auto& entry : pdo.entries) resolver.resolve(entry, false, "slots.modules");
-        }
-        for (auto& choice : file.rx)
-            for (auto& entry : choice.objects) resolver.resolve(entry, true, "mapping.rx");
-        for (auto& choice : file.tx)
-            for (auto& entry : choice.objects) resolver.resolve(entry, false, "mapping.tx");
-        check_rules(resolver, file.rx, file.device.rx_pdos, file.device.rx_rules, "mapping.rx");
-        check_rules(resolver, file.tx, file.device.tx_pdos, file.device.tx_rules, "mapping.tx");
+        check_mapping(reader, file);
     };
     return table;
 }

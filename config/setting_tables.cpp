@@ -29,6 +29,8 @@ Table<axes::UnitVariant> unit_variant_table() {
             field("index_before_inputs", &U::index_before_inputs, boolean(),
                   "60FDh shows the index pulse in bit 16, the inputs from 17 on"),
             field("index_probe", &U::index_probe, boolean(), "touch probes can latch on the index pulse"),
+            field("status_hidden", &U::status_hidden, integer<std::uint16_t>(0, 0xFFFF), "bits of 6041h that stay 0"),
+            field("cyclic_bit_12", &U::cyclic_bit_12, boolean(), "6041h bit 12 in the cyclic modes: the drive follows (CiA 402-2)"),
         },
         {},
         {}};
@@ -44,6 +46,82 @@ Table<axes::AnalogueOutput> analogue_output_table() {
                 required(field("selection", &A::selection, object, "0: the bus sets the output")),
                 required(field("gain", &A::gain, object, "divides the value")),
                 field("monitor", &A::monitor, object, "shows the voltage in mV"),
+            },
+            {},
+            {}};
+}
+
+Table<axes::VirtualInputs> virtual_inputs_table() {
+    using V = axes::VirtualInputs;
+    const auto object = parameter_address();
+    return {"behaviour.virtual_inputs",
+            "Inputs of the drive that exist in its parameters only.",
+            {
+                required(field("enable", &V::enable, object, "1: they count")),
+                required(field("levels", &V::levels, object, "bit n is input n + 1")),
+                required(field("functions", &V::functions, list(object), "of each input, in order")),
+                field("servo_enable", &V::servo_enable, raw_value(), "the function that enables the motor"),
+            },
+            {},
+            {}};
+}
+
+Table<axes::MotorObjects> motor_table() {
+    using M = axes::MotorObjects;
+    return {
+        "behaviour.motor",
+        "Which motor hangs on the drive.",
+        {
+            required(field("type", &M::type, parameter_address(), "object that chooses the kind")),
+            required(field("open_loop", &M::open_loop, list(raw_value()), "its values without an encoder: the position is the command")),
+            field("standby_current", &M::standby_current, parameter_address(), "% of the current at standstill, open loop"),
+        },
+        {},
+        {}};
+}
+
+Table<axes::InputObjects> input_table() {
+    using I = axes::InputObjects;
+    using U = axes::InputUse;
+    const auto use = choice<U>({{"negative_limit", U::negative_limit}, {"positive_limit", U::positive_limit}, {"home", U::home}});
+    return {"behaviour.inputs",
+            "The switches on the drive's own terminals.",
+            {
+                required(field("terminals", &I::terminals, list(use), "what input 1, 2, ... are wired to")),
+                field("polarity", &I::polarity, parameter_address(), "bit 0 is input 1: 0 normally open, 1 normally closed"),
+                field("filter", &I::filter, duration(), "an active signal that lasts no longer is not seen"),
+            },
+            {},
+            {}};
+}
+
+Table<axes::StateObjects::OfAlarm> alarm_state_table() {
+    using A = axes::StateObjects::OfAlarm;
+    return {"behaviour.state.alarms",
+            "What the state object shows while an alarm stands.",
+            {
+                required(field("code", &A::code, integer<std::uint16_t>(1, 0xFFFF), "603Fh")),
+                required(field("value", &A::value, raw_value(), "of the state object")),
+            },
+            {},
+            {}};
+}
+
+Table<axes::StateObjects> state_table() {
+    using S = axes::StateObjects;
+    const auto object = parameter_address();
+    return {"behaviour.state",
+            "Objects of its own on which the drive shows state and errors.",
+            {
+                required(field("object", &S::state, object, "shows the state")),
+                field("enabled", &S::enabled, raw_value(), "its value with power in the motor"),
+                field("free", &S::free, raw_value(), "its value without"),
+                field("alarms", &S::alarms, list(section(alarm_state_table())), "its values while an alarm stands"),
+                field("error_code", &S::error_code, object, "as 603Fh"),
+                field("error_sub_code", &S::error_sub_code, object, "of a communication error: 1 general, 2 SYNC, 3 watchdog"),
+                field("history_next", &S::history_next, object, "place, from 1, of the next record"),
+                field("history", &S::history, object, "first record of the ring; the others stand behind it"),
+                field("history_length", &S::history_length, integer<std::uint8_t>(0, 32), "records in the ring"),
             },
             {},
             {}};
@@ -127,6 +205,16 @@ Table<axes::BehaviourObjects> behaviour_table() {
         "probe_input_1", [](B & b) -> auto& { return b.probe_input[0]; }, object, "must be 0 for the input of probe 1 to latch"));
     f.push_back(field_at<B>(
         "probe_input_2", [](B & b) -> auto& { return b.probe_input[1]; }, object, "must be 0 for the input of probe 2 to latch"));
+    f.push_back(field("sync_losses", &B::sync_losses, object, "SYNC0 in a row that may be missing or out of place"));
+    f.push_back(field("sync_deviation", &B::sync_deviation, object, "ns by which two SYNC0 may be closer or further apart than the cycle"));
+    f.push_back(field("phase_detection", &B::phase_detection, object,
+                      "a missing mains phase is 0: a fault, 1: a warning until the motor is enabled, 2: nothing"));
+    f.push_back(field("virtual_inputs", &B::virtual_inputs, section(virtual_inputs_table()), "that have functions like terminals"));
+    f.push_back(field("least_voltage", &B::least_voltage, object, "V of the supply, below it an alarm"));
+    f.push_back(field("greatest_voltage", &B::greatest_voltage, object, "V of the supply, above it an alarm"));
+    f.push_back(field("motor", &B::motor, section(motor_table()), "which motor hangs on it"));
+    f.push_back(field("inputs", &B::inputs, section(input_table()), "switches on its own terminals"));
+    f.push_back(field("state", &B::state, section(state_table()), "objects that show state and errors"));
     return table;
 }
 

@@ -113,12 +113,6 @@ struct BusConfig {
 /// What of a slave's SYNC0 shift is left for computing and jitter, when the frames' flight is taken off.
 [[nodiscard]] Duration time_to_compute(const BusConfig& config, const SlaveConfig& slave);
 
-/// What the frames of the fullest cycle need on the wire until the last slave has its outputs: an estimate, from the sizes that are
-/// known without the bus.
-[[nodiscard]] Duration estimated_flight(const BusConfig& config);
-/// What of a slave's SYNC0 shift is left for computing and jitter, when the frames' flight is taken off.
-[[nodiscard]] Duration time_to_compute(const BusConfig& config, const SlaveConfig& slave);
-
 /// Every problem of a configuration, found without a bus.
 [[nodiscard]] std::vector<Error> check(const BusConfig& config);
 

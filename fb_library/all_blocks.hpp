@@ -20,6 +20,7 @@
 #include "fb_library/motion/controller_mode.hpp"
 #include "fb_library/motion/digital_cam_switch.hpp"
 #include "fb_library/motion/digital_io.hpp"
+#include "fb_library/motion/drive_profiles.hpp"
 #include "fb_library/motion/endless_moves.hpp"
 #include "fb_library/motion/external_setpoints.hpp"
 #include "fb_library/motion/gearing.hpp"
@@ -74,6 +75,8 @@ using CouplingBlocks = BlockList<MC_CamTableSelect, MC_CamIn, MC_CamOut, MC_Gear
 /// Of vendors, under their names.
 using VendorBlocks = BlockList<MC_Jog, MC_MoveModulo, MC_ReadCommandPosition, MC_ReadCommandVelocity, MC_ReadCommandAcceleration,
                                MC_SetControllerMode, MC_ExtSetPointGenEnable, MC_ExtSetPointGenFeed, MC_ExtSetPointGenDisable>;
+/// Profiles that the drive makes by itself.
+using DriveBlocks = BlockList<Drive_MoveAbsolute, Drive_MoveRelative, Drive_MoveVelocity, Drive_Torque>;
 
 /// PLCopen Part 5: homing step by step.
 using HomingBlocks =
@@ -93,8 +96,8 @@ consteval bool names_differ(BlockList<Blocks...>) {
 }
 }  // namespace detail
 
-using MotionBlocks =
-    decltype(detail::joined(detail::joined(AxisBlocks{}, AdministrativeBlocks{}), detail::joined(CouplingBlocks{}, VendorBlocks{})));
+using MotionBlocks = decltype(detail::joined(
+    detail::joined(detail::joined(AxisBlocks{}, AdministrativeBlocks{}), detail::joined(CouplingBlocks{}, VendorBlocks{})), DriveBlocks{}));
 using AllBlocks = decltype(detail::joined(detail::joined(detail::joined(IecBlocks{}, MotionBlocks{}), HomingBlocks{}), FieldbusBlocks{}));
 static_assert(detail::names_differ(AllBlocks{}));
 

@@ -50,7 +50,7 @@ std::string subject_of(const runtime::MachineLayout& layout, TargetKind target, 
     return "";
 }
 
-Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::string subject) {
+Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::string subject, std::string_view holder) {
     Error error{std::string(code(answer.answer)), std::move(subject), "", ""};
     switch (answer.answer) {
         case Answer::accepted: break;
@@ -73,6 +73,7 @@ Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::strin
             break;
         case Answer::no_control:
             error.what = fmt::format("{} has control", spoken(answer.owner));
+            if (!holder.empty()) error.what += fmt::format("; its block '{}' moves or holds the axis", holder);
             error.remedy = answer.owner == axes::Owner::program
                                ? "Stop the program or change to manual mode; or take control (the axis stops first)."
                                : "Wait until it is released, or take control (the axis stops first).";
@@ -89,6 +90,7 @@ Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::strin
                 error.what = fmt::format("the axis refused it with error 0x{:04X}", static_cast<unsigned>(answer.error));
                 error.remedy = "See the alarms of the axis.";
             }
+            if (!holder.empty()) error.what += fmt::format("; the block '{}' moves or holds the axis", holder);
             break;
         case Answer::not_possible_now:
             if (kind == CommandKind::set_output) {

@@ -14,7 +14,7 @@ namespace taktwerk::hmi {
 /// "axis x", "program cell", ...; empty when the command has no target.
 [[nodiscard]] std::string subject_of(const runtime::MachineLayout& layout, TargetKind target, std::uint16_t axis, std::uint16_t index);
 
-/// Only for refusals.
-[[nodiscard]] Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::string subject);
+/// Only for refusals. `holder`: the block that moves or locks the axis, empty = none or without a name.
+[[nodiscard]] Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::string subject, std::string_view holder);
 
 }  // namespace taktwerk::hmi

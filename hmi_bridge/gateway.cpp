@@ -138,7 +138,7 @@ std::optional<Gateway::Refusal> Gateway::check_jog(const CommandRequest& request
     if (!request.press && !(mine && alive)) {
         runtime::CommandAnswer stale;
         stale.answer = Answer::stale;
-        return Refusal{Answer::stale, explain(stale, CommandKind::jog, "")};
+        return Refusal{Answer::stale, explain(stale, CommandKind::jog, "", {})};
     }
     return std::nullopt;
 }
@@ -245,7 +245,7 @@ void Gateway::handle(const CommandRequest& request, Instant now) {
     if (!machine_.submit(command)) {
         runtime::CommandAnswer full;
         full.answer = Answer::queue_full;
-        return settle(client, *entry, Answer::queue_full, axes::ErrorId::none, explain(full, request.kind, ""));
+        return settle(client, *entry, Answer::queue_full, axes::ErrorId::none, explain(full, request.kind, "", {}));
     }
     entry->state = Entry::State::waiting;
     if (request.kind != CommandKind::jog) return;
@@ -276,7 +276,8 @@ void Gateway::step(Instant now) {
         const auto target = find_target(machine_.layout(), word->target, entry->request.target);
         const auto index = target ? *target : all_axes;
         settle(client->second, *entry, answer->answer, answer->error,
-               explain(*answer, entry->request.kind, subject_of(machine_.layout(), word->target, index, index)));
+               explain(*answer, entry->request.kind, subject_of(machine_.layout(), word->target, index, index),
+                       machine_.layout().block_at(answer->holder)));
     }
     for (auto& [id, client] : clients_)
         for (auto& entry : client.entries)

@@ -36,7 +36,7 @@ HmiBridge::HmiBridge(const HmiConfig& config, MachineLink& machine, HmiOptions o
       lcm_problem_(std::move(lcm_problem)),
       channels_(machine.layout().machine),
       gateway_(machine),
-      requests_(gateway_, machine, options.wall_utime),
+      requests_(gateway_, machine, options.wall_utime, options.log),
       receiver_(gateway_, options.wall_utime),
       server_(std::move(server)) {
     if (!bus_) return;
@@ -53,6 +53,7 @@ void HmiBridge::step(Instant now) {
 
     gateway_.step(now);  // answers to what was asked before
     server_->step(now, requests_);
+    requests_.step(now);
     if (bus_) bus_->poll(lcm_messages_per_step);
     while (const auto reply = gateway_.next_reply()) {
         if (reply->source == Source::socket) requests_.deliver(*reply);

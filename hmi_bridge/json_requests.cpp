@@ -21,6 +21,15 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::array<std::string_view, 4> questions{"hello", "layout", "state", "alarms"};
+struct DriveWord {
+    std::string_view word;
+    DriveRequestKind kind;
+};
+constexpr std::array<DriveWord, 3> drive_words{{
+    {"drive_read", DriveRequestKind::read},
+    {"drive_write", DriveRequestKind::write},
+    {"drive_store", DriveRequestKind::store},
+}};
 constexpr int deepest_nesting = 4;
 
 std::string_view key_of(TargetKind target) {
@@ -34,12 +43,6 @@ std::string_view key_of(TargetKind target) {
     }
     return "";
 }
-
-Error request_error(std::string code, std::string what, std::string remedy) {
-    return {"request." + code, "", std::move(what), std::move(remedy)};
-}
-
-std::string shown(std::string_view text) { return Json(text.substr(0, 64)).dump(-1, ' ', true, Json::error_handler_t::replace); }
 
 std::string refusal_line(const std::string& id, const Error& error) {
     const nlohmann::ordered_json words{{"code", error.code}, {"subject", error.subject}, {"what", error.what}, {"remedy", error.remedy}};
@@ -65,68 +68,6 @@ Result<Json> parse(std::string_view line) {
     return json;
 }
 
-/// Reads the keys of one request, all by their types; the first problem stays.
-class Fields {
-public:
-    explicit Fields(const Json& json) : json_(json) {}
-
-    std::string text(std::string_view key, bool required) {
-        const auto* value = find(key, required);
-        if (!value) return {};
-        if (value->is_string()) return value->get<std::string>();
-        return wrong(key, "a text"), std::string{};
-    }
-    double number(std::string_view key, bool required) {
-        const auto* value = find(key, required);
-        if (!value) return 0;
-        if (value->is_number()) return value->get<double>();
-        if (value->is_boolean() && key == "value") return value->get<bool>() ? 1 : 0;
-        return wrong(key, "a number"), 0;
-    }
-    bool flag(std::string_view key) {
-        const auto* value = find(key, false);
-        if (!value) return false;
-        if (value->is_boolean()) return value->get<bool>();
-        return wrong(key, "true or false"), false;
-    }
-    /// 0 when absent.
-    std::int64_t integer(std::string_view key) {
-        const auto* value = find(key, false);
-        if (!value) return 0;
-        if (value->is_number_unsigned() && value->get<std::uint64_t>() > INT64_MAX) return wrong(key, "a whole number below 2^63"), 0;
-        if (value->is_number_integer()) return value->get<std::int64_t>();
-        return wrong(key, "a whole number"), 0;
-    }
-    /// Keys that nobody asked for.
-    void finish() {
-        for (const auto& [key, value] : json_.items()) {
-            if (error_ || std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
-            const auto near = nearest_name(std::string_view(key).substr(0, 64), known_);
-            error_ = request_error(
-                "unknown_key", fmt::format("this command knows no key {}", shown(key)),
-                near.empty() ? fmt::format("It knows: {}.", fmt::join(known_, ", ")) : fmt::format("Did you mean \"{}\"?", near));
-        }
-    }
-    [[nodiscard]] const std::optional<Error>& error() const { return error_; }
-
-private:
-    const Json* find(std::string_view key, bool required) {
-        known_.emplace_back(key);
-        const auto found = json_.find(std::string(key));
-        if (found != json_.end()) return &*found;
-        if (required && !error_)
-            error_ = request_error("missing_key", fmt::format("\"{}\" is missing", key), fmt::format("Add \"{}\".", key));
-        return nullptr;
-    }
-    void wrong(std::string_view key, std::string_view wanted) {
-        if (!error_) error_ = request_error("wrong_type", fmt::format("\"{}\" is not {}", key, wanted), fmt::format("Give {}.", wanted));
-    }
-
-    const Json& json_;
-    std::vector<std::string> known_;
-    std::optional<Error> error_;
-};
-
 std::optional<runtime::Mode> find_mode(std::string_view text) {
     for (const auto mode : {runtime::Mode::manual, runtime::Mode::setup, runtime::Mode::automatic})
         if (word(mode) == text) return mode;
@@ -136,12 +77,13 @@ std::optional<runtime::Mode> find_mode(std::string_view text) {
 Error unknown_command(std::string_view cmd) {
     std::vector<std::string> words(questions.begin(), questions.end());
     for (const auto& entry : command_words) words.emplace_back(entry.word);
+    for (const auto& entry : drive_words) words.emplace_back(entry.word);
     const auto near = nearest_name(cmd.substr(0, 64), words);
     return request_error("unknown_command", fmt::format("there is no command {}", shown(cmd)),
                          near.empty() ? fmt::format("Use one of: {}.", fmt::join(words, ", ")) : fmt::format("Did you mean \"{}\"?", near));
 }
 
-Result<CommandRequest> read_command(const CommandWord& entry, Fields& fields, std::int64_t wall_utime) {
+Result<CommandRequest> read_command(const CommandWord& entry, JsonFields& fields, std::int64_t wall_utime) {
     CommandRequest request;
     request.kind = entry.kind;
     if (entry.target != TargetKind::none) {
@@ -179,17 +121,21 @@ Result<CommandRequest> read_command(const CommandWord& entry, Fields& fields, st
 
 }  // namespace
 
-JsonRequests::JsonRequests(Gateway& gateway, MachineLink& machine, std::function<std::int64_t()> wall_utime)
-    : gateway_(gateway), machine_(machine), wall_utime_(std::move(wall_utime)) {}
+JsonRequests::JsonRequests(Gateway& gateway, MachineLink& machine, std::function<std::int64_t()> wall_utime,
+                           std::function<void(std::string_view)> log)
+    : gateway_(gateway), machine_(machine), drives_(machine, std::move(log)), wall_utime_(std::move(wall_utime)) {}
 
 void JsonRequests::on_open(ConnectionId connection, const Peer& peer) {
-    const auto client = gateway_.open(Source::socket, fmt::format("process {} of user {}", peer.pid, peer.uid), Rights::commissioning);
+    names_[connection] = fmt::format("process {} of user {}", peer.pid, peer.uid);
+    const auto client = gateway_.open(Source::socket, names_[connection], Rights::commissioning);
     if (client == 0) return;  // questions are still answered
     clients_[connection] = client;
     connections_[client] = connection;
 }
 
 void JsonRequests::on_close(ConnectionId connection) {
+    drives_.forget(connection);
+    names_.erase(connection);
     const auto found = clients_.find(connection);
     if (found == clients_.end()) return;
     gateway_.close(found->second);
@@ -204,7 +150,7 @@ void JsonRequests::refuse(ConnectionId connection, const std::string& id, const 
 void JsonRequests::on_line(ConnectionId connection, std::string_view line, Instant now) {
     const auto json = parse(line);
     if (!json) return refuse(connection, "null", json.error());
-    Fields fields(*json);
+    JsonFields fields(*json);
     const auto id = fields.integer("id");
     const auto id_text = id > 0 ? std::to_string(id) : std::string("null");
     const auto cmd = fields.text("cmd", true);
@@ -224,6 +170,8 @@ void JsonRequests::on_line(ConnectionId connection, std::string_view line, Insta
         request->sequence = static_cast<std::uint64_t>(id);
         return gateway_.handle(*request, now);
     }
+    for (const auto& entry : drive_words)
+        if (entry.word == cmd) return ask_drive(entry.kind, connection, id_text, fields, now);
     if (std::find(questions.begin(), questions.end(), cmd) == questions.end()) return refuse(connection, id_text, unknown_command(cmd));
 
     fields.integer("utime");
@@ -235,6 +183,8 @@ void JsonRequests::on_line(ConnectionId connection, std::string_view line, Insta
     if (cmd == "hello") {
         const nlohmann::ordered_json hello{{"protocol_version", protocol_version},
                                            {"machine", machine_.layout().machine},
+                                           {"interface", machine_.layout().interface},
+                                           {"serial_devices", machine_.layout().serial_devices},
                                            {"pid", ::getpid()},
                                            {"cycling", snapshot_ != nullptr},
                                            {"progress", progress_}};
@@ -247,6 +197,42 @@ void JsonRequests::on_line(ConnectionId connection, std::string_view line, Insta
                        "Ask again in a moment."});
     if (cmd == "state") return with("state", state_json(*snapshot_, machine_));
     with("alarms", alarms_json(*snapshot_, machine_));
+}
+
+void JsonRequests::ask_drive(DriveRequestKind kind, ConnectionId connection, const std::string& id, JsonFields& fields, Instant now) {
+    DriveRequest request;
+    request.kind = kind;
+    request.axis = fields.text("axis", true);
+    if (kind != DriveRequestKind::store) request.parameter = fields.text("parameter", true);
+    if (kind == DriveRequestKind::write) {
+        request.value = fields.text("value", true);
+        request.store = fields.flag("store");
+    }
+    fields.integer("utime");
+    fields.finish();
+    if (fields.error()) return refuse(connection, id, *fields.error());
+    request.who = names_[connection];
+    request.tag = connection;
+    request.id = id;
+    drives_.handle(std::move(request), snapshot_, now);
+}
+
+void JsonRequests::step(Instant now) {
+    drives_.step(now);
+    while (const auto done = drives_.next_answer()) {
+        if (done->error) {
+            refuse(done->tag, done->id, *done->error);
+            continue;
+        }
+        nlohmann::ordered_json line{{"id", Json::parse(done->id)}, {"ok", true}};
+        if (!done->parameter.empty()) line["parameter"] = done->parameter;
+        if (!done->bytes.empty()) {
+            line["shown"] = done->shown;
+            auto& bytes = line["bytes"] = nlohmann::ordered_json::array();
+            for (const auto b : done->bytes) bytes.push_back(std::to_integer<int>(b));
+        }
+        answer(done->tag, line.dump(-1, ' ', false, Json::error_handler_t::replace));
+    }
 }
 
 void JsonRequests::deliver(const CommandReply& reply) {

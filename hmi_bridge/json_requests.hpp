@@ -16,7 +16,9 @@
 #include <string_view>
 
 #include "core/time.hpp"
+#include "hmi_bridge/drive_requests.hpp"
 #include "hmi_bridge/gateway.hpp"
+#include "hmi_bridge/json_fields.hpp"
 #include "hmi_bridge/line_handler.hpp"
 
 namespace taktwerk::hmi {
@@ -29,7 +31,9 @@ public:
     };
 
     /// `wall_utime`: us since 1970; judges the age of requests that say when they were sent ("utime").
-    JsonRequests(Gateway& gateway, MachineLink& machine, std::function<std::int64_t()> wall_utime);
+    /// `log`: lines for the runtime's log; may be empty.
+    JsonRequests(Gateway& gateway, MachineLink& machine, std::function<std::int64_t()> wall_utime,
+                 std::function<void(std::string_view)> log = {});
 
     /// For questions: the snapshot of this step, nullptr before the first cycle. Until the next call.
     void observe(const runtime::Snapshot* snapshot) noexcept { snapshot_ = snapshot; }
@@ -40,6 +44,8 @@ public:
     void on_line(ConnectionId connection, std::string_view line, Instant now) override;
     void on_close(ConnectionId connection) override;
 
+    /// What drives have answered becomes lines.
+    void step(Instant now);
     /// A reply of the gateway with Source::socket.
     void deliver(const CommandReply& reply);
     std::optional<Line> next_line();
@@ -48,13 +54,17 @@ private:
     void refuse(ConnectionId connection, const std::string& id, const Error& error);
     void answer(ConnectionId connection, std::string text) { lines_.push_back({connection, std::move(text)}); }
 
+    void ask_drive(DriveRequestKind kind, ConnectionId connection, const std::string& id, JsonFields& fields, Instant now);
+
     Gateway& gateway_;
     MachineLink& machine_;
+    DriveRequests drives_;
     std::function<std::int64_t()> wall_utime_;
     const runtime::Snapshot* snapshot_ = nullptr;
     std::string progress_;
     std::map<ConnectionId, ClientId> clients_;
     std::map<ClientId, ConnectionId> connections_;
+    std::map<ConnectionId, std::string> names_;
     std::deque<Line> lines_;
 };
 

@@ -15,7 +15,7 @@ std::int64_t count(Instant t) { return t.time_since_epoch().count(); }
 
 std::string text(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
-Json axis_json(const axes::AxisView& axis, const runtime::MachineLayout::AxisInfo& info) {
+Json axis_json(const axes::AxisView& axis, const runtime::MachineLayout& layout, const runtime::MachineLayout::AxisInfo& info) {
     return Json{
         {"name", info.name},
         {"unit", info.unit},
@@ -28,7 +28,8 @@ Json axis_json(const axes::AxisView& axis, const runtime::MachineLayout::AxisInf
         {"homed", axis.homed},
         {"in_position", axis.in_position},
         {"has_job", axis.active != 0},
-        {"command", word(axis.active_kind)},  // whose block moves it: who blocks, when another is refused
+        {"command", word(axis.active_kind)},      // what moves it ...
+        {"block", layout.block_at(axis.holder)},  // ... and whose it is: who blocks, when another is refused
         {"held_by_stop", axis.lock != 0},
         {"queued", axis.queued_count},
         {"resetting", axis.resetting},
@@ -133,7 +134,7 @@ std::string state_json(const runtime::Snapshot& s, const MachineLink& machine) {
                               {"fresh", s.slaves[i].fresh},
                               {"age", s.slaves[i].age}});
     auto& axes = out["axes"] = Json::array();
-    for (std::size_t i = 0; i < s.axes.size() && i < layout.axes.size(); ++i) axes.push_back(axis_json(s.axes[i], layout.axes[i]));
+    for (std::size_t i = 0; i < s.axes.size() && i < layout.axes.size(); ++i) axes.push_back(axis_json(s.axes[i], layout, layout.axes[i]));
     auto& programs = out["programs"] = Json::array();
     for (std::size_t i = 0; i < s.programs.size() && i < layout.programs.size(); ++i)
         programs.push_back(Json{{"name", layout.programs[i]}, {"state", word(s.programs[i])}});
@@ -171,7 +172,10 @@ std::string layout_json(const runtime::MachineLayout& layout) {
                             {"disabled", axis.disabled},
                             {"simulated", axis.simulated},
                             {"jog_slow", axis.jog_slow},
-                            {"jog_fast", axis.jog_fast}});
+                            {"jog_fast", axis.jog_fast},
+                            {"drive", axis.drive},
+                            {"profile", axis.profile},
+                            {"drive_axis", axis.drive_axis + 1}});
     out["slaves"] = layout.slaves;
     out["inputs"] = layout.inputs;
     out["outputs"] = layout.outputs;

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "axes/port/drive_profile.hpp"
 #include "runtime/machine.hpp"
 #include "runtime/operator_command.hpp"
 #include "runtime/snapshot.hpp"
@@ -20,6 +21,12 @@ public:
     virtual const runtime::Snapshot* latest() = 0;
     [[nodiscard]] virtual const runtime::MachineLayout& layout() const = 0;
     [[nodiscard]] virtual runtime::AlarmText describe(const AlarmFact& fact) const = 0;
+    struct Drive {
+        axes::DrivePort* port = nullptr;  ///< service side of it alone; nullptr: the axis has no drive
+        const axes::DriveProfile* profile = nullptr;
+    };
+    /// Of an axis of the layout. Lives as long as the machine.
+    [[nodiscard]] virtual Drive drive(std::uint16_t axis) = 0;
     /// A level, never queued: works before the first cycle too.
     virtual void request_shutdown() = 0;
 };

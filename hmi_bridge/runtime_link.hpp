@@ -14,6 +14,10 @@ public:
     const runtime::Snapshot* latest() override { return machine_.latest(); }
     [[nodiscard]] const runtime::MachineLayout& layout() const override { return machine_.layout(); }
     [[nodiscard]] runtime::AlarmText describe(const AlarmFact& fact) const override { return machine_.describe(fact); }
+    [[nodiscard]] Drive drive(std::uint16_t axis) override {
+        auto* port = machine_.drive_port(axis);
+        return {port, port ? machine_.config().axes[axis].profile.get() : nullptr};
+    }
     void request_shutdown() override { machine_.request_shutdown(); }
 
 private:

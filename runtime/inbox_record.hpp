@@ -7,7 +7,7 @@
 //   departure  nothing but its time: when a frame left, as the transport measured it (the servo follows it)
 //   command  u8 action, u8 owner, u8 mode, u8 flag, u16 axis, u16 index, f64 value, f64 value2,
 //            u32 client, u64 sequence, i64 expires ns                                          44 bytes
-//   sample   u16 drive on a serial line, what it said (see record_sample)                      59 bytes
+//   sample   u16 drive on a serial line, what it said (see record_sample)                      72 bytes
 //   object   u16 program, u16 place, u8 outcome, u32 abort code                                9 bytes, then the value read
 
 #include <algorithm>
@@ -83,16 +83,18 @@ inline void record_object(Recorder& recorder, Instant at, std::uint16_t program,
     recorder.append(object_channel, at, bytes.written());
 }
 
-/// u16 drive, u32 number, u8 flags (online, saving, running, torque, refused, home, negative and positive limit), i64 heard ns, i64 sampled ns,
-/// i64 position, f64 velocity, f64 torque, u16 alarm, u16 inputs, u16 outputs, u16 epoch, u32 acknowledged.
+/// u16 drive, u32 number, u16 flags (online, saving, running, torque, refused, home, negative and positive limit, released, latch armed, latched, no index), i64 heard ns,
+/// i64 sampled ns, i64 position, f64 velocity, f64 torque, u16 alarm, u16 inputs, u16 outputs, u16 epoch, u16 session, u16 latch,
+/// i64 latched at, u32 acknowledged.
 inline void record_sample(Recorder& recorder, Instant at, std::uint16_t drive, const axes::xp200::Sample& s) noexcept {
-    inbox_record::Bytes<59> bytes;
+    inbox_record::Bytes<72> bytes;
     const unsigned flags = (s.online ? 1u : 0u) | (s.saving ? 2u : 0u) | (s.running ? 4u : 0u) | (s.torque_mode ? 8u : 0u) |
                            (s.setup_refused ? 16u : 0u) | (s.home ? 32u : 0u) | (s.negative_limit ? 64u : 0u) |
-                           (s.positive_limit ? 128u : 0u);
+                           (s.positive_limit ? 128u : 0u) | (s.released ? 256u : 0u) | (s.latch_armed ? 512u : 0u) |
+                           (s.latched ? 1024u : 0u) | (s.no_index ? 2048u : 0u);
     bytes.put(drive);
     bytes.put(s.number);
-    bytes.put(static_cast<std::uint8_t>(flags));
+    bytes.put(static_cast<std::uint16_t>(flags));
     bytes.put(s.heard);
     bytes.put(s.sampled);
     bytes.put(s.position);
@@ -102,6 +104,9 @@ inline void record_sample(Recorder& recorder, Instant at, std::uint16_t drive, c
     bytes.put(s.inputs);
     bytes.put(s.outputs);
     bytes.put(s.epoch);
+    bytes.put(s.session);
+    bytes.put(s.latch);
+    bytes.put(s.latch_at);
     bytes.put(s.acknowledged);
     recorder.append(sample_channel, at, bytes.all());
 }

@@ -75,7 +75,7 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, const std
           return names;
       }()) {
     const auto on_bus = bus_of(config);
-    build_lines(serial_lines);
+    build_lines(serial_lines, errors);
     axes.reserve(config.axes.size());
     views.resize(config.axes.size());
     for (std::size_t i = 0; i < config.axes.size(); ++i) {
@@ -145,10 +145,19 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, const std
 
     layout.machine = config.name;
     layout.cycle = config.cycle;
-    for (std::size_t i = 0; i < axes.size(); ++i)
-        layout.axes.push_back({config.axes[i].axis.name, config.axes[i].axis.unit, config.axes[i].axis.disabled,
-                               axis_slave[i] == no_slave && (config.axes[i].drive.empty() || config.axes[i].axis.simulated),
-                               views[i].manual_slow, views[i].manual_fast});
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+        const auto& binding = config.axes[i];
+        const bool on_line = !binding.drive.empty() && !binding.axis.simulated;
+        layout.axes.push_back({binding.axis.name, binding.axis.unit, binding.axis.disabled, axis_slave[i] == no_slave && !on_line,
+                               views[i].manual_slow, views[i].manual_fast, "", "", binding.drive_axis});
+        auto& info = layout.axes.back();
+        if (axis_slave[i] != no_slave) info.drive = binding.slave;
+        else if (on_line && !lines.empty()) info.drive = binding.drive;
+        if (!info.drive.empty() && binding.profile) info.profile = binding.profile->name;
+    }
+    layout.interface = config.bus.interface;
+    for (const auto& line : config.serial)
+        if (!line.device.empty()) layout.serial_devices.push_back(line.device);
     for (std::size_t s = 0; s < bus.slave_count(); ++s) layout.slaves.push_back(bus.slave(s).name);
     layout.inputs = io.names(IoDirection::input);
     layout.outputs = io.names(IoDirection::output);
@@ -283,7 +292,8 @@ void Machine::stop_bus() { impl_->bus.stop(); }
 void Machine::service(Instant now) {
     impl_->bus.step(now);
     impl_->lay_out_outputs();
-    for (auto& line : impl_->lines) line->step(now);
+    for (auto& line : impl_->lines)
+        if (line) line->step(now);
     for (auto& port : impl_->ports) port->step(now);
     impl_->objects->step(impl_->bus);
     impl_->service_programs();
@@ -314,6 +324,10 @@ const Snapshot* Machine::latest() noexcept {
     return reading.value->cycle > 0 ? reading.value : nullptr;
 }
 void Machine::request_shutdown() noexcept { impl_->shutdown_wanted.store(true, std::memory_order_relaxed); }
+axes::DrivePort* Machine::drive_port(std::size_t axis) noexcept {
+    const bool on_drive = axis < impl_->ports.size() && !impl_->layout.axes[axis].drive.empty();
+    return on_drive ? impl_->ports[axis].get() : nullptr;
+}
 MachinePhase Machine::phase() const noexcept { return impl_->phase.load(std::memory_order_acquire); }
 std::string Machine::program_fault(std::size_t program) const { return impl_->host->programs()[program].fault; }
 void Machine::record(Recorder& recorder) noexcept {

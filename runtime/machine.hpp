@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "axes/port/drive_port.hpp"
 #include "core/recorder.hpp"
 #include "core/result.hpp"
 #include "core/stopwatch.hpp"
@@ -41,7 +42,8 @@ struct AlarmText {
 class Machine {
 public:
     /// Checks everything, loads the programs, takes all memory. `transport` outlives the machine. All problems at once.
-    /// `lines`: one for each of `config.serial`, in its order; they outlive the machine too and are used on the service side only.
+    /// `lines`: one for each of `config.serial`, in its order; they outlive the machine too and are used on the service side only. nullptr:
+    /// none, which is an error (serial.no_line) unless every axis on it is simulated.
     static std::variant<std::unique_ptr<Machine>, std::vector<Error>> build(MachineConfig config, ecat::Transport& transport,
                                                                             std::vector<modbus::SerialLine*> lines = {});
     ~Machine();
@@ -93,6 +95,9 @@ public:
     [[nodiscard]] const MachineLayout& layout() const noexcept;
     /// Service side.
     [[nodiscard]] AlarmText describe(const AlarmFact& fact) const;
+    /// Service side: parameters and services of an axis' drive, beside the cycle: read_parameter(), write_parameter(), start_service(),
+    /// service_answer() and capabilities() alone are for callers from outside. nullptr: no such axis, or a virtual one.
+    [[nodiscard]] axes::DrivePort* drive_port(std::size_t axis) noexcept;
     /// Service side: what a program threw when it stopped by itself; empty when it did not.
     [[nodiscard]] std::string program_fault(std::size_t program) const;
     [[nodiscard]] const ecat::Master& bus() const noexcept;

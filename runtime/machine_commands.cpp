@@ -40,7 +40,10 @@ void Machine::Impl::answer(const OperatorCommand& command, Answer verdict, Error
     reply.sequence = command.sequence;
     reply.answer = verdict;
     reply.error = error;
-    if (command.axis < axes.size()) reply.owner = axes[command.axis].view().owner;
+    if (command.axis < axes.size()) {
+        reply.owner = axes[command.axis].view().owner;
+        reply.holder = axes[command.axis].view().holder;
+    }
     if (verdict != Answer::accepted) ++statistics.commands_refused;
     answers.try_push(reply);  // a full ring means nobody reads: the client's own time-out tells it
 }

@@ -35,7 +35,7 @@ struct Machine::Impl {
     Result<void> arm();
 
     // machine_serial.cpp
-    void build_lines(const std::vector<modbus::SerialLine*>& lines);
+    void build_lines(const std::vector<modbus::SerialLine*>& serial_lines, std::vector<Error>& errors);
     axes::xp200::Xp200Drive* serial_drive(const AxisBinding& binding);
     void hold_watchdog_outputs() noexcept;
     void record_samples() noexcept;
@@ -110,9 +110,9 @@ struct Machine::Impl {
         std::size_t output = 0;  // of io
         const axes::xp200::Xp200Drive* drive = nullptr;
     };
-    std::vector<std::unique_ptr<axes::xp200::DriveLine>> lines;
-    std::vector<axes::xp200::Xp200Drive*> serial_drives;  // those of `ports` that are on a line
-    std::vector<std::uint32_t> recorded_samples;          // number of the newest one, per serial drive
+    std::vector<std::unique_ptr<axes::xp200::DriveLine>> lines;  // as config.serial; nullptr: nobody needs it
+    std::vector<axes::xp200::Xp200Drive*> serial_drives;         // those of `ports` that are on a line
+    std::vector<std::uint32_t> recorded_samples;                 // number of the newest one, per serial drive
     std::vector<WatchdogOutput> watchdog_outputs;
     axes::MotionTables tables;
     std::vector<axes::Axis> axes;

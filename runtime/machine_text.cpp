@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "axes/axis/alarms.hpp"
+#include "axes/homing/index_doubt.hpp"
 #include "ecat/alarms.hpp"
 #include "runtime/drive_alarm_words.hpp"
 #include "runtime/machine_impl.hpp"
@@ -116,6 +117,14 @@ AlarmText Machine::describe(const AlarmFact& fact) const {
             out.chinese += ":" + why;
         }
     }
+
+    if (fact.id == axes::id(axes::AxisAlarm::homing_failed))
+        if (const auto* doubt = axes::find_index_doubt(fact.a)) {
+            out.english = doubt->english;
+            out.chinese = doubt->chinese;
+            out.cause = doubt->cause;
+            out.remedy = doubt->remedy;
+        }
 
     if (fact.id == axes::id(axes::AxisAlarm::drive_setup_refused) && fact.index < m.ports.size())
         for (const auto& problem : m.ports[fact.index]->setup_problems()) {

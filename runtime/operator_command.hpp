@@ -75,6 +75,7 @@ struct CommandAnswer {
     Answer answer = Answer::accepted;
     axes::ErrorId error = axes::ErrorId::none;  ///< refused_by_axis: why
     axes::Owner owner = axes::Owner::none;      ///< no_control: who has it
+    const void* holder = nullptr;               ///< the block that moves or locks the axis (MachineLayout::block_at)
 };
 static_assert(std::is_trivially_copyable_v<CommandAnswer>);
 

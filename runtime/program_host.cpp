@@ -126,6 +126,11 @@ protected:
         host_.tasks_.push_back({config, program_, function});
     }
 
+    void add_block(std::string_view name, const void* begin, std::size_t size) override {
+        const auto& program = config_.programs[program_].name;
+        host_.blocks_.push_back({fmt::format("{}.{}", program, name), static_cast<const std::byte*>(begin), size});
+    }
+
 private:
     std::uint16_t point(IoDirection direction, std::string_view name) {
         const int index = io_.find(direction, name);
@@ -236,6 +241,14 @@ void ProgramHost::describe(MachineLayout& layout) const {
     for (const auto& task : tasks_) layout.tasks.push_back(task.config.program + "." + task.config.name);
     layout.variables = variable_info_;
     layout.parameters = parameter_info_;
+    layout.blocks = blocks_;
+}
+
+std::string_view MachineLayout::block_at(const void* instance) const noexcept {
+    const auto at = reinterpret_cast<std::uintptr_t>(instance);
+    for (const auto& block : blocks)
+        if (const auto begin = reinterpret_cast<std::uintptr_t>(block.begin); at >= begin && at - begin < block.size) return block.name;
+    return {};
 }
 
 double ProgramHost::read(const Variable& variable) noexcept {

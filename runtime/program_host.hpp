@@ -65,6 +65,7 @@ private:
     std::vector<MachineLayout::Variable> variable_info_;
     std::vector<double> parameters_;
     std::vector<MachineLayout::ParameterInfo> parameter_info_;
+    std::vector<MachineLayout::Block> blocks_;
 };
 
 }  // namespace taktwerk::runtime

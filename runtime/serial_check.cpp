@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 
 #include <fmt/format.h>
@@ -136,13 +137,50 @@ private:
                 fmt::format("a window of {:g} {} cannot be reached: the drive takes whole r/min, and half of one at this kv is {:g} {}",
                             axis.windows.in_position, axis.unit, 0.5 * turn / axis.control.kv, axis.unit),
                 "widen it, or raise control.kv");
+        check_torque(binding, here);
         using Kind = axes::HomingKind;
-        if (axis.homing.kind == Kind::drive || axis.homing.kind == Kind::absolute || axis.homing.kind == Kind::reference_pulse)
-            add("axis.homing", here + ".homing.kind", "this drive has no homing of its own, no absolute encoder and no latch",
-                "use home_switch, limit_switch, block or set_here");
+        if (axis.homing.kind == Kind::drive || axis.homing.kind == Kind::absolute)
+            add("axis.homing", here + ".homing.kind", "this drive has no homing of its own and no absolute encoder",
+                "use home_switch, reference_pulse, limit_switch, block or set_here");
     }
 
-    static constexpr double fastest_loop = 8;  // 1/s
+    /// Pr004 = 5 lets MC_TorqueControl choose torque; EMG is its way out (axes/drives/xp200/schedule.hpp).
+    void check_torque(const AxisBinding& binding, const std::string& here) {
+        namespace pr = axes::xp200::pr;
+        const auto* drive = find_drive(binding.drive);
+        if (drive == nullptr || setting(*drive, pr::control_mode).value_or(1) != 5) return;
+        if (setting(*drive, pr::emergency_mode) != 1)
+            add("serial.torque_stop", here,
+                "Pr004 is 5, torque control too, but nothing would brake the motor out of a torque: EMG cuts the current (Pr164 = 0)",
+                "add `Pr164: 1` to the drive's parameters, or set Pr004 to 1");
+        const auto& axis = binding.axis;
+        const double ramp = static_cast<double>(std::max<std::int64_t>(setting(*drive, pr::stop_time).value_or(factory_stop_time), 1));
+        const double turns = 1e6 / ramp / 60;  // per s2: ms for 1000 r/min
+        const double braking = turns * static_cast<double>(axis.gearing.counts_per_revolution) / std::abs(axis.gearing.counts_per_unit());
+        const double wanted = axis.limits.stop_deceleration > 0 ? axis.limits.stop_deceleration : axis.limits.deceleration;
+        if (braking < wanted)
+            add("serial.torque_ramp", here,
+                fmt::format(
+                    "out of torque control the drive brakes by Pr063 = {:g} ms, which are {:g} {}/s2: softer than the axis counts on "
+                    "before its software limits, {:g}",
+                    ramp, braking, axis.unit, wanted),
+                fmt::format("set Pr063 to {:.0f} at most, or lower limits.stop_deceleration", std::floor(ramp * braking / wanted)));
+    }
+
+    [[nodiscard]] const axes::xp200::DriveConfig* find_drive(const std::string& name) const noexcept {
+        for (const auto& line : config_.serial)
+            for (const auto& entry : line.drives)
+                if (entry.drive.name == name) return &entry.drive;
+        return nullptr;
+    }
+    [[nodiscard]] static std::optional<std::int64_t> setting(const axes::xp200::DriveConfig& drive, std::uint16_t number) noexcept {
+        for (const auto& parameter : drive.parameters)
+            if (parameter.number == number) return parameter.value;
+        return std::nullopt;
+    }
+
+    static constexpr std::int64_t factory_stop_time = 1000;  // Pr063 (5.4.1)
+    static constexpr double fastest_loop = 8;                // 1/s
 
     const MachineConfig& config_;
     std::vector<Error>& errors_;

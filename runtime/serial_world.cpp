@@ -52,6 +52,7 @@ void SerialWorld::build(const MachineConfig& config, const std::vector<axes::sim
             }
             drive->model.servo().power_on(start);
             line->line.connect(*drive);
+            line->drives.push_back(drive.get());
             drives_.push_back(std::move(drive));
         }
         cables_.push_back(std::make_unique<Cable>(*line));
@@ -99,6 +100,18 @@ bool SerialWorld::happen(const SimulationEvent& event) noexcept {
     return false;
 }
 
+std::vector<modbus::Station*> SerialWorld::stations(std::string_view name) noexcept {
+    std::vector<modbus::Station*> out;
+    for (auto& line : lines_)
+        if (line->name == name) out.assign(line->drives.begin(), line->drives.end());
+    return out;
+}
+
+bool SerialWorld::is_cut(std::string_view name) const noexcept {
+    return std::any_of(lines_.begin(), lines_.end(),
+                       [&](const auto& line) { return line->name == name && line->cut.load(std::memory_order_relaxed); });
+}
+
 axes::sim::xp200::Drive* SerialWorld::drive(std::string_view axis) noexcept {
     for (auto& drive : drives_)
         if (drive->axis == axis) return &drive->model;
@@ -109,10 +122,6 @@ modbus::VirtualLine* SerialWorld::line(std::string_view name) noexcept {
     for (auto& line : lines_)
         if (line->name == name) return &line->line;
     return nullptr;
-}
-
-void SerialWorld::advance(Instant now) {
-    for (auto& line : lines_) line->line.advance(now);
 }
 
 }  // namespace taktwerk::runtime

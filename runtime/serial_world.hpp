@@ -1,6 +1,8 @@
 #pragma once
 // The serial lines of a simulated machine: a computed line each, XP200 drives at its end, their contacts wired to the mechanics and to the
-// machine's outputs. Lines and drives live on the service side; what the cycle's side tells them passes through atomics and a ring.
+// machine's outputs. Lines and drives live on the service side: the machine's service steps each line's client, which looks at its line each
+// time, and that is how time passes for the drives, in virtual time and on the service thread alike. What the cycle's side tells them passes
+// through atomics and a ring.
 
 #include <atomic>
 #include <memory>
@@ -35,12 +37,16 @@ public:
             if (!drive->watchdog.empty()) drive->watchdog_on.store(output(drive->watchdog), std::memory_order_relaxed);
     }
 
+    // --- the other end of a line that is really there ------------------------------------------------------------------------
+    /// The drives on a line, for whoever serves them himself (modbus/line/pseudo_terminal.hpp); then nobody may use lines().
+    [[nodiscard]] std::vector<modbus::Station*> stations(std::string_view line) noexcept;
+    /// An event has cut it.
+    [[nodiscard]] bool is_cut(std::string_view line) const noexcept;
+
     // --- hands on, in virtual time only ----------------------------------------------------------------------------------------
     /// nullptr when the axis is on none.
     [[nodiscard]] axes::sim::xp200::Drive* drive(std::string_view axis) noexcept;
     [[nodiscard]] modbus::VirtualLine* line(std::string_view name) noexcept;
-    /// Drives live on while nobody asks them anything.
-    void advance(Instant now);
 
 private:
     struct Happening {
@@ -66,6 +72,7 @@ private:
         std::string name;
         modbus::VirtualLine line;
         std::atomic<bool> cut{false};
+        std::vector<WiredDrive*> drives;
     };
     /// What the machine gets: the line, cut when an event says so.
     struct Cable final : modbus::SerialLine {
@@ -79,7 +86,10 @@ private:
             follow();
             return line.line.receive(into, now);
         }
-        void discard(Instant now) override { line.line.discard(now); }
+        void discard(Instant now) override {
+            follow();
+            line.line.discard(now);
+        }
         [[nodiscard]] bool present() const noexcept override { return true; }
         void follow() noexcept {
             if (const bool wanted = line.cut.load(std::memory_order_relaxed); wanted != was_cut) line.line.cut(was_cut = wanted);

@@ -80,10 +80,23 @@ struct MachineLayout {
         std::string name, unit;
         bool disabled = false, simulated = false;
         double jog_slow = 0, jog_fast = 0;  ///< u/s
+        std::string drive, profile;         ///< slave, or drive on a serial line, and its kind; empty: a virtual axis
+        int drive_axis = 0;                 ///< of that drive, from 0
     };
+    struct Block {
+        std::string name;  ///< program.block
+        const std::byte* begin = nullptr;
+        std::size_t size = 0;
+    };
+    /// The declared block that `instance` is or lies in (AxisView::holder); empty = none, or one that its program gave no name.
+    [[nodiscard]] std::string_view block_at(const void* instance) const noexcept;
+
     std::string machine;
+    std::string interface;                    ///< of the bus; empty: simulated
+    std::vector<std::string> serial_devices;  ///< of the serial lines that are not simulated
     Duration cycle{};
     std::vector<AxisInfo> axes;
+    std::vector<Block> blocks;
     std::vector<std::string> slaves, inputs, outputs, programs, tasks;
     std::vector<Variable> variables;
     std::vector<ParameterInfo> parameters;

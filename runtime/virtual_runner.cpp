@@ -11,7 +11,6 @@ void VirtualRunner::one_cycle() {
     clock_.advance(period_ + machine_.bus().period_correction());
     const auto now = clock_.now();
     world_.apply_events(now);
-    world_.serial().advance(now);
     machine_.cycle({now, now, 0});
     machine_.run_slow_tasks();
     machine_.service(now);

@@ -28,6 +28,8 @@ public:
 
     /// Lets the configured events happen that are due. Called by whoever runs the cycle, before it.
     void apply_events(Instant now);
+    /// Lets one thing happen now; `at` does not matter. From the thread that applies the events. Unknown names: nothing happens.
+    void happen(const SimulationEvent& event);
 
     // --- hands on the machine: tests, demos -----------------------------------------------------------------------------------
     /// nullptr when the axis is not on a simulated drive.
@@ -42,7 +44,6 @@ public:
 
 private:
     [[nodiscard]] ecat::sim::SimSlave* find(std::string_view slave) const noexcept;
-    void happen(const SimulationEvent& event);
 
     struct Point {
         IoPoint config;

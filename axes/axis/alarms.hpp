@@ -35,8 +35,9 @@ enum class AxisAlarm : AlarmId {
     drive_homing_refused = 0x3017,
     reference_lost = 0x3018,
     drive_setup_refused = 0x3019,
+    drive_too_fast = 0x301A,
 };
-inline constexpr std::size_t axis_alarm_count = 25;
+inline constexpr std::size_t axis_alarm_count = 26;
 
 [[nodiscard]] constexpr AlarmId id(AxisAlarm alarm) noexcept { return static_cast<AlarmId>(alarm); }
 
@@ -167,6 +168,11 @@ inline constexpr std::array<AlarmInfo, axis_alarm_count> axis_alarms{{
      "A parameter of the drive that decides how it takes commands has another value than this machine needs",
      "The log names the parameter, its value and what to set; set it, restart the drive where it says so, then reset",
      ResetRule::reset, Reaction::stop_axis, "The drive stays without power"},
+    {id(AxisAlarm::drive_too_fast), "drive_too_fast",
+     "In a profile of the drive's own the axis ran at {a} u/s; its limit is {b} u/s", "驱动器自身轨迹运行时，轴速度达到 {a} u/s，超过限值 {b} u/s",
+     "The drive does not keep the speed it was given: its speed limit (607Fh) is not set or not used, or its loop overshoots",
+     "Check 607Fh and the drive's own speed limit, tune its loop, or lower the speed; then reset",
+     ResetRule::reset, Reaction::stop_axis, "The drive's communication watchdog stops it"},
 }};
 // clang-format on
 

@@ -21,6 +21,11 @@ DriveMode own_mode(const AxisConfig& config, const DriveCapabilities& drive) {
     return drive.setpoints == SetpointClass::low_dynamics ? DriveMode::profile_velocity : DriveMode::cyclic_velocity;
 }
 
+/// Bounds of velocity that act through a slow line would come too late: there the drive keeps them.
+double torque_inertia(const AxisConfig& config, const DriveCapabilities& drive) {
+    return drive.setpoints == SetpointClass::low_dynamics ? 0 : config.control.inertia();
+}
+
 /// A tenth of the cycle rate: see TorqueControl.
 double torque_bandwidth(Duration cycle) { return cycle > Duration::zero() ? 0.1 / to_seconds(cycle) : 0; }
 
@@ -47,7 +52,7 @@ Axis::Axis(AxisConfig config, DrivePort& port, Duration cycle, std::uint16_t ind
       own_mode_(own_mode(config_, port.capabilities())),
       former_mode_(own_mode_),
       torque_per_acceleration_((config_.gearing.inverted ? -1.0 : 1.0) * config_.control.torque_feed_forward * config_.control.inertia()),
-      torque_(config_.control.inertia(), torque_bandwidth(cycle)),
+      torque_(torque_inertia(config_, port.capabilities()), torque_bandwidth(cycle)),
       compensation_(config_.compensation),
       power_(port.capabilities().enable_delay, config_.enable_timeout),
       alarms_(index),
@@ -145,7 +150,7 @@ void Axis::watch_drive() noexcept {
 /// Nothing for watch_drive() and run_power(): power is on and stays on, and the drive says nothing to the contrary.
 bool Axis::drive_as_wanted() const noexcept {
     const bool well = feedback_.fresh && feedback_.online && feedback_.power == PowerState::enabled && !feedback_.fault &&
-                      !feedback_.warning && feedback_.mode == own_mode_;
+                      !feedback_.setup_refused && !feedback_.warning && feedback_.mode == own_mode_;
     const bool stays_on = power_.on() && view_.state != AxisState::Disabled && view_.state != AxisState::ErrorStop;
     return well && stays_on && driven_ && mode_phase_ == ModePhase::steady && !drive_homing_.busy() && alarms_.active().empty();
 }
@@ -213,7 +218,7 @@ void Axis::watch_following_error(double actual) noexcept {
 void Axis::encode(Instant now) noexcept {
     command_ = {};
     command_.power = power_.request();
-    command_.reset_fault = view_.resetting && drive_faulted();
+    command_.reset_fault = view_.resetting && (drive_faulted() || feedback_.setup_refused);
     command_.start_homing = drive_homing_.start_level();
     command_.homing = drive_homing_setup();
     const auto& set = setpoint_.state();

@@ -28,6 +28,7 @@
 #include "axes/axis/command_queue.hpp"
 #include "axes/axis/compensation.hpp"
 #include "axes/axis/coupling_state.hpp"
+#include "axes/axis/drive_profile_run.hpp"
 #include "axes/axis/following_error.hpp"
 #include "axes/axis/parameters.hpp"
 #include "axes/axis/power_sequence.hpp"
@@ -240,7 +241,7 @@ private:
     void reanchor() noexcept;
     void keep_close_to_anchor() noexcept;
     void run_goal(double late) noexcept;
-    [[nodiscard]] Plan plan_way(const MotionState& from, MotionLimits limits) noexcept;
+    [[nodiscard]] Plan plan_way(const MotionState& from, MotionLimits limits, double most) noexcept;
 
     // axis_goals.cpp: from a command to its goal
     void begin_command() noexcept;
@@ -278,6 +279,7 @@ private:
     void guard(const MotionState& before, Duration period) noexcept;
     bool guard_switches() noexcept;
     bool guard_software_limits(const MotionState& before) noexcept;
+    void brake_as_both_layers(const MotionState& from, double room, MotionLimits& limits) const noexcept;
     void brake_inside_limits(const MotionState& from, MotionLimits& limits) const noexcept;
     void release_below_limit(const MotionState& from, MotionLimits& limits) const noexcept;
     [[nodiscard]] bool leaves_limits(const Profile& profile) const noexcept;
@@ -292,6 +294,7 @@ private:
     Submitted submit_superimposed(const AxisCommand& command, Owner owner) noexcept;
     [[nodiscard]] ErrorId refuse_superimposed(const AxisCommand& command) const noexcept;
     void run_superimposed() noexcept;
+    void wait_for_room(const MotionState& from, MotionLimits limits, Plan& plan) noexcept;
     void complete_superimposed() noexcept;
     void end_superimposed(Outcome outcome, ErrorId error = ErrorId::none) noexcept;
 
@@ -323,12 +326,16 @@ private:
     void use_parameters() noexcept;
     ErrorId write_output(const WriteOutput& wanted) noexcept;
     // axis_modes.cpp
-    enum class ModePhase : std::uint8_t { steady, entering, torque, leaving, changing };
+    /// The last three: the drive makes the profile (axis_drive_profile.cpp).
+    enum class ModePhase : std::uint8_t { steady, entering, torque, leaving, changing, profile_entering, profile, profile_halting };
     [[nodiscard]] DriveMode wanted_mode() const noexcept {
         return mode_phase_ == ModePhase::steady && !drive_homing_.busy() ? own_mode_ : mode_on_the_way();
     }
     [[nodiscard]] DriveMode mode_on_the_way() const noexcept;
-    [[nodiscard]] bool mode_changes() const noexcept { return mode_phase_ != ModePhase::steady && mode_phase_ != ModePhase::torque; }
+    [[nodiscard]] bool mode_changes() const noexcept {
+        return mode_phase_ == ModePhase::entering || mode_phase_ == ModePhase::leaving || mode_phase_ == ModePhase::changing ||
+               mode_phase_ == ModePhase::profile_entering;
+    }
     [[nodiscard]] bool torque_wanted() const noexcept;
     [[nodiscard]] ErrorId refuse_mode(const AxisCommand& command, bool starts_now) const noexcept;
     [[nodiscard]] double torque_of(const AxisCommand& command) const noexcept;
@@ -339,16 +346,49 @@ private:
     bool step_mode(Duration period) noexcept;
     bool enter_torque(bool confirmed, bool late, Duration period) noexcept;
     bool run_torque(Duration period) noexcept;
-    void guard_torque() noexcept;
+    void guard_torque() noexcept { guard_motor(stop_limits(config_.limits)); }
+    void guard_motor(const MotionLimits& braking) noexcept;
+    bool leave_mode(bool confirmed, bool late, Duration period) noexcept;
     bool change_mode(bool confirmed, bool late) noexcept;
     void stop_or_stand() noexcept;
     [[nodiscard]] double motor_velocity() const noexcept;
     void follow_motor() noexcept;
     void fill_targets() noexcept;
+    void fill_torque() noexcept;
+
+    // axis_drive_profile.cpp: the drive makes the profile
+    [[nodiscard]] bool in_drive_profile() const noexcept { return mode_phase_ >= ModePhase::profile_entering; }
+    [[nodiscard]] bool drive_makes(CommandKind kind) const noexcept;
+    [[nodiscard]] ErrorId refuse_drive_profile(const AxisCommand& command, bool starts_now) const noexcept;
+    void begin_drive_profile(const AxisCommand& command) noexcept;
+    void ask_for_drive_mode() noexcept;
+    [[nodiscard]] bool drive_profile_goes_on() const noexcept;
+    bool step_drive_profile(bool confirmed, bool late, Duration period) noexcept;
+    bool enter_drive_profile(bool confirmed, bool late, Duration period) noexcept;
+    bool run_drive_profile(Duration period) noexcept;
+    bool halt_drive_profile(Duration period) noexcept;
+    bool leave_drive_profile(Duration period) noexcept;
+    [[nodiscard]] Duration longest_ramp(double deceleration) const noexcept;
+    [[nodiscard]] double drive_target(const AxisCommand& command, const MotionState& from) const noexcept;
+    [[nodiscard]] ErrorId refuse_drive_way(const DriveProfileRun::Way& way) const noexcept;
+    [[nodiscard]] DriveProfileRun::Setpoint drive_setpoint(const AxisCommand& command, DriveProfileRun::Way& way) const noexcept;
+    ErrorId hand_to_drive(const AxisCommand& command) noexcept;
+    void hand_ahead() noexcept;
+    void guard_drive_profile() noexcept;
+    void judge_drive_profile() noexcept;
+    void judge_drive_move() noexcept;
+    void fill_drive_profile() noexcept;
+    /// The drive is in the axis' own mode, or has no power.
+    void end_drive_profile() noexcept {
+        mode_phase_ = ModePhase::steady;
+        drive_halt_ = false;
+        drive_run_.end();
+    }
 
     // axis_profiles.cpp
     [[nodiscard]] ErrorId refuse_given(const AxisCommand& command, bool starts_now) noexcept;
-    [[nodiscard]] ErrorId make_curve(const AxisCommand& command) noexcept;
+    [[nodiscard]] ErrorId make_curve(const AxisCommand& command, double behind = 0) noexcept;
+    [[nodiscard]] ErrorId update_curve(const AxisCommand& command) noexcept;
     ErrorId set_goal_given(const AxisCommand& command) noexcept;
     void start_given(double late) noexcept;
     void step_given(Duration period) noexcept;
@@ -464,6 +504,8 @@ private:
     bool begin_pending_ = false;  // the active command has not been turned into a goal yet
     bool goal_pending_ = false;   // the goal has no profile yet
     bool held_ = false;           // override 0: the axis waits on its way to a position
+    bool summed_ = false;         // two layers in motion became one: until it rests, its ramps may be as hard as both together were
+    double wants_speed_ = 0;      // u/s that the base will have once the superimposed motion has made room; 0: it waits for nothing
     bool watch_limits_ = true;    // the base might pass a software limit
     bool backwards_ = false;      // sense of the last motion
     Override override_;
@@ -484,7 +526,8 @@ private:
         std::array<TimeCurve, 2> curves;  // the running one, and one to check the next command with
         std::size_t current = 0;
         Duration elapsed{};
-        double late = 0;  // s: it began this long before the cycle in which it was started
+        double late = 0;    // s: it began this long before the cycle in which it was started
+        double behind = 0;  // s of the table that the running curve leaves out
 
         void reserve(std::size_t rows);
         [[nodiscard]] TimeCurve& running() noexcept { return curves[current]; }
@@ -511,9 +554,11 @@ private:
     DriveMode former_mode_;  // before set_controller_mode
     ModePhase mode_phase_ = ModePhase::steady;
     Instant mode_since_{}, mode_seen_at_{};
-    bool mode_waits_ = false;         // for standstill of the motor, before it is asked for
-    bool mode_seen_ = false;          // the drive shows the wanted mode
-    bool torque_idle_ = false;        // set_controller_mode has chosen torque: without a command it is 0
+    bool mode_waits_ = false;   // for standstill of the motor, before it is asked for
+    bool mode_seen_ = false;    // the drive shows the wanted mode
+    bool torque_idle_ = false;  // set_controller_mode has chosen torque: without a command it is 0
+    bool drive_halt_ = false;   // bit 8, until the drive is back in the axis' own mode
+    DriveProfileRun drive_run_;
     double torque_velocity_ = 0;      // u/s, limit of the torque command
     double torque_per_acceleration_;  // fraction of rated torque for 1 u/s2, fed forward
     TorqueControl torque_;

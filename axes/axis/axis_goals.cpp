@@ -55,6 +55,10 @@ ErrorId Axis::set_goal(const AcceptedCommand& accepted) noexcept {
             begin_torque(command);
             break;
         case CommandKind::set_controller_mode: begin_mode_change(command); break;
+        case CommandKind::drive_move_absolute:
+        case CommandKind::drive_move_relative:
+        case CommandKind::drive_move_velocity:
+        case CommandKind::drive_torque: begin_drive_profile(command); break;
         default: return ErrorId::not_supported;
     }
     return ErrorId::none;
@@ -112,7 +116,7 @@ void Axis::aim_at_stop(const AxisCommand& command) noexcept {
 }
 
 double Axis::signed_velocity(const AxisCommand& command, bool backwards) const noexcept {
-    if (command.kind != CommandKind::move_velocity) return command.velocity;
+    if (command.kind != CommandKind::move_velocity && command.kind != CommandKind::drive_move_velocity) return command.velocity;
     const bool negative = command.direction == mcNegativeDirection || (command.direction == mcCurrentDirection && backwards);
     return negative ? -command.velocity : command.velocity;
 }

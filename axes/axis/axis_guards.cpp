@@ -17,6 +17,10 @@ double stops_within(const MotionState& state, const AxisLimits& limits) noexcept
     return speed * (a * ease + (speed / limits.deceleration + std::max(limits.deceleration, a) * ease));
 }
 
+/// Two layers brake with a ramp each (P1-155). What they would have stopped within, one motion of both does with twice the ramps: the sum of
+/// theirs is no harder.
+constexpr double both_layers = 2;
+
 }  // namespace
 
 void Axis::guard(const MotionState& before, Duration period) noexcept {
@@ -63,6 +67,7 @@ bool Axis::guard_software_limits(const MotionState& before) noexcept {
     if (view_.state != AxisState::ErrorStop && queue_.active().command.kind != CommandKind::jog)
         fail(AxisAlarm::software_limit_reached, units_.to_program(before.position), edge);
     end_superimposed(Outcome::error, ErrorId::beyond_software_limit);
+    brake_as_both_layers(before, std::abs(edge_local - before.position), limits);
     // Also in ErrorStop: its own stop might be softer and pass the limit.
     aim(Goal::Kind::position, edge_local, limits, VelocityLimiter::software_limit);
     return true;
@@ -91,17 +96,27 @@ void Axis::brake_inside_limits(const MotionState& from, MotionLimits& limits) co
     if (std::abs(stopping_distance(from, limits)) <= room) return;
     limits.deceleration = std::max(limits.deceleration, config_.limits.deceleration);
     limits.jerk = std::max(limits.jerk, config_.limits.jerk);
+    brake_as_both_layers(from, room, limits);
+}
+
+void Axis::brake_as_both_layers(const MotionState& from, double room, MotionLimits& limits) const noexcept {
+    if (!summed_ || std::abs(stopping_distance(from, limits)) <= room) return;
+    limits.deceleration *= both_layers;
+    limits.jerk *= both_layers;
 }
 
 /// The acceleration the axis has now was built up with another jerk. Taken away with a smaller one it would carry the velocity beyond the
 /// axis' limit, also through zero to the one of the other sense: then it is taken away as fast as that needs.
 void Axis::release_below_limit(const MotionState& from, MotionLimits& limits) const noexcept {
     if (from.acceleration == 0) return;
-    const double room = config_.limits.velocity - (from.acceleration > 0 ? from.velocity : -from.velocity);
+    const double sense = from.acceleration > 0 ? 1 : -1;
+    const double beside = std::max(0.0, sense * setpoint_.superimposed().velocity);
+    const double room = config_.limits.velocity - beside - sense * from.velocity;
     const double needed = from.acceleration * from.acceleration / 2;
     if (needed <= limits.jerk * room) return;
     constexpr double surely = 1 + 1e-9;
-    limits.jerk = std::max(limits.jerk, room > 0 ? std::min(surely * needed / room, config_.limits.jerk) : config_.limits.jerk);
+    const double most = config_.limits.jerk * (summed_ ? both_layers : 1);
+    limits.jerk = std::max(limits.jerk, room > 0 ? std::min(surely * needed / room, most) : most);
 }
 
 /// Does it go further than both its ends and the software limits?

@@ -4,8 +4,23 @@
 #include <cmath>
 
 #include "axes/axis/axis.hpp"
+#include "axes/homing/index_doubt.hpp"
 
 namespace taktwerk::axes {
+
+namespace {
+
+bool slow_line(const DriveCapabilities& drive) noexcept { return drive.setpoints == SetpointClass::low_dynamics; }
+
+/// `way`: counts from the switch's edge, as it was seen, to the first pulse behind it. A switch that is polled has to leave room on both sides.
+bool pulse_is_certain(const DriveCapabilities& drive, const AxisConfig& config, std::int64_t way) noexcept {
+    if (!slow_line(drive) || config.homing.kind != HomingKind::reference_pulse) return true;
+    const auto turn = config.gearing.counts_per_revolution, room = turn / 8;
+    const auto far = way < 0 ? -way : way;
+    return far >= room && far <= turn - room;
+}
+
+}  // namespace
 
 ErrorId Axis::refuse_home() const noexcept {
     const auto& drive = port_.capabilities();
@@ -129,7 +144,8 @@ void Axis::lose_reference() noexcept {
 }
 
 void Axis::search_home_switch() noexcept {
-    if (!switch_homing_.busy()) return;
+    const bool seeks_index = switch_homing_.phase() == SwitchHoming::Phase::finished && latch_.armed();
+    if (!switch_homing_.busy() && !seeks_index) return;
     switch_homing_.step({.fresh = feedback_.fresh,
                          .home_switch = feedback_.home_switch,
                          .negative_limit = negative_switch_,
@@ -140,8 +156,13 @@ void Axis::search_home_switch() noexcept {
     switch (switch_homing_.phase()) {
         case SwitchHoming::Phase::finished:
             if (config_.homing.kind == HomingKind::reference_pulse) {
+                if (!seeks_index) arm_latch({.source = TriggerSource::index_pulse}, false);
+                // Over a slow line the drive finds out where its index is while the motor rests.
+                if (slow_line(port_.capabilities())) {
+                    if (feedback_.homing_error) fail(AxisAlarm::homing_failed, index_unknown.number, 0);
+                    if (feedback_.homing_error || !feedback_.probes[latch_.probe()].armed) return;
+                }
                 switch_homing_.cancel();
-                arm_latch({.source = TriggerSource::index_pulse}, false);
                 step_run_.start(home_search(), now_, actual_counts_);
             } else end_homing(switch_homing_.reference());
             return;
@@ -169,7 +190,11 @@ void Axis::run_home_search() noexcept {
     drive_step({.source = TriggerSource::index_pulse}, dynamics);
     switch (step_run_.result()) {
         case StepRun::End::none: return;
-        case StepRun::End::found: end_homing(step_run_.place()); return;
+        case StepRun::End::found:
+            if (pulse_is_certain(port_.capabilities(), config_, step_run_.place() - switch_homing_.reference()))
+                end_homing(step_run_.place());
+            else fail(AxisAlarm::homing_failed, index_near_edge.number, 0);
+            return;
         case StepRun::End::time_limit: fail(AxisAlarm::homing_timeout, to_seconds(config_.homing.timeout)); break;
         default: fail(AxisAlarm::homing_failed, static_cast<double>(step_run_.result()), 0); break;
     }
@@ -190,8 +215,8 @@ void Axis::end_homing(std::int64_t reference) noexcept {
 }
 
 void Axis::abort_homing() noexcept {
+    if (step_run_.busy() || switch_homing_.phase() == SwitchHoming::Phase::finished) latch_.release();
     switch_homing_.cancel();
-    if (step_run_.busy()) latch_.release();
     step_run_.cancel();
     if (power_.follows_actual()) drive_homing_.cancel();
     else drive_homing_.abort(now_);

@@ -28,6 +28,11 @@ bool latched_by_drive(const TriggerRef& reference) noexcept {
     return reference.source != TriggerSource::home_switch && reference.source != TriggerSource::input;
 }
 
+/// A latch may serve the index pulse alone (XP200).
+bool has_edge(const DriveCapabilities& drive, unsigned probe, bool falling) noexcept {
+    return ((drive.probe_edges >> (2 * probe + (falling ? 1 : 0))) & 1u) != 0;
+}
+
 const HomingStepDetails& details_of(const AxisCommand& command) noexcept { return *std::get_if<HomingStepDetails>(&command.details); }
 
 }  // namespace
@@ -38,12 +43,14 @@ ErrorId Axis::refuse_reference(const TriggerRef& reference) const noexcept {
         case TriggerSource::home_switch: return drive.digital_inputs ? ErrorId::none : ErrorId::not_supported;
         case TriggerSource::input:
             return reference.point < scene_.inputs.size() && reference.bit < 64 ? ErrorId::none : ErrorId::invalid_parameter;
-        case TriggerSource::probe1:
         case TriggerSource::index_pulse:
             if (drive.probes < 1) return ErrorId::no_such_probe;
             break;
+        case TriggerSource::probe1:
+            if (drive.probes < 1 || !has_edge(drive, 0, reference.falling)) return ErrorId::no_such_probe;
+            break;
         case TriggerSource::probe2:
-            if (drive.probes < 2) return ErrorId::no_such_probe;
+            if (drive.probes < 2 || !has_edge(drive, 1, reference.falling)) return ErrorId::no_such_probe;
             break;
     }
     const auto taken = [this](SideSlot slot) { return view_.side[static_cast<std::size_t>(slot)] != 0; };

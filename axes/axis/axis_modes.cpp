@@ -1,10 +1,11 @@
 // The cyclic mode the drive runs in. Each axis has one of its own, position or velocity (the position loop is closed here then), and
-// stays in it for every motion. Only MC_Home by the drive, MC_TorqueControl and an explicit set_controller_mode change the mode.
+// stays in it for every motion. Only MC_Home by the drive, MC_TorqueControl, the drive's own profiles and an explicit set_controller_mode change it.
 //
 //   steady -> entering -> torque -> leaving -> steady      MC_TorqueControl and whatever ends it
 //   steady -> changing -> steady                           set_controller_mode, at standstill
+//   steady -> profile_entering -> profile -> (profile_halting ->) leaving -> steady   a profile of the drive: axis_drive_profile.cpp
 //
-// In torque the set-point follows the motor, so that leaving it begins where the motor is and as fast as it is.
+// In torque, and while the drive makes the profile, the set-point follows the motor, so that leaving begins where the motor is and as fast as it is.
 
 #include <algorithm>
 #include <cmath>
@@ -23,6 +24,12 @@ constexpr double dead_cycles = 5;          // from seeing that a torque must end
 bool cyclic(DriveMode mode) noexcept {
     return mode == DriveMode::cyclic_position || mode == DriveMode::cyclic_velocity || mode == DriveMode::cyclic_torque;
 }
+bool slow_line(const DriveCapabilities& drive) noexcept { return drive.setpoints == SetpointClass::low_dynamics; }
+DriveMode torque_mode(const DriveCapabilities& drive) noexcept {
+    return slow_line(drive) ? DriveMode::profile_torque : DriveMode::cyclic_torque;
+}
+/// From a word to its effect as the feedback shows it, where that is more than a bus' few cycles.
+Duration round_trip(const DriveCapabilities& drive) noexcept { return drive.command_latency + drive.feedback_period; }
 /// Ends motion: taken in any mode, whatever the drive demands for a change.
 bool only_stops(CommandKind kind) noexcept { return kind == CommandKind::stop || kind == CommandKind::halt; }
 
@@ -31,7 +38,8 @@ bool only_stops(CommandKind kind) noexcept { return kind == CommandKind::stop ||
 DriveMode Axis::mode_on_the_way() const noexcept {
     if (drive_homing_.busy()) return drive_homing_.mode();
     if (mode_waits_) return mode_phase_ == ModePhase::changing ? former_mode_ : own_mode_;
-    return mode_phase_ == ModePhase::entering || mode_phase_ == ModePhase::torque ? DriveMode::cyclic_torque : own_mode_;
+    if (in_drive_profile()) return drive_run_.mode();
+    return mode_phase_ == ModePhase::entering || mode_phase_ == ModePhase::torque ? torque_mode(port_.capabilities()) : own_mode_;
 }
 
 bool Axis::torque_wanted() const noexcept {
@@ -50,9 +58,12 @@ ErrorId Axis::refuse_mode(const AxisCommand& command, bool starts_now) const noe
     if (starts_now && in_torque && drive.mode_change_at_standstill && !stands && command.kind != CommandKind::torque &&
         !only_stops(command.kind))
         return ErrorId::not_at_standstill;
+    if (made_by_drive(command.kind)) return refuse_drive_profile(command, starts_now);
     if (command.kind == CommandKind::torque) {
-        if (!drive.has(DriveMode::cyclic_torque)) return ErrorId::not_supported;
-        const bool bounded = config_.control.inertia() > 0 || (drive.velocity_limit && !drive.mode_change_at_standstill);
+        if (!drive.has(torque_mode(drive))) return ErrorId::not_supported;
+        // Over a slow line the drive keeps the velocity, and brakes out of its torque by itself when it is told to halt.
+        const bool by_drive = drive.velocity_limit && (slow_line(drive) || !drive.mode_change_at_standstill);
+        const bool bounded = by_drive || (config_.control.inertia() > 0 && !slow_line(drive));
         if (!bounded) return ErrorId::not_supported;  // nobody would keep the velocity in its limit
         if (!starts_now) return ErrorId::none;
         if (drive.mode_change_at_standstill && !in_torque && !stands) return ErrorId::not_at_standstill;
@@ -137,30 +148,42 @@ bool Axis::step_mode(Duration period) noexcept {
         else mode_since_ = now_;
     }
     const bool confirmed = !mode_waits_ && mode_confirmed();
-    const bool late = now_ - mode_since_ >= mode_patience + port_.capabilities().mode_change_delay;
+    const auto& drive = port_.capabilities();
+    const bool late = now_ - mode_since_ >= mode_patience + drive.mode_change_delay + 2 * round_trip(drive);
     switch (mode_phase_) {
         case ModePhase::steady: return false;
         case ModePhase::entering: return enter_torque(confirmed, late, period);
         case ModePhase::torque: return run_torque(period);
-        case ModePhase::leaving:
-            if (torque_wanted()) {  // again
-                go_mode(ModePhase::entering);
-                return step_mode(period);
-            }
-            if (confirmed) {  // the set-point goes on from the last one the drive was given
-                mode_phase_ = ModePhase::steady;
-                if (goal_.kind != Goal::Kind::rest && goal_.kind != Goal::Kind::given) goal_pending_ = true;
-                else if (!begin_pending_ && !goal_pending_) stop_or_stand();
-                return false;
-            }
-            follow_motor();
-            if (!late) return true;
-            mode_phase_ = ModePhase::steady;
-            setpoint_.place(actual_local());
-            fail(AxisAlarm::drive_mode_mismatch, static_cast<double>(feedback_.mode), static_cast<double>(own_mode_));
-            return false;
+        case ModePhase::leaving: return leave_mode(confirmed, late, period);
         case ModePhase::changing: return change_mode(confirmed, late);
+        case ModePhase::profile_entering:
+        case ModePhase::profile:
+        case ModePhase::profile_halting: return step_drive_profile(confirmed, late, period);
     }
+    return false;
+}
+
+bool Axis::leave_mode(bool confirmed, bool late, Duration period) noexcept {
+    if (torque_wanted() && drive_run_.mode() == DriveMode::none) {  // again
+        go_mode(ModePhase::entering);
+        return step_mode(period);
+    }
+    if (confirmed) {  // the set-point goes on from the last one the drive was given
+        end_drive_profile();
+        if (goal_.kind != Goal::Kind::rest && goal_.kind != Goal::Kind::given) goal_pending_ = true;
+        else if (!begin_pending_ && !goal_pending_) stop_or_stand();
+        return false;
+    }
+    follow_motor();
+    if (drive_run_.may_still_turn(now_) && !drive_stands()) {  // it stops along its own ramp first (SV33-E 3.4.3 (4), (7), (8))
+        drive_halt_ = drive_halt_ || (drive_run_.mode() != DriveMode::none && drive_run_.turns_too_long(now_));
+        mode_since_ = now_;
+        return true;
+    }
+    if (!late) return true;
+    end_drive_profile();
+    setpoint_.place(actual_local());
+    fail(AxisAlarm::drive_mode_mismatch, static_cast<double>(feedback_.mode), static_cast<double>(own_mode_));
     return false;
 }
 
@@ -193,6 +216,7 @@ bool Axis::run_torque(Duration period) noexcept {
     const auto& drive = port_.capabilities();
     if (!torque_wanted()) {
         if (!drive.mode_change_at_standstill || drive_stands()) {
+            drive_run_.leave(now_, longest_ramp(config_.limits.deceleration));
             go_mode(ModePhase::leaving);
             torque_idle_ = false;
             return step_mode(period);
@@ -207,17 +231,22 @@ bool Axis::run_torque(Duration period) noexcept {
     follow_motor();
     (void)torque_.step(motor_velocity(), period);
     guard_torque();
-    queue_.set_in_target(queue_.active().command.kind == CommandKind::torque && torque_.in_torque() && !feedback_.internal_limit);
+    // Over a slow line the drive has it when the word of the cycle before, which was the same, is acknowledged.
+    const double sent = config_.gearing.inverted ? -command_.torque : command_.torque;
+    const bool arrived = !slow_line(drive) || (sent == torque_.torque() && feedback_.commands_acknowledged);
+    queue_.set_in_target(queue_.active().command.kind == CommandKind::torque && torque_.in_torque() && !feedback_.internal_limit &&
+                         arrived);
     return true;
 }
 
-/// As the guards of planned motion, but early by what leaving torque takes.
-void Axis::guard_torque() noexcept {
+/// As the guards of planned motion, but early by what leaving the mode takes.
+void Axis::guard_motor(const MotionLimits& braking) noexcept {
     if (view_.state == AxisState::ErrorStop || view_.state == AxisState::Stopping || guard_switches() || !software_limits_hold()) return;
     auto reach = setpoint_.state();
     if (reach.velocity == 0) return;
-    reach.position += reach.velocity * (dead_cycles * to_seconds(cycle_) + to_seconds(port_.capabilities().mode_change_delay));
-    const double end = units_.to_program(reach.position + stopping_distance(reach, stop_limits(config_.limits)));
+    const auto& drive = port_.capabilities();
+    reach.position += reach.velocity * (dead_cycles * to_seconds(cycle_) + to_seconds(drive.mode_change_delay + round_trip(drive)));
+    const double end = units_.to_program(reach.position + stopping_distance(reach, braking));
     const double edge = reach.velocity > 0 ? config_.limits.position_max : config_.limits.position_min;
     if (reach.velocity > 0 ? end > edge : end < edge)
         fail(AxisAlarm::software_limit_reached, units_.to_program(setpoint_.state().position), edge);
@@ -267,9 +296,10 @@ void Axis::fill_targets() noexcept {
     command_.position = seeded_ ? units_.counts(set.position + compensation_.offset()) : feedback_.position;
     command_.velocity = control.feed_forward * set.velocity * counts;
     command_.torque = torque_per_acceleration_ * set.acceleration;
-    if (port_.capabilities().setpoints == SetpointClass::low_dynamics) {
+    if (slow_line(port_.capabilities())) {
         // Told to stop, the drive ramps by itself: one word on the line ends the motion, whatever becomes of the line then.
-        command_.halt = goal_.kind == Goal::Kind::stop;
+        const bool ends_torque = mode_phase_ == ModePhase::leaving || (mode_phase_ == ModePhase::torque && !torque_wanted());
+        command_.halt = goal_.kind == Goal::Kind::stop || ends_torque;
         const double deceleration = command_.halt ? goal_.limits.deceleration : config_.limits.deceleration;
         command_.acceleration = config_.limits.acceleration * std::abs(counts);
         command_.deceleration = deceleration * std::abs(counts);
@@ -282,8 +312,16 @@ void Axis::fill_targets() noexcept {
                                     : control.feed_forward * set.velocity + (closed ? control.kv * view_.following_error : 0);
         command_.velocity = std::clamp(velocity, -limit, limit) * counts;
     }
+    if (mode_phase_ == ModePhase::steady) return;
+    if (in_drive_profile()) fill_drive_profile();
+    else fill_torque();
+    command_.halt = command_.halt || drive_halt_;
+}
+
+void Axis::fill_torque() noexcept {
     if (mode_phase_ == ModePhase::entering) command_.torque = feedback_.torque;  // what the motor has when it takes the mode
     if (mode_phase_ != ModePhase::torque) return;
+    const double counts = units_.counts_per_unit();
     command_.torque = (config_.gearing.inverted ? -1 : 1) * torque_.torque();
     command_.velocity_limit = torque_velocity_ * std::abs(counts);
 }

@@ -18,12 +18,14 @@ void Axis::plan(Instant now, Duration period) noexcept {
         return;
     }
     const bool may_be_homed = view_.state == AxisState::Homing || passive_.id != 0;
-    if (homes()) step_homing();
+    if (homes() || latch_.armed()) step_homing();
     if (view_.active_in_target && queue_.waiting() > 0) carry_out_due_settings();
     if (view_.active_in_target && queue_.waiting() > 0) hand_over();
     if (mode_phase_ != ModePhase::steady && step_mode(period)) {
         publish_commands();
         publish_setpoint();
+        if (mode_phase_ == ModePhase::profile && drive_run_.mode() == DriveMode::profile_position)
+            view_.target_position = units_.to_program(drive_run_.front().target);
         return;
     }
     if (begin_pending_) begin_command();
@@ -51,6 +53,7 @@ void Axis::plan(Instant now, Duration period) noexcept {
     if (coupling_.shown) complete_phasing();
     if (queue_.beside(SideSlot::superimposed) != 0) complete_superimposed();
     if (const double velocity = setpoint_.state().velocity; velocity != 0) backwards_ = velocity < 0;
+    else if (summed_) summed_ = !setpoint_.at_rest();
     publish_commands();
     publish_setpoint();
     if (may_be_homed) publish_feedback(actual_local());  // in other coordinates
@@ -68,7 +71,7 @@ void Axis::follow_actual(Duration period) noexcept {
     setpoint_.place(aligned_ ? actual_local() : setpoint_.state().position + std::copysign(most, way));
     if (endless_ && units_.far_from_anchor(actual_local())) reanchor();  // an encoder turns for years
     if (!power_.follows_actual()) return;
-    mode_phase_ = ModePhase::steady;
+    end_drive_profile();
     torque_idle_ = mode_waits_ = false;
     goal_ = {};
     goal_pending_ = begin_pending_ = held_ = false;
@@ -76,6 +79,7 @@ void Axis::follow_actual(Duration period) noexcept {
 
 void Axis::run_goal(double late) noexcept {
     goal_pending_ = held_ = false;
+    wants_speed_ = 0;
     const auto from = setpoint_.base();
     auto limits = with_override(goal_.limits);
     release_below_limit(from, limits);
@@ -84,7 +88,7 @@ void Axis::run_goal(double late) noexcept {
         case Goal::Kind::rest:
         case Goal::Kind::coupled: return;
         case Goal::Kind::given: start_given(late); return;
-        case Goal::Kind::position: plan = plan_way(from, limits); break;
+        case Goal::Kind::position: plan = plan_way(from, limits, config_.limits.velocity); break;
         case Goal::Kind::velocity:
             plan = plan_to_velocity(from, override_counts() ? goal_.value * override_.velocity : goal_.value, limits);
             watch_limits_ = true;
@@ -95,6 +99,7 @@ void Axis::run_goal(double late) noexcept {
             watch_limits_ = false;
             break;
     }
+    if (setpoint_.layered()) wait_for_room(from, limits, plan);
     if (plan.error != PlanError::none) {
         fail(AxisAlarm::planner_refused, units_.to_program(from.position), from.velocity);
         plan = plan_stop(setpoint_.base(), stop_limits(config_.limits));
@@ -105,7 +110,8 @@ void Axis::run_goal(double late) noexcept {
     if (queue_.beside(SideSlot::superimposed) != 0) superimposed_.pending = true;
 }
 
-Plan Axis::plan_way(const MotionState& from, MotionLimits limits) noexcept {
+/// `most`: u/s that also an end velocity may not pass.
+Plan Axis::plan_way(const MotionState& from, MotionLimits limits, double most) noexcept {
     // A new target with gentle dynamics must not carry a fast axis past a software limit on its way back.
     brake_inside_limits(from, limits);
     if (override_counts()) {
@@ -118,7 +124,8 @@ Plan Axis::plan_way(const MotionState& from, MotionLimits limits) noexcept {
         plan = plan_stop(from, limits);
     } else if (goal_.goes_on) {
         const double factor = override_counts() ? override_.velocity : 1;
-        plan = plan_through(from, {goal_.value, goal_.end_velocity * factor, 0}, limits);
+        const double end = std::clamp(goal_.end_velocity * factor, -most, most);
+        plan = plan_through(from, {goal_.value, end, 0}, limits);
     } else if (const double through = velocity_at_junction(from, limits); through != 0) {
         plan = plan_through(from, {goal_.value, through, 0}, limits);
     } else {

@@ -24,13 +24,13 @@ void Axis::GivenProfile::reserve(std::size_t rows) {
 }
 
 /// Into the spare curve: a running one is not touched by a command that is refused.
-ErrorId Axis::make_curve(const AxisCommand& command) noexcept {
+ErrorId Axis::make_curve(const AxisCommand& command, double behind) noexcept {
     const auto& details = std::get<TimeProfileDetails>(command.details);
     const auto* table = scene_.tables ? scene_.tables->time_table(details.table) : nullptr;
     if (!table) return ErrorId::invalid_table;
     auto& curve = profile_.spare();
     const auto& from = setpoint_.base();
-    const CurveScale scale{details.time_scale, details.value_scale, details.offset};
+    const CurveScale scale{details.time_scale, details.value_scale, details.offset, behind};
     ErrorId error = ErrorId::none;
     switch (command.kind) {
         case CommandKind::position_profile: {
@@ -73,10 +73,24 @@ ErrorId Axis::set_goal_given(const AxisCommand& command) noexcept {
     if (is_profile(command.kind)) {
         if (const auto error = make_curve(command); error != ErrorId::none) return error;
         profile_.take_spare();
+        profile_.behind = 0;
     } else {
         feed_ = {};
     }
     aim(Goal::Kind::given, 0, full_limits(config_.limits), VelocityLimiter::command);
+    return ErrorId::none;
+}
+
+/// ContinuousUpdate: the rest of the table, as it stands now, with the new scales, from where the axis is and as it moves.
+ErrorId Axis::update_curve(const AxisCommand& command) noexcept {
+    const double elapsed = profile_.late + to_seconds(profile_.elapsed);
+    if (goal_.kind != Goal::Kind::given || elapsed + time_grain >= profile_.running().duration()) return ErrorId::update_not_possible;
+    const double behind = profile_.behind + elapsed / std::get<TimeProfileDetails>(queue_.active().command.details).time_scale;
+    if (const auto error = make_curve(command, behind); error != ErrorId::none) return error;
+    profile_.take_spare();
+    profile_.behind = behind;
+    profile_.elapsed = Duration{};
+    profile_.late = 0;
     return ErrorId::none;
 }
 

@@ -28,7 +28,8 @@ void Axis::complete() noexcept {
         if (goal_pending_ || goal_.kind == Goal::Kind::given || !setpoint_.finished() || !complete_active()) break;
     const bool to_velocity = goal_.kind == Goal::Kind::velocity;
     if (view_.state == AxisState::ContinuousMotion && (to_velocity || goal_.kind == Goal::Kind::position))
-        queue_.set_in_target(to_velocity && setpoint_.finished() && override_.velocity > 0);  // P1-203: at the reduced velocity
+        queue_.set_in_target(to_velocity && setpoint_.finished() && override_.velocity > 0 &&
+                             wants_speed_ == 0);  // P1-203: at the reduced velocity
 }
 
 bool Axis::complete_active() noexcept {
@@ -55,6 +56,10 @@ bool Axis::complete_active() noexcept {
         goal_.limits.velocity = config_.limits.velocity;
         goal_.goes_on = false;
         run_goal(late);
+        return false;
+    }
+    if (made_by_drive(kind)) {  // the axis has stopped for it
+        ask_for_drive_mode();
         return false;
     }
     if (view_.state == AxisState::Homing && kind == CommandKind::homing_step) return complete_homing_step();
@@ -84,6 +89,10 @@ void Axis::start_waiting(double late) noexcept {
         if (error == ErrorId::none) {
             fire(event_of(next.command.kind));
             queue_.activate(next);
+            if (in_drive_profile()) {  // it begins when the drive takes its set-point, or is back in the axis' own mode
+                begin_pending_ = true;
+                return;
+            }
             error = set_goal(next);
             if (error == ErrorId::none) {
                 if (goal_pending_) run_goal(late);
@@ -96,8 +105,10 @@ void Axis::start_waiting(double late) noexcept {
     const auto& base = setpoint_.base();
     if (base.velocity != 0 || base.acceleration != 0) {  // what should have gone on here turned out impossible
         if (view_.state == AxisState::ErrorStop) return;
+        const bool layered = setpoint_.layered();
+        if (layered) setpoint_.sample();  // the base comes to where the other layer is in time, before both become one
         stop_on_own_account(false);
-        run_goal(late);
+        run_goal(layered ? 0 : late);
         return;
     }
     goal_ = {};

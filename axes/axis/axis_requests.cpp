@@ -7,6 +7,25 @@
 
 namespace taktwerk::axes {
 
+namespace {
+
+/// Lives by a set-point in each cycle, or belongs to what does.
+bool needs_each_cycle(CommandKind kind) noexcept {
+    switch (kind) {
+        case CommandKind::external:
+        case CommandKind::position_profile:
+        case CommandKind::velocity_profile:
+        case CommandKind::acceleration_profile:
+        case CommandKind::move_superimposed:
+        case CommandKind::halt_superimposed: return true;
+        default: return couples(kind) || uncouples(kind) || shifts_phase(kind);
+    }
+}
+
+bool slow_line(const DriveCapabilities& drive) noexcept { return drive.setpoints == SetpointClass::low_dynamics; }
+
+}  // namespace
+
 bool Axis::may(Owner owner) noexcept {
     if (view_.owner == Owner::none) view_.owner = owner;  // nobody's axis goes to the first who asks
     return owner == view_.owner;
@@ -90,7 +109,18 @@ ErrorId Axis::refuse_target(const AxisCommand& command, bool starts_now) const n
             if (const auto error = refuse_place(units_.to_program(from) + command.position); error != ErrorId::none) return error;
             break;
         }
+        case CommandKind::drive_move_absolute:
+            if (config_.require_homed && !view_.homed) return ErrorId::not_homed;
+            if (const auto error = refuse_place(command.position); error != ErrorId::none) return error;
+            [[fallthrough]];
+        case CommandKind::drive_move_relative: {
+            if (!starts_now) return ErrorId::none;
+            DriveProfileRun::Way at{.from = actual_local()};
+            at.target = drive_target(command, {at.from, here.velocity, 0});
+            return refuse_drive_way(at);
+        }
         case CommandKind::move_velocity:
+        case CommandKind::drive_move_velocity:
         case CommandKind::jog: {
             if (!starts_now) return ErrorId::none;
             way = signed_velocity(command, heads_backwards());
@@ -111,11 +141,7 @@ ErrorId Axis::refuse_target(const AxisCommand& command, bool starts_now) const n
 
 ErrorId Axis::refuse(const AxisCommand& command) noexcept {
     if (config_.encoder) return ErrorId::not_supported;  // nothing there that moves
-    // A set-point for each cycle does not get through a slow line.
-    const bool each_cycle = couples(command.kind) || command.kind == CommandKind::external ||
-                            command.kind == CommandKind::position_profile || command.kind == CommandKind::velocity_profile ||
-                            command.kind == CommandKind::acceleration_profile;
-    if (each_cycle && port_.capabilities().setpoints == SetpointClass::low_dynamics) return ErrorId::not_supported;
+    if (made_by_drive(command.kind) && !drive_makes(command.kind)) return ErrorId::not_supported;
     if (const auto error = check_numbers(command); error != ErrorId::none) return error;
     if (const auto error = refuse_state(command); error != ErrorId::none) return error;
     if (waits(command) && waits_for_ever()) return ErrorId::buffer_mode_not_supported;
@@ -127,6 +153,9 @@ ErrorId Axis::refuse(const AxisCommand& command) noexcept {
 
 Submitted Axis::submit(const AxisCommand& command, Owner owner) noexcept {
     if (command.kind == CommandKind::touch_probe || command.kind == CommandKind::abort_trigger) return submit_probe(command);
+    // A set-point for each cycle does not get through a slow line.
+    if (slow_line(port_.capabilities()) && needs_each_cycle(command.kind))
+        return {0, may(owner) ? ErrorId::not_supported : ErrorId::owned_by_other};
     if (shifts_phase(command.kind)) return submit_phasing(command, owner);
     if (command.kind == CommandKind::setting) return submit_setting(command, owner);
     if (beside(command)) return submit_passive(command, owner);
@@ -188,6 +217,8 @@ ErrorId Axis::reset(Owner) noexcept {
 
 ErrorId Axis::set(const AxisSetting& setting, Owner owner) noexcept {
     if (!may(owner)) return ErrorId::owned_by_other;
+    const bool each_cycle = std::holds_alternative<SetpointFeed>(setting) || std::holds_alternative<SelectCam>(setting);
+    if (each_cycle && slow_line(port_.capabilities())) return ErrorId::not_supported;
     if (const auto* position = std::get_if<SetPosition>(&setting)) return set_position(*position);
     if (const auto* parameter = std::get_if<WriteParameter>(&setting)) return write_parameter(*parameter);
     if (const auto* output = std::get_if<WriteOutput>(&setting)) return write_output(*output);
@@ -224,6 +255,7 @@ void Axis::shift_coordinates(double delta) noexcept {
 void Axis::release_stop(CommandId id, Owner) noexcept {
     if (id == 0 || id != view_.lock) return;
     view_.lock = 0;
+    if (!queue_.has_active()) view_.holder = nullptr;
     const bool stands = !moves() && !begin_pending_ && !goal_pending_;
     if (view_.state == AxisState::Stopping && stands) leave_stopping();
     publish();

@@ -131,7 +131,10 @@ void Axis::run_reset() noexcept {
         view_.resetting = false;
         return;
     }
-    const bool cause_present = !online() || drive_faulted() || emergency_ != EmergencyStop::none;
+    // A polled drive that was away still carries out what comes first, mostly being disabled: the fault it may have is not known before.
+    const bool under_way = online() && !feedback_.commands_acknowledged;
+    if (under_way) reset_since_ = now_;
+    const bool cause_present = !online() || under_way || drive_faulted() || feedback_.setup_refused || emergency_ != EmergencyStop::none;
     if (!moves() && !cause_present) {
         if (power_.on() && power_wish_ && !off_after_error_) {
             end_reset(AxisEvent::reset_powered);

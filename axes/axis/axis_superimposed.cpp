@@ -1,7 +1,8 @@
 // MC_MoveSuperimposed and MC_HaltSuperimposed: a motion of its own on top of the base, which keeps its command, its state and its times.
 //
 // The velocity is held down to what the axis' limit leaves beside the base; where the base uses all of it the superimposed motion waits.
-// Ramps are on top of the base's (P1-155).
+// Where the base is to become faster than that, the superimposed motion slows down first: the sum never passes the limit. Ramps are on top
+// of the base's (P1-155).
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +10,13 @@
 #include "axes/axis/axis.hpp"
 
 namespace taktwerk::axes {
+
+namespace {
+
+constexpr double least_speed = 1e-6;  // of the limit: as good as none
+constexpr double room_grain = 1e-9;   // of the limit: rounding
+
+}  // namespace
 
 ErrorId Axis::refuse_superimposed(const AxisCommand& command) const noexcept {
     if (const auto error = check_numbers(command); error != ErrorId::none) return error;
@@ -64,12 +72,11 @@ void Axis::run_superimposed() noexcept {
         plan = plan_stop(part, limits);
     } else {
         const double rest = own.distance - own.covered;
-        const double base_way = setpoint_.end().position - setpoint_.base().position + setpoint_.end().velocity;
-        const double left = base_way * rest > 0 ? config_.limits.velocity - setpoint_.base_speed() : config_.limits.velocity;
+        const double base_speed = std::max({0.0, setpoint_.base_speed(rest < 0 ? -1 : 1), wants_speed_});
+        const double left = config_.limits.velocity - base_speed;
         double speed = std::min(command.velocity > 0 ? command.velocity : config_.limits.velocity, velocity_cap());
         speed = std::min(speed * (follows_master ? 1 : override_.velocity), left);
-        constexpr double least = 1e-6;  // of the limit: as good as none
-        own.waiting = !(speed > least * config_.limits.velocity);
+        own.waiting = !(speed > least_speed * config_.limits.velocity);
         if (!own.waiting) limits.velocity = speed;
         plan = own.waiting ? plan_stop(part, limits) : plan_to_position(part, part.position + rest, limits);
     }
@@ -81,8 +88,36 @@ void Axis::run_superimposed() noexcept {
     setpoint_.superimpose(plan.profile);
 }
 
+/// `plan` of the base would add up to more than the limit with what still moves on top of it: as fast as there is room, for now.
+void Axis::wait_for_room(const MotionState& from, MotionLimits limits, Plan& plan) noexcept {
+    if (goal_.kind == Goal::Kind::stop || held_ || plan.error != PlanError::none) return;
+    const auto beside = setpoint_.superimposed();
+    if (beside.velocity == 0) return;
+    const double sense = beside.velocity < 0 ? -1 : 1;
+    const double limit = config_.limits.velocity;
+    // What it has, and what it cannot help gaining while its acceleration runs out.
+    const auto own = dynamics_of(superimposed_.accepted.command, config_.limits, config_.defaults);
+    const double rising = beside.acceleration * beside.velocity > 0 ? std::abs(beside.acceleration) : 0;
+    const double used = std::abs(beside.velocity) + (std::isfinite(own.jerk) ? rising * rising / (2 * own.jerk * override_.jerk) : 0);
+    const double room = std::max(limit - used, sense * from.velocity);
+    const double wanted = plan.profile.top_velocity(sense);
+    if (wanted <= room + room_grain * limit) return;
+    wants_speed_ = wanted;
+    if (!(room > least_speed * limit)) {
+        held_ = true;
+        plan = plan_stop(from, limits);
+    } else if (goal_.kind == Goal::Kind::velocity) {
+        plan = plan_to_velocity(from, sense * std::min(sense * plan.profile.end().velocity, room), limits);
+    } else {
+        limits.velocity = std::min(limits.velocity, override_counts() ? room / override_.velocity : room);
+        plan = plan_way(from, limits, room);
+    }
+}
+
 void Axis::complete_superimposed() noexcept {
     auto& own = superimposed_;
+    const double limit = config_.limits.velocity;
+    if (wants_speed_ > 0 && std::abs(setpoint_.superimposed().velocity) <= limit - wants_speed_ + room_grain * limit) goal_pending_ = true;
     if (!own.begun) return;
     if (own.accepted.command.kind == CommandKind::move_superimposed)
         view_.superimposed_covered = own.covered + setpoint_.superimposed_way();
@@ -97,6 +132,7 @@ void Axis::end_superimposed(Outcome outcome, ErrorId error) noexcept {
     queue_.finish_beside(SideSlot::superimposed, outcome, error);
     superimposed_.pending = superimposed_.waiting = false;
     if (!setpoint_.layered()) return;
+    summed_ = summed_ || !setpoint_.superimposed_finished();
     commanded_target_ += setpoint_.superimposed().position;
     setpoint_.fold();
 }

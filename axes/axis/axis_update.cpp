@@ -58,6 +58,9 @@ ErrorId Axis::update_active(const AxisCommand& command) noexcept {
         case CommandKind::gear_in:
         case CommandKind::cam_in:
         case CommandKind::combine: error = update_coupling(command); break;
+        case CommandKind::position_profile:
+        case CommandKind::velocity_profile:
+        case CommandKind::acceleration_profile: error = update_curve(command); break;
         case CommandKind::torque:
             if (!permitted(torque_of(command))) return ErrorId::interlocked;
             begin_torque(command);

@@ -68,6 +68,7 @@ struct AxisView {
 
     // commands
     CommandKind active_kind = CommandKind::none;
+    const void* holder = nullptr;                   ///< the block that moves or locks the axis, to be named to people; never followed
     CommandId lock = 0;                             ///< the MC_Stop that holds the axis in Stopping; 0 = none
     std::array<CommandId, side_slot_count> side{};  ///< running beside the active one, by SideSlot
     CommandId active = 0;

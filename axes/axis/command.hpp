@@ -49,11 +49,11 @@ enum class CommandKind : std::uint8_t {
     // the rest
     setting,              ///< AxisSetting, in the queue (mcQueued): done when its turn comes
     set_controller_mode,  ///< position = number of the DriveMode
-    // the drive makes the profile, in a mode of its own; mcAborting only
+    // the drive makes the profile, in a mode of its own; no blending
     drive_move_absolute,  ///< position
-    drive_move_relative,  ///< position = distance, from the actual position at the start
+    drive_move_relative,  ///< position = distance, from the actual position at the start; behind another of them from its target
     drive_move_velocity,  ///< velocity signed, times direction
-    drive_torque,         ///< TorqueDetails
+    drive_torque,         ///< TorqueDetails; velocity = the drive's speed limit, 0 = the axis' limit
 };
 
 /// Units: u, u/s, u/s2, u/s3. Acceleration, deceleration, jerk 0 = the axis' default.
@@ -66,6 +66,7 @@ struct AxisCommand {
     double acceleration = 0, deceleration = 0, jerk = 0;
     double end_velocity = 0;
     CommandDetails details{};
+    const void* instance = nullptr;  ///< the block that gave it, to be named to people; never followed
     friend bool operator==(const AxisCommand&, const AxisCommand&) = default;
 };
 static_assert(std::is_trivially_copyable_v<AxisCommand>);

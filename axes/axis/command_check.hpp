@@ -24,7 +24,9 @@ namespace taktwerk::axes {
         case CommandKind::velocity_profile:
         case CommandKind::acceleration_profile:
         case CommandKind::torque:
-        case CommandKind::external: return AxisEvent::continuous;
+        case CommandKind::external:
+        case CommandKind::drive_move_velocity:
+        case CommandKind::drive_torque: return AxisEvent::continuous;
         case CommandKind::gear_in:
         case CommandKind::gear_in_pos:
         case CommandKind::cam_in:
@@ -71,10 +73,24 @@ namespace taktwerk::axes {
         case CommandKind::acceleration_profile:
         case CommandKind::gear_in:
         case CommandKind::gear_in_pos:
-        case CommandKind::combine: return true;
+        case CommandKind::combine:
+        case CommandKind::drive_move_velocity:
+        case CommandKind::drive_torque: return true;
         default: return false;
     }
 }
+
+/// The mode in which the drive makes the profile of such a command; none: the profile is made here.
+[[nodiscard]] constexpr DriveMode profile_mode_of(CommandKind kind) noexcept {
+    switch (kind) {
+        case CommandKind::drive_move_absolute:
+        case CommandKind::drive_move_relative: return DriveMode::profile_position;
+        case CommandKind::drive_move_velocity: return DriveMode::profile_velocity;
+        case CommandKind::drive_torque: return DriveMode::profile_torque;
+        default: return DriveMode::none;
+    }
+}
+[[nodiscard]] constexpr bool made_by_drive(CommandKind kind) noexcept { return profile_mode_of(kind) != DriveMode::none; }
 
 /// Details of profiles over time, torque, controller mode.
 [[nodiscard]] inline ErrorId check_details(const AxisCommand& command) noexcept {
@@ -87,7 +103,8 @@ namespace taktwerk::axes {
                                 std::isfinite(profile->value_scale) && std::isfinite(profile->offset);
             return usable ? ErrorId::none : ErrorId::invalid_parameter;
         }
-        case CommandKind::torque: {
+        case CommandKind::torque:
+        case CommandKind::drive_torque: {
             const auto* torque = std::get_if<TorqueDetails>(&command.details);
             if (!torque || !std::isfinite(torque->torque) || !(torque->ramp >= 0)) return ErrorId::invalid_parameter;
             return command.velocity >= 0 && std::isfinite(command.velocity) ? ErrorId::none : ErrorId::invalid_velocity;  // P1-181
@@ -111,6 +128,8 @@ namespace taktwerk::axes {
         case CommandKind::move_additive:
         case CommandKind::move_continuous_absolute:
         case CommandKind::move_continuous_relative:
+        case CommandKind::drive_move_absolute:
+        case CommandKind::drive_move_relative:
             if (!std::isfinite(command.position)) return ErrorId::invalid_position;
             if (!(command.velocity > 0) || std::isinf(command.velocity)) return ErrorId::invalid_velocity;
             if (!std::isfinite(command.end_velocity)) return ErrorId::invalid_velocity;
@@ -120,6 +139,7 @@ namespace taktwerk::axes {
             if (!(command.velocity >= 0) || std::isinf(command.velocity)) return ErrorId::invalid_velocity;
             break;
         case CommandKind::move_velocity:
+        case CommandKind::drive_move_velocity:
             if (!std::isfinite(command.velocity)) return ErrorId::invalid_velocity;
             if (command.direction == mcShortestWay) return ErrorId::invalid_direction;
             break;
@@ -133,6 +153,7 @@ namespace taktwerk::axes {
         case CommandKind::velocity_profile:
         case CommandKind::acceleration_profile:
         case CommandKind::torque:
+        case CommandKind::drive_torque:
         case CommandKind::set_controller_mode:
             if (const auto error = check_details(command); error != ErrorId::none) return error;
             break;
@@ -152,6 +173,7 @@ namespace taktwerk::axes {
     }
     if (command.buffer_mode > mcBlendingHigh) return ErrorId::buffer_mode_not_supported;
     if (command.buffer_mode != mcAborting && !can_be_buffered(command.kind)) return ErrorId::buffer_mode_not_supported;
+    if (command.buffer_mode > mcBuffered && made_by_drive(command.kind)) return ErrorId::buffer_mode_not_supported;
     return ErrorId::none;
 }
 

@@ -98,6 +98,7 @@ private:
         changed_ = false;
         view.active = active_.id;
         view.active_kind = active_.command.kind;
+        if (active_.id != 0 || view.lock == 0) view.holder = active_.command.instance;
         view.queued_count = static_cast<std::uint8_t>(waiting_);
         for (std::size_t i = 0; i < capacity; ++i) view.queued[i] = i < waiting_ ? queue_[i].id : 0;
         constexpr auto superimposed = static_cast<std::size_t>(SideSlot::superimposed);

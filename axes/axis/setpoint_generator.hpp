@@ -86,9 +86,9 @@ public:
         if (!layered_) return rests(state_);
         return rests(base_) && rests(contribution());
     }
-    /// Largest |velocity| that the base is going to have, u/s.
-    [[nodiscard]] double base_speed() const noexcept {
-        return moving_profile_ ? profile_.max_speed() : (base().velocity < 0 ? -base().velocity : base().velocity);
+    /// Largest velocity that the base is going to have in the sense 1 or -1, u/s.
+    [[nodiscard]] double base_speed(double sense) const noexcept {
+        return finished() ? sense * base().velocity : profile_.top_velocity(sense);
     }
 
     // --- the superimposed layer ------------------------------------------------------------------------------------------

@@ -19,6 +19,23 @@ bool usable(const CurveScale& scale) noexcept {
     return scale.time > 0 && std::isfinite(scale.time) && std::isfinite(scale.value) && std::isfinite(scale.offset);
 }
 
+/// What is left of a table.
+struct Rest {
+    std::span<const TimePoint> rows;
+    double first = 0;  ///< s of the table, to the first of them
+};
+Rest rest_of(std::span<const TimePoint> rows, double behind) noexcept {
+    if (rows.empty()) return {};
+    if (behind <= 0) return {rows, to_seconds(rows.front().delta)};
+    constexpr double grain = 1e-9;  // s
+    double at = 0;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        at += to_seconds(rows[i].delta);
+        if (at > behind + grain) return {rows.subspan(i), at - behind};
+    }
+    return {};
+}
+
 /// Times in which the velocity is 0 inside (0, duration); at most two.
 struct Turns {
     std::array<double, 2> at{};
@@ -66,10 +83,11 @@ void TimeCurve::add(double duration, const MotionState& start, double jerk) noex
 //   h_{k-1} a_{k-1} + 2 (h_{k-1} + h_k) a_k + h_k a_{k+1} = 6 ((q_{k+1} - q_k) / h_k - (q_k - q_{k-1}) / h_{k-1})
 // The positions of knots 1 and m-1 are free: q_1 = Q_1 + h_0^2 a_1 / 6 with Q_1 = q_0 + h_0 v_0 + h_0^2 a_0 / 3, and the mirror image.
 // They lie so that they stand in their own equation and, where they halve the interval, in no other.
-ErrorId TimeCurve::make_position(const MotionState& from, std::span<const TimePoint> rows, const CurveScale& scale,
+ErrorId TimeCurve::make_position(const MotionState& from, std::span<const TimePoint> table, const CurveScale& scale,
                                  double tolerance) noexcept {
     clear();
     smooth_ = true;
+    auto [rows, ahead] = rest_of(table, scale.behind);
     const auto value = [&](const TimePoint& row) { return scale.value * row.value + scale.offset; };
     if (rows.empty() || rows.size() > room_ || !usable(scale)) return ErrorId::invalid_table;
     for (const auto& row : rows)
@@ -77,6 +95,7 @@ ErrorId TimeCurve::make_position(const MotionState& from, std::span<const TimePo
     if (rows.front().delta == Duration::zero()) {
         if (!(std::abs(value(rows.front()) - from.position) <= tolerance)) return ErrorId::invalid_position;
         rows = rows.subspan(1);
+        if (!rows.empty()) ahead = to_seconds(rows.front().delta);
     }
     if (rows.empty()) return ErrorId::invalid_table;
     for (const auto& row : rows)
@@ -85,7 +104,7 @@ ErrorId TimeCurve::make_position(const MotionState& from, std::span<const TimePo
     // Pieces take the knots; the duration of the last one stands apart.
     const auto knot = [&](double h, double position) { pieces_.push_back({0, h, {position, 0, 0}, 0}); };
     const auto seconds = [&](const TimePoint& row) { return to_seconds(row.delta) * scale.time; };
-    const double first = seconds(rows.front()), last = seconds(rows.back());
+    const double first = ahead * scale.time, last = seconds(rows.back());
     if (rows.size() == 1) {
         for (int i = 0; i < 3; ++i) knot(first / 3, from.position);
     } else {
@@ -143,10 +162,11 @@ ErrorId TimeCurve::make_position(const MotionState& from, std::span<const TimePo
     return ErrorId::none;
 }
 
-ErrorId TimeCurve::make_velocity(const MotionState& from, std::span<const TimePoint> rows, const CurveScale& scale,
+ErrorId TimeCurve::make_velocity(const MotionState& from, std::span<const TimePoint> table, const CurveScale& scale,
                                  double tolerance) noexcept {
     clear();
     smooth_ = false;
+    const auto [rows, ahead] = rest_of(table, scale.behind);
     if (rows.empty() || rows.size() > room_ || !usable(scale)) return ErrorId::invalid_table;
     end_ = {from.position, from.velocity, 0};
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -156,7 +176,7 @@ ErrorId TimeCurve::make_velocity(const MotionState& from, std::span<const TimePo
             if (!(std::abs(velocity - from.velocity) <= tolerance)) return ErrorId::invalid_velocity;
             continue;
         }
-        const double seconds = to_seconds(rows[i].delta) * scale.time;
+        const double seconds = (i == 0 ? ahead : to_seconds(rows[i].delta)) * scale.time;
         if (!(seconds > 0)) return ErrorId::invalid_table;
         add(seconds, {end_.position, end_.velocity, (velocity - end_.velocity) / seconds}, 0);
         end_ = {end_.position + (end_.velocity + velocity) / 2 * seconds, velocity, 0};
@@ -164,14 +184,15 @@ ErrorId TimeCurve::make_velocity(const MotionState& from, std::span<const TimePo
     return pieces_.empty() ? ErrorId::invalid_table : ErrorId::none;
 }
 
-ErrorId TimeCurve::make_acceleration(const MotionState& from, std::span<const TimePoint> rows, const CurveScale& scale) noexcept {
+ErrorId TimeCurve::make_acceleration(const MotionState& from, std::span<const TimePoint> table, const CurveScale& scale) noexcept {
     clear();
     smooth_ = false;
+    const auto [rows, ahead] = rest_of(table, scale.behind);
     if (rows.empty() || rows.size() > room_ || !usable(scale)) return ErrorId::invalid_table;
     end_ = {from.position, from.velocity, 0};
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const double acceleration = scale.value * rows[i].value + scale.offset;
-        const double seconds = to_seconds(rows[i].delta) * scale.time;
+        const double seconds = (i == 0 ? ahead : to_seconds(rows[i].delta)) * scale.time;
         if (!std::isfinite(acceleration) || !(seconds > 0)) return ErrorId::invalid_table;
         const MotionState start{end_.position, end_.velocity, acceleration};
         add(seconds, start, 0);

@@ -25,6 +25,7 @@ struct CurveScale {
     double time = 1;  ///< > 0
     double value = 1;
     double offset = 0;  ///< u, u/s, u/s2
+    double behind = 0;  ///< s of the table: the rows up to there are left out, the next one keeps the rest of its time
 };
 
 /// What the curve must keep. Tables of velocities and accelerations have corners: their jerk is not limited.
@@ -40,11 +41,11 @@ public:
 
     // Real-time safe, linear in the rows. Errors: invalid_table (no rows, too many, times that do not rise, a number that is not finite),
     // invalid_position and invalid_velocity (a first row without time that is not where the axis is, within `tolerance`).
-    [[nodiscard]] ErrorId make_position(const MotionState& from, std::span<const TimePoint> rows, const CurveScale& scale,
+    [[nodiscard]] ErrorId make_position(const MotionState& from, std::span<const TimePoint> table, const CurveScale& scale,
                                         double tolerance) noexcept;
-    [[nodiscard]] ErrorId make_velocity(const MotionState& from, std::span<const TimePoint> rows, const CurveScale& scale,
+    [[nodiscard]] ErrorId make_velocity(const MotionState& from, std::span<const TimePoint> table, const CurveScale& scale,
                                         double tolerance) noexcept;
-    [[nodiscard]] ErrorId make_acceleration(const MotionState& from, std::span<const TimePoint> rows, const CurveScale& scale) noexcept;
+    [[nodiscard]] ErrorId make_acceleration(const MotionState& from, std::span<const TimePoint> table, const CurveScale& scale) noexcept;
 
     /// Over the whole curve: invalid_velocity, invalid_dynamics, beyond_software_limit. Where the direction turns inside a piece the lower
     /// one of acceleration and deceleration holds for the piece. Real-time safe, linear.

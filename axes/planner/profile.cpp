@@ -58,16 +58,16 @@ bool Profile::append(const Profile& next) noexcept {
     return true;
 }
 
-double Profile::max_speed() const noexcept {
-    double speed = std::max(std::abs(start_.velocity), std::abs(end_.velocity));
+double Profile::top_velocity(double sense) const noexcept {
+    double speed = std::max(sense * start_.velocity, sense * end_.velocity);
     for (int i = 0; i < count_; ++i) {
         const double begin = piece_begin(i);
         const double end = piece_end(i);
-        speed = std::max(speed, std::abs(on_piece(i, end).velocity));
+        speed = std::max(speed, sense * on_piece(i, end).velocity);
         const Piece& piece = pieces_[static_cast<std::size_t>(i)];
         if (piece.jerk == 0) continue;
         const double top = piece.anchor_time - piece.anchor.acceleration / piece.jerk;  // where the acceleration is 0
-        if (top > begin && top < end) speed = std::max(speed, std::abs(on_piece(i, top).velocity));
+        if (top > begin && top < end) speed = std::max(speed, sense * on_piece(i, top).velocity);
     }
     return speed;
 }

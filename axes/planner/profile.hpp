@@ -1,6 +1,7 @@
 #pragma once
 // A planned motion: a few pieces of constant jerk, evaluated exactly at any time. Plan on events, sample per cycle.
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <span>
@@ -70,8 +71,10 @@ public:
     /// The jerk at `t`, from the right; 0 from duration() on. u/s3.
     [[nodiscard]] double jerk_at(double t) const noexcept { return sample(t, 0).jerk; }
 
+    /// The largest velocity on the way in the sense 1 or -1; negative where it always goes the other way. u/s.
+    [[nodiscard]] double top_velocity(double sense) const noexcept;
     /// The largest |velocity| on the way. u/s.
-    [[nodiscard]] double max_speed() const noexcept;
+    [[nodiscard]] double max_speed() const noexcept { return std::max(top_velocity(1), top_velocity(-1)); }
 
     [[nodiscard]] int piece_count() const noexcept { return count_; }
     /// When piece i begins and ends, i in [0, piece_count()). s.

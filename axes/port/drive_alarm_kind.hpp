@@ -38,8 +38,10 @@ enum class DriveAlarmKind : std::uint8_t {
     start_too_fast,       ///< enabled while the motor turns
     enabled_twice,        ///< enabled from the bus and by the drive's own input
     phase_lost,           ///< of the mains
+    phase_warning,        ///< the same as a warning (SV33-E A.222)
     safe_torque_off,
     stall,
+    overvoltage,  ///< of the supply
 };
 
 }  // namespace taktwerk::axes

@@ -88,10 +88,11 @@ struct DriveCapabilities {
     bool reports_following = false;  ///< DriveFeedback::follows_target means something
     bool homing_per_run = false;     ///< DriveCommand::homing is obeyed; else the start-up values hold
     std::uint8_t profile_buffer =
-        0;                       ///< set-points the drive takes ahead in profile position mode (SV33-E 1, SV-DA200 8); 0: mode not served
-    std::uint8_t services = 0;   ///< bit per DriveService
-    double velocity_step = 0;    ///< counts/s between two velocity set-points the drive can tell apart (XP200: 1 r/min); 0 = none
-    Duration command_latency{};  ///< worst time from encode() to effect beyond setpoint_effective() (a slow line); 0 = none
+        0;                         ///< set-points the drive takes ahead in profile position mode (SV33-E 1, SV-DA200 8); 0: mode not served
+    bool profile_replaces = true;  ///< ProfileSetpoint::immediately abandons the running set-point (SE-808X goes on after it, sheet 4.1)
+    std::uint8_t services = 0;     ///< bit per DriveService
+    double velocity_step = 0;      ///< counts/s between two velocity set-points the drive can tell apart (XP200: 1 r/min); 0 = none
+    Duration command_latency{};    ///< worst time from encode() to effect beyond setpoint_effective() (a slow line); 0 = none
 
     [[nodiscard]] constexpr bool has(DriveMode mode) const noexcept { return (modes >> static_cast<unsigned>(mode)) & 1u; }
     [[nodiscard]] constexpr bool has(DriveService service) const noexcept { return (services >> static_cast<unsigned>(service)) & 1u; }
@@ -123,7 +124,8 @@ struct DriveHomingSetup {
 /// A set-point for a drive that makes its own profile (PP, PV, PT). A changed `sequence` announces a new one; the port brings speed and
 /// ramps to the drive first, does the handshake of PP (6040h bit 4 against 6041h bit 12) and answers with DriveFeedback::profile_accepted.
 /// Target, speed and ramps are the command's position, velocity, torque, acceleration, deceleration and torque_slope; they must not
-/// change while the sequence does not. One that is never accepted was refused.
+/// change while the sequence does not, but for the deceleration of a halt, which reaches the drive where it is mapped. One that is never
+/// accepted was refused.
 struct ProfileSetpoint {
     std::uint32_t sequence = 0;  ///< 0: none
     bool relative = false;

@@ -43,8 +43,9 @@ enum class Quirk : std::uint8_t {
     standstill_bit_14,            ///< statusword bit 14: the motor stands (SV-DA200 3.1.2)
     limit_stop_is_fault,          ///< overtravel in a position mode is a fault (SV-DA200 5.3, Er21)
     torque_offset_not_in_torque,  ///< 60B2h counts in all modes but those of torque (SV-DA200 4.10)
+    ramp_before_mode_change,      ///< out of CSV, CST, PV and PT it stops along 6084h first (SV33-E 3.4.3 (3), (4), (7), (8))
 };
-inline constexpr std::size_t quirk_count = 25;
+inline constexpr std::size_t quirk_count = 26;
 
 /// What a drive does that gets a change of mode which its manual forbids.
 enum class ModeViolation : std::uint8_t {
@@ -136,9 +137,11 @@ struct DriveProfile {
     Duration homing_timeout_unit = std::chrono::seconds{1};  ///< of that object (SV33-E: 10 ms)
     std::uint8_t encoder_turn_bits = 0;  ///< width of an absolute encoder's turn counter (SV33-E 3.1.4: 16); 0: not stated
     // How the encoder is told to forget its turns (DriveService::clear_multi_turn): one of the two; neither: the drive cannot.
-    ParameterAddress clear_turns{};         ///< object that is written (SV33-E P20.05)
-    std::int64_t clear_turns_value = 0;     ///< ... with this value (SV33-E: 2)
-    std::uint16_t clear_turns_control = 0;  ///< bit of 6040h that is set for a while (TSVM 5.3.2: bit 12)
+    ParameterAddress clear_turns{};      ///< object that is written (SV33-E P20.05)
+    std::int64_t clear_turns_value = 0;  ///< ... with this value (SV33-E: 2)
+    ParameterAddress encoder_reset{};    ///< object: 1 ends its fault and its turns, seen at the next power-on (TSVM PA80); index 0: none
+    double battery_low = 0, battery_empty = 0;  ///< V of its battery: warned of below the one, turns lost below the other; 0: not stated
+    std::uint16_t clear_turns_control = 0;      ///< bit of 6040h that is set for a while (TSVM 5.3.2: bit 12)
     std::vector<Quirk> quirks;
     std::uint16_t alarm_detail_index = 0;  ///< object that tells ambiguous 603Fh apart (P21.08 = 2021h:09); 0 = none
     std::uint8_t alarm_detail_sub = 0;

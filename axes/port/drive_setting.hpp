@@ -47,6 +47,8 @@ struct UnitVariant {
     bool zero_limits_count = false;    ///< torque limits of 0 are never ignored, whatever the limit masks say (SV-DA200 P4.25 = 2)
     bool index_before_inputs = false;  ///< 60FDh: bit 16 is the index pulse, the inputs follow from bit 17 on, bit 25 is emergency stop
     bool index_probe = true;           ///< touch probes can latch on the index pulse
+    std::uint16_t status_hidden = 0;   ///< bits of 6041h that stay 0, of those that are the vendor's own (SV-DA200 P4.25 = 3)
+    bool cyclic_bit_12 = false;        ///< 6041h bit 12 stands in the cyclic modes while the drive follows, as CiA 402-2 has it
 };
 
 struct DriveUnits {
@@ -59,6 +61,47 @@ struct DriveUnits {
 struct AnalogueOutput {
     ParameterAddress value{}, selection{}, gain{};
     ParameterAddress monitor{};  ///< shows the voltage in mV
+};
+
+/// Inputs that exist in the drive's parameters only, each with a function like that of a terminal (SV33-E VDI1 to VDI16).
+struct VirtualInputs {
+    ParameterAddress enable{};                  ///< 1: they count (P23.00)
+    ParameterAddress levels{};                  ///< bit n is input n + 1 (P20.50)
+    std::vector<ParameterAddress> functions{};  ///< of each input, in order (P23.06, P23.08, ...)
+    std::int64_t servo_enable = 1;              ///< the function that enables the motor (SV33-E 8.1)
+};
+
+/// Which motor hangs on a drive that turns several kinds (SE-808X 4.4, 2000h:11).
+struct MotorObjects {
+    ParameterAddress type{};              ///< chooses the kind; index 0: one kind only, with an encoder
+    std::vector<std::int64_t> open_loop;  ///< values of it without an encoder: the actual position is the commanded one
+    ParameterAddress standby_current{};   ///< % of the current that an open-loop motor is held with at standstill
+};
+
+/// What a terminal of the drive is wired to.
+enum class InputUse : std::uint8_t { negative_limit, positive_limit, home };
+
+/// The switches on a drive's own terminals, before they become 60FDh.
+struct InputObjects {
+    std::vector<InputUse> terminals;  ///< of input 1, 2, ...; empty: nothing comes between switch and 60FDh
+    ParameterAddress polarity{};      ///< bit 0 is input 1: 0 normally open, 1 normally closed
+    Duration filter{};                ///< an active signal that lasts no longer is not seen
+};
+
+/// What a drive shows of its state and its errors on objects of its own.
+struct StateObjects {
+    struct OfAlarm {
+        std::uint16_t code = 0;  ///< 603Fh
+        std::int64_t value = 0;
+    };
+    ParameterAddress state{};            ///< index 0: none
+    std::int64_t enabled = 0, free = 0;  ///< its values with and without power in the motor
+    std::vector<OfAlarm> alarms;         ///< its values while one of these stands; others show as `free`
+    ParameterAddress error_code{};       ///< as 603Fh
+    ParameterAddress error_sub_code{};   ///< of a communication error: 1 general, 2 SYNC, 3 watchdog
+    ParameterAddress history_next{};     ///< place (from 1) of the record that the next error will be written to
+    ParameterAddress history{};          ///< first record of the ring, the others at the sub-indices behind it
+    std::uint8_t history_length = 0;
 };
 
 /// Objects that the simulated drive obeys; index 0: this drive has no such object.
@@ -76,6 +119,14 @@ struct BehaviourObjects {
     ParameterAddress parameter_tunnel{};   ///< sub 1 address (index << 8 | sub), sub 2 value, sub 3 result
     ParameterAddress following_limit{};    ///< counts of following error that are an alarm; 0: no check
     ParameterAddress probe_input[2] = {};  ///< must be 0 for the probe's input to latch
+    ParameterAddress sync_losses{};        ///< SYNC0 in a row that may be missing or out of place; one more is an alarm (SV33-E P0A.31)
+    ParameterAddress sync_deviation{};     ///< ns between two SYNC0 more or less than the cycle that put one out of place (P0A.32)
+    ParameterAddress phase_detection{};    ///< a missing mains phase is 0 a fault, 1 a warning until enabling, 2 nothing (P08.00)
+    VirtualInputs virtual_inputs{};
+    ParameterAddress least_voltage{}, greatest_voltage{};  ///< V of the supply, beyond them an alarm
+    MotorObjects motor{};
+    InputObjects inputs{};
+    StateObjects state{};
 };
 
 }  // namespace taktwerk::axes

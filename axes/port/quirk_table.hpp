@@ -42,6 +42,8 @@ inline constexpr QuirkInfo quirk_table[] = {
     {Quirk::standstill_bit_14, "standstill_bit_14", "statusword bit 14: the motor stands"},
     {Quirk::limit_stop_is_fault, "limit_stop_is_fault", "overtravel in a position mode is a fault"},
     {Quirk::torque_offset_not_in_torque, "torque_offset_not_in_torque", "60B2h counts in all modes but those of torque"},
+    {Quirk::ramp_before_mode_change, "ramp_before_mode_change",
+     "out of CSV, CST, PV and PT in motion it stops along its ramp (6084h) before it changes the mode"},
 };
 
 [[nodiscard]] constexpr const QuirkInfo* find_quirk(Quirk quirk) noexcept {

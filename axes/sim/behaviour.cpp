@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "axes/sim/communication_error.hpp"
+
 namespace taktwerk::axes::sim {
 
 namespace {
 
 constexpr std::uint16_t bit(unsigned n) { return static_cast<std::uint16_t>(1u << n); }
 constexpr std::int64_t zero_torque_ignored = 1, zero_speed_ignored = 2, velocity_offset_used = 16;
-constexpr double rated_rpm = 3000;  // of the motor that a time of acceleration refers to; no object tells it
 
 AlarmCode alarm_of(const DriveProfile& profile, DriveAlarmKind kind, AlarmCode otherwise) {
     for (const auto& row : profile.alarms)
@@ -21,46 +22,54 @@ bool of_position(std::int64_t mode) noexcept { return mode == mode::cyclic_posit
 
 }  // namespace
 
-void BehaviourValue::power_on(ecat::sim::ObjectDictionary& dictionary, const DriveProfile& profile, ParameterAddress object) {
-    entry_ = object.index ? dictionary.find(object.index, object.sub) : nullptr;
-    at_power_on_ = entry_ ? entry_->get() : 0;
-    latched_ = false;
-    for (const auto& p : profile.parameters)
-        if (p.address.index == object.index && p.address.sub == object.sub) latched_ = p.effect == ParameterEffect::after_restart;
-}
-
 Behaviour::Behaviour(const DriveProfile& profile)
-    : profile_(profile),
+    : torque_offset_not_in_torque_(profile.has(Quirk::torque_offset_not_in_torque)),
+      limit_stop_is_fault_(profile.has(Quirk::limit_stop_is_fault)),
+      clock_bit_8_(profile.has(Quirk::clock_bit_8)),
+      standstill_bit_14_(profile.has(Quirk::standstill_bit_14)),
+      bus_control_value_(profile.behaviour.bus_control_value),
+      servo_enable_function_(profile.behaviour.virtual_inputs.servo_enable),
       lost_data_alarm_(alarm_of(profile, DriveAlarmKind::communication, {0x7500})),
-      lost_sync_alarm_(alarm_of(profile, DriveAlarmKind::sync_lost, {0x8700})),
+      lost_sync_alarm_(alarm_of(profile, DriveAlarmKind::sync_lost, lost_data_alarm_)),
       negative_limit_alarm_(alarm_of(profile, DriveAlarmKind::negative_limit, {0x5444})),
       positive_limit_alarm_(alarm_of(profile, DriveAlarmKind::positive_limit, {0x5443})),
-      velocity_scale_(profile.velocity_counts_per_unit) {}
+      bus_control_(profile, profile.behaviour.bus_control),
+      absolute_targets_(profile, profile.behaviour.absolute_targets),
+      limit_masks_(profile, profile.behaviour.limit_masks),
+      lost_cycles_(profile, profile.behaviour.lost_target_cycles),
+      lost_time_(profile, profile.behaviour.lost_data_time),
+      sync_type_(profile, profile.behaviour.sync_type),
+      output_control_(profile, profile.behaviour.output_control),
+      following_limit_(profile, profile.behaviour.following_limit),
+      sync_losses_(profile, profile.behaviour.sync_losses),
+      sync_deviation_(profile, profile.behaviour.sync_deviation),
+      phase_detection_(profile, profile.behaviour.phase_detection),
+      inputs_count_(profile, profile.behaviour.virtual_inputs.enable),
+      input_levels_(profile, profile.behaviour.virtual_inputs.levels),
+      probe_input_{BehaviourValue(profile, profile.behaviour.probe_input[0]), BehaviourValue(profile, profile.behaviour.probe_input[1])},
+      units_(profile) {
+    for (const auto& function : profile.behaviour.virtual_inputs.functions) input_functions_.emplace_back(profile, function);
+    for (const auto& output : profile.behaviour.analogue_outputs)
+        analogue_.push_back({{profile, output.value}, {profile, output.selection}, {profile, output.gain}, output.monitor});
+    if (profile.behaviour.state.error_sub_code.index == 0) return;
+    lost_data_alarm_.detail = communication_error::general;
+    lost_sync_alarm_.detail = communication_error::sync;
+}
 
 void Behaviour::power_on(ecat::sim::ObjectDictionary& dictionary, Instant now) {
-    const auto& b = profile_.behaviour;
-    const auto on = [&](BehaviourValue& value, ParameterAddress object) { value.power_on(dictionary, profile_, object); };
-    on(bus_control_, b.bus_control);
-    on(absolute_targets_, b.absolute_targets);
-    on(limit_masks_, b.limit_masks);
-    on(lost_cycles_, b.lost_target_cycles);
-    on(lost_time_, b.lost_data_time);
-    on(sync_type_, b.sync_type);
-    on(output_control_, b.output_control);
-    on(following_limit_, b.following_limit);
-    on(unit_, profile_.units.object);
-    on(turn_, profile_.units.counts_per_revolution);
-    for (std::size_t i = 0; i < probe_input_.size(); ++i) on(probe_input_[i], b.probe_input[i]);
-    analogue_.clear();
-    for (const auto& output : b.analogue_outputs) {
-        auto& a = analogue_.emplace_back();
-        on(a.value, output.value);
-        on(a.selection, output.selection);
-        on(a.gain, output.gain);
-        a.monitor = output.monitor.index ? dictionary.find(output.monitor.index, output.monitor.sub) : nullptr;
+    for (auto* value :
+         {&bus_control_, &absolute_targets_, &limit_masks_, &lost_cycles_, &lost_time_, &sync_type_, &output_control_, &following_limit_,
+          &sync_losses_, &sync_deviation_, &phase_detection_, &inputs_count_, &input_levels_, &probe_input_[0], &probe_input_[1]})
+        value->power_on(dictionary);
+    for (auto& function : input_functions_) function.power_on(dictionary);
+    for (auto& a : analogue_) {
+        for (auto* value : {&a.value, &a.selection, &a.gain}) value->power_on(dictionary);
+        a.monitor = a.monitor_object.index ? dictionary.find(a.monitor_object.index, a.monitor_object.sub) : nullptr;
     }
+    units_.power_on(dictionary);
     outputs_ = dictionary.find(0x60FE, 1);
     following_ = operational_ = sync0_ = fresh_ = false;
+    sync_watch_.restart({});
     data_at_ = sync_at_ = now;
 }
 
@@ -69,35 +78,30 @@ void Behaviour::operational(bool op, Instant now) noexcept {
     data_at_ = sync_at_ = now;
 }
 
-void Behaviour::choose_units(Cia402Axis& axis) noexcept {
-    if (!unit_.present()) return;
-    for (const auto& v : profile_.units.variants)
-        if (v.value == unit_.get()) variant_ = v;
-    const auto turn = turn_.present() && turn_.get() > 0 ? static_cast<double>(turn_.get()) : 1.0;
-    velocity_scale_ = variant_.velocity == VelocityUnit::rpm ? 60.0 / turn : profile_.velocity_counts_per_unit;
-    axis.velocity_unit(velocity_scale_);
-}
-
 void Behaviour::exchange_due(const ecat::sim::ExchangeCause& cause, Instant now) noexcept {
     fresh_ = cause.outputs;
     if (cause.outputs) data_at_ = now;
-    if (cause.sync0) sync_at_ = now;
+    if (!cause.sync0) return;
+    sync_at_ = now;
+    sync_watch_.signal(now, sync_deviation());
 }
 
 void Behaviour::obey(AxisInputs& in, Cia402Axis& axis) noexcept {
-    choose_units(axis);
-    if (bus_control_.present() && bus_control_.get() != profile_.behaviour.bus_control_value) {
+    units_.choose();
+    if (units_.present()) axis.velocity_unit(units_.velocity_scale());
+    if (bus_control_.present() && bus_control_.get() != bus_control_value_) {
         in.control = 0;
         in.mode = mode::none;
     }
     if (following_limit_.present()) axis.following_limit(static_cast<double>(following_limit_.get()));
     obey_limits(in);
-    obey_units(in);
+    units_.convert(in);
     obey_probes(in);
     obey_position(in, axis);
-    if (profile_.has(Quirk::torque_offset_not_in_torque) && mode::of_torque(in.mode)) in.torque_offset = 0;
+    if (torque_offset_not_in_torque_ && mode::of_torque(in.mode)) in.torque_offset = 0;
     if (limit_masks_.present() && (limit_masks_.get() & velocity_offset_used) == 0) in.velocity_offset = 0;
-    if (profile_.has(Quirk::limit_stop_is_fault)) stop_at_limits(in, axis);
+    if (limit_stop_is_fault_) stop_at_limits(in, axis);
+    watch_enable(in, axis);
 }
 
 /// Targets that come as increments, and those that do not come.
@@ -125,7 +129,7 @@ void Behaviour::obey_position(AxisInputs& in, const Cia402Axis& axis) noexcept {
 void Behaviour::obey_limits(AxisInputs& in) const noexcept {
     const auto masks = limit_masks_.get();
     // A drive whose manual says nothing of zeros is taken to ignore them.
-    const bool torque_ignored = !limit_masks_.present() || ((masks & zero_torque_ignored) != 0 && !variant_.zero_limits_count);
+    const bool torque_ignored = !limit_masks_.present() || ((masks & zero_torque_ignored) != 0 && !units_.variant().zero_limits_count);
     for (auto* limit : {&in.torque_limit, &in.torque_limit_positive, &in.torque_limit_negative})
         if (*limit == 0 && torque_ignored) *limit = AxisInputs::no_limit;
     // As a number 0 stands for "no limit" in the axis: a limit of 0 that counts is as good as one count a second.
@@ -133,21 +137,11 @@ void Behaviour::obey_limits(AxisInputs& in) const noexcept {
         in.maximum_velocity = 1;
 }
 
-void Behaviour::obey_units(AxisInputs& in) const noexcept {
-    if (!unit_.present()) return;
-    in.homing.fast /= velocity_scale_;
-    in.homing.slow /= velocity_scale_;
-    if (variant_.acceleration == AccelerationUnit::time && in.homing.acceleration > 0) {
-        const double rated = rated_rpm / 60.0 * static_cast<double>(std::max<std::int64_t>(1, turn_.get()));
-        in.homing.acceleration = rated / (in.homing.acceleration / 1000.0);
-    }
-}
-
 void Behaviour::obey_probes(AxisInputs& in) const noexcept {
     for (unsigned i = 0; i < probe_input_.size(); ++i) {
         const unsigned shift = 8 * i;
         const bool index = (in.probe_function >> shift & 4u) != 0;
-        const bool dead = index ? !variant_.index_probe : probe_input_[i].present() && probe_input_[i].get() != 0;
+        const bool dead = index ? !units_.variant().index_probe : probe_input_[i].present() && probe_input_[i].get() != 0;
         if (dead) in.probe_function = static_cast<std::uint16_t>(in.probe_function & ~(0xFFu << shift));
     }
 }
@@ -166,14 +160,17 @@ void Behaviour::stop_at_limits(const AxisInputs& in, Cia402Axis& axis) noexcept 
 
 void Behaviour::show(AxisOutputs& out, const Cia402Axis& axis) noexcept {
     demand_ = out.demand;
-    if (profile_.has(Quirk::clock_bit_8) && sync0_ && watches_sync() && clock_locks_) out.status |= bit(8);
-    if (profile_.has(Quirk::standstill_bit_14) && axis.stands()) out.status |= bit(14);
+    const auto& variant = units_.variant();
+    if (clock_bit_8_ && sync0_ && watches_sync() && clock_locks_) out.status |= bit(8);
+    if (standstill_bit_14_ && axis.stands()) out.status |= bit(14);
+    if (variant.cyclic_bit_12 && mode::cyclic(out.mode) && axis.state() == Cia402Axis::State::enabled) out.status |= bit(12);
+    out.status = static_cast<std::uint16_t>(out.status & ~variant.status_hidden);
     // The drive's inputs 1 and 2 are those of the probes; SV-DA200 4.6.
-    if (unit_.present()) {
-        const unsigned first = variant_.index_before_inputs ? 17 : 16;
+    if (units_.present()) {
+        const unsigned first = variant.index_before_inputs ? 17 : 16;
         for (unsigned i = 0; i < 2; ++i)
             if (axis.probe_input(i)) out.digital_inputs |= 1u << (first + i);
-        if (variant_.index_before_inputs && axis.at_index_pulse()) out.digital_inputs |= 1u << 16;
+        if (variant.index_before_inputs && axis.at_index_pulse()) out.digital_inputs |= 1u << 16;
     }
     set_analogue_outputs();
 }
@@ -188,6 +185,12 @@ void Behaviour::set_analogue_outputs() noexcept {
 }
 
 void Behaviour::watch(Cia402Axis& axis, Instant now) noexcept {
+    watch_data(axis, now);
+    watch_sync(axis, now);
+    watch_mains(axis);
+}
+
+void Behaviour::watch_data(Cia402Axis& axis, Instant now) noexcept {
     if (!operational_ || !lost_time_.present() || lost_time_.get() <= 0) return;
     const bool enabled = axis.state() == Cia402Axis::State::enabled || axis.state() == Cia402Axis::State::quick_stop;
     const Duration patience = std::chrono::milliseconds{lost_time_.get()};
@@ -197,6 +200,36 @@ void Behaviour::watch(Cia402Axis& axis, Instant now) noexcept {
     }
     if (sync0_ && watches_sync() && now - sync_at_ > patience) axis.raise(lost_sync_alarm_);
     else if (now - data_at_ > patience) axis.raise(lost_data_alarm_);
+}
+
+/// SV33-E 5.4, E.D32.
+void Behaviour::watch_sync(Cia402Axis& axis, Instant now) noexcept {
+    if (!operational_ || !sync0_ || !sync_losses_.present()) return;
+    if (sync_watch_.lost(now, sync_deviation()) > sync_losses_.get()) axis.raise(lost_sync_alarm_);
+}
+
+/// SV33-E 5.4 E.217, 5.5 A.222, P08.00. What "1: fault and warning" means is not stated; here it warns until the motor gets its power.
+void Behaviour::watch_mains(Cia402Axis& axis) noexcept {
+    if (!phase_detection_.present()) return;
+    const auto detection = phase_missing_ ? phase_detection_.get() : 2;
+    const bool fault = detection == 0 || (detection == 1 && (phase_fault_ || axis.powered()));
+    const bool warning = detection == 1 && !fault;
+    if (fault != phase_fault_) axis.cause(DriveAlarmKind::phase_lost, phase_fault_ = fault);
+    if (warning != phase_warned_) axis.cause(DriveAlarmKind::phase_warning, phase_warned_ = warning);
+}
+
+/// SV33-E 5.4, E.418: enabled from the bus while an input of the drive enables it too; it lasts until one of them lets go.
+void Behaviour::watch_enable(const AxisInputs& in, Cia402Axis& axis) noexcept {
+    constexpr unsigned enable_operation = 0x0F;
+    const bool twice = enabled_by_input() && (in.control & enable_operation) == enable_operation;
+    if (twice != enabled_twice_) axis.cause(DriveAlarmKind::enabled_twice, enabled_twice_ = twice);
+}
+
+bool Behaviour::enabled_by_input() const noexcept {
+    if (inputs_count_.get() != 1) return false;
+    for (std::size_t i = 0; i < input_functions_.size(); ++i)
+        if (input_functions_[i].get() == servo_enable_function_ && (input_levels_.get() >> i & 1) != 0) return true;
+    return false;
 }
 
 std::uint32_t Behaviour::digital_outputs() const noexcept {

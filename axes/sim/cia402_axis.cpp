@@ -26,16 +26,29 @@ IndexPulses Cia402Axis::index_pulses() const noexcept {
     return {plant_.config().index_pulse, static_cast<double>(personality_.counts_per_revolution)};
 }
 
-SwitchStates Cia402Axis::switches() const noexcept { return {plant_.negative_limit(), plant_.positive_limit(), plant_.home_switch()}; }
+void Cia402Axis::read_switches(Duration dt) noexcept {
+    inputs_.step({plant_.negative_limit(), plant_.positive_limit(), plant_.home_switch()}, dt);
+}
+
+void Cia402Axis::open_loop(std::optional<double> standby) noexcept {
+    stepper_.reset();
+    if (standby) stepper_.emplace(*standby);
+}
 
 void Cia402Axis::inner_step() noexcept {
     const double dt = inner_seconds;
-    if (energised()) torque_ = state_ == State::enabled && !halted_ ? enabled_torque(dt) : stopping_torque(dt);
+    const bool follows = state_ == State::enabled && !halted_ && !ramps_out_ && travel_stop_ == 0;
+    if (energised()) torque_ = follows ? enabled_torque(dt) : stopping_torque(dt);
     else torque_ = phases_shorted_ ? brake_torque() : 0;
+    if (stepper_ && !energised()) {
+        demand_.velocity = 0;
+        stepper_->release();
+    }
     torque_ = std::clamp(torque_, torque_least_, torque_most_);
     step_brake();
     const double before = plant_.position();
     plant_.step(dt, torque_);
+    read_switches(inner_period);
     step_probes(before);
     end_stop();
     end_self_test();
@@ -96,8 +109,10 @@ void Cia402Axis::exchange(const AxisInputs& in, Duration cycle, AxisOutputs& out
     take_halt(in);
     for (std::size_t i = 0; i < probes_.size(); ++i) probes_[i].command(static_cast<std::uint8_t>(in.probe_function >> (8 * i)));
     if (state_ == State::enabled) take_targets(in, cycle);
+    watch_travel(in);
     homing_bit_ = (in.control & 0x10u) != 0;
     fill(out);
+    reached_told_ = target_reached_;
 }
 
 }  // namespace taktwerk::axes::sim

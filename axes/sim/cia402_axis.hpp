@@ -15,10 +15,12 @@
 #include "axes/sim/axis_objects.hpp"
 #include "axes/sim/homing_run.hpp"
 #include "axes/sim/mode_codes.hpp"
+#include "axes/sim/open_loop_motor.hpp"
 #include "axes/sim/personality.hpp"
 #include "axes/sim/plant.hpp"
 #include "axes/sim/profile_position.hpp"
 #include "axes/sim/servo_loop.hpp"
+#include "axes/sim/switch_inputs.hpp"
 #include "axes/sim/touch_probe.hpp"
 #include "axes/sim/warning_list.hpp"
 #include "core/time.hpp"
@@ -77,12 +79,22 @@ public:
     void velocity_unit(double counts_per_unit) noexcept { personality_.velocity_counts_per_unit = counts_per_unit; }
     void following_limit(double counts) noexcept { personality_.following_error_limit = counts; }
 
+    /// A motor without an encoder: what the drive takes for its position is its own command. `standby`: share of its torque that holds it at
+    /// standstill; nothing: it has an encoder. Before power_on().
+    void open_loop(std::optional<double> standby) noexcept;
+    /// Terminals between the switches of the plant and 60FDh. Before power_on().
+    void wire_inputs(const InputObjects& inputs, std::int64_t polarity) noexcept { inputs_.wire(inputs, polarity); }
+
     /// Of an absolute encoder; what an empty one has lost shows at the next power_on().
     void battery(Battery state) noexcept { battery_ = state; }
+    /// The same by the battery's voltage, where the profile has the thresholds (TSVM 7.2: 3.1 V and 2.5 V).
+    void battery_voltage(double volts) noexcept;
     /// The encoder's own service, refused while the motor has power: what it complains of is forgotten, and its turns if asked for (SV33-E
     /// P20.05 = 1, 2; TSVM control word bit 12 does the second).
     void reset_encoder() noexcept;
     void clear_turns() noexcept;
+    /// The same for a drive that sees it at its next power_on() only (TSVM 7.2.1: PA80).
+    void order_encoder_reset() noexcept;
 
     [[nodiscard]] const Plant& plant() const noexcept { return plant_; }
     [[nodiscard]] State state() const noexcept { return state_; }
@@ -118,10 +130,14 @@ private:
     void step_probes(double before) noexcept;
     void take_torque_limits(const AxisInputs& in) noexcept;
     [[nodiscard]] ProbeSignal probe_signal(std::size_t probe) const noexcept;
-    [[nodiscard]] double actual() const noexcept { return plant_.position() - zero_; }
+    /// What the drive takes for the place and the speed of its motor, in the plant's coordinates.
+    [[nodiscard]] double seen_position() const noexcept { return stepper_ ? demand_.position : plant_.position(); }
+    [[nodiscard]] double seen_velocity() const noexcept { return stepper_ ? demand_.velocity : plant_.velocity(); }
+    [[nodiscard]] double actual() const noexcept { return seen_position() - zero_; }
     [[nodiscard]] double quantised() const noexcept;
     [[nodiscard]] IndexPulses index_pulses() const noexcept;
-    [[nodiscard]] SwitchStates switches() const noexcept;
+    void read_switches(Duration dt) noexcept;
+    [[nodiscard]] const SwitchStates& switches() const noexcept { return inputs_.states(); }
     [[nodiscard]] double torque_limit() const noexcept { return plant_.config().rated_torque * plant_.config().maximum_torque; }
     // cia402_power.cpp
     void command(const AxisInputs& in) noexcept;
@@ -132,16 +148,25 @@ private:
     void take_targets(const AxisInputs& in, Duration cycle) noexcept;
     [[nodiscard]] bool may_change_mode() noexcept;
     void forget_targets() noexcept;
+    [[nodiscard]] bool stops_before_mode_change() noexcept;
     [[nodiscard]] double enabled_torque(double dt) noexcept;
+    [[nodiscard]] double position_torque(double dt) noexcept;
+    [[nodiscard]] double velocity_torque(double velocity, double acceleration, double limit, double dt) noexcept;
     // cia402_cyclic.cpp
     void take_position_target(const AxisInputs& in, double seconds) noexcept;
-    [[nodiscard]] double within_software_limits(double wanted, const AxisInputs& in) noexcept;
     void take_velocity_target(const AxisInputs& in) noexcept;
     void take_torque_target(const AxisInputs& in) noexcept;
     void take_torque_offset(const AxisInputs& in) noexcept;
     void interpolate(double dt) noexcept;
     [[nodiscard]] double with_offset(double torque) const noexcept;
     [[nodiscard]] double torque_of(std::int64_t raw) const noexcept;
+    // cia402_travel.cpp
+    [[nodiscard]] double within_software_limits(double wanted, const AxisInputs& in) noexcept;
+    [[nodiscard]] bool limits_count(const AxisInputs& in) const noexcept;
+    [[nodiscard]] int past_switch() const noexcept;
+    [[nodiscard]] int past_software_limit(const AxisInputs& in) const noexcept;
+    [[nodiscard]] double pushes(const AxisInputs& in) const noexcept;
+    void watch_travel(const AxisInputs& in) noexcept;
     // cia402_homing.cpp
     void take_homing_start(const AxisInputs& in) noexcept;
     void homing_step(double dt) noexcept;
@@ -175,7 +200,10 @@ private:
     [[nodiscard]] double brake_torque() const noexcept;
     void end_stop() noexcept;
     [[nodiscard]] bool energised() const noexcept;
-    [[nodiscard]] bool has_brake() const noexcept { return personality_.brake_hold > Duration::zero(); }
+    [[nodiscard]] bool has_brake() const noexcept {
+        return personality_.brake_hold > Duration::zero() || personality_.brake_moving_wait > Duration::zero();
+    }
+    [[nodiscard]] bool brake_told_to_close() const noexcept;
     [[nodiscard]] bool too_early() const noexcept { return now_ < commands_from_; }
     void wind_down(StopCause cause) noexcept;
     [[nodiscard]] bool starts_too_fast() const noexcept {
@@ -207,6 +235,8 @@ private:
     Personality personality_;
     Plant plant_;
     ServoLoop loop_;
+    std::optional<OpenLoopMotor> stepper_;  ///< the motor has no encoder
+    SwitchInputs inputs_;
     HomingRun homing_;
     std::array<TouchProbe, 2> probes_;
     bool blank_ = false;
@@ -219,11 +249,12 @@ private:
     double target_ = 0;       ///< newest CSP target, plant coordinates
     AxisInputs settings_;     ///< as of the last exchange
     StopOrder stop_;
-    bool stop_done_ = false, halted_ = false, phases_shorted_ = false;
+    bool stop_done_ = false, halted_ = false, ramps_out_ = false, phases_shorted_ = false;
     ProfilePosition profile_position_;
     double velocity_target_ = 0, torque_target_ = 0;  ///< of the profile modes: what the ramps lead to
-    bool limited_ = false;                            ///< bit 11: a target was clipped
-    bool target_reached_ = false;
+    bool limited_ = false;                            ///< bit 11: a target was clipped, or the motor is past a software limit
+    int travel_stop_ = 0;                             ///< -1, 1: stopped behind the negative or positive end of the travel
+    bool target_reached_ = false, reached_told_ = false;
     Instant in_window_since_{};
     std::optional<Instant> mode_changed_at_;
     std::int64_t steps_left_ = 0;  ///< inner steps until the target is reached
@@ -237,8 +268,10 @@ private:
     std::int64_t home_offset_ = 0, home_position_method_ = 0;
     AbsoluteEncoder encoder_;
     Battery battery_;
-    double stored_shift_ = 0;      ///< EEPROM: what an absolute encoder reads where the drive counts 0
-    AlarmCode encoder_complaint_;  ///< stands until reset_encoder(); code 0: none
+    std::optional<double> battery_volts_;
+    bool encoder_fault_kept_ = false, encoder_reset_ordered_ = false;  ///< in the encoder, over power cycles (TSVM 7.2.1)
+    double stored_shift_ = 0;                                          ///< EEPROM: what an absolute encoder reads where the drive counts 0
+    AlarmCode encoder_complaint_;                                      ///< stands until reset_encoder(); code 0: none
     std::uint32_t strikes_ = 0;
     double largest_increment_ = 0;
     Instant commands_from_{};  ///< set-points are obeyed from here on
@@ -250,6 +283,8 @@ private:
     Duration overload_lasts_{};  ///< above Personality::torque_overload
     bool winding_down_ = false;  ///< power is to go, but the motor still stops or holds for the brake
     Instant winding_down_until_{};
+    Instant power_went_{};      ///< last time that the motor had power
+    Duration brake_closing_{};  ///< since the brake was told to
     bool brake_closed_ = false, encoder_failed_ = false;
     std::int64_t frozen_position_ = 0;
     std::uint32_t early_commands_ = 0;

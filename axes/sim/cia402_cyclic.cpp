@@ -50,15 +50,6 @@ void Cia402Axis::take_position_target(const AxisInputs& in, double seconds) noex
     demand_step_ = (target_ - demand_.position) / (static_cast<double>(steps_left_) * inner_seconds);
 }
 
-/// SV33-E 3.4.4(2): in the position modes a target beyond 607Dh is moved to the limit, and nothing else happens.
-double Cia402Axis::within_software_limits(double wanted, const AxisInputs& in) noexcept {
-    const bool on = in.software_limits == SoftwareLimits::on || (in.software_limits == SoftwareLimits::after_homing && homed_);
-    if (!on || in.software_minimum >= in.software_maximum) return wanted;
-    const double held = std::clamp(wanted, static_cast<double>(in.software_minimum), static_cast<double>(in.software_maximum));
-    limited_ = held != wanted;
-    return held;
-}
-
 void Cia402Axis::interpolate(double dt) noexcept {
     if (steps_left_ == 0) {
         demand_.velocity = 0;

@@ -48,11 +48,13 @@ Cia402Device::Cia402Device(const DriveProfile& profile, const std::vector<AxisSe
     : parameters_(profile),
       homing_timeout_(profile.homing_timeout),
       clear_turns_(profile.clear_turns),
+      encoder_reset_(profile.encoder_reset),
       homing_timeout_unit_(to_seconds(profile.homing_timeout_unit)),
       clear_turns_value_(profile.clear_turns_value),
       clear_turns_control_(profile.clear_turns_control),
       object_offset_(profile.object_offset),
       tunnel_(profile.behaviour.parameter_tunnel),
+      display_(profile.behaviour.state, axes.empty() ? std::uint16_t{0} : axes[0].personality.communication_alarm.code),
       bus_state_address_(profile.behaviour.bus_state),
       detail_index_(profile.alarm_detail_index),
       detail_sub_(profile.alarm_detail_sub),
@@ -66,6 +68,7 @@ Cia402Device::Cia402Device(const DriveProfile& profile, const std::vector<AxisSe
         auto& axis = axes_.emplace_back();
         axis.model = std::make_unique<Cia402Axis>(setup.plant, setup.personality);
         axis.behaviour = std::make_unique<Behaviour>(profile);
+        axis.motor = std::make_unique<MotorBehaviour>(profile);
     }
 }
 
@@ -86,10 +89,12 @@ void Cia402Device::power_on(ecat::sim::ObjectDictionary& dictionary, Instant now
         const auto own = [&](ParameterAddress a) { return a.index ? at(a.index, a.sub) : nullptr; };
         axes_[i].homing_timeout = own(homing_timeout_);
         axes_[i].clear_turns = own(clear_turns_);
+        axes_[i].encoder_reset = own(encoder_reset_);
         axes_[i].stop_values.clear();
         for (const auto& stop : stops_)
             axes_[i].stop_values.push_back(stop.object.index ? at(stop.object.index, stop.object.sub) : nullptr);
         axes_[i].emergency_torque = emergency_torque_.index ? at(emergency_torque_.index, emergency_torque_.sub) : nullptr;
+        axes_[i].motor->power_on(dictionary, *axes_[i].model);
         axes_[i].model->power_on(now);
         axes_[i].behaviour->power_on(dictionary, now);
         parameters_.check_settings(static_cast<unsigned>(i), *axes_[i].model);
@@ -100,6 +105,7 @@ void Cia402Device::power_on(ecat::sim::ObjectDictionary& dictionary, Instant now
     missed_in_a_row_ = 0;
     alarm_detail_ = detail_index_ ? dictionary.find(detail_index_, detail_sub_) : nullptr;
     tunnel_.power_on(dictionary);
+    display_.power_on(dictionary);
     bus_state_ = bus_state_address_.index ? dictionary.find(bus_state_address_.index, bus_state_address_.sub) : nullptr;
     operational_ = false;
     exchange(now);  // the inputs show the truth from the first SAFEOP cycle on
@@ -115,7 +121,7 @@ void Cia402Device::power_off(Instant now) {
 
 std::uint16_t Cia402Device::refuse(ecat::sim::EsmState from, ecat::sim::EsmState to, const ecat::sim::SyncSettings& settings) {
     if (settings.sync0_active) cycle_ = settings.sync0_cycle;
-    for (auto& axis : axes_) axis.behaviour->synchronised(settings.sync0_active);
+    for (auto& axis : axes_) axis.behaviour->synchronised(settings.sync0_active, settings.sync0_cycle);
     if (refused_code_ != 0 && to == refused_state_) return refused_code_;
     // 0036h: invalid SYNC0 cycle time (ETG.1000.6 table of AL status codes).
     if (to == ecat::sim::EsmState::safeop && from == ecat::sim::EsmState::preop && settings.sync0_active &&
@@ -185,6 +191,10 @@ void Cia402Device::exchange(Instant now) {
                     break;
                 }
         put(alarm_detail_, detail);
+        if (&axis == &axes_.front()) {
+            if ((out.status & status_fault) != 0 && !axis.faulted) display_.remember(out.error_code);
+            display_.show(axis.model->powered(), out.error_code, out.error_detail);
+        }
         announce(axis, (out.status & status_fault) != 0, out.error_code, static_cast<std::uint32_t>(detail));
     }
     cause_ = {};
@@ -194,6 +204,8 @@ void Cia402Device::serve_encoder(OneAxis& axis, std::uint16_t control) {
     const bool asked = (control & clear_turns_control_) != 0;
     if (asked && !axis.clear_asked) axis.model->clear_turns();
     axis.clear_asked = asked;
+    // PA80 stays as it was written until power goes: it is never stored (TSVM 7.2.1).
+    if (axis.encoder_reset && (axis.encoder_reset->get() & 1) != 0) axis.model->order_encoder_reset();
     if (!axis.clear_turns || axis.clear_turns->get() == 0) return;
     if (axis.clear_turns->get() == clear_turns_value_) axis.model->clear_turns();
     else axis.model->reset_encoder();

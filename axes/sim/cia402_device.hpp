@@ -11,7 +11,9 @@
 #include "axes/sim/behaviour.hpp"
 #include "axes/sim/cia402_axis.hpp"
 #include "axes/sim/drive_parameters.hpp"
+#include "axes/sim/motor_behaviour.hpp"
 #include "axes/sim/parameter_tunnel.hpp"
+#include "axes/sim/state_display.hpp"
 #include "ecat/sim/device_model.hpp"
 #include "ecat/sim/object_dictionary.hpp"
 
@@ -47,6 +49,14 @@ public:
     void main_power(bool on) noexcept {
         for (auto& axis : axes_) axis.model->main_power(on);
     }
+    /// Its mains have all of their phases.
+    void mains_complete(bool complete) noexcept {
+        for (auto& axis : axes_) axis.behaviour->mains_complete(complete);
+    }
+    /// Volts of that supply, where the drive has limits of its own for it (SE-808X 4.4, 2000h:14 and :15).
+    void supply_voltage(double volts) noexcept {
+        for (auto& axis : axes_) axis.motor->supply(volts, *axis.model);
+    }
     /// An alarm by its number, with what the profile says of it: of the whole drive, or of one axis.
     void raise(std::size_t axis, std::uint16_t code) noexcept;
 
@@ -61,8 +71,9 @@ private:
     struct OneAxis {
         std::unique_ptr<Cia402Axis> model;
         std::unique_ptr<Behaviour> behaviour;
+        std::unique_ptr<MotorBehaviour> motor;
         std::vector<Entry*> commands, settings, answers;  ///< in the order of object_table.hpp; null: this drive has it not
-        Entry *homing_timeout = nullptr, *clear_turns = nullptr;
+        Entry *homing_timeout = nullptr, *clear_turns = nullptr, *encoder_reset = nullptr;
         bool clear_asked = false;         ///< the control word's bit stood in the exchange before
         bool faulted = false;             ///< as announced
         std::uint16_t common = 0;         ///< alarm of the whole drive that it shows
@@ -78,12 +89,13 @@ private:
     void share_common_alarm() noexcept;
     std::vector<OneAxis> axes_;
     DriveParameters parameters_;
-    ParameterAddress homing_timeout_, clear_turns_;
+    ParameterAddress homing_timeout_, clear_turns_, encoder_reset_;
     double homing_timeout_unit_;  ///< s
     std::int64_t clear_turns_value_;
     std::uint16_t clear_turns_control_;
     std::uint16_t object_offset_;
     ParameterTunnel tunnel_;
+    StateDisplay display_;  ///< of the first axis
     ParameterAddress bus_state_address_;
     Entry *alarm_detail_ = nullptr, *bus_state_ = nullptr;
     ecat::sim::ExchangeCause cause_;

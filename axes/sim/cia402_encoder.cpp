@@ -8,16 +8,21 @@ void Cia402Axis::read_encoder() noexcept { zero_ = plant_.position() - encoder_.
 
 void Cia402Axis::wake_encoder() noexcept {
     encoder_complaint_ = {};
+    if (stepper_) demand_ = {plant_.position(), 0, 0};
     if (!personality_.absolute_encoder) {
         zero_ = plant_.position();
         homed_ = false;
         return;
     }
-    if (battery_ == Battery::empty) {
+    const bool empty = battery_ == Battery::empty;
+    if (empty || encoder_reset_ordered_) {
         encoder_.forget_turns(plant_.position());
         homed_ = false;
-        encoder_complaint_ = personality_.reference_lost_alarm;
     }
+    if (empty) encoder_fault_kept_ = personality_.encoder_keeps_fault;
+    else if (encoder_reset_ordered_) encoder_fault_kept_ = false;
+    encoder_reset_ordered_ = false;
+    if (empty || encoder_fault_kept_) encoder_complaint_ = personality_.reference_lost_alarm;
     read_encoder();
     raise_or_warn(encoder_complaint_);
 }
@@ -33,7 +38,17 @@ void Cia402Axis::watch_encoder() noexcept {
 }
 
 bool Cia402Axis::battery_low() const noexcept {
-    return personality_.absolute_encoder && battery_ == Battery::low && personality_.battery_low_alarm.code != 0;
+    const bool low = battery_volts_ ? *battery_volts_ < personality_.battery_low : battery_ == Battery::low;
+    return personality_.absolute_encoder && low && personality_.battery_low_alarm.code != 0;
+}
+
+void Cia402Axis::battery_voltage(double volts) noexcept {
+    battery_volts_ = volts;
+    battery_ = volts < personality_.battery_empty ? Battery::empty : volts < personality_.battery_low ? Battery::low : Battery::good;
+}
+
+void Cia402Axis::order_encoder_reset() noexcept {
+    if (personality_.absolute_encoder && !energised()) encoder_reset_ordered_ = true;
 }
 
 bool Cia402Axis::battery_warns() const noexcept { return battery_low() && personality_.battery_low_alarm.warning; }

@@ -8,7 +8,7 @@
 namespace taktwerk::axes::sim {
 
 HomingView Cia402Axis::homing_view() const noexcept {
-    return {switches(), plant_.position(), std::abs(torque_) / torque_limit(), stands(), index_pulses()};
+    return {switches(), seen_position(), std::abs(torque_) / torque_limit(), stands(), index_pulses()};
 }
 
 void Cia402Axis::take_homing_start(const AxisInputs& in) noexcept {

@@ -16,6 +16,9 @@ void Cia402Axis::power_on(Instant now) noexcept {
     encoder_failed_ = winding_down_ = phases_shorted_ = false;
     mode_changed_at_.reset();
     brake_closed_ = has_brake();
+    brake_closing_ = plant_.config().brake_closing;
+    power_went_ = now;
+    read_switches({});
     for (auto& probe : probes_) probe.command(0);
     homing_.cancel();
     hidden_alarm_ = {};
@@ -48,13 +51,13 @@ void Cia402Axis::enter(State state) noexcept {
     if (state == State::enabled && state_ != State::enabled) {
         brake_opens_ = now_ + personality_.brake_release;
         commands_from_ = now_ + std::max(personality_.brake_release, personality_.deaf_after_enable);
-        demand_ = {plant_.position(), 0, 0};
+        demand_ = {seen_position(), 0, 0};
         forget_targets();
         strikes_ = 0;
         loop_.reset();
     }
     if (state != State::enabled) homing_.cancel();
-    if (state != State::enabled) halted_ = false;
+    if (state != State::enabled) halted_ = ramps_out_ = false;
     if (state == State::enabled || state == State::not_ready) phases_shorted_ = false;
     if (state == State::quick_stop) begin_stop(stop_for(StopCause::quick_stop));
     if (state == State::fault_reaction) begin_stop(stop_for(StopCause::fault));

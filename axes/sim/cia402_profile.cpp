@@ -37,8 +37,13 @@ void Cia402Axis::take_profile_position(const AxisInputs& in) noexcept {
     target.limits.velocity = std::min(wanted, speed_limit(in));
     target.limits.acceleration = static_cast<double>(in.profile_acceleration);
     target.limits.deceleration = static_cast<double>(personality_.pp_shared_ramp ? in.profile_acceleration : in.profile_deceleration);
-    limited_ = wanted > target.limits.velocity;
+    if (limits_count(in)) {
+        target.lowest = static_cast<double>(in.software_minimum) + zero_;
+        target.highest = static_cast<double>(in.software_maximum) + zero_;
+    }
+    if (reached_told_) profile_position_.reached_was_told();
     profile_position_.exchange(start, five, target);
+    limited_ = wanted > target.limits.velocity || profile_position_.clipped();
 }
 
 void Cia402Axis::take_profile_velocity(const AxisInputs& in) noexcept {
@@ -99,7 +104,8 @@ bool Cia402Axis::profile_reached() const noexcept {
         case mode::profile_position: {
             if (state_ == State::quick_stop) return stop_done_;  // SV33-E 3.4.3(5)
             const double window = settings_.position_window < 0 ? default_position_window : static_cast<double>(settings_.position_window);
-            return profile_position_.arrived() && std::abs(profile_position_.target() - plant_.position()) <= window;
+            // What the encoder counts: a window of 0 can be met (SV-DA200 6067h has no stated value).
+            return profile_position_.arrived() && std::abs(profile_position_.reached_target() - (quantised() + zero_)) <= window;
         }
         case mode::profile_velocity: {
             const double turn = static_cast<double>(personality_.counts_per_revolution);
@@ -107,7 +113,7 @@ bool Cia402Axis::profile_reached() const noexcept {
             const double window = settings_.velocity_window < 0         ? 0.01 * turn
                                   : personality_.velocity_window_in_rpm ? raw * turn / 60.0
                                                                         : raw / personality_.velocity_counts_per_unit;
-            return std::abs(velocity_target_ - plant_.velocity()) <= window;
+            return std::abs(velocity_target_ - seen_velocity()) <= window;
         }
         case mode::profile_torque: return torque_demand_ == torque_target_;
         default: return false;

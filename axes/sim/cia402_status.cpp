@@ -40,7 +40,7 @@ std::uint16_t Cia402Axis::status_word() const noexcept {
         word |= profile_bits();
     } else {
         const bool reports_target = personality_.target_reached_in_cyclic || !mode::cyclic(mode_);
-        if (reports_target && state_ == State::enabled && stands() && std::abs(demand_.position - plant_.position()) < 10) word |= bit(10);
+        if (reports_target && state_ == State::enabled && stands() && std::abs(demand_.position - seen_position()) < 10) word |= bit(10);
         if (mode::cyclic(mode_) && personality_.csp_following_bits && state_ == State::enabled) word |= bit(12);
     }
     if (limited_ && personality_.internal_limit_bit) word |= bit(11);
@@ -54,7 +54,7 @@ std::uint16_t Cia402Axis::profile_bits() const noexcept {
     if (mode_ == mode::profile_position && profile_position_.acknowledges()) word |= bit(12);
     if (mode_ == mode::profile_velocity && personality_.pv_speed_zero_bit && stands()) word |= bit(12);
     const double limit = personality_.following_error_limit;
-    if (mode_ == mode::profile_position && limit > 0 && std::abs(demand_.position - plant_.position()) > limit) word |= bit(13);
+    if (mode_ == mode::profile_position && limit > 0 && std::abs(demand_.position - seen_position()) > limit) word |= bit(13);
     return word;
 }
 
@@ -62,8 +62,9 @@ void Cia402Axis::fill(AxisOutputs& out) const noexcept {
     out.status = status_word();
     out.mode = mode_;
     out.position = encoder_failed_ ? frozen_position_ : static_cast<std::int64_t>(quantised());
-    out.velocity = std::llround(plant_.velocity() * personality_.velocity_counts_per_unit);
-    out.torque = std::llround(torque_ / plant_.config().rated_torque * personality_.torque_rated_raw);
+    out.velocity = std::llround(seen_velocity() * personality_.velocity_counts_per_unit);
+    // Without an encoder nothing tells the drive what the load takes.
+    out.torque = stepper_ ? 0 : std::llround(torque_ / plant_.config().rated_torque * personality_.torque_rated_raw);
     if (mode_changed_at_ && now_ - *mode_changed_at_ < personality_.mode_indeterminate) {  // whatever lies there (TSVM 5.4.1 rule 3)
         out.mode = -86;
         out.velocity = ~out.velocity;
@@ -86,7 +87,8 @@ void Cia402Axis::fill(AxisOutputs& out) const noexcept {
         out.probe_rising[i] = probes_[i].rising();
         out.probe_falling[i] = probes_[i].falling();
     }
-    out.digital_inputs = (plant_.negative_limit() ? 1u : 0u) | (plant_.positive_limit() ? 2u : 0u) | (plant_.home_switch() ? 4u : 0u);
+    const auto& seen = switches();
+    out.digital_inputs = (seen.negative_limit ? 1u : 0u) | (seen.positive_limit ? 2u : 0u) | (seen.home ? 4u : 0u);
 }
 
 }  // namespace taktwerk::axes::sim

@@ -19,7 +19,7 @@ bool fits(const StopWay& way, DriveMode mode) noexcept {
 }  // namespace
 
 bool Cia402Axis::stands() const noexcept {
-    return std::abs(plant_.velocity()) < 0.01 * static_cast<double>(personality_.counts_per_revolution);
+    return std::abs(seen_velocity()) < 0.01 * static_cast<double>(personality_.counts_per_revolution);
 }
 
 double Cia402Axis::ramp_of(StopBy by) const noexcept {
@@ -80,9 +80,9 @@ void Cia402Axis::begin_stop(const StopOrder& order) noexcept {
     if (mode::of_torque(mode_)) loop_.take_over(torque_);
     stop_ = order;
     stop_done_ = false;
-    demand_ = {plant_.position(), plant_.velocity(), 0};
+    demand_ = {seen_position(), seen_velocity(), 0};
     // What was on its way is discarded by a quick stop (SV-DA200 3.2.7, SV33-E 3.4.3(5)).
-    if (state_ != State::enabled || personality_.pp_stop_forgets) profile_position_.forget(plant_.position());
+    if (state_ != State::enabled || personality_.pp_stop_forgets) profile_position_.forget(seen_position());
 }
 
 /// Bit 8. Homing has its own abort.
@@ -96,11 +96,11 @@ void Cia402Axis::take_halt(const AxisInputs& in) noexcept {
     }
     halted_ = false;
     if (state_ != State::enabled) return;
-    demand_ = {plant_.position(), plant_.velocity(), 0};
-    velocity_demand_ = stands() ? 0 : plant_.velocity();
-    target_ = plant_.position();
+    demand_ = {seen_position(), seen_velocity(), 0};
+    velocity_demand_ = stands() ? 0 : seen_velocity();
+    target_ = seen_position();
     steps_left_ = 0;
-    profile_position_.resume(stands() ? Demand{plant_.position(), 0, 0} : demand_);
+    profile_position_.resume(stands() ? Demand{seen_position(), 0, 0} : demand_);
 }
 
 double Cia402Axis::brake_torque() const noexcept {
@@ -112,8 +112,8 @@ double Cia402Axis::slowing_torque(double dt) noexcept {
     const auto velocity_loop = [&](double limit) {
         const double most = stop_.at_once ? std::abs(demand_.velocity) : stop_.ramp * dt;
         demand_.velocity -= std::clamp(demand_.velocity, -most, most);
-        demand_.position += demand_.velocity * dt;
-        return loop_.velocity_control(plant_, demand_.velocity, 0, limit, dt);
+        if (!stepper_) demand_.position += demand_.velocity * dt;
+        return velocity_torque(demand_.velocity, 0, limit, dt);
     };
     switch (stop_.by) {
         case StopBy::coast: return 0;
@@ -138,18 +138,18 @@ double Cia402Axis::stopping_torque(double dt) noexcept {
         const double torque = slowing_torque(dt);
         const bool by_speed = stop_.by != StopBy::coast && stop_.by != StopBy::dynamic_brake && stop_.by != StopBy::torque_slope;
         stop_done_ = stands() && (!by_speed || demand_.velocity == 0) && (stop_.by != StopBy::torque_slope || torque_demand_ == 0);
-        if (stop_done_) demand_ = {plant_.position(), 0, 0};
+        if (stop_done_) demand_ = {seen_position(), 0, 0};
         return torque;
     }
     switch (stop_.then) {
-        case StopThen::lock: return loop_.position_control(plant_, demand_, quantised() + zero_, torque_limit(), dt);
-        case StopThen::clamp: return loop_.velocity_control(plant_, 0, 0, torque_limit(), dt);
+        case StopThen::lock: return position_torque(dt);
+        case StopThen::clamp: return velocity_torque(0, 0, torque_limit(), dt);
         case StopThen::dynamic_brake:
-            return state_ == State::enabled || winding_down_ ? loop_.velocity_control(plant_, 0, 0, torque_limit(), dt) : brake_torque();
+            return state_ == State::enabled || winding_down_ ? velocity_torque(0, 0, torque_limit(), dt) : brake_torque();
         case StopThen::free: break;
     }
     // While the brake still closes, or the state has not followed yet, the motor holds (SV33-E 3.1.2(3)).
-    return state_ == State::enabled ? 0 : loop_.velocity_control(plant_, 0, 0, torque_limit(), dt);
+    return state_ == State::enabled ? 0 : velocity_torque(0, 0, torque_limit(), dt);
 }
 
 void Cia402Axis::end_stop() noexcept {
@@ -183,8 +183,23 @@ void Cia402Axis::step_brake() noexcept {
         if (!stands()) winding_down_until_ = now_ + personality_.brake_hold;
         else if (now_ >= winding_down_until_) winding_down_ = false;
     }
-    brake_closed_ = has_brake() && stands() && (state_ == State::enabled ? now_ < brake_opens_ : !energised());
+    if (energised()) power_went_ = now_;
+    const bool told = brake_told_to_close();
+    brake_closing_ = told ? brake_closing_ + inner_period : Duration{};
+    brake_closed_ = told && brake_closing_ >= plant_.config().brake_closing;
     plant_.hold(brake_closed_);
+}
+
+/// The drive's output for the brake. At standstill it says so before it lets go, as long as the machine's brake needs (TSVM PA47, SV33-E
+/// P05.14); a brake that is never late closes as the motor lets go. In motion it waits until the motor is slow (TSVM PA48, PA49).
+bool Cia402Axis::brake_told_to_close() const noexcept {
+    if (!has_brake()) return false;
+    if (state_ == State::enabled) return now_ < brake_opens_;
+    if (winding_down_) return stands() && plant_.config().brake_closing > Duration::zero();
+    if (energised()) return false;
+    const bool slow = std::abs(plant_.velocity()) < personality_.brake_moving_speed;
+    const bool waited = personality_.brake_moving_wait > Duration::zero() && now_ - power_went_ >= personality_.brake_moving_wait;
+    return stands() || slow || waited || brake_closing_ > Duration::zero();
 }
 
 }  // namespace taktwerk::axes::sim

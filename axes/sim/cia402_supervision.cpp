@@ -70,10 +70,10 @@ void Cia402Axis::supervise() noexcept {
     watch_encoder();
     supervise_torque();
     if (state_ != State::enabled) return;
-    if (personality_.overspeed > 0 && std::abs(plant_.velocity()) > personality_.overspeed) raise(personality_.overspeed_alarm);
+    if (personality_.overspeed > 0 && std::abs(seen_velocity()) > personality_.overspeed) raise(personality_.overspeed_alarm);
     const bool follows_position = mode_ == mode::cyclic_position || mode_ == mode::homing || mode_ == mode::profile_position;
     if (state_ == State::enabled && following_limit_ > 0 && follows_position &&
-        std::abs(demand_.position - plant_.position()) > following_limit_)
+        std::abs(demand_.position - seen_position()) > following_limit_)
         raise(personality_.following_error_alarm);
 }
 

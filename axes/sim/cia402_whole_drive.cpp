@@ -7,6 +7,10 @@ namespace taktwerk::axes::sim {
 void Cia402Axis::raise_common(const AlarmCode& alarm) noexcept {
     const bool faulted = state_ == State::fault || state_ == State::fault_reaction;
     if (faulted && common_alarm_) return;  // the first one is the one shown
+    if (faulted && shows(alarm)) {         // it found it out by itself
+        common_alarm_ = true;
+        return;
+    }
     if (faulted) {
         hidden_alarm_ = {error_code_, error_resettable_, error_detail_};
         error_code_ = alarm.code;

@@ -15,6 +15,9 @@ namespace {
 constexpr ParameterAddress commands[] = {{0x6040, 0}, {0x6060, 0}, {0x6071, 0}, {0x607A, 0}, {0x60B0, 0},
                                          {0x60B1, 0}, {0x60B2, 0}, {0x60B8, 0}, {0x60FE, 1}, {0x60FF, 0}};
 
+/// 1010h and 1011h: nothing but the signature is taken (CiA 301 7.5.2.13). A parameter of the maker's goes back to 0.
+constexpr bool takes_signature_only(ParameterAddress at) noexcept { return at.index < 0x2000; }
+
 std::vector<ParameterAddress> never_kept(const DriveProfile& profile) {
     std::vector<ParameterAddress> out(std::begin(commands), std::end(commands));
     if (profile.alarm_history.select.index != 0) out.push_back(profile.alarm_history.select);
@@ -52,8 +55,9 @@ bool DriveParameters::is_order(ParameterAddress at) const noexcept {
 
 std::uint32_t DriveParameters::refuse(std::uint16_t index, std::uint8_t sub, std::int64_t value, bool motor_powered) const {
     const ParameterAddress at{index, sub};
+    const bool rests = value == 0 && !takes_signature_only(at);
     const bool known = std::any_of(orders_.begin(), orders_.end(),
-                                   [&](const auto& order) { return order.address == at && (order.value == value || value == 0); });
+                                   [&](const auto& order) { return order.address == at && (order.value == value || rests); });
     if (is_order(at) && !known) return ecat::sdo_abort::cannot_store;  // CiA 301 7.5.2.13: a wrong signature
     return store_.refuse(at, value, motor_powered) == ParameterStore::Refusal::enabled ? ecat::sdo_abort::device_state : 0;
 }
@@ -64,7 +68,11 @@ std::int64_t DriveParameters::value_of(unsigned axis, std::uint16_t index, std::
 
 void DriveParameters::written(std::uint16_t index, std::uint8_t sub, Instant now, Cia402Axis& axis) {
     const auto value = dictionary_->value(index, sub);
-    if (is_order({index, sub})) return obey({index, sub}, value, now, axis);
+    if (is_order({index, sub})) {
+        // What is read there is not what was written: SE-808X 6 prints 0.
+        if (takes_signature_only({index, sub})) dictionary_->find(index, sub)->set(0);
+        return obey({index, sub}, value, now, axis);
+    }
     store_.write({index, sub}, value, now);
     restart_pending_ = store_.restart_pending();
     check_settings(axis_of(index), axis);

@@ -1,5 +1,7 @@
 #include "axes/sim/personality.hpp"
 
+#include "axes/sim/communication_error.hpp"
+
 namespace taktwerk::axes::sim {
 
 Personality personality_of(const DriveProfile& profile, std::int64_t counts_per_revolution) {
@@ -35,10 +37,16 @@ Personality personality_of(const DriveProfile& profile, std::int64_t counts_per_
     p.pp_shared_ramp = profile.has(Quirk::pp_shared_ramp);
     p.pp_stop_forgets = profile.has(Quirk::pp_stop_forgets);
     p.csv_ramps = profile.has(Quirk::csv_ramps);
+    p.ramp_before_mode_change = profile.has(Quirk::ramp_before_mode_change);
     p.pv_speed_zero_bit = !profile.has(Quirk::pv_bits_12_13_reserved);
     p.velocity_window_in_rpm = profile.has(Quirk::velocity_window_in_rpm);
     p.brake_release = profile.brake_release;
     p.brake_hold = profile.brake_hold;
+    p.brake_moving_wait = profile.brake_moving_wait;
+    p.brake_moving_speed = profile.brake_moving_speed / 60.0 * static_cast<double>(counts_per_revolution);
+    p.battery_low = profile.battery_low;
+    p.battery_empty = profile.battery_empty;
+    p.encoder_keeps_fault = profile.encoder_reset.index != 0;
     // The first row of a kind is this drive's own alarm for it; kinds that the profile does not mark keep the usual codes.
     const auto own = [&](DriveAlarmKind kind, AlarmCode& alarm) {
         for (const auto& row : profile.alarms)
@@ -63,6 +71,10 @@ Personality personality_of(const DriveProfile& profile, std::int64_t counts_per_
     own(DriveAlarmKind::left_operational, p.left_operational_alarm);
     own(DriveAlarmKind::link_changed, p.link_alarm);
     own(DriveAlarmKind::torque_overload, p.torque_overload_alarm);
+    if (profile.behaviour.state.error_sub_code.index != 0) {
+        p.communication_alarm.detail = communication_error::watchdog;
+        p.left_operational_alarm = {p.communication_alarm.code, p.communication_alarm.resettable, communication_error::general};
+    }
     p.fault_reaction_02b6 = profile.has(Quirk::fault_reaction_02b6);
     p.alarm_sets_warning_bit = profile.has(Quirk::alarm_sets_warning_bit);
     p.remote_bit_from_preop = profile.has(Quirk::remote_bit_from_preop);

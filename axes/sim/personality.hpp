@@ -59,6 +59,9 @@ struct Personality {
     Duration brake_release{};
     /// After power is taken at standstill the motor holds this long until the brake does (SV33-E P05.14). 0: no brake.
     Duration brake_hold{};
+    /// Power gone in motion: the brake closes below this speed [counts/s], or after this time (TSVM PA49, PA48). 0: at standstill only.
+    double brake_moving_speed = 0;
+    Duration brake_moving_wait{};
     double quick_stop_deceleration = 0;  ///< counts/s2; 0 = torque limit
     std::vector<StopOption> stops;       ///< documented options; they go before off_stop, fault_stop and quick_stop_leaves
     // Modes of operation.
@@ -70,6 +73,7 @@ struct Personality {
     std::uint8_t profile_buffer = 1;
     bool pp_bit_5_blends = false, pp_shared_ramp = false, pp_stop_forgets = false;
     bool csv_ramps = false;
+    bool ramp_before_mode_change = false;
     bool pv_speed_zero_bit = true;  ///< bit 12 in PV
     bool velocity_window_in_rpm = false;
     double following_error_limit = 0;  ///< counts; 0 = no check
@@ -85,6 +89,8 @@ struct Personality {
     // Code 0: this drive has no such alarm; statusword bit 13 tells alone, and a lost turn shows in the position only.
     AlarmCode homing_timeout_alarm, homing_limit_alarm, homing_method_alarm;
     AlarmCode battery_low_alarm, reference_lost_alarm, turn_overflow_alarm;
+    double battery_low = 0, battery_empty = 0;  ///< V (TSVM 7.2: 3.1 and 2.5)
+    bool encoder_keeps_fault = false;  ///< lost turns are complained of until the encoder is reset, whatever the battery (TSVM PA80)
     // A drive like the TSVM-D6, sections of its manual.
     bool fault_reaction_02b6 = false;        ///< Fault Reaction reads 02B6h (5.3.1)
     bool alarm_sets_warning_bit = false;     ///< bit 7 with every alarm (5.3.2)

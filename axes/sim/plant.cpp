@@ -11,21 +11,22 @@ Plant::Plant(const PlantConfig& config) noexcept
       position_(config.start) {}
 
 void Plant::step(double dt, double torque) noexcept {
-    if (jammed_ || held_) {
+    if (jammed_ || (held_ && velocity_ == 0)) {
         velocity_ = 0;
         return;
     }
+    const double friction = config_.coulomb_friction + (held_ ? brake_friction * config_.rated_torque : 0);
     const double omega = velocity_ * rad_per_count_;
     const double driving = torque - config_.load_torque - config_.viscous_friction * omega;
     double next = 0;
-    if (velocity_ == 0 && std::abs(driving) <= config_.coulomb_friction) {
+    if (velocity_ == 0 && std::abs(driving) <= friction) {
         next = 0;  // sticks
     } else {
         const double direction = velocity_ != 0 ? (velocity_ > 0 ? 1.0 : -1.0) : (driving > 0 ? 1.0 : -1.0);
-        const double net = driving - direction * config_.coulomb_friction;
+        const double net = driving - direction * friction;
         next = velocity_ + net / config_.inertia / rad_per_count_ * dt;
         // Friction stops a motion, it never reverses one: within the step that crosses zero the axis stands.
-        if (velocity_ != 0 && (next > 0) != (velocity_ > 0) && std::abs(driving) <= config_.coulomb_friction) next = 0;
+        if (velocity_ != 0 && (next > 0) != (velocity_ > 0) && std::abs(driving) <= friction) next = 0;
     }
     velocity_ = next;
     position_ += velocity_ * dt;

@@ -21,10 +21,13 @@ public:
     [[nodiscard]] const PlantConfig& config() const noexcept { return config_; }
     /// A jammed mechanism does not move whatever the torque.
     void jam(bool jammed) noexcept { jammed_ = jammed; }
-    /// A holding brake: the axis stands whatever the torque. Called each step; apart from a jam.
+    /// A holding brake: an axis at rest stays there whatever the torque, a turning one is slowed by `brake_friction`. Called each step; apart
+    /// from a jam.
     void hold(bool held) noexcept { held_ = held; }
     /// Torque that accelerates the load by `counts_per_s2`, without friction: what a tuned drive feeds forward.
     [[nodiscard]] double torque_for(double counts_per_s2) const noexcept { return counts_per_s2 * rad_per_count_ * config_.inertia; }
+
+    static constexpr double brake_friction = 2;  ///< rated torques
 
 private:
     PlantConfig config_;

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "core/time.hpp"
+
 namespace taktwerk::axes::sim {
 
 /// Of an absolute encoder, which counts its turns on while the drive is off.
@@ -22,6 +24,7 @@ struct PlantConfig {
     double load_torque = 0;          ///< N m, constant (gravity); positive pushes to negative
     double rated_torque = 1.27;      ///< N m: 1.0 of the port
     double maximum_torque = 3.0;     ///< in rated torques
+    Duration brake_closing{};        ///< from the drive's word until the holding brake holds; 0: it is never late
     // travel, in counts; infinite = none
     double start = 0;
     double negative_stop = -std::numeric_limits<double>::infinity();

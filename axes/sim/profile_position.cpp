@@ -1,5 +1,6 @@
 #include "axes/sim/profile_position.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace taktwerk::axes::sim {
@@ -11,7 +12,7 @@ void ProfilePosition::reset(double position) noexcept {
 
 void ProfilePosition::forget(double position) noexcept {
     first_ = waiting_ = 0;
-    running_ = false;
+    running_ = clipped_ = false;
     now_ = {position, 0, 0};
     target_ = position;
     elapsed_ = 0;
@@ -21,11 +22,14 @@ void ProfilePosition::forget(double position) noexcept {
 void ProfilePosition::exchange(bool new_setpoint, bool bit_five, const ProfileTarget& wanted) noexcept {
     const bool rises = new_setpoint && !edge_;
     edge_ = new_setpoint;
-    if (rises && (waiting_ < room_ || !running_ || (bit_five && meaning_ == BitFive::replaces))) {
+    const bool idle = !running_ && waiting_ == 0;
+    if (rises && (waiting_ < room_ || idle || (bit_five && meaning_ == BitFive::replaces))) {
         acknowledged_ = true;
-        target_ = wanted.relative ? target_ + wanted.position : wanted.position;
+        const double asked = wanted.relative ? target_ + wanted.position : wanted.position;
+        target_ = std::clamp(asked, wanted.lowest, wanted.highest);
+        clipped_ = target_ != asked;
         const Setpoint setpoint{target_, wanted.limits, bit_five && meaning_ == BitFive::blends};
-        if (!running_ || (bit_five && meaning_ == BitFive::replaces)) {
+        if (idle || (bit_five && meaning_ == BitFive::replaces)) {
             waiting_ = 0;
             start(setpoint);
         } else {
@@ -34,7 +38,7 @@ void ProfilePosition::exchange(bool new_setpoint, bool bit_five, const ProfileTa
         }
     }
     // Bit 12 falls with bit 4, but not before there is room again (CiA 402-2; SV33-E 3.4.3(5) case 2).
-    if (!new_setpoint && (waiting_ < room_ || !running_)) acknowledged_ = false;
+    if (!new_setpoint && (waiting_ < room_ || (!running_ && waiting_ == 0))) acknowledged_ = false;
 }
 
 void ProfilePosition::start(const Setpoint& setpoint) noexcept {
@@ -60,17 +64,24 @@ Demand ProfilePosition::step(double dt) noexcept {
     if (elapsed_ < profile_.duration() || !active_.limits.usable()) return now_;
     const double over = elapsed_ - profile_.duration();
     running_ = false;
-    if (waiting_ > 0) {
-        const Demand end = profile_.at(profile_.duration());
-        now_ = end;
-        const auto next = buffer_[first_];
-        first_ = (first_ + 1) % most_waiting;
-        --waiting_;
-        start(next);
+    if (waiting_ > 0 && next_may_start()) {
+        start_next();
         elapsed_ = over;
         now_ = profile_.at(over);
     }
     return now_;
+}
+
+void ProfilePosition::start_next() noexcept {
+    now_ = profile_.at(profile_.duration());
+    const auto next = buffer_[first_];
+    first_ = (first_ + 1) % most_waiting;
+    --waiting_;
+    start(next);
+}
+
+void ProfilePosition::reached_was_told() noexcept {
+    if (!running_ && waiting_ > 0) start_next();
 }
 
 void ProfilePosition::resume(const Demand& from) noexcept {

@@ -3,6 +3,7 @@
 // bits 4 new set-point, 5 change set immediately, 6 relative; status word bit 12 acknowledge), SV33-E 3.4.3(5), SV-DA200 3.2.7, SE-808X 3.2.4.
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -14,6 +15,7 @@ namespace taktwerk::axes::sim {
 struct ProfileTarget {
     double position = 0;  ///< counts, plant coordinates; relative: a distance
     bool relative = false;
+    double lowest = -HUGE_VAL, highest = HUGE_VAL;  ///< what lies beyond is moved to it (SV33-E 3.4.4(2))
     TrapezoidLimits limits;
 };
 
@@ -34,6 +36,8 @@ public:
     void reset(double position) noexcept;
     /// Each exchange: the level of bit 4, bit 5 and what belongs to them. A rising edge while the buffer is full is lost.
     void exchange(bool new_setpoint, bool bit_five, const ProfileTarget& target) noexcept;
+    /// The master was told that the running set-point is reached; one that waited for that starts.
+    void reached_was_told() noexcept;
     /// One inner step of `dt` seconds.
     Demand step(double dt) noexcept;
     /// After a stop by something else: goes on from `from` to the running target.
@@ -43,9 +47,13 @@ public:
 
     /// Status word bit 12.
     [[nodiscard]] bool acknowledges() const noexcept { return acknowledged_; }
-    /// The demand has arrived and nothing waits.
-    [[nodiscard]] bool arrived() const noexcept { return !running_ && waiting_ == 0; }
+    /// The demand has arrived and nothing waits, or what waits is not yet to start.
+    [[nodiscard]] bool arrived() const noexcept { return !running_; }
     [[nodiscard]] double target() const noexcept { return target_; }
+    /// Where the demand has arrived.
+    [[nodiscard]] double reached_target() const noexcept { return waiting_ > 0 ? active_.target : target_; }
+    /// The newest set-point was moved to a limit.
+    [[nodiscard]] bool clipped() const noexcept { return clipped_; }
 
 private:
     struct Setpoint {
@@ -54,6 +62,9 @@ private:
         bool blends = false;
     };
     void start(const Setpoint& setpoint) noexcept;
+    void start_next() noexcept;
+    /// A set-point of a series follows at once, a single one only after the master has the signal of the one before (SE-808X 3.2.4, figure 2).
+    [[nodiscard]] bool next_may_start() const noexcept { return meaning_ != BitFive::blends || buffer_[first_].blends; }
     void plan(const Demand& from) noexcept;
 
     std::size_t room_;
@@ -65,7 +76,7 @@ private:
     Demand now_;
     double elapsed_ = 0;
     double target_ = 0;  // of the newest set-point: relative ones count from it
-    bool running_ = false, acknowledged_ = false, edge_ = false;
+    bool running_ = false, acknowledged_ = false, edge_ = false, clipped_ = false;
 };
 
 }  // namespace taktwerk::axes::sim

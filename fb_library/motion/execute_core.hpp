@@ -39,8 +39,9 @@ public:
     }
 
     /// Gives the command to the axis; the answer comes at once.
-    void submit(const axes::MotionContext& ctx, axes::AxisRef axis, const axes::AxisCommand& command) noexcept {
+    void submit(const axes::MotionContext& ctx, axes::AxisRef axis, axes::AxisCommand command) noexcept {
         if (ctx.view(axis) == nullptr) return refuse(axes::ErrorId::invalid_axis);
+        command.instance = this;
         const axes::Submitted answer = ctx.requests->submit(axis, command, ctx.owner);
         if (answer.error != axes::ErrorId::none) return refuse(answer.error);
         axis_ = axis;
@@ -64,7 +65,8 @@ public:
     constexpr void end_updates() noexcept { updates_ = Updates::never; }
     [[nodiscard]] constexpr bool updating() const noexcept { return updates_ == Updates::now && running(); }
     /// Gives the running command other inputs.
-    void update(const axes::MotionContext& ctx, const axes::AxisCommand& command) noexcept {
+    void update(const axes::MotionContext& ctx, axes::AxisCommand command) noexcept {
+        command.instance = this;
         if (const auto error = ctx.requests->update(axis_, command_, command, ctx.owner); error != axes::ErrorId::none) refuse(error);
     }
 

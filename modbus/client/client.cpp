@@ -80,9 +80,9 @@ void Client::send(Instant now) {
 }
 
 std::optional<Answer> Client::step(Instant now) {
-    if (state_ == State::idle) return std::nullopt;
-    if (state_ == State::resting) {
-        if (now >= quiet_until_) send(now);
+    if (state_ != State::waiting) {
+        line_.discard(now);  // nobody asked; and a computed line lives by being looked at
+        if (state_ == State::resting && now >= quiet_until_) send(now);
         return std::nullopt;
     }
     if (!port_there_) return again_or_end(Outcome::no_port, now);

@@ -65,7 +65,8 @@ public:
     [[nodiscard]] Refusal ask(const Request& request, Instant now);
     [[nodiscard]] Refusal may_ask(const Request& request, Instant now) const noexcept;
     [[nodiscard]] bool idle(Instant now) const noexcept { return state_ == State::idle && now >= quiet_until_; }
-    /// The answer, once, when it is there. Call often.
+    /// The answer, once, when it is there. Call often, also while nothing is asked: the line is looked at each time, which throws away what
+    /// nobody asked for, and is what a computed line (virtual_line.hpp) lets its drives live on by.
     std::optional<Answer> step(Instant now);
     /// Until then this station saves and must not be asked.
     [[nodiscard]] Instant saving_until(std::uint8_t station) const noexcept { return saving_[station]; }

@@ -49,6 +49,7 @@ void PseudoTerminal::step(Instant now) {
         if (got <= 0) return;
         heard_.size += static_cast<std::size_t>(got);
         last_byte_ = now;
+        if (cut_) heard_.size = 0;
         const auto length = frame_length(Direction::request, heard_.span());
         const bool whole = length.known == LengthKnown::yes && heard_.size >= length.bytes;
         if (whole || heard_.size == heard_.bytes.size()) answer(now);

@@ -25,6 +25,8 @@ public:
     [[nodiscard]] int descriptor() const noexcept { return master_; }
     /// Outlives this.
     void connect(Station& station) { stations_.push_back(&station); }
+    /// From now on nothing that is said gets through, until it is plugged again.
+    void cut(bool is) noexcept { cut_ = is; }
     /// Stations live on, what was asked is answered.
     void step(Instant now);
 
@@ -38,6 +40,7 @@ private:
     std::vector<Station*> stations_;
     Frame heard_;
     Instant last_byte_{};
+    bool cut_ = false;
 };
 
 }  // namespace taktwerk::modbus

@@ -19,7 +19,8 @@ public:
     virtual bool send(std::span<const std::byte> frame, Instant now) = 0;
     /// What has arrived by `now` and was not fetched before, in order; returns how many bytes.
     virtual std::size_t receive(std::span<std::byte> into, Instant now) = 0;
-    /// Forgets what has arrived: called before a question, so that a late answer to an older one is not taken for this one's.
+    /// Forgets what has arrived: called before a question, so that a late answer to an older one is not taken for this one's, and whenever
+    /// nothing is asked.
     virtual void discard(Instant now) = 0;
     /// The port could be opened and has not failed since.
     [[nodiscard]] virtual bool present() const noexcept = 0;

@@ -1,6 +1,7 @@
 #pragma once
 // A line for virtual time: when each byte arrives is computed from baud rate and format, so a run gives the same bytes at the same
 // instants each time. Carries one frame at a time, as half-duplex wires do. Things can go wrong on request, by count, never by chance.
+// Time passes for its stations by whoever uses it: send, receive and discard let them live on to their `now`.
 
 #include <array>
 #include <cstdint>

@@ -172,6 +172,15 @@ public:
     template <class T>
     void monitor(std::string_view name, const T&& v, std::string_view unit = {}, std::string_view doc = {}) = delete;
 
+    /// Gives an instance a name, so that people are told who moves or locks an axis: `d.block("pick", pick_)`. It must be a member of the
+    /// program (or of one of its parts), as for monitor().
+    template <class Block>
+    void block(std::string_view name, const Block& instance) {
+        add_block(name, &instance, sizeof(Block));
+    }
+    template <class Block>
+    void block(std::string_view name, const Block&& instance) = delete;
+
     /// A task by the name under which the configuration schedules it: `d.task<&Cell::scan>("main")`. The method is
     /// `void scan(taktwerk::TaskContext&)`, noexcept or not. A task that the configuration does not mention runs in each cycle.
     template <auto Method>
@@ -183,6 +192,7 @@ protected:
     ~Declaration() = default;
     virtual void add(std::string_view name, VariableType type, const void* address, std::string_view unit, std::string_view doc) = 0;
     virtual void add_task(std::string_view name, TaskFunction function) = 0;
+    virtual void add_block(std::string_view name, const void* begin, std::size_t size) = 0;
 
 private:
     template <class P>

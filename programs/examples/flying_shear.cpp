@@ -47,6 +47,10 @@ public:
         d.monitor("pieces", pieces_, "", "cuts since start");
         d.monitor("next_cut", next_cut_, "mm", "place of the next cut on the material");
         d.monitor("in_step", synchronise_.InSync, "", "carriage and material run together");
+        d.block("feed", feed_);
+        d.block("halt", halt_);
+        d.block("synchronise", synchronise_);
+        d.block("return", return_);
         d.alarm(0, Reaction::warn, "The carriage came back too late: one piece is longer", "托架返回太晚:有一件过长",
                 "run the material slower, cut longer pieces, or shorten the knife's time");
         d.task<&FlyingShear::scan>("main");

@@ -33,6 +33,8 @@ public:
         work_time_ = d.parameter("work_time", {.value = 0.3, .minimum = 0, .maximum = 60, .unit = "s", .doc = "the stations' time"});
         d.monitor("station", station_, "", "station in front of the operator, or on its way there");
         d.monitor("indexed", indexed_, "", "steps since start");
+        d.block("home", home_);
+        d.block("index", index_);
         d.task<&IndexingTable::scan>("main");
     }
 

@@ -87,6 +87,9 @@ public:
         d.monitor("pieces", pieces_, "", "pieces placed since start");
         d.alarm(0, Reaction::warn, "An axis is in ErrorStop: remove the cause, reset, then press start",
                 "有轴处于 ErrorStop:排除原因、复位,然后按启动按钮", "see the axis' own alarm");
+        d.block("x", x_);  // all blocks of a joint under its name: who moves or holds an axis
+        d.block("y", y_);
+        d.block("z", z_);
         d.task<&PickAndPlace::scan>("main");
     }
 

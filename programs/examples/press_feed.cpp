@@ -53,6 +53,10 @@ public:
         cam_ = d.cam("feed", cam_points(32.5));
         d.monitor("count", count_, "", "strokes since start");
         d.monitor("in_step", couple_.InSync, "", "the strip follows the press");
+        d.block("turn", turn_);
+        d.block("to_top", to_top_);
+        d.block("couple", couple_);
+        d.block("release", release_);
         d.alarm(0, Reaction::stop_machine, "The strip moved while the tool was closed", "模具闭合时料带移动",
                 "look for a slipping roll or a blocked strip, check `tolerance`; switch the feed off and on");
         d.alarm(1, Reaction::stop_machine, "The feeder cannot follow the press", "送料轴无法跟随压力机",

@@ -56,6 +56,9 @@ public:
         d.monitor("mark_error", error_, "mm", "how much later than the last mark the knife would have come, uncorrected");
         d.monitor("marks", marks_, "", "marks since start");
         d.monitor("lost", lost_, "", "marks in a row that did not come");
+        d.block("feed", feed_);
+        d.block("halt", halt_);
+        d.block("gear", gear_);
         d.alarm(0, Reaction::warn, "No print mark where one is expected", "在预期位置未检测到色标",
                 "look at sensor and print; check `length`; the search goes on by itself");
         d.alarm(1, Reaction::stop_machine, "The cutter cannot follow the web", "切刀轴无法跟随料带",

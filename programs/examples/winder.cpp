@@ -60,6 +60,10 @@ public:
         d.monitor("radius", radius_, "mm", "of the roll");
         d.monitor("torque", torque_, "1", "that holds the tension, of the motor's rated torque");
         d.monitor("error", error_, "", "ErrorID of the winder's blocks, 0 = none");
+        d.block("gear", gear_);
+        d.block("hold", hold_);
+        d.block("feed", feed_);
+        d.block("halt", halt_);
         d.alarm(0, Reaction::warn, "The roll is full", "料卷已满", "put in an empty core and press new_core");
         d.alarm(1, Reaction::stop_machine, "The web is torn or slack: the winder turns while the line stands",
                 "断料或松料:生产线停止时收卷轴转动", "thread the web; check `tension`");

@@ -9,8 +9,8 @@
 
 #include "apps/bus.hpp"
 #include "apps/exit_code.hpp"
-#include "apps/taktwerk.hpp"
 #include "apps/terminal_text.hpp"
+#include "tests/apps/in_process.hpp"
 
 namespace taktwerk::apps {
 namespace {
@@ -23,29 +23,11 @@ using ::testing::StartsWith;
 
 const std::string demo = std::string(TAKTWERK_SOURCE_DIR) + "/config/machines/demo.yaml";
 
-struct Outcome {
-    int code;
-    std::string out, err;
-    [[nodiscard]] Json json() const { return Json::parse(out); }
-};
-
-/// Runs the command inside this process.
-Outcome taktwerk(std::vector<std::string> words) {
-    words.insert(words.begin(), "taktwerk");
-    std::vector<char*> argv;
-    for (auto& word : words) argv.push_back(word.data());
-    ::testing::internal::CaptureStdout();
-    ::testing::internal::CaptureStderr();
-    const int code = run(static_cast<int>(argv.size()), argv.data());
-    std::fflush(stdout);
-    return {code, ::testing::internal::GetCapturedStdout(), ::testing::internal::GetCapturedStderr()};
-}
-
 /// On the simulated demo: SV33-E 'x_drive' and 'y_drive', SE-808X 'z_drive', terminal 'io'.
 Outcome on_demo(std::vector<std::string> words) {
     words.insert(words.begin(), "bus");
     words.insert(words.end(), {"--machine", demo, "--simulate"});
-    return taktwerk(std::move(words));
+    return in_process(std::move(words));
 }
 
 std::size_t widest_line(const std::string& text) {
@@ -135,21 +117,21 @@ TEST(BusCommand, WrongWordsAreUsageErrors) {
     EXPECT_EQ(on_demo({"sdo", "read", "0", "6041h", "--type", "word"}).code, exit_usage);
     EXPECT_EQ(on_demo({"sdo", "write", "0", "6040h", "70000"}).code, exit_usage);
     EXPECT_EQ(on_demo({"state", "fly"}).code, exit_usage);
-    EXPECT_EQ(taktwerk({"bus"}).code, exit_usage);
-    const auto nowhere = taktwerk({"bus", "scan"});
+    EXPECT_EQ(in_process({"bus"}).code, exit_usage);
+    const auto nowhere = in_process({"bus", "scan"});
     EXPECT_EQ(nowhere.code, exit_usage);
     EXPECT_THAT(nowhere.err, HasSubstr("--nic"));
-    EXPECT_EQ(taktwerk({"bus", "scan", "--simulate", "--nic", "eth1"}).code, exit_usage);
+    EXPECT_EQ(in_process({"bus", "scan", "--simulate", "--nic", "eth1"}).code, exit_usage);
 }
 
 TEST(BusCommand, AMissingInterfaceOrFileIsNamed) {
-    const auto nic = taktwerk({"bus", "scan", "--nic", "nonic7"});
+    const auto nic = in_process({"bus", "scan", "--nic", "nonic7"});
     EXPECT_EQ(nic.code, exit_bus);
     EXPECT_THAT(nic.err, HasSubstr("nonic7"));
-    const auto json = taktwerk({"bus", "scan", "--nic", "nonic7", "--json"});
+    const auto json = in_process({"bus", "scan", "--nic", "nonic7", "--json"});
     EXPECT_EQ(json.code, exit_bus);
     EXPECT_EQ(json.json()["error"]["code"], "transport.no_such_interface");
-    EXPECT_EQ(taktwerk({"bus", "why", "--machine", "/nowhere.yaml"}).code, exit_bad_file);
+    EXPECT_EQ(in_process({"bus", "why", "--machine", "/nowhere.yaml"}).code, exit_bad_file);
     EXPECT_EQ(on_demo({"scan", "--pcap", "/nowhere/bus.pcap"}).code, exit_bad_file);
 }
 

@@ -19,13 +19,13 @@ namespace taktwerk::apps {
 
 class Child {
 public:
-    /// Standard output and error come together.
+    /// Standard output and error come together. Standard input is a pipe that say() writes to.
     explicit Child(std::vector<std::string> arguments) {
-        int ends[2] = {-1, -1};
-        if (::pipe2(ends, O_CLOEXEC) != 0) return;
+        int ends[2] = {-1, -1}, in[2] = {-1, -1};
+        if (::pipe2(ends, O_CLOEXEC) != 0 || ::pipe2(in, O_CLOEXEC) != 0) return;
         posix_spawn_file_actions_t actions;
         posix_spawn_file_actions_init(&actions);
-        posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+        posix_spawn_file_actions_adddup2(&actions, in[0], STDIN_FILENO);
         posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
         posix_spawn_file_actions_adddup2(&actions, ends[1], STDERR_FILENO);
         std::vector<char*> words;
@@ -34,7 +34,9 @@ public:
         if (::posix_spawnp(&pid_, words.front(), &actions, nullptr, words.data(), environ) != 0) pid_ = 0;
         posix_spawn_file_actions_destroy(&actions);
         ::close(ends[1]);
+        ::close(in[0]);
         output_ = ends[0];
+        input_ = in[1];
         ::fcntl(output_, F_SETFL, O_NONBLOCK);
     }
     ~Child() {
@@ -43,12 +45,18 @@ public:
             ::waitpid(pid_, nullptr, 0);
         }
         ::close(output_);
+        ::close(input_);
     }
     Child(const Child&) = delete;
     Child& operator=(const Child&) = delete;
 
     void signal(int number) {
         if (pid_ > 0) ::kill(pid_, number);
+    }
+    /// A line on its standard input. It must still run.
+    void say(std::string line) {
+        line += '\n';
+        if (::write(input_, line.data(), line.size()) < 0) text_ += "(does not listen)";
     }
     /// True when `what` stands in the output, at the latest after `patience`.
     bool says(const std::string& what, std::chrono::milliseconds patience) {
@@ -90,7 +98,7 @@ private:
     }
 
     pid_t pid_ = 0;
-    int output_ = -1, status_ = 0;
+    int output_ = -1, input_ = -1, status_ = 0;
     std::string text_;
 };
 

@@ -8,7 +8,7 @@
 
 #include "apps/drive.hpp"
 #include "apps/exit_code.hpp"
-#include "apps/taktwerk.hpp"
+#include "tests/apps/in_process.hpp"
 
 namespace taktwerk::apps {
 namespace {
@@ -19,21 +19,9 @@ using ::testing::Not;
 
 const std::string demo = std::string(TAKTWERK_SOURCE_DIR) + "/config/machines/demo.yaml";
 
-struct Outcome {
-    int code;
-    std::string out, err;
-    [[nodiscard]] Json json() const { return Json::parse(out); }
-};
-
 Outcome drive(std::vector<std::string> words) {
-    words.insert(words.begin(), {"taktwerk", "drive"});
-    std::vector<char*> argv;
-    for (auto& word : words) argv.push_back(word.data());
-    ::testing::internal::CaptureStdout();
-    ::testing::internal::CaptureStderr();
-    const int code = run(static_cast<int>(argv.size()), argv.data());
-    std::fflush(stdout);
-    return {code, ::testing::internal::GetCapturedStdout(), ::testing::internal::GetCapturedStderr()};
+    words.insert(words.begin(), "drive");
+    return in_process(std::move(words));
 }
 
 /// SV33-E 'x_drive' and 'y_drive', SE-808X 'z_drive', terminal 'io'; each call begins with drives as they left the factory.
@@ -102,7 +90,17 @@ TEST(DriveCommand, ASetValueIsReadBackAndTheEepromIsSpared) {
 
     const auto same = on_demo({"set", "x_drive", "P05.13=250"});
     EXPECT_EQ(same.code, exit_ok);
-    EXPECT_EQ(same.out, "nothing to change\n") << "not even the switch is written";
+    EXPECT_THAT(same.out, AllOf(HasSubstr("nothing to change\n"), Not(HasSubstr("P05.10")))) << "not even the switch is written";
+}
+
+TEST(DriveCommand, WhatIsInForceIsStoredAllTheSame) {
+    const auto by_writing = on_demo({"set", "x_drive", "P05.13=250", "--store"});  // SV33-E 7.2: the factory's 250 ms
+    EXPECT_EQ(by_writing.code, exit_ok) << by_writing.err;
+    EXPECT_THAT(by_writing.out, AllOf(HasSubstr("nothing to change"), HasSubstr("1 value stored in the EEPROM")));
+
+    const auto on_request = on_demo({"set", "z_drive", "2000h:01=1.0 A", "--store"});  // SE-808X 4.4: the factory's 1.0 A; 1010h
+    EXPECT_EQ(on_request.code, exit_ok) << on_request.err;
+    EXPECT_THAT(on_request.out, AllOf(HasSubstr("nothing to change"), HasSubstr("Stored in the EEPROM, all parameters")));
 }
 
 TEST(DriveCommand, WhatCannotBeMeantIsRefusedBeforeAnythingIsWritten) {
@@ -120,7 +118,8 @@ TEST(DriveCommand, WhatCannotBeMeantIsRefusedBeforeAnythingIsWritten) {
     EXPECT_THAT(on_demo({"get", "w_drive", "P05.13"}).err, HasSubstr("there is no such slave"));
     EXPECT_THAT(on_demo({"get", "io", "P05.13"}).err, HasSubstr("--profile"));
     EXPECT_THAT(on_demo({"get", "x_drive", "P05.13", "--axis", "2"}).err, HasSubstr("sv33-e has 1 axis"));
-    EXPECT_EQ(drive({"get", "0", "P05.13"}).code, exit_usage) << "no bus was named";
+    EXPECT_EQ(drive({"get", "0", "P05.13", "-s", "/nowhere/socket"}).code, exit_no_runtime) << "no bus was named: a machine is asked";
+    EXPECT_EQ(drive({"get", "0", "P05.13", "-s", "demo", "--nic", "eth7"}).code, exit_usage) << "one way or the other";
 }
 
 TEST_F(DriveSets, AWholeSetGoesToAFileAndBack) {

@@ -19,6 +19,8 @@ Json axis(const std::string& name) {
                 {"unit", "mm"},
                 {"state", "Standstill"},
                 {"owner", "program"},
+                {"command", "MC_MoveAbsolute"},
+                {"block", name == "a0" ? "cell.pick" : ""},
                 {"disabled", false},
                 {"simulated", true},
                 {"online", true},
@@ -92,7 +94,8 @@ TEST(MonitorScreen, ThreeAxesWithAlarmsFitAPlainTerminal) {
     EXPECT_THAT(lines, Contains(HasSubstr("step=30")));
     EXPECT_THAT(lines, Contains(HasSubstr("speed=400 mm/s")));
     EXPECT_THAT(lines, Contains(HasSubstr("estop_ok=1")));
-    EXPECT_THAT(lines, Contains(HasSubstr("owner program")));
+    EXPECT_THAT(lines, Contains(HasSubstr("owner program (MC_MoveAbsolute cell.pick)")));
+    EXPECT_THAT(lines, Contains(HasSubstr("owner program (MC_MoveAbsolute)"))) << "a block without a name";
 }
 
 TEST(MonitorScreen, WhatDoesNotFitGivesWayToAxesAndAlarms) {

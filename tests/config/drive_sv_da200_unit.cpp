@@ -289,6 +289,8 @@ TEST(SvDa200, UnitsFollowP425) {  // 2.1 note 3, note 8, 4.6
         EXPECT_EQ(v.zero_limits_count, value == 2);
         EXPECT_EQ(v.index_before_inputs, value == 2);
         EXPECT_EQ(v.index_probe, value != 3);
+        EXPECT_EQ(v.cyclic_bit_12, value >= 2);
+        EXPECT_EQ(v.status_hidden, value == 3 ? 0x4100 : 0) << "bits 8 and 14 are the vendor's: 3.1.2";
     }
 }
 

@@ -21,6 +21,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <initializer_list>
 #include <map>
 #include <memory>
 #include <span>
@@ -58,7 +59,7 @@ inline axes::sim::PlantConfig long_table() {
     return plant;
 }
 
-/// What no profile says because it depends on the motor: its highest speed, how long it bears an overload, what encoder it has.
+/// What no profile says because it depends on the motor or the maker's tool sets it: highest speed, how long it bears an overload, encoder.
 using MotorFacts = std::function<void(axes::sim::Personality&)>;
 
 class DriveDesk {
@@ -104,6 +105,11 @@ public:
         const unsigned unused = 64u - entry->bits();
         return entry->is_signed() ? static_cast<std::int64_t>(raw << unused) >> unused : static_cast<std::int64_t>(raw);
     }
+    /// Abort code of an upload; 0: it can be read.
+    std::uint32_t upload_abort(std::uint16_t index, std::uint8_t sub = 0) {
+        std::array<std::byte, 0x80> request{}, answer{};
+        return outcome(request, ecat::encode_upload_request(request, index, sub), answer);
+    }
     [[nodiscard]] bool has(std::uint16_t index, std::uint8_t sub = 0) { return dictionary.find(index, sub) != nullptr; }
     /// An RxPDO's value: the low bits that the object holds, taken at the next cycle.
     void pdo(std::uint16_t index, std::int64_t value, std::uint8_t sub = 0) {
@@ -116,7 +122,7 @@ public:
     /// What an empty mapping or an unfit cycle would make of it the drive decides: AL status code, 0 accepts.
     [[nodiscard]] std::uint16_t refuses(EsmState next) {
         ecat::sim::SyncSettings settings;
-        settings.sync0_active = sync0;
+        settings.sync0_active = arrives.sync0;
         settings.sync0_cycle = cycle_;
         return device.refuse(state, next, settings);
     }
@@ -142,10 +148,13 @@ public:
     }
 
     // --- time -------------------------------------------------------------------------------------------------------------
-    void cycle() {
-        now += cycle_;
+    void cycle() { cycle(cycle_); }
+    /// `length` after the one before. Without SYNC0 and frames nothing is exchanged; SYNC0 runs in a drive whose clocks are on.
+    void cycle(Duration length) {
+        now += length;
         device.advance(now);
-        if (state == EsmState::op) device.exchange_due({.outputs = frames, .sync0 = sync0});
+        if (state == EsmState::op && !arrives.outputs && !arrives.sync0) return;
+        if (state == EsmState::op) device.exchange_due(arrives);
         device.exchange(now);
     }
     void run(int cycles) {
@@ -165,6 +174,10 @@ public:
     void control(std::uint16_t word, int cycles = 3) {
         pdo(0x6040, word);
         run(cycles);
+    }
+    /// One after the other, as a master walks through the states.
+    void control(std::initializer_list<std::uint16_t> words) {
+        for (const auto word : words) control(word);
     }
     /// 6 - 7 - 15 for the first axis; then as long as its brake needs.
     void enable() {
@@ -194,7 +207,7 @@ public:
     axes::sim::Cia402Device device;
     EsmState state = EsmState::init;
     Instant now{};
-    bool frames = true, sync0 = true;  ///< what the bus brings each cycle
+    ecat::sim::ExchangeCause arrives{.outputs = true, .sync0 = true};  ///< each cycle in OP; what a broken bus leaves out
 
 private:
     static std::vector<axes::sim::Cia402Device::AxisSetup> setups(const axes::DriveProfile& profile, const axes::sim::PlantConfig& plant,

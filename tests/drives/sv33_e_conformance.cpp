@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ecat/sim/process_data.hpp"
 #include "tests/drives/drive_desk.hpp"
 
 namespace taktwerk::test {
@@ -52,26 +53,55 @@ protected:
     }
 };
 
-// 6.2.9.1, with 1702h for 1603h, which table 7-1 does not have.
+// 6.2.9.1, steps 1) to 6), with 1702h for 1603h: table 7-1 has five fixed RxPDOs and no 1603h, table 6-20 the other way round.
 TEST_F(Sv33EExamples, AssigningAPdo) {
+    ASSERT_EQ(desk.state, EsmState::preop);
+    EXPECT_EQ(desk.sdo(0x1C12, 0x01, 0x1702), 0x06010003u) << "1C12h:00 has to be 0 before";
     EXPECT_EQ(desk.sdo(0x1C12, 0x00, 0), 0u);
+    EXPECT_EQ(desk.sdo(0x1C12, 0x01, 0x1603), 0x06090030u);
     EXPECT_EQ(desk.sdo(0x1C12, 0x01, 0x1702), 0u);
     EXPECT_EQ(desk.sdo(0x1C12, 0x00, 1), 0u);
     EXPECT_EQ(desk.read(0x1C12, 1), 0x1702);
-    EXPECT_EQ(desk.sdo(0x1C12, 0x00, 0), 0u);
-    EXPECT_EQ(desk.sdo(0x1C12, 0x01, 0x1603), 0x06090030u);
+    ecat::sim::ProcessData image(*desk.drive.device, desk.dictionary);
+    ASSERT_EQ(image.resolve(), 0);
+    EXPECT_EQ(image.bytes(2), 19);  // table 3-28
+    EXPECT_EQ(image.bytes(3), 24);  // 1B01h as listed; its table prints 28
+
+    // "SafeOP: the TxPDO is active." "OP: the RxPDO is."
+    desk.enter(EsmState::safeop);
+    std::array<std::byte, 19> out{std::byte{0x06}};
+    image.load_outputs(2, out);
+    desk.run(2);
+    EXPECT_EQ(desk.power_state(), 0x40u) << "what the master sends is not obeyed yet, what the drive shows is true";
+    desk.enter(EsmState::op);
+    desk.run(2);
+    EXPECT_EQ(desk.power_state(), 0x21u);
 }
 
-// 6.2.9.2: 1600h:08 becomes 606Eh. Entries 1 to 7 as in table 6-22, with a gap for its filler object 5FFEh.
+// 6.2.9.2, steps 1) to 6): 1600h:08 becomes 606Eh. Table 6-22 calls entries 1 to 7 the factory's; 7.1 does not, so they are written first.
 TEST_F(Sv33EExamples, MappingAnObject) {
+    EXPECT_EQ(desk.sdo(0x1600, 0x08, 0x606E0010), 0x06010003u) << "1600h:00 has to be 0 before";
     EXPECT_EQ(desk.sdo(0x1600, 0x00, 0), 0u);
-    const std::int64_t table_6_22[] = {0x60400010, 0x607A0020, 0x60FF0020, 0x60710010, 0x60600008, 0x00000008, 0x60B80010};
+    const std::int64_t table_6_22[] = {0x60400010, 0x607A0020, 0x60FF0020, 0x60710010, 0x60600008, 0x5FFE0008, 0x60B80010};
     std::uint8_t sub = 0;
-    for (const auto entry : table_6_22) EXPECT_EQ(desk.sdo(0x1600, ++sub, entry), 0u);
+    for (const auto entry : table_6_22) EXPECT_EQ(desk.sdo(0x1600, ++sub, entry), 0u) << std::hex << entry;
     EXPECT_EQ(desk.sdo(0x1600, 0x08, 0x606E0010), 0u);
     EXPECT_EQ(desk.sdo(0x1600, 0x00, 8), 0u);
     EXPECT_EQ(desk.read(0x1600, 0), 8);
     EXPECT_EQ(desk.read(0x1600, 8), 0x606E0010);
+    EXPECT_EQ(desk.sdo(0x1C12, 0x00, 0), 0u);
+    EXPECT_EQ(desk.sdo(0x1C12, 0x01, 0x1600), 0u);
+    EXPECT_EQ(desk.sdo(0x1C12, 0x00, 1), 0u);
+
+    // 2 + 4 + 4 + 2 + 1 + 1 + 2 bytes of the table, and 2 of 606Eh behind them.
+    ecat::sim::ProcessData image(*desk.drive.device, desk.dictionary);
+    ASSERT_EQ(image.resolve(), 0);
+    ASSERT_EQ(image.bytes(2), 18);
+    desk.go_operational();
+    std::array<std::byte, 18> out{};
+    out[16] = std::byte{25};
+    image.load_outputs(2, out);
+    EXPECT_EQ(desk.read(0x606E), 25);
 }
 
 // 8.5.1: the recommended slow step is cycle (s) x greatest motor speed (r/s) / 10. P00.18: 6000 rpm = 100 r/s, so 0.01 turns each ms.
@@ -117,6 +147,36 @@ TEST_F(Sv33EExamples, Cst) {
     desk.pdo(0x6071, 0);
     desk.run(2ms);
     EXPECT_EQ(desk.read(0x6077), 0);
+    write_6();
+}
+
+// 8.5.4: "set suitable motion parameters" (6081h is 0 from the factory), 607Ah, then 31 for an absolute target or 95 for one that counts from
+// the last [3.4.3(5)]. 10 turns at 5 turns/s by 100 turns/s2: 2.05 s.
+TEST_F(Sv33EExamples, Pp) {
+    EXPECT_EQ(desk.sdo(0x6081, 0, 5 * turn), 0u);
+    activate(1);
+    write_6_7_15();
+    const auto start = desk.position();
+    const auto positions = [&](std::int64_t target, std::uint16_t word) {
+        desk.pdo(0x607A, target);
+        desk.control(word, 1);
+        EXPECT_NE(desk.status() & 0x1000, 0u) << "3.4.3(5): bit 12 acknowledges";
+        desk.control(15, 2);
+        EXPECT_EQ(desk.status() & 0x1000, 0u) << "and falls with bit 4";
+        EXPECT_EQ(desk.status() & 0x0400, 0u) << "on the way";
+    };
+    positions(start + 10 * turn, 31);
+    desk.run(1s);
+    EXPECT_NEAR(static_cast<double>(desk.read(0x606C)), 5.0 * turn, 0.01 * turn);
+    EXPECT_EQ(desk.status() & 0x0400, 0u);
+    desk.run(1100ms);
+    EXPECT_NE(desk.status() & 0x0400, 0u);                                        // bit 10: reached
+    EXPECT_NEAR(static_cast<double>(desk.position() - start), 10.0 * turn, 734);  // 6067h
+
+    positions(-4 * turn, 95);
+    desk.run(1s);
+    EXPECT_NE(desk.status() & 0x0400, 0u);
+    EXPECT_NEAR(static_cast<double>(desk.position() - start), 6.0 * turn, 734);
     write_6();
 }
 

@@ -1,8 +1,6 @@
 // The simulated SV33-E where its manual is definite about parameters, mapping and alarms (V1.1, sections beside each).
 
-#include <gtest/gtest.h>
-
-#include "tests/drives/drive_desk.hpp"
+#include "tests/drives/sv33_e.hpp"
 
 namespace taktwerk::test {
 namespace {
@@ -11,34 +9,6 @@ using State = axes::sim::Cia402Axis::State;
 
 constexpr std::uint32_t cannot_store = 0x08000020, device_state = 0x08000022, sub0_not_zero = 0x06010003, read_only = 0x06010002,
                         too_high = 0x06090031, no_object = 0x06020000, no_subindex = 0x06090011;
-
-axes::sim::PlantConfig motor() {
-    axes::sim::PlantConfig plant;
-    plant.counts_per_revolution = 131072;  // 17 bit, 1.1.2
-    return plant;
-}
-
-class Sv33E : public ::testing::Test {
-protected:
-    DriveDesk desk{"sv33-e", motor()};
-
-    void map_and_start(std::int64_t mode) {
-        ASSERT_EQ(desk.sdo(0x6085, 0, 13'107'200), 0u);
-        desk.go_operational();
-        desk.pdo(0x6060, mode);
-        desk.run(2ms);
-        align();
-    }
-    void align() { desk.pdo(0x607A, desk.read(0x6064)); }
-    void enable() {
-        desk.control(6);
-        desk.control(7);
-        align();
-        desk.control(15);
-        ASSERT_EQ(desk.power_state(), 0x27u);
-        desk.run(300ms);  // P05.13, 250 ms
-    }
-};
 
 // --- Process data [6.2.9.1, 6.2.9.2] -----------------------------------------------------------------------------------------
 

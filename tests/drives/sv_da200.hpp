@@ -21,7 +21,10 @@ protected:
     static constexpr std::int64_t pp = 1, pv = 3, homing = 6, csp = 8, csv = 9, cst = 10;  // 2.3
     static constexpr unsigned reached = 1u << 10, acknowledged = 1u << 12;                 // 3.1.2
 
-    explicit SvDa200(const axes::sim::PlantConfig& plant = da200_table()) : RunningDesk("sv-da200", plant) {}
+    explicit SvDa200(const axes::sim::PlantConfig& plant = da200_table()) : RunningDesk("sv-da200", plant) {
+        // Ramps that leave the shape of set-points to the master; the drive has them in CSV too [3.6.2].
+        for (const int ramp : {0x6083, 0x6084}) EXPECT_EQ(sdo(static_cast<std::uint16_t>(ramp), 0, 10'000'000), 0u);
+    }
 
     /// "Switch it off and on again" [2.1 note 1].
     void restart() {

@@ -52,5 +52,18 @@ TEST_F(SvDa200, StatusBits4And8And14TellPowerClockAndStandstill) {  // 3.1.2
     EXPECT_TRUE(status_bit(4) && status_bit(8));
 }
 
+// 2.1 item 3 and note 1: P4.08 = 0 is Free-Run, from a restart on; then no clock follows SYNC0 [3.1.2 bit 8], and none is missed [5.2 Er24-a].
+TEST_F(SvDa200, RunsFreeWithP408At0AndThatFromARestartOn) {
+    ASSERT_EQ(sdo(0x2408, 0, 0), 0u);
+    run(2);
+    EXPECT_TRUE(status_bit(8));
+    restart();
+    EXPECT_FALSE(status_bit(8));
+    enable_in(csp);
+    arrives.sync0 = false;
+    run(100);
+    EXPECT_TRUE(enabled());
+}
+
 }  // namespace
 }  // namespace taktwerk::test

@@ -10,12 +10,12 @@ constexpr std::int64_t er24_c = 0x180C, er24_a = 0x180A;  // 5.1: main code, sub
 TEST_F(SvDa200, LostProcessDataAreAFaultOnlyWhileEnabled) {
     ASSERT_EQ(sdo(0x2409, 0, 20), 0u);
     restart();
-    frames = false;
+    arrives.outputs = false;
     run(100);
     EXPECT_FALSE(faulted()) << "watched after enabling only";
-    frames = true;
+    arrives.outputs = true;
     enable_in(csp);
-    frames = false;
+    arrives.outputs = false;
     run(15);
     EXPECT_FALSE(faulted());
     run(50);
@@ -26,7 +26,7 @@ TEST_F(SvDa200, LostProcessDataAreAFaultOnlyWhileEnabled) {
 
 TEST_F(SvDa200, WithoutSync0TheClockIsMissed) {  // Er24-a
     enable_in(csp);
-    sync0 = false;  // frames come, SYNC0 does not
+    arrives.sync0 = false;  // frames come, SYNC0 does not
     run(50);
     EXPECT_TRUE(faulted());
     EXPECT_EQ(read(0x603F), 0x8100);
@@ -42,9 +42,9 @@ TEST_F(SvDa200, GoesOnByTheLastIncrementForAsManyCyclesAsP427Says) {  // 2.1 not
             pdo(0x607A, target += 20);
             run(1);
         }
-        frames = false;
+        arrives.outputs = false;
         run(8);  // P4.09 is 10 ms
-        frames = true;
+        arrives.outputs = true;
         const auto demanded = read(0x60F4) + position();  // following error and actual
         pdo(0x607A, target);
         run(1);

@@ -55,5 +55,28 @@ TEST_F(SvDa200, TheTorqueOffsetCountsInAllModesButThoseOfTorque) {  // 4.10
     EXPECT_NEAR(speed(), 0, 100);
 }
 
+TEST_F(SvDa200, TheTorqueLimitsHoldInTorqueModeToo) {  // CT-12: 3.7.2 steps 5 to 7, 2.1 note 9
+    pdo(0x607F, 1'000'000);
+    enable_in(cst);
+    pdo(0x6071, 500);
+    run(20);
+    EXPECT_EQ(read(0x6077), 500);
+    pdo(0x60E0, 300);
+    run(2);
+    EXPECT_EQ(read(0x6077), 300);
+    pdo(0x6072, 200);
+    run(2);
+    EXPECT_EQ(read(0x6077), 200) << "the least of both";
+    pdo(0x6071, -500);
+    run(2);
+    EXPECT_EQ(read(0x6077), -200);
+    control(0x00);
+    EXPECT_EQ(read(0x6077), 0) << "3.7.5 step 2: 0h disables";
+}
+
+TEST_F(SvDa200, TorqueModeHasNoSlopeObject) {  // 3.7.5 step 4 names 6087h, which no table of the guide has (3.7.4, 4.3)
+    EXPECT_EQ(sdo(0x6087, 0, 1), 0x06020000u);
+}
+
 }  // namespace
 }  // namespace taktwerk::test

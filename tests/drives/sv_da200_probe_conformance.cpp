@@ -84,5 +84,48 @@ TEST_F(SvDa200, LimitsAndHomeAreBits0To2) {  // 4.6
     EXPECT_EQ(read(0x60FD) & 7, 4);
 }
 
+// 3.8.3, bits 8 to 15: the same for probe 2, whose input is DI2; 1100h: rising edge, 60BCh. 2100h: falling edge, 60BDh.
+TEST_F(SvDa200Probe, TheSecondProbeLatchesBothEdges) {
+    enable_in(csp);
+    pdo(0x60B8, 0x3100);
+    run(2);
+    EXPECT_EQ(read(0x60B9), 0x0100);
+    follow_to(-11500);
+    EXPECT_EQ(read(0x60B9), 0x0300);
+    EXPECT_NEAR(static_cast<double>(read(0x60BC)), 8000, 1) << "-12000 is 8000 from where it counted 0";
+    follow_to(-10000);
+    EXPECT_EQ(read(0x60B9), 0x0700);
+    EXPECT_NEAR(static_cast<double>(read(0x60BD)), 9000, 1) << "-11000";
+}
+
+// 3.8.3: the Z signal by its rising edge only, into 60BCh: 1500h. Pulses stand each turn of 10000, at 0 of the table.
+TEST_F(SvDa200Probe, TheSecondProbeLatchesTheIndexPulse) {
+    enable_in(csp);
+    pdo(0x60B8, 0x1500);
+    run(2);
+    follow_to(-9000);
+    EXPECT_EQ(read(0x60B9), 0x0300);
+    EXPECT_NEAR(static_cast<double>(read(0x60BC)), 10000, 1);
+    EXPECT_EQ(read(0x60BD), 0);
+}
+
+// 3.8.3, bit 0 falls: the probe is off, and its results are gone with it; a new enable latches anew.
+TEST_F(SvDa200Probe, ASingleShotIsArmedAgainByBit0) {
+    enable_in(csp);
+    pdo(0x60B8, 0x0011);
+    run(2);
+    follow_to(-14500);
+    const auto first = read(0x60BA);
+    follow_to(-16000);
+    follow_to(-14500);
+    EXPECT_EQ(read(0x60BA), first) << "single: the first one stays";
+    pdo(0x60B8, 0);
+    run(2);
+    EXPECT_EQ(read(0x60B9), 0);
+    pdo(0x60B8, 0x0011);
+    run(2);
+    EXPECT_EQ(read(0x60B9), 1);
+}
+
 }  // namespace
 }  // namespace taktwerk::test

@@ -82,6 +82,16 @@ const std::map<std::string, std::string>& other_documents() {
         {"MC_ExtSetPointGenDisable", "Axis | Execute Deceleration Jerk | Done Busy Active CommandAborted Error ErrorID"},
         // RTmotion
         {"MC_SetControllerMode", "Axis | Execute Mode | Done Busy Active CommandAborted Error ErrorID"},
+        // our own, in the form of MC_MoveAbsolute, MC_MoveRelative, MC_MoveVelocity and MC_TorqueControl, with what a drive's profile has of them
+        {"Drive_MoveAbsolute",
+         "Axis | Execute Position Velocity Acceleration Deceleration Direction BufferMode | "
+         "Done Busy Active CommandAborted Error ErrorID"},
+        {"Drive_MoveRelative",
+         "Axis | Execute Distance Velocity Acceleration Deceleration BufferMode | Done Busy Active CommandAborted Error ErrorID"},
+        {"Drive_MoveVelocity",
+         "Axis | Execute Velocity Acceleration Deceleration Direction BufferMode | InVelocity Busy Active CommandAborted Error ErrorID"},
+        {"Drive_Torque",
+         "Axis | Execute Torque TorqueRamp Velocity Direction BufferMode | InTorque Busy Active CommandAborted Error ErrorID"},
     };
     return documents;
 }

@@ -13,7 +13,9 @@ public:
     FakeMachine() {
         layout_.machine = "demo";
         layout_.cycle = std::chrono::milliseconds{1};
-        layout_.axes = {{"x", "mm", false, true, 10, 50}, {"y", "mm", false, true, 10, 50}, {"turret", "deg", true, true, 5, 20}};
+        layout_.axes = {{"x", "mm", false, true, 10, 50, "x_drive", "sv33-e", 0},
+                        {"y", "mm", false, true, 10, 50, "y_drive", "sv33-e", 0},
+                        {"turret", "deg", true, true, 5, 20, "", "", 0}};
         layout_.slaves = {"x_drive", "y_drive"};
         layout_.inputs = {"start_button", "estop_ok"};
         layout_.outputs = {"lamp_run"};
@@ -54,17 +56,20 @@ public:
     [[nodiscard]] runtime::AlarmText describe(const AlarmFact&) const override {
         return {"axis x", "following_error", "The axis lags behind", "跟随误差过大", "It is blocked", "Free it", "the axis stops", "reset"};
     }
+    [[nodiscard]] Drive drive(std::uint16_t axis) override { return axis < drives.size() ? drives[axis] : Drive{}; }
     void request_shutdown() override { shutdown_requested = true; }
 
     /// Answers the newest command.
-    void answer(runtime::Answer verdict, axes::ErrorId error = axes::ErrorId::none, axes::Owner owner = axes::Owner::none) {
-        answers.push_back({submitted.back().client, submitted.back().sequence, verdict, error, owner});
+    void answer(runtime::Answer verdict, axes::ErrorId error = axes::ErrorId::none, axes::Owner owner = axes::Owner::none,
+                const void* holder = nullptr) {
+        answers.push_back({submitted.back().client, submitted.back().sequence, verdict, error, owner, holder});
     }
 
     std::vector<runtime::OperatorCommand> submitted;
     std::deque<runtime::CommandAnswer> answers;
     runtime::Snapshot snapshot;
     runtime::MachineLayout layout_;
+    std::vector<Drive> drives;  ///< by axis; those behind have none
     std::size_t inbox_size = 1000;
     bool cycling = true;
     bool shutdown_requested = false;

@@ -42,7 +42,7 @@ protected:
                          axes::Owner owner = axes::Owner::none) {
         const auto before = machine.submitted.size();
         gateway.handle(r, now);
-        if (machine.submitted.size() > before) machine.answer(verdict, error, owner);
+        if (machine.submitted.size() > before) machine.answer(verdict, error, owner, holder);
         gateway.step(now);
         auto reply = gateway.next_reply();
         EXPECT_TRUE(reply.has_value());
@@ -52,6 +52,7 @@ protected:
 
     FakeMachine machine;
     Gateway gateway{machine};
+    const void* holder = nullptr;  ///< what the axis says moves it
     ClientId client = gateway.open(Source::socket, "panel A", Rights::commissioning);
     std::uint64_t sequence = 0;
     Instant now{10s};
@@ -261,6 +262,13 @@ TEST_F(GatewayTest, RefusalsOfTheMachineComeBackInWords) {
     EXPECT_EQ(owned.error.code, "command.no_control");
     EXPECT_THAT(owned.error.what, HasSubstr("a program has control"));
     EXPECT_THAT(owned.error.remedy, HasSubstr("manual mode"));
+
+    const std::byte pick{};
+    machine.layout_.blocks = {{"cell.pick", &pick, 1}};
+    holder = &pick;
+    const auto moved = outcome(request(CommandKind::home, "x"), Answer::no_control, axes::ErrorId::owned_by_other, axes::Owner::program);
+    EXPECT_THAT(moved.error.what, HasSubstr("'cell.pick' moves or holds the axis")) << "who blocks";
+    holder = nullptr;
 
     const auto refused = outcome(request(CommandKind::home, "x"), Answer::refused_by_axis, axes::ErrorId::not_powered);
     EXPECT_EQ(refused.error.subject, "axis x");

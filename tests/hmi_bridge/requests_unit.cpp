@@ -154,6 +154,10 @@ TEST_F(RequestsTest, StateCarriesNamesUnitsAndAlarmTexts) {
     machine.snapshot.axes[0].actual_position = 12.5;
     machine.snapshot.axes[0].active_kind = axes::CommandKind::gear_in_pos;
     machine.snapshot.axes[1].lock = 7;
+    std::array<std::byte, 64> pick{};  // a block: what of it submits lies somewhere inside
+    machine.layout_.blocks = {{"cell.pick", pick.data(), pick.size()}};
+    machine.snapshot.axes[0].holder = &pick[40];
+    machine.snapshot.axes[1].holder = pick.data() + pick.size();
     machine.snapshot.alarms.resize(4);
     machine.snapshot.alarms[0].standing = true;
     machine.snapshot.alarms[0].reaction = Reaction::stop_axis;
@@ -170,6 +174,8 @@ TEST_F(RequestsTest, StateCarriesNamesUnitsAndAlarmTexts) {
     EXPECT_EQ(state["axes"][0]["state"], "DiscreteMotion");
     EXPECT_EQ(state["axes"][0]["actual_position"], 12.5);
     EXPECT_EQ(state["axes"][0]["command"], "MC_GearInPos");
+    EXPECT_EQ(state["axes"][0]["block"], "cell.pick");
+    EXPECT_EQ(state["axes"][1]["block"], "") << "the first byte behind it";
     EXPECT_EQ(state["axes"][0]["held_by_stop"], false);
     EXPECT_EQ(state["axes"][1]["held_by_stop"], true);
     EXPECT_EQ(state["axes"][1]["command"], "");

@@ -112,6 +112,66 @@ TEST(Program, ManualModeStopsItAndGivesTheAxisToTheOperator) {
     m.expect_no_jump();
 }
 
+/// As PowerAndMove, and a stop at half way that holds for a second, each with a name.
+class MovesAndHolds final : public Program {
+public:
+    AxisRef x;
+    MC_Power power;
+    MC_Home home;
+    MC_MoveAbsolute move;
+    MC_Stop hold;
+    Instant held_since{};
+    void declare(Declaration& d) override {
+        x = d.axis("x");
+        d.block("move", move);
+        d.block("hold", hold);
+        d.task<&MovesAndHolds::scan>("main");
+    }
+    void scan(TaskContext& ctx) {
+        power.Axis = home.Axis = move.Axis = hold.Axis = x;
+        power.Enable = true;
+        power(ctx);
+        home.Execute = power.Status;
+        home(ctx);
+        move.Position = 100;
+        move.Velocity = 50;
+        move.Execute = home.Done;
+        move(ctx);
+        if (!hold.Execute && held_since == Instant{} && ctx.view(x)->set_position > 50) {
+            hold.Execute = true;
+            held_since = ctx.now;
+        }
+        if (hold.Execute && ctx.now - held_since > 1s) hold.Execute = false;
+        hold(ctx);
+    }
+};
+
+// Who moves an axis, and who blocks it: the block by its name, for the live state and for the refusal of somebody else's command.
+TEST(Program, AnAxisKnowsTheBlockThatMovesOrHoldsIt) {
+    for (const std::uint16_t divisor : {std::uint16_t{1}, std::uint16_t{8}}) {
+        TestMachine m{homing_in_place(with_program(1, &entry_of<MovesAndHolds>, divisor))};
+        ASSERT_TRUE(m.up());
+        const auto holder = [&] { return m.machine->layout().block_at(m.axis(0).holder); };
+        EXPECT_EQ(holder(), "");
+
+        ASSERT_TRUE(m.until([&] { return m.axis(0).set_velocity > 40; }, 10s));
+        EXPECT_EQ(holder(), "p.move");
+        const auto refused = m.command(OperatorAction::move_absolute, 0, false, 10, 50);
+        EXPECT_EQ(refused.answer, Answer::no_control);
+        EXPECT_EQ(m.machine->layout().block_at(refused.holder), "p.move");
+
+        ASSERT_TRUE(m.until([&] { return m.axis(0).state == AxisState::Stopping; }, 10s));
+        EXPECT_EQ(holder(), "p.hold");
+        ASSERT_TRUE(m.until([&] { return m.axis(0).set_velocity == 0; }, 10s));
+        m.run(100ms);
+        ASSERT_EQ(m.axis(0).state, AxisState::Stopping);
+        EXPECT_EQ(holder(), "p.hold") << "Done, and its Execute still TRUE";
+
+        ASSERT_TRUE(m.until([&] { return m.axis(0).state == AxisState::Standstill; }, 10s));
+        EXPECT_EQ(holder(), "");
+    }
+}
+
 class Throws final : public Program {
 public:
     AxisRef x;

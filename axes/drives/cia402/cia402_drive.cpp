@@ -42,6 +42,7 @@ Cia402Drive::Cia402Drive(ecat::Master& bus, std::size_t slave, std::uint8_t axis
     c.enable_delay = profile_->enable_delay;
     c.mode_change_delay = profile_->mode_change_delay;
     c.mode_change_at_standstill = profile_->mode_change_at_standstill;
+    c.profile_replaces = !profile_->has(Quirk::pp_bit_5_blends);
     if (profile_->clear_turns.index != 0 || profile_->clear_turns_control != 0)
         c.services = static_cast<std::uint8_t>(c.services | 1u << static_cast<unsigned>(DriveService::clear_multi_turn));
     if (profile_->has(Quirk::probe_toggle_bits))

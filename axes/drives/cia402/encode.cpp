@@ -52,8 +52,9 @@ std::uint16_t Cia402Drive::control_word(const DriveCommand& command, bool mode_c
                                                                                                        : towards_off(feedback_.power);
         case PowerRequest::on: break;
     }
+    const unsigned awaited = enable_bits_ & ~unsigned{settings_.status_hidden()};
     const bool may_enable =
-        mode_confirmed && (feedback_.status_word & enable_bits_) == enable_bits_ && settings_.verdict() == SettingsCheck::Verdict::fits;
+        mode_confirmed && (feedback_.status_word & awaited) == awaited && settings_.verdict() == SettingsCheck::Verdict::fits;
     std::uint16_t word = towards_enabled(feedback_.power, may_enable);
     if (feedback_.power == PowerState::enabled) {
         if (command.mode == DriveMode::homing && mode_confirmed && command.start_homing) word |= homing_start;
@@ -96,23 +97,28 @@ void Cia402Drive::encode(const DriveCommand& command, Instant now) noexcept {
     write_signal(image, out_.mode.signal, mode_code(mode));
 
     // Until the drive follows in this mode its target is its own actual position: enabling and mode switches never step. From one cyclic
-    // mode into another the targets of both are the command's: a motor that turns would feel an actual value, old as it is, as a step.
-    const bool changes_over = cyclic(feedback_.mode) && cyclic(command.mode);
+    // mode into another the targets of both are the command's: a motor that turns would feel an actual value, old as it is, as a step. So it
+    // would out of a profile mode in motion.
+    const bool changes_over = (cyclic(feedback_.mode) || profile_mode(feedback_.mode)) && cyclic(command.mode);
     const bool follows = feedback_.power == PowerState::enabled && (mode_confirmed || changes_over) && command.power == PowerRequest::on;
     if (profile_mode(command.mode)) {
         auto held = command;
-        const bool prepared = profile_prepared(command, follows);
+        // One ramp for both: never harder than either of the two asked for (SV-DA200 3.2.3).
+        if (profile_->has(Quirk::pp_shared_ramp) && command.mode == DriveMode::profile_position && command.deceleration > 0)
+            held.acceleration = std::min(command.acceleration, command.deceleration);
+        const bool prepared = profile_prepared(held, follows);
         if (command.mode == DriveMode::profile_position && prepared)
             word |= handshake_.bits(command.profile, feedback_.status_word, feedback_.fresh, now);
         hold_profile_target(held, follows, prepared);
         write_targets(image, held, follows);
+        write_limits(image, held);
     } else {
         handshake_.reset();
-        held_velocity_ = held_torque_ = 0;
+        if (!follows || !profile_mode(feedback_.mode)) held_velocity_ = held_torque_ = 0;
         write_targets(image, command, follows);
+        write_limits(image, command);
     }
     write_signal(image, out_.control.signal, word);
-    write_limits(image, command);
     if (out_.digital.mapped()) {
         const auto before = static_cast<std::uint32_t>(read_signal(image, out_.digital.signal));
         write_signal(image, out_.digital.signal,
@@ -160,12 +166,15 @@ void Cia402Drive::write_targets(std::span<std::byte> image, const DriveCommand& 
     write_signal(image, out_.target_position.signal, follows && in_position_mode ? command.position : feedback_.position);
     const double velocity = follows ? command.velocity * settings_.velocity_counts_per_unit() : 0.0;
     const bool in_velocity_mode = velocity_mode(command.mode) || feedback_.mode == DriveMode::cyclic_velocity;
-    out_.target_velocity.write(image, in_velocity_mode ? velocity : 0);
-    out_.velocity_offset.write(image, command.mode == DriveMode::cyclic_position ? velocity : 0);
+    // On the way out of a profile mode its target stays: a zero would begin a ramp before the mode has changed.
+    const bool on_the_way_out = profile_mode(feedback_.mode) && !profile_mode(command.mode);
+    const double target_velocity = on_the_way_out ? held_velocity_ * settings_.velocity_counts_per_unit() : in_velocity_mode ? velocity : 0;
+    out_.target_velocity.write(image, target_velocity);
+    out_.velocity_offset.write(image, command.mode == DriveMode::cyclic_position && !on_the_way_out ? velocity : 0);
     const double torque = follows ? command.torque * profile_->torque_rated_raw : 0.0;
     const bool in_torque_mode = torque_mode(command.mode) || feedback_.mode == DriveMode::cyclic_torque;
-    out_.target_torque.write(image, in_torque_mode ? torque : 0);
-    out_.torque_offset.write(image, torque_mode(command.mode) || profile_mode(command.mode) ? 0 : torque);
+    out_.target_torque.write(image, on_the_way_out ? held_torque_ * profile_->torque_rated_raw : in_torque_mode ? torque : 0);
+    out_.torque_offset.write(image, torque_mode(command.mode) || profile_mode(command.mode) || on_the_way_out ? 0 : torque);
 }
 
 void Cia402Drive::write_limits(std::span<std::byte> image, const DriveCommand& command) const noexcept {

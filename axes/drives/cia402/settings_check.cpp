@@ -153,6 +153,7 @@ void SettingsCheck::judge_units(const ecat::SlaveConfig& slave) {
                                 "in ms to a rated speed that no object tells. Set other units, or home by the runtime",
                                 shown(units.object), variant->value, sdo.index));
     velocity_.store(scale, std::memory_order_relaxed);
+    hidden_.store(variant->status_hidden, std::memory_order_relaxed);
 }
 
 }  // namespace taktwerk::axes::cia402

@@ -30,6 +30,9 @@ public:
     /// 606Ch, 60FFh, 607Fh raw = counts/s times this, in the units that the drive is in.
     [[nodiscard]] double velocity_counts_per_unit() const noexcept { return velocity_.load(std::memory_order_relaxed); }
 
+    /// Bits of 6041h that these units do not show, or may not: nobody waits for them.
+    [[nodiscard]] std::uint16_t status_hidden() const noexcept { return hidden_.load(std::memory_order_relaxed); }
+
     // --- service side ---------------------------------------------------------------------------------------------------
     void step(ecat::Master& bus, std::size_t slave);
     /// An object that was read may have changed: it is read again before the drive is enabled next.
@@ -58,6 +61,7 @@ private:
     std::atomic<std::uint32_t> wanted_{0};
     std::atomic<std::uint64_t> judged_{0};  // count << 8 | verdict
     std::atomic<double> velocity_;
+    std::atomic<std::uint16_t> hidden_{0};
     bool online_ = false;
 
     std::uint32_t under_way_ = 0;  // the count that is being read; 0: none

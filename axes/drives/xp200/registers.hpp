@@ -83,7 +83,7 @@ inline constexpr int output_functions = 13;
 namespace force {
 inline constexpr std::uint16_t zero_clamp = 100, zero_command = 1000;                         // Pr121
 inline constexpr std::uint16_t speed_2 = 1, speed_3 = 10, torque_2 = 1000, torque_3 = 10000;  // Pr122: SP1, SP2; TRQ1, TRQ2
-inline constexpr std::uint16_t emergency = 1, mode = 10;                                      // Pr123
+inline constexpr std::uint16_t emergency = 1, mode = 10;                                      // Pr123: EMG, CMODE
 }  // namespace force
 
 }  // namespace taktwerk::axes::xp200

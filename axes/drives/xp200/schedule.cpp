@@ -1,14 +1,14 @@
+// What is asked next.
+
 #include "axes/drives/xp200/schedule.hpp"
 
 #include <algorithm>
 #include <cmath>
-
-#include <fmt/format.h>
+#include <utility>
 
 namespace taktwerk::axes::xp200 {
 
 using namespace std::chrono_literals;
-using modbus::Outcome;
 
 namespace {
 
@@ -18,16 +18,6 @@ constexpr Duration clear_again = 500ms;
 constexpr Duration settings_period = 2s;        // somebody may turn parameters at the panel (3.4)
 constexpr std::uint16_t echo_pattern = 0x1234;  // 9.6.5
 constexpr std::size_t service_room = 64;
-constexpr int emergency_open = -15;  // EMG in negative logic: on while the contact is open (5.4.2)
-
-struct Block {
-    std::uint16_t first, count;
-};
-/// What decides how the drive behaves; at most 8 words each (9.6.2).
-constexpr Block opening_blocks[] = {{4, 1},   {25, 2},  {60, 4},  {75, 4},  {82, 1},  {97, 2},
-                                    {100, 6}, {108, 4}, {120, 5}, {136, 4}, {145, 3}, {160, 6}};
-/// What must not change behind our back; watched while running.
-constexpr Block watched_blocks[] = {{4, 1}, {25, 2}, {97, 2}, {120, 5}};
 
 /// Words of Pr122 that select the first and the second of the two internal values that take turns, and those values.
 struct Slots {
@@ -38,53 +28,7 @@ constexpr Slots torque_slots{pr::torque_1 + 1, pr::torque_1 + 2, force::torque_2
 
 }  // namespace
 
-Schedule::Schedule(const DriveConfig& config) : config_(config), settings_(config.parameters) {
-    for (const auto& block : opening_blocks) {
-        blocks_.push_back(block.first);
-        block_sizes_.push_back(block.count);
-    }
-    for (const auto& setting : settings_) {
-        const bool read = std::any_of(std::begin(opening_blocks), std::end(opening_blocks), [&](const Block& block) {
-            return setting.number >= block.first && setting.number < block.first + block.count;
-        });
-        if (read) continue;
-        blocks_.push_back(setting.number);
-        block_sizes_.push_back(1);
-    }
-    // Internal speeds count, the first of them is rest, and nothing is forced on.
-    for (const auto& own : {ParameterSetting{pr::speed_source, 1},
-                            {pr::torque_source, 1},
-                            {pr::speed_1, 0},
-                            {pr::torque_1, 0},
-                            {pr::force_1, 0},
-                            {pr::force_2, 0},
-                            {pr::force_3, 0},
-                            {pr::force_4, 0},
-                            {pr::force_5, 0}})
-        settings_.push_back(own);
-}
-
-bool Schedule::owns(std::uint16_t number) noexcept {
-    return number == pr::acceleration_time || number == pr::deceleration_time || number == pr::torque_speed_limit ||
-           (number >= pr::force_1 && number <= pr::force_5) || (number >= pr::speed_1 && number <= pr::speed_1 + 2) ||
-           (number >= pr::torque_1 && number <= pr::torque_1 + 2) || number == pr::speed_source || number == pr::torque_source ||
-           number == pr::forced_enable;
-}
-
-bool Schedule::is_signed(std::uint16_t number) const noexcept {
-    for (const auto& p : config_.profile->parameters)
-        if (p.address.index == number) return p.is_signed;
-    return false;
-}
-
-std::int64_t Schedule::known(std::uint16_t number) const noexcept {
-    const auto word = known_[number].value_or(0);
-    return is_signed(number) ? static_cast<std::int16_t>(word) : static_cast<std::int64_t>(word);
-}
-
-bool Schedule::knows(std::uint16_t number, std::int64_t value) const noexcept {
-    return known_[number] && *known_[number] == static_cast<std::uint16_t>(value);
-}
+Schedule::Schedule(const DriveConfig& config) : config_(config), settings_(config), index_(config.counts_per_turn) {}
 
 modbus::Request Schedule::ask(Asked what, const modbus::Request& request) noexcept {
     asked_ = what;
@@ -92,26 +36,35 @@ modbus::Request Schedule::ask(Asked what, const modbus::Request& request) noexce
 }
 
 modbus::Request Schedule::write(std::uint16_t number, std::int64_t value) noexcept {
-    known_[number].reset();  // until it is confirmed it may be either
+    settings_.doubt(number);
     return ask(Asked::write, modbus::write_parameter(config_.station, number, static_cast<std::uint16_t>(value)));
 }
 
+/// In torque control, and not braking.
+bool Schedule::drives_torque() const noexcept { return settings_.knows(pr::force_4, force::mode); }
+
+/// Torque ends here by EMG: torque 0 would let the motor run out, and a load fall.
+bool Schedule::must_brake(const Wish& wish) const noexcept {
+    return drives_torque() && sample_.running && (wish.halt || wish.power != PowerRequest::on || !wish.torque_mode);
+}
+
 /// An internal speed or torque may be selected.
-bool Schedule::moves_by_itself() const noexcept { return !knows(pr::force_3, 0); }
+bool Schedule::moves_by_itself() const noexcept { return !settings_.knows(pr::force_3, 0); }
 
 bool Schedule::stands() const noexcept {
-    const double standstill = static_cast<double>(std::max<std::int64_t>(known(pr::standstill_speed), 1));
+    const double standstill = static_cast<double>(std::max<std::int64_t>(settings_.known(pr::standstill_speed), 1));
     return std::abs(sample_.velocity) * 60 / static_cast<double>(config_.counts_per_turn) <= standstill;
 }
 
 bool Schedule::urgent(const Wish& wish) const noexcept {
-    return phase_ == Phase::running && (wish.halt || wish.power != PowerRequest::on) && moves_by_itself();
+    return phase_ == Phase::running && (((wish.halt || wish.power != PowerRequest::on) && moves_by_itself()) || must_brake(wish));
 }
 
 std::optional<modbus::Request> Schedule::next(const Wish& wish, Instant now) {
     if (phase_ != Phase::running) return open(now);
+    follow_latch(wish, now);
     auto request = command(wish, now);
-    if (!request) sample_.acknowledged = wish.sequence;
+    if (!request && (sample_.released || !problems().empty())) sample_.acknowledged = wish.sequence;
     if (request && (urgent(wish) || ++commands_in_a_row_ <= 2)) return request;
     commands_in_a_row_ = 0;
     if (!services_.empty() && ++turn_ % 4 == 0) {
@@ -134,13 +87,21 @@ std::optional<modbus::Request> Schedule::open(Instant now) {
         // Whatever ran before ends first: the last speed may still be selected, and the drive knows no silence.
         case Phase::stopping: return write(pr::force_3, 0);
         case Phase::disabling: return ask(Asked::servo, modbus::servo(config_.station, modbus::servo_off));
-        case Phase::reading: return read_next();
+        case Phase::reading:
+            if (const auto block = settings_.unread())
+                return ask(Asked::parameters, modbus::read_parameters(config_.station, block->first, block->count));
+            settings_.restart();
+            phase_ = Phase::setting;
+            [[fallthrough]];
         case Phase::setting:
-            if (auto request = write_next()) return request;
-            judge_settings();
+            if (const auto setting = settings_.unwritten()) return write(setting->number, setting->value);
+            settings_.judge();
+            if (sample_.running) watch_release(now);  // read again for a reset: that changes nothing about it
+            sample_.setup_refused = !problems().empty();
             phase_ = Phase::running;
             turn_ = 0;
             raw_.reset();
+            index_.forget();
             enable_sent_ = false;
             selects_.reset();
             settings_read_ = now;
@@ -151,72 +112,16 @@ std::optional<modbus::Request> Schedule::open(Instant now) {
     return std::nullopt;
 }
 
-std::optional<modbus::Request> Schedule::read_next() {
-    if (step_ < blocks_.size())
-        return ask(Asked::parameters, modbus::read_parameters(config_.station, blocks_[step_], block_sizes_[step_]));
-    phase_ = Phase::setting;
-    step_ = 0;
-    return open({});
-}
-
-std::optional<modbus::Request> Schedule::write_next() {
-    for (; step_ < settings_.size(); ++step_) {
-        const auto& setting = settings_[step_];
-        if (knows(setting.number, setting.value)) continue;
-        const auto& rows = config_.profile->parameters;
-        const auto row = std::find_if(rows.begin(), rows.end(), [&](const auto& p) { return p.address.index == setting.number; });
-        if (row == rows.end() || row->effect == ParameterEffect::after_restart || row->change == ParameterChange::never) continue;
-        return write(setting.number, setting.value);
-    }
-    return std::nullopt;
-}
-
-void Schedule::judge_settings() {
-    problems_.clear();
-    const auto say = [&](std::string text) { problems_.push_back(std::move(text)); };
-    for (const auto& setting : settings_)
-        if (known_[setting.number] && !knows(setting.number, setting.value))
-            say(fmt::format("Pr{:03} is {} and shall be {}; it counts after a restart only: set it at the panel, save, switch off and on",
-                            setting.number, known(setting.number), setting.value));
-    const auto mode = known(pr::control_mode);
-    if (mode != 1 && mode != 5)
-        say(fmt::format(
-            "Pr004 is {}: only speed control (1), or speed and torque (5), can be driven over the line. Set it, save, switch off "
-            "and on [5.4.1, 9]",
-            mode));
-    if (4 * known(pr::encoder_lines) != config_.counts_per_turn)
-        say(fmt::format("Pr082 is {} lines, which are {} counts a turn, but the axis says {} [4.2.3]", known(pr::encoder_lines),
-                        4 * known(pr::encoder_lines), config_.counts_per_turn));
-    if (known(pr::forced_enable) != 0) say("Pr098 is 1: the drive enables itself. Set it to 0 and save [5.4.1]");
-    bool shows_run = false, stops_open = false;
-    for (std::uint16_t i = 0; i < output_count; ++i)
-        shows_run = shows_run || std::abs(known(static_cast<std::uint16_t>(pr::output_function + i))) == static_cast<int>(Output::running);
-    for (std::uint16_t i = 0; i < input_count; ++i)
-        stops_open = stops_open || known(static_cast<std::uint16_t>(pr::input_function + i)) == emergency_open;
-    if (!shows_run)
-        say("no output shows RUN, so nobody knows whether the drive is enabled: give one of Pr108 to Pr111 the function 9 [5.3]");
-    if (config_.has_watchdog_output && !stops_open)
-        say("no input has the function -15 (EMG, open = stop) for the watchdog output: set one of Pr100 to Pr105 to it [5.2, 5.4.2]");
-    sample_.setup_refused = !problems_.empty();
-}
-
-/// After a look at what somebody may have turned at the panel.
-void Schedule::watch_settings() {
-    const auto& block = watched_blocks[watch_];
-    for (const auto& setting : settings_) {
-        if (setting.number < block.first || setting.number >= block.first + block.count || knows(setting.number, setting.value)) continue;
-        if (owns(setting.number) && setting.number != pr::speed_source) continue;  // commands use it, and write it again
-        problems_.push_back(fmt::format("Pr{:03} was changed to {} while the line was running; it shall be {}", setting.number,
-                                        known(setting.number), setting.value));
-    }
-    sample_.setup_refused = !problems_.empty();
-    watch_ = (watch_ + 1) % std::size(watched_blocks);
-}
-
 // --- commands -----------------------------------------------------------------------------------------------------------------
 
+bool Schedule::may_enable(const Wish& wish) const noexcept {
+    const bool seen_off = sample_.released && wish.session == sample_.session;
+    return wish.power == PowerRequest::on && seen_off && sample_.alarm == 0 && problems().empty();
+}
+
 std::optional<modbus::Request> Schedule::command(const Wish& wish, Instant now) {
-    const bool on = wish.power == PowerRequest::on && sample_.alarm == 0 && problems_.empty();
+    const bool on = may_enable(wish);
+    if (must_brake(wish) || (drives_torque() && sample_.running && !on)) return write(pr::force_4, force::mode + force::emergency);
     const bool moves = on && sample_.running && !wish.halt && (wish.torque_mode ? wish.torque != 0 : wish.speed != 0);
     if (!moves) {
         selects_.reset();
@@ -227,16 +132,19 @@ std::optional<modbus::Request> Schedule::command(const Wish& wish, Instant now) 
         enable_sent_ = false;
         return ask(Asked::servo, modbus::servo(config_.station, modbus::servo_off));
     }
-    if (wish.reset && (sample_.alarm != 0 || !problems_.empty()) && now - clear_tried_ >= clear_again) {
+    if (!wish.reset) read_again_ = true;
+    if (wish.reset && sample_.alarm != 0 && now - clear_tried_ >= clear_again) {
         clear_tried_ = now;
-        if (sample_.alarm != 0) return ask(Asked::clear, modbus::clear_alarm(config_.station));
+        return ask(Asked::clear, modbus::clear_alarm(config_.station));
+    }
+    if (wish.reset && !problems().empty() && std::exchange(read_again_, false)) {
         phase_ = Phase::reading;  // perhaps somebody has put the settings right
-        step_ = 0;
+        settings_.restart();
         return open(now);
     }
-    if (!on) return std::nullopt;
-    const std::int64_t mode_word = wish.torque_mode ? force::mode : 0;
-    if (!knows(pr::force_4, mode_word) && (stands() || !known_[pr::force_4])) return write(pr::force_4, mode_word);
+    const std::uint16_t mode = !wish.torque_mode ? 0 : wish.halt ? force::mode + force::emergency : force::mode;
+    if (!on) return sample_.running || settings_.knows(pr::force_4, 0) ? std::nullopt : change_mode(0);
+    if (!settings_.knows(pr::force_4, mode)) return change_mode(mode);
     if (!sample_.running) {
         // At standstill only (5.5 SON), and not before it had its time.
         if (!stands() || now - enable_tried_ < enable_again) return std::nullopt;
@@ -245,22 +153,33 @@ std::optional<modbus::Request> Schedule::command(const Wish& wish, Instant now) 
         return ask(Asked::servo, modbus::servo(config_.station, modbus::servo_on));
     }
     if (selects_) return write(pr::force_3, *selects_);
-    if (wish.up_ms > 0 && !knows(pr::acceleration_time, wish.up_ms)) return write(pr::acceleration_time, wish.up_ms);
-    if (wish.down_ms > 0 && !knows(pr::deceleration_time, wish.down_ms)) return write(pr::deceleration_time, wish.down_ms);
-    if (wish.torque_mode && wish.speed_limit > 0 && !knows(pr::torque_speed_limit, wish.speed_limit))
+    if (!wish.torque_mode && wish.up_ms > 0 && !settings_.knows(pr::acceleration_time, wish.up_ms))
+        return write(pr::acceleration_time, wish.up_ms);
+    if (!wish.torque_mode && wish.down_ms > 0 && !settings_.knows(pr::deceleration_time, wish.down_ms))
+        return write(pr::deceleration_time, wish.down_ms);
+    if (wish.torque_mode && wish.speed_limit > 0 && !settings_.knows(pr::torque_speed_limit, wish.speed_limit))
         return write(pr::torque_speed_limit, wish.speed_limit);
     if (!moves) return std::nullopt;
     return wish.torque_mode ? drive(Drives::torque, wish.torque) : drive(Drives::speed, wish.speed);
 }
 
+/// With nothing selected, so that neither the other mode nor the end of EMG begins with a motion (the selected one runs on then), and at
+/// standstill: a change of CMODE in motion is not described.
+std::optional<modbus::Request> Schedule::change_mode(std::uint16_t word) {
+    selects_.reset();
+    if (moves_by_itself()) return write(pr::force_3, 0);
+    if (!stands() && settings_.has(pr::force_4)) return std::nullopt;
+    return write(pr::force_4, word);
+}
+
 /// The value goes where none is selected, then that is selected: whether a selected one reacts to a write is not stated.
 std::optional<modbus::Request> Schedule::drive(Drives what, std::int16_t value) {
     const auto& slots = what == Drives::speed ? speed_slots : torque_slots;
-    const bool first = knows(pr::force_3, slots.select_first), second = knows(pr::force_3, slots.select_second);
-    if ((first && knows(slots.first, value)) || (second && knows(slots.second, value))) return std::nullopt;
+    const bool first = settings_.knows(pr::force_3, slots.select_first), second = settings_.knows(pr::force_3, slots.select_second);
+    if ((first && settings_.knows(slots.first, value)) || (second && settings_.knows(slots.second, value))) return std::nullopt;
     const auto slot = first ? slots.second : slots.first;
     const auto select = first ? slots.select_second : slots.select_first;
-    if (knows(slot, value)) return write(pr::force_3, select);
+    if (settings_.knows(slot, value)) return write(pr::force_3, select);
     selects_ = select;
     return write(slot, value);
 }
@@ -270,139 +189,17 @@ std::optional<modbus::Request> Schedule::drive(Drives what, std::int16_t value) 
 modbus::Request Schedule::poll(Instant now) {
     if (now - settings_read_ >= settings_period) {
         settings_read_ = now;
-        const auto& block = watched_blocks[watch_];
+        const auto block = settings_.watched();
         return ask(Asked::parameters, modbus::read_parameters(config_.station, block.first, block.count));
     }
+    // Between two positions that are the same, so that all three are of one place.
+    if (rests_ && index_.turned() && !index_.known() && !single_turn_)
+        return ask(Asked::turn, modbus::read_status(config_.station, status::single_turn, 2));
+    if (single_turn_) return ask(Asked::position, modbus::read_status(config_.station, status::position, 5));
     ++turn_;
     if (turn_ % 4 == 1 && !look_for_alarm_) return ask(Asked::terminals, modbus::read_status(config_.station, status::inputs, 2));
     if (turn_ % 4 == 3 || look_for_alarm_) return ask(Asked::alarm, modbus::read_status(config_.station, status::alarm, 1));
     return ask(Asked::position, modbus::read_status(config_.station, status::position, 5));  // position, deviation, torque
-}
-
-void Schedule::take(const modbus::Answer& answer, Instant now) {
-    const auto asked = std::exchange(asked_, Asked::nothing);
-    if (asked == Asked::service) {
-        served_ = {serving_, answer};
-        serving_ = 0;
-    }
-    if (answer.outcome != Outcome::answered && answer.outcome != Outcome::exception) {
-        if (phase_ != Phase::closed && now - sample_.heard >= config_.silence) lost(now);
-        return;
-    }
-    sample_.heard = now;
-    sample_.saving = asked == Asked::service && answer.request.function == modbus::Function::save && answer.outcome == Outcome::answered;
-    if (answer.outcome == Outcome::exception) {
-        // A parameter that the drive does not take: said once, never asked for again in this session.
-        if (phase_ == Phase::setting || phase_ == Phase::reading) ++step_;
-        return;
-    }
-    switch (asked) {
-        case Asked::echo: phase_ = Phase::stopping; break;
-        case Asked::parameters:
-            take_known(answer.request, answer.response.values());
-            if (phase_ == Phase::reading) ++step_;
-            else watch_settings();
-            break;
-        case Asked::write:
-            known_[answer.request.address] = answer.request.words[0];
-            if (phase_ == Phase::stopping) phase_ = Phase::disabling;
-            if (selects_ && answer.request.address == pr::force_3) selects_.reset();
-            break;
-        case Asked::servo:
-            if (phase_ == Phase::disabling) {
-                phase_ = Phase::reading;
-                step_ = 0;
-            }
-            break;
-        case Asked::position: take_position(answer, now); break;
-        case Asked::terminals: take_terminals(answer.response.words[0], answer.response.words[1]); break;
-        case Asked::alarm:
-            // 255 and 65535: "none" in some tables; the register's coding is not stated (9.5).
-            if (std::exchange(look_for_alarm_, false)) sample_.running = false;
-            sample_.alarm = answer.response.words[0] == 0xFF || answer.response.words[0] == 0xFFFF ? 0 : answer.response.words[0];
-            break;
-        case Asked::clear:
-        case Asked::service:
-        case Asked::nothing: break;
-    }
-}
-
-void Schedule::take_known(const modbus::Request& request, std::span<const std::uint16_t> words) {
-    for (std::size_t i = 0; i < words.size(); ++i)
-        if (request.address + i < known_.size()) known_[request.address + i] = words[i];
-}
-
-void Schedule::take_position(const modbus::Answer& answer, Instant) {
-    const auto& words = answer.response.words;
-    const auto raw = static_cast<std::uint32_t>(words[0]) | (static_cast<std::uint32_t>(words[1]) << 16);  // low word first (9.5)
-    if (!raw_) {
-        raw_ = raw;
-        sample_.position = static_cast<std::int32_t>(raw);
-        sample_.velocity = 0;
-    } else {
-        const auto way = static_cast<std::int64_t>(static_cast<std::int32_t>(raw - *raw_));
-        const double time = to_seconds(answer.sampled - sample_.sampled);
-        const double fastest = 1.5 * static_cast<double>(std::max<std::int64_t>(known(pr::highest_speed), 100)) / 60 *
-                               static_cast<double>(config_.counts_per_turn);
-        // Whether both halves are taken at once is not stated: what nobody can have moved is read again first.
-        const bool leaps = std::abs(static_cast<double>(way)) > fastest * time + 1000;
-        if (leaps && !doubtful_) {
-            doubtful_ = true;
-            return;
-        }
-        if (leaps) ++sample_.epoch;
-        raw_ = raw;
-        sample_.position += way;
-        if (time > 0 && !leaps) sample_.velocity = static_cast<double>(way) / time;
-    }
-    doubtful_ = false;
-    sample_.sampled = answer.sampled;
-    sample_.torque = static_cast<double>(static_cast<std::int16_t>(words[4])) / 100;
-    sample_.torque_mode = knows(pr::force_4, force::mode);
-    sample_.online = turn_ > 3;  // terminals and alarm have been read once
-    ++sample_.number;
-}
-
-void Schedule::take_terminals(std::uint16_t inputs, std::uint16_t outputs) {
-    const auto conducting = [](std::uint16_t bits, ConductingReads reads) {
-        return static_cast<std::uint16_t>((reads == ConductingReads::one ? bits : ~bits) & 0x3Fu);
-    };
-    sample_.inputs = conducting(inputs, config_.inputs);
-    sample_.outputs = conducting(outputs, config_.outputs);
-    const auto function = [&](std::uint16_t first, int terminal) { return known(static_cast<std::uint16_t>(first + terminal)); };
-    const auto on = [&](std::uint16_t first, int terminal, std::uint16_t bits) {
-        return ((bits >> terminal) & 1u) == (function(first, terminal) >= 0 ? 1u : 0u);
-    };
-    for (int i = 0; i < output_count; ++i)
-        if (std::abs(function(pr::output_function, i)) == static_cast<int>(Output::running))
-            take_running(on(pr::output_function, i, sample_.outputs));
-    // CCWL and CWL are on where motion is allowed (4.6); ignored ones say nothing.
-    const auto use = known(pr::limit_use) % 10;
-    const auto limit = [&](Input input, bool used) {
-        if (!used) return false;
-        for (int i = 0; i < input_count; ++i)
-            if (std::abs(function(pr::input_function, i)) == static_cast<int>(input) && on(pr::input_function, i, sample_.inputs))
-                return false;
-        return true;
-    };
-    sample_.positive_limit = limit(Input::ccw_allowed, use == 0 || use == 2);
-    sample_.negative_limit = limit(Input::cw_allowed, use == 0 || use == 1);
-    const auto& profile = *config_.profile;
-    sample_.home = ((sample_.inputs >> profile.input_bit_home) & 1u) != 0;
-}
-
-/// Current gone although nobody asked: mostly an alarm. That is read first, so that the axis hears the cause and not the effect.
-void Schedule::take_running(bool running) {
-    look_for_alarm_ = !running && sample_.running && enable_sent_;
-    if (!look_for_alarm_) sample_.running = running;
-}
-
-void Schedule::lost(Instant now) {
-    phase_ = Phase::closed;
-    last_try_ = now;
-    sample_.online = sample_.running = look_for_alarm_ = false;
-    known_ = {};
-    step_ = 0;
 }
 
 // --- services -----------------------------------------------------------------------------------------------------------------
@@ -417,8 +214,8 @@ std::optional<std::pair<ServiceTicket, modbus::Answer>> Schedule::served() { ret
 
 bool Schedule::saved_would_be_harmless() const noexcept {
     for (std::uint16_t i = 0; i < 5; ++i)
-        if (!knows(static_cast<std::uint16_t>(pr::force_1 + i), 0)) return false;
-    return phase_ == Phase::running && !sample_.running && known(pr::forced_enable) == 0;
+        if (!settings_.knows(static_cast<std::uint16_t>(pr::force_1 + i), 0)) return false;
+    return phase_ == Phase::running && !sample_.running && settings_.known(pr::forced_enable) == 0;
 }
 
 }  // namespace taktwerk::axes::xp200

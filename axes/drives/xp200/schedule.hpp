@@ -1,13 +1,19 @@
 #pragma once
 // Which request goes to one drive next, and what its answer means: opening (stop it, read and set its parameters), then polling, with
-// commands in between. Knows requests, no line and no thread: schedule.next() says what to ask, take() gets the answer. Service side.
+// commands in between. Knows requests, no line and no thread: schedule.next() says what to ask, take() gets the answer. What the parameters
+// are and shall be is kept by settings.hpp. Service side.
 //
 //   closed --echo--> opening: stop, disable, read settings, write settings --> running --silence--> closed
+//
+// Whatever ran before a silence is over before anything else counts: the drive is disabled, and until RUN has been seen off nothing is
+// acknowledged and nothing enabled. A drive that keeps its power all the same is not enabled either; the problems say so.
+//
+// Torque control is CMODE with Pr004 = 5, chosen at standstill. Out of it: EMG first (Pr123, with Pr164 = 1 the drive brakes by Pr063 and keeps
+// its power), then no torque selected, and at standstill back to speed control, whose speed 1 is rest, and out of EMG in one word.
 //
 // Running, of several things to do the first of: stop, disable, clear, enable, ramps, speed or torque; never more than two commands
 // without looking at the position; parameters that somebody asked for when nothing else waits.
 
-#include <array>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -16,7 +22,9 @@
 
 #include "axes/drives/xp200/drive_config.hpp"
 #include "axes/drives/xp200/exchange.hpp"
+#include "axes/drives/xp200/index_pulse.hpp"
 #include "axes/drives/xp200/registers.hpp"
+#include "axes/drives/xp200/settings.hpp"
 #include "modbus/client/client.hpp"
 
 namespace taktwerk::axes::xp200 {
@@ -33,7 +41,7 @@ public:
 
     [[nodiscard]] const Sample& sample() const noexcept { return sample_; }
     /// Why it must not be enabled, in words.
-    [[nodiscard]] const std::vector<std::string>& problems() const noexcept { return problems_; }
+    [[nodiscard]] const std::vector<std::string>& problems() const noexcept { return settings_.problems(); }
 
     // --- parameters and services, one after another -------------------------------------------------------------------------
     struct Service {
@@ -44,51 +52,49 @@ public:
     bool queue(const Service& service);
     /// The answer to a service, once.
     std::optional<std::pair<ServiceTicket, modbus::Answer>> served();
-    /// The schedule writes it itself: nobody else may.
-    [[nodiscard]] static bool owns(std::uint16_t number) noexcept;
     [[nodiscard]] bool saved_would_be_harmless() const noexcept;
 
 private:
     enum class Phase : std::uint8_t { closed, stopping, disabling, reading, setting, running };
-    enum class Asked : std::uint8_t { nothing, echo, parameters, write, servo, clear, position, terminals, alarm, service };
+    enum class Asked : std::uint8_t { nothing, echo, parameters, write, servo, clear, position, turn, terminals, alarm, service };
     enum class Drives : std::uint8_t { speed, torque };
 
     std::optional<modbus::Request> open(Instant now);
     std::optional<modbus::Request> command(const Wish& wish, Instant now);
     std::optional<modbus::Request> drive(Drives what, std::int16_t value);
     modbus::Request poll(Instant now);
-    std::optional<modbus::Request> read_next();
-    std::optional<modbus::Request> write_next();
-    void judge_settings();
     void watch_settings();
+    void watch_release(Instant now);
     void take_position(const modbus::Answer& answer, Instant now);
-    void take_terminals(std::uint16_t inputs, std::uint16_t outputs);
+    void watch_index(Instant now);
+    void show_index(Instant now);
+    void follow_latch(const Wish& wish, Instant now) noexcept;
+    void take_terminals(std::uint16_t inputs, std::uint16_t outputs, Instant now);
     void take_running(bool running);
-    void take_known(const modbus::Request& request, std::span<const std::uint16_t> words);
     void lost(Instant now);
     [[nodiscard]] modbus::Request ask(Asked what, const modbus::Request& request) noexcept;
     [[nodiscard]] modbus::Request write(std::uint16_t number, std::int64_t value) noexcept;
-    [[nodiscard]] bool knows(std::uint16_t number, std::int64_t value) const noexcept;
-    [[nodiscard]] std::int64_t known(std::uint16_t number) const noexcept;
-    [[nodiscard]] bool is_signed(std::uint16_t number) const noexcept;
     [[nodiscard]] bool moves_by_itself() const noexcept;
     [[nodiscard]] bool stands() const noexcept;
+    [[nodiscard]] bool may_enable(const Wish& wish) const noexcept;
+    [[nodiscard]] bool drives_torque() const noexcept;
+    [[nodiscard]] bool must_brake(const Wish& wish) const noexcept;
+    std::optional<modbus::Request> change_mode(std::uint16_t word);
 
     const DriveConfig& config_;
     Phase phase_ = Phase::closed;
     Asked asked_ = Asked::nothing;
-    std::vector<ParameterSetting> settings_;  // those of the configuration, then our own
-    std::vector<std::uint16_t> blocks_;       // first numbers of what is read, 8 words or fewer each
-    std::vector<std::uint16_t> block_sizes_;
-    std::size_t step_ = 0, watch_ = 0;
-    std::array<std::optional<std::uint16_t>, parameter_count> known_{};
-    std::vector<std::string> problems_;
+    Settings settings_;
 
     Sample sample_;
     std::optional<std::uint32_t> raw_;  // position as read last
     bool doubtful_ = false;             // the last position leapt
-    Instant last_try_{}, enable_tried_{}, disable_tried_{}, clear_tried_{}, alarm_read_{}, terminals_read_{}, settings_read_{};
-    bool enable_sent_ = false, look_for_alarm_ = false;
+    IndexPulse index_;
+    bool rests_ = false;                       // the last two positions are the same
+    std::optional<std::int64_t> single_turn_;  // read after the last position
+    Instant disabled_at_{}, latch_since_{}, last_try_{}, enable_tried_{}, disable_tried_{}, clear_tried_{}, alarm_read_{},
+        terminals_read_{}, settings_read_{};
+    bool enable_sent_ = false, look_for_alarm_ = false, read_again_ = false;
     int commands_in_a_row_ = 0, turn_ = 0;
     std::optional<std::uint16_t> selects_;  // Pr122 to be written after the value it selects
 

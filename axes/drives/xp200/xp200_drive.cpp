@@ -32,8 +32,19 @@ Xp200Drive::Xp200Drive(DriveConfig config, const modbus::LineSettings& line) : c
     const auto& profile = *config_.profile;
     auto& c = capabilities_;
     c.setpoints = SetpointClass::low_dynamics;
-    for (const auto mode : profile.modes) c.modes = static_cast<std::uint16_t>(c.modes | (1u << static_cast<unsigned>(mode)));
+    const auto asks_for = [&](std::uint16_t number, std::int64_t value) {
+        for (const auto& parameter : config_.parameters)
+            if (parameter.number == number && parameter.value == value) return true;
+        return false;
+    };
+    // Torque needs CMODE to choose between speed and torque, and EMG that brakes: the only way out of a torque that is no running out (5.4.1, 5.4.2).
+    const bool torque = asks_for(pr::control_mode, 5) && asks_for(pr::emergency_mode, 1);
+    for (const auto mode : profile.modes)
+        if (mode != DriveMode::profile_torque || torque)
+            c.modes = static_cast<std::uint16_t>(c.modes | (1u << static_cast<unsigned>(mode)));
     c.digital_inputs = true;
+    c.probes = 1;  // of the index pulse only (index_pulse.hpp)
+    c.probe_edges = 0;
     c.position_bits = profile.position_bits;
     c.enable_delay = profile.enable_delay;
     c.mode_change_delay = profile.mode_change_delay;
@@ -61,7 +72,7 @@ const DriveFeedback& Xp200Drive::decode(Instant now) noexcept {
     f.age = f.fresh ? 0 : std::min<std::uint32_t>(f.age, 0xFFFFFFFE) + 1;
     // A service thread that hangs is as silent as the line.
     f.online = sample.online && (sample.saving || now - sample.heard < 2 * config_.silence);
-    f.fault = sample.alarm != 0 || (sample.setup_refused && sample.running);
+    f.fault = sample.alarm != 0;
     f.power = f.fault ? PowerState::fault : sample.running ? PowerState::enabled : PowerState::disabled;
     f.mode = sample.torque_mode ? DriveMode::profile_torque : DriveMode::profile_velocity;
     f.error_code = sample.alarm;
@@ -71,8 +82,17 @@ const DriveFeedback& Xp200Drive::decode(Instant now) noexcept {
     f.home_switch = sample.home;
     f.negative_limit = sample.negative_limit;
     f.positive_limit = sample.positive_limit;
+    // Real speed is slightly above the limit where that holds it (5.4.1 Pr078).
+    f.internal_limit = sample.torque_mode && wish_.speed_limit > 0 && std::abs(turns_per_minute(sample.velocity)) >= wish_.speed_limit;
     f.commands_acknowledged = sample.acknowledged == wish_.sequence;
     f.position_epoch = sample.epoch;
+    const bool of_this_latch = sample.latch == wish_.latch && (wish_.latch & 1u) != 0;
+    f.homing_error = of_this_latch && sample.no_index;
+    auto& latch = f.probes[0];
+    latch.armed = of_this_latch && sample.latch_armed;
+    latch.latched = latch.armed && sample.latched;
+    latch.count = latch.latched ? 1 : 0;
+    latch.position = sample.latch_at;
     if (!f.fresh) return f;
     f.latched = sample.sampled;
     f.position = sample.position;
@@ -102,6 +122,12 @@ void Xp200Drive::encode(const DriveCommand& command, Instant) noexcept {
             static_cast<std::int16_t>(std::clamp(std::round(turns_per_minute(command.velocity_limit)), 1.0, fastest_setting));
     next.up_ms = ramp_ms(turns_per_minute(command.acceleration));
     next.down_ms = ramp_ms(turns_per_minute(command.deceleration));
+    if (feedback_.online && newest_.released && !newest_.running) seen_off_ = newest_.session;
+    next.session = seen_off_;
+    const auto& probe = command.probes[0];
+    const bool waits = probe.armed && probe.index_pulse;
+    next.latch = wish_.latch;
+    if (waits != ((wish_.latch & 1u) != 0)) ++next.latch;
     next.sequence = wish_.sequence;
     if (next.asks_the_same(wish_)) return;
     ++next.sequence;
@@ -126,7 +152,7 @@ DriveAlarm Xp200Drive::alarm() const noexcept {
 }
 
 bool Xp200Drive::supervised(Instant now) const noexcept {
-    return newest_.online && now - newest_.heard < config_.silence && !newest_.setup_refused;
+    return newest_.online && newest_.released && now - newest_.heard < config_.silence && !newest_.setup_refused;
 }
 
 // --- the line's side ----------------------------------------------------------------------------------------------------------
@@ -141,6 +167,7 @@ void Xp200Drive::take(const modbus::Answer& answer, Instant now) {
         for (auto& open : open_)
             if (open.ticket == done->first) open.answer = done->second;
     samples_.back() = schedule_.sample();
+    samples_.back().revision = ++revision_;
     samples_.publish();
 }
 
@@ -160,7 +187,7 @@ ServiceTicket Xp200Drive::write_parameter(ParameterAddress address, std::vector<
     const auto& rows = config_.profile->parameters;
     const auto row = std::find_if(rows.begin(), rows.end(), [&](const auto& p) { return p.address == address; });
     // Reserved parameters must not be written (9.4); those the schedule uses have one writer.
-    if (row == rows.end() || row->change == ParameterChange::never || Schedule::owns(address.index) || value.size() != 2) return 0;
+    if (row == rows.end() || row->change == ParameterChange::never || Settings::owns(address.index) || value.size() != 2) return 0;
     const auto word = static_cast<std::uint16_t>(std::to_integer<unsigned>(value[0]) | (std::to_integer<unsigned>(value[1]) << 8));
     return start(modbus::write_parameter(config_.station, address.index, word));
 }

@@ -2,6 +2,7 @@
 // An XP200 behind DrivePort. The cycle writes a wish and reads the newest sample, both without waiting; the schedule of the line turns the
 // one into requests and the answers into the other, on the service side. Positioning is the axis' business: it closes its loop over speed.
 //
+// Torque where Pr004 = 5 and Pr164 = 1 are asked for (schedule.hpp); its velocity is the drive's to keep (Pr078).
 // Not supported over this port, and refused by the axis or here: cyclic set-points (couplings, cams, fed set-points, profiles over time),
 // homing by the drive, touch probes, torque limits, outputs, clearing turns, restoring defaults.
 
@@ -54,7 +55,8 @@ private:
     DriveFeedback feedback_;
     Sample newest_;
     Wish wish_;
-    std::int16_t speed_ = 0;  // as sent last, for the rounding
+    std::int16_t speed_ = 0;      // as sent last, for the rounding
+    std::uint16_t seen_off_ = 0;  // Wish::session
 
     LatestValue<Wish> wishes_;
     LatestValue<Sample> samples_;
@@ -66,7 +68,7 @@ private:
     };
     std::vector<Open> open_;
     ServiceTicket last_ticket_ = 0;
-    bool was_online_ = false;
+    std::uint32_t revision_ = 0;
 };
 
 }  // namespace taktwerk::axes::xp200

@@ -43,7 +43,7 @@ void Servo::power_on(Instant now) noexcept {
     ready_at_ = now + options_.start_up;
     zero_ = plant_.position();  // incremental: it counts from where it wakes up (1.3, not stated)
     alarm_ = torn_save_ ? 20 : cause_;
-    torn_save_ = encoder_broken_ = port_enable_ = clear_was_on_ = false;
+    torn_save_ = encoder_broken_ = index_seen_ = port_enable_ = clear_was_on_ = false;
     raw_command_ = 0;
     heat_ = peak_ = 0;
 }
@@ -80,7 +80,10 @@ void Servo::step() noexcept {
     torque_ = current_on_ ? drive_torque() : 0;
     run_brake();
     plant_.hold(options_.brake && !brake_released_);
+    const double before = plant_.position();
     plant_.step(to_seconds(inner_step), torque_);
+    const auto turns = [&](double at) { return std::floor((at - plant_.config().index_pulse) / counts_per_turn()); };
+    index_seen_ = index_seen_ || turns(before) != turns(plant_.position());
     if (state_ != State::off) watch();
 }
 

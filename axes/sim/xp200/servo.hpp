@@ -84,6 +84,7 @@ private:
     [[nodiscard]] bool allowed(bool ccw) const noexcept;
     [[nodiscard]] double wanted_speed() const noexcept;
     [[nodiscard]] double wanted_torque() const noexcept;
+    [[nodiscard]] double limited_by_speed(double torque) const noexcept;
     [[nodiscard]] double most_torque(bool ccw) const noexcept;
     void step() noexcept;
     void run_state() noexcept;
@@ -116,7 +117,7 @@ private:
     double clamp_at_ = 0;  // plant position
     std::int64_t pulses_ = 0, raw_command_ = 0;
     double command_ = 0;  // counts of the plant
-    bool encoder_broken_ = false;
+    bool encoder_broken_ = false, index_seen_ = false;
     std::int64_t frozen_ = 0;
 
     bool brake_released_ = false;

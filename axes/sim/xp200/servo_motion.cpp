@@ -75,6 +75,15 @@ void Servo::ramp(double target, double up_ms, double down_ms) noexcept {
     ramped_ += std::clamp(goal - ramped_, -change, change);
 }
 
+/// Pr078, Pr079 (5.4.1): beyond the limit speed is fed back and takes torque away, the more the smaller Pr079; "the real speed is slightly above
+/// the limit". How much the manual does not say: here the highest torque there is (300 %, Pr065) makes an excess of Pr079, its "speed limit
+/// error"; also beyond zero, so that a pulling load is held as well.
+double Servo::limited_by_speed(double torque) const noexcept {
+    const double excess = std::abs(speed()) - static_cast<double>(p(pr::torque_speed_limit));
+    if (excess <= 0) return torque;
+    return torque - std::copysign(3 * excess / static_cast<double>(std::max<std::int64_t>(p(pr::torque_speed_slope), 1)), speed());
+}
+
 double Servo::drive_torque() noexcept {
     const double ccw = most_torque(true), cw = most_torque(false);
     const double most = std::max(ccw, cw);
@@ -90,8 +99,7 @@ double Servo::drive_torque() noexcept {
         torque = loop_.velocity_control(plant_, ramped_ * per_speed, 0, most, step_seconds);
     } else if (mode() == Mode::torque) {
         clamped_ = false;
-        const double fastest = static_cast<double>(p(pr::torque_speed_limit)) * per_speed;
-        torque = ServoLoop::torque_control(plant_, wanted_torque() * plant_.config().rated_torque, fastest, most);
+        torque = std::clamp(limited_by_speed(wanted_torque()) * plant_.config().rated_torque, -most, most);
         loop_.take_over(torque);
         ramped_ = speed();  // a change to speed mode begins with the speed it has
     } else if (mode() == Mode::position) {
@@ -175,7 +183,11 @@ std::uint16_t Servo::status(std::uint16_t index) const noexcept {
     };
     const auto percent = [&](double torque) { return word(100 * torque / plant_.config().rated_torque); };
     const auto turn = static_cast<std::int64_t>(counts_per_turn());
-    const auto in_turn = ((position() % turn) + turn) % turn;
+    // 0 at the index pulse (3.3 note 6). Before the first one since power-on it counts from where it woke up: not stated.
+    const auto since_zero = index_seen_ && !encoder_broken_
+                                ? static_cast<std::int64_t>(std::floor(plant_.position() - plant_.config().index_pulse))
+                                : position();
+    const auto in_turn = ((since_zero % turn) + turn) % turn;
     const auto rated_current = static_cast<double>(p(204));  // 0.1 A
     switch (index) {
         case s::speed: return word(speed());

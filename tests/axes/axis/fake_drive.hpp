@@ -1,6 +1,6 @@
 #pragma once
 // A drive small enough to check by eye: it follows its set-point exactly, `dead_cycles` late, and knows power, faults, switches and a homing.
-// In cyclic torque it is a mass with friction and a load; in cyclic velocity it turns as fast as it is told.
+// In torque it is a mass with friction and a load; in cyclic velocity it turns as fast as it is told; its own profiles: fake_profile.hpp.
 // It notes what would be felt at a real motor: the largest step of the set-point while it was enabled.
 
 #include <algorithm>
@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "axes/port/drive_port.hpp"
+#include "tests/axes/axis/fake_profile.hpp"
 
 namespace taktwerk::axes::test {
 
@@ -66,6 +67,8 @@ public:
     std::uint16_t reference_epoch = 0;
     bool refuses_homing_setup = false;
     DriveAlarmKind alarm_kind = DriveAlarmKind::other;
+    FakeProfile profile;
+    bool refuses_profile_modes = false;
 
     // what a test reads
     double position = 0;  ///< of the motor, counts; what homing sets to zero is `zero`
@@ -122,7 +125,9 @@ public:
         feedback_.homing_setup_refused = refuses_homing_setup && last.homing.method != 0;
         feedback_.position = std::llround(position) - zero;
         feedback_.velocity = velocity_;
-        feedback_.torque = mode_ == DriveMode::cyclic_torque ? torque_ : load + held_back_;
+        feedback_.torque = by_torque() ? torque_ : load + held_back_;
+        feedback_.profile_accepted = profile.accepted;
+        feedback_.target_reached = profiled() && (mode_ == DriveMode::profile_torque ? torque_ == last.torque : profile.reached);
         feedback_.homing_attained = attained_;
         feedback_.homing_error = homing_error_;
         feedback_.has_inputs = switches;
@@ -150,13 +155,29 @@ private:
     }
     void step_mode() {
         if (last.mode == mode_) mode_ticks_ = 0;
-        else if (++mode_ticks_ >= mode_delay && !(refuses_torque_mode && last.mode == DriveMode::cyclic_torque)) mode_ = last.mode;
+        else if (++mode_ticks_ >= mode_delay && takes(last.mode)) {
+            mode_ = last.mode;
+            profile.enter();
+        }
     }
+    [[nodiscard]] bool takes(DriveMode mode) {
+        if (refuses_torque_mode && mode == DriveMode::cyclic_torque) return false;
+        if (refuses_profile_modes && is_profile(mode)) return false;
+        return !profile.holds(mode_);
+    }
+    [[nodiscard]] static bool is_profile(DriveMode mode) {
+        return mode == DriveMode::profile_position || mode == DriveMode::profile_velocity || mode == DriveMode::profile_torque;
+    }
+    [[nodiscard]] bool profiled() const { return is_profile(mode_); }
+    [[nodiscard]] bool by_torque() const { return mode_ == DriveMode::cyclic_torque || mode_ == DriveMode::profile_torque; }
     void step_motor(Instant now) {
         const double before = position;
         if (power != PowerState::enabled) position += coasting;
         else if (mode_ == DriveMode::homing) step_homing();
-        else if (mode_ == DriveMode::cyclic_torque) step_torque(now);
+        else if (by_torque()) {
+            if (profiled()) (void)profile.step(mode_, last, position, to_seconds(cycle));
+            step_torque(now);
+        } else if (profiled()) position = profile.step(mode_, last, position, to_seconds(cycle));
         else if (mode_ == DriveMode::cyclic_velocity) position += at(now - latch_age * cycle).velocity * to_seconds(cycle);
         else if (!blocked) {
             const auto target = target_at(now - latch_age * cycle) - lag;
@@ -166,7 +187,7 @@ private:
         }
         for (std::size_t i = 0; i < 2; ++i) step_probe(i, std::llround(before), std::llround(position));
         if (mode_ != DriveMode::homing) attained_ = homing_error_ = false;
-        if (power != PowerState::enabled || mode_ != DriveMode::cyclic_torque) velocity_ = (position - before) / to_seconds(cycle);
+        if (power != PowerState::enabled || !by_torque()) velocity_ = (position - before) / to_seconds(cycle);
     }
     /// Like CiA 402: the first edge after arming is kept, in continuous mode the newest; disarming forgets it.
     void step_probe(std::size_t i, std::int64_t from, std::int64_t to) {

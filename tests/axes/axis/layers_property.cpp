@@ -138,11 +138,12 @@ TEST_P(RandomLayers, KeepTheirRules) {
         rig.step();
         const auto& view = rig.view();
 
-        // Never faster than the axis may be; with an addition the two ramps may cross for moments, and accelerations add up (P1-155).
-        const double factor = with_additions ? 2 : 1;
-        ASSERT_LE(std::abs(view.set_velocity), 100 * factor * (1 + 1e-9)) << cycle;
+        // Never faster than the axis may be; an addition that turns round while the base takes all swings beyond it by less than a percent.
+        // Accelerations add up (P1-155).
+        const double factor = with_additions ? 2 : 1, swing = with_additions ? 1.01 : 1;
+        ASSERT_LE(std::abs(view.set_velocity), 100 * swing * (1 + 1e-9)) << cycle;
         ASSERT_LE(std::abs(view.set_acceleration), 1000 * factor * (1 + 1e-9)) << cycle;
-        ASSERT_LE(rig.drive.largest_step, static_cast<std::int64_t>(100 * factor) + 1) << cycle;
+        ASSERT_LE(rig.drive.largest_step, static_cast<std::int64_t>(100 * swing) + 1) << cycle;
         ASSERT_TRUE(std::isfinite(view.set_position)) << cycle;
         ASSERT_GE(view.set_position, limits.position_min - 1e-9) << cycle;
         ASSERT_LE(view.set_position, limits.position_max + 1e-9) << cycle;

@@ -357,6 +357,48 @@ TEST(ModeChange, InMotionItIsObeyedIgnoredOrAnAlarm) {
     }
 }
 
+// SV33-E 3.4.3 (7): out of PV a ramp stop, then the other mode. 20000 counts/s by 100000 counts/s2 take 0.2 s and 2000 counts. (5): out of PP at once.
+TEST(ModeChange, OutOfAVelocityAlongTheRampFirst) {
+    Personality p;
+    p.ramp_before_mode_change = true;
+    auto b = profile_bench(3, p);
+    b.in.target_velocity = 20000;
+    b.run(400);
+    const double from = static_cast<double>(b.out.position);
+    b.in.mode = 8;
+    for (int i = 0; i < 190; ++i) {
+        b.in.target_position = b.out.position;
+        b.cycle();
+        ASSERT_EQ(b.out.mode, 3) << i;
+    }
+    b.in.target_position = b.out.position;
+    b.run(40);
+    EXPECT_EQ(b.out.mode, 8);
+    EXPECT_NEAR(static_cast<double>(b.out.position) - from, 2000, 100);
+    auto position = profile_bench(1, p);
+    set_point(position, 100000);
+    position.command(0x0F, 400);
+    position.in.mode = 8;
+    position.in.target_position = position.out.position;
+    position.cycle();
+    EXPECT_EQ(position.out.mode, 8);
+}
+
+// Taken back in the middle of the ramp it goes on in its mode.
+TEST(ModeChange, TakenBackInTheRampTheVelocityGoesOn) {
+    Personality p;
+    p.ramp_before_mode_change = true;
+    auto b = profile_bench(3, p);
+    b.in.target_velocity = 20000;
+    b.run(400);
+    b.in.mode = 8;
+    b.run(100);
+    EXPECT_NEAR(static_cast<double>(b.out.velocity), 10000, 500);
+    b.in.mode = 3;
+    b.run(150);
+    EXPECT_NEAR(static_cast<double>(b.out.velocity), 20000, 200);
+}
+
 // TSVM 5.4.1: at least 20 ms apart; for 2 ms 6061h means nothing.
 TEST(ModeChange, TooSoonAndIndeterminate) {
     Personality p;

@@ -4,6 +4,7 @@
 
 #include <deque>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "axes/axis/plan_order.hpp"
@@ -16,7 +17,8 @@ public:
     static constexpr Duration period = 1ms;
     static constexpr AxisRef master{0}, slave{1};
 
-    explicit CoupledPlc(std::size_t count = 2) {
+    /// `declared`: tables that axes take room for when they are bound, those over time.
+    explicit CoupledPlc(std::size_t count = 2, axes::MotionTables declared = {}) : tables(std::move(declared)) {
         axes_.reserve(count);
         for (std::size_t i = 0; i < count; ++i) {
             drives_.emplace_back(period);

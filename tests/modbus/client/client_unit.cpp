@@ -135,6 +135,43 @@ TEST(ModbusClient, AfterSavingThatStationIsLeftAlone) {
     EXPECT_EQ(rig.ask(read_status(1, 0, 1)), Refusal::none);
 }
 
+/// Says how far it has lived, and nothing else.
+class Living final : public Station {
+public:
+    void advance(Instant now) override { until = now; }
+    bool hear(std::span<const std::byte>, Instant, Frame&) override { return false; }
+    [[nodiscard]] Duration turnaround() const noexcept override { return {}; }
+    [[nodiscard]] LineSettings line() const noexcept override { return {}; }
+    Instant until{};
+};
+
+// A motor turns on while nobody asks it anything: between two questions, while the line rests after a failed try, and while it saves.
+TEST(ModbusClient, AQuietClientLetsTheDrivesLiveOn) {
+    VirtualLine line{LineSettings{}};
+    Living station;
+    line.connect(station);
+    Client client{line};
+    (void)client.step(Instant{10ms});
+    EXPECT_EQ(station.until, Instant{10ms}) << "idle";
+
+    ASSERT_EQ(client.ask(clear_alarm(1), Instant{20ms}), Refusal::none);  // 4 characters of 572.9 us out, then 50 ms of patience: 72.3 ms
+    EXPECT_FALSE(client.step(Instant{73ms})) << "it will be asked again";
+    (void)client.step(Instant{74ms});  // 3.5 characters are 2.005 ms
+    EXPECT_EQ(station.until, Instant{74ms}) << "resting";
+}
+
+// What comes without a question, or too late for it, is not the next one's answer, and does not pile up.
+TEST(ModbusClient, WhatNobodyAskedForIsThrownAway) {
+    Rig rig;
+    ASSERT_EQ(rig.ask(read_status(1, 5, 2)), Refusal::none);
+    ASSERT_TRUE(rig.wait());
+    ASSERT_TRUE(rig.line.send(encode(read_status(1, 5, 2)).span(), rig.now));  // somebody else on the line
+    rig.now += 1s;
+    EXPECT_FALSE(rig.client.step(rig.now));
+    std::array<std::byte, 8> into{};
+    EXPECT_EQ(rig.line.receive(into, rig.now), 0u);
+}
+
 TEST(ModbusClient, AnExceptionIsAnAnswer) {
     class Refusing final : public Station {
     public:

@@ -89,6 +89,7 @@ public:
     void alarm(std::uint8_t, Reaction, std::string_view, std::string_view, std::string_view) override {}
     void add(std::string_view, VariableType, const void*, std::string_view, std::string_view) override {}
     void add_task(std::string_view, TaskFunction function) override { functions.push_back(function); }
+    void add_block(std::string_view, const void*, std::size_t) override {}
     std::vector<TaskFunction> functions;
 };
 

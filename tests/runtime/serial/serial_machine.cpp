@@ -3,8 +3,7 @@
 
 #include "axes/axis/alarms.hpp"
 #include "fb_library/all_blocks.hpp"
-#include "tests/axes/drives/xp200/plain_profile.hpp"
-#include "tests/runtime/test_machine.hpp"
+#include "tests/runtime/serial/line_machine.hpp"
 #include "tests/runtime/test_program.hpp"
 
 namespace taktwerk::runtime::testing {
@@ -13,46 +12,6 @@ namespace {
 using namespace fb;
 using axes::AxisState;
 constexpr std::uint16_t u = 1;
-
-/// x on the bus as ever; u on a line of 38400 baud, 10 mm a turn, watched over by output `u_stop` on the terminal, wired to DI6 (EMG).
-MachineConfig with_line(MachineConfig m) {
-    SerialDriveConfig drive;
-    drive.drive.name = "u_drive";
-    drive.drive.profile = axes::xp200::plain_profile();
-    drive.drive.parameters = {{97, 33}, {105, -15}, {108, 9}, {136, 1}, {164, 1}, {63, 200}};
-    drive.watchdog_output = "u_stop";
-    SerialLineConfig line;
-    line.name = "rs485";
-    line.settings.baud = 38400;
-    line.drives.push_back(drive);
-    m.serial.push_back(line);
-
-    AxisBinding binding;
-    auto& axis = binding.axis;
-    axis.name = "u";
-    axis.gearing = {.counts_per_revolution = 10000, .feed = 10};
-    axis.limits = {.velocity = 100,
-                   .acceleration = 200,
-                   .deceleration = 200,
-                   .jerk = std::numeric_limits<double>::infinity(),
-                   .stop_deceleration = 400};
-    axis.control = {.mode = axes::ControlMode::velocity, .kv = 3};
-    axis.windows = {.in_position = 0.05, .in_position_time = 10ms, .standstill_velocity = 0.1};
-    axis.following = {.window = 10, .time = 50ms};
-    axis.homing.kind = axes::HomingKind::set_here;
-    binding.drive = "u_drive";
-    binding.profile = drive.drive.profile;
-    m.axes.push_back(binding);
-
-    IoPoint point;
-    point.name = "u_stop";
-    point.direction = IoDirection::output;
-    point.slave = "io";
-    point.index = 0x7000;
-    point.sub = 2;
-    m.io.push_back(point);
-    return m;
-}
 
 axes::sim::xp200::Servo& servo(TestMachine& m) { return m.world.serial().drive("u")->servo(); }
 
@@ -191,6 +150,33 @@ TEST(SerialMachine, ADeadPcStopsTheMotorThroughTheTerminalsWatchdog) {
     EXPECT_NEAR(servo(m).speed(), 0, 1);
 }
 
+// Nobody asks a drive that does not answer for half a second at a time: its motor coasts on meanwhile, cycle by cycle, because the service
+// looks at the line. Who runs the cycle, in virtual time or a thread, need not know of serial lines.
+TEST(SerialMachine, AMotorWithoutMainsCoastsOnWhileNobodyAsks) {
+    auto config = with_line(machine_config(1));
+    config.axes[u].simulation.viscous_friction = config.axes[u].simulation.coulomb_friction = 0;
+    TestMachine m{std::move(config)};
+    ASSERT_TRUE(ready(m)) << m.alarms();
+    m.enable(u);
+    ASSERT_EQ(m.command(OperatorAction::jog, u, true, 20).answer, Answer::accepted);
+    for (int i = 0; i < 10; ++i) {
+        m.run(50ms);
+        (void)m.command(OperatorAction::jog, u, true, 20);
+    }
+    ASSERT_GT(std::abs(servo(m).speed()), 20);
+    servo(m).power_off();
+    int still = 0, longest = 0;
+    double before = servo(m).plant().position();
+    for (int i = 0; i < 1500; ++i) {
+        m.run(1ms);
+        still = servo(m).plant().position() == before ? still + 1 : 0;
+        longest = std::max(longest, still);
+        before = servo(m).plant().position();
+    }
+    EXPECT_GT(std::abs(servo(m).speed()), 20) << "nothing brakes it";
+    EXPECT_EQ(longest, 0) << "cycles without motion while the motor turned";
+}
+
 // The same run twice gives the same numbers: the line's times are computed, not measured.
 TEST(SerialMachine, RunsAreBitIdentical) {
     const auto run = [] {
@@ -202,6 +188,33 @@ TEST(SerialMachine, RunsAreBitIdentical) {
         return std::tuple{servo(m).plant().position(), m.axis(u).actual_position, m.world.serial().line("rs485")->frames()};
     };
     EXPECT_EQ(run(), run());
+}
+
+// --- a line that nobody opened ------------------------------------------------------------------------------------------------------
+
+// The axis must not become a virtual one that moves on the screen only.
+TEST(SerialLines, AnAxisWhoseLineNobodyOpenedIsRefused) {
+    VirtualClock clock{Instant{}};
+    const auto config = with_line(machine_config(1));
+    World world{config, clock.now()};
+    for (const auto& lines : {std::vector<modbus::SerialLine*>{}, std::vector<modbus::SerialLine*>{nullptr}}) {
+        const auto built = Machine::build(config, world.transport(), lines);
+        ASSERT_EQ(built.index(), 1u);
+        const auto& errors = std::get<1>(built);
+        ASSERT_EQ(errors.size(), 1u);
+        EXPECT_EQ(errors[0].code, "serial.no_line");
+        EXPECT_NE(errors[0].text().find("serial.rs485"), std::string::npos) << "where: " << errors[0].text();
+        EXPECT_NE(errors[0].text().find("axis 'u'"), std::string::npos) << "what: " << errors[0].text();
+        EXPECT_NE(errors[0].text().find("`device`"), std::string::npos) << "what to do: " << errors[0].text();
+    }
+}
+
+TEST(SerialLines, ASimulatedAxisNeedsNone) {
+    VirtualClock clock{Instant{}};
+    auto config = with_line(machine_config(1));
+    config.axes[u].axis.simulated = true;
+    World world{config, clock.now()};
+    EXPECT_EQ(Machine::build(config, world.transport()).index(), 0u);
 }
 
 // --- what a configuration must say -------------------------------------------------------------------------------------------------
@@ -272,6 +285,21 @@ TEST(SerialCheck, AnAxisOverALineNeedsAPositionLoopHere) {
     auto homing = good;
     homing.axes[1].axis.homing.kind = axes::HomingKind::drive;
     EXPECT_TRUE(complains(homing, "axis.homing"));
+}
+
+// Torque control (Pr004 = 5) ends by EMG and Pr063: 200 ms for 1000 r/min are 833 mm/s2 here, 10 mm a turn; the axis counts on 400.
+TEST(SerialCheck, TorqueControlNeedsAWayOut) {
+    auto good = with_line(machine_config(1));
+    auto& parameters = good.serial[0].drives[0].drive.parameters;
+    parameters.push_back({4, 5});
+    EXPECT_TRUE(codes(good).empty());
+    auto coasts = good;
+    std::erase_if(coasts.serial[0].drives[0].drive.parameters, [](const auto& p) { return p.number == 164; });
+    EXPECT_TRUE(complains(coasts, "serial.torque_stop"));
+    auto soft = good;
+    std::erase_if(soft.serial[0].drives[0].drive.parameters, [](const auto& p) { return p.number == 63; });
+    soft.serial[0].drives[0].drive.parameters.push_back({63, 420});  // 397 mm/s2
+    EXPECT_TRUE(complains(soft, "serial.torque_ramp"));
 }
 
 }  // namespace

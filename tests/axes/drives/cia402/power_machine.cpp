@@ -55,21 +55,6 @@ TEST(Cia402Power, DoesNotEnableBeforeTheModeIsConfirmed) {
     EXPECT_EQ(rig.control(), 0x000F);
 }
 
-// SV-DA200 3.1.2: bit 8 tells that the clock is locked to SYNC0, bit 4 that main power is there.
-TEST(Cia402Power, DoesNotEnableBeforeTheStatusBitsThatTheProfileNames) {
-    DriveRig rig;
-    rig.profile.enable_status_bits = 0x0110;
-    ASSERT_TRUE(rig.build()) << rig.refusal.text();
-    rig.command.power = PowerRequest::on;
-    rig.mode(8);
-    rig.status(0x0233);
-    rig.run(50);
-    EXPECT_EQ(rig.control(), 0x0007);
-    rig.status(0x0333);
-    rig.run(10);
-    EXPECT_EQ(rig.control(), 0x000F);
-}
-
 // SV33-E 3.4.1 transitions 8 and 9 cut the power at once, 5 and 6 do not: 7, then 6, then 0.
 TEST(Cia402Power, GoesDownStepByStep) {
     DriveRig rig;

@@ -11,7 +11,8 @@ constexpr std::uint16_t enabled_word = 0x0237, acknowledging = 0x1237;
 
 /// Operation enabled in `mode`, ramps in the dictionary but not mapped.
 struct ProfileRig : DriveRig {
-    explicit ProfileRig(DriveMode mode, std::int64_t code) {
+    explicit ProfileRig(DriveMode mode, std::int64_t code, std::vector<Quirk> quirks = {}) {
+        profile.quirks = std::move(quirks);
         profile.modes = {DriveMode::cyclic_position, DriveMode::profile_position, DriveMode::profile_velocity};
         profile.profile_buffer = 1;
         rx.push_back({0x60FF, 0});
@@ -128,6 +129,47 @@ TEST(Cia402Profile, TheVelocityWaitsForItsRamps) {
     rig.command.halt = true;
     rig.run(5);
     EXPECT_EQ(rig.control(), 0x10F);
+}
+
+// Out of PV in motion: while the drive is still in it its target velocity stays, and 607Ah is the command's, not the actual position that is old
+// by the dead time. A halt shows in any mode.
+TEST(Cia402Profile, ADriveThatIsStillInPvKeepsItsVelocityUntilTheModeHasChanged) {
+    ProfileRig rig(DriveMode::profile_velocity, 3);
+    rig.set_point(1, 0, 3000);
+    rig.run(100);
+    ASSERT_EQ(rig.got(0x60FF), 3000);
+    rig.put(0x6064, 7000);
+    rig.command = {.power = PowerRequest::on, .mode = DriveMode::cyclic_position, .position = 7012, .velocity = 2900, .halt = true};
+    rig.run(5);
+    EXPECT_EQ(rig.got(0x6060), 8);
+    EXPECT_EQ(rig.got(0x60FF), 3000);
+    EXPECT_EQ(rig.got(0x607A), 7012);
+    EXPECT_EQ(rig.control(), 0x10F);
+    rig.mode(8);
+    rig.run(5);
+    EXPECT_EQ(rig.got(0x60FF), 0);
+    EXPECT_EQ(rig.got(0x607A), 7012);
+}
+
+// SV-DA200 3.2.3: in PP 6083h is both ramps, so it is the gentler of the two asked for.
+TEST(Cia402Profile, ASharedRampIsTheGentlerOne) {
+    ProfileRig rig(DriveMode::profile_position, 1, {Quirk::pp_shared_ramp});
+    rig.set_point(1, 4000);
+    rig.command.acceleration = 90000;
+    rig.run(100);
+    EXPECT_EQ(rig.got(0x6083), 80000);
+    rig.status(acknowledging);
+    rig.run(5);
+    rig.status(enabled_word);
+    rig.set_point(2, 8000);
+    rig.run(100);
+    EXPECT_EQ(rig.got(0x6083), 70000);
+}
+
+// CiA 402-2: bit 5 abandons the running set-point; SE-808X 3.2.4: there it goes on behind it.
+TEST(Cia402Profile, SaysWhetherASetPointCanTakeOverAtOnce) {
+    EXPECT_TRUE(ProfileRig(DriveMode::profile_position, 1).drive->capabilities().profile_replaces);
+    EXPECT_FALSE(ProfileRig(DriveMode::profile_position, 1, {Quirk::pp_bit_5_blends}).drive->capabilities().profile_replaces);
 }
 
 // Until the drive is in the mode nothing of a set-point shows: neither edge nor target.

@@ -164,12 +164,15 @@ public:
     Error refusal;
     Instant now{};
     std::function<void()> on_cycle;
+    std::function<void(Instant)> user;  ///< decodes and encodes in the test's place: an axis
 
 private:
     void exchange() {
         now += cycle;
         master->receive(now);
-        if (drive) {
+        if (drive && user) {
+            user(now);
+        } else if (drive) {
             feedback_ = drive->decode(now);
             drive->encode(command, now);
         }

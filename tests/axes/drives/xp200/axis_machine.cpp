@@ -209,6 +209,73 @@ TEST(Xp200Axis, SilenceIsErrorStopAndNotSupervised) {
     EXPECT_TRUE(rig.port.supervised(rig.now));
 }
 
+/// Cut until the axis is in ErrorStop, with MC_Power's Enable still there, then whole again.
+void fall_silent(AxisRig& rig) {
+    rig.go();
+    ASSERT_EQ(rig.submit(CommandKind::move_velocity, 0, 50).error, ErrorId::none);
+    rig.run(1s);
+    rig.line.cut(true);
+    ASSERT_TRUE(rig.until([&] { return rig.axis.view().state == AxisState::ErrorStop; }, 1s));
+    rig.run(300ms);
+    rig.line.cut(false);
+}
+
+// 300 r/min take 300 ms by Pr063 = 1000, and Pr166 holds the brake 500 ms more: so long after the line is back the drive still has its power.
+// A reset meanwhile waits for that to end, succeeds then, and nothing follows it.
+TEST(Xp200Axis, AResetAfterSilenceWaitsUntilTheDriveIsDisabled) {
+    AxisRig rig{{{97, 33}, {108, 9}, {136, 1}, {164, 1}, {63, 1000}}};
+    fall_silent(rig);
+    ASSERT_TRUE(rig.until([&] { return rig.axis.view().online; }, 3s));
+    ASSERT_TRUE(rig.drive.servo().energised()) << "else there is nothing to wait for";
+    EXPECT_FALSE(rig.port.supervised(rig.now)) << "the watchdog output stays off meanwhile";
+    EXPECT_EQ(rig.axis.reset(Owner::program), ErrorId::none);
+    ASSERT_TRUE(rig.until([&] { return !rig.axis.view().resetting; }, 5s));
+    EXPECT_EQ(rig.axis.view().reset_error, ErrorId::none);
+    EXPECT_EQ(rig.axis.view().state, AxisState::Disabled);
+    EXPECT_FALSE(rig.drive.servo().energised());
+    EXPECT_EQ(rig.drive.servo().parameters()[122], 0);
+    // MC_Power still asks: the axis comes back, once.
+    EXPECT_FALSE(rig.until([&] { return rig.axis.view().state == AxisState::ErrorStop; }, 5s)) << rig.axis.view().error;
+    EXPECT_EQ(rig.axis.view().state, AxisState::Standstill);
+    EXPECT_EQ(rig.drive.servo().enabled_in_motion(), 0u);
+}
+
+// The wish for power from before the silence is still there when the line is back, and the drive, its motor at rest, would take it (Pr166 = 0:
+// no brake to wait for). It does not switch the motor on again: that takes a reset.
+TEST(Xp200Axis, AfterSilenceNothingIsEnabledBeforeAReset) {
+    AxisRig rig{{{97, 33}, {108, 9}, {136, 1}, {164, 1}, {63, 100}, {166, 0}}};
+    fall_silent(rig);
+    ASSERT_TRUE(rig.until([&] { return !rig.drive.servo().energised(); }, 3s));
+    EXPECT_FALSE(rig.until([&] { return rig.drive.servo().energised(); }, 5s));
+    EXPECT_EQ(rig.axis.view().state, AxisState::ErrorStop);
+}
+
+// SON wired on: whether it wins over 42h is not stated (9.6.7), and in the model either enables. The reset ends, and says why.
+TEST(Xp200Axis, ADriveThatKeepsItsPowerFailsTheReset) {
+    AxisRig rig;
+    rig.go();
+    rig.drive.servo().inputs().contact(0, true);
+    rig.line.cut(true);
+    ASSERT_TRUE(rig.until([&] { return rig.axis.view().state == AxisState::ErrorStop; }, 1s));
+    rig.run(300ms);
+    rig.line.cut(false);
+    ASSERT_TRUE(rig.until([&] { return rig.axis.view().online; }, 3s));
+    EXPECT_EQ(rig.axis.reset(Owner::program), ErrorId::none);
+    ASSERT_TRUE(rig.until([&] { return !rig.axis.view().resetting; }, 10s));
+    EXPECT_EQ(rig.axis.view().reset_error, ErrorId::reset_failed);
+    EXPECT_EQ(rig.axis.view().state, AxisState::ErrorStop);
+    EXPECT_FALSE(rig.port.supervised(rig.now));
+    ASSERT_EQ(rig.port.setup_problems().size(), 1u);
+    EXPECT_NE(rig.port.setup_problems()[0].find("SON"), std::string::npos);
+
+    // Opened, the next one succeeds.
+    rig.drive.servo().inputs().contact(0, false);
+    rig.run(1s);
+    EXPECT_EQ(rig.axis.reset(Owner::program), ErrorId::none);
+    ASSERT_TRUE(rig.until([&] { return !rig.axis.view().resetting; }, 5s));
+    EXPECT_EQ(rig.axis.view().reset_error, ErrorId::none);
+}
+
 // --- settings with which it must not be enabled --------------------------------------------------------------------------------------
 
 TEST(Xp200Axis, WrongSettingsRefuseEnabling) {
@@ -256,6 +323,14 @@ TEST(Xp200Axis, AChangeAtThePanelIsNoticed) {
     ASSERT_TRUE(rig.until([&] { return rig.axis.view().state == AxisState::ErrorStop; }, 10s));
     ASSERT_FALSE(rig.port.setup_problems().empty());
     EXPECT_NE(rig.port.setup_problems()[0].find("Pr025"), std::string::npos);
+    EXPECT_EQ(rig.axis.view().error, id(AxisAlarm::drive_setup_refused));
+
+    // A reset reads the settings again and writes what counts at once.
+    EXPECT_EQ(rig.axis.reset(Owner::program), ErrorId::none);
+    ASSERT_TRUE(rig.until([&] { return !rig.axis.view().resetting; }, 5s));
+    EXPECT_EQ(rig.axis.view().reset_error, ErrorId::none);
+    EXPECT_EQ(rig.drive.servo().parameters()[25], 1);
+    EXPECT_TRUE(rig.port.setup_problems().empty());
 }
 
 // --- parameters and saving -----------------------------------------------------------------------------------------------------------

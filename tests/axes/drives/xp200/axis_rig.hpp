@@ -21,9 +21,9 @@ struct AxisRig {
     static constexpr modbus::LineSettings fast{38400, modbus::Parity::even, 1};
 
     explicit AxisRig(std::vector<ParameterSetting> parameters = {{97, 33}, {108, 9}, {136, 1}, {164, 1}, {63, 200}},
-                     sim::PlantConfig plant = {}, HomingKind homing = HomingKind::set_here)
+                     sim::PlantConfig plant = {}, HomingKind homing = HomingKind::set_here, sim::xp200::Options options = {})
         : profile(plain_profile()),
-          drive(*profile, plant),
+          drive(*profile, plant, options),
           port({.name = "u_drive", .station = 1, .profile = profile, .parameters = std::move(parameters)}, fast),
           lines(line),
           axis(config(homing), port, cycle) {

@@ -206,7 +206,8 @@ TEST(Xp200Servo, EmergencyStopRampsOrCoastsAndGoesOnAfterwards) {
     }
 }
 
-// 4.4.3: TRQ1 selects internal torque 2; Pr078 holds the speed, a little above (Pr079).
+// 4.4.3: TRQ1 selects internal torque 2; Pr078 holds the speed, a little above (Pr079): 300 % would make 100 r/min, 50 % a sixth of that, less
+// what friction takes.
 TEST(Xp200Servo, TorqueModeKeepsItsSpeedLimit) {
     Running rig;
     rig.set(4, 2);
@@ -218,7 +219,23 @@ TEST(Xp200Servo, TorqueModeKeepsItsSpeedLimit) {
     rig.write(122, 1000);
     rig.run(2s);
     EXPECT_EQ(rig.status(0x0F), 50);
-    EXPECT_NEAR(rig.servo().speed(), 300, 15);
+    EXPECT_GT(rig.servo().speed(), 300);
+    EXPECT_LE(rig.servo().speed(), 316.7);
+}
+
+// 5.4.1 Pr079: the smaller, the steeper.
+TEST(Xp200Servo, ASmallerSpeedLimitErrorHoldsTheLimitHarder) {
+    const auto speed_with = [](int slope) {
+        Running rig;
+        for (const auto& [number, value] : {std::pair{4, 2}, {26, 1}, {78, 300}, {79, slope}}) rig.set(number, value);
+        rig.go();
+        rig.write(146, 50);
+        rig.write(122, 1000);
+        rig.run(2s);
+        return rig.servo().speed();
+    };
+    EXPECT_LT(speed_with(20), 303.4);   // a sixth of 20
+    EXPECT_GT(speed_with(500), 320.0);  // a sixth of 500 is 83
 }
 
 // 5.4.1 Pr004: 5 is speed or torque by CMODE; a new Pr004 counts after a restart (3.6.4).

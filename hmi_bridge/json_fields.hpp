@@ -1,0 +1,46 @@
+#pragma once
+// The keys of one request of the local socket, read by their types. Unknown keys are errors: a misspelt "velocity" must not mean
+// "no velocity". Not real-time.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "core/result.hpp"
+
+namespace taktwerk::hmi {
+
+/// Reads the keys by their types; the first problem stays. Errors: request.missing_key, request.wrong_type, request.unknown_key.
+class JsonFields {
+public:
+    /// `json`: an object that outlives this.
+    explicit JsonFields(const nlohmann::json& json) : json_(json) {}
+
+    std::string text(std::string_view key, bool required);
+    double number(std::string_view key, bool required);
+    bool flag(std::string_view key);
+    /// 0 when absent.
+    std::int64_t integer(std::string_view key);
+    /// Keys that nobody asked for.
+    void finish();
+    [[nodiscard]] const std::optional<Error>& error() const { return error_; }
+
+private:
+    const nlohmann::json* find(std::string_view key, bool required);
+    void wrong(std::string_view key, std::string_view wanted);
+
+    const nlohmann::json& json_;
+    std::vector<std::string> known_;
+    std::optional<Error> error_;
+};
+
+/// Code "request.<code>".
+[[nodiscard]] Error request_error(std::string code, std::string what, std::string remedy);
+/// What came from outside, quoted and fit for one line.
+[[nodiscard]] std::string shown(std::string_view text);
+
+}  // namespace taktwerk::hmi

@@ -1,0 +1,169 @@
+// What goes into a drive's EEPROM and what does not, counted at a drive that stores as SV33-E and SE-808X do.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "apps/drive.hpp"
+
+namespace taktwerk::apps {
+namespace {
+
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+/// P05.10 (2005h:0B): while it is not 0 every write is stored (SV33-E 7.2). P05.13 and P05.14: two settings.
+const axes::ParameterAddress store_switch{0x2005, 0x0B}, brake_release{0x2005, 0x0E}, brake_hold{0x2005, 0x0F};
+
+axes::DriveProfile profile_storing(axes::ParameterStorage storage) {
+    axes::DriveProfile profile;
+    profile.name = "stored";
+    profile.storage = storage;
+    if (storage == axes::ParameterStorage::each_write) profile.storage_switch = store_switch;
+    const auto add = [&](axes::ParameterAddress address, const char* name, std::int64_t factory) {
+        axes::DriveParameter parameter;
+        parameter.address = address;
+        parameter.parameter = parameter.name = name;
+        parameter.value = factory;
+        profile.parameters.push_back(parameter);
+    };
+    add(store_switch, "P05.10", 1);
+    add(brake_release, "P05.13", 250);
+    add(brake_hold, "P05.14", 150);
+    return profile;
+}
+
+/// RAM, EEPROM, and a hand on the cable: access number `fails_at` and all behind it end with an error, as after Ctrl-C.
+class FakeDrive final : public DriveAccess {
+public:
+    explicit FakeDrive(axes::ParameterStorage storage) : DriveAccess(std::make_shared<const axes::DriveProfile>(profile_storing(storage))) {
+        for (const auto& parameter : profile().parameters) ram[parameter.address.sub] = eeprom[parameter.address.sub] = parameter.value;
+    }
+    [[nodiscard]] std::string subject() const override { return "slave 0 'x'"; }
+    [[nodiscard]] std::string word() const override { return "x"; }
+    [[nodiscard]] std::string where() const override { return "desk"; }
+    [[nodiscard]] Result<std::vector<std::byte>> read_bytes(const axes::DriveParameter& parameter) override {
+        if (auto end = count(); !end) return end.error();
+        const auto raw = static_cast<std::uint16_t>(ram[parameter.address.sub]);
+        return std::vector<std::byte>{static_cast<std::byte>(raw & 0xFF), static_cast<std::byte>(raw >> 8)};
+    }
+    [[nodiscard]] Result<void> write_bytes(const axes::DriveParameter& parameter, std::vector<std::byte> value, Storing) override {
+        if (auto end = count(); !end) return end;
+        const auto raw = std::to_integer<std::int64_t>(value[0]) | std::to_integer<std::int64_t>(value[1]) << 8;
+        ram[parameter.address.sub] = raw;
+        const bool stores = profile().storage == axes::ParameterStorage::each_write && ram[store_switch.sub] != 0;
+        if (stores) eeprom[parameter.address.sub] = raw, ++eeprom_writes;
+        return {};
+    }
+    [[nodiscard]] Result<void> store_all() override {
+        eeprom = ram;
+        ++eeprom_writes;
+        return {};
+    }
+    [[nodiscard]] Result<DriveComplaint> complaint() override { return DriveComplaint{}; }
+    [[nodiscard]] Result<bool> reset_fault(Duration) override { return true; }
+    void wait(Duration) override {}
+    void finish_undisturbed() override { undisturbed = true; }
+
+    [[nodiscard]] config::ParameterSet::Value value(const axes::ParameterAddress& address, std::int64_t raw) const {
+        for (const auto& parameter : profile().parameters)
+            if (parameter.address == address) return {&parameter, raw};
+        return {};
+    }
+
+    std::map<std::uint8_t, std::int64_t> ram, eeprom;  // by sub-index
+    int eeprom_writes = 0, accesses = 0, fails_at = 1'000'000;
+    bool undisturbed = false, dead = false;
+
+private:
+    Result<void> count() {
+        if (++accesses >= fails_at && (dead || !undisturbed)) return Error{"bus.interrupted", "", "ended before it was done", ""};
+        return {};
+    }
+};
+
+using axes::ParameterStorage;
+
+TEST(DriveWrite, WithoutStoringTheSwitchGoesOffFirstAndNothingReachesTheEeprom) {
+    FakeDrive drive{ParameterStorage::each_write};
+    const auto written = write_values(drive, {drive.value(brake_release, 300)}, Storing::volatile_only);
+    EXPECT_FALSE(written.error);
+    EXPECT_EQ(drive.ram[brake_release.sub], 300);
+    EXPECT_EQ(drive.eeprom_writes, 0);
+}
+
+TEST(DriveWrite, StoringSwitchesOnStoresAndSwitchesOffAgain) {
+    FakeDrive drive{ParameterStorage::each_write};
+    drive.ram[store_switch.sub] = 0;
+    const auto written = write_values(drive, {drive.value(brake_release, 300)}, Storing::asked);
+    EXPECT_FALSE(written.error);
+    EXPECT_EQ(drive.eeprom[brake_release.sub], 300);
+    EXPECT_EQ(drive.ram[store_switch.sub], 0);
+    EXPECT_THAT(written.notes, Contains(HasSubstr("1 value stored")));
+}
+
+TEST(DriveWrite, AValueThatIsInForceButWasNeverStoredIsStored) {
+    FakeDrive each{ParameterStorage::each_write};
+    each.ram[store_switch.sub] = 0;
+    each.ram[brake_release.sub] = 300;  // written without storing, before
+    const auto written = write_values(each, {each.value(brake_release, 300)}, Storing::asked);
+    EXPECT_THAT(written.changes, IsEmpty());
+    EXPECT_EQ(each.eeprom[brake_release.sub], 300);
+
+    FakeDrive at_once{ParameterStorage::on_request};
+    at_once.ram[brake_release.sub] = 300;
+    EXPECT_FALSE(write_values(at_once, {at_once.value(brake_release, 300)}, Storing::asked).error);
+    EXPECT_EQ(at_once.eeprom[brake_release.sub], 300);
+    EXPECT_EQ(at_once.eeprom_writes, 1);
+}
+
+TEST(DriveWrite, WithoutStoringWhatIsInForceIsNotTouched) {
+    FakeDrive drive{ParameterStorage::each_write};
+    EXPECT_FALSE(write_values(drive, {drive.value(brake_release, 250)}, Storing::volatile_only).error);
+    EXPECT_EQ(drive.ram[store_switch.sub], 1) << "not even the switch";
+}
+
+// Accesses: two reads of the values, the switch read, the switch written, then write and read back of each value. Whichever of the
+// last five is the first to fail, the switch is off at the end. (A read back that fails is no error of its own: the write was answered.)
+TEST(DriveWrite, TheSwitchIsOffAgainHoweverTheWritingEnds) {
+    for (int fails_at = 4; fails_at <= 8; ++fails_at) {
+        FakeDrive drive{ParameterStorage::each_write};
+        drive.ram[store_switch.sub] = 0;
+        drive.fails_at = fails_at;
+        const auto written = write_values(drive, {drive.value(brake_release, 300), drive.value(brake_hold, 200)}, Storing::asked);
+        if (fails_at == 6 || fails_at == 8) {
+            EXPECT_EQ(drive.eeprom[brake_release.sub], 300) << fails_at;
+        } else {
+            ASSERT_TRUE(written.error) << fails_at;
+            EXPECT_EQ(written.error->code, "bus.interrupted") << fails_at;
+        }
+        EXPECT_EQ(drive.ram[store_switch.sub], 0) << fails_at;
+        EXPECT_TRUE(drive.undisturbed) << fails_at << ": Ctrl-C must not hold it up";
+    }
+}
+
+TEST(DriveWrite, ASwitchThatCannotBePutBackIsSaidWithTheCommandThatDoesIt) {
+    FakeDrive drive{ParameterStorage::each_write};
+    drive.ram[store_switch.sub] = 0;
+    drive.fails_at = 5;  // the second value's read is 2, the switch 3 and 4
+    drive.dead = true;
+    const auto written = write_values(drive, {drive.value(brake_release, 300), drive.value(brake_hold, 200)}, Storing::asked);
+    ASSERT_TRUE(written.error);
+    EXPECT_THAT(written.notes, Contains(HasSubstr("taktwerk drive set x P05.10=0")));
+}
+
+TEST(DriveWrite, WhoWritesTheSwitchItselfDecidesHowItStays) {
+    FakeDrive drive{ParameterStorage::each_write};
+    drive.ram[store_switch.sub] = 0;
+    const auto written = write_values(drive, {drive.value(store_switch, 1), drive.value(brake_hold, 200)}, Storing::asked);
+    EXPECT_FALSE(written.error);
+    EXPECT_EQ(drive.ram[store_switch.sub], 1);
+    EXPECT_THAT(written.notes, Not(Contains(HasSubstr("then 0 again"))));
+}
+
+}  // namespace
+}  // namespace taktwerk::apps
