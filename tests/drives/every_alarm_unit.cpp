@@ -1,6 +1,7 @@
 // Every alarm that the file of a drive lists, on its simulated drive, provoked while the motor runs: what the drive shows and does, and what
 // clears it. Which of them the model finds by computing: alarm_causes_unit.cpp. What a machine makes of them: alarms/every_alarm_machine.cpp.
 
+#include "axes/port/find_alarm.hpp"
 #include "tests/drives/moving_desk.hpp"
 
 namespace taktwerk::test {
@@ -104,6 +105,27 @@ TEST_P(EveryAlarm, ShowsItsNumbersStopsTheMotorOrWarnsAndClearsAsListed) {
         if (HasFatalFailure()) return;
         if (row.warning) expect_warning(desk, row);
         else expect_fault(desk, row, GetParam().reaction);
+    }
+}
+
+// What the port tells the axis of it: the row that its numbers mean, with what follows from it.
+TEST(EveryAlarmRow, IsToldApartByCodeDetailAndSort) {
+    for (const std::string name : {"sv33-e", "sv-da200", "tsvm-d6", "se-808x", "xp200"}) {
+        const auto drive = config::drive(name);
+        const auto& profile = *drive.profile;
+        for (const auto& row : profile.alarms) {
+            SCOPED_TRACE(name + " " + row.panel);
+            axes::ShownAlarm shown{row.code, std::nullopt, row.warning ? axes::ShownAlarm::As::warning : axes::ShownAlarm::As::fault};
+            const auto soon = axes::find_alarm(profile, shown);
+            EXPECT_GE(soon.candidates, 1u);
+            EXPECT_TRUE(soon.resettable || !row.resettable) << "a reset that may help is tried";
+            if (profile.alarm_detail_index) shown.detail = row.detail;
+            const auto found = axes::find_alarm(profile, shown);
+            ASSERT_EQ(found.row, &row);
+            EXPECT_EQ(found.kind, row.kind);
+            EXPECT_EQ(found.resettable, row.resettable);
+            EXPECT_EQ(found.whole_drive, row.whole_drive);
+        }
     }
 }
 
