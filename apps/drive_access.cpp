@@ -1,6 +1,7 @@
 #include "apps/drive_access.hpp"
 
 #include "apps/drive_over_bus.hpp"
+#include "apps/drive_over_line.hpp"
 #include "axes/port/parameter_text.hpp"
 
 namespace taktwerk::apps {
@@ -9,11 +10,15 @@ std::shared_ptr<DriveOptions> add_drive_options(CLI::App& sub) {
     auto options = std::make_shared<DriveOptions>();
     options->bus = add_bus_options(sub);
     sub.add_option("--profile", options->profile, "kind of drive; default: as the machine file or its identity says")->type_name("NAME");
+    sub.add_option("--line", options->line, "serial port of a Modbus drive, such as /dev/ttyUSB0; DRIVE is its station there")
+        ->type_name("DEVICE");
+    sub.add_option("--baud", options->baud, "of --line (Pr182)")->capture_default_str();
+    sub.add_option("--format", options->format, "of --line (Pr183)")->capture_default_str();
     return options;
 }
 
 void add_drive_choice(CLI::App& sub, DriveOptions& options) {
-    sub.add_option("DRIVE", options.drive, "position or name on the bus")->required();
+    sub.add_option("DRIVE", options.drive, "position or name on the bus, or name on a serial line")->required();
     sub.add_option("--axis", options.axis, "of a drive with several axes, from 1")->check(CLI::Range(1, 8));
 }
 
@@ -33,6 +38,8 @@ Result<void> DriveAccess::write(const axes::DriveParameter& parameter, std::int6
     return write_bytes(parameter, axes::to_bytes(parameter, raw), storing);
 }
 
-int with_drive(const DriveOptions& options, const std::function<int(DriveAccess&)>& work) { return with_drive_over_bus(options, work); }
+int with_drive(const DriveOptions& options, const std::function<int(DriveAccess&)>& work) {
+    return is_on_line(options) ? with_drive_over_line(options, work) : with_drive_over_bus(options, work);
+}
 
 }  // namespace taktwerk::apps
