@@ -9,6 +9,7 @@
 #include <fstream>
 #include <thread>
 
+#include "apps/bus_session.hpp"
 #include "apps/exit_code.hpp"
 #include "axes/sim/xp200/station.hpp"
 #include "config/drive_loader.hpp"
@@ -173,10 +174,11 @@ private:
     std::thread thread_;
 };
 
-TEST_F(DriveOnLine, APortNeedsNoMachineFile) {
+// The machine file only says where the drive files are, which an installed command knows by itself.
+TEST_F(DriveOnLine, APortNeedsNoMachineThatHasIt) {
     Served drive_there;
     const auto call = [&](std::vector<std::string> words) {
-        words.insert(words.end(), {"--line", drive_there.port(), "--baud", "38400"});
+        words.insert(words.end(), {"--line", drive_there.port(), "--baud", "38400", "--machine", serial_axis});
         return drive(std::move(words));
     };
     const auto got = call({"get", "7", "Pr004", "Pr181"});
@@ -190,7 +192,7 @@ TEST_F(DriveOnLine, APortNeedsNoMachineFile) {
     EXPECT_EQ(silent.code, exit_bus);
     EXPECT_THAT(silent.err, AllOf(HasSubstr("no answer"), HasSubstr("Pr181")));
     EXPECT_EQ(call({"get", "u_drive", "Pr004"}).code, exit_usage) << "a station is a number";
-    EXPECT_EQ(drive({"get", "7", "Pr004", "--line", "/dev/no-such-port"}).code, exit_bus);
+    EXPECT_EQ(drive({"get", "7", "Pr004", "--line", "/dev/no-such-port", "--machine", serial_axis}).code, exit_bus);
 }
 
 }  // namespace
