@@ -19,6 +19,12 @@ struct Present {
     const axes::DriveAlarmText* alarm = nullptr;
 };
 
+/// Below 1000h it is no error code of CiA 301 but the vendor's own number, of a drive that has no objects.
+std::string code_text(std::uint16_t code) {
+    constexpr std::uint16_t lowest_error_code = 0x1000;
+    return code < lowest_error_code ? fmt::format("number {}", code) : fmt::format("603Fh = {:04X}h", code);
+}
+
 Result<Present> read_alarm(DriveAccess& drive) {
     const auto complaint = drive.complaint();
     if (!complaint) return complaint.error();
@@ -62,7 +68,7 @@ int reset(const DriveOptions& options) {
             return static_cast<int>(exit_ok);
         }
         const auto* alarm = before->alarm;
-        const auto name = alarm ? fmt::format("{} {}", alarm->panel, alarm->english) : fmt::format("603Fh = {:04X}h", before->code);
+        const auto name = alarm ? fmt::format("{} {}", alarm->panel, alarm->english) : code_text(before->code);
         if (alarm && !alarm->resettable)
             return fail(*options.bus, Error{"drive.not_reset", drive.subject(),
                                             fmt::format("only switching the drive off and on clears {}", name), alarm->remedy});
@@ -122,7 +128,7 @@ const axes::DriveAlarmText* find_alarm(const axes::DriveProfile& profile, std::u
 std::string alarm_text(const std::string& subject, std::uint16_t code, std::optional<std::uint32_t> detail,
                        const axes::DriveAlarmText* alarm, Colours colours) {
     if (code == 0) return subject + ": " + toned("no alarm", Tone::good, colours) + "\n";
-    const auto number = fmt::format("603Fh = {:04X}h{}", code, detail ? fmt::format(", detail {:04X}h", *detail) : "");
+    const auto number = code_text(code) + (detail ? fmt::format(", detail {:04X}h", *detail) : "");
     if (!alarm)
         return fmt::format("{}: {}\n  {}\n", subject, toned("unknown alarm", Tone::bad, colours),
                            number + ": not in the drive's alarm list; see its manual");
