@@ -102,7 +102,7 @@ void miss_outputs(MovingDesk& desk) {
         desk.go_operational();
     }
     desk.go();
-    desk.frames = false;
+    desk.arrives.outputs = false;
     auto* missed = desk.dictionary.find(0x1C32, 0x0B);  // counted by the slave controller, which the desk does not have
     for (int i = 0; i < 100; ++i) {
         if (missed) missed->set(missed->get() + 1);
@@ -159,7 +159,7 @@ void happen(Cause cause, MovingDesk& desk) {
         case Cause::bus_leaves_op: desk.go(), desk.enter(EsmState::safeop); break;
         case Cause::outputs_missing: miss_outputs(desk); break;
         case Cause::outputs_watchdog: desk.go(), desk.device.outputs_lost(desk.now); break;
-        case Cause::sync_missing: desk.go(), desk.sync0 = false, desk.run(100); break;
+        case Cause::sync_missing: desk.go(), desk.arrives.sync0 = false, desk.run(100); break;
         case Cause::link_changes: desk.go(), desk.device.link_changed(desk.now); break;
         case Cause::positive_limit: run_into_limit(desk, MovingDesk::step); break;
         case Cause::negative_limit: run_into_limit(desk, -MovingDesk::step); break;

@@ -10,13 +10,17 @@
 namespace taktwerk::axes::sim {
 namespace {
 
+using taktwerk::test::RunningDesk;
+
+using namespace std::chrono_literals;
+
 constexpr unsigned reached = 0x0400, acknowledged = 0x1000;  // 6041h bits 10 and 12 [3.2.2.2]
 constexpr std::uint16_t enabled = 0x0F, new_setpoint = 0x1F, series = 0x3F, relative = 0x5F, halt = 0x10F, quick_stop = 0x02;
 
 /// In profile position mode, 20000 pulses/s, 100000 pulses/s2 up, 50000 down: 0.2 s and 2000 pulses to speed, 0.4 s and 4000 to rest.
 class Se808xProfilePosition : public ::testing::Test {
 protected:
-    DriveBench drive{"se-808x"};
+    RunningDesk drive{"se-808x"};
 
     void SetUp() override {
         drive.pdo(0x6060, 1);
@@ -63,14 +67,14 @@ TEST_F(Se808xProfilePosition, TheHandshakeIsRequestAndResponse) {
 // 3.2.3, 3.2.3.2 to 3.2.3.4: linear ramps. 20000 pulses: 0.2 s + 14000 / 20000 s + 0.4 s.
 TEST_F(Se808xProfilePosition, SpeedAndRampsAreThoseOf6081And6083And6084) {
     hand_over(20000);
-    const auto start = drive.now() - 2ms;  // the edge was two exchanges ago
+    const auto start = drive.now - 2ms;  // the edge was two exchanges ago
     std::int64_t fastest = 0;
-    while (!is(reached) && drive.now() < start + 3s) {
+    while (!is(reached) && drive.now < start + 3s) {
         drive.cycle();
         fastest = std::max(fastest, speed());
     }
     EXPECT_EQ(fastest, 20000);
-    EXPECT_NEAR(to_seconds(drive.now() - start), 1.3, 0.005);
+    EXPECT_NEAR(to_seconds(drive.now - start), 1.3, 0.005);
     EXPECT_EQ(drive.position(), 20000);
 }
 
@@ -212,7 +216,7 @@ TEST_F(Se808xProfilePosition, PowerTakenAwayForgetsTheSetPoints) {
 
 // 3.2.5: 60FFh with 6083h and 6084h; 3.2.2.2: bits 12 and 13 are reserved.
 TEST(Se808xProfileVelocity, RampsToTheTargetVelocityAndBack) {
-    DriveBench drive{"se-808x"};
+    RunningDesk drive{"se-808x"};
     drive.pdo(0x6060, 3);
     drive.pdo(0x6083, 100000);
     drive.pdo(0x6084, 50000);

@@ -16,6 +16,10 @@
 namespace taktwerk::axes::sim {
 namespace {
 
+using taktwerk::test::RunningDesk;
+
+using namespace std::chrono_literals;
+
 constexpr double fast = 20000, slow = 2000, acceleration = 200000;
 constexpr double left = -20000, on_switch = 2000, right = 20000, at_reverse_limit = -50100, at_forward_limit = 50100;
 /// Not stated: a limit switch in its way ends the run with bit 13.
@@ -85,7 +89,7 @@ const Case cases[] = {
 class Se808xHoming : public ::testing::TestWithParam<Case> {};
 
 /// In homing mode, enabled, with the speeds above and an offset of 700.
-void prepare(DriveBench& drive, int method) {
+void prepare(RunningDesk& drive, int method) {
     ASSERT_EQ(drive.sdo(0x6098, 0, method), 0u);
     ASSERT_EQ(drive.sdo(0x6099, 1, static_cast<std::int64_t>(fast)), 0u);
     ASSERT_EQ(drive.sdo(0x6099, 2, static_cast<std::int64_t>(slow)), 0u);
@@ -98,7 +102,7 @@ void prepare(DriveBench& drive, int method) {
 
 TEST_P(Se808xHoming, GoesTheWayOfTheManual) {
     const auto& row = GetParam();
-    DriveBench drive{"se-808x", rail(row.start)};
+    RunningDesk drive{"se-808x", rail(row.start)};
     prepare(drive, row.method);
     EXPECT_EQ(drive.status() & (attained | error), 0u);
     drive.control(0x1F, 1);
@@ -138,7 +142,7 @@ INSTANTIATE_TEST_SUITE_P(Section327, Se808xHoming, ::testing::ValuesIn(cases), [
 
 // 4.3: 6098h = 20, 6099h = 10000 and 10000, 609Ah = 30000 from the factory.
 TEST(Se808xHomingSettings, AreThoseOfTheFactoryUntilTheyAreWritten) {
-    DriveBench drive{"se-808x", rail(-20000)};
+    RunningDesk drive{"se-808x", rail(-20000)};
     drive.pdo(0x6060, 6);
     drive.enable();
     drive.control(0x1F, 100);
@@ -150,7 +154,7 @@ TEST(Se808xHomingSettings, AreThoseOfTheFactoryUntilTheyAreWritten) {
 // "Supports six methods", 17 to 22: any other does not move it.
 TEST(Se808xHomingSettings, NoOtherMethodIsKnown) {
     for (const int method : {0, 1, 2, 7, 14, 16, 23, 33, 35, -1}) {
-        DriveBench drive{"se-808x", rail(2000)};
+        RunningDesk drive{"se-808x", rail(2000)};
         prepare(drive, method);
         drive.control(0x1F, 300);
         EXPECT_NE(drive.status() & error, 0u) << method;
@@ -161,7 +165,7 @@ TEST(Se808xHomingSettings, NoOtherMethodIsKnown) {
 
 // Not stated how it is broken off: bit 4 away, as CiA 402 has it. The position stays what it was.
 TEST(Se808xHomingSettings, WithoutBitFourItStopsAndIsNotHomed) {
-    DriveBench drive{"se-808x", rail(-20000)};
+    RunningDesk drive{"se-808x", rail(-20000)};
     prepare(drive, 19);
     drive.control(0x1F, 300);
     ASSERT_GT(drive.read(0x606C), 0);
@@ -176,7 +180,7 @@ TEST(Se808xHomingSettings, AHomeSwitchThatIsPassedWithinAMillisecondIsNotSeen) {
     for (const auto& [speed, seen] : {std::pair{20000, true}, std::pair{40000, false}}) {
         auto plant = rail(-20000);
         plant.home_to = 30;
-        DriveBench drive{"se-808x", plant};
+        RunningDesk drive{"se-808x", plant};
         prepare(drive, 19);
         ASSERT_EQ(drive.sdo(0x6099, 1, speed), 0u);
         drive.control(0x1F, 1);

@@ -8,6 +8,10 @@
 namespace taktwerk::axes::sim {
 namespace {
 
+using taktwerk::test::RunningDesk;
+
+using namespace std::chrono_literals;
+
 // 3.2.2.2: bits 6, 5, 3, 2, 1, 0; X is free.
 struct Pattern {
     unsigned mask, value;
@@ -21,7 +25,7 @@ constexpr std::uint16_t shut_down = 0x06, switch_on = 0x07, disable_voltage = 0x
 
 class Se808xStates : public ::testing::Test {
 protected:
-    DriveBench drive{"se-808x"};
+    RunningDesk drive{"se-808x"};
 
     void SetUp() override { drive.pdo(0x6060, 8); }
     void expect(std::uint16_t command, const Pattern& state, const char* transition) {

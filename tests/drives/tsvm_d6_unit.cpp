@@ -30,7 +30,7 @@ axes::sim::PlantConfig vertical_axis() {
 }
 
 struct Tsvm : DriveDesk {
-    explicit Tsvm(const axes::sim::PlantConfig& plant, const Adapt& adapt = {}) : DriveDesk("tsvm-d6", plant, 1ms, adapt) {
+    explicit Tsvm(const axes::sim::PlantConfig& plant, const MotorFacts& adapt = {}) : DriveDesk("tsvm-d6", plant, 1ms, adapt) {
         go_operational();
         run(30ms);
     }
