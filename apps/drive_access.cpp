@@ -2,6 +2,7 @@
 
 #include "apps/drive_in_machine.hpp"
 #include "apps/drive_over_bus.hpp"
+#include "apps/drive_over_line.hpp"
 #include "apps/exit_code.hpp"
 #include "axes/port/parameter_text.hpp"
 
@@ -12,11 +13,15 @@ std::shared_ptr<DriveOptions> add_drive_options(CLI::App& sub) {
     options->bus = add_bus_options(sub);
     sub.add_option("-s,--socket", options->socket, "running machine to ask: its name or socket; default, without a bus: the only one");
     sub.add_option("--profile", options->profile, "kind of drive; default: as the machine file or its identity says")->type_name("NAME");
+    sub.add_option("--line", options->line, "serial port of a Modbus drive, such as /dev/ttyUSB0; DRIVE is its station there")
+        ->type_name("DEVICE");
+    sub.add_option("--baud", options->baud, "of --line (Pr182)")->capture_default_str();
+    sub.add_option("--format", options->format, "of --line (Pr183)")->capture_default_str();
     return options;
 }
 
 void add_drive_choice(CLI::App& sub, DriveOptions& options) {
-    sub.add_option("DRIVE", options.drive, "position or name on the bus; of a running machine also an axis")->required();
+    sub.add_option("DRIVE", options.drive, "position or name on the bus, name on a serial line; of a running machine also an axis")->required();
     sub.add_option("--axis", options.axis, "of a drive with several axes, from 1")->check(CLI::Range(1, 8));
 }
 
@@ -37,12 +42,13 @@ Result<void> DriveAccess::write(const axes::DriveParameter& parameter, std::int6
 }
 
 int with_drive(const DriveOptions& options, const std::function<int(DriveAccess&)>& work) {
-    if (!options.socket.empty() && (!options.bus->nic.empty() || options.bus->simulate)) {
-        fail(*options.bus,
-             Error{"usage", "", "--socket asks a running machine, --nic and --simulate speak to a bus directly", "give one of them"});
+    if (!options.socket.empty() && (!options.bus->nic.empty() || options.bus->simulate || !options.line.empty())) {
+        fail(*options.bus, Error{"usage", "", "--socket asks a running machine, --nic, --line and --simulate speak to the drives directly",
+                                 "give one of them"});
         return exit_usage;
     }
-    return options.through_machine() ? with_drive_in_machine(options, work) : with_drive_over_bus(options, work);
+    if (options.through_machine()) return with_drive_in_machine(options, work);
+    return is_on_line(options) ? with_drive_over_line(options, work) : with_drive_over_bus(options, work);
 }
 
 }  // namespace taktwerk::apps

@@ -1,7 +1,7 @@
 #pragma once
 // The seam of `taktwerk drive`: one axis of one drive, however it is reached, and the choice of the way. Its sub-commands know nothing
-// else. Ways: drive_in_machine.hpp (through the machine that runs), drive_over_bus.hpp (SDO on a bus that nobody else drives). A further
-// one implements DriveAccess and gets its line in with_drive().
+// else. Ways: drive_in_machine.hpp (through the machine that runs), drive_over_bus.hpp (SDO on a bus that nobody else drives),
+// drive_over_line.hpp (Modbus on a serial line). A further one implements DriveAccess and gets its line in with_drive().
 
 #include <functional>
 #include <memory>
@@ -24,9 +24,15 @@ struct DriveOptions {
     std::string profile;  ///< instead of the machine file's, or of what the identity says
     int axis = 1;         ///< of a drive with several
     Storing storing = Storing::volatile_only;
+    // Of a serial line that no machine file describes; as an XP200 leaves the factory (9.2).
+    std::string line;  ///< its port; empty: none
+    std::uint32_t baud = 19200;
+    std::string format = "8E1";
 
-    /// A machine that runs is asked when it is named, or when no bus is.
-    [[nodiscard]] bool through_machine() const noexcept { return !socket.empty() || (bus->nic.empty() && bus->machine.empty()); }
+    /// A machine that runs is asked when it is named, or when neither bus nor line is.
+    [[nodiscard]] bool through_machine() const noexcept {
+        return !socket.empty() || (bus->nic.empty() && bus->machine.empty() && line.empty());
+    }
 };
 
 /// The options that every sub-command has.

@@ -14,6 +14,12 @@ namespace {
 
 constexpr Duration reset_patience = std::chrono::seconds{3};  // several attempts of the port
 
+/// Below 1000h it is no error code of CiA 301 but the vendor's own number, of a drive that has no objects.
+std::string code_text(std::uint16_t code) {
+    constexpr std::uint16_t lowest_error_code = 0x1000;
+    return code < lowest_error_code ? fmt::format("number {}", code) : fmt::format("603Fh = {:04X}h", code);
+}
+
 Result<axes::ShownAlarm> read_alarm(DriveAccess& drive) {
     const auto complaint = drive.complaint();
     if (!complaint) return complaint.error();
@@ -58,7 +64,7 @@ int reset(const DriveOptions& options) {
             return static_cast<int>(exit_ok);
         }
         const auto* alarm = axes::find_alarm(drive.profile(), *before).row;
-        const auto name = alarm ? fmt::format("{} {}", alarm->panel, alarm->english) : fmt::format("603Fh = {:04X}h", before->code);
+        const auto name = alarm ? fmt::format("{} {}", alarm->panel, alarm->english) : code_text(before->code);
         if (alarm && !alarm->resettable)
             return fail(*options.bus, Error{"drive.not_reset", drive.subject(),
                                             fmt::format("only switching the drive off and on clears {}", name), alarm->remedy});

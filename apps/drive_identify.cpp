@@ -5,6 +5,7 @@
 
 #include "apps/drive.hpp"
 #include "apps/drive_in_machine.hpp"
+#include "apps/drive_over_line.hpp"
 #include "apps/drive_profiles.hpp"
 #include "apps/exit_code.hpp"
 #include "ecat/bringup/slave_match.hpp"
@@ -66,8 +67,21 @@ int identify_in_machine(const DriveOptions& options) {
     return show(options, out);
 }
 
+/// Drives on serial lines: those of the machine file, or the one that is meant.
+Result<std::vector<Identified>> on_lines(const DriveOptions& options) {
+    const auto found = identify_on_lines(options);
+    if (!found) return found.error();
+    std::vector<Identified> out;
+    for (const auto& drive : *found) out.push_back({drive.subject, drive.says, "", {drive.profile}});
+    return out;
+}
+
 int identify(const DriveOptions& options) {
     if (options.through_machine()) return identify_in_machine(options);
+    if (is_on_line(options)) {
+        const auto drives = on_lines(options);
+        return drives ? show(options, *drives) : fail(*options.bus, drives.error());
+    }
     return with_bus(*options.bus, [&](BusSession& session) {
         const Result<ecat::Survey> found = session.look();
         if (!found) return fail(*options.bus, found.error());
@@ -83,6 +97,12 @@ int identify(const DriveOptions& options) {
         for (const auto position : positions) {
             const auto& slave = found->slaves[position];
             slaves.push_back({found->subject(position), ecat::found_text(slave.found), slave.device_name, profiles_of(options, slave)});
+        }
+        // Their ports are opened only where nobody else can have them: simulated ones, or one that is named.
+        if (options.bus->simulate && options.drive.empty()) {
+            const auto others = on_lines(options);
+            if (!others) return fail(*options.bus, others.error());
+            slaves.insert(slaves.end(), others->begin(), others->end());
         }
         return show(options, slaves);
     });

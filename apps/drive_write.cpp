@@ -18,6 +18,8 @@ using axes::ParameterStorage;
 
 constexpr Duration between_stored_writes = 100ms;  // an EEPROM cell needs up to 10 ms; the drive does other things, too
 
+constexpr const char* lost_at_power_off = "The values are lost at power off; --store keeps them.";
+
 const DriveParameter* parameter_at(const axes::DriveProfile& profile, const axes::ParameterAddress& address) {
     for (const auto& parameter : profile.parameters)
         if (parameter.address == address) return &parameter;
@@ -91,6 +93,7 @@ private:
             set(0, fmt::format(
                        "{} was {}: now 0, so that these writes do not wear the EEPROM. They are lost at power off; --store keeps them.",
                        axes::name_of(*sw), *now));
+        else if (storing_ == Storing::volatile_only) out_.notes.emplace_back(lost_at_power_off);
         if (storing_ == Storing::asked && *now == 0) {
             // Who writes the switch itself decides how it stays.
             const bool meant = std::any_of(wanted_.begin(), wanted_.end(), [&](const Change& change) { return change.parameter == sw; });
@@ -124,7 +127,7 @@ private:
     void put_back() {
         if (!switched_) return;
         drive_.finish_undisturbed();
-        const auto done = drive_.write(*switched_, 0, storing_);
+        const auto done = drive_.write(*switched_, 0, Storing::volatile_only);
         if (done) return;
         const auto name = axes::name_of(*switched_);
         out_.notes.push_back(
@@ -143,8 +146,7 @@ private:
         }
         if (out_.error) return;
         if (storing_ != Storing::asked) {
-            if (profile_.storage == ParameterStorage::on_request)
-                out_.notes.push_back("The values are lost at power off; --store keeps them.");
+            if (profile_.storage == ParameterStorage::on_request) out_.notes.emplace_back(lost_at_power_off);
             return;
         }
         if (auto done = drive_.store_all(); !done) out_.error = done.error();

@@ -208,8 +208,9 @@ int run_real(LoadedFile loaded, const Options& options) {
     if (!options.quiet && !options.json)
         bridge_options.log = [](std::string_view text) {
             // Each `taktwerk monitor --once` comes and goes: not worth a line.
-            constexpr std::string_view comes = " connected";
-            if (text.size() < comes.size() || text.substr(text.size() - comes.size()) != comes) fmt::print("{}\n", text);
+            if (text.ends_with(" connected")) return;
+            fmt::print("{}\n", text);
+            std::fflush(stdout);
         };
     auto bridge = hmi::HmiBridge::open(loaded.hmi, link, std::move(bridge_options));
     if (!bridge) {

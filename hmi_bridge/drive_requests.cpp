@@ -101,7 +101,7 @@ std::optional<Error> DriveRequests::check_authority(const Place& place) const {
     if (view.owner == axes::Owner::program) refusal.answer = Answer::no_control;
     else if (place.snapshot->mode == runtime::Mode::automatic) refusal.answer = Answer::wrong_mode;
     else return std::nullopt;
-    return explain(refusal, CommandKind::none, "axis " + layout.axes[place.axis].name);
+    return explain(refusal, CommandKind::none, "axis " + layout.axes[place.axis].name, layout.block_at(refusal.holder));
 }
 
 bool DriveRequests::any_axis_powered(const Place& place) const {

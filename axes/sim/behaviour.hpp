@@ -40,7 +40,7 @@ public:
     void obey(AxisInputs& in, Cia402Axis& axis) noexcept;
     /// What the drive shows beside what every CiA 402 axis does.
     void show(AxisOutputs& out, const Cia402Axis& axis) noexcept;
-    /// Finds out that nothing comes any more.
+    /// Looks for what does not come: process data, SYNC0, a phase of the mains.
     void watch(Cia402Axis& axis, Instant now) noexcept;
 
     /// What drives the terminals: bit n is output n + 1; nothing while the drive sets them itself.

@@ -116,6 +116,7 @@ void Cia402Device::power_off(Instant now) {
     for (auto& axis : axes_) {
         axis.model->advance(now);
         axis.model->power_off();
+        axis.behaviour->operational(false, now);
     }
 }
 

@@ -194,12 +194,13 @@ void Cia402Axis::step_brake() noexcept {
 /// P05.14); a brake that is never late closes as the motor lets go. In motion it waits until the motor is slow (TSVM PA48, PA49).
 bool Cia402Axis::brake_told_to_close() const noexcept {
     if (!has_brake()) return false;
-    if (state_ == State::enabled) return now_ < brake_opens_;
+    const bool told_before = brake_closing_ > Duration::zero();
+    if (state_ == State::enabled) return now_ < brake_opens_ && (stands() || told_before);
     if (winding_down_) return stands() && plant_.config().brake_closing > Duration::zero();
     if (energised()) return false;
     const bool slow = std::abs(plant_.velocity()) < personality_.brake_moving_speed;
     const bool waited = personality_.brake_moving_wait > Duration::zero() && now_ - power_went_ >= personality_.brake_moving_wait;
-    return stands() || slow || waited || brake_closing_ > Duration::zero();
+    return stands() || slow || waited || told_before;
 }
 
 }  // namespace taktwerk::axes::sim

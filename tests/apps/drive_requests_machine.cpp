@@ -3,11 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "apps/load.hpp"
-#include "core/clock.hpp"
 #include "hmi_bridge/drive_requests.hpp"
 #include "hmi_bridge/runtime_link.hpp"
-#include "runtime/virtual_runner.hpp"
+#include "tests/apps/simulated_five_drives.hpp"
 
 namespace taktwerk::apps {
 namespace {
@@ -18,34 +16,20 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-/// config/machines/five-drives.yaml without its program, cycling; nobody moves anything.
 class FiveDrivesAsked : public ::testing::Test {
 protected:
     void SetUp() override {
-        auto result = read_machine_without_programs(std::string(TAKTWERK_SOURCE_DIR) + "/config/machines/five-drives.yaml", true);
-        ASSERT_TRUE(std::holds_alternative<LoadedFile>(result));
-        auto config = std::move(std::get<LoadedFile>(result).machine);
-        config.programs.clear();
-        config.tasks.clear();
-        config.simulation.events.clear();
-        config.start_mode = runtime::Mode::manual;
-        world = std::make_unique<runtime::World>(config, clock.now());
-        auto built = runtime::Machine::build(std::move(config), world->transport(), world->serial().lines());
-        ASSERT_TRUE(std::holds_alternative<std::unique_ptr<runtime::Machine>>(built));
-        machine = std::move(std::get<0>(built));
-        link.emplace(*machine);
+        ASSERT_NO_FATAL_FAILURE(five.build());
+        link.emplace(*five.machine);
         requests.emplace(*link, [this](std::string_view line) { log.emplace_back(line); });
-        runner.emplace(*machine, *world, clock);
-        runner->after_cycle = [this](Instant now) { requests->step(now); };
-        const auto up = runner->bring_up();
-        ASSERT_TRUE(up) << up.error().text();
-        runner->run_for(1s);  // the XP200 has been read
+        five.runner->after_cycle = [this](Instant now) { requests->step(now); };
+        ASSERT_NO_FATAL_FAILURE(five.bring_up());
     }
     hmi::DriveAnswer ask(DriveRequestKind kind, const std::string& axis, const std::string& parameter = "", const std::string& value = "") {
-        requests->handle({kind, axis, parameter, value, false, "a test", 1, "1"}, machine->latest(), clock.now());
+        requests->handle({kind, axis, parameter, value, false, "a test", 1, "1"}, five.machine->latest(), five.clock.now());
         for (int i = 0; i < 12'000; ++i) {
             if (auto answer = requests->next_answer()) return *answer;
-            runner->run_for(1ms);
+            five.runner->run_for(1ms);
         }
         ADD_FAILURE() << "no answer";
         return {};
@@ -58,16 +42,12 @@ protected:
         runtime::OperatorCommand command;
         command.action = runtime::OperatorAction::set_mode;
         command.mode = wanted;
-        ASSERT_TRUE(machine->submit(command));
-        runner->run_for(10ms);
+        five.command(command);
     }
 
-    VirtualClock clock{Instant{}};
-    std::unique_ptr<runtime::World> world;
-    std::unique_ptr<runtime::Machine> machine;
+    SimulatedFiveDrives five;
     std::optional<hmi::RuntimeLink> link;
     std::optional<hmi::DriveRequests> requests;
-    std::optional<runtime::VirtualRunner> runner;
     std::vector<std::string> log;
 };
 

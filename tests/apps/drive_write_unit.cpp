@@ -94,6 +94,9 @@ TEST(DriveWrite, WithoutStoringTheSwitchGoesOffFirstAndNothingReachesTheEeprom) 
     EXPECT_FALSE(written.error);
     EXPECT_EQ(drive.ram[brake_release.sub], 300);
     EXPECT_EQ(drive.eeprom_writes, 0);
+    EXPECT_THAT(written.notes, Contains(HasSubstr("--store keeps them")));
+    const auto again = write_values(drive, {drive.value(brake_release, 310)}, Storing::volatile_only);  // the switch is off already
+    EXPECT_THAT(again.notes, ElementsAre(HasSubstr("--store keeps them")));
 }
 
 TEST(DriveWrite, StoringSwitchesOnStoresAndSwitchesOffAgain) {

@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <limits>
+#include <ostream>
 
 #include "tests/drives/drive_desk.hpp"
 
@@ -39,6 +40,8 @@ struct Case {
     double fastest;  ///< on the whole way
     double end;      ///< the edge at which it stops
 };
+
+void PrintTo(const Case& row, std::ostream* out) { *out << "method " << row.method << " from " << row.start; }
 
 // 3.2.7: 17 and 18 with their speeds as printed. 19 to 22: first way and edge as printed; a search that has to come back is made with the
 // speed of the search (6099h:01), an edge that is met at once with the low one (6099h:02): not stated.

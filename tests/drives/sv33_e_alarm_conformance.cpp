@@ -67,6 +67,16 @@ TEST_F(Sv33EAlarms, Sync0ThatDoesNotComeIsLostToo) {
     EXPECT_EQ(desk.read(0x603F), 0x0D32);
 }
 
+TEST_F(Sv33EAlarms, ADriveThatIsSwitchedOffMissesNoSync0) {
+    map_and_start(csp);
+    desk.power_cycle();
+    desk.run(2);
+    EXPECT_EQ(desk.read(0x603F), 0);
+    ASSERT_EQ(desk.sdo(0x2021, 0x1F, 1), 0u);  // P21.30: the latest alarm
+    desk.run(2);
+    EXPECT_EQ(desk.read(0x2021, 0x20), 0);
+}
+
 // --- E.217, A.222: a phase of the mains is missing; P08.00: 0 fault, 1 fault and warning, 2 nothing [5.4, 5.5, 7.2] --------------------
 
 TEST_F(Sv33EAlarms, AMissingPhaseIsE217) {

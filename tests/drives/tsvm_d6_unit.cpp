@@ -119,6 +119,24 @@ TEST(TsvmBrake, InMotionItClosesBelowPa49OrAfterPa48) {
     EXPECT_NEAR(way_to_rest(90), braked(90), 30);
 }
 
+// Not stated: enabled again before it stands, the motor has its torque at once, and the brake that was open stays so.
+TEST(TsvmBrake, StaysOpenWhenAMotorThatTurnsIsEnabledAgain) {
+    Tsvm drive{motor()};
+    drive.enable();
+    const auto start = drive.read(0x6064);
+    for (int i = 1; i <= 200; ++i) {
+        drive.pdo(0x607A, start + 50 * i);  // 300 rpm
+        drive.run(1ms);
+    }
+    drive.control({6, 7});
+    ASSERT_FALSE(drive.axis().brake_closed());
+    drive.pdo(0x6040, 15);
+    for (int i = 0; i < 30; ++i) {
+        drive.run(1ms);
+        EXPECT_FALSE(drive.axis().brake_closed() && !drive.axis().stands()) << i;
+    }
+}
+
 // --- Encoder -----------------------------------------------------------------------------------------------------------------------------
 
 /// Two turns below zero, with the encoder's index a tenth of a turn off.

@@ -267,6 +267,47 @@ TEST(Modules, ThatAreNotThereAreNamedWithTheirSlot) {
     EXPECT_THAT(bus.master->failure().what, HasSubstr("slot 1 holds no module, configured is 'csp' (00000011h)"));
 }
 
+// TSVM-D6 5.2.5: each slot has to hold one valid module. The slave knows its slots here, and 0025h / 0024h (ETG.1000.6, invalid output /
+// input mapping) is what the simulated one answers: what a real one says is not stated.
+std::shared_ptr<DeviceDescription> knows_its_slots() {
+    auto d = played_modular(0x11);
+    d->rx_pdos.clear(), d->tx_pdos.clear();  // those of the modules, in every slot, come by themselves
+    d->slots = modular()->slots;
+    return d;
+}
+
+TEST(Modules, ASlotWithoutOneIsRefusedByTheSlave) {
+    TestBus full{""};
+    add(full, knows_its_slots(), modular(), std::make_unique<QuietModel>());
+    full.config.slaves[0].modules = {{0, "csp"}, {1, "csp"}};
+    ASSERT_TRUE(full.bring_up()) << full.why();
+
+    auto told = modular(), played = knows_its_slots();
+    told->slots.modules[0].ident = played->slots.modules[0].ident = 0;  // no comparison of idents: the PDO assignment alone
+    TestBus half{""};
+    add(half, played, told, std::make_unique<QuietModel>());
+    half.config.slaves[0].modules = {{0, "csp"}};
+    EXPECT_FALSE(half.bring_up());
+    EXPECT_EQ(half.master->failure().code, "bus.refused_state");
+    EXPECT_THAT(half.master->failure().what, HasSubstr("0x0025"));
+    EXPECT_EQ(half.state(0), sim::EsmState::preop);
+}
+
+// Outputs in every slot, but the inputs of slot 1 missing.
+TEST(Modules, ASlotWithoutInputsIsRefusedToo) {
+    auto told = modular(), played = knows_its_slots();
+    told->slots.modules[0].ident = played->slots.modules[0].ident = 0;
+    ModuleDescription blind = told->slots.modules[0];
+    blind.name = "blind";
+    blind.tx_pdos.clear();
+    told->slots.modules.push_back(blind);
+    TestBus bus{""};
+    add(bus, played, told, std::make_unique<QuietModel>());
+    bus.config.slaves[0].modules = {{0, "csp"}, {1, "blind"}};
+    EXPECT_FALSE(bus.bring_up());
+    EXPECT_THAT(bus.master->failure().what, HasSubstr("0x0024"));
+}
+
 // --- watchdogs ---------------------------------------------------------------------------------------------------------------
 
 // 1 ms cycle: 10 ms, 100 ticks; a PDI watchdog of 5 ms: 50 ticks; not configured: as after power-on (1000).

@@ -61,6 +61,7 @@ public:
     const runtime::Snapshot* latest() override { return fake.latest(); }
     [[nodiscard]] const runtime::MachineLayout& layout() const override { return fake.layout(); }
     [[nodiscard]] runtime::AlarmText describe(const AlarmFact& fact) const override { return fake.describe(fact); }
+    [[nodiscard]] Drive drive(std::uint16_t axis) override { return fake.drive(axis); }
     void request_shutdown() override { fake.request_shutdown(); }
     FakeMachine fake;
 };

@@ -9,7 +9,7 @@ using namespace std::chrono_literals;
 using testing::ExampleMachine;
 
 // The machine file lets the SV33-E, the SV-DA200, one joint of the TSVM-D6, all six of them, the SE-808X and the XP200 fail, and cuts the
-// serial line: 1 + 1 + 1 + 6 + 1 + 1 + 1 axes that go to ErrorStop, the XP200 once more when its line is back and it must be disabled first.
+// serial line: 1 + 1 + 1 + 6 + 1 + 1 + 1 axes that go to ErrorStop, each once: the XP200's reset waits until it is disabled when its line is back.
 TEST(FiveDrives, AllHomeAndMoveAndComeBackAfterTheirFaults) {
     ExampleMachine m{"five-drives"};
     ASSERT_TRUE(m.up());
@@ -18,6 +18,7 @@ TEST(FiveDrives, AllHomeAndMoveAndComeBackAfterTheirFaults) {
 
     EXPECT_TRUE(m.until([&] { return m.variable("recoveries") >= 12; }, 30s)) << m.alarms();
     m.run(3s);
+    EXPECT_EQ(m.variable("failures"), 12) << m.alarms();
     EXPECT_EQ(m.variable("recoveries"), m.variable("failures")) << m.alarms();
     const double strokes = m.variable("least_strokes");
     EXPECT_TRUE(m.until([&] { return m.variable("least_strokes") > strokes; }, 20s)) << m.alarms();
