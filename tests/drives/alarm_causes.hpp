@@ -12,6 +12,10 @@ namespace taktwerk::test {
 /// What happens to the drive.
 enum class Cause {
     main_power_gone,
+    phase_missing,          ///< of the mains, while the motor has power
+    phase_missing_at_rest,  ///< while it has none
+    supply_too_high,
+    enabled_by_input_too,  ///< besides the bus
     faster_than_allowed,
     enabled_while_turning,
     overloaded,         ///< more than rated torque until the motor's I2t is used up
@@ -54,10 +58,12 @@ struct Found {
 
 inline const std::vector<Found>& found_by_computing() {
     static const std::vector<Found> list{
+        {"sv33-e", "E.217", Cause::phase_missing, "5.4, 7.2 P08.00"},
         {"sv33-e", "E.218", Cause::emergency_stop_ordered, "5.4, 7.2 P20.02"},
         {"sv33-e", "E.414", Cause::main_power_gone, "5.4"},
         {"sv33-e", "E.416", Cause::faster_than_allowed, "5.4"},
         {"sv33-e", "E.417", Cause::enabled_while_turning, "5.4"},
+        {"sv33-e", "E.418", Cause::enabled_by_input_too, "5.4, 8.1"},
         {"sv33-e", "E.419", Cause::overloaded, "5.4"},
         {"sv33-e", "E.423", Cause::jammed, "5.4, 7.3 6065h"},
         {"sv33-e", "E.424", Cause::setpoint_leaps, "5.4"},
@@ -68,8 +74,10 @@ inline const std::vector<Found>& found_by_computing() {
         {"sv33-e", "E.D15", Cause::limits_crossed, "5.4"},
         {"sv33-e", "E.D16", Cause::home_outside_limits, "5.4"},
         {"sv33-e", "E.D26", Cause::bus_leaves_op, "5.4"},
+        {"sv33-e", "E.D32", Cause::sync_missing, "5.4, 7.2 P0A.31"},
         {"sv33-e", "A.220", Cause::positive_limit, "5.5"},
         {"sv33-e", "A.221", Cause::negative_limit, "5.5"},
+        {"sv33-e", "A.222", Cause::phase_missing_at_rest, "5.5, 7.2 P08.00"},
         {"sv33-e", "A.425", Cause::homing_too_long, "5.5, 7.2 P13.49"},
         {"sv33-e", "A.426", Cause::restart_awaited, "5.5"},
         {"sv33-e", "A.427", Cause::stored_too_often, "5.5, 7.2 P05.10"},
@@ -105,6 +113,7 @@ inline const std::vector<Found>& found_by_computing() {
         {"tsvm-d6", "144", Cause::bus_leaves_op, "7.2"},
 
         {"se-808x", "ALM quick 4", Cause::main_power_gone, "5.1"},
+        {"se-808x", "ALM quick 5", Cause::supply_too_high, "5.1, 4.4 2000h:15"},
         {"se-808x", "ALM slow 2", Cause::jammed, "5.1"},
         {"se-808x", "ALM slow 3", Cause::overloaded, "5.1"},
         {"se-808x", "ALM slow 4", Cause::outputs_watchdog, "5.1, 5.2"},
@@ -138,11 +147,9 @@ inline const std::vector<ToldOnly>& told_only() {
     static const std::vector<ToldOnly> list{
         {"sv33-e", board, {"E.010", "E.011", "E.012", "E.013", "E.014", "E.016", "E.017", "E.018", "E.D23", "E.D29", "E.D30"}},
         {"sv33-e", power_stage, {"E.015", "E.210", "E.211", "E.212", "E.213", "E.227", "E.228", "E.413", "E.415", "A.224", "A.225"}},
-        {"sv33-e", wired, {"E.214", "E.216", "E.217", "E.418", "A.222"}},
+        {"sv33-e", wired, {"E.214", "E.216"}},
         {"sv33-e", heat, {"E.219", "E.922", "E.B15"}},
-        {"sv33-e",
-         data,
-         {"E.019", "E.411", "E.412", "E.420", "E.421", "E.422", "E.430", "E.D27", "E.D28", "E.D31", "E.D32", "A.226", "A.428"}},
+        {"sv33-e", data, {"E.019", "E.411", "E.412", "E.420", "E.421", "E.422", "E.430", "E.D27", "E.D28", "E.D31", "A.226", "A.428"}},
         {"sv33-e", same, {"E.710", "E.918", "E.B10", "E.D20", "E.D21", "E.D22", "E.D24", "E.D25"}},
         {"sv33-e", tuning, {"E.711", "E.712", "E.715", "E.716", "E.B13", "E.B14"}},
         {"sv33-e", encoder, {"E.910", "E.912", "E.913", "E.914", "E.916", "A.920"}},
@@ -171,7 +178,7 @@ inline const std::vector<ToldOnly>& told_only() {
         {"tsvm-d6", tuning, {"103"}},
 
         {"se-808x", board, {"ALM quick 2", "ALM quick 6"}},
-        {"se-808x", power_stage, {"ALM quick 3", "ALM quick 5"}},
+        {"se-808x", power_stage, {"ALM quick 3"}},
 
         {"xp200", power_stage, {"E 2", "E11", "E12", "E14"}},
         {"xp200", "mains and control supply are one: without it the drive is off [4.1]", {"E 3"}},

@@ -1,5 +1,5 @@
 // SV33-E 5.4, 5.5: alarms that the drive finds by looking: at the distance between two SYNC0 (E.D32), at its mains (E.217, A.222) and at who
-// enables it (E.418). Every alarm by its texts and its reset rule: sv33_e_unit.cpp.
+// enables it (E.418). Every alarm by its texts and its reset rule: every_alarm_unit.cpp.
 
 #include "tests/drives/sv33_e.hpp"
 
