@@ -68,13 +68,15 @@ protected:
     [[nodiscard]] std::string line() const { return folder / "rs485"; }
     [[nodiscard]] std::string socket() const { return folder / "socket"; }
 
+    /// null when the machine gave no answer.
     [[nodiscard]] Json state() const {
         std::string said;
         run({taktwerk, "monitor", "--once", "--json", "-s", socket()}, &said);
-        return Json::parse(said, nullptr, false);
+        auto out = Json::parse(said, nullptr, false);
+        return out.is_object() && out.contains("variables") ? out : Json{};  // an error: this computer stalls, it is asked again
     }
     static double variable(const Json& state, const std::string& name) {
-        if (state.is_object())
+        if (!state.is_null())
             for (const auto& v : state.at("variables"))
                 if (v.at("name") == name) return v.at("value").get<double>();
         return 0;
@@ -84,7 +86,7 @@ protected:
         const auto end = std::chrono::steady_clock::now() + patience;
         do {
             seen = state();
-            if (seen.is_object() && condition(seen)) return true;
+            if (!seen.is_null() && condition(seen)) return true;
         } while (std::chrono::steady_clock::now() < end);
         return false;
     }
