@@ -215,6 +215,14 @@ TEST_F(Sv33EExamples, WithoutARampPvMovesNothing) {
     desk.pdo(0x60FF, 5 * turn);
     desk.run(500ms);
     EXPECT_EQ(desk.read(0x606C), 0);
+    // The speed is the least of 60FFh, 607Fh and the motor's [3.4.3(7)].
+    EXPECT_EQ(desk.sdo(0x6083, 0, 100 * turn), 0u);
+    desk.pdo(0x607F, 0);
+    desk.run(500ms);
+    EXPECT_NEAR(desk.speed(), 0, 0.001 * turn);
+    desk.pdo(0x607F, turn);
+    desk.run(500ms);
+    EXPECT_NEAR(desk.speed(), turn, 0.01 * turn);
 }
 
 // ... "whether the torque slope is 0, whether the speed limit is 0".
