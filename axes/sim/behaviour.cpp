@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "axes/sim/communication_error.hpp"
+#include "axes/sim/object_table.hpp"
 
 namespace taktwerk::axes::sim {
 
@@ -132,9 +133,11 @@ void Behaviour::obey_limits(AxisInputs& in) const noexcept {
     const bool torque_ignored = !limit_masks_.present() || ((masks & zero_torque_ignored) != 0 && !units_.variant().zero_limits_count);
     for (auto* limit : {&in.torque_limit, &in.torque_limit_positive, &in.torque_limit_negative})
         if (*limit == 0 && torque_ignored) *limit = AxisInputs::no_limit;
-    // As a number 0 stands for "no limit" in the axis: a limit of 0 that counts is as good as one count a second.
-    if (limit_masks_.present() && in.maximum_velocity == 0 && (masks & zero_speed_ignored) == 0 && mode::of_torque(in.mode))
-        in.maximum_velocity = 1;
+    if (in.maximum_velocity != zero_speed_limit) return;
+    // A zero holds the motor (SV33-E 8.5.6), or is ignored as the masks say; those speak of the torque modes (SV-DA200 2.1 notes 8 and 10).
+    const bool speed_ignored = limit_masks_.present() && ((masks & zero_speed_ignored) != 0 || !mode::of_torque(in.mode));
+    constexpr std::int64_t no_limit = 0, as_good_as_zero = 1;  // for the axis
+    in.maximum_velocity = speed_ignored ? no_limit : as_good_as_zero;
 }
 
 void Behaviour::obey_probes(AxisInputs& in) const noexcept {

@@ -16,7 +16,7 @@ constexpr InputObject commands[] = {
     {0x6071, 0, [](In& in, Value v) { in.target_torque = v; }},
     {0x60B1, 0, [](In& in, Value v) { in.velocity_offset = v; }},
     {0x60B2, 0, [](In& in, Value v) { in.torque_offset = v; }},
-    {0x607F, 0, [](In& in, Value v) { in.maximum_velocity = v; }},
+    {0x607F, 0, [](In& in, Value v) { in.maximum_velocity = v == 0 ? zero_speed_limit : v; }},
     {0x60B8, 0, [](In& in, Value v) { in.probe_function = static_cast<std::uint16_t>(v); }},
 };
 

@@ -15,6 +15,9 @@ struct InputObject {
     void (*take)(AxisInputs& in, std::int64_t value);
 };
 
+/// 607Fh was written 0: what that means is the drive's (behaviour.cpp). A drive without 607Fh has 0 in AxisInputs, no limit.
+inline constexpr std::int64_t zero_speed_limit = -1;
+
 /// An object that the drive answers.
 struct OutputObject {
     std::uint16_t index;

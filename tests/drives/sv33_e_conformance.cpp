@@ -207,6 +207,42 @@ TEST_F(Sv33EExamples, Pt) {
     write_6();
 }
 
+// 8.5.5, 8.5.6: "if the motor does not move although the target is taken, see whether acceleration and deceleration are 0" ...
+TEST_F(Sv33EExamples, WithoutARampPvMovesNothing) {
+    activate(3);
+    EXPECT_EQ(desk.sdo(0x6083, 0, 0), 0u);
+    write_6_7_15();
+    desk.pdo(0x60FF, 5 * turn);
+    desk.run(500ms);
+    EXPECT_EQ(desk.read(0x606C), 0);
+    // The speed is the least of 60FFh, 607Fh and the motor's [3.4.3(7)].
+    EXPECT_EQ(desk.sdo(0x6083, 0, 100 * turn), 0u);
+    desk.pdo(0x607F, 0);
+    desk.run(500ms);
+    EXPECT_NEAR(desk.speed(), 0, 0.001 * turn);
+    desk.pdo(0x607F, turn);
+    desk.run(500ms);
+    EXPECT_NEAR(desk.speed(), turn, 0.01 * turn);
+}
+
+// ... "whether the torque slope is 0, whether the speed limit is 0".
+TEST_F(Sv33EExamples, WithoutASlopeOrASpeedLimitPtMovesNothing) {
+    activate(4);
+    desk.pdo(0x607F, 100 * turn);
+    EXPECT_EQ(desk.sdo(0x6087, 0, 0), 0u);
+    write_6_7_15();
+    desk.pdo(0x6071, 100);
+    desk.run(200ms);
+    EXPECT_EQ(desk.read(0x6077), 0);
+    EXPECT_EQ(desk.sdo(0x6087, 0, 4'294'967'295), 0u);
+    desk.pdo(0x607F, 0);
+    desk.run(200ms);
+    EXPECT_NEAR(desk.speed(), 0, 0.001 * turn);
+    desk.pdo(0x607F, 100 * turn);
+    desk.run(50ms);
+    EXPECT_GT(desk.read(0x606C), 0);
+}
+
 // 8.5.7 lets homing begin with 6 - 7 - 15; 3.4.3(9) says control word bit 4 starts it, which is what the model does. Method 35: here.
 TEST_F(Sv33EExamples, Homing) {
     EXPECT_EQ(desk.sdo(0x6098, 0, 35), 0u);

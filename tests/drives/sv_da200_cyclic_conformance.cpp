@@ -78,5 +78,15 @@ TEST_F(SvDa200, TorqueModeHasNoSlopeObject) {  // 3.7.5 step 4 names 6087h, whic
     EXPECT_EQ(sdo(0x6087, 0, 1), 0x06020000u);
 }
 
+// 3.7.2 step 3: 0.1 % of the rated torque, 1.27 N m. 25 % less 0.05 N m of friction on 2e-4 kg m2 for 20 ms: 26.75 rad/s, 42600 pulses/s, less
+// what 0.001 N m s of viscous friction takes, some 5 %.
+TEST_F(SvDa200, ATorqueIsTenthsOfAPercentOfTheRatedOne) {
+    pdo(0x607F, 1'000'000);
+    enable_in(cst);
+    pdo(0x6071, 250);
+    run(21);
+    EXPECT_NEAR(speed(), 40'500, 1'500);
+}
+
 }  // namespace
 }  // namespace taktwerk::test

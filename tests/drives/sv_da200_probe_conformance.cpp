@@ -127,5 +127,20 @@ TEST_F(SvDa200Probe, ASingleShotIsArmedAgainByBit0) {
     EXPECT_EQ(read(0x60B9), 1);
 }
 
+// 3.8.1: each probe has an input of its own, P3.00 and P3.01; note 3 of 2.1: no Z signal for either with P4.25 = 3.
+TEST_F(SvDa200Probe, TheSecondProbeGoesByP301AndItsOwnBits) {
+    ASSERT_EQ(sdo(0x2301, 0, 1), 0u);
+    restart();
+    enable_in(csp);
+    pdo(0x60B8, 0x1111);
+    run(2);
+    follow_to(-10000);
+    EXPECT_EQ(read(0x60B9), 0x0003) << "the first latches, the second has no input";
+    ASSERT_EQ(sdo(0x2419, 0, 3), 0u);
+    pdo(0x60B8, 0x1500);
+    run(2);
+    EXPECT_EQ(read(0x60B9), 0);
+}
+
 }  // namespace
 }  // namespace taktwerk::test

@@ -10,7 +10,7 @@ constexpr double in_place = 10;  // counts: the window of bit 10 while 6067h, wh
 
 class SvDa200Pp : public SvDa200 {
 protected:
-    SvDa200Pp() : SvDa200(long_table()) {}
+    explicit SvDa200Pp(const axes::sim::PlantConfig& plant = long_table()) : SvDa200(plant) {}
 
     /// "Set 6060h to 1" and the profile: 20000 pulses/s, 100000 pulses/s2: 0.2 s and 2000 pulses for each ramp.
     void SetUp() override {
@@ -180,6 +180,30 @@ TEST_F(SvDa200Pp, HaltWithZeroLetsTheMotorRunOut) {
     control(0x0F, 1000);
     EXPECT_NEAR(speed(), 0, 100) << "clearing the bit does not go on";
 }
+
+// A vertical axis, 0.3 N m against 0.05 N m of friction, tells the two values of 605Dh apart: one holds it, the other lets it fall.
+class SvDa200PpVertical : public SvDa200Pp {
+protected:
+    static axes::sim::PlantConfig load() {
+        auto plant = long_table();
+        plant.load_torque = 0.3;
+        return plant;
+    }
+    SvDa200PpVertical() : SvDa200Pp(load()) {}
+    /// How far it is from where it stood 200 ms after the halt, a second later.
+    double sinks(std::int64_t option) {
+        EXPECT_EQ(sdo(0x605D, 0, option), 0u);
+        trigger(0x0F, 50000);
+        run(400);
+        control(0x10F, 200);
+        const double from = at();
+        run(1000);
+        return from - at();
+    }
+};
+
+TEST_F(SvDa200PpVertical, HaltWithMinusOneHoldsTheLoad) { EXPECT_NEAR(sinks(-1), 0, 5); }
+TEST_F(SvDa200PpVertical, HaltWithZeroLetsItFall) { EXPECT_GT(sinks(0), 10000); }
 
 }  // namespace
 }  // namespace taktwerk::test
