@@ -153,6 +153,11 @@ TEST(SerialBlocks, WhatCannotWorkSaysNotSupported) {
         {"MC_WriteDigitalOutput", ErrorId::not_supported},
         {"MC_HomeAbsolute", ErrorId::not_supported},
         {"MC_StepDistanceCoded", ErrorId::not_supported},
+        // profiles of the drive's own, by objects that it has not: MC_MoveVelocity and MC_TorqueControl are what it can
+        {"Drive_MoveAbsolute", ErrorId::not_supported},
+        {"Drive_MoveRelative", ErrorId::not_supported},
+        {"Drive_MoveVelocity", ErrorId::not_supported},
+        {"Drive_Torque", ErrorId::not_supported},
         // what this axis is not: it has no modulo
         {"MC_MoveModulo", ErrorId::not_supported},
         // what has nothing to end here
