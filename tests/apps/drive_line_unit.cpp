@@ -128,8 +128,8 @@ TEST_F(DriveOnLine, AnAlarmIsReadInTheManualsWordsAndClearedWhereItCanBe) {
     const auto clearable = with_alarm(12);
     const auto alarm = on_line({"alarms", "u_drive"}, clearable);
     EXPECT_EQ(alarm.code, exit_ok) << alarm.err;
-    EXPECT_THAT(alarm.out,
-                AllOf(HasSubstr("number 12"), Not(HasSubstr("603Fh")), HasSubstr("cause:"), HasSubstr("remedy:"), HasSubstr("MC_Reset")));
+    EXPECT_THAT(alarm.out, AllOf(HasSubstr("E12"), HasSubstr("overcurrent"), HasSubstr("过电流"), Not(HasSubstr("603Fh")),
+                                 HasSubstr("cause:"), HasSubstr("remedy:"), HasSubstr("MC_Reset")));
     const auto reset = on_line({"reset", "u_drive"}, clearable);
     EXPECT_EQ(reset.code, exit_ok) << reset.err;
     EXPECT_THAT(reset.out, HasSubstr("cleared"));
