@@ -12,6 +12,7 @@ void add_drive(CLI::App& app, Action& action) {
     add_drive_values(*drive, action);
     add_drive_sets(*drive, action);
     add_drive_alarms(*drive, action);
+    add_drive_turns(*drive, action);
 }
 
 }  // namespace taktwerk::apps

@@ -16,6 +16,7 @@ void add_drive_params(CLI::App& drive, Action& action);
 void add_drive_values(CLI::App& drive, Action& action);  ///< get, set
 void add_drive_sets(CLI::App& drive, Action& action);    ///< save, restore, diff
 void add_drive_alarms(CLI::App& drive, Action& action);  ///< alarms, reset
+void add_drive_turns(CLI::App& drive, Action& action);   ///< clear-turns
 
 struct Change {
     const axes::DriveParameter* parameter = nullptr;

@@ -21,7 +21,8 @@ std::shared_ptr<DriveOptions> add_drive_options(CLI::App& sub) {
 }
 
 void add_drive_choice(CLI::App& sub, DriveOptions& options) {
-    sub.add_option("DRIVE", options.drive, "position or name on the bus, name on a serial line; of a running machine also an axis")->required();
+    sub.add_option("DRIVE", options.drive, "position or name on the bus, name on a serial line; of a running machine also an axis")
+        ->required();
     sub.add_option("--axis", options.axis, "of a drive with several axes, from 1")->check(CLI::Range(1, 8));
 }
 
@@ -39,6 +40,11 @@ Result<std::int64_t> DriveAccess::read(const axes::DriveParameter& parameter) {
 
 Result<void> DriveAccess::write(const axes::DriveParameter& parameter, std::int64_t raw, Storing storing) {
     return write_bytes(parameter, axes::to_bytes(parameter, raw), storing);
+}
+
+Result<void> DriveAccess::clear_turns() {
+    return Error{"drive.needs_machine", subject(), "only a running machine clears the turns: it must know that the axis lost its reference",
+                 "start the machine (taktwerk run FILE), `taktwerk disable AXIS`, and name no bus here"};
 }
 
 int with_drive(const DriveOptions& options, const std::function<int(DriveAccess&)>& work) {

@@ -73,6 +73,8 @@ public:
     [[nodiscard]] virtual Result<DriveComplaint> complaint() = 0;
     /// Asks the drive to forget its fault and ends when it has, or after `patience`. True: no fault any more.
     [[nodiscard]] virtual Result<bool> reset_fault(Duration patience) = 0;
+    /// The encoder forgets its turns. Only through a running machine, which has to know that the axis lost its reference.
+    [[nodiscard]] virtual Result<void> clear_turns();
     /// Lets time pass, so that a drive keeps up with what it stores.
     virtual void wait(Duration time) = 0;
     /// From now on Ctrl-C holds nothing back: what must be put back is put back.

@@ -58,6 +58,11 @@ public:
         if (!answer) return answer.error();
         return {};
     }
+    [[nodiscard]] Result<void> clear_turns() override {
+        const auto answer = ask({{"cmd", "drive_clear_turns"}, {"axis", drive_.axis}});
+        if (!answer) return answer.error();
+        return {};
+    }
     [[nodiscard]] Result<DriveComplaint> complaint() override;
     [[nodiscard]] Result<bool> reset_fault(Duration patience) override;
     void wait(Duration time) override {

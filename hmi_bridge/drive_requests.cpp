@@ -78,6 +78,7 @@ std::optional<Error> DriveRequests::start(const DriveRequest& request, const run
         case DriveRequestKind::read: return start_read(request, *place, job);
         case DriveRequestKind::write: return start_write(request, *place, job);
         case DriveRequestKind::store: return start_store(request, *place, job);
+        case DriveRequestKind::clear_turns: return start_clear_turns(request, *place, job);
     }
     return std::nullopt;
 }
@@ -156,6 +157,23 @@ std::optional<Error> DriveRequests::start_store(const DriveRequest& request, con
         return Error{"drive.not_now", subject, "the drive must not store in this state: what is forced on or moving would be stored too",
                      "See its page under docs/drives/."};
     log_(fmt::format("{} stores all parameters of axis {}, {}, in the EEPROM", request.who, request.axis, profile.name));
+    return std::nullopt;
+}
+
+std::optional<Error> DriveRequests::start_clear_turns(const DriveRequest& request, const Place& place, Job& job) {
+    const auto& profile = *place.drive.profile;
+    const auto subject = "axis " + request.axis;
+    if (!job.port->capabilities().has(axes::DriveService::clear_multi_turn))
+        return Error{"drive.no_turns", subject, fmt::format("{} has no command that makes its encoder forget its turns", profile.name),
+                     "See its page under docs/drives/."};
+    if (auto refused = check_authority(place)) return refused;
+    if (powered(place.snapshot->axes[place.axis])) return motor_on(subject, "the turns are cleared only while the motor is off");
+    job.ticket = job.port->start_service(axes::DriveService::clear_multi_turn);
+    if (job.ticket == 0)
+        return Error{"drive.not_now", subject, "the drive is not in a state in which its turns may be cleared",
+                     "Wait until the motor has no power and an earlier request is over, then give it again."};
+    log_(fmt::format("{} clears the encoder's turns of axis {}, {}: the axis has no reference any more", request.who, request.axis,
+                     profile.name));
     return std::nullopt;
 }
 

@@ -5,7 +5,8 @@
 // Rules. Reading is everybody's. Writing is commissioning: not in automatic mode, and not while a program owns the axis [wrong_mode,
 // no_control with the owner's name]; a parameter that its manual lets be written only while the motor is off waits for that
 // [not_possible_now]. Nothing goes into an EEPROM unless the request says `store`, and the log tells what does. What a write would
-// *do* instead of set (restore, clear the encoder's turns) is refused: the machine would not know of it.
+// *do* instead of set (restore, clear the encoder's turns) is refused: the machine would not know of it. To clear the turns there is a
+// request of its own, by which it does.
 
 #include <cstdint>
 #include <deque>
@@ -23,9 +24,10 @@
 namespace taktwerk::hmi {
 
 enum class DriveRequestKind : std::uint8_t {
-    read,   ///< one parameter
-    write,  ///< one parameter
-    store,  ///< all parameters of the drive into its EEPROM
+    read,         ///< one parameter
+    write,        ///< one parameter
+    store,        ///< all parameters of the drive into its EEPROM
+    clear_turns,  ///< the encoder forgets its turns; the axis has no reference afterwards
 };
 
 /// As a client sends it. `tag` and `id` come back with the answer; who they are is the caller's idea.
@@ -83,6 +85,7 @@ private:
     [[nodiscard]] std::optional<Error> start_read(const DriveRequest& request, const Place& place, Job& job);
     [[nodiscard]] std::optional<Error> start_write(const DriveRequest& request, const Place& place, Job& job);
     [[nodiscard]] std::optional<Error> start_store(const DriveRequest& request, const Place& place, Job& job);
+    [[nodiscard]] std::optional<Error> start_clear_turns(const DriveRequest& request, const Place& place, Job& job);
     /// Who may change something at this drive now.
     [[nodiscard]] std::optional<Error> check_authority(const Place& place) const;
     [[nodiscard]] bool any_axis_powered(const Place& place) const;

@@ -25,10 +25,11 @@ struct DriveWord {
     std::string_view word;
     DriveRequestKind kind;
 };
-constexpr std::array<DriveWord, 3> drive_words{{
+constexpr std::array<DriveWord, 4> drive_words{{
     {"drive_read", DriveRequestKind::read},
     {"drive_write", DriveRequestKind::write},
     {"drive_store", DriveRequestKind::store},
+    {"drive_clear_turns", DriveRequestKind::clear_turns},
 }};
 constexpr int deepest_nesting = 4;
 

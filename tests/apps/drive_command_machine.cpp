@@ -65,6 +65,10 @@ TEST_F(DriveOfARunningMachine, IsReadWrittenAndStoredWhileItRuns) {
     EXPECT_TRUE(machine.says("300 ms, into the EEPROM", 10s)) << machine.text();
     EXPECT_THAT(asked({"drive", "get", "x", "P05.10"}), HasSubstr("= 0")) << "the switch is off again";
 
+    EXPECT_THAT(asked({"drive", "clear-turns", "x"}, exit_usage), AllOf(HasSubstr("must be homed"), HasSubstr("--yes")));
+    EXPECT_THAT(asked({"drive", "clear-turns", "x", "--yes"}), HasSubstr("the turns are cleared"));
+    EXPECT_TRUE(machine.says("clears the encoder's turns of axis x", 10s)) << machine.text();
+
     // The machine's rules: a program that could start any time must not find another drive than it left.
     asked({"mode", "automatic"});
     EXPECT_THAT(asked({"drive", "set", "x", "P05.13=250"}, exit_refused), HasSubstr("manual"));

@@ -186,6 +186,23 @@ TEST_F(DriveRequestsTest, StoringAllNeedsEveryMotorOfTheDriveOff) {
     EXPECT_THAT(port.services, ElementsAre(axes::DriveService::save_parameters));
 }
 
+// TSVM 5.3.2, SV33-E P20.05: an explicit request, with the motor off, by who may write; and the log keeps it.
+TEST_F(DriveRequestsTest, TheTurnsAreClearedOnlyOnRequestWithTheMotorOff) {
+    EXPECT_EQ(refusal(DriveRequestKind::clear_turns), "drive.no_turns") << "this drive has no such command";
+    port.caps.services = 1u << static_cast<unsigned>(axes::DriveService::clear_multi_turn);
+    machine.snapshot.axes[0].drive_state = axes::PowerState::enabled;
+    EXPECT_EQ(refusal(DriveRequestKind::clear_turns), "command.not_possible_now");
+    machine.snapshot.axes[0].drive_state = axes::PowerState::disabled;
+    machine.snapshot.mode = runtime::Mode::automatic;
+    EXPECT_EQ(refusal(DriveRequestKind::clear_turns), "command.wrong_mode");
+    EXPECT_THAT(port.services, IsEmpty());
+    EXPECT_THAT(log, IsEmpty());
+    machine.snapshot.mode = runtime::Mode::manual;
+    EXPECT_EQ(refusal(DriveRequestKind::clear_turns), "accepted");
+    EXPECT_THAT(port.services, ElementsAre(axes::DriveService::clear_multi_turn));
+    EXPECT_THAT(log, ElementsAre(AllOf(HasSubstr("turns of axis x"), HasSubstr("no reference"))));
+}
+
 TEST_F(DriveRequestsTest, WhatCannotBeMeantIsRefusedBeforeTheDriveIsAsked) {
     EXPECT_EQ(refusal(write, "P05.13", "501"), "drive.out_of_range");
     EXPECT_EQ(refusal(write, "P05.13", "1 s"), "drive.value");
