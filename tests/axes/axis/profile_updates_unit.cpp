@@ -1,5 +1,5 @@
 // ContinuousUpdate of MC_PositionProfile, MC_VelocityProfile, MC_AccelerationProfile: the rest of the table with other scales, from where the
-// axis is. PLCopen Part 1 v2.0, 2.4.6 (P1-103 to P1-110) and 3.14 to 3.16, which give these blocks the pin.
+// axis is. PLCopen Part 1 v2.0, 2.4.6, and 3.14 to 3.16, which give these blocks the pin.
 
 #include "tests/axes/axis/axis_rig.hpp"
 
