@@ -204,7 +204,7 @@ void JsonRequests::ask_drive(DriveRequestKind kind, ConnectionId connection, con
     DriveRequest request;
     request.kind = kind;
     request.axis = fields.text("axis", true);
-    if (kind != DriveRequestKind::store) request.parameter = fields.text("parameter", true);
+    if (kind == DriveRequestKind::read || kind == DriveRequestKind::write) request.parameter = fields.text("parameter", true);
     if (kind == DriveRequestKind::write) {
         request.value = fields.text("value", true);
         request.store = fields.flag("store");

@@ -262,6 +262,7 @@ TEST_F(DriveRequestsTest, TheSocketSpeaksOfThem) {
     EXPECT_EQ(say(R"({"id":2,"cmd":"drive_write","axis":"x","parameter":"P05.13","value":"300 ms"})")["ok"], true);
     EXPECT_THAT(log, ElementsAre(HasSubstr("process 812 of user 1000 writes P05.13")));
     EXPECT_EQ(say(R"({"id":3,"cmd":"drive_store","axis":"x"})")["error"]["code"], "drive.cannot_store");
+    EXPECT_EQ(say(R"({"id":6,"cmd":"drive_clear_turns","axis":"x"})")["error"]["code"], "drive.no_turns");
     EXPECT_EQ(say(R"({"id":4,"cmd":"drive_write","axis":"x","parameter":"P05.13"})")["error"]["code"], "request.missing_key");
     EXPECT_EQ(say(R"({"id":5,"cmd":"drive_raed","axis":"x"})")["error"]["code"], "request.unknown_command");
 }
