@@ -30,7 +30,7 @@ constexpr Duration period = 1ms;
 
 axes::AxisConfig shuttle_axis() {
     axes::AxisConfig config;
-    config.name = "x";
+    config.name = std::string{"x"};  // g++ 12 -Wrestrict takes an assignment of the literal for an overlap
     config.gearing = {.counts_per_revolution = 10000, .motor_revolutions = 1, .load_revolutions = 1, .feed = 10};
     config.limits = {.velocity = 400, .acceleration = 500, .deceleration = 500, .jerk = 5000};
     config.require_homed = false;
