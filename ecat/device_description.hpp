@@ -79,8 +79,8 @@ struct DcDescription {
     bool supported = false;
     bool required = false;  ///< SYNC0 must run before SAFEOP (SV33-E: DC SYNC0 only, sheet 1.3)
     bool clock_64bit = true;
-    Duration minimum_cycle{};   ///< 0 = not stated
-    Duration cycle_multiple{};  ///< the cycle must be a multiple of it; 0 = any
+    Duration minimum_cycle{};        ///< 0 = not stated
+    Duration cycle_multiple{};       ///< the cycle must be a multiple of it; 0 = any
     std::vector<Duration> cycles{};  ///< the only cycles that the slave knows; empty = any
 };
 

@@ -27,7 +27,7 @@ Script<void> free_address(Bus& bus, BusSlave& slave) {
     for (std::uint16_t position = 0; position < bus.counted; ++position) {
         if (position == slave.position_now) continue;
         const Reply address = co_await bus.port.aprd(position, reg::station_address, 2);
-        if (address.ok() && address.u16() == slave.found.station) co_await write_address(bus, slave, position, 0);
+        if (address.ok() && address.u16() == slave.found.station) (void)co_await write_address(bus, slave, position, 0);
     }
 }
 
@@ -74,7 +74,7 @@ Script<Result<void>> readdress(Bus& bus, BusSlave& slave) {
     const FoundSlave found = co_await read_slave(bus.port, slave.found.position, slave.subject);
     const Result<void> identity = found.error ? Result<void>{*found.error} : check_identity(slave.subject, *slave.config, found.identity);
     if (!identity) {
-        co_await write_address(bus, slave, position, 0);  // whatever stands there must not be taken for this slave
+        (void)co_await write_address(bus, slave, position, 0);  // whatever stands there must not be taken for this slave
         co_return identity;
     }
     slave.identified = true;

@@ -110,8 +110,8 @@ Script<Result<Dictionary>> read_dictionary(Bus& bus, BusSlave& slave) {
 
 std::string access_text(std::uint16_t access) {
     using namespace entry_access;
-    const auto state = [&](std::uint16_t read, std::uint16_t write) {
-        return std::string{(access & read) != 0 ? "r" : "-"} + ((access & write) != 0 ? "w" : "-");
+    const auto state = [&](std::uint16_t reads, std::uint16_t writes) {
+        return std::string{(access & reads) != 0 ? "r" : "-"} + ((access & writes) != 0 ? "w" : "-");
     };
     std::string text = state(read_preop, write_preop) + " " + state(read_safeop, write_safeop) + " " + state(read_op, write_op);
     if ((access & rx_mappable) != 0) text += " Rx";

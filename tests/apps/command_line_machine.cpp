@@ -111,8 +111,8 @@ TEST_F(CommandLine, TwoRunsInVirtualTimeWriteTheSameBytes) {
 
 TEST_F(CommandLine, FiveKindsOfDriveAndASerialLineRunAlikeToo) {
     for (const char* name : {"one.csv", "two.csv"}) {
-        const auto run =
-            command({"run", machines + "five-drives.yaml", "--simulate", "--virtual-time", "--duration", "30s", "--trace", path(name)}, 60s);
+        const auto run = command(
+            {"run", machines + "five-drives.yaml", "--simulate", "--virtual-time", "--duration", "30s", "--trace", path(name)}, 60s);
         ASSERT_EQ(run.code, exit_ok) << run.text;
     }
     const auto trace = text_of(path("one.csv"));
