@@ -27,9 +27,9 @@ void Axis::complete() noexcept {
     for (std::size_t i = 0; !held_ && i <= CommandQueue::capacity; ++i)
         if (goal_pending_ || goal_.kind == Goal::Kind::given || !setpoint_.finished() || !complete_active()) break;
     const bool to_velocity = goal_.kind == Goal::Kind::velocity;
+    const bool held_back = override_.velocity == 0 || wants_speed_ > 0;  // P1-203: at the reduced velocity it is TRUE
     if (view_.state == AxisState::ContinuousMotion && (to_velocity || goal_.kind == Goal::Kind::position))
-        queue_.set_in_target(to_velocity && setpoint_.finished() && override_.velocity > 0 &&
-                             wants_speed_ == 0);  // P1-203: at the reduced velocity
+        queue_.set_in_target(to_velocity && setpoint_.finished() && !held_back);
 }
 
 bool Axis::complete_active() noexcept {

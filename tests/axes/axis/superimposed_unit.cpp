@@ -216,15 +216,17 @@ TEST(Superimposed, VelocityIsWhatTheLimitLeaves) {
     }
 }
 
-// 600 of 1000 u/s and 400 on top; then the base is to go to 900. The addition gives way to 100 first, and only then the base goes there: with
-// ramps side by side the sum would have risen to 1200.
+// 600 of 1000 u/s and 400 on top; then the base is to go to 900. The addition gives way to 100 first, with its own 200 u/s2, and only then the
+// base goes there: with both ramps side by side it would have been at 900 after 0.3 s, and the addition still at 340.
 TEST(Superimposed, ABaseThatGetsFasterWaitsForTheAdditionToSlowDown) {
     for (const double sense : {1.0, -1.0}) {
         Rig rig(trapezoids());
         rig.power_on();
         const auto base = rig.accept(at_velocity(sense * 600));
         rig.run(1000);
-        const auto extra = rig.accept(superimposed(sense * 500, 400));
+        auto addition = superimposed(sense * 1500, 400);
+        addition.deceleration = 200;
+        const auto extra = rig.accept(addition);
         rig.run(500);
         ASSERT_DOUBLE_EQ(rig.view().set_velocity, sense * 1000);
 
@@ -239,12 +241,11 @@ TEST(Superimposed, ABaseThatGetsFasterWaitsForTheAdditionToSlowDown) {
         rig.step();
         EXPECT_EQ(rig.status(base), CommandStatus::active) << "not at its velocity while it waits";
         ASSERT_TRUE(watching([&] { return rig.status(base) == CommandStatus::in_target; }));
-        // 400 to 100 u/s with 1000 u/s2: 0.3 s; then 600 to 900 the same.
         EXPECT_NEAR(sense * rig.view().set_velocity, 1000, 1e-6) << "900 and 100 on top";
         EXPECT_EQ(rig.status(extra), CommandStatus::active);
         ASSERT_TRUE(watching([&] { return rig.status(extra) == CommandStatus::done; }));
         EXPECT_NEAR(sense * rig.view().set_velocity, 900, 1e-6);
-        EXPECT_NEAR(rig.view().superimposed_covered, sense * 500, 1e-9);
+        EXPECT_NEAR(rig.view().superimposed_covered, sense * 1500, 1e-9);
         EXPECT_LE(fastest, 1000 * (1 + 1e-9));
     }
 }
