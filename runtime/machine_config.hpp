@@ -13,7 +13,7 @@
 #include "core/result.hpp"
 #include "core/time.hpp"
 #include "ecat/bus_config.hpp"
-#include "programs/api/entry.hpp"
+#include "programs/api/program_entry.hpp"
 #include "runtime/serial_config.hpp"
 
 namespace taktwerk::runtime {

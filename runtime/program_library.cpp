@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "programs/api/abi.hpp"
 #include "runtime/shared_object_check.hpp"
 
 namespace taktwerk::runtime {

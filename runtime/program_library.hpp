@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/result.hpp"
-#include "programs/api/entry.hpp"
+#include "programs/api/program_entry.hpp"
 
 namespace taktwerk::runtime {
 

@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 
+#include "programs/api/abi.hpp"
 #include "tests/runtime/test_machine.hpp"
 
 namespace taktwerk::runtime::testing {
