@@ -11,6 +11,7 @@
 
 #include "core/math.hpp"
 #include "fb_library/all_blocks.hpp"
+#include "programs/api/abi.hpp"
 #include "runtime/machine.hpp"
 #include "runtime/world.hpp"
 #include "tests/bench/between_cycles.hpp"

@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "programs/api/abi.hpp"
 #include "runtime/io_image.hpp"
 #include "runtime/program_host.hpp"
 #include "runtime/program_library.hpp"

@@ -10,6 +10,7 @@
 #include "core/guard/allocation_guard.hpp"
 #include "core/realtime_guard.hpp"
 #include "fb_library/all_blocks.hpp"
+#include "programs/api/abi.hpp"
 #include "tests/runtime/test_machine.hpp"
 
 namespace taktwerk::runtime::testing {
