@@ -197,11 +197,12 @@ inline constexpr std::array parameter_table{
 }
 
 namespace parameter_check {
-/// Numbers rise (so none stands twice), all have a name and a value, and 18 to 999 stay the standard's (P1-216).
+/// Numbers rise (so none stands twice), all have a name, and 18 to 999 stay the standard's (P1-216). That each can be read is a test's
+/// business: a function compared with nullptr is no constant expression under the undefined-behaviour sanitizer.
 consteval bool sound() {
     std::int32_t before = 0;
     for (const auto& entry : parameter_table) {
-        if (entry.number <= before || (entry.number > 17 && entry.number < 1000) || entry.name.empty() || !entry.read) return false;
+        if (entry.number <= before || (entry.number > 17 && entry.number < 1000) || entry.name.empty()) return false;
         if ((entry.range == ParameterRange::boolean) && entry.type != ParameterType::boolean) return false;
         before = entry.number;
     }

@@ -32,6 +32,10 @@ struct ParameterRig : Rig {
 
 AxisCommand queued(const AxisSetting& setting) { return {.kind = CommandKind::setting, .buffer_mode = mcBuffered, .details = setting}; }
 
+TEST(Parameters, EachCanBeRead) {
+    for (const auto& entry : parameter_table) EXPECT_NE(entry.read, nullptr) << entry.number << " " << entry.name;
+}
+
 // Table 5 of the standard: number, name, BOOL or REAL, readable only or writable.
 TEST(Parameters, TheStandardsNumbersAreAsInItsTable) {  // P1-217
     struct Row {
