@@ -5,6 +5,8 @@
 #include <thread>
 #include <vector>
 
+#include "tests/patience.hpp"
+
 namespace taktwerk {
 namespace {
 
@@ -59,7 +61,7 @@ TEST(LatestValue, TwoThreadsNeverSeeAMixtureNorGoBack) {
     }};
 
     std::uint64_t last = 0, mixed = 0, backwards = 0;
-    while (last < count) {
+    for (auto patience = Patience::of_threads(); patience.lasts(last < count);) {
         const auto got = latest.read();
         for (const auto word : *got.value) mixed += word != got.value->front();
         backwards += got.value->front() < last;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/bytes.hpp"
+#include "tests/patience.hpp"
 
 namespace taktwerk {
 namespace {
@@ -105,16 +106,17 @@ TEST(Recorder, OneThreadMayDrainWhileTheCycleAppends) {
     constexpr std::int64_t count = 20'000;
     Recorder recorder{512, Recorder::Policy::drop_newest};
     std::thread cycle{[&] {
+        auto patience = Patience::of_threads();
         std::array<std::byte, 40> bytes{};
         for (std::int64_t i = 0; i < count; ++i) {
             const auto length = static_cast<std::size_t>(i % 33) + 8;
             store_le(std::span<std::byte>{bytes}, 0, i);
-            while (!recorder.append(3, Instant{Duration{i}}, std::span{bytes}.first(length))) std::this_thread::yield();
+            while (patience.lasts(!recorder.append(3, Instant{Duration{i}}, std::span{bytes}.first(length)))) std::this_thread::yield();
         }
     }};
 
     std::int64_t expected = 0, wrong = 0;
-    while (expected < count) {
+    for (auto patience = Patience::of_threads(); patience.lasts(expected < count);) {
         recorder.drain([&](const RecordView& view) {
             const bool right = view.channel == 3 && view.time == Instant{Duration{expected}} &&
                                view.bytes.size() == static_cast<std::size_t>(expected % 33) + 8 &&

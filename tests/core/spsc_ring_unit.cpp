@@ -4,6 +4,8 @@
 
 #include <thread>
 
+#include "tests/patience.hpp"
+
 namespace taktwerk {
 namespace {
 
@@ -53,14 +55,16 @@ TEST(SpscRing, TwoThreadsLoseNothingAndTearNothing) {
     constexpr std::uint64_t count = 50'000;
     SpscRing<Wide> ring{8};
     std::thread producer{[&] {
+        auto patience = Patience::of_threads();
         for (std::uint64_t i = 1; i <= count; ++i)
-            while (!ring.try_push({i, ~i, i * 3})) std::this_thread::yield();
+            while (patience.lasts(!ring.try_push({i, ~i, i * 3}))) std::this_thread::yield();
     }};
 
     std::uint64_t wrong = 0;
+    auto patience = Patience::of_threads();
     for (std::uint64_t i = 1; i <= count; ++i) {
         Wide got;
-        while (!ring.try_pop(got)) std::this_thread::yield();
+        while (patience.lasts(!ring.try_pop(got))) std::this_thread::yield();
         if (got.a != i || got.b != ~i || got.c != i * 3) ++wrong;
     }
     producer.join();

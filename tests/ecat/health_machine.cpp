@@ -55,6 +55,8 @@ struct Health : ::testing::Test {
             },
             limit);
     }
+    /// As it stands in the slave, whatever the master believes.
+    std::uint16_t station_address(std::size_t slave) { return bus->network.slave(slave).controller().station_address(); }
     bool well() {
         for (std::size_t i = 0; i < bus->config.slaves.size(); ++i)
             if (bus->state(i) != sim::EsmState::op || !bus->master->health(i).fresh) return false;
@@ -239,7 +241,10 @@ TEST_F(Health, ALostStationAddressIsNoticedAlthoughProcessDataRunsOnAndIsGivenBa
 TEST_F(Health, TheReferenceClockWithoutItsAddressDoesNotFoolTheMaster) {
     start("ss");
     second_master_writes(*bus, Address::position(0, reg::station_address), 0);
+    ASSERT_EQ(station_address(0), 0);
+    EXPECT_TRUE(said_within(alarm::station_address_lost, 150ms));
     expect_recovery();
+    EXPECT_EQ(station_address(0), 0x1001);
     EXPECT_LT(std::abs(bus->master->statistics().dc_offset_ns), 100'000);
     const auto spread = bus->servo(0).last_exchange - bus->servo(1).last_exchange;
     EXPECT_LT(std::abs(spread.count()), 2000);
@@ -249,15 +254,22 @@ TEST_F(Health, SlavesThatSwappedAddressesAreSetRight) {
     start("ttt");
     second_master_writes(*bus, Address::position(1, reg::station_address), 0x1003);
     second_master_writes(*bus, Address::position(2, reg::station_address), 0);
-    bus->run_for(300ms);
+    ASSERT_EQ(station_address(1), 0x1003);
+    ASSERT_EQ(station_address(2), 0);
+    EXPECT_TRUE(said_within(alarm::station_address_lost, 300ms));
     expect_recovery();
+    EXPECT_EQ(station_address(1), 0x1002);
+    EXPECT_EQ(station_address(2), 0x1003);
 }
 
 TEST_F(Health, TwoSlavesWithOneAddressAreSetRight) {
     start("ttt");
     second_master_writes(*bus, Address::position(1, reg::station_address), 0x1003);
-    bus->run_for(300ms);
+    ASSERT_EQ(station_address(1), 0x1003);
+    EXPECT_TRUE(said_within(alarm::station_address_lost, 300ms));
     expect_recovery();
+    EXPECT_EQ(station_address(1), 0x1002);
+    EXPECT_EQ(station_address(2), 0x1003);
 }
 
 TEST_F(Health, AStateChangedBehindOurBackIsTakenBack) {

@@ -15,6 +15,7 @@
 #include "core/recorder.hpp"
 #include "core/spsc_ring.hpp"
 #include "core/stopwatch.hpp"
+#include "tests/patience.hpp"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define MALLOC_IS_THE_SANITIZERS 1
@@ -81,7 +82,7 @@ TEST(NoAllocation, OutsideOfTheScopeAndOnOtherThreadsNothingCounts) {
     delete static_cast<int*>(sink);
     std::atomic<int> phase{0};
     std::thread other{[&] {
-        while (phase != 1) std::this_thread::yield();
+        for (auto patience = Patience::of_threads(); patience.lasts(phase != 1);) std::this_thread::yield();
         sink = new int{2};
         delete static_cast<int*>(sink);
         phase = 2;
@@ -91,7 +92,7 @@ TEST(NoAllocation, OutsideOfTheScopeAndOnOtherThreadsNothingCounts) {
     {
         NoAllocationScope scope;
         phase = 1;
-        while (phase != 2) std::this_thread::yield();
+        for (auto patience = Patience::of_threads(); patience.lasts(phase != 2);) std::this_thread::yield();
         use = scope.used();
     }
     other.join();

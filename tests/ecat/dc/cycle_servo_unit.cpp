@@ -92,7 +92,9 @@ TEST(CycleServo, CoastsWithoutSamplesAndIsLostAfterTwoSeconds) {
 TEST(CycleServo, DoesNotLockOnAPhaseThatIsOnlyExtrapolated) {
     CycleServo servo{1ms};
     for (int i = 0; i < 100; ++i) (void)servo.step({0, 0, false});
-    EXPECT_NE(servo.lock(), DcLock::locked);
+    EXPECT_EQ(servo.lock(), DcLock::acquiring);
+    (void)servo.step({0, 0, true});
+    EXPECT_EQ(servo.lock(), DcLock::locked) << "one that was measured says that the phase was right all along";
 }
 
 TEST(CycleServo, WaitsWithTheNominalPeriod) {

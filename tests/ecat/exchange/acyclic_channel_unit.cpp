@@ -8,6 +8,7 @@
 
 #include "core/bytes.hpp"
 #include "tests/ecat/exchange/echo_slaves.hpp"
+#include "tests/patience.hpp"
 
 namespace taktwerk::ecat {
 namespace {
@@ -157,7 +158,8 @@ TEST_F(AcyclicChannelTest, ServiceAndCycleShareTheEntriesWithoutLocks) {
                 continue;
             }
             std::optional<AcyclicAnswer> answer;
-            while (!(answer = channel.poll(*id))) std::this_thread::yield();
+            for (auto patience = Patience::of_threads(); patience.lasts(!(answer = channel.poll(*id)));) std::this_thread::yield();
+            if (!answer) break;
             EXPECT_FALSE(answer->lost);
             if (!answer->lost) {
                 EXPECT_EQ(load_le<std::uint32_t>(answer->data), (i & 0x7F7F7F7Fu) | 0x80808080u);
@@ -166,7 +168,7 @@ TEST_F(AcyclicChannelTest, ServiceAndCycleShareTheEntriesWithoutLocks) {
         }
         done = true;
     }};
-    while (!done) {
+    for (auto patience = Patience::of_threads(); patience.lasts(!done);) {
         cycle();
         std::this_thread::yield();
     }

@@ -72,6 +72,9 @@ TEST_F(SlaveMailbox, BeforePreopThereAreNoEmergencies) {
     bus.to_preop(0);
 
     EXPECT_FALSE(full());
+    model->raise(0x7321);
+    EXPECT_EQ(take()[8], std::byte{0x21}) << "the one raised in PREOP is the first";
+    EXPECT_TRUE(take().empty());
 }
 
 // The master reads A; its frame is lost; B has already taken A's place. The repetition brings A, then B.

@@ -109,6 +109,10 @@ TEST_F(TerminalOnBus, HasNoOutputsBelowOp) {
     bus.request(0, 4);
     bus.send(Command::LRW, Address::logical(0), bytes({0xFF, 0xFF, 0, 0}));
     EXPECT_FALSE(terminal->output(0));
+
+    ASSERT_EQ(bus.request(0, 8), 8);
+    bus.send(Command::LRW, Address::logical(0), bytes({0xFF, 0xFF, 0, 0}));
+    EXPECT_TRUE(terminal->output(0)) << "the same frame in OP";
 }
 
 TEST_F(TerminalOnBus, LosesItsOutputsWhenTheWatchdogExpires) {

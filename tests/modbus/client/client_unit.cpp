@@ -6,6 +6,7 @@
 
 #include "modbus/line/virtual_line.hpp"
 #include "tests/modbus/line/echo_station.hpp"
+#include "tests/patience.hpp"
 
 namespace taktwerk::modbus {
 namespace {
@@ -28,7 +29,7 @@ struct Rig {
         return std::nullopt;
     }
     Refusal ask(const Request& request) {
-        while (!client.idle(now)) {
+        for (Patience patience; patience.lasts(!client.idle(now));) {
             now += 1ms;
             (void)client.step(now);
         }
