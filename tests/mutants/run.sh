@@ -76,4 +76,4 @@ done <"$root/tests/mutants/mutants.txt"
 
 [[ $all -gt 0 ]] || { echo "error: no mutant of that name" >&2 && exit 2; }
 echo "$killed of $all killed ($((100 * killed / all)) %)${survivors:+; survived:$survivors}"
-((100 * killed >= 90 * all))
+((100 * killed >= 95 * all))
