@@ -1,6 +1,7 @@
 // MC_CamTableSelect, MC_CamIn, MC_CamOut: a slave on a cam.
 
 #include "tests/axes/axis/coupling_rig.hpp"
+#include "tests/patience.hpp"
 
 namespace taktwerk::axes::test {
 namespace {
@@ -67,7 +68,7 @@ TEST(Cam, ACamThatIsNotPeriodicEndsOnceAndTheSlaveStaysSynchronized) {
     EXPECT_EQ(rig.view(1).cam_ends, 1u);
     EXPECT_EQ(rig.status(1, cam), CommandStatus::in_target);
     rig.accept(0, absolute(0, 40));
-    while (rig.view(0).state != AxisState::Standstill || rig.view(0).active != 0) {
+    for (Patience patience; patience.lasts(rig.view(0).state != AxisState::Standstill || rig.view(0).active != 0);) {
         rig.step();
         ASSERT_NEAR(rig.view(1).set_position, 8, 1e-9);
     }
@@ -141,7 +142,7 @@ TEST(Cam, StartDistanceAndSyncPosition) {
     details.master_sync_position = 16;
     const auto cam = rig.accept(1, command);
     rig.accept(0, at_velocity(20));
-    while (rig.view(0).set_position < 40) {
+    for (Patience patience; patience.lasts(rig.view(0).set_position < 40);) {
         const double before = rig.view(0).set_position;
         rig.step();
         const double master = rig.view(0).set_position;
@@ -173,7 +174,7 @@ TEST(Cam, AMovingSlaveGoesOnUntilTheStartDistance) {
         const auto cam = rig.accept(1, command);
         rig.accept(0, at_velocity(20));
         double place = rig.view(1).set_position;
-        while (rig.view(0).set_position < 60) {
+        for (Patience patience; patience.lasts(rig.view(0).set_position < 60);) {
             rig.step();
             const double master = rig.view(0).set_position;
             ASSERT_EQ(rig.view(1).state, AxisState::SynchronizedMotion);

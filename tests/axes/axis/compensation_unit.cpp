@@ -3,6 +3,7 @@
 #include "axes/axis/compensation.hpp"
 
 #include "tests/axes/axis/axis_rig.hpp"
+#include "tests/patience.hpp"
 
 namespace taktwerk::axes::test {
 namespace {
@@ -42,7 +43,7 @@ TEST(Backlash, AReversalAddsItSlowlyAndProgramsDoNotSeeIt) {
     std::int64_t before = rig.drive.last.position;
     double set = rig.view().set_position;
     double most = 0;
-    while (rig.view().state != AxisState::Standstill) {
+    for (Patience patience; patience.lasts(rig.view().state != AxisState::Standstill);) {
         rig.step();
         const double extra = static_cast<double>(rig.drive.last.position - before) - (rig.view().set_position - set) * 1000;
         most = std::max(most, std::abs(extra));

@@ -2,6 +2,7 @@
 // the axis' own mode by whatever takes the axis. 1000 counts are 1 u.
 
 #include "tests/axes/axis/axis_rig.hpp"
+#include "tests/patience.hpp"
 
 namespace taktwerk::axes::test {
 namespace {
@@ -124,7 +125,7 @@ TEST(DriveMove, FromAMotionOfTheAxisItBeginsAtStandstill) {
     const auto id = rig.accept(drive_to(0, 50));
     EXPECT_EQ(rig.status(id), CommandStatus::active);
     bool asked = false;
-    while (!asked) {
+    for (Patience patience; patience.lasts(!asked);) {
         rig.step();
         asked = rig.drive.last.mode == DriveMode::profile_position;
         if (asked) {
@@ -353,7 +354,7 @@ TEST(DriveVelocity, InVelocityIsTheDrivesWord) {
     EXPECT_NEAR(rig.speed(), -40, 1e-6);
     EXPECT_EQ(rig.view().drive_mode, DriveMode::profile_velocity);
     const auto faster = rig.accept(drive_at(-60));
-    while (rig.status(faster) != CommandStatus::in_target) {
+    for (Patience patience; patience.lasts(rig.status(faster) != CommandStatus::in_target);) {
         rig.step();
         ASSERT_EQ(rig.view().drive_mode, DriveMode::profile_velocity) << "changed in the drive";
         if (rig.status(faster) == CommandStatus::in_target) {

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "tests/axes/axis/coupling_rig.hpp"
+#include "tests/patience.hpp"
 
 namespace taktwerk::axes::test {
 namespace {
@@ -16,7 +17,7 @@ TEST(GearInPos, TheSlaveIsAtItsSyncPositionWhenTheMasterIs) {
     rig.accept(0, at_velocity(30));
     const auto id = rig.accept(1, gear_in_pos(0, 50, 12, 20, 2, 3));
     EXPECT_EQ(rig.view(1).state, AxisState::SynchronizedMotion);
-    while (rig.view(0).set_position < 120) {
+    for (Patience patience; patience.lasts(rig.view(0).set_position < 120);) {
         const double before = rig.view(0).set_position;
         rig.step();
         const double master = rig.view(0).set_position;
@@ -74,7 +75,7 @@ TEST(GearInPos, TheStartCountsInTheSenseOfTheDistanceOnly) {
         rig.run(1200);
         const auto id = rig.accept(1, gear_in_pos(0, sense * 50, sense * 8, sense * 10));  // starts at 40
         rig.accept(0, absolute(sense * 20, 80));                                           // over 40 against the sense
-        while (rig.view(0).active != 0) {
+        for (Patience patience; patience.lasts(rig.view(0).active != 0);) {
             rig.step();
             ASSERT_FALSE(rig.view(1).sync_started);
             ASSERT_EQ(rig.view(1).set_position, 0);
@@ -99,7 +100,7 @@ TEST(GearInPos, TheMotionBeforeGoesOn) {
         rig.accept(1, at_velocity(12));
         rig.run(100);
         const auto id = rig.accept(1, gear_in_pos(0, 60, 40, 30));
-        while (!rig.view(1).sync_started) {
+        for (Patience patience; patience.lasts(!rig.view(1).sync_started);) {
             rig.step();
             if (!rig.view(1).sync_started) {
                 ASSERT_NEAR(rig.view(1).set_velocity, 12, 1e-9);
@@ -118,7 +119,7 @@ TEST(GearInPos, TheMotionBeforeGoesOn) {
         ASSERT_TRUE(rig.run_to_sync(1, gear));
         const auto id = rig.accept(1, gear_in_pos(0, 60, 40, 30));
         EXPECT_EQ(rig.status(1, gear), CommandStatus::aborted);
-        while (!rig.view(1).sync_started) {
+        for (Patience patience; patience.lasts(!rig.view(1).sync_started);) {
             ASSERT_NEAR(rig.view(1).set_velocity, 10, 1e-9);
             rig.step();
         }
@@ -183,7 +184,7 @@ TEST(GearInPos, VelocityAndAccelerationOfTheApproachAreKept) {
     gentle.acceleration = gentle.deceleration = 120;
     const auto next = rig.accept(1, gentle);
     double fastest = 0, hardest = 0;
-    while (rig.status(1, next) != CommandStatus::in_target && rig.view(0).set_position < 100) {
+    for (Patience patience; patience.lasts(rig.status(1, next) != CommandStatus::in_target && rig.view(0).set_position < 100);) {
         rig.step();
         fastest = std::max(fastest, std::abs(rig.view(1).set_velocity));
         hardest = std::max(hardest, std::abs(rig.view(1).set_acceleration));

@@ -1,6 +1,7 @@
 // MC_GearIn, MC_GearOut, MC_CombineAxes: a slave on one or two masters.
 
 #include "tests/axes/axis/coupling_rig.hpp"
+#include "tests/patience.hpp"
 
 namespace taktwerk::axes::test {
 namespace {
@@ -100,15 +101,38 @@ TEST(Gear, GearOutKeepsTheVelocity) {
 
 // P1-273
 TEST(Gear, AfterGearOutAnyCommandIsTaken) {
-    for (const auto& next : {stop(), halt(), gear_in(0), absolute(50), at_velocity(-10)}) {
+    struct Next {
+        AxisCommand command;
+        CommandStatus ends;
+        AxisState state;
+        double velocity;
+    };
+    const Next commands[] = {
+        {stop(), CommandStatus::done, AxisState::Stopping, 0},  // P1-020: until its Execute falls
+        {halt(), CommandStatus::done, AxisState::Standstill, 0},
+        {gear_in(0), CommandStatus::in_target, AxisState::SynchronizedMotion, 20},
+        {absolute(50), CommandStatus::done, AxisState::Standstill, 0},
+        {at_velocity(-10), CommandStatus::in_target, AxisState::ContinuousMotion, -10},
+    };
+    for (const auto& next : commands) {
+        SCOPED_TRACE(static_cast<int>(next.command.kind));
         CouplingRig rig(2);
         rig.start();
         rig.accept(0, at_velocity(20));
         ASSERT_TRUE(rig.run_to_sync(1, rig.accept(1, gear_in(0))));
+        rig.run(100);  // the master has come to its speed
         rig.accept(1, gear_out());
         rig.run(10);
-        rig.accept(1, next);
-        rig.run(500);
+        ASSERT_NEAR(rig.view(1).set_velocity, 20, 1e-9);
+        const auto id = rig.accept(1, next.command);
+        EXPECT_EQ(rig.status(1, id), CommandStatus::active) << "at once";
+        rig.run(3000);
+        EXPECT_EQ(rig.status(1, id), next.ends);
+        EXPECT_EQ(rig.view(1).state, next.state);
+        EXPECT_NEAR(rig.view(1).set_velocity, next.velocity, 1e-9);
+        if (next.command.kind == CommandKind::move_absolute) {
+            EXPECT_NEAR(rig.view(1).set_position, 50, 1e-9);
+        }
         rig.expect_no_jump();
     }
 }
@@ -340,7 +364,7 @@ TEST(Combine, TheSumIsAMasterItself) {
     rig.accept(3, at_velocity(-5));
     const auto sum = rig.accept(1, combine(2, 3, mcAddAxes, {2, 1}, {1, 1}));  // 25 u/s
     const auto id = rig.accept(0, gear_in_pos(1, 30, 12, 20));
-    while (rig.view(1).set_position < 60) {
+    for (Patience patience; patience.lasts(rig.view(1).set_position < 60);) {
         rig.step();
         const double master = rig.view(1).set_position;
         if (master < 10) {

@@ -2,6 +2,7 @@
 // positions are of one instant, so an edge is known within half the way of one cycle.
 
 #include "tests/axes/axis/axis_rig.hpp"
+#include "tests/patience.hpp"
 
 namespace taktwerk::axes::test {
 namespace {
@@ -429,7 +430,7 @@ TEST(PassiveHoming, ReReferencesInMotionAndTheTargetKeepsItsNumber) {
     EXPECT_EQ(rig.status(move), CommandStatus::active);
     EXPECT_EQ(rig.status(passing), CommandStatus::active);
     EXPECT_EQ(rig.view().side[static_cast<std::size_t>(SideSlot::passive_homing)], passing);
-    while (rig.status(passing) == CommandStatus::active) {
+    for (Patience patience; patience.lasts(rig.status(passing) == CommandStatus::active);) {
         EXPECT_EQ(rig.view().state, AxisState::DiscreteMotion);
         rig.step();
     }

@@ -5,6 +5,7 @@
 
 #include "axes/axis/junction.hpp"
 #include "tests/axes/axis/axis_rig.hpp"
+#include "tests/patience.hpp"
 
 namespace taktwerk::axes::test {
 namespace {
@@ -113,7 +114,7 @@ TEST_P(RandomChain, AxisPassesEachJointAsCalculated) {
         }
         std::size_t next = 0;
         auto before = rig.view();
-        while (next < ids.size()) {
+        for (Patience patience; patience.lasts(next < ids.size());) {
             rig.step();
             const auto& view = rig.view();
             ASSERT_GE(view.set_position, low - 1e-9);

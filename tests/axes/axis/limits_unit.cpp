@@ -126,7 +126,16 @@ TEST(SoftwareLimits, GentleAbortNearTheLimitBrakesHardEnough) {
 TEST(SoftwareLimits, DoNotHoldBeforeHoming) {
     Rig rig(limited());
     rig.power_on();
-    rig.accept(absolute(200));
+    const auto id = rig.accept(absolute(200));
+    ASSERT_TRUE(rig.run_to(AxisState::Standstill));
+    EXPECT_EQ(rig.status(id), CommandStatus::done);
+    EXPECT_DOUBLE_EQ(rig.view().set_position, 200) << "through 150, unhindered";
+    EXPECT_TRUE(rig.alarms.empty());
+
+    rig.accept(home(0));  // the same axis, once it knows where it is
+    rig.run(3);
+    ASSERT_TRUE(rig.view().homed);
+    EXPECT_EQ(rig.refuse(absolute(200)), ErrorId::beyond_software_limit);
 }
 
 // A limit switch in the direction of motion stops hard, with an alarm; the way out is free after the reset, the way in is not.

@@ -1,6 +1,7 @@
 // MC_MoveSuperimposed and MC_HaltSuperimposed. PLCopen Part 1 v2.0, sections 3.8 and 3.9.
 
 #include "tests/axes/axis/axis_rig.hpp"
+#include "tests/patience.hpp"
 
 namespace taktwerk::axes::test {
 namespace {
@@ -32,7 +33,7 @@ TEST(Superimposed, AddsToTheBaseAndLeavesItAlone) {
     EXPECT_EQ(rig.status(extra), CommandStatus::active);
     double covered = 0;
     bool done = false;
-    while (twin.view().state != AxisState::Standstill) {
+    for (Patience patience; patience.lasts(twin.view().state != AxisState::Standstill);) {
         rig.step();
         twin.step();
         ASSERT_GE(rig.view().superimposed_covered, covered);
@@ -58,7 +59,7 @@ TEST(Superimposed, GoesOnAfterTheBaseHasEnded) {
     rig.run(800);
     twin.run(800);
     const auto extra = rig.accept(superimposed(10));
-    while (twin.status(same) != CommandStatus::done) {
+    for (Patience patience; patience.lasts(twin.status(same) != CommandStatus::done);) {
         rig.step();
         twin.step();
     }
