@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "tests/hmi_bridge/fake_machine.hpp"
+#include "tests/patience.hpp"
 
 namespace taktwerk::hmi {
 namespace {
@@ -385,16 +386,25 @@ TEST_F(GatewayTest, AClientThatClosesWhileJoggingStopsItsAxis) {
 }
 
 TEST_F(GatewayTest, AnswersToAClosedClientAreDropped) {
+    const ClientId other = gateway.open(Source::socket, "panel B", Rights::commissioning);
+    auto from_other = request(CommandKind::home, "y");
+    from_other.client = other;
     gateway.handle(request(CommandKind::home, "x"), now);
-    gateway.close(client);
     machine.answer(Answer::accepted);
+    gateway.handle(from_other, now);
+    machine.answer(Answer::accepted);
+    gateway.close(client);
     gateway.step(now);
+    const auto reply = gateway.next_reply();
+    ASSERT_TRUE(reply) << "who is still there gets his";
+    EXPECT_EQ(reply->client, other);
     EXPECT_FALSE(gateway.next_reply());
 }
 
 TEST_F(GatewayTest, ClientsAreBounded) {
     ClientId last = client;
-    while (gateway.client_count() < Gateway::max_clients) last = gateway.open(Source::lcm, "flood", Rights::operating);
+    for (Patience patience; patience.lasts(gateway.client_count() < Gateway::max_clients);)
+        last = gateway.open(Source::lcm, "flood", Rights::operating);
     EXPECT_EQ(gateway.open(Source::lcm, "flood", Rights::operating), 0u);
     gateway.close(last);
     EXPECT_NE(gateway.open(Source::lcm, "flood", Rights::operating), 0u);
