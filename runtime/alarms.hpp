@@ -18,10 +18,12 @@ enum class MachineAlarm : AlarmId {
     late_wakeups = 0x6007,
     positions_lost = 0x6008,
     positions_not_kept = 0x6009,
+    program_waits = 0x600A,
+    positions_outdated = 0x600B,
 };
 [[nodiscard]] constexpr AlarmId id(MachineAlarm alarm) noexcept { return static_cast<AlarmId>(alarm); }
 
-inline constexpr std::array<AlarmInfo, 9> machine_alarms{{
+inline constexpr std::array<AlarmInfo, 11> machine_alarms{{
     {id(MachineAlarm::emergency_stop), "emergency_stop", "Emergency stop: the axes stop along their ramps, then power goes off",
      "急停:各轴沿减速斜坡停止,随后断开动力", "The emergency stop button is pressed, or its circuit is open",
      "Release the button, acknowledge, then enable again", ResetRule::acknowledge, Reaction::power_off,
@@ -88,6 +90,24 @@ inline constexpr std::array<AlarmInfo, 9> machine_alarms{{
      ResetRule::self_clearing,
      Reaction::warn,
      {}},
+    {id(MachineAlarm::program_waits),
+     "program_waits",
+     "After the emergency stop the program waits: its axes get no power",
+     "急停之后程序处于等待状态:其轴不通电",
+     "An emergency stop was pressed while it ran, and a release alone switches nothing on",
+     "When nobody is in danger: `taktwerk reset`, then `taktwerk start`, or the button of `emergency_stop.restart`",
+     ResetRule::self_clearing,
+     Reaction::warn,
+     {}},
+    {id(MachineAlarm::positions_outdated),
+     "positions_outdated",
+     "The disk still holds an older reference of an axis, and it cannot be taken back: the axes stop",
+     "磁盘上仍保存着某轴的旧参考点且无法撤销:各轴停止",
+     "An axis was homed or its position set while the directory of `retain` cannot be written: after a restart it would be homed wrongly",
+     "Make the directory writable, or delete positions.0 and positions.1 in it; then reset",
+     ResetRule::reset,
+     Reaction::stop_machine,
+     "The axes would be homed at the old reference after the next start"},
 }};
 static_assert(alarm_table_is_sound(machine_alarms));
 

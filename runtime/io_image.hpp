@@ -25,6 +25,7 @@ public:
     void write(std::span<std::byte> image) const noexcept;
     /// Every output to its configured safe value.
     void make_safe() noexcept;
+    void make_safe(std::size_t output) noexcept { outputs_[output] = output_points_[output].config.safe_value; }
 
     [[nodiscard]] std::vector<std::int64_t>& inputs() noexcept { return inputs_; }
     [[nodiscard]] std::vector<std::int64_t>& outputs() noexcept { return outputs_; }

@@ -100,13 +100,18 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, const std
     }
     shared_drives = drives_of_several_axes(axis_slave, bus.slave_count());
     if (!config.retain.empty()) {
-        positions = std::make_unique<PositionKeeper>(config.retain, config.axes);
+        positions = std::make_unique<PositionKeeper>(config.retain, config.axes, errors);
         positions->restore(axes);
     }
     operator_power.resize(axes.size());
+    outputs_by_hand.resize(io.outputs().size());
     requests = axes::DirectRequests{axes};
+    axis_claims.resize(axes.size());
+    for (std::size_t p = 0; p < config.programs.size(); ++p)
+        program_requests.emplace_back(requests, axis_claims, static_cast<std::uint16_t>(p));
     if (!config.emergency_stop.input.empty()) {
         estop_input = io.find(IoDirection::input, config.emergency_stop.input);
+        if (!config.emergency_stop.restart.empty()) restart_input = io.find(IoDirection::input, config.emergency_stop.restart);
         const auto& terminal = io.point(IoDirection::input, static_cast<std::size_t>(estop_input)).slave;
         while (estop_slave < bus.slave_count() && bus.slave(estop_slave).name != terminal) ++estop_slave;
     }

@@ -1,5 +1,6 @@
 // Problems between the floors of one configuration: names that do not meet, cycles a drive cannot keep, stops that take too long.
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -164,6 +165,12 @@ std::vector<Error> check(const MachineConfig& config) {
         bool found = false;
         for (const auto& name : inputs) found = found || name == config.emergency_stop.input;
         if (!found) problems.unknown("machine.emergency_stop_input", "emergency_stop.input", "input", config.emergency_stop.input, inputs);
+        const auto& restart = config.emergency_stop.restart;
+        if (!restart.empty() && std::find(inputs.begin(), inputs.end(), restart) == inputs.end())
+            problems.unknown("machine.emergency_stop_input", "emergency_stop.restart", "input", restart, inputs);
+        if (restart == config.emergency_stop.input)
+            problems.add("machine.emergency_stop_input", "emergency_stop.restart", "it is the emergency stop itself",
+                         "give the input of a button of its own");
     }
     std::vector<std::string> lines;
     for (const auto& line : config.serial) lines.push_back(line.name);

@@ -1,4 +1,4 @@
-// Operator commands inside the cycle: authority, modes, manual motion, programs. Real-time safe except service_programs().
+// Operator commands inside the cycle: authority, modes, manual motion, outputs by hand; programs in machine_programs.cpp. Real-time safe.
 // Who may do what, and when, stands in operator_command.hpp.
 
 #include <cmath>
@@ -72,6 +72,7 @@ void Machine::Impl::execute(const OperatorCommand& command) noexcept {
         case OperatorAction::set_parameter:
         case OperatorAction::set_output:
         case OperatorAction::acknowledge_alarms:
+        case OperatorAction::release_outputs:
         case OperatorAction::shutdown: result = execute_machine(command); break;
         case OperatorAction::take_control:
         case OperatorAction::release_control:
@@ -95,6 +96,7 @@ Machine::Impl::Verdict Machine::Impl::execute_machine(const OperatorCommand& com
     switch (command.action) {
         case OperatorAction::set_mode:
             if (command.mode > Mode::automatic) return {Answer::bad_value};
+            if (command.mode == Mode::automatic && emergency) return {Answer::not_possible_now, ErrorId::interlocked};
             set_mode(command.mode);
             return {};
         case OperatorAction::program_start:
@@ -111,10 +113,13 @@ Machine::Impl::Verdict Machine::Impl::execute_machine(const OperatorCommand& com
             if (command.index >= io.outputs().size()) return {Answer::unknown_name};
             if (!io.fits(command.index, command.value)) return {Answer::bad_value};
             if (mode == Mode::automatic) return {Answer::wrong_mode};
+            if (emergency) return {Answer::not_possible_now, ErrorId::interlocked};
             for (std::size_t p = 0; p < program_states.size(); ++p)
                 if (program_states[p] == ProgramState::running || start_pending(p)) return {Answer::not_possible_now};
             io.outputs()[command.index] = static_cast<std::int64_t>(command.value);
+            outputs_by_hand[command.index] = {true, command.client};
             return {};
+        case OperatorAction::release_outputs: release_outputs(command.client); return {};
         case OperatorAction::acknowledge_alarms:
             log.acknowledge();
             for (auto& axis : axes) axis.acknowledge_alarms();
@@ -235,89 +240,10 @@ Machine::Impl::Verdict Machine::Impl::jog(const OperatorCommand& command, std::s
     return verdict(submitted.error);
 }
 
-Machine::Impl::Verdict Machine::Impl::execute_program(const OperatorCommand& command) noexcept {
-    if (command.index >= program_states.size()) return {Answer::unknown_name};
-    auto& state = program_states[command.index];
-    switch (command.action) {
-        case OperatorAction::program_start:
-            if (mode != Mode::automatic) return {Answer::wrong_mode};
-            if (state == ProgramState::running) return {};
-            if (state == ProgramState::fault) return {Answer::not_possible_now};
-            return start_program(command.index) ? Verdict{} : Verdict{Answer::not_possible_now};  // its stop() is still to come
-        case OperatorAction::program_stop:
-            if (state == ProgramState::running || start_pending(command.index)) stop_program(command.index, ProgramState::stopped);
-            return {};
-        default:
-            if (state == ProgramState::fault) state = ProgramState::stopped;
-            return {};
-    }
-}
-
-bool Machine::Impl::start_pending(std::size_t program) const noexcept {
-    const auto asked = handshakes[program].load(std::memory_order_relaxed);
-    return asked == Handshake::start_asked || asked == Handshake::started;
-}
-
-bool Machine::Impl::start_program(std::size_t program) noexcept {
-    auto expected = Handshake::none;
-    return handshakes[program].compare_exchange_strong(expected, Handshake::start_asked, std::memory_order_release) ||
-           expected == Handshake::start_asked || expected == Handshake::started;
-}
-
-void Machine::Impl::stop_program(std::size_t program, ProgramState state) noexcept {
-    program_states[program] = state;
-    host->programs()[program].alarms = 0;
-    handshakes[program].store(Handshake::stop_asked, std::memory_order_release);
-    for (auto& axis : axes) {
-        if (axis.view().owner != Owner::program) continue;
-        axis.shut_down();  // its power wishes end with it: the axis ramps down, then its power goes off
-    }
-    bool any = false;
-    for (const auto other : program_states) any = any || other == ProgramState::running;
-    if (!any) io.make_safe();
-}
-
-void Machine::Impl::stop_programs() noexcept {
-    for (std::size_t p = 0; p < program_states.size(); ++p)
-        if (program_states[p] == ProgramState::running || start_pending(p)) stop_program(p, ProgramState::stopped);
-}
-
-bool Machine::Impl::slow_tasks_finished(std::size_t program) const noexcept {
-    for (const auto& task : slow_tasks)
-        if (task->program() == program && !task->finished()) return false;
-    return true;
-}
-
-void Machine::Impl::service_programs() {
-    for (std::size_t p = 0; p < program_states.size(); ++p) {
-        auto& loaded = host->programs()[p];
-        if (!loaded.instance) continue;
-        auto asked = handshakes[p].load(std::memory_order_acquire);
-        auto next = asked;
-        try {
-            if (asked == Handshake::start_asked) {
-                loaded.fault.clear();
-                next = Handshake::started;
-                loaded.instance->start();
-            } else if (asked == Handshake::stop_asked && slow_tasks_finished(p)) {
-                // Written by the cycle before it asked; a program stopped by a person leaves it as it was.
-                if (const auto why = program_faults[p].text(); !why.empty()) loaded.fault = std::string(why);
-                next = Handshake::none;
-                loaded.instance->stop();
-            }
-        } catch (...) {
-            FaultText why;
-            why.take_current();
-            loaded.fault = std::string(asked == Handshake::start_asked ? "start() threw: " : "stop() threw: ") + std::string(why.text());
-            next = Handshake::failed;
-        }
-        if (next != asked) handshakes[p].compare_exchange_strong(asked, next, std::memory_order_release);
-    }
-}
-
 void Machine::Impl::set_mode(Mode wanted) noexcept {
     if (wanted == mode) return;
     if (mode == Mode::automatic) stop_programs();
+    release_outputs();
     mode = wanted;
     if (wanted == Mode::automatic) {
         for (std::size_t i = 0; i < axes.size(); ++i) {
@@ -326,6 +252,21 @@ void Machine::Impl::set_mode(Mode wanted) noexcept {
         }
     }
     for (auto& axis : axes) axis.set_mode(operating(wanted));
+}
+
+void Machine::Impl::release_outputs() noexcept {
+    for (std::size_t i = 0; i < outputs_by_hand.size(); ++i) {
+        if (outputs_by_hand[i].held) io.make_safe(i);
+        outputs_by_hand[i] = {};
+    }
+}
+
+void Machine::Impl::release_outputs(std::uint32_t client) noexcept {
+    for (std::size_t i = 0; i < outputs_by_hand.size(); ++i) {
+        if (!outputs_by_hand[i].held || outputs_by_hand[i].client != client) continue;
+        io.make_safe(i);
+        outputs_by_hand[i] = {};
+    }
 }
 
 void Machine::Impl::renew_operator_power() noexcept {

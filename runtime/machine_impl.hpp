@@ -23,6 +23,7 @@
 #include "runtime/object_requests.hpp"
 #include "runtime/position_keeper.hpp"
 #include "runtime/program_host.hpp"
+#include "runtime/program_requests.hpp"
 #include "runtime/slow_task.hpp"
 
 namespace taktwerk::runtime {
@@ -53,7 +54,7 @@ struct Machine::Impl {
     void take_trace() noexcept;
     std::vector<std::string> trace_columns() const;
 
-    // machine_commands.cpp
+    // machine_commands.cpp, machine_programs.cpp
     void drain_inbox(Instant now) noexcept;
     void answer(const OperatorCommand& command, Answer answer, axes::ErrorId error = axes::ErrorId::none) noexcept;
     void execute(const OperatorCommand& command) noexcept;
@@ -73,16 +74,21 @@ struct Machine::Impl {
     void set_mode(Mode wanted) noexcept;
     [[nodiscard]] bool start_program(std::size_t program) noexcept;
     void stop_program(std::size_t program, ProgramState state) noexcept;
+    void end_motion(std::size_t axis) noexcept;
     [[nodiscard]] bool start_pending(std::size_t program) const noexcept;
     /// Those that run or are about to.
     void stop_programs() noexcept;
     [[nodiscard]] bool slow_tasks_finished(std::size_t program) const noexcept;
     void renew_operator_power() noexcept;
+    /// What people have set goes back to its safe value: all of it, or one client's.
+    void release_outputs() noexcept;
+    void release_outputs(std::uint32_t client) noexcept;
     void service_programs();
 
     // machine_supervision.cpp
     void supervise(Instant now, const CycleTick& tick) noexcept;
     void watch_emergency_stop() noexcept;
+    void watch_restart() noexcept;
     void watch_cycle(const CycleTick& tick) noexcept;
     void watch_programs() noexcept;
     void raise_bus_alarms() noexcept;
@@ -120,7 +126,15 @@ struct Machine::Impl {
     std::vector<std::size_t> axis_slave;                  // index in the bus configuration; npos for virtual axes
     std::vector<std::vector<std::size_t>> shared_drives;  // the axes of each slave that carries more than one
     std::vector<AxisPower> operator_power;
-    axes::DirectRequests requests;  // of base tasks and operators
+    struct OutputByHand {
+        bool held = false;  // a client has set it
+        std::uint32_t client = 0;
+    };
+    std::vector<OutputByHand> outputs_by_hand;      // as io.outputs()
+    axes::DirectRequests requests;                  // of operators; of programs through theirs
+    std::vector<AxisClaims> axis_claims;            // per axis
+    std::vector<ProgramRequests> program_requests;  // per program
+    bool restart_pressed = true;                    // the last level of its input: only a rising edge counts
     std::unique_ptr<ProgramHost> host;
     std::unique_ptr<ObjectRequests> objects;
     std::unique_ptr<PositionKeeper> positions;  // nullptr: nothing is kept
@@ -134,7 +148,7 @@ struct Machine::Impl {
     std::vector<std::uint8_t> has_base_task;   // per program
     AlarmLog log;
     Mode mode;
-    int estop_input = -1;
+    int estop_input = -1, restart_input = -1;
     std::size_t estop_slave = 0;
 
     SpscRing<OperatorCommand> inbox;

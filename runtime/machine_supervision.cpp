@@ -32,7 +32,24 @@ void Machine::Impl::watch_emergency_stop() noexcept {
     const bool pressed = unread || io.inputs()[static_cast<std::size_t>(estop_input)] == 0;
     if (pressed && !emergency) emergency_since = now;
     emergency = pressed;
-    if (emergency) raise(MachineAlarm::emergency_stop, AlarmSource::machine, 0, 0, 0);
+    if (emergency) {
+        raise(MachineAlarm::emergency_stop, AlarmSource::machine, 0, 0, 0);
+        release_outputs();
+        for (auto& program : program_requests) program.hold();
+    }
+    watch_restart();
+}
+
+// After the release a person lets programs go on: by a start of each, or by this input, which wants a new edge.
+void Machine::Impl::watch_restart() noexcept {
+    const bool pressed = restart_input >= 0 && io.inputs()[static_cast<std::size_t>(restart_input)] != 0;
+    const bool wanted = pressed && !restart_pressed && !emergency;
+    restart_pressed = pressed;
+    for (std::size_t p = 0; p < program_requests.size(); ++p) {
+        if (wanted) program_requests[p].go_on();
+        if (!emergency && program_requests[p].held() && program_states[p] == ProgramState::running)
+            raise(MachineAlarm::program_waits, AlarmSource::program, static_cast<std::uint16_t>(p), 0, 0);
+    }
 }
 
 void Machine::Impl::watch_cycle(const CycleTick& tick) noexcept {
@@ -79,7 +96,8 @@ void Machine::Impl::supervise(Instant, const CycleTick& tick) noexcept {
     watch_programs();
     raise_bus_alarms();
     if (positions && positions->lost()) raise(MachineAlarm::positions_lost, AlarmSource::machine, 0, 0, 0);
-    if (positions && positions->failing()) raise(MachineAlarm::positions_not_kept, AlarmSource::machine, 0, 0, 0);
+    if (positions && positions->outdated()) raise(MachineAlarm::positions_outdated, AlarmSource::machine, 0, 0, 0);
+    else if (positions && positions->failing()) raise(MachineAlarm::positions_not_kept, AlarmSource::machine, 0, 0, 0);
 
     auto level = axes::EmergencyStop::none;
     if (emergency)
@@ -88,6 +106,7 @@ void Machine::Impl::supervise(Instant, const CycleTick& tick) noexcept {
     for (auto& axis : axes) {
         axis.demand_emergency_stop(level);
         axis.supervise(now);
+        if (emergency) axis.shut_down();  // no wish for power outlives it; an axis in ErrorStop ramps down as before
         // An axis keeps its alarms until they are reset there: what it does not show any more is gone.
         for (const auto& fact : axis.active_alarms())
             if (const auto* info = find_alarm(axes::axis_alarms, fact.id)) log.raise(fact, info->reaction, ResetRule::self_clearing, now);

@@ -20,7 +20,7 @@ void Machine::Impl::run_base_task(std::size_t index) noexcept {
     context.period = config.cycle;
     context.cycle = base_scans[index]++;
     context.axes = views;
-    context.requests = &requests;
+    context.requests = &program_requests[task.program];
     context.objects = &objects->of(task.program);
     context.owner = axes::Owner::program;
     context.tables = &tables;
@@ -44,7 +44,7 @@ void Machine::Impl::run_slow_releases() noexcept {
         auto& task = *slow_tasks[i];
         const auto program = task.program();
         const bool runs = program_states[program] == ProgramState::running;
-        if (runs) task.renew(requests);
+        if (runs) task.renew(program_requests[program]);
         if (!task.due(cycles)) continue;
         auto& numbers = task_statistics[slow_task_places[i]];
         if (!task.finished()) {
@@ -63,7 +63,7 @@ void Machine::Impl::run_slow_releases() noexcept {
             continue;
         }
         auto& alarms = host->programs()[program].alarms;
-        task.apply(requests, io.outputs(), alarms);
+        task.apply(program_requests[program], io.outputs(), alarms);
         numbers.run = task.last_run();
         numbers.run_max = std::max(numbers.run_max, numbers.run);
         ++numbers.releases;

@@ -20,7 +20,8 @@ enum class OperatorAction : std::uint8_t {
     none,
     take_control,     ///< axis or all: the axis stops, then obeys the new owner; it keeps its power [wrong_mode in automatic]
     release_control,  ///< axis or all: back to the operator [no_control for who has none]
-    set_mode,         ///< mode: axes stop; leaving automatic stops the programs, entering it takes the operator's power back
+    set_mode,         ///< mode: axes stop; leaving automatic stops the programs, entering it takes the operator's power back; outputs set
+                      ///< by hand go to their safe values [not_possible_now into automatic while the emergency stop holds]
     power,            ///< axis or all; flag = on. Off: ramps down first. On: holds until off, an emergency stop, or an error that takes
                       ///< power away: a reset alone never switches on [interlocked while the emergency stop holds, in_error_stop]
     home,             ///< axis
@@ -30,14 +31,18 @@ enum class OperatorAction : std::uint8_t {
     stop,             ///< axis or all: stop along the ramp, whoever owns it; always allowed, never stale. A program goes on: its
                       ///< block shows CommandAborted; program_stop ends it
     reset,            ///< axis, or all: then also the machine's alarms and programs in fault
-    program_start,    ///< index = program [wrong_mode outside automatic; not_possible_now in fault, or while its stop() is to come]
-    program_stop,     ///< index = program; its axes ramp down, then power goes off; outputs go to their safe values with the last one
+    program_start,    ///< index = program. One that runs and waits after an emergency stop goes on [wrong_mode outside automatic;
+                      ///< not_possible_now in fault, while its stop() is to come, while the emergency stop holds]
+    program_stop,     ///< index = program; axes that it powers ramp down, then power goes off; others that it moves stop; outputs that no
+                      ///< other running program has declared go to their safe values
     program_reset,    ///< index = program
     set_parameter,    ///< index = parameter; value within its range [bad_value]
-    set_output,       ///< index = output point; value, whole and within its bits [bad_value; wrong_mode in automatic; not_possible_now
-                      ///< while a program runs]
+    set_output,       ///< index = output point; value, whole and within its bits. Holds until the client goes, the mode changes or the
+                      ///< emergency stop is pressed; then it is safe again [bad_value; wrong_mode in automatic; not_possible_now
+                      ///< while a program runs or the emergency stop holds]
     acknowledge_alarms,
-    shutdown,  ///< stop axes, power off, end
+    shutdown,         ///< stop axes, power off, end
+    release_outputs,  ///< those that this client has set go to their safe values: it is gone
 };
 
 /// One command. Trivially copyable: goes through a ring.

@@ -12,10 +12,16 @@ using namespace std::chrono_literals;
 constexpr Duration standing_time = 2s;  // machines that stop and go do not write each time
 constexpr Duration retry_after = 1s;
 
+/// Its reference may become another at any moment: what stands on the disk must not be believed from now on.
+bool homes(const axes::AxisView& view) noexcept {
+    return view.state == axes::AxisState::Homing || view.side[static_cast<std::size_t>(axes::SideSlot::passive_homing)] != 0;
+}
+
 }  // namespace
 
-PositionKeeper::PositionKeeper(const std::filesystem::path& directory, std::span<const AxisBinding> bindings)
+PositionKeeper::PositionKeeper(const std::filesystem::path& directory, std::span<const AxisBinding> bindings, std::vector<Error>& errors)
     : store_(directory), watched_(bindings.size()), latest_(std::vector<axes::RetainedPosition>(bindings.size())) {
+    if (auto in_use = store_.lock()) errors.push_back(std::move(*in_use));
     const auto loaded = store_.load();
     lost_ = loaded.lost;
     for (std::size_t i = 0; i < bindings.size(); ++i) {
@@ -55,6 +61,7 @@ void PositionKeeper::watch(std::span<const axes::Axis> axes, Instant now, bool e
         auto& watched = watched_[i];
         auto position = axes[i].retained();
         all_known = all_known && (position.homed || !axes[i].config().memory.absolute);
+        if (homes(axes[i].view())) position = {};
         if (!position.at_rest) watched.moved = now;
         if (!ending && now - watched.moved < standing_time) position.at_rest = false;
         if (!differs(watched, position)) continue;
@@ -73,11 +80,14 @@ void PositionKeeper::step(Instant now) {
     if (reading.is_new)
         for (std::size_t i = 0; i < kept_.size(); ++i) kept_[i].position = (*reading.value)[i];
     const bool again = failing() && now >= retry_at_;
-    if (!reading.is_new && !again) return;
+    if (!reading.is_new && !again && proved_) return;
+    proved_ = true;
     std::vector<RetainedAxis> homed;
     for (const auto& axis : kept_)
         if (axis.position.homed) homed.push_back(axis);
-    failing_.store(!store_.save(homed).ok(), std::memory_order_relaxed);
+    const auto saved = store_.save(homed);
+    failing_.store(!saved.ok(), std::memory_order_relaxed);
+    outdated_.store(!saved.ok() && saved.error().code == "positions.outdated", std::memory_order_relaxed);
     retry_at_ = now + retry_after;
 }
 

@@ -2,8 +2,10 @@
 // Keeps the positions of axes with absolute encoders: gives them back at start, sees in the cycle when they are worth writing, and writes
 // them on the service side. Writing never reaches back into the cycle, so the machine runs alike with and without a disk.
 //
-// Written is: a changed reference (homing, MC_SetPosition) at once; that an axis stands, when it has stood for two seconds or the run ends;
-// that it moves again, when it was written as standing; and a long way at rest or in motion, so that the turns of the encoder stay known.
+// Written is: at the start, what was read, so that a disk which takes nothing is known before anything moves; that an axis has no reference, as
+// soon as it begins to home; a changed reference (homing, MC_SetPosition) at once; that an axis stands, when it has stood for two seconds or
+// the run ends; that it moves again, when it was written as standing; and a long way at rest or in motion, so that the turns of the encoder
+// stay known.
 
 #include <array>
 #include <atomic>
@@ -20,8 +22,8 @@ namespace taktwerk::runtime {
 
 class PositionKeeper {
 public:
-    /// Reads what was kept. Not real-time.
-    PositionKeeper(const std::filesystem::path& directory, std::span<const AxisBinding> bindings);
+    /// Takes the directory for itself and reads what was kept; what stands in the way goes to `errors`. Not real-time.
+    PositionKeeper(const std::filesystem::path& directory, std::span<const AxisBinding> bindings, std::vector<Error>& errors);
     /// Before the first cycle. Not real-time.
     void restore(std::span<axes::Axis> axes);
 
@@ -31,6 +33,8 @@ public:
     [[nodiscard]] bool lost() const noexcept { return lost_; }
     /// The last writing failed. Any thread.
     [[nodiscard]] bool failing() const noexcept { return failing_.load(std::memory_order_relaxed); }
+    /// Worse: the disk says something of an axis that is not so any more, and would be believed after a restart. Any thread.
+    [[nodiscard]] bool outdated() const noexcept { return outdated_.load(std::memory_order_relaxed); }
 
     /// Service side: writes what has changed since the last call; after a failure again each second.
     void step(Instant now);
@@ -47,8 +51,9 @@ private:
     std::vector<RetainedAxis> kept_;  // as loaded, then as saved; service side
     std::vector<Watched> watched_;    // cycle
     LatestValue<std::vector<axes::RetainedPosition>> latest_;
-    std::atomic<bool> failing_{false};
+    std::atomic<bool> failing_{false}, outdated_{false};
     bool lost_ = false;
+    bool proved_ = false;  // the disk has taken something since the start, or refused it
     Instant retry_at_{};
 };
 

@@ -1,13 +1,16 @@
 #include "runtime/position_store.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 #include <fstream>
-#include <iterator>
+#include <limits>
 #include <optional>
 #include <string_view>
 
@@ -23,6 +26,8 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view first_line = "taktwerk positions 1";
 constexpr unsigned slots = 2;
+constexpr std::size_t largest_file = 1 << 20;                // some thousand axes
+constexpr std::int64_t most_counts = std::int64_t{1} << 52;  // what a double still tells apart, with room to add
 
 struct Slot {
     std::uint64_t number = 0;
@@ -87,6 +92,17 @@ private:
     bool good_ = true;
 };
 
+/// What some axis could have. A check sum says that nobody altered it by mistake, not that it makes sense.
+bool possible(const RetainedAxis& axis) {
+    const auto& p = axis.position;
+    const auto& g = axis.gearing;
+    const bool gearing =
+        g.counts_per_revolution > 0 && g.motor_revolutions > 0 && g.load_revolutions > 0 && std::isfinite(g.feed) && g.feed > 0;
+    if (!gearing || axis.name.empty() || !std::isfinite(p.shift)) return false;
+    const bool resolved = std::abs(p.shift) / g.feed * static_cast<double>(g.counts_per_revolution) <= static_cast<double>(most_counts);
+    return resolved && p.counts <= most_counts && p.counts >= -most_counts;
+}
+
 std::optional<Slot> parsed(std::string_view text) {
     const auto last = text.rfind("crc ");
     if (last == std::string_view::npos || text.substr(last) != fmt::format("crc {:08x}\n", sum(text.substr(0, last)))) return std::nullopt;
@@ -106,9 +122,11 @@ std::optional<Slot> parsed(std::string_view text) {
         words.expect("at_rest"), words.read_bit(p.at_rest);
         words.expect("gearing"), words.read(g.counts_per_revolution), words.read(g.motor_revolutions), words.read(g.load_revolutions);
         words.read(g.feed), words.read_bit(g.inverted);
+        const bool again = std::any_of(slot.axes.begin(), slot.axes.end(), [&](const auto& other) { return other.name == axis.name; });
+        if (!words.good() || again || !possible(axis)) return std::nullopt;
         slot.axes.push_back(std::move(axis));
     }
-    if (!words.good()) return std::nullopt;
+    if (!words.good() || slot.number == 0 || slot.number > std::numeric_limits<std::uint64_t>::max() / 2) return std::nullopt;
     return slot;
 }
 
@@ -153,13 +171,16 @@ PositionStore::Loaded PositionStore::load() {
         const auto path = place(directory_, s);
         std::ifstream file(path, std::ios::binary);
         if (!file) continue;
-        const std::string text{std::istreambuf_iterator<char>(file), {}};
+        std::string text(largest_file, '\0');
+        file.read(text.data(), static_cast<std::streamsize>(text.size()));
+        text.resize(static_cast<std::size_t>(file.gcount()));
         auto slot = parsed(text);
         if (!slot) {
             loaded.damage.push_back({"positions.damaged", path.string(), "the file is torn or altered",
                                      "nothing: the other slot is used where it is whole; home the axes that are not homed"});
             continue;
         }
+        on_disk_[s] = slot->axes;
         if (slot->number < number_) continue;
         number_ = slot->number;
         next_ = (s + 1) % slots;
@@ -170,6 +191,69 @@ PositionStore::Loaded PositionStore::load() {
 }
 
 Result<void> PositionStore::save(std::span<const RetainedAxis> axes) {
+    auto written = write_next(axes);
+    if (written && contradicts(next_, axes)) written = write_next(axes);
+    bool outdated = false;
+    for (unsigned s = 0; s < slots; ++s) {
+        if (contradicts(s, axes)) take_back(s);
+        outdated = outdated || contradicts(s, axes);
+    }
+    if (outdated && !written)
+        return Error{"positions.outdated", directory_.string(),
+                     "an older reference of an axis stands there and cannot be taken back: " + written.error().what,
+                     "make it writable, or delete positions.0 and positions.1 before the next start"};
+    return written;
+}
+
+bool PositionStore::contradicts(unsigned slot, std::span<const RetainedAxis> axes) const {
+    const auto still_so = [&](const RetainedAxis& kept) {
+        return std::any_of(axes.begin(), axes.end(), [&](const RetainedAxis& now) {
+            return now.name == kept.name && now.position.homed && now.position.shift == kept.position.shift &&
+                   axes::same_coordinates(now.gearing, kept.gearing);
+        });
+    };
+    const auto& kept = on_disk_[slot];
+    return !std::all_of(kept.begin(), kept.end(), [&](const RetainedAxis& axis) { return !axis.position.homed || still_so(axis); });
+}
+
+// A directory that takes no new file may let go of an old one, and one that does neither may hold files that can be emptied.
+void PositionStore::take_back(unsigned slot) {
+    const auto path = place(directory_, slot);
+    std::error_code failed;
+    fs::remove(path, failed);
+    if (!failed) (void)Descriptor(directory_, O_RDONLY | O_DIRECTORY).sync();
+    else if (!Descriptor(path, O_WRONLY | O_TRUNC | O_NOFOLLOW).sync()) return;
+    on_disk_[slot].clear();
+}
+
+PositionStore::~PositionStore() {
+    if (lock_ >= 0) ::close(lock_);
+}
+
+std::optional<Error> PositionStore::lock() {
+    std::error_code failed;
+    fs::create_directories(directory_, failed);
+    const auto path = directory_ / "positions.lock";
+    // For the owner alone: whoever can open it could hold it.
+    const int lock = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
+    if (lock < 0) return std::nullopt;
+    if (::flock(lock, LOCK_EX | LOCK_NB) != 0) {
+        char pid[32] = {};
+        const auto length = ::pread(lock, pid, sizeof pid - 1, 0);
+        ::close(lock);
+        return Error{"positions.in_use", directory_.string(),
+                     fmt::format("process {} keeps the positions of its axes there already", length > 0 ? pid : "unknown"),
+                     "Stop it first, or give this machine a directory of its own as `retain` (or --retain)."};
+    }
+    const auto pid = std::to_string(::getpid());
+    if (::ftruncate(lock, 0) != 0 || ::pwrite(lock, pid.data(), pid.size(), 0) < 0) {
+        // Only the message for a second runtime would be poorer.
+    }
+    lock_ = lock;
+    return std::nullopt;
+}
+
+Result<void> PositionStore::write_next(std::span<const RetainedAxis> axes) {
     std::error_code failed;
     fs::create_directories(directory_, failed);
     if (failed) return cannot_write(directory_, failed.message());
@@ -182,6 +266,7 @@ Result<void> PositionStore::save(std::span<const RetainedAxis> axes) {
     }
     fs::rename(beside, path, failed);
     if (failed) return cannot_write(path, failed.message());
+    on_disk_[next_].assign(axes.begin(), axes.end());
     if (!Descriptor(directory_, O_RDONLY | O_DIRECTORY).sync()) return cannot_write(directory_, std::strerror(errno));
     ++number_;
     next_ = (next_ + 1) % slots;

@@ -134,7 +134,11 @@ protected:
 private:
     std::uint16_t point(IoDirection direction, std::string_view name) {
         const int index = io_.find(direction, name);
-        if (index >= 0) return static_cast<std::uint16_t>(index);
+        if (index >= 0) {
+            const auto found = static_cast<std::uint16_t>(index);
+            if (direction == IoDirection::output && !host_.drives(program_, found)) host_.outputs_[program_].push_back(found);
+            return found;
+        }
         unknown(direction == IoDirection::input ? "program.unknown_input" : "program.unknown_output",
                 direction == IoDirection::input ? "input" : "output", name, io_.names(direction),
                 direction == IoDirection::input ? "io.inputs" : "io.outputs");
@@ -201,6 +205,7 @@ private:
 ProgramHost::ProgramHost(const MachineConfig& config, const IoImage& io, axes::MotionTables& tables, std::vector<Error>& errors) {
     for (std::size_t i = 0; i < config.programs.size(); ++i) {
         const auto& program = config.programs[i];
+        outputs_.emplace_back();
         programs_.push_back({program, ProgramLibrary::Instance{nullptr, {}}, 0, std::vector<AlarmDeclared>(64), {}});
         auto library = program.entry ? ProgramLibrary::linked(program.entry()) : ProgramLibrary::open(program.library);
         if (!library) {

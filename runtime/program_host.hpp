@@ -2,6 +2,7 @@
 // The programs of a machine: loaded, their declarations checked against the configuration, their tasks ready to be called.
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,14 @@ public:
     void describe(MachineLayout& layout) const;
     [[nodiscard]] const MachineLayout::ParameterInfo& parameter(std::size_t index) const { return parameter_info_[index]; }
 
+    /// The output points that a program has declared, each once. Real-time safe.
+    [[nodiscard]] std::span<const std::uint16_t> outputs_of(std::size_t program) const noexcept { return outputs_[program]; }
+    [[nodiscard]] bool drives(std::size_t program, std::uint16_t output) const noexcept {
+        for (const auto declared : outputs_[program])
+            if (declared == output) return true;
+        return false;
+    }
+
     /// Value of a monitored variable. Real-time safe.
     [[nodiscard]] static double read(const Variable& variable) noexcept;
 
@@ -66,6 +75,7 @@ private:
     std::vector<double> parameters_;
     std::vector<MachineLayout::ParameterInfo> parameter_info_;
     std::vector<MachineLayout::Block> blocks_;
+    std::vector<std::vector<std::uint16_t>> outputs_;  // per program
 };
 
 }  // namespace taktwerk::runtime

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "programs/api/abi.hpp"
+#include "runtime/borrowed_rights.hpp"
 #include "runtime/shared_object_check.hpp"
 
 namespace taktwerk::runtime {
@@ -37,6 +38,11 @@ Result<ProgramLibrary> ProgramLibrary::open(const std::string& path) {
         return Error{"program.missing", path, "there is no such file", "build the program, or correct `library:`"};
     if (!S_ISREG(info.st_mode)) return Error{"program.missing", path, "it is not a file", "correct `library:`"};
     if (auto ok = check_shared_object(path); !ok) return ok.error();
+    if (rights_are_borrowed() && !belongs_to_root(path))
+        return Error{
+            "program.borrowed_rights", path,
+            "this process has rights from its own file (setcap) that its caller has not, and others than root may write the program",
+            "take the rights from the file (setcap -r) and run the machine as a service with them (docs/bus.md)"};
     // dlopen searches names without a slash in system folders: a program is a file, not a library name.
     const std::string file = path.find('/') == std::string::npos ? "./" + path : path;
     void* raw = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);

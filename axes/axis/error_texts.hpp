@@ -118,10 +118,12 @@ inline constexpr std::array<ErrorText, error_id_count> error_texts{{
      {"回零失败", "回零步骤未找到所需信号，驱动器报告回零错误，或没有成功的回零步骤就结束回零", "检查原点开关、限位开关、Z 相脉冲及其接线和回零参数，然后重新回零"}},
     {ErrorId::interlocked, "interlocked",
      {"Motion in this direction is interlocked",
-      "The emergency stop is pressed, a limit switch is reached, or EnablePositive or EnableNegative of MC_Power is off",
-      "Release the emergency stop, set the enable of the direction, or move off the limit switch in the other direction"},
-     {"该方向的运动被联锁禁止", "急停被按下，限位开关被触发，或 MC_Power 的 EnablePositive、EnableNegative 未置位",
-      "解除急停，置位对应方向的使能，或向相反方向驶离限位开关"}},
+      "The emergency stop is pressed, nobody has started the program again after one, a limit switch is reached, or EnablePositive or "
+      "EnableNegative of MC_Power is off",
+      "Release the emergency stop, reset, start the program again; set the enable of the direction, or move off the limit switch in the "
+      "other direction"},
+     {"该方向的运动被联锁禁止", "急停被按下，急停之后尚未重新启动程序，限位开关被触发，或 MC_Power 的 EnablePositive、EnableNegative 未置位",
+      "解除急停、复位并重新启动程序；置位对应方向的使能，或向相反方向驶离限位开关"}},
     {ErrorId::aborted_by_axis_error, "aborted_by_axis_error",
      {"The command ended because of an error of the axis", "The axis went into ErrorStop while the command ran or waited",
       "Read the axis error (MC_ReadAxisError), remove its cause, then MC_Reset and give the command again"},

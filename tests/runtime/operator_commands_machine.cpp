@@ -393,6 +393,27 @@ TEST_F(Commands, WhileTheRunEndsOnlyStopsAreTaken) {
     m().expect_no_jump();
 }
 
+// Whoever stands beside the axis may acknowledge: it takes no control, powers nothing that nobody wishes, moves nothing.
+TEST_F(Commands, AResetByAnotherPartyThanTheOwnerLeavesControlPowerAndPlaceAsTheyAre) {
+    ready();
+    ASSERT_EQ(as(Owner::commissioning, take_control, 0).answer, Answer::accepted);
+    ASSERT_TRUE(stands());
+    m().world.drive("x")->jam(true);
+    ASSERT_EQ(as(Owner::commissioning, move_absolute, 0, false, 100, 50).answer, Answer::accepted);
+    ASSERT_TRUE(m().until([&] { return m().axis(0).state == AxisState::ErrorStop; }, 2s));
+    m().world.drive("x")->jam(false);
+    m().run(1s);
+    ASSERT_TRUE(m().axis(0).drive_state == axes::PowerState::enabled) << "a following error leaves the power on";
+    const double place = m().axis(0).set_position;
+
+    ASSERT_EQ(as(Owner::operator_panel, reset, 0).answer, Answer::accepted);
+    EXPECT_TRUE(stands());
+    EXPECT_EQ(m().axis(0).owner, Owner::commissioning);
+    EXPECT_EQ(m().axis(0).set_position, place);
+    EXPECT_EQ(m().command(move_absolute, 0, false, 10, 50).answer, Answer::no_control) << "the operator still has none";
+    m().expect_no_jump();
+}
+
 TEST_F(Commands, AFullInboxRefusesItsSender) {
     start();
     OperatorCommand c;

@@ -4,10 +4,17 @@
 
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <memory>
+#include <span>
+
+#include "core/crc32.hpp"
 
 namespace taktwerk::runtime {
 namespace {
@@ -26,6 +33,12 @@ struct Folder {
 RetainedAxis axis(std::string name, double shift) {
     axes::Gearing gearing{.counts_per_revolution = 131072, .motor_revolutions = 7, .load_revolutions = 3, .feed = 0.1, .inverted = true};
     return {std::move(name), {.homed = true, .shift = shift, .counts = -4711, .at_rest = true}, gearing};
+}
+/// The same reference, another place.
+RetainedAxis at(std::string name, std::int64_t counts) {
+    auto out = axis(std::move(name), 12.5);
+    out.position.counts = counts;
+    return out;
 }
 std::string text_of(const fs::path& file) {
     std::ifstream in(file, std::ios::binary);
@@ -57,16 +70,16 @@ TEST(PositionStore, WritesTheSlotsInTurnAndTheNewestCounts) {
     PositionStore store(folder.path);
     (void)store.load();
     for (int i = 1; i <= 5; ++i) {
-        ASSERT_TRUE(store.save(std::vector{axis("x", i)}).ok());
+        ASSERT_TRUE(store.save(std::vector{at("x", i)}).ok());
         PositionStore other(folder.path);
-        EXPECT_EQ(other.load().axes[0].position.shift, i);
+        EXPECT_EQ(other.load().axes[0].position.counts, i);
     }
     EXPECT_NE(text_of(folder.path / "positions.0").find("number 5"), std::string::npos);
     EXPECT_NE(text_of(folder.path / "positions.1").find("number 4"), std::string::npos);
     // A new store goes on behind the newest, over the older slot.
     PositionStore next(folder.path);
     (void)next.load();
-    ASSERT_TRUE(next.save(std::vector{axis("x", 6)}).ok());
+    ASSERT_TRUE(next.save(std::vector{at("x", 6)}).ok());
     EXPECT_NE(text_of(folder.path / "positions.1").find("number 6"), std::string::npos);
 }
 
@@ -75,14 +88,14 @@ TEST(PositionStore, TornOrAlteredSlotFallsBackToTheOther) {
     Folder folder;
     PositionStore store(folder.path);
     (void)store.load();
-    ASSERT_TRUE(store.save(std::vector{axis("x", 1)}).ok());
-    ASSERT_TRUE(store.save(std::vector{axis("x", 2)}).ok());
+    ASSERT_TRUE(store.save(std::vector{at("x", 1)}).ok());
+    ASSERT_TRUE(store.save(std::vector{at("x", 2)}).ok());
     const auto whole = text_of(folder.path / "positions.1");
     for (std::size_t cut = 0; cut < whole.size(); ++cut) {
         write(folder.path / "positions.1", whole.substr(0, cut));
         const auto loaded = PositionStore(folder.path).load();
         ASSERT_EQ(loaded.axes.size(), 1u) << cut;
-        EXPECT_EQ(loaded.axes[0].position.shift, 1) << cut;
+        EXPECT_EQ(loaded.axes[0].position.counts, 1) << cut;
         EXPECT_EQ(loaded.damage.size(), 1u) << cut;
         EXPECT_FALSE(loaded.lost);
     }
@@ -90,8 +103,87 @@ TEST(PositionStore, TornOrAlteredSlotFallsBackToTheOther) {
         auto altered = whole;
         altered[at] = static_cast<char>(altered[at] ^ 1);
         write(folder.path / "positions.1", altered);
-        EXPECT_EQ(PositionStore(folder.path).load().axes.at(0).position.shift, 1) << at;
+        EXPECT_EQ(PositionStore(folder.path).load().axes.at(0).position.counts, 1) << at;
     }
+}
+
+// A slot that somebody wrote by hand, with a check sum that fits.
+std::string sealed(const std::string& axis_line) {
+    const std::string text = "taktwerk positions 1\nnumber 3\n" + axis_line;
+    char sum[20];
+    std::snprintf(sum, sizeof sum, "crc %08x\n", crc32(std::as_bytes(std::span(text.data(), text.size()))));
+    return text + sum;
+}
+
+TEST(PositionStore, WhatNoAxisCanHaveIsDamageWhateverTheCheckSum) {
+    Folder folder;
+    const auto loaded = [&](const std::string& line) {
+        write(folder.path / "positions.0", sealed(line));
+        return PositionStore(folder.path).load();
+    };
+    const std::string good = "axis x homed 1 shift 12.5 counts -4711 at_rest 1 gearing 10000 1 1 10 0\n";
+    ASSERT_EQ(loaded(good).axes.size(), 1u) << "the control";
+    for (const std::string bad : {"axis x homed 1 shift nan counts 1 at_rest 1 gearing 10000 1 1 10 0\n",
+                                  "axis x homed 1 shift inf counts 1 at_rest 1 gearing 10000 1 1 10 0\n",
+                                  "axis x homed 1 shift -inf counts 1 at_rest 1 gearing 10000 1 1 10 0\n",
+                                  "axis x homed 1 shift 1e300 counts 1 at_rest 1 gearing 10000 1 1 10 0\n",
+                                  "axis x homed 1 shift 1 counts 9223372036854775807 at_rest 1 gearing 10000 1 1 10 0\n",
+                                  "axis x homed 1 shift 1 counts -9223372036854775808 at_rest 1 gearing 10000 1 1 10 0\n",
+                                  "axis x homed 1 shift 1 counts 1 at_rest 1 gearing 10000 1 1 nan 0\n",
+                                  "axis x homed 1 shift 1 counts 1 at_rest 1 gearing 10000 1 1 0 0\n",
+                                  "axis x homed 1 shift 1 counts 1 at_rest 1 gearing 10000 1 0 10 0\n",
+                                  "axis x homed 1 shift 1 counts 1 at_rest 1 gearing -1 1 1 10 0\n"}) {
+        const auto found = loaded(bad);
+        EXPECT_TRUE(found.axes.empty()) << bad;
+        EXPECT_EQ(found.damage.size(), 1u) << bad;
+    }
+    EXPECT_TRUE(loaded(good + good).axes.empty()) << "which of the two?";
+}
+
+// Whichever slot is lost afterwards, nothing names the old reference any more.
+TEST(PositionStore, AChangedReferenceIsInBothSlots) {
+    Folder folder;
+    PositionStore store(folder.path);
+    (void)store.load();
+    ASSERT_TRUE(store.save(std::vector{axis("x", 1), at("y", 5)}).ok());
+    ASSERT_TRUE(store.save(std::vector{axis("x", 1), at("y", 6)}).ok());
+    ASSERT_TRUE(store.save(std::vector{at("y", 6)}).ok());  // x has none for the moment
+    for (const char* slot : {"positions.0", "positions.1"}) {
+        EXPECT_EQ(text_of(folder.path / slot).find("axis x"), std::string::npos) << slot;
+        EXPECT_NE(text_of(folder.path / slot).find("axis y"), std::string::npos) << slot;
+    }
+}
+
+TEST(PositionStore, WhereNoNewSlotCanBeWrittenTheOldReferenceIsTakenBack) {
+    Folder folder;
+    PositionStore store(folder.path);
+    (void)store.load();
+    ASSERT_TRUE(store.save(std::vector{axis("x", 1)}).ok());
+    for (const char* beside : {"positions.0.new", "positions.1.new"}) fs::create_directory(folder.path / beside);  // takes no file
+    const auto same = store.save(std::vector{axis("x", 1)});
+    ASSERT_FALSE(same.ok());
+    EXPECT_EQ(same.error().code, "positions.cannot_write");
+    EXPECT_EQ(PositionStore(folder.path).load().axes.size(), 1u) << "what is still so stays";
+
+    const auto other = store.save(std::vector{axis("x", 2)});
+    ASSERT_FALSE(other.ok());
+    EXPECT_EQ(other.error().code, "positions.cannot_write");
+    EXPECT_TRUE(PositionStore(folder.path).load().axes.empty());
+}
+
+TEST(PositionStore, OneProcessAtATimeHasTheDirectory) {
+    Folder folder;
+    auto first = std::make_unique<PositionStore>(folder.path / "state");
+    EXPECT_FALSE(first->lock());
+    PositionStore second(folder.path / "state");
+    const auto refused = second.lock();
+    ASSERT_TRUE(refused);
+    EXPECT_EQ(refused->code, "positions.in_use");
+    EXPECT_NE(refused->what.find(std::to_string(::getpid())), std::string::npos) << refused->text();
+    const auto mode = fs::status(folder.path / "state" / "positions.lock").permissions();
+    EXPECT_EQ(mode & (fs::perms::group_all | fs::perms::others_all), fs::perms::none) << "who can open it can hold it";
+    first.reset();
+    EXPECT_FALSE(second.lock());
 }
 
 TEST(PositionStore, BothSlotsBadIsALoss) {

@@ -1,6 +1,8 @@
 // Power cycles of controller and drive in virtual time: an axis with an absolute encoder knows its coordinates again, one without does not,
 // and what cannot be right is said. Real frames, simulated drives, a real directory.
 
+#include <unistd.h>
+
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -125,6 +127,137 @@ TEST_F(RetainedPositions, MovedWithoutPowerIsAWarningAndNotHomed) {
     machine->enable(0);
     machine->home(0);
     EXPECT_TRUE(machine->axis(0).homed);
+}
+
+// Written in motion, found far away: as far as it can have gone on its travel and coasted is believed, and no further.
+TEST_F(RetainedPositions, CutInMotionItIsNotBelievedBeyondItsTravel) {
+    const auto cut_in_motion = [&] {
+        fs::remove_all(directory);
+        start(config());
+        work();
+        machine->run(2500ms);
+        ASSERT_EQ(machine->command(move_absolute, 0, false, 700, 200).answer, Answer::accepted);
+        machine->run(500ms);
+        ASSERT_GT(machine->axis(0).set_velocity, 100);
+        machine.reset();
+    };
+    const auto found_at = [&](double stands) {
+        auto c = config(stands);
+        c.axes[0].simulation.negative_stop = -1e5;
+        c.axes[0].simulation.positive_stop = 1e5;
+        start(std::move(c));
+    };
+    // 300 mm of the program are 50 mm of the mechanics: 0 to 800 mm lie at -250 to 550; it coasts 500^2 / 5000 = 50 mm.
+    for (const double stands : {599.0, -299.0}) {
+        cut_in_motion();
+        found_at(stands);
+        EXPECT_TRUE(machine->axis(0).homed) << stands;
+        EXPECT_NEAR(machine->axis(0).actual_position, stands + 250, 0.1);
+        machine.reset();
+    }
+    for (const double stands : {610.0, -310.0, 30500.0, -30500.0}) {
+        cut_in_motion();
+        found_at(stands);
+        EXPECT_FALSE(machine->axis(0).homed) << stands;
+        EXPECT_TRUE(machine->has_alarm(id(axes::AxisAlarm::moved_while_off))) << machine->alarms();
+        machine.reset();
+    }
+}
+
+/// While it lives the process is nobody of rights: a directory without the right to write holds it up, also when tests run as root.
+struct AsNobody {
+    AsNobody() {
+        if (::geteuid() == 0) changed = ::seteuid(65534) == 0;
+    }
+    ~AsNobody() {
+        if (changed) (void)!::seteuid(0);
+    }
+    bool changed = false;
+};
+
+// The finding: homed anew while the directory cannot be written, started again, homed at the old place.
+TEST_F(RetainedPositions, AReferenceThatCannotBeReplacedOnTheDiskStopsTheMachineAndNeverComesBackSilently) {
+    if (::geteuid() == 0) {
+        ASSERT_EQ(::chown(directory.c_str(), 65534, 65534), 0);
+    }
+    const AsNobody nobody;
+    start(config());
+    work();
+    machine->run(2500ms);
+    for (const char* name : {"positions.0", "positions.1"}) fs::permissions(directory / name, fs::perms::owner_read);
+    fs::permissions(directory, fs::perms::owner_read | fs::perms::owner_exec);
+
+    ASSERT_EQ(machine->command(home, 0).answer, Answer::accepted);
+    machine->run(100ms);
+    EXPECT_TRUE(machine->has_alarm(id(MachineAlarm::positions_outdated))) << machine->alarms();
+    EXPECT_EQ(machine->axis(0).state, axes::AxisState::ErrorStop) << "nobody works on with what the next start would not know";
+    (void)machine->command(reset);
+    machine->run(500ms);
+    EXPECT_TRUE(machine->has_alarm(id(MachineAlarm::positions_outdated))) << "it stays until the disk is right";
+
+    fs::permissions(directory, fs::perms::owner_all);
+    machine->run(1500ms);
+    EXPECT_EQ(machine->command(reset).answer, Answer::accepted);
+    machine->run(500ms);
+    EXPECT_FALSE(machine->has_alarm(id(MachineAlarm::positions_outdated))) << machine->alarms();
+    end();
+    start(config(170));
+    EXPECT_EQ(slots().find("shift 250 "), std::string::npos) << slots();
+    machine.reset();
+}
+
+// Where only a new file cannot be made, the old reference is taken back, and the machine works on with a warning.
+TEST_F(RetainedPositions, WithoutRoomForANewSlotTheOldReferenceIsGoneAfterAHoming) {
+    start(config());
+    work();
+    machine->run(2500ms);
+    for (const char* beside : {"positions.0.new", "positions.1.new"}) fs::create_directory(directory / beside);
+    machine->home(0);  // other coordinates: it stands 120 mm further
+    machine->run(100ms);
+    EXPECT_TRUE(machine->has_alarm(id(MachineAlarm::positions_not_kept))) << machine->alarms();
+    EXPECT_FALSE(machine->has_alarm(id(MachineAlarm::positions_outdated)));
+    machine.reset();
+    start(config(170));
+    EXPECT_FALSE(machine->axis(0).homed) << "at " << machine->axis(0).actual_position;
+}
+
+// The disk says "no reference" before there is another one: a homing that takes its time, cut off in its middle.
+TEST_F(RetainedPositions, WhileAnAxisHomesTheDiskNamesNoReference) {
+    auto c = config();
+    c.axes[0].axis.homing.kind = axes::HomingKind::home_switch;
+    start(config());
+    work();
+    end();
+    ASSERT_NE(slots().find("axis x"), std::string::npos);
+    auto searching = config(170);
+    searching.axes[0].axis.homing = c.axes[0].axis.homing;
+    start(std::move(searching));
+    ASSERT_TRUE(machine->axis(0).homed);
+    machine->enable(0);
+    ASSERT_EQ(machine->command(home, 0).answer, Answer::accepted);
+    machine->run(5ms);
+    ASSERT_EQ(machine->axis(0).state, axes::AxisState::Homing);
+    machine.reset();
+    EXPECT_EQ(slots().find("axis x"), std::string::npos);
+}
+
+TEST_F(RetainedPositions, ADiskThatTakesNothingIsSaidBeforeAnythingMoves) {
+    auto c = config();
+    std::ofstream(directory / "file") << "";
+    c.retain = (directory / "file" / "state").string();
+    start(std::move(c));
+    machine->run(5ms);
+    EXPECT_TRUE(machine->has_alarm(id(MachineAlarm::positions_not_kept))) << machine->alarms();
+}
+
+TEST_F(RetainedPositions, ASecondMachineInTheSameDirectoryDoesNotStart) {
+    start(config());
+    VirtualClock clock{Instant{} + 1s};
+    auto second = config();
+    World world{second, clock.now()};
+    auto built = Machine::build(second, world.transport(), world.serial().lines());
+    ASSERT_EQ(built.index(), 1u);
+    EXPECT_EQ(std::get<1>(built).front().code, "positions.in_use");
 }
 
 TEST_F(RetainedPositions, ChangedGearingIsSaid) {
