@@ -9,6 +9,7 @@
 
 #include "axes/axis/axis.hpp"
 #include "tests/axes/axis/fake_drive.hpp"
+#include "tests/axes/axis/motion_oracle.hpp"
 
 namespace taktwerk::axes::test {
 
@@ -28,7 +29,11 @@ struct Rig {
     static constexpr Duration cycle = 1ms;
 
     explicit Rig(const AxisConfig& config = plain_axis(), const std::function<void(FakeDrive&)>& prepare = {})
-        : drive(prepared(prepare)), axis(config, drive, cycle) {}
+        : drive(prepared(prepare)), axis(config, drive, cycle), oracle(config, cycle, drive.caps.mode_change_delay) {}
+    Rig(const Rig&) = delete;
+    Rig& operator=(const Rig&) = delete;
+    /// Whatever a test is about: what must always hold held.
+    ~Rig() { EXPECT_TRUE(oracle.clean()) << oracle.report(); }
 
     static FakeDrive prepared(const std::function<void(FakeDrive&)>& prepare) {
         FakeDrive made(cycle);
@@ -38,6 +43,7 @@ struct Rig {
 
     FakeDrive drive;
     Axis axis;
+    MotionOracle oracle;
     Instant now{};
     bool enable = false;
     bool jog_alive = true;
@@ -60,6 +66,7 @@ struct Rig {
         const bool homed = view().homed;
         axis.plan(now, cycle);
         axis.encode(now);
+        oracle.observe(view(), axis.drive_command(), axis.config().limits);
         fetch_alarms();
         // Homing gives the same place another number: no step.
         if (seen_++ > 0 && homed == view().homed) largest_step = std::max(largest_step, std::abs(view().set_position - before));
@@ -109,8 +116,10 @@ struct Rig {
             if (fact.id == id(alarm)) return true;
         return false;
     }
-    /// What a drive would feel: never more than the velocity limit allows in a cycle (plus the rounding to counts).
+    /// What must hold in every cycle; and what a drive would feel: never more than the velocity limit allows in a cycle (plus the rounding
+    /// to counts).
     void expect_no_jump() const {
+        EXPECT_TRUE(oracle.clean()) << oracle.report();
         EXPECT_LE(largest_step, axis.config().limits.velocity * to_seconds(cycle) * 1.0000001);
         EXPECT_LE(drive.largest_step, static_cast<std::int64_t>(axis.config().limits.velocity * to_seconds(cycle) * 1000) + 1);
     }

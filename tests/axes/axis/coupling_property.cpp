@@ -119,6 +119,7 @@ TEST_P(RandomCouplings, NeverJumpAndTellTheTruth) {
         std::vector<double> before(count);
         for (std::size_t i = 0; i < count; ++i) before[i] = static_cast<double>(rig.axes[i].drive_command().position);
         rig.step();
+        ASSERT_TRUE(rig.clean()) << cycle;  // what is wrong is said at the end
         for (std::size_t i = 0; i < count; ++i) {
             const auto& view = rig.view(i);
             // At the drive nothing that MC_SetPosition may have renumbered: counts. 100 u/s at 1 ms, and the rounding.

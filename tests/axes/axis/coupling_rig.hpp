@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "axes/axis/plan_order.hpp"
@@ -26,10 +28,19 @@ struct CouplingRig {
     explicit CouplingRig(std::vector<AxisConfig> configs) {
         for (std::size_t i = 0; i < configs.size(); ++i) drives.push_back(std::make_unique<FakeDrive>(cycle));
         axes.reserve(configs.size());
-        for (std::size_t i = 0; i < configs.size(); ++i) axes.emplace_back(configs[i], *drives[i], cycle, static_cast<std::uint16_t>(i));
+        for (std::size_t i = 0; i < configs.size(); ++i) {
+            axes.emplace_back(configs[i], *drives[i], cycle, static_cast<std::uint16_t>(i));
+            configs[i].name = "axis " + std::to_string(i);
+            oracles.emplace_back(configs[i], cycle);
+        }
         traces.resize(configs.size());
         enabled.assign(configs.size(), true);
+        permits.assign(configs.size(), 3);
     }
+    CouplingRig(const CouplingRig&) = delete;
+    CouplingRig& operator=(const CouplingRig&) = delete;
+    /// Whatever a test is about: what must always hold held.
+    ~CouplingRig() { expect_clean(); }
     explicit CouplingRig(std::size_t count) : CouplingRig(std::vector<AxisConfig>(count, plain_slave())) {}
 
     /// Declares the tables before; then all axes to Standstill.
@@ -54,12 +65,15 @@ struct CouplingRig {
         for (auto& axis : axes) axis.supervise(now);
         fetch_alarms();
         for (std::size_t i = 0; i < axes.size(); ++i)
-            if (!axes[i].config().encoder) axes[i].power(enabled[i], true, true, view(i).owner);
+            if (!axes[i].config().encoder) axes[i].power(enabled[i], (permits[i] & 1) != 0, (permits[i] & 2) != 0, view(i).owner);
         if (program) program();
         plan_axes(axes, now, cycle);
         for (auto& axis : axes) axis.encode(now);
         fetch_alarms();
-        for (std::size_t i = 0; i < axes.size(); ++i) note(i);
+        for (std::size_t i = 0; i < axes.size(); ++i) {
+            oracles[i].observe(view(i), axes[i].drive_command(), axes[i].config().limits);
+            note(i);
+        }
     }
     void run(int cycles) {
         for (int i = 0; i < cycles; ++i) step();
@@ -103,6 +117,7 @@ struct CouplingRig {
     }
     /// Never more than the axis' own limits in any cycle: neither the velocity, nor its change, nor the place against the velocity.
     void expect_no_jump() const {
+        expect_clean();
         for (std::size_t i = 0; i < axes.size(); ++i) {
             if (axes[i].config().encoder) continue;
             const auto& limits = axes[i].config().limits;
@@ -115,11 +130,20 @@ struct CouplingRig {
         }
     }
 
+    void expect_clean() const {
+        for (const auto& oracle : oracles) EXPECT_TRUE(oracle.clean()) << oracle.report();
+    }
+    [[nodiscard]] bool clean() const {
+        return std::all_of(oracles.begin(), oracles.end(), [](const auto& oracle) { return oracle.clean(); });
+    }
+
     std::vector<std::unique_ptr<FakeDrive>> drives;
     MotionTables tables;
     std::vector<Axis> axes;
+    std::vector<MotionOracle> oracles;
     std::vector<Trace> traces;
     std::vector<char> enabled;
+    std::vector<std::uint8_t> permits;  ///< bit 0: EnablePositive, bit 1: EnableNegative
     std::vector<AlarmFact> alarms;
     std::function<void()> program;
     Instant now{};

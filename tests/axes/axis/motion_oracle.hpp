@@ -1,0 +1,332 @@
+#pragma once
+// What must hold of every axis in every cycle, whatever was asked of it. One oracle for rigs, walks and campaigns: it knows no command, it
+// looks at the view and at what the drive was told, and compares each with the cycle before.
+//
+//   place with velocity          what is left of the way when the mean velocity is taken off is bounded by acceleration and jerk
+//   velocity with acceleration   likewise; never more than acceleration * period: a stop in one cycle is a breach
+//   acceleration with jerk       where it is limited
+//   drive with view              the target in counts is the set position, but for a rounding and what compensation adds
+//   limits                       velocity, acceleration, jerk, software limits
+//   state with motion            Standstill stands and holds nothing; a command that waits for nothing begins
+//
+// Where it looks away, and why:
+//   * the drive takes no set-point from here (no power, homing by itself, torque, its own profiles, a slow line): the set-point follows the motor
+//   * tables over time have corners, and a slave keeps no jerk (axes/axis/README.md): there no jerk is asked for
+//   * a slave held at its limits keeps its place within acceleration * period^2 / 2; a fed set-point within acceleration * period^2, and its
+//     acceleration is the feeder's
+//   * while something is superimposed, and after it was given up until the axis rests, ramps add up: twice acceleration and jerk (P1-155)
+//   * coordinates may change (homing, MC_SetPosition) where the drive sees nothing of it and the actual position changes alike
+//   * a software limit that comes over a moving axis, or is moved with its coordinates, holds once the axis has rested
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "axes/axis/axis_config.hpp"
+#include "axes/axis/axis_view.hpp"
+#include "axes/axis/parameters.hpp"
+#include "axes/axis/state_machine.hpp"
+#include "axes/port/drive_port.hpp"
+
+namespace taktwerk::axes::test {
+
+class MotionOracle {
+public:
+    /// `config` as configured: limits of the system. `settling`: how long the drive shows a mode before it gets set-points in it.
+    MotionOracle(const AxisConfig& config, Duration cycle, Duration settling = {})
+        : config_(config), period_(to_seconds(cycle)), settling_(2 + settling / cycle) {
+        counts_ = config.gearing.counts_per_unit();
+        double slope = 0;
+        const auto& pitch = config.compensation.pitch;
+        for (std::size_t i = 1; i < pitch.size(); ++i)
+            slope =
+                std::max(slope, std::abs((pitch[i].correction - pitch[i - 1].correction) / (pitch[i].position - pitch[i - 1].position)));
+        pitch_slope_ = slope;
+        compensates_ = config.compensation.backlash > 0 || !pitch.empty();
+    }
+
+    /// After encode(). `now`: the limits that hold at present, as parameters have made them.
+    void observe(const AxisView& view, const DriveCommand& command, const AxisLimits& now) {
+        told_ = true;
+        look(view, command, now);
+    }
+    /// Where what the drive is told cannot be seen beside the view (behind a bus: tests/runtime/drive_oracle.hpp).
+    void observe(const AxisView& view) {
+        told_ = false;
+        DriveCommand unseen;
+        unseen.power = view.state != AxisState::Disabled ? PowerRequest::on : PowerRequest::off;
+        unseen.mode = view.state == AxisState::Homing && !view.homing_procedure && config_.homing.kind == HomingKind::drive
+                          ? DriveMode::homing
+                          : view.drive_mode;
+        auto limits = config_.limits;
+        limits.position_min = view.parameters[place_of(enable_limit_negative)] != 0 ? view.parameters[place_of(software_limit_negative)]
+                                                                                    : -std::numeric_limits<double>::infinity();
+        limits.position_max = view.parameters[place_of(enable_limit_positive)] != 0 ? view.parameters[place_of(software_limit_positive)]
+                                                                                    : std::numeric_limits<double>::infinity();
+        look(view, unseen, limits);
+    }
+
+    [[nodiscard]] bool clean() const { return breaches_ == 0; }
+    [[nodiscard]] const std::string& report() const { return report_; }
+    /// Cycles in which place, velocity and acceleration were compared: the positive control.
+    [[nodiscard]] long compared() const { return compared_; }
+    [[nodiscard]] long cycles() const { return cycle_; }
+    /// The newest cycle was compared, and its coordinates are those of the cycle before.
+    [[nodiscard]] bool continues() const { return continues_; }
+    /// From here on nothing is said any more; for what a test does to an axis from outside, with the reason.
+    void look_away(const char* reason) { away_ = reason; }
+
+private:
+    void look(const AxisView& view, const DriveCommand& command, const AxisLimits& now) {
+        ++cycle_;
+        Sample next;
+        next.at = {view.set_position + static_cast<double>(view.turns) * view.modulo, view.set_velocity, view.set_acceleration};
+        next.actual = view.actual_position;
+        next.counts = command.position;
+        next.state = view.state;
+        next.kind = view.active_kind;
+        next.layer = view.side[static_cast<std::size_t>(SideSlot::superimposed)];
+        next.homed = view.homed;
+        next.modulo = view.modulo;
+        next.driven = takes_setpoints(view, command);
+        check_state(view, next.driven);
+        if (next.driven && told_) check_told(view, command);
+        continues_ = false;
+        if (seen_ && last_.driven && next.driven) {
+            check_motion(view, next, now);
+        } else {
+            summed_ = false;
+            most_ = now.velocity;
+            loose_ = true;
+        }
+        last_ = next;
+        seen_ = true;
+    }
+
+    struct Place {
+        double position = 0, velocity = 0, acceleration = 0;
+    };
+    struct Sample {
+        Place at;
+        double actual = 0, modulo = 0;
+        std::int64_t counts = 0;
+        AxisState state = AxisState::Disabled;
+        CommandKind kind = CommandKind::none;
+        CommandId layer = 0;  // the superimposed command
+        bool driven = false, homed = false;
+    };
+
+    template <class... Args>
+    void breach(fmt::format_string<Args...> text, Args&&... args) {
+        if (away_) return;
+        if (++breaches_ > 5) return;
+        report_ += fmt::format("cycle {}, axis {} {} ({}): ", cycle_, config_.name, name(last_.state), static_cast<int>(last_.kind));
+        report_ += fmt::format(text, std::forward<Args>(args)...);
+        report_ += '\n';
+    }
+
+    [[nodiscard]] bool takes_setpoints(const AxisView& view, const DriveCommand& command) {
+        const bool cyclic = command.mode == DriveMode::cyclic_position || command.mode == DriveMode::cyclic_velocity;
+        const bool takes = !config_.encoder && view.drive_state == PowerState::enabled && cyclic && view.drive_mode == command.mode &&
+                           (command.power == PowerRequest::on || last_.driven);
+        steady_ = takes ? steady_ + 1 : 0;
+        return steady_ > settling_;
+    }
+
+    void check_state(const AxisView& view, bool driven) {
+        // In torque mode without a command the set-point follows a motor that may be pushed.
+        const bool still = view.set_velocity == 0 && view.set_acceleration == 0;
+        const bool rests = still || !driven;
+        const bool layered = view.side[static_cast<std::size_t>(SideSlot::superimposed)] != 0;
+        if (view.state == AxisState::Standstill && !(rests && view.active == 0 && view.queued_count == 0 && !layered))
+            breach("stands still with velocity {}, active {}, {} waiting, superimposed {}", view.set_velocity, view.active,
+                   view.queued_count, layered);
+        if (view.state == AxisState::Disabled && !(rests && view.active == 0 && !layered))  // while power comes up commands may wait
+            breach("is disabled with velocity {}, active {}, superimposed {}", view.set_velocity, view.active, layered);
+        if ((view.state == AxisState::ErrorStop) != (view.error != 0)) breach("is in {} with error {}", name(view.state), view.error);
+        if (view.state != AxisState::Disabled && view.state != AxisState::ErrorStop && !view.powered && view.online)
+            breach("is in {} without power", name(view.state));
+        // What waits for nothing begins: commands wait behind nobody only for power, and while the axis brakes.
+        const bool nobody = view.active == 0 && view.lock == 0;
+        const bool brakes = !still && (view.limiter == VelocityLimiter::stopping || view.state == AxisState::Stopping);
+        const bool awaited = view.state == AxisState::Disabled || brakes || layered;
+        abandoned_ = nobody && view.queued_count > 0 && !awaited ? abandoned_ + 1 : 0;
+        if (abandoned_ == patience) breach("{} commands wait behind nobody", view.queued_count);
+        const bool busy = view.state == AxisState::DiscreteMotion || view.state == AxisState::Stopping;
+        done_ = busy && nobody && !layered && still && driven ? done_ + 1 : 0;
+        if (done_ == patience) breach("is in {} although it stands and nothing is commanded", name(view.state));
+        for (const double value : {view.set_position, view.set_velocity, view.set_acceleration})
+            if (!std::isfinite(value)) breach("has a set value {}", value);
+        if (view.modulo > 0 && !(view.set_position >= 0 && view.set_position < view.modulo))
+            breach("shows position {} in a modulo of {}", view.set_position, view.modulo);
+    }
+
+    /// The other values that go to the drive with its position.
+    void check_told(const AxisView& view, const DriveCommand& command) {
+        const auto& control = config_.control;
+        const double grain = 1e-9 * config_.limits.velocity * std::abs(counts_);
+        if (command.mode == DriveMode::cyclic_position) {
+            const double velocity = control.feed_forward * view.set_velocity * counts_;
+            if (std::abs(command.velocity - velocity) > grain)
+                breach("tells the drive {} counts/s beside its position, the view {} u/s", command.velocity, view.set_velocity);
+            return;
+        }
+        const double limit = (control.output_limit > 0 ? control.output_limit : 1.2 * config_.limits.velocity) * std::abs(counts_);
+        const double open = control.feed_forward * view.set_velocity * counts_;
+        const double closed = std::clamp(open + control.kv * view.following_error * counts_, -limit, limit);
+        // The loop is open without feedback, and from the command on that takes the axis into another mode.
+        const bool may_be_open = !view.online || changes_mode(view.active_kind) || changes_mode(last_.kind) || last_.state != view.state;
+        if (std::abs(command.velocity - closed) > grain && !(may_be_open && std::abs(command.velocity - open) <= grain))
+            breach("tells the drive {} counts/s; feed-forward and loop make {}", command.velocity, closed);
+    }
+
+    void check_motion(const AxisView& view, const Sample& next, const AxisLimits& now) {
+        ++compared_;
+        const auto& a = last_.at;
+        const auto& b = next.at;
+        const bool stopping = either(last_, next, AxisState::Stopping) || either(last_, next, AxisState::ErrorStop);
+        const auto& system = config_.limits;
+        double most_acceleration = std::max(system.acceleration, system.deceleration);
+        double most_jerk = system.jerk;
+        if (stopping) {
+            most_acceleration = std::max(most_acceleration, system.stop_deceleration);
+            most_jerk = std::max(most_jerk, system.stop_jerk);
+        }
+        if (last_.layer != 0 && next.layer == 0 && view.status(last_.layer) != CommandStatus::done) summed_ = true;
+        const bool layered = last_.layer != 0 || next.layer != 0 || summed_;
+        most_acceleration *= layered ? 2 : 1;
+        most_jerk *= layered ? 2 : 1;
+        const bool fed = last_.kind == CommandKind::external || next.kind == CommandKind::external;
+        const bool coupled = either(last_, next, AxisState::SynchronizedMotion);
+        const bool by_table = is_table(last_.kind) || is_table(next.kind);
+        const bool jerked = std::isfinite(most_jerk) && !fed && !coupled && !by_table;
+        constexpr double rounding = 1 + 1e-6;
+        const double T = period_;
+        const double speed_grain = 1e-9 * system.velocity;
+
+        // Acceleration and jerk.
+        const double bound = std::max(most_acceleration, std::abs(a.acceleration));
+        if (!fed && std::abs(b.acceleration) > bound * rounding)
+            breach("accelerates with {} u/s2, {} before; {} is the most", b.acceleration, a.acceleration, most_acceleration);
+        if (jerked && std::abs(b.acceleration - a.acceleration) > most_jerk * T * rounding + 1e-9 * most_acceleration)
+            breach("acceleration {} after {} u/s2 in a cycle; the jerk {} allows {}", b.acceleration, a.acceleration, most_jerk,
+                   most_jerk * T);
+
+        // Velocity with acceleration.
+        const double change = b.velocity - a.velocity;
+        if (std::abs(change) > (fed ? most_acceleration : bound) * T * rounding + speed_grain)
+            breach("velocity {} after {} u/s in a cycle; the acceleration {} allows {}", b.velocity, a.velocity, bound, bound * T);
+        else if (jerked && std::abs(change - (a.acceleration + b.acceleration) / 2 * T) > most_jerk * T * T / 4 * rounding + speed_grain)
+            breach("velocity {} after {} u/s does not agree with accelerations {} and {}", b.velocity, a.velocity, a.acceleration,
+                   b.acceleration);
+        // While a superimposed motion turns round the sum swings a little beyond (axes/axis/README.md).
+        most_ = std::max(most_, now.velocity);
+        const double swing = layered ? 1.02 : 1;
+        if (std::abs(b.velocity) > std::max(most_ * swing, std::abs(a.velocity)) * (1 + 1e-8))
+            breach("runs at {} u/s; {} is the most", b.velocity, most_);
+
+        // Place with velocity: at the drive, and in the view as long as its coordinates are the same.
+        const double mean = (a.velocity + b.velocity) / 2 * T;
+        double left = bound * T * T / 4;
+        double correction = 0;
+        if (fed) left = most_acceleration * T * T;
+        else if (coupled) left = bound * T * T / 2;
+        else if (jerked) {
+            // The trapezoid with its end correction: what the jerk can add is 1/2 * integral |t (T - t) - T^2 / 6|, times itself.
+            correction = -(b.acceleration - a.acceleration) * T * T / 12;
+            left = 0.0321 * most_jerk * T * T * T;
+        }
+        // The last digits: of the place, and of where a modulo axis counts from.
+        const double grain = 1e-12 * (1 + std::abs(b.position) + std::abs(a.position)) +
+                             (next.modulo > 0 ? 4e-13 * (next.modulo + 1024 * config_.gearing.feed) : 0);
+        const double expected = mean + correction;
+        const double told = static_cast<double>(next.counts - last_.counts) / counts_;
+        double told_grain = 1.01 / std::abs(counts_);
+        if (compensates_) told_grain += 2 * config_.compensation.velocity * T + pitch_slope_ * std::abs(expected) * 1.5;
+        if (told_ && std::abs(told - expected) > left * rounding + told_grain + grain)
+            breach("the drive is told a way of {} u at a set velocity of {} after {} u/s", told, b.velocity, a.velocity);
+        const double way = b.position - a.position;
+        const bool follows = std::abs(way - expected) <= left * rounding + grain;
+        bool renumbered = false;
+        if (!follows) {
+            const double shift = way - expected;
+            const double actual = modulo_of(next.actual - last_.actual - shift, next.modulo);
+            renumbered = std::abs(shift) > told_grain && (!told_ || std::abs(told - expected) <= left * rounding + told_grain + grain) &&
+                         std::abs(actual) <= 2 * system.velocity * T + told_grain;
+            // Not again and again: that is a view that stands still while the drive is led on.
+            again_ = renumbered ? again_ + 1 : 0;
+            if (!renumbered || again_ == 4)
+                breach("set position {} after {} u: a way of {} at a set velocity of {} after {} u/s, off by {}", b.position, a.position,
+                       way, b.velocity, a.velocity, way - expected);
+        } else again_ = 0;
+        // Drive with view: the same place ever since, but for the rounding to counts.
+        if (!compensates_ && told_) {
+            const double offset = b.position - static_cast<double>(next.counts) / counts_;
+            if (renumbered || loose_) lowest_ = highest_ = offset;
+            lowest_ = std::min(lowest_, offset);
+            highest_ = std::max(highest_, offset);
+            if (highest_ - lowest_ > (1.01 / std::abs(counts_)) + 4 * grain) {
+                breach("view and drive differ by {} u more than once", highest_ - lowest_);
+                lowest_ = highest_ = offset;
+            }
+        }
+        check_software_limits(view, next, now, renumbered);
+        continues_ = !renumbered;
+        loose_ = false;
+        if (b.velocity == 0 && b.acceleration == 0 && next.layer == 0) {
+            summed_ = false;
+            most_ = now.velocity;
+        }
+    }
+
+    void check_software_limits(const AxisView& view, const Sample& next, const AxisLimits& now, bool renumbered) {
+        const bool hold = view.homed && view.modulo == 0;
+        const bool rests = next.at.velocity == 0 && next.at.acceleration == 0;
+        const bool other = now.position_min != low_ || now.position_max != high_ || renumbered || last_.homed != next.homed || loose_;
+        low_ = now.position_min;
+        high_ = now.position_max;
+        if (either(last_, next, AxisState::Homing) || !hold || (other && !rests)) excused_ = true;
+        else if (rests) excused_ = false;
+        if (excused_ || !hold) return;
+        constexpr double grain = 1e-9;
+        const bool above = next.at.position > high_ + grain && next.at.position > last_.at.position;
+        const bool below = next.at.position < low_ - grain && next.at.position < last_.at.position;
+        if (above || below) breach("is at {} u, beyond its software limits {} to {}", next.at.position, low_, high_);
+    }
+
+    [[nodiscard]] static bool either(const Sample& a, const Sample& b, AxisState state) { return a.state == state || b.state == state; }
+    [[nodiscard]] static bool changes_mode(CommandKind kind) {
+        return kind == CommandKind::torque || kind == CommandKind::set_controller_mode || kind >= CommandKind::drive_move_absolute;
+    }
+    [[nodiscard]] static bool is_table(CommandKind kind) {
+        return kind == CommandKind::position_profile || kind == CommandKind::velocity_profile || kind == CommandKind::acceleration_profile;
+    }
+    [[nodiscard]] static double modulo_of(double way, double modulo) { return modulo > 0 ? way - modulo * std::round(way / modulo) : way; }
+
+    static constexpr int patience = 20;  // cycles
+
+    AxisConfig config_;
+    double period_;
+    long settling_;
+    double counts_ = 1, pitch_slope_ = 0;
+    bool compensates_ = false;
+
+    Sample last_;
+    bool seen_ = false, told_ = true, continues_ = false;
+    bool loose_ = true;  // the drive has just begun to take set-points
+    bool summed_ = false, excused_ = true;
+    double most_ = 0;  // u/s, the greatest velocity limit since the axis rested
+    double low_ = 0, high_ = 0, lowest_ = 0, highest_ = 0;
+    long steady_ = 0;
+    int abandoned_ = 0, done_ = 0, again_ = 0;
+
+    long cycle_ = 0, compared_ = 0;
+    long breaches_ = 0;
+    const char* away_ = nullptr;
+    std::string report_;
+};
+
+}  // namespace taktwerk::axes::test

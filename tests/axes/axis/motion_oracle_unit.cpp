@@ -1,0 +1,120 @@
+// The oracle that every rig and walk relies on sees what it is there for: a clean motion passes, and each kind of break is told.
+
+#include "tests/axes/axis/motion_oracle.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "tests/axes/axis/axis_rig.hpp"
+
+namespace taktwerk::axes::test {
+namespace {
+
+constexpr Duration cycle = 1ms;
+
+/// A motion with jerk 10000 u/s3 up to 200 u/s2 and on, in exact formulas: a = j t, v = j t2 / 2, s = j t3 / 6; then v + a t.
+struct Story {
+    AxisView view;
+    DriveCommand command;
+};
+Story at(int k) {
+    const double j = 10'000, ramp = 0.02, t = k * 1e-3;
+    const double s = std::min(t, ramp), rest = t - s;
+    const double a = j * s, v = j * s * s / 2, p = j * s * s * s / 6;
+    Story out;
+    out.view.state = AxisState::DiscreteMotion;
+    out.view.active = 1;
+    out.view.active_kind = CommandKind::move_absolute;
+    out.view.powered = out.view.online = true;
+    out.view.drive_state = PowerState::enabled;
+    out.view.drive_mode = DriveMode::cyclic_position;
+    out.view.set_acceleration = a;
+    out.view.set_velocity = v + a * rest;
+    out.view.set_position = p + v * rest + a * rest * rest / 2;
+    out.view.actual_position = out.view.set_position;
+    out.command.power = PowerRequest::on;
+    out.command.mode = DriveMode::cyclic_position;
+    out.command.position = std::llround(out.view.set_position * 1000);
+    out.command.velocity = out.view.set_velocity * 1000;
+    return out;
+}
+
+/// What the oracle says of the motion with `alter` from cycle 60 on.
+std::string told_of(const std::function<void(Story&, int)>& alter) {
+    const auto config = plain_axis();
+    MotionOracle oracle(config, cycle);
+    for (int k = 0; k < 100; ++k) {
+        auto story = at(k);
+        if (k >= 60) alter(story, k);
+        oracle.observe(story.view, story.command, config.limits);
+    }
+    EXPECT_GT(oracle.compared(), 50);
+    return oracle.report();
+}
+
+using Break = std::pair<const char*, std::function<void(Story&, int)>>;
+
+TEST(MotionOracle, PassesACleanMotion) {
+    EXPECT_EQ(told_of([](Story&, int) {}), "");
+}
+
+TEST(MotionOracle, SeesEachKindOfBreak) {
+    const std::vector<Break> breaks{
+        {"stands", [](Story& s, int) { s.view.state = AxisState::Standstill; }},
+        {"off by", [](Story& s, int) { s.view.set_position = at(59).view.set_position; }},       // frozen, the view says it moves
+        {"off by", [](Story& s, int) { s.view.set_position += 2e-5; }},                          // a fiftieth of a count
+        {"is told a way", [](Story& s, int) { s.command.position = at(59).command.position; }},  // frozen at the drive alone
+        {"differ by", [](Story& s, int k) { s.command.position += k - 60; }},                    // creeps away at the drive
+        {"beside its position", [](Story& s, int) { s.command.velocity *= 1.001; }},             // feed-forward
+        {"velocity 0 after", [](Story& s, int) { s.view.set_velocity = 0; }},                    // a stop in one cycle
+        {"does not agree with accelerations", [](Story& s, int k) { s.view.set_velocity += 0.01 * (k - 59); }},
+        {"acceleration 0 after", [](Story& s, int) { s.view.set_acceleration = 0; }},  // a kink, jerk is limited
+        {"accelerates with", [](Story& s, int) { s.view.set_acceleration = 1001; }},
+        {"is in ErrorStop with error 0", [](Story& s, int) { s.view.state = AxisState::ErrorStop; }},
+        {"without power", [](Story& s, int) { s.view.powered = false; }},
+        {"wait behind nobody", [](Story& s, int) { s.view.active = 0, s.view.queued_count = 1; }},
+        {"has a set value nan", [](Story& s, int) { s.view.set_velocity = std::nan(""); }},
+    };
+    for (const auto& [words, alter] : breaks) EXPECT_NE(told_of(alter).find(words), std::string::npos) << words << "\n" << told_of(alter);
+}
+
+// A new number for the same place is no jump; a jump of the drive with a new number is one.
+TEST(MotionOracle, KnowsCoordinatesFromMotion) {
+    const auto renumber = [](Story& s, int) { s.view.set_position += 7, s.view.actual_position += 7; };
+    EXPECT_EQ(told_of(renumber), "");
+    EXPECT_NE(told_of([&](Story& s, int k) { renumber(s, k), s.command.position += 7000; }), "");
+}
+
+TEST(MotionOracle, WatchesVelocityAndSoftwareLimits) {
+    auto config = plain_axis();
+    config.limits.velocity = 5;
+    MotionOracle velocity(config, cycle);
+    for (int k = 0; k < 60; ++k) velocity.observe(at(k).view, at(k).command, config.limits);
+    EXPECT_NE(velocity.report().find("runs at"), std::string::npos);
+
+    config = plain_axis();
+    config.limits.position_max = 0.1;
+    MotionOracle place(config, cycle);
+    for (int k = 0; k < 60; ++k) {
+        auto story = at(std::max(0, k - 10));
+        story.view.homed = true;
+        if (k < 10) story.view.state = AxisState::Standstill, story.view.active = 0;
+        place.observe(story.view, story.command, config.limits);
+    }
+    EXPECT_NE(place.report().find("beyond its software limits"), std::string::npos) << place.report();
+}
+
+// Without power, in another mode, and until the drive has taken its mode, nothing is compared.
+TEST(MotionOracle, LooksAwayWhereTheDriveTakesNothing) {
+    const auto jumps = [](Story& s) { s.view.set_position += 100; };
+    const std::vector<std::function<void(Story&, int)>> cases{
+        [&](Story& s, int) { jumps(s), s.view.drive_state = PowerState::switched_on; },
+        [&](Story& s, int) { jumps(s), s.command.mode = s.view.drive_mode = DriveMode::cyclic_torque; },
+        [&](Story& s, int) { jumps(s), s.command.mode = DriveMode::homing; },
+    };
+    for (const auto& alter : cases) EXPECT_EQ(told_of(alter), "");
+}
+
+}  // namespace
+}  // namespace taktwerk::axes::test
