@@ -266,7 +266,12 @@ void Axis::follow_masters(Duration period) noexcept {
 void Axis::step_coupled(Duration period) noexcept {
     if (endless_ && units_.far_from_anchor(setpoint_.base().position)) reanchor();
     auto& follower = coupling_.follower;
-    follower.set_limits(follower_limits(coupling_.running.command));
+    auto limits = follower_limits(coupling_.running.command);
+    // The axis' velocity holds for the sum: what is superimposed has its part, and the slave falls behind with the rest.
+    const auto beside = setpoint_.superimposed().velocity;
+    if (beside * setpoint_.base().velocity > 0)
+        limits.axis.velocity = std::max(0.0, std::min(limits.axis.velocity, config_.limits.velocity - std::abs(beside)));
+    follower.set_limits(limits);
     const bool two = coupling_.running.masters.axes[1].valid();
     const auto first = seen(coupling_.running, 0);
     const auto next = follower.step(first, two ? seen(coupling_.running, 1) : EndlessMotion{}, setpoint_.base(), slave_frame(), period);

@@ -55,6 +55,7 @@ ErrorId Axis::refuse_drive_way(const DriveProfileRun::Way& way) const noexcept {
 
 /// From a motion of its own the axis stops first. With the drive's profile running, the next cycle hands the set-point over.
 void Axis::begin_drive_profile(const AxisCommand& command) noexcept {
+    end_superimposed(Outcome::aborted);
     start_at_base();
     has_commanded_target_ = false;
     aim_at_stop(command);

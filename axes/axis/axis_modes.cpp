@@ -90,6 +90,7 @@ double Axis::torque_of(const AxisCommand& command) const noexcept {
 // --- begin --------------------------------------------------------------------------------------------------------------------
 
 void Axis::begin_torque(const AxisCommand& command) noexcept {
+    end_superimposed(Outcome::aborted);  // there is no set-point to add to any more
     const auto& details = std::get<TorqueDetails>(command.details);
     const auto dynamics = dynamics_of(command, config_.limits, config_.defaults);
     const double wanted = command.velocity == 0 ? config_.limits.velocity : command.velocity;

@@ -99,7 +99,7 @@ void Axis::start_given(double late) noexcept {
     if (!is_profile(queue_.active().command.kind)) return;
     profile_.elapsed = Duration{};
     profile_.late = late;
-    follow_curve(late);
+    if (late > 0) follow_curve(late);  // else it is where the table begins, and nothing of it has happened yet
 }
 
 void Axis::step_given(Duration period) noexcept {

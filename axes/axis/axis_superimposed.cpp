@@ -25,6 +25,9 @@ ErrorId Axis::refuse_superimposed(const AxisCommand& command) const noexcept {
     if (emergency_ != EmergencyStop::none) return ErrorId::interlocked;
     if (!next_state(view_.state, AxisEvent::superimposed)) return ErrorId::state_forbids;
     if (command.kind == CommandKind::halt_superimposed) return ErrorId::none;
+    // Where the drive takes no set-point there is nothing to add to.
+    const auto base = queue_.active().command.kind;
+    if (base == CommandKind::torque || base == CommandKind::set_controller_mode || made_by_drive(base)) return ErrorId::state_forbids;
     if (!permitted(command.position)) return ErrorId::interlocked;
     // Where both are known to end. Everything else is stopped at the limit when it comes there.
     const bool ends = goal_.kind == Goal::Kind::rest || (goal_.kind == Goal::Kind::position && !goal_.goes_on);
@@ -66,6 +69,15 @@ void Axis::run_superimposed() noexcept {
         limits.acceleration *= override_.acceleration;
         limits.deceleration *= override_.acceleration;
         limits.jerk *= override_.jerk;
+    }
+    // An acceleration built up with another jerk is taken away as fast as the sum needs to stay below the axis' limit.
+    if (part.acceleration != 0) {
+        const double sense = part.acceleration > 0 ? 1 : -1;
+        const double base_top = std::max({0.0, setpoint_.base_speed(sense), wants_speed_});
+        const double room = config_.limits.velocity - base_top - sense * part.velocity;
+        const double needed = part.acceleration * part.acceleration / 2;
+        if (needed > limits.jerk * room)
+            limits.jerk = std::max(limits.jerk, room > 0 ? std::min(needed / room, config_.limits.jerk) : config_.limits.jerk);
     }
     Plan plan;
     if (command.kind == CommandKind::halt_superimposed) {
