@@ -129,8 +129,8 @@ public:
         const auto t = ticks(from_, to_, 13);
         std::string list;
         for (const double at : t.at)
-            if (at >= from_ - 1e-9 && at <= to_ + 1e-9)
-                list += fmt::format("{}{} {:.9g}", list.empty() ? "" : ", ", quoted(with_numbers ? tick_text(at, t.step) : ""), at);
+            if (at >= from_ - 1e-9 && at <= to_ + 1e-9)  // (quoted): not std::quoted, which lookup by argument finds too
+                list += fmt::format("{}{} {:.9g}", list.empty() ? "" : ", ", (quoted)(with_numbers ? tick_text(at, t.step) : ""), at);
         line("set xtics ({}) scale 0.3 nomirror offset 0,0.35", list);
     }
 
@@ -180,7 +180,7 @@ public:
         hand_overs(axis);
         const auto t = ticks(low, high, panel.height > 100 ? 6 : 5);
         std::string list;
-        for (const double at : t.at) list += fmt::format("{}{} {:.9g}", list.empty() ? "" : ", ", quoted(tick_text(at, t.step)), at);
+        for (const double at : t.at) list += fmt::format("{}{} {:.9g}", list.empty() ? "" : ", ", (quoted)(tick_text(at, t.step)), at);
         line("set yrange [{:.9g}:{:.9g}]; set ytics ({}) scale 0.3 nomirror; set grid", t.low, t.high, list);
         time_tics(last);
         label(12, top + panel.height / 2 - 7, panel.quantity, "left", 10, "#202020");
@@ -332,7 +332,7 @@ Result<std::string> plot_script(const Trace& trace, const PlotRequest& request) 
     Script script{trace, rows, height};
     const double cycle_ms = (script.to() - script.from()) / static_cast<double>(rows.last - rows.first - 1) * 1e3;
     script.line("set terminal svg size {:.0f},{:.0f} dynamic enhanced font \"DejaVu Sans,10\" background rgb \"#ffffff\"", width, height);
-    script.line("set output {}", quoted(request.output));
+    script.line("set output {}", (quoted)(request.output));
     script.line(
         "set encoding utf8; set multiplot; set border 3 lc rgb \"#909090\"; set grid lc rgb \"#e4e4e4\" lt 1 lw 0.7; set tics font \",9\" "
         "tc rgb \"#404040\"");
