@@ -15,6 +15,7 @@
 #include "config/pdo_selection.hpp"
 #include "core/nearest_name.hpp"
 #include "ecat/sim/digital_terminal.hpp"
+#include "runtime/keeps_positions.hpp"
 
 namespace taktwerk::config {
 
@@ -342,6 +343,13 @@ private:
                 warn(here, "config.no_following_error", fmt::format("the following error of axis {} is not watched", axis.name),
                      "add `following_error: {window: ...}`");
         }
+        if (out.hmi.lcm_commands == hmi::LcmCommands::local)
+            warn("hmi.lcm.commands", "hmi.anybody_commands",
+                 "every process of every user of this computer may move this machine: LCM knows no users and no passwords",
+                 "set `commands: disabled` and use the local socket, whose group may command (`hmi.socket_group`)");
+        if (!out.machine.retain.empty() && !runtime::keeps_positions(out.machine))
+            warn("retain", "config.nothing_to_retain", "no axis has an absolute encoder: nothing will be kept",
+                 "add `position_memory: {absolute: true}` to the axes that have one, or remove `retain`");
     }
 
     void problem(const std::string& path, std::string code, std::string what, std::string remedy) {

@@ -335,6 +335,9 @@ Table<runtime::EmergencyStop> emergency_stop_table() {
             {
                 required(field("input", &E::input, name(), "input that is TRUE while all is well")),
                 field("power_off_after", &E::power_off_after, duration(1ms, 60s), "power goes off when the axes stand, at the latest then"),
+                with_default(field("restart", &E::restart, name(),
+                                   "input of a button: pressed after the release, programs may power their axes again"),
+                             "`taktwerk start` alone"),
             },
             {},
             {}};
@@ -371,24 +374,26 @@ Table<runtime::RealtimeConfig> realtime_table() {
 Table<hmi::HmiConfig> hmi_table() {
     using H = hmi::HmiConfig;
     using hmi::LcmCommands;
-    return {"hmi",
-            "How the state goes out and commands come in.",
-            {
-                field("rate", &H::rate_hz, quantity(Dimension::frequency, 1), "of the state messages: 1 Hz to 1000 Hz"),
-                with_default(field("socket", &H::socket, text(), "Unix socket of the command line"),
-                             "by the machine's name in the run-time directory"),
-                group<H>("lcm", "Publishing over LCM.",
-                         {
-                             field("enabled", &H::lcm, boolean(), "publish the state"),
-                             field("url", &H::lcm_url, text(), "multicast group, port and reach"),
-                             field("required", &H::lcm_required, boolean(), "refuse to run without it"),
-                             field("commands", &H::lcm_commands,
-                                   choice<LcmCommands>({{"disabled", LcmCommands::disabled}, {"local", LcmCommands::local}}),
-                                   "local: every process of this computer may command the machine"),
-                         }),
-            },
-            {},
-            {}};
+    return {
+        "hmi",
+        "How the state goes out and commands come in.",
+        {
+            field("rate", &H::rate_hz, quantity(Dimension::frequency, 1), "of the state messages: 1 Hz to 1000 Hz"),
+            with_default(field("socket", &H::socket, text(), "Unix socket of the command line"),
+                         "by the machine's name in the run-time directory"),
+            with_default(field("socket_group", &H::socket_group, name(), "group whose members may command over it"), "that of the process"),
+            group<H>("lcm", "Publishing over LCM.",
+                     {
+                         field("enabled", &H::lcm, boolean(), "publish the state"),
+                         field("url", &H::lcm_url, text(), "multicast group, port and reach"),
+                         field("required", &H::lcm_required, boolean(), "refuse to run without it"),
+                         field("commands", &H::lcm_commands,
+                               choice<LcmCommands>({{"disabled", LcmCommands::disabled}, {"local", LcmCommands::local}}),
+                               "local: every process of this computer may command the machine"),
+                     }),
+        },
+        {},
+        {}};
 }
 
 }  // namespace

@@ -93,7 +93,10 @@ Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::strin
             if (!holder.empty()) error.what += fmt::format("; the block '{}' moves or holds the axis", holder);
             break;
         case Answer::not_possible_now:
-            if (kind == CommandKind::set_output) {
+            if (answer.error == axes::ErrorId::interlocked) {
+                error.what = "the emergency stop is pressed, or its circuit is open";
+                error.remedy = "Release it when nobody is in danger, reset, then give the command again.";
+            } else if (kind == CommandKind::set_output) {
                 error.what = "a program is running, and it drives the outputs";
                 error.remedy = "Stop the programs first.";
             } else if (kind == CommandKind::program_start) {

@@ -24,6 +24,16 @@ bool powered(const axes::AxisView& view) noexcept {
            view.drive_state == PowerState::fault_reaction;
 }
 
+bool moving(const axes::AxisView& view) {
+    using axes::AxisState;
+    switch (view.state) {
+        case AxisState::Disabled:
+        case AxisState::Standstill:
+        case AxisState::ErrorStop: return view.set_velocity != 0;
+        default: return true;
+    }
+}
+
 /// Bytes of a text object: what can be shown of them.
 std::string text_of(const std::vector<std::byte>& bytes) {
     std::string out;
@@ -38,7 +48,8 @@ Error motor_on(std::string subject, std::string what) {
 
 }  // namespace
 
-DriveRequests::DriveRequests(MachineLink& machine, std::function<void(std::string_view)> log) : machine_(machine), log_(std::move(log)) {
+DriveRequests::DriveRequests(MachineLink& machine, std::function<void(std::string_view)> log, const Hands* hands)
+    : machine_(machine), log_(std::move(log)), hands_(hands) {
     if (!log_) log_ = [](std::string_view) {};
 }
 
@@ -94,15 +105,35 @@ std::optional<Error> DriveRequests::start_read(const DriveRequest& request, cons
                  "Look at the drive's panel, or use its maker's tool."};
 }
 
-std::optional<Error> DriveRequests::check_authority(const Place& place) const {
+std::optional<Error> DriveRequests::check_authority(const DriveRequest& request, const Place& place) const {
     const auto& layout = machine_.layout();
     const auto& view = place.snapshot->axes[place.axis];
     runtime::CommandAnswer refusal;
     refusal.owner = view.owner;
     if (view.owner == axes::Owner::program) refusal.answer = Answer::no_control;
     else if (place.snapshot->mode == runtime::Mode::automatic) refusal.answer = Answer::wrong_mode;
-    else return std::nullopt;
+    else return check_hands(request, place);
     return explain(refusal, CommandKind::none, "axis " + layout.axes[place.axis].name, layout.block_at(refusal.holder));
+}
+
+std::optional<Error> DriveRequests::check_hands(const DriveRequest& request, const Place& place) const {
+    const auto& axes = machine_.layout().axes;
+    for (std::uint16_t i = 0; i < axes.size() && i < place.snapshot->axes.size(); ++i) {
+        if (axes[i].drive != axes[place.axis].drive) continue;
+        const auto& view = place.snapshot->axes[i];
+        const auto* hand = hands_ ? hands_->on(i) : nullptr;
+        if (hand && hand->client == request.client) continue;
+        const auto refuse = [&](std::string what, std::string remedy) {
+            return Error{"command.no_control", "axis " + axes[i].name, std::move(what), std::move(remedy)};
+        };
+        if (moving(view))
+            return refuse(fmt::format("it moves, and {} moves it", hand ? hand->name : "a client that is gone"),
+                          "Stop the axis, or wait until it stands.");
+        if (hand && (powered(view) || view.owner == axes::Owner::commissioning))
+            return refuse(fmt::format("{} commands it", hand->name),
+                          "Let that client let go of it: it switches the axis off, releases the control, or ends.");
+    }
+    return std::nullopt;
 }
 
 bool DriveRequests::any_axis_powered(const Place& place) const {
@@ -120,7 +151,7 @@ std::optional<Error> DriveRequests::start_write(const DriveRequest& request, con
     const auto name = axes::name_of(parameter);
     const auto raw = axes::parse_value(parameter, request.value);
     if (!raw) return raw.error();
-    if (auto refused = check_authority(place)) return refused;
+    if (auto refused = check_authority(request, place)) return refused;
     if (parameter.action)
         return Error{"drive.action", name, fmt::format("writing {} does something instead of setting it", parameter.name),
                      "End the machine, then use `taktwerk drive set` on its bus."};
@@ -147,7 +178,7 @@ std::optional<Error> DriveRequests::start_store(const DriveRequest& request, con
     if (profile.storage != ParameterStorage::on_request)
         return Error{"drive.cannot_store", subject, fmt::format("{} does not store its parameters on request", profile.name),
                      "See its page under docs/drives/."};
-    if (auto refused = check_authority(place)) return refused;
+    if (auto refused = check_authority(request, place)) return refused;
     // An EEPROM takes its time, and a drive that stores may not answer (XP200 9.6.6: 5 s).
     if (any_axis_powered(place)) return motor_on(subject, "a drive stores only while its motors are off");
     const bool service = job.port->capabilities().has(axes::DriveService::save_parameters);
@@ -166,7 +197,7 @@ std::optional<Error> DriveRequests::start_clear_turns(const DriveRequest& reques
     if (!job.port->capabilities().has(axes::DriveService::clear_multi_turn))
         return Error{"drive.no_turns", subject, fmt::format("{} has no command that makes its encoder forget its turns", profile.name),
                      "See its page under docs/drives/."};
-    if (auto refused = check_authority(place)) return refused;
+    if (auto refused = check_authority(request, place)) return refused;
     if (powered(place.snapshot->axes[place.axis])) return motor_on(subject, "the turns are cleared only while the motor is off");
     job.ticket = job.port->start_service(axes::DriveService::clear_multi_turn);
     if (job.ticket == 0)

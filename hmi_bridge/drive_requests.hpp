@@ -3,7 +3,8 @@
 // DrivePort beside the cycle. Nothing here reaches the cycle. One thread (the service side), not real-time.
 //
 // Rules. Reading is everybody's. Writing is commissioning: not in automatic mode, and not while a program owns the axis [wrong_mode,
-// no_control with the owner's name]; a parameter that its manual lets be written only while the motor is off waits for that
+// no_control with the owner's name]; not while an axis of the drive moves by another hand than the asker's, and not while another client that is
+// still there has taken, powered or moved one that has power: limits, ramps and gains are part of what it commands [no_control]; a parameter that its manual lets be written only while the motor is off waits for that
 // [not_possible_now]. Nothing goes into an EEPROM unless the request says `store`, and the log tells what does. What a write would
 // *do* instead of set (restore, clear the encoder's turns) is refused: the machine would not know of it. To clear the turns there is a
 // request of its own, by which it does.
@@ -19,6 +20,7 @@
 #include "axes/port/drive_profile.hpp"
 #include "core/result.hpp"
 #include "core/time.hpp"
+#include "hmi_bridge/hands.hpp"
 #include "hmi_bridge/machine_link.hpp"
 
 namespace taktwerk::hmi {
@@ -34,12 +36,13 @@ enum class DriveRequestKind : std::uint8_t {
 struct DriveRequest {
     DriveRequestKind kind = DriveRequestKind::read;
     std::string axis;
-    std::string parameter;  ///< "P05.13", "6084h", "2005h:0E"
-    std::string value;      ///< in the parameter's unit: "300 ms"
-    bool store = false;     ///< writes: meant for the EEPROM
-    std::string who;        ///< for the log: "process 812 of user 0"
+    std::string parameter;     ///< "P05.13", "6084h", "2005h:0E"
+    std::string value;         ///< in the parameter's unit: "300 ms"
+    bool store = false;        ///< writes: meant for the EEPROM
+    std::string who;           ///< for the log: "process 812 of user 0"
     std::uint64_t tag = 0;
     std::string id;
+    std::uint32_t client = 0;  ///< of the gateway: whose hand is on an axis
 };
 
 struct DriveAnswer {
@@ -56,8 +59,8 @@ public:
     static constexpr Duration patience = std::chrono::seconds{2};
     static constexpr Duration store_patience = std::chrono::seconds{10};  ///< an XP200 is silent for 5 s (9.6.6)
 
-    /// `log`: one line for what a person should find later; may be empty.
-    DriveRequests(MachineLink& machine, std::function<void(std::string_view)> log);
+    /// `log`: one line for what a person should find later; may be empty. `hands`: of the clients; nullptr: there are none.
+    DriveRequests(MachineLink& machine, std::function<void(std::string_view)> log, const Hands* hands = nullptr);
 
     /// Each gets exactly one answer, sooner or later. `snapshot`: of this step, nullptr before the first cycle.
     void handle(DriveRequest request, const runtime::Snapshot* snapshot, Instant now);
@@ -87,11 +90,14 @@ private:
     [[nodiscard]] std::optional<Error> start_store(const DriveRequest& request, const Place& place, Job& job);
     [[nodiscard]] std::optional<Error> start_clear_turns(const DriveRequest& request, const Place& place, Job& job);
     /// Who may change something at this drive now.
-    [[nodiscard]] std::optional<Error> check_authority(const Place& place) const;
+    [[nodiscard]] std::optional<Error> check_authority(const DriveRequest& request, const Place& place) const;
+    /// Somebody else's hand is on an axis of the same drive.
+    [[nodiscard]] std::optional<Error> check_hands(const DriveRequest& request, const Place& place) const;
     [[nodiscard]] bool any_axis_powered(const Place& place) const;
 
     MachineLink& machine_;
     std::function<void(std::string_view)> log_;
+    const Hands* hands_;
     std::vector<Job> jobs_;
     std::deque<DriveAnswer> answers_;
 };

@@ -87,6 +87,8 @@ ClientId Gateway::open(Source source, std::string name, Rights rights) {
 }
 
 void Gateway::close(ClientId id) {
+    if (const auto client = clients_.find(id); client != clients_.end()) note_end(id, client->second);
+    hands_.lift_all(id);
     clients_.erase(id);
     for (auto jog = jogs_.begin(); jog != jogs_.end();) {
         if (jog->second.client != id) {
@@ -163,6 +165,11 @@ std::optional<Gateway::Refusal> Gateway::translate(const Client& client, const C
                        {"command.no_control", "", "commissioning commands are taken from the local socket only",
                         "Use the command line on this computer."}};
     if (request.commissioning) command.owner = axes::Owner::commissioning;
+    if (client.source == Source::lcm && (request.kind == CommandKind::shutdown || request.kind == CommandKind::set_output))
+        return Refusal{
+            Answer::no_control,
+            {"command.no_control", "", fmt::format("{} is not taken over LCM, where nobody knows who asks and who is gone", word->word),
+             "Use the local socket."}};
     if (request.mode > runtime::Mode::automatic)
         return Refusal{Answer::bad_value, bad_value("there is no such mode", "Give manual, setup or automatic.")};
 
@@ -240,6 +247,7 @@ void Gateway::handle(const CommandRequest& request, Instant now) {
         return settle(client, *entry, refusal->answer, axes::ErrorId::none, std::move(refusal->error));
     if (request.kind == CommandKind::shutdown) {
         machine_.request_shutdown();  // a level: it must get through when the inbox is full or nothing cycles yet
+        note(request.client, client, request, now);
         return settle(client, *entry, Answer::accepted, axes::ErrorId::none, {});
     }
     if (!machine_.submit(command)) {
@@ -248,6 +256,7 @@ void Gateway::handle(const CommandRequest& request, Instant now) {
         return settle(client, *entry, Answer::queue_full, axes::ErrorId::none, explain(full, request.kind, "", {}));
     }
     entry->state = Entry::State::waiting;
+    client.set_outputs = client.set_outputs || request.kind == CommandKind::set_output;
     if (request.kind != CommandKind::jog) return;
     if (request.value == 0) jogs_.erase(command.axis);
     else jogs_[command.axis] = {request.client, now, command.owner};
@@ -262,6 +271,8 @@ void Gateway::keep_jog_session(const Entry& entry, Answer answer) {
 }
 
 void Gateway::step(Instant now) {
+    now_ = now;
+    release_outputs();
     while (const auto answer = machine_.next_answer()) {
         const auto client = clients_.find(answer->client);
         if (client == clients_.end()) continue;
@@ -269,6 +280,7 @@ void Gateway::step(Instant now) {
         if (!entry || entry->state != Entry::State::waiting) continue;
         keep_jog_session(*entry, answer->answer);
         if (answer->answer == Answer::accepted) {
+            note(answer->client, client->second, entry->request, now);
             settle(client->second, *entry, Answer::accepted, axes::ErrorId::none, {});
             continue;
         }

@@ -9,19 +9,25 @@
 //
 // Rules: a client's sequence increases; the same command with a sequence of its last 16 is answered again, not executed again.
 // One client jogs an axis at a time. A client that closes while jogging stops its axis; one that just vanishes stops it by
-// letting the lease run out in the cycle. One thread, not real-time.
+// letting the lease run out in the cycle; outputs that it has set become safe. What clients do is told to the log by who they are. Over LCM nobody
+// is known and nobody is missed: nothing that ends the run, or that would stand when its sender has gone, is taken from there.
+// One thread, not real-time.
 
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/result.hpp"
 #include "core/time.hpp"
 #include "hmi_bridge/command_words.hpp"
+#include "hmi_bridge/deed_log.hpp"
+#include "hmi_bridge/hands.hpp"
 #include "hmi_bridge/machine_link.hpp"
 
 namespace taktwerk::hmi {
@@ -72,13 +78,15 @@ public:
     /// A press of another client is taken again after this long without a renewal (the cycle's own lease is shorter).
     static constexpr Duration jog_session = std::chrono::milliseconds{500};
 
-    explicit Gateway(MachineLink& machine) : machine_(machine) {}
+    /// `log`: a line for each deed; may be empty.
+    explicit Gateway(MachineLink& machine, std::function<void(std::string_view)> log = {}) : machine_(machine), deeds_(std::move(log)) {}
 
     /// 0: too many clients.
     ClientId open(Source source, std::string name, Rights rights);
     /// Its jogs stop; answers still on their way are dropped.
     void close(ClientId client);
     [[nodiscard]] std::size_t client_count() const noexcept { return clients_.size(); }
+    [[nodiscard]] const Hands& hands() const noexcept { return hands_; }
 
     /// Before handle(), each service step: commands before the first cycle are refused (there is nobody to carry them out).
     void observe(bool cycling) noexcept { cycling_ = cycling; }
@@ -100,6 +108,7 @@ private:
         Rights rights = Rights::operating;
         std::uint64_t highest = 0;
         std::array<Entry, remembered> entries;
+        bool set_outputs = false;
         Entry* find(std::uint64_t sequence) noexcept;
     };
     struct JogSession {
@@ -119,6 +128,11 @@ private:
                                                    Instant now) const;
     void settle(Client& client, Entry& entry, runtime::Answer answer, axes::ErrorId axis_error, Error error);
     void keep_jog_session(const Entry& entry, runtime::Answer answer);
+    // gateway_deeds.cpp: who did what, and what is his while he is here
+    [[nodiscard]] std::string deed(const CommandRequest& request) const;
+    void note(ClientId id, const Client& client, const CommandRequest& request, Instant now);
+    void note_end(ClientId id, const Client& client);
+    void release_outputs();
 
     MachineLink& machine_;
     bool cycling_ = false;
@@ -126,6 +140,11 @@ private:
     std::map<ClientId, Client> clients_;
     std::map<std::uint16_t, JogSession> jogs_;  ///< by axis
     std::deque<CommandReply> replies_;
+    DeedLog deeds_;
+    Hands hands_;
+    std::map<std::uint16_t, ClientId> told_jogs_;  ///< axes whose jog was told to begin, and of whom
+    std::deque<ClientId> leave_outputs_;           ///< clients that are gone; the inbox has not taken it yet
+    Instant now_{};
 };
 
 }  // namespace taktwerk::hmi

@@ -13,7 +13,7 @@ Result<std::unique_ptr<HmiBridge>> HmiBridge::open(const HmiConfig& config, Mach
 
     auto path = config.socket.empty() ? make_socket_path(machine.layout().machine) : Result<std::string>(config.socket);
     if (!path) return path.error();
-    auto server = SocketServer::open(*path, options.log);
+    auto server = SocketServer::open(*path, options.log, config.socket_group);
     if (!server) return server.error();
 
     std::optional<Error> problem;
@@ -25,7 +25,9 @@ Result<std::unique_ptr<HmiBridge>> HmiBridge::open(const HmiConfig& config, Mach
     }
     if (problem && config.lcm_required) return *problem;
     if (problem) options.log("the state is not published over LCM: " + problem->text());
-    options.log("commands are taken at " + *path);
+    options.log(fmt::format("commands are taken at {} from {}", *path, (*server)->who_may_connect()));
+    if (config.lcm && config.lcm_commands == LcmCommands::local)
+        options.log("commands are taken over LCM, too: from every process of every user of this computer");
     return std::unique_ptr<HmiBridge>(new HmiBridge(config, machine, std::move(options), std::move(server).value(), std::move(problem)));
 }
 
@@ -35,7 +37,7 @@ HmiBridge::HmiBridge(const HmiConfig& config, MachineLink& machine, HmiOptions o
       bus_(std::move(options.bus)),
       lcm_problem_(std::move(lcm_problem)),
       channels_(machine.layout().machine),
-      gateway_(machine),
+      gateway_(machine, options.log),
       requests_(gateway_, machine, options.wall_utime, options.log),
       receiver_(gateway_, options.wall_utime),
       server_(std::move(server)) {

@@ -12,7 +12,7 @@ namespace taktwerk::hmi {
 
 enum class LcmCommands : std::uint8_t {
     disabled,  ///< only the local socket commands (default)
-    local,     ///< also over LCM with ttl=0: every process of this host may command
+    local,  ///< also over LCM with ttl=0: every process of this host may command, but for what the gateway takes from known clients alone
 };
 
 struct HmiConfig {
@@ -21,7 +21,9 @@ struct HmiConfig {
     bool lcm_required = false;  ///< refuse to run without a working LCM
     LcmCommands lcm_commands = LcmCommands::disabled;
     double rate_hz = 50;  ///< of the state messages, 1..1000
-    std::string socket;   ///< Unix socket of the command line; empty: /run/taktwerk/<machine>.sock or $XDG_RUNTIME_DIR
+    std::string
+        socket_group;    ///< group of the socket: besides the runtime's own user (and root) its members command; empty: the process' group
+    std::string socket;  ///< Unix socket of the command line; empty: /run/taktwerk/<machine>.sock or $XDG_RUNTIME_DIR
 };
 
 [[nodiscard]] std::vector<Error> check(const HmiConfig& config);

@@ -13,6 +13,7 @@
 
 #include "core/nearest_name.hpp"
 #include "hmi_bridge/json_state.hpp"
+#include "hmi_bridge/peer_name.hpp"
 #include "hmi_bridge/words.hpp"
 
 namespace taktwerk::hmi {
@@ -124,10 +125,10 @@ Result<CommandRequest> read_command(const CommandWord& entry, JsonFields& fields
 
 JsonRequests::JsonRequests(Gateway& gateway, MachineLink& machine, std::function<std::int64_t()> wall_utime,
                            std::function<void(std::string_view)> log)
-    : gateway_(gateway), machine_(machine), drives_(machine, std::move(log)), wall_utime_(std::move(wall_utime)) {}
+    : gateway_(gateway), machine_(machine), drives_(machine, std::move(log), &gateway.hands()), wall_utime_(std::move(wall_utime)) {}
 
 void JsonRequests::on_open(ConnectionId connection, const Peer& peer) {
-    names_[connection] = fmt::format("process {} of user {}", peer.pid, peer.uid);
+    names_[connection] = peer_name(peer);
     const auto client = gateway_.open(Source::socket, names_[connection], Rights::commissioning);
     if (client == 0) return;  // questions are still answered
     clients_[connection] = client;
@@ -213,6 +214,7 @@ void JsonRequests::ask_drive(DriveRequestKind kind, ConnectionId connection, con
     fields.finish();
     if (fields.error()) return refuse(connection, id, *fields.error());
     request.who = names_[connection];
+    if (const auto client = clients_.find(connection); client != clients_.end()) request.client = client->second;
     request.tag = connection;
     request.id = id;
     drives_.handle(std::move(request), snapshot_, now);

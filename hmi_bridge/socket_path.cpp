@@ -1,8 +1,8 @@
 #include "hmi_bridge/socket_path.hpp"
 
-#include <fcntl.h>
-#include <sys/file.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -36,13 +36,31 @@ bool usable(const std::string& folder) {
     return (info.st_uid == ::geteuid() || folder.starts_with("/run/")) && ::access(folder.c_str(), W_OK) == 0;
 }
 
-/// A socket whose runtime was killed stays behind; its lock does not.
+/// A socket whose runtime was killed stays behind, and nobody listens. (Its lock is the runtime's alone: it cannot be asked.)
 bool left_behind(const std::string& path) {
-    const int lock = ::open((path + ".lock").c_str(), O_RDONLY | O_CLOEXEC);
-    if (lock < 0) return errno == ENOENT;
-    const bool free = ::flock(lock, LOCK_SH | LOCK_NB) == 0;
-    ::close(lock);
-    return free;
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    if (path.size() >= sizeof address.sun_path) return true;
+    std::memcpy(address.sun_path, path.c_str(), path.size());
+    const int asker = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+    const bool refused = ::connect(asker, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 && errno == ECONNREFUSED;
+    ::close(asker);
+    return refused;
+}
+
+/// The folder in /tmp, and others beside it whose names nobody could guess; this user's alone.
+std::vector<std::string> folders_in_tmp() {
+    const auto name = fmt::format("taktwerk-{}", ::geteuid());
+    std::vector<std::string> found;
+    std::error_code failed;
+    for (std::filesystem::directory_iterator entry("/tmp", failed), end; !failed && entry != end; entry.increment(failed)) {
+        const auto file = entry->path().filename().string();
+        struct stat info {};
+        if ((file != name && !file.starts_with(name + "-")) || ::lstat(entry->path().c_str(), &info) != 0) continue;
+        if (S_ISDIR(info.st_mode) && info.st_uid == ::geteuid()) found.push_back(entry->path().string());
+    }
+    std::sort(found.begin(), found.end());
+    return found;
 }
 
 }  // namespace
@@ -51,13 +69,20 @@ std::vector<std::string> socket_folders() {
     std::vector<std::string> folders{"/run/taktwerk"};
     if (const char* runtime = std::getenv("XDG_RUNTIME_DIR"); runtime && *runtime == '/')
         folders.push_back(std::string(runtime) + "/taktwerk");
-    folders.push_back(fmt::format("/tmp/taktwerk-{}", ::geteuid()));
+    const auto in_tmp = folders_in_tmp();
+    folders.insert(folders.end(), in_tmp.begin(), in_tmp.end());
+    const auto usual = fmt::format("/tmp/taktwerk-{}", ::geteuid());
+    struct stat info {};
+    if (::lstat(usual.c_str(), &info) != 0) folders.push_back(usual);  // nobody has it yet
     return folders;
 }
 
 Result<std::string> make_socket_path(std::string_view machine) {
     for (const auto& folder : socket_folders())
         if (usable(folder)) return folder + "/" + file_name(machine);
+    // Somebody else was there before: a name that he could not know.
+    auto pattern = fmt::format("/tmp/taktwerk-{}-XXXXXX", ::geteuid());
+    if (::mkdtemp(pattern.data()) != nullptr && ::chmod(pattern.c_str(), 0755) == 0) return pattern + "/" + file_name(machine);
     return Error{"socket.no_folder", "", fmt::format("none of {} can hold the command socket", fmt::join(socket_folders(), ", ")),
                  "Make one of them writable for this user, or give a path as `socket:` in the configuration."};
 }

@@ -9,10 +9,12 @@
 
 namespace taktwerk::hmi {
 
-/// Folders in the order they are tried: /run/taktwerk, $XDG_RUNTIME_DIR/taktwerk, /tmp/taktwerk-<uid>.
+/// Folders in the order they are tried: /run/taktwerk, $XDG_RUNTIME_DIR/taktwerk, /tmp/taktwerk-<uid>, and those beside it that make_socket_path()
+/// has made. What lies in /tmp counts only where it is this user's: everybody may make a folder there.
 [[nodiscard]] std::vector<std::string> socket_folders();
 
-/// Path for a runtime of this user; makes the folder (0755) in the first place where that is possible.
+/// Path for a runtime of this user; makes the folder (0755) in the first place where that is possible. Where somebody else has taken the name in
+/// /tmp it is /tmp/taktwerk-<uid>-<something>.
 /// Errors: socket.no_folder.
 [[nodiscard]] Result<std::string> make_socket_path(std::string_view machine);
 

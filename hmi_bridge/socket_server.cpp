@@ -1,6 +1,7 @@
 #include "hmi_bridge/socket_server.hpp"
 
 #include <fcntl.h>
+#include <grp.h>
 #include <sys/file.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -13,17 +14,26 @@
 
 #include <fmt/format.h>
 
+#include "hmi_bridge/peer_name.hpp"
+
 namespace taktwerk::hmi {
 namespace {
 
-constexpr mode_t socket_mode = 0660;
+constexpr mode_t socket_mode = 0660, owner_only = 0600;
 
 std::string reason() { return std::strerror(errno); }
 
-/// The lock file lives as long as the runtime and holds its pid; the kernel lets go of the lock when the runtime dies.
+/// At the start alone: it may ask the network.
+Result<gid_t> group_id(const std::string& name) {
+    if (const auto* found = ::getgrnam(name.c_str())) return found->gr_gid;
+    return Error{"socket.group", name, "there is no group of this name", "Make it (groupadd), or correct `hmi.socket_group`."};
+}
+
+/// The lock file lives as long as the runtime and holds its pid; the kernel lets go of the lock when the runtime dies. It is the owner's alone:
+/// whoever can open it, if only to read, could hold it and keep the runtime from starting.
 Result<int> lock_for(const std::string& path) {
     const auto lock_path = path + ".lock";
-    const int lock = ::open(lock_path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0640);
+    const int lock = ::open(lock_path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
     if (lock < 0)
         return Error{"socket.bind", path, fmt::format("cannot make {}: {}", lock_path, reason()),
                      "Give a path in a folder that exists and that this user may write, as `socket:` in the configuration."};
@@ -51,7 +61,8 @@ Result<int> lock_for(const std::string& path) {
 
 }  // namespace
 
-Result<std::unique_ptr<SocketServer>> SocketServer::open(const std::string& path, std::function<void(std::string_view)> log) {
+Result<std::unique_ptr<SocketServer>> SocketServer::open(const std::string& path, std::function<void(std::string_view)> log,
+                                                         const std::string& group) {
     sockaddr_un address{};
     if (path.empty() || path.size() >= sizeof address.sun_path)
         return Error{"socket.too_long", path, fmt::format("a socket's path has 1 to {} characters", sizeof address.sun_path - 1),
@@ -59,6 +70,8 @@ Result<std::unique_ptr<SocketServer>> SocketServer::open(const std::string& path
     address.sun_family = AF_UNIX;
     std::memcpy(address.sun_path, path.c_str(), path.size());
 
+    const auto owner = group.empty() ? Result<gid_t>(static_cast<gid_t>(-1)) : group_id(group);
+    if (!owner) return owner.error();
     const auto lock = lock_for(path);
     if (!lock) return lock.error();
     const auto fail = [&](std::string code, std::string what, std::string remedy) {
@@ -72,9 +85,11 @@ Result<std::unique_ptr<SocketServer>> SocketServer::open(const std::string& path
         ::unlink(path.c_str());  // nobody holds the lock: left behind by a runtime that died
     }
     const int listener = ::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-    // The mode is set on the socket before it gets a name, so that there is no moment in which others may connect.
-    const bool bound = listener >= 0 && ::fchmod(listener, socket_mode) == 0 &&
+    // The mode is set on the socket before it gets a name, so that there is no moment in which others may connect; its group comes when it has
+    // a name that nobody but the owner can use yet.
+    const bool bound = listener >= 0 && ::fchmod(listener, owner_only) == 0 &&
                        ::bind(listener, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 &&
+                       (group.empty() || ::chown(path.c_str(), static_cast<uid_t>(-1), *owner) == 0) &&
                        ::chmod(path.c_str(), socket_mode) == 0 && ::listen(listener, static_cast<int>(max_connections)) == 0;
     if (!bound) {
         const auto why = reason();
@@ -88,6 +103,14 @@ Result<std::unique_ptr<SocketServer>> SocketServer::open(const std::string& path
 SocketServer::SocketServer(std::string path, int listener, int lock, std::function<void(std::string_view)> log)
     : path_(std::move(path)), listener_(listener), lock_(lock), log_(std::move(log)) {
     connections_.reserve(max_connections);
+}
+
+std::string SocketServer::who_may_connect() const {
+    struct stat info {};
+    if (::stat(path_.c_str(), &info) != 0) return "nobody";
+    const auto* group = ::getgrgid(info.st_gid);
+    return fmt::format("user {}, group {} and root", info.st_uid,
+                       group ? fmt::format("'{}' ({})", group->gr_name, info.st_gid) : std::to_string(info.st_gid));
 }
 
 SocketServer::~SocketServer() {
@@ -117,7 +140,7 @@ void SocketServer::accept_all(LineHandler& handler) {
             continue;
         }
         connections_.push_back({next_id_++, socket, {}, {}, false, false});
-        log_(fmt::format("command socket: process {} of user {} connected", peer.pid, peer.uid));
+        log_(fmt::format("command socket: {} connected", peer_name(peer)));
         handler.on_open(connections_.back().id, peer);
     }
 }

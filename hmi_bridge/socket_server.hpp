@@ -1,6 +1,6 @@
 #pragma once
 // A Unix stream socket that carries lines. Nothing blocks: step() does what can be done now. Bounded in every direction:
-// clients, line length, unread answers. Only users who may open the socket file (0660) get in. One thread, not real-time.
+// clients, line length, unread answers. Only the user of the process, the socket's group and root get in (0660). One thread, not real-time.
 
 #include <cstddef>
 #include <functional>
@@ -23,8 +23,10 @@ public:
     static constexpr std::size_t lines_per_step = 32;       ///< of one connection
 
     /// Binds `path`, replacing what a runtime that died has left behind. `log` gets one line per connection and problem.
-    /// Errors: socket.in_use (with the process that has it), socket.not_a_socket, socket.too_long, socket.bind.
-    static Result<std::unique_ptr<SocketServer>> open(const std::string& path, std::function<void(std::string_view)> log);
+    /// `group`: of the socket; empty: that of the process.
+    /// Errors: socket.in_use (with the process that has it), socket.not_a_socket, socket.too_long, socket.bind, socket.group.
+    static Result<std::unique_ptr<SocketServer>> open(const std::string& path, std::function<void(std::string_view)> log,
+                                                      const std::string& group = {});
     ~SocketServer();  ///< closes everything and removes the file
     SocketServer(const SocketServer&) = delete;
     SocketServer& operator=(const SocketServer&) = delete;
@@ -34,6 +36,8 @@ public:
     void send(ConnectionId connection, std::string_view line);
     [[nodiscard]] std::size_t connection_count() const noexcept { return connections_.size(); }
     [[nodiscard]] const std::string& path() const noexcept { return path_; }
+    /// "user 1000, group 'taktwerk' (997) and root"
+    [[nodiscard]] std::string who_may_connect() const;
 
 private:
     struct Connection {

@@ -3,6 +3,7 @@
 #include "hmi_bridge/client.hpp"
 
 #include <gmock/gmock.h>
+#include <grp.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -171,8 +172,55 @@ TEST_F(SocketTest, TheSocketIsForItsUserAndGroupAndPeersAreLogged) {
     const int socket = raw_client();
     bridge->step(now);
 
-    EXPECT_THAT(log.back(), HasSubstr("process " + std::to_string(::getpid()) + " of user " + std::to_string(::getuid())));
+    EXPECT_THAT(log.back(), ::testing::StartsWith("command socket: process " + std::to_string(::getpid()) + " ("));
+    EXPECT_THAT(log.back(), ::testing::EndsWith(") of user " + std::to_string(::getuid()) + " connected"));
     ::close(socket);
+}
+
+TEST_F(SocketTest, TheGroupOfTheConfigurationMayConnectAndTheLogSaysWho) {
+    const auto* someone = ::getgrgid(::getgid());
+    ASSERT_NE(someone, nullptr);
+    auto config = config_at(folder.file("grouped.sock"));
+    config.socket_group = someone->gr_name;
+    FakeMachine other;
+    std::vector<std::string> said;
+    const auto grouped = HmiBridge::open(config, other, {.log = [&](std::string_view line) { said.emplace_back(line); }, .bus = nullptr});
+    ASSERT_TRUE(grouped) << grouped.error().text();
+    struct stat info {};
+    ASSERT_EQ(::stat(config.socket.c_str(), &info), 0);
+    EXPECT_EQ(info.st_gid, someone->gr_gid);
+    EXPECT_EQ(info.st_mode & 0777, 0660u);
+    EXPECT_THAT(said, testing::Contains(HasSubstr("group '" + config.socket_group + "'")));
+    ASSERT_EQ(::stat((config.socket + ".lock").c_str(), &info), 0);
+    EXPECT_EQ(info.st_mode & 077, 0u) << "who can open the lock can hold it, and nobody could start";
+
+    config.socket = folder.file("nowhere.sock");
+    config.socket_group = "no-such-group-here";
+    const auto refused = HmiBridge::open(config, other, {});
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, "socket.group");
+}
+
+// Everybody may make folders in /tmp: one with this user's number holds up nobody.
+TEST_F(SocketTest, AFolderThatSomebodyElseHasMadeInTmpHoldsNobodyUp) {
+    if (::geteuid() != 0) GTEST_SKIP() << "it takes two users";
+    constexpr uid_t user = 64001, other_user = 64002;
+    const std::string taken = "/tmp/taktwerk-" + std::to_string(user);
+    std::filesystem::remove_all(taken);
+    ASSERT_EQ(::mkdir(taken.c_str(), 0755), 0);
+    ASSERT_EQ(::chown(taken.c_str(), other_user, other_user), 0);
+    ::unsetenv("XDG_RUNTIME_DIR");
+    ASSERT_EQ(::seteuid(user), 0);
+    const auto made = make_socket_path("cell");
+    const auto folders = socket_folders();
+    ASSERT_EQ(::seteuid(0), 0);
+
+    ASSERT_TRUE(made) << made.error().text();
+    EXPECT_THAT(*made, testing::StartsWith(taken + "-"));
+    EXPECT_THAT(folders, testing::Contains(std::filesystem::path(*made).parent_path().string())) << "commands look there, too";
+    EXPECT_THAT(folders, testing::Not(testing::Contains(taken))) << "and not where somebody else could pretend to be the machine";
+    std::filesystem::remove_all(taken);
+    std::filesystem::remove_all(std::filesystem::path(*made).parent_path());
 }
 
 TEST_F(SocketTest, ASecondRuntimeIsToldWhoHasTheSocket) {
