@@ -12,6 +12,7 @@
 #include "apps/load.hpp"
 #include "apps/master_gone.hpp"
 #include "apps/taktwerk.hpp"
+#include "runtime/borrowed_rights.hpp"
 #include "runtime/drive_hazards.hpp"
 #include "runtime/machine.hpp"
 #include "runtime/world.hpp"
@@ -199,12 +200,15 @@ int fail(const Options& options, const std::vector<Error>& errors) {
 }
 
 int check(const Options& options) {
+    // It loads what it checks, and what is loaded runs: with the rights of whoever asked, and no others.
+    if (auto ok = runtime::give_back_rights(); !ok) return fail(options, {ok.error()});
     auto result = read_machine(options.file, false);
     if (const auto* errors = std::get_if<std::vector<Error>>(&result)) return fail(options, *errors);
     auto& loaded = std::get<LoadedFile>(result);
     const MachineConfig config = loaded.machine;
 
-    // Building the machine loads the programs and compares what they declare; nothing is started.
+    // Building the machine loads the programs and compares what they declare; nothing is started, and what a running machine keeps stays its.
+    loaded.machine.retain.clear();
     runtime::World world{config, Instant{}};
     auto built = runtime::Machine::build(std::move(loaded.machine), world.transport(), world.serial().lines());
     if (const auto* errors = std::get_if<std::vector<Error>>(&built)) return fail(options, *errors);

@@ -1,6 +1,7 @@
 // taktwerk enable | disable | home | reset | stop | start | mode | set | output | ack | shutdown | control: one command to a running
 // machine, one answer. Jogging is in jog.cpp.
 
+#include <cstdio>
 #include <thread>
 
 #include <fmt/format.h>
@@ -24,7 +25,7 @@ struct Order {
     RemoteOptions remote;
     std::string target, program;
     std::string mode;
-    double value = 0, velocity = 0;
+    double value = 0, velocity = 0, hold_s = 0;
     bool wait = false;
     double patience_s = 30;
 };
@@ -144,9 +145,20 @@ int set(const Order& order, hmi::Client& client) {
     return send(order, client, {{"cmd", "set_parameter"}, {"parameter", order.target}, {"value", order.value}},
                 fmt::format("{} = {:g}", order.target, order.value));
 }
+/// It is safe again when its client goes: so this one stays.
 int output(const Order& order, hmi::Client& client) {
-    return send(order, client, {{"cmd", "set_output"}, {"output", order.target}, {"value", order.value}},
-                fmt::format("output {} = {:g}", order.target, order.value));
+    const auto answer = client.request({{"cmd", "set_output"}, {"output", order.target}, {"value", order.value}});
+    if (!answer) return report(order.remote, answer.error());
+    watch_stop_signals();
+    SystemClock clock;
+    const auto start = clock.now();
+    if (order.hold_s <= 0 && !order.remote.json) fmt::print("output {} = {:g} until Ctrl-C\n", order.target, order.value);
+    std::fflush(stdout);
+    while (!stop_requested() && (order.hold_s <= 0 || clock.now() - start < from_seconds(order.hold_s))) {
+        if (const auto alive = client.request({{"cmd", "hello"}}); !alive) return report(order.remote, alive.error());
+        std::this_thread::sleep_for(50ms);
+    }
+    return report(order.remote, fmt::format("output {} goes back to its safe value", order.target));
 }
 int acknowledge(const Order& order, hmi::Client& client) { return send(order, client, {{"cmd", "acknowledge"}}, "alarms acknowledged"); }
 int shut_down(const Order& order, hmi::Client& client) {
@@ -221,7 +233,8 @@ void add_operate(CLI::App& app, Action& action) {
     auto& set_sub = adder.add("set", "write a parameter of a program", set);
     set_sub.add_option("PARAMETER", adder.order->target, "name, or PROGRAM.NAME")->required();
     set_sub.add_option("VALUE", adder.order->value, "within its range")->required();
-    auto& output_sub = adder.add("output", "set an output point; only while no program runs", output);
+    auto& output_sub = adder.add("output", "set an output point while this command lives; only while no program runs", output);
+    add_duration(output_sub, "--for", adder.order->hold_s, "let go after this time; default: at Ctrl-C");
     output_sub.add_option("NAME", adder.order->target, "output point")->required();
     output_sub.add_option("VALUE", adder.order->value, "0 or 1; a number for wider points")->required();
     adder.add("ack", "acknowledge all alarms", acknowledge);

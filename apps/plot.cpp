@@ -76,8 +76,9 @@ Result<void> draw(const std::string& script) {
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, messages.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    std::string program = "gnuplot", script_name = script_file.string();
-    std::array<char*, 3> arguments{program.data(), script_name.data(), nullptr};
+    // -d: nobody's start-up files.
+    std::string program = "gnuplot", as_delivered = "-d", script_name = script_file.string();
+    std::array<char*, 4> arguments{program.data(), as_delivered.data(), script_name.data(), nullptr};
     pid_t child = 0;
     const int failed = ::posix_spawnp(&child, program.c_str(), &actions, nullptr, arguments.data(), environ);
     posix_spawn_file_actions_destroy(&actions);

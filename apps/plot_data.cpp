@@ -62,7 +62,8 @@ std::vector<Span> spans(const std::vector<double>& time, const std::vector<doubl
 }
 
 Ticks ticks(double lowest, double highest, std::size_t most) {
-    if (!(highest > lowest)) {
+    // A span that the numbers themselves hardly resolve is none: its steps would not change them.
+    if (!(highest - lowest > 1e-12 * std::max(std::abs(lowest), std::abs(highest)))) {
         const double room = lowest == 0 ? 1 : std::abs(lowest) * 0.1;
         lowest -= room;
         highest += room;
@@ -77,7 +78,9 @@ Ticks ticks(double lowest, double highest, std::size_t most) {
             break;
         }
     Ticks out{lowest - 0.08 * span, highest + 0.08 * span, step, {}};
-    for (double k = std::ceil(lowest / step - 1e-9); k * step <= highest + 1e-9 * span; ++k) out.at.push_back(k * step);
+    const double first = std::ceil(lowest / step - 1e-9);
+    for (std::size_t i = 0; i <= most + 1; ++i)
+        if (const double at = (first + static_cast<double>(i)) * step; at <= highest + 1e-9 * span) out.at.push_back(at);
     return out;
 }
 

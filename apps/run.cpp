@@ -21,6 +21,7 @@
 #include "hmi_bridge/runtime_link.hpp"
 #include "modbus/line/tty_line.hpp"
 #include "runtime/alarms.hpp"
+#include "runtime/keeps_positions.hpp"
 #include "runtime/realtime_runner.hpp"
 #include "runtime/virtual_runner.hpp"
 
@@ -207,8 +208,6 @@ int run_real(LoadedFile loaded, const Options& options) {
     hmi::HmiOptions bridge_options;
     if (!options.quiet && !options.json)
         bridge_options.log = [](std::string_view text) {
-            // Each `taktwerk monitor --once` comes and goes: not worth a line.
-            if (text.ends_with(" connected")) return;
             fmt::print("{}\n", text);
             std::fflush(stdout);
         };
@@ -287,6 +286,10 @@ void add_run(CLI::App& app, Action& action) {
             auto loaded = load(options->file, options->simulate || options->virtual_time);
             if (!loaded) return static_cast<int>(exit_bad_file);
             if (!options->retain.empty()) loaded->machine.retain = options->retain;
+            if (!options->retain.empty() && !runtime::keeps_positions(loaded->machine))
+                print_warning(Error{"config.nothing_to_retain", "--retain " + options->retain,
+                                    "no axis has an absolute encoder: nothing will be kept",
+                                    "add `position_memory: {absolute: true}` to the axes that have one"});
             return options->virtual_time ? run_virtual(std::move(*loaded), *options) : run_real(std::move(*loaded), *options);
         };
     });

@@ -6,9 +6,12 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 #include <fmt/format.h>
+
+#include "axes/words/types.hpp"
 
 namespace taktwerk::apps {
 namespace {
@@ -35,6 +38,9 @@ constexpr AxisColumn later_columns[] = {
     {"active", &AxisTrace::active},
 };
 
+/// Beyond it neighbouring values cannot be told apart on any axis of a picture; no machine has such numbers.
+constexpr double largest = 1e15;
+
 Error error(std::string code, const std::string& subject, std::string what, std::string remedy) {
     return {"trace." + code, subject, std::move(what), std::move(remedy)};
 }
@@ -57,6 +63,14 @@ std::vector<Heading> headings(std::string_view line) {
         if (comma == std::string_view::npos) return out;
         line.remove_prefix(comma + 1);
     }
+}
+
+/// The one that stands twice; empty: each stands once. What is doubled could be drawn from either.
+std::string doubled(const std::vector<Heading>& columns) {
+    std::set<std::string_view> seen;
+    for (const auto& column : columns)
+        if (!seen.insert(column.name).second) return column.name;
+    return {};
 }
 
 /// An axis is what has a state and a set-point.
@@ -115,6 +129,7 @@ bool read_row(std::string_view line, const std::vector<Column*>& columns, std::v
         double value = 0;
         const auto [next, problem] = std::from_chars(at, end, value);
         if (problem != std::errc{} || !std::isfinite(value)) return false;
+        if (columns[i] && std::abs(value) > largest) return false;  // what is not drawn may be any counter
         row.push_back(value);
         const bool last = i + 1 == columns.size();
         if (last) return next == end;
@@ -131,6 +146,9 @@ Result<Trace> parse_trace(std::string_view text, const std::string& name) {
     if (header_end == std::string_view::npos)
         return error("not_a_trace", name, "the file has no heading line", "Give a file that `taktwerk run --trace` has written.");
     const auto columns = headings(text.substr(0, header_end));
+    if (const auto twice = doubled(columns); !twice.empty())
+        return error("not_a_trace", name, fmt::format("the column '{}' stands in it twice", twice),
+                     "Record it again; an axis and a program of the same name need different names.");
     Trace trace;
     trace.axes = axes_of(columns);
     auto target = targets(trace, columns, name);
@@ -146,7 +164,7 @@ Result<Trace> parse_trace(std::string_view text, const std::string& name) {
         }
         if (!read_row(text.substr(0, end), *target, row))
             return error("bad_line", fmt::format("{}:{}", name, line_number),
-                         fmt::format("the line is not {} numbers with commas between", target->size()),
+                         fmt::format("the line is not {} numbers (of at most {:g}) with commas between", target->size(), largest),
                          "Record the trace again; this file was changed or damaged.");
         for (std::size_t i = 0; i < row.size(); ++i)
             if (auto* column = (*target)[i]) column->push_back(row[i]);
@@ -159,6 +177,12 @@ Result<Trace> parse_trace(std::string_view text, const std::string& name) {
         return std::any_of(bit.value.begin(), bit.value.end(), [](double value) { return value != 0 && value != 1; });
     };
     trace.bits.erase(std::remove_if(trace.bits.begin(), trace.bits.end(), is_no_bit), trace.bits.end());
+    for (std::size_t i = 0; i < trace.time_s.size(); ++i)
+        for (const auto& axis : trace.axes)
+            if (const double state = axis.state[i]; state != std::floor(state) || state < 0 || state >= axes::axis_state_count)
+                return error("bad_line", fmt::format("{}:{}", name, i + 2),
+                             fmt::format("'{}.state' is {:g}; states are 0 to {}", axis.name, state, axes::axis_state_count - 1),
+                             "Record the trace again; this file was changed or damaged.");
     const double start = trace.time_s.front();
     double last = 0;
     for (std::size_t i = 0; i < trace.time_s.size(); ++i) {

@@ -59,6 +59,30 @@ TEST(TraceFile, DamageIsNamedWithItsLine) {
     EXPECT_EQ(read_trace("/nowhere/trace.csv").error().code, "trace.open");
 }
 
+TEST(TraceFile, AColumnThatStandsTwiceIsNamed) {
+    const std::string row = "1,0,0,1,7,2,3,4,7,1,0,0,1", rows = row + ",9\n2" + row.substr(1) + ",9\n";
+    for (const char* twice : {"x.set_position", "x.state", "in.start", "time_s"}) {
+        const auto trace = parse_trace(heading.substr(0, heading.size() - 1) + "," + twice + "\n" + rows, "t.csv");
+        ASSERT_FALSE(trace) << twice;
+        EXPECT_EQ(trace.error().code, "trace.not_a_trace");
+        EXPECT_THAT(trace.error().what, HasSubstr(std::string("'") + twice + "'"));
+    }
+    EXPECT_TRUE(parse_trace(heading.substr(0, heading.size() - 1) + ",other\n" + rows, "t.csv")) << "the same with a name of its own";
+}
+
+// Numbers that no machine writes: named with their line instead of drawn for ever.
+TEST(TraceFile, NumbersThatNoMachineHasAreDamage) {
+    for (const char* row : {"2,0,0,8,7,2,3,4,7,1,0,0,1", "2,0,0,-1,7,2,3,4,7,1,0,0,1", "2,0,0,1.5,7,2,3,4,7,1,0,0,1",
+                            "2,0,0,1e300,7,2,3,4,7,1,0,0,1", "2,0,0,1,1e16,2,3,4,7,1,0,0,1", "1e300,0,0,1,7,2,3,4,7,1,0,0,1"}) {
+        const auto trace = parse_trace(heading + "1,0,0,1,7,2,3,4,7,1,0,0,1\n" + row + "\n", "t.csv");
+        ASSERT_FALSE(trace) << row;
+        EXPECT_EQ(trace.error().code, "trace.bad_line");
+        EXPECT_EQ(trace.error().subject, "t.csv:3");
+    }
+    EXPECT_TRUE(parse_trace(heading + "1,0,0,1,7,2,3,4,7,1,0,0,1\n2,0,0,7,1e15,2,3,4,7,1,1e300,0,1\n", "t.csv"))
+        << "the torque is not drawn";
+}
+
 const std::string later_heading =
     "time_s,emergency_stop,alarms,x.state,x.set_position[mm],x.set_velocity[mm/s],x.set_acceleration,x.set_jerk,x.actual_position,"
     "x.actual_velocity,x.following_error,x.target_position[mm],x.active,in.start,out.level,feeder.busy\n";
@@ -141,6 +165,15 @@ TEST(PlotData, TicksAreRoundNumbersInsideTheValues) {
     }
 }
 
+TEST(PlotData, TicksEndAlsoWhereTheNumbersHardlyDiffer) {
+    for (const double at : {1e15, -1e15, 1.0, 1e-300})
+        for (const double away : {std::nextafter(at, HUGE_VAL), at * (1 + 1e-11), -at}) {
+            const auto t = ticks(std::min(at, away), std::max(at, away), 5);
+            EXPECT_GE(t.at.size(), 1u) << at;
+            EXPECT_LE(t.at.size(), 7u) << at;
+        }
+}
+
 TEST(PlotData, TickTextsAreShortAndExact) {
     EXPECT_EQ(tick_text(0, 5), "0");
     EXPECT_EQ(tick_text(-200, 200), "-200");
@@ -173,10 +206,10 @@ TEST(PlotScript, DrawsTargetsHandOversAndTheBitsThatChange) {
     const auto script = plot_script(*trace, {"t", "t.svg", {}, 0, 0, false});
 
     ASSERT_TRUE(script);
-    EXPECT_THAT(*script, HasSubstr("title \"commanded\""));
+    EXPECT_THAT(*script, HasSubstr("title 'commanded'"));
     EXPECT_THAT(*script, HasSubstr("set arrow from first 3.000000"));
     EXPECT_THAT(*script, ::testing::Not(HasSubstr("set arrow from first 1.000000"))) << "nothing was taken from anybody there";
-    EXPECT_THAT(*script, HasSubstr("set label \"in.start\""));
+    EXPECT_THAT(*script, HasSubstr("set label 'in.start'"));
     EXPECT_THAT(*script, ::testing::Not(HasSubstr("feeder.busy")));
 
     PlotRequest named{"t", "t.svg", {}, 0, 0, false, {"feeder.busy"}};
@@ -191,10 +224,11 @@ TEST(PlotScript, TextsOfTheOutsideCannotLeaveTheirQuotes) {
     const auto trace = parse_trace(heading + "1,0,0,1,7,2,3,4,7,1,0,0,1\n2,0,0,1,7,2,3,4,7,1,0,0,1\n", "t.csv");
     ASSERT_TRUE(trace);
 
-    const auto script = plot_script(*trace, {"a\"; system(\"rm\") #\\", "t.svg", {}, 0, 0, false});
+    const auto script = plot_script(*trace, {"a'; system('rm') #\\ `id` \n\"", "|t.svg", {}, 0, 0, false});
 
     ASSERT_TRUE(script);
-    EXPECT_THAT(*script, HasSubstr(R"("a\"; system(\"rm\") #\\")"));
+    EXPECT_THAT(*script, HasSubstr(R"('a''; system(''rm'') #\ `id`  "')"));
+    EXPECT_THAT(*script, HasSubstr("set output './|t.svg'")) << "a file, no command";
 }
 
 }  // namespace
