@@ -8,6 +8,7 @@
 #include <netinet/in.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/uio.h>
 #include <sys/un.h>
 #include <time.h>
@@ -16,7 +17,10 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstddef>
+#include <cstdio>
 #include <cstring>
+#include <fstream>
+#include <string>
 #include <utility>
 
 #include "core/calendar_distance.hpp"
@@ -100,8 +104,25 @@ std::optional<std::uint32_t> number_of(msghdr& message) noexcept {
     return error ? std::optional{error->ee_data} : std::nullopt;
 }
 
-/// Abstract Unix sockets are per network namespace, as interfaces are, and vanish with their process.
-Result<int> lock_interface(std::string_view interface) {
+/// Is there a socket for EtherCAT frames on the interface besides `own`? packet(7): only who may send raw frames can have one. Where the kernel
+/// does not show them: yes.
+bool another_listens(unsigned interface, int own) {
+    struct stat mine {};
+    std::ifstream sockets("/proc/thread-self/net/packet");
+    std::string line;
+    if (::fstat(own, &mine) != 0 || !std::getline(sockets, line)) return true;
+    while (std::getline(sockets, line)) {
+        unsigned protocol = 0, at = 0;
+        unsigned long inode = 0;
+        if (std::sscanf(line.c_str(), "%*s %*u %*u %x %u %*u %*u %*u %lu", &protocol, &at, &inode) != 3) continue;
+        if (protocol == ethertype && at == interface && inode != mine.st_ino) return true;
+    }
+    return false;
+}
+
+/// Abstract Unix sockets are per network namespace, as interfaces are, and vanish with their process. But everybody may have one: `socket` has
+/// been bound before, so whoever holds the lock without a socket of that kind is no master, and nobody is held up by him: -1, with a remark.
+Result<int> lock_interface(std::string_view interface, unsigned index, int socket, RawSocketReport& report) {
     Descriptor lock{::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)};
     if (lock.get() < 0) return socket_error(interface, "creating the lock");
     sockaddr_un address{};
@@ -118,6 +139,11 @@ Result<int> lock_interface(std::string_view interface) {
     const Descriptor asker{::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)};
     const bool known = ::connect(asker.get(), reinterpret_cast<const sockaddr*>(&address), size) == 0 &&
                        ::getsockopt(asker.get(), SOL_SOCKET, SO_PEERCRED, &holder, &holder_size) == 0 && holder.pid > 0;
+    if (!another_listens(index, socket)) {
+        report.refused.push_back(fmt::format("no lock against a second master: {} holds its name \"{}\" and is no master",
+                                             known ? fmt::format("process {} of user {}", holder.pid, holder.uid) : "a process", name));
+        return -1;
+    }
     return error("transport.in_use", interface,
                  known ? fmt::format("another Taktwerk is the master on it (process {})", holder.pid)
                        : std::string{"another Taktwerk is the master on it (its process id is not visible from here)"},
@@ -154,15 +180,8 @@ Result<std::unique_ptr<RawSocketTransport>> RawSocketTransport::open(std::string
     if (socket.get() < 0) {
         if (errno == EPERM || errno == EACCES)
             return error("transport.no_privilege", interface, "raw Ethernet frames need the privilege CAP_NET_RAW",
-                         "run as root, or give it once: setcap cap_net_raw,cap_sys_nice,cap_ipc_lock+ep on the taktwerk binary");
+                         "run it as a service with AmbientCapabilities=CAP_NET_RAW (docs/bus.md), or as root");
         return socket_error(interface, "opening a packet socket");
-    }
-
-    Descriptor lock{-1};
-    if (options.exclusive) {
-        auto taken = lock_interface(interface);
-        if (!taken) return std::move(taken).error();
-        lock = Descriptor{*taken};
     }
 
     RawSocketReport report = apply(options, socket.get(), interface);
@@ -173,6 +192,13 @@ Result<std::unique_ptr<RawSocketTransport>> RawSocketTransport::open(std::string
     address.sll_ifindex = static_cast<int>(index);
     if (::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
         return socket_error(interface, "binding the packet socket");
+
+    Descriptor lock{-1};
+    if (options.exclusive) {
+        auto taken = lock_interface(interface, index, socket.get(), report);
+        if (!taken) return std::move(taken).error();
+        lock = Descriptor{*taken};
+    }
 
     std::unique_ptr<RawSocketTransport> transport{
         new RawSocketTransport{std::string{interface}, socket.release(), lock.release(), mac, std::move(report)}};

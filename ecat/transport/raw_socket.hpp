@@ -12,7 +12,8 @@
 // is what a ring costs too for sending. docs/performance.md has the figures.
 //
 // One master an interface: opening takes the abstract Unix socket "taktwerk.nic.<interface>" of the network namespace, so
-// that a second Taktwerk is refused with the first one's process id. The kernel drops it when the process ends, however.
+// that a second Taktwerk is refused with the first one's process id. The kernel drops it when the process ends, however. Everybody may
+// hold such a name: who does so and has no EtherCAT socket on the interface is passed over, with a remark in the report.
 // (Other makes of masters are not seen.)
 
 #include <array>

@@ -7,9 +7,12 @@
 #include <sched.h>
 #include <sys/socket.h>
 #include <sys/syscall.h>
+#include <sys/un.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <cstdlib>
 #include <fstream>
 #include <thread>
@@ -218,6 +221,26 @@ TEST_F(RawSocket, WhatTheKernelRefusedIsSaidOnceInWords) {
     EXPECT_TRUE((*opened)->report().refused.empty()) << "bypass, priority 6 and stamps need no privilege";
 }
 
+// Any local user may have an abstract socket of that name. He holds nobody up, and two masters still exclude each other.
+TEST_F(RawSocket, WhoHoldsTheNameOfTheLockWithoutBeingAMasterHoldsNobodyUp) {
+    const int squatter = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    const std::string name = "taktwerk.nic.ecat0";
+    std::copy(name.begin(), name.end(), address.sun_path + 1);
+    const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
+    ASSERT_EQ(::bind(squatter, reinterpret_cast<const sockaddr*>(&address), size), 0);
+    ASSERT_EQ(::listen(squatter, 1), 0);
+
+    const auto first = RawSocketTransport::open("ecat0");
+    ASSERT_TRUE(first.ok()) << first.error().text();
+    EXPECT_THAT((*first)->report().refused, ::testing::Contains(HasSubstr("process " + std::to_string(::getpid()))));
+    const auto second = RawSocketTransport::open("ecat0");
+    ASSERT_FALSE(second.ok());
+    EXPECT_EQ(second.error().code, "transport.in_use");
+    ::close(squatter);
+}
+
 TEST_F(RawSocket, MissingPrivilegeIsNamedWithTheCommandThatGivesIt) {
     __user_cap_header_struct header{_LINUX_CAPABILITY_VERSION_3, 0};
     std::array<__user_cap_data_struct, 2> before{}, without{};
@@ -231,7 +254,7 @@ TEST_F(RawSocket, MissingPrivilegeIsNamedWithTheCommandThatGivesIt) {
     ASSERT_EQ(::syscall(SYS_capset, &header, before.data()), 0);
     ASSERT_FALSE(refused.ok());
     EXPECT_EQ(refused.error().code, "transport.no_privilege");
-    EXPECT_THAT(refused.error().remedy, HasSubstr("setcap cap_net_raw"));
+    EXPECT_THAT(refused.error().remedy, HasSubstr("AmbientCapabilities=CAP_NET_RAW"));
     EXPECT_TRUE(RawSocketTransport::open("ecat0").ok()) << "the refused one left no lock behind";
 }
 
