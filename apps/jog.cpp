@@ -11,6 +11,7 @@
 
 #include "apps/duration_option.hpp"
 #include "apps/exit_code.hpp"
+#include "apps/held_velocity.hpp"
 #include "apps/remote.hpp"
 #include "apps/stop_signal.hpp"
 #include "core/clock.hpp"
@@ -43,20 +44,24 @@ int jog(const Options& options) {
     SystemClock clock;
     const auto start = clock.now();
     const bool show = !options.remote.json && ::isatty(STDOUT_FILENO) != 0;
+    std::string held;  // what kept it slower than asked
+    int renewals = 0;
 
     for (bool press = true; !stop_requested(); press = false) {
         nlohmann::json request{{"cmd", "jog"}, {"axis", options.axis}, {"velocity", options.velocity}};
         if (press) request["press"] = true;
         const auto answer = client->request(request);
         if (!answer) return report(options.remote, answer.error());
-        if (show) {
+        constexpr int looked_at = 4;  // by then it is as fast as it may be, or on its way there
+        if (show || ++renewals == looked_at) {
             if (const auto state = state_of(*client)) {
                 const auto axis = axis_of(*state, options.axis);
-                if (axis.is_object())
+                if (axis.is_object()) held = held_velocity(axis, state->at("mode").get<std::string>());
+                if (show && axis.is_object())
                     fmt::print("\r{} {:12.3f} {}  {:10.3f} {}/s   Ctrl-C stops ", options.axis, axis.at("actual_position").get<double>(),
                                axis.at("unit").get<std::string>(), axis.at("actual_velocity").get<double>(),
                                axis.at("unit").get<std::string>());
-                std::fflush(stdout);
+                if (show) std::fflush(stdout);
             }
         }
         if (options.for_s > 0 && clock.now() - start >= from_seconds(options.for_s)) break;
@@ -73,8 +78,8 @@ int jog(const Options& options) {
         const auto axis = axis_of(*state, options.axis);
         if (!axis.is_object()) break;
         if (!axis.at("has_job").get<bool>() && axis.at("set_velocity").get<double>() == 0)
-            return report(options.remote, fmt::format("{}: stands at {:.3f} {}", options.axis, axis.at("actual_position").get<double>(),
-                                                      axis.at("unit").get<std::string>()));
+            return report(options.remote, fmt::format("{}: stands at {:.3f} {}{}", options.axis, axis.at("actual_position").get<double>(),
+                                                      axis.at("unit").get<std::string>(), held));
         std::this_thread::sleep_for(20ms);
     }
     return report(options.remote, options.axis + ": let go");

@@ -8,6 +8,7 @@
 
 #include "apps/duration_option.hpp"
 #include "apps/exit_code.hpp"
+#include "apps/held_velocity.hpp"
 #include "apps/jog.hpp"
 #include "apps/remote.hpp"
 #include "apps/stop_signal.hpp"
@@ -27,7 +28,7 @@ struct Order {
     std::string mode;
     double value = 0, velocity = 0, hold_s = 0;
     bool wait = false;
-    double patience_s = 30;
+    double patience_s = 0;  ///< 0: not given
 };
 
 using Body = int (*)(const Order&, hmi::Client&);
@@ -37,10 +38,15 @@ int send(const Order& order, hmi::Client& client, const nlohmann::json& request,
     return answer ? report(order.remote, done) : report(order.remote, answer.error());
 }
 
-/// Until `reached` holds for every axis asked for; an axis that falls into ErrorStop on the way ends it.
-int wait_for(const Order& order, hmi::Client& client, bool (*reached)(const Json&), const std::string& done, bool error_ends) {
+constexpr double ordinary_patience_s = 30;
+
+/// Until `reached` holds for every axis asked for; an axis that falls into ErrorStop on the way ends it, and one for which `given_up` holds.
+/// `given_up`: the axis itself decides how long it takes; then only a --timeout ends it earlier.
+int wait_for(const Order& order, hmi::Client& client, bool (*reached)(const Json&), const std::string& done, bool error_ends,
+             bool (*given_up)(const Json&) = nullptr) {
     SystemClock clock;
-    const auto end = clock.now() + from_seconds(order.patience_s);
+    const double patience = order.patience_s > 0 ? order.patience_s : ordinary_patience_s;
+    const auto end = order.patience_s > 0 || !given_up ? clock.now() + from_seconds(patience) : Instant::max();
     watch_stop_signals();
     while (!stop_requested()) {
         const auto state = state_of(client);
@@ -57,6 +63,9 @@ int wait_for(const Order& order, hmi::Client& client, bool (*reached)(const Json
                 return report(order.remote,
                               Error{"axis.error_stop", "axis " + name, "the axis is in ErrorStop", "See `taktwerk monitor`; then reset."});
             }
+            if (given_up && given_up(axis))
+                return report(order.remote, Error{"axis.ended", "axis " + name, "the command was ended before it was done",
+                                                  "Another command, or power that went, took it; see `taktwerk monitor`, then give it again."});
             all = all && reached(axis);
         }
         if (all) return report(order.remote, done);
@@ -65,12 +74,15 @@ int wait_for(const Order& order, hmi::Client& client, bool (*reached)(const Json
     }
     return report(order.remote,
                   Error{"axis.not_in_time", order.target.empty() ? "axes" : "axis " + order.target,
-                        fmt::format("not finished within {:g} s", order.patience_s), "See `taktwerk monitor` what it waits for."});
+                        fmt::format("not finished within {:g} s", patience), "See `taktwerk monitor` what it waits for."});
 }
 
 bool is_powered(const Json& axis) { return axis.at("powered").get<bool>(); }
 bool is_off(const Json& axis) { return axis.at("state") == "Disabled"; }
 bool is_homed(const Json& axis) { return axis.at("homed").get<bool>() && axis.at("state") != "Homing" && !axis.at("has_job").get<bool>(); }
+bool gave_up_homing(const Json& axis) {
+    return !axis.at("homed").get<bool>() && axis.at("state") != "Homing" && !axis.at("has_job").get<bool>();
+}
 bool is_reset(const Json& axis) { return axis.at("state") != "ErrorStop" && !axis.at("resetting").get<bool>(); }
 
 int enable(const Order& order, hmi::Client& client) {
@@ -101,7 +113,8 @@ int home(const Order& order, hmi::Client& client) {
     if (!order.wait) return report(order.remote, order.target + ": homing");
     // The snapshot that still shows the axis as it was before must not count.
     std::this_thread::sleep_for(100ms);
-    return wait_for(order, client, is_homed, order.target + ": homed", true);
+    // How long it may take says homing.timeout in the machine file: the axis ends it by itself.
+    return wait_for(order, client, is_homed, order.target + ": homed", true, gave_up_homing);
 }
 
 int reset(const Order& order, hmi::Client& client) {
@@ -171,8 +184,14 @@ int release_control(const Order& order, hmi::Client& client) {
     return send(order, client, {{"cmd", "release_control"}, {"axis", order.target}}, order.target + ": control released");
 }
 int move(const Order& order, hmi::Client& client) {
-    return send(order, client, {{"cmd", "move"}, {"axis", order.target}, {"position", order.value}, {"velocity", order.velocity}},
-                fmt::format("{}: moving to {:g}", order.target, order.value));
+    const auto answer = client.request({{"cmd", "move"}, {"axis", order.target}, {"position", order.value}, {"velocity", order.velocity}});
+    if (!answer) return report(order.remote, answer.error());
+    auto said = fmt::format("{}: moving to {:g}", order.target, order.value);
+    std::this_thread::sleep_for(100ms);  // the snapshot in which it moves
+    if (const auto state = state_of(client))
+        for (const auto& axis : state->at("axes"))
+            if (axis.at("name") == order.target) said += held_velocity(axis, state->at("mode").get<std::string>());
+    return report(order.remote, said);
 }
 
 int carry_out(const Order& order, Body body) {
@@ -195,7 +214,7 @@ struct Adder {
     }
     void add_wait(CLI::App& sub) {
         sub.add_flag("--wait", order->wait, "until it is done, or the axis is in error");
-        add_duration(sub, "--timeout", order->patience_s, "longest wait, default 30s");
+        add_duration(sub, "--timeout", order->patience_s, "longest wait, default 30s; for home as long as the axis takes (homing.timeout)");
     }
 };
 

@@ -64,8 +64,8 @@ Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::strin
             break;
         case Answer::stale:
             if (kind == CommandKind::jog) {
-                error.what = "the jog is over: its lease ran out before the renewal came, and the axis stops";
-                error.remedy = "Let go and press again; if it comes back, the connection or this computer is too slow.";
+                error.what = "the jog is over: it was let go, or its lease ran out before the renewal came (then there is an alarm)";
+                error.remedy = "Let go and press again; if its lease runs out again, the connection or this computer is too slow.";
             } else {
                 error.what = "the command came too late and was not carried out";
                 error.remedy = "Give it again.";

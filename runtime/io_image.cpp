@@ -1,5 +1,6 @@
 #include "runtime/io_image.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -10,6 +11,14 @@ namespace {
 
 std::int64_t logical(std::int64_t value, const IoPoint& point, const Signal& signal) noexcept {
     return point.inverted && signal.bits == 1 ? 1 - (value & 1) : value;
+}
+
+/// The low bits, read again as the terminal reads them.
+std::int64_t carried(std::int64_t value, const Signal& signal) noexcept {
+    if (signal.bits == 0 || signal.bits >= 64) return value;
+    const auto mask = (std::uint64_t{1} << signal.bits) - 1, sign = std::uint64_t{1} << (signal.bits - 1);
+    const auto low = static_cast<std::uint64_t>(value) & mask;
+    return static_cast<std::int64_t>(signal.is_signed && (low & sign) != 0 ? low | ~mask : low);
 }
 
 }  // namespace
@@ -48,6 +57,8 @@ Result<void> IoImage::resolve(const ecat::Master& bus) {
             point.signal = *signal;
         }
     }
+    output_bits_.clear();
+    for (const auto& point : output_points_) output_bits_.push_back(static_cast<std::uint8_t>(std::min(64, static_cast<int>(point.signal.bits))));
     return {};
 }
 
@@ -58,9 +69,10 @@ void IoImage::read(std::span<const std::byte> image) noexcept {
     }
 }
 
-void IoImage::write(std::span<std::byte> image) const noexcept {
+void IoImage::write(std::span<std::byte> image) noexcept {
     for (std::size_t i = 0; i < output_points_.size(); ++i) {
         const auto& p = output_points_[i];
+        outputs_[i] = carried(outputs_[i], p.signal);
         write_signal(image, p.signal, logical(outputs_[i], p.config, p.signal));
     }
 }

@@ -22,13 +22,16 @@ public:
     /// Process image -> input values (step 3). Points of a slave that was not exchanged keep their values. Real-time safe.
     void read(std::span<const std::byte> image) noexcept;
     /// Output values -> process image (step 8). Real-time safe.
-    void write(std::span<std::byte> image) const noexcept;
+    /// An output keeps no more than its terminal has: what traces and programs read of it is what the wire carries.
+    void write(std::span<std::byte> image) noexcept;
     /// Every output to its configured safe value.
     void make_safe() noexcept;
     void make_safe(std::size_t output) noexcept { outputs_[output] = output_points_[output].config.safe_value; }
 
     [[nodiscard]] std::vector<std::int64_t>& inputs() noexcept { return inputs_; }
     [[nodiscard]] std::vector<std::int64_t>& outputs() noexcept { return outputs_; }
+    /// Bits of each output point.
+    [[nodiscard]] const std::vector<std::uint8_t>& output_bits() const noexcept { return output_bits_; }
 
     /// Whether an output point can take the value: whole, and within the bits of the terminal. Real-time safe.
     [[nodiscard]] bool fits(std::size_t output, double value) const noexcept;
@@ -45,6 +48,7 @@ private:
     };
     std::vector<Point> input_points_, output_points_;
     std::vector<std::int64_t> inputs_, outputs_;
+    std::vector<std::uint8_t> output_bits_;
 };
 
 }  // namespace taktwerk::runtime

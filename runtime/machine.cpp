@@ -174,6 +174,7 @@ Result<void> Machine::Impl::arm() {
         if (auto ok = drive->resolve(); !ok) return ok;
     if (!outputs_laid_out.load(std::memory_order_relaxed))
         if (auto ok = io.resolve(bus); !ok) return ok;
+    for (auto& task : slow_tasks) task->learn_outputs(io.output_bits());
 
     Snapshot prototype;
     prototype.slaves.resize(bus.slave_count());

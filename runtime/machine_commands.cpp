@@ -222,7 +222,8 @@ Machine::Impl::Verdict Machine::Impl::jog(const OperatorCommand& command, std::s
     auto& power = operator_power[axis];
     const axes::AxisRef ref{static_cast<std::uint16_t>(axis)};
     if (!std::isfinite(command.value)) return {Answer::bad_value};
-    const auto status = axes[axis].view().status(power.jog);
+    auto ended_by = axes::ErrorId::none;
+    const auto status = axes[axis].view().status(power.jog, &ended_by);
     const bool jogging = status == axes::CommandStatus::active || status == axes::CommandStatus::in_target;
     if (command.value == 0) return jogging ? stop(axis) : Verdict{};
     if (jogging) {
@@ -230,8 +231,14 @@ Machine::Impl::Verdict Machine::Impl::jog(const OperatorCommand& command, std::s
         const bool lease_over = error == ErrorId::state_forbids;
         if (!(lease_over && command.flag)) return lease_over ? Verdict{Answer::stale} : verdict(error);
     }
-    // A heartbeat of a jog whose lease has run out must not start the axis anew: it takes a fresh press (flag).
-    if (!command.flag) return {Answer::stale};
+    // A heartbeat of a jog that is over must not start the axis anew: it takes a fresh press (flag). Why it is over is not always its lease.
+    if (!command.flag) {
+        using enum axes::CommandStatus;
+        if (status == done) return verdict(axes::ErrorId::beyond_software_limit);  // it went as far as the axis may
+        if (status == aborted) return verdict(axes::ErrorId::aborted_by_command);
+        if (status == error && ended_by != static_cast<axes::ErrorId>(axes::AxisAlarm::jog_lease_expired)) return verdict(ended_by);
+        return {Answer::stale};
+    }
     AxisCommand wanted;
     wanted.kind = CommandKind::jog;
     wanted.velocity = command.value;

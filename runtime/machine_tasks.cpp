@@ -26,6 +26,7 @@ void Machine::Impl::run_base_task(std::size_t index) noexcept {
     context.tables = &tables;
     context.inputs = io.inputs();
     context.outputs = io.outputs();
+    context.output_bits = io.output_bits();
     context.parameters = host->parameters();
     context.alarms = program.alarms;
     context.first_scan = context.cycle == 0;

@@ -63,6 +63,7 @@ bool SlowTask::run_if_released() noexcept {
     context.tables = &tables_;
     context.inputs = inputs_;
     context.outputs = outputs_;
+    context.output_bits = output_bits_;
     context.parameters = parameters_;
     context.alarms = alarms_;
     context.first_scan = context_.cycle == 0;

@@ -29,6 +29,8 @@ public:
         const auto state = state_.load(std::memory_order_acquire);
         return state == State::idle || state == State::done;
     }
+    /// Bits of each output point, known once the bus has laid out its image. Before the first release.
+    void learn_outputs(std::span<const std::uint8_t> bits) noexcept { output_bits_ = bits; }
     /// What the last run wrote goes to the machine; only outputs and alarms that it changed.
     void apply(axes::AxisRequests& axes, std::span<std::int64_t> outputs, std::uint64_t& program_alarms) noexcept;
     void renew(axes::AxisRequests& axes) noexcept { requests_.renew(axes); }
@@ -65,6 +67,7 @@ private:
     axes::MotionTables& tables_;
     std::vector<axes::AxisView> views_;
     std::vector<std::int64_t> inputs_, outputs_, outputs_at_release_;
+    std::span<const std::uint8_t> output_bits_;
     std::vector<double> parameters_, variable_values_, variables_applied_;
     CycleContext context_;
     std::uint64_t runs_ = 0, applied_ = 0, alarms_ = 0, alarms_at_release_ = 0;

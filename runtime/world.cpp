@@ -36,6 +36,7 @@ axes::sim::PlantConfig plant_of(const AxisBinding& binding) {
     if (simulation.home_from && simulation.home_to) {
         plant.home_from = std::min(counts(*simulation.home_from), counts(*simulation.home_to));
         plant.home_to = std::max(counts(*simulation.home_from), counts(*simulation.home_to));
+        plant.home_every = std::abs(counts(binding.axis.modulo));  // a cam on a load that turns passes once a turn
     }
     plant.index_pulse = counts(simulation.index_pulse);
     plant.battery = simulation.battery;

@@ -36,8 +36,10 @@ enum class AxisAlarm : AlarmId {
     reference_lost = 0x3018,
     drive_setup_refused = 0x3019,
     drive_too_fast = 0x301A,
+    coupling_start_passed = 0x301B,
+    both_limit_switches = 0x301C,
 };
-inline constexpr std::size_t axis_alarm_count = 26;
+inline constexpr std::size_t axis_alarm_count = 28;
 
 [[nodiscard]] constexpr AlarmId id(AxisAlarm alarm) noexcept { return static_cast<AlarmId>(alarm); }
 
@@ -169,10 +171,20 @@ inline constexpr std::array<AlarmInfo, axis_alarm_count> axis_alarms{{
      "The log names the parameter, its value and what to set; set it, restart the drive where it says so, then reset",
      ResetRule::reset, Reaction::stop_axis, "The drive stays without power"},
     {id(AxisAlarm::drive_too_fast), "drive_too_fast",
-     "In a profile of the drive's own the axis ran at {a} u/s; its limit is {b} u/s", "驱动器自身轨迹运行时，轴速度达到 {a} u/s，超过限值 {b} u/s",
-     "The drive does not keep the speed it was given: its speed limit (607Fh) is not set or not used, or its loop overshoots",
-     "Check 607Fh and the drive's own speed limit, tune its loop, or lower the speed; then reset",
+     "In a motion of the drive's own the axis ran at {a} u/s; its limit is {b} u/s", "驱动器自行运动时，轴速度达到 {a} u/s，超过限值 {b} u/s",
+     "The drive does not keep the speed it was given: its speed limit (607Fh) is not set or not used, its homing speeds (6099h) are others than the machine's, or its loop overshoots",
+     "Check 607Fh, 6099h and the drive's own speed limit, tune its loop, or lower the speed; then reset",
      ResetRule::reset, Reaction::stop_axis, "The drive's communication watchdog stops it"},
+    {id(AxisAlarm::coupling_start_passed), "coupling_start_passed",
+     "The coupling waits: its master stands at {b} u, past the start at {a} u", "耦合在等待：主轴位于 {b} u，已越过起点 {a} u",
+     "A slave with MasterStartDistance begins when its master crosses the start in the sense of that distance; on a linear axis the master has to come back first",
+     "Give the command before the master is there, bring the master back, or end the coupling (MC_GearOut, MC_CamOut, MC_Halt)",
+     ResetRule::self_clearing, Reaction::warn, ""},
+    {id(AxisAlarm::both_limit_switches), "both_limit_switches",
+     "Both limit switches are on at once: the axis cannot move either way", "两个限位开关同时处于触发状态：轴无法向任何方向运动",
+     "An axis is never at both its ends: the polarity of the inputs is inverted (contacts that open, configured as contacts that close), the switches have no supply, or their cable is off",
+     "Check supply and cable of the switches, then the polarity of the limit inputs in the drive's own parameters",
+     ResetRule::self_clearing, Reaction::warn, ""},
 }};
 // clang-format on
 

@@ -119,6 +119,8 @@ void Axis::read_feedback() noexcept {
     const bool inverted = config_.gearing.inverted;
     negative_switch_ = feedback_.has_inputs && (inverted ? feedback_.positive_limit : feedback_.negative_limit);
     positive_switch_ = feedback_.has_inputs && (inverted ? feedback_.negative_limit : feedback_.positive_limit);
+    if (negative_switch_ && positive_switch_) fail(AxisAlarm::both_limit_switches);
+    else alarms_.clear(AxisAlarm::both_limit_switches);
 }
 
 void Axis::watch_drive() noexcept {
@@ -176,7 +178,10 @@ void Axis::run_power() noexcept {
     show_power();
     if (power_.phase() == PowerSequence::Phase::off) power_dropping_ = false;
     switch (event) {
-        case PowerSequence::Event::ready: fire(AxisEvent::powered); break;
+        case PowerSequence::Event::ready:
+            fire(AxisEvent::powered);
+            if (queue_.waiting() > 0) start_waiting(0);  // table 4: Status lets begin what is buffered behind MC_Power
+            break;
         case PowerSequence::Event::timeout:
             fail(AxisAlarm::enable_timeout, to_seconds(config_.enable_timeout), static_cast<double>(feedback_.power));
             break;

@@ -165,6 +165,7 @@ private:
         VelocityLimiter limiter = VelocityLimiter::none;
         bool goes_on = false;     ///< position: passes it with end_velocity and keeps that (MC_MoveContinuous...)
         double end_velocity = 0;  ///< u/s, signed
+        bool kept = false;        ///< velocity: that of a motion that is over; an override counts from its next change on
     };
     /// What runs on top of the base.
     struct Superimposed {
@@ -215,6 +216,11 @@ private:
     void fail(AxisAlarm alarm, double a = 0, double b = 0) noexcept;
     void enter_error_stop(AlarmId reason, bool then_power_off) noexcept;
     void stop_on_own_account(bool then_power_off) noexcept;
+    void halt_on_own_account() noexcept;
+    /// The axis comes to rest after a command that ended with an error; nobody's command.
+    [[nodiscard]] bool halts_alone() const noexcept {
+        return view_.state == AxisState::DiscreteMotion && goal_.kind == Goal::Kind::stop && !queue_.has_active();
+    }
     void switch_off() noexcept;
     void run_reset() noexcept;
     void end_reset(AxisEvent event) noexcept;
@@ -231,6 +237,8 @@ private:
     [[nodiscard]] ErrorId refuse_place(double program) const noexcept;
     [[nodiscard]] ErrorId refuse_place(const AxisCommand& command) const noexcept;
     [[nodiscard]] bool waits(const AxisCommand& command) const noexcept;
+    [[nodiscard]] bool homes_before() const noexcept;
+    [[nodiscard]] bool powers_up() const noexcept;
     [[nodiscard]] bool permitted(double direction) const noexcept;
     [[nodiscard]] bool software_limits_hold() const noexcept { return view_.homed && config_.modulo == 0; }
     [[nodiscard]] double velocity_cap() const noexcept;
@@ -297,6 +305,7 @@ private:
     void wait_for_room(const MotionState& from, MotionLimits limits, Plan& plan) noexcept;
     void complete_superimposed() noexcept;
     void end_superimposed(Outcome outcome, ErrorId error = ErrorId::none) noexcept;
+    void abandon_superimposed() noexcept;
 
     // axis_update.cpp: ContinuousUpdate
     ErrorId update_active(const AxisCommand& command) noexcept;
@@ -374,6 +383,8 @@ private:
     [[nodiscard]] DriveProfileRun::Setpoint drive_setpoint(const AxisCommand& command, DriveProfileRun::Way& way) const noexcept;
     ErrorId hand_to_drive(const AxisCommand& command) noexcept;
     void hand_ahead() noexcept;
+    /// The drive moves the axis by itself: faster than the limit is an error, and true.
+    bool guard_drive_speed(double velocity) noexcept;
     void guard_drive_profile() noexcept;
     void judge_drive_profile() noexcept;
     void judge_drive_move() noexcept;
@@ -402,10 +413,11 @@ private:
     [[nodiscard]] ErrorId refuse_coupling(const AxisCommand& command) const noexcept;
     [[nodiscard]] ErrorId refuse_master(AxisRef ref, MC_Source source) const noexcept;
     [[nodiscard]] bool follows_me(const Axis& master) const noexcept;
+    [[nodiscard]] bool never_ends(const AxisCommand& command) const noexcept;
     [[nodiscard]] bool waits_for_ever() const noexcept;
     ErrorId select_cam(const SelectCam& wanted) noexcept;
     ErrorId join(const AcceptedCommand& accepted) noexcept;
-    void plan_link(CommandId id, const AxisCommand& command) noexcept;
+    void plan_link(CommandId id, const AxisCommand& command, const Link* updated = nullptr) noexcept;
     void drop(Link& link) noexcept;
     ErrorId update_coupling(const AxisCommand& command) noexcept;
     [[nodiscard]] bool read_masters(Link& link, Duration period) noexcept;
@@ -418,7 +430,9 @@ private:
     [[nodiscard]] SlaveFrame slave_frame() const noexcept { return {units_.anchor(), units_.feed()}; }
 
     // axis_coupling_start.cpp
-    void find_start(Link& link) const noexcept;
+    void find_start(Link& link) noexcept;
+    [[nodiscard]] EndlessPlace cam_origin(const CamDetails& cam, const PreparedCam& table, const Axis& master,
+                                          const EndlessPlace& entry) const noexcept;
     [[nodiscard]] bool starts_now(Link& link) const noexcept;
     [[nodiscard]] FollowerLimits follower_limits(const AxisCommand& command) const noexcept;
     ErrorId engage(Duration period) noexcept;
@@ -432,6 +446,9 @@ private:
     // axis_phasing.cpp
     Submitted submit_phasing(const AxisCommand& command, Owner owner) noexcept;
     [[nodiscard]] ErrorId refuse_phasing(const AxisCommand& command) const noexcept;
+    [[nodiscard]] const AcceptedCommand& coupling_before_phasing(const AxisCommand& command) const noexcept;
+    [[nodiscard]] bool lets_phasing_begin() const noexcept;
+    void settle_waiting_phasing() noexcept;
     void begin_phasing(const AcceptedCommand& accepted) noexcept;
     void complete_phasing() noexcept;
     void end_phasing(Outcome outcome) noexcept;

@@ -67,7 +67,17 @@ void check_modulo(Problems& problems, const AxisConfig& config) {
         problems.add("modulo", "excludes software limits: the axis has no ends", "Remove limits.position_min and limits.position_max");
 }
 
-void check_homing(Problems& problems, const HomingConfig& homing) {
+/// Homing by the drive knows nothing of the axis' limits: what it is told has to be inside them.
+void check_homing_speeds(Problems& problems, const HomingConfig& homing, const AxisLimits& limits) {
+    const char* const remedy = "Homing may not be faster than the axis: give a smaller value, or raise the limit where the mechanics bear it";
+    const auto above = [](double value, double limit) { return limit > 0 && value > limit; };  // a limit that is none is said elsewhere
+    if (above(homing.search_velocity, limits.velocity)) problems.add("homing.search_velocity", "is above limits.velocity", remedy);
+    if (above(homing.latch_velocity, limits.velocity)) problems.add("homing.latch_velocity", "is above limits.velocity", remedy);
+    if (above(homing.acceleration, std::min(limits.acceleration, limits.deceleration)))
+        problems.add("homing.acceleration", "is above limits.acceleration or limits.deceleration", remedy);
+}
+
+void check_homing(Problems& problems, const HomingConfig& homing, const AxisLimits& limits) {
     const auto& marks = homing.marks;
     if ((marks.spacing != 0 || marks.step != 0) && !marks.valid())
         problems.add("homing.marks", "cannot be those of a distance-coded scale",
@@ -76,6 +86,7 @@ void check_homing(Problems& problems, const HomingConfig& homing) {
     if (kind == HomingKind::none || kind == HomingKind::set_here || kind == HomingKind::absolute) return;
     if (homing.timeout <= Duration::zero())
         problems.add("homing.timeout", "must be above 0", "Give the longest time homing may take, such as 60 s");
+    check_homing_speeds(problems, homing, limits);
     if (kind == HomingKind::drive) return;
     problems.positive("homing.search_velocity", homing.search_velocity, "u/s, above 0 either way; the sense is `direction`");
     problems.positive("homing.latch_velocity", homing.latch_velocity, "u/s");
@@ -136,7 +147,7 @@ std::vector<Error> check(const AxisConfig& config) {
     check_gearing(problems, config.gearing);
     check_modulo(problems, config);
     check_limits(problems, config.limits);
-    check_homing(problems, config.homing);
+    check_homing(problems, config.homing, config.limits);
     check_control(problems, config.control);
     check_compensation(problems, config.compensation);
     problems.not_negative("defaults.acceleration", config.defaults.acceleration, "the limit");

@@ -15,6 +15,12 @@ bool finite(Numbers... numbers) noexcept {
     return (std::isfinite(numbers) && ...);
 }
 
+/// MasterSyncPosition is a place of the profile; one that repeats has it again in each pass.
+bool has_sync_point(const CamDetails& cam, const PreparedCam& table) noexcept {
+    const double along = sync_place(cam, table) - table.begin();
+    return cam.master_start_distance == 0 || table.periodic() || (along >= 0 && along <= table.length());
+}
+
 ErrorId check_cam(const CamDetails& cam) noexcept {
     const bool usable = finite(cam.master_offset, cam.slave_offset, cam.master_scaling, cam.slave_scaling, cam.master_start_distance,
                                cam.master_sync_position) &&
@@ -112,7 +118,9 @@ ErrorId Axis::refuse_coupling(const AxisCommand& command) const noexcept {
     }
     if (const auto* cam = std::get_if<CamDetails>(&command.details); cam && command.kind == CommandKind::cam_in) {
         error = check_cam(*cam);
-        if (error == ErrorId::none && (!scene_.tables || !scene_.tables->prepared(cam->table))) error = ErrorId::invalid_table;
+        const auto* table = scene_.tables ? scene_.tables->prepared(cam->table) : nullptr;
+        if (error == ErrorId::none && !table) error = ErrorId::invalid_table;
+        if (error == ErrorId::none && !has_sync_point(*cam, *table)) error = ErrorId::invalid_position;
     }
     if (const auto* sum = std::get_if<CombineDetails>(&command.details); sum && command.kind == CommandKind::combine) {
         error = ratio_error(sum->ratio1);
@@ -124,12 +132,19 @@ ErrorId Axis::refuse_coupling(const AxisCommand& command) const noexcept {
     return refuse_master(masters.axes[0], masters.sources[0]);
 }
 
-/// Behind a cam that repeats for ever nothing gets its turn (P1-092).
-bool Axis::waits_for_ever() const noexcept {
-    const auto* cam = std::get_if<CamDetails>(&queue_.active().command.details);
-    if (!cam || queue_.active().command.kind != CommandKind::cam_in || !scene_.tables) return false;
+/// A cam that repeats for ever.
+bool Axis::never_ends(const AxisCommand& command) const noexcept {
+    const auto* cam = std::get_if<CamDetails>(&command.details);
+    if (!cam || command.kind != CommandKind::cam_in || !scene_.tables) return false;
     const auto* table = scene_.tables->prepared(cam->table);
     return table && table->periodic();
+}
+
+/// Behind it nothing gets its turn (P1-092), neither while it runs nor while it waits itself. Settings pass it.
+bool Axis::waits_for_ever() const noexcept {
+    for (std::size_t i = queue_.waiting(); i > 0; --i)
+        if (const auto& before = queue_.waiting_at(i - 1).command; before.kind != CommandKind::setting) return never_ends(before);
+    return never_ends(queue_.active().command);
 }
 
 ErrorId Axis::select_cam(const SelectCam& wanted) noexcept {
@@ -150,7 +165,11 @@ ErrorId Axis::join(const AcceptedCommand& accepted) noexcept {
     if (uncouples(command.kind)) {
         start_at_base();
         aim_at_velocity(setpoint_.base().velocity, full_limits(config_.limits));
+        goal_.kept = true;  // P1-271
         queue_.finish_active(Outcome::done);
+        // Table 4: with Done begins what was buffered behind it.
+        while (queue_.waiting() > 0 && queue_.front().command.kind == CommandKind::setting) carry_out(queue_.pop());
+        if (queue_.waiting() > 0) start_waiting(0);
         return ErrorId::none;
     }
     // It may have waited: what was right then need not be now.
@@ -159,7 +178,8 @@ ErrorId Axis::join(const AcceptedCommand& accepted) noexcept {
     return ErrorId::none;
 }
 
-void Axis::plan_link(CommandId id, const AxisCommand& command) noexcept {
+/// `updated`: the running coupling that goes on with `command`; relative inputs count from its start.
+void Axis::plan_link(CommandId id, const AxisCommand& command, const Link* updated) noexcept {
     drop(coupling_.next);
     auto& link = coupling_.next;
     coupling_.shown = true;
@@ -170,9 +190,23 @@ void Axis::plan_link(CommandId id, const AxisCommand& command) noexcept {
         link.cam = cam->table;
         scene_.tables->hold(link.cam);
     }
+    if (updated && updated->masters.axes == link.masters.axes) {
+        link.started = true;
+        link.master_start = updated->master_start;
+        link.second_start = updated->second_start;
+        link.slave_start = updated->slave_start;
+        link.table_start = updated->table_start;
+    }
     find_start(link);
+    if (updated) {
+        link.waits = false;
+        return;
+    }
     // A table or a feed belongs to its command and ends with it: until this one begins, the axis keeps its velocity.
-    if (goal_.kind == Goal::Kind::given) aim_at_velocity(setpoint_.base().velocity, full_limits(config_.limits));
+    if (goal_.kind == Goal::Kind::given) {
+        aim_at_velocity(setpoint_.base().velocity, full_limits(config_.limits));
+        goal_.kept = true;
+    }
     // Behind a cam that has just ended the next one begins where that ended, not a part of a cycle later.
     const auto* before = goal_.kind == Goal::Kind::coupled ? coupling_.follower.cam() : nullptr;
     if (!before || !before->over() || command.buffer_mode != mcBuffered || link.masters.axes != coupling_.running.masters.axes) return;
@@ -185,6 +219,7 @@ void Axis::plan_link(CommandId id, const AxisCommand& command) noexcept {
 
 void Axis::drop(Link& link) noexcept {
     if (link.cam.value != 0) scene_.tables->release(link.cam);
+    if (link.waits) alarms_.clear(AxisAlarm::coupling_start_passed);
     link = {};
 }
 
@@ -192,22 +227,14 @@ void Axis::drop(Link& link) noexcept {
 ErrorId Axis::update_coupling(const AxisCommand& command) noexcept {
     auto& active = queue_.active();
     if (const auto error = refuse_coupling(command); error != ErrorId::none) return error;
+    if (queue_.waiting() > 0 && never_ends(command)) return ErrorId::buffer_mode_not_supported;
     active.command = command;
     if (coupling_.running.id != active.id) {
         // Not begun yet.
         plan_link(active.id, command);
         return ErrorId::none;
     }
-    const auto start = coupling_.running;
-    plan_link(active.id, command);
-    auto& link = coupling_.next;
-    link.waits = false;
-    if (start.masters.axes != link.masters.axes) return ErrorId::none;
-    link.started = true;
-    link.master_start = start.master_start;
-    link.second_start = start.second_start;
-    link.slave_start = start.slave_start;
-    link.table_start = start.table_start;
+    plan_link(active.id, command, &coupling_.running);
     return ErrorId::none;
 }
 
@@ -259,7 +286,7 @@ void Axis::follow_masters(Duration period) noexcept {
     if (coupling_.next.id == 0 || !starts_now(coupling_.next)) return;
     if (const auto error = engage(period); error != ErrorId::none) {
         queue_.finish_active(Outcome::error, error);
-        stop_on_own_account(false);  // the motion before was given up for this one
+        halt_on_own_account();  // the motion before was given up for this one
     }
 }
 
@@ -302,6 +329,7 @@ void Axis::publish_coupling() noexcept {
     view_.cam_ends = coupling_.cam_ends;
     view_.phase_shift = coupling_.phase.state().position;
     view_.phase_covered = coupling_.phase.covered();
+    view_.phasing_queued = coupling_.phasing_next.id;
     show_side(SideSlot::phasing, coupling_.phasing.id);
 }
 

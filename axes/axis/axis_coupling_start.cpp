@@ -22,35 +22,61 @@ EndlessPlace moved(EndlessPlace place, double by) noexcept {
 }  // namespace
 
 /// Sync point and start, as places of the master: what numbers mean is settled now, whatever MC_SetPosition does later.
-void Axis::find_start(Link& link) const noexcept {
-    double sync = 0, distance = 0;
-    if (const auto* point = std::get_if<GearInPosDetails>(&link.command.details)) {
-        sync = point->master_sync_position;
-        distance = point->master_start_distance;
-    } else if (const auto* cam = std::get_if<CamDetails>(&link.command.details); cam && cam->master_start_distance != 0) {
-        sync = cam->master_sync_position;
-        distance = cam->master_start_distance;
-    } else return;
+void Axis::find_start(Link& link) noexcept {
+    const auto* point = std::get_if<GearInPosDetails>(&link.command.details);
+    const auto* cam = std::get_if<CamDetails>(&link.command.details);
     const Axis* master = scene_.axis(link.masters.axes[0]);
-    if (!master) return;
-    const auto now = master->as_master(link.masters.sources[0]).motion;
-    const double here = now.place.local + (coupling_.phase_master == link.masters.axes[0] ? coupling_.phase.state().position : 0.0);
+    if (!master || !(point || (cam && cam->master_start_distance != 0))) return;
+    const double distance = point ? point->master_start_distance : cam->master_start_distance;
     const auto& units = master->units_;
-    const double place = units.to_local(sync);
+    auto now = master->as_master(link.masters.sources[0]).motion;
+    if (coupling_.phase_master == link.masters.axes[0]) now.place.local += coupling_.phase.state().position;
+    // Where the master was when the command came: in this cycle it has been planned already, and may have crossed the start. An update finds the
+    // same repetition again.
+    const auto counted_from = link.started ? link.master_start : earlier(now, to_seconds(cycle_)).place;
+    const double here = way({units.anchor(), 0}, counted_from, units.feed());
+
+    double place = 0, repeats = units.modulo();
+    if (point) {
+        place = units.to_local(point->master_sync_position);
+    } else {
+        const auto* table = scene_.tables->prepared(cam->table);
+        if (!table) return;
+        link.master_start = counted_from;
+        const auto origin = cam_origin(*cam, *table, *master, counted_from);
+        place = way({units.anchor(), 0}, origin, units.feed()) + cam->master_scaling * (sync_place(*cam, *table) - table->begin());
+        if (table->periodic()) repeats = std::abs(cam->master_scaling) * table->length();
+    }
     link.sense = 1;
     if (distance != 0) link.sense = distance < 0 ? -1 : 1;
     else if (units.modulo() > 0 ? now.velocity < 0 : place < here) link.sense = -1;
-    link.sync = {units.anchor(), choose_sync_point(place, units.modulo(), here, std::abs(distance), link.sense)};
+    link.sync = {units.anchor(), choose_sync_point(place, repeats, here, std::abs(distance), link.sense)};
     link.begin = moved(link.sync, -distance);
     link.waits = distance != 0;
+    link.ahead = link.sense * way(counted_from, link.begin, units.feed());
+    if (link.waits && !link.started && link.ahead < 0)
+        fail(AxisAlarm::coupling_start_passed, units.to_program(way({units.anchor(), 0}, link.begin, units.feed())), units.to_program(here));
 }
 
-/// The master has crossed the start in its sense since the last cycle.
+/// Where the lowest master position of the table lies for a master at `entry`.
+EndlessPlace Axis::cam_origin(const CamDetails& cam, const PreparedCam& table, const Axis& master, const EndlessPlace& entry) const noexcept {
+    if (cam.start == mcRelative || !table.master_absolute()) return moved(entry, cam.master_offset);
+    const auto& units = master.units_;
+    double origin = units.to_local(cam.master_offset + cam.master_scaling * table.begin());
+    // A modulo master: the repetition in whose turn the cam is entered.
+    if (units.modulo() > 0) {
+        const double here = way({units.anchor(), 0}, entry, units.feed());
+        origin += std::floor((here - origin) / units.modulo()) * units.modulo();
+    }
+    return {units.anchor(), origin};
+}
+
+/// The master has crossed the start in its sense since the last cycle, or was on it at the beginning.
 bool Axis::starts_now(Link& link) const noexcept {
     if (!link.waits) return true;
     const Axis* master = scene_.axis(link.masters.axes[0]);
     const double ahead = link.sense * way(seen(link, 0).place, link.begin, master->units_.feed());
-    const bool crossed = link.tracked ? link.ahead > 0 && ahead <= 0 : ahead == 0;
+    const bool crossed = ahead <= 0 && (link.ahead > 0 || (!link.tracked && link.ahead == 0));
     link.ahead = ahead;
     link.tracked = true;
     return crossed;
@@ -65,13 +91,14 @@ FollowerLimits Axis::follower_limits(const AxisCommand& command) const noexcept 
 ErrorId Axis::engage(Duration period) noexcept {
     auto& link = coupling_.next;
     // What was superimposed on the motion before becomes part of it; an update changes nothing there.
+    if (!link.started && !link.waits && queue_.beside(SideSlot::superimposed) == 0) end_superimposed(Outcome::aborted);
     if (!link.started) start_at_base();
     const auto first = earlier(seen(link, 0), to_seconds(period));
     const auto second = link.masters.axes[1].valid() ? earlier(seen(link, 1), to_seconds(period)) : EndlessMotion{};
     if (!link.started) {
         link.second_start = second.place;
         if (!link.chained) {
-            link.master_start = first.place;
+            if (!link.waits) link.master_start = first.place;
             link.slave_start = slave_frame().place(setpoint_.base().position);
         }
     }
@@ -86,8 +113,10 @@ ErrorId Axis::engage(Duration period) noexcept {
     if (error != ErrorId::none) return error;
     if (coupling_.phase_master != link.masters.axes[0]) clear_phase();
     drop(coupling_.running);
+    if (link.waits) alarms_.clear(AxisAlarm::coupling_start_passed);
     coupling_.running = link;
     coupling_.running.started = true;
+    coupling_.running.waits = false;
     coupling_.next = {};  // what it held goes on being held
     coupling_.cam_ends_seen = 0;
     goal_ = {Goal::Kind::coupled, 0, full_limits(config_.limits), VelocityLimiter::command};
@@ -120,7 +149,7 @@ ErrorId Axis::begin_sum(const Link& link) noexcept {
 }
 
 /// The polynomial from where the slave is to `end` at the sync point; sync_impossible where that lies behind the master, or the slave
-/// would exceed velocity, acceleration or deceleration on the way were the master to keep its velocity.
+/// would exceed velocity, acceleration, deceleration, or a jerk that was given, on the way were the master to keep its velocity (P1-284).
 ErrorId Axis::approach_to(const Link& link, const EndlessMotion& master, double master_feed, const CurvePoint& end,
                           SyncApproach& approach) const noexcept {
     const double length = way(master.place, link.sync, master_feed);
@@ -135,7 +164,8 @@ ErrorId Axis::approach_to(const Link& link, const EndlessMotion& master, double 
     // The state it begins with is not its doing.
     constexpr double rounding = 1 + 1e-6;
     const bool possible = peaks.velocity <= std::max(velocity, std::abs(slave.velocity)) * rounding &&
-                          peaks.acceleration <= std::max(acceleration, std::abs(slave.acceleration)) * rounding;
+                          peaks.acceleration <= std::max(acceleration, std::abs(slave.acceleration)) * rounding &&
+                          (!(link.command.jerk > 0) || peaks.jerk <= link.command.jerk * rounding);
     return possible ? ErrorId::none : ErrorId::sync_impossible;
 }
 
@@ -164,26 +194,19 @@ ErrorId Axis::begin_cam(Link& link, const EndlessMotion& first) noexcept {
     const auto& cam = std::get<CamDetails>(link.command.details);
     const auto* table = scene_.tables->prepared(cam.table);
     if (!table) return ErrorId::invalid_table;
-    const auto& master = scene_.axis(link.masters.axes[0])->units_;
+    const Axis& master = *scene_.axis(link.masters.axes[0]);
     const bool relative = cam.start == mcRelative;
     const bool has_sync = cam.master_start_distance != 0;
-    const EndlessPlace entry = has_sync ? link.sync : link.master_start;
+    // Where the table's value is that of the slave: with a sync point a relative slave counts from the begin of the approach.
+    const bool slave_relative = relative || !table->slave_absolute();
+    const EndlessPlace entry = !has_sync ? link.master_start : slave_relative ? link.begin : link.sync;
 
     CamFit fit;
-    fit.master_feed = master.feed();
+    fit.master_feed = master.units_.feed();
     fit.slave_feed = units_.feed();
     fit.master_scaling = cam.master_scaling;
-    if (relative || !table->master_absolute()) {
-        fit.master_origin = moved(entry, cam.master_offset);
-    } else {
-        double origin = master.to_local(cam.master_offset + cam.master_scaling * table->begin());
-        // A modulo master: the repetition in whose turn the cam is entered.
-        if (master.modulo() > 0) {
-            const double here = way({master.anchor(), 0}, entry, master.feed());
-            origin += std::floor((here - origin) / master.modulo()) * master.modulo();
-        }
-        fit.master_origin = {master.anchor(), origin};
-    }
+    fit.master_origin = has_sync ? moved(link.sync, -cam.master_scaling * (sync_place(cam, *table) - table->begin()))
+                                 : cam_origin(cam, *table, master, entry);
     // The table's own value where the slave enters.
     CamCurve curve;
     if (!curve.set(*table, fit)) return ErrorId::invalid_ratio;
@@ -191,7 +214,7 @@ ErrorId Axis::begin_cam(Link& link, const EndlessMotion& first) noexcept {
     if (!link.started) link.table_start = value;
 
     fit.slave_scaling = cam.slave_scaling;
-    if (relative || !table->slave_absolute()) {
+    if (slave_relative) {
         fit.slave_origin = moved(link.slave_start, cam.slave_offset);
         fit.table_origin = link.table_start;
     } else {

@@ -218,13 +218,16 @@ void Axis::judge_drive_move() noexcept {
     start_waiting(0);
 }
 
+bool Axis::guard_drive_speed(double velocity) noexcept {
+    if (!(std::abs(velocity) > too_fast * config_.limits.velocity)) return false;
+    fail(AxisAlarm::drive_too_fast, std::abs(velocity), config_.limits.velocity);
+    return true;
+}
+
 /// By what the drive reports: its way is not ours to plan.
 void Axis::guard_drive_profile() noexcept {
     const auto& at = setpoint_.state();
-    if (std::abs(at.velocity) > too_fast * config_.limits.velocity) {
-        fail(AxisAlarm::drive_too_fast, std::abs(at.velocity), config_.limits.velocity);
-        return;
-    }
+    if (guard_drive_speed(at.velocity)) return;
     auto braking = stop_limits(config_.limits);
     braking.deceleration = std::min(braking.deceleration, drive_run_.setpoint().deceleration / std::abs(units_.counts_per_unit()));
     if (drive_run_.mode() != DriveMode::profile_position) {

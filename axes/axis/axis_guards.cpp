@@ -40,7 +40,7 @@ bool Axis::guard_switches() noexcept {
         aim(Goal::Kind::stop, 0, stop_limits(config_.limits), VelocityLimiter::stopping);  // also on the way to a software limit
     } else if ((velocity > 0 && !permit_positive_) || (velocity < 0 && !permit_negative_)) {
         queue_.finish_active(Outcome::error, ErrorId::interlocked);
-        stop_on_own_account(false);
+        halt_on_own_account();
     } else return false;
     return true;
 }

@@ -26,7 +26,13 @@ ErrorId Axis::refuse_home() const noexcept {
     const auto& drive = port_.capabilities();
     switch (config_.homing.kind) {
         case HomingKind::none: return ErrorId::not_supported;
-        case HomingKind::drive: return drive.drive_homing ? ErrorId::none : ErrorId::not_supported;
+        case HomingKind::drive: {
+            if (!drive.drive_homing) return ErrorId::not_supported;
+            // The drive has its speeds from the start-up: limits that a program has lowered since bind it all the same.
+            const auto& homing = config_.homing;
+            const bool faster = std::max(homing.search_velocity, homing.latch_velocity) > config_.limits.velocity;
+            return faster && !drive.homing_per_run ? ErrorId::invalid_velocity : ErrorId::none;
+        }
         case HomingKind::limit_switch: return drive.digital_inputs ? ErrorId::none : ErrorId::not_supported;
         case HomingKind::reference_pulse: return refuse_reference({.source = TriggerSource::index_pulse});
         case HomingKind::absolute: return absolute_encoder() ? ErrorId::none : ErrorId::not_supported;
@@ -103,6 +109,7 @@ void Axis::step_homing() noexcept {
         if (power_.follows_actual()) drive_homing_.cancel();
         if (feedback_.homing_setup_refused && view_.state == AxisState::Homing)
             fail(AxisAlarm::drive_homing_refused, config_.homing.method);
+        guard_drive_speed(feedback_.velocity / units_.counts_per_unit());
         switch (drive_homing_.step(feedback_, drive_stands(), now_)) {
             case DriveHoming::Result::attained: {
                 // The drive's own zero is the reference. Its raw position may have wrapped on the way: zero is the nearest multiple.
@@ -132,7 +139,9 @@ DriveHomingSetup Axis::drive_homing_setup() const noexcept {
     if (!drive_homing_.busy() || !port_.capabilities().homing_per_run) return {};
     const double scale = std::abs(units_.counts_per_unit());
     const auto& homing = config_.homing;
-    return {homing.method, homing.search_velocity * scale, homing.latch_velocity * scale, homing.acceleration * scale};
+    const auto& limits = config_.limits;
+    return {homing.method, std::min(homing.search_velocity, limits.velocity) * scale, std::min(homing.latch_velocity, limits.velocity) * scale,
+            std::min({homing.acceleration, limits.acceleration, limits.deceleration}) * scale};
 }
 
 /// What homing gave is gone, and so is what was kept of it.

@@ -242,7 +242,8 @@ bool Axis::run_torque(Duration period) noexcept {
 
 /// As the guards of planned motion, but early by what leaving the mode takes.
 void Axis::guard_motor(const MotionLimits& braking) noexcept {
-    if (view_.state == AxisState::ErrorStop || view_.state == AxisState::Stopping || guard_switches() || !software_limits_hold()) return;
+    const bool stops = view_.state == AxisState::ErrorStop || view_.state == AxisState::Stopping || halts_alone();
+    if (stops || guard_switches() || !software_limits_hold()) return;
     auto reach = setpoint_.state();
     if (reach.velocity == 0) return;
     const auto& drive = port_.capabilities();

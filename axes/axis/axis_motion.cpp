@@ -10,6 +10,7 @@ namespace taktwerk::axes {
 
 void Axis::plan(Instant now, Duration period) noexcept {
     now_ = now;
+    if (coupling_.phasing_next.id != 0) settle_waiting_phasing();
     if (follows_motor()) {
         follow_actual(period);
         settle_couplings();
@@ -51,7 +52,7 @@ void Axis::plan(Instant now, Duration period) noexcept {
         setpoint_.place(actual_local());
     if (may_complete()) complete();
     if (coupling_.shown) complete_phasing();
-    if (queue_.beside(SideSlot::superimposed) != 0) complete_superimposed();
+    if (queue_.beside(SideSlot::superimposed) != 0 || wants_speed_ > 0) complete_superimposed();
     if (const double velocity = setpoint_.state().velocity; velocity != 0) backwards_ = velocity < 0;
     else if (summed_) summed_ = !setpoint_.at_rest();
     publish_commands();

@@ -12,19 +12,23 @@ ErrorId Axis::set_override(const Override& factors) noexcept {
     if (factors.acceleration == 0 || factors.jerk == 0) return ErrorId::invalid_override;
     if (factors == override_) return ErrorId::none;  // called each scan
     override_ = factors;
-    if (override_counts() && !begin_pending_) goal_pending_ = true;
+    goal_.kept = false;
+    // A coupling that has just been commanded may have to wait.
+    if (override_counts() && (!begin_pending_ || couples(queue_.active().command.kind))) goal_pending_ = true;
     if (queue_.beside(SideSlot::superimposed) != 0) superimposed_.pending = true;
     publish();
     return ErrorId::none;
 }
 
-/// Not where the axis follows a master (P1-208) or a table over time (P1-211), stops, or searches its reference with velocities of its own.
+/// Not where the axis follows a master (P1-208) or a table over time (P1-211), stops, or searches its reference with velocities of its own; nor
+/// on a velocity that a released slave keeps (P1-271). While a coupling waits, the motion before goes on, and its override with it (P1-281).
 bool Axis::override_counts() const noexcept {
     const auto kind = queue_.active().command.kind;
     if (kind == CommandKind::velocity_profile || kind == CommandKind::acceleration_profile) return false;
     const bool moves = goal_.kind == Goal::Kind::position || goal_.kind == Goal::Kind::velocity;
-    const bool commanded = view_.state == AxisState::DiscreteMotion || view_.state == AxisState::ContinuousMotion;
-    return moves && commanded && goal_.limiter != VelocityLimiter::software_limit;
+    const bool commanded = view_.state == AxisState::DiscreteMotion || view_.state == AxisState::ContinuousMotion ||
+                           view_.state == AxisState::SynchronizedMotion;
+    return moves && commanded && !goal_.kept && goal_.limiter != VelocityLimiter::software_limit;
 }
 
 /// Ramps only: what a velocity means depends on the kind of motion.

@@ -123,6 +123,7 @@ void Axis::follow_curve(double t) noexcept {
     const bool position = queue_.active().command.kind == CommandKind::position_profile;
     goal_ = {position ? Goal::Kind::position : Goal::Kind::velocity, position ? end.position : end.velocity, full_limits(config_.limits),
              VelocityLimiter::command};
+    goal_.kept = !position;
     setpoint_.run(Profile{end}, std::max(0.0, t - curve.duration()));
     setpoint_.sample();
 }
@@ -187,7 +188,7 @@ void Axis::follow_feed(Duration period) noexcept {
 
 void Axis::end_feed(ErrorId error) noexcept {
     queue_.finish_active(Outcome::error, error);
-    stop_on_own_account(false);
+    halt_on_own_account();
 }
 
 }  // namespace taktwerk::axes

@@ -27,9 +27,9 @@ void Axis::complete() noexcept {
     for (std::size_t i = 0; !held_ && i <= CommandQueue::capacity; ++i)
         if (goal_pending_ || goal_.kind == Goal::Kind::given || !setpoint_.finished() || !complete_active()) break;
     const bool to_velocity = goal_.kind == Goal::Kind::velocity;
-    const bool held_back = override_.velocity == 0 || wants_speed_ > 0;  // P1-203: at the reduced velocity it is TRUE
+    // P1-203: at the reduced velocity it is TRUE, also where that is 0.
     if (view_.state == AxisState::ContinuousMotion && (to_velocity || goal_.kind == Goal::Kind::position))
-        queue_.set_in_target(to_velocity && setpoint_.finished() && !held_back);
+        queue_.set_in_target(to_velocity && setpoint_.finished() && wants_speed_ == 0);
 }
 
 bool Axis::complete_active() noexcept {
@@ -63,7 +63,8 @@ bool Axis::complete_active() noexcept {
         return false;
     }
     if (view_.state == AxisState::Homing && kind == CommandKind::homing_step) return complete_homing_step();
-    if (view_.state != AxisState::DiscreteMotion || kind == CommandKind::none || goal_.kind == Goal::Kind::rest) return false;
+    if (view_.state != AxisState::DiscreteMotion || goal_.kind == Goal::Kind::rest) return false;
+    if (kind == CommandKind::none && goal_.kind != Goal::Kind::stop) return false;
     if (goal_.kind == Goal::Kind::velocity && goal_.value != 0) {  // a jog at its speed
         queue_.set_in_target(true);
         return false;
@@ -107,7 +108,7 @@ void Axis::start_waiting(double late) noexcept {
         if (view_.state == AxisState::ErrorStop) return;
         const bool layered = setpoint_.layered();
         if (layered) setpoint_.sample();  // the base comes to where the other layer is in time, before both become one
-        stop_on_own_account(false);
+        halt_on_own_account();
         run_goal(layered ? 0 : late);
         return;
     }

@@ -49,13 +49,24 @@ bool Axis::permitted(double direction) const noexcept {
     return true;
 }
 
+/// MC_Power has been asked for it, and Status is still to come.
+bool Axis::powers_up() const noexcept { return view_.state == AxisState::Disabled && power_wish_ && emergency_ == EmergencyStop::none; }
+
 bool Axis::waits(const AxisCommand& command) const noexcept {
     if (command.buffer_mode == mcAborting) return false;
-    return queue_.has_active() || view_.state == AxisState::Stopping || queue_.beside(SideSlot::superimposed) != 0;
+    return queue_.has_active() || queue_.waiting() > 0 || powers_up() || halts_alone() || view_.state == AxisState::Stopping;
+}
+
+/// What waits behind a homing is judged when its turn comes.
+bool Axis::homes_before() const noexcept {
+    if (view_.state == AxisState::Homing) return true;
+    for (std::size_t i = 0; i < queue_.waiting(); ++i)
+        if (const auto kind = queue_.waiting_at(i).command.kind; kind == CommandKind::home || kind == CommandKind::homing_step) return true;
+    return false;
 }
 
 ErrorId Axis::refuse_state(const AxisCommand& command) const noexcept {
-    if (view_.state == AxisState::Disabled) return ErrorId::not_powered;
+    if (view_.state == AxisState::Disabled && !(powers_up() && waits(command))) return ErrorId::not_powered;
     if (view_.state == AxisState::ErrorStop) return ErrorId::in_error_stop;
     if (emergency_ != EmergencyStop::none) return ErrorId::interlocked;
     const bool stopping = view_.state == AxisState::Stopping;
@@ -94,7 +105,7 @@ ErrorId Axis::refuse_target(const AxisCommand& command, bool starts_now) const n
     switch (command.kind) {
         case CommandKind::move_absolute:
         case CommandKind::move_continuous_absolute:
-            if (config_.require_homed && !view_.homed) return ErrorId::not_homed;
+            if (config_.require_homed && !view_.homed && (starts_now || !homes_before())) return ErrorId::not_homed;
             if (const auto error = refuse_place(command); error != ErrorId::none) return error;
             way = repetition_of(command, here, heads_backwards()) - here.position;
             break;
@@ -110,7 +121,7 @@ ErrorId Axis::refuse_target(const AxisCommand& command, bool starts_now) const n
             break;
         }
         case CommandKind::drive_move_absolute:
-            if (config_.require_homed && !view_.homed) return ErrorId::not_homed;
+            if (config_.require_homed && !view_.homed && (starts_now || !homes_before())) return ErrorId::not_homed;
             if (const auto error = refuse_place(command.position); error != ErrorId::none) return error;
             [[fallthrough]];
         case CommandKind::drive_move_relative: {
@@ -174,7 +185,10 @@ Submitted Axis::submit(const AxisCommand& command, Owner owner) noexcept {
     } else {
         queue_.finish_active(Outcome::aborted);
         queue_.finish_waiting(Outcome::aborted);
-        end_superimposed(Outcome::aborted);
+        // P1-151: in any other mode what is superimposed goes on beside it.
+        const bool aborts = command.buffer_mode == mcAborting;
+        if (aborts && couples(command.kind)) abandon_superimposed();
+        else if (aborts) end_superimposed(Outcome::aborted);
         abort_homing();
         queue_.activate(accepted);
         if (view_.state != AxisState::Stopping) fire(event_of(command.kind));
@@ -286,6 +300,7 @@ void Axis::take_control(Owner owner) noexcept {
     if (owner == view_.owner) return;
     view_.owner = owner;
     permit_positive_ = permit_negative_ = true;
+    if (view_.state == AxisState::Disabled) queue_.finish_waiting(Outcome::aborted);  // for power that another party wanted
     const bool commanded = queue_.has_active() || queue_.waiting() > 0 || view_.lock != 0 || moves();
     if (commanded && view_.state != AxisState::Disabled && view_.state != AxisState::ErrorStop) stop_on_own_account(off_when_stopped_);
     publish();

@@ -72,10 +72,21 @@ void Axis::stop_on_own_account(bool then_power_off) noexcept {
     aim(Goal::Kind::stop, 0, full_limits(config_.limits), VelocityLimiter::stopping);
 }
 
-void Axis::switch_off() noexcept {
+/// A command could not go on, which is an error of its instance and none of the axis: it comes to rest as by MC_Halt, and may be moved again at
+/// once. Stopping is for MC_Stop (figure 2), for power that goes, and for a change of hands.
+void Axis::halt_on_own_account() noexcept {
+    if (!next_state(view_.state, AxisEvent::discrete)) return stop_on_own_account(false);
     queue_.finish_active(Outcome::aborted);
     queue_.finish_waiting(Outcome::aborted);
     end_superimposed(Outcome::aborted);
+    begin_pending_ = false;
+    fire(AxisEvent::discrete);
+    aim(Goal::Kind::stop, 0, full_limits(config_.limits), VelocityLimiter::stopping);
+}
+
+void Axis::switch_off() noexcept {
+    queue_.finish_active(Outcome::aborted);
+    queue_.finish_waiting(Outcome::aborted);
     end_superimposed(Outcome::aborted);
     view_.lock = 0;
     off_when_stopped_ = begin_pending_ = false;
@@ -87,6 +98,7 @@ void Axis::switch_off() noexcept {
 
 void Axis::shut_down() noexcept {
     power_wish_ = false;
+    if (view_.state == AxisState::Disabled) queue_.finish_waiting(Outcome::aborted);  // what waited for power
     if (view_.state == AxisState::Disabled || view_.state == AxisState::ErrorStop) return;  // power_wanted() sees the wish
     if (moves()) stop_on_own_account(true);
     else switch_off();

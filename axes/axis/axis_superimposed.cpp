@@ -130,13 +130,22 @@ void Axis::complete_superimposed() noexcept {
     auto& own = superimposed_;
     const double limit = config_.limits.velocity;
     if (wants_speed_ > 0 && std::abs(setpoint_.superimposed().velocity) <= limit - wants_speed_ + room_grain * limit) goal_pending_ = true;
-    if (!own.begun) return;
+    if (!own.begun || queue_.beside(SideSlot::superimposed) == 0) return;
     if (own.accepted.command.kind == CommandKind::move_superimposed)
         view_.superimposed_covered = own.covered + setpoint_.superimposed_way();
     if (own.waiting && setpoint_.base().velocity == 0 && setpoint_.base().acceleration == 0) own.pending = override_.velocity > 0;
     if (own.pending || own.waiting || !setpoint_.superimposed_finished()) return;
     queue_.finish_beside(SideSlot::superimposed, Outcome::done);
     if (view_.state == AxisState::DiscreteMotion && !queue_.has_active() && !moves()) start_waiting(0);
+}
+
+/// Another command takes the axis, but the base goes on for now: a coupling may wait for its master. What moves on top of it comes to rest along
+/// its own ramps, and its way so far stays (P1-281: the former motion goes on).
+void Axis::abandon_superimposed() noexcept {
+    queue_.finish_beside(SideSlot::superimposed, Outcome::aborted);
+    superimposed_.accepted.command.kind = CommandKind::halt_superimposed;
+    superimposed_.pending = !setpoint_.superimposed_finished();
+    superimposed_.waiting = false;
 }
 
 /// From here on there is one motion again. A goal must follow where it moves.

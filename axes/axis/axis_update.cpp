@@ -25,6 +25,8 @@ ErrorId Axis::update_waiting(AcceptedCommand& waiting, const AxisCommand& comman
     if (command.kind != waiting.command.kind || command.buffer_mode == mcAborting) return ErrorId::update_not_possible;
     if (const auto error = check_numbers(command); error != ErrorId::none) return error;
     if (const auto error = refuse_target(command, false); error != ErrorId::none) return error;
+    const bool last = waiting.id == queue_.waiting_at(queue_.waiting() - 1).id;
+    if (!last && never_ends(command)) return ErrorId::buffer_mode_not_supported;
     const bool blended = blends(waiting.command.buffer_mode) || blends(command.buffer_mode);
     waiting.command = command;
     if (blended && goal_.kind == Goal::Kind::position && !begin_pending_) goal_pending_ = true;

@@ -71,6 +71,7 @@ struct AxisView {
     const void* holder = nullptr;                   ///< the block that moves or locks the axis, to be named to people; never followed
     CommandId lock = 0;                             ///< the MC_Stop that holds the axis in Stopping; 0 = none
     std::array<CommandId, side_slot_count> side{};  ///< running beside the active one, by SideSlot
+    CommandId phasing_queued = 0;                   ///< waits for the signal of its coupling, apart from `queued`
     CommandId active = 0;
     bool active_in_target = false;
     std::uint8_t queued_count = 0;
@@ -90,6 +91,7 @@ struct AxisView {
         if (id == active) return active_in_target ? CommandStatus::in_target : CommandStatus::active;
         for (const CommandId running : side)
             if (running == id) return CommandStatus::active;
+        if (id == phasing_queued) return CommandStatus::queued;
         for (std::uint8_t i = 0; i < queued_count; ++i)
             if (queued[i] == id) return CommandStatus::queued;
         for (const auto& entry : ledger) {

@@ -51,7 +51,7 @@ struct CamDetails {
     double master_offset = 0, slave_offset = 0;    ///< u of master, u
     double master_scaling = 1, slave_scaling = 1;  ///< factors
     double master_start_distance = 0;              ///< u of the master, signed as above; 0 = begin at once
-    double master_sync_position = 0;               ///< u of the master, where the cam is entered after a start distance
+    double master_sync_position = 0;               ///< u of the profile's master, where the slave is in sync after a start distance
     friend bool operator==(const CamDetails&, const CamDetails&) = default;
 };
 

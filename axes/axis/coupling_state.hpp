@@ -9,6 +9,7 @@
 #include "axes/coupling/follower.hpp"
 #include "axes/coupling/master_track.hpp"
 #include "axes/coupling/phase_shift.hpp"
+#include "axes/tables/cam_table.hpp"
 
 namespace taktwerk::axes {
 
@@ -24,6 +25,13 @@ struct MasterChoice {
     if (const auto* sum = std::get_if<CombineDetails>(&command.details))
         return {{sum->master1, sum->master2}, {sum->source1, sum->source2}};
     return {};
+}
+
+/// Where in the cam's profile the slave is to be in sync (P1-266). Without MasterSyncPosition that is its first point: 0 means none where
+/// the profile has no 0.
+[[nodiscard]] inline double sync_place(const CamDetails& cam, const PreparedCam& table) noexcept {
+    const double place = cam.master_sync_position, begin = table.begin();
+    return place == 0 && (begin > 0 || begin + table.length() < 0) ? begin : place;
 }
 
 /// Kinds of a slave: SynchronizedMotion.
@@ -53,8 +61,8 @@ struct Link {
     bool waits = false;
     double sense = 1;
     EndlessPlace begin, sync;
-    bool tracked = false;  ///< `ahead` is known
-    double ahead = 0;      ///< u to `begin` in the last cycle, in that sense
+    bool tracked = false;  ///< the master has been looked at since the command began
+    double ahead = 0;      ///< u to `begin` in the last cycle (at first: when the command began), in that sense
 };
 
 struct CouplingState {
@@ -67,11 +75,13 @@ struct CouplingState {
     PhaseShift phase;
     AxisRef phase_master;     ///< whose position is shifted
     AcceptedCommand phasing;  ///< running; id 0: none
-    std::array<AcceptedCommand, 4> phasing_queue{};
-    std::size_t phasing_waiting = 0;
+    AcceptedCommand phasing_next;  ///< buffered; id 0: none
+    CommandId phasing_behind = 0;  ///< the coupling whose signal it waits for
 
     /// Anything of it is alive.
-    [[nodiscard]] bool used() const noexcept { return running.id != 0 || next.id != 0 || phasing.id != 0 || phase_master.valid(); }
+    [[nodiscard]] bool used() const noexcept {
+        return running.id != 0 || next.id != 0 || phasing.id != 0 || phasing_next.id != 0 || phase_master.valid();
+    }
     bool shown = false;  ///< the view shows something of it, or has to: false means that nothing is alive
 };
 

@@ -44,6 +44,13 @@ struct MotionContext : CycleContext {
     // One value per declared point of the whole machine, indexed by the handles.
     std::span<const std::int64_t> inputs;
     std::span<std::int64_t> outputs;
+    std::span<const std::uint8_t> output_bits;  ///< how many of them each output has on the wire; empty: not known
+
+    /// What the wire carries of an output point that exists: bits beyond are cut off.
+    [[nodiscard]] std::uint64_t output_mask(std::size_t point) const noexcept {
+        const unsigned bits = point < output_bits.size() ? output_bits[point] : 64;
+        return bits < 64 ? (std::uint64_t{1} << bits) - 1 : ~std::uint64_t{0};
+    }
 
     /// nullptr for an invalid handle: blocks answer with ErrorId::invalid_axis.
     [[nodiscard]] const AxisView* view(AxisRef axis) const noexcept { return axis.index < axes.size() ? &axes[axis.index] : nullptr; }

@@ -46,7 +46,10 @@ SyncApproach::Peaks SyncApproach::peaks(double master_velocity) const noexcept {
     constexpr int samples = 64;
     Peaks most;
     for (int i = 0; i <= samples; ++i) {
-        const auto p = point(static_cast<double>(i) / samples);
+        const double x = static_cast<double>(i) / samples;
+        const auto p = point(x);
+        const double third = (6 * c_[3] + x * (24 * c_[4] + x * 60 * c_[5])) / (length_ * length_ * length_);
+        most.jerk = std::max(most.jerk, std::abs(third * master_velocity * master_velocity * master_velocity));
         most.velocity = std::max(most.velocity, std::abs(p.slope * master_velocity));
         most.acceleration = std::max(most.acceleration, std::abs(p.curvature * master_velocity * master_velocity));
     }

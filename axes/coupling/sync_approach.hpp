@@ -31,9 +31,9 @@ public:
     [[nodiscard]] Value at(const EndlessMotion& master) const noexcept;
     [[nodiscard]] bool passed(const EndlessPlace& master) const noexcept { return part(master) >= 1; }
 
-    /// Largest velocity and acceleration of the slave, were the master to keep `master_velocity`. From 64 samples: within 1 % or so.
+    /// Largest velocity, acceleration and jerk of the slave, were the master to keep `master_velocity`. From 64 samples: within 1 % or so.
     struct Peaks {
-        double velocity = 0, acceleration = 0;
+        double velocity = 0, acceleration = 0, jerk = 0;
     };
     [[nodiscard]] Peaks peaks(double master_velocity) const noexcept;
 

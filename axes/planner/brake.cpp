@@ -98,13 +98,19 @@ bool Brake::give_velocity_back(const FrameLimits& l) noexcept {
         add((a + hardest) * l.down.ease, a, -l.down.jerk, -hardest);
         add((square - hardest * hardest) * ease / (2 * hardest), -hardest, 0, -hardest);
     }
-    // So far beyond the limit that the limit is lost in the rounding of what was braked: then down to it at once.
-    constexpr double beyond_reason = 1e10;
-    if (fastest_ > beyond_reason * l.up.velocity) {
-        add(-acceleration_ * l.up.ease, acceleration_, l.up.jerk, 0);
-        velocity_ = l.up.velocity;
-    }
+    beyond_ = fastest_ / l.up.velocity;
+    sense_ = sign_;
     return true;
+}
+
+void Brake::go_to_limit(const FrameLimits& limits) noexcept {
+    sign_ = sense_;
+    const FrameLimits l = sign_ > 0 ? limits : limits.mirrored();
+    velocity_ *= sign_;
+    acceleration_ *= sign_;
+    add(-acceleration_ * l.up.ease, acceleration_, l.up.jerk, 0);
+    velocity_ = sign_ * l.up.velocity;
+    acceleration_ = 0;
 }
 
 void Brake::add(double duration, double acceleration, double jerk, double end_acceleration) noexcept {

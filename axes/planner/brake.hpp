@@ -11,8 +11,7 @@ namespace taktwerk::axes {
 
 /// What every motion from (v, a) has to begin with, whatever its target: acceleration beyond its limit is given back with full jerk, then a
 /// velocity that would exceed its limit is reduced with full deceleration, until just giving the deceleration back ends on the limit.
-/// Empty for a start inside the limits. At most two stretches (three where the start is 10^10 times too fast, and then the motion is
-/// sound but no longer the fastest).
+/// Empty for a start inside the limits. At most two stretches, and one more after go_to_limit().
 class Brake {
 public:
     Brake(double v, double a, const FrameLimits& limits) noexcept;
@@ -25,6 +24,12 @@ public:
     [[nodiscard]] bool reduced_velocity() const noexcept { return reduced_velocity_; }
     /// What the velocity becomes from there when the deceleration is given back.
     [[nodiscard]] double released() const noexcept { return released_; }
+    /// How many times the limit the fastest velocity was that had to be reduced with a jerk; 0: none.
+    [[nodiscard]] double beyond() const noexcept { return beyond_; }
+    /// Sense of the velocity that was reduced.
+    [[nodiscard]] double sense() const noexcept { return sense_; }
+    /// Gives the deceleration back as well: to exactly the limit, at rest there. Only after a velocity was reduced with a jerk.
+    void go_to_limit(const FrameLimits& limits) noexcept;
     [[nodiscard]] double travel() const noexcept { return travel_; }
     [[nodiscard]] double path() const noexcept { return path_; }
     [[nodiscard]] double duration() const noexcept { return duration_; }
@@ -42,6 +47,8 @@ private:
     double acceleration_ = 0;
     double released_ = 0;
     double fastest_ = 0;
+    double beyond_ = 0;
+    double sense_ = 1;
     bool reduced_velocity_ = false;
     double travel_ = 0;
     double path_ = 0;

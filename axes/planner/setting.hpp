@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "axes/planner/brake.hpp"
+#include "axes/planner/brake_choice.hpp"
 #include "axes/planner/extremal.hpp"
 #include "axes/planner/plan_checks.hpp"
 
@@ -16,7 +16,8 @@ struct Setting {
         : from{start},
           target{end},
           limits{frame_limits(signed_limits)},
-          brake{without_negligible(start.velocity), without_negligible(start.acceleration), limits},
+          brake{brake_towards(without_negligible(start.velocity), without_negligible(start.acceleration), without_negligible(end.velocity),
+                              limits.jerk_free() ? 0 : without_negligible(end.acceleration), end.position - start.position, limits)},
           problem{brake.velocity(),
                   brake.acceleration(),
                   without_negligible(end.velocity),

@@ -2,6 +2,8 @@
 // Motor and load of a simulated axis: torque in, position out. Semi-implicit Euler at a fixed inner step, so that results do
 // not depend on when somebody looks. Allocation-free.
 
+#include <cmath>
+
 #include "axes/sim/plant_config.hpp"
 
 namespace taktwerk::axes::sim {
@@ -17,7 +19,12 @@ public:
     [[nodiscard]] double velocity() const noexcept { return velocity_; }  ///< counts/s
     [[nodiscard]] bool negative_limit() const noexcept { return position_ <= config_.negative_limit; }
     [[nodiscard]] bool positive_limit() const noexcept { return position_ >= config_.positive_limit; }
-    [[nodiscard]] bool home_switch() const noexcept { return position_ >= config_.home_from && position_ <= config_.home_to; }
+    [[nodiscard]] bool home_switch() const noexcept {
+        const auto& c = config_;
+        if (c.home_from > c.home_to) return false;
+        const double in = position_ - c.home_from, length = c.home_to - c.home_from;
+        return c.home_every > 0 ? in - std::floor(in / c.home_every) * c.home_every <= length : in >= 0 && in <= length;
+    }
     [[nodiscard]] const PlantConfig& config() const noexcept { return config_; }
     /// A jammed mechanism does not move whatever the torque.
     void jam(bool jammed) noexcept { jammed_ = jammed; }

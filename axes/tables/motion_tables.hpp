@@ -71,9 +71,10 @@ public:
         auto* found = at(switches_, ref.index);
         return found ? std::span<CamSwitch>{*found} : std::span<CamSwitch>{};
     }
-    [[nodiscard]] std::span<const TrackOptions> track_options(TrackRef ref) noexcept {
+    /// To be changed while a block works by them, as the switches: the delay of a valve is found while it runs.
+    [[nodiscard]] std::span<TrackOptions> track_options(TrackRef ref) noexcept {
         auto* found = at(tracks_, ref.index);
-        return found ? std::span<const TrackOptions>{*found} : std::span<const TrackOptions>{};
+        return found ? std::span<TrackOptions>{*found} : std::span<TrackOptions>{};
     }
 
     /// MC_CamTableSelect: checks the source and makes the coefficients of a copy. What is the same as a copy already there gets that

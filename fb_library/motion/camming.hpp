@@ -82,7 +82,7 @@ struct MC_CamIn : CommandBlock<MC_CamIn> {
                          in<&Self::MasterScaling>("1", "factor on the cam's master positions, not 0; default 1"),
                          in<&Self::SlaveScaling>("1", "factor on the cam's slave positions; default 1"),
                          in<&Self::MasterStartDistance>("u of master", "before the sync position; there the slave begins. 0 = at once"),
-                         in<&Self::MasterSyncPosition>("u of master", "where the slave is in sync, after a start distance"),
+                         in<&Self::MasterSyncPosition>("u of master", "in the profile: where the slave is in sync, after a start distance"),
                          in<&Self::StartMode>("", "absolute, from where the slave is, or with a ramp"),
                          in<&Self::MasterValueSource>("", "set or actual value of the master"),
                          in<&Self::CamTableID>("", "of MC_CamTableSelect"), shared<&Self::BufferMode>(),

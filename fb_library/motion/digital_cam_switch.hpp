@@ -12,7 +12,7 @@ namespace taktwerk::fb {
 
 /// Tracks of several switches are on while any of them is. Outputs: a point of the machine, track n on its bit n - 1, or an axis for its
 /// drive's outputs, track n (up to 16) on bit 15 + n of 60FEh, where the free outputs begin; only bits of tracks that a switch names
-/// are written. They go off with Enable and with an error. Without Outputs the tracks can be read from `on`.
+/// are written, and a track whose bit the point does not have is invalid_output. They go off with Enable and with an error. Without Outputs the tracks can be read from `on`.
 /// Error with invalid_table: no such list, or something in it that cannot be (see CamTracks::usable); the list may be edited while it works.
 struct MC_DigitalCamSwitch {
     using Self = MC_DigitalCamSwitch;
@@ -33,7 +33,7 @@ struct MC_DigitalCamSwitch {
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis>(), in_out<&Self::Switches>("", "list of cam switches"),
                          in_out<&Self::Outputs>("", "a point of the machine, or an axis for its drive's outputs"),
-                         in_out<&Self::TrackOptions>("", "compensation and hysteresis by track; none: zero"), shared<&Self::Enable>(),
+                         in_out<&Self::TrackOptions>("", "compensation and hysteresis by track, as they stand in each scan; none: zero"), shared<&Self::Enable>(),
                          in<&Self::EnableMask>("", "bit n - 1 enables track n; at first all of them"),
                          in<&Self::ValueSource>("", "whose position and velocity: the set-point's or the actual ones"),
                          out<&Self::InOperation>("", "the tracks are switched"), shared<&Self::Busy>(),
@@ -85,7 +85,7 @@ private:
     [[nodiscard]] ErrorId write(const MotionContext& ctx, std::uint32_t tracks, std::uint32_t named) noexcept {
         const auto touched = named | written_;
         if (Outputs.point != no_point) {
-            if (Outputs.point >= ctx.outputs.size()) return ErrorId::invalid_output;
+            if (Outputs.point >= ctx.outputs.size() || (named & ~ctx.output_mask(Outputs.point)) != 0) return ErrorId::invalid_output;
             auto& word = ctx.outputs[Outputs.point];
             word = static_cast<std::int64_t>((static_cast<std::uint64_t>(word) & ~std::uint64_t{touched}) | tracks);
         } else if (Outputs.axis.valid()) {

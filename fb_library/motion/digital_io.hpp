@@ -126,7 +126,8 @@ private:
         constexpr std::uint16_t none = 0xFFFF;
         if (Output.point == none) return SettingBlock::start(ctx);
         if (ExecutionMode != mcImmediately) return core_.refuse(ErrorId::not_supported);
-        if (Output.point >= ctx.outputs.size() || OutputNumber < 0 || OutputNumber >= detail::point_bits)
+        if (Output.point >= ctx.outputs.size() || OutputNumber < 0 || OutputNumber >= detail::point_bits ||
+            (ctx.output_mask(Output.point) >> static_cast<unsigned>(OutputNumber)) == 0)
             return core_.refuse(ErrorId::invalid_output);
         auto& word = ctx.outputs[Output.point];
         const auto bit = std::uint64_t{1} << static_cast<unsigned>(OutputNumber);

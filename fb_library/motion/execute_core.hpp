@@ -8,8 +8,8 @@
 //   * A new edge that is refused shows Error; what the axis was doing before goes on (an instance's error does not touch the axis).
 //   * A new instance compares with FALSE: Execute TRUE in its first call is an edge.
 //   * ContinuousUpdate TRUE at the edge: from the next call on the inputs go to the axis in each call, as long as it stays TRUE and the
-//     block is Busy; once FALSE it never comes back for this command. Values that the axis refuses show Error; the axis goes on with the
-//     last good ones.
+//     block is Busy; once FALSE it never comes back for this command. Values that the axis refuses are not taken: the command goes on with the
+//     last good ones and stays the block's (Error would end the block, P1-058, beside an axis that moves on).
 //   * A command that another one aborts, on a block without CommandAborted, is an Error: aborted_by_command.
 
 #include <cstdint>
@@ -67,7 +67,7 @@ public:
     /// Gives the running command other inputs.
     void update(const axes::MotionContext& ctx, axes::AxisCommand command) noexcept {
         command.instance = this;
-        if (const auto error = ctx.requests->update(axis_, command_, command, ctx.owner); error != axes::ErrorId::none) refuse(error);
+        (void)ctx.requests->update(axis_, command_, command, ctx.owner);
     }
 
     /// Reads what became of the command. An id that the view has not seen yet is on its way (a slower task's view is older

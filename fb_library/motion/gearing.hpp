@@ -82,7 +82,8 @@ struct MC_GearInPos : CommandBlock<MC_GearInPos> {
                          in<&Self::SyncMode>("", "which way a modulo slave takes"),
                          in<&Self::MasterStartDistance>("u of master", "before the sync position; there the slave begins. 0 = at once"),
                          in<&Self::Velocity>("u/s", "limit until InSync; 0 = the axis' limit"),
-                         shared<&Self::Acceleration, &Self::Deceleration, &Self::Jerk, &Self::BufferMode>(),
+                         shared<&Self::Acceleration, &Self::Deceleration>(),
+                         in<&Self::Jerk>("u/s3", "most on the way to the sync point; 0 = no limit"), shared<&Self::BufferMode>(),
                          out<&Self::StartSync>("", "the slave is on its way into sync"),
                          out<&Self::InSync>("", "the slave has the position of the gear"), outcome<Self>());
     }

@@ -7,7 +7,7 @@
 
 namespace taktwerk::fb {
 
-/// Velocity, Acceleration, Deceleration and Jerk are limits that hold the torque back when the load gives way.
+/// Velocity, Acceleration and Deceleration are limits that hold the torque back when the load gives way; Jerk has no effect.
 struct MC_TorqueControl : CommandBlock<MC_TorqueControl> {
     AxisRef Axis{};
     bool Execute = false;
@@ -28,7 +28,7 @@ struct MC_TorqueControl : CommandBlock<MC_TorqueControl> {
                          in<&Self::TorqueRamp>("1/s", "largest rate of the set torque, in fractions of the rated one; 0 = at once"),
                          in<&Self::Velocity>("u/s", "limit, >= 0, in both senses; 0 = the axis' limit"),
                          in<&Self::Acceleration>("u/s2", "limit while torque and velocity have one sign; 0 = the axis' default"),
-                         in<&Self::Deceleration>("u/s2", "limit while their signs differ; 0 = the axis' default"), shared<&Self::Jerk>(),
+                         in<&Self::Deceleration>("u/s2", "limit while their signs differ; 0 = the axis' default"), in<&Self::Jerk>("u/s3", "no effect: the torque changes by TorqueRamp"),
                          in<&Self::Direction>("", "sense of the torque: positive, negative or current"), shared<&Self::BufferMode>(),
                          out<&Self::InTorque>("", "the set torque is the commanded one"), outcome<Self>());
     }

@@ -82,17 +82,18 @@ TYPED_TEST(ContinuousUpdateRules, ItGoesOnWhenExecuteFalls) {
     EXPECT_EQ(this->axes.calls.back().what, "update");
 }
 
-TYPED_TEST(ContinuousUpdateRules, ValuesThatTheAxisRefusesShowErrorAndEndTheUpdates) {
+TYPED_TEST(ContinuousUpdateRules, ValuesThatTheAxisRefusesLeaveTheBlockAtItsCommand) {  // P1-058
     this->block.ContinuousUpdate = true;
     this->begin();
     this->axes.refuse_with = ErrorId::invalid_dynamics;
     this->scan();
-    EXPECT_EQ(this->block.ErrorID, ErrorId::invalid_dynamics);
+    EXPECT_TRUE(this->block.Busy);
+    EXPECT_FALSE(this->block.Error);
+    EXPECT_EQ(this->block.ErrorID, ErrorId::none);
     const auto before = this->axes.calls.size();
     this->axes.refuse_with = ErrorId::none;
     this->scan();
-    EXPECT_TRUE(this->block.Error) << "held while Execute is TRUE";
-    EXPECT_EQ(this->axes.calls.size(), before);
+    EXPECT_EQ(this->axes.calls.size(), before + 1) << "good ones are given again";
 }
 
 // --- blocks with Inxxx ---------------------------------------------------------------------------------------------------

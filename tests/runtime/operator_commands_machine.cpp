@@ -232,6 +232,27 @@ TEST_F(Commands, AFreshPressStartsAJogAgainWhileTheExpiredOneRampsDown) {
     m().expect_no_jump();
 }
 
+// The next heartbeat after the end of a jog hears why it is over, and that is no lease.
+TEST_F(Commands, AJogThatEndsAtASoftwareLimitSaysSo) {
+    auto config = machine_config(1);
+    config.axes[0].axis.homing.kind = axes::HomingKind::set_here;
+    config.axes[0].axis.limits.position_min = -20, config.axes[0].axis.limits.position_max = 20;
+    start(std::move(config));
+    m().enable(0);
+    ASSERT_EQ(m().command(home, 0).answer, Answer::accepted);
+    ASSERT_TRUE(m().until([&] { return m().axis(0).homed; }, 1s));
+    auto heard = m().command(jog, 0, true, 100);
+    for (int i = 0; i < 40 && heard.answer == Answer::accepted; ++i) {
+        m().run(50ms);
+        heard = m().command(jog, 0, false, 100);
+    }
+    EXPECT_EQ(heard.answer, Answer::refused_by_axis);
+    EXPECT_EQ(heard.error, ErrorId::beyond_software_limit);
+    EXPECT_NEAR(m().axis(0).set_position, 20, 1e-6);
+    EXPECT_FALSE(m().has_alarm(id(axes::AxisAlarm::jog_lease_expired)));
+    m().expect_no_jump();
+}
+
 TEST_F(Commands, AJogIsHeldToTheManualSpeed) {
     ready();
     ASSERT_EQ(m().command(jog, 0, true, 500).answer, Answer::accepted);

@@ -74,7 +74,7 @@ TEST(SetpointFeed, WhenNoneComesTheAxisBrakesFromWhereItIs) {
     rig.step();
     EXPECT_EQ(rig.status(id), CommandStatus::error);
     EXPECT_EQ(rig.error_of(id), ErrorId::setpoint_missing);
-    EXPECT_EQ(rig.view().state, AxisState::Stopping);
+    EXPECT_EQ(rig.view().state, AxisState::DiscreteMotion);  // Stopping is MC_Stop's (figure 2)
     ASSERT_TRUE(rig.run_to(AxisState::Standstill));
     rig.expect_no_jump();
     EXPECT_LE(rig.largest_acceleration, 1000 * (1 + 1e-9));

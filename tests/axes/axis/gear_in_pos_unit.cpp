@@ -351,5 +351,26 @@ TEST(GearInPos, StaysLockedOverTheWrap) {
     rig.expect_no_jump();
 }
 
+// A Jerk that is given limits the way into sync (P1-284). From rest to 20 u/s over 20 u of the master at 20 u/s, 1 s: the slave gains 10 u on that way,
+// and x(s) = 10 (2 s^3 - s^4 + 0 s^5) has the jerk 10 (12 - 24 s), at most 120 u/s3.
+// P1-284
+TEST(GearInPos, AJerkThatIsGivenIsKeptOrTheSyncPointRefused) {
+    for (const double jerk : {0.0, 125.0, 115.0}) {
+        CouplingRig rig(2);
+        rig.start();
+        rig.accept(0, at_velocity(20));
+        rig.run(100);
+        auto command = gear_in_pos(0, 50, 10, 20);
+        command.jerk = jerk;
+        const auto id = rig.accept(1, command);
+        ASSERT_TRUE(rig.run_until([&] { return rig.status(1, id) != CommandStatus::active; }));
+        EXPECT_EQ(rig.status(1, id), jerk == 115.0 ? CommandStatus::error : CommandStatus::in_target) << jerk;
+        if (jerk == 115.0) {
+            EXPECT_EQ(rig.error_of(1, id), ErrorId::sync_impossible);
+            EXPECT_EQ(rig.view(1).state, AxisState::Standstill);
+        }
+    }
+}
+
 }  // namespace
 }  // namespace taktwerk::axes::test

@@ -116,6 +116,39 @@ TEST(HomeByDrive, ErrorOfTheDriveIsAnAxisError) {
     EXPECT_EQ(rig.drive.last.mode, DriveMode::cyclic_position);
 }
 
+// limits.velocity bounds what the drive does by itself: it is told no more than that, refused where it has more from its start-up, and stopped
+// where it runs faster all the same.
+TEST(HomeByDrive, TheLimitsOfTheAxisBindIt) {
+    auto config = homing_by(HomingKind::drive);
+    config.homing.search_velocity = 40;
+    config.homing.latch_velocity = 30;
+    config.homing.acceleration = 900;
+    EXPECT_TRUE(check(config).empty());
+    config.limits.velocity = 20;
+    config.limits.deceleration = 500;
+    const auto problems = check(config);
+    ASSERT_EQ(problems.size(), 3u);  // search, latch, acceleration
+    EXPECT_NE(problems[0].what.find("above limits.velocity"), std::string::npos) << problems[0].what;
+
+    Rig told(config, [](FakeDrive& drive) { drive.caps.homing_per_run = true; });
+    told.power_on();
+    told.accept(home(0));
+    ASSERT_TRUE(told.run_until([&] { return told.drive.last.start_homing; }, 100));
+    EXPECT_EQ(told.drive.last.homing.search_velocity, 20e3);
+    EXPECT_EQ(told.drive.last.homing.latch_velocity, 20e3);
+    EXPECT_EQ(told.drive.last.homing.acceleration, 500e3);
+
+    Rig from_startup(config);
+    from_startup.power_on();
+    EXPECT_EQ(from_startup.refuse(home(0)), ErrorId::invalid_velocity);
+
+    Rig fast(homing_by(HomingKind::drive), [](FakeDrive& drive) { drive.homing_speed = 130; });  // 130 u/s where 100 are allowed
+    fast.power_on();
+    fast.accept(home(0));
+    ASSERT_TRUE(fast.run_to(AxisState::ErrorStop, 200));
+    EXPECT_TRUE(fast.raised(AxisAlarm::drive_too_fast));
+}
+
 TEST(HomeByDrive, TakingTooLongIsAnAxisError) {
     auto config = homing_by(HomingKind::drive);
     config.homing.timeout = 300ms;

@@ -196,7 +196,7 @@ TEST(PermittedDirection, IsRefusedAtTheStartAndStopsInMotion) {
         rig.axis.encode(rig.now);
     };
     cycle();
-    EXPECT_EQ(rig.view().state, AxisState::Stopping);
+    EXPECT_EQ(rig.view().state, AxisState::DiscreteMotion);  // Stopping is MC_Stop's (figure 2)
     EXPECT_EQ(rig.error_of(id), ErrorId::interlocked);
     for (int i = 0; i < 300; ++i) cycle();
     EXPECT_EQ(rig.view().state, AxisState::Standstill);
@@ -204,6 +204,25 @@ TEST(PermittedDirection, IsRefusedAtTheStartAndStopsInMotion) {
     const auto back = rig.accept(relative(-1));
     for (int i = 0; i < 300; ++i) cycle();
     EXPECT_EQ(rig.status(back), CommandStatus::done);
+}
+
+// No axis is at both its ends: inputs of the wrong polarity, or no cable. That is said, beside the refusal, until one of them goes.
+TEST(AxisLimits, BothLimitSwitchesAtOnceAreSaid) {
+    Rig rig;
+    rig.drive.switches = true;
+    rig.power_on();
+    EXPECT_FALSE(rig.raised(AxisAlarm::both_limit_switches));
+    rig.drive.positive_end = -1;
+    rig.run(5);
+    EXPECT_FALSE(rig.raised(AxisAlarm::both_limit_switches));
+    rig.drive.negative_end = 1;
+    rig.run(5);
+    EXPECT_TRUE(rig.raised(AxisAlarm::both_limit_switches));
+    EXPECT_EQ(rig.refuse(relative(1)), ErrorId::interlocked);
+    EXPECT_EQ(rig.refuse(relative(-1)), ErrorId::interlocked);
+    rig.drive.negative_end = -1000;
+    rig.run(5);
+    EXPECT_TRUE(rig.axis.active_alarms().empty());
 }
 
 }  // namespace

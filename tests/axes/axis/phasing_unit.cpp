@@ -66,8 +66,8 @@ TEST(Phasing, RelativeAddsToTheShift) {
     rig.expect_no_jump();
 }
 
-// The slave's limit of 1000 u/s2 would be 2000 with the ratio 2: the phasing asks for what the slave can.
-TEST(Phasing, ANewOneTakesOverAndABufferedOneWaits) {
+// The slave's limit of 1000 u/s2 would be 2000 with the ratio 2: the phasing asks for what the slave can. A buffered one: waiting_coupling_unit.
+TEST(Phasing, ANewOneTakesOverFromWhereTheFirstIs) {
     PhasedRig rig;
     auto gentle = phasing(relatively, 10, 20);
     gentle.acceleration = gentle.deceleration = 400;
@@ -77,12 +77,6 @@ TEST(Phasing, ANewOneTakesOverAndABufferedOneWaits) {
     const auto second = rig.accept(1, gentle);  // from where the first one is
     EXPECT_EQ(rig.status(1, first), CommandStatus::aborted);
     const double there = rig.view(1).phase_shift;
-    gentle.kind = absolutely;
-    gentle.position = 1;
-    gentle.buffer_mode = mcBuffered;
-    const auto third = rig.accept(1, gentle);
-    const auto status = rig.view(1).status(third);
-    EXPECT_NE(status, CommandStatus::active);
     double farthest = there;
     ASSERT_TRUE(rig.run_until([&] {
         farthest = std::max(farthest, rig.view(1).phase_shift);
@@ -90,8 +84,6 @@ TEST(Phasing, ANewOneTakesOverAndABufferedOneWaits) {
     }));
     EXPECT_NEAR(rig.shift(), there - 3, 1e-9);
     EXPECT_GT(farthest, there);
-    ASSERT_TRUE(rig.run_until([&] { return rig.status(1, third) == CommandStatus::done; }));
-    EXPECT_NEAR(rig.shift(), 1, 1e-9);
     rig.expect_no_jump();
 }
 

@@ -1,6 +1,6 @@
 // MC_MoveSuperimposed and MC_HaltSuperimposed. PLCopen Part 1 v2.0, sections 3.8 and 3.9.
 
-#include "tests/axes/axis/axis_rig.hpp"
+#include "tests/axes/axis/coupling_rig.hpp"
 #include "tests/patience.hpp"
 
 namespace taktwerk::axes::test {
@@ -69,6 +69,45 @@ TEST(Superimposed, GoesOnAfterTheBaseHasEnded) {
     ASSERT_TRUE(rig.run_to(AxisState::Standstill));
     EXPECT_EQ(rig.status(extra), CommandStatus::done);
     EXPECT_DOUBLE_EQ(rig.view().set_position, 60);
+}
+
+// Table 4: Done of the base starts what is buffered, nothing is buffered behind a superimposed motion: a move begins beside it whether it was
+// given before the base was done or after (U-08), and goes on beside it (P1-151).
+TEST(Superimposed, ABufferedMoveBeginsBesideItWhenTheBaseIsDone) {
+    for (const bool after : {false, true}) {
+        Rig rig(trapezoids());
+        rig.power_on();
+        const auto base = rig.accept(absolute(20, 50));
+        rig.run(100);
+        const auto extra = rig.accept(superimposed(30, 20));
+        CommandId next = after ? 0 : rig.accept(relative(10, 10, mcBuffered));
+        ASSERT_TRUE(rig.run_until([&] { return rig.status(base) == CommandStatus::done; }));
+        if (after) {
+            rig.run(20);
+            next = rig.accept(relative(10, 10, mcBuffered));
+        }
+        EXPECT_EQ(rig.status(next), CommandStatus::active);
+        EXPECT_EQ(rig.status(extra), CommandStatus::active);
+        ASSERT_TRUE(rig.run_to(AxisState::Standstill));
+        EXPECT_EQ(rig.status(next), CommandStatus::done);
+        EXPECT_EQ(rig.status(extra), CommandStatus::done);
+        EXPECT_NEAR(rig.view().set_position, 60, 1e-9);
+        rig.expect_no_jump();
+    }
+}
+
+// The same behind a motion whose command has ended: what is buffered is not left behind.
+TEST(Superimposed, ABufferedMoveBesideAVelocityThatWasKeptBegins) {
+    CouplingRig rig(2);
+    rig.start();
+    rig.accept(0, at_velocity(20));
+    ASSERT_TRUE(rig.run_to_sync(1, rig.accept(1, gear_in(0))));
+    rig.accept(1, gear_out());
+    rig.run(10);
+    rig.accept(1, superimposed(5, 20));
+    rig.run(10);
+    const auto next = rig.accept(1, absolute(200, 50, mcBuffered));
+    ASSERT_TRUE(rig.run_until([&] { return rig.status(1, next) == CommandStatus::done; }));
 }
 
 // P1-154, P1-030: from Standstill it is a relative move, cycle by cycle.

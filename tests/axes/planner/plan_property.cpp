@@ -144,6 +144,35 @@ TEST(PlanProperty, ReplanningOnTheWayNeitherGainsNorLosesTime) {
     EXPECT_GT(static_cast<double>(close), 0.95 * static_cast<double>(replans));
 }
 
+// A start 10^10 to 10^14 times beyond the velocity limit, a target about where it would come to rest: on the way nothing faster is found.
+TEST(PlanProperty, FarBeyondTheVelocityLimitATargetNearTheStopIsReachedAsFastAsCanBe) {
+    RandomMotion random{9};
+    std::size_t before_the_stop = 0, behind = 0;
+    for (std::size_t i = 0; i < property_cases(20'000) && !::testing::Test::HasFailure(); ++i) {
+        const auto scale = [&](double low, double high) { return std::pow(10.0, random.uniform(low, high)); };
+        const MotionLimits limits{scale(-9, -7), scale(-1, 1), scale(-1, 1), scale(-1, 1)};
+        const double sense = random.one_of(2) == 0 ? 1 : -1;
+        const MotionState from{0, sense * limits.velocity * scale(10, 14), 0};
+        const double stop = stopping_distance(from, limits);
+        const double beside = (random.one_of(2) == 0 ? 1 : -1) * scale(-16, -6);
+        const MotionCase c{from, stop * (1 + beside), limits};
+        SCOPED_TRACE(::testing::Message() << "case " << i << " " << c);
+        (beside > 0 ? behind : before_the_stop) += 1;
+        const Plan plan = plan_to_position(c.from, c.target, c.limits);
+        ASSERT_EQ(plan.error, PlanError::none);
+        const Profile& profile = plan.profile;
+        const Rounding rounding{c, profile};
+        for (const double part : {0.5, 0.9, 0.99, random.uniform(0, 1)}) {
+            const double t = profile.duration() * part;
+            const Plan again = plan_to_position(profile.at(t), c.target, c.limits);
+            ASSERT_EQ(again.error, PlanError::none);
+            ASSERT_GE(t + again.profile.duration(), profile.duration() - rounding.time) << "from " << part;
+        }
+    }
+    EXPECT_GT(before_the_stop, 1000u);
+    EXPECT_GT(behind, 1000u);
+}
+
 TEST(PlanProperty, LargerLimitsAreNeverSlower) {
     for_random_motions(6, [](const MotionCase& c, RandomMotion& random) {
         if (!inside_limits(c.from, c.limits)) return;

@@ -78,5 +78,18 @@ TEST(Plant, AJammedAxisStands) {
     EXPECT_EQ(plant.position(), 0);
 }
 
+// On a load that turns the switch passes once a turn, both ways.
+TEST(Plant, AHomeSwitchMayComeAgainEachTurn) {
+    PlantConfig config;
+    config.home_from = 100, config.home_to = 200;
+    for (const bool turns : {false, true})
+        for (const double start : {150.0, 3750.0, -3450.0, 250.0, -50.0}) {
+            config.home_every = turns ? 3600 : 0;
+            config.start = start;
+            const bool under = start == 150 || (turns && (start == 3750 || start == -3450));
+            EXPECT_EQ(Plant(config).home_switch(), under) << start << turns;
+        }
+}
+
 }  // namespace
 }  // namespace taktwerk::axes::sim

@@ -340,5 +340,48 @@ TEST(DigitalCamSwitch, SaysWhatIsMissing) {
     EXPECT_EQ(bench.block.on, 0u);
 }
 
+// A point has only the bits of its terminal: a track beyond them would be on in every list and never at the valve. It is refused, and nothing is written.
+TEST(DigitalCamSwitch, ATrackThatThePointDoesNotHaveIsRefused) {
+    SwitchBench bench;
+    const std::array<std::uint8_t, 2> bits{1, 8};
+    bench.axes.context.output_bits = bits;
+    bench.block.Outputs.point = 1;
+    bench.block.Enable = true;
+    bench.at(0);
+    EXPECT_TRUE(bench.block.InOperation);
+    EXPECT_FALSE(bench.block.Error);
+
+    SwitchBench narrow;
+    narrow.axes.context.output_bits = bits;
+    narrow.block.Outputs.point = 0;
+    narrow.block.Enable = true;
+    for (double at = 0; at < turn; at += 50) {
+        narrow.at(at);
+        ASSERT_EQ(narrow.block.ErrorID, ErrorId::invalid_output);
+        ASSERT_EQ(narrow.outputs[0], 0);
+    }
+}
+
+// The delay of a valve is found while it works: options count as they stand in each scan.
+TEST(DigitalCamSwitch, TrackOptionsMayBeChangedWhileItWorks) {
+    SwitchBench bench;
+    const std::vector<CamSwitch> one{{.track = 1, .first = 2000, .last = 3000}};
+    bench.block.Switches = bench.tables.add_cam_switches(one);
+    bench.block.TrackOptions = bench.tables.add_tracks(std::vector<TrackOptions>(1));
+    bench.block.Enable = true;
+    const auto first_on = [&] {
+        for (double at = 1000; at < 2600; at += 10) {
+            bench.at(at);
+            if (bench.block.on != 0) return at;
+        }
+        return 0.0;
+    };
+    bench.at(3500);
+    EXPECT_EQ(first_on(), 2000);
+    bench.at(3500);
+    bench.tables.track_options(bench.block.TrackOptions)[0].on_compensation = -100ms;  // 1000 u/s: 100 u earlier
+    EXPECT_EQ(first_on(), 1900);
+}
+
 }  // namespace
 }  // namespace taktwerk::fb

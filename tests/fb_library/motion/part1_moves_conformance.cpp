@@ -105,16 +105,34 @@ TEST_F(UpdatedMove, AnotherBufferModeOnTheWayIsNoFault) {  // P1-109
     EXPECT_NEAR(plc.position(), 100, 1e-9);
 }
 
-// Bad values on the way are an error of the instance; the axis goes on with the last good ones.
-TEST_F(UpdatedMove, ValuesThatCannotBeUsedAreAnErrorAndTheAxisGoesOn) {  // P1-055, P1-047
+// Bad values on the way are not taken: the command goes on with the last good ones and stays the block's, until its Done; good ones are taken again.
+// (An Error would exclude Busy, beside an axis that this block moves.)
+TEST_F(UpdatedMove, ValuesThatCannotBeUsedAreNotTakenAndTheBlockStaysAtItsCommand) {  // P1-058, P1-107
     move.ContinuousUpdate = true;
     run_to(50);
     move.Velocity = -1;
+    move.Distance = 140;
+    for (int i = 0; i < 100; ++i) {
+        plc.scan();
+        ASSERT_TRUE(move.Busy && move.Active && !move.Error) << i;
+        ASSERT_EQ(move.ErrorID, ErrorId::none);
+    }
+    EXPECT_NEAR(fastest, 10, 1e-9);
+    move.Velocity = 20;
+    plc.run_until([&] { return move.Done; }, 60s);
+    EXPECT_TRUE(move.Done);
+    EXPECT_NEAR(plc.position(), 140, 1e-9);
+    EXPECT_NEAR(fastest, 20, 1e-9);
+}
+
+// A wrong input at the edge is an error of the instance, and none of the axis.
+TEST_F(UpdatedMove, AnEdgeWithAValueThatCannotBeUsedIsAnErrorOfTheInstance) {  // P1-055, P1-047
+    move.Velocity = -1;
+    move.Execute = true;
     plc.scan();
+    EXPECT_TRUE(move.Error);
     EXPECT_EQ(move.ErrorID, ErrorId::invalid_velocity);
-    EXPECT_EQ(plc.state(), AxisState::DiscreteMotion);
-    plc.run_until([&] { return plc.state() == AxisState::Standstill; }, 60s);
-    EXPECT_NEAR(plc.position(), 100, 1e-9);
+    EXPECT_EQ(plc.state(), AxisState::Standstill);
 }
 
 // --- MC_MoveAdditive -----------------------------------------------------------------------------------------------------
