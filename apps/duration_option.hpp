@@ -1,5 +1,5 @@
 #pragma once
-// A time on the command line: "500ms", "2s", "1min"; a bare number is seconds.
+// A time on the command line: "500ms", "2s", "1min", "4h"; a bare number is seconds.
 
 #include <map>
 #include <string>
@@ -11,7 +11,7 @@ namespace taktwerk::apps {
 /// `seconds` keeps its value when the option is not given.
 inline CLI::Option* add_duration(CLI::App& app, const std::string& name, double& seconds, const std::string& doc) {
     return app.add_option(name, seconds, doc)
-        ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"ms", 1e-3}, {"s", 1.0}, {"min", 60.0}}))
+        ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"ms", 1e-3}, {"s", 1.0}, {"min", 60.0}, {"h", 3600.0}}))
         ->type_name("TIME");
 }
 

@@ -12,6 +12,7 @@ enum ExitCode : int {
     exit_no_runtime = 6,  ///< no running machine to talk to
     exit_realtime = 7,    ///< real time was required and is not there
     exit_alarm = 8,       ///< the run ended with a machine-wide alarm standing
+    exit_hung = 9,        ///< the run was told to end and could not: something hangs, and the process was ended as it was
 };
 
 }  // namespace taktwerk::apps

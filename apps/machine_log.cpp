@@ -39,30 +39,33 @@ bool of_a_drive(const AlarmFact& fact) {
 
 }  // namespace
 
-void MachineLog::say(Instant now, const std::string& event, const std::string& what) {
-    const double at = to_seconds(now - start_);
-    if (json_) fmt::print("{{\"t\":{:.3f},\"event\":{},\"text\":{}}}\n", at, json_text(event), json_text(what));
-    else fmt::print("{:9.3f} s  {:<9} {}\n", at, event, what);
+void MachineLog::print(std::string lines) {
+    std::fwrite(lines.data(), 1, lines.size(), stdout);
     std::fflush(stdout);
+}
+
+void MachineLog::say(Instant now, const std::string& event, const std::string& what) const {
+    const double at = to_seconds(now - start_);
+    sink_(json_ ? fmt::format("{{\"t\":{:.3f},\"event\":{},\"text\":{}}}\n", at, json_text(event), json_text(what))
+                : fmt::format("{:9.3f} s  {:<9} {}\n", at, event, what));
 }
 
 void MachineLog::say_alarm(Instant now, const std::string& event, const AlarmText& words) {
     const auto headline = fmt::format("{}: {} [{}]", words.source, words.english, words.reaction);
     if (json_) {
-        fmt::print("{{\"t\":{:.3f},\"event\":{},\"text\":{},\"name\":{},\"chinese\":{},\"cause\":{},\"remedy\":{},\"reset\":{}}}\n",
-                   to_seconds(now - start_), json_text(event), json_text(headline), json_text(words.name), json_text(words.chinese),
-                   json_text(words.cause), json_text(words.remedy), json_text(words.reset));
-        std::fflush(stdout);
+        sink_(fmt::format("{{\"t\":{:.3f},\"event\":{},\"text\":{},\"name\":{},\"chinese\":{},\"cause\":{},\"remedy\":{},\"reset\":{}}}\n",
+                          to_seconds(now - start_), json_text(event), json_text(headline), json_text(words.name), json_text(words.chinese),
+                          json_text(words.cause), json_text(words.remedy), json_text(words.reset)));
         return;
     }
-    say(now, event, headline);
-    const auto more = [](std::string_view before, const std::string& text) {
-        if (!text.empty()) fmt::print("{:13}{:<9} {}{}\n", "", "", before, text);
+    std::string lines = fmt::format("{:9.3f} s  {:<9} {}\n", to_seconds(now - start_), event, headline);
+    const auto more = [&](std::string_view before, const std::string& text) {
+        if (!text.empty()) lines += fmt::format("{:13}{:<9} {}{}\n", "", "", before, text);
     };
     more("", words.chinese);
     more("why: ", words.cause);
     more("-> ", words.remedy.empty() ? words.remedy : fmt::format("{} ({})", words.remedy, words.reset));
-    std::fflush(stdout);
+    sink_(std::move(lines));
 }
 
 void MachineLog::alarms(Instant now, const Snapshot& s) {

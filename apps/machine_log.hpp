@@ -2,6 +2,7 @@
 // What `taktwerk run` says while a machine runs: phases, alarms as they come and go, programs. One line an event, with the machine
 // time in front, for a person who watches or reads it later.
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -11,12 +12,17 @@ namespace taktwerk::apps {
 
 class MachineLog {
 public:
+    using Sink = std::function<void(std::string)>;  ///< whole lines
+    /// To standard output, at once.
+    static void print(std::string lines);
     /// `json`: one object a line instead of text.
-    MachineLog(runtime::Machine& machine, Instant start, bool json) : machine_(machine), start_(start), json_(json) {}
+    MachineLog(runtime::Machine& machine, Instant start, bool json, Sink sink = &MachineLog::print)
+        : machine_(machine), start_(start), json_(json), sink_(std::move(sink)) {}
 
     /// Compares with what was said before.
     void step(Instant now, const runtime::Snapshot* snapshot);
-    void say(Instant now, const std::string& event, const std::string& text);
+    /// Any thread, if the sink is for any.
+    void say(Instant now, const std::string& event, const std::string& text) const;
 
 private:
     void alarms(Instant now, const runtime::Snapshot& snapshot);
@@ -31,6 +37,7 @@ private:
     runtime::Machine& machine_;
     Instant start_;
     bool json_;
+    Sink sink_;
     std::string progress_;
     std::vector<axes::AxisState> states_;
     std::vector<bool> homed_;

@@ -1,13 +1,23 @@
 // taktwerk run FILE: runs a machine, in real time or in virtual time, on its bus or simulated.
 
+#include <poll.h>
+#include <unistd.h>
+
 #include <algorithm>
-#include <cstdio>
+#include <atomic>
+#include <cstdlib>
 #include <memory>
+#include <thread>
+#include <vector>
 
 #include <fmt/format.h>
 
+#include "apps/crash_line.hpp"
 #include "apps/duration_option.hpp"
 #include "apps/exit_code.hpp"
+#include "apps/file_thread.hpp"
+#include "apps/json_text.hpp"
+#include "apps/line_writer.hpp"
 #include "apps/load.hpp"
 #include "apps/machine_log.hpp"
 #include "apps/stop_signal.hpp"
@@ -50,32 +60,38 @@ void judge(const Snapshot* s, int& code) {
             code = exit_alarm;
 }
 
-void print_summary(Machine& machine, const Options& options, double machine_seconds, double wall_seconds) {
+void print_summary(Machine& machine, const Options& options, double machine_seconds, double wall_seconds, const MachineLog::Sink& put) {
     const auto* s = machine.latest();
     if (!s || options.quiet) return;
     const auto& total = machine.step_statistics().total();
     if (options.json) {
-        fmt::print(
+        put(fmt::format(
             "{{\"cycles\":{},\"missed\":{},\"lateness_max_us\":{:.1f},\"compute_p50_us\":{:.2f},\"compute_p99_us\":{:.2f},\"compute_max_"
             "us\":{:.2f},"
             "\"frames_lost\":{},\"machine_s\":{:.3f},\"wall_s\":{:.3f}}}\n",
             s->statistics.cycles, s->statistics.missed_ticks, to_seconds(s->statistics.lateness_max) * 1e6,
             to_seconds(total.percentile(50)) * 1e6, to_seconds(total.percentile(99)) * 1e6, to_seconds(total.max()) * 1e6,
-            s->bus.frames_lost, machine_seconds, wall_seconds);
+            s->bus.frames_lost, machine_seconds, wall_seconds));
         return;
     }
-    fmt::print("\n{} cycles of {} us, {} missed; {} frames lost, {} late\n", s->statistics.cycles, machine.layout().cycle.count() / 1000,
-               s->statistics.missed_ticks, s->bus.frames_lost, s->bus.frames_late);
-    fmt::print("computing per cycle: p50 {:.1f} us, p99 {:.1f} us, max {:.1f} us", to_seconds(total.percentile(50)) * 1e6,
-               to_seconds(total.percentile(99)) * 1e6, to_seconds(total.max()) * 1e6);
+    std::string lines;
+    const auto say = [&lines]<class... T>(fmt::format_string<T...> format, T&&... values) {
+        lines += fmt::format(format, std::forward<T>(values)...);
+    };
+    say("\n{} cycles of {} us, {} missed; {} frames lost, {} late\n", s->statistics.cycles, machine.layout().cycle.count() / 1000,
+        s->statistics.missed_ticks, s->bus.frames_lost, s->bus.frames_late);
+    say("computing per cycle: p50 {:.1f} us, p99 {:.1f} us, max {:.1f} us", to_seconds(total.percentile(50)) * 1e6,
+        to_seconds(total.percentile(99)) * 1e6, to_seconds(total.max()) * 1e6);
     if (options.virtual_time)
-        fmt::print("\n{:.1f} s of machine time in {:.2f} s: {:.0f} times real time\n", machine_seconds, wall_seconds,
-                   machine_seconds / std::max(wall_seconds, 1e-9));
-    else fmt::print("; wake-up at most {:.0f} us late\n", to_seconds(s->statistics.lateness_max) * 1e6);
+        say("\n{:.1f} s of machine time in {:.2f} s: {:.0f} times real time\n", machine_seconds, wall_seconds,
+            machine_seconds / std::max(wall_seconds, 1e-9));
+    else say("; wake-up at most {:.0f} us late\n", to_seconds(s->statistics.lateness_max) * 1e6);
+    if (s->statistics.snapshots_dropped > 0) say("{} rows of the trace did not fit and are missing\n", s->statistics.snapshots_dropped);
     for (std::size_t i = 0; i < machine.layout().variables.size(); ++i) {
         const auto& v = machine.layout().variables[i];
-        fmt::print("{}.{} = {}{}{}\n", v.program, v.name, s->variables[i], v.unit.empty() ? "" : " ", v.unit);
+        say("{}.{} = {}{}{}\n", v.program, v.name, s->variables[i], v.unit.empty() ? "" : " ", v.unit);
     }
+    put(std::move(lines));
 }
 
 /// The frames of the bus go into a file, if that was asked for. `capture` outlives the machine's cycle.
@@ -89,12 +105,17 @@ Result<void> capture_frames(Machine& machine, const Options& options, Duration e
 }
 
 /// After the cycle has ended. Says what is missing.
+void say_frames(const ecat::FrameCapture* capture, const Options& options, const MachineLog::Sink& put) {
+    if (capture == nullptr) return;
+    if (capture->dropped() > 0)
+        print_warning(Error{"capture.dropped", options.pcap, fmt::format("{} frames did not fit and are missing", capture->dropped()), ""});
+    if (!options.quiet && !options.json) put(fmt::format("{} frames in {}\n", capture->frames(), options.pcap));
+}
+
 void finish(ecat::FrameCapture* capture, const Options& options) {
     if (capture == nullptr) return;
     if (auto ok = capture->finish(); !ok) print_error(ok.error());
-    if (capture->dropped() > 0)
-        print_warning(Error{"capture.dropped", options.pcap, fmt::format("{} frames did not fit and are missing", capture->dropped()), ""});
-    if (!options.quiet && !options.json) fmt::print("{} frames in {}\n", capture->frames(), options.pcap);
+    say_frames(capture, options, &MachineLog::print);
 }
 
 std::unique_ptr<Machine> build(MachineConfig config, ecat::Transport& transport, std::vector<modbus::SerialLine*> lines) {
@@ -133,8 +154,8 @@ int run_virtual(LoadedFile loaded, const Options& options) {
     VirtualRunner runner{*machine, world, clock};
     int code = exit_ok;
     runner.after_cycle = [&](Instant now) {
-        if (trace) trace->drain();
-        if (capture) (void)capture->drain().ok();  // an error comes again from finish()
+        if (trace) (void)trace->drain().ok();  // an error comes again from finish()
+        if (capture) (void)capture->drain().ok();
         const auto* snapshot = machine->latest();
         judge(snapshot, code);
         if (!options.quiet) log.step(now, snapshot);
@@ -149,13 +170,159 @@ int run_virtual(LoadedFile loaded, const Options& options) {
     runner.run_for(std::max(duration - (clock.now() - Instant{}), Duration{}));
     runner.shut_down();
     finish(capture.get(), options);
-    print_summary(*machine, options, to_seconds(clock.now() - Instant{}), to_seconds(wall.now() - wall_start));
+    print_summary(*machine, options, to_seconds(clock.now() - Instant{}), to_seconds(wall.now() - wall_start), &MachineLog::print);
     if (trace)
         if (auto ok = trace->finish(); !ok) {
             print_error(ok.error());
             return exit_bad_file;
         }
     return code;
+}
+
+/// What is written while the machine runs. Shared with the threads that write: one that the disk holds outlives everything.
+struct Files {
+    std::shared_ptr<ecat::FrameCapture> capture;
+    std::shared_ptr<TraceCsv> trace;
+};
+
+constexpr Duration file_patience = std::chrono::seconds{3};
+constexpr Duration last_lines_patience = std::chrono::seconds{1};
+constexpr Duration door_look = std::chrono::milliseconds{5};
+
+/// A line on standard error without stdio, which another thread may hold; a terminal that takes nothing is left alone.
+void say_directly(const Error& error) {
+    const auto text = "error: " + error.text() + "\n";
+    pollfd ready{STDERR_FILENO, POLLOUT, 0};
+    if (::poll(&ready, 1, 100) <= 0) return;
+    [[maybe_unused]] const auto put = ::write(STDERR_FILENO, text.data(), std::min<std::size_t>(text.size(), 4096));
+}
+
+/// Its own thread, so that nothing which the service side does holds up a stop (hmi_bridge/door.hpp).
+class DoorKeeper {
+public:
+    DoorKeeper(hmi::Door& door, Clock& clock)
+        : thread_{[this, &door, &clock] {
+              while (!ended_.load(std::memory_order_acquire)) {
+                  door.wait(door_look);
+                  door.step(clock.now());
+              }
+          }} {}
+    ~DoorKeeper() {
+        ended_.store(true, std::memory_order_release);
+        thread_.join();
+    }
+    DoorKeeper(const DoorKeeper&) = delete;
+    DoorKeeper& operator=(const DoorKeeper&) = delete;
+
+private:
+    std::atomic<bool> ended_{false};
+    std::thread thread_;
+};
+
+/// From here on nothing that may wait happens on a thread that somebody else waits for (docs/stopping.md).
+int serve_real(Machine& machine, World* world, ecat::RawSocketTransport* nic, Files files, const hmi::HmiConfig& hmi_config,
+               const Options& options) {
+    SystemClock clock;
+    const auto start = clock.now();
+    LineWriter out{STDOUT_FILENO, [&options](std::uint64_t count) {
+                       const auto text = fmt::format("{} lines are missing here: standard output did not take them", count);
+                       return options.json ? fmt::format("{{\"event\":\"missing\",\"text\":{}}}\n", json_text(text)) : text + "\n";
+                   }};
+    const auto put = [&out](std::string lines) { out.put(std::move(lines)); };
+    MachineLog log{machine, start, options.json, put};
+
+    hmi::RuntimeLink link{machine};
+    hmi::HmiOptions bridge_options;
+    bridge_options.door = hmi::DoorThread::own;
+    bridge_options.log = [&](std::string_view text) {
+        const bool of_the_house = text.ends_with(" connected") || text.starts_with("commands are taken");
+        if (options.quiet && of_the_house) return;
+        if (options.json) log.say(clock.now(), "gateway", std::string(text));
+        else out.put(std::string(text) + "\n");
+    };
+    auto bridge = hmi::HmiBridge::open(hmi_config, link, std::move(bridge_options));
+    if (!bridge) {
+        print_error(bridge.error());
+        return exit_bad_file;
+    }
+
+    say_crashes();
+    const SignalsEndMachine signals{machine};
+    const DoorKeeper door{(*bridge)->door(), clock};
+    std::vector<std::unique_ptr<FileThread>> writers;
+    const auto write_beside = [&](const char* what, auto file) {
+        if (file)
+            writers.push_back(std::make_unique<FileThread>([file] { return Result<void>(file->drain()); },
+                                                           [file] { return Result<void>(file->finish()); },
+                                                           [&, what](const Error& error) { log.say(clock.now(), what, error.text()); }));
+    };
+    write_beside("trace", files.trace);
+    write_beside("pcap", files.capture);
+    const auto files_written = [&] {
+        auto worst = FileThread::End::complete;
+        for (auto& writer : writers) worst = std::max(worst, writer->finish(file_patience));
+        return worst;
+    };
+
+    RealtimeRunner runner{machine, world};
+    bool said_stuck = false;
+    runner.on_stuck = [&](const StuckCycle* stuck) {
+        link.tell_stuck(stuck);
+        if (stuck != nullptr && !said_stuck) log.say(clock.now(), "STUCK", stuck->text());
+        if (stuck == nullptr && said_stuck) log.say(clock.now(), "STUCK", "gone: the cycle advances again");
+        said_stuck = stuck != nullptr;
+    };
+    // What hangs holds a thread that cannot be taken back: the process ends as it is, and the drives fall to their watchdogs.
+    runner.give_up = [&](const Error& error) {
+        (void)files_written();
+        out.finish(last_lines_patience);
+        say_directly(error);
+        std::_Exit(exit_hung);
+    };
+    auto started = runner.start();
+    if (!started) {
+        print_error(started.error());
+        return exit_realtime;
+    }
+    if (!options.quiet && !options.json && !started->all_granted()) {
+        std::string lines = "Without real time (the machine runs, but not punctually):\n";
+        for (const auto& item : started->items)
+            if (!item.granted) lines += fmt::format("  {}: {}. It costs: {}\n", item.what, item.reason, item.consequence);
+        out.put(std::move(lines));
+    }
+    int code = exit_ok;
+    bool said_stop = false;
+    auto served = runner.serve([&](Instant now) {
+        if (nic) nic->refresh();
+        (*bridge)->set_progress(machine.bus_progress());
+        (*bridge)->step(now);
+        judge((*bridge)->snapshot(), code);
+        if (!options.quiet) log.step(now, (*bridge)->snapshot());
+        const bool time_up = options.duration_s > 0 && to_seconds(now - start) >= options.duration_s;
+        if (stop_requested() && !said_stop) {
+            said_stop = true;
+            if (!options.quiet)
+                log.say(now, "stop", fmt::format("{}: axes stop along their ramps, then power goes off", stop_signal_name()));
+        }
+        return !time_up && !stop_requested();
+    });
+    runner.finish();
+    const auto written = files_written();
+    if (written == FileThread::End::hangs) {
+        // Its thread hangs in the kernel and holds what it writes from: nothing of this process can be taken down any more.
+        out.finish(last_lines_patience);
+        say_directly({"run.disk_hangs", "run", "the machine is down, but a disk does not take the rest of the trace or capture",
+                      "Look at that disk; the file is not complete."});
+        std::_Exit(exit_bad_file);
+    }
+    say_frames(files.capture.get(), options, put);
+    if (served) print_summary(machine, options, to_seconds(clock.now() - start), to_seconds(clock.now() - start), put);
+    out.finish(last_lines_patience);
+    if (!served) {
+        print_error(served.error());
+        return exit_bus;
+    }
+    return written == FileThread::End::complete ? code : static_cast<int>(exit_bad_file);
 }
 
 int run_real(LoadedFile loaded, const Options& options) {
@@ -204,66 +371,7 @@ int run_real(LoadedFile loaded, const Options& options) {
         }
         trace = std::move(*created);
     }
-    hmi::RuntimeLink link{*machine};
-    hmi::HmiOptions bridge_options;
-    if (!options.quiet && !options.json)
-        bridge_options.log = [](std::string_view text) {
-            fmt::print("{}\n", text);
-            std::fflush(stdout);
-        };
-    auto bridge = hmi::HmiBridge::open(loaded.hmi, link, std::move(bridge_options));
-    if (!bridge) {
-        print_error(bridge.error());
-        return exit_bad_file;
-    }
-    // Otherwise the bridge's own log has said it.
-    if ((options.quiet || options.json) && (*bridge)->lcm_problem()) print_warning(*(*bridge)->lcm_problem());
-
-    watch_stop_signals();
-    RealtimeRunner runner{*machine, world.get()};
-    auto started = runner.start();
-    if (!started) {
-        print_error(started.error());
-        return exit_realtime;
-    }
-    if (!options.quiet && !options.json && !started->all_granted()) {
-        fmt::print("Without real time (the machine runs, but not punctually):\n");
-        for (const auto& item : started->items)
-            if (!item.granted) fmt::print("  {}: {}. It costs: {}\n", item.what, item.reason, item.consequence);
-    }
-    const auto start = clock.now();
-    MachineLog log{*machine, start, options.json};
-    int code = exit_ok;
-    bool said_stop = false;
-    auto served = runner.serve([&](Instant now) {
-        if (trace) trace->drain();
-        if (capture) (void)capture->drain().ok();
-        if (nic) nic->refresh();
-        (*bridge)->set_progress(machine->bus_progress());
-        (*bridge)->step(now);
-        judge((*bridge)->snapshot(), code);
-        if (!options.quiet) log.step(now, (*bridge)->snapshot());
-        const bool time_up = options.duration_s > 0 && to_seconds(now - start) >= options.duration_s;
-        if (stop_requested() && !said_stop) {
-            said_stop = true;
-            if (!options.quiet)
-                log.say(now, "stop", fmt::format("{}: axes stop along their ramps, then power goes off", stop_signal_name()));
-        }
-        return !time_up && !stop_requested();
-    });
-    runner.finish();
-    finish(capture.get(), options);
-    if (!served) {
-        print_error(served.error());
-        return exit_bus;
-    }
-    print_summary(*machine, options, to_seconds(clock.now() - start), to_seconds(clock.now() - start));
-    if (trace)
-        if (auto ok = trace->finish(); !ok) {
-            print_error(ok.error());
-            return exit_bad_file;
-        }
-    return code;
+    return serve_real(*machine, world.get(), nic.get(), {std::move(capture), std::move(trace)}, loaded.hmi, options);
 }
 
 }  // namespace
@@ -280,7 +388,7 @@ void add_run(CLI::App& app, Action& action) {
     sub->add_option("--trace", options->trace, "write every cycle to this CSV file (see `taktwerk plot`)");
     sub->add_option("--pcap", options->pcap, "write every frame of the bus to this file, for Wireshark and tshark");
     sub->add_flag("--json", options->json, "events as one JSON object a line");
-    sub->add_flag("--quiet", options->quiet, "say nothing but errors");
+    sub->add_flag("--quiet", options->quiet, "say only errors and what clients change");
     sub->callback([&action, options] {
         action = [options] {
             auto loaded = load(options->file, options->simulate || options->virtual_time);

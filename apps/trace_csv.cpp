@@ -45,7 +45,8 @@ TraceCsv::~TraceCsv() {
     if (file_) std::fclose(file_);
 }
 
-void TraceCsv::drain() {
+Result<void> TraceCsv::drain() {
+    const bool was_broken = broken_.has_value();
     for (auto row = ring_.front(); !row.empty(); row = ring_.front()) {
         line_.clear();
         auto out = std::back_inserter(line_);
@@ -58,17 +59,23 @@ void TraceCsv::drain() {
             else out = fmt::format_to(out, "{}", value);
         }
         line_ += '\n';
-        std::fwrite(line_.data(), 1, line_.size(), file_);
+        if (!broken_ && std::fwrite(line_.data(), 1, line_.size(), file_) != line_.size()) broken_ = failure();
         ring_.release();
     }
+    if (broken_ && !was_broken) return *broken_;
+    return {};
+}
+
+Error TraceCsv::failure() const {
+    return {"trace.write", path_, fmt::format("the trace is not complete: {}", std::strerror(errno)), "look for free space on that disk"};
 }
 
 Result<void> TraceCsv::finish() {
-    drain();
-    const bool bad = std::fflush(file_) != 0 || std::ferror(file_) != 0;
+    (void)drain().ok();
+    if (!broken_ && std::fflush(file_) != 0) broken_ = failure();
     std::fclose(file_);
     file_ = nullptr;
-    if (bad) return Error{"trace.write", path_, "the trace could not be written completely", "look for free space on that disk"};
+    if (broken_) return *broken_;
     return {};
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "core/result.hpp"
@@ -19,17 +20,19 @@ public:
                                                     const runtime::MachineLayout& layout);
     ~TraceCsv();
 
-    /// Writes all rows that are waiting.
-    void drain();
-    /// Flushes; an error of the disk shows here at the latest.
+    /// Writes all rows that are waiting. Error trace.write, once: from then on rows are taken and lost.
+    Result<void> drain();
+    /// Flushes; an error of the disk shows here at the latest, and that of an earlier drain() again.
     [[nodiscard]] Result<void> finish();
 
 private:
     TraceCsv(std::string path, std::FILE* file, runtime::TraceRing& ring) : path_(std::move(path)), file_(file), ring_(ring) {}
+    [[nodiscard]] Error failure() const;
     std::string path_;
     std::FILE* file_;
     runtime::TraceRing& ring_;
     std::string line_;
+    std::optional<Error> broken_;
 };
 
 }  // namespace taktwerk::apps

@@ -16,12 +16,22 @@ using runtime::OperatorCommand;
 
 namespace {
 
+/// Stops that wait for their answer; far beyond what people and their retries give.
+constexpr std::size_t most_levels = 1024;
 /// Above this a double skips whole numbers.
 constexpr double largest_exact_integer = 9007199254740992.0;
 
 double milliseconds(Duration d) { return std::chrono::duration<double, std::milli>(d).count(); }
 
 Error bad_value(std::string what, std::string remedy) { return {"command.bad_value", "", std::move(what), std::move(remedy)}; }
+
+bool lets_go(const CommandRequest& request) noexcept { return request.kind == CommandKind::jog && request.value == 0; }
+
+/// Since it was given, as far as anybody knows: by the client's clock, and by how long it has waited here, whichever is longer.
+Duration age_of(const CommandRequest& request, Instant now) {
+    const auto waited = request.arrival.at == Instant{} ? Duration{} : now - request.arrival.at;
+    return std::max({request.age, waited, Duration{}});
+}
 
 /// Bit by bit, so that a repeated NaN is the same NaN.
 bool same(double a, double b) noexcept { return std::memcmp(&a, &b, sizeof a) == 0; }
@@ -95,17 +105,12 @@ void Gateway::close(ClientId id) {
             ++jog;
             continue;
         }
-        OperatorCommand stop;
-        stop.action = OperatorAction::jog;
-        stop.owner = jog->second.owner;
-        stop.axis = jog->first;
-        // Nobody waits for the answer (client 0); when the inbox is full the lease in the cycle does the same a little later.
-        machine_.submit(stop);
+        machine_.release_jog(jog->first);
         jog = jogs_.erase(jog);
     }
 }
 
-std::optional<Gateway::Refusal> Gateway::check_age(const CommandRequest& request) const {
+std::optional<Gateway::Refusal> Gateway::check_age(const CommandRequest& request, Instant now) const {
     const auto longest = request.kind == CommandKind::jog ? longest_jog_validity : longest_validity;
     if (request.valid_for < std::chrono::milliseconds{1} || request.valid_for > longest)
         return Refusal{Answer::bad_value,
@@ -116,17 +121,18 @@ std::optional<Gateway::Refusal> Gateway::check_age(const CommandRequest& request
             Answer::stale,
             {"command.stale", "", fmt::format("the client's clock is {:g} ms ahead of the runtime's", milliseconds(-request.age)),
              "Set the clocks right; a command's age cannot be judged."}};
-    if (request.age > request.valid_for)
+    if (const auto age = age_of(request, now); age > request.valid_for)
         return Refusal{Answer::stale,
                        {"command.stale", "",
-                        fmt::format("the command is {:g} ms old and was valid for {:g} ms; it was not carried out",
-                                    milliseconds(request.age), milliseconds(request.valid_for)),
+                        fmt::format("the command is {:g} ms old and was valid for {:g} ms; it was not carried out", milliseconds(age),
+                                    milliseconds(request.valid_for)),
                         "Give it again; if it comes back, the connection or this computer is too slow."}};
     return std::nullopt;
 }
 
 std::optional<Gateway::Refusal> Gateway::check_jog(const CommandRequest& request, const OperatorCommand& command, Instant now) const {
-    if (request.kind != CommandKind::jog || request.value == 0) return std::nullopt;
+    const bool moves = request.kind == CommandKind::move || request.kind == CommandKind::home;
+    if (!moves && (request.kind != CommandKind::jog || request.value == 0)) return std::nullopt;
     const auto found = jogs_.find(command.axis);
     const bool mine = found != jogs_.end() && found->second.client == request.client;
     const bool alive = found != jogs_.end() && now - found->second.renewed <= jog_session;
@@ -137,7 +143,7 @@ std::optional<Gateway::Refusal> Gateway::check_jog(const CommandRequest& request
                         fmt::format("{} is jogging this axis", other == clients_.end() ? "another client" : other->second.name),
                         "Wait until it lets go."}};
     }
-    if (!request.press && !(mine && alive)) {
+    if (!moves && !request.press && !(mine && alive)) {
         runtime::CommandAnswer stale;
         stale.answer = Answer::stale;
         return Refusal{Answer::stale, explain(stale, CommandKind::jog, "", {})};
@@ -180,18 +186,21 @@ std::optional<Gateway::Refusal> Gateway::translate(const Client& client, const C
     const bool axis = word->target == TargetKind::axis || word->target == TargetKind::axis_or_all;
     (axis ? command.axis : command.index) = *target;
 
-    auto refusal = check_age(request);
+    auto refusal = lets_go(request) ? std::nullopt : check_age(request, now);  // that is never too late
     if (!refusal)
         if (auto error = check_values(*word, request, command, machine_.layout())) refusal = Refusal{Answer::bad_value, std::move(*error)};
     if (!refusal) refusal = check_jog(request, command, now);
-    if (!refusal && !cycling_ && request.kind != CommandKind::shutdown)
+    if (const auto stuck = machine_.stuck(); !refusal && !lets_go(request) && stuck)
+        refusal = Refusal{Answer::not_possible_now,
+                          {"command.not_possible_now", "", *stuck, "Use the emergency stop; end the runtime and mend that program."}};
+    if (!refusal && !cycling_)
         refusal = Refusal{Answer::not_possible_now,
                           {"command.not_possible_now", "", "the machine is still starting: its bus is not operational yet",
                            "Wait until it runs (taktwerk monitor shows the progress), then give the command again."}};
     if (refusal && refusal->error.subject.empty())
         refusal->error.subject = subject_of(machine_.layout(), word->target, command.axis, command.index);
-    const auto age = std::max(request.age, Duration{});
-    command.expires = now + (request.valid_for - age);
+    command.expires = now + (request.valid_for - age_of(request, now));
+    command.after = request.arrival.after;
     return refusal;
 }
 
@@ -215,6 +224,17 @@ void Gateway::handle(const CommandRequest& request, Instant now) {
                             {std::string(code(answer)), "", std::move(what), std::move(remedy)}});
     };
 
+    const bool may_shut_down = request.kind == CommandKind::shutdown && client.source != Source::lcm;  // the others are refused below
+    if (request.kind == CommandKind::stop || may_shut_down) {
+        const auto target = request.kind == CommandKind::shutdown || request.target.empty()
+                                ? Result<std::uint16_t>(all_axes)
+                                : find_target(machine_.layout(), TargetKind::axis_or_all, request.target);
+        if (!target) return refuse(Answer::unknown_name, target.error().what, target.error().remedy);
+        client.highest = std::max(client.highest, request.sequence);
+        note(request.client, client, request, now);
+        return raise(client, request, *target, now);
+    }
+    if (lets_go(request)) let_go(request);  // done, whatever the answer will be
     if (request.sequence == 0) return refuse(Answer::bad_value, "the sequence number is 0", "Count from 1.");
     Entry* entry = client.find(request.sequence);
     if (entry && !entry->request.same_as(request))
@@ -245,8 +265,7 @@ void Gateway::handle(const CommandRequest& request, Instant now) {
     OperatorCommand command;
     if (auto refusal = translate(client, request, now, command))
         return settle(client, *entry, refusal->answer, axes::ErrorId::none, std::move(refusal->error));
-    if (request.kind == CommandKind::shutdown) {
-        machine_.request_shutdown();  // a level: it must get through when the inbox is full or nothing cycles yet
+    if (lets_go(request)) {
         note(request.client, client, request, now);
         return settle(client, *entry, Answer::accepted, axes::ErrorId::none, {});
     }
@@ -257,9 +276,46 @@ void Gateway::handle(const CommandRequest& request, Instant now) {
     }
     entry->state = Entry::State::waiting;
     client.set_outputs = client.set_outputs || request.kind == CommandKind::set_output;
-    if (request.kind != CommandKind::jog) return;
-    if (request.value == 0) jogs_.erase(command.axis);
-    else jogs_[command.axis] = {request.client, now, command.owner};
+    if (request.kind == CommandKind::jog) jogs_[command.axis] = {request.client, now};
+}
+
+void Gateway::let_go(const CommandRequest& request) {
+    const auto axis = find_target(machine_.layout(), TargetKind::axis, request.target);
+    if (!axis) return;
+    const auto jog = jogs_.find(*axis);
+    if (jog == jogs_.end() || jog->second.client != request.client) return;
+    if (!request.arrival.level_raised) machine_.release_jog(*axis);
+    jogs_.erase(jog);
+}
+
+void Gateway::raise(const Client& client, const CommandRequest& request, std::uint16_t axis, Instant now) {
+    const auto ticket = request.kind == CommandKind::stop ? machine_.request_stop(axis) : machine_.request_shutdown();
+    if (levels_.size() >= most_levels) {  // the level stands; only who asks without end is told so before the cycle has said it
+        replies_.push_back({request.client, client.source, request.sequence, request.kind, Answer::accepted, axes::ErrorId::none, {}});
+        return;
+    }
+    levels_.push_back({request.client, request.sequence, request.kind, ticket, now});
+}
+
+void Gateway::settle_levels(Instant now) {
+    for (auto level = levels_.begin(); level != levels_.end();) {
+        const bool taken = machine_.taken(level->ticket);
+        if (!taken && now - level->since <= answer_patience) {
+            ++level;
+            continue;
+        }
+        if (const auto client = clients_.find(level->client); client != clients_.end()) {
+            CommandReply reply{
+                level->client, client->second.source, level->sequence, level->kind, Answer::accepted, axes::ErrorId::none, {}};
+            if (!taken) {
+                reply.answer = Answer::not_possible_now;
+                reply.error = {"command.no_answer", "", machine_.stuck().value_or("the cycle has not taken it yet"),
+                               "It stands and acts in the next cycle, if one comes. Use the emergency stop."};
+            }
+            replies_.push_back(std::move(reply));
+        }
+        level = levels_.erase(level);
+    }
 }
 
 void Gateway::keep_jog_session(const Entry& entry, Answer answer) {
@@ -273,6 +329,7 @@ void Gateway::keep_jog_session(const Entry& entry, Answer answer) {
 void Gateway::step(Instant now) {
     now_ = now;
     release_outputs();
+    settle_levels(now);
     while (const auto answer = machine_.next_answer()) {
         const auto client = clients_.find(answer->client);
         if (client == clients_.end()) continue;

@@ -7,11 +7,13 @@
 //   gateway.step(now);                                   // each service step: answers and time-outs
 //   while (auto reply = gateway.next_reply()) ...        // exactly one for each handled command, sooner or later
 //
-// Rules: a client's sequence increases; the same command with a sequence of its last 16 is answered again, not executed again.
-// One client jogs an axis at a time. A client that closes while jogging stops its axis; one that just vanishes stops it by
-// letting the lease run out in the cycle; outputs that it has set become safe. What clients do is told to the log by who they are. Over LCM nobody
-// is known and nobody is missed: nothing that ends the run, or that would stand when its sender has gone, is taken from there.
-// One thread, not real-time.
+// Stop, shutdown and a jog let go are levels of the machine: no age, no queue and no sequence refuses them (machine_link.hpp).
+//
+// Other rules: a client's sequence increases; the same command with a sequence of its last 16 is answered again, not executed again.
+// One client jogs an axis at a time, and while it does nobody else moves or homes that axis. A client that closes while jogging stops its
+// axis, whatever moves it; one that just vanishes stops it by letting the lease run out in the cycle; outputs that it has set become safe. What
+// clients do is told to the log by who they are. Over LCM nobody is known and nobody is missed: nothing that ends the run, or that would stand
+// when its sender has gone, is taken from there. One thread, not real-time.
 
 #include <array>
 #include <cstdint>
@@ -28,6 +30,7 @@
 #include "hmi_bridge/command_words.hpp"
 #include "hmi_bridge/deed_log.hpp"
 #include "hmi_bridge/hands.hpp"
+#include "hmi_bridge/line_handler.hpp"
 #include "hmi_bridge/machine_link.hpp"
 
 namespace taktwerk::hmi {
@@ -51,6 +54,7 @@ struct CommandRequest {
     double value = 0, value2 = 0;
     Duration valid_for = std::chrono::seconds{1};  ///< 1 ms .. 10 s; jog: up to 500 ms
     Duration age{};                                ///< since the client gave it, by the common wall clock; negative: the clocks disagree
+    Arrival arrival;                               ///< how it came here; Arrival::at the epoch: just now
 
     /// The same command (when it was sent does not matter).
     [[nodiscard]] bool same_as(const CommandRequest& other) const noexcept;
@@ -114,7 +118,6 @@ private:
     struct JogSession {
         ClientId client = 0;
         Instant renewed{};
-        axes::Owner owner = axes::Owner::operator_panel;
     };
     struct Refusal {
         runtime::Answer answer;
@@ -123,7 +126,7 @@ private:
 
     [[nodiscard]] std::optional<Refusal> translate(const Client& client, const CommandRequest& request, Instant now,
                                                    runtime::OperatorCommand& command) const;
-    [[nodiscard]] std::optional<Refusal> check_age(const CommandRequest& request) const;
+    [[nodiscard]] std::optional<Refusal> check_age(const CommandRequest& request, Instant now) const;
     [[nodiscard]] std::optional<Refusal> check_jog(const CommandRequest& request, const runtime::OperatorCommand& command,
                                                    Instant now) const;
     void settle(Client& client, Entry& entry, runtime::Answer answer, axes::ErrorId axis_error, Error error);
@@ -133,12 +136,23 @@ private:
     void note(ClientId id, const Client& client, const CommandRequest& request, Instant now);
     void note_end(ClientId id, const Client& client);
     void release_outputs();
+    void raise(const Client& client, const CommandRequest& request, std::uint16_t axis, Instant now);
+    void settle_levels(Instant now);
+    void let_go(const CommandRequest& request);
 
     MachineLink& machine_;
     bool cycling_ = false;
     ClientId next_client_ = 1;
     std::map<ClientId, Client> clients_;
     std::map<std::uint16_t, JogSession> jogs_;  ///< by axis
+    struct Level {                              // raised, until the cycle has taken it
+        ClientId client = 0;
+        std::uint64_t sequence = 0;
+        CommandKind kind = CommandKind::none;
+        runtime::StopLevels::Ticket ticket;
+        Instant since{};
+    };
+    std::deque<Level> levels_;
     std::deque<CommandReply> replies_;
     DeedLog deeds_;
     Hands hands_;

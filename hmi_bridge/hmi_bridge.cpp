@@ -40,7 +40,8 @@ HmiBridge::HmiBridge(const HmiConfig& config, MachineLink& machine, HmiOptions o
       gateway_(machine, options.log),
       requests_(gateway_, machine, options.wall_utime, options.log),
       receiver_(gateway_, options.wall_utime),
-      server_(std::move(server)) {
+      door_(machine, std::move(server), options.log),
+      door_thread_(options.door) {
     if (!bus_) return;
     const bool commands = config.lcm_commands == LcmCommands::local;
     publisher_.emplace(*bus_, machine, config.rate_hz, commands, options.wall_utime);
@@ -54,15 +55,18 @@ void HmiBridge::step(Instant now) {
     requests_.observe(snapshot_);
 
     gateway_.step(now);  // answers to what was asked before
-    server_->step(now, requests_);
+    if (door_thread_ == DoorThread::service) door_.step(now);
+    door_.pass_on(requests_, now);
     requests_.step(now);
     if (bus_) bus_->poll(lcm_messages_per_step);
     while (const auto reply = gateway_.next_reply()) {
         if (reply->source == Source::socket) requests_.deliver(*reply);
         else if (bus_) receiver_.deliver(*reply, *bus_, channels_);
     }
-    while (const auto line = requests_.next_line()) server_->send(line->connection, line->text);
-    if (publisher_) publisher_->step(snapshot_, now);
+    while (auto line = requests_.next_line()) door_.answer(line->connection, std::move(line->text), std::move(line->refused));
+    if (door_thread_ == DoorThread::service) door_.send_answers();
+    // A stuck cycle's values must look old: the heartbeat falls silent, too (heartbeat_v1_t).
+    if (publisher_ && !machine_.stuck()) publisher_->step(snapshot_, now);
 }
 
 }  // namespace taktwerk::hmi

@@ -1,6 +1,7 @@
 #pragma once
 // Everything between one machine and its people: LCM state out, commands in from the local socket and (where allowed) LCM. The
-// service loop calls step() about each 5 ms; no thread of its own, nothing here is real-time.
+// service loop calls step() about each 5 ms; no thread of its own, nothing here is real-time. The door (door.hpp) may be stepped by
+// another thread: then no work of the service side holds up a stop.
 //
 //   auto bridge = HmiBridge::open(config, link, {.log = print});
 //   while (running) { machine.service(now); bridge->step(now); ... }
@@ -14,6 +15,7 @@
 
 #include "core/result.hpp"
 #include "core/time.hpp"
+#include "hmi_bridge/door.hpp"
 #include "hmi_bridge/gateway.hpp"
 #include "hmi_bridge/hmi_config.hpp"
 #include "hmi_bridge/json_requests.hpp"
@@ -26,10 +28,17 @@
 
 namespace taktwerk::hmi {
 
+/// Who steps the door.
+enum class DoorThread : std::uint8_t {
+    service,  ///< HmiBridge::step()
+    own,      ///< the caller, on a thread of its own; `log` is then called by both
+};
+
 struct HmiOptions {
     std::function<void(std::string_view)> log;                   ///< lines for the runtime's log; may be empty
     std::function<std::int64_t()> wall_utime = hmi::wall_utime;  ///< us since 1970; tests give their own
     std::unique_ptr<MessageBus> bus;                             ///< instead of the configured LCM: tests
+    DoorThread door = DoorThread::service;
 };
 
 class HmiBridge {
@@ -41,11 +50,12 @@ public:
     static Result<std::unique_ptr<HmiBridge>> open(const HmiConfig& config, MachineLink& machine, HmiOptions options);
 
     void step(Instant now);
+    [[nodiscard]] Door& door() noexcept { return door_; }
     /// How the start is getting on, for clients that ask before the first cycle (Machine::bus_progress()).
     void set_progress(std::string progress) { requests_.set_progress(std::move(progress)); }
 
     [[nodiscard]] const std::optional<Error>& lcm_problem() const noexcept { return lcm_problem_; }
-    [[nodiscard]] const std::string& socket_path() const noexcept { return server_->path(); }
+    [[nodiscard]] const std::string& socket_path() const noexcept { return door_.path(); }
     [[nodiscard]] std::uint64_t lcm_rejected() const noexcept { return receiver_.rejected(); }
     /// The snapshot of the last step; for whoever shares the service thread. Until the next step.
     [[nodiscard]] const runtime::Snapshot* snapshot() const noexcept { return snapshot_; }
@@ -62,7 +72,8 @@ private:
     JsonRequests requests_;
     LcmCommandReceiver receiver_;
     std::optional<Publisher> publisher_;
-    std::unique_ptr<SocketServer> server_;
+    Door door_;
+    DoorThread door_thread_;
     const runtime::Snapshot* snapshot_ = nullptr;
     Instant now_{};
 };

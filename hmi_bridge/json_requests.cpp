@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/nearest_name.hpp"
+#include "hmi_bridge/answer_line.hpp"
 #include "hmi_bridge/json_state.hpp"
 #include "hmi_bridge/peer_name.hpp"
 #include "hmi_bridge/words.hpp"
@@ -44,11 +45,6 @@ std::string_view key_of(TargetKind target) {
         case TargetKind::output: return "output";
     }
     return "";
-}
-
-std::string refusal_line(const std::string& id, const Error& error) {
-    const nlohmann::ordered_json words{{"code", error.code}, {"subject", error.subject}, {"what", error.what}, {"remedy", error.remedy}};
-    return fmt::format(R"({{"id":{},"ok":false,"error":{}}})", id, words.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 Result<Json> parse(std::string_view line) {
@@ -146,10 +142,10 @@ void JsonRequests::on_close(ConnectionId connection) {
 }
 
 void JsonRequests::refuse(ConnectionId connection, const std::string& id, const Error& error) {
-    answer(connection, refusal_line(id, error));
+    lines_.push_back({connection, refusal_line(id, error), id});
 }
 
-void JsonRequests::on_line(ConnectionId connection, std::string_view line, Instant now) {
+void JsonRequests::on_request(ConnectionId connection, std::string_view line, Instant now, const Arrival& arrival) {
     const auto json = parse(line);
     if (!json) return refuse(connection, "null", json.error());
     JsonFields fields(*json);
@@ -169,6 +165,7 @@ void JsonRequests::on_line(ConnectionId connection, std::string_view line, Insta
             return refuse(connection, id_text,
                           {"command.not_possible_now", "", "too many clients give commands", "Close some of them and connect again."});
         request->client = client->second;
+        request->arrival = arrival;
         request->sequence = static_cast<std::uint64_t>(id);
         return gateway_.handle(*request, now);
     }
@@ -182,14 +179,15 @@ void JsonRequests::on_line(ConnectionId connection, std::string_view line, Insta
     const auto with = [&](std::string_view key, std::string_view value) {
         answer(connection, fmt::format(R"({{"id":{},"ok":true,"{}":{}}})", id_text, key, value));
     };
+    const auto stuck = machine_.stuck();
     if (cmd == "hello") {
         const nlohmann::ordered_json hello{{"protocol_version", protocol_version},
                                            {"machine", machine_.layout().machine},
                                            {"interface", machine_.layout().interface},
                                            {"serial_devices", machine_.layout().serial_devices},
                                            {"pid", ::getpid()},
-                                           {"cycling", snapshot_ != nullptr},
-                                           {"progress", progress_}};
+                                           {"cycling", snapshot_ != nullptr && !stuck},
+                                           {"progress", stuck ? *stuck : progress_}};
         return with("hello", hello.dump(-1, ' ', false, Json::error_handler_t::replace));
     }
     if (cmd == "layout") return with("layout", layout_json(machine_.layout()));
@@ -197,6 +195,9 @@ void JsonRequests::on_line(ConnectionId connection, std::string_view line, Insta
         return refuse(connection, id_text,
                       {"state.not_yet", "", "the machine has not executed a cycle yet" + (progress_.empty() ? "" : ": " + progress_),
                        "Ask again in a moment."});
+    // What the cycle has published last goes on looking alive: nobody may take it for the machine.
+    if (stuck)
+        return refuse(connection, id_text, {"state.stuck", "", *stuck, "Use the emergency stop; end the runtime and mend that program."});
     if (cmd == "state") return with("state", state_json(*snapshot_, machine_));
     with("alarms", alarms_json(*snapshot_, machine_));
 }
@@ -242,7 +243,7 @@ void JsonRequests::deliver(const CommandReply& reply) {
     const auto found = connections_.find(reply.client);
     if (found == connections_.end()) return;
     const auto id = std::to_string(reply.sequence);
-    if (reply.accepted()) answer(found->second, fmt::format(R"({{"id":{},"ok":true}})", id));
+    if (reply.accepted()) answer(found->second, accepted_line(id));
     else refuse(found->second, id, reply.error);
 }
 

@@ -23,11 +23,12 @@
 
 namespace taktwerk::hmi {
 
-class JsonRequests final : public LineHandler {
+class JsonRequests final : public RequestHandler {
 public:
     struct Line {
         ConnectionId connection = 0;
-        std::string text;  ///< without the newline
+        std::string text;     ///< without the newline
+        std::string refused;  ///< id of the command that it refuses; empty: none
     };
 
     /// `wall_utime`: us since 1970; judges the age of requests that say when they were sent ("utime").
@@ -41,7 +42,8 @@ public:
     void set_progress(std::string progress) { progress_ = std::move(progress); }
 
     void on_open(ConnectionId connection, const Peer& peer) override;
-    void on_line(ConnectionId connection, std::string_view line, Instant now) override;
+    void on_line(ConnectionId connection, std::string_view line, Instant now) override { on_request(connection, line, now, {}); }
+    void on_request(ConnectionId connection, std::string_view line, Instant now, const Arrival& arrival) override;
     void on_close(ConnectionId connection) override;
 
     /// What drives have answered becomes lines.
@@ -52,7 +54,7 @@ public:
 
 private:
     void refuse(ConnectionId connection, const std::string& id, const Error& error);
-    void answer(ConnectionId connection, std::string text) { lines_.push_back({connection, std::move(text)}); }
+    void answer(ConnectionId connection, std::string text) { lines_.push_back({connection, std::move(text), {}}); }
 
     void ask_drive(DriveRequestKind kind, ConnectionId connection, const std::string& id, JsonFields& fields, Instant now);
 

@@ -2,11 +2,14 @@
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
+#include <sys/eventfd.h>
+#include <sys/mman.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +33,28 @@ int multicast_problem(const LcmUrl& url) {
     const int problem = ::connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 ? 0 : errno;
     ::close(socket);
     return problem;
+}
+
+/// LCM and the library under it end the process where they lack a descriptor or the memory of a thread: asked before, it is an error.
+std::optional<Error> no_room(const LcmUrl& url) {
+    constexpr std::size_t descriptors = 16;                // sockets and pipes of its threads, with a margin
+    constexpr std::size_t memory = std::size_t{64} << 20;  // stacks and buffers, likewise
+    std::vector<int> probes;
+    while (probes.size() < descriptors) {
+        const int one = ::eventfd(0, EFD_CLOEXEC);
+        if (one < 0) break;
+        probes.push_back(one);
+    }
+    for (const int probe : probes) ::close(probe);
+    if (probes.size() < descriptors)
+        return Error{"hmi.lcm", url.text, fmt::format("LCM needs {} file descriptors, and only {} are left", descriptors, probes.size()),
+                     "Raise the limit of open files (ulimit -n), or set `lcm: {enabled: false}`."};
+    void* const space = ::mmap(nullptr, memory, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (space == MAP_FAILED)
+        return Error{"hmi.lcm", url.text, fmt::format("LCM needs {} MiB of address space, and that is not left", memory >> 20),
+                     "Raise the limit of memory (ulimit -v), or set `lcm: {enabled: false}`."};
+    ::munmap(space, memory);
+    return std::nullopt;
 }
 
 struct Subscriber {
@@ -56,6 +81,7 @@ LcmBus::LcmBus(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 LcmBus::~LcmBus() = default;
 
 Result<std::unique_ptr<LcmBus>> LcmBus::open(const LcmUrl& url) {
+    if (auto problem = no_room(url)) return *problem;
     if (url.provider == LcmUrl::Provider::udpm) {
         const int problem = multicast_problem(url);
         if (problem == ENETUNREACH || problem == EHOSTUNREACH)

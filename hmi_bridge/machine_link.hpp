@@ -1,8 +1,9 @@
 #pragma once
 // The machine as the bridge sees it: commands in, answers and snapshots out. runtime_link.hpp binds it to runtime::Machine;
-// tests play one by hand. One thread (the service side), not real-time.
+// tests play one by hand. Service side, one thread, not real-time; what says "any thread" serves the door too (door.hpp).
 
 #include <optional>
+#include <string>
 
 #include "axes/port/drive_profile.hpp"
 #include "runtime/machine.hpp"
@@ -27,8 +28,15 @@ public:
     };
     /// Of an axis of the layout. Lives as long as the machine.
     [[nodiscard]] virtual Drive drive(std::uint16_t axis) = 0;
-    /// A level, never queued: works before the first cycle too.
-    virtual void request_shutdown() = 0;
+    // --- any thread (layout(), too) ---
+    /// Levels, never queued, never refused: they work before the first cycle too (runtime/stop_levels.hpp). `axis`: all_axes, or of the layout.
+    virtual runtime::StopLevels::Ticket request_stop(std::uint16_t axis) = 0;
+    virtual runtime::StopLevels::Ticket release_jog(std::uint16_t axis) = 0;
+    virtual runtime::StopLevels::Ticket request_shutdown() = 0;
+    [[nodiscard]] virtual bool taken(runtime::StopLevels::Ticket ticket) const = 0;
+    [[nodiscard]] virtual std::uint64_t levels_raised() const = 0;
+    /// The cycle does not advance: since when and in whose code, one sentence. Whatever a snapshot shows then is old.
+    [[nodiscard]] virtual std::optional<std::string> stuck() const { return std::nullopt; }
 };
 
 }  // namespace taktwerk::hmi

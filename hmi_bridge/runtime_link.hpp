@@ -1,7 +1,11 @@
 #pragma once
 // MachineLink over a real machine.
 
+#include <mutex>
+#include <utility>
+
 #include "hmi_bridge/machine_link.hpp"
+#include "runtime/advance_watch.hpp"
 
 namespace taktwerk::hmi {
 
@@ -18,10 +22,26 @@ public:
         auto* port = machine_.drive_port(axis);
         return {port, port ? machine_.config().axes[axis].profile.get() : nullptr};
     }
-    void request_shutdown() override { machine_.request_shutdown(); }
+    runtime::StopLevels::Ticket request_stop(std::uint16_t axis) override { return machine_.request_stop(axis); }
+    runtime::StopLevels::Ticket release_jog(std::uint16_t axis) override { return machine_.release_jog(axis); }
+    runtime::StopLevels::Ticket request_shutdown() override { return machine_.request_shutdown(); }
+    [[nodiscard]] bool taken(runtime::StopLevels::Ticket ticket) const override { return machine_.taken(ticket); }
+    [[nodiscard]] std::uint64_t levels_raised() const override { return machine_.levels_raised(); }
+    [[nodiscard]] std::optional<std::string> stuck() const override {
+        const std::lock_guard lock{mutex_};
+        return stuck_;
+    }
+    /// Any thread: what a watch beside the cycle has seen (RealtimeRunner::on_stuck).
+    void tell_stuck(const runtime::StuckCycle* stuck) {
+        auto words = stuck ? std::optional<std::string>(stuck->text()) : std::nullopt;
+        const std::lock_guard lock{mutex_};
+        stuck_ = std::move(words);
+    }
 
 private:
     runtime::Machine& machine_;
+    mutable std::mutex mutex_;
+    std::optional<std::string> stuck_;
 };
 
 }  // namespace taktwerk::hmi

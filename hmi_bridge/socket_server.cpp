@@ -2,6 +2,8 @@
 
 #include <fcntl.h>
 #include <grp.h>
+#include <poll.h>
+#include <sys/eventfd.h>
 #include <sys/file.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -9,17 +11,20 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 
 #include <fmt/format.h>
 
+#include "hmi_bridge/answer_line.hpp"
 #include "hmi_bridge/peer_name.hpp"
 
 namespace taktwerk::hmi {
 namespace {
 
 constexpr mode_t socket_mode = 0660, owner_only = 0600;
+constexpr int backlog = 64;  // beyond the places: who wants to stop must not wait in front of the door
 
 std::string reason() { return std::strerror(errno); }
 
@@ -90,19 +95,21 @@ Result<std::unique_ptr<SocketServer>> SocketServer::open(const std::string& path
     const bool bound = listener >= 0 && ::fchmod(listener, owner_only) == 0 &&
                        ::bind(listener, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 &&
                        (group.empty() || ::chown(path.c_str(), static_cast<uid_t>(-1), *owner) == 0) &&
-                       ::chmod(path.c_str(), socket_mode) == 0 && ::listen(listener, static_cast<int>(max_connections)) == 0;
-    if (!bound) {
+                       ::chmod(path.c_str(), socket_mode) == 0 && ::listen(listener, backlog) == 0;
+    const int wake = bound ? ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC) : -1;
+    if (wake < 0) {
         const auto why = reason();
         if (listener >= 0) ::close(listener);
+        if (bound) ::unlink(path.c_str());
         return fail("socket.bind", "cannot make the command socket: " + why,
                     "Give a path in a folder that this user may write, as `socket:` in the configuration.");
     }
-    return std::unique_ptr<SocketServer>(new SocketServer(path, listener, *lock, std::move(log)));
+    return std::unique_ptr<SocketServer>(new SocketServer(path, listener, *lock, wake, std::move(log)));
 }
 
-SocketServer::SocketServer(std::string path, int listener, int lock, std::function<void(std::string_view)> log)
-    : path_(std::move(path)), listener_(listener), lock_(lock), log_(std::move(log)) {
-    connections_.reserve(max_connections);
+SocketServer::SocketServer(std::string path, int listener, int lock, int wake, std::function<void(std::string_view)> log)
+    : path_(std::move(path)), listener_(listener), lock_(lock), wake_(wake), log_(std::move(log)) {
+    connections_.reserve(max_connections + reserve + 1);
 }
 
 std::string SocketServer::who_may_connect() const {
@@ -116,31 +123,65 @@ std::string SocketServer::who_may_connect() const {
 SocketServer::~SocketServer() {
     for (auto& connection : connections_) ::close(connection.socket);
     ::close(listener_);
+    ::close(wake_);
     ::unlink(path_.c_str());
     ::unlink((path_ + ".lock").c_str());
     ::close(lock_);
 }
 
-void SocketServer::accept_all(LineHandler& handler) {
+void SocketServer::dismiss(Connection& connection, const Error& why) {
+    const auto line = refusal_line("null", why) + "\n";
+    [[maybe_unused]] const auto sent = ::send(connection.socket, line.data(), line.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+    connection.dead = true;
+}
+
+bool SocketServer::make_room(Instant now, LineHandler& handler) {
+    std::size_t ordinary = 0, reserved = 0;
+    Connection *idlest = nullptr, *oldest = nullptr;
+    for (auto& c : connections_) {
+        if (c.dead) continue;
+        if (c.in_reserve) {
+            ++reserved;
+            if (!oldest || c.id < oldest->id) oldest = &c;
+            continue;
+        }
+        ++ordinary;
+        const bool may = now - c.heard >= idle && handler.may_go(c.id);
+        if (may && (!idlest || c.heard < idlest->heard)) idlest = &c;
+    }
+    if (ordinary < max_connections) return true;
+    // What it has said already is still heard: a stop must not be sent away unread.
+    if (auto* leaves = idlest != nullptr ? idlest : reserved >= reserve ? oldest : nullptr) read(*leaves, now, handler);
+    if (idlest) {
+        log_(fmt::format("command socket: a client that was idle for {:.0f} s gave its place to another", to_seconds(now - idlest->heard)));
+        dismiss(*idlest, {"socket.idle", "", "all places were taken, and this client had been idle the longest: its place went to another",
+                          "Connect again."});
+        return true;
+    }
+    if (reserved >= reserve)
+        dismiss(*oldest, {"socket.too_many_clients", "", "the place in reserve went to another client", "Connect again."});
+    return false;
+}
+
+void SocketServer::accept_all(Instant now, LineHandler& handler) {
     for (std::size_t round = 0; round < max_connections; ++round) {
         const int socket = ::accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
         if (socket < 0) return;
         ucred who{};
         socklen_t size = sizeof who;
         ::getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &who, &size);
-        const Peer peer{who.pid, who.uid, who.gid};
-        if (connections_.size() >= max_connections) {
-            constexpr std::string_view full =
-                R"({"id":null,"ok":false,"error":{"code":"socket.too_many_clients","subject":"","what":"8 clients are connected already","remedy":"Close one of them."}})"
-                "\n";
-            [[maybe_unused]] const auto sent = ::send(socket, full.data(), full.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
-            ::close(socket);
-            log_(fmt::format("command socket: process {} of user {} turned away, {} clients are connected", peer.pid, peer.uid,
-                             max_connections));
-            continue;
-        }
-        connections_.push_back({next_id_++, socket, {}, {}, false, false});
-        log_(fmt::format("command socket: {} connected", peer_name(peer)));
+        const bool ordinary = make_room(now, handler);
+        remove_dead(handler);
+        const Peer peer{who.pid, who.uid, who.gid, !ordinary};
+        Connection connection;
+        connection.id = next_id_++;
+        connection.socket = socket;
+        connection.heard = now;
+        connection.in_reserve = !ordinary;
+        connections_.push_back(std::move(connection));
+        log_(fmt::format(
+            "command socket: {} {}", peer_name(peer),
+            ordinary ? std::string("connected") : fmt::format("may only stop and shut down: {} clients are connected", max_connections)));
         handler.on_open(connections_.back().id, peer);
     }
 }
@@ -148,7 +189,7 @@ void SocketServer::accept_all(LineHandler& handler) {
 void SocketServer::read(Connection& connection, Instant now, LineHandler& handler) {
     char buffer[16 * 1024];
     bool ended = false;
-    while (connection.in.size() <= max_line) {
+    while (connection.in.size() <= bytes_per_step) {
         const auto got = ::recv(connection.socket, buffer, sizeof buffer, 0);
         if (got > 0) {
             connection.in.append(buffer, static_cast<std::size_t>(got));
@@ -158,21 +199,18 @@ void SocketServer::read(Connection& connection, Instant now, LineHandler& handle
         break;
     }
     std::size_t start = 0;
-    std::size_t lines = 0;
-    bool limited = false;
     for (auto end = connection.in.find('\n'); end != std::string::npos; end = connection.in.find('\n', start)) {
-        if (lines++ == lines_per_step) {
-            limited = true;
-            break;
-        }
         auto line = std::string_view(connection.in).substr(start, end - start);
         if (line.ends_with('\r')) line.remove_suffix(1);
         if (line.size() > max_line) break;
-        if (!line.empty()) handler.on_line(connection.id, line, now);
+        if (!line.empty()) {
+            connection.heard = now;
+            handler.on_line(connection.id, line, now);
+        }
         start = end + 1;
     }
     connection.in.erase(0, start);
-    if (!limited && connection.in.size() > max_line) {
+    if (connection.in.size() > max_line) {
         send(
             connection.id,
             fmt::format(
@@ -181,8 +219,8 @@ void SocketServer::read(Connection& connection, Instant now, LineHandler& handle
         connection.in.clear();
         connection.closing = true;
     }
-    // A half line at the end is nobody's request. Whole lines beyond this step's share are still done.
-    if (ended && !limited) connection.dead = true;
+    // A half line at the end is nobody's request.
+    if (ended) connection.dead = true;
 }
 
 void SocketServer::flush(Connection& connection) {
@@ -211,12 +249,7 @@ void SocketServer::send(ConnectionId id, std::string_view line) {
     flush(*found);
 }
 
-void SocketServer::step(Instant now, LineHandler& handler) {
-    accept_all(handler);
-    for (auto& connection : connections_) {
-        if (!connection.closing && !connection.dead) read(connection, now, handler);
-        if (!connection.dead) flush(connection);
-    }
+void SocketServer::remove_dead(LineHandler& handler) {
     for (auto connection = connections_.begin(); connection != connections_.end();) {
         if (!connection->dead) {
             ++connection;
@@ -227,6 +260,38 @@ void SocketServer::step(Instant now, LineHandler& handler) {
         connection = connections_.erase(connection);
         handler.on_close(id);
     }
+}
+
+void SocketServer::step(Instant now, LineHandler& handler) {
+    accept_all(now, handler);
+    for (auto& connection : connections_) {
+        if (!connection.closing && !connection.dead) read(connection, now, handler);
+        if (!connection.dead) flush(connection);
+        if (connection.in_reserve && now - connection.heard > reserve_stay) connection.dead = true;
+    }
+    remove_dead(handler);
+}
+
+void SocketServer::wait(Duration most) {
+    std::array<pollfd, max_connections + reserve + 3> ready{};
+    nfds_t count = 0;
+    ready[count++] = {listener_, POLLIN, 0};
+    ready[count++] = {wake_, POLLIN, 0};
+    for (const auto& connection : connections_) {
+        if (count == ready.size()) break;
+        const auto wanted = (connection.closing ? 0 : POLLIN) | (connection.out.empty() ? 0 : POLLOUT);
+        ready[count++] = {connection.socket, static_cast<short>(wanted), 0};
+    }
+    const auto left = std::chrono::duration_cast<std::chrono::microseconds>(most).count();
+    const timespec time{static_cast<time_t>(left / 1'000'000), static_cast<long>(left % 1'000'000) * 1000};
+    if (::ppoll(ready.data(), count, &time, nullptr) <= 0) return;
+    std::uint64_t woken = 0;
+    [[maybe_unused]] const auto got = ::read(wake_, &woken, sizeof woken);
+}
+
+void SocketServer::wake() noexcept {
+    constexpr std::uint64_t one = 1;
+    [[maybe_unused]] const auto put = ::write(wake_, &one, sizeof one);
 }
 
 }  // namespace taktwerk::hmi

@@ -1,6 +1,9 @@
 #pragma once
 // A Unix stream socket that carries lines. Nothing blocks: step() does what can be done now. Bounded in every direction:
 // clients, line length, unread answers. Only the user of the process, the socket's group and root get in (0660). One thread, not real-time.
+//
+// Nobody is locked out by those who are there: when all places are taken, a connection that has been idle for long gives its place to
+// the new one; where all are busy, the new one gets a place in reserve for a few seconds, and of those the oldest gives way.
 
 #include <cstddef>
 #include <functional>
@@ -19,8 +22,11 @@ class SocketServer {
 public:
     static constexpr std::size_t max_connections = 8;
     static constexpr std::size_t max_line = 64 * 1024;
-    static constexpr std::size_t max_unread = 1024 * 1024;  ///< a client that does not read its answers is dropped
-    static constexpr std::size_t lines_per_step = 32;       ///< of one connection
+    static constexpr std::size_t max_unread = 1024 * 1024;             ///< a client that does not read its answers is dropped
+    static constexpr std::size_t bytes_per_step = 256 * 1024;          ///< of one connection
+    static constexpr std::size_t reserve = 4;                          ///< further connections, while all places are taken
+    static constexpr Duration idle = std::chrono::seconds{5};          ///< so long without a line: may go for another
+    static constexpr Duration reserve_stay = std::chrono::seconds{3};  ///< then a place in reserve is free again
 
     /// Binds `path`, replacing what a runtime that died has left behind. `log` gets one line per connection and problem.
     /// `group`: of the socket; empty: that of the process.
@@ -32,6 +38,10 @@ public:
     SocketServer& operator=(const SocketServer&) = delete;
 
     void step(Instant now, LineHandler& handler);
+    /// Until there is something for step(), wake() was called, or `most` has passed.
+    void wait(Duration most);
+    /// Any thread.
+    void wake() noexcept;
     /// Queues a line and sends what the kernel takes. Unknown connections are ignored.
     void send(ConnectionId connection, std::string_view line);
     [[nodiscard]] std::size_t connection_count() const noexcept { return connections_.size(); }
@@ -44,16 +54,22 @@ private:
         ConnectionId id = 0;
         int socket = -1;
         std::string in, out;
+        Instant heard{};  ///< of its last line, or of its coming
+        bool in_reserve = false;
         bool closing = false;  ///< no more reading; closed when the rest is sent
         bool dead = false;
     };
-    SocketServer(std::string path, int listener, int lock, std::function<void(std::string_view)> log);
-    void accept_all(LineHandler& handler);
+    SocketServer(std::string path, int listener, int lock, int wake, std::function<void(std::string_view)> log);
+    void accept_all(Instant now, LineHandler& handler);
+    /// A place for one more: true when it is an ordinary one.
+    bool make_room(Instant now, LineHandler& handler);
+    void dismiss(Connection& connection, const Error& why);
+    void remove_dead(LineHandler& handler);
     void read(Connection& connection, Instant now, LineHandler& handler);
     void flush(Connection& connection);
 
     std::string path_;
-    int listener_, lock_;
+    int listener_, lock_, wake_;
     std::function<void(std::string_view)> log_;
     ConnectionId next_id_ = 1;
     std::vector<Connection> connections_;

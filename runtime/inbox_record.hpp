@@ -6,7 +6,8 @@
 //   frame    an Ethernet frame as it came in
 //   departure  nothing but its time: when a frame left, as the transport measured it (the servo follows it)
 //   command  u8 action, u8 owner, u8 mode, u8 flag, u16 axis, u16 index, f64 value, f64 value2,
-//            u32 client, u64 sequence, i64 expires ns                                          44 bytes
+//            u32 client, u64 sequence, i64 expires ns, u64 after                               52 bytes
+//            A level (stop_levels.hpp) is a stop, a jog with velocity 0 or a shutdown of client 0; its number stands as sequence.
 //   sample   u16 drive on a serial line, what it said (see record_sample)                      72 bytes
 //   object   u16 program, u16 place, u8 outcome, u32 abort code                                9 bytes, then the value read
 
@@ -57,7 +58,7 @@ inline void record_tick(Recorder& recorder, const CycleTick& tick) noexcept {
 }
 
 inline void record_command(Recorder& recorder, Instant at, const OperatorCommand& command) noexcept {
-    inbox_record::Bytes<44> bytes;
+    inbox_record::Bytes<52> bytes;
     bytes.put(static_cast<std::uint8_t>(command.action));
     bytes.put(static_cast<std::uint8_t>(command.owner));
     bytes.put(static_cast<std::uint8_t>(command.mode));
@@ -69,6 +70,7 @@ inline void record_command(Recorder& recorder, Instant at, const OperatorCommand
     bytes.put(command.client);
     bytes.put(command.sequence);
     bytes.put(command.expires);
+    bytes.put(command.after);
     recorder.append(command_channel, at, bytes.all());
 }
 

@@ -73,7 +73,9 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, const std
           std::array<std::string_view, step_count - 1> names{};
           std::copy_n(step_names.begin(), names.size(), names.begin());
           return names;
-      }()) {
+      }()),
+      levels(config.axes.size()),
+      stopped_at(config.axes.size()) {
     const auto on_bus = bus_of(config);
     build_lines(serial_lines, errors);
     axes.reserve(config.axes.size());
@@ -218,7 +220,6 @@ void Machine::Impl::cycle(const CycleTick& tick) noexcept {
     const bool runs = armed.load(std::memory_order_acquire);
     if (recorder) record_tick(*recorder, tick);
     if (runs) now = tick.scheduled;
-    else if (shutdown_wanted.load(std::memory_order_relaxed)) phase.store(MachinePhase::stopped, std::memory_order_release);
     const bool at_tick = config.send == SendMode::at_tick;
     steps.begin();
 
@@ -228,6 +229,7 @@ void Machine::Impl::cycle(const CycleTick& tick) noexcept {
 
     if (runs) {
         objects->take_answers(recorder, now);
+        take_levels(now);
         drain_inbox(now);
         steps.done(static_cast<std::size_t>(Step::inbox));
 
@@ -253,8 +255,10 @@ void Machine::Impl::cycle(const CycleTick& tick) noexcept {
         for (auto& axis : axes) axis.encode(send_time);
         io.write(bus.outputs());
         steps.done(static_cast<std::size_t>(Step::encode));
-    } else if (outputs_laid_out.load(std::memory_order_acquire)) {
-        io.write(bus.outputs());
+    } else {
+        take_levels(tick.scheduled);
+        if (shutdown_taken) phase.store(MachinePhase::stopped, std::memory_order_release);
+        if (outputs_laid_out.load(std::memory_order_acquire)) io.write(bus.outputs());
     }
 
     if (!at_tick) bus.send(tick.scheduled);
@@ -274,6 +278,7 @@ void Machine::Impl::cycle(const CycleTick& tick) noexcept {
     steps.end();
     statistics.compute = Stopwatch{whole}.lap();
     statistics.compute_max = std::max(statistics.compute_max, statistics.compute);
+    pulse_cycles.fetch_add(1, std::memory_order_relaxed);
 }
 
 // --- the public face --------------------------------------------------------------------------------------------------------
@@ -296,13 +301,20 @@ void Machine::start_bus() {
 }
 void Machine::stop_bus() { impl_->bus.stop(); }
 void Machine::service(Instant now) {
+    service_bus(now);
+    service_programs();
+    service_disk(now);
+}
+void Machine::service_bus(Instant now) {
     impl_->bus.step(now);
     impl_->lay_out_outputs();
     for (auto& line : impl_->lines)
         if (line) line->step(now);
     for (auto& port : impl_->ports) port->step(now);
     impl_->objects->step(impl_->bus);
-    impl_->service_programs();
+}
+void Machine::service_programs() { impl_->service_programs(); }
+void Machine::service_disk(Instant now) {
     if (impl_->positions) impl_->positions->step(now);
 }
 Result<void> Machine::arm() { return impl_->arm(); }
@@ -329,13 +341,39 @@ const Snapshot* Machine::latest() noexcept {
     const auto reading = impl_->snapshots.read();
     return reading.value->cycle > 0 ? reading.value : nullptr;
 }
-void Machine::request_shutdown() noexcept { impl_->shutdown_wanted.store(true, std::memory_order_relaxed); }
+StopLevels::Ticket Machine::request_stop(std::uint16_t axis) noexcept { return impl_->levels.stop(axis); }
+StopLevels::Ticket Machine::release_jog(std::uint16_t axis) noexcept { return impl_->levels.release_jog(axis); }
+StopLevels::Ticket Machine::request_shutdown() noexcept {
+    impl_->shutdown_asked.store(true, std::memory_order_release);
+    return impl_->levels.shutdown();
+}
+bool Machine::taken(StopLevels::Ticket ticket) const noexcept { return impl_->levels.taken(ticket); }
+std::uint64_t Machine::levels_raised() const noexcept { return impl_->levels.raised(); }
+bool Machine::shutdown_asked() const noexcept { return impl_->shutdown_asked.load(std::memory_order_acquire); }
+Duration Machine::longest_stop() const noexcept { return impl_->shutdown_patience; }
+Machine::Pulse Machine::pulse() const noexcept {
+    return {impl_->pulse_cycles.load(std::memory_order_relaxed), impl_->pulse_task.load(std::memory_order_relaxed)};
+}
+Machine::TaskNames Machine::task_names(std::size_t task) const {
+    const auto& found = impl_->host->tasks()[task];
+    return {found.config.program, found.config.name};
+}
+std::string Machine::program_at_work() const {
+    for (const auto& task : impl_->slow_tasks)
+        if (!task->finished()) return fmt::format("task '{}' of program '{}'", task->config().name, task->config().program);
+    if (const auto program = impl_->at_hooks.load(std::memory_order_relaxed); program >= 0)
+        return fmt::format("start() or stop() of program '{}'", impl_->config.programs[static_cast<std::size_t>(program)].name);
+    return {};
+}
 axes::DrivePort* Machine::drive_port(std::size_t axis) noexcept {
     const bool on_drive = axis < impl_->ports.size() && !impl_->layout.axes[axis].drive.empty();
     return on_drive ? impl_->ports[axis].get() : nullptr;
 }
 MachinePhase Machine::phase() const noexcept { return impl_->phase.load(std::memory_order_acquire); }
-std::string Machine::program_fault(std::size_t program) const { return impl_->host->programs()[program].fault; }
+std::string Machine::program_fault(std::size_t program) const {
+    const std::lock_guard lock{impl_->fault_words};
+    return impl_->host->programs()[program].fault;
+}
 void Machine::record(Recorder& recorder) noexcept {
     impl_->recorder = &recorder;
     impl_->bus.set_tap(&record_frame, &recorder);

@@ -21,6 +21,7 @@
 #include "runtime/machine_config.hpp"
 #include "runtime/operator_command.hpp"
 #include "runtime/snapshot.hpp"
+#include "runtime/stop_levels.hpp"
 #include "runtime/trace_ring.hpp"
 
 namespace taktwerk::runtime {
@@ -54,8 +55,15 @@ public:
     void start_bus();
     /// Takes the bus down in order. After phase() is `stopped`; service() and cycle() go on until the bus says stopped.
     void stop_bus();
-    /// Bus scripts, drive services, slow work. Call often (each millisecond or after each virtual cycle).
+    /// Bus scripts, drive services, slow work. Call often (each millisecond or after each virtual cycle). The three parts of it that follow
+    /// one after the other, for one thread; in real time each has a thread of its own, so that what may wait holds up nobody else.
     void service(Instant now);
+    /// Nothing in it waits: bus scripts, serial lines, services of the drives.
+    void service_bus(Instant now);
+    /// start() and stop() of programs: foreign code, it may take any time.
+    void service_programs();
+    /// Positions onto the disk: it waits until they are there.
+    void service_disk(Instant now);
     /// After the bus is operational: signals resolved, image layout known. Once. Then cycle() may run programs.
     [[nodiscard]] Result<void> arm();
     [[nodiscard]] bool bus_operational() const noexcept;
@@ -79,8 +87,33 @@ public:
     std::optional<CommandAnswer> next_answer() noexcept;
     /// Service side (one reader): the newest snapshot; nullptr before the first cycle.
     const Snapshot* latest() noexcept;
-    /// A level, not queued: set by signal handlers. Real-time safe, async-signal-safe. Before arm() the next cycle says `stopped`.
-    void request_shutdown() noexcept;
+    /// Levels, not queued: any thread and signal handlers. Real-time safe, async-signal-safe; they act in the next cycle, and cannot be
+    /// refused. Stop: along the ramp, whoever owns the axis; `axis` 0xFFFF means all.
+    StopLevels::Ticket request_stop(std::uint16_t axis) noexcept;
+    /// A jog was let go, or its client is lost: whatever moves the axis by hand stops. A program's axis goes on: a press there was refused.
+    StopLevels::Ticket release_jog(std::uint16_t axis) noexcept;
+    /// Before arm() the next cycle says `stopped`.
+    StopLevels::Ticket request_shutdown() noexcept;
+    /// The cycle has taken that level. Any thread.
+    [[nodiscard]] bool taken(StopLevels::Ticket ticket) const noexcept;
+    /// For OperatorCommand::after. Any thread.
+    [[nodiscard]] std::uint64_t levels_raised() const noexcept;
+    [[nodiscard]] bool shutdown_asked() const noexcept;
+    /// From a shutdown on, with a margin for a drive that does not answer: then phase() is `stopped`, if the cycle advances.
+    [[nodiscard]] Duration longest_stop() const noexcept;
+    /// What the cycle is at, for who looks from outside whether it advances (advance_watch.hpp). Any thread.
+    struct Pulse {
+        std::uint64_t cycles = 0;  ///< ended so far, those before arm() too
+        std::int32_t task = -1;    ///< base task that runs now; -1: none
+    };
+    [[nodiscard]] Pulse pulse() const noexcept;
+    struct TaskNames {
+        std::string program, task;
+    };
+    [[nodiscard]] TaskNames task_names(std::size_t task) const;
+    /// "task 'plan' of program 'cell'", or "start() of ...": code of a program that runs beside the cycle and has not returned; empty: none.
+    /// Any thread.
+    [[nodiscard]] std::string program_at_work() const;
     [[nodiscard]] MachinePhase phase() const noexcept;
     /// Before arm(): each cycle becomes a row of `columns()`; `rows` is how far a reader may fall behind.
     TraceRing& enable_trace(std::size_t rows);

@@ -1,6 +1,7 @@
 // Operator commands inside the cycle: authority, modes, manual motion, outputs by hand; programs in machine_programs.cpp. Real-time safe.
 // Who may do what, and when, stands in operator_command.hpp.
 
+#include <algorithm>
 #include <cmath>
 
 #include "runtime/inbox_record.hpp"
@@ -48,6 +49,37 @@ void Machine::Impl::answer(const OperatorCommand& command, Answer verdict, Error
     answers.try_push(reply);  // a full ring means nobody reads: the client's own time-out tells it
 }
 
+// One place for what comes from outside: a level is recorded as the command that it is. Nobody waits for an answer in the ring.
+void Machine::Impl::take_levels(Instant at) noexcept {
+    levels.take([&](StopLevel what, std::uint16_t axis, std::uint64_t number) {
+        OperatorCommand command;
+        command.axis = axis;
+        command.sequence = number;
+        command.action = what == StopLevel::stop          ? OperatorAction::stop
+                         : what == StopLevel::release_jog ? OperatorAction::jog
+                                                          : OperatorAction::shutdown;
+        if (recorder) record_command(*recorder, at, command);
+        if (what == StopLevel::shutdown) {
+            shutdown_taken = true;
+            return;
+        }
+        if (!armed.load(std::memory_order_relaxed)) return;  // nothing moves yet
+        for (std::size_t i = axis == all ? 0 : axis; i < (axis == all ? axes.size() : axis + std::size_t{1}); ++i) {
+            stopped_at[i] = std::max(stopped_at[i], number);
+            // A program's axis was never jogged: that press was refused.
+            const bool spared = what == StopLevel::release_jog && axes[i].view().owner == Owner::program;
+            if (!config.axes[i].axis.disabled && !spared) (void)stop(i);
+        }
+    });
+}
+
+/// Given before a stop of its axis, and only now at its turn: it must not start what that stop has ended.
+bool Machine::Impl::overtaken(const OperatorCommand& command) const noexcept {
+    const bool starts_motion = command.action == OperatorAction::home || command.action == OperatorAction::move_absolute ||
+                               (command.action == OperatorAction::jog && command.value != 0);
+    return starts_motion && command.axis < stopped_at.size() && command.after < stopped_at[command.axis];
+}
+
 void Machine::Impl::drain_inbox(Instant at) noexcept {
     OperatorCommand command;
     for (std::uint8_t i = 0; i < config.commands_per_cycle && inbox.try_pop(command); ++i) {
@@ -55,6 +87,7 @@ void Machine::Impl::drain_inbox(Instant at) noexcept {
         // A stop is never too late, and while the run ends everything stops anyway.
         const bool stops = command.action == OperatorAction::stop || command.action == OperatorAction::shutdown;
         if (!stops && command.expires != Instant{} && command.expires < at) answer(command, Answer::stale);
+        else if (overtaken(command)) answer(command, Answer::stale);
         else if (!stops && shutting_down) answer(command, Answer::not_possible_now);
         else execute(command);
     }
@@ -124,7 +157,10 @@ Machine::Impl::Verdict Machine::Impl::execute_machine(const OperatorCommand& com
             log.acknowledge();
             for (auto& axis : axes) axis.acknowledge_alarms();
             return {};
-        case OperatorAction::shutdown: shutdown_wanted.store(true, std::memory_order_relaxed); return {};
+        case OperatorAction::shutdown:
+            shutdown_taken = true;
+            shutdown_asked.store(true, std::memory_order_release);
+            return {};
         default: return {Answer::unknown_name};
     }
 }

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "axes/axis/axis.hpp"
@@ -25,6 +26,7 @@
 #include "runtime/program_host.hpp"
 #include "runtime/program_requests.hpp"
 #include "runtime/slow_task.hpp"
+#include "runtime/stop_levels.hpp"
 
 namespace taktwerk::runtime {
 
@@ -55,7 +57,9 @@ struct Machine::Impl {
     std::vector<std::string> trace_columns() const;
 
     // machine_commands.cpp, machine_programs.cpp
+    void take_levels(Instant now) noexcept;
     void drain_inbox(Instant now) noexcept;
+    [[nodiscard]] bool overtaken(const OperatorCommand& command) const noexcept;
     void answer(const OperatorCommand& command, Answer answer, axes::ErrorId error = axes::ErrorId::none) noexcept;
     void execute(const OperatorCommand& command) noexcept;
     struct Verdict {
@@ -167,8 +171,14 @@ struct Machine::Impl {
     CycleStatistics statistics;
     std::vector<TaskStatistics> task_statistics;
     StepStatistics<step_count - 1> steps;
-    std::atomic<bool> shutdown_wanted{false};
-    static_assert(std::atomic<bool>::is_always_lock_free, "request_shutdown() is called by signal handlers");
+    StopLevels levels;
+    std::vector<std::uint64_t> stopped_at;  // per axis: number of the newest stop that was taken
+    bool shutdown_taken = false;            // a level: it stays
+    std::atomic<bool> shutdown_asked{false};
+    std::atomic<std::uint64_t> pulse_cycles{0};
+    std::atomic<std::int32_t> pulse_task{-1};  // of host->tasks()
+    std::atomic<std::int32_t> at_hooks{-1};    // program whose start() or stop() runs
+    mutable std::mutex fault_words;            // of ProgramHost::Loaded::fault: written beside the service thread
     Duration shutdown_patience{};
     std::atomic<MachinePhase> phase{MachinePhase::starting};
     Instant shutdown_since{};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "runtime/code_at_work.hpp"
 #include "runtime/machine_impl.hpp"
 
 namespace taktwerk::runtime {
@@ -92,21 +93,36 @@ void Machine::Impl::service_programs() {
         if (!loaded.instance) continue;
         auto asked = handshakes[p].load(std::memory_order_acquire);
         auto next = asked;
+        const auto tell = [&](std::string words) {
+            const std::lock_guard lock{fault_words};
+            loaded.fault = std::move(words);
+        };
+        // Named while it runs: what never returns from here is told by name, and so is what crashes.
+        struct Hooks {
+            Hooks(std::atomic<std::int32_t>& at, std::size_t program, const char* name, const char* part) : at_(at), code_(name, part) {
+                at_.store(static_cast<std::int32_t>(program), std::memory_order_relaxed);
+            }
+            ~Hooks() { at_.store(-1, std::memory_order_relaxed); }
+            std::atomic<std::int32_t>& at_;
+            ProgramCode code_;
+        };
         try {
             if (asked == Handshake::start_asked) {
-                loaded.fault.clear();
+                tell({});
                 next = Handshake::started;
+                const Hooks hooks{at_hooks, p, loaded.config.name.c_str(), "start()"};
                 loaded.instance->start();
             } else if (asked == Handshake::stop_asked && slow_tasks_finished(p)) {
                 // Written by the cycle before it asked; a program stopped by a person leaves it as it was.
-                if (const auto why = program_faults[p].text(); !why.empty()) loaded.fault = std::string(why);
+                if (const auto why = program_faults[p].text(); !why.empty()) tell(std::string(why));
                 next = Handshake::none;
+                const Hooks hooks{at_hooks, p, loaded.config.name.c_str(), "stop()"};
                 loaded.instance->stop();
             }
         } catch (...) {
             FaultText why;
             why.take_current();
-            loaded.fault = std::string(asked == Handshake::start_asked ? "start() threw: " : "stop() threw: ") + std::string(why.text());
+            tell(std::string(asked == Handshake::start_asked ? "start() threw: " : "stop() threw: ") + std::string(why.text()));
             next = Handshake::failed;
         }
         if (next != asked) handshakes[p].compare_exchange_strong(asked, next, std::memory_order_release);

@@ -91,7 +91,7 @@ void Machine::Impl::supervise(Instant, const CycleTick& tick) noexcept {
     log.begin_cycle();
 
     watch_emergency_stop();
-    if (shutdown_wanted.load(std::memory_order_relaxed)) raise(MachineAlarm::stopped_by_signal, AlarmSource::machine, 0, 0, 0);
+    if (shutdown_taken) raise(MachineAlarm::stopped_by_signal, AlarmSource::machine, 0, 0, 0);
     watch_cycle(tick);
     watch_programs();
     raise_bus_alarms();
@@ -160,7 +160,7 @@ void Machine::Impl::react() noexcept {
 }
 
 void Machine::Impl::run_shutdown(Instant at) noexcept {
-    if (!shutdown_wanted.load(std::memory_order_relaxed)) return;
+    if (!shutdown_taken) return;
     if (!shutting_down) {
         shutting_down = true;
         shutdown_since = at;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "runtime/code_at_work.hpp"
 #include "runtime/machine_impl.hpp"
 
 namespace taktwerk::runtime {
@@ -30,7 +31,9 @@ void Machine::Impl::run_base_task(std::size_t index) noexcept {
     context.parameters = host->parameters();
     context.alarms = program.alarms;
     context.first_scan = context.cycle == 0;
+    pulse_task.store(static_cast<std::int32_t>(base_tasks[index]), std::memory_order_relaxed);
     try {
+        const ProgramCode code{task.config.program.c_str(), task.config.name.c_str()};
         task.function(program.instance.get(), context);
         program.alarms = context.alarms;
     } catch (...) {  // a program is foreign code: what it throws ends here, and the axes stop
@@ -38,6 +41,7 @@ void Machine::Impl::run_base_task(std::size_t index) noexcept {
         why.take_current();
         program_failed(task.program, why);
     }
+    pulse_task.store(-1, std::memory_order_relaxed);
 }
 
 void Machine::Impl::run_slow_releases() noexcept {

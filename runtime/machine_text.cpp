@@ -112,6 +112,7 @@ AlarmText Machine::describe(const AlarmFact& fact) const {
     }
 
     if (fact.id == id(MachineAlarm::program_fault) && fact.index < m.host->programs().size()) {
+        const std::lock_guard lock{m.fault_words};
         if (const auto& why = m.host->programs()[fact.index].fault; !why.empty()) {
             out.english += ": " + why;
             out.chinese += ":" + why;

@@ -29,7 +29,7 @@ enum class OperatorAction : std::uint8_t {
                       ///< 50 ms, renews the lease [stale when there is nothing to renew]
     move_absolute,    ///< axis; value = position u, value2 = velocity u/s (manual move to a position)
     stop,             ///< axis or all: stop along the ramp, whoever owns it; always allowed, never stale. A program goes on: its
-                      ///< block shows CommandAborted; program_stop ends it
+                      ///< block shows CommandAborted; program_stop ends it. People's stops come as levels (stop_levels.hpp)
     reset,            ///< axis, or all: then also the machine's alarms and programs in fault
     program_start,    ///< index = program. One that runs and waits after an emergency stop goes on [wrong_mode outside automatic;
                       ///< not_possible_now in fault, while its stop() is to come, while the emergency stop holds]
@@ -54,9 +54,11 @@ struct OperatorCommand {
     std::uint16_t axis = 0xFFFF;
     std::uint16_t index = 0xFFFF;
     double value = 0, value2 = 0;
-    std::uint32_t client = 0;    ///< who; answers go there
-    std::uint64_t sequence = 0;  ///< of the client; a repeated one is answered again, not executed again
-    Instant expires{};           ///< older than this at drain: refused as stale
+    std::uint32_t client = 0;                 ///< who; answers go there
+    std::uint64_t sequence = 0;               ///< of the client; a repeated one is answered again, not executed again
+    Instant expires{};                        ///< older than this at drain: refused as stale
+    std::uint64_t after = ~std::uint64_t{0};  ///< stop levels raised when it reached the process (stop_levels.hpp): what starts a motion
+                                              ///< and was given before a stop of its axis is stale, however late it comes
 };
 static_assert(std::is_trivially_copyable_v<OperatorCommand>);
 

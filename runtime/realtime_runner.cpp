@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/math.hpp"
+#include "runtime/code_at_work.hpp"
 
 namespace taktwerk::runtime {
 
@@ -11,10 +12,11 @@ namespace {
 constexpr Duration service_period = std::chrono::milliseconds{1};
 constexpr Duration bring_up_patience = std::chrono::seconds{30};
 constexpr Duration bus_down_patience = std::chrono::seconds{5};
+constexpr Duration watch_period = std::chrono::milliseconds{20};
 
 }  // namespace
 
-RealtimeRunner::RealtimeRunner(Machine& machine, World* world) : machine_(machine), world_(world) {
+RealtimeRunner::RealtimeRunner(Machine& machine, World* world) : machine_(machine), world_(world), end_watch_(machine) {
     const auto& wanted = machine.config().realtime;
     request_.priority = wanted.priority > 0 ? std::optional<int>{wanted.priority} : std::nullopt;
     request_.cpus = wanted.cpus;
@@ -24,6 +26,7 @@ RealtimeRunner::RealtimeRunner(Machine& machine, World* world) : machine_(machin
 RealtimeRunner::~RealtimeRunner() { finish(); }
 
 void RealtimeRunner::cycle_thread() {
+    const CrashStack crash_stack;
     report_ = prepare_cycle_thread(request_);
     math::set_stepping_thread_float_environment();
     ready_.store(true, std::memory_order_release);
@@ -41,6 +44,7 @@ void RealtimeRunner::cycle_thread() {
 }
 
 void RealtimeRunner::task_thread(std::size_t index) {
+    const CrashStack crash_stack;
     math::set_stepping_thread_float_environment();
     // The cycle never wakes anybody (that would be a system call): a task looks for its release itself, often enough.
     const Duration look = machine_.config().cycle / 4;
@@ -49,8 +53,33 @@ void RealtimeRunner::task_thread(std::size_t index) {
     }
 }
 
+// Work that may wait. The last round comes after the cycle has ended: a program's stop(), the places where the axes came to rest.
+void RealtimeRunner::beside(const std::function<void(Instant)>& work) {
+    const CrashStack crash_stack;
+    bool ending = false;
+    do {
+        ending = stop_.load(std::memory_order_acquire) && !cycle_running_.load(std::memory_order_acquire);
+        work(clock_.now());
+        if (!ending) clock_.sleep_until(clock_.now() + service_period);
+    } while (!ending);
+}
+
+void RealtimeRunner::watch_thread() {
+    bool was_stuck = false, given_up = false;
+    while (!all_home_.load(std::memory_order_acquire)) {
+        const auto hopeless = end_watch_.look(clock_.now());
+        const auto& stuck = end_watch_.stuck();
+        if (stuck.has_value() != was_stuck && on_stuck) on_stuck(stuck ? &*stuck : nullptr);
+        was_stuck = stuck.has_value();
+        if (hopeless && !given_up && give_up) give_up(*hopeless);
+        given_up = given_up || hopeless;
+        clock_.sleep_until(clock_.now() + watch_period);
+    }
+}
+
 Result<RealtimeReport> RealtimeRunner::start() {
     auto whole = prepare_process(request_, latency_);
+    cycle_running_.store(true, std::memory_order_release);
     cycle_ = std::thread{[this] { cycle_thread(); }};
     while (!ready_.load(std::memory_order_acquire)) std::this_thread::yield();
     whole.items.insert(whole.items.end(), report_.items.begin(), report_.items.end());
@@ -60,13 +89,16 @@ Result<RealtimeReport> RealtimeRunner::start() {
                      "give the process CAP_SYS_NICE and CAP_IPC_LOCK, or set `realtime.required: false`"};
     }
     for (std::size_t i = 0; i < machine_.slow_task_count(); ++i) tasks_.emplace_back([this, i] { task_thread(i); });
+    beside_.emplace_back([this] { beside([this](Instant) { machine_.service_programs(); }); });
+    beside_.emplace_back([this] { beside([this](Instant now) { machine_.service_disk(now); }); });
+    watch_ = std::thread{[this] { watch_thread(); }};
     return whole;
 }
 
 void RealtimeRunner::service() {
     next_service_ = std::max(next_service_ + service_period, clock_.now());
     clock_.sleep_until(next_service_);
-    machine_.service(clock_.now());
+    machine_.service_bus(clock_.now());
 }
 
 Result<void> RealtimeRunner::serve(const std::function<bool(Instant)>& keep_on) {
@@ -101,10 +133,16 @@ Result<void> RealtimeRunner::bring_up(const std::function<bool(Instant)>& keep_o
 
 void RealtimeRunner::finish() {
     stop_.store(true, std::memory_order_release);
+    end_watch_.only_threads_left();
     if (cycle_.joinable()) cycle_.join();
-    for (auto& task : tasks_)
-        if (task.joinable()) task.join();
-    tasks_.clear();
+    cycle_running_.store(false, std::memory_order_release);
+    for (auto* threads : {&tasks_, &beside_}) {
+        for (auto& thread : *threads)
+            if (thread.joinable()) thread.join();
+        threads->clear();
+    }
+    all_home_.store(true, std::memory_order_release);
+    if (watch_.joinable()) watch_.join();
 }
 
 }  // namespace taktwerk::runtime

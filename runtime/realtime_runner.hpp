@@ -1,5 +1,12 @@
 #pragma once
-// A machine in real time: the cycle on a thread of its own, slower tasks on theirs, everything acyclic on the caller's.
+// A machine in real time. Each thread does one kind of work, so that what waits holds up only its own:
+//
+//   cycle      the machine's cycle
+//   tasks      one for each slower task
+//   service    the caller's of serve(): bus scripts, drives' services, and what the caller does in keep_on; nothing there may wait
+//   programs   start() and stop() of programs: foreign code
+//   disk       positions, until they are on the disk
+//   watch      looks whether the cycle advances and whether an end that was asked for comes (end_watch.hpp)
 
 #include <atomic>
 #include <functional>
@@ -12,6 +19,7 @@
 #include "core/cyclic_thread.hpp"
 #include "core/realtime.hpp"
 #include "core/result.hpp"
+#include "runtime/end_watch.hpp"
 #include "runtime/machine.hpp"
 #include "runtime/world.hpp"
 
@@ -22,6 +30,12 @@ public:
     /// `world` is null on a real bus. Both outlive the runner.
     RealtimeRunner(Machine& machine, World* world);
     ~RealtimeRunner();
+
+    /// Before start(), called on the watch thread. `on_stuck`: the cycle does not advance (once), or advances again (nullptr).
+    std::function<void(const StuckCycle*)> on_stuck;
+    /// Called once, when the run cannot end by itself: what hangs holds a thread that nobody can take back, so finish() would wait for ever.
+    /// Whoever runs a machine ends the process here.
+    std::function<void(const Error&)> give_up;
 
     /// Starts the threads; the report says what the system granted. Error when `realtime.required` and something was refused.
     [[nodiscard]] Result<RealtimeReport> start();
@@ -37,6 +51,8 @@ public:
 private:
     void cycle_thread();
     void task_thread(std::size_t index);
+    void beside(const std::function<void(Instant)>& work);
+    void watch_thread();
     void service();
     Result<void> bring_up(const std::function<bool(Instant)>& keep_on);
 
@@ -47,9 +63,10 @@ private:
     RealtimeRequest request_;
     RealtimeReport report_;
     CycleCounters counters_;
-    std::atomic<bool> stop_{false}, ready_{false};
-    std::thread cycle_;
-    std::vector<std::thread> tasks_;
+    EndWatch end_watch_;
+    std::atomic<bool> stop_{false}, ready_{false}, cycle_running_{false}, all_home_{false};
+    std::thread cycle_, watch_;
+    std::vector<std::thread> tasks_, beside_;
     Instant next_service_{};
 };
 

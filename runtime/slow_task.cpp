@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/stopwatch.hpp"
+#include "runtime/code_at_work.hpp"
 
 namespace taktwerk::runtime {
 
@@ -68,6 +69,7 @@ bool SlowTask::run_if_released() noexcept {
     context.alarms = alarms_;
     context.first_scan = context_.cycle == 0;
     try {
+        const ProgramCode code{task_.config.program.c_str(), task_.config.name.c_str()};
         task_.function(program_, context);
     } catch (...) {
         threw_ = true;

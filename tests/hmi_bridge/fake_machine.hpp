@@ -57,7 +57,21 @@ public:
         return {"axis x", "following_error", "The axis lags behind", "跟随误差过大", "It is blocked", "Free it", "the axis stops", "reset"};
     }
     [[nodiscard]] Drive drive(std::uint16_t axis) override { return axis < drives.size() ? drives[axis] : Drive{}; }
-    void request_shutdown() override { shutdown_requested = true; }
+    runtime::StopLevels::Ticket request_stop(std::uint16_t axis) override {
+        stops.push_back(axis);
+        return {0, ++levels};
+    }
+    runtime::StopLevels::Ticket release_jog(std::uint16_t axis) override {
+        releases.push_back(axis);
+        return {0, ++levels};
+    }
+    runtime::StopLevels::Ticket request_shutdown() override {
+        shutdown_requested = true;
+        return {0, ++levels};
+    }
+    [[nodiscard]] bool taken(runtime::StopLevels::Ticket) const override { return takes_levels; }
+    [[nodiscard]] std::uint64_t levels_raised() const override { return levels; }
+    [[nodiscard]] std::optional<std::string> stuck() const override { return stuck_words; }
 
     /// Answers the newest command.
     void answer(runtime::Answer verdict, axes::ErrorId error = axes::ErrorId::none, axes::Owner owner = axes::Owner::none,
@@ -73,6 +87,10 @@ public:
     std::size_t inbox_size = 1000;
     bool cycling = true;
     bool shutdown_requested = false;
+    std::vector<std::uint16_t> stops, releases;  ///< levels, by axis
+    std::uint64_t levels = 0;
+    bool takes_levels = true;
+    std::optional<std::string> stuck_words;
 };
 
 }  // namespace taktwerk::hmi::test

@@ -203,9 +203,10 @@ TEST_F(GatewayTest, StopAndResetWithoutANameMeanAll) {
     outcome(request(CommandKind::reset));
     outcome(request(CommandKind::enable, "all"));
 
-    ASSERT_EQ(machine.submitted.size(), 3u);
+    EXPECT_THAT(machine.stops, testing::ElementsAre(0xFFFF));
+    ASSERT_EQ(machine.submitted.size(), 2u);
     for (const auto& command : machine.submitted) EXPECT_EQ(command.axis, 0xFFFF);
-    EXPECT_TRUE(machine.submitted[2].flag);
+    EXPECT_TRUE(machine.submitted[1].flag);
     EXPECT_EQ(outcome(request(CommandKind::enable, "")).answer, Answer::unknown_name) << "power for all must be said";
 }
 
@@ -310,8 +311,9 @@ TEST_F(GatewayTest, WithoutAnAnswerOfTheCycleTheClientIsTold) {
     EXPECT_EQ(reply->error.code, "command.no_answer");
 }
 
-TEST_F(GatewayTest, BeforeTheFirstCycleOnlyShutdownIsTaken) {
+TEST_F(GatewayTest, BeforeTheFirstCycleOnlyStopAndShutdownAreTaken) {
     gateway.observe(false);
+    EXPECT_TRUE(outcome(request(CommandKind::stop)).accepted());
     EXPECT_EQ(outcome(request(CommandKind::home, "x")).answer, Answer::not_possible_now);
     EXPECT_TRUE(outcome(request(CommandKind::shutdown)).accepted());
     EXPECT_TRUE(machine.shutdown_requested);
@@ -333,8 +335,9 @@ TEST_F(GatewayTest, AJogIsPressedAndRenewedByTheSameClient) {
     now += 50ms;
     EXPECT_TRUE(outcome(jog(0, false, client)).accepted());
     now += 50ms;
+    EXPECT_THAT(machine.releases, testing::ElementsAre(0));
     EXPECT_EQ(outcome(jog(20, false, client)).answer, Answer::stale) << "after letting go a renewal moves nothing";
-    EXPECT_EQ(machine.submitted.size(), 3u);
+    EXPECT_EQ(machine.submitted.size(), 2u);
 }
 
 TEST_F(GatewayTest, ARenewalWithoutAPressMovesNothing) {
@@ -377,12 +380,102 @@ TEST_F(GatewayTest, AClientThatClosesWhileJoggingStopsItsAxis) {
 
     gateway.close(client);
 
-    ASSERT_EQ(machine.submitted.size(), 2u);
-    EXPECT_EQ(machine.submitted[1].action, OperatorAction::jog);
-    EXPECT_EQ(machine.submitted[1].value, 0);
-    EXPECT_EQ(machine.submitted[1].axis, 0);
+    EXPECT_THAT(machine.releases, testing::ElementsAre(0));
     gateway.close(client);
-    EXPECT_EQ(machine.submitted.size(), 2u) << "once";
+    EXPECT_EQ(machine.releases.size(), 1u) << "once";
+}
+
+// --- what nothing may hold up ---------------------------------------------------------------------------------------------------------
+
+TEST_F(GatewayTest, NoAgeNoValidityNoQueueAndNoSequenceRefusesAStopOrAShutdown) {
+    for (std::size_t i = 0; i < Gateway::remembered; ++i) gateway.handle(request(CommandKind::acknowledge), now);
+    machine.inbox_size = 0;
+    for (const auto kind : {CommandKind::stop, CommandKind::shutdown}) {
+        auto r = request(kind, kind == CommandKind::stop ? "y" : "");
+        for (const Duration age : {Duration{1500ms}, Duration{-24h}}) {
+            r.age = age;
+            r.valid_for = Duration{};
+            r.sequence = age > Duration{} ? 1 : 0;  // used before, and none at all
+            gateway.handle(r, now);
+            gateway.step(now);
+            const auto reply = gateway.next_reply();
+            ASSERT_TRUE(reply);
+            EXPECT_TRUE(reply->accepted()) << reply->error.text();
+        }
+    }
+    EXPECT_THAT(machine.stops, testing::ElementsAre(1, 1));
+    EXPECT_TRUE(machine.shutdown_requested);
+    EXPECT_EQ(outcome(request(CommandKind::stop, "turet")).answer, Answer::unknown_name);
+}
+
+TEST_F(GatewayTest, AStopIsAnsweredOnceTheCycleHasTakenIt) {
+    machine.takes_levels = false;
+    gateway.handle(request(CommandKind::stop), now);
+    gateway.step(now);
+    EXPECT_FALSE(gateway.next_reply());
+    machine.stuck_words = "task 'main' of program 'cell' does not return";
+    gateway.step(now + Gateway::answer_patience + 1ms);
+    const auto reply = gateway.next_reply();
+    ASSERT_TRUE(reply);
+    EXPECT_EQ(reply->error.code, "command.no_answer");
+    EXPECT_THAT(reply->error.what, HasSubstr("'main'"));
+    machine.takes_levels = true;
+    EXPECT_TRUE(outcome(request(CommandKind::stop)).accepted());
+}
+
+TEST_F(GatewayTest, WhileAClientHoldsAJogNobodyElseMovesOrHomesThatAxis) {
+    outcome(jog(20, true, client));
+    const auto other = gateway.open(Source::socket, "panel B", Rights::commissioning);
+    auto home = request(CommandKind::home, "x");
+    auto move = request(CommandKind::move, "x");
+    auto elsewhere = request(CommandKind::move, "y");
+    for (auto* r : {&home, &move, &elsewhere}) r->client = other;
+    move.value2 = elsewhere.value2 = 140;
+    for (auto* r : {&home, &move}) {
+        const auto refused = outcome(*r);
+        EXPECT_EQ(refused.answer, Answer::no_control);
+        EXPECT_THAT(refused.error.what, HasSubstr("panel A"));
+    }
+    EXPECT_TRUE(outcome(elsewhere).accepted());
+    outcome(jog(0, false, client));
+    move.sequence = ++sequence;
+    EXPECT_TRUE(outcome(move).accepted());
+}
+
+TEST_F(GatewayTest, AJogIsLetGoAlthoughEverythingIsFullAndItsWordsAreOld) {
+    outcome(jog(20, true, client));
+    for (std::size_t i = 0; i < Gateway::remembered; ++i) gateway.handle(request(CommandKind::acknowledge), now);
+    machine.inbox_size = 0;
+    auto r = jog(0, false, client);
+    r.age = 24h;
+    gateway.handle(r, now);
+    EXPECT_THAT(machine.releases, testing::ElementsAre(0));
+}
+
+TEST_F(GatewayTest, ALetGoOfWhoHoldsNothingStopsNobody) {
+    outcome(jog(20, true, client));
+    const auto other = gateway.open(Source::socket, "panel B", Rights::commissioning);
+    EXPECT_TRUE(outcome(jog(0, false, other)).accepted());
+    EXPECT_TRUE(machine.releases.empty());
+}
+
+TEST_F(GatewayTest, ACommandThatHasWaitedHereIsAsOldAsThat) {
+    auto r = request(CommandKind::move, "x");
+    r.value2 = 10;
+    r.arrival.at = now - 20s;
+    EXPECT_EQ(outcome(r).answer, Answer::stale) << "it says not when it was sent";
+    r.sequence = ++sequence;
+    r.arrival.at = now - 300ms;
+    EXPECT_TRUE(outcome(r).accepted());
+    EXPECT_EQ(machine.submitted.back().expires, now + 700ms);
+}
+
+TEST_F(GatewayTest, WhileTheCycleStandsNothingIsTakenThatWouldStartLater) {
+    machine.stuck_words = "task 'main' of program 'cell' does not return";
+    const auto refused = outcome(request(CommandKind::home, "x"));
+    EXPECT_EQ(refused.answer, Answer::not_possible_now);
+    EXPECT_THAT(refused.error.what, HasSubstr("'main'"));
+    EXPECT_TRUE(machine.submitted.empty());
 }
 
 TEST_F(GatewayTest, AnswersToAClosedClientAreDropped) {

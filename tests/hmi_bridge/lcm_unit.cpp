@@ -1,5 +1,7 @@
 // The LCM side: what is published, which commands are taken, what hostile messages do.
 #include <gmock/gmock.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <cstring>
 #include <filesystem>
@@ -406,6 +408,38 @@ TEST_F(LcmTest, AHandlerThatThrowsDoesNotThrowThroughLcm) {
     (*opened)->subscribe("C", [](std::span<const std::byte>) { throw std::runtime_error("no"); });
     (*opened)->publish("C", std::vector<std::byte>(3));
     EXPECT_NO_THROW((*opened)->poll(10));
+}
+
+/// Lowers a limit of this process for its lifetime.
+class Limited {
+public:
+    Limited(__rlimit_resource what, rlim_t to) : what_(what) {
+        ::getrlimit(what_, &before_);
+        rlimit lower = before_;
+        lower.rlim_cur = to;
+        ::setrlimit(what_, &lower);
+    }
+    ~Limited() { ::setrlimit(what_, &before_); }
+    Limited(const Limited&) = delete;
+    Limited& operator=(const Limited&) = delete;
+
+private:
+    __rlimit_resource what_;
+    rlimit before_{};
+};
+
+// The library would end the process.
+TEST(LcmBusOpen, WithoutDescriptorsItIsAnErrorAndNotTheEndOfTheProcess) {
+    const int next = ::dup(STDIN_FILENO);
+    ::close(next);
+    {
+        const Limited few{RLIMIT_NOFILE, static_cast<rlim_t>(next) + 4};
+        const auto refused = LcmBus::open(*parse_lcm_url("memq://"));
+        ASSERT_FALSE(refused);
+        EXPECT_EQ(refused.error().code, "hmi.lcm");
+        EXPECT_THAT(refused.error().remedy, HasSubstr("ulimit -n"));
+    }
+    EXPECT_TRUE(LcmBus::open(*parse_lcm_url("memq://")));
 }
 
 }  // namespace

@@ -315,7 +315,7 @@ TEST(Inbox, TicksFramesAndCommandsAreRecordedInTheOrderInWhichTheCycleTookThem) 
     EXPECT_EQ(order[0], tick_channel);
     EXPECT_EQ(order[1], frame_channel);
     EXPECT_NE(std::find(order.begin(), order.end(), command_channel), order.end());
-    ASSERT_EQ(command.size(), 44u);
+    ASSERT_EQ(command.size(), 52u);
     EXPECT_EQ(static_cast<OperatorAction>(command[0]), OperatorAction::set_mode);
     EXPECT_EQ(static_cast<Mode>(command[2]), Mode::setup);
     EXPECT_EQ(recorder.dropped(), 0u);

@@ -1,0 +1,69 @@
+#include "hmi_bridge/urgent_line.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "hmi_bridge/target_names.hpp"
+
+namespace taktwerk::hmi {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::size_t longest_line = 1024;
+constexpr int deepest_nesting = 4;
+
+/// Cheap: most lines are none of these.
+bool may_be(std::string_view line) {
+    if (line.size() > longest_line) return false;
+    for (const std::string_view word : {"\"stop\"", "\"shutdown\"", "\"jog\""})
+        if (line.find(word) != std::string_view::npos) return true;
+    return false;
+}
+
+std::optional<std::uint16_t> axis_of(const Json& line, const runtime::MachineLayout& layout, bool or_all) {
+    const auto found = line.find("axis");
+    if (found == line.end()) return or_all ? std::optional<std::uint16_t>{all_axes} : std::nullopt;
+    if (!found->is_string()) return std::nullopt;
+    const auto& name = found->get_ref<const std::string&>();
+    if (or_all && (name.empty() || name == "all")) return all_axes;
+    for (std::size_t i = 0; i < layout.axes.size(); ++i)
+        if (layout.axes[i].name == name) return static_cast<std::uint16_t>(i);
+    return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<UrgentLine> urgent_line(std::string_view line, const runtime::MachineLayout& layout) {
+    if (!may_be(line)) return std::nullopt;
+    bool too_deep = false;
+    const auto bounded = [&](int depth, Json::parse_event_t, Json&) {
+        too_deep = too_deep || depth > deepest_nesting;
+        return !too_deep;
+    };
+    const auto json = Json::parse(line, bounded, false);
+    if (too_deep || !json.is_object()) return std::nullopt;
+    const auto cmd = json.find("cmd");
+    if (cmd == json.end() || !cmd->is_string()) return std::nullopt;
+
+    UrgentLine urgent;
+    if (const auto id = json.find("id"); id != json.end() && id->is_number_unsigned() && id->get<std::uint64_t>() > 0)
+        urgent.id = id->dump();
+    if (*cmd == "shutdown") {
+        urgent.kind = UrgentLine::Kind::shutdown;
+        return urgent;
+    }
+    const bool stop = *cmd == "stop";
+    if (!stop && *cmd != "jog") return std::nullopt;
+    const auto axis = axis_of(json, layout, stop);
+    if (!axis) return std::nullopt;
+    urgent.axis = *axis;
+    if (stop) return urgent;
+    const auto velocity = json.find("velocity");
+    if (velocity == json.end() || !velocity->is_number()) return std::nullopt;
+    urgent.kind = velocity->get<double>() == 0 ? UrgentLine::Kind::jog_release : UrgentLine::Kind::jog_hold;
+    const auto press = json.find("press");
+    urgent.press = press != json.end() && press->is_boolean() && press->get<bool>();
+    return urgent;
+}
+
+}  // namespace taktwerk::hmi

@@ -1,0 +1,27 @@
+#pragma once
+// Lines of the socket that must act before anything else is looked at: a stop, the end of the run, a jog that is let go. Also the press
+// of a jog, for who presses will have to let go. Any bytes may come in. Not real-time.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "runtime/snapshot.hpp"
+
+namespace taktwerk::hmi {
+
+struct UrgentLine {
+    enum class Kind : std::uint8_t { stop, shutdown, jog_release, jog_hold };  ///< jog_hold: a press or a renewal
+    Kind kind = Kind::stop;
+    std::uint16_t axis = 0xFFFF;  ///< 0xFFFF: all
+    bool press = false;
+    std::string id = "null";  ///< as the answer repeats it
+};
+
+/// A stop whose target is clear is a stop, however odd the rest of its line: no age, no missing id, no unknown key holds it up. nullopt:
+/// none of these, or one that is written so that only the full reader understands it (longer than 1 KiB, escaped words); it then goes
+/// the ordinary way, which ends in the same level.
+[[nodiscard]] std::optional<UrgentLine> urgent_line(std::string_view line, const runtime::MachineLayout& layout);
+
+}  // namespace taktwerk::hmi

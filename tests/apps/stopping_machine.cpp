@@ -1,0 +1,280 @@
+// The built command on its own threads, and everything around it that may stand in the way of its end: a terminal or a pipe that takes
+// nothing, a disk that is full or hangs, signals, programs that never return or crash (docs/stopping.md). All waits are bounded, and
+// wide: that an end comes at all is what counts here; the cycles are counted in tests/hmi_bridge/stopping_machine.cpp.
+
+#include <sys/stat.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "apps/exit_code.hpp"
+#include "apps/line_writer.hpp"
+#include "hmi_bridge/client.hpp"
+#include "tests/apps/child.hpp"
+
+namespace taktwerk::apps {
+namespace {
+
+using namespace std::chrono_literals;
+using ::testing::AnyOf;
+using ::testing::HasSubstr;
+
+const std::string taktwerk = std::string(TAKTWERK_BINARY_DIR) + "/taktwerk";
+const std::filesystem::path source = TAKTWERK_SOURCE_DIR;
+
+/// A named pipe that is full and stays so: whoever writes to it waits.
+class FullPipe {
+public:
+    explicit FullPipe(std::string path) : path_(std::move(path)) {
+        EXPECT_EQ(::mkfifo(path_.c_str(), 0600), 0);
+        end_ = ::open(path_.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+        const std::string filler(4096, '.');
+        while (::write(end_, filler.data(), filler.size()) > 0) {}
+        while (::write(end_, filler.data(), 1) > 0) {}
+    }
+    ~FullPipe() { ::close(end_); }
+    FullPipe(const FullPipe&) = delete;
+    FullPipe& operator=(const FullPipe&) = delete;
+    /// From now on there is room; what has come.
+    std::string drain(std::chrono::milliseconds patience) const {
+        std::string all;
+        const auto until = std::chrono::steady_clock::now() + patience;
+        while (std::chrono::steady_clock::now() < until) {
+            char part[4096];
+            const auto got = ::read(end_, part, sizeof part);
+            if (got > 0) all.append(part, static_cast<std::size_t>(got));
+            else ::poll(nullptr, 0, 10);
+        }
+        return all;
+    }
+    [[nodiscard]] const std::string& path() const { return path_; }
+
+private:
+    std::string path_;
+    int end_ = -1;
+};
+
+class Stopping : public ::testing::Test {
+protected:
+    Stopping() {
+        std::filesystem::create_directories(folder / "machines");
+        std::filesystem::create_directory_symlink(source / "config/drives", folder / "drives");
+    }
+    ~Stopping() override {
+        std::error_code ignored;
+        std::filesystem::remove_all(folder, ignored);
+    }
+    static std::string new_folder() {
+        auto pattern = (std::filesystem::temp_directory_path() / "taktwerk-stopping-XXXXXX").string();
+        return ::mkdtemp(pattern.data());
+    }
+    /// minimal.yaml with a socket of its own and `more`.
+    std::string machine(const std::string& more = "") {
+        std::ostringstream text;
+        text << std::ifstream(source / "config/machines/minimal.yaml").rdbuf();
+        const auto file = (folder / "machines/stopping.yaml").string();
+        std::ofstream(file) << text.str() << "hmi: { socket: '" << socket << "', lcm: { enabled: false } }\nsimulation: { supervision: relaxed }\n"
+                            << more;
+        return file;
+    }
+    /// With the program that dies.
+    std::string dying(int how, int every = 1) {
+        return machine("start_mode: automatic\nprograms:\n  dying:\n    library: " + std::string(TAKTWERK_BINARY_DIR) +
+                       "/tests/dying_program.so\n    autostart: true\n    parameters: { how: " + std::to_string(how) +
+                       " }\n    tasks:\n      main: { every: " + std::to_string(every) + " cycles }\n");
+    }
+    std::optional<nlohmann::ordered_json> ask(nlohmann::json request) {
+        auto client = hmi::Client::connect(socket);
+        if (!client) return std::nullopt;
+        auto answer = client->request(std::move(request), 5s);
+        if (!answer) {
+            refused = answer.error();
+            return std::nullopt;
+        }
+        return *answer;
+    }
+    bool until(const std::function<bool()>& condition, std::chrono::milliseconds patience = 30s) {
+        const auto end = std::chrono::steady_clock::now() + patience;
+        while (!condition()) {
+            if (std::chrono::steady_clock::now() > end) return false;
+            ::poll(nullptr, 0, 20);
+        }
+        return true;
+    }
+    bool runs() {
+        return until([&] {
+            const auto state = ask({{"cmd", "state"}});
+            return state && (*state)["state"]["phase"] == "running";
+        });
+    }
+    /// x moves; false: it never did. A homed axis in manual mode.
+    bool moves() {
+        const auto powered = [&] {
+            const auto state = ask({{"cmd", "state"}});
+            return state && (*state)["state"]["axes"][0]["powered"] == true;
+        };
+        if (!ask({{"cmd", "enable"}, {"axis", "x"}}) || !until(powered)) return false;
+        if (!ask({{"cmd", "home"}, {"axis", "x"}})) return false;
+        return until([&] { return ask({{"cmd", "move"}, {"axis", "x"}, {"position", 100000}, {"velocity", 20}}).has_value(); }) &&
+               until([&] { return velocity() > 19; });
+    }
+    double velocity() {
+        const auto state = ask({{"cmd", "state"}});
+        return state ? (*state)["state"]["axes"][0]["set_velocity"].get<double>() : -1;
+    }
+
+    std::filesystem::path folder = new_folder();
+    std::string socket = (folder / "socket").string();
+    Error refused;
+};
+
+// --- where lines and files go ------------------------------------------------------------------------------------------------------------
+
+TEST_F(Stopping, APipeThatTakesNothingHoldsUpNeitherAStopNorTheEnd) {
+    const FullPipe pipe{(folder / "out").string()};
+    Child run({"sh", "-c", "exec " + taktwerk + " run " + machine() + " >" + pipe.path()});
+    ASSERT_TRUE(runs()) << run.text();
+    ASSERT_TRUE(moves()) << refused.text();
+    EXPECT_TRUE(ask({{"cmd", "stop"}})) << refused.text();
+    EXPECT_TRUE(until([&] { return velocity() == 0; }));
+    run.signal(SIGTERM);
+    EXPECT_EQ(run.wait(20s), exit_ok) << run.text();
+}
+
+TEST_F(Stopping, StandardOutputThatIsClosedEndsNothing) {
+    Child run({"sh", "-c", "exec " + taktwerk + " run " + machine() + " >&-"});
+    ASSERT_TRUE(runs()) << run.text();
+    ASSERT_TRUE(moves()) << refused.text();
+    run.signal(SIGTERM);
+    EXPECT_EQ(run.wait(20s), exit_ok) << run.text();
+}
+
+TEST_F(Stopping, ATraceOnAFullDiskIsSaidAtOnceAndTheMachineRunsOn) {
+    Child run({taktwerk, "run", machine(), "--trace", "/dev/full"});
+    ASSERT_TRUE(runs()) << run.text();
+    EXPECT_TRUE(run.says("trace.write", 60s)) << run.text();
+    EXPECT_TRUE(runs());
+    run.signal(SIGTERM);
+    EXPECT_EQ(run.wait(20s), exit_bad_file) << run.text();
+}
+
+TEST_F(Stopping, ATraceOnADiskThatHangsDoesNotHoldUpTheEnd) {
+    const FullPipe disk{(folder / "trace").string()};
+    Child run({taktwerk, "run", machine(), "--trace", disk.path()});
+    ASSERT_TRUE(runs()) << run.text();
+    ASSERT_TRUE(moves()) << refused.text();
+    run.signal(SIGTERM);
+    EXPECT_EQ(run.wait(30s), exit_bad_file) << run.text();
+    EXPECT_THAT(run.text(), HasSubstr("run.disk_hangs"));
+}
+
+TEST(LineWriter, WhatDoesNotFitIsDroppedCountedAndSaid) {
+    const std::filesystem::path folder = std::filesystem::temp_directory_path() / ("taktwerk-lines-" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder);
+    {
+        const FullPipe pipe{(folder / "out").string()};
+        const int end = ::open(pipe.path().c_str(), O_WRONLY | O_CLOEXEC);
+        LineWriter writer{end, [](std::uint64_t count) { return std::to_string(count) + " lines are missing\n"; }};
+        const std::string line(1023, 'x');
+        for (int i = 0; i < 2000; ++i) writer.put(line + "\n");  // twice what may wait
+        EXPECT_GE(writer.dropped(), 900u);
+        const auto dropped = writer.dropped();
+        const auto heard = pipe.drain(3s);
+        EXPECT_THAT(heard, HasSubstr("\n" + std::to_string(dropped) + " lines are missing\n"));
+        writer.put("the last one\n");
+        writer.finish(5s);
+        EXPECT_THAT(pipe.drain(200ms), HasSubstr("the last one\n"));
+        ::close(end);
+    }
+    std::filesystem::remove_all(folder);
+}
+
+// --- signals -----------------------------------------------------------------------------------------------------------------------------
+
+class StoppingBySignal : public Stopping, public ::testing::WithParamInterface<int> {};
+
+TEST_P(StoppingBySignal, EndsWithARampHoweverOftenItComes) {
+    Child run({taktwerk, "run", machine()});
+    ASSERT_TRUE(runs()) << run.text();
+    ASSERT_TRUE(moves()) << refused.text();
+    run.signal(GetParam());
+    EXPECT_TRUE(run.says("axes stop along their ramps", 20s)) << run.text();
+    run.signal(GetParam());
+    EXPECT_EQ(run.wait(20s), exit_ok) << run.text();
+    EXPECT_THAT(run.text(), HasSubstr("-> Disabled")) << "it ramped down and lost its power in order";
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, StoppingBySignal, ::testing::Values(SIGINT, SIGTERM, SIGHUP, SIGQUIT),
+                         [](const auto& signal) { return "signal_" + std::to_string(signal.param); });
+
+TEST_F(Stopping, SignalsThatMeanNothingToAMachineChangeNothing) {
+    Child run({taktwerk, "run", machine()});
+    ASSERT_TRUE(runs()) << run.text();
+    for (const int signal : {SIGUSR1, SIGUSR2, SIGALRM, SIGTSTP, SIGTTIN, SIGTTOU, SIGPIPE, SIGXFSZ}) run.signal(signal);
+    EXPECT_TRUE(moves()) << refused.text();
+    run.signal(SIGTERM);
+    EXPECT_EQ(run.wait(20s), exit_ok) << run.text();
+}
+
+// --- what never returns, and what crashes ------------------------------------------------------------------------------------------------
+
+TEST_F(Stopping, AnEndlessLoopInABaseTaskIsNamedToEveryClientAndEndsInThePromisedTime) {
+    Child run({taktwerk, "run", dying(2)});
+    EXPECT_TRUE(run.says("task 'main' of program 'dying' does not return", 60s)) << run.text();
+    const auto hello = ask({{"cmd", "hello"}});
+    ASSERT_TRUE(hello) << refused.text();
+    EXPECT_EQ((*hello)["hello"]["cycling"], false);
+    EXPECT_FALSE(ask({{"cmd", "state"}})) << "frozen values are not shown as if they lived";
+    EXPECT_EQ(refused.code, "state.stuck");
+    EXPECT_THAT(refused.what, HasSubstr("'dying'"));
+    EXPECT_FALSE(ask({{"cmd", "stop"}})) << "nobody may believe that it stops";
+    EXPECT_EQ(refused.code, "command.no_answer");
+    EXPECT_FALSE(ask({{"cmd", "shutdown"}}));
+    EXPECT_EQ(refused.code, "command.no_answer");
+    EXPECT_EQ(run.wait(30s), exit_hung) << run.text();
+    EXPECT_THAT(run.text(), HasSubstr("run.ended_hard"));
+}
+
+TEST_F(Stopping, AnEndlessSlowerTaskDoesNotOutliveTheEnd) {
+    Child run({taktwerk, "run", dying(2, 4)});
+    ASSERT_TRUE(run.says("not finished at its next release", 60s)) << run.text();
+    run.signal(SIGTERM);
+    EXPECT_EQ(run.wait(40s), exit_hung) << run.text();
+    EXPECT_THAT(run.text(), HasSubstr("task 'main' of program 'dying' does not return"));
+}
+
+struct Crash {
+    const char* name;
+    int how, signal;
+};
+class StoppingByCrash : public Stopping, public ::testing::WithParamInterface<Crash> {};
+
+TEST_P(StoppingByCrash, LeavesALineThatNamesProgramTaskAndSignal) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "the sanitizer speaks instead";
+#endif
+    Child run({taktwerk, "run", dying(GetParam().how)});
+    EXPECT_EQ(run.wait(60s), 128 + GetParam().signal) << run.text();
+    EXPECT_THAT(run.text(), HasSubstr("taktwerk crashed in 'main' of program 'dying': " + std::string(GetParam().name)));
+}
+
+INSTANTIATE_TEST_SUITE_P(By, StoppingByCrash,
+                         ::testing::Values(Crash{"SIGSEGV", 1, SIGSEGV}, Crash{"SIGFPE", 3, SIGFPE}, Crash{"SIGABRT", 5, SIGABRT}),
+                         [](const auto& crash) { return crash.param.name; });
+
+TEST_F(Stopping, ARecursionWithoutEndLeavesItsLineAlthoughTheStackIsUsedUp) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "the sanitizer speaks instead";
+#endif
+    Child run({taktwerk, "run", dying(4)});
+    EXPECT_EQ(run.wait(60s), 128 + SIGSEGV) << run.text();
+    EXPECT_THAT(run.text(), HasSubstr("taktwerk crashed in 'main' of program 'dying': SIGSEGV"));
+}
+
+}  // namespace
+}  // namespace taktwerk::apps

@@ -1,0 +1,329 @@
+// The door by itself: the service side behind it stands still (nobody calls pass_on() unless a test says so), and a stop, the end of the
+// run, a jog let go and a lost client get through all the same. Real sockets, no threads, and time is what the test says.
+
+#include "hmi_bridge/door.hpp"
+
+#include <gmock/gmock.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <functional>
+
+#include "tests/hmi_bridge/fake_machine.hpp"
+
+namespace taktwerk::hmi {
+namespace {
+
+using namespace std::chrono_literals;
+using test::FakeMachine;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+/// One end of a connection, which never waits.
+class Caller {
+public:
+    explicit Caller(const std::string& path) : socket_(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)) {
+        sockaddr_un address{};
+        address.sun_family = AF_UNIX;
+        path.copy(address.sun_path, sizeof address.sun_path - 1);
+        EXPECT_EQ(::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+    }
+    ~Caller() { hang_up(); }
+    Caller(Caller&& other) noexcept : socket_(std::exchange(other.socket_, -1)) {}
+    Caller(const Caller&) = delete;
+    Caller& operator=(const Caller&) = delete;
+    Caller& operator=(Caller&&) = delete;
+
+    void hang_up() {
+        if (socket_ >= 0) ::close(socket_);
+        socket_ = -1;
+    }
+    /// As much as the kernel takes; how much that was.
+    std::size_t say(std::string_view text) const {
+        const auto sent = ::send(socket_, text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+        return sent > 0 ? static_cast<std::size_t>(sent) : 0;
+    }
+    [[nodiscard]] std::string hear() const {
+        std::string all(1 << 20, '\0');
+        const auto got = ::recv(socket_, all.data(), all.size(), MSG_DONTWAIT);
+        all.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
+        return all;
+    }
+    [[nodiscard]] bool cut_off() const {
+        char byte = 0;
+        return ::recv(socket_, &byte, 1, MSG_DONTWAIT | MSG_PEEK) == 0;
+    }
+
+private:
+    int socket_;
+};
+
+/// The service side: what was handed to it.
+class Desk final : public RequestHandler {
+public:
+    void on_open(ConnectionId, const Peer&) override { ++opened; }
+    void on_line(ConnectionId, std::string_view, Instant) override {}
+    void on_request(ConnectionId connection, std::string_view line, Instant, const Arrival& arrival) override {
+        lines.emplace_back(line);
+        arrivals.push_back(arrival);
+        newest = connection;
+    }
+    void on_close(ConnectionId) override { ++closed; }
+    std::vector<std::string> lines;
+    std::vector<Arrival> arrivals;
+    ConnectionId newest = 0;
+    int opened = 0, closed = 0;
+};
+
+class DoorTest : public testing::Test {
+protected:
+    DoorTest() {
+        auto server = SocketServer::open(path, [this](std::string_view line) { log.emplace_back(line); });
+        EXPECT_TRUE(server) << server.error().text();
+        door = std::make_unique<Door>(machine, std::move(server).value(), [this](std::string_view line) { log.emplace_back(line); });
+    }
+    ~DoorTest() override {
+        door.reset();
+        std::error_code ignored;
+        std::filesystem::remove_all(folder, ignored);
+    }
+    static std::string new_folder() {
+        std::string pattern = (std::filesystem::temp_directory_path() / "taktwerk-door-XXXXXX").string();
+        return ::mkdtemp(pattern.data());
+    }
+    Caller call() {
+        Caller caller{path};
+        step();
+        return caller;
+    }
+    void step(Duration by = 1ms) { door->step(now += by); }
+
+    std::string folder = new_folder(), path = folder + "/demo.sock";
+    FakeMachine machine;
+    std::vector<std::string> log;
+    std::unique_ptr<Door> door;
+    Desk desk;
+    Instant now{1s};
+};
+
+constexpr std::string_view press = R"({"id":1,"cmd":"jog","axis":"x","velocity":20,"press":true})"
+                                   "\n";
+constexpr std::string_view release = R"({"id":9,"cmd":"jog","axis":"x","velocity":0})"
+                                     "\n";
+
+TEST_F(DoorTest, AStopIsRaisedAndAnsweredAlthoughNobodyServesBehindTheDoor) {
+    const auto caller = call();
+    caller.say("{\"id\":3,\"cmd\":\"stop\",\"axis\":\"y\"}\n{\"id\":4,\"cmd\":\"stop\"}\n{\"id\":5,\"cmd\":\"shutdown\"}\n");
+    step();
+    EXPECT_THAT(machine.stops, ElementsAre(1, 0xFFFF));
+    EXPECT_TRUE(machine.shutdown_requested);
+    EXPECT_EQ(caller.hear(), "{\"id\":3,\"ok\":true}\n{\"id\":4,\"ok\":true}\n{\"id\":5,\"ok\":true}\n");
+}
+
+TEST_F(DoorTest, NoAgeNoMissingIdAndNoStrangeKeyHoldsUpAStop) {
+    const auto caller = call();
+    for (const char* line : {R"({"id":1,"cmd":"stop","utime":1})", R"({"id":1,"cmd":"stop","valid_ms":-1})", R"({"cmd":"stop"})",
+                             R"({"id":1,"cmd":"stop","axis":"all","who":"me"})", R"({"id":"x","cmd":"stop","axis":""})"})
+        caller.say(std::string(line) + "\n");
+    step();
+    EXPECT_THAT(machine.stops, SizeIs(5));
+    caller.say(R"({"id":7,"cmd":"stop","axis":"turet"})"
+               "\n");
+    step();
+    EXPECT_THAT(machine.stops, SizeIs(5)) << "whom it means is not clear: the service side says so";
+    door->pass_on(desk, now);
+    EXPECT_THAT(desk.lines, SizeIs(1));
+}
+
+TEST_F(DoorTest, AStopBehindItsClientsOwnFloodActsInTheStepThatReadsIt) {
+    const auto caller = call();
+    std::string flood;
+    for (int i = 1; i <= 3000; ++i) flood += "{\"id\":" + std::to_string(i) + ",\"cmd\":\"acknowledge\"}\n";
+    flood += "{\"id\":3001,\"cmd\":\"stop\"}\n";
+    ASSERT_EQ(caller.say(flood), flood.size()) << "all of it is in the kernel";
+    step();
+    EXPECT_THAT(machine.stops, SizeIs(1));
+    EXPECT_THAT(caller.hear(), HasSubstr("command.queue_full")) << "what did not fit was refused to who sent it";
+}
+
+TEST_F(DoorTest, EightClientsThatFloodInEveryWayDoNotHoldUpAStopOfTheNinth) {
+    std::vector<Caller> rude;
+    const std::string long_line = std::string(SocketServer::max_line - 10, 'x') + "\n";
+    const std::string jogs = R"({"id":1,"cmd":"jog","axis":"x","velocity":20})"
+                             "\n";
+    const std::string words = R"({"id":1,"cmd":"acknowledge"})"
+                              "\n",
+                      half = R"({"id":1,"cmd":"st)", stops = "{\"stop\"\n";
+    const std::vector<std::function<void(const Caller&)>> ways{
+        [&](const Caller& c) {
+            while (c.say(words) > 0) {}
+        },
+        [&](const Caller& c) {
+            while (c.say(jogs) > 0) {}
+        },
+        [&](const Caller& c) {
+            while (c.say(long_line) > 0) {}
+        },
+        [&](const Caller& c) { c.say(half); },
+        [&](const Caller& c) {
+            while (c.say("\x01\xFF\n") > 0) {}
+        },
+        [&](const Caller& c) {
+            while (c.say(stops) > 0) {}
+        },
+        [&](const Caller& c) {
+            while (c.say("{\"cmd\":\"state\"}\n") > 0) {}
+        },
+        [](const Caller&) {},
+    };
+    ASSERT_EQ(ways.size(), SocketServer::max_connections);
+    for (std::size_t i = 0; i < ways.size(); ++i) rude.push_back(call());
+    for (int round = 0; round < 5; ++round) {
+        for (std::size_t i = 0; i < ways.size(); ++i) ways[i](rude[i]);
+        step();
+    }
+    for (std::size_t i = 0; i < ways.size(); ++i) ways[i](rude[i]);
+    const Caller ninth{path};
+    ninth.say("{\"id\":1,\"cmd\":\"stop\"}\n");
+    step();
+    EXPECT_THAT(machine.stops, SizeIs(1)) << "in the very step in which it connects";
+    EXPECT_THAT(ninth.hear(), HasSubstr("{\"id\":1,\"ok\":true}"));
+}
+
+TEST_F(DoorTest, ClientsThatNeverReadHoldUpNobody) {
+    const auto deaf = call();
+    for (int i = 0; i < 2000; ++i) {
+        deaf.say("{\"id\":1,\"cmd\":\"stop\"}\n");
+        step();
+    }
+    const auto before = machine.stops.size();
+    const auto good = call();
+    good.say("{\"id\":1,\"cmd\":\"stop\"}\n");
+    step();
+    EXPECT_EQ(machine.stops.size(), before + 1);
+    EXPECT_THAT(good.hear(), HasSubstr("\"ok\":true"));
+}
+
+TEST_F(DoorTest, AnIdleClientGivesItsPlaceAndBusyOnesLeaveAReserve) {
+    std::vector<Caller> idle;
+    for (std::size_t i = 0; i < SocketServer::max_connections; ++i) idle.push_back(call());
+    // All have spoken just now: the next one may stop and shut down, and of those in reserve the oldest goes first.
+    std::vector<Caller> more;
+    for (std::size_t i = 0; i < SocketServer::reserve + 2; ++i) {
+        more.push_back(call());
+        more.back().say("{\"cmd\":\"hello\"}\n");
+        step();
+        EXPECT_THAT(more.back().hear(), HasSubstr("socket.too_many_clients"));
+    }
+    EXPECT_THAT(more[0].hear(), HasSubstr("went to another"));
+    EXPECT_TRUE(more[0].cut_off());
+    EXPECT_FALSE(more.back().cut_off());
+    more.back().say("{\"id\":1,\"cmd\":\"stop\"}\n");
+    step();
+    EXPECT_THAT(machine.stops, SizeIs(1));
+
+    // Later: seven go on talking, one does not; its place goes to a full client.
+    step(SocketServer::idle);
+    for (std::size_t i = 1; i < idle.size(); ++i) idle[i].say("{\"cmd\":\"hello\"}\n");
+    step();
+    const auto late = call();
+    EXPECT_THAT(idle[0].hear(), HasSubstr("socket.idle"));
+    EXPECT_TRUE(idle[0].cut_off());
+    late.say("{\"id\":1,\"cmd\":\"acknowledge\"}\n");
+    step();
+    door->pass_on(desk, now);
+    EXPECT_THAT(desk.lines, testing::Contains(HasSubstr("acknowledge")));
+}
+
+TEST_F(DoorTest, WhoHoldsAJogIsNotSentAwayForAnother) {
+    auto holder = call();
+    holder.say(press);
+    step();
+    std::vector<Caller> idle;
+    for (std::size_t i = 1; i < SocketServer::max_connections; ++i) idle.push_back(call());
+    step(SocketServer::idle);
+    const auto next = call();
+    EXPECT_FALSE(holder.cut_off());
+    EXPECT_THAT(idle[0].hear(), HasSubstr("socket.idle"));
+    EXPECT_TRUE(idle[0].cut_off());
+}
+
+TEST_F(DoorTest, AJogLetGoAndALostHolderAreLevelsAlthoughNobodyServes) {
+    auto caller = call();
+    caller.say(press);
+    step();
+    caller.say(release);
+    step();
+    EXPECT_THAT(machine.releases, ElementsAre(0));
+    caller.say(press);
+    step();
+    caller.hang_up();
+    step();
+    EXPECT_THAT(machine.releases, ElementsAre(0, 0));
+}
+
+TEST_F(DoorTest, WhoHoldsNothingReleasesNothing) {
+    auto caller = call();
+    caller.say(release);
+    step();
+    caller.say(press);
+    step();
+    door->pass_on(desk, now);
+    door->answer(desk.newest, R"({"id":1,"ok":false})", "1");  // somebody else jogs it
+    step();
+    caller.say(release);
+    step();
+    caller.hang_up();
+    step();
+    EXPECT_THAT(machine.releases, IsEmpty());
+}
+
+TEST_F(DoorTest, ALineKnowsWhichStopsCameBeforeItAndHowLongItMayHaveWaited) {
+    const auto caller = call();
+    caller.say("{\"id\":1,\"cmd\":\"home\",\"axis\":\"x\"}\n{\"id\":2,\"cmd\":\"stop\"}\n{\"id\":3,\"cmd\":\"home\",\"axis\":\"x\"}\n");
+    step();
+    const auto looked = now;
+    caller.say("{\"id\":4,\"cmd\":\"home\",\"axis\":\"x\"}\n");
+    step(20s);  // the whole process was held
+    door->pass_on(desk, now);
+    ASSERT_THAT(desk.arrivals, SizeIs(3));
+    EXPECT_EQ(desk.arrivals[0].after, 0u);
+    EXPECT_EQ(desk.arrivals[1].after, 1u);
+    EXPECT_EQ(desk.arrivals[0].at, looked);
+    EXPECT_EQ(desk.arrivals[2].at, looked) << "as old as the last look, for all anybody knows";
+}
+
+TEST_F(DoorTest, ALineOfAClosedClientIsCarriedOutAtOnceOrNotAtAll) {
+    for (const auto& [waits, carried_out] : {std::pair{Duration{10ms}, 1u}, {Duration{20s}, 0u}}) {
+        desk = {};
+        auto caller = call();
+        caller.say("{\"id\":1,\"cmd\":\"move\",\"axis\":\"x\",\"position\":1,\"velocity\":1}\n");
+        step();
+        caller.hang_up();
+        step();
+        door->pass_on(desk, now += waits);
+        EXPECT_THAT(desk.lines, SizeIs(carried_out));
+        EXPECT_EQ(desk.closed, 1);
+    }
+}
+
+TEST_F(DoorTest, WhenTheCycleStandsAStopAndAShutdownSaySo) {
+    const auto caller = call();
+    machine.takes_levels = false;
+    machine.stuck_words = "task 'main' of program 'cell' does not return";
+    caller.say("{\"id\":1,\"cmd\":\"stop\"}\n{\"id\":2,\"cmd\":\"shutdown\"}\n");
+    step();
+    EXPECT_EQ(caller.hear(), "");
+    step(Door::patience);
+    const auto heard = caller.hear();
+    EXPECT_THAT(heard, HasSubstr(R"({"id":1,"ok":false,"error":{"code":"command.no_answer")"));
+    EXPECT_THAT(heard, HasSubstr(R"({"id":2,"ok":false)"));
+    EXPECT_THAT(heard, HasSubstr("'main' of program 'cell'"));
+}
+
+}  // namespace
+}  // namespace taktwerk::hmi
