@@ -19,6 +19,8 @@ public:
     [[nodiscard]] bool positive_limit() const noexcept { return position_ >= config_.positive_limit; }
     [[nodiscard]] bool home_switch() const noexcept { return position_ >= config_.home_from && position_ <= config_.home_to; }
     [[nodiscard]] const PlantConfig& config() const noexcept { return config_; }
+    /// The drive counts `factor` times as many counts for the same way: the mechanics stay where they are.
+    void rescale(double factor) noexcept;
     /// A jammed mechanism does not move whatever the torque.
     void jam(bool jammed) noexcept { jammed_ = jammed; }
     /// A holding brake: an axis at rest stays there whatever the torque, a turning one is slowed by `brake_friction`. Called each step; apart
