@@ -12,6 +12,8 @@
 #include "apps/load.hpp"
 #include "apps/master_gone.hpp"
 #include "apps/taktwerk.hpp"
+#include "axes/port/drive_scale.hpp"
+#include "axes/port/parameter_text.hpp"
 #include "runtime/borrowed_rights.hpp"
 #include "runtime/drive_hazards.hpp"
 #include "runtime/machine.hpp"
@@ -85,6 +87,24 @@ void print_clocks(const MachineConfig& config) {
         late > left ? " A cycle may be too late for SYNC0 before that warning: shift SYNC0 or lower the limit." : "");
 }
 
+/// What a turn of the motor must be for the drive, what else it must have stored, and what nobody can compare: said here, once.
+std::vector<std::string> scale_sentences(const runtime::AxisBinding& binding) {
+    std::vector<std::string> out;
+    if (!binding.profile || binding.axis.disabled) return out;
+    const auto& profile = *binding.profile;
+    if (const auto words = axes::scale_words(profile); !words.empty())
+        out.push_back(fmt::format("a turn of the motor must be {} counts for the drive: {}, compared before it is enabled",
+                                  binding.axis.gearing.counts_per_revolution, words));
+    if (!profile.scale.doubt.empty())
+        out.push_back(fmt::format("scale: {} [{} {}]", profile.scale.doubt, profile.name, profile.scale.section));
+    for (const auto& stored : binding.stored)
+        for (const auto& row : profile.parameters)
+            if (row.address == stored.object)
+                out.push_back(fmt::format("stored in the drive: {} ({}) = {}, compared before it is enabled", axes::name_of(row), row.name,
+                                          axes::value_text(row, stored.value)));
+    return out;
+}
+
 void print_axis(const MachineConfig& config, const runtime::AxisBinding& binding) {
     const auto& axis = binding.axis;
     const auto& u = axis.unit;
@@ -98,6 +118,7 @@ void print_axis(const MachineConfig& config, const runtime::AxisBinding& binding
     fmt::print("           range {}, homing: {}, jogging {:g} and {:g} {}/s, one {} = {:g} counts\n", range_text(axis.limits, u),
                homing_text(axis.homing), axis.manual.slow > 0 ? axis.manual.slow : axis.limits.velocity * 0.05,
                axis.manual.fast > 0 ? axis.manual.fast : axis.limits.velocity * 0.25, u, u, axis.gearing.counts_per_unit());
+    for (const auto& sentence : scale_sentences(binding)) fmt::print("           {}\n", sentence);
     fmt::print("           if the master is gone:\n");
     for (const auto& sentence : master_gone(config, binding)) fmt::print("             {}\n", sentence);
 }
@@ -183,6 +204,7 @@ Json summary_json(const MachineConfig& config, const runtime::MachineLayout& lay
                             {"velocity", axis.limits.velocity},
                             {"acceleration", axis.limits.acceleration},
                             {"homing", homing_text(axis.homing)},
+                            {"scale", scale_sentences(binding)},
                             {"master_gone", master_gone(config, binding)},
                             {"assumed", binding.profile ? binding.profile->assumed : std::vector<std::string>{}}});
     }

@@ -20,7 +20,8 @@ void add_drive_turns(CLI::App& drive, Action& action);   ///< clear-turns
 
 struct Change {
     const axes::DriveParameter* parameter = nullptr;
-    std::int64_t from = 0, to = 0;
+    std::optional<std::int64_t> from;  ///< nothing: the drive does not say what it was
+    std::int64_t to = 0;
 };
 
 struct Written {

@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "apps/drive_pages.hpp"
+#include "axes/port/drive_scale.hpp"
 #include "axes/port/quirk_table.hpp"
 
 namespace taktwerk::apps {
@@ -164,12 +165,20 @@ void motion_rows(Features& out, const DriveProfile& profile, const DeviceDescrip
         out.row("Axes",
                 fmt::format("{}; objects {:04X}h apart, PDOs {:02X}h apart", profile.axes, profile.object_offset, profile.pdo_offset));
     out.row("Actual position", profile.motor_has_encoder ? "measured" : "the commanded one, unless the motor has an encoder");
+    if (const auto words = axes::scale_words(profile); !words.empty())
+        out.row("Counts of a motor turn", fmt::format("{}: compared with `gearing` before the axis is enabled{}{}", words,
+                                                      profile.scale.doubt.empty() ? "" : "; ", profile.scale.doubt));
+    else if (!profile.scale.doubt.empty()) out.row("Counts of a motor turn", profile.scale.doubt);
     out.row("Width of a position", fmt::format("{} bits, unwrapped to 64", profile.position_bits));
     out.row("Unit of velocity", profile.velocity_counts_per_unit == 1.0
                                     ? "counts/s"
                                     : fmt::format("1 raw = {:g} counts/s", 1.0 / profile.velocity_counts_per_unit));
     out.row("Unit of torque", fmt::format("{:g} = rated torque", profile.torque_rated_raw));
-    if (on_bus)
+    // A drive without 60FDh has no switches that the bus could see (TSVM-D6).
+    const bool shows_inputs =
+        on_bus && std::any_of(on_bus->objects.begin(), on_bus->objects.end(), [](const auto& o) { return o.index == 0x60FD; });
+    if (on_bus && !shows_inputs) out.row("Limit and home switches", "none on the bus");
+    if (shows_inputs)
         out.row("Limit and home switches",
                 fmt::format("60FDh bits {} (negative), {} (positive), {} (home)", profile.input_bit_negative_limit,
                             profile.input_bit_positive_limit, profile.input_bit_home));

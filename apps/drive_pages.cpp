@@ -49,12 +49,24 @@ std::string unit_of(const DriveParameter& parameter) {
     return parameter.scale == 1 ? parameter.unit : fmt::format("{:g} {}", parameter.scale, parameter.unit);
 }
 
+/// Only the manual's own value stands alone.
+std::string factory_of(const DriveParameter& parameter) {
+    if (parameter.bits == 0) return "";
+    switch (parameter.factory) {
+        case axes::FactoryValue::stated: return std::to_string(parameter.value);
+        case axes::FactoryValue::assumed: return fmt::format("{} (assumed)", parameter.value);
+        case axes::FactoryValue::unknown: break;
+    }
+    return parameter.change == axes::ParameterChange::never ? "" : "not stated";
+}
+
 std::string_view words(axes::ParameterEffect effect) {
     switch (effect) {
         case axes::ParameterEffect::at_once: return "at once";
         case axes::ParameterEffect::at_standstill: return "at standstill";
         case axes::ParameterEffect::when_enabled: return "at the next enabling";
         case axes::ParameterEffect::after_restart: return "after a restart";
+        case axes::ParameterEffect::after_saving: return "after saving and a restart";
     }
     return "";
 }
@@ -104,15 +116,16 @@ std::string drive_parameters_markdown(const config::LoadedDrive& drive) {
     std::string page = fmt::format(
         "# Parameters of the {}\n\nGenerated from `config/drives/{}.yaml` and what it names (`taktwerk docs drives {}`). Numbers are raw; "
         "the "
-        "unit is that of one\nraw count. Sections are those of the manual.\n\n| {} | | name | type | range | factory | unit | meaning | "
+        "unit is that of one\nraw count. A factory value is the manual's; \"assumed\" is ours, \"not stated\" nobody's. Sections are those "
+        "of the manual.\n\n| {} | | name | type | range | factory | unit | meaning | "
         "changes | counts | section |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
         profile.title, profile.name, profile.name, drive.device ? "object" : "register");
     for (const auto& row : profile.parameters) {
         const bool read_only = row.change == axes::ParameterChange::never;
         fmt::format_to(std::back_inserter(page), "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n",
                        number_of(row, drive.device != nullptr), cell(row.parameter), both(row.name, row.chinese), type_of(row),
-                       range_of(row), row.bits == 0 ? std::string{} : std::to_string(row.value), cell(unit_of(row)), cell(row.meaning),
-                       words(row.change), read_only ? std::string_view{} : words(row.effect), cell(row.section));
+                       range_of(row), factory_of(row), cell(unit_of(row)), cell(row.meaning), words(row.change),
+                       read_only ? std::string_view{} : words(row.effect), cell(row.section));
     }
     return page;
 }

@@ -35,6 +35,7 @@ std::string effect_text(const DriveParameter& parameter) {
         case ParameterEffect::at_standstill: text += ", at standstill"; break;
         case ParameterEffect::when_enabled: text += ", when enabled"; break;
         case ParameterEffect::after_restart: text += ", after restart"; break;
+        case ParameterEffect::after_saving: text += ", after saving and restart"; break;
     }
     return text;
 }
@@ -102,7 +103,8 @@ Json parameter_json(const DriveParameter& parameter) {
              {"sub", parameter.address.sub},
              {"name", parameter.name},
              {"chinese", parameter.chinese},
-             {"factory", parameter.value},
+             {"factory", parameter.factory == axes::FactoryValue::unknown ? Json() : Json(parameter.value)},
+             {"factory_is", axes::name(parameter.factory)},
              {"unit", parameter.unit},
              {"scale", parameter.scale},
              {"meaning", parameter.meaning},
@@ -127,9 +129,10 @@ std::string params_text(const std::vector<const DriveParameter*>& parameters, co
         if (!values.empty()) {
             const auto& value = values[i];
             row.push_back(!value ? Cell{"-", Tone::faint}
-                                 : Cell{axes::value_text(p, *value), *value == p.value ? Tone::plain : Tone::warning});
+                                 : Cell{axes::value_text(p, *value),
+                                        p.factory == axes::FactoryValue::unknown || *value == p.value ? Tone::plain : Tone::warning});
         }
-        row.push_back(Cell{p.bits == 0 ? std::string{} : axes::value_text(p, p.value)});
+        row.push_back(Cell{p.bits == 0 || p.change == ParameterChange::never ? std::string{} : axes::factory_text(p)});
         row.push_back(Cell{axes::range_text(p)});
         row.push_back(Cell{effect_text(p)});
         table.add(std::move(row));

@@ -49,9 +49,12 @@ void print_missing(const std::vector<std::string>& missing) {
 int save(const Options& options) {
     return with_drive(*options.drive, [&](DriveAccess& drive) {
         auto present = read_all(drive);
-        if (!options.all) std::erase_if(present.set.values, [](const auto& value) { return value.raw == value.parameter->value; });
+        if (!options.all)
+            std::erase_if(present.set.values, [](const auto& value) { return value.parameter->is_stated_factory(value.raw); });
         std::ofstream file(options.file);
-        file << (options.all ? "# All settings.\n" : "# Settings that differ from the factory's; --all saves every one.\n")
+        file << (options.all ? "# All settings.\n"
+                             : "# Settings that differ from the factory value in the drive's manual, and all of which it prints none; "
+                               "--all saves every one.\n")
              << config::text_of(present.set);
         file.close();
         if (!file) return fail(*options.drive->bus, Error{"capture.write", options.file, "cannot be written", "choose another file"});
@@ -89,9 +92,12 @@ int diff(const Options& options) {
     const auto& bus = *options.drive->bus;
     return with_drive(*options.drive, [&](DriveAccess& drive) {
         std::vector<Change> changes;
+        std::size_t unknown = 0;  // whether they are as the factory left them, nobody can say
         if (options.file.empty()) {
-            for (const auto& value : read_all(drive).set.values)
-                if (value.raw != value.parameter->value) changes.push_back({value.parameter, value.parameter->value, value.raw});
+            for (const auto& value : read_all(drive).set.values) {
+                if (value.parameter->factory != axes::FactoryValue::stated) ++unknown;
+                else if (value.raw != value.parameter->value) changes.push_back({value.parameter, value.parameter->value, value.raw});
+            }
         } else {
             const auto read = config::read_parameter_set(options.file, drive.profile());
             if (const auto* errors = std::get_if<std::vector<Error>>(&read)) return bad_file(options, *errors);
@@ -102,15 +108,17 @@ int diff(const Options& options) {
             }
         }
         if (bus.json) {
-            auto json = Json{{"drive", drive.subject()}, {"same", changes.empty()}, {"differences", Json::array()}};
+            auto json =
+                Json{{"drive", drive.subject()}, {"same", changes.empty()}, {"not_compared", unknown}, {"differences", Json::array()}};
             for (const auto& change : changes) json["differences"].push_back(change_json(change));
             print_json(json);
         } else {
-            const auto other = options.file.empty() ? std::string("the factory's values") : options.file;
+            const auto other = options.file.empty() ? std::string("the factory's values, as far as the manual states them") : options.file;
             if (changes.empty()) fmt::print("{}: as {}\n", drive.subject(), other);
             else
                 fmt::print("{}: {} from {} (was) to the drive (is)\n{}", drive.subject(), count_text(changes.size(), "difference"), other,
                            changes_text(changes, colours_of_output()));
+            if (unknown > 0) fmt::print("{} not compared: the manual states no factory value\n", count_text(unknown, "parameter"));
         }
         return static_cast<int>(exit_ok);
     });
@@ -124,7 +132,7 @@ void add_drive_sets(CLI::App& drive, Action& action) {
     options->drive = add_drive_options(*saving);
     add_drive_choice(*saving, *options->drive);
     saving->add_option("FILE", options->file, "is overwritten")->required();
-    saving->add_flag("--all", options->all, "also those that are as they left the factory");
+    saving->add_flag("--all", options->all, "also those that are as the manual says that they left the factory");
     saving->callback([&action, options] { action = [options] { return save(*options); }; });
 
     auto* restoring = drive.add_subcommand("restore", "write what differs from a file");

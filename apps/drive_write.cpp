@@ -34,7 +34,7 @@ public:
     Written run(const std::vector<config::ParameterSet::Value>& values) {
         find_wanted(values);
         const bool nothing = wanted_.empty() && storing_ == Storing::volatile_only;
-        if (nothing || values.empty() || !may_store()) return std::move(out_);
+        if (nothing || values.empty() || !may_store() || !may_count()) return std::move(out_);
         prepare();
         for (const auto& change : wanted_) {
             if (out_.error) break;
@@ -56,7 +56,7 @@ private:
             // What is in force may never have been stored: a drive that stores by writing gets it again. What cannot be read is
             // written unseen (SE-808X 6098h).
             if (now && *now == value.raw && !stores_each()) continue;
-            wanted_.push_back({value.parameter, now ? *now : value.parameter->value, value.raw});
+            wanted_.push_back({value.parameter, now ? std::optional{*now} : std::nullopt, value.raw});
         }
     }
 
@@ -69,6 +69,28 @@ private:
             out_.error =
                 Error{"drive.cannot_store", drive_.subject(), "its manual does not say how it stores parameters", "leave --store away"};
         return !out_.error;
+    }
+
+    /// What counts after a restart, and is lost by then, would never count: better not written, because it would read as if it did.
+    bool may_count() {
+        if (storing_ == Storing::asked || profile_.storage == ParameterStorage::not_stated) return true;
+        std::string names;
+        const DriveParameter* first = nullptr;
+        for (const auto& change : wanted_) {
+            if (!change.parameter->waits_for_restart() || change.from == change.to) continue;
+            names += (first ? ", " : "") + axes::name_of(*change.parameter);
+            if (!first) first = change.parameter;
+        }
+        if (!first) return true;
+        const bool never = profile_.storage == ParameterStorage::never;
+        out_.error =
+            Error{never ? "drive.cannot_store" : "drive.needs_store", drive_.subject(),
+                  fmt::format("{}: the drive looks at it when it is switched on only, and what is not stored is lost by then. Nothing was "
+                              "written",
+                              names),
+                  never ? "set it with the maker's tool or the panel, save it there, and switch the drive off and on"
+                        : "add --store, and switch the drive off and on afterwards"};
+        return false;
     }
 
     /// A drive that stores each write is told not to, or to do it, as asked.
@@ -118,7 +140,7 @@ private:
             return;
         }
         ++written_;
-        if (change.parameter->effect == axes::ParameterEffect::after_restart)
+        if (change.parameter->waits_for_restart())
             out_.notes.push_back(fmt::format("{} counts after the drive's next restart.", axes::name_of(*change.parameter)));
         if (stores_each()) drive_.wait(between_stored_writes);
     }
@@ -188,7 +210,7 @@ std::string changes_text(const std::vector<Change>& changes, Colours colours) {
     TextTable table{{{"parameter"}, {"name", TextTable::Column::Side::left, 40}, {"was"}, {"is"}}};
     for (const auto& change : changes)
         table.add({Cell{axes::name_of(*change.parameter), Tone::strong}, Cell{change.parameter->name},
-                   Cell{axes::value_text(*change.parameter, change.from)},
+                   Cell{change.from ? axes::value_text(*change.parameter, *change.from) : std::string("not readable")},
                    Cell{axes::value_text(*change.parameter, change.to), Tone::warning}});
     return table.empty() ? std::string{} : table.text(colours);
 }
@@ -196,7 +218,7 @@ std::string changes_text(const std::vector<Change>& changes, Colours colours) {
 Json change_json(const Change& change) {
     return Json{{"parameter", axes::name_of(*change.parameter)},
                 {"name", change.parameter->name},
-                {"from", axes::value_text(*change.parameter, change.from)},
+                {"from", change.from ? Json(axes::value_text(*change.parameter, *change.from)) : Json()},
                 {"to", axes::value_text(*change.parameter, change.to)}};
 }
 

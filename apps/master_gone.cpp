@@ -6,58 +6,107 @@
 #include <fmt/format.h>
 
 #include "axes/drives/xp200/registers.hpp"
+#include "axes/port/parameter_text.hpp"
 
 namespace taktwerk::apps {
 namespace {
 
-/// A reaction object of CiA 402 and what its standard values mean (CiA 402-2, clause 6). Vendors differ: the manual decides.
-struct ReactionObject {
-    std::uint16_t index;
-    const char* name;
-    struct Value {
-        std::int64_t value;
-        const char* words;
-    };
-    std::array<Value, 6> values;
-};
-constexpr std::array<ReactionObject, 3> reactions{{
-    {0x6007, "connection lost", {{{0, "no action"}, {1, "fault"}, {2, "power off"}, {3, "quick stop"}, {-1, nullptr}, {-1, nullptr}}}},
-    {0x605A,
-     "quick stop",
-     {{{0, "power off, the motor coasts"},
-       {1, "slow-down ramp, then off"},
-       {2, "quick-stop ramp (6085h), then off"},
-       {3, "current limit, then off"},
-       {5, "slow-down ramp, stays in quick stop"},
-       {6, "quick-stop ramp (6085h), stays in quick stop"}}}},
-    {0x605E,
-     "fault",
-     {{{0, "power off, the motor coasts"},
-       {1, "slow-down ramp"},
-       {2, "quick-stop ramp (6085h)"},
-       {3, "current limit"},
-       {-1, nullptr},
-       {-1, nullptr}}}},
-}};
+using axes::DriveProfile;
+using axes::StopBy;
+using axes::StopCause;
+using axes::StopThen;
 
+/// What decides a stop here, and who says so.
 struct Setting {
-    std::int64_t value = 0;
+    std::optional<std::int64_t> value;
     std::string from;
 };
 
-std::optional<Setting> setting(const ecat::SlaveConfig& slave, std::uint16_t index) {
-    for (const auto& sdo : slave.startup)
-        if (sdo.index == index && sdo.sub == 0) return Setting{sdo.value, sdo.origin.empty() ? "start-up list" : sdo.origin};
-    if (slave.device)
-        for (const auto& object : slave.device->objects)
-            if (object.index == index && object.sub == 0) return Setting{object.value, "the drive's default, nobody writes it"};
-    return std::nullopt;
+Setting setting(const ecat::SlaveConfig& slave, const runtime::AxisBinding& axis, axes::ParameterAddress object) {
+    const auto index = static_cast<std::uint16_t>(object.index + axis.drive_axis * axis.profile->object_offset);
+    for (auto sdo = slave.startup.rbegin(); sdo != slave.startup.rend(); ++sdo)
+        if (sdo->index == index && sdo->sub == object.sub) return {sdo->value, sdo->origin.empty() ? "start-up list" : sdo->origin};
+    for (const auto& stored : axis.stored)
+        if (stored.object == object) return {stored.value, "stored in the drive"};
+    for (const auto& row : axis.profile->parameters) {
+        if (row.address != object) continue;
+        switch (row.factory) {
+            case axes::FactoryValue::stated: return {row.value, "the factory's value, nobody writes it"};
+            case axes::FactoryValue::assumed: return {row.value, "assumed, its manual prints none and nobody writes it"};
+            case axes::FactoryValue::unknown: return {std::nullopt, "its manual prints no factory value and nobody writes it"};
+        }
+    }
+    return {std::nullopt, "not in the drive's description"};
 }
 
-std::string words(const ReactionObject& reaction, std::int64_t value) {
-    for (const auto& entry : reaction.values)
-        if (entry.words && entry.value == value) return entry.words;
-    return "see the drive's manual";
+std::string named(const DriveProfile& profile, axes::ParameterAddress object) {
+    for (const auto& row : profile.parameters)
+        if (row.address == object) return axes::name_of(row);
+    return axes::object_text(object);
+}
+
+std::string words(const DriveProfile& profile, const axes::StopWay& way) {
+    std::string text;
+    switch (way.by) {
+        case StopBy::coast: text = "the power goes off, the motor coasts"; break;
+        case StopBy::dynamic_brake: text = "the power goes off, the shorted windings brake"; break;
+        case StopBy::ramp: text = "it brakes along 6084h"; break;
+        case StopBy::quick_ramp: text = "it brakes along 6085h"; break;
+        case StopBy::torque_slope: text = "its torque goes to 0 along 6087h"; break;
+        case StopBy::emergency_torque:
+            text = fmt::format("it brakes at once with the torque of {}, not along a ramp", named(profile, profile.emergency_torque));
+            break;
+        case StopBy::zero_speed: text = "it brakes at once with all its torque"; break;
+    }
+    switch (way.then) {
+        case StopThen::free: return way.by == StopBy::coast ? text : text + ", then the power goes off";
+        case StopThen::lock: return text + ", then it stays energised and holds its position";
+        case StopThen::clamp: return text + ", then it stays energised at speed 0";
+        case StopThen::dynamic_brake: return way.by == StopBy::dynamic_brake ? text : text + ", then the windings stay shorted";
+    }
+    return text;
+}
+
+/// As the profile has it of this drive, in the mode that the axis runs in; never what an option means elsewhere.
+std::string stop_of(const ecat::SlaveConfig& slave, const runtime::AxisBinding& axis, StopCause cause, const std::string& what,
+                    const std::string& otherwise) {
+    const auto& profile = *axis.profile;
+    const auto mode =
+        axis.axis.control.mode == axes::ControlMode::velocity ? axes::DriveMode::cyclic_velocity : axes::DriveMode::cyclic_position;
+    for (const auto& option : profile.stops) {
+        if (option.cause != cause) continue;
+        const auto way_for = [&](std::optional<std::int64_t> value) {
+            return std::find_if(option.ways.begin(), option.ways.end(), [&](const axes::StopWay& way) {
+                const bool fits = way.modes.empty() || std::find(way.modes.begin(), way.modes.end(), mode) != way.modes.end();
+                return fits && (!value || way.value == *value);
+            });
+        };
+        if (option.object.index == 0) {
+            const auto way = way_for(std::nullopt);
+            return way == option.ways.end() ? fmt::format("{}: {}", what, otherwise) : fmt::format("{}: {}", what, words(profile, *way));
+        }
+        const auto found = setting(slave, axis, option.object);
+        const auto object = named(profile, option.object);
+        if (!found.value) return fmt::format("{} ({}): nobody knows; {}", what, object, found.from);
+        const auto way = way_for(found.value);
+        return fmt::format("{} ({}) = {}: {} [{}]", what, object, *found.value,
+                           way == option.ways.end() ? "a value that its manual does not describe" : words(profile, *way), found.from);
+    }
+    return fmt::format("{}: {}", what, otherwise);
+}
+
+/// What it announces by itself when the process data end; its fault reaction follows.
+std::string loss_of(const DriveProfile& profile) {
+    for (const auto& alarm : profile.alarms)
+        if (alarm.kind == axes::DriveAlarmKind::communication)
+            return fmt::format("the drive's own alarm for it is {} ({})",
+                               alarm.panel.empty() ? fmt::format("{:04X}h", alarm.code) : alarm.panel, alarm.english);
+    return "whether the drive announces it, its manual does not say";
+}
+
+std::string_view words(axes::DriveStop stop) {
+    return stop == axes::DriveStop::coast ? "taken to coast, its manual does not say"
+                                          : "taken to brake and then go off, its manual does not say how";
 }
 
 std::optional<std::int64_t> parameter(const axes::xp200::DriveConfig& drive, std::uint16_t number) {
@@ -90,10 +139,11 @@ std::vector<std::string> line_gone(const runtime::MachineConfig& config, const r
                             "silent, the runtime drops it after {:g} ms",
                             entry.watchdog_output, to_seconds(watchdog) * 1e3, to_seconds(entry.drive.silence) * 1e3));
             const bool ramps = parameter(entry.drive, pr::emergency_mode) == 1;
-            out.push_back(
-                ramps ? fmt::format("that is EMG: it stays enabled and brakes in {} ms for 1000 r/min (Pr164 = 1, Pr063) [XP200 5.4]",
-                                    parameter(entry.drive, pr::stop_time).value_or(0))
-                      : "that is EMG: the current is cut and it coasts (Pr164 = 0) [XP200 5.4.2]");
+            out.push_back(ramps ? fmt::format("that is EMG: it stays enabled and brakes in {} ms for 1000 r/min (Pr164 = 1, Pr063), if "
+                                              "Pr164 counts in speed control: "
+                                              "its manual marks it for position control [XP200 5.4]",
+                                              parameter(entry.drive, pr::stop_time).value_or(0))
+                                : "that is EMG: the current is cut and it coasts (Pr164 = 0) [XP200 5.4.2]");
         }
     return out;
 }
@@ -110,13 +160,16 @@ std::vector<std::string> master_gone(const runtime::MachineConfig& config, const
     if (slave == config.bus.slaves.end()) return out;
     out.push_back(fmt::format("after {:g} ms without process data the slave's watchdog takes it out of OP",
                               to_seconds(runtime::sm_watchdog(config, *slave)) * 1e3));
-    for (const auto& reaction : reactions) {
-        const auto found = setting(*slave, reaction.index);
-        if (found)
-            out.push_back(fmt::format("{} ({:04X}h) = {}: {} [{}]", reaction.name, reaction.index, found->value,
-                                      words(reaction, found->value), found->from));
-        else out.push_back(fmt::format("{} ({:04X}h): not in the drive's description; its manual decides", reaction.name, reaction.index));
-    }
+    if (!axis.profile) return out;
+    out.push_back(loss_of(*axis.profile));
+    const auto shown = [&](std::uint16_t index) {
+        return std::any_of(axis.profile->parameters.begin(), axis.profile->parameters.end(), [&](const auto& row) {
+            return row.address == axes::ParameterAddress{index, 0};
+        });
+    };
+    out.push_back(stop_of(*slave, axis, StopCause::fault, "at a fault", std::string(words(axis.profile->fault_stop))));
+    out.push_back(stop_of(*slave, axis, StopCause::quick_stop, "at a quick stop",
+                          shown(0x605A) ? "its manual does not say what the values of 605Ah do" : "its manual does not describe it"));
     return out;
 }
 

@@ -95,11 +95,14 @@ Table<SlaveEntry> slave_table() {
                          field("tx", &S::tx, list(object_address()), "from the drive"),
                      }),
             field("startup", &S::startup, list(section(startup_table())), "SDOs written while the slave comes up"),
+            field("stored", &S::stored, list(section(stored_table())),
+                  "what its EEPROM holds once it was commissioned, because the drive looks at it when it is switched on only"),
         },
         {},
         {}};
     for (auto& f : table.fields)
-        if (f.info.key == "pdo" || f.info.key == "startup" || f.info.key == "modules") f.info.default_text.clear();
+        if (f.info.key == "pdo" || f.info.key == "startup" || f.info.key == "stored" || f.info.key == "modules")
+            f.info.default_text.clear();
     table.after = [](Reader& reader, const Node& node, S& s) {
         reader.also_known_as(fmt::format("slave '{}'", s.name), node.at);  // as the bus calls it
         if (s.profile.empty() == !s.terminal.has_value() && !node.find("profile") && !node.find("terminal"))

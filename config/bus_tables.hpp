@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "config/startup_entry.hpp"
+#include "config/stored_settings.hpp"
 #include "ecat/bus_config.hpp"
 
 namespace taktwerk::config {
@@ -30,6 +31,7 @@ struct SlaveEntry {
     std::vector<ecat::ModuleSelection> modules;
     std::vector<ObjectAddress> rx, tx;
     std::vector<StartupEntry> startup;
+    std::vector<StoredEntry> stored;
     bool broken = false;  ///< problems were reported: what follows from them is noise
 };
 

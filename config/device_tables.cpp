@@ -159,7 +159,8 @@ Codec<axes::ParameterEffect> parameter_effect() {
     return choice<E>({{"at_once", E::at_once},
                       {"at_standstill", E::at_standstill},
                       {"when_enabled", E::when_enabled},
-                      {"after_restart", E::after_restart}});
+                      {"after_restart", E::after_restart},
+                      {"after_saving", E::after_saving}});
 }
 
 Codec<axes::ParameterChange> parameter_change() {
@@ -210,8 +211,18 @@ Table<ObjectRow> object_table() {
                 "map", [object](R & r) -> auto& { return object(r).mappable; },
                 choice<Mappable>({{"no", Mappable::no}, {"rx", Mappable::rx}, {"tx", Mappable::tx}, {"both", Mappable::both}}),
                 "into which PDOs"),
-            field_at<R>(
-                "value", [object](R & r) -> auto& { return object(r).value; }, integer<std::int64_t>(i64_low, i64_high), "default, raw"),
+            field_via<R>(
+                "value", integer<std::int64_t>(i64_low, i64_high),
+                [](R& r, const std::int64_t& value) { r.object.value = value, r.has_value = true; },
+                "as it leaves the factory, raw: as the manual states it, unless `factory` says otherwise", "the manual prints none"),
+            field_via<R>(
+                "factory", choice<axes::FactoryValue>({{"assumed", axes::FactoryValue::assumed}}),
+                [](R& r, const axes::FactoryValue& factory) { r.parameter.factory = factory; },
+                "assumed: `value` is ours, the manual leaves it open or contradicts itself", "stated, with a `value`"),
+            field_via<R>(
+                "commissioned", integer<std::int64_t>(i64_low, i64_high),
+                [](R& r, const std::int64_t& value) { r.object.value = value, r.has_commissioned = true; },
+                "instead of `value`: what the simulated drive begins with, raw; nothing is claimed of a real one", "0"),
             field_at<R>(
                 "minimum", [object](R & r) -> auto& { return object(r).minimum; }, maybe(integer<std::int64_t>(i64_low, i64_high)),
                 "least value that the drive accepts, raw"),
@@ -247,6 +258,11 @@ Table<ObjectRow> object_table() {
         if (tool && (addressed || row.parameter.parameter.empty()))
             reader.problem(node.at, "config.object_address", "what only the maker's tool reaches has a `parameter:` and no address",
                            "write `parameter: PA17`, and remove `object:` or `reach:`");
+        const bool assumed = row.parameter.factory == axes::FactoryValue::assumed;
+        if ((row.has_value && row.has_commissioned) || (assumed && !row.has_value))
+            reader.problem(node.at, "config.factory_value", "a row has a factory `value`, stated or assumed, or a `commissioned` one",
+                           "keep `value` where the manual prints it, `value` and `factory: assumed` where it is ours, else `commissioned`");
+        if (row.has_value && !assumed) row.parameter.factory = axes::FactoryValue::stated;
         row.parameter.name = row.object.name;
         row.parameter.bits = ecat::bit_size(row.object.type);
         row.parameter.is_signed = ecat::is_signed(row.object.type);

@@ -17,6 +17,7 @@ struct ObjectRow {
     ecat::ObjectEntry object;
     axes::DriveParameter parameter;
     bool is_register = false;  ///< not an object: belongs to a drive without a dictionary
+    bool has_value = false, has_commissioned = false;
     [[nodiscard]] bool is_object() const noexcept { return !is_register && parameter.reach == axes::ParameterReach::bus; }
 };
 [[nodiscard]] Table<ObjectRow> object_table();

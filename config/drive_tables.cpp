@@ -124,6 +124,8 @@ void add_profile_fields(std::vector<Field<DriveFile>>& f) {
     f.push_back(field_at<F>(
         "units", [](F & d) -> auto& { return d.profile.units; }, section(units_table()), "an object that chooses the drive's units"));
     f.push_back(field_at<F>(
+        "scale", [](F & d) -> auto& { return d.profile.scale; }, section(scale_table()), "counts of a turn of its motor"));
+    f.push_back(field_at<F>(
         "behaviour", [](F & d) -> auto& { return d.profile.behaviour; }, section(behaviour_table()),
         "objects that the simulated drive obeys"));
     f.push_back(field_at<F>(

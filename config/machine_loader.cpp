@@ -57,6 +57,7 @@ public:
         for (auto& binding : out.machine.axes)
             for (const auto& [name, profile] : profiles_)
                 if (name == binding.slave) binding.profile = profile;
+        add_stored(out);
         for (const auto& binding : out.machine.axes) check_axis_is_named(binding);
         for (const auto& entry : file_.serial) add_line(out, entry);
         for (const auto& entry : file_.inputs) add_point(out, entry, runtime::IoDirection::input);
@@ -195,6 +196,23 @@ private:
                 return other.index == sdo.index && other.sub == sdo.sub && other.at == sdo.at && other.origin.rfind(path_, 0) != 0;
             });
             slave.startup.push_back(std::move(sdo));
+        }
+    }
+
+    /// Objects that a drive looks at when it is switched on only.
+    void add_stored(LoadedMachine& out) {
+        for (const auto& entry : file_.slaves) {
+            const auto known = std::find_if(profiles_.begin(), profiles_.end(), [&](const auto& p) { return p.first == entry.name; });
+            if (known == profiles_.end()) {
+                if (!entry.stored.empty() && !entry.broken)
+                    reader_.problem(entry.stored.front().where, "config.stored_no_drive",
+                                    fmt::format("'{}' is no drive: it keeps nothing", entry.name), "remove `stored`");
+                continue;
+            }
+            refuse_late_startup(reader_, entry.name, entry.startup, *known->second);
+            for (auto& stored : resolve_stored(reader_, entry.name, entry.stored, entry.startup, *known->second))
+                for (auto& binding : out.machine.axes)
+                    if (binding.slave == entry.name && binding.drive_axis == stored.axis) binding.stored.push_back(stored.setting);
         }
     }
 

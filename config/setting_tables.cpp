@@ -183,6 +183,30 @@ Table<axes::DriveUnits> units_table() {
         {}};
 }
 
+Table<axes::ScaleObjects> scale_table() {
+    using S = axes::ScaleObjects;
+    const auto object = parameter_address();
+    return {
+        "scale",
+        "Objects that say how many position counts are one turn of the motor: compared with the axis before it is enabled.",
+        {
+            field("counts", &S::counts, object, "counts of a turn; 0 in it: encoder and gear, if there are"),
+            field("counts_high", &S::counts_high, object, "its high part"),
+            field("counts_high_unit", &S::counts_high_unit, raw_value(), "what one of `counts_high` is in counts"),
+            field("encoder", &S::encoder, object, "counts of the encoder a turn; the simulated motor has the encoder that fits its axis"),
+            field("numerator", &S::numerator, object, "encoder counts = counts * numerator / denominator"),
+            field("denominator", &S::denominator, object, "see numerator"),
+            with_default(
+                field("only_one", &S::only_one, list(object), "ratios whose part is not stated: with another value than 1 nobody knows"),
+                "none"),
+            with_default(field("doubt", &S::doubt, text(), "why what they read may not be what is in force, or why nobody knows"), ""),
+            required(field("remedy", &S::remedy, text(), "how the drive is given another scale")),
+            required(field("section", &S::section, text(), "of the manual")),
+        },
+        {},
+        {}};
+}
+
 Table<axes::BehaviourObjects> behaviour_table() {
     using B = axes::BehaviourObjects;
     Table<B> table{"behaviour", "Objects that the simulated drive obeys.", {}, {}, {}};

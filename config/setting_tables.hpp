@@ -11,6 +11,7 @@ namespace taktwerk::config {
 [[nodiscard]] Codec<axes::ParameterAddress> parameter_address();
 [[nodiscard]] Table<axes::RequiredSetting> required_setting_table();
 [[nodiscard]] Table<axes::DriveUnits> units_table();
+[[nodiscard]] Table<axes::ScaleObjects> scale_table();
 [[nodiscard]] Table<axes::BehaviourObjects> behaviour_table();
 
 }  // namespace taktwerk::config

@@ -42,6 +42,7 @@ axes::DriveUse use_of_drive(const MachineConfig& config, const AxisBinding& axis
     const auto slave =
         std::find_if(config.bus.slaves.begin(), config.bus.slaves.end(), [&](const auto& s) { return s.name == axis.slave; });
     if (slave == config.bus.slaves.end() || !slave->device) return use;
+    for (const auto& stored : axis.stored) use.written.push_back({stored.object, stored.value});
     const auto write = [&](const ecat::StartupSdo& sdo) { use.written.push_back({of_first_axis(axis, sdo.index, sdo.sub), sdo.value}); };
     for (const auto& sdo : slave->startup) write(sdo);
     for (const auto& sdo : axes::cia402::homing_startup(axis.axis, *axis.profile, axis.drive_axis)) write(sdo);

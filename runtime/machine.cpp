@@ -91,8 +91,9 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, const std
         } else if (slave == no_slave) {
             ports.push_back(std::make_unique<axes::sim::VirtualDrive>(config.cycle));
         } else {
-            auto drive = std::make_unique<axes::cia402::Cia402Drive>(bus, slave, binding.drive_axis, binding.profile,
-                                                                     ecat::exchange_period(on_bus, bus.slave(slave)));
+            auto drive = std::make_unique<axes::cia402::Cia402Drive>(
+                bus, slave, binding.drive_axis, binding.profile, ecat::exchange_period(on_bus, bus.slave(slave)),
+                axes::cia402::AxisWants{binding.axis.gearing.counts_per_revolution, binding.stored});
             drives.push_back(drive.get());
             ports.push_back(std::move(drive));
         }

@@ -131,6 +131,9 @@ World::World(const MachineConfig& config, Instant start)
         auto model = std::make_unique<axes::sim::Cia402Device>(played, setups);
         for (std::size_t i = 0; i < names.size(); ++i)
             if (!names[i].empty()) axes_.push_back({names[i], &model->axis(i), model.get(), i});
+        for (const auto& binding : config.axes)
+            if (binding.slave == slave->name)
+                for (const auto& setting : binding.stored) model->commission(binding.drive_axis, setting.object, setting.value);
         install(*slave, std::move(model), options);
     }
     for (const auto& point : config.io)

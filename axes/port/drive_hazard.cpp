@@ -13,13 +13,13 @@ bool contains(const std::vector<ParameterAddress>& list, const ParameterAddress&
     return std::find(list.begin(), list.end(), address) != list.end();
 }
 
-/// The last start-up entry counts, else the factory's value. Nothing: sent cyclically, or unknown to the profile.
+/// The last entry counts, else the factory's value. Nothing: sent cyclically, or nobody knows.
 std::optional<std::int64_t> effective(const DriveProfile& profile, const DriveUse& use, const ParameterAddress& address) {
     if (contains(use.sent, address)) return std::nullopt;
     for (auto entry = use.written.rbegin(); entry != use.written.rend(); ++entry)
         if (entry->address == address) return entry->value;
     for (const auto& parameter : profile.parameters)
-        if (parameter.address == address) return parameter.value;
+        if (parameter.address == address && parameter.factory != FactoryValue::unknown) return parameter.value;
     return std::nullopt;
 }
 
@@ -52,7 +52,7 @@ bool applies(const DriveProfile& profile, const DriveUse& use, const DriveHazard
         case HazardCondition::not_set_to:
             return any([&](const auto& object) {
                 const auto value = effective(profile, use, object);
-                return value && !is_one_of(*value);
+                return value ? !is_one_of(*value) : !contains(use.sent, object);  // what nobody knows may be the wrong one
             });
         case HazardCondition::set_to:
             return any([&](const auto& object) {

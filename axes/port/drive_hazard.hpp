@@ -14,7 +14,7 @@ namespace taktwerk::axes {
 enum class HazardCondition : std::uint8_t {
     always,              ///< worth a warning in every machine with this drive
     not_written,         ///< one of `objects` is neither written by a start-up list nor sent cyclically: the factory value holds
-    not_set_to,          ///< the effective value of an object (start-up list, else factory) is none of `values`
+    not_set_to,          ///< the effective value of an object (start-up list, stored, else factory) is none of `values`, or unknown
     set_to,              ///< the effective value of an object is one of `values`
     mapped,              ///< one of `objects` is in the process data
     not_mapped,          ///< one of `objects` is not in the process data

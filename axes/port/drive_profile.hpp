@@ -153,6 +153,7 @@ struct DriveProfile {
     std::vector<DriveHazard> hazards;
     std::vector<RequiredSetting> required_settings;  ///< checked by DrivePort::setup_problems()
     DriveUnits units;
+    ScaleObjects scale;
     BehaviourObjects behaviour;
     ParameterStorage storage = ParameterStorage::not_stated;
     ParameterAddress storage_switch{};   ///< while this object is 0 writes are not stored; index 0: there is none

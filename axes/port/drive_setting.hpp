@@ -57,6 +57,27 @@ struct DriveUnits {
     std::vector<UnitVariant> variants;
 };
 
+/// What a machine relies on in the EEPROM of a drive, because a start-up list comes too late for it: whoever commissions the drive stores
+/// it there, the drive is not enabled with another value, a simulated one comes with it.
+struct StoredSetting {
+    ParameterAddress object;  ///< as of the first axis of the drive
+    std::int64_t value = 0;
+    std::string remedy{};  ///< how it gets there
+};
+
+/// Which objects say how many of the drive's position counts are one turn of the motor: compared with the axis before it is enabled.
+struct ScaleObjects {
+    ParameterAddress counts{};  ///< counts of a turn (SE-808X 2000h:02); 0 in it: `encoder` and the gear, if there are (SV-DA200 P0.22)
+    ParameterAddress counts_high{};  ///< times `counts_high_unit`, is added to it (TSVM PA84, 10000)
+    std::int64_t counts_high_unit = 0;
+    ParameterAddress encoder{};                   ///< counts of the encoder (SV33-E P01.05)
+    ParameterAddress numerator{}, denominator{};  ///< encoder counts = counts * numerator / denominator (SV33-E 6091h)
+    std::vector<ParameterAddress> only_one;  ///< ratios whose part in it is not stated: with another value than 1 nobody knows (SV-DA200 6091h)
+    std::string doubt{};                     ///< why nobody knows, where the objects do not tell; one sentence
+    std::string remedy{};                    ///< how the drive is given another scale
+    std::string section{};                   ///< of the manual
+};
+
 /// An analogue output that the bus sets: its volts are value / gain while the selection is 0.
 struct AnalogueOutput {
     ParameterAddress value{}, selection{}, gain{};

@@ -26,10 +26,6 @@ std::string_view trimmed(std::string_view text) {
     return text;
 }
 
-std::string object_text(const ParameterAddress& address) {
-    return address.sub == 0 ? fmt::format("{:04X}h", address.index) : fmt::format("{:04X}h:{:02X}", address.index, address.sub);
-}
-
 /// Digits behind the point that show one step: 0.1 has one.
 int digits_of(double scale) {
     int digits = 0;
@@ -66,6 +62,10 @@ std::int64_t greatest(const DriveParameter& p) noexcept {
 
 }  // namespace
 
+std::string object_text(const ParameterAddress& address) {
+    return address.sub == 0 ? fmt::format("{:04X}h", address.index) : fmt::format("{:04X}h:{:02X}", address.index, address.sub);
+}
+
 std::string name_of(const DriveParameter& parameter) {
     return parameter.parameter.empty() ? object_text(parameter.address) : parameter.parameter;
 }
@@ -90,6 +90,24 @@ std::string value_text(const DriveParameter& parameter, std::int64_t raw) {
                                      : fmt::format("{:.{}f}", static_cast<double>(raw) * parameter.scale, digits_of(parameter.scale));
     if (!parameter.unit.empty()) text += " " + parameter.unit;
     return text;
+}
+
+std::string factory_text(const DriveParameter& parameter) {
+    switch (parameter.factory) {
+        case FactoryValue::stated: return value_text(parameter, parameter.value);
+        case FactoryValue::assumed: return value_text(parameter, parameter.value) + " (assumed)";
+        case FactoryValue::unknown: break;
+    }
+    return "not stated";
+}
+
+std::string_view name(FactoryValue factory) noexcept {
+    switch (factory) {
+        case FactoryValue::unknown: return "unknown";
+        case FactoryValue::assumed: return "assumed";
+        case FactoryValue::stated: return "stated";
+    }
+    return "";
 }
 
 std::string range_text(const DriveParameter& parameter) {
@@ -163,6 +181,27 @@ bool is_setting(const DriveParameter& parameter) noexcept {
     // Commands of the cycle: control word, mode, targets, offsets, probes, outputs.
     static constexpr std::array<std::uint16_t, 10> commands{0x6040, 0x6060, 0x6071, 0x607A, 0x60B0, 0x60B1, 0x60B2, 0x60B8, 0x60FE, 0x60FF};
     return std::find(commands.begin(), commands.end(), index) == commands.end();
+}
+
+std::string way_to_store(const DriveProfile& profile, std::string_view drive, std::size_t axis, const DriveParameter& parameter,
+                         std::int64_t raw) {
+    DriveParameter bare = parameter;
+    bare.unit.clear();
+    const auto assignment = fmt::format("{}={}", name_of(parameter), value_text(bare, raw));
+    const auto command = [&](std::string_view store) {
+        return fmt::format("`taktwerk drive set {} {}{}{}`", drive, assignment, profile.axes > 1 ? fmt::format(" --axis {}", axis + 1) : "",
+                           store);
+    };
+    switch (profile.storage) {
+        case ParameterStorage::on_request:
+        case ParameterStorage::each_write: return command(" --store") + ", then switch the drive off and on";
+        case ParameterStorage::not_stated:
+            return command("") +
+                   " or its panel, then switch the drive off and on and read it again: whether it keeps what the bus writes, its "
+                   "manual does not say";
+        case ParameterStorage::never: break;
+    }
+    return fmt::format("set {} with its maker's tool or its panel and save it there, then switch the drive off and on", assignment);
 }
 
 }  // namespace taktwerk::axes

@@ -17,11 +17,17 @@ namespace taktwerk::axes {
 /// "P05.10"; an object of the standard "6084h" or "6099h:02".
 [[nodiscard]] std::string name_of(const DriveParameter& parameter);
 
+/// "6084h", "6099h:02".
+[[nodiscard]] std::string object_text(const ParameterAddress& address);
 /// By the manual's name or by its object, upper or lower case. Error drive.no_parameter, with the nearest names.
 [[nodiscard]] Result<const DriveParameter*> find_parameter(const DriveProfile& profile, std::string_view word);
 
 /// "250 ms", "-2", "10.0 %": raw times scale, with as many digits as the scale has.
 [[nodiscard]] std::string value_text(const DriveParameter& parameter, std::int64_t raw);
+/// "250 ms", "10 (assumed)", "not stated": what is known of the value that the drive leaves the factory with.
+[[nodiscard]] std::string factory_text(const DriveParameter& parameter);
+/// "stated", "assumed", "unknown".
+[[nodiscard]] std::string_view name(FactoryValue factory) noexcept;
 /// "0 .. 500 ms"; empty where the manual gives none.
 [[nodiscard]] std::string range_text(const DriveParameter& parameter);
 
@@ -36,5 +42,9 @@ namespace taktwerk::axes {
 /// Something that a machine sets once and a saved set holds: written and read, no action, no command of the cycle (targets, control
 /// word, mode, outputs).
 [[nodiscard]] bool is_setting(const DriveParameter& parameter) noexcept;
+
+/// How a value gets into the EEPROM of a drive and counts: the command, or why there is none. `drive` as its user names it, `axis` from 0.
+[[nodiscard]] std::string way_to_store(const DriveProfile& profile, std::string_view drive, std::size_t axis, const DriveParameter& parameter,
+                                       std::int64_t raw);
 
 }  // namespace taktwerk::axes

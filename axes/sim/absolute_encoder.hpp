@@ -22,6 +22,8 @@ public:
     }
     /// More turns than the counter holds.
     [[nodiscard]] bool overflowed(double position) const noexcept { return range_ > 0 && std::abs(position - base_) >= range_ / 2; }
+    /// The drive counts `factor` times as many counts for the same way.
+    void rescale(double factor) noexcept { turn_ *= factor, base_ *= factor, range_ *= factor; }
     /// Battery empty, or asked to: the turns are 0, the place within the turn stays.
     void forget_turns(double position) noexcept { base_ += turn_ * std::floor((position - base_) / turn_); }
 

@@ -13,7 +13,7 @@ public:
     BehaviourValue() = default;  ///< no such object
     BehaviourValue(const DriveProfile& profile, ParameterAddress object) : object_(object) {
         for (const auto& p : profile.parameters)
-            if (object.index != 0 && p.address == object) after_restart_ = p.effect == ParameterEffect::after_restart;
+            if (object.index != 0 && p.address == object) after_restart_ = p.waits_for_restart();
     }
 
     void power_on(ecat::sim::ObjectDictionary& dictionary) {

@@ -10,6 +10,7 @@ namespace taktwerk::axes::sim {
 
 Cia402Axis::Cia402Axis(const PlantConfig& plant, const Personality& personality)
     : personality_(personality),
+      turn_(static_cast<double>(personality.counts_per_revolution)),
       plant_(plant),
       probes_{TouchProbe(personality.probe_toggle), TouchProbe(personality.probe_toggle)},
       profile_position_(personality.profile_buffer, personality.pp_bit_5_blends ? BitFive::blends : BitFive::replaces),
@@ -22,8 +23,19 @@ Cia402Axis::Cia402Axis(const PlantConfig& plant, const Personality& personality)
 
 double Cia402Axis::quantised() const noexcept { return std::floor(actual()); }
 
-IndexPulses Cia402Axis::index_pulses() const noexcept {
-    return {plant_.config().index_pulse, static_cast<double>(personality_.counts_per_revolution)};
+IndexPulses Cia402Axis::index_pulses() const noexcept { return {plant_.config().index_pulse, turn_}; }
+
+void Cia402Axis::scale(double counts_per_revolution) noexcept {
+    const double factor = counts_per_revolution / turn_;
+    if (factor == 1) return;
+    plant_.rescale(factor);
+    encoder_.rescale(factor);
+    auto& p = personality_;
+    for (double* count : {&zero_, &stored_shift_, &demand_.position, &demand_.velocity, &demand_step_, &target_, &p.brake_moving_speed,
+                          &p.quick_stop_deceleration, &p.following_error_limit, &p.maximum_velocity, &p.overspeed, &p.start_speed})
+        *count *= factor;
+    turn_ = counts_per_revolution;
+    p.counts_per_revolution = std::llround(turn_);
 }
 
 void Cia402Axis::read_switches(Duration dt) noexcept {

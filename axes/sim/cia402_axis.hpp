@@ -79,6 +79,10 @@ public:
     void velocity_unit(double counts_per_unit) noexcept { personality_.velocity_counts_per_unit = counts_per_unit; }
     void following_limit(double counts) noexcept { personality_.following_error_limit = counts; }
 
+    /// How many of its counts are a turn of the motor: its electronic gear (SE-808X 2000h:02, SV33-E 6091h). The mechanics stay where they are,
+    /// all counts are others from now on. Not while the motor has power.
+    void scale(double counts_per_revolution) noexcept;
+
     /// A motor without an encoder: what the drive takes for its position is its own command. `standby`: share of its torque that holds it at
     /// standstill; nothing: it has an encoder. Before power_on().
     void open_loop(std::optional<double> standby) noexcept;
@@ -233,6 +237,7 @@ private:
     [[nodiscard]] std::uint16_t profile_bits() const noexcept;
 
     Personality personality_;
+    double turn_ = 10000;  ///< counts per revolution; a gear may make it no whole number
     Plant plant_;
     ServoLoop loop_;
     std::optional<OpenLoopMotor> stepper_;  ///< the motor has no encoder

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "axes/port/drive_scale.hpp"
 #include "axes/sim/object_table.hpp"
 
 namespace taktwerk::axes::sim {
@@ -46,6 +47,7 @@ Duration shortest_cycle(const DriveProfile& profile) noexcept {
 
 Cia402Device::Cia402Device(const DriveProfile& profile, const std::vector<AxisSetup>& axes)
     : parameters_(profile),
+      scale_(profile.scale),
       homing_timeout_(profile.homing_timeout),
       clear_turns_(profile.clear_turns),
       encoder_reset_(profile.encoder_reset),
@@ -69,11 +71,31 @@ Cia402Device::Cia402Device(const DriveProfile& profile, const std::vector<AxisSe
         axis.model = std::make_unique<Cia402Axis>(setup.plant, setup.personality);
         axis.behaviour = std::make_unique<Behaviour>(profile);
         axis.motor = std::make_unique<MotorBehaviour>(profile);
+        // The motor has the encoder that the plant was measured with.
+        if (scale_.encoder.index != 0) commission(axes_.size() - 1, scale_.encoder, setup.plant.counts_per_revolution);
+    }
+}
+
+void Cia402Device::commission(std::size_t axis, ParameterAddress object, std::int64_t value) {
+    parameters_.commission({static_cast<std::uint16_t>(object.index + axis * object_offset_), object.sub}, value);
+}
+
+/// What a turn is counts for at power-on, and whenever a gear that counts at once is written.
+void Cia402Device::take_scale() noexcept {
+    scale_changed_ = false;
+    for (std::size_t i = 0; i < axes_.size(); ++i) {
+        const auto scale = scale_of(scale_, [&](ParameterAddress object) {
+            return parameters_.store().acting({static_cast<std::uint16_t>(object.index + i * object_offset_), object.sub});
+        });
+        if (!scale) continue;
+        if (axes_[i].model->powered()) scale_changed_ = true;
+        else axes_[i].model->scale(scale->value());
     }
 }
 
 void Cia402Device::power_on(ecat::sim::ObjectDictionary& dictionary, Instant now) {
     parameters_.power_on(dictionary);
+    take_scale();
     for (std::size_t i = 0; i < axes_.size(); ++i) {
         const auto at = [&](unsigned index, std::uint8_t sub) {
             return dictionary.find(static_cast<std::uint16_t>(index + i * object_offset_), sub);
@@ -161,11 +183,13 @@ std::uint32_t Cia402Device::refuse_write(std::uint16_t index, std::uint8_t sub, 
 
 void Cia402Device::written(std::uint16_t index, std::uint8_t sub, Instant now) {
     parameters_.written(index, sub, now, *axes_[parameters_.axis_of(index)].model);
+    take_scale();
     tunnel_.written(index, sub);
 }
 
 void Cia402Device::exchange(Instant now) {
     count_missed_frames();
+    if (scale_changed_) take_scale();
     share_common_alarm();
     parameters_.step(now, *axes_.front().model);
     for (auto& axis : axes_) {

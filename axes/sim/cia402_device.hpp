@@ -57,6 +57,9 @@ public:
     void supply_voltage(double volts) noexcept {
         for (auto& axis : axes_) axis.motor->supply(volts, *axis.model);
     }
+    /// In the EEPROM before the power first comes: what its commissioner stored. As of the first axis of the drive.
+    void commission(std::size_t axis, ParameterAddress object, std::int64_t value);
+
     /// An alarm by its number, with what the profile says of it: of the whole drive, or of one axis.
     void raise(std::size_t axis, std::uint16_t code) noexcept;
 
@@ -86,9 +89,12 @@ private:
     [[nodiscard]] AlarmCode alarm_of(std::uint16_t code) const noexcept;
     void raise_in_all(const AlarmCode& alarm) noexcept;
     void count_missed_frames() noexcept;
+    void take_scale() noexcept;
     void share_common_alarm() noexcept;
     std::vector<OneAxis> axes_;
     DriveParameters parameters_;
+    ScaleObjects scale_;
+    bool scale_changed_ = false;  ///< while the motor had power
     ParameterAddress homing_timeout_, clear_turns_, encoder_reset_;
     double homing_timeout_unit_;  ///< s
     std::int64_t clear_turns_value_;

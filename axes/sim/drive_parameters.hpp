@@ -34,6 +34,7 @@ public:
     /// The axis that an object belongs to.
     [[nodiscard]] unsigned axis_of(std::uint16_t index) const noexcept;
     [[nodiscard]] const ParameterStore& store() const noexcept { return store_; }
+    void commission(ParameterAddress at, std::int64_t value) noexcept { store_.commission(at, value); }
 
 private:
     using Entry = ecat::sim::Entry;

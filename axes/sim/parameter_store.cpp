@@ -70,8 +70,14 @@ void ParameterStore::write(ParameterAddress at, std::int64_t value, Instant now)
     auto* cell = const_cast<Cell*>(find(at));  // NOLINT: the cell belongs to *this
     if (!cell || cell->change == ParameterChange::never) return;
     cell->ram = value;
-    if (cell->effect != ParameterEffect::after_restart) cell->acting = value;
+    const bool waits = cell->effect == ParameterEffect::after_restart || cell->effect == ParameterEffect::after_saving;
+    if (!waits) cell->acting = value;
     if (stores_writes_to(*cell)) burn(*cell, value, now);
+}
+
+void ParameterStore::commission(ParameterAddress at, std::int64_t value) noexcept {
+    auto* cell = const_cast<Cell*>(find(at));  // NOLINT: the cell belongs to *this
+    if (cell) cell->eeprom = value;
 }
 
 void ParameterStore::power_on() noexcept {

@@ -27,6 +27,8 @@ public:
     /// A write from outside that was not refused. Stores it too where this drive does so.
     void write(ParameterAddress at, std::int64_t value, Instant now) noexcept;
 
+    /// In its EEPROM since before the power came: it wears nothing.
+    void commission(ParameterAddress at, std::int64_t value) noexcept;
     /// The control supply comes: RAM is what the EEPROM holds, and all of it counts.
     void power_on() noexcept;
     /// All of RAM into the EEPROM.

@@ -10,6 +10,16 @@ Plant::Plant(const PlantConfig& config) noexcept
       rad_per_count_(2.0 * std::numbers::pi / static_cast<double>(config.counts_per_revolution)),
       position_(config.start) {}
 
+void Plant::rescale(double factor) noexcept {
+    auto& c = config_;
+    for (double* count :
+         {&c.start, &c.negative_stop, &c.positive_stop, &c.negative_limit, &c.positive_limit, &c.home_from, &c.home_to, &c.index_pulse,
+          &c.probe[0].from, &c.probe[0].to, &c.probe[0].every, &c.probe[1].from, &c.probe[1].to, &c.probe[1].every, &position_, &velocity_})
+        *count *= factor;
+    c.counts_per_revolution = std::llround(static_cast<double>(c.counts_per_revolution) * factor);
+    rad_per_count_ /= factor;
+}
+
 void Plant::step(double dt, double torque) noexcept {
     if (jammed_ || (held_ && velocity_ == 0)) {
         velocity_ = 0;

@@ -26,6 +26,8 @@ public:
         return c.home_every > 0 ? in - std::floor(in / c.home_every) * c.home_every <= length : in >= 0 && in <= length;
     }
     [[nodiscard]] const PlantConfig& config() const noexcept { return config_; }
+    /// The drive counts `factor` times as many counts for the same way: the mechanics stay where they are.
+    void rescale(double factor) noexcept;
     /// A jammed mechanism does not move whatever the torque.
     void jam(bool jammed) noexcept { jammed_ = jammed; }
     /// A holding brake: an axis at rest stays there whatever the torque, a turning one is slowed by `brake_friction`. Called each step; apart

@@ -144,6 +144,43 @@ TEST_F(DriveSets, AWholeSetGoesToAFileAndBack) {
     EXPECT_EQ(restored["changes"][0]["to"], "275 ms");
 }
 
+// The guide states the factory values of P0.22 (10000), P4.00 (-1), P4.28 (0) and P4.43 (0003h) only [2.1]: whatever else a commissioned drive
+// holds may be its user's, zeros too, and a spare must get it.
+TEST_F(DriveSets, SavedIsAllThatTheManualDoesNotCallTheFactorys) {
+    const auto five = std::string(TAKTWERK_SOURCE_DIR) + "/config/machines/five-drives.yaml";
+    const auto file = path("da200.yaml");
+    const auto saved = drive({"save", "da200_drive", file, "--machine", five, "--simulate"});
+    ASSERT_EQ(saved.code, exit_ok) << saved.err;
+    const auto text = text_of(file);
+    EXPECT_THAT(text,
+                AllOf(HasSubstr("P0.03: 8"), HasSubstr("P0.37: 1"), HasSubstr("P4.25: 1"), HasSubstr("P4.09: 10"), HasSubstr("P2.00: 0")));
+    EXPECT_THAT(text, AllOf(Not(HasSubstr("P0.22")), Not(HasSubstr("P4.43")), Not(HasSubstr("P4.00")), Not(HasSubstr("P4.28"))));
+    const auto all = drive({"restore", "da200_drive", file, "--machine", five, "--simulate", "--json"}).json();
+    EXPECT_TRUE(all["ok"]) << all;
+
+    const auto json = drive({"params", "--profile", "sv-da200", "--filter", "P0.", "--machine", five, "--json"}).json();
+    const auto row = [&](const std::string& name) {
+        for (const auto& one : json)
+            if (one["parameter"] == name) return one;
+        return Json();
+    };
+    EXPECT_EQ(row("P0.22")["factory"], 10000);
+    EXPECT_EQ(row("P0.22")["factory_is"], "stated");
+    EXPECT_TRUE(row("P0.03")["factory"].is_null()) << "2.1(1) has the user set it to 8: nobody says what it was";
+    EXPECT_EQ(row("P0.03")["factory_is"], "unknown");
+}
+
+TEST(DriveCommand, WhatIsStatedAssumedAndUnknownReadsDifferently) {
+    const auto shown = [](const std::string& profile, const std::string& filter) {
+        return drive({"params", "--profile", profile, "--filter", filter, "--machine", demo}).out;
+    };
+    EXPECT_THAT(shown("sv33-e", "P05.13"), HasSubstr("250 ms"));                       // 7.2
+    EXPECT_THAT(shown("sv33-e", "P13.49"), HasSubstr("(assumed)"));                    // no table gives it
+    EXPECT_THAT(shown("tsvm-d6", "605Ah"), HasSubstr("not stated"));                   // 5.3.1 names it only
+    EXPECT_THAT(shown("se-808x", "605Ah"), HasSubstr("1 (assumed)"));                  // 4.3 leaves the column empty
+    EXPECT_THAT(shown("se-808x", "2000h:02"), HasSubstr("after saving and restart"));  // 6
+}
+
 TEST_F(DriveSets, TheSetOfAnotherDriveOrABrokenFileChangesNothing) {
     std::ofstream(path("z.yaml")) << "version: 1\ndrive: se-808x\nparameters: { '2000h:01': 2.0 A }\n";
     const auto other = on_demo({"restore", "x_drive", path("z.yaml")});

@@ -53,6 +53,7 @@ config::LoadedDrive a_drive() {
     gain.chinese = "增益";
     gain.minimum = 1, gain.maximum = 99, gain.value = 7;
     gain.unit = "%", gain.scale = 0.1;
+    gain.factory = axes::FactoryValue::stated;
     gain.effect = axes::ParameterEffect::after_restart;
     gain.section = "7.2";
     profile->parameters = {gain};

@@ -18,6 +18,7 @@ using ::testing::Not;
 
 /// P05.10 (2005h:0B): while it is not 0 every write is stored (SV33-E 7.2). P05.13 and P05.14: two settings.
 const axes::ParameterAddress store_switch{0x2005, 0x0B}, brake_release{0x2005, 0x0E}, brake_hold{0x2005, 0x0F};
+const axes::ParameterAddress encoder_use{0x2004, 0x03};  ///< P04.02 counts after a restart (SV33-E 7.2)
 
 axes::DriveProfile profile_storing(axes::ParameterStorage storage) {
     axes::DriveProfile profile;
@@ -34,6 +35,8 @@ axes::DriveProfile profile_storing(axes::ParameterStorage storage) {
     add(store_switch, "P05.10", 1);
     add(brake_release, "P05.13", 250);
     add(brake_hold, "P05.14", 150);
+    add(encoder_use, "P04.02", 0);
+    profile.parameters.back().effect = axes::ParameterEffect::after_restart;
     return profile;
 }
 
@@ -122,6 +125,30 @@ TEST(DriveWrite, AValueThatIsInForceButWasNeverStoredIsStored) {
     EXPECT_FALSE(write_values(at_once, {at_once.value(brake_release, 300)}, Storing::asked).error);
     EXPECT_EQ(at_once.eeprom[brake_release.sub], 300);
     EXPECT_EQ(at_once.eeprom_writes, 1);
+}
+
+// Lost before it counts: it would read as if it were in force, and never be.
+TEST(DriveWrite, WhatCountsAfterARestartIsNotWrittenUnlessItIsStored) {
+    for (const auto storage : {ParameterStorage::each_write, ParameterStorage::on_request}) {
+        FakeDrive drive{storage};
+        const auto refused = write_values(drive, {drive.value(brake_release, 300), drive.value(encoder_use, 1)}, Storing::volatile_only);
+        ASSERT_TRUE(refused.error);
+        EXPECT_EQ(refused.error->code, "drive.needs_store");
+        EXPECT_THAT(refused.error->what, HasSubstr("P04.02"));
+        EXPECT_THAT(refused.error->remedy, HasSubstr("--store"));
+        EXPECT_EQ(drive.ram[brake_release.sub], 250) << "nothing is half done";
+        EXPECT_EQ(drive.ram[encoder_use.sub], 0);
+
+        const auto stored = write_values(drive, {drive.value(encoder_use, 1)}, Storing::asked);
+        EXPECT_FALSE(stored.error);
+        EXPECT_EQ(drive.eeprom[encoder_use.sub], 1);
+        EXPECT_THAT(stored.notes, Contains(HasSubstr("P04.02 counts after the drive's next restart")));
+    }
+    FakeDrive never{ParameterStorage::never};
+    const auto refused = write_values(never, {never.value(encoder_use, 1)}, Storing::volatile_only);
+    ASSERT_TRUE(refused.error);
+    EXPECT_THAT(refused.error->remedy, HasSubstr("maker's tool"));
+    EXPECT_FALSE(write_values(never, {never.value(encoder_use, 0)}, Storing::volatile_only).error) << "it is so already";
 }
 
 TEST(DriveWrite, WithoutStoringWhatIsInForceIsNotTouched) {

@@ -56,9 +56,7 @@ protected:
         replace("interface: simulated", "interface: twk0");
         replace("cycle: 1 ms", "cycle: 8 ms");
         replace("/dev/ttyUSB0", line());
-        replace("profile: sv-da200\n",
-                "profile: sv-da200\n      startup: [{ object: 2407h, value: 5, if_changed: true }, { object: 2409h, value: 500, "
-                "if_changed: true }]\n");
+        replace("profile: sv-da200\n", "profile: sv-da200\n      stored: [{ object: 2407h, value: 5 }, { object: 2409h, value: 500 }]\n");
         replace("window: 2 deg", "window: 20 deg");
         replace("lcm: { enabled: true,", "socket: '" + socket() + "', lcm: { enabled: false,");
         text.erase(text.find("  events:"));

@@ -126,6 +126,7 @@ TEST(Se808x, ParametersHaveTheRangesOfTheManual) {
         EXPECT_EQ(p.maximum, row.maximum) << int{row.sub};
         EXPECT_EQ(p.bits, 16) << int{row.sub};  // all Unsigned16
         EXPECT_FALSE(p.is_signed) << int{row.sub};
+        EXPECT_EQ(p.factory, row.value >= 0 ? axes::FactoryValue::stated : axes::FactoryValue::unknown) << int{row.sub};
         if (row.value >= 0) {
             EXPECT_EQ(p.value, row.value) << int{row.sub};
         }
@@ -138,10 +139,10 @@ TEST(Se808x, ParametersHaveTheRangesOfTheManual) {
     EXPECT_EQ(parameter(*d.profile, 0x2000, 0x15).unit, "V");
     EXPECT_EQ(parameter(*d.profile, 0x2000, 0x19).chinese, "通讯错误最大计时");  // a time, not a count
     for (const int sub : {0x01, 0x02, 0x11}) {                                   // 6: save, then switch off and on
-        EXPECT_EQ(parameter(*d.profile, 0x2000, static_cast<std::uint8_t>(sub)).effect, ParameterEffect::after_restart);
+        EXPECT_EQ(parameter(*d.profile, 0x2000, static_cast<std::uint8_t>(sub)).effect, ParameterEffect::after_saving);
         EXPECT_EQ(parameter(*d.profile, 0x2000, static_cast<std::uint8_t>(sub)).change, ParameterChange::disabled);  // 3.2.1
     }
-    EXPECT_EQ(parameter(*d.profile, 0x2000, 0x06).effect, ParameterEffect::after_restart);  // 2.8
+    EXPECT_EQ(parameter(*d.profile, 0x2000, 0x06).effect, ParameterEffect::after_saving);  // 2.8
 }
 
 TEST(Se808x, ObjectsHaveTypesAndAccessOfTheManual) {

@@ -209,13 +209,13 @@ TEST(TsvmParameters, AddressesRangesAndFactoryValuesAreThoseOfTheTable) {
     }
 }
 
-TEST(TsvmParameters, TheStarredOnesCountAfterARestart) {
+TEST(TsvmParameters, TheStarredOnesCountAfterSavingAndARestart) {
     // 6.1, the rows with a star.
     const std::set<std::string> starred{"PA1",  "PA2",  "PA4",  "PA12", "PA13", "PA14", "PA15", "PA22", "PA23",
                                         "PA30", "PA45", "PA51", "PA61", "PA69", "PA70", "PA81", "PA84"};
     std::set<std::string> ours;
     for (const auto& p : tsvm().profile->parameters)
-        if (p.effect == ParameterEffect::after_restart && p.section.rfind("6.1", 0) == 0) ours.insert(p.parameter);
+        if (p.effect == ParameterEffect::after_saving && p.section.rfind("6.1", 0) == 0) ours.insert(p.parameter);
     EXPECT_EQ(ours, starred);
 }
 

@@ -24,8 +24,10 @@ const axes::DriveParameter* parameter(std::string_view name) {
 
 TEST(Xp200File, HasNoDictionaryAndAllParametersAndAlarms) {
     EXPECT_EQ(xp200().device, nullptr);
-    EXPECT_EQ(xp200().profile->parameters.size(), 117u);  // 113 in 5.1.1 to 5.1.3, Pr034 in 5.4.1, Pr181 to Pr183 in 9.2
-    EXPECT_EQ(xp200().profile->alarms.size(), 22u);       // 6.1
+    // 113 in 5.1.1 to 5.1.3, Pr034 in 5.4.1, Pr181 to Pr183 in 9.2, Pr116 in 8.1, Pr119 in 3.3, Pr176 in 5.2; then 29 words of status in 9.5,
+    // without the second encoder, the joined position and the reserved ones.
+    EXPECT_EQ(xp200().profile->parameters.size(), 120u + 29u);
+    EXPECT_EQ(xp200().profile->alarms.size(), 22u);  // 6.1
     EXPECT_EQ(std::count_if(xp200().profile->alarms.begin(), xp200().profile->alarms.end(), [](const auto& a) { return a.resettable; }),
               11);
 }
@@ -33,7 +35,9 @@ TEST(Xp200File, HasNoDictionaryAndAllParametersAndAlarms) {
 TEST(Xp200File, EachParameterHasItsNumberAsAddressAndStandsOnce) {
     std::uint16_t last = 0;
     for (const auto& p : xp200().profile->parameters) {
-        EXPECT_EQ(p.parameter, fmt::format("Pr{:03}", p.address.index));  // 9.4
+        // 9.4: the number of a parameter is its address, 0 to 249; 9.5: status by function 03h from 1000h on.
+        EXPECT_EQ(p.parameter, p.address.index < 250 ? fmt::format("Pr{:03}", p.address.index) : fmt::format("0x{:04X}", p.address.index));
+        EXPECT_EQ(p.address.index >= 0x1000, p.section == "9.5") << p.parameter;
         EXPECT_TRUE(p.address.index > last || p.address.index == 0) << p.parameter;
         last = p.address.index;
         EXPECT_FALSE(p.chinese.empty() || p.name.empty() || p.section.empty()) << p.parameter;

@@ -127,9 +127,9 @@ Bench se808() {
     return Bench{
         "      profile: se-808x\n"
         "      pdo: { rx: [1600h, 1602h, 1603h] }\n"
-        "      startup:\n"
-        "        - { object: 2000h:02, value: 10000, if_changed: true }\n"
-        "        - { object: 2000h:01, value: 40, if_changed: true }\n",
+        "      stored:\n"
+        "        - { object: 2000h:02, value: 10000 }\n"
+        "        - { object: 2000h:01, value: 40 }\n",
         "    gearing: { counts_per_revolution: 10000, feed: 10 mm }\n"
         "    limits: { velocity: 100 mm/s, acceleration: 500 mm/s2, jerk: 10000 mm/s3, position: [-200 mm, 400 mm] }\n"
         "    following_error: { window: 5 mm, time: 20 ms }\n"};

@@ -75,6 +75,20 @@ TEST_F(Se808x, ParametersAreLostUnlessTheyAreSaved) {
     EXPECT_EQ(desk.read(0x2000, 1), 40);
 }
 
+// 6, second to fifth step: the steps per revolution count after saving and switching off and on, and read back at once.
+TEST_F(Se808x, StepsPerRevolutionCountAfterSavingAndSwitchingOffAndOn) {
+    ASSERT_EQ(desk.sdo(0x2000, 2, 50000), 0u);
+    EXPECT_EQ(desk.read(0x2000, 2), 50000);
+    EXPECT_EQ(desk.axis().counts_per_revolution(), 10000) << "what it works with";
+    desk.power_cycle();
+    EXPECT_EQ(desk.read(0x2000, 2), 10000) << "never saved";
+    EXPECT_EQ(desk.axis().counts_per_revolution(), 10000);
+    store_and_restart({{2, 50000}});
+    EXPECT_EQ(desk.axis().counts_per_revolution(), 50000);
+    // The mechanics have not moved: the home switch, at 1000 of 10000, is at 5000 of 50000.
+    EXPECT_DOUBLE_EQ(desk.axis().plant().config().home_from, 5000);
+}
+
 // 4.2: "write 0x65766173, and the drive saves all parameters": those of 6000h too. What is no parameter is not saved.
 TEST_F(Se808x, SavingKeepsAllParametersAndNoCommand) {
     ASSERT_EQ(desk.sdo(0x6083, 0, 77777), 0u);

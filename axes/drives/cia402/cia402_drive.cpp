@@ -23,7 +23,7 @@ std::uint16_t of_axis(std::uint16_t base, std::uint8_t axis, const DriveProfile&
 }  // namespace
 
 Cia402Drive::Cia402Drive(ecat::Master& bus, std::size_t slave, std::uint8_t axis, std::shared_ptr<const DriveProfile> profile,
-                         Duration cycle)
+                         Duration cycle, AxisWants wants)
     : bus_(bus),
       slave_(slave),
       axis_(axis),
@@ -31,7 +31,7 @@ Cia402Drive::Cia402Drive(ecat::Master& bus, std::size_t slave, std::uint8_t axis
       interpolation_(profile_->csp_interpolates ? cycle : Duration{}),
       fault_quirk_(profile_->has(Quirk::fault_low_nibble_f)),
       alarm_(*profile_, profile_->alarm_detail_index ? of_axis(profile_->alarm_detail_index, axis, *profile_) : std::uint16_t{0}),
-      settings_(*profile_, static_cast<std::uint16_t>(axis * profile_->object_offset), cycle) {
+      settings_(*profile_, static_cast<std::uint16_t>(axis * profile_->object_offset), cycle, std::move(wants)) {
     auto& c = capabilities_;
     for (const auto mode : profile_->modes) c.modes = static_cast<std::uint16_t>(c.modes | (1u << static_cast<unsigned>(mode)));
     c.drive_homing = !profile_->homing_methods.empty() && c.has(DriveMode::homing);
@@ -226,8 +226,9 @@ ServiceTicket Cia402Drive::write_parameter(ParameterAddress address, std::vector
     // The next frame would overwrite it, and some drives take that badly (SV33-E 6.2.8, TSVM 5.2.5).
     if (bus_.maps_output(slave_, object(address.index), address.sub)) return 0;
     // Units that change under a moving axis would make its next set-point another one (SV-DA200 2.1 note 1: at once).
+    // So would another gear (SV33-E 6091h).
     const auto& units = profile_->units.object;
-    if (units.index != 0 && address.index == units.index && address.sub == units.sub && enabled_.load(std::memory_order_relaxed)) return 0;
+    if (enabled_.load(std::memory_order_relaxed) && ((units.index != 0 && address == units) || settings_.part_of_scale(address))) return 0;
     const auto ticket = bus_.download(slave_, object(address.index), address.sub, value);
     settings_.changed(address);  // read again, behind this write
     return ticket;

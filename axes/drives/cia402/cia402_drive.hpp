@@ -32,8 +32,9 @@ namespace taktwerk::axes::cia402 {
 class Cia402Drive final : public DrivePort {
 public:
     /// `bus` outlives the drive. `slave` is the index in the bus configuration, `axis` the 0-based axis on that slave,
-    /// `cycle` the bus cycle (the drive interpolates over it).
-    Cia402Drive(ecat::Master& bus, std::size_t slave, std::uint8_t axis, std::shared_ptr<const DriveProfile> profile, Duration cycle);
+    /// `cycle` the bus cycle (the drive interpolates over it). `wants`: with what else of the drive it must not be enabled.
+    Cia402Drive(ecat::Master& bus, std::size_t slave, std::uint8_t axis, std::shared_ptr<const DriveProfile> profile, Duration cycle,
+                AxisWants wants = {});
 
     /// Finds the mapped objects; call once the bus has laid out its process image. Errors name the missing object and the
     /// PDO that should carry it. Mapped objects that nobody writes each cycle start at what the start-up list or else the

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "axes/port/drive_scale.hpp"
+
 namespace taktwerk::axes::cia402 {
 
 namespace {
@@ -32,11 +34,14 @@ bool applies(SettingApplies when, bool clocks) noexcept {
 
 }  // namespace
 
-SettingsCheck::SettingsCheck(const DriveProfile& profile, std::uint16_t offset, Duration cycle)
-    : profile_(profile), offset_(offset), cycle_(cycle), velocity_(profile.velocity_counts_per_unit) {
+SettingsCheck::SettingsCheck(const DriveProfile& profile, std::uint16_t offset, Duration cycle, AxisWants wants)
+    : profile_(profile), offset_(offset), cycle_(cycle), wants_(std::move(wants)), velocity_(profile.velocity_counts_per_unit) {
     for (const auto& row : profile_.required_settings) want(row.object);
     want(profile_.units.object);
     want(profile_.units.counts_per_revolution);
+    for (const auto& setting : wants_.stored) want(setting.object);
+    if (wants_.counts_per_revolution != 0)
+        for (const auto& object : scale_objects(profile_.scale)) want(object);
 }
 
 void SettingsCheck::want(ParameterAddress object) {
@@ -50,12 +55,18 @@ const SettingsCheck::Reading* SettingsCheck::reading(ParameterAddress object) co
 }
 
 void SettingsCheck::online(bool now) noexcept {
-    if (now && !online_) wanted_.fetch_add(1, std::memory_order_acq_rel);
+    if (now && !online_) {
+        came_.fetch_add(1, std::memory_order_acq_rel);
+        wanted_.fetch_add(1, std::memory_order_acq_rel);
+    }
     online_ = now;
 }
 
 void SettingsCheck::changed(ParameterAddress address) noexcept {
-    if (reading(address)) wanted_.fetch_add(1, std::memory_order_acq_rel);
+    if (!reading(address)) return;
+    for (const auto& row : profile_.parameters)
+        if (row.address == address && row.waits_for_restart() && part_of_scale(address)) waiting_.push_back(address);
+    wanted_.fetch_add(1, std::memory_order_acq_rel);
 }
 
 SettingsCheck::Verdict SettingsCheck::verdict() const noexcept {
@@ -76,6 +87,7 @@ void SettingsCheck::step(ecat::Master& bus, std::size_t slave) {
         if (r.known) r.value = number(answer->value().data, is_signed(bus.slave(slave), r.object));
     }
     const auto wanted = wanted_.load(std::memory_order_acquire);
+    if (const auto times = came_.load(std::memory_order_acquire); times != seen_coming_) seen_coming_ = times, waiting_.clear();
     if (wanted != under_way_) {  // from the start: what was read before may be of another time
         under_way_ = wanted;
         next_ = 0;
@@ -123,7 +135,59 @@ void SettingsCheck::judge(const ecat::SlaveConfig& slave) {
                 row.section);
         }
     }
+    judge_stored(slave);
+    judge_scale(slave);
     if (profile_.units.object.index != 0) judge_units(slave);
+}
+
+std::string SettingsCheck::named(ParameterAddress object) const {
+    for (const auto& row : profile_.parameters)
+        if (row.address == object) return row.parameter.empty() ? fmt::format("{} ({})", shown(object), row.name) : row.parameter;
+    return shown(object);
+}
+
+bool SettingsCheck::part_of_scale(ParameterAddress object) const noexcept {
+    const auto objects = scale_objects(profile_.scale);
+    return wants_.counts_per_revolution != 0 && std::find(objects.begin(), objects.end(), object) != objects.end();
+}
+
+void SettingsCheck::judge_stored(const ecat::SlaveConfig& slave) {
+    for (const auto& setting : wants_.stored) {
+        const auto& r = *reading(setting.object);
+        if (r.known && r.value == setting.value) continue;
+        problems_.push_back(fmt::format("slave '{}': {} shall be {} by `stored`, and {}. {}", slave.name, named(setting.object),
+                                        setting.value, r.known ? fmt::format("reads {}", r.value) : "could not be read", setting.remedy));
+    }
+}
+
+/// What the objects do not tell is said by `taktwerk check`, once: nobody can hold an axis back for it.
+void SettingsCheck::judge_scale(const ecat::SlaveConfig& slave) {
+    if (wants_.counts_per_revolution == 0) return;
+    const auto& scale = profile_.scale;
+    const auto refuse = [&](const std::string& why) {
+        problems_.push_back(fmt::format("slave '{}': {}. {} [manual {}]", slave.name, why, scale.remedy, scale.section));
+    };
+    auto waiting = waiting_;
+    for (const auto& sdo : slave.startup)
+        for (const auto& row : profile_.parameters)
+            if (row.waits_for_restart() && part_of_scale(row.address) && sdo.sub == row.address.sub &&
+                sdo.index == row.address.index + offset_)
+                waiting.push_back(row.address);
+    for (const auto& object : waiting)
+        refuse(fmt::format(
+            "{} was written and counts after a restart only: what a turn of the motor is for the drive now, nobody knows. Store "
+            "it, switch the drive off and on",
+            named(object)));
+    const auto found = scale_of(scale, [&](ParameterAddress object) -> std::optional<std::int64_t> {
+        const auto* r = reading(object);
+        return r != nullptr && r->known ? std::optional{r->value} : std::nullopt;
+    });
+    if (!found || found->is(wants_.counts_per_revolution)) return;
+    refuse(fmt::format(
+        "a turn of the motor is {:.10g} counts for the drive ({}), and {} for the axis (`gearing`): it would travel {:.4g} times "
+        "as far as it shows",
+        found->value(), scale_words(profile_), wants_.counts_per_revolution,
+        static_cast<double>(wants_.counts_per_revolution) / found->value()));
 }
 
 void SettingsCheck::judge_units(const ecat::SlaveConfig& slave) {

@@ -20,7 +20,7 @@ Parameters::Parameters(const std::vector<DriveParameter>& rows) {
         row.documented = true;
         row.read_only = parameter.change == ParameterChange::never;
         row.is_signed = parameter.is_signed;
-        row.after_restart = parameter.effect == ParameterEffect::after_restart;
+        row.after_restart = parameter.waits_for_restart();
         if (parameter.minimum) row.low = *parameter.minimum;
         if (parameter.maximum) row.high = *parameter.maximum;
         stored_[number] = static_cast<std::uint16_t>(parameter.value);

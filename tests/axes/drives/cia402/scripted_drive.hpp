@@ -35,7 +35,8 @@ inline ecat::ObjectEntry object(std::uint16_t index, std::uint8_t sub = 0) {
         {0x60B8, DataType::U16}, {0x60B9, DataType::U16}, {0x60BA, DataType::I32}, {0x60BB, DataType::I32}, {0x60E0, DataType::U16},
         {0x60E1, DataType::U16}, {0x60FD, DataType::U32}, {0x60FF, DataType::I32}, {0x2021, DataType::U16}, {0x2005, DataType::U16},
         {0x6098, DataType::I8},  {0x6099, DataType::U32}, {0x609A, DataType::U32}, {0x2020, DataType::U16}, {0x6081, DataType::U32},
-        {0x6084, DataType::U32}, {0x6087, DataType::U32}};
+        {0x6084, DataType::U32}, {0x6087, DataType::U32},
+        {0x2000, DataType::U32}, {0x2001, DataType::U32}, {0x2051, DataType::U16}, {0x2054, DataType::U16}, {0x6091, DataType::U32}};
     ecat::ObjectEntry e;
     e.index = index;
     e.sub = sub;
@@ -99,7 +100,10 @@ public:
         };
         map(rx, d->rx_pdos[0]);
         map(tx, d->tx_pdos[0]);
-        for (const auto& [index, sub] : others) d->objects.push_back(object(index, sub));
+        for (const auto& [index, sub] : others) {
+            d->objects.push_back(object(index, sub));
+            if (const auto held = holds.find({index, sub}); held != holds.end()) d->objects.back().value = held->second;
+        }
         d->rx_assigned = {0x1600};
         d->tx_assigned = {0x1A00};
 
@@ -124,7 +128,7 @@ public:
             refusal = master->failure();
             return false;
         }
-        drive = std::make_unique<Cia402Drive>(*master, 0, axis, std::make_shared<DriveProfile>(profile), cycle);
+        drive = std::make_unique<Cia402Drive>(*master, 0, axis, std::make_shared<DriveProfile>(profile), cycle, wants);
         if (auto ok = drive->resolve(); !ok) {
             refusal = ok.error();
             return false;
@@ -155,6 +159,8 @@ public:
     }
     const DriveFeedback& feedback() const { return feedback_; }
 
+    std::map<std::pair<std::uint16_t, std::uint8_t>, std::int64_t> holds;  ///< what `others` read from the start
+    AxisWants wants;                                                       ///< before build()
     DriveCommand command;
     std::unique_ptr<ecat::Master> master;
     std::unique_ptr<Cia402Drive> drive;
