@@ -46,7 +46,8 @@ std::string ports_text(const Survey& survey, std::size_t position) {
         }
         const bool entry = survey.topology && survey.topology->slaves[position].entry_port == p;
         std::string other = ecat::neighbour(survey, position, p);
-        other = other.empty() ? (port.open ? "open" : "link, but closed") : (entry ? "from " : "to ") + other;
+        other =
+            other.empty() ? (port.open ? "open" : "link, but closed by a master (a bring-up opens it)") : (entry ? "from " : "to ") + other;
         text += fmt::format("{}{}{} {}", text.empty() ? "" : ", ", p, there ? " " + std::string{ecat::name(port.kind)} : "", other);
         if (!port.counters.clean()) text += " (errors)";
     }

@@ -18,6 +18,7 @@
 #include "apps/taktwerk.hpp"
 #include "core/calendar_distance.hpp"
 #include "core/clock.hpp"
+#include "ecat/bringup/presence.hpp"
 #include "ecat/diagnosis/derived_config.hpp"
 
 namespace taktwerk::apps {
@@ -68,6 +69,8 @@ private:
             loaded = load_file(options.simulate);
             if (!loaded) return exit_bad_file;
             s.configured_ = loaded->machine.bus;
+            // As the machine does (docs/bus.md): without real time nobody waits for the cycle to lock to the reference clock.
+            if (loaded->machine.simulation.supervision == runtime::Supervision::relaxed) s.configured_.lock_required = false;
             s.machine_socket_ = loaded->hmi.socket;
         }
         const std::string nic = !options.nic.empty() ? options.nic : s.configured_.interface;
@@ -157,6 +160,7 @@ Result<ecat::Survey> BusSession::look() {
             const Result<std::uint64_t> heard = probe_->listen(listening_time);
             if (!heard) return heard.error();
             foreign_frames_ = *heard;
+            foreign_sender_ = foreign_frames_ > 0 ? ecat::sender_text(probe_->bus().link) : std::string{};
         }
     }
     Result<ecat::Survey> found = probe_->run(ecat::survey(probe_->port()));
@@ -172,17 +176,18 @@ Result<ecat::Survey> BusSession::look() {
         if (auto asked = probe_->run(ecat::read_device_ids(probe_->port(), *found)); !asked) return asked.error();
     ecat::compare_with(configured_, *found);
     if (foreign_frames_ > 0)
-        found->remarks.push_back(
-            Error{"bus.foreign_master", where_,
-                  fmt::format("another master is sending on this cable ({} frames in {} ms)", foreign_frames_, listening_time / 1ms),
-                  "end it before you change anything"});
+        found->remarks.push_back(Error{"bus.foreign_master", where_,
+                                       fmt::format("another master is sending on this cable ({} frames in {} ms): {}", foreign_frames_,
+                                                   listening_time / 1ms, foreign_sender_),
+                                       "end it before you change anything"});
     return found;
 }
 
 Result<void> BusSession::may_write(const ecat::Survey& survey, std::string_view doing) {
     if (up_ || options_.force) return {};
     if (foreign_frames_ > 0)
-        return Error{"bus.foreign_master", where_, fmt::format("another master is sending on this cable; {} would disturb it", doing),
+        return Error{"bus.foreign_master", where_,
+                     fmt::format("another master is sending on this cable; {} would disturb it: {}", doing, foreign_sender_),
                      "end that master first; --force does it all the same"};
     if (survey.highest_state >= ecat::AlState::safeop)
         print_warning(Error{"bus.foreign_master", where_,
@@ -214,7 +219,9 @@ Result<void> BusSession::confirm_operation(const ecat::Survey& survey) {
 Result<void> BusSession::bring_up(const ecat::Survey& survey) {
     if (auto allowed = may_write(survey, "bringing the bus up"); !allowed) return allowed;
     if (auto confirmed = confirm_operation(survey); !confirmed) return confirmed;
-    new_probe(configured_.slaves.empty() ? ecat::derived_config(survey) : configured_);
+    auto config = configured_.slaves.empty() ? ecat::derived_config(survey) : configured_;
+    config.lock_required = configured_.lock_required;
+    new_probe(std::move(config));
     up_ = true;
     return probe_->bring_up();
 }

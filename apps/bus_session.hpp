@@ -78,6 +78,7 @@ private:
     Instant deadline_{};
     Instant next_refresh_{};
     std::uint64_t foreign_frames_ = 0;
+    std::string foreign_sender_;
     std::string machine_socket_;  ///< that the machine file names; where its machine would be if it ran
     bool up_ = false, closing_ = false;
 };

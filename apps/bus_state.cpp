@@ -1,5 +1,6 @@
 // taktwerk bus state [init|preop|op]: in which state each slave is; or asks for one.
 
+#include <algorithm>
 #include <cstdio>
 
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include "apps/stop_signal.hpp"
 #include "ecat/bringup/al_control.hpp"
 #include "ecat/bringup/slave_setup.hpp"
+#include "ecat/wire/registers.hpp"
 
 namespace taktwerk::apps {
 
@@ -60,6 +62,17 @@ ecat::Script<Result<void>> to_preop(ecat::Bus& bus, ecat::BusSlave& slave) {
 
 ecat::Script<Result<void>> to_init(ecat::Bus& bus, ecat::BusSlave& slave) { return ecat::set_state(bus, slave, AlState::init); }
 
+/// Another master may have left the EEPROMs with the slaves' processors: without them nobody knows who a slave is.
+ecat::Script<Result<void>> take_eeproms(ecat::DatagramPort& port) {
+    co_await port.bwr(ecat::reg::eeprom_configuration, std::uint8_t{2});
+    co_await port.bwr(ecat::reg::eeprom_configuration, std::uint8_t{0});
+    co_return Result<void>{};
+}
+
+bool some_unread(const Survey& survey) {
+    return std::any_of(survey.slaves.begin(), survey.slaves.end(), [](const auto& slave) { return slave.found.error.has_value(); });
+}
+
 /// Down to PREOP or INIT, or up to PREOP: no process data, so nobody is asked.
 int request_low(BusSession& session, Survey survey, const Options& options) {
     if (auto allowed = session.may_write(survey, "changing states"); !allowed) return fail(*options.bus, allowed.error());
@@ -69,8 +82,17 @@ int request_low(BusSession& session, Survey survey, const Options& options) {
         if (!position) return fail(*options.bus, position.error());
         only = *position;
     }
+    if (some_unread(survey)) {
+        if (auto taken = session.probe().run(take_eeproms(session.probe().port())); !taken) return fail(*options.bus, taken.error());
+        Result<Survey> again = session.look();
+        if (!again) return fail(*options.bus, again.error());
+        survey = std::move(*again);
+    }
     session.adopt(survey);
     std::optional<Error> refused;
+    // Whom the survey could not read was not asked for the state either.
+    for (const auto& slave : survey.slaves)
+        if (slave.found.error && (!only || slave.found.position == *only) && !refused) refused = slave.found.error;
     for (auto& slave : session.bus().slaves) {
         if (only && slave->found.position != *only) continue;
         const Result<void> done = options.request == "init" ? session.probe().run(to_init(session.bus(), *slave))

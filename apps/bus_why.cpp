@@ -46,6 +46,43 @@ int explain_failure(BusSession& session, const Error& failure, const BusOptions&
     return exit_bus;
 }
 
+/// Slaves that did not stay in OP while the bus was watched, in words.
+std::vector<std::string> fallen(const ecat::Bus& bus) {
+    std::vector<std::string> fell;
+    for (const auto& slave : bus.slaves) {
+        const std::uint32_t al = slave->al.load();
+        const auto code = static_cast<std::uint16_t>(al >> 16);
+        const bool out = al != static_cast<std::uint32_t>(ecat::AlState::op);
+        const auto returned = slave->recoveries.load();
+        if (out)
+            fell.push_back(fmt::format("{} is in {}{}", slave->subject, ecat::name(ecat::al_state(static_cast<std::uint16_t>(al))),
+                                       code != 0 ? fmt::format(", AL status code {:04X}h {}", code, ecat::al_status_info(code).text) : ""));
+        else if (returned > 0) fell.push_back(fmt::format("{} left OP and came back {} times", slave->subject, returned));
+    }
+    return fell;
+}
+
+/// The bus came up and did not stay up: that is what the person who asks has seen.
+int explain_falls(BusSession& session, const std::vector<std::string>& fell, const BusOptions& options) {
+    const auto& seen = session.probe().master().statistics();
+    const auto notes = session.probe().master().notes();
+    if (options.json) {
+        print_json(Json{{"operational", false},
+                        {"fell", fell},
+                        {"frames_sent", seen.frames_sent},
+                        {"frames_lost", seen.frames_lost},
+                        {"working_counter_errors", seen.working_counter_errors},
+                        {"notes", std::vector<std::string>(notes.begin(), notes.end())}});
+        return exit_bus;
+    }
+    fmt::print("{}: the bus reaches OP but does not stay there\n\n", session.where());
+    for (const auto& line : fell) fmt::print("{}\n", wrapped(line, 2));
+    fmt::print("{} frames sent, {} lost, {} with a wrong working counter\n", seen.frames_sent, seen.frames_lost,
+               seen.working_counter_errors);
+    for (const auto& note : notes) fmt::print("{}\n", wrapped(note, 2));
+    return exit_bus;
+}
+
 int work(BusSession& session, const BusOptions& options) {
     const Result<Survey> found = session.look();
     if (!found) {
@@ -62,6 +99,8 @@ int work(BusSession& session, const BusOptions& options) {
     constexpr Duration proof = std::chrono::seconds{1};
     if (auto ran = session.probe().run_for(proof); !ran) return fail(options, ran.error());
     const auto& seen = session.probe().master().statistics();
+    const std::vector<std::string> fell = fallen(session.bus());
+    if (!fell.empty()) return explain_falls(session, fell, options);
     if (options.json) {
         print_json(Json{{"operational", true},
                         {"slaves", session.probe().master().slave_count()},

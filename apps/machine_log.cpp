@@ -1,17 +1,23 @@
 #include "apps/machine_log.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include <fmt/format.h>
 
 #include "apps/json_text.hpp"
 #include "axes/axis/alarms.hpp"
+#include "ecat/bringup/bus.hpp"
 
 namespace taktwerk::apps {
 
 using namespace runtime;
 
 namespace {
+
+/// A note that comes again is told so often at most, but for one that is twice as bad as what was told.
+constexpr Duration notes_apart = std::chrono::seconds{10};
 
 std::string_view text(Mode mode) {
     switch (mode) {
@@ -37,6 +43,9 @@ bool of_a_drive(const AlarmFact& fact) {
            (fact.id == axes::id(axes::AxisAlarm::drive_fault) || fact.id == axes::id(axes::AxisAlarm::drive_warning));
 }
 
+/// Whoever ends the run knows that it ends, and that its bus does.
+bool ends_the_run(const AlarmText& words) { return words.name == "stopped_by_signal" || words.name == "bus_not_operational"; }
+
 }  // namespace
 
 void MachineLog::print(std::string lines) {
@@ -51,7 +60,8 @@ void MachineLog::say(Instant now, const std::string& event, const std::string& w
 }
 
 void MachineLog::say_alarm(Instant now, const std::string& event, const AlarmText& words) {
-    const auto headline = fmt::format("{}: {} [{}]", words.source, words.english, words.reaction);
+    const auto reaction = words.reaction == "none" ? std::string{} : fmt::format(" [{}]", words.reaction);
+    const auto headline = fmt::format("{}: {}{}", words.source, words.english, reaction);
     if (json_) {
         sink_(fmt::format("{{\"t\":{:.3f},\"event\":{},\"text\":{},\"name\":{},\"chinese\":{},\"cause\":{},\"remedy\":{},\"reset\":{}}}\n",
                           to_seconds(now - start_), json_text(event), json_text(headline), json_text(words.name), json_text(words.chinese),
@@ -68,11 +78,42 @@ void MachineLog::say_alarm(Instant now, const std::string& event, const AlarmTex
     sink_(std::move(lines));
 }
 
+void MachineLog::note(Instant now, const AlarmFact& fact, bool is_new) {
+    const auto known = std::find_if(notes_.begin(), notes_.end(), [&](const Noted& n) {
+        return n.fact.id == fact.id && n.fact.source == fact.source && n.fact.index == fact.index;
+    });
+    const bool worse = known != notes_.end() && std::abs(fact.a) > 2 * std::abs(known->fact.a);
+    if (!is_new && !worse) return;
+    const auto words = machine_.describe(fact);
+    if (ends_the_run(words)) return;
+    if (known == notes_.end()) {
+        notes_.push_back({fact, now, 0});
+        say_alarm(now, "note", words);
+        return;
+    }
+    if (!worse && now - known->said_at < notes_apart) {
+        ++known->unsaid;
+        return;
+    }
+    const auto before = known->unsaid == 0 ? std::string{} : fmt::format(" ({} more since the last line)", known->unsaid);
+    *known = {fact, now, 0};
+    say(now, "note", fmt::format("{}: {}{}", words.source, words.english, before));
+}
+
+/// What the watch of the bus did: who left OP and why, who is back.
+void MachineLog::bus_notes(Instant now) {
+    const auto& bus = machine_.bus().bus();
+    const auto& notes = bus.notes;
+    if (bus.remembered < notes_of_bus_) notes_of_bus_ = 0;  // another bring-up
+    const auto fresh = std::min<std::uint64_t>(bus.remembered - notes_of_bus_, notes.size());
+    for (auto i = notes.size() - fresh; i < notes.size(); ++i) say(now, "bus", notes[i]);
+    notes_of_bus_ = bus.remembered;
+}
+
 void MachineLog::alarms(Instant now, const Snapshot& s) {
     const auto same = [](const AlarmFact& a, const AlarmFact& b) { return a.id == b.id && a.source == b.source && a.index == b.index; };
     for (std::size_t i = 0; i < s.alarm_count; ++i) {
         const auto& alarm = s.alarms[i];
-        if (alarm.reaction == Reaction::none) continue;
         Known* known = nullptr;
         for (auto& k : known_)
             if (same(k.fact, alarm.fact)) known = &k;
@@ -86,9 +127,13 @@ void MachineLog::alarms(Instant now, const Snapshot& s) {
         known->fact = alarm.fact;
         known->standing = alarm.standing;
         known->count = alarm.count;
-        if (!alarm.standing || !(is_new || (other_numbers && of_a_drive(alarm.fact)))) continue;
+        if (alarm.reaction == Reaction::none) {
+            note(now, alarm.fact, is_new);
+            continue;
+        }
+        if (!is_new && !(alarm.standing && other_numbers && of_a_drive(alarm.fact))) continue;
         const auto words = machine_.describe(alarm.fact);
-        if (words.name == "stopped_by_signal") continue;  // whoever ends the run knows it
+        if (ends_the_run(words)) continue;
         // The alarm is announced at once, with its code. Where several alarms of the drive share that code, the detail that tells them apart
         // is read some milliseconds later and completes it; where the code said all, the words are the same and nothing is said.
         if (!is_new && words.english == known->said) continue;
@@ -99,6 +144,8 @@ void MachineLog::alarms(Instant now, const Snapshot& s) {
         for (std::size_t i = 0; i < s.alarm_count; ++i)
             if (same(s.alarms[i].fact, k.fact)) return false;
         const auto words = machine_.describe(k.fact);
+        const bool a_note = std::any_of(notes_.begin(), notes_.end(), [&](const Noted& n) { return same(n.fact, k.fact); });
+        if (a_note || ends_the_run(words)) return true;
         say(now, "gone", fmt::format("{}: {}", words.source, words.name));
         return true;
     });
@@ -125,6 +172,8 @@ void MachineLog::step(Instant now, const Snapshot* snapshot) {
             fmt::format("running, {} mode, {} axes, cycle {} us{}", text(s.mode), s.axes.size(), layout.cycle.count() / 1000,
                         s.simulated ? ", SIMULATED bus" : ""));
     }
+    bus_notes(now);
+    alarms(now, s);  // first: what follows below, follows from them
     if (s.mode != mode_) say(now, "mode", std::string(text(s.mode)));
     mode_ = s.mode;
     if (s.emergency_stop != emergency_) say(now, "E-STOP", s.emergency_stop ? "pressed" : "released");
@@ -147,7 +196,6 @@ void MachineLog::step(Instant now, const Snapshot* snapshot) {
         if (s.programs[i] != programs_[i]) say(now, "program", fmt::format("{} {}", layout.programs[i], text(s.programs[i])));
         programs_[i] = s.programs[i];
     }
-    alarms(now, s);
 }
 
 }  // namespace taktwerk::apps

@@ -25,7 +25,10 @@ public:
     void say(Instant now, const std::string& event, const std::string& text) const;
 
 private:
+    void bus_notes(Instant now);
     void alarms(Instant now, const runtime::Snapshot& snapshot);
+    /// An alarm to which the machine does not react: it is information, and it may come again each second.
+    void note(Instant now, const AlarmFact& fact, bool is_new);
     void say_alarm(Instant now, const std::string& event, const runtime::AlarmText& words);
 
     struct Known {
@@ -33,6 +36,11 @@ private:
         bool standing = false;
         std::uint32_t count = 0;
         std::string said;  // in English
+    };
+    struct Noted {
+        AlarmFact fact;
+        Instant said_at{};
+        std::uint32_t unsaid = 0;
     };
     runtime::Machine& machine_;
     Instant start_;
@@ -43,6 +51,8 @@ private:
     std::vector<bool> homed_;
     std::vector<runtime::ProgramState> programs_;
     std::vector<Known> known_;
+    std::vector<Noted> notes_;
+    std::uint64_t notes_of_bus_ = 0;  // how many were said
     runtime::Mode mode_ = runtime::Mode::manual;
     bool first_ = true, emergency_ = false;
 };

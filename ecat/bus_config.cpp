@@ -20,7 +20,7 @@ constexpr Duration minimum_cycle = std::chrono::microseconds{50};
 constexpr Duration maximum_cycle = std::chrono::milliseconds{100};
 constexpr Duration maximum_watchdog = std::chrono::microseconds{100} * 0xFFFF;
 
-std::string micro(Duration d) { return fmt::format("{} us", to_seconds(d) * 1e6); }
+std::string micro(Duration d) { return fmt::format("{:.9g} us", to_seconds(d) * 1e6); }
 
 /// The PDOs as far as they are known without the slave: selected, else its factory ones.
 std::vector<PdoDescription> effective(const PdoSelection& selection, const std::vector<PdoDescription>& known,

@@ -16,6 +16,21 @@ constexpr std::uint32_t naming_cycles = 200;
 constexpr std::uint32_t attempts_limit = 3;
 constexpr std::size_t facts_of_bus = 6, facts_of_slave = 4;
 
+/// AL status codes by which a slave says that frames or SYNC0 and frames did not come as they should (ETG.1000.6 table 11).
+bool for_want_of_frames(std::uint16_t code) noexcept {
+    switch (code) {
+        case 0x001A:               // synchronization error
+        case 0x001B:               // sync manager watchdog
+        case 0x002C:               // fatal synchronization error
+        case 0x0032:               // PLL error
+        case 0x0033:               // DC sync input/output error
+        case 0x0034: return true;  // DC sync timeout
+        default: return false;
+    }
+}
+
+double milliseconds(Duration d) noexcept { return to_seconds(d) * 1e3; }
+
 bool in_op(const SlaveCondition& slave) noexcept { return slave.al_state == AlState::op && !slave.al_error; }
 
 }  // namespace
@@ -55,6 +70,15 @@ void FaultFinder::look(const BusCondition& bus) noexcept {
     if (!bus.link_up) return raise(alarm::link_down, AlarmSource::bus, 0);
     if (bus.lost_in_a_row >= limit_) return raise(alarm::frames_lost, AlarmSource::bus, 0, bus.lost_in_a_row);
 
+    for (auto& state : states_) {
+        if (in_op(state.seen)) {
+            state.fell_after_stall = {};
+            state.fell_code = 0;
+            continue;
+        }
+        if (state.fell_after_stall == Duration{}) state.fell_after_stall = bus.stall;
+        if (state.seen.al_status_code != 0) state.fell_code = state.seen.al_status_code;
+    }
     const std::size_t unnamed = find_lost(bus.slaves_answering);
     form_groups();
     raise_groups();
@@ -128,7 +152,6 @@ void FaultFinder::raise_slave(std::size_t at, bool counted_out) noexcept {
     const State& state = states_[at];
     const auto& seen = state.seen;
     const bool tolerated = slave.on_loss == LossPolicy::stop_own_axes;
-    const auto state_number = static_cast<double>(seen.al_state);
     if (seen.trouble == ReturnTrouble::other_device) {
         raise(tolerated ? alarm::other_device_tolerated : alarm::other_device, AlarmSource::slave, slave.index);
         return;
@@ -140,15 +163,30 @@ void FaultFinder::raise_slave(std::size_t at, bool counted_out) noexcept {
 
     const bool waits = counted_out && seen.age < limit_ + naming_cycles;  // probably one of those who are just being named
     if (seen.presence == Presence::silent) {
-        if (!stale(state)) raise(alarm::station_address_lost, AlarmSource::slave, slave.index);
-        else raise(tolerated ? alarm::slave_dropped_out : alarm::slave_lost, AlarmSource::slave, slave.index);
+        // Only who exchanges in this very cycle has power and cable, and lost nothing but its address.
+        if (seen.age == 0) raise(alarm::station_address_lost, AlarmSource::slave, slave.index);
+        else if (stale(state)) raise(tolerated ? alarm::slave_dropped_out : alarm::slave_lost, AlarmSource::slave, slave.index);
     } else if (seen.presence == Presence::answers && !in_op(seen)) {
-        raise(tolerated ? alarm::slave_dropped_out : alarm::slave_left_op, AlarmSource::slave, slave.index, state_number,
-              seen.al_status_code);
+        raise_left_op(at);
     } else if (stale(state) && !waits) {
-        if (tolerated) raise(alarm::slave_dropped_out, AlarmSource::slave, slave.index, state_number, seen.al_status_code);
+        if (tolerated) raise_left_op(at);
         else raise(alarm::working_counter_wrong, AlarmSource::slave, slave.index, seen.age);
     }
+}
+
+void FaultFinder::raise_left_op(std::size_t at) noexcept {
+    const auto& slave = slaves_[at];
+    const auto& seen = states_[at].seen;
+    const bool tolerated = slave.on_loss == LossPolicy::stop_own_axes;
+    const Duration stall = states_[at].fell_after_stall;
+    const std::uint16_t code = states_[at].fell_code;
+    if (stall > Duration{} && for_want_of_frames(code)) {
+        raise(tolerated ? alarm::starved_slave_dropped_out : alarm::starved_slave_left_op, AlarmSource::slave, slave.index, code,
+              milliseconds(stall));
+        return;
+    }
+    raise(tolerated ? alarm::slave_dropped_out : alarm::slave_left_op, AlarmSource::slave, slave.index, static_cast<double>(seen.al_state),
+          code);
 }
 
 }  // namespace taktwerk::ecat

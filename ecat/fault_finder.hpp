@@ -6,6 +6,7 @@
 //   no frame comes back          link_down or frames_lost, nothing else: nothing else is known
 //   slaves do not answer         slave_lost, or cable_broken where it is more than one behind the same place
 //   the cycle counts fewer slaves than it can name (a moment after a break): slaves_missing
+//   a slave leaves OP by a watchdog or for want of frames, right after this computer sent none    starved_slave_left_op
 //   a slave answers, but not as it should    slave_left_op, working_counter_wrong, station_address_lost, other_device, ...
 //
 // Slaves whose loss stops only their own axes (LossPolicy::stop_own_axes) have conditions of their own with another reaction.
@@ -41,6 +42,7 @@ struct BusCondition {
     std::uint32_t reference_times_missing = 0;  ///< in a row
     std::int64_t dc_difference_ns = 0;
     bool foreign_master = false;
+    Duration stall{};  ///< so long this computer sent nothing a moment ago; 0: it was in time
 };
 
 /// A slave as it was configured and found. In the order of positions, so that parents come before their children.
@@ -71,6 +73,8 @@ private:
         SlaveCondition seen;
         bool lost = false;
         std::size_t gone_with = FaultSlave::none;  ///< the first slave behind the break that took it away; until it is back in OP
+        Duration fell_after_stall{};               ///< this computer's own, right before the slave left OP; while it is out of OP
+        std::uint16_t fell_code = 0;               ///< why, as it said first: the way back clears it
         std::size_t group = 0, largest_group = 0;  ///< slaves gone with this one, now and at most
         bool group_stops_machine = false;
     };
@@ -80,6 +84,8 @@ private:
     void form_groups() noexcept;
     void raise_groups() noexcept;
     void raise_slave(std::size_t at, bool counted_out) noexcept;
+    /// A slave that answers, but not from OP: whose doing was it?
+    void raise_left_op(std::size_t at) noexcept;
     void raise_unnamed(std::size_t unnamed) noexcept;
     [[nodiscard]] bool stale(const State& state) const noexcept { return state.seen.age >= limit_; }
 

@@ -251,8 +251,15 @@ std::size_t Master::active_faults(std::span<AlarmFact> out) const noexcept {
 
 std::string Master::detail(const AlarmFact& fact) const {
     const auto& slaves = impl_->bus->slaves;
+    if (fact.id == alarm::foreign_master) return sender_text(impl_->bus->link);
     if (fact.source != AlarmSource::slave || fact.index >= slaves.size()) return {};
+    const auto code_text = [](double code) { return std::string{al_status_info(static_cast<std::uint16_t>(code)).text}; };
     switch (fact.id) {
+        case alarm::slave_left_op:
+        case alarm::slave_dropped_out:
+            return fmt::format("{}; it is in {}", code_text(fact.b), name(static_cast<AlState>(static_cast<std::uint8_t>(fact.a))));
+        case alarm::starved_slave_left_op:
+        case alarm::starved_slave_dropped_out: return code_text(fact.a);
         case alarm::cable_broken:
         case alarm::branch_dropped_out:
         case alarm::slave_lost: return connection_text(*impl_->bus, *slaves[fact.index]);

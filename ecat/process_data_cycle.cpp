@@ -9,7 +9,9 @@ namespace taktwerk::ecat {
 
 namespace {
 
-constexpr std::size_t bringup_datagrams = AcyclicChannel::max_datagrams_a_frame;  // nobody to disturb before OP
+/// Before OP nobody is disturbed but the frames of the next cycle: what is acyclic may take a quarter of the cycle on the wire.
+constexpr std::int64_t bringup_share = 4;
+constexpr Duration longest_frame = std::chrono::microseconds{124};  ///< 1518 bytes, preamble and gap at 100 Mbit/s
 
 std::int64_t nanoseconds(Instant t) noexcept { return t.time_since_epoch().count(); }
 
@@ -59,6 +61,9 @@ void ProcessDataCycle::copy_statistics() noexcept {
     statistics_.dc_phase_error_ns = clock_.phase_error();
     statistics_.dc_correction = clock_.correction();
     if (auto* link = link_.load(std::memory_order_acquire)) {
+        std::uint64_t source = 0;
+        for (const std::uint8_t byte : s.foreign_source) source = source << 8 | byte;
+        link->foreign_source.store(source, std::memory_order_relaxed);
         link->foreign_frames.store(s.foreign, std::memory_order_relaxed);
         statistics_.dc_difference_ns = link->dc_difference_ns.load(std::memory_order_relaxed);
     }
@@ -67,7 +72,7 @@ void ProcessDataCycle::copy_statistics() noexcept {
 void ProcessDataCycle::pump(Instant now) noexcept {
     exchange_.receive(now);
     channel_.collect(now);
-    channel_.pack(now, bringup_datagrams);
+    pack_bring_up(now);
     copy_statistics();
 }
 
@@ -77,10 +82,19 @@ void ProcessDataCycle::receive(Instant now) noexcept {
     auto* cycle = latest_.load(std::memory_order_acquire);
     if (cycle != nullptr) collect_frames(*cycle);
     copy_statistics();
-    if (cycle != nullptr) find_faults(*cycle);
+    if (cycle != nullptr) find_faults(*cycle, now);
 }
 
-void ProcessDataCycle::find_faults(CyclePlan& cycle) noexcept {
+/// Half a cycle more than a cycle between two frames is later than any slave expects.
+void ProcessDataCycle::note_stall(CycleLink& link, Instant now) noexcept {
+    const Duration gap = last_send_ ? now - *last_send_ : Duration{};
+    last_send_ = now;
+    if (2 * gap <= 3 * config_.cycle) return;
+    link.stall_ns.store(gap.count(), std::memory_order_relaxed);
+    link.stall_ended_ns.store(nanoseconds(now), std::memory_order_relaxed);
+}
+
+void ProcessDataCycle::find_faults(CyclePlan& cycle, Instant now) noexcept {
     for (std::size_t s = 0; s < cycle.slaves.size(); ++s) {
         const auto& health = cycle.health[s];
         const auto& slave = *cycle.slaves[s];
@@ -96,7 +110,8 @@ void ProcessDataCycle::find_faults(CyclePlan& cycle) noexcept {
     const auto* link = link_.load(std::memory_order_acquire);
     cycle.faults.look({transport_.link_up(), statistics_.lost_in_a_row, statistics_.slaves_answering,
                        clock_.reference().rejected_in_a_row(), statistics_.dc_difference_ns,
-                       link != nullptr && link->foreign_master.load(std::memory_order_relaxed)});
+                       link != nullptr && link->foreign_master.load(std::memory_order_relaxed),
+                       link != nullptr ? recent_stall(*link, now) : Duration{}});
 }
 
 void ProcessDataCycle::collect_frames(CyclePlan& cycle) noexcept {
@@ -244,6 +259,7 @@ void ProcessDataCycle::send(Instant now) noexcept {
     clock_.steer(now, link);
     auto* cycle = running_.load(std::memory_order_acquire);
     if (cycle != nullptr) {
+        if (link != nullptr) note_stall(*link, now);
         send_frames(*cycle, now);
         if (link != nullptr) {
             link->first_send_ns.store(nanoseconds(now) - static_cast<std::int64_t>(cycle->number - 1) * config_.cycle.count(),
@@ -251,7 +267,14 @@ void ProcessDataCycle::send(Instant now) noexcept {
             link->cycles.store(link->cycles.load(std::memory_order_relaxed) + 1, std::memory_order_release);
         }
     }
-    channel_.pack(now, operational_.load(std::memory_order_relaxed) ? config_.acyclic_per_cycle : bringup_datagrams);
+    if (operational_.load(std::memory_order_relaxed)) channel_.pack(now, config_.acyclic_per_cycle);
+    else pack_bring_up(now);
+}
+
+void ProcessDataCycle::pack_bring_up(Instant now) noexcept {
+    const auto frames = std::clamp<std::int64_t>(config_.cycle / (bringup_share * longest_frame), 1, AcyclicChannel::max_frames);
+    for (std::int64_t i = 0; i < frames; ++i)
+        if (channel_.pack(now, AcyclicChannel::max_datagrams_a_frame) == 0) return;
 }
 
 void ProcessDataCycle::send_frames(CyclePlan& cycle, Instant now) noexcept {

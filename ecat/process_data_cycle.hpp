@@ -85,10 +85,12 @@ private:
     void take_unit(CyclePlan& cycle, const UnitPlan& unit) noexcept;
     [[nodiscard]] bool answered_exactly(const CyclePlan& cycle, const UnitPlan& unit) noexcept;
     void send_frames(CyclePlan& cycle, Instant now) noexcept;
+    void pack_bring_up(Instant now) noexcept;
     void add_clock(const CyclePlan& cycle, SlotId slot, Instant now) noexcept;
     void add_unit(CyclePlan& cycle, const UnitPlan& unit, FramePacker& packer) noexcept;
     void give_up_frames(CyclePlan& cycle) noexcept;
-    void find_faults(CyclePlan& cycle) noexcept;
+    void find_faults(CyclePlan& cycle, Instant now) noexcept;
+    void note_stall(CycleLink& link, Instant now) noexcept;
     /// SYNC0 of the slave, as machine time follows from it; 0: does not run, or the reference is not known yet.
     [[nodiscard]] std::int64_t sync0_of(const CyclePlan& cycle, std::size_t slave) const noexcept;
     void copy_statistics() noexcept;
@@ -111,7 +113,8 @@ private:
     struct {
         Instant send_time = Instant::min();
         std::int64_t offset = 0;
-    } mutable next_send_;  // the same when the next frames leave: asked for by every axis
+    } mutable next_send_;               // the same when the next frames leave: asked for by every axis
+    std::optional<Instant> last_send_;  // of process data
     bool all_good_ = true;
     bool any_lost_ = false;
     bool margin_known_ = false;

@@ -21,6 +21,9 @@ enum class MachineAlarm : AlarmId {
     program_waits = 0x600A,
     positions_outdated = 0x600B,
 };
+/// First number of emergency_stop: nobody pressed it, the slave with its input is not exchanged.
+inline constexpr double emergency_stop_unread = 1;
+
 [[nodiscard]] constexpr AlarmId id(MachineAlarm alarm) noexcept { return static_cast<AlarmId>(alarm); }
 
 inline constexpr std::array<AlarmInfo, 11> machine_alarms{{
@@ -99,14 +102,11 @@ inline constexpr std::array<AlarmInfo, 11> machine_alarms{{
      ResetRule::self_clearing,
      Reaction::warn,
      {}},
-    {id(MachineAlarm::positions_outdated),
-     "positions_outdated",
+    {id(MachineAlarm::positions_outdated), "positions_outdated",
      "The disk still holds an older reference of an axis, and it cannot be taken back: the axes stop",
      "磁盘上仍保存着某轴的旧参考点且无法撤销:各轴停止",
      "An axis was homed or its position set while the directory of `retain` cannot be written: after a restart it would be homed wrongly",
-     "Make the directory writable, or delete positions.0 and positions.1 in it; then reset",
-     ResetRule::reset,
-     Reaction::stop_machine,
+     "Make the directory writable, or delete positions.0 and positions.1 in it; then reset", ResetRule::reset, Reaction::stop_machine,
      "The axes would be homed at the old reference after the next start"},
 }};
 static_assert(alarm_table_is_sound(machine_alarms));

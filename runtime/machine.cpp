@@ -79,6 +79,8 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, const std
     const auto on_bus = bus_of(config);
     build_lines(serial_lines, errors);
     axes.reserve(config.axes.size());
+    stall_before_fault = std::make_unique<std::atomic<std::int64_t>[]>(config.axes.size());
+    for (std::size_t i = 0; i < config.axes.size(); ++i) stall_before_fault[i].store(-1);
     views.resize(config.axes.size());
     for (std::size_t i = 0; i < config.axes.size(); ++i) {
         const auto& binding = config.axes[i];

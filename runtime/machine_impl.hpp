@@ -126,6 +126,9 @@ struct Machine::Impl {
     std::vector<WatchdogOutput> watchdog_outputs;
     axes::MotionTables tables;
     std::vector<axes::Axis> axes;
+    /// ns that this computer sent nothing right before the fault that the drive of an axis shows; 0: it was in time; -1: no fault.
+    std::unique_ptr<std::atomic<std::int64_t>[]> stall_before_fault;
+    void note_stall_before_fault(std::size_t axis) noexcept;
     std::vector<axes::AxisView> views;                    // where the axes keep theirs; what programs read
     std::vector<std::size_t> axis_slave;                  // index in the bus configuration; npos for virtual axes
     std::vector<std::vector<std::size_t>> shared_drives;  // the axes of each slave that carries more than one

@@ -5,6 +5,7 @@
 
 #include "axes/axis/alarms.hpp"
 #include "ecat/alarms.hpp"
+#include "ecat/bringup/bus.hpp"
 #include "runtime/machine_impl.hpp"
 
 namespace taktwerk::runtime {
@@ -33,7 +34,7 @@ void Machine::Impl::watch_emergency_stop() noexcept {
     if (pressed && !emergency) emergency_since = now;
     emergency = pressed;
     if (emergency) {
-        raise(MachineAlarm::emergency_stop, AlarmSource::machine, 0, 0, 0);
+        raise(MachineAlarm::emergency_stop, AlarmSource::machine, 0, unread ? emergency_stop_unread : 0, 0);
         release_outputs();
         for (auto& program : program_requests) program.hold();
     }
@@ -110,6 +111,7 @@ void Machine::Impl::supervise(Instant, const CycleTick& tick) noexcept {
         // An axis keeps its alarms until they are reset there: what it does not show any more is gone.
         for (const auto& fact : axis.active_alarms())
             if (const auto* info = find_alarm(axes::axis_alarms, fact.id)) log.raise(fact, info->reaction, ResetRule::self_clearing, now);
+        note_stall_before_fault(static_cast<std::size_t>(&axis - axes.data()));
         AlarmFact fetched;
         while (axis.fetch_alarm(fetched)) {}
     }
@@ -118,6 +120,17 @@ void Machine::Impl::supervise(Instant, const CycleTick& tick) noexcept {
 
     react();
     run_shutdown(now);
+}
+
+// A drive supervises the frames; what it says right after this computer sent none is no fault of the drive (docs/faults.md).
+void Machine::Impl::note_stall_before_fault(std::size_t axis) noexcept {
+    const auto facts = axes[axis].active_alarms();
+    const bool faulted =
+        std::any_of(facts.begin(), facts.end(), [](const AlarmFact& fact) { return fact.id == axes::id(axes::AxisAlarm::drive_fault); });
+    auto& stall = stall_before_fault[axis];
+    if (!faulted) stall.store(-1, std::memory_order_relaxed);
+    else if (stall.load(std::memory_order_relaxed) < 0)
+        stall.store(ecat::recent_stall(bus.bus().link, now).count(), std::memory_order_relaxed);
 }
 
 // TSVM 7.1: some alarms have no axis. Whichever axis shows one, the others behind the same slave must not go on; those that show it too

@@ -15,22 +15,24 @@ namespace taktwerk::runtime {
 
 namespace {
 
-std::string number(double value, bool hex) {
+std::string number(double value, bool hex, bool four_digits = false) {
+    if (four_digits) return fmt::format("{:04X}", static_cast<std::uint32_t>(value));
     if (hex) return fmt::format("{:X}", static_cast<std::uint32_t>(value));
     if (value == std::floor(value) && std::abs(value) < 1e15) return fmt::format("{}", static_cast<std::int64_t>(value));
     return fmt::format("{:.6g}", value);
 }
 
-/// {a}, {b} and {a:x}, {b:x} in a text of an alarm table.
+/// {a}, {b}, {a:x}, {b:x} and, with four digits as AL status codes are written, {a:x4}, {b:x4} in a text of an alarm table.
 std::string fill(std::string_view text, double a, double b) {
     std::string out;
     for (std::size_t i = 0; i < text.size();) {
         const auto rest = text.substr(i);
         const bool plain = rest.starts_with("{a}") || rest.starts_with("{b}");
         const bool hex = rest.starts_with("{a:x}") || rest.starts_with("{b:x}");
-        if (plain || hex) {
-            out += number(rest[1] == 'a' ? a : b, hex);
-            i += plain ? 3 : 5;
+        const bool code = rest.starts_with("{a:x4}") || rest.starts_with("{b:x4}");
+        if (plain || hex || code) {
+            out += number(rest[1] == 'a' ? a : b, hex, code);
+            i += plain ? 3 : hex ? 5 : 6;
         } else {
             out += text[i++];
         }
@@ -111,6 +113,14 @@ AlarmText Machine::describe(const AlarmFact& fact) const {
         out.chinese += ":" + more;
     }
 
+    if (fact.id == id(MachineAlarm::emergency_stop) && fact.a == emergency_stop_unread) {
+        out.english =
+            "Emergency stop: its input cannot be read, which counts as pressed; the axes stop along their ramps, then power goes off";
+        out.chinese = "急停:无法读取急停输入,按已按下处理;各轴沿减速斜坡停止,随后断开动力";
+        out.cause = "The slave with the input is not exchanged: see the alarm of the bus";
+        out.remedy = "Mend the bus, acknowledge, then enable again";
+    }
+
     if (fact.id == id(MachineAlarm::program_fault) && fact.index < m.host->programs().size()) {
         const std::lock_guard lock{m.fault_words};
         if (const auto& why = m.host->programs()[fact.index].fault; !why.empty()) {
@@ -140,6 +150,13 @@ AlarmText Machine::describe(const AlarmFact& fact) const {
                                fault ? axes::ShownAlarm::As::fault : axes::ShownAlarm::As::warning};
         if (fact.b != 0) shown.detail = static_cast<std::uint32_t>(fact.b);  // 0: not read yet, or none
         tell_drive_alarm(out, m.config.axes[fact.index], shown);
+        const std::int64_t stall = fault ? m.stall_before_fault[fact.index].load(std::memory_order_relaxed) : 0;
+        if (stall > 0) {
+            const double milliseconds = static_cast<double>(stall) * 1e-6;
+            out.english += fmt::format("; right before, this computer sent nothing for {:.4g} ms", milliseconds);
+            out.chinese += fmt::format(";此前本控制器 {:.4g} ms 未发送报文", milliseconds);
+            out.cause = "Probably this computer was late, not the drive (see late_wakeups); what the drive says of it: " + out.cause;
+        }
     }
     return out;
 }

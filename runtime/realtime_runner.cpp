@@ -11,6 +11,7 @@ namespace {
 
 constexpr Duration service_period = std::chrono::milliseconds{1};
 constexpr Duration bring_up_patience = std::chrono::seconds{30};
+constexpr Duration patience_for_each_slave = std::chrono::milliseconds{200};
 constexpr Duration bus_down_patience = std::chrono::seconds{5};
 constexpr Duration watch_period = std::chrono::milliseconds{20};
 
@@ -117,7 +118,9 @@ Result<void> RealtimeRunner::serve(const std::function<bool(Instant)>& keep_on) 
 }
 
 Result<void> RealtimeRunner::bring_up(const std::function<bool(Instant)>& keep_on) {
-    const auto until = clock_.now() + bring_up_patience;
+    const auto slaves = static_cast<std::int64_t>(machine_.bus().slave_count());
+    const Duration patience = bring_up_patience + slaves * patience_for_each_slave;
+    const auto until = clock_.now() + patience;
     while (!machine_.bus_operational()) {
         service();
         if (auto failure = machine_.bus_failure()) return *failure;
@@ -125,7 +128,7 @@ Result<void> RealtimeRunner::bring_up(const std::function<bool(Instant)>& keep_o
         if (machine_.phase() == MachinePhase::stopped) return {};
         if (clock_.now() > until)
             return Error{"bus.timeout", "bus",
-                         fmt::format("not operational after {:.0f} s; last: {}", to_seconds(bring_up_patience), machine_.bus_progress()),
+                         fmt::format("not operational after {:.0f} s; last: {}", to_seconds(patience), machine_.bus_progress()),
                          "look at the slave that this line names"};
     }
     return machine_.arm();

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 #include "ecat/bringup/al_control.hpp"
 #include "ecat/bringup/clocks.hpp"
@@ -60,11 +59,26 @@ Script<Result<void>> await_valid_outputs(Bus& bus) {
     }
 }
 
+/// SYNC0 shortly before the next frame: whatever lateness is left moves that frame in front of it, and two come between two SYNC0.
+void remark_late_sync0(Bus& bus) {
+    constexpr std::int64_t least_rest = 10;  // a tenth of the cycle
+    for (const auto& slave : bus.slaves) {
+        if (!slave->config->dc) continue;
+        const Duration rest = bus.config.cycle - sync0_shift(bus.config, *slave->config);
+        if (rest >= bus.config.cycle / least_rest) continue;
+        bus.remember(fmt::format(
+            "{}: SYNC0 comes only {:.6g} us before the next frame (sync0_shift {:.6g} us of {:.6g} us): a frame that "
+            "is early, or clocks that drift, put two frames between two SYNC0; choose at most nine tenths of the cycle",
+            slave->subject, to_seconds(rest) * 1e6, to_seconds(bus.config.cycle - rest) * 1e6, to_seconds(bus.config.cycle) * 1e6));
+    }
+}
+
 Script<Result<void>> climb(Bus& bus) {
     bus.phase.store(BusPhase::scanning);
     Result<void> done = co_await scan(bus);
     if (!done) co_return done;
 
+    remark_late_sync0(bus);
     bus.phase.store(BusPhase::preop);
     done = co_await for_each_slave(bus, &enter_preop);
     if (!done) co_return done;
@@ -105,6 +119,20 @@ Script<Result<void>> climb(Bus& bus) {
     co_return done;
 }
 
+/// Whoever is above this state comes down to it; who does not, stands in the notes.
+template <AlState state>
+Script<Result<void>> down_to(Bus& bus, BusSlave& slave) {
+    const Result<std::uint16_t> status = co_await read_al_status(bus, slave);
+    if (!status || al_state(*status) <= state) co_return Result<void>{};
+    const Result<void> down = co_await set_state(bus, slave, state);
+    if (!down) bus.remember(down.error().text());
+    if (state == AlState::preop) {
+        const Result<void> quiet = co_await stop_sync0(bus, slave);
+        if (!quiet) bus.remember(quiet.error().text());
+    }
+    co_return Result<void>{};
+}
+
 }  // namespace
 
 Script<Result<void>> bring_up(Bus& bus) {
@@ -118,20 +146,10 @@ Script<Result<void>> bring_up(Bus& bus) {
 
 Script<Result<void>> take_down(Bus& bus) {
     bus.phase.store(BusPhase::stopping);
-    static constexpr std::array down_to{AlState::safeop, AlState::preop, AlState::init};
-    for (const AlState state : down_to) {
-        if (state == AlState::preop) bus.link.supervise.store(false);
-        for (auto& slave : bus.slaves) {
-            const Result<std::uint16_t> status = co_await read_al_status(bus, *slave);
-            if (!status || al_state(*status) <= state) continue;
-            const Result<void> down = co_await set_state(bus, *slave, state);
-            if (!down) bus.remember(down.error().text());
-            if (state == AlState::preop) {
-                const Result<void> quiet = co_await stop_sync0(bus, *slave);
-                if (!quiet) bus.remember(quiet.error().text());
-            }
-        }
-    }
+    co_await for_each_slave(bus, &down_to<AlState::safeop>);
+    bus.link.supervise.store(false);
+    co_await for_each_slave(bus, &down_to<AlState::preop>);
+    co_await for_each_slave(bus, &down_to<AlState::init>);
     bus.phase.store(BusPhase::stopped);
     bus.progress = "stopped";
     co_return Result<void>{};

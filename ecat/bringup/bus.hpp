@@ -69,6 +69,9 @@ struct CycleLink {
     std::atomic<std::uint16_t> slaves_answering{0};  ///< working counter of the last BRD that came back
     std::atomic<std::uint32_t> lost_in_a_row{0};     ///< cycles without an answer
     std::atomic<std::uint64_t> foreign_frames{0};    ///< EtherCAT frames of another sender
+    std::atomic<std::uint64_t> foreign_source{0};    ///< address of the last of them, first byte on top
+    std::atomic<std::int64_t> stall_ns{0};           ///< so long this computer sent nothing when it last came too late
+    std::atomic<std::int64_t> stall_ended_ns{0};     ///< and when it sent again; 0: it never was
     // Written by the scripts.
     std::atomic<bool> supervise{false};             ///< slaves are in SAFEOP or above: wrong working counters count
     std::atomic<std::int64_t> dc_difference_ns{0};  ///< worst 092Ch
@@ -77,6 +80,16 @@ struct CycleLink {
     std::atomic<std::uint64_t> reference{0};        ///< who serves as reference clock: station + (ns behind the first << 16)
     std::atomic<bool> foreign_master{false};        ///< foreign frames came in lately, more than a defect explains
 };
+
+/// What a slave or drive says so soon after this computer sent nothing for a while follows from that: its watchdogs and counters of
+/// missed frames run for some cycles more, and the watch takes a moment to read the reason.
+inline constexpr Duration stall_remembered = std::chrono::milliseconds{500};
+/// How long this computer sent nothing right before `now`; nothing when it was in time.
+[[nodiscard]] inline Duration recent_stall(const CycleLink& link, Instant now) noexcept {
+    const std::int64_t ended = link.stall_ended_ns.load(std::memory_order_relaxed);
+    const bool recent = ended != 0 && now.time_since_epoch().count() - ended <= stall_remembered.count();
+    return recent ? Duration{link.stall_ns.load(std::memory_order_relaxed)} : Duration{};
+}
 
 /// What the watch heard from a slave at its station address when it asked last.
 enum class Presence : std::uint8_t {
@@ -161,11 +174,13 @@ struct Bus {
     std::function<void()> publish;
     EmergencyLog emergencies;
     std::vector<std::string> notes;  ///< recoveries and other remarkable things, newest last
+    std::uint64_t remembered = 0;    ///< notes ever made; the oldest are forgotten
 
     void note(const BusSlave& slave, const std::string& doing) { progress = slave.subject + " " + doing; }
     void remember(std::string text) {
         if (notes.size() >= 100) notes.erase(notes.begin());
         notes.push_back(std::move(text));
+        ++remembered;
     }
 };
 

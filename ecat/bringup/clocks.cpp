@@ -53,18 +53,28 @@ Script<Result<LatchedTimes>> read_latched(Bus& bus, std::uint16_t station, std::
     co_return LatchedTimes{true, {ports.u32(0), ports.u32(4), ports.u32(8), ports.u32(12)}, unit.u64()};
 }
 
+Script<void> keep_latched(Bus& bus, std::uint16_t station, std::string subject, bool known, LatchedTimes& times,
+                          std::optional<Error>& error) {
+    const Result<LatchedTimes> latched = co_await read_latched(bus, station, std::move(subject));
+    if (latched) times = *latched;
+    else if (known) error = latched.error();
+}
+
 /// Of every slave on the cable, also of those that nobody configured: their clocks measure their branches.
 Script<Result<std::vector<LatchedTimes>>> read_all_latched(Bus& bus) {
     std::vector<LatchedTimes> times(bus.found.size());
+    std::vector<std::optional<Error>> errors(bus.found.size());
+    std::vector<Script<void>> scripts;
     for (std::size_t p = 0; p < bus.found.size(); ++p) {
         if ((bus.found[p].features & feature::dc) == 0) continue;
         const auto configured = std::find_if(bus.slaves.begin(), bus.slaves.end(), [&](const auto& s) { return s->found.position == p; });
         const bool known = configured != bus.slaves.end();
         const std::string subject = known ? (*configured)->subject : fmt::format("slave {}", p);
-        const Result<LatchedTimes> latched = co_await read_latched(bus, bus.found[p].station, subject);
-        if (latched) times[p] = *latched;
-        else if (known) co_return latched.error();
+        scripts.push_back(keep_latched(bus, bus.found[p].station, subject, known, times[p], errors[p]));
     }
+    co_await all(std::move(scripts), DatagramPort::slaves_at_once);
+    for (const auto& error : errors)
+        if (error) co_return *error;
     co_return times;
 }
 
@@ -103,6 +113,17 @@ Script<Result<void>> write_clock(Bus& bus, BusSlave& slave) {
     co_return Result<void>{};
 }
 
+Script<Result<void>> write_clock_if_any(Bus& bus, BusSlave& slave) {
+    if (!slave.dc) co_return Result<void>{};
+    co_return co_await write_clock(bus, slave);
+}
+
+Script<void> keep_difference(Bus& bus, BusSlave& slave, std::optional<Error>& error) {
+    const Reply reply = co_await bus.port.fprd(slave.found.station, reg::dc_difference, 4);
+    if (reply.ok()) slave.dc_difference = std::abs(static_cast<std::int64_t>(dc_difference_ns(reply.u32())));
+    else error = unanswered(slave.subject, "its clock difference (092Ch)", reply);
+}
+
 }  // namespace
 
 Duration sync0_shift(const BusConfig& bus, const SlaveConfig& slave) noexcept {
@@ -135,10 +156,8 @@ Script<Result<void>> setup_clocks(Bus& bus) {
                 fmt::format("{}: its propagation delay of {} ns is a guess: no slave with a clock stands before the branch that "
                             "it is in; put one first on the cable",
                             slave->subject, slave->dc_delay));
-        const Result<void> written = co_await write_clock(bus, *slave);
-        if (!written) co_return written;
     }
-    co_return Result<void>{};
+    co_return co_await for_each_slave(bus, &write_clock_if_any);
 }
 
 Script<Result<void>> restore_clock(Bus& bus, BusSlave& slave) {
@@ -186,15 +205,17 @@ Script<Result<void>> await_clocks(Bus& bus) {
         for (unsigned i = 0; i < frames_per_round; ++i) co_await bus.port.frmw(reference, reg::dc_system_time, 8);
         const BusSlave* worst = nullptr;
         std::int64_t worst_ns = 0;
-        for (BusSlave* slave : clocks) {
-            if (slave->found.station == reference) continue;
-            const Reply reply = co_await bus.port.fprd(slave->found.station, reg::dc_difference, 4);
-            if (!reply.ok()) co_return unanswered(slave->subject, "its clock difference (092Ch)", reply);
-            const std::int64_t difference = std::abs(static_cast<std::int64_t>(dc_difference_ns(reply.u32())));
-            if (difference >= worst_ns) {
-                worst = slave;
-                worst_ns = difference;
-            }
+        std::vector<std::optional<Error>> errors(clocks.size());
+        std::vector<Script<void>> scripts;
+        for (std::size_t i = 0; i < clocks.size(); ++i)
+            if (clocks[i]->found.station != reference) scripts.push_back(keep_difference(bus, *clocks[i], errors[i]));
+        co_await all(std::move(scripts), DatagramPort::slaves_at_once);
+        for (const auto& error : errors)
+            if (error) co_return *error;
+        for (const BusSlave* slave : clocks) {
+            if (slave->found.station == reference || slave->dc_difference < worst_ns) continue;
+            worst = slave;
+            worst_ns = slave->dc_difference;
         }
         bus.link.dc_difference_ns.store(worst_ns);
         const Instant now = co_await time();

@@ -41,7 +41,7 @@ Script<void> take_census(Bus& bus) {
     std::vector<std::optional<std::uint16_t>> answers(count.wkc);
     std::vector<Script<void>> scripts;
     for (std::uint16_t position = 0; position < count.wkc; ++position) scripts.push_back(read_ports(bus, position, answers[position]));
-    co_await all(std::move(scripts));
+    co_await all(std::move(scripts), DatagramPort::slaves_at_once);
     std::vector<std::uint16_t> dl_status;
     for (const auto& answer : answers) {
         if (!answer) co_return;  // somebody left meanwhile
@@ -56,6 +56,13 @@ Script<void> take_census(Bus& bus) {
     }
     bus.census_wanted = false;
     ++bus.census;
+}
+
+std::string sender_text(const CycleLink& link) {
+    const std::uint64_t source = link.foreign_source.load();
+    std::string text = "its network address is ";
+    for (int shift = 40; shift >= 0; shift -= 8) text += fmt::format("{:02x}{}", (source >> shift) & 0xFFu, shift > 0 ? ":" : "");
+    return text + " (the slaves set 02h in its first byte)";
 }
 
 std::string connection_text(const Bus& bus, const BusSlave& slave) {

@@ -20,6 +20,9 @@ namespace taktwerk::ecat {
 /// nobody has a place, and bus.census_wanted stays set.
 [[nodiscard]] Script<void> take_census(Bus& bus);
 
+/// Who the other master is: "its network address is 02:11:22:33:44:55 (...)".
+[[nodiscard]] std::string sender_text(const CycleLink& link);
+
 /// The cable that leads to a slave: "between slave 3 'y' (sv33-e) port 1 and slave 4 'z' (sv33-e)".
 [[nodiscard]] std::string connection_text(const Bus& bus, const BusSlave& slave);
 

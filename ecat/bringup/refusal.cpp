@@ -50,7 +50,7 @@ std::string fmmu_line(const RefusedFmmu& fmmu) {
 void add_other_lines(const Refusal& r, std::vector<std::string>& lines) {
     if (r.asked >= AlState::safeop && (r.clock.configured || r.clock.supported)) {
         std::string line = !r.clock.configured ? std::string{"SYNC0 not used"}
-                           : r.clock.started   ? fmt::format("SYNC0 every {} ms", to_seconds(r.clock.bus_cycle) * 1e3)
+                           : r.clock.started   ? fmt::format("SYNC0 every {:.6g} ms", to_seconds(r.clock.bus_cycle) * 1e3)
                                                : std::string{"SYNC0 not started"};
         if (r.clock.configured && r.clock.activation) line += fmt::format(", 0981h = {:02X}h", *r.clock.activation);
         if (r.clock.configured && r.clock.difference_ns) line += fmt::format(", clock {} ns from the reference", *r.clock.difference_ns);
@@ -95,6 +95,7 @@ bool judge_sync_managers(Refusal& r) {
 bool judge_clock(Refusal& r) {
     const auto& clock = r.clock;
     const bool about_sync = one_of(r.code, {0x001A, 0x0027, 0x0028, 0x002C, 0x002D, 0x0030, 0x0032, 0x0033, 0x0034, 0x0035, 0x0036});
+    if (r.asked < AlState::safeop) return false;  // SYNC0 is nothing that INIT or PREOP waits for
     if (!about_sync && !r.timed_out) return false;
     if (!clock.configured && (clock.required || one_of(r.code, {0x0027, 0x002D}))) {
         r.cause = "the slave wants SYNC0, and the configuration runs it without";
@@ -113,7 +114,7 @@ bool judge_clock(Refusal& r) {
         return true;
     }
     if (one_of(r.code, {0x0035, 0x0036}) && clock.sync0_cycle) {
-        r.cause = fmt::format("the slave does not accept a SYNC0 cycle of {} us", to_seconds(*clock.sync0_cycle) * 1e6);
+        r.cause = fmt::format("the slave does not accept a SYNC0 cycle of {:.6g} us", to_seconds(*clock.sync0_cycle) * 1e6);
         r.remedy = "choose a bus cycle that its manual lists";
         return true;
     }
@@ -151,9 +152,9 @@ void judge(Refusal& r) {
 std::string headline(const Refusal& r) {
     const auto text = al_status_info(r.code).text;
     if (r.timed_out)
-        return fmt::format("did not reach {} within {} s: it stays in {} without an error (status 0x{:04X}, code 0x{:04X} {})",
+        return fmt::format("did not reach {} within {} s: it stays in {} without an error (AL status {:04X}h, code {:04X}h {})",
                            name(r.asked), to_seconds(r.waited), name(r.reached), r.status, r.code, text);
-    return fmt::format("refused {}: 0x{:04X} {} (it is in {})", name(r.asked), r.code, text, name(r.reached));
+    return fmt::format("refused {}: {:04X}h {} (it is in {})", name(r.asked), r.code, text, name(r.reached));
 }
 
 std::vector<std::string> fact_lines(const Refusal& r) {

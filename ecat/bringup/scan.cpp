@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "ecat/bringup/presence.hpp"
 #include "ecat/bringup/sii_reader.hpp"
 #include "ecat/topology/topology.hpp"
 #include "ecat/wire/sii.hpp"
@@ -12,9 +13,38 @@ namespace taktwerk::ecat {
 
 namespace {
 
+constexpr Duration listening_time = std::chrono::milliseconds{25};  ///< a master that is there sends at least every 10 ms
+constexpr std::uint64_t foreign_limit = 2;                          ///< frames: a single one may be a stray of an earlier run
+constexpr int loop_rounds = 8;                                      ///< ports closed one behind the other
+
+/// Whoever works with these slaves already is not disturbed: nothing was sent yet.
+Script<Result<void>> listen_for_others(Bus& bus) {
+    bus.progress = "listening for another master";
+    co_await pause(2 * bus.config.cycle);  // what was on its way before
+    const std::uint64_t before = bus.link.foreign_frames.load();
+    co_await pause(std::max(listening_time, 2 * bus.config.cycle));
+    const std::uint64_t heard = bus.link.foreign_frames.load() - before;
+    if (heard < foreign_limit) co_return Result<void>{};
+    co_return Error{"bus.foreign_master", "bus",
+                    fmt::format("another EtherCAT master is sending on this cable ({} frames in {} ms): {}", heard,
+                                listening_time / std::chrono::milliseconds{1}, sender_text(bus.link)),
+                    "end that master, or connect the bus to this computer only; the slaves were left as they are"};
+}
+
+/// Ports that another master has closed open again where there is a link. A slave that appears may have closed ones of its own.
+Script<void> open_ports(Bus& bus) {
+    std::uint16_t count = 0;
+    for (int round = 0; round < loop_rounds; ++round) {
+        const Reply opened = co_await bus.port.bwr(reg::dl_control_loops, std::uint8_t{0});
+        if (opened.lost || opened.wkc == count) co_return;
+        count = opened.wkc;
+    }
+}
+
 /// Every slave to INIT and its sync managers, FMMUs and clocks to rest, whatever they were before.
 Script<Result<std::uint16_t>> reset_all(Bus& bus) {
     auto& port = bus.port;
+    co_await open_ports(bus);
     const Reply first = co_await port.brd(reg::type, 1);
     if (first.lost) co_return unanswered("bus", "the count of slaves", first);
     if (first.wkc == 0)
@@ -169,6 +199,8 @@ Script<std::optional<std::uint16_t>> read_device_id(DatagramPort& port, std::uin
 }
 
 Script<Result<void>> scan(Bus& bus) {
+    const Result<void> alone = co_await listen_for_others(bus);
+    if (!alone) co_return alone;
     bus.progress = "counting slaves";
     const Result<std::uint16_t> count = co_await reset_all(bus);
     if (!count) co_return count.error();
@@ -179,7 +211,7 @@ Script<Result<void>> scan(Bus& bus) {
     std::vector<Script<void>> scripts;
     for (std::uint16_t position = 0; position < *count; ++position)
         scripts.push_back(find_one(bus, position, wants_id, bus.found[position]));
-    co_await all(std::move(scripts));
+    co_await all(std::move(scripts), DatagramPort::slaves_at_once);
     note_defects(bus);
     co_await find_topology(bus);
     co_return match(bus.config, bus.found, bus.slaves);

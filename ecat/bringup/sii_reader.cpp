@@ -31,7 +31,7 @@ struct Words {
 
 /// One read command. `idle`: the one before was answered, so the interface need not be asked first.
 Script<Result<Words>> read_words(DatagramPort& port, std::uint16_t station, std::size_t word, bool idle, std::string subject) {
-    const Instant started = co_await time();
+    Instant started = co_await time();
     std::vector<std::byte> request(6);
     store_le(request, 0, eeprom::read);
     store_le(request, 2, static_cast<std::uint32_t>(word));
@@ -44,6 +44,7 @@ Script<Result<Words>> read_words(DatagramPort& port, std::uint16_t station, std:
     for (unsigned refusals = 0;;) {
         const Reply reply = co_await port.fprd(station, reg::eeprom_control, 14);
         if (!reply.ok()) co_return unanswered(subject, "EEPROM (0502h)", reply);
+        started += reply.queued;
         const std::uint16_t control = reply.u16();
         const bool busy = (control & eeprom::busy) != 0;
         const bool refused = (control & (eeprom::command_error | eeprom::write_enable_error)) != 0;
@@ -61,7 +62,17 @@ Script<Result<Words>> read_words(DatagramPort& port, std::uint16_t station, std:
             co_await pause(poll_period);
             continue;
         }
-        if (asked && ++refusals > sii_retries)
+        if (asked && ++refusals > sii_retries && !refused) {
+            const Reply owner = co_await port.fprd(station, reg::eeprom_configuration, 2);
+            if (owner.ok() && (owner.u16() & 0x0101u) != 0)
+                co_return Error{"bus.sii_taken", subject,
+                                fmt::format("its EEPROM is in the hands of its own processor (0500h = {:02X}h, 0501h = {:02X}h): no master "
+                                            "can read it",
+                                            owner.u16() & 0xFFu, owner.u16() >> 8),
+                                "another master left it so; `taktwerk bus state init` or a bring-up takes it back"};
+            co_return sii_error(subject, word, fmt::format("the controller does not carry out the command (0502h = {:04X}h)", control));
+        }
+        if (asked && refusals > sii_retries)
             co_return sii_error(subject, word, fmt::format("the controller reports an error (0502h = {:04X}h)", control));
         if (asked) co_await pause(retry_period);
         const Reply written = co_await port.fpwr(station, reg::eeprom_control, request);

@@ -17,6 +17,8 @@ namespace taktwerk::ecat {
 namespace {
 
 constexpr Duration watch_period = std::chrono::milliseconds{100};
+/// So many cycles' share of datagrams a round of the watch takes at most from SDOs and recoveries: half of them.
+constexpr std::int64_t watch_share = 2;
 constexpr Duration watch_glance = std::chrono::milliseconds{5};       ///< how soon a state the cycle saw is noticed
 constexpr Duration watch_suspicious = std::chrono::milliseconds{20};  ///< instead of watch_period, when the cycle sees something new
 constexpr Duration difference_period = std::chrono::seconds{1};
@@ -65,10 +67,19 @@ Script<void> read_difference(Bus& bus, BusSlave& slave) {
     bus.link.dc_difference_ns.store(worst);
 }
 
-std::string fall_text(const BusSlave& slave, const Result<std::uint16_t>& status) {
+/// The least time between two looks at one slave, so that looking at all of them leaves room for others.
+Duration round_of_watch(const Bus& bus) {
+    return watch_share * static_cast<std::int64_t>(bus.slaves.size()) * bus.config.cycle / bus.config.acyclic_per_cycle;
+}
+
+std::string fall_text(const Bus& bus, const BusSlave& slave, const Result<std::uint16_t>& status, Instant now) {
     if (!status) return status.error().text();
     const auto code = static_cast<std::uint16_t>(slave.al.load() >> 16);
-    return fmt::format("{} left OP: status 0x{:04X}, code 0x{:04X} {}", slave.subject, *status, code, al_status_info(code).text);
+    std::string text = fmt::format("{} left OP: it is in {}, AL status code {:04X}h {}", slave.subject, name(al_state(*status)), code,
+                                   al_status_info(code).text);
+    if (const Duration stall = recent_stall(bus.link, now); stall > Duration{})
+        text += fmt::format("; right before, this computer sent nothing for {:.4g} ms", to_seconds(stall) * 1e3);
+    return text;
 }
 
 /// One slave: is it in OP with its own settings? If not, back to OP.
@@ -91,11 +102,12 @@ private:
 
 Script<void> SlaveWatch::run() {
     Instant looked = co_await time();
+    const Duration round = round_of_watch(bus_);
     std::uint64_t picture = 0;
     for (;;) {
         const Instant now = co_await pause(watch_glance);
         const std::uint64_t seen = bus_.link.states_seen.load() | (std::uint64_t{bus_.link.slaves_answering.load()} << 32);
-        if (now - looked < (seen != picture ? watch_suspicious : watch_period)) continue;
+        if (now - looked < std::max(round, seen != picture ? watch_suspicious : watch_period)) continue;
         looked = now;
         picture = seen;
 
@@ -115,7 +127,7 @@ Script<void> SlaveWatch::run() {
             co_await look_after(now);
             continue;
         }
-        if (!reported_) bus_.remember(fall_text(slave_, status));
+        if (!reported_) bus_.remember(fall_text(bus_, slave_, status, now));
         reported_ = true;
         if (presence == Presence::silent && !slave_.position_now) continue;
         if (back_off_.due(now)) co_await bring_back();
@@ -219,7 +231,8 @@ Script<void> watch_senders(Bus& bus) {
         co_await pause(foreign_window);
         const std::uint64_t seen = bus.link.foreign_frames.load();
         const bool foreign = seen - before >= foreign_limit;
-        if (foreign && !bus.link.foreign_master.exchange(true)) bus.remember("frames of another EtherCAT master are on the cable");
+        if (foreign && !bus.link.foreign_master.exchange(true))
+            bus.remember("frames of another EtherCAT master are on the cable: " + sender_text(bus.link));
         if (!foreign) bus.link.foreign_master.store(false);
         before = seen;
     }

@@ -51,10 +51,12 @@ Result<void> BusProbe::take_down() {
 }
 
 Result<std::uint64_t> BusProbe::listen(Duration length) {
-    const std::uint64_t before = master_.statistics().frames_rejected;
+    // Sound frames of another source, and what is no sound frame: nothing was asked, so nothing of it is an answer.
+    const auto heard = [this] { return master_.statistics().frames_foreign + master_.statistics().frames_rejected; };
+    const std::uint64_t before = heard();
     const Result<void> waited = run_for(length);
     if (!waited) return waited.error();
-    return master_.statistics().frames_rejected - before;
+    return heard() - before;
 }
 
 }  // namespace taktwerk::ecat

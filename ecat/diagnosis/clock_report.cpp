@@ -52,7 +52,7 @@ Script<Result<std::vector<ClockReport>>> read_clocks(DatagramPort& port, const S
     }
     std::vector<Script<void>> scripts;
     for (auto& report : clocks) scripts.push_back(read_one(port, survey.slaves[report.position], report));
-    co_await all(std::move(scripts));
+    co_await all(std::move(scripts), DatagramPort::slaves_at_once);
     co_return clocks;
 }
 

@@ -60,7 +60,7 @@ Script<Result<void>> refresh_counters(DatagramPort& port, Survey& survey) {
     std::vector<Script<void>> scripts;
     for (auto& slave : survey.slaves)
         if (!slave.found.error) scripts.push_back(refresh_one(port, slave));
-    co_await all(std::move(scripts));
+    co_await all(std::move(scripts), DatagramPort::slaves_at_once);
     co_return Result<void>{};
 }
 

@@ -148,7 +148,7 @@ Script<Result<Survey>> survey(DatagramPort& port) {
 
     std::vector<Script<void>> scripts;
     for (std::uint16_t p = 0; p < count.wkc; ++p) scripts.push_back(greet(port, p, result.slaves[p]));
-    co_await all(std::move(scripts));
+    co_await all(std::move(scripts), DatagramPort::slaves_at_once);
     for (const auto& slave : result.slaves) result.highest_state = std::max(result.highest_state, slave.state);
 
     if (result.highest_state < AlState::safeop) {
@@ -163,7 +163,7 @@ Script<Result<Survey>> survey(DatagramPort& port) {
 
     std::vector<Script<void>> questions;
     for (auto& slave : result.slaves) questions.push_back(question(port, slave));
-    co_await all(std::move(questions));
+    co_await all(std::move(questions), DatagramPort::slaves_at_once);
 
     std::vector<std::uint16_t> links;
     for (const auto& slave : result.slaves) links.push_back(slave.found.dl_status);
@@ -182,7 +182,7 @@ Script<Result<void>> read_device_ids(DatagramPort& port, Survey& survey) {
     std::vector<Script<void>> scripts;
     for (auto& slave : survey.slaves)
         if (!slave.found.error) scripts.push_back(ask_device_id(port, slave));
-    co_await all(std::move(scripts));
+    co_await all(std::move(scripts), DatagramPort::slaves_at_once);
     co_return Result<void>{};
 }
 

@@ -54,7 +54,7 @@ Script<Result<WhyReport>> explain(Bus& bus, Error failure) {
     report.slaves.resize(bus.slaves.size());
     std::vector<Script<void>> scripts;
     for (std::size_t i = 0; i < bus.slaves.size(); ++i) scripts.push_back(examine(bus, *bus.slaves[i], report.slaves[i], report.failure));
-    co_await all(std::move(scripts));
+    co_await all(std::move(scripts), DatagramPort::slaves_at_once);
     co_return report;
 }
 

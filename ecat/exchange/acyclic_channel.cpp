@@ -24,6 +24,14 @@ struct AcyclicChannel::Entry {
     std::array<std::byte, max_datagram_data> data;
 };
 
+void EntryTurn::leave() noexcept {
+    if (channel_ == nullptr) return;
+    (ahead_ != nullptr ? ahead_->behind_ : channel_->first_in_line_) = behind_;
+    (behind_ != nullptr ? behind_->ahead_ : channel_->last_in_line_) = ahead_;
+    channel_ = nullptr;
+    ahead_ = behind_ = nullptr;
+}
+
 struct AcyclicChannel::Flight {
     SlotId slot{};
     Instant sent_at{};
@@ -84,6 +92,33 @@ std::optional<EntryId> AcyclicChannel::submit(Command command, Address address, 
 std::optional<EntryId> AcyclicChannel::submit_gated(Command command, Address address, std::span<const std::byte> data,
                                                     const SendGate& gate) noexcept {
     return claim(command, address, data.size(), data, gate);
+}
+
+std::optional<EntryId> AcyclicChannel::submit_in_turn(EntryTurn& turn, Command command, Address address, std::span<const std::byte> data,
+                                                      const SendGate& gate) noexcept {
+    if (turn.channel_ == nullptr) {
+        turn.channel_ = this;
+        turn.gated_ = gate.exists();
+        turn.ahead_ = last_in_line_;
+        (last_in_line_ != nullptr ? last_in_line_->behind_ : first_in_line_) = &turn;
+        last_in_line_ = &turn;
+    }
+    if (!turn_of(turn)) return std::nullopt;
+    const auto id = claim(command, address, data.size(), data, gate);
+    if (id) turn.leave();
+    return id;
+}
+
+bool AcyclicChannel::turn_of(const EntryTurn& turn) const noexcept {
+    std::size_t left = entry_count - in_use();
+    if (left == 0) return false;
+    std::size_t gates = turn.gated_ || first_in_line_ != &turn ? gated() : 0;
+    for (const EntryTurn* other = first_in_line_; other != &turn && left > 0; other = other->behind_) {
+        if (other->gated_ && gates >= max_gated) continue;  // waits for a gate, not for an entry
+        gates += other->gated_ ? 1 : 0;
+        --left;
+    }
+    return left > 0;
 }
 
 std::size_t AcyclicChannel::gated() const noexcept {

@@ -6,7 +6,8 @@
 //               if (auto answer = channel.poll(*id)) { ...; channel.release(*id); }
 //     cycle:    exchange.receive(now); channel.collect(now);  ...process data...  channel.pack(now, 4);
 //
-// Entries leave in the order of their submission; one that waits for its gate is passed by those behind it.
+// Entries leave in the order of their submission; one that waits for its gate is passed by those behind it. There are fewer entries than
+// a long bus has slaves: whoever finds none stands in line (Turn), and entries go to those who came first.
 
 #include <array>
 #include <atomic>
@@ -36,6 +37,25 @@ struct SendGate {
     [[nodiscard]] bool exists() const noexcept { return word != nullptr || behind.generation != 0; }
 };
 
+class AcyclicChannel;
+
+/// A place in the line for an entry. Service side; lives as long as it is wanted, and leaves the line when it goes.
+class EntryTurn {
+public:
+    EntryTurn() = default;
+    ~EntryTurn() { leave(); }
+    EntryTurn(const EntryTurn&) = delete;
+    EntryTurn& operator=(const EntryTurn&) = delete;
+
+private:
+    friend class AcyclicChannel;
+    void leave() noexcept;
+
+    AcyclicChannel* channel_ = nullptr;  ///< null: not in line
+    EntryTurn *ahead_ = nullptr, *behind_ = nullptr;
+    bool gated_ = false;
+};
+
 /// How a request ended.
 struct AcyclicAnswer {
     bool lost = false;  ///< no answer within the timeout, or the link did not take the frame
@@ -47,9 +67,9 @@ struct AcyclicAnswer {
 
 class AcyclicChannel {
 public:
-    static constexpr std::size_t entry_count = 32;
+    static constexpr std::size_t entry_count = 96;
     static constexpr std::size_t max_frames = 4;  ///< frames under way at the same time
-    static constexpr std::size_t max_datagrams_a_frame = 16;
+    static constexpr std::size_t max_datagrams_a_frame = 48;
     static constexpr std::size_t max_gated = entry_count / 2;  ///< requests with a gate; the others must not run out of entries
 
     /// `exchange` outlives the channel. Allocates here. `timeout`: after it a frame's requests are lost.
@@ -66,6 +86,11 @@ public:
     /// Either, when its gate opens. Nothing also when max_gated of them exist.
     [[nodiscard]] std::optional<EntryId> submit_gated(Command command, Address address, std::span<const std::byte> data,
                                                       const SendGate& gate) noexcept;
+    /// In line with others: nothing until it is this one's turn. The first call takes a place behind all who wait.
+    [[nodiscard]] std::optional<EntryId> submit_in_turn(EntryTurn& turn, Command command, Address address, std::span<const std::byte> data,
+                                                        const SendGate& gate) noexcept;
+    /// How many entries were ever handed out: while this number stands still, so does the line.
+    [[nodiscard]] std::uint64_t handed_out() const noexcept { return order_; }
     /// Takes a request back that has not left, and gives its entry back. False: it has left, or is stale.
     [[nodiscard]] bool withdraw(EntryId id) noexcept;
     /// Nothing while it is under way; then the answer, as often as asked, until release(). A stale id reads as lost.
@@ -92,13 +117,17 @@ private:
     /// By the cycle: nothing keeps the request from leaving.
     [[nodiscard]] bool open(const Entry& entry) const noexcept;
     void finish(std::size_t entry, State outcome) noexcept;
+    friend class EntryTurn;
+    /// Service side: nobody who could take an entry now stands before it.
+    [[nodiscard]] bool turn_of(const EntryTurn& turn) const noexcept;
 
     Exchange& exchange_;
     Duration timeout_;
     std::unique_ptr<std::array<Entry, entry_count>> entries_;
     std::unique_ptr<std::array<Flight, max_frames>> flights_;
-    std::uint64_t order_ = 0;  ///< service side
-    std::uint64_t packs_ = 0;  ///< cycle side: pack() calls
+    std::uint64_t order_ = 0;                                       ///< service side
+    EntryTurn *first_in_line_ = nullptr, *last_in_line_ = nullptr;  ///< service side
+    std::uint64_t packs_ = 0;                                       ///< cycle side: pack() calls
 };
 
 }  // namespace taktwerk::ecat

@@ -178,6 +178,8 @@ bool Exchange::match(std::span<const std::byte> frame, Instant at) noexcept {
     }
     if (!is_ours(frame)) {
         ++statistics_.foreign;
+        std::transform(frame.begin() + 6, frame.begin() + 12, statistics_.foreign_source.begin(),
+                       [](std::byte b) { return std::to_integer<std::uint8_t>(b); });
         return false;
     }
     auto& past = past_[first->index];

@@ -57,6 +57,7 @@ struct ExchangeStatistics {
     std::uint64_t duplicate = 0;    ///< answers to frames already answered
     std::uint64_t rejected = 0;     ///< not EtherCAT, mangled, or never sent by us
     std::uint64_t foreign = 0;      ///< sound EtherCAT frames of another source address: another master on the cable
+    MacAddress foreign_source{};    ///< of the last of them
     std::uint64_t echoes = 0;       ///< our own frame, not touched by any slave
     std::uint64_t send_errors = 0;  ///< the link did not take a frame
 };

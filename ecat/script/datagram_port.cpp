@@ -8,9 +8,7 @@ Transfer::~Transfer() {
     if (entry_) channel_.release(*entry_);
 }
 
-std::optional<EntryId> Transfer::submit() noexcept {
-    return gate_.exists() ? channel_.submit_gated(command_, address_, data_, gate_) : channel_.submit(command_, address_, data_);
-}
+std::optional<EntryId> Transfer::submit() noexcept { return channel_.submit_in_turn(turn_, command_, address_, data_, gate_); }
 
 bool Transfer::withdraw() noexcept {
     if (!entry_ || !channel_.withdraw(*entry_)) return false;
@@ -18,13 +16,30 @@ bool Transfer::withdraw() noexcept {
     return true;
 }
 
-bool Transfer::ready(Instant now) {
-    if (!give_up_at_) give_up_at_ = now + wait_.value_or(DatagramPort::patience);
-    if (!entry_) {
-        entry_ = submit();
-        reply_.held = !entry_;
-        return !entry_ && now >= *give_up_at_;  // all entries taken: wait for one
+/// All entries may be taken. That is nobody's silence: the time of the slave begins when its datagram is handed in. Only a line that does
+/// not move at all is left, for then nobody moves frames; and a wait for a gate is limited whatever keeps it.
+bool Transfer::stand_in_line(Instant now) {
+    if (!in_line_since_) in_line_since_ = now;
+    if (wait_ && !give_up_at_) give_up_at_ = now + *wait_;
+    entry_ = submit();
+    if (entry_) {
+        reply_.queued += now - *in_line_since_;
+        in_line_since_.reset();
+        reply_.held = false;
+        if (!give_up_at_) give_up_at_ = now + DatagramPort::patience;
+        return false;
     }
+    reply_.held = true;
+    if (wait_) return now >= *give_up_at_;
+    if (const auto moved = channel_.handed_out(); !line_seen_at_ || moved != line_seen_) {
+        line_seen_ = moved;
+        line_seen_at_ = now;
+    }
+    return now - *line_seen_at_ >= DatagramPort::patience;
+}
+
+bool Transfer::ready(Instant now) {
+    if (!entry_) return stand_in_line(now);
     const auto answer = channel_.poll(*entry_);
     if (!answer && now < *give_up_at_) return false;
     if (!answer && wait_) {
@@ -35,12 +50,13 @@ bool Transfer::ready(Instant now) {
         if (now < *give_up_at_ + DatagramPort::patience) return false;  // it has left after all
     }
     if (answer && !answer->lost) {
-        reply_ = Reply{false, false, answer->wkc, answer->slaves_passed, {answer->data.begin(), answer->data.end()}, answer->sent_at};
+        reply_ = Reply{false,           false,        answer->wkc, answer->slaves_passed, {answer->data.begin(), answer->data.end()},
+                       answer->sent_at, reply_.queued};
     }
     channel_.release(*entry_);
     entry_.reset();
     if (reply_.lost && --attempts_ > 0 && now < *give_up_at_) {
-        entry_ = submit();
+        (void)stand_in_line(now);
         return false;
     }
     return true;

@@ -30,6 +30,7 @@ struct Reply {
     std::uint16_t slaves_passed = 0;  ///< AP and B commands
     std::vector<std::byte> data;
     Instant sent_at{};  ///< when the frame left
+    Duration queued{};  ///< how long it stood in line before it was handed in: no time that the slave took
 
     /// Exactly one slave answered.
     [[nodiscard]] bool ok() const noexcept { return !lost && wkc == 1; }
@@ -63,8 +64,10 @@ public:
 
 private:
     std::optional<EntryId> submit() noexcept;
+    bool stand_in_line(Instant now);
 
     AcyclicChannel& channel_;
+    EntryTurn turn_;
     Command command_;
     Address address_;
     std::vector<std::byte> data_;
@@ -73,13 +76,19 @@ private:
     std::optional<Duration> wait_;  ///< for the gate
     std::optional<EntryId> entry_;
     std::optional<Instant> give_up_at_;
+    std::optional<Instant> in_line_since_, line_seen_at_;
+    std::uint64_t line_seen_ = 0;
     Reply reply_;
 };
 
 class DatagramPort {
 public:
-    /// After this time without an answer a datagram is lost even if nobody moves frames (no cycle, no pump).
+    /// After this time without an answer a datagram is lost even if nobody moves frames (no cycle, no pump). Counted from its entry
+    /// into the channel.
     static constexpr Duration patience = std::chrono::milliseconds{300};
+    /// Slaves to speak to side by side: two datagrams of each fit into the channel, so that nobody stands in line for long.
+    static constexpr std::size_t slaves_at_once = 40;
+    static_assert(2 * slaves_at_once < AcyclicChannel::entry_count);
     static constexpr unsigned default_attempts = 3;
 
     explicit DatagramPort(AcyclicChannel& channel) noexcept : channel_(channel) {}

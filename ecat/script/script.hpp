@@ -4,7 +4,8 @@
 //   Script<T>      a lazy task. It starts when somebody awaits it, or when a Runner owns it; it returns a T.
 //   Runner         owns one Script and resumes it: step(now). It is done(), or it waits for something.
 //   Waiting        what a leaf waits for: asked at each step whether it is ready.
-//   until(t)       waits for a machine time.      all(scripts)   runs scripts side by side, waits for the last.
+//   until(t)       waits for a machine time.      all(scripts)   runs scripts side by side, waits for the last;
+//                                                 all(scripts, n)   n of them at a time.
 //
 // Service side only, one thread, allocates freely, throws nothing itself (an exception in a script ends the program: scripts
 // return Result). Nobody reads a clock: `now` is what step() was given.
@@ -14,7 +15,9 @@
 // arguments of a call, and arguments with destructors are named locals, not temporaries.
 
 #include <coroutine>
+#include <cstddef>
 #include <exception>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -214,28 +217,34 @@ private:
 };
 [[nodiscard]] inline Pause pause(Duration length) noexcept { return Pause{length}; }
 
-/// co_await all(scripts): runs them side by side, each in its own thread; goes on when the last has ended.
+/// co_await all(scripts): runs them side by side, each in its own thread; goes on when the last has ended. With `at_once` the next
+/// starts when one of so many ends: who speaks to hundreds of slaves must not make each of them wait for all the others.
 class All final : public Leaf<All> {
 public:
-    explicit All(std::vector<Script<void>> scripts) {
+    All(std::vector<Script<void>> scripts, std::size_t at_once) : at_once_(at_once) {
         runners_.reserve(scripts.size());
         for (auto& script : scripts) runners_.emplace_back(std::move(script));
     }
     bool ready(Instant now) override {
-        bool finished = true;
-        for (auto& runner : runners_) {
-            if (!runner.done()) runner.step(now);
-            finished = finished && runner.done();
+        std::size_t running = 0;
+        while (first_ < runners_.size() && runners_[first_].done()) ++first_;
+        for (std::size_t i = first_; i < runners_.size() && running < at_once_; ++i) {
+            if (!runners_[i].done()) runners_[i].step(now);
+            running += runners_[i].done() ? 0 : 1;
         }
-        return finished;
+        return running == 0;
     }
     void await_resume() const noexcept {}
 
 private:
     std::vector<Runner> runners_;
+    std::size_t at_once_;
+    std::size_t first_ = 0;  ///< all before it have ended
 };
 
-[[nodiscard]] inline All all(std::vector<Script<void>> scripts) { return All{std::move(scripts)}; }
+[[nodiscard]] inline All all(std::vector<Script<void>> scripts, std::size_t at_once = std::numeric_limits<std::size_t>::max()) {
+    return All{std::move(scripts), at_once};
+}
 
 /// One at a time: a slave's mailbox has one conversation. co_await lock.acquire(); ... lock.release().
 class ScriptLock {

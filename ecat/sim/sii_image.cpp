@@ -9,6 +9,9 @@ namespace taktwerk::ecat::sim {
 
 namespace {
 
+constexpr std::size_t bytes_per_kbit = 128;
+constexpr std::uint16_t usual_size_code = 0x000F;  ///< 16 kbit: size in kbit, less 1
+
 /// CoE type numbers (ETG.1000.6 table 64).
 std::uint8_t type_number(DataType type) noexcept {
     switch (type) {
@@ -77,7 +80,7 @@ std::vector<std::byte> sii_image(const DeviceDescription& description, std::uint
     sii.sync_pulse_length = description.dc.supported ? 0x01F4 : 0;
     sii.alias = alias;
     sii.identity = description.identity;
-    sii.size_code = 0x000F;
+    sii.size_code = usual_size_code;
 
     SiiGeneral general;
     general.order = sii.add_string(description.name);
@@ -109,7 +112,13 @@ std::vector<std::byte> sii_image(const DeviceDescription& description, std::uint
     if (description.mailbox) sii.fmmus.push_back(SiiFmmuUse::mailbox_status);
     for (const auto& pdo : description.rx_pdos) sii.rx_pdos.push_back(pdo_of(description, pdo, description.rx_assigned, sii));
     for (const auto& pdo : description.tx_pdos) sii.tx_pdos.push_back(pdo_of(description, pdo, description.tx_assigned, sii));
-    return build_sii(sii);
+    auto image = build_sii(sii);
+    // Whoever reads it stops at the size that it states: a memory is as large as what stands in it.
+    while ((std::size_t{sii.size_code} + 1) * bytes_per_kbit < image.size()) {
+        sii.size_code = static_cast<std::uint16_t>(2 * sii.size_code + 1);
+        image = build_sii(sii);
+    }
+    return image;
 }
 
 }  // namespace taktwerk::ecat::sim

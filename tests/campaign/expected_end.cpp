@@ -100,7 +100,7 @@ ExpectedEnd of_operation(FaultKind kind) {
         case FaultKind::reference_frozen: return runs_on({alarm::reference_clock_lost});
         case FaultKind::stall_20ms:
         case FaultKind::stall_200ms:
-        case FaultKind::stall_2s: return stops({alarm::slave_left_op, alarm::working_counter_wrong});
+        case FaultKind::stall_2s: return stops({alarm::starved_slave_left_op, alarm::working_counter_wrong});
         // A wrong input may be an emergency stop or a following error; a wrong register may be anything of a slave. Nobody can see
         // a flipped bit in a target behind a valid checksum: there the drive's own supervision of increments is what remains.
         case FaultKind::answer_bits_flipped: {

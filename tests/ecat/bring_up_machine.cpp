@@ -111,7 +111,7 @@ TEST(BringUp, TellsStateCodeSizesAndRemedyOfARefusal) {
     const auto& why = bus.master->failure();
     EXPECT_EQ(why.code, "bus.refused_state");
     EXPECT_EQ(why.subject, "slave 1 'b' (sv33-e)");
-    EXPECT_THAT(why.what, HasSubstr("refused SAFEOP: 0x001D"));
+    EXPECT_THAT(why.what, HasSubstr("refused SAFEOP: 001Dh"));
     EXPECT_THAT(why.what, HasSubstr("SM2 is 6 bytes at 1800h, the slave maps 6; SM3 is 6 bytes at 1C00h, the slave maps 6"));
     EXPECT_THAT(why.what, HasSubstr("SYNC0 every 1 ms"));
     EXPECT_FALSE(why.remedy.empty());

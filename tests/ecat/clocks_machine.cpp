@@ -252,7 +252,7 @@ TEST(SyncStart, IsBeforeSafeopOrInIt) {
     auto late = line_of({0});
     late->config.slaves[0].sync_start = SyncStart::in_safeop;
     EXPECT_FALSE(late->bring_up());
-    EXPECT_THAT(late->master->failure().text(), HasSubstr("0x002D"));
+    EXPECT_THAT(late->master->failure().text(), HasSubstr("002Dh"));
 
     auto described = std::make_shared<DeviceDescription>(*terminal_description());
     described->dc.supported = true;

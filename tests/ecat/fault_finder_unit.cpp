@@ -64,6 +64,46 @@ TEST(FaultFinder, WithoutFramesOnlyThatIsSaid) {
     EXPECT_THAT(f.look(), IsEmpty()) << "up to the limit lost frames are only counted";
 }
 
+// ETG.1000.6: 001Bh is the watchdog of the process data. Who sent none is to blame, and only for codes that say so.
+TEST(FaultFinder, ASlaveThatFallsRightAfterOurOwnStallIsNotBlamed) {
+    for (const int number : {0x001A, 0x001B, 0x002C, 0x0032, 0x0033, 0x0034, 0x001D, 0x0000}) {
+        const auto code = static_cast<std::uint16_t>(number);
+        Finder f{{-1, 0}};
+        (void)f.look();
+        f.bus.stall = std::chrono::milliseconds{20};
+        auto& slave = f.finder.condition(1);
+        slave.al_state = AlState::safeop;
+        slave.al_error = true;
+        slave.al_status_code = code;
+        const bool starved = code != 0x001D && code != 0;
+        EXPECT_THAT(f.look(), ElementsAre(starved ? alarm::starved_slave_left_op : alarm::slave_left_op)) << code;
+        f.bus.stall = {};
+        EXPECT_THAT(f.look(), ElementsAre(starved ? alarm::starved_slave_left_op : alarm::slave_left_op)) << "as long as it stands";
+        if (starved) {
+            EXPECT_EQ(f.finder.facts()[0].a, code);
+            EXPECT_EQ(f.finder.facts()[0].b, 20.0);
+        }
+        slave = {};
+        slave.al_state = AlState::op;
+        EXPECT_THAT(f.look(), IsEmpty());
+        slave.al_state = AlState::safeop;
+        slave.al_error = true;
+        slave.al_status_code = code;
+        EXPECT_THAT(f.look(), ElementsAre(alarm::slave_left_op)) << "the next time it falls by itself";
+    }
+}
+
+// Between power and silence: not answering to its address, and not exchanged either.
+TEST(FaultFinder, OnlyWhoExchangesInThisCycleHasLostNothingButItsAddress) {
+    Finder f{{-1, 0}};
+    auto& slave = f.finder.condition(1);
+    slave.presence = Presence::silent;
+    EXPECT_THAT(f.look(), ElementsAre(alarm::station_address_lost));
+    slave.age = 1;
+    f.bus.slaves_answering = 1;
+    EXPECT_THAT(f.look(), ::testing::Not(::testing::Contains(alarm::station_address_lost)));
+}
+
 // 0 - 1 - 2      behind port 3 of slave 0: 1, 2; behind port 1: 3, 4
 //  \- 3 - 4
 TEST(FaultFinder, EachBranchThatIsGoneIsOneAlarm) {

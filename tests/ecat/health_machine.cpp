@@ -17,6 +17,7 @@ using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 /// A controller that is not ours: its datagrams reach the slaves, and its frames are heard by our port.
 void second_master_writes(TestBus& bus, Address address, std::uint16_t value) {
@@ -213,7 +214,7 @@ TEST_F(Health, ASlaveThatRefusesToReturnIsTriedEverMoreSeldomAndSaidSo) {
     EXPECT_THAT(faults(), Contains(alarm::slave_does_not_return));
     for (const auto& fact : facts())
         if (fact.id == alarm::slave_does_not_return) {
-            EXPECT_THAT(bus->master->detail(fact), HasSubstr("refused SAFEOP: 0x001D"));
+            EXPECT_THAT(bus->master->detail(fact), HasSubstr("refused SAFEOP: 001Dh"));
         }
     bus->run_for(20s);
     // Then every 8 s; a return takes some 300 register accesses, each in a frame of its own at worst.
@@ -303,6 +304,63 @@ TEST_F(Health, AnotherMasterIsHeardAndSaidWhileItSends) {
     EXPECT_THAT(faults(), IsEmpty());
 }
 
+// Nobody else has to do with a slave that went and came back.
+TEST_F(Health, APowerCycledSlaveIsNeverSaidToHaveLostItsAddress) {
+    for (const Duration cycle : {Duration{1ms}, Duration{4ms}}) {
+        bus.emplace("tss", cycle);
+        ASSERT_TRUE(bus->bring_up()) << bus->why();
+        bus->run_for(200ms);
+        std::vector<AlarmId> said;
+        bus->on_cycle = [&] {
+            for (const auto id : faults()) said.push_back(id);
+        };
+        for (const std::size_t slave : {2u, 1u}) {
+            bus->network.set_power(slave, false);
+            bus->run_for(100ms);
+            bus->network.set_power(slave, true);
+            ASSERT_TRUE(bus->run_until([&] { return bus->state(slave) == sim::EsmState::op; }, 10s)) << bus->why();
+            bus->run_for(1s);
+        }
+        EXPECT_FALSE(said.empty());
+        EXPECT_THAT(said, Not(Contains(alarm::station_address_lost)));
+        EXPECT_THAT(said, Not(Contains(alarm::foreign_master)));
+        EXPECT_THAT(faults(), IsEmpty());
+    }
+}
+
+TEST_F(Health, TheOtherMasterIsNamedByItsAddress) {
+    start("t");
+    for (int i = 0; i < 3000; ++i) {
+        bus->cycle_once();
+        if (i % 10 == 0) second_master_writes(*bus, Address::position(0, 0x0F80), 0);
+    }
+    ASSERT_THAT(faults(), ElementsAre(alarm::foreign_master));
+    EXPECT_EQ(bus->master->detail(facts().front()), "its network address is 02:11:22:33:44:55 (the slaves set 02h in its first byte)");
+}
+
+// Slaves in the hands of somebody else are left as they are, and he is named.
+TEST_F(Health, ABringUpBesideAnotherMasterDisturbsNothing) {
+    bus.emplace("ts");
+    ASSERT_TRUE(bus->bring_up()) << bus->why();  // these slaves work now: for the other master
+    int sent = 0;
+    bus->on_cycle = [&] {
+        if (++sent % 4 == 0) second_master_writes(*bus, Address::position(0, 0x0F80), 0);
+    };
+    Master second{bus->transport, bus->config};
+    second.start();
+    for (int i = 0; i < 500 && second.phase() != Master::Phase::failed; ++i) {
+        bus->now += 1ms;
+        second.receive(bus->now);
+        bus->on_cycle();
+        second.send(bus->now);
+        second.step(bus->now);
+    }
+    ASSERT_EQ(second.phase(), Master::Phase::failed);
+    EXPECT_EQ(second.failure().code, "bus.foreign_master");
+    EXPECT_THAT(second.failure().what, ::testing::HasSubstr("02:11:22:33:44:55"));
+    EXPECT_EQ(second.statistics().frames_sent, 0u);
+}
+
 TEST_F(Health, AMailboxThatFellSilentIsNoticedAlthoughNobodyAskedForAnything) {
     start("ts");
     bus->network.slave(1).stick_mailbox(true);
@@ -358,7 +416,7 @@ TEST_F(Health, AStallOfTheMasterEndsInOpAgain) {
         bus->now += stall;
         bus->network.advance(bus->now);
         EXPECT_EQ(bus->state(1), sim::EsmState::safeop) << "SM watchdog of 10 ms";
-        EXPECT_TRUE(said_within(alarm::slave_left_op, 50ms));
+        EXPECT_TRUE(said_within(alarm::starved_slave_left_op, 50ms));
         expect_recovery();
     }
 }

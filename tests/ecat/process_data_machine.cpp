@@ -230,9 +230,35 @@ TEST(Faults, ASlaveThatFellBySmWatchdogIsAcknowledgedAndReturns) {
 
     ASSERT_TRUE(bus.run_until([&] { return bus.state(0) == sim::EsmState::op; }, 2s));
     EXPECT_THAT(bus.master->notes(), Contains(HasSubstr("left OP")));
-    EXPECT_THAT(bus.master->notes(), Contains(HasSubstr("0x001B")));
+    EXPECT_THAT(bus.master->notes(),
+                Contains(HasSubstr("AL status code 001Bh sync manager watchdog; right before, this computer sent nothing for 51 ms")));
     bus.run_for(200ms);
     EXPECT_TRUE(faults(bus).empty());
+}
+
+// The same as alarms: who stood still is named, not the slave.
+TEST(Faults, ASlaveThatThisComputerStarvedIsNotBlamed) {
+    TestBus bus{"ss"};
+    ASSERT_TRUE(bus.bring_up());
+    bus.run_for(100ms);
+    bus.now += 50ms;
+    bus.network.advance(bus.now);
+    ASSERT_EQ(bus.state(0), sim::EsmState::safeop);
+    std::vector<AlarmFact> seen;
+    bus.on_cycle = [&] {
+        std::array<AlarmFact, 16> facts;
+        seen.insert(seen.end(), facts.begin(), facts.begin() + static_cast<std::ptrdiff_t>(bus.master->active_faults(facts)));
+    };
+    bus.run_for(2s);
+    EXPECT_THAT(seen, Contains(::testing::Field(&AlarmFact::id, alarm::starved_slave_left_op)));
+    EXPECT_THAT(seen, Not(Contains(::testing::Field(&AlarmFact::id, alarm::slave_left_op))));
+    for (const auto& fact : seen)
+        if (fact.id == alarm::starved_slave_left_op) {
+            EXPECT_EQ(fact.a, 0x001B);
+            EXPECT_EQ(fact.b, 51.0) << "ms";
+            EXPECT_EQ(bus.master->detail(fact), "sync manager watchdog");
+        }
+    EXPECT_EQ(bus.state(0), sim::EsmState::op);
 }
 
 TEST(Sdo, InOpIsAQueuedRequestThatProcessDataDoesNotNotice) {

@@ -289,7 +289,7 @@ TEST(Modules, ASlotWithoutOneIsRefusedByTheSlave) {
     half.config.slaves[0].modules = {{0, "csp"}};
     EXPECT_FALSE(half.bring_up());
     EXPECT_EQ(half.master->failure().code, "bus.refused_state");
-    EXPECT_THAT(half.master->failure().what, HasSubstr("0x0025"));
+    EXPECT_THAT(half.master->failure().what, HasSubstr("0025h"));
     EXPECT_EQ(half.state(0), sim::EsmState::preop);
 }
 
@@ -305,7 +305,7 @@ TEST(Modules, ASlotWithoutInputsIsRefusedToo) {
     add(bus, played, told, std::make_unique<QuietModel>());
     bus.config.slaves[0].modules = {{0, "csp"}, {1, "blind"}};
     EXPECT_FALSE(bus.bring_up());
-    EXPECT_THAT(bus.master->failure().what, HasSubstr("0x0024"));
+    EXPECT_THAT(bus.master->failure().what, HasSubstr("0024h"));
 }
 
 // --- watchdogs ---------------------------------------------------------------------------------------------------------------

@@ -42,7 +42,7 @@ TEST(Refusal, NamesTheSyncManagerWhoseSizeTheMappingContradicts) {
     const auto error = refusal_error(r);
     EXPECT_EQ(error.code, "bus.refused_state");
     EXPECT_EQ(error.subject, "slave 3 'y' (sv33-e)");
-    EXPECT_THAT(error.what, HasSubstr("refused SAFEOP: 0x001D invalid output configuration (it is in PREOP)"));
+    EXPECT_THAT(error.what, HasSubstr("refused SAFEOP: 001Dh invalid output configuration (it is in PREOP)"));
     EXPECT_THAT(error.what, HasSubstr("SM2 is 19 bytes at 1800h, the slave maps 12"));
 }
 
@@ -71,6 +71,24 @@ TEST(Refusal, SaysThatSync0IsMissingWhereTheSlaveNeedsIt) {
     EXPECT_THAT(r.cause, HasSubstr("12000 ns"));
 }
 
+// A firmware that hangs: SYNC0 is started on the way to SAFEOP, nobody in INIT waits for it.
+TEST(Refusal, BelowSafeopSync0IsNoCause) {
+    auto r = refusal(0);
+    r.asked = AlState::preop, r.reached = AlState::init;
+    r.timed_out = true;
+    r.clock.started = false;
+    judge(r);
+    EXPECT_EQ(r.cause, "the slave neither takes the state nor says why");
+    EXPECT_THAT(r.remedy, HasSubstr("power-cycle the slave"));
+}
+
+TEST(Refusal, NumbersAreWrittenAsAPersonWouldWriteThem) {
+    auto r = refusal(0x0036);
+    r.clock.sync0_cycle = 22'880ns;
+    judge(r);
+    EXPECT_EQ(r.cause, "the slave does not accept a SYNC0 cycle of 22.88 us");
+}
+
 TEST(Refusal, BlamesMissingOutputsOnlyWhileNoneAreExchanged) {
     auto r = refusal(0x0019);
     r.asked = AlState::op, r.reached = AlState::safeop;
@@ -97,7 +115,7 @@ TEST(Refusal, ATimeoutSaysHowLongAndWhereTheSlaveStays) {
     judge(r);
     const auto error = refusal_error(r);
     EXPECT_EQ(error.code, "bus.state_timeout");
-    EXPECT_THAT(error.what, HasSubstr("did not reach SAFEOP within 10 s: it stays in PREOP without an error (status 0x0002"));
+    EXPECT_THAT(error.what, HasSubstr("did not reach SAFEOP within 10 s: it stays in PREOP without an error (AL status 0002h"));
     EXPECT_FALSE(error.remedy.empty());
 }
 

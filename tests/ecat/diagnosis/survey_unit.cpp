@@ -43,6 +43,46 @@ TEST(Survey, ReadsIdentityStateAndPortsOfEverySlave) {
     EXPECT_THAT(found.remarks, IsEmpty());
 }
 
+// A master with a source address of its own, as every sound one has: its frames are whole, and they are nobody's answer.
+TEST(Listening, HearsASoundFrameOfAnotherMaster) {
+    ProbedBus bus{"t"};
+    std::uint64_t rounds = 0;
+    bool sends = false;
+    BusProbe listening{bus.transport, {}, [&](Duration period) {
+                           bus.now += period;
+                           if (sends && ++rounds % 20 == 0) {
+                               std::array<std::byte, min_frame_size> buffer{};
+                               FrameBuilder builder{buffer, MacAddress{0x02, 0x11, 0x22, 0x33, 0x44, 0x55}};
+                               (void)builder.add(Command::BRD, 1, Address::physical(0, reg::al_status), 2);
+                               (void)builder.finish();
+                               bus.transport.inject(buffer, bus.now);
+                           }
+                           return std::optional{bus.now};
+                       }};
+    EXPECT_EQ(listening.listen(25ms).value(), 0u) << "nobody sends";
+    sends = true;
+    EXPECT_EQ(listening.listen(25ms).value(), 25u) << "one each millisecond";
+}
+
+// SOEM hands the EEPROM to the slave's processor on the way to PREOP (0500h = 1) and leaves it there.
+TEST(Survey, AnEepromThatItsProcessorHoldsIsNoDefect) {
+    ProbedBus bus{"s"};
+    ASSERT_TRUE(bus.bring_up()) << bus.why();  // in OP: the survey takes nothing away from anybody
+    std::array<std::byte, min_frame_size> buffer{};
+    FrameBuilder builder{buffer, MacAddress{0x02, 0x11, 0x22, 0x33, 0x44, 0x55}};
+    store_le(builder.add(Command::APWR, 1, Address::position(0, reg::eeprom_configuration), 1), 0, std::uint8_t{1});
+    (void)builder.finish();
+    (void)bus.network.process(buffer, bus.now);
+
+    const Survey found = bus.look();
+    ASSERT_EQ(found.slaves.size(), 1u);
+    ASSERT_TRUE(found.slaves[0].found.error) << "nobody can read it while it is held";
+    const auto said = found.slaves[0].found.error->text();
+    EXPECT_THAT(said, ::testing::HasSubstr("its EEPROM is in the hands of its own processor (0500h = 01h, 0501h = 00h)"));
+    EXPECT_THAT(said, ::testing::Not(::testing::HasSubstr("defective")));
+    EXPECT_THAT(said, ::testing::Not(::testing::HasSubstr("reports an error")));
+}
+
 TEST(Survey, EightSlavesTakeLessThanASecondOfMachineTime) {
     ProbedBus bus{"ssssssss"};
     const Survey found = bus.look();

@@ -126,7 +126,7 @@ TEST_F(AcyclicChannelTest, EntryReleasedUnderWayIsFreeOnlyAfterItsAnswer) {
     EXPECT_EQ(channel.in_use(), 0u);
 }
 
-TEST_F(AcyclicChannelTest, ThirtyTwoEntriesAreTakenAndTheNextIsRefused) {
+TEST_F(AcyclicChannelTest, WhenAllEntriesAreTakenTheNextIsRefused) {
     std::vector<EntryId> ids;
     for (std::size_t i = 0; i < AcyclicChannel::entry_count; ++i) ids.push_back(read(0x0130));
     EXPECT_FALSE(channel.submit(Command::FPRD, {}, std::size_t{2}));
@@ -134,6 +134,53 @@ TEST_F(AcyclicChannelTest, ThirtyTwoEntriesAreTakenAndTheNextIsRefused) {
     EXPECT_TRUE(channel.submit(Command::FPRD, {}, std::size_t{2}));
     EXPECT_TRUE(channel.poll(ids[7])->lost) << "a stale id is not the new request";
     EXPECT_FALSE(channel.submit(Command::FPRD, {}, max_datagram_data + 1));
+}
+
+// Whoever came first gets the entry, whoever asks first: a script that gives one back must not take it again before the others.
+TEST_F(AcyclicChannelTest, EntriesGoToThoseWhoCameFirst) {
+    std::vector<EntryId> ids;
+    for (std::size_t i = 0; i < AcyclicChannel::entry_count; ++i) ids.push_back(read(0x0130));
+    const std::array<std::byte, 2> data{};
+    const auto ask = [&](EntryTurn& turn) { return channel.submit_in_turn(turn, Command::FPRD, Address::physical(0x1001, 0), data, {}); };
+    EntryTurn first, third;
+    EXPECT_FALSE(ask(first));
+    {
+        EntryTurn second;
+        EXPECT_FALSE(ask(second));
+        EXPECT_FALSE(ask(third));
+        channel.release(ids[0]);
+        EXPECT_FALSE(ask(third)) << "two came before";
+        EXPECT_FALSE(ask(second)) << "one came before";
+        EXPECT_TRUE(ask(first));
+        EXPECT_FALSE(ask(second)) << "taken";
+    }
+    channel.release(ids[1]);
+    EXPECT_TRUE(ask(third)) << "the second left the line";
+
+    // Two free entries: the first two may take them in any order.
+    EntryTurn a, b, c;
+    EXPECT_FALSE(ask(a));
+    EXPECT_FALSE(ask(b));
+    EXPECT_FALSE(ask(c));
+    channel.release(ids[2]);
+    channel.release(ids[3]);
+    EXPECT_FALSE(ask(c));
+    EXPECT_TRUE(ask(b));
+    EXPECT_FALSE(ask(c));
+    EXPECT_TRUE(ask(a));
+}
+
+// Only so many may wait for a gate; those in line for that keep nobody from an entry.
+TEST_F(AcyclicChannelTest, WhoWaitsForAGateIsPassedInLine) {
+    std::atomic<std::uint64_t> word{0};
+    SendGate gate;
+    gate.word = &word;
+    const std::array<std::byte, 2> data{};
+    for (std::size_t i = 0; i < AcyclicChannel::max_gated; ++i)
+        ASSERT_TRUE(channel.submit_gated(Command::FPRD, Address::physical(0x1001, 0x0130), data, gate));
+    EntryTurn gated, plain;
+    EXPECT_FALSE(channel.submit_in_turn(gated, Command::FPRD, Address::physical(0x1001, 0), data, gate));
+    EXPECT_TRUE(channel.submit_in_turn(plain, Command::FPRD, Address::physical(0x1001, 0), data, {}));
 }
 
 TEST_F(AcyclicChannelTest, NothingIsSentWhenNothingWaits) {

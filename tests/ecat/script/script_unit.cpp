@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 
 namespace taktwerk::ecat {
@@ -107,6 +108,30 @@ TEST(Script, LongChainsWithoutAWaitDoNotGrowTheStack) {
     Runner runner{many(total)};
     runner.step(at(0ms));
     EXPECT_EQ(total, 200000);
+}
+
+Script<void> count_running(int& running, int& most, int& ended) {
+    most = std::max(most, ++running);
+    co_await pause(2ms);
+    --running;
+    ++ended;
+}
+
+Script<void> in_threes(int& running, int& most, int& ended) {
+    std::vector<Script<void>> parts;
+    for (int i = 0; i < 10; ++i) parts.push_back(count_running(running, most, ended));
+    co_await all(std::move(parts), 3);
+}
+
+TEST(Script, OfManySideBySideOnlySoManyRunAtOnceAndAllOfThemEnd) {
+    int running = 0, most = 0, ended = 0;
+    Runner runner{in_threes(running, most, ended)};
+    Duration now{};
+    for (; !runner.done() && now < 100ms; now += 1ms) runner.step(at(now));
+    EXPECT_TRUE(runner.done());
+    EXPECT_EQ(most, 3);
+    EXPECT_EQ(ended, 10);
+    EXPECT_LE(now, 10ms) << "the next starts when one ends: four rounds of 2 ms";
 }
 
 }  // namespace
