@@ -14,6 +14,7 @@
 #include "apps/remote.hpp"
 #include "apps/stop_signal.hpp"
 #include "core/clock.hpp"
+#include "hmi_bridge/json_number.hpp"
 
 namespace taktwerk::apps {
 namespace {
@@ -25,8 +26,8 @@ constexpr auto settling = 5s;  ///< longest ramp we wait for after letting go
 
 struct Options {
     RemoteOptions remote;
-    std::string axis;
-    double velocity = 0, for_s = 0;
+    std::string axis, speed;
+    double for_s = 0;
 };
 
 /// The axis' own object of the state; empty when something went wrong.
@@ -39,22 +40,26 @@ nlohmann::ordered_json axis_of(const nlohmann::ordered_json& state, const std::s
 int jog(const Options& options) {
     auto client = hmi::Client::connect(options.remote.machine);
     if (!client) return report(options.remote, client.error());
+    const auto velocity = velocity_on(*client, options.axis, options.speed);
+    if (!velocity) return report(options.remote, velocity.error());
     watch_stop_signals();
     SystemClock clock;
     const auto start = clock.now();
     const bool show = !options.remote.json && ::isatty(STDOUT_FILENO) != 0;
 
     for (bool press = true; !stop_requested(); press = false) {
-        nlohmann::json request{{"cmd", "jog"}, {"axis", options.axis}, {"velocity", options.velocity}};
+        nlohmann::json request{{"cmd", "jog"}, {"axis", options.axis}, {"velocity", *velocity}};
         if (press) request["press"] = true;
         const auto answer = client->request(request);
         if (!answer) return report(options.remote, answer.error());
+        if (const auto note = answer->value("note", std::string{}); press && !note.empty() && !options.remote.json)
+            fmt::print("{}: {}\n", options.axis, note);
         if (show) {
             if (const auto state = state_of(*client)) {
                 const auto axis = axis_of(*state, options.axis);
                 if (axis.is_object())
-                    fmt::print("\r{} {:12.3f} {}  {:10.3f} {}/s   Ctrl-C stops ", options.axis, axis.at("actual_position").get<double>(),
-                               axis.at("unit").get<std::string>(), axis.at("actual_velocity").get<double>(),
+                    fmt::print("\r{} {:12.3f} {}  {:10.3f} {}/s   Ctrl-C stops ", options.axis, hmi::number_of(axis.at("actual_position")),
+                               axis.at("unit").get<std::string>(), hmi::number_of(axis.at("actual_velocity")),
                                axis.at("unit").get<std::string>());
                 std::fflush(stdout);
             }
@@ -72,8 +77,8 @@ int jog(const Options& options) {
         if (!state) return report(options.remote, state.error());
         const auto axis = axis_of(*state, options.axis);
         if (!axis.is_object()) break;
-        if (!axis.at("has_job").get<bool>() && axis.at("set_velocity").get<double>() == 0)
-            return report(options.remote, fmt::format("{}: stands at {:.3f} {}", options.axis, axis.at("actual_position").get<double>(),
+        if (!axis.at("has_job").get<bool>() && hmi::number_of(axis.at("set_velocity")) == 0)
+            return report(options.remote, fmt::format("{}: stands at {:.3f} {}", options.axis, hmi::number_of(axis.at("actual_position")),
                                                       axis.at("unit").get<std::string>()));
         std::this_thread::sleep_for(20ms);
     }
@@ -87,7 +92,7 @@ void add_jog(CLI::App& app, Action& action) {
     auto options = std::make_shared<Options>();
     add_remote_options(*sub, options->remote);
     sub->add_option("AXIS", options->axis, "axis")->required();
-    sub->add_option("--velocity", options->velocity, "unit/s, signed")->required();
+    sub->add_option("--velocity", options->speed, "signed: 20mm/s, 1.2m/min; a bare number is in the axis' unit/s")->required();
     add_duration(*sub, "--for", options->for_s, "let go after this time; default: at Ctrl-C");
     sub->callback([&action, options] { action = [options] { return jog(*options); }; });
 }

@@ -20,6 +20,7 @@ public:
 
 private:
     void alarms(Instant now, const runtime::Snapshot& snapshot);
+    void events(Instant now, const runtime::Snapshot& snapshot);
     void say_alarm(Instant now, const std::string& event, const runtime::AlarmText& words);
 
     struct Known {
@@ -36,6 +37,8 @@ private:
     std::vector<bool> homed_;
     std::vector<runtime::ProgramState> programs_;
     std::vector<Known> known_;
+    std::uint64_t last_event_ = 0;  // its number
+    std::uint64_t events_dropped_ = 0;
     runtime::Mode mode_ = runtime::Mode::manual;
     bool first_ = true, emergency_ = false;
 };

@@ -10,6 +10,7 @@
 #include "apps/exit_code.hpp"
 #include "apps/load.hpp"
 #include "apps/machine_log.hpp"
+#include "apps/sim_hands.hpp"
 #include "apps/stop_signal.hpp"
 #include "apps/taktwerk.hpp"
 #include "apps/trace_csv.hpp"
@@ -211,6 +212,12 @@ int run_real(LoadedFile loaded, const Options& options) {
             fmt::print("{}\n", text);
             std::fflush(stdout);
         };
+    std::optional<SimHands> hands;
+    if (world) {
+        hands.emplace(*world, machine->config());
+        world->also = [&hands](Instant now) { hands->step(now); };
+        bridge_options.simulate = [&hands](const std::string& line) { return hands->ask(line); };
+    }
     auto bridge = hmi::HmiBridge::open(loaded.hmi, link, std::move(bridge_options));
     if (!bridge) {
         print_error(bridge.error());
@@ -230,8 +237,13 @@ int run_real(LoadedFile loaded, const Options& options) {
         fmt::print("Without real time (the machine runs, but not punctually):\n");
         for (const auto& item : started->items)
             if (!item.granted) fmt::print("  {}: {}. It costs: {}\n", item.what, item.reason, item.consequence);
+        if (world && machine->config().simulation.supervision == Supervision::strict)
+            fmt::print(
+                "  This simulation is supervised as strictly as a real bus: a stall of this computer stops it. If that happens, write\n"
+                "  `simulation: {{supervision: relaxed}}` into the machine file.\n");
     }
     const auto start = clock.now();
+    if (trace) trace->count_from(start);
     MachineLog log{*machine, start, options.json};
     int code = exit_ok;
     bool said_stop = false;

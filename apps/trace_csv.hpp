@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/result.hpp"
+#include "core/time.hpp"
 #include "runtime/snapshot.hpp"
 #include "runtime/trace_ring.hpp"
 
@@ -19,6 +20,8 @@ public:
                                                     const runtime::MachineLayout& layout);
     ~TraceCsv();
 
+    /// Before the first drain(): the instant of the machine's time that the column time_s calls 0, which is that of the log.
+    void count_from(Instant start) noexcept { start_s_ = to_seconds(start.time_since_epoch()); }
     /// Writes all rows that are waiting.
     void drain();
     /// Flushes; an error of the disk shows here at the latest.
@@ -30,6 +33,7 @@ private:
     std::FILE* file_;
     runtime::TraceRing& ring_;
     std::string line_;
+    double start_s_ = 0;
 };
 
 }  // namespace taktwerk::apps

@@ -8,6 +8,8 @@
 #include "config/bus_tables.hpp"
 #include "config/codecs.hpp"
 #include "config/drive_tables.hpp"
+#include "config/quantity.hpp"
+#include "config/unit_text.hpp"
 
 namespace taktwerk::config {
 
@@ -207,6 +209,13 @@ Codec<runtime::ParameterValue> parameter() {
             out.value = node.text == "true" ? 1 : 0;
             return true;
         }
+        if (node.kind == Node::Kind::scalar && !parse_number(node.text)) {
+            for (auto& one : in_every_unit(node.text)) out.in_units.push_back({std::move(one.unit), one.value});
+            if (!out.in_units.empty()) {
+                out.text = node.text;
+                return true;
+            }
+        }
         return plain.read(reader, node, out.value);
     };
     return c;
@@ -227,7 +236,7 @@ Table<ProgramFile> program_table() {
             field_at<P>(
                 "parameters", [](P & p) -> auto& { return p.program.parameters; },
                 by_name(parameter(), [](runtime::ParameterValue& v) -> std::string& { return v.name; }),
-                "initial values, in the units that the program declares"),
+                "initial values: a bare number in the unit that the program declares, or a number with a unit that converts to it"),
             with_default(field("tasks", &P::tasks, by_name(section(task_table()), [](TaskEntry& t) -> std::string& { return t.task.name; }),
                                "tasks that the program declares"),
                          "`main`, each cycle"),

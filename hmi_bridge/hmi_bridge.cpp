@@ -41,6 +41,7 @@ HmiBridge::HmiBridge(const HmiConfig& config, MachineLink& machine, HmiOptions o
       requests_(gateway_, machine, options.wall_utime, options.log),
       receiver_(gateway_, options.wall_utime),
       server_(std::move(server)) {
+    requests_.set_simulate(std::move(options.simulate));
     if (!bus_) return;
     const bool commands = config.lcm_commands == LcmCommands::local;
     publisher_.emplace(*bus_, machine, config.rate_hz, commands, options.wall_utime);

@@ -30,6 +30,7 @@ struct HmiOptions {
     std::function<void(std::string_view)> log;                   ///< lines for the runtime's log; may be empty
     std::function<std::int64_t()> wall_utime = hmi::wall_utime;  ///< us since 1970; tests give their own
     std::unique_ptr<MessageBus> bus;                             ///< instead of the configured LCM: tests
+    JsonRequests::Simulate simulate{};                           ///< hands on a simulated machine; empty: it is real
 };
 
 class HmiBridge {

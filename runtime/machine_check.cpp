@@ -74,6 +74,12 @@ std::vector<Error> check(const MachineConfig& config) {
     for (const auto& point : config.io) (point.direction == IoDirection::input ? inputs : outputs).push_back(point.name);
     for (const auto& program : config.programs) programs.push_back(program.name);
     problems.duplicates(axis_names, "axes");
+    // They head the columns of a trace, stand in lists on the command line and in words over the socket.
+    for (const auto& name : axis_names)
+        if (name.find_first_of(" \t\n,;\"'[]=/") != std::string::npos)
+            problems.add("config.name_characters", fmt::format("axes.{}", name),
+                         fmt::format("the name '{}' has a blank or a mark that separates names elsewhere", name),
+                         "use letters, digits, '_' and '-'");
     problems.duplicates(inputs, "io.inputs");
     problems.duplicates(outputs, "io.outputs");
     problems.duplicates(programs, "programs");
@@ -135,7 +141,7 @@ std::vector<Error> check(const MachineConfig& config) {
             if (!documented)
                 problems.add("axis.homing_method", subject + ".homing.method",
                              fmt::format("{} does not document homing method {}", profile.name, binding.axis.homing.method),
-                             fmt::format("choose one of {}", list));
+                             list.empty() ? "use another kind of homing" : fmt::format("choose one of {}", list));
         }
         if (!config.emergency_stop.input.empty()) {
             const double needs = stop_seconds(binding.axis.limits), has = to_seconds(config.emergency_stop.power_off_after);
@@ -184,11 +190,6 @@ std::vector<Error> check(const MachineConfig& config) {
         for (const auto& name : known) found = found || name == event.target;
         if (!found) problems.unknown("simulation.unknown_target", "simulation.events", "target", event.target, known);
     }
-    if (config.start_mode != Mode::automatic)
-        for (const auto& program : config.programs)
-            if (program.autostart)
-                problems.add("program.autostart", fmt::format("programs.{}.autostart", program.name),
-                             "programs start only in automatic mode", "set `start_mode: automatic`, or start it by hand");
     return errors;
 }
 

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "axes/axis/axis.hpp"
-#include "axes/axis/direct_requests.hpp"
 #include "axes/drives/cia402/cia402_drive.hpp"
 #include "axes/drives/xp200/drive_line.hpp"
 #include "axes/port/drive_port.hpp"
@@ -25,6 +24,7 @@
 #include "runtime/program_host.hpp"
 #include "runtime/program_requests.hpp"
 #include "runtime/slow_task.hpp"
+#include "runtime/watched_requests.hpp"
 
 namespace taktwerk::runtime {
 
@@ -57,6 +57,7 @@ struct Machine::Impl {
     // machine_commands.cpp, machine_programs.cpp
     void drain_inbox(Instant now) noexcept;
     void answer(const OperatorCommand& command, Answer answer, axes::ErrorId error = axes::ErrorId::none) noexcept;
+    void tell_limit(const OperatorCommand& command, CommandAnswer& reply) const noexcept;
     void execute(const OperatorCommand& command) noexcept;
     struct Verdict {
         Answer answer = Answer::accepted;
@@ -90,6 +91,7 @@ struct Machine::Impl {
     void watch_emergency_stop() noexcept;
     void watch_restart() noexcept;
     void watch_cycle(const CycleTick& tick) noexcept;
+    void blame_base_task(const CycleTick& tick) noexcept;
     void watch_programs() noexcept;
     void raise_bus_alarms() noexcept;
     void stop_axes_of_faulted_drives() noexcept;
@@ -131,7 +133,7 @@ struct Machine::Impl {
         std::uint32_t client = 0;
     };
     std::vector<OutputByHand> outputs_by_hand;      // as io.outputs()
-    axes::DirectRequests requests;                  // of operators; of programs through theirs
+    WatchedRequests requests;                       // of operators; of programs through theirs
     std::vector<AxisClaims> axis_claims;            // per axis
     std::vector<ProgramRequests> program_requests;  // per program
     bool restart_pressed = true;                    // the last level of its input: only a rising edge counts
@@ -142,10 +144,11 @@ struct Machine::Impl {
     std::vector<std::size_t> base_tasks, slow_task_places;  // indices into host->tasks(), task_statistics, layout.tasks
     std::vector<std::uint64_t> base_scans;                  // since start, per base task
     std::vector<ProgramState> program_states;
-    std::vector<FaultText> program_faults;     // the cycle's; handed over with stop_asked
-    std::vector<std::uint16_t> task_overruns;  // in a row, per slow task
-    std::vector<double> variable_values;       // as this cycle shows them
-    std::vector<std::uint8_t> has_base_task;   // per program
+    std::vector<FaultText> program_faults;                    // the cycle's; handed over with stop_asked
+    std::vector<TaskContext::Undeclared> program_undeclared;  // what each uses without having declared it; since its start
+    std::vector<std::uint16_t> task_overruns;                 // in a row, per slow task
+    std::vector<double> variable_values;                      // as this cycle shows them
+    std::vector<std::uint8_t> has_base_task;                  // per program
     AlarmLog log;
     Mode mode;
     int estop_input = -1, restart_input = -1;
@@ -164,6 +167,14 @@ struct Machine::Impl {
     Instant emergency_since{}, late_until{};
     Duration late_worst{};  // while a late wake-up is shown
     std::uint32_t overruns_in_a_row = 0;
+    struct LongestTask {
+        std::size_t place = 0;  // in host->tasks()
+        Duration run{};
+    };
+    LongestTask longest_base_task;  // of the last cycle
+    bool late_by_a_task = false;    // this cycle comes late because a base task took too long in the last one
+    LongestTask blamed;             // that task ...
+    Instant blamed_until{};         // ... while that is shown
     CycleStatistics statistics;
     std::vector<TaskStatistics> task_statistics;
     StepStatistics<step_count - 1> steps;
