@@ -48,7 +48,7 @@ Table<IoEntry> input_table() {
     Table<IoEntry> table{"io.inputs.<name>", "An input by the name that programs use.", io_fields(), {}, check_io};
     table.fields.push_back(field_at<IoEntry>(
         "simulated", [](IoEntry & e) -> auto& { return e.point.simulated; }, maybe(integer<std::int64_t>(least, most)),
-        "what a simulated terminal says at first: 0 or 1, before `inverted`"));
+        "what the field says at first in a simulation: 0 or 1, before `inverted`; of an analog point its raw number"));
     return table;
 }
 
@@ -203,7 +203,8 @@ Codec<runtime::ParameterValue> parameter() {
     Codec<runtime::ParameterValue> c;
     const auto plain = number();
     c.shape.kind = Shape::Kind::either;
-    c.shape.alternatives = {std::make_shared<const Shape>(plain.shape), std::make_shared<const Shape>(boolean().shape)};
+    c.shape.alternatives = {std::make_shared<const Shape>(plain.shape), std::make_shared<const Shape>(boolean().shape),
+                            std::make_shared<const Shape>(text().shape)};  // with a unit
     c.read = [plain](Reader& reader, const Node& node, runtime::ParameterValue& out) {
         if (node.kind == Node::Kind::scalar && !node.quoted && (node.text == "true" || node.text == "false")) {
             out.value = node.text == "true" ? 1 : 0;
@@ -255,7 +256,7 @@ struct EventWord {
 };
 using EventKind = SimulationEvent::Kind;
 constexpr EventWord event_words[] = {
-    {"input", EventKind::input, 0, "an input of a simulated terminal takes `value`"},
+    {"input", EventKind::input, 0, "an input takes `value`: 0 or 1, an analog one its raw number"},
     {"drive_fault", EventKind::drive_fault, 0, "the drive of this axis raises the alarm `code`"},
     {"main_power_off", EventKind::main_power, 0, "the drive of this axis loses its main power"},
     {"main_power_on", EventKind::main_power, 1, "and gets it back"},

@@ -10,6 +10,7 @@
 namespace taktwerk::runtime::testing {
 namespace {
 
+using namespace fb;
 using axes::AxisState;
 using axes::CommandKind;
 using axes::ErrorId;

@@ -49,6 +49,17 @@ TEST(MachineCheck, AnUnknownSlaveOfAnAxisComesWithASuggestion) {
     EXPECT_TRUE(contains(error.text(), "did you mean 'x_drive'?")) << error.text();
 }
 
+// What would only show when the bus is in OP is known from the file.
+TEST(MachineCheck, AnAxisWithoutItsObjectsInTheProcessData) {
+    const auto error = problem([](MachineConfig& m) {
+        auto pdo = m.bus.slaves[0].device->rx_pdos.at(0);
+        std::erase_if(pdo.entries, [](const auto& entry) { return entry.index == 0x6040; });
+        m.bus.slaves[0].rx.assigned = {pdo};
+    });
+    EXPECT_EQ(error.code, "axis.not_mapped");
+    EXPECT_TRUE(contains(error.text(), "6040h (controlword) is not in the RxPDO of slave 'x_drive'")) << error.text();
+}
+
 TEST(MachineCheck, TwoAxesOnOneDriveAxis) {
     EXPECT_EQ(problem([](MachineConfig& m) { m.axes[1].slave = "x_drive"; }).code, "axis.drive_axis_taken");
 }
