@@ -4,6 +4,7 @@
 #include "core/stopwatch.hpp"
 #include "fb_library/all_blocks.hpp"
 #include "runtime/alarms.hpp"
+#include "runtime/watched_requests.hpp"
 #include "tests/runtime/test_machine.hpp"
 #include "tests/runtime/test_program.hpp"
 
@@ -319,7 +320,7 @@ TEST_F(CommandEventsOf, WhatWasNeverDeclaredIsToldWhenItIsUsed) {
     EXPECT_NE(m().alarms().find("program p: The program uses an input, output or parameter"), std::string::npos) << m().alarms();
 
     Forgetful::reads = false;
-    for (const std::uint8_t number : {70, 7}) {  // beyond the last; and one without a text. 70 is no 6
+    for (const std::uint8_t number : {std::uint8_t{70}, std::uint8_t{7}}) {  // beyond the last; and one without a text. 70 is no 6
         Forgetful::number = number;
         run();
         EXPECT_NE(m().alarms().find("The program raises alarm " + std::to_string(number) + ","), std::string::npos) << m().alarms();
