@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <thread>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -17,6 +18,7 @@
 #include "runtime/borrowed_rights.hpp"
 #include "runtime/drive_hazards.hpp"
 #include "runtime/machine.hpp"
+#include "runtime/machine_remarks.hpp"
 #include "runtime/world.hpp"
 
 namespace taktwerk::apps {
@@ -113,8 +115,14 @@ void print_axis(const MachineConfig& config, const runtime::AxisBinding& binding
                : binding.slave.empty() ? "virtual"
                                        : "drive " + binding.slave,
                axis.disabled ? "  LEFT OUT" : "", axis.simulated ? "  SIMULATED" : "");
-    fmt::print("           velocity {:g} {}/s, acceleration {:g} {}/s2, deceleration {:g} {}/s2, jerk {:g} {}/s3\n", axis.limits.velocity,
-               u, axis.limits.acceleration, u, axis.limits.deceleration, u, axis.limits.jerk, u);
+    fmt::print("           velocity {:g} {}/s, acceleration {:g} {}/s2, deceleration {:g} {}/s2, jerk {}\n", axis.limits.velocity, u,
+               axis.limits.acceleration, u, axis.limits.deceleration, u,
+               std::isinf(axis.limits.jerk) ? std::string("unlimited") : fmt::format("{:g} {}/s3", axis.limits.jerk, u));
+    if (!binding.slave.empty() || !binding.drive.empty()) {
+        const auto stroke = runtime::stroke_seconds(axis);
+        fmt::print("           at full velocity the motor turns at {:.0f} r/min{}\n", runtime::motor_rpm(axis, axis.limits.velocity),
+                   stroke ? fmt::format("; from one software limit to the other takes about {:.2f} s", *stroke) : "");
+    }
     fmt::print("           range {}, homing: {}, jogging {:g} and {:g} {}/s, one {} = {:g} counts\n", range_text(axis.limits, u),
                homing_text(axis.homing), axis.manual.slow > 0 ? axis.manual.slow : axis.limits.velocity * 0.05,
                axis.manual.fast > 0 ? axis.manual.fast : axis.limits.velocity * 0.25, u, u, axis.gearing.counts_per_unit());
@@ -188,7 +196,8 @@ Json hazards_json(const MachineConfig& config) {
     return out;
 }
 
-Json summary_json(const MachineConfig& config, const runtime::MachineLayout& layout, const std::vector<Error>& warnings) {
+Json summary_json(const MachineConfig& config, const runtime::MachineLayout& layout, const std::vector<Error>& warnings,
+                  const std::vector<Error>& remarks) {
     Json out{{"ok", true}, {"machine", config.name}, {"cycle_us", config.cycle.count() / 1000}, {"interface", config.bus.interface}};
     auto& slaves = out["slaves"] = Json::array();
     for (const auto& slave : config.bus.slaves)
@@ -203,6 +212,7 @@ Json summary_json(const MachineConfig& config, const runtime::MachineLayout& lay
                             {"simulated", axis.simulated},
                             {"velocity", axis.limits.velocity},
                             {"acceleration", axis.limits.acceleration},
+                            {"motor_rpm", runtime::motor_rpm(axis, axis.limits.velocity)},
                             {"homing", homing_text(axis.homing)},
                             {"scale", scale_sentences(binding)},
                             {"master_gone", master_gone(config, binding)},
@@ -212,6 +222,7 @@ Json summary_json(const MachineConfig& config, const runtime::MachineLayout& lay
     out["tasks"] = layout.tasks;
     out["hazards"] = hazards_json(config);
     out["warnings"] = problems_json(warnings);
+    out["remarks"] = problems_json(remarks);
     return out;
 }
 
@@ -235,14 +246,17 @@ int check(const Options& options) {
     auto built = runtime::Machine::build(std::move(loaded.machine), world.transport(), world.serial().lines());
     if (const auto* errors = std::get_if<std::vector<Error>>(&built)) return fail(options, *errors);
     const auto& layout = std::get<0>(built)->layout();
+    const auto remarks = runtime::remarks(config, layout, std::thread::hardware_concurrency());
 
     if (options.json) {
-        fmt::print("{}\n", summary_json(config, layout, loaded.warnings).dump(2));
+        fmt::print("{}\n", summary_json(config, layout, loaded.warnings, remarks).dump(2));
         return exit_ok;
     }
     for (const auto& warning : loaded.warnings) print_warning(warning);
     fmt::print("{}: machine '{}', cycle {:g} ms, {} slaves, {} axes, {} programs: no problem found\n", options.file, config.name,
                to_seconds(config.cycle) * 1e3, config.bus.slaves.size(), config.axes.size(), config.programs.size());
+    if (!remarks.empty()) fmt::print("\nRuns, but is it meant?\n");
+    for (const auto& remark : remarks) fmt::print("  {}: {}\n      {}\n", remark.subject, remark.what, remark.remedy);
     print_slaves(config);
     print_clocks(config);
     if (!config.axes.empty()) fmt::print("\nAxes\n");

@@ -15,6 +15,7 @@
 #include "apps/remote.hpp"
 #include "apps/stop_signal.hpp"
 #include "core/clock.hpp"
+#include "hmi_bridge/json_number.hpp"
 
 namespace taktwerk::apps {
 namespace {
@@ -26,8 +27,8 @@ constexpr auto settling = 5s;  ///< longest ramp we wait for after letting go
 
 struct Options {
     RemoteOptions remote;
-    std::string axis;
-    double velocity = 0, for_s = 0;
+    std::string axis, speed;
+    double for_s = 0;
 };
 
 /// The axis' own object of the state; empty when something went wrong.
@@ -40,6 +41,8 @@ nlohmann::ordered_json axis_of(const nlohmann::ordered_json& state, const std::s
 int jog(const Options& options) {
     auto client = hmi::Client::connect(options.remote.machine);
     if (!client) return report(options.remote, client.error());
+    const auto velocity = velocity_on(*client, options.axis, options.speed);
+    if (!velocity) return report(options.remote, velocity.error());
     watch_stop_signals();
     SystemClock clock;
     const auto start = clock.now();
@@ -48,18 +51,20 @@ int jog(const Options& options) {
     int renewals = 0;
 
     for (bool press = true; !stop_requested(); press = false) {
-        nlohmann::json request{{"cmd", "jog"}, {"axis", options.axis}, {"velocity", options.velocity}};
+        nlohmann::json request{{"cmd", "jog"}, {"axis", options.axis}, {"velocity", *velocity}};
         if (press) request["press"] = true;
         const auto answer = client->request(request);
         if (!answer) return report(options.remote, answer.error());
+        if (const auto note = answer->value("note", std::string{}); press && !note.empty() && !options.remote.json)
+            fmt::print("{}: {}\n", options.axis, note);
         constexpr int looked_at = 4;  // by then it is as fast as it may be, or on its way there
         if (show || ++renewals == looked_at) {
             if (const auto state = state_of(*client)) {
                 const auto axis = axis_of(*state, options.axis);
                 if (axis.is_object()) held = held_velocity(axis, state->at("mode").get<std::string>());
                 if (show && axis.is_object())
-                    fmt::print("\r{} {:12.3f} {}  {:10.3f} {}/s   Ctrl-C stops ", options.axis, axis.at("actual_position").get<double>(),
-                               axis.at("unit").get<std::string>(), axis.at("actual_velocity").get<double>(),
+                    fmt::print("\r{} {:12.3f} {}  {:10.3f} {}/s   Ctrl-C stops ", options.axis, hmi::number_of(axis.at("actual_position")),
+                               axis.at("unit").get<std::string>(), hmi::number_of(axis.at("actual_velocity")),
                                axis.at("unit").get<std::string>());
                 if (show) std::fflush(stdout);
             }
@@ -77,8 +82,8 @@ int jog(const Options& options) {
         if (!state) return report(options.remote, state.error());
         const auto axis = axis_of(*state, options.axis);
         if (!axis.is_object()) break;
-        if (!axis.at("has_job").get<bool>() && axis.at("set_velocity").get<double>() == 0)
-            return report(options.remote, fmt::format("{}: stands at {:.3f} {}{}", options.axis, axis.at("actual_position").get<double>(),
+        if (!axis.at("has_job").get<bool>() && hmi::number_of(axis.at("set_velocity")) == 0)
+            return report(options.remote, fmt::format("{}: stands at {:.3f} {}{}", options.axis, hmi::number_of(axis.at("actual_position")),
                                                       axis.at("unit").get<std::string>(), held));
         std::this_thread::sleep_for(20ms);
     }
@@ -92,7 +97,7 @@ void add_jog(CLI::App& app, Action& action) {
     auto options = std::make_shared<Options>();
     add_remote_options(*sub, options->remote);
     sub->add_option("AXIS", options->axis, "axis")->required();
-    sub->add_option("--velocity", options->velocity, "unit/s, signed")->required();
+    sub->add_option("--velocity", options->speed, "signed: 20mm/s, 1.2m/min; a bare number is in the axis' unit/s")->required();
     add_duration(*sub, "--for", options->for_s, "let go after this time; default: at Ctrl-C");
     sub->callback([&action, options] { action = [options] { return jog(*options); }; });
 }

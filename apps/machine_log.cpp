@@ -9,6 +9,7 @@
 #include "apps/json_text.hpp"
 #include "axes/axis/alarms.hpp"
 #include "ecat/bringup/bus.hpp"
+#include "hmi_bridge/event_text.hpp"
 
 namespace taktwerk::apps {
 
@@ -151,6 +152,26 @@ void MachineLog::alarms(Instant now, const Snapshot& s) {
     });
 }
 
+/// Commands that were refused, or ended early.
+void MachineLog::events(Instant now, const Snapshot& s) {
+    for (std::size_t i = 0; i < s.event_count; ++i) {
+        const auto& event = s.events[i];
+        if (event.number <= last_event_) continue;
+        if (event.number > last_event_ + 1 && i == 0)
+            say(now, "missed", fmt::format("{} events of commands came too fast to be shown", event.number - last_event_ - 1));
+        last_event_ = event.number;
+        const auto words = hmi::describe(event, machine_.layout());
+        say(now, std::string(hmi::word(event.what)), fmt::format("axis {}: {}", machine_.layout().axes[event.axis].name, words.what));
+        if (!json_) {
+            fmt::print("{:13}{:<9} -> {}\n", "", "", words.remedy);
+            std::fflush(stdout);
+        }
+    }
+    if (s.events_dropped > events_dropped_)
+        say(now, "missed", fmt::format("{} more commands were refused or aborted", s.events_dropped - events_dropped_));
+    events_dropped_ = s.events_dropped;
+}
+
 void MachineLog::step(Instant now, const Snapshot* snapshot) {
     if (!snapshot) {
         const auto progress = machine_.bus_progress();
@@ -196,6 +217,7 @@ void MachineLog::step(Instant now, const Snapshot* snapshot) {
         if (s.programs[i] != programs_[i]) say(now, "program", fmt::format("{} {}", layout.programs[i], text(s.programs[i])));
         programs_[i] = s.programs[i];
     }
+    events(now, s);
 }
 
 }  // namespace taktwerk::apps

@@ -29,6 +29,7 @@ private:
     void alarms(Instant now, const runtime::Snapshot& snapshot);
     /// An alarm to which the machine does not react: it is information, and it may come again each second.
     void note(Instant now, const AlarmFact& fact, bool is_new);
+    void events(Instant now, const runtime::Snapshot& snapshot);
     void say_alarm(Instant now, const std::string& event, const runtime::AlarmText& words);
 
     struct Known {
@@ -53,6 +54,8 @@ private:
     std::vector<Known> known_;
     std::vector<Noted> notes_;
     std::uint64_t notes_of_bus_ = 0;  // how many were said
+    std::uint64_t last_event_ = 0;  // its number
+    std::uint64_t events_dropped_ = 0;
     runtime::Mode mode_ = runtime::Mode::manual;
     bool first_ = true, emergency_ = false;
 };

@@ -61,7 +61,9 @@ private:
 
 ScreenSize terminal_size() {
     winsize size{};
-    if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0 || size.ws_row == 0) return {100, 0, false};
+    // Into a pipe or a file: nothing is cut, whoever reads it wraps as he likes.
+    constexpr std::size_t whole_line = 1000;
+    if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0 || size.ws_row == 0) return {whole_line, 0, false};
     return {std::max<std::size_t>(size.ws_col, 40), size.ws_row, true};
 }
 
@@ -76,7 +78,8 @@ int once(const Options& options, hmi::Client& client) {
     if (!layout) return report(options.remote, layout.error());
     auto size = terminal_size();
     size.rows = 0;
-    for (const auto& line : monitor_screen(*state, *layout, size)) fmt::print("{}\n", line);
+    for (const auto& line : monitor_screen(*state, *layout, size))
+        fmt::print("{}\n", std::string_view(line).substr(0, line.find_last_not_of(' ') + 1));
     return exit_ok;
 }
 

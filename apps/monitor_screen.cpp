@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "apps/terminal_text.hpp"
+#include "hmi_bridge/json_number.hpp"
 
 namespace taktwerk::apps {
 namespace {
@@ -26,18 +27,19 @@ public:
         const auto head = heading();
         const auto points = io();
         const auto work = programs();
+        const auto told = events();
         for (const bool details : {true, false}) {
             const auto table = axes(details);
             Lines out;
             for (const std::size_t causes : {every, std::size_t{1}}) {  // the newest alarm keeps its cause longest
-                out = joined({head, table, alarms(every, causes), work, points});
+                out = joined({head, table, alarms(every, causes), told, work, points});
                 if (fits(out)) return out;
             }
             if (details) continue;
             // The alarms get what the axes leave, at least one of them; programs and I/O what is left then.
             const auto taken = head.size() + table.size() + 2;
             const auto remaining = size_.rows > taken + 1 ? size_.rows - taken - 1 : 0;  // 1: the line that says there are more
-            out = joined({head, table, alarms(std::max<std::size_t>(remaining / lines_an_alarm, 1), 0), work, points});
+            out = joined({head, table, alarms(std::max<std::size_t>(remaining / lines_an_alarm, 1), 0), told, work, points});
             if (out.size() > size_.rows) {
                 out.resize(size_.rows);
                 out.back() = paint(colour::dim, cut("… the terminal is too small for the rest", size_.columns));
@@ -48,7 +50,7 @@ public:
     }
 
 private:
-    static constexpr std::size_t lines_an_alarm = 3, every = 1000;
+    static constexpr std::size_t lines_an_alarm = 3, every = 1000, shown_events = 3;
     bool fits(const Lines& lines) const { return size_.rows == 0 || lines.size() <= size_.rows; }
 
     static Lines joined(const std::vector<Lines>& parts) {
@@ -65,7 +67,7 @@ private:
         return size_.colours ? fmt::format("\033[{}m{}\033[0m", code, text) : text;
     }
 
-    static double us(const Json& ns) { return ns.get<double>() / 1e3; }
+    static double us(const Json& ns) { return hmi::number_of(ns) / 1e3; }
 
     Lines heading() const {
         const bool stop = state_.at("emergency_stop").get<bool>(), simulated = state_.at("simulated").get<bool>();
@@ -127,6 +129,12 @@ private:
         const auto block = axis.at("block").get<std::string>(), command = axis.at("command").get<std::string>();
         if (!block.empty() || !command.empty())
             text += fmt::format(" ({}{}{})", command, block.empty() || command.empty() ? "" : " ", block);
+        if (axis.value("held_by_stop", false)) text += "  HELD BY MC_Stop";
+        const auto limiter = axis.value("velocity_limiter", std::string{});
+        for (const auto& [word, shown] :
+             {std::pair{"axis_limit", "at the axis' limit"}, std::pair{"manual_speed", "held to manual speed"},
+              std::pair{"override_factor", "held by the override"}, std::pair{"software_limit", "brakes for a software limit"}})
+            if (limiter == word) text += fmt::format("  {}", shown);
         if (axis.at("disabled").get<bool>()) text += "  left out";
         else if (!axis.at("online").get<bool>()) text += "  offline";
         if (axis.at("simulated").get<bool>() && !state_.at("simulated").get<bool>()) text += "  SIMULATED";
@@ -167,6 +175,24 @@ private:
         return out;
     }
 
+    /// The newest commands that were refused or aborted.
+    Lines events() const {
+        Lines out;
+        const auto found = state_.find("events");
+        if (found == state_.end()) return out;
+        const auto first = found->size() > shown_events ? found->size() - shown_events : 0;
+        for (auto i = found->size(); i-- > first;) {
+            const auto& event = (*found)[i];
+            const auto times = event.at("times").get<unsigned>();
+            const double ago = (hmi::number_of(state_.at("time_ns")) - hmi::number_of(event.at("time_ns"))) * 1e-9;
+            out.push_back(cut(fmt::format(" {} s ago  axis {}: {}{}", fmt::format("{:.0f}", ago), event.at("axis").get<std::string>(),
+                                          event.at("english").get<std::string>(), times > 1 ? fmt::format(" ({} times)", times) : ""),
+                              size_.columns));
+            if (i + 1 == found->size()) out.push_back(cut("   -> " + event.at("remedy").get<std::string>(), size_.columns));
+        }
+        return out;
+    }
+
     Lines programs() const {
         Lines out;
         for (const auto& program : state_.at("programs")) {
@@ -194,7 +220,7 @@ private:
 
     static std::string value(const char* before, const Json& variable) {
         const auto unit = variable.at("unit").get<std::string>();
-        return fmt::format("{}{}={:g}{}{}", before, variable.at("name").get<std::string>(), variable.at("value").get<double>(),
+        return fmt::format("{}{}={:g}{}{}", before, variable.at("name").get<std::string>(), hmi::number_of(variable.at("value")),
                            unit.empty() ? "" : " ", unit);
     }
 
@@ -213,7 +239,7 @@ private:
 
     /// Three decimals, fewer for large numbers: always within the column.
     static std::string number(const Json& value) {
-        const double x = value.get<double>();
+        const double x = hmi::number_of(value);
         const double size = std::abs(x);
         return size < 1e6 ? fmt::format("{:.3f}", x == 0 ? 0.0 : x) : fmt::format("{:.4g}", x);
     }

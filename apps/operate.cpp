@@ -1,6 +1,7 @@
 // taktwerk enable | disable | home | reset | stop | start | mode | set | output | ack | shutdown | control: one command to a running
 // machine, one answer. Jogging is in jog.cpp.
 
+#include <algorithm>
 #include <cstdio>
 #include <thread>
 
@@ -13,6 +14,7 @@
 #include "apps/remote.hpp"
 #include "apps/stop_signal.hpp"
 #include "apps/taktwerk.hpp"
+#include "config/unit_text.hpp"
 #include "core/clock.hpp"
 
 namespace taktwerk::apps {
@@ -26,7 +28,8 @@ struct Order {
     RemoteOptions remote;
     std::string target, program;
     std::string mode;
-    double value = 0, velocity = 0, hold_s = 0;
+    std::string value, velocity;  // as written, with a unit or without
+    double hold_s = 0;
     bool wait = false;
     double patience_s = 0;  ///< 0: not given
 };
@@ -35,7 +38,9 @@ using Body = int (*)(const Order&, hmi::Client&);
 
 int send(const Order& order, hmi::Client& client, const nlohmann::json& request, const std::string& done) {
     const auto answer = client.request(request);
-    return answer ? report(order.remote, done) : report(order.remote, answer.error());
+    if (!answer) return report(order.remote, answer.error());
+    const auto note = answer->value("note", std::string{});
+    return report(order.remote, note.empty() ? done : done + ", " + note);
 }
 
 constexpr double ordinary_patience_s = 30;
@@ -145,27 +150,39 @@ int start(const Order& order, hmi::Client& client) {
             return report(order.remote, Error{"command.not_possible_now", "", "this machine has no program",
                                               "Move its axes with `taktwerk jog`, or add a program to the machine file."});
     }
-    for (const auto& program : programs)
+    std::vector<std::string> running;
+    if (const auto state = state_of(client))
+        for (const auto& program : state->at("programs"))
+            if (program.at("state") == "running") running.push_back(program.at("name").get<std::string>());
+    std::string told;
+    for (const auto& program : programs) {
+        const bool runs = std::find(running.begin(), running.end(), program) != running.end();
         if (const auto answer = client.request({{"cmd", "program_start"}, {"program", program}}); !answer)
             return report(order.remote, answer.error());
-    return report(order.remote, fmt::format("program {}: started", fmt::join(programs, ", ")));
+        told += fmt::format("{}program {}: {}", told.empty() ? "" : "; ", program, runs ? "runs already" : "started");
+    }
+    return report(order.remote, told);
 }
 
 int mode(const Order& order, hmi::Client& client) {
     return send(order, client, {{"cmd", "mode"}, {"mode", order.mode}}, "mode: " + order.mode);
 }
 int set(const Order& order, hmi::Client& client) {
-    return send(order, client, {{"cmd", "set_parameter"}, {"parameter", order.target}, {"value", order.value}},
-                fmt::format("{} = {:g}", order.target, order.value));
+    const auto value = parameter_value(client, order.target, order.value);
+    if (!value) return report(order.remote, value.error());
+    return send(order, client, {{"cmd", "set_parameter"}, {"parameter", order.target}, {"value", *value}},
+                fmt::format("{} = {:g}", order.target, *value));
 }
 /// It is safe again when its client goes: so this one stays.
 int output(const Order& order, hmi::Client& client) {
-    const auto answer = client.request({{"cmd", "set_output"}, {"output", order.target}, {"value", order.value}});
+    const auto value = config::value_in(order.value, "");
+    if (!value) return report(order.remote, value.error());
+    const auto answer = client.request({{"cmd", "set_output"}, {"output", order.target}, {"value", *value}});
     if (!answer) return report(order.remote, answer.error());
     watch_stop_signals();
     SystemClock clock;
     const auto start = clock.now();
-    if (order.hold_s <= 0 && !order.remote.json) fmt::print("output {} = {:g} until Ctrl-C\n", order.target, order.value);
+    if (order.hold_s <= 0 && !order.remote.json) fmt::print("output {} = {:g} until Ctrl-C\n", order.target, *value);
     std::fflush(stdout);
     while (!stop_requested() && (order.hold_s <= 0 || clock.now() - start < from_seconds(order.hold_s))) {
         if (const auto alive = client.request({{"cmd", "hello"}}); !alive) return report(order.remote, alive.error());
@@ -184,9 +201,13 @@ int release_control(const Order& order, hmi::Client& client) {
     return send(order, client, {{"cmd", "release_control"}, {"axis", order.target}}, order.target + ": control released");
 }
 int move(const Order& order, hmi::Client& client) {
-    const auto answer = client.request({{"cmd", "move"}, {"axis", order.target}, {"position", order.value}, {"velocity", order.velocity}});
+    const auto position = position_on(client, order.target, order.value), velocity = velocity_on(client, order.target, order.velocity);
+    if (!position) return report(order.remote, position.error());
+    if (!velocity) return report(order.remote, velocity.error());
+    const auto answer = client.request({{"cmd", "move"}, {"axis", order.target}, {"position", *position}, {"velocity", *velocity}});
     if (!answer) return report(order.remote, answer.error());
-    auto said = fmt::format("{}: moving to {:g}", order.target, order.value);
+    auto said = fmt::format("{}: moving to {:g}", order.target, *position);
+    if (const auto note = answer->value("note", std::string{}); !note.empty()) return report(order.remote, said + ", " + note);
     std::this_thread::sleep_for(100ms);  // the snapshot in which it moves
     if (const auto state = state_of(client))
         for (const auto& axis : state->at("axes"))
@@ -240,8 +261,9 @@ void add_operate(CLI::App& app, Action& action) {
         .add_option("--program", adder.order->program, "instead: end this program, its axes ramp down");
 
     auto& move_sub = axis_command("move", "move to a position, in manual mode", move, "axis", true, false);
-    move_sub.add_option("POSITION", adder.order->value, "in the axis' unit")->required();
-    move_sub.add_option("--velocity", adder.order->velocity, "unit/s, above 0")->required();
+    move_sub.add_option("POSITION", adder.order->value, "e.g. 120mm; a bare number is in the axis' unit")->required();
+    move_sub.add_option("--velocity", adder.order->velocity, "e.g. 20mm/s or 1.2m/min, above 0; a bare number is in the axis' unit/s")
+        ->required();
 
     adder.add("start", "start a program, in automatic mode", start)
         .add_option("PROGRAM", adder.order->target, "default: all of the machine");
@@ -251,7 +273,7 @@ void add_operate(CLI::App& app, Action& action) {
         ->check(CLI::IsMember({"manual", "setup", "automatic"}));
     auto& set_sub = adder.add("set", "write a parameter of a program", set);
     set_sub.add_option("PARAMETER", adder.order->target, "name, or PROGRAM.NAME")->required();
-    set_sub.add_option("VALUE", adder.order->value, "within its range")->required();
+    set_sub.add_option("VALUE", adder.order->value, "within its range, e.g. 50mm; a bare number is in its unit")->required();
     auto& output_sub = adder.add("output", "set an output point while this command lives; only while no program runs", output);
     add_duration(output_sub, "--for", adder.order->hold_s, "let go after this time; default: at Ctrl-C");
     output_sub.add_option("NAME", adder.order->target, "output point")->required();

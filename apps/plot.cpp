@@ -25,7 +25,7 @@ namespace {
 
 struct Options {
     std::string file, output, title;
-    std::vector<std::string> axes, bits;
+    std::vector<std::string> axes, bits, values;
     double from_s = 0, to_s = 0;
     bool following_error = false;
 };
@@ -115,7 +115,8 @@ int plot(const Options& options) {
                         options.from_s,
                         options.to_s,
                         options.following_error,
-                        options.bits};
+                        options.bits,
+                        options.values};
     if (request.output.empty()) request.output = std::filesystem::path(file).replace_extension(".svg").string();
     std::error_code ignored;
     if (std::filesystem::equivalent(request.output, file, ignored))
@@ -148,6 +149,9 @@ void add_plot(CLI::App& app, Action& action) {
     add_duration(*sub, "--to", options->to_s, "until this time of the trace");
     sub->add_option("--bits", options->bits,
                     "only these inputs, outputs and BOOLs of programs below the axes, e.g. --bits in.start,feeder.busy")
+        ->delimiter(',');
+    sub->add_option("--values", options->values,
+                    "a panel for each of these numbers (analog points, variables of programs), e.g. --values feeder.pressure,in.level")
         ->delimiter(',');
     sub->add_option("--title", options->title, "headline; default: the trace's name");
     sub->add_flag("--following-error", options->following_error, "a panel more for each axis");

@@ -13,6 +13,17 @@ Window window_of(const std::vector<double>& time, double from, double to) {
     return {static_cast<std::size_t>(first - time.begin()), static_cast<std::size_t>(last - time.begin())};
 }
 
+std::vector<Window> finite_runs(const std::vector<double>& values, Window rows) {
+    std::vector<Window> runs;
+    for (auto row = rows.first; row < rows.last; ++row) {
+        if (!std::isfinite(values[row])) continue;
+        const auto first = row;
+        while (row < rows.last && std::isfinite(values[row])) ++row;
+        runs.push_back({first, row});
+    }
+    return runs;
+}
+
 std::vector<Point> decimate(const std::vector<double>& time, const std::vector<double>& values, Window rows, std::size_t bins) {
     std::vector<Point> out;
     const auto count = rows.last - rows.first;
@@ -62,6 +73,7 @@ std::vector<Span> spans(const std::vector<double>& time, const std::vector<doubl
 }
 
 Ticks ticks(double lowest, double highest, std::size_t most) {
+    if (lowest > highest) lowest = highest = 0;  // nothing was drawn
     // A span that the numbers themselves hardly resolve is none: its steps would not change them.
     if (!(highest - lowest > 1e-12 * std::max(std::abs(lowest), std::abs(highest)))) {
         const double room = lowest == 0 ? 1 : std::abs(lowest) * 0.1;

@@ -19,6 +19,9 @@ struct Window {
 /// Rows whose time lies in [from, to]; empty when there are none.
 [[nodiscard]] Window window_of(const std::vector<double>& time, double from, double to);
 
+/// The parts of `rows` in which every value is a finite number: between them a curve has a gap.
+[[nodiscard]] std::vector<Window> finite_runs(const std::vector<double>& values, Window rows);
+
 /// At most about four points a bin: first, lowest, highest and last of it, in the order of time. No peak is lost, however
 /// narrow. Fewer rows than that come through as they are.
 [[nodiscard]] std::vector<Point> decimate(const std::vector<double>& time, const std::vector<double>& values, Window rows,

@@ -17,7 +17,7 @@ namespace {
 
 // Pixels. The width is what a screen or a page shows without scaling.
 constexpr double width = 1200, left = 120, right = 18, head = 64, foot = 62, axis_head = 30, band_height = 18, gap = 9, axis_gap = 38,
-                 bit_height = 15;
+                 bit_height = 15, value_height = 74;
 constexpr double plot_width = width - left - right;
 constexpr std::size_t bins = 700;
 
@@ -156,11 +156,12 @@ public:
         line("plot NaN notitle");
     }
 
-    void panel(const AxisTrace& axis, const Panel& panel, double top, bool first, bool last) {
+    /// `axis`: whose quantity it is; nullptr: nobody's.
+    void panel(const AxisTrace* axis, const Panel& panel, double top, bool first, bool last) {
         reset_panel();
         margins(top, top + panel.height);
         // Emergency stop is the machine's, the error is this axis': where both hold, the machine's reason is shown.
-        shade(spans(trace_.time_s, axis.state, rows_, bins, state_rank), error_state, error_colour);
+        if (axis) shade(spans(trace_.time_s, axis->state, rows_, bins, state_rank), error_state, error_colour);
         shade(spans(trace_.time_s, trace_.emergency_stop, rows_, bins, same), 1, emergency_colour);
         double low = HUGE_VAL, high = -HUGE_VAL;
         std::string plots;
@@ -168,20 +169,22 @@ public:
             const auto block = fmt::format("$data{}", ++blocks_);
             line("{} << EOD", block);
             // Each run of rows is a line of its own: between targets there is nothing to draw.
-            for (const auto& run : curve.commanded ? with_a_target(axis) : std::vector<Window>{rows_}) {
-                for (const auto& point : decimate(trace_.time_s, *curve.values, run, bins)) {
-                    line("{:.6f} {:.9g}", point.t, point.value);
-                    low = std::min(low, point.value);
-                    high = std::max(high, point.value);
+            for (const auto& part : curve.commanded&& axis ? with_a_target(*axis) : std::vector<Window>{rows_})
+                for (const auto& run : finite_runs(*curve.values, part)) {
+                    for (const auto& point : decimate(trace_.time_s, *curve.values, run, bins)) {
+                        line("{:.6f} {:.9g}", point.t, point.value);
+                        low = std::min(low, point.value);
+                        high = std::max(high, point.value);
+                    }
+                    line("");
                 }
-                line("");
-            }
+            if (low > high) line("{:.6f} NaN", from_);  // gnuplot wants a row
             line("EOD");
             plots += fmt::format("{}{} using 1:2 with {} lw {} lc rgb \"{}\" {} {}", plots.empty() ? "" : ", ", block,
                                  curve.commanded ? "steps" : "lines", curve.line, curve.colour, curve.commanded ? "dt (4,3)" : "",
                                  *curve.title ? "title " + in_quotes(curve.title) : std::string("notitle"));
         }
-        hand_overs(axis);
+        if (axis) hand_overs(*axis);
         const auto t = ticks(low, high, panel.height > 100 ? 6 : 5);
         std::string list;
         for (const double at : t.at) list += fmt::format("{}{} {:.9g}", list.empty() ? "" : ", ", in_quotes(tick_text(at, t.step)), at);
@@ -272,6 +275,25 @@ void legend(Script& script, const Trace& trace, const std::vector<const AxisTrac
     if (emergency) entry(emergency_colour, "emergency stop");
 }
 
+Result<std::vector<const ValueTrace*>> chosen_values(const Trace& trace, const std::vector<std::string>& wanted) {
+    std::vector<const ValueTrace*> out;
+    for (const auto& name : wanted) {
+        const auto found = std::find_if(trace.values.begin(), trace.values.end(), [&](const auto& value) { return value.name == name; });
+        if (found != trace.values.end()) {
+            out.push_back(&*found);
+            continue;
+        }
+        std::vector<std::string> names;
+        for (const auto& value : trace.values) names.push_back(value.name);
+        const auto near = nearest_name(name, names);
+        return Error{"plot.unknown_value", "--values " + name, "the trace has no number of this name",
+                     !near.empty()   ? fmt::format("Did you mean '{}'?", near)
+                     : names.empty() ? std::string("All it has beside the axes is 0 or 1 all the time: see --bits.")
+                                     : fmt::format("It has: {}.", fmt::join(names, ", "))};
+    }
+    return out;
+}
+
 /// Those asked for, or those that change in the window.
 Result<std::vector<const BitTrace*>> chosen_bits(const Trace& trace, const std::vector<std::string>& wanted, Window rows) {
     std::vector<const BitTrace*> out;
@@ -321,18 +343,22 @@ Result<std::string> plot_script(const Trace& trace, const PlotRequest& request) 
     if (!axes) return axes.error();
     const auto rows = window_of(trace.time_s, request.from_s, request.to_s > 0 ? request.to_s : HUGE_VAL);
     if (rows.last < rows.first + 2)
-        return Error{"plot.empty_window", "--from/--to",
-                     fmt::format("the trace has no cycles there; it is {:.3f} s long", trace.time_s.back()),
-                     "Choose a part inside the trace."};
+        return Error{
+            "plot.empty_window", "--from/--to",
+            fmt::format("the trace has no cycles there; it goes from {:.3f} s to {:.3f} s", trace.time_s.front(), trace.time_s.back()),
+            "Choose a part inside the trace."};
 
     auto bit_traces = chosen_bits(trace, request.bits, rows);
     if (!bit_traces) return bit_traces.error();
+    const auto value_traces = chosen_values(trace, request.values);
+    if (!value_traces) return value_traces.error();
 
     double height = head + foot + (bit_traces->empty() ? 0 : static_cast<double>(bit_traces->size()) * bit_height + axis_gap);
     for (const auto* axis : *axes) {
         height += axis_head + band_height + axis_gap;
         for (const auto& panel : panels_of(*axis, request.following_error)) height += panel.height + gap;
     }
+    height += static_cast<double>(value_traces->size()) * (value_height + gap) + (value_traces->empty() ? 0 : axis_gap);
     Script script{trace, rows, height};
     const double cycle_ms = (script.to() - script.from()) / static_cast<double>(rows.last - rows.first - 1) * 1e3;
     script.line("set terminal svg size {:.0f},{:.0f} dynamic enhanced font \"DejaVu Sans,10\" background rgb \"#ffffff\"", width, height);
@@ -349,7 +375,7 @@ Result<std::string> plot_script(const Trace& trace, const PlotRequest& request) 
         double panel_top = top + axis_head + band_height + gap;
         for (std::size_t i = 0; i < panels.size(); ++i) {
             const bool last = i + 1 == panels.size();
-            script.panel(*axis, panels[i], panel_top, i == 0, last);
+            script.panel(axis, panels[i], panel_top, i == 0, last);
             panel_top += panels[i].height + gap;
         }
         // Texts outside the panels go with an invisible plot of their own: labels of one panel are cleared by the next.
@@ -371,6 +397,12 @@ Result<std::string> plot_script(const Trace& trace, const PlotRequest& request) 
         script.line("set border 3 lc rgb \"#909090\"; set grid");
         top = panel_top - gap + axis_gap;
     }
+    for (const auto* value : *value_traces) {
+        const Panel panel{value->name, value->unit, value_height, {{&value->value, "", "#14507f", 1.2}}};
+        script.panel(nullptr, panel, top, false, value == value_traces->back());
+        top += value_height + gap;
+    }
+    if (!value_traces->empty()) top += axis_gap - gap;
     for (const auto* bit : *bit_traces) {
         script.bit(*bit, top, bit == bit_traces->back());
         top += bit_height;

@@ -7,6 +7,7 @@
 #include "apps/exit_code.hpp"
 #include "apps/json_text.hpp"
 #include "apps/taktwerk.hpp"
+#include "config/unit_text.hpp"
 
 namespace taktwerk::apps {
 namespace {
@@ -20,6 +21,15 @@ Result<nlohmann::ordered_json> ask(hmi::Client& client, const char* question) {
     return (*answer)[question];
 }
 
+/// The unit in the layout of what is called `name`; nothing without such an axis.
+Result<std::string> unit_of_axis(hmi::Client& client, const std::string& axis) {
+    const auto layout = layout_of(client);
+    if (!layout) return layout.error();
+    for (const auto& one : layout->at("axes"))
+        if (one.at("name") == axis) return one.at("unit").get<std::string>();
+    return std::string{};
+}
+
 bool begins_with(const std::string& text, const char* start) { return text.rfind(start, 0) == 0; }
 
 }  // namespace
@@ -30,7 +40,7 @@ void add_remote_options(CLI::App& sub, RemoteOptions& options) {
 }
 
 int exit_code_of(const Error& error) {
-    if (error.code == "socket.ambiguous" || begins_with(error.code, "request.")) return exit_usage;
+    if (error.code == "socket.ambiguous" || begins_with(error.code, "request.") || begins_with(error.code, "unit.")) return exit_usage;
     if (begins_with(error.code, "socket.") || begins_with(error.code, "state.")) return exit_no_runtime;
     return exit_refused;
 }
@@ -47,6 +57,30 @@ int report(const RemoteOptions& options, const Error& error) {
                    json_text(error.subject), json_text(error.what), json_text(error.remedy));
     else print_error(error);
     return exit_code_of(error);
+}
+
+Result<double> velocity_on(hmi::Client& client, const std::string& axis, const std::string& text) {
+    const auto unit = unit_of_axis(client, axis);
+    if (!unit) return unit.error();
+    return config::value_in(text, *unit + "/s");
+}
+
+Result<double> position_on(hmi::Client& client, const std::string& axis, const std::string& text) {
+    const auto unit = unit_of_axis(client, axis);
+    if (!unit) return unit.error();
+    return config::value_in(text, *unit);
+}
+
+Result<double> parameter_value(hmi::Client& client, const std::string& parameter, const std::string& text) {
+    if (text == "true" || text == "false") return text == "true" ? 1.0 : 0.0;
+    const auto layout = layout_of(client);
+    if (!layout) return layout.error();
+    for (const auto& one : layout->at("parameters")) {
+        const auto name = one.at("name").get<std::string>();
+        if (name == parameter || one.at("program").get<std::string>() + "." + name == parameter)
+            return config::value_in(text, one.at("unit").get<std::string>());
+    }
+    return config::value_in(text, "");
 }
 
 Result<nlohmann::ordered_json> state_of(hmi::Client& client) { return ask(client, "state"); }

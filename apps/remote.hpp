@@ -29,4 +29,11 @@ int report(const RemoteOptions& options, const Error& error);
 [[nodiscard]] Result<nlohmann::ordered_json> state_of(hmi::Client& client);
 [[nodiscard]] Result<nlohmann::ordered_json> layout_of(hmi::Client& client);
 
+/// A velocity or a position as given on the command line ("20mm/s", "1.2m/min", "20"), in the unit of that axis. An axis that does not
+/// exist is left to the machine to refuse. Errors: those of the socket, unit.other, unit.not_a_number.
+[[nodiscard]] Result<double> velocity_on(hmi::Client& client, const std::string& axis, const std::string& text);
+[[nodiscard]] Result<double> position_on(hmi::Client& client, const std::string& axis, const std::string& text);
+/// A parameter's value, in the unit that its program declared.
+[[nodiscard]] Result<double> parameter_value(hmi::Client& client, const std::string& parameter, const std::string& text);
+
 }  // namespace taktwerk::apps

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstdlib>
 #include <memory>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -20,6 +21,7 @@
 #include "apps/line_writer.hpp"
 #include "apps/load.hpp"
 #include "apps/machine_log.hpp"
+#include "apps/sim_hands.hpp"
 #include "apps/stop_signal.hpp"
 #include "apps/taktwerk.hpp"
 #include "apps/trace_csv.hpp"
@@ -240,6 +242,12 @@ int serve_real(Machine& machine, World* world, ecat::RawSocketTransport* nic, Fi
         if (options.json) log.say(clock.now(), "gateway", std::string(text));
         else out.put(std::string(text) + "\n");
     };
+    std::optional<SimHands> hands;
+    if (world) {
+        hands.emplace(*world, machine.config());
+        world->also = [&hands](Instant now) { hands->step(now); };
+        bridge_options.simulate = [&hands](const std::string& line) { return hands->ask(line); };
+    }
     auto bridge = hmi::HmiBridge::open(hmi_config, link, std::move(bridge_options));
     if (!bridge) {
         print_error(bridge.error());
@@ -256,6 +264,7 @@ int serve_real(Machine& machine, World* world, ecat::RawSocketTransport* nic, Fi
                                                            [file] { return Result<void>(file->finish()); },
                                                            [&, what](const Error& error) { log.say(clock.now(), what, error.text()); }));
     };
+    if (files.trace) files.trace->count_from(start);
     write_beside("trace", files.trace);
     write_beside("pcap", files.capture);
     const auto files_written = [&] {
@@ -288,6 +297,10 @@ int serve_real(Machine& machine, World* world, ecat::RawSocketTransport* nic, Fi
         std::string lines = "Without real time (the machine runs, but not punctually):\n";
         for (const auto& item : started->items)
             if (!item.granted) lines += fmt::format("  {}: {}. It costs: {}\n", item.what, item.reason, item.consequence);
+        if (world && machine.config().simulation.supervision == Supervision::strict)
+            lines +=
+                "  This simulation is supervised as strictly as a real bus: a stall of this computer stops it. If that happens, write\n"
+                "  `simulation: {supervision: relaxed}` into the machine file.\n";
         out.put(std::move(lines));
     }
     int code = exit_ok;

@@ -12,12 +12,11 @@
 #include "apps/exit_code.hpp"
 #include "apps/line_input.hpp"
 #include "apps/load.hpp"
-#include "apps/sim_happenings.hpp"
+#include "apps/sim_hands.hpp"
 #include "apps/sim_lines.hpp"
 #include "apps/stop_signal.hpp"
 #include "apps/taktwerk.hpp"
 #include "core/clock.hpp"
-#include "ecat/sim/faults.hpp"
 #include "ecat/transport/raw_socket.hpp"
 #include "runtime/world.hpp"
 
@@ -103,8 +102,7 @@ private:
 /// itself.
 class Commands {
 public:
-    Commands(runtime::World& world, const runtime::MachineConfig& machine)
-        : machine_(machine), network_(world.network()), injector_(world.network(), world.transport().faults), happenings_(world) {}
+    Commands(runtime::World& world, const runtime::MachineConfig& machine) : network_(world.network()), hands_(world, machine) {}
 
     /// False: `quit`.
     bool obey(const std::string& line, Instant now) {
@@ -117,30 +115,13 @@ public:
         std::fflush(stdout);
         return true;
     }
-    Result<void> inject(const std::string& line, Instant now) {
-        auto happening = parse_happening(line, machine_);
-        if (happening) {
-            happenings_.take(std::move(*happening), now);
-            return {};
-        }
-        if (happening.error().code != "fault.unknown") return happening.error();
-        const auto fault = ecat::sim::parse_fault(line);
-        if (!fault) return fault.error();
-        return injector_.apply(*fault, now);
-    }
-    void step(Instant now) {
-        injector_.step(now);
-        happenings_.step(now);
-    }
-    [[nodiscard]] Instant next_event() const noexcept { return std::min(injector_.next_event(), happenings_.next_event()); }
+    Result<void> inject(const std::string& line, Instant now) { return hands_.happen(line, now); }
+    void step(Instant now) { hands_.step(now); }
+    [[nodiscard]] Instant next_event() const noexcept { return hands_.next_event(); }
 
 private:
     static void help() {
-        for (const auto& command : ecat::sim::fault_commands())
-            fmt::print("  {:<40} {}\n", fmt::format("{} {}", command.word, command.arguments), command.effect);
-        for (const auto& word : happening_words())
-            fmt::print("  {:<40} {}\n", fmt::format("{} {}", word.word, word.arguments), word.effect);
-        fmt::print("  {:<40} any of them, later\n", "after TIME COMMAND");
+        for (const auto& word : sim_words()) fmt::print("  {:<40} {}\n", fmt::format("{} {}", word.word, word.arguments), word.effect);
         fmt::print("  {:<40} position, name and state of each slave\n", "slaves");
         fmt::print("  {:<40} ends the simulation\n", "quit");
     }
@@ -150,10 +131,8 @@ private:
             fmt::print("  {:>3} {:<20} {}\n", i, slave.options().name, slave.powered() ? name(slave.state()) : "no power");
         }
     }
-    const runtime::MachineConfig& machine_;
     ecat::sim::SimNetwork& network_;
-    ecat::sim::FaultInjector injector_;
-    Happenings happenings_;
+    SimHands hands_;
 };
 
 /// What comes back to the master, at the time at which it would come back through the slaves. Returns the frames sent.

@@ -23,7 +23,7 @@ constexpr std::array<HappeningWord, 8> words{{
     {"main-power-on", "AXIS", "and gets it back", Kind::main_power, 1},
     {"jam", "AXIS", "the mechanics do not move any more", Kind::jam, 0},
     {"free", "AXIS", "and move again", Kind::jam, 1},
-    {"input", "NAME 0|1", "an input of a simulated terminal", Kind::input, 0},
+    {"input", "NAME VALUE", "an input takes this value: 0 or 1, an analog one its raw number", Kind::input, 0},
     {"line-cut", "LINE", "a serial line carries nothing any more", Kind::serial_line, 0},
     {"line-plugged", "LINE", "and carries again", Kind::serial_line, 1},
 }};
@@ -72,8 +72,7 @@ Result<SimulationEvent> parse_happening(std::string_view line, const runtime::Ma
     event.value = word->value;
     if (with_number) {
         const auto number = config::parse_integer(parts[2]);
-        const std::int64_t least = word->kind == Kind::input ? 0 : 1, most = word->kind == Kind::input ? 1 : 0xFFFF;
-        if (!number || *number < least || *number > most) return bad(line, *word);
+        if (!number || (word->kind == Kind::drive_fault && (*number < 1 || *number > 0xFFFF))) return bad(line, *word);
         event.value = *number;
     }
     const auto known = targets(machine, event.kind);

@@ -1,11 +1,13 @@
 #include "apps/taktwerk.hpp"
 
 #include <cstdio>
+#include <optional>
 
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include "apps/exit_code.hpp"
+#include "core/nearest_name.hpp"
 #include "programs/api/abi.hpp"
 
 namespace taktwerk::apps {
@@ -19,6 +21,34 @@ void print(const char* colour, const char* word, const Error& error) {
     fmt::print(stderr, "{}{}{}: {}{}\n", tty ? colour : "", word, tty ? "\033[0m" : "", error.subject.empty() ? "" : error.subject + ": ",
                error.what);
     if (!error.remedy.empty()) fmt::print(stderr, "  -> {}\n", error.remedy);
+}
+
+/// What CLI11 would only call "A subcommand is required", or answer with the general help: a word that is no command, and an option of a
+/// command in front of it.
+std::optional<Error> misplaced(const CLI::App& app, int argc, char** argv) {
+    const CLI::App* at = &app;
+    std::string path = "taktwerk";
+    for (int i = 1; i < argc; ++i) {
+        const std::string word = argv[i];
+        if ((word == "-s" || word == "--socket") && i == 1)
+            return Error{"usage.order", word, "this option belongs to a command, behind it", "write `taktwerk COMMAND -s NAME`"};
+        if (word.empty() || word.front() == '-') return std::nullopt;
+        std::vector<std::string> names;
+        const CLI::App* next = nullptr;
+        for (const auto* sub : at->get_subcommands([](const CLI::App*) { return true; })) {
+            names.push_back(sub->get_name());
+            if (sub->get_name() == word) next = sub;
+        }
+        if (names.empty()) return std::nullopt;  // the word is an argument
+        if (next == nullptr) {
+            const auto near = nearest_name(word, names);
+            return Error{"usage.unknown_command", word, fmt::format("there is no command `{} {}`", path, word),
+                         near.empty() ? fmt::format("`{} --help` lists them", path) : fmt::format("did you mean `{} {}`?", path, near)};
+        }
+        path += " " + word;
+        at = next;
+    }
+    return std::nullopt;
 }
 
 }  // namespace
@@ -46,7 +76,12 @@ int run(int argc, char** argv) {
     add_drive(app, action);
     add_plot(app, action);
     add_sim(app, action);
+    add_simulate(app, action);
     add_docs(app, action);
+    if (const auto wrong = misplaced(app, argc, argv)) {
+        print_error(*wrong);
+        return exit_usage;
+    }
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

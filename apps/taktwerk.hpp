@@ -20,6 +20,7 @@ int run(int argc, char** argv);
 void add_run(CLI::App& app, Action& action);
 void add_check(CLI::App& app, Action& action);
 void add_sim(CLI::App& app, Action& action);
+void add_simulate(CLI::App& app, Action& action);
 void add_bus(CLI::App& app, Action& action);    ///< scan, state, pdo, sdo, dc, counters, why
 void add_drive(CLI::App& app, Action& action);  ///< identify, params, get, set, save, restore, diff, alarms, reset
 void add_plot(CLI::App& app, Action& action);

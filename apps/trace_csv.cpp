@@ -52,7 +52,7 @@ Result<void> TraceCsv::drain() {
         auto out = std::back_inserter(line_);
         for (std::size_t i = 0; i < row.size(); ++i) {
             if (i > 0) line_ += ',';
-            const double value = row[i];
+            const double value = i == 0 ? row[i] - start_s_ : row[i];
             // Whole numbers (states, switches, bits) are most of a trace: the short way is also the fast one.
             if (value > -1e15 && value < 1e15 && value == static_cast<double>(static_cast<long long>(value)))
                 out = fmt::format_to(out, "{}", static_cast<long long>(value));

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/result.hpp"
+#include "core/time.hpp"
 #include "runtime/snapshot.hpp"
 #include "runtime/trace_ring.hpp"
 
@@ -20,6 +21,8 @@ public:
                                                     const runtime::MachineLayout& layout);
     ~TraceCsv();
 
+    /// Before the first drain(): the instant of the machine's time that the column time_s calls 0, which is that of the log.
+    void count_from(Instant start) noexcept { start_s_ = to_seconds(start.time_since_epoch()); }
     /// Writes all rows that are waiting. Error trace.write, once: from then on rows are taken and lost.
     Result<void> drain();
     /// Flushes; an error of the disk shows here at the latest, and that of an earlier drain() again.
@@ -33,6 +36,7 @@ private:
     runtime::TraceRing& ring_;
     std::string line_;
     std::optional<Error> broken_;
+    double start_s_ = 0;
 };
 
 }  // namespace taktwerk::apps

@@ -120,16 +120,23 @@ Result<std::vector<Column*>> targets(Trace& trace, const std::vector<Heading>& c
     return out;
 }
 
-/// False when the line has another number of columns, or a field is not a finite number.
-bool read_row(std::string_view line, const std::vector<Column*>& columns, std::vector<double>& row) {
+/// What places and colours the rest of the picture.
+std::vector<const Column*> frame_of(const Trace& trace) {
+    std::vector<const Column*> out{&trace.time_s, &trace.emergency_stop};
+    for (const auto& axis : trace.axes) out.insert(out.end(), {&axis.state, &axis.active});
+    return out;
+}
+
+/// False when the line has another number of columns, a field is not a number, or one that must be finite is not.
+bool read_row(std::string_view line, const std::vector<Column*>& columns, const std::vector<bool>& finite, std::vector<double>& row) {
     row.clear();
     const char* at = line.data();
     const char* const end = at + line.size();
     for (std::size_t i = 0; i < columns.size(); ++i) {
         double value = 0;
         const auto [next, problem] = std::from_chars(at, end, value);
-        if (problem != std::errc{} || !std::isfinite(value)) return false;
-        if (columns[i] && std::abs(value) > largest) return false;  // what is not drawn may be any counter
+        if (problem != std::errc{} || (finite[i] && !std::isfinite(value))) return false;
+        if (columns[i] && std::isfinite(value) && std::abs(value) > largest) return false;  // what is not drawn may be any counter
         row.push_back(value);
         const bool last = i + 1 == columns.size();
         if (last) return next == end;
@@ -155,6 +162,9 @@ Result<Trace> parse_trace(std::string_view text, const std::string& name) {
     if (!target) return target.error();
     text.remove_prefix(header_end + 1);
 
+    const auto frame = frame_of(trace);
+    std::vector<bool> finite;
+    for (const auto* column : *target) finite.push_back(std::find(frame.begin(), frame.end(), column) != frame.end());
     std::vector<double> row;
     for (std::size_t line_number = 2; !text.empty(); ++line_number) {
         const auto end = text.find('\n');
@@ -162,7 +172,7 @@ Result<Trace> parse_trace(std::string_view text, const std::string& name) {
             trace.cut_off = true;
             break;
         }
-        if (!read_row(text.substr(0, end), *target, row))
+        if (!read_row(text.substr(0, end), *target, finite, row))
             return error("bad_line", fmt::format("{}:{}", name, line_number),
                          fmt::format("the line is not {} numbers (of at most {:g}) with commas between", target->size(), largest),
                          "Record the trace again; this file was changed or damaged.");
@@ -176,6 +186,11 @@ Result<Trace> parse_trace(std::string_view text, const std::string& name) {
     const auto is_no_bit = [](const BitTrace& bit) {
         return std::any_of(bit.value.begin(), bit.value.end(), [](double value) { return value != 0 && value != 1; });
     };
+    for (auto& bit : trace.bits) {
+        if (!is_no_bit(bit)) continue;
+        const auto column = std::find_if(columns.begin(), columns.end(), [&](const auto& c) { return c.name == bit.name; });
+        trace.values.push_back({bit.name, column->unit, bit.value});
+    }
     trace.bits.erase(std::remove_if(trace.bits.begin(), trace.bits.end(), is_no_bit), trace.bits.end());
     for (std::size_t i = 0; i < trace.time_s.size(); ++i)
         for (const auto& axis : trace.axes)
@@ -183,11 +198,9 @@ Result<Trace> parse_trace(std::string_view text, const std::string& name) {
                 return error("bad_line", fmt::format("{}:{}", name, i + 2),
                              fmt::format("'{}.state' is {:g}; states are 0 to {}", axis.name, state, axes::axis_state_count - 1),
                              "Record the trace again; this file was changed or damaged.");
-    const double start = trace.time_s.front();
-    double last = 0;
+    double last = trace.time_s.front();
     for (std::size_t i = 0; i < trace.time_s.size(); ++i) {
-        auto& t = trace.time_s[i];
-        t -= start;
+        const double t = trace.time_s[i];
         if (t < last)
             return error("bad_line", fmt::format("{}:{}", name, i + 2), "the time runs backwards",
                          "Record the trace again; this file was changed or damaged.");

@@ -23,12 +23,20 @@ struct BitTrace {
     std::vector<double> value;
 };
 
+/// Any other column that belongs to no axis: an analog point, a number of a program.
+struct ValueTrace {
+    std::string name, unit;     ///< "cell.pressure"; unit empty when the trace does not say
+    std::vector<double> value;  ///< may hold NaN and infinities: what the program had
+};
+
+/// Times, states and emergency_stop are finite; measured and computed values need not be.
 struct Trace {
-    std::vector<double> time_s;          ///< since the first row
+    std::vector<double> time_s;          ///< since the start of the run, as in its log
     std::vector<double> emergency_stop;  ///< 0 or 1
     std::vector<AxisTrace> axes;
-    std::vector<BitTrace> bits;  ///< in the order of the file
-    bool cut_off = false;        ///< the last line is incomplete: the writer was killed
+    std::vector<BitTrace> bits;      ///< in the order of the file
+    std::vector<ValueTrace> values;  ///< likewise
+    bool cut_off = false;            ///< the last line is incomplete: the writer was killed
 };
 
 /// Errors: trace.open, trace.not_a_trace, trace.bad_line (with its number), trace.empty.

@@ -8,6 +8,8 @@
 #include "config/bus_tables.hpp"
 #include "config/codecs.hpp"
 #include "config/drive_tables.hpp"
+#include "config/quantity.hpp"
+#include "config/unit_text.hpp"
 
 namespace taktwerk::config {
 
@@ -46,7 +48,7 @@ Table<IoEntry> input_table() {
     Table<IoEntry> table{"io.inputs.<name>", "An input by the name that programs use.", io_fields(), {}, check_io};
     table.fields.push_back(field_at<IoEntry>(
         "simulated", [](IoEntry & e) -> auto& { return e.point.simulated; }, maybe(integer<std::int64_t>(least, most)),
-        "what a simulated terminal says at first: 0 or 1, before `inverted`"));
+        "what the field says at first in a simulation: 0 or 1, before `inverted`; of an analog point its raw number"));
     return table;
 }
 
@@ -201,11 +203,19 @@ Codec<runtime::ParameterValue> parameter() {
     Codec<runtime::ParameterValue> c;
     const auto plain = number();
     c.shape.kind = Shape::Kind::either;
-    c.shape.alternatives = {std::make_shared<const Shape>(plain.shape), std::make_shared<const Shape>(boolean().shape)};
+    c.shape.alternatives = {std::make_shared<const Shape>(plain.shape), std::make_shared<const Shape>(boolean().shape),
+                            std::make_shared<const Shape>(text().shape)};  // with a unit
     c.read = [plain](Reader& reader, const Node& node, runtime::ParameterValue& out) {
         if (node.kind == Node::Kind::scalar && !node.quoted && (node.text == "true" || node.text == "false")) {
             out.value = node.text == "true" ? 1 : 0;
             return true;
+        }
+        if (node.kind == Node::Kind::scalar && !parse_number(node.text)) {
+            for (auto& one : in_every_unit(node.text)) out.in_units.push_back({std::move(one.unit), one.value});
+            if (!out.in_units.empty()) {
+                out.text = node.text;
+                return true;
+            }
         }
         return plain.read(reader, node, out.value);
     };
@@ -227,7 +237,7 @@ Table<ProgramFile> program_table() {
             field_at<P>(
                 "parameters", [](P & p) -> auto& { return p.program.parameters; },
                 by_name(parameter(), [](runtime::ParameterValue& v) -> std::string& { return v.name; }),
-                "initial values, in the units that the program declares"),
+                "initial values: a bare number in the unit that the program declares, or a number with a unit that converts to it"),
             with_default(field("tasks", &P::tasks, by_name(section(task_table()), [](TaskEntry& t) -> std::string& { return t.task.name; }),
                                "tasks that the program declares"),
                          "`main`, each cycle"),
@@ -246,7 +256,7 @@ struct EventWord {
 };
 using EventKind = SimulationEvent::Kind;
 constexpr EventWord event_words[] = {
-    {"input", EventKind::input, 0, "an input of a simulated terminal takes `value`"},
+    {"input", EventKind::input, 0, "an input takes `value`: 0 or 1, an analog one its raw number"},
     {"drive_fault", EventKind::drive_fault, 0, "the drive of this axis raises the alarm `code`"},
     {"main_power_off", EventKind::main_power, 0, "the drive of this axis loses its main power"},
     {"main_power_on", EventKind::main_power, 1, "and gets it back"},

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "axes/axis/error_table.hpp"
+#include "hmi_bridge/words.hpp"
 
 namespace taktwerk::hmi {
 
@@ -18,6 +19,34 @@ std::string_view spoken(axes::Owner owner) {
         case axes::Owner::commissioning: return "commissioning";
     }
     return "another party";
+}
+
+/// The same refusals in the words of a person at the machine, who has no blocks: cause and remedy. The rest keeps the words of
+/// error_texts.hpp.
+struct OperatorWords {
+    axes::ErrorId error;
+    std::string_view cause, remedy;  ///< {} stands for the axis
+};
+constexpr OperatorWords operator_words[] = {
+    {axes::ErrorId::not_powered, "its drive's power stage is off", "Enable it: `taktwerk enable {}`."},
+    {axes::ErrorId::in_error_stop, "an error of the axis or its drive stopped it",
+     "See its alarm (`taktwerk monitor`), remove the cause, then `taktwerk reset {}`."},
+    {axes::ErrorId::not_homed, "it has not found its zero since it was switched on", "Home it first: `taktwerk home {}`."},
+    {axes::ErrorId::interlocked,
+     "an emergency stop holds, the axis stands on the limit switch of this direction, or a program forbids this direction; with both limit "
+     "switches on their wiring or polarity is wrong",
+     "Release the emergency stop, or move the other way: `taktwerk monitor` shows limit- and limit+ of {}."},
+    {axes::ErrorId::drive_not_ready, "the drive is not reachable over the bus, has no supply, or the file leaves it out (`disabled: true`)",
+     "Check bus cable and supply; `taktwerk monitor` shows whether {} is offline."},
+    {axes::ErrorId::state_forbids, "it is stopping or homing, or something holds it",
+     "Wait until it stands; `taktwerk monitor` shows what {} does."},
+    {axes::ErrorId::queue_full, "too many commands wait for it", "Wait until {} stands, then give it again."},
+};
+
+const OperatorWords* words_for_operator(axes::ErrorId error) {
+    for (const auto& words : operator_words)
+        if (words.error == error) return &words;
+    return nullptr;
 }
 
 }  // namespace
@@ -48,6 +77,12 @@ std::string subject_of(const runtime::MachineLayout& layout, TargetKind target, 
         case TargetKind::output: return index < layout.outputs.size() ? "output " + layout.outputs[index] : "";
     }
     return "";
+}
+
+std::string limit_note(const runtime::CommandAnswer& answer, std::string_view unit) {
+    const auto by = answer.limited_in == runtime::Mode::automatic ? std::string("the limit of the axis")
+                                                                  : fmt::format("{} mode", word(answer.limited_in));
+    return fmt::format("limited to {:g} {}/s by {}", answer.limited_to, unit, by);
 }
 
 Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::string subject, std::string_view holder) {
@@ -83,11 +118,16 @@ Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::strin
             error.remedy = kind == CommandKind::program_start ? "Change to automatic mode first." : "Change to manual or setup mode first.";
             break;
         case Answer::refused_by_axis:
-            if (const auto* text = axes::find_error(answer.error); text && answer.error != axes::ErrorId::none) {
+            if (const auto* words = words_for_operator(answer.error)) {
+                const auto axis = error.subject.rfind("axis ", 0) == 0 ? error.subject.substr(5) : std::string("the axis");
+                const auto* text = axes::find_error(answer.error);
+                error.what = fmt::format("{} ({}): {}", text->english.text, text->name, words->cause);
+                error.remedy = fmt::format(fmt::runtime(words->remedy), axis);
+            } else if (const auto* text = axes::find_error(answer.error); text && answer.error != axes::ErrorId::none) {
                 error.what = fmt::format("{} ({}): {}", text->english.text, text->name, text->english.cause);
                 error.remedy = fmt::format("{}.", text->english.remedy);
             } else {
-                error.what = fmt::format("the axis refused it with error 0x{:04X}", static_cast<unsigned>(answer.error));
+                error.what = fmt::format("the axis refused it with error {}", static_cast<unsigned>(answer.error));
                 error.remedy = "See the alarms of the axis.";
             }
             if (!holder.empty()) error.what += fmt::format("; the block '{}' moves or holds the axis", holder);

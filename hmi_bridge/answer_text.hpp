@@ -14,6 +14,9 @@ namespace taktwerk::hmi {
 /// "axis x", "program cell", ...; empty when the command has no target.
 [[nodiscard]] std::string subject_of(const runtime::MachineLayout& layout, TargetKind target, std::uint16_t axis, std::uint16_t index);
 
+/// "limited to 20 mm/s by setup mode": for an accepted answer whose `limited_to` is above 0.
+[[nodiscard]] std::string limit_note(const runtime::CommandAnswer& answer, std::string_view unit);
+
 /// Only for refusals. `holder`: the block that moves or locks the axis, empty = none or without a name.
 [[nodiscard]] Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::string subject, std::string_view holder);
 

@@ -18,6 +18,8 @@ public:
     }
     [[nodiscard]] std::string machine_state() const { return prefix_ + "MACHINE_STATE"; }
     [[nodiscard]] std::string axis_state() const { return prefix_ + "AXIS_STATE"; }
+    [[nodiscard]] std::string axis_holder() const { return prefix_ + "AXIS_HOLDER"; }
+    [[nodiscard]] std::string command_event() const { return prefix_ + "COMMAND_EVENT"; }
     [[nodiscard]] std::string cycle_statistics() const { return prefix_ + "CYCLE_STATISTICS"; }
     [[nodiscard]] std::string alarm_list() const { return prefix_ + "ALARM_LIST"; }
     [[nodiscard]] std::string io_state() const { return prefix_ + "IO_STATE"; }

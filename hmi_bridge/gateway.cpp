@@ -23,6 +23,8 @@ constexpr double largest_exact_integer = 9007199254740992.0;
 
 double milliseconds(Duration d) { return std::chrono::duration<double, std::milli>(d).count(); }
 
+std::string with_unit(double value, std::string_view unit) { return fmt::format("{:g}{}{}", value, unit.empty() ? "" : " ", unit); }
+
 Error bad_value(std::string what, std::string remedy) { return {"command.bad_value", "", std::move(what), std::move(remedy)}; }
 
 bool lets_go(const CommandRequest& request) noexcept { return request.kind == CommandKind::jog && request.value == 0; }
@@ -61,8 +63,8 @@ std::optional<Error> check_values(const CommandWord& word, const CommandRequest&
         case CommandKind::set_parameter: {
             const auto& parameter = layout.parameters[command.index];
             if (request.value < parameter.minimum || request.value > parameter.maximum)
-                return bad_value(fmt::format("{:g} {} is outside its range", request.value, parameter.unit),
-                                 fmt::format("Give {:g} to {:g} {}.", parameter.minimum, parameter.maximum, parameter.unit));
+                return bad_value(fmt::format("{} is outside its range", with_unit(request.value, parameter.unit)),
+                                 fmt::format("Give {:g} to {}.", parameter.minimum, with_unit(parameter.maximum, parameter.unit)));
             return std::nullopt;
         }
         case CommandKind::set_output:
@@ -204,8 +206,9 @@ std::optional<Gateway::Refusal> Gateway::translate(const Client& client, const C
     return refusal;
 }
 
-void Gateway::settle(Client& client, Entry& entry, Answer answer, axes::ErrorId axis_error, Error error) {
-    entry.reply = {entry.request.client, client.source, entry.request.sequence, entry.request.kind, answer, axis_error, std::move(error)};
+void Gateway::settle(Client& client, Entry& entry, Answer answer, axes::ErrorId axis_error, Error error, std::string note) {
+    entry.reply = {entry.request.client, client.source,    entry.request.sequence, entry.request.kind, answer,
+                   axis_error,           std::move(error), std::move(note)};
     entry.state = answer == Answer::queue_full ? Entry::State::open_again : Entry::State::answered;
     replies_.push_back(entry.reply);
 }
@@ -338,7 +341,11 @@ void Gateway::step(Instant now) {
         keep_jog_session(*entry, answer->answer);
         if (answer->answer == Answer::accepted) {
             note(answer->client, client->second, entry->request, now);
-            settle(client->second, *entry, Answer::accepted, axes::ErrorId::none, {});
+            const auto axis = find_target(machine_.layout(), TargetKind::axis, entry->request.target);
+            std::string limit;
+            if (answer->limited_to > 0 && axis && *axis < machine_.layout().axes.size())
+                limit = limit_note(*answer, machine_.layout().axes[*axis].unit);
+            settle(client->second, *entry, Answer::accepted, axes::ErrorId::none, {}, std::move(limit));
             continue;
         }
         const auto* word = find_command(entry->request.kind);

@@ -67,7 +67,8 @@ struct CommandReply {
     CommandKind kind = CommandKind::none;
     runtime::Answer answer = runtime::Answer::accepted;
     axes::ErrorId axis_error = axes::ErrorId::none;
-    Error error;  ///< empty code when accepted
+    Error error;         ///< empty code when accepted
+    std::string note{};  ///< accepted, but not quite as asked for: "limited to 20 mm/s by setup mode"
     [[nodiscard]] bool accepted() const noexcept { return answer == runtime::Answer::accepted; }
 };
 
@@ -129,7 +130,7 @@ private:
     [[nodiscard]] std::optional<Refusal> check_age(const CommandRequest& request, Instant now) const;
     [[nodiscard]] std::optional<Refusal> check_jog(const CommandRequest& request, const runtime::OperatorCommand& command,
                                                    Instant now) const;
-    void settle(Client& client, Entry& entry, runtime::Answer answer, axes::ErrorId axis_error, Error error);
+    void settle(Client& client, Entry& entry, runtime::Answer answer, axes::ErrorId axis_error, Error error, std::string note = {});
     void keep_jog_session(const Entry& entry, runtime::Answer answer);
     // gateway_deeds.cpp: who did what, and what is his while he is here
     [[nodiscard]] std::string deed(const CommandRequest& request) const;

@@ -42,6 +42,7 @@ HmiBridge::HmiBridge(const HmiConfig& config, MachineLink& machine, HmiOptions o
       receiver_(gateway_, options.wall_utime),
       door_(machine, std::move(server), options.log),
       door_thread_(options.door) {
+    requests_.set_simulate(std::move(options.simulate));
     if (!bus_) return;
     const bool commands = config.lcm_commands == LcmCommands::local;
     publisher_.emplace(*bus_, machine, config.rate_hz, commands, options.wall_utime);

@@ -22,7 +22,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::array<std::string_view, 4> questions{"hello", "layout", "state", "alarms"};
+constexpr std::array<std::string_view, 5> questions{"hello", "layout", "state", "alarms", "simulate"};
 struct DriveWord {
     std::string_view word;
     DriveRequestKind kind;
@@ -174,8 +174,18 @@ void JsonRequests::on_request(ConnectionId connection, std::string_view line, In
     if (std::find(questions.begin(), questions.end(), cmd) == questions.end()) return refuse(connection, id_text, unknown_command(cmd));
 
     fields.integer("utime");
+    const auto happening = cmd == "simulate" ? fields.text("line", true) : std::string{};
     fields.finish();
     if (fields.error()) return refuse(connection, id_text, *fields.error());
+    if (cmd == "simulate") {
+        if (!simulate_)
+            return refuse(
+                connection, id_text,
+                {"simulate.real_machine", machine_.layout().machine, "this machine is not simulated: its inputs and faults are real",
+                 "Start it with `taktwerk run FILE --simulate`."});
+        if (const auto done = simulate_(happening); !done) return refuse(connection, id_text, done.error());
+        return answer(connection, fmt::format(R"({{"id":{},"ok":true}})", id_text));
+    }
     const auto with = [&](std::string_view key, std::string_view value) {
         answer(connection, fmt::format(R"({{"id":{},"ok":true,"{}":{}}})", id_text, key, value));
     };
@@ -243,7 +253,9 @@ void JsonRequests::deliver(const CommandReply& reply) {
     const auto found = connections_.find(reply.client);
     if (found == connections_.end()) return;
     const auto id = std::to_string(reply.sequence);
-    if (reply.accepted()) answer(found->second, accepted_line(id));
+    if (reply.accepted() && !reply.note.empty())
+        answer(found->second, fmt::format(R"({{"id":{},"ok":true,"note":{}}})", id, Json(reply.note).dump()));
+    else if (reply.accepted()) answer(found->second, accepted_line(id));
     else refuse(found->second, id, reply.error);
 }
 

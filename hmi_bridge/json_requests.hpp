@@ -36,6 +36,11 @@ public:
     JsonRequests(Gateway& gateway, MachineLink& machine, std::function<std::int64_t()> wall_utime,
                  std::function<void(std::string_view)> log = {});
 
+    /// What "simulate" asks of a simulated machine, done within the next cycles. Errors: what the line has wrong.
+    using Simulate = std::function<Result<void>(const std::string& line)>;
+    /// Without one the machine is real, and the request is refused.
+    void set_simulate(Simulate simulate) { simulate_ = std::move(simulate); }
+
     /// For questions: the snapshot of this step, nullptr before the first cycle. Until the next call.
     void observe(const runtime::Snapshot* snapshot) noexcept { snapshot_ = snapshot; }
     /// One line about how the start is getting on, for "hello" and "state".
@@ -64,6 +69,7 @@ private:
     std::function<std::int64_t()> wall_utime_;
     const runtime::Snapshot* snapshot_ = nullptr;
     std::string progress_;
+    Simulate simulate_;
     std::map<ConnectionId, ClientId> clients_;
     std::map<ClientId, ConnectionId> connections_;
     std::map<ConnectionId, std::string> names_;

@@ -1,8 +1,13 @@
 #include "hmi_bridge/json_state.hpp"
 
+#include <utility>
+
 #include <nlohmann/json.hpp>
 
+#include "axes/axis/error_table.hpp"
 #include "ecat/wire/al_status.hpp"
+#include "hmi_bridge/event_text.hpp"
+#include "hmi_bridge/json_number.hpp"
 #include "hmi_bridge/words.hpp"
 
 namespace taktwerk::hmi {
@@ -13,7 +18,10 @@ using Json = nlohmann::ordered_json;
 std::int64_t count(Duration d) { return d.count(); }
 std::int64_t count(Instant t) { return t.time_since_epoch().count(); }
 
-std::string text(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+std::string text(Json json) {
+    spell_out_numbers(json);
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
 
 Json axis_json(const axes::AxisView& axis, const runtime::MachineLayout& layout, const runtime::MachineLayout::AxisInfo& info) {
     return Json{
@@ -76,6 +84,37 @@ Json alarm_array(const runtime::Snapshot& snapshot, const MachineLink& machine) 
             {"cause", words.cause},
             {"remedy", words.remedy},
             {"reset", words.reset},
+        });
+    }
+    return out;
+}
+
+Json giver_json(const runtime::CommandGiver& giver, const runtime::MachineLayout& layout) {
+    return Json{{"command", word(giver.kind)},
+                {"owner", name(giver.owner)},
+                {"program", giver.program < layout.programs.size() ? layout.programs[giver.program] : std::string{}},
+                {"block", giver.block ? layout.block_at(giver.block) : std::string_view{}}};
+}
+
+Json event_array(const runtime::Snapshot& s, const runtime::MachineLayout& layout) {
+    auto out = Json::array();
+    for (std::size_t i = 0; i < s.event_count && i < s.events.size(); ++i) {
+        const auto& event = s.events[i];
+        const auto words = describe(event, layout);
+        const auto* error = axes::find_error(event.error);
+        out.push_back(Json{
+            {"number", event.number},
+            {"time_ns", count(event.at)},
+            {"event", word(event.what)},
+            {"axis", event.axis < layout.axes.size() ? layout.axes[event.axis].name : std::string{}},
+            {"given", giver_json(event.given, layout)},
+            {"by", giver_json(event.by, layout)},
+            {"held_by_stop", event.held},
+            {"axis_state", name(event.state)},
+            {"error", error && event.error != axes::ErrorId::none ? error->name : std::string_view{}},
+            {"times", event.times},
+            {"english", words.what},
+            {"remedy", words.remedy},
         });
     }
     return out;
@@ -160,7 +199,9 @@ std::string state_json(const runtime::Snapshot& s, const MachineLink& machine) {
                                   {"unit", layout.parameters[i].unit},
                                   {"value", s.parameters[i]}});
     out["alarms"] = alarm_array(s, machine);
-    return text(out);
+    out["events"] = event_array(s, layout);
+    out["events_dropped"] = s.events_dropped;
+    return text(std::move(out));
 }
 
 std::string layout_json(const runtime::MachineLayout& layout) {
@@ -193,7 +234,7 @@ std::string layout_json(const runtime::MachineLayout& layout) {
                                   {"minimum", p.minimum},
                                   {"maximum", p.maximum},
                                   {"value", p.value}});
-    return text(out);
+    return text(std::move(out));
 }
 
 std::string alarms_json(const runtime::Snapshot& snapshot, const MachineLink& machine) { return text(alarm_array(snapshot, machine)); }

@@ -5,9 +5,14 @@
 #include <algorithm>
 #include <vector>
 
+#include "axes/axis/error_table.hpp"
 #include "hmi_bridge/command_words.hpp"
+#include "hmi_bridge/event_text.hpp"
+#include "hmi_bridge/words.hpp"
 #include "taktwerk_lcm/alarm_list_v1_t.hpp"
+#include "taktwerk_lcm/axis_holder_v1_t.hpp"
 #include "taktwerk_lcm/axis_state_v1_t.hpp"
+#include "taktwerk_lcm/command_event_v1_t.hpp"
 #include "taktwerk_lcm/cycle_statistics_v1_t.hpp"
 #include "taktwerk_lcm/heartbeat_v1_t.hpp"
 #include "taktwerk_lcm/io_state_v1_t.hpp"
@@ -22,6 +27,7 @@ namespace {
 
 constexpr Duration statistics_period = std::chrono::milliseconds{200};
 constexpr Duration alarm_period = std::chrono::milliseconds{500};
+constexpr Duration holder_period = std::chrono::milliseconds{500};
 constexpr Duration heartbeat_period = std::chrono::milliseconds{100};
 
 std::int64_t count(Duration d) { return d.count(); }
@@ -75,6 +81,16 @@ struct AlarmMark {
     friend bool operator==(const AlarmMark&, const AlarmMark&) = default;
 };
 
+/// Equal when nobody who reads who holds an axis would see a difference.
+struct HolderMark {
+    axes::Owner owner = axes::Owner::none;
+    axes::CommandKind kind = axes::CommandKind::none;
+    const void* holder = nullptr;
+    bool held = false;
+    axes::VelocityLimiter limiter = axes::VelocityLimiter::none;
+    friend bool operator==(const HolderMark&, const HolderMark&) = default;
+};
+
 }  // namespace
 
 struct Publisher::Impl {
@@ -83,11 +99,18 @@ struct Publisher::Impl {
     Channels channels;
     bool commands_taken;
     std::function<std::int64_t()> wall_utime;
-    Due state, statistics{statistics_period}, alarms{alarm_period}, heartbeat{heartbeat_period};
+    Due state, statistics{statistics_period}, alarms{alarm_period}, heartbeat{heartbeat_period}, holders{holder_period};
     std::int64_t sequence = 0, alarm_revision = 0;
     std::uint64_t failed = 0;
     std::vector<LagPeak> peaks{};
     std::vector<AlarmMark> shown_alarms{}, present_alarms{};
+    std::vector<HolderMark> shown_holders{};
+    struct ShownEvent {
+        std::uint64_t number = 0;
+        std::uint32_t times = 0;
+    };
+    std::vector<ShownEvent> shown_events{};
+    std::uint64_t last_event = 0;
     std::vector<std::byte> buffer = std::vector<std::byte>(4 * message_size_aim);
 
     // Kept from one message to the next: their strings and arrays have their memory already.
@@ -112,6 +135,8 @@ struct Publisher::Impl {
     void watch_peaks(const runtime::Snapshot& s);
     void send_machine(const runtime::Snapshot& s);
     void send_axes(const runtime::Snapshot& s);
+    void send_holders(const runtime::Snapshot& s, bool all);
+    void send_events(const runtime::Snapshot& s, bool repeated);
     void send_statistics(const runtime::Snapshot& s);
     void send_io(const runtime::Snapshot& s);
     void send_values(const runtime::Snapshot& s);
@@ -143,6 +168,9 @@ void Publisher::step(const runtime::Snapshot* snapshot, Instant now) {
         p.send_values(*snapshot);
     }
     if (p.statistics(now)) p.send_statistics(*snapshot);
+    const bool all_holders = p.holders(now);
+    p.send_holders(*snapshot, all_holders);
+    p.send_events(*snapshot, all_holders);
     const bool due = p.alarms(now);
     if (p.alarms_changed(*snapshot) || due) p.send_alarms(*snapshot);
 }
@@ -245,6 +273,67 @@ void Publisher::Impl::send_axes(const runtime::Snapshot& s) {
         m.status_word = axis.status_word;
         send(channel, m);
     }
+}
+
+void Publisher::Impl::send_holders(const runtime::Snapshot& s, bool all) {
+    const auto& layout = machine.layout();
+    const auto count_axes = std::min(s.axes.size(), layout.axes.size());
+    shown_holders.resize(count_axes);
+    for (std::size_t i = 0; i < count_axes; ++i) {
+        const auto& axis = s.axes[i];
+        const HolderMark mark{axis.owner, axis.active_kind, axis.holder, axis.lock != 0, axis.limiter};
+        if (!all && mark == shown_holders[i]) continue;
+        shown_holders[i] = mark;
+        axis_holder_v1_t m{};
+        m.cycle_time_ns = count(s.at);
+        m.axis_index = size32(i);
+        m.name = layout.axes[i].name;
+        m.owner = axes::name(axis.owner);
+        m.command = word(axis.active_kind);
+        m.block = layout.block_at(axis.holder);
+        m.held_by_stop = mark.held;
+        m.velocity_limiter = word(axis.limiter);
+        send(channels.axis_holder(), m);
+    }
+}
+
+void Publisher::Impl::send_events(const runtime::Snapshot& s, bool repeated) {
+    const auto& layout = machine.layout();
+    const auto program = [&](const runtime::CommandGiver& giver) {
+        return giver.program < layout.programs.size() ? layout.programs[giver.program] : std::string{};
+    };
+    const auto block = [&](const runtime::CommandGiver& giver) {
+        return giver.block ? std::string(layout.block_at(giver.block)) : std::string{};
+    };
+    for (std::size_t i = 0; i < s.event_count && i < s.events.size(); ++i) {
+        const auto& event = s.events[i];
+        auto known = std::find_if(shown_events.begin(), shown_events.end(), [&](const ShownEvent& e) { return e.number == event.number; });
+        const bool is_new = event.number > last_event;
+        if (!is_new && !(repeated && known != shown_events.end() && known->times != event.times)) continue;
+        if (known == shown_events.end()) known = shown_events.insert(shown_events.end(), {event.number, 0});
+        known->times = event.times;
+        const auto words = describe(event, layout);
+        const auto* error = axes::find_error(event.error);
+        command_event_v1_t m{};
+        m.number = count(event.number);
+        m.time_ns = count(event.at);
+        m.times = static_cast<std::int32_t>(std::min<std::uint32_t>(event.times, INT32_MAX));
+        m.event = word(event.what);
+        m.axis = event.axis < layout.axes.size() ? layout.axes[event.axis].name : std::string{};
+        m.command = word(event.given.kind);
+        m.program = program(event.given);
+        m.block = block(event.given);
+        m.by_command = word(event.by.kind);
+        m.by_program = program(event.by);
+        m.by_block = block(event.by);
+        m.held_by_stop = event.held;
+        m.error = error && event.error != axes::ErrorId::none ? error->name : std::string_view{};
+        m.english = words.what;
+        m.remedy = words.remedy;
+        send(channels.command_event(), m);
+        last_event = std::max(last_event, event.number);
+    }
+    if (s.event_count > 0) std::erase_if(shown_events, [&](const ShownEvent& e) { return e.number < s.events[0].number; });
 }
 
 void Publisher::Impl::send_statistics(const runtime::Snapshot& s) {

@@ -20,13 +20,16 @@ enum class MachineAlarm : AlarmId {
     positions_not_kept = 0x6009,
     program_waits = 0x600A,
     positions_outdated = 0x600B,
+    base_task_overrun = 0x6010,
+    axis_of_two_programs = 0x6011,
+    undeclared_use = 0x6012,
 };
 /// First number of emergency_stop: nobody pressed it, the slave with its input is not exchanged.
 inline constexpr double emergency_stop_unread = 1;
 
 [[nodiscard]] constexpr AlarmId id(MachineAlarm alarm) noexcept { return static_cast<AlarmId>(alarm); }
 
-inline constexpr std::array<AlarmInfo, 11> machine_alarms{{
+inline constexpr std::array<AlarmInfo, 14> machine_alarms{{
     {id(MachineAlarm::emergency_stop), "emergency_stop", "Emergency stop: the axes stop along their ramps, then power goes off",
      "急停:各轴沿减速斜坡停止,随后断开动力", "The emergency stop button is pressed, or its circuit is open",
      "Release the button, acknowledge, then enable again", ResetRule::acknowledge, Reaction::power_off,
@@ -108,6 +111,34 @@ inline constexpr std::array<AlarmInfo, 11> machine_alarms{{
      "An axis was homed or its position set while the directory of `retain` cannot be written: after a restart it would be homed wrongly",
      "Make the directory writable, or delete positions.0 and positions.1 in it; then reset", ResetRule::reset, Reaction::stop_machine,
      "The axes would be homed at the old reference after the next start"},
+    {id(MachineAlarm::base_task_overrun),
+     "base_task_overrun",
+     "The task took {a} ms of a cycle that has {b} ms: cycles came late or were missed by that",
+     "任务耗时 {a} 毫秒,而周期只有 {b} 毫秒:因此周期延迟或丢失",
+     "A task at divisor 1 runs inside the cycle, and in some scans it computes too long (or was interrupted there, where the host has no "
+     "real time)",
+     "Shorten the task, do the long work in pieces or in a task with a divisor, or lengthen `cycle`",
+     ResetRule::self_clearing,
+     Reaction::warn,
+     {}},
+    {id(MachineAlarm::axis_of_two_programs),
+     "axis_of_two_programs",
+     "Two programs command this axis: program {a} has it, program {b} lost it",
+     "两个程序同时控制该轴:程序 {a} 占有该轴,程序 {b} 失去控制",
+     "A motion block or MC_Power of one program took the axis from a command of the other; the newer command wins",
+     "Let one program command the axis; what the other wants of it goes through variables or inputs",
+     ResetRule::self_clearing,
+     Reaction::warn,
+     {}},
+    {id(MachineAlarm::undeclared_use),
+     "undeclared_use",
+     "The program uses an input, output or parameter that its declare() never named: reads give 0, writes do nothing",
+     "程序使用了 declare() 中未声明的输入、输出或参数:读取为 0,写入无效",
+     "A handle was given no value in declare(): its line was forgotten, or another member is used than was declared",
+     "Declare it (d.input, d.output, d.parameter) in the program, then build and start it again",
+     ResetRule::self_clearing,
+     Reaction::warn,
+     {}},
 }};
 static_assert(alarm_table_is_sound(machine_alarms));
 

@@ -110,7 +110,7 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, const std
     }
     operator_power.resize(axes.size());
     outputs_by_hand.resize(io.outputs().size());
-    requests = axes::DirectRequests{axes};
+    requests = WatchedRequests{axes};
     axis_claims.resize(axes.size());
     for (std::size_t p = 0; p < config.programs.size(); ++p)
         program_requests.emplace_back(requests, axis_claims, static_cast<std::uint16_t>(p));
@@ -129,6 +129,7 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, const std
     objects = std::make_unique<ObjectRequests>(config.programs.size(), bus.slave_count());
     program_states.assign(config.programs.size(), ProgramState::stopped);
     program_faults.resize(config.programs.size());
+    program_undeclared.resize(config.programs.size());
     handshakes = std::make_unique<std::atomic<Handshake>[]>(config.programs.size());
     has_base_task.assign(config.programs.size(), 0);
     for (const auto& task : host->tasks())
@@ -233,6 +234,7 @@ void Machine::Impl::cycle(const CycleTick& tick) noexcept {
     if (runs) {
         objects->take_answers(recorder, now);
         take_levels(now);
+        requests.speak_for(no_program, now);
         drain_inbox(now);
         steps.done(static_cast<std::size_t>(Step::inbox));
 
@@ -246,12 +248,14 @@ void Machine::Impl::cycle(const CycleTick& tick) noexcept {
         supervise(now, tick);
         steps.done(static_cast<std::size_t>(Step::supervise));
 
+        requests.speak_for(no_program, now);
         renew_operator_power();
         run_tasks();
         hold_watchdog_outputs();
         steps.done(static_cast<std::size_t>(Step::tasks));
 
         axes::plan_axes(axes, now, config.cycle);
+        requests.end_of_cycle(now, emergency || shutting_down, program_states);
         steps.done(static_cast<std::size_t>(Step::plan));
 
         const Instant send_time = at_tick ? now + config.cycle : now;
@@ -292,7 +296,12 @@ Machine::~Machine() = default;
 std::variant<std::unique_ptr<Machine>, std::vector<Error>> Machine::build(MachineConfig config, ecat::Transport& transport,
                                                                           std::vector<modbus::SerialLine*> lines) {
     auto errors = check(config);
-    if (!errors.empty()) return errors;
+    if (!errors.empty()) {
+        // What the programs have wrong is told in the same breath: nobody wants to mend a file twice.
+        axes::MotionTables tables;
+        const ProgramHost host{config, IoImage{config.io}, tables, errors};
+        return errors;
+    }
     auto impl = std::make_unique<Impl>(std::move(config), transport, lines, errors);
     if (!errors.empty()) return errors;
     return std::unique_ptr<Machine>(new Machine(std::move(impl)));

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/nearest_name.hpp"
+#include "ecat/module_pdos.hpp"
 #include "runtime/machine_config.hpp"
 #include "runtime/stop_time.hpp"
 
@@ -22,6 +23,38 @@ Duration exchange_period_of(const MachineConfig& config, const std::string& name
         if (slave.name == name) return ecat::exchange_period(bus, slave);
     return config.cycle;
 }
+
+/// The objects in a slave's process data as far as they are known without it; empty: they are not.
+std::vector<ecat::PdoEntry> mapped(const ecat::PdoSelection& selection, const std::vector<ecat::PdoDescription>& known,
+                                   const std::vector<std::uint16_t>& assigned) {
+    std::vector<ecat::PdoEntry> out;
+    const auto add = [&](const std::vector<ecat::PdoEntry>& entries) { out.insert(out.end(), entries.begin(), entries.end()); };
+    const auto add_known = [&](std::uint16_t index) {
+        for (const auto& pdo : known)
+            if (pdo.index == index) add(pdo.entries);
+    };
+    for (const auto& pdo : selection.assigned) {
+        if (pdo.entries.empty()) add_known(pdo.index);
+        else add(pdo.entries);
+    }
+    if (selection.assigned.empty())
+        for (const auto index : assigned) add_known(index);
+    return out;
+}
+
+/// What every CiA 402 axis lives by (axes/drives/cia402/ refuses to start without).
+struct NeededObject {
+    std::uint16_t index;
+    bool output;
+    std::string_view name;
+};
+constexpr NeededObject needed_objects[] = {
+    {0x6040, true, "controlword"},
+    {0x6060, true, "modes of operation"},
+    {0x6041, false, "statusword"},
+    {0x6061, false, "modes of operation display"},
+    {0x6064, false, "position actual value"},
+};
 
 class Problems {
 public:
@@ -74,6 +107,12 @@ std::vector<Error> check(const MachineConfig& config) {
     for (const auto& point : config.io) (point.direction == IoDirection::input ? inputs : outputs).push_back(point.name);
     for (const auto& program : config.programs) programs.push_back(program.name);
     problems.duplicates(axis_names, "axes");
+    // They head the columns of a trace, stand in lists on the command line and in words over the socket.
+    for (const auto& name : axis_names)
+        if (name.find_first_of(" \t\n,;\"'[]=/") != std::string::npos)
+            problems.add("config.name_characters", fmt::format("axes.{}", name),
+                         fmt::format("the name '{}' has a blank or a mark that separates names elsewhere", name),
+                         "use letters, digits, '_' and '-'");
     problems.duplicates(inputs, "io.inputs");
     problems.duplicates(outputs, "io.outputs");
     problems.duplicates(programs, "programs");
@@ -120,6 +159,23 @@ std::vector<Error> check(const MachineConfig& config) {
                          fmt::format("{} has {} {}, there is no axis {}", profile.name, profile.axes, profile.axes == 1 ? "axis" : "axes",
                                      binding.drive_axis + 1),
                          profile.axes == 1 ? "remove `axis`" : fmt::format("choose 1 to {}", profile.axes));
+        for (const auto& slave : config.bus.slaves) {
+            if (slave.name != binding.slave || !slave.device || binding.drive_axis >= profile.axes) continue;
+            const auto offered = ecat::pdos_of(*slave.device, slave.modules);
+            const auto rx = mapped(slave.rx, offered.rx, offered.rx_assigned), tx = mapped(slave.tx, offered.tx, offered.tx_assigned);
+            for (const auto& needed : needed_objects) {
+                const auto& there = needed.output ? rx : tx;
+                const auto index = static_cast<std::uint16_t>(needed.index + binding.drive_axis * profile.object_offset);
+                bool is_mapped = there.empty();
+                for (const auto& entry : there) is_mapped = is_mapped || entry.index == index;
+                if (!is_mapped)
+                    problems.add("axis.not_mapped", subject + ".slave",
+                                 fmt::format("object {:04X}h ({}) is not in the {} of slave '{}'", index, needed.name,
+                                             needed.output ? "RxPDO" : "TxPDO", slave.name),
+                                 fmt::format("map it: choose a PDO that has it, or add it under `pdo.{}` of the slave (docs/drives.md)",
+                                             needed.output ? "rx" : "tx"));
+            }
+        }
         if (exchange_period_of(config, binding.slave) < profile.minimum_cycle_csp)
             problems.add("axis.cycle_too_short", "cycle",
                          fmt::format("{} (axis {}) needs at least {} us in cyclic synchronous position mode", profile.name,
@@ -135,7 +191,7 @@ std::vector<Error> check(const MachineConfig& config) {
             if (!documented)
                 problems.add("axis.homing_method", subject + ".homing.method",
                              fmt::format("{} does not document homing method {}", profile.name, binding.axis.homing.method),
-                             fmt::format("choose one of {}", list));
+                             list.empty() ? "use another kind of homing" : fmt::format("choose one of {}", list));
         }
         if (!config.emergency_stop.input.empty()) {
             const double needs = stop_seconds(binding.axis.limits), has = to_seconds(config.emergency_stop.power_off_after);
@@ -184,11 +240,6 @@ std::vector<Error> check(const MachineConfig& config) {
         for (const auto& name : known) found = found || name == event.target;
         if (!found) problems.unknown("simulation.unknown_target", "simulation.events", "target", event.target, known);
     }
-    if (config.start_mode != Mode::automatic)
-        for (const auto& program : config.programs)
-            if (program.autostart)
-                problems.add("program.autostart", fmt::format("programs.{}.autostart", program.name),
-                             "programs start only in automatic mode", "set `start_mode: automatic`, or start it by hand");
     return errors;
 }
 

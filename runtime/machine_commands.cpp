@@ -45,6 +45,7 @@ void Machine::Impl::answer(const OperatorCommand& command, Answer verdict, Error
         reply.owner = axes[command.axis].view().owner;
         reply.holder = axes[command.axis].view().holder;
     }
+    if (verdict == Answer::accepted && command.axis < axes.size()) tell_limit(command, reply);
     if (verdict != Answer::accepted) ++statistics.commands_refused;
     answers.try_push(reply);  // a full ring means nobody reads: the client's own time-out tells it
 }
@@ -78,6 +79,27 @@ bool Machine::Impl::overtaken(const OperatorCommand& command) const noexcept {
     const bool starts_motion = command.action == OperatorAction::home || command.action == OperatorAction::move_absolute ||
                                (command.action == OperatorAction::jog && command.value != 0);
     return starts_motion && command.axis < stopped_at.size() && command.after < stopped_at[command.axis];
+}
+
+// Who asked for more than the axis gives now is told so: a slow axis must not look like a granted wish.
+void Machine::Impl::tell_limit(const OperatorCommand& command, CommandAnswer& reply) const noexcept {
+    const bool moves = command.action == OperatorAction::jog || command.action == OperatorAction::move_absolute;
+    if (!moves) return;
+    const double wanted = std::abs(command.action == OperatorAction::jog ? command.value : command.value2);
+    const auto& view = axes[command.axis].view();
+    const auto& limits = config.axes[command.axis].axis;
+    double most = limits.limits.velocity;
+    Mode by = Mode::automatic;
+    const double of_mode = mode == Mode::manual  ? view.manual_fast
+                           : mode == Mode::setup ? (limits.manual.setup_velocity > 0 ? limits.manual.setup_velocity : view.manual_slow)
+                                                 : most;
+    if (mode != Mode::automatic && of_mode < most) {
+        most = of_mode;
+        by = mode;
+    }
+    if (!(wanted > most)) return;
+    reply.limited_to = most;
+    reply.limited_in = by;
 }
 
 void Machine::Impl::drain_inbox(Instant at) noexcept {

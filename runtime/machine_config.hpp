@@ -80,9 +80,17 @@ struct TaskConfig {
     std::uint16_t overruns_allowed = 3;  ///< in a row
 };
 
+/// A parameter as the machine file sets it. Which unit it has only its program knows: a value with a unit comes in every unit that it
+/// can be told in.
 struct ParameterValue {
+    struct InUnit {
+        std::string unit;
+        double value = 0;
+    };
     std::string name;
-    double value = 0;
+    double value = 0;                ///< written without a unit: in that of the program
+    std::string text{};              ///< written with one: "60 mm" ...
+    std::vector<InUnit> in_units{};  ///< ... and what that is: 60 mm, 6 cm, 0.06 m
 };
 
 struct ProgramConfig {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "axes/axis/axis.hpp"
-#include "axes/axis/direct_requests.hpp"
 #include "axes/drives/cia402/cia402_drive.hpp"
 #include "axes/drives/xp200/drive_line.hpp"
 #include "axes/port/drive_port.hpp"
@@ -27,6 +26,7 @@
 #include "runtime/program_requests.hpp"
 #include "runtime/slow_task.hpp"
 #include "runtime/stop_levels.hpp"
+#include "runtime/watched_requests.hpp"
 
 namespace taktwerk::runtime {
 
@@ -61,6 +61,7 @@ struct Machine::Impl {
     void drain_inbox(Instant now) noexcept;
     [[nodiscard]] bool overtaken(const OperatorCommand& command) const noexcept;
     void answer(const OperatorCommand& command, Answer answer, axes::ErrorId error = axes::ErrorId::none) noexcept;
+    void tell_limit(const OperatorCommand& command, CommandAnswer& reply) const noexcept;
     void execute(const OperatorCommand& command) noexcept;
     struct Verdict {
         Answer answer = Answer::accepted;
@@ -94,6 +95,7 @@ struct Machine::Impl {
     void watch_emergency_stop() noexcept;
     void watch_restart() noexcept;
     void watch_cycle(const CycleTick& tick) noexcept;
+    void blame_base_task(const CycleTick& tick) noexcept;
     void watch_programs() noexcept;
     void raise_bus_alarms() noexcept;
     void stop_axes_of_faulted_drives() noexcept;
@@ -138,7 +140,7 @@ struct Machine::Impl {
         std::uint32_t client = 0;
     };
     std::vector<OutputByHand> outputs_by_hand;      // as io.outputs()
-    axes::DirectRequests requests;                  // of operators; of programs through theirs
+    WatchedRequests requests;                       // of operators; of programs through theirs
     std::vector<AxisClaims> axis_claims;            // per axis
     std::vector<ProgramRequests> program_requests;  // per program
     bool restart_pressed = true;                    // the last level of its input: only a rising edge counts
@@ -149,10 +151,11 @@ struct Machine::Impl {
     std::vector<std::size_t> base_tasks, slow_task_places;  // indices into host->tasks(), task_statistics, layout.tasks
     std::vector<std::uint64_t> base_scans;                  // since start, per base task
     std::vector<ProgramState> program_states;
-    std::vector<FaultText> program_faults;     // the cycle's; handed over with stop_asked
-    std::vector<std::uint16_t> task_overruns;  // in a row, per slow task
-    std::vector<double> variable_values;       // as this cycle shows them
-    std::vector<std::uint8_t> has_base_task;   // per program
+    std::vector<FaultText> program_faults;                    // the cycle's; handed over with stop_asked
+    std::vector<TaskContext::Undeclared> program_undeclared;  // what each uses without having declared it; since its start
+    std::vector<std::uint16_t> task_overruns;                 // in a row, per slow task
+    std::vector<double> variable_values;                      // as this cycle shows them
+    std::vector<std::uint8_t> has_base_task;                  // per program
     AlarmLog log;
     Mode mode;
     int estop_input = -1, restart_input = -1;
@@ -171,6 +174,14 @@ struct Machine::Impl {
     Instant emergency_since{}, late_until{};
     Duration late_worst{};  // while a late wake-up is shown
     std::uint32_t overruns_in_a_row = 0;
+    struct LongestTask {
+        std::size_t place = 0;  // in host->tasks()
+        Duration run{};
+    };
+    LongestTask longest_base_task;  // of the last cycle
+    bool late_by_a_task = false;    // this cycle comes late because a base task took too long in the last one
+    LongestTask blamed;             // that task ...
+    Instant blamed_until{};         // ... while that is shown
     CycleStatistics statistics;
     std::vector<TaskStatistics> task_statistics;
     StepStatistics<step_count - 1> steps;

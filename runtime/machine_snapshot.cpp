@@ -47,15 +47,22 @@ void Machine::Impl::take_snapshot() noexcept {
     const auto alarms = log.alarms();
     s.alarm_count = alarms.size();
     std::copy(alarms.begin(), alarms.end(), s.alarms.begin());
+    const auto& events = requests.events();
+    if (s.event_revision != events.revision()) {
+        s.event_revision = events.revision();
+        s.events_dropped = events.dropped();
+        s.event_count = events.events().size();
+        std::copy(events.events().begin(), events.events().end(), s.events.begin());
+    }
     snapshots.publish();
 }
 
 std::vector<std::string> Machine::Impl::trace_columns() const {
     std::vector<std::string> columns{"time_s", "emergency_stop", "alarms"};
     for (const auto& axis : layout.axes)
-        for (const char* what :
-             {"state", "set_position", "set_velocity", "set_acceleration", "set_jerk", "actual_position", "actual_velocity",
-              "actual_torque", "following_error", "target_position", "active", "drive_state", "homed", "error"})
+        for (const char* what : {"state", "set_position", "set_velocity", "set_acceleration", "set_jerk", "actual_position",
+                                 "actual_velocity", "actual_torque", "following_error", "target_position", "active", "drive_state", "homed",
+                                 "error", "owner", "velocity_limiter", "held_by_stop", "command"})
             columns.push_back(axis.name + "." + what);
     for (const auto& input : layout.inputs) columns.push_back("in." + input);
     for (const auto& output : layout.outputs) columns.push_back("out." + output);
@@ -90,6 +97,10 @@ void Machine::Impl::take_trace() noexcept {
         put(static_cast<double>(v.drive_state));
         put(v.homed ? 1 : 0);
         put(v.error);
+        put(static_cast<double>(v.owner));
+        put(static_cast<double>(v.limiter));
+        put(v.lock != 0 ? 1 : 0);
+        put(static_cast<double>(v.active_kind));
     }
     for (const auto value : io.inputs()) put(static_cast<double>(value));
     for (const auto value : io.outputs()) put(static_cast<double>(value));

@@ -14,6 +14,8 @@ namespace {
 
 /// How long a late wake-up stays listed: many in a row are one alarm.
 constexpr Duration late_wakeups_shown = std::chrono::seconds{1};
+/// The same for a base task that computes too long: one in a hundred cycles is one alarm, too.
+constexpr Duration long_task_shown = std::chrono::seconds{5};
 
 }  // namespace
 
@@ -29,6 +31,8 @@ void Machine::Impl::raise(MachineAlarm alarm, AlarmSource source, std::uint16_t 
 // The input is normally closed: what cannot be read counts as pressed.
 void Machine::Impl::watch_emergency_stop() noexcept {
     if (estop_input < 0) return;
+    // The axes are off and the bus goes down: a button that falls silent by that was not pressed.
+    if (phase.load(std::memory_order_relaxed) == MachinePhase::stopped) return;
     const bool unread = estop_slave < bus.slave_count() && bus.health(estop_slave).age > limit(config.bus.lost_frames_limit);
     const bool pressed = unread || io.inputs()[static_cast<std::size_t>(estop_input)] == 0;
     if (pressed && !emergency) emergency_since = now;
@@ -53,14 +57,34 @@ void Machine::Impl::watch_restart() noexcept {
     }
 }
 
+// A cycle that comes late behind one that went past its own end, with a base task taking most of that time, is late by that task and
+// not by its wake-up. In virtual time nothing is ever late, so a measured time changes nothing there.
+void Machine::Impl::blame_base_task(const CycleTick& tick) noexcept {
+    const bool late = tick.missed > 0 || tick.woken > tick.scheduled;
+    const auto lateness_before = statistics.lateness;
+    late_by_a_task = late && cycles > 0 && statistics.compute > lateness_before && statistics.compute + lateness_before > config.cycle &&
+                     longest_base_task.run > statistics.compute / 2;
+    if (late_by_a_task) {
+        if (now >= blamed_until || longest_base_task.run > blamed.run || longest_base_task.place != blamed.place)
+            blamed = longest_base_task;
+        blamed_until = now + long_task_shown;
+    }
+    if (now < blamed_until)
+        raise(MachineAlarm::base_task_overrun, AlarmSource::task, static_cast<std::uint16_t>(blamed.place), to_seconds(blamed.run) * 1e3,
+              to_seconds(config.cycle) * 1e3);
+}
+
 void Machine::Impl::watch_cycle(const CycleTick& tick) noexcept {
+    blame_base_task(tick);
     overruns_in_a_row = tick.missed > 0 ? overruns_in_a_row + tick.missed : 0;
-    if (overruns_in_a_row > limit(config.watch.overruns_allowed))
-        raise(MachineAlarm::cycle_overrun, AlarmSource::machine, 0, overruns_in_a_row, limit(config.watch.overruns_allowed));
+    if (overruns_in_a_row > limit(config.watch.overruns_allowed)) {
+        raise(MachineAlarm::cycle_overrun, late_by_a_task ? AlarmSource::task : AlarmSource::machine,
+              static_cast<std::uint16_t>(late_by_a_task ? blamed.place : 0), overruns_in_a_row, limit(config.watch.overruns_allowed));
+    }
     const auto warning = config.watch.lateness_warning > Duration{} ? config.watch.lateness_warning : config.cycle / 4;
     const auto late = tick.woken - tick.scheduled;
     if (now >= late_until) late_worst = Duration{};
-    if (late > warning) {
+    if (late > warning && !late_by_a_task) {
         late_until = now + late_wakeups_shown;
         late_worst = std::max(late_worst, late);
     }
@@ -79,12 +103,21 @@ void Machine::Impl::watch_programs() noexcept {
         const auto& program = host->programs()[p];
         if (program_states[p] == ProgramState::fault)
             raise(MachineAlarm::program_fault, AlarmSource::program, static_cast<std::uint16_t>(p), 0, 0);
+        using Undeclared = TaskContext::Undeclared;
+        auto undeclared = program_undeclared[p];
         for (std::size_t n = 0; n < program.alarm_texts.size(); ++n) {
             const auto& text = program.alarm_texts[n];
-            if (!text.declared || !((program.alarms >> n) & 1u)) continue;
+            if (!((program.alarms >> n) & 1u)) continue;
+            if (!text.declared) {
+                undeclared = {Undeclared::What::alarm, static_cast<std::uint8_t>(n)};
+                continue;
+            }
             log.raise({static_cast<AlarmId>(0x5000 + n), AlarmSource::program, static_cast<std::uint16_t>(p), 0, 0}, text.reaction,
                       ResetRule::self_clearing, now);
         }
+        if (undeclared.what != Undeclared::What::nothing && program_states[p] == ProgramState::running)
+            raise(MachineAlarm::undeclared_use, AlarmSource::program, static_cast<std::uint16_t>(p), undeclared.number,
+                  undeclared.what == Undeclared::What::alarm ? 1 : 0);
     }
 }
 
@@ -96,6 +129,9 @@ void Machine::Impl::supervise(Instant, const CycleTick& tick) noexcept {
     watch_cycle(tick);
     watch_programs();
     raise_bus_alarms();
+    for (std::size_t i = 0; i < axes.size(); ++i)
+        if (const auto& rivals = requests.rivals(i); now < rivals.until)
+            raise(MachineAlarm::axis_of_two_programs, AlarmSource::axis, static_cast<std::uint16_t>(i), rivals.winner, rivals.loser);
     if (positions && positions->lost()) raise(MachineAlarm::positions_lost, AlarmSource::machine, 0, 0, 0);
     if (positions && positions->outdated()) raise(MachineAlarm::positions_outdated, AlarmSource::machine, 0, 0, 0);
     else if (positions && positions->failing()) raise(MachineAlarm::positions_not_kept, AlarmSource::machine, 0, 0, 0);

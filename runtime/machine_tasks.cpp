@@ -22,6 +22,7 @@ void Machine::Impl::run_base_task(std::size_t index) noexcept {
     context.cycle = base_scans[index]++;
     context.axes = views;
     context.requests = &program_requests[task.program];
+    requests.speak_for(static_cast<std::uint16_t>(task.program), now);
     context.objects = &objects->of(task.program);
     context.owner = axes::Owner::program;
     context.tables = &tables;
@@ -36,6 +37,7 @@ void Machine::Impl::run_base_task(std::size_t index) noexcept {
         const ProgramCode code{task.config.program.c_str(), task.config.name.c_str()};
         task.function(program.instance.get(), context);
         program.alarms = context.alarms;
+        if (context.undeclared.what != TaskContext::Undeclared::What::nothing) program_undeclared[task.program] = context.undeclared;
     } catch (...) {  // a program is foreign code: what it throws ends here, and the axes stop
         FaultText why;
         why.take_current();
@@ -49,6 +51,7 @@ void Machine::Impl::run_slow_releases() noexcept {
         auto& task = *slow_tasks[i];
         const auto program = task.program();
         const bool runs = program_states[program] == ProgramState::running;
+        requests.speak_for(static_cast<std::uint16_t>(program), now);
         if (runs) task.renew(program_requests[program]);
         if (!task.due(cycles)) continue;
         auto& numbers = task_statistics[slow_task_places[i]];
@@ -67,6 +70,7 @@ void Machine::Impl::run_slow_releases() noexcept {
             task.forget();
             continue;
         }
+        if (task.undeclared().what != TaskContext::Undeclared::What::nothing) program_undeclared[program] = task.undeclared();
         auto& alarms = host->programs()[program].alarms;
         task.apply(program_requests[program], io.outputs(), alarms);
         numbers.run = task.last_run();
@@ -85,6 +89,7 @@ void Machine::Impl::take_handshakes() noexcept {
         if (handshakes[p].compare_exchange_strong(expected, Handshake::none, std::memory_order_acquire)) {
             program_states[p] = ProgramState::running;
             program_faults[p] = {};
+            program_undeclared[p] = {};
             objects->release_all(p);
             for (auto& task : slow_tasks)
                 if (task->program() == p) task->restart();
@@ -100,6 +105,7 @@ void Machine::Impl::take_handshakes() noexcept {
 void Machine::Impl::run_tasks() noexcept {
     take_handshakes();
     run_slow_releases();
+    longest_base_task = {};
     for (std::size_t i = 0; i < base_tasks.size(); ++i) {
         if (program_states[host->tasks()[base_tasks[i]].program] != ProgramState::running) continue;
         const Stopwatch watch;
@@ -108,6 +114,8 @@ void Machine::Impl::run_tasks() noexcept {
         numbers.run = Stopwatch{watch}.lap();
         numbers.run_max = std::max(numbers.run_max, numbers.run);
         ++numbers.releases;
+        if (numbers.run > config.cycle) ++numbers.overruns;
+        if (numbers.run > longest_base_task.run) longest_base_task = {base_tasks[i], numbers.run};
     }
 }
 

@@ -129,6 +129,42 @@ AlarmText Machine::describe(const AlarmFact& fact) const {
         }
     }
 
+    // The alarm that stops the others by its name: the number is in no list that a person has.
+    if (fact.id == axes::id(axes::AxisAlarm::stopped_by_machine)) {
+        const auto cause = static_cast<AlarmId>(fact.a);
+        const AlarmInfo* by = find_alarm(machine_alarms, cause);
+        if (!by) by = find_alarm(axes::axis_alarms, cause);
+        if (!by) by = find_alarm(ecat::bus_alarms, cause);
+        const auto name = by                                  ? std::string(by->name)
+                          : cause >= 0x5000 && cause < 0x5040 ? fmt::format("program_alarm_{}", cause - 0x5000)
+                                                              : fmt::format("alarm 0x{:04X}", cause);
+        out.english = fmt::format("Stopped because of another part of the machine ({})", name);
+        out.chinese = fmt::format("因机器其他部分而停止({})", name);
+    }
+
+    // Not the host, another process or its power saving: a task of the machine's own.
+    if (fact.id == id(MachineAlarm::cycle_overrun) && fact.source == AlarmSource::task) {
+        const auto& task = *find_alarm(machine_alarms, id(MachineAlarm::base_task_overrun));
+        out.cause = task.cause;
+        out.remedy = task.remedy;
+    }
+
+    if (fact.id == id(MachineAlarm::undeclared_use) && fact.b != 0) {
+        out.english = fmt::format("The program raises alarm {}, which its declare() never named: nobody sees it", number(fact.a, false));
+        out.chinese = fmt::format("程序触发了 declare() 中未声明的报警 {}:无人可见", number(fact.a, false));
+        out.cause = "An alarm needs a number of 0 to 63 and a text";
+        out.remedy = "Declare it with d.alarm(number, reaction, text, ...), then build and start it again";
+    }
+
+    if (fact.id == id(MachineAlarm::axis_of_two_programs)) {
+        const auto program = [&](double index) {
+            const auto i = static_cast<std::size_t>(index);
+            return i < m.layout.programs.size() ? fmt::format("'{}'", m.layout.programs[i]) : std::string("?");
+        };
+        out.english = fmt::format("Two programs command this axis: {} has it, {} lost it", program(fact.a), program(fact.b));
+        out.chinese = fmt::format("两个程序同时控制该轴:{} 占有该轴,{} 失去控制", program(fact.a), program(fact.b));
+    }
+
     if (fact.id == axes::id(axes::AxisAlarm::homing_failed))
         if (const auto* doubt = axes::find_index_doubt(fact.a)) {
             out.english = doubt->english;

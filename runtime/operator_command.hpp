@@ -83,6 +83,8 @@ struct CommandAnswer {
     axes::ErrorId error = axes::ErrorId::none;  ///< refused_by_axis: why
     axes::Owner owner = axes::Owner::none;      ///< no_control: who has it
     const void* holder = nullptr;               ///< the block that moves or locks the axis (MachineLayout::block_at)
+    double limited_to = 0;                      ///< u/s, > 0: accepted, but the axis goes no faster than this now ...
+    Mode limited_in = Mode::automatic;          ///< ... by the speed of this mode; automatic: by the limit of the axis itself
 };
 static_assert(std::is_trivially_copyable_v<CommandAnswer>);
 

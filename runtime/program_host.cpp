@@ -1,7 +1,9 @@
 #include "runtime/program_host.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -20,7 +22,12 @@ public:
     AxisRef axis(std::string_view name) override {
         std::vector<std::string> names;
         for (std::size_t i = 0; i < config_.axes.size(); ++i) {
-            if (config_.axes[i].axis.name == name) return AxisRef{static_cast<std::uint16_t>(i)};
+            if (config_.axes[i].axis.name == name) {
+                const auto known = std::any_of(host_.axis_uses_.begin(), host_.axis_uses_.end(),
+                                               [&](const AxisUse& use) { return use.program == program_ && use.axis == i; });
+                if (!known) host_.axis_uses_.push_back({program_, i});
+                return AxisRef{static_cast<std::uint16_t>(i)};
+            }
             names.push_back(config_.axes[i].axis.name);
         }
         unknown("program.unknown_axis", "axis", name, names, "axes");
@@ -43,6 +50,7 @@ public:
 
     Parameter parameter(std::string_view name, const ParameterSpec& spec) override {
         const auto& program = config_.programs[program_];
+        once(parameter_names_, name, "parameter");
         double value = spec.value;
         if (!(spec.minimum <= spec.value && spec.value <= spec.maximum))
             problem(
@@ -51,11 +59,17 @@ public:
                 "correct the declaration in the program");
         for (const auto& set : program.parameters) {
             if (set.name != name) continue;
-            if (!(spec.minimum <= set.value && set.value <= spec.maximum))
+            const auto given = value_of(set, spec.unit);
+            if (!given)
+                problem("program.parameter_unit",
+                        fmt::format("parameter '{}' = {} is told in another unit: the program takes {}", name, set.text,
+                                    spec.unit.empty() ? std::string_view("a number without a unit") : spec.unit),
+                        fmt::format("write it as `{}: {}{}{}`", name, spec.value, spec.unit.empty() ? "" : " ", spec.unit));
+            else if (!(spec.minimum <= *given && *given <= spec.maximum))
                 problem("program.parameter_range",
-                        fmt::format("parameter '{}' = {} {} is outside {} to {}", name, set.value, spec.unit, spec.minimum, spec.maximum),
+                        fmt::format("parameter '{}' = {} {} is outside {} to {}", name, *given, spec.unit, spec.minimum, spec.maximum),
                         "choose a value inside the range");
-            else value = set.value;
+            else value = *given;
         }
         host_.parameters_.push_back(value);
         host_.parameter_info_.push_back(
@@ -113,10 +127,13 @@ public:
 
 protected:
     void add(std::string_view name, VariableType type, const void* address, std::string_view unit, std::string_view doc) override {
+        once(variable_names_, name, "monitored variable");
+        variable_names_.emplace_back(name);
         host_.variables_.push_back({type, address, program_});
         host_.variable_info_.push_back({config_.programs[program_].name, std::string(name), std::string(unit), std::string(doc), type});
     }
     void add_task(std::string_view name, TaskFunction function) override {
+        once(task_names_, name, "task");
         task_names_.emplace_back(name);
         TaskConfig config;  // a task that the configuration does not mention runs in each cycle
         config.name = std::string(name);
@@ -143,6 +160,19 @@ private:
                 direction == IoDirection::input ? "input" : "output", name, io_.names(direction),
                 direction == IoDirection::input ? "io.inputs" : "io.outputs");
         return 0xFFFF;
+    }
+    /// In the unit of the program; nothing where it was told in one that does not convert.
+    static std::optional<double> value_of(const ParameterValue& set, std::string_view unit) {
+        if (set.in_units.empty()) return set.value;
+        const auto plain = [](std::string_view text) {
+            std::string out;
+            for (const char c : text)
+                if (c != ' ' && c != '^') out += c;
+            return out;
+        };
+        for (const auto& one : set.in_units)
+            if (plain(one.unit) == plain(unit)) return one.value;
+        return std::nullopt;
     }
     // Why a table cannot be used; empty = it can, or it has no points yet.
     static std::string unusable(std::span<const axes::CamPoint> points) {
@@ -177,6 +207,11 @@ private:
         }
         return {};
     }
+    /// Two of one name could not be told apart by anybody who reads or writes them.
+    void once(const std::vector<std::string>& names, std::string_view name, std::string_view kind) {
+        if (std::find(names.begin(), names.end(), name) != names.end())
+            problem("program.duplicate_name", fmt::format("{} '{}' is declared twice", kind, name), "give each a name of its own");
+    }
     void bad_table(std::string_view kind, std::string_view name, std::string_view why) {
         problem("program.table", fmt::format("{} '{}' cannot be used: {}", kind, name, why), "correct the declaration in the program");
     }
@@ -199,7 +234,7 @@ private:
     axes::MotionTables& tables_;
     std::size_t program_;
     std::vector<Error>& errors_;
-    std::vector<std::string> parameter_names_, task_names_;
+    std::vector<std::string> parameter_names_, task_names_, variable_names_;
 };
 
 ProgramHost::ProgramHost(const MachineConfig& config, const IoImage& io, axes::MotionTables& tables, std::vector<Error>& errors) {
@@ -247,6 +282,7 @@ void ProgramHost::describe(MachineLayout& layout) const {
     layout.variables = variable_info_;
     layout.parameters = parameter_info_;
     layout.blocks = blocks_;
+    for (const auto& use : axis_uses_) layout.axes[use.axis].programs.push_back(programs_[use.program].config.name);
 }
 
 std::string_view MachineLayout::block_at(const void* instance) const noexcept {

@@ -76,6 +76,10 @@ private:
     std::vector<MachineLayout::ParameterInfo> parameter_info_;
     std::vector<MachineLayout::Block> blocks_;
     std::vector<std::vector<std::uint16_t>> outputs_;  // per program
+    struct AxisUse {
+        std::size_t program, axis;
+    };
+    std::vector<AxisUse> axis_uses_;  // each once
 };
 
 }  // namespace taktwerk::runtime

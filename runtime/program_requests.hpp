@@ -7,10 +7,9 @@
 
 #include "axes/axis/homing_step_check.hpp"
 #include "axes/axis/motion_context.hpp"
+#include "runtime/command_events.hpp"
 
 namespace taktwerk::runtime {
-
-inline constexpr std::uint16_t no_program = 0xFFFF;
 
 /// Which program an axis has its power from, and which gave it the last motion.
 struct AxisClaims {

@@ -76,6 +76,7 @@ bool SlowTask::run_if_released() noexcept {
         fault_.take_current();
     }
     alarms_ = context.alarms;
+    undeclared_ = context.undeclared;
     for (std::size_t i = 0; i < variable_sources_.size(); ++i) variable_values_[i] = ProgramHost::read(variable_sources_[i]);
     run_time_ = Stopwatch{watch}.lap();
     state_.store(State::done, std::memory_order_release);

@@ -45,6 +45,7 @@ public:
     /// Only while finished().
     [[nodiscard]] bool threw() const noexcept { return threw_; }
     [[nodiscard]] const FaultText& fault() const noexcept { return fault_; }
+    [[nodiscard]] TaskContext::Undeclared undeclared() const noexcept { return undeclared_; }
     [[nodiscard]] std::size_t program() const noexcept { return task_.program; }
     [[nodiscard]] const TaskConfig& config() const noexcept { return task_.config; }
     /// The program was stopped: what its last run asked for is not carried out. Only while finished().
@@ -73,6 +74,7 @@ private:
     std::uint64_t runs_ = 0, applied_ = 0, alarms_ = 0, alarms_at_release_ = 0;
     bool threw_ = false;
     FaultText fault_;
+    TaskContext::Undeclared undeclared_;
     Duration run_time_{};
 };
 

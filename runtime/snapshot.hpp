@@ -2,6 +2,7 @@
 // The one copy of the machine's state that leaves the cycle: HMI, command line, trace, recorder all read this. Buffers are
 // sized when the machine is built; copying allocates nothing.
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "core/time.hpp"
 #include "ecat/master.hpp"
 #include "programs/api/program.hpp"
+#include "runtime/command_events.hpp"
 #include "runtime/machine_config.hpp"
 
 namespace taktwerk::runtime {
@@ -64,6 +66,9 @@ struct Snapshot {
     std::vector<TaskStatistics> tasks;
     std::vector<ActiveAlarm> alarms;  ///< capacity fixed; the first alarm_count are valid, newest last
     std::size_t alarm_count = 0;
+    std::array<CommandEvent, CommandEvents::capacity> events{};  ///< the first event_count are valid, newest last
+    std::size_t event_count = 0;
+    std::uint64_t event_revision = 0, events_dropped = 0;
 };
 
 /// Names and units that go with a snapshot; fixed when the machine is built.
@@ -79,9 +84,10 @@ struct MachineLayout {
     struct AxisInfo {
         std::string name, unit;
         bool disabled = false, simulated = false;
-        double jog_slow = 0, jog_fast = 0;  ///< u/s
-        std::string drive, profile;         ///< slave, or drive on a serial line, and its kind; empty: a virtual axis
-        int drive_axis = 0;                 ///< of that drive, from 0
+        double jog_slow = 0, jog_fast = 0;    ///< u/s
+        std::string drive, profile;           ///< slave, or drive on a serial line, and its kind; empty: a virtual axis
+        int drive_axis = 0;                   ///< of that drive, from 0
+        std::vector<std::string> programs{};  ///< those that declare it: only one of them may command it
     };
     struct Block {
         std::string name;  ///< program.block

@@ -98,7 +98,7 @@ World::World(const MachineConfig& config, Instant start)
             auto* terminal = model.get();
             install(*slave, std::move(model), options);
             for (const auto& point : config.io)
-                if (point.slave == slave->name) points_.push_back({point, terminal});
+                if (point.slave == slave->name) points_.push_back({point, terminal, nullptr});
             continue;
         }
         std::vector<axes::sim::Cia402Device::AxisSetup> setups;
@@ -134,10 +134,12 @@ World::World(const MachineConfig& config, Instant start)
         for (const auto& binding : config.axes)
             if (binding.slave == slave->name)
                 for (const auto& setting : binding.stored) model->commission(binding.drive_axis, setting.object, setting.value);
+        for (const auto& point : config.io)
+            if (point.slave == slave->name) points_.push_back({point, nullptr, model.get()});
         install(*slave, std::move(model), options);
     }
     for (const auto& point : config.io)
-        if (point.direction == IoDirection::input && point.simulated) set_input(point.name, *point.simulated != 0);
+        if (point.direction == IoDirection::input && point.simulated) set_input_value(point.name, *point.simulated);
 }
 
 ecat::sim::SimSlave* World::find(std::string_view slave) const noexcept {
@@ -157,15 +159,17 @@ axes::sim::Cia402Axis* World::drive(std::string_view axis) noexcept {
     return found ? found->axis : nullptr;
 }
 
-void World::set_input(std::string_view name, bool value) {
-    for (auto& point : points_)
-        if (point.config.name == name && point.config.direction == IoDirection::input)
-            point.terminal->set_input(point.config.sub - 1u, value);
+void World::set_input_value(std::string_view name, std::int64_t value) {
+    for (auto& point : points_) {
+        if (point.config.name != name || point.config.direction != IoDirection::input) continue;
+        if (point.terminal) point.terminal->set_input(point.config.sub - 1u, value != 0);
+        else point.device->hold(point.config.index, point.config.sub, value);
+    }
 }
 
 bool World::output(std::string_view name) const {
     for (const auto& point : points_)
-        if (point.config.name == name && point.config.direction == IoDirection::output)
+        if (point.terminal && point.config.name == name && point.config.direction == IoDirection::output)
             return point.terminal->output(point.config.sub - 1u);
     return false;
 }
@@ -182,7 +186,7 @@ void World::happen(const SimulationEvent& event) {
     using Kind = SimulationEvent::Kind;
     if (serial_.happen(event)) return;
     switch (event.kind) {
-        case Kind::input: set_input(event.target, event.value != 0); break;
+        case Kind::input: set_input_value(event.target, event.value); break;
         case Kind::slave_power: set_slave_power(event.target, event.value != 0); break;
         case Kind::drive_fault:
             if (const auto* axis = place(event.target)) axis->device->raise(axis->index, static_cast<std::uint16_t>(event.value));
@@ -199,6 +203,7 @@ void World::happen(const SimulationEvent& event) {
 
 void World::apply_events(Instant now) {
     while (next_event_ < events_.size() && start_ + events_[next_event_].at <= now) happen(events_[next_event_++]);
+    if (also) also(now);
     serial_.wire([this](const std::string& point) { return output(point); });
 }
 

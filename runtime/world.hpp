@@ -2,6 +2,7 @@
 // The simulated machine behind the bus: slaves, drives, mechanics, and what happens to them at given times. Built from the same
 // configuration as the machine; reached by the master only through frames.
 
+#include <functional>
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -28,6 +29,8 @@ public:
 
     /// Lets the configured events happen that are due. Called by whoever runs the cycle, before it.
     void apply_events(Instant now);
+    /// Called with each apply_events(), on its thread: other hands on the machine. Set before anything runs.
+    std::function<void(Instant)> also;
     /// Lets one thing happen now; `at` does not matter. From the thread that applies the events. Unknown names: nothing happens.
     void happen(const SimulationEvent& event);
 
@@ -35,7 +38,9 @@ public:
     /// nullptr when the axis is not on a simulated drive.
     [[nodiscard]] axes::sim::Cia402Axis* drive(std::string_view axis) noexcept;
     /// The contact of a named input point (before its `inverted`).
-    void set_input(std::string_view point, bool value);
+    void set_input(std::string_view point, bool value) { set_input_value(point, value ? 1 : 0); }
+    /// What the field gives a named input point, of any width: the raw value of its object. A one-bit point of a terminal takes 0 as FALSE.
+    void set_input_value(std::string_view point, std::int64_t value);
     /// What a named output point drives at the terminal.
     [[nodiscard]] bool output(std::string_view point) const;
     void set_slave_power(std::string_view slave, bool on);
@@ -47,7 +52,8 @@ private:
 
     struct Point {
         IoPoint config;
-        ecat::sim::DigitalTerminal* terminal = nullptr;
+        ecat::sim::DigitalTerminal* terminal = nullptr;  // either ...
+        axes::sim::Cia402Device* device = nullptr;       // ... or
     };
     struct AxisPlace {
         std::string name;

@@ -64,7 +64,7 @@ void check_modulo(Problems& problems, const AxisConfig& config) {
         problems.add("modulo", "is no simple ratio of gearing.feed, so turns would drift",
                      "Write both as exact as the mechanics are, such as feed 360 deg and modulo 360 deg");
     if (!std::isinf(config.limits.position_min) || !std::isinf(config.limits.position_max))
-        problems.add("modulo", "excludes software limits: the axis has no ends", "Remove limits.position_min and limits.position_max");
+        problems.add("modulo", "excludes software limits: the axis has no ends", "Leave the software limits out (`limits: position`)");
 }
 
 /// Homing by the drive knows nothing of the axis' limits: what it is told has to be inside them.

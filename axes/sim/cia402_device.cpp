@@ -94,6 +94,8 @@ void Cia402Device::take_scale() noexcept {
 }
 
 void Cia402Device::power_on(ecat::sim::ObjectDictionary& dictionary, Instant now) {
+    dictionary_ = &dictionary;
+    for (auto& held : held_) held.entry = dictionary.find(held.index, held.sub);
     parameters_.power_on(dictionary);
     take_scale();
     for (std::size_t i = 0; i < axes_.size(); ++i) {
@@ -222,7 +224,17 @@ void Cia402Device::exchange(Instant now) {
         }
         announce(axis, (out.status & status_fault) != 0, out.error_code, static_cast<std::uint32_t>(detail));
     }
+    for (const auto& held : held_) put(held.entry, held.value);
     cause_ = {};
+}
+
+void Cia402Device::hold(std::uint16_t index, std::uint8_t sub, std::int64_t value) {
+    for (auto& held : held_)
+        if (held.index == index && held.sub == sub) {
+            held.value = value;
+            return;
+        }
+    held_.push_back({index, sub, value, dictionary_ ? dictionary_->find(index, sub) : nullptr});
 }
 
 void Cia402Device::serve_encoder(OneAxis& axis, std::uint16_t control) {

@@ -44,6 +44,10 @@ public:
         refused_code_ = al_status_code;
     }
 
+    /// From now on this object of the inputs says what a hand gives it, whatever the drive would say: a sensor at a device that is described
+    /// as a drive, an analog value.
+    void hold(std::uint16_t index, std::uint8_t sub, std::int64_t value);
+
     void link_changed(Instant now) override;
     /// The supply of the main circuit, one for all axes.
     void main_power(bool on) noexcept {
@@ -91,7 +95,15 @@ private:
     void count_missed_frames() noexcept;
     void take_scale() noexcept;
     void share_common_alarm() noexcept;
+    struct Held {
+        std::uint16_t index;
+        std::uint8_t sub;
+        std::int64_t value;
+        Entry* entry;
+    };
     std::vector<OneAxis> axes_;
+    std::vector<Held> held_;
+    ecat::sim::ObjectDictionary* dictionary_ = nullptr;
     DriveParameters parameters_;
     ScaleObjects scale_;
     bool scale_changed_ = false;  ///< while the motor had power

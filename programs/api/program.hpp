@@ -45,7 +45,8 @@ using axes::AxisRef;
 /// gives it (sign-extended where the object is signed), without scaling.
 ///
 /// A handle that was never declared, or whose name the machine lacks, is unresolved (0xFFFF): reads give 0 and FALSE, writes do
-/// nothing. A program with an unresolved name is not started; a forgotten `d.input(...)` is found only that way.
+/// nothing. A program with an unresolved name is not started; the use of a handle that was forgotten in declare() is told while the
+/// program runs (alarm undeclared_use).
 template <class T>
 struct Input {
     std::uint16_t index = 0xFFFF;
@@ -88,9 +89,14 @@ public:
     void set(Output<std::int64_t> point, std::int64_t value) noexcept { write(point.index, value); }
     [[nodiscard]] double get(Parameter parameter) const noexcept { return value_at(parameters, parameter.index); }
 
-    /// Raises the program's alarm `number` (0..63) for as long as `active` holds; texts come from Declaration::alarm.
+    /// Raises the program's alarm `number` (0..63) for as long as `active` holds; texts come from Declaration::alarm. Any other number
+    /// raises nothing but the alarm undeclared_use, which names it.
     void alarm(std::uint8_t number, bool active) noexcept {
-        const auto bit = std::uint64_t{1} << (number & 63u);
+        if (number > 63) {
+            if (active) undeclared = {Undeclared::What::alarm, number};
+            return;
+        }
+        const auto bit = std::uint64_t{1} << number;
         alarms = active ? (alarms | bit) : (alarms & ~bit);
     }
 
@@ -98,17 +104,26 @@ public:
     std::span<const double> parameters;
     std::uint64_t alarms = 0;
     bool first_scan = false;  ///< first call after start
+    /// Something that was used and never declared: read by the runtime after the scan.
+    struct Undeclared {
+        enum class What : std::uint8_t { nothing, point, alarm } what = What::nothing;
+        std::uint8_t number = 0;  ///< of the alarm
+    };
+    mutable Undeclared undeclared;
 
 private:
     template <class T>
-    [[nodiscard]] static T value_at(std::span<const T> values, std::uint16_t index) noexcept {
-        return index < values.size() ? values[index] : T{};
+    [[nodiscard]] T value_at(std::span<const T> values, std::uint16_t index) const noexcept {
+        if (index < values.size()) return values[index];
+        undeclared = {Undeclared::What::point, 0};
+        return T{};
     }
-    [[nodiscard]] static std::int64_t value_at(std::span<std::int64_t> values, std::uint16_t index) noexcept {
-        return index < values.size() ? values[index] : 0;
+    [[nodiscard]] std::int64_t value_at(std::span<std::int64_t> values, std::uint16_t index) const noexcept {
+        return value_at(std::span<const std::int64_t>(values), index);
     }
     void write(std::uint16_t index, std::int64_t value) noexcept {
         if (index < outputs.size()) outputs[index] = value;
+        else undeclared = {Undeclared::What::point, 0};
     }
 };
 

@@ -98,6 +98,21 @@ TEST(MonitorScreen, ThreeAxesWithAlarmsFitAPlainTerminal) {
     EXPECT_THAT(lines, Contains(HasSubstr("owner program (MC_MoveAbsolute)"))) << "a block without a name";
 }
 
+// What a program has divided by zero is shown as what it is; the screen stays.
+TEST(MonitorScreen, ValuesThatAreNoNumbersAreShown) {
+    auto broken = state(1, 0);
+    broken["variables"][0]["value"] = "NaN";
+    broken["parameters"][0]["value"] = "-Infinity";
+    broken["axes"][0]["actual_velocity"] = "Infinity";
+    broken["axes"][0]["following_error"] = nullptr;
+
+    const auto lines = monitor_screen(broken, layout, {100, 24, false});
+
+    EXPECT_THAT(lines, Contains(HasSubstr("step=nan")));
+    EXPECT_THAT(lines, Contains(HasSubstr("speed=-inf mm/s")));
+    EXPECT_THAT(lines, Contains(HasSubstr("        inf        nan")));
+}
+
 TEST(MonitorScreen, WhatDoesNotFitGivesWayToAxesAndAlarms) {
     const auto lines = monitor_screen(state(12, 9), layout, {80, 24, false});
 

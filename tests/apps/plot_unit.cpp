@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "apps/plot_data.hpp"
 #include "apps/plot_script.hpp"
 #include "apps/trace_file.hpp"
@@ -12,17 +14,18 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 const std::string heading =
     "time_s,emergency_stop,alarms,x.state,x.set_position[mm],x.set_velocity[mm/"
     "s],x.set_acceleration,x.set_jerk,x.actual_position,x.actual_velocity,"
     "x.actual_torque,x.following_error,in.start\n";
 
-TEST(TraceFile, TimeCountsFromTheFirstRowAndUnitsComeFromTheHeading) {
+TEST(TraceFile, TimeIsThatOfTheLogAndUnitsComeFromTheHeading) {
     const auto trace = parse_trace(heading + "100.5,0,0,1,7.25,2,3,4,7,1.5,0.1,0.25,1\n100.501,1,2,7,8,2,3,4,7,1.5,0.1,0.25,1\n", "t.csv");
 
     ASSERT_TRUE(trace) << trace.error().text();
-    EXPECT_THAT(trace->time_s, ElementsAre(0, ::testing::DoubleNear(0.001, 1e-9)));
+    EXPECT_THAT(trace->time_s, ElementsAre(100.5, 100.501));
     EXPECT_THAT(trace->emergency_stop, ElementsAre(0, 1));
     ASSERT_EQ(trace->axes.size(), 1u);
     EXPECT_EQ(trace->axes[0].name, "x");
@@ -98,6 +101,40 @@ TEST(TraceFile, WhatIsZeroOrOneAllTheTimeAndOfNoAxisIsABit) {
     EXPECT_EQ(trace->bits[1].name, "feeder.busy");
     EXPECT_THAT(trace->axes[0].active, ElementsAre(0, 1));
     EXPECT_THAT(trace->axes[0].target_position, ElementsAre(100, 100));
+}
+
+// What a program divided by zero is no damage of the file: the curve has a gap there, and the rest is drawn.
+TEST(TraceFile, ValuesThatAreNoNumbersAreReadAndLeaveAGapInThePicture) {
+    const auto trace = parse_trace(later_heading +
+                                       "1,0,0,3,5,0,0,0,nan,0,0,100,0,0,2.5,1\n2,0,0,3,6,0,0,0,7,0,0,100,1,1,inf,1\n"
+                                       "3,0,0,3,6,0,0,0,-inf,0,0,100,1,1,4.5,1\n",
+                                   "t.csv");
+    ASSERT_TRUE(trace) << trace.error().text();
+    ASSERT_EQ(trace->values.size(), 1u);
+    EXPECT_EQ(trace->values[0].name, "out.level");
+    EXPECT_TRUE(std::isinf(trace->values[0].value[1]));
+
+    const auto script = plot_script(*trace, {"t", "t.svg", {}, 0, 0, false, {}, {"out.level"}});
+    ASSERT_TRUE(script) << script.error().text();
+    EXPECT_THAT(*script, HasSubstr("1.000000 2.5\n\n3.000000 4.5\n"));  // two runs, nothing between
+    EXPECT_THAT(*script, HasSubstr("2.000000 7\n"));                    // the one actual position that is a number
+    EXPECT_THAT(*script, Not(HasSubstr("inf")));
+
+    EXPECT_EQ(plot_script(*trace, {"t", "t.svg", {}, 0, 0, false, {}, {"out.levle"}}).error().remedy, "Did you mean 'out.level'?");
+    // A state that is no number is damage.
+    EXPECT_EQ(parse_trace(later_heading + "1,0,0,nan,5,0,0,0,0,0,0,100,0,0,2.5,1\n", "t.csv").error().code, "trace.bad_line");
+}
+
+TEST(PlotScript, APanelWithoutOneNumberIsEmptyAndHasARange) {
+    const auto trace = parse_trace(later_heading + "1,0,0,3,5,0,0,0,0,0,0,100,0,0,nan,1\n2,0,0,3,6,0,0,0,7,0,0,100,1,1,nan,1\n", "t.csv");
+    ASSERT_TRUE(trace) << trace.error().text();
+
+    const auto script = plot_script(*trace, {"t", "t.svg", {}, 0, 0, false, {}, {"out.level"}});
+
+    ASSERT_TRUE(script);
+    EXPECT_THAT(*script, HasSubstr("1.000000 NaN\nEOD"));
+    EXPECT_THAT(*script, Not(HasSubstr("inf")));
+    EXPECT_THAT(*script, Not(HasSubstr("[nan")));
 }
 
 TEST(PlotData, NoPeakIsLostHoweverNarrow) {
@@ -195,7 +232,7 @@ TEST(PlotScript, AskedForWhatTheTraceDoesNotHave) {
     EXPECT_EQ(plot_script(*trace, request).error().code, "plot.empty_window");
 }
 
-// Two commands one after the other, the second takes the axis from the first at 3 s; the program's bit does not change.
+// Two commands one after the other, the second takes the axis from the first at 4 s; the program's bit does not change.
 TEST(PlotScript, DrawsTargetsHandOversAndTheBitsThatChange) {
     const auto trace = parse_trace(later_heading +
                                        "1,0,0,1,0,0,0,0,0,0,0,0,0,0,0,1\n2,0,0,3,0,0,0,0,0,0,0,100,5,1,7,1\n"
@@ -207,8 +244,8 @@ TEST(PlotScript, DrawsTargetsHandOversAndTheBitsThatChange) {
 
     ASSERT_TRUE(script);
     EXPECT_THAT(*script, HasSubstr("title 'commanded'"));
-    EXPECT_THAT(*script, HasSubstr("set arrow from first 3.000000"));
-    EXPECT_THAT(*script, ::testing::Not(HasSubstr("set arrow from first 1.000000"))) << "nothing was taken from anybody there";
+    EXPECT_THAT(*script, HasSubstr("set arrow from first 4.000000"));
+    EXPECT_THAT(*script, ::testing::Not(HasSubstr("set arrow from first 2.000000"))) << "nothing was taken from anybody there";
     EXPECT_THAT(*script, HasSubstr("set label 'in.start'"));
     EXPECT_THAT(*script, ::testing::Not(HasSubstr("feeder.busy")));
 

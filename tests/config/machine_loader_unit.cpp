@@ -311,9 +311,17 @@ TEST(MachineLoader, TasksRunAtWholeCycles) {
     EXPECT_EQ(loaded.machine.tasks[2].divisor, 250);
     EXPECT_EQ(loaded.machine.tasks[3].name, "main") << "a program without `tasks` has one";
     EXPECT_EQ(loaded.machine.tasks[3].program, "other");
-    ASSERT_EQ(loaded.machine.programs[0].parameters.size(), 2u);
-    EXPECT_EQ(loaded.machine.programs[0].parameters[0].value, 12.5);
-    EXPECT_EQ(loaded.machine.programs[0].parameters[1].value, 1);
+    const auto& parameters = loaded.machine.programs[0].parameters;
+    ASSERT_EQ(parameters.size(), 3u);
+    EXPECT_EQ(parameters[0].value, 12.5);
+    EXPECT_TRUE(parameters[0].in_units.empty()) << "in the program's own unit, whatever that is";
+    EXPECT_EQ(parameters[1].value, 1);
+    // Which unit it takes only the program knows: here it is in each.
+    EXPECT_EQ(parameters[2].text, "6 cm");
+    double mm = 0;
+    for (const auto& one : parameters[2].in_units)
+        if (one.unit == "mm") mm = one.value;
+    EXPECT_DOUBLE_EQ(mm, 60);
 }
 
 TEST(MachineLoader, StartupListsReplaceTheProfilesEntriesAndKnowWhereTheyStand) {

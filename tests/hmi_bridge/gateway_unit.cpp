@@ -276,7 +276,8 @@ TEST_F(GatewayTest, RefusalsOfTheMachineComeBackInWords) {
     EXPECT_EQ(refused.error.subject, "axis x");
     EXPECT_THAT(refused.error.what, HasSubstr("The axis is disabled"));
     EXPECT_THAT(refused.error.what, HasSubstr("power stage is off")) << "the cause is missing";
-    EXPECT_THAT(refused.error.remedy, HasSubstr("Enable it"));
+    EXPECT_EQ(refused.error.remedy, "Enable it: `taktwerk enable x`.") << "a person at the machine has no MC_Power";
+    EXPECT_EQ(refused.error.what.find("MC_"), std::string::npos) << refused.error.what;
 
     for (const auto answer : {Answer::unknown_name, Answer::bad_value, Answer::stale, Answer::wrong_mode, Answer::not_possible_now,
                               Answer::queue_full, Answer::duplicate}) {

@@ -13,7 +13,9 @@
 #include "hmi_bridge/lcm_url.hpp"
 #include "taktwerk_lcm/acknowledge_v1_t.hpp"
 #include "taktwerk_lcm/alarm_list_v1_t.hpp"
+#include "taktwerk_lcm/axis_holder_v1_t.hpp"
 #include "taktwerk_lcm/axis_state_v1_t.hpp"
+#include "taktwerk_lcm/command_event_v1_t.hpp"
 #include "taktwerk_lcm/command_v1_t.hpp"
 #include "taktwerk_lcm/cycle_statistics_v1_t.hpp"
 #include "taktwerk_lcm/heartbeat_v1_t.hpp"
@@ -34,6 +36,8 @@ TEST(LcmTypes, FingerprintsDoNotChange) {
         {"acknowledge_v1_t", {acknowledge_v1_t::getHash(), 0xa6da1e312ee63c20u}},
         {"alarm_v1_t", {alarm_v1_t::getHash(), 0x5bd95d0177b99698u}},
         {"alarm_list_v1_t", {alarm_list_v1_t::getHash(), 0x66c1467ef7d317eau}},
+        {"axis_holder_v1_t", {axis_holder_v1_t::getHash(), 0xcf43c84ef30367bcu}},
+        {"command_event_v1_t", {command_event_v1_t::getHash(), 0x6e3562bd255111bbu}},
         {"axis_state_v1_t", {axis_state_v1_t::getHash(), 0x5382e5f78658f4bau}},
         {"command_v1_t", {command_v1_t::getHash(), 0x49f677269204d580u}},
         {"cycle_statistics_v1_t", {cycle_statistics_v1_t::getHash(), 0xc75e584d828afcb5u}},

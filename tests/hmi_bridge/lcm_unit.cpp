@@ -12,7 +12,9 @@
 #include "hmi_bridge/memory_bus.hpp"
 #include "taktwerk_lcm/acknowledge_v1_t.hpp"
 #include "taktwerk_lcm/alarm_list_v1_t.hpp"
+#include "taktwerk_lcm/axis_holder_v1_t.hpp"
 #include "taktwerk_lcm/axis_state_v1_t.hpp"
+#include "taktwerk_lcm/command_event_v1_t.hpp"
 #include "taktwerk_lcm/command_v1_t.hpp"
 #include "taktwerk_lcm/cycle_statistics_v1_t.hpp"
 #include "taktwerk_lcm/heartbeat_v1_t.hpp"
@@ -115,8 +117,9 @@ TEST_F(LcmTest, AServiceThatWasHeldUpDoesNotCatchUpInABurst) {
     now += 10s;
     step();
     const auto late = bus->published.size();
-    // Each channel once, whatever was missed: machine, three axes, i/o, values, statistics, alarms, heartbeat.
-    EXPECT_EQ(late - before, 9u);
+    // Each channel once, whatever was missed: machine, three axes and who holds them, i/o, values, statistics, alarms,
+    // heartbeat.
+    EXPECT_EQ(late - before, 12u);
     step();
     EXPECT_EQ(bus->published.size(), late) << "nothing is made up for";
     now += 20ms;
@@ -191,6 +194,60 @@ TEST_F(LcmTest, LongListsComeInSeveralMessages) {
     }
     EXPECT_EQ(next, 30);
     for (const auto& message : bus->published) EXPECT_LE(message.bytes.size(), Publisher::message_size_aim) << message.channel;
+}
+
+// Who holds an axis and what makes it slow are there over LCM as in the state; a change comes with the next step.
+TEST_F(LcmTest, WhoHoldsAnAxisIsPublishedAtEachChange) {
+    open({});
+    const auto of_x = [&] {
+        std::vector<axis_holder_v1_t> out;
+        for (auto& message : decoded<axis_holder_v1_t>(*bus, "TAKTWERK_DEMO_AXIS_HOLDER"))
+            if (message.name == "x") out.push_back(std::move(message));
+        return out;
+    };
+    bridge->step(now);
+    ASSERT_EQ(of_x().size(), 1u);
+    EXPECT_EQ(of_x()[0].held_by_stop, 0);
+    std::array<std::byte, 8> hold{};
+    machine.layout_.blocks = {{"cell.hold", hold.data(), hold.size()}};
+    machine.snapshot.axes[0].owner = axes::Owner::program;
+    machine.snapshot.axes[0].holder = hold.data();
+    machine.snapshot.axes[0].lock = 9;
+    machine.snapshot.axes[0].limiter = axes::VelocityLimiter::manual_speed;
+    bridge->step(now += 1ms);
+    bridge->step(now += 1ms);
+    ASSERT_EQ(of_x().size(), 2u) << "one for the change, none without";
+    EXPECT_EQ(of_x()[1].owner, "program");
+    EXPECT_EQ(of_x()[1].block, "cell.hold");
+    EXPECT_NE(of_x()[1].held_by_stop, 0);
+    EXPECT_EQ(of_x()[1].velocity_limiter, "manual_speed");
+}
+
+TEST_F(LcmTest, ARefusedCommandIsPublishedOnceAndItsCountLater) {
+    open({});
+    bridge->step(now);
+    auto& event = machine.snapshot.events[0];
+    event.number = 5;
+    event.given = {axes::CommandKind::move_absolute, axes::Owner::program, 0, nullptr};
+    event.error = axes::ErrorId::not_homed;
+    machine.snapshot.event_count = 1;
+    for (int i = 0; i < 10; ++i) {
+        event.times += 1;
+        bridge->step(now += 1ms);
+    }
+    auto told = decoded<command_event_v1_t>(*bus, "TAKTWERK_DEMO_COMMAND_EVENT");
+    ASSERT_EQ(told.size(), 1u);
+    EXPECT_EQ(told[0].number, 5);
+    EXPECT_EQ(told[0].event, "refused");
+    EXPECT_EQ(told[0].axis, "x");
+    EXPECT_EQ(told[0].command, "MC_MoveAbsolute");
+    EXPECT_EQ(told[0].program, "cell");
+    EXPECT_EQ(told[0].error, "not_homed");
+    EXPECT_THAT(told[0].english, HasSubstr("MC_MoveAbsolute of program cell was refused"));
+    bridge->step(now += 500ms);
+    told = decoded<command_event_v1_t>(*bus, "TAKTWERK_DEMO_COMMAND_EVENT");
+    ASSERT_EQ(told.size(), 2u);
+    EXPECT_EQ(told[1].times, 11);
 }
 
 TEST_F(LcmTest, AChangedAlarmIsPublishedAtOnce) {

@@ -1,4 +1,5 @@
 // The socket's language: what is asked, what comes back, and what broken lines get.
+#include "hmi_bridge/json_number.hpp"
 #include "hmi_bridge/json_requests.hpp"
 
 #include <gmock/gmock.h>
@@ -212,8 +213,74 @@ TEST_F(RequestsTest, ValuesThatAreNoNumbersDoNotBreakTheAnswer) {
     machine.snapshot.variables[0] = std::numeric_limits<double>::infinity();
     machine.layout_.machine = "bro\xffken";
     const auto state = ask(R"({"id":1,"cmd":"state"})")["state"];
-    EXPECT_TRUE(state["axes"][0]["actual_position"].is_null());
-    EXPECT_TRUE(state["variables"][0]["value"].is_null());
+    EXPECT_EQ(state["axes"][0]["actual_position"], "NaN");
+    EXPECT_EQ(state["variables"][0]["value"], "Infinity");
+    EXPECT_EQ(state["parameters"][0]["value"], 200) << "a number stays one";
+    // And back.
+    EXPECT_TRUE(std::isnan(number_of(state["axes"][0]["actual_position"])));
+    EXPECT_EQ(number_of(state["variables"][0]["value"]), std::numeric_limits<double>::infinity());
+    EXPECT_EQ(number_of(nlohmann::json("-Infinity")), -std::numeric_limits<double>::infinity());
+    EXPECT_EQ(number_of(nlohmann::json(2.5)), 2.5);
+    EXPECT_TRUE(std::isnan(number_of(nlohmann::json(nullptr))));
+}
+
+// Who stood in whose way is there for every client, not only in the log.
+TEST_F(RequestsTest, StateCarriesRefusedAndAbortedCommands) {
+    auto& event = machine.snapshot.events[0];
+    event.number = 41;
+    event.axis = 1;
+    event.given = {axes::CommandKind::move_absolute, axes::Owner::program, 0, nullptr};
+    event.by = {axes::CommandKind::stop, axes::Owner::program, 1, nullptr};
+    event.held = true;
+    event.error = axes::ErrorId::state_forbids;
+    event.times = 3;
+    machine.snapshot.event_count = 1;
+
+    const auto state = ask(R"({"id":1,"cmd":"state"})")["state"];
+
+    ASSERT_EQ(state["events"].size(), 1u) << "only the valid ones";
+    const auto& told = state["events"][0];
+    EXPECT_EQ(told["number"], 41);
+    EXPECT_EQ(told["event"], "refused");
+    EXPECT_EQ(told["axis"], "y");
+    EXPECT_EQ(told["given"]["command"], "MC_MoveAbsolute");
+    EXPECT_EQ(told["given"]["program"], "cell");
+    EXPECT_EQ(told["by"]["program"], "feeder");
+    EXPECT_EQ(told["held_by_stop"], true);
+    EXPECT_EQ(told["error"], "state_forbids");
+    EXPECT_EQ(told["times"], 3);
+    EXPECT_THAT(told["english"].get<std::string>(), HasSubstr("MC_Stop of program feeder holds the axis"));
+    EXPECT_FALSE(told["remedy"].get<std::string>().empty());
+}
+
+TEST_F(RequestsTest, AnAnswerSaysWhenTheAxisGoesSlowerThanAskedFor) {
+    requests.on_line(1, R"({"id":1,"cmd":"move","axis":"x","position":10,"velocity":100})", now);
+    ASSERT_EQ(machine.submitted.size(), 1u);
+    machine.answer(runtime::Answer::accepted);
+    machine.answers.back().limited_to = 20;
+    machine.answers.back().limited_in = runtime::Mode::setup;
+    gateway.step(now);
+    const auto reply = gateway.next_reply();
+    ASSERT_TRUE(reply);
+    requests.deliver(*reply);
+    EXPECT_EQ(requests.next_line()->text, R"({"id":1,"ok":true,"note":"limited to 20 mm/s by setup mode"})");
+}
+
+TEST_F(RequestsTest, HandsReachASimulatedMachineOnly) {
+    const auto real = ask(R"({"id":1,"cmd":"simulate","line":"input start 1"})");
+    EXPECT_EQ(real["ok"], false);
+    EXPECT_EQ(real["error"]["code"], "simulate.real_machine");
+
+    std::vector<std::string> done;
+    requests.set_simulate([&](const std::string& line) -> Result<void> {
+        if (line == "nonsense") return Error{"fault.unknown", line, "there is no such word", "look"};
+        done.push_back(line);
+        return {};
+    });
+    EXPECT_EQ(ask(R"({"id":2,"cmd":"simulate","line":"input start 1"})")["ok"], true);
+    EXPECT_EQ(done, std::vector<std::string>{"input start 1"});
+    EXPECT_EQ(ask(R"({"id":3,"cmd":"simulate","line":"nonsense"})")["error"]["code"], "fault.unknown");
+    EXPECT_EQ(ask(R"({"id":4,"cmd":"simulate"})")["error"]["code"], "request.missing_key");
 }
 
 TEST_F(RequestsTest, AnswersGoToTheConnectionThatAsked) {

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "runtime/machine_config.hpp"
+#include "runtime/machine_remarks.hpp"
 #include "tests/machines/plain_machine.hpp"
 
 namespace taktwerk::runtime::testing {
@@ -24,6 +27,18 @@ Error problem(Change change) {
     return errors[0];
 }
 
+/// The one remark that this change gives cause for; nothing without one.
+template <class Change>
+Error remark(Change change) {
+    auto config = machine_config(2);
+    change(config);
+    EXPECT_TRUE(check(config).empty());
+    const auto found = remarks(config, {}, 4);
+    EXPECT_LE(found.size(), 1u);
+    for (const auto& one : found) EXPECT_FALSE(one.remedy.empty()) << one.code;
+    return found.empty() ? Error{} : found[0];
+}
+
 bool contains(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
 
 TEST(MachineCheck, APlainMachineHasNoProblem) { EXPECT_TRUE(check(machine_config(3)).empty()); }
@@ -32,6 +47,17 @@ TEST(MachineCheck, AnUnknownSlaveOfAnAxisComesWithASuggestion) {
     const auto error = problem([](MachineConfig& m) { m.axes[0].slave = "x_driv"; });
     EXPECT_EQ(error.code, "axis.unknown_slave");
     EXPECT_TRUE(contains(error.text(), "did you mean 'x_drive'?")) << error.text();
+}
+
+// What would only show when the bus is in OP is known from the file.
+TEST(MachineCheck, AnAxisWithoutItsObjectsInTheProcessData) {
+    const auto error = problem([](MachineConfig& m) {
+        auto pdo = m.bus.slaves[0].device->rx_pdos.at(0);
+        std::erase_if(pdo.entries, [](const auto& entry) { return entry.index == 0x6040; });
+        m.bus.slaves[0].rx.assigned = {pdo};
+    });
+    EXPECT_EQ(error.code, "axis.not_mapped");
+    EXPECT_TRUE(contains(error.text(), "6040h (controlword) is not in the RxPDO of slave 'x_drive'")) << error.text();
 }
 
 TEST(MachineCheck, TwoAxesOnOneDriveAxis) {
@@ -128,7 +154,117 @@ TEST(MachineCheck, AProgramStartsByItselfOnlyInAutomaticMode) {
     ProgramConfig program;
     program.name = "p";
     program.autostart = true;
-    EXPECT_EQ(problem([&](MachineConfig& m) { m.programs.push_back(program); }).code, "program.autostart");
+    auto config = machine_config(1);
+    config.programs.push_back(program);
+    EXPECT_TRUE(check(config).empty()) << "no error: one may start it by hand";
+    EXPECT_EQ(remark([&](MachineConfig& m) { m.programs.push_back(program); }).code, "remark.autostart");
+    EXPECT_EQ(remark([&](MachineConfig& m) {
+                  m.programs.push_back(program);
+                  m.start_mode = Mode::automatic;
+              }).code,
+              "");
+}
+
+TEST(MachineCheck, NamesOfAxesDoNotHoldWhatSeparatesNames) {
+    for (const char* name : {"x 1", "x,y", "x[1]", "a=b"})
+        EXPECT_EQ(problem([&](MachineConfig& m) { m.axes[0].axis.name = name; }).code, "config.name_characters") << name;
+    auto config = machine_config(1);
+    config.axes[0].axis.name = "x-1_a.b";
+    EXPECT_TRUE(check(config).empty());
+}
+
+// --- what a file may say and hardly anybody means -----------------------------------------------------------------------------
+
+TEST(MachineRemarks, APlainMachineGivesNoCauseForOne) {
+    EXPECT_EQ(remark([](MachineConfig&) {}).code, "");
+}
+
+// 10 mm a turn: 100 mm/s are 600 r/min. Somebody who meant 2500 mm/min and wrote mm/s asks for 15 000 r/min.
+TEST(MachineRemarks, TheMotorsSpeedIsComputedAndAnUnusualOneIsAsked) {
+    auto config = machine_config(1);
+    EXPECT_DOUBLE_EQ(motor_rpm(config.axes[0].axis, 100), 600);
+    config.axes[0].axis.gearing.motor_revolutions = 5;
+    EXPECT_DOUBLE_EQ(motor_rpm(config.axes[0].axis, 100), 3000);
+
+    const auto told = remark([](MachineConfig& m) {
+        m.axes[0].axis.limits.velocity = 2500;
+        m.emergency_stop.power_off_after = 1min;
+    });
+    EXPECT_EQ(told.code, "remark.motor_speed");
+    EXPECT_EQ(told.subject, "axes.x.limits.velocity");
+    EXPECT_TRUE(contains(told.what, "15000 r/min")) << told.what;
+}
+
+// By hand: 800 mm at 100 mm/s and 1000 mm/s2 both ways: 8 s, and 0.1 s for the ramps together. A short way never reaches the speed:
+// 5 mm at 1000 mm/s2 is 2.5 mm up and 2.5 mm down, sqrt(2 * 2.5 / 1000) = 0.0707 s each.
+TEST(MachineRemarks, TheTimeOfAStroke) {
+    axes::AxisConfig axis;
+    EXPECT_FALSE(stroke_seconds(axis));
+    axis.limits.velocity = 100;
+    axis.limits.acceleration = axis.limits.deceleration = 1000;
+    axis.limits.position_min = 0;
+    axis.limits.position_max = 800;
+    EXPECT_NEAR(*stroke_seconds(axis), 8.1, 1e-12);
+    axis.limits.position_max = 5;
+    EXPECT_NEAR(*stroke_seconds(axis), 0.141421, 1e-6);
+}
+
+TEST(MachineRemarks, EachThingThatIsHardlyMeantIsAsked) {
+    using axes::HomingKind;
+    const auto of_axis = [](auto change) { return remark([change](MachineConfig& m) { change(m.axes[0]); }); };
+    EXPECT_EQ(of_axis([](AxisBinding& b) { b.axis.windows.in_position = 500; }).code, "remark.in_position");
+    EXPECT_EQ(of_axis([](AxisBinding& b) { b.axis.windows.in_position_time = 10s; }).subject, "axes.x.in_position.time");
+    EXPECT_EQ(of_axis([](AxisBinding& b) { b.axis.following.window = 30000; }).code, "remark.following_error");
+    EXPECT_EQ(of_axis([](AxisBinding& b) { b.axis.manual.fast = b.axis.limits.velocity + 1; }).subject, "axes.x.manual.fast");
+    EXPECT_EQ(of_axis([](AxisBinding& b) {
+                  b.axis.homing.kind = HomingKind::home_switch;
+                  b.axis.homing.search_velocity = b.axis.limits.velocity * 2;
+              }).code,
+              "remark.homing_speed");
+    EXPECT_EQ(of_axis([](AxisBinding& b) {
+                  b.axis.homing.kind = HomingKind::home_switch;
+                  b.simulation.home_from.reset();
+              }).code,
+              "remark.simulated_switch");
+    EXPECT_EQ(of_axis([](AxisBinding& b) {
+                  b.axis.limits.position_max = 900;
+                  b.simulation.positive_stop = 820;
+              }).code,
+              "remark.simulated_stop");
+    EXPECT_EQ(of_axis([](AxisBinding& b) {
+                  b.axis.modulo = 360;
+                  b.axis.gearing.feed = 400;
+                  b.axis.limits.position_min = -std::numeric_limits<double>::infinity();
+                  b.axis.limits.position_max = std::numeric_limits<double>::infinity();
+              }).code,
+              "remark.modulo");
+    EXPECT_EQ(remark([](MachineConfig& m) {
+                  for (auto& point : m.io)
+                      if (point.name == m.emergency_stop.input) point.inverted = true;
+              }).code,
+              "remark.emergency_stop_inverted");
+    EXPECT_EQ(remark([](MachineConfig& m) { m.realtime.cpus = {99}; }).code, "remark.cpu");
+    EXPECT_EQ(remark([](MachineConfig& m) {
+                  ProgramConfig program;
+                  program.library = "cell.so";
+                  for (const char* name : {"p", "q"}) {
+                      program.name = name;
+                      m.programs.push_back(program);
+                  }
+              }).code,
+              "remark.same_library");
+}
+
+TEST(MachineRemarks, AnAxisThatTwoProgramsDeclare) {
+    const auto config = machine_config(1);
+    MachineLayout layout;
+    layout.axes.resize(1);
+    layout.axes[0].name = "x";
+    layout.axes[0].programs = {"p"};
+    EXPECT_TRUE(remarks(config, layout, 4).empty());
+    layout.axes[0].programs = {"p", "q"};
+    ASSERT_EQ(remarks(config, layout, 4).size(), 1u);
+    EXPECT_EQ(remarks(config, layout, 4)[0].what, "the programs p and q declare this axis");
 }
 
 TEST(MachineCheck, AnEventOfTheSimulationNeedsItsTarget) {

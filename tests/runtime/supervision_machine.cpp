@@ -64,6 +64,32 @@ TEST_F(Supervised, PowerGoesAtTheLatestWhenTheTimeOfTheEmergencyStopIsUp) {
     EXPECT_NE(m().axis(0).drive_state, PowerState::enabled);
 }
 
+// The axes are off, then the bus goes down: nobody has pressed a button by that.
+TEST_F(Supervised, ABusThatGoesDownAtTheEndIsNoEmergencyStop) {
+    moving();
+    std::size_t pressed = 0, silent = 0;
+    m().on_cycle = [&] {
+        pressed += m().state().emergency_stop ? 1 : 0;
+        silent += m().state().bus_phase != ecat::Master::Phase::operational ? 1 : 0;
+    };
+    m().runner->shut_down();
+    EXPECT_EQ(m().machine->phase(), MachinePhase::stopped);
+    EXPECT_EQ(m().machine->bus().phase(), ecat::Master::Phase::stopped);
+    EXPECT_GT(silent, 0u) << "the button was unreadable for a while";
+    EXPECT_EQ(pressed, 0u);
+}
+
+TEST_F(Supervised, AnAxisThatStopsForAnotherPartNamesItsAlarm) {
+    start(machine_config(1));
+    const auto told = [&](AlarmId cause) {
+        return m()
+            .machine->describe({axes::id(axes::AxisAlarm::stopped_by_machine), AlarmSource::axis, 0, static_cast<double>(cause), 0})
+            .english;
+    };
+    EXPECT_EQ(told(id(MachineAlarm::program_fault)), "Stopped because of another part of the machine (program_fault)");
+    EXPECT_EQ(told(0x5003), "Stopped because of another part of the machine (program_alarm_3)");
+}
+
 TEST_F(Supervised, AnEmergencyStopThatCannotBeReadCountsAsPressed) {
     moving();
     m().world.set_slave_power("io", false);

@@ -1,0 +1,20 @@
+#pragma once
+// A command that was refused or ended early, in words: whose it was, who stands in the way, what to do. Not real-time.
+
+#include <string>
+
+#include "runtime/snapshot.hpp"
+
+namespace taktwerk::hmi {
+
+struct EventText {
+    std::string who;     ///< "'cell.pick' (MC_MoveAbsolute of program cell)"
+    std::string by;      ///< who has or took the axis, likewise; empty: nobody else
+    std::string what;    ///< one sentence, with both
+    std::string remedy;  ///< one or more, with a full stop
+};
+[[nodiscard]] EventText describe(const runtime::CommandEvent& event, const runtime::MachineLayout& layout);
+/// "refused", "aborted".
+[[nodiscard]] std::string_view word(runtime::CommandEvent::What what) noexcept;
+
+}  // namespace taktwerk::hmi

@@ -1,0 +1,70 @@
+// Hands on a simulated machine: understood and checked at once, done on the thread that plays the machine.
+
+#include "apps/sim_hands.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/machines/plain_machine.hpp"
+
+namespace taktwerk::apps {
+namespace {
+
+using namespace std::chrono_literals;
+
+struct SimHandsTest : ::testing::Test {
+    runtime::MachineConfig config = runtime::testing::machine_config(1);
+    Instant now = Instant{} + 1s;
+    runtime::World world{config, now};
+    SimHands hands{world, config};
+    std::string code(const std::string& line) {
+        const auto asked = hands.ask(line);
+        if (asked) return "";
+        EXPECT_FALSE(asked.error().remedy.empty()) << line;
+        return asked.error().code;
+    }
+};
+
+TEST_F(SimHandsTest, AButtonIsPressedByTheNextStepAndNotBefore) {
+    world.drive("x")->main_power(true);
+    EXPECT_EQ(code("jam x"), "");
+    EXPECT_EQ(code("unplug x_drive"), "");
+    EXPECT_EQ(hands.next_event(), Instant::max());
+    const auto plugged = [&] { return world.network().slave(0).powered(); };
+    EXPECT_TRUE(plugged());
+    EXPECT_EQ(code("power-off x_drive"), "");
+    EXPECT_TRUE(plugged()) << "the asking thread touches nothing";
+    hands.step(now);
+    EXPECT_FALSE(plugged());
+}
+
+TEST_F(SimHandsTest, LaterIsCountedFromTheStepThatTookIt) {
+    EXPECT_EQ(code("after 2s power-off x_drive"), "");
+    hands.step(now);
+    EXPECT_EQ(hands.next_event(), now + 2s);
+    hands.step(now + 1999ms);
+    EXPECT_TRUE(world.network().slave(0).powered());
+    hands.step(now + 2s);
+    EXPECT_FALSE(world.network().slave(0).powered());
+}
+
+TEST_F(SimHandsTest, WhatIsWrongIsSaidToWhoAsks) {
+    EXPECT_EQ(code("inptu button 1"), "fault.unknown");
+    EXPECT_EQ(hands.ask("inptu button 1").error().remedy, "did you mean 'input'?");
+    EXPECT_EQ(code("input button"), "fault.arguments");
+    EXPECT_EQ(code("input buton 1"), "fault.no_target");
+    EXPECT_EQ(code("drive-fault x 0"), "fault.arguments");
+    EXPECT_EQ(code("unplug y_drive"), "fault.no_slave");
+    EXPECT_EQ(hands.ask("unplug x_driv").error().remedy, "did you mean 'x_drive'?");
+    EXPECT_EQ(code("unplug master"), "");
+    EXPECT_EQ(code(""), "fault.unknown");
+}
+
+TEST_F(SimHandsTest, EveryWordOfTheListIsUnderstood) {
+    for (const auto& word : sim_words()) {
+        if (word.word == "after") continue;
+        EXPECT_NE(code(std::string(word.word)), "fault.unknown") << word.word;
+    }
+}
+
+}  // namespace
+}  // namespace taktwerk::apps

@@ -1,0 +1,89 @@
+// Refused and aborted commands in words: whose, by whom, why, what to do.
+
+#include "hmi_bridge/event_text.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "axes/axis/alarms.hpp"
+#include "tests/hmi_bridge/fake_machine.hpp"
+
+namespace taktwerk::hmi::test {
+namespace {
+
+using axes::CommandKind;
+using axes::ErrorId;
+using axes::Owner;
+using runtime::CommandEvent;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+struct EventTextTest : ::testing::Test {
+    FakeMachine machine;
+    std::array<std::byte, 64> pick{}, hold{};
+    CommandEvent event;
+    void SetUp() override {
+        machine.layout_.blocks = {{"cell.pick", pick.data(), pick.size()}, {"cell.hold", hold.data(), hold.size()}};
+        event.given = {CommandKind::move_absolute, Owner::program, 0, &pick[8]};
+    }
+    EventText text() const { return describe(event, machine.layout_); }
+};
+
+TEST_F(EventTextTest, WhoHoldsAnAxisWithAStopIsNamedAndHowToEndIt) {
+    event.error = ErrorId::state_forbids;
+    event.by = {CommandKind::stop, Owner::program, 0, hold.data()};
+    event.held = true;
+    EXPECT_EQ(text().what,
+              "'cell.pick' (MC_MoveAbsolute) was refused: The command is not allowed in the present state of the axis (state_forbids); "
+              "'cell.hold' (MC_Stop) holds the axis");
+    EXPECT_EQ(text().remedy, "Let Execute of 'cell.hold' (MC_Stop) fall, then give the command again.");
+}
+
+TEST_F(EventTextTest, ABlockWithoutANameIsNamedByItsProgramAndType) {
+    event.given.block = nullptr;
+    event.error = ErrorId::invalid_velocity;
+    EXPECT_EQ(text().who, "MC_MoveAbsolute of program cell");
+    EXPECT_THAT(text().what, AllOf(HasSubstr("invalid_velocity"), Not(HasSubstr("has the axis"))));
+    EXPECT_THAT(text().remedy, HasSubstr("Give a velocity above zero"));
+}
+
+TEST_F(EventTextTest, TwoProgramsAreSaidToBeTwo) {
+    event.what = CommandEvent::What::aborted;
+    event.by = {CommandKind::move_relative, Owner::program, 1, nullptr};
+    EXPECT_EQ(text().what, "'cell.pick' (MC_MoveAbsolute) was aborted by MC_MoveRelative of program feeder");
+    EXPECT_EQ(text().remedy, "Two programs command this axis: let one of them do it.");
+
+    event.by.program = 0;
+    EXPECT_THAT(text().remedy, HasSubstr("mcBuffered")) << "the same program";
+
+    event.what = CommandEvent::What::refused;
+    event.error = ErrorId::power_conflict;
+    event.given = {CommandKind::none, Owner::program, 1, nullptr};
+    event.by = {CommandKind::none, Owner::program, 0, nullptr};
+    EXPECT_THAT(text().what, AllOf(HasSubstr("MC_Power of program feeder"), HasSubstr("MC_Power of program cell has the axis")));
+    EXPECT_THAT(text().remedy, HasSubstr("Two programs"));
+}
+
+TEST_F(EventTextTest, WhatEndedByTheAxisNamesTheAlarm) {
+    event.what = CommandEvent::What::aborted;
+    event.state = axes::AxisState::ErrorStop;
+    event.axis_error = static_cast<std::uint16_t>(axes::id(axes::AxisAlarm::following_error));
+    EXPECT_EQ(text().what, "'cell.pick' (MC_MoveAbsolute) was ended: the axis went into ErrorStop (following_error)");
+    EXPECT_FALSE(text().remedy.empty());
+    event.axis_error = 0;
+    event.state = axes::AxisState::Disabled;
+    EXPECT_THAT(text().what, HasSubstr("which is Disabled now"));
+}
+
+TEST_F(EventTextTest, AnOperatorsCommandIsHis) {
+    event.given = {CommandKind::home, Owner::operator_panel, runtime::no_program, nullptr};
+    event.error = ErrorId::in_error_stop;
+    event.state = axes::AxisState::ErrorStop;
+    event.axis_error = static_cast<std::uint16_t>(axes::id(axes::AxisAlarm::following_error));
+    EXPECT_THAT(text().what, AllOf(HasSubstr("MC_Home of the operator was refused"), HasSubstr("by following_error")));
+    EXPECT_THAT(text().remedy, HasSubstr("`taktwerk reset`"));
+}
+
+}  // namespace
+}  // namespace taktwerk::hmi::test
