@@ -72,9 +72,9 @@ void Door::on_line(ConnectionId connection, std::string_view line, Instant) {
     using Kind = UrgentLine::Kind;
     if (urgent && (urgent->kind == Kind::stop || urgent->kind == Kind::shutdown)) {
         const auto ticket = urgent->kind == Kind::stop ? machine_.request_stop(urgent->axis) : machine_.request_shutdown();
-        const auto deed = urgent->kind == Kind::shutdown    ? std::string("shutdown")
-                          : urgent->axis == 0xFFFF ? std::string("stop")
-                                                   : "stop axis " + machine_.layout().axes[urgent->axis].name;
+        const auto deed = urgent->kind == Kind::shutdown ? std::string("shutdown")
+                          : urgent->axis == 0xFFFF       ? std::string("stop")
+                                                         : "stop axis " + machine_.layout().axes[urgent->axis].name;
         deeds_.say(guests_[connection].name, deed, now_);
         pending_.push_back({connection, urgent->id, urgent->kind, ticket, now_});
         return;

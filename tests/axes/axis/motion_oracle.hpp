@@ -14,7 +14,7 @@
 //   * tables over time have corners, and a slave keeps no jerk (axes/axis/README.md): there no jerk is asked for
 //   * a slave held at its limits keeps its place within acceleration * period^2 / 2; a fed set-point within acceleration * period^2, and its
 //     acceleration is the feeder's
-//   * while something is superimposed, and after it was given up until the axis rests, ramps add up: twice acceleration and jerk (P1-155)
+//   * while something is superimposed, and after it was given up until the axis rests, ramps add up: twice acceleration and jerk (clause 155 of Part 1)
 //   * coordinates may change (homing, MC_SetPosition) where the drive sees nothing of it and the actual position changes alike
 //   * a software limit that comes over a moving axis, or is moved with its coordinates, holds once the axis has rested
 

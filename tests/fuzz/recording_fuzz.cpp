@@ -1,0 +1,86 @@
+// Any bytes as a recording: an error that names a place, or records that lie inside the file. Where the first byte is odd, the rest is
+// the head and the records of a file whose lengths and check sums are put right, for chance would not find those.
+#include <algorithm>
+#include <cstdlib>
+#include <vector>
+
+#include "core/bytes.hpp"
+#include "core/crc32.hpp"
+#include "core/recording_file.hpp"
+
+using namespace taktwerk;
+
+namespace {
+
+using Bytes = std::vector<std::byte>;
+
+template <class T>
+void append(Bytes& to, T value) {
+    to.resize(to.size() + sizeof(T));
+    store_le<T>(std::span{to}, to.size() - sizeof(T), value);
+}
+
+/// [head's length u8][head], then records as [length u8][channel u8][time i64][bytes].
+Bytes built(std::span<const std::byte> in) {
+    const auto take = [&in](std::size_t most) {
+        const auto part = in.first(std::min(most, in.size()));
+        in = in.subspan(part.size());
+        return part;
+    };
+    const auto number = [&take] {
+        const auto one = take(1);
+        return one.empty() ? std::size_t{0} : std::to_integer<std::size_t>(one[0]);
+    };
+    Bytes file;
+    for (const char c : {'T', 'W', 'R', 'E', 'C', '\0'}) file.push_back(static_cast<std::byte>(c));
+    const auto head = take(number());
+    append<std::uint16_t>(file, recording_version);
+    append<std::uint32_t>(file, static_cast<std::uint32_t>(head.size()));
+    append<std::uint32_t>(file, crc32(head));
+    file.insert(file.end(), head.begin(), head.end());
+    while (!in.empty()) {
+        const auto length = number();
+        Bytes record;
+        const auto channel = number();
+        append<std::uint16_t>(record, static_cast<std::uint16_t>(channel == 0xFF ? 0xFFFF : channel));
+        append<std::uint16_t>(record, 0);
+        Bytes time(8);
+        std::ranges::copy(take(8), time.begin());
+        record.insert(record.end(), time.begin(), time.end());
+        const auto bytes = take(length);
+        Bytes summed;
+        append<std::uint32_t>(summed, static_cast<std::uint32_t>(bytes.size()));
+        summed.insert(summed.end(), record.begin(), record.end());
+        file.insert(file.end(), summed.begin(), summed.end());
+        append<std::uint32_t>(file, crc32(bytes, crc32(summed)));
+        file.insert(file.end(), bytes.begin(), bytes.end());
+    }
+    return file;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    if (size == 0) return 0;
+    const std::span<const std::byte> in{reinterpret_cast<const std::byte*>(data) + 1, size - 1};
+    const bool whole = (data[0] & 1) != 0;
+    auto file = whole ? built(in) : Bytes(in.begin(), in.end());
+    const auto length = file.size();
+    const auto read = parse_recording(std::move(file), "fuzz.twrec");
+    if (!read) {
+        if (read.error().code.empty() || read.error().what.empty()) std::abort();
+        return 0;
+    }
+    if (read->bytes.size() != length) std::abort();
+    std::size_t carried = 0;
+    for (std::size_t i = 0; i < read->size(); ++i) {
+        const auto record = read->record(i);
+        if (record.channel >= read->info.channels.size()) std::abort();
+        if (!record.bytes.empty() &&
+            (record.bytes.data() < read->bytes.data() || record.bytes.data() + record.bytes.size() > read->bytes.data() + length))
+            std::abort();
+        carried += record.bytes.size();
+    }
+    if (carried > length) std::abort();
+    return 0;
+}
