@@ -207,6 +207,12 @@ void Axis::plan_link(CommandId id, const AxisCommand& command, const Link* updat
         aim_at_velocity(setpoint_.base().velocity, full_limits(config_.limits));
         goal_.kept = true;
     }
+    // A command that this one ended before it began has taken what was superimposed into the base: the former motion is planned anew.
+    const auto& base = setpoint_.base();
+    if (setpoint_.finished() && (base.velocity != 0 || base.acceleration != 0)) {
+        if (goal_.kind == Goal::Kind::rest) aim_at_velocity(0, full_limits(config_.limits));
+        else if (goal_.kind != Goal::Kind::coupled) goal_pending_ = true;
+    }
     // Behind a cam that has just ended the next one begins where that ended, not a part of a cycle later.
     const auto* before = goal_.kind == Goal::Kind::coupled ? coupling_.follower.cam() : nullptr;
     if (!before || !before->over() || command.buffer_mode != mcBuffered || link.masters.axes != coupling_.running.masters.axes) return;

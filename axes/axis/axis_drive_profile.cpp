@@ -55,14 +55,15 @@ ErrorId Axis::refuse_drive_way(const DriveProfileRun::Way& way) const noexcept {
 
 /// From a motion of its own the axis stops first. With the drive's profile running, the next cycle hands the set-point over.
 void Axis::begin_drive_profile(const AxisCommand& command) noexcept {
-    end_superimposed(Outcome::aborted);
+    abandon_superimposed();
     start_at_base();
     has_commanded_target_ = false;
     aim_at_stop(command);
 }
 
 void Axis::ask_for_drive_mode() noexcept {
-    if (!drive_stands()) return;  // the motor comes a little later than its set-point
+    if (!drive_stands() || !setpoint_.at_rest()) return;  // the motor comes a little later than its set-point
+    setpoint_.fold();
     drive_run_.enter(profile_mode_of(queue_.active().command.kind));
     go_mode(ModePhase::profile_entering);
 }

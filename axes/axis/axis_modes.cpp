@@ -90,7 +90,7 @@ double Axis::torque_of(const AxisCommand& command) const noexcept {
 // --- begin --------------------------------------------------------------------------------------------------------------------
 
 void Axis::begin_torque(const AxisCommand& command) noexcept {
-    end_superimposed(Outcome::aborted);  // there is no set-point to add to any more
+    abandon_superimposed();  // there will be no set-point to add to
     const auto& details = std::get<TorqueDetails>(command.details);
     const auto dynamics = dynamics_of(command, config_.limits, config_.defaults);
     const double wanted = command.velocity == 0 ? config_.limits.velocity : command.velocity;
@@ -195,6 +195,7 @@ bool Axis::enter_torque(bool confirmed, bool late, Duration period) noexcept {
         return step_mode(period);
     }
     if (confirmed) {
+        setpoint_.fold();
         go_mode(ModePhase::torque);
         torque_.start(view_.actual_torque, motor_velocity(), setpoint_.state().acceleration);
         if (by_command) {
@@ -308,7 +309,7 @@ void Axis::fill_targets() noexcept {
     }
     if (own_mode_ == DriveMode::cyclic_velocity || own_mode_ == DriveMode::profile_velocity) {
         const bool closed = mode_phase_ == ModePhase::steady && online() && !power_.follows_actual();
-        const double limit = control.output_limit > 0 ? control.output_limit : 1.2 * config_.limits.velocity;
+        const double limit = control.output_limit > 0 ? control.output_limit : 1.2 * view_.parameters[place_of(velocity_of_system)];
         const double velocity = mode_phase_ == ModePhase::leaving
                                     ? set.velocity
                                     : control.feed_forward * set.velocity + (closed ? control.kv * view_.following_error : 0);

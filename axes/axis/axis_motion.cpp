@@ -19,6 +19,7 @@ void Axis::plan(Instant now, Duration period) noexcept {
         return;
     }
     const bool may_be_homed = view_.state == AxisState::Homing || passive_.id != 0;
+    const double coordinates = units_.shift();
     if (homes() || latch_.armed()) step_homing();
     if (view_.active_in_target && queue_.waiting() > 0) carry_out_due_settings();
     if (view_.active_in_target && queue_.waiting() > 0) hand_over();
@@ -36,10 +37,10 @@ void Axis::plan(Instant now, Duration period) noexcept {
     const MotionState before = setpoint_.state();
     if (goal_pending_) run_goal(0);
     if (superimposed_.pending) run_superimposed();
-    if (goal_.kind == Goal::Kind::given || goal_.kind == Goal::Kind::coupled) {
+    if (goal_.kind == Goal::Kind::given) step_given(period);
+    else if (goal_.kind == Goal::Kind::coupled) {
         setpoint_.advance_superimposed(period);
-        if (goal_.kind == Goal::Kind::given) step_given(period);
-        else step_coupled(period);
+        step_coupled(period);
     } else setpoint_.advance(period);
     if (goal_pending_) {  // what was given has ended badly: the axis brakes from where it is
         run_goal(0);
@@ -57,7 +58,7 @@ void Axis::plan(Instant now, Duration period) noexcept {
     else if (summed_) summed_ = !setpoint_.at_rest();
     publish_commands();
     publish_setpoint();
-    if (may_be_homed) publish_feedback(actual_local());  // in other coordinates
+    if (may_be_homed || units_.shift() != coordinates) publish_feedback(actual_local());  // in other coordinates
 }
 
 void Axis::follow_actual(Duration period) noexcept {

@@ -103,13 +103,17 @@ void Axis::start_given(double late) noexcept {
 }
 
 void Axis::step_given(Duration period) noexcept {
+    if (queue_.active().command.kind == CommandKind::torque) {  // until the drive has taken its mode
+        setpoint_.advance(period);
+        return;
+    }
+    setpoint_.advance_superimposed(period);
     if (is_profile(queue_.active().command.kind)) {
         profile_.elapsed += period;
         follow_curve(profile_.late + to_seconds(profile_.elapsed));
         return;
     }
-    if (queue_.active().command.kind == CommandKind::external) follow_feed(period);
-    else setpoint_.advance(period);  // torque, until the drive has taken its mode
+    follow_feed(period);
 }
 
 void Axis::follow_curve(double t) noexcept {

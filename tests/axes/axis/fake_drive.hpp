@@ -183,7 +183,7 @@ private:
             const auto target = target_at(now - latch_age * cycle) - lag;
             const auto held = std::clamp(target, negative_stop, positive_stop);
             position = static_cast<double>(held);
-            held_back_ = stiffness * static_cast<double>(target - held);
+            held_back_ = std::clamp(stiffness * static_cast<double>(target - held), -3.0, 3.0);  // no more than a drive has
         }
         for (std::size_t i = 0; i < 2; ++i) step_probe(i, std::llround(before), std::llround(position));
         if (mode_ != DriveMode::homing) attained_ = homing_error_ = false;

@@ -1,0 +1,74 @@
+// Whatever is asked of one to four axes that follow one another, in whatever order and with whatever faults: the set-point never leaves what its
+// velocity, its acceleration and its limits say, the drive is told what the view shows, no command is forgotten, and everything comes to an end.
+//
+// A failure names its seed; TAKTWERK_WALK_SEED=<seed> runs that walk alone and tells all that was asked in it.
+
+#include <cstdlib>
+
+#include "tests/axes/axis/coupled_walk.hpp"
+#include "tests/property_cases.hpp"
+
+namespace taktwerk::axes::test {
+namespace {
+
+constexpr unsigned usual = 100;
+constexpr int length = 1500;  // cycles of commands, and then as many as it takes to come to an end
+
+// The walk must have gone everywhere: each kind of command was accepted, and what only their meeting brings did happen.
+void expect_all_seen(const WalkCounts& counts, long walks) {
+    const auto at_least = [&](std::string_view what, double each) {
+        const auto found = counts.find(what);
+        const double seen = found == counts.end() ? 0 : static_cast<double>(found->second);
+        EXPECT_GE(seen, each * static_cast<double>(walks)) << what << " in " << walks << " walks";
+    };
+    for (const auto& kind : walk_kinds) at_least(kind.name, 0.1);
+    for (const auto* setting :
+         {"SetPosition", "WriteParameter", "WriteOutput", "Override", "SetpointFeed", "SelectCam", "ContinuousUpdate"})
+        at_least(setting, 0.5);
+    for (const auto* event : {"drive fault", "power off", "feedback lost", "bus lost", "emergency stop", "power lost", "operating mode",
+                              "control taken", "feedback gap", "direction not permitted", "reset", "jog renewed"})
+        at_least(event, 0.1);
+    for (int mode = 1; mode <= 5; ++mode) at_least(fmt::format("buffered in mode {}", mode), 0.2);
+    for (const auto* where : {"in Disabled", "in Standstill", "in Homing", "in DiscreteMotion", "in ContinuousMotion",
+                              "in SynchronizedMotion", "in Stopping", "in ErrorStop"})
+        at_least(where, 20);
+    at_least("waiting coupling", 0.5);
+    at_least("coupling waits in motion", 20);
+    at_least("superimposed while a coupling waits", 1);
+    at_least("superimposed on a coupling", 1);
+    for (const auto* what :
+         {"in sync", "phasing", "on the way to a sync point", "commands wait", "overridden", "in torque", "in a profile of the drive"})
+        at_least(what, 1);
+    at_least("came to rest", 1);
+}
+
+TEST(CoupledWalks, KeepEveryRule) {
+    WalkCounts counts;
+    long walks = 0, cycles = 0, compared = 0;
+    const char* only = std::getenv("TAKTWERK_WALK_SEED");
+    const auto seeds = static_cast<unsigned>(property_cases(usual));
+    const unsigned first = only ? static_cast<unsigned>(std::strtoul(only, nullptr, 10)) : 1;
+    const char* most = std::getenv("TAKTWERK_WALK_FAILURES");
+    int failures = most ? std::atoi(most) : 1;
+    for (unsigned seed = first; seed <= (only ? first : seeds) && failures > 0; ++seed) {
+        CoupledWalk walk(seed, counts);
+        walk.logs = only != nullptr;
+        const auto wrong = walk.run(length);
+        if (!wrong.empty()) {
+            ADD_FAILURE() << "seed " << seed << "\n" << wrong << walk.log();
+            --failures;
+        }
+        ++walks;
+        cycles += walk.cycles() * static_cast<long>(walk.rig().axes.size());
+        for (const auto& oracle : walk.rig().oracles) compared += oracle.compared();
+    }
+    std::printf("seeds %u to %u: %ld cycles of axes, in %ld of them the motion was compared\n", first,
+                first + static_cast<unsigned>(walks) - 1, cycles, compared);
+    if (only || HasFailure()) return;
+    EXPECT_GT(compared, cycles / 2);
+    EXPECT_GT(cycles, 100'000);
+    expect_all_seen(counts, walks);
+}
+
+}  // namespace
+}  // namespace taktwerk::axes::test
