@@ -48,6 +48,8 @@ Result<LcmUrl> parse_lcm_url(std::string_view url) {
             out.port = static_cast<std::uint16_t>(*port);
         }
     }
+    // LCM and the system take it as a C string: what stands behind a NUL would be checked by nobody.
+    if (out.group.find('\0') != std::string::npos) return wrong(url, "the multicast address has a NUL in it");
     in_addr group{};
     if (::inet_pton(AF_INET, out.group.c_str(), &group) != 1 || !IN_MULTICAST(ntohl(group.s_addr)))
         return wrong(url, fmt::format("'{}' is not an IPv4 multicast address (224.0.0.0 to 239.255.255.255)", out.group));

@@ -105,7 +105,13 @@ public:
         if (const auto word = take("SLAVE")) fault.slave = std::string{*word};
     }
     void count(Fault& fault) { assign(fault.count, "N", number(take("N").value_or(""), 1'000'000)); }
-    void time(Fault& fault) { assign(fault.time, "TIME (as 5ms)", time_span(take("TIME").value_or(""))); }
+    /// Nothing comes before it was asked for.
+    void time(Fault& fault) {
+        auto value = time_span(take("TIME").value_or(""));
+        if (value && *value < Duration::zero()) value.reset();
+        assign(fault.time, "TIME (as 5ms)", value);
+    }
+    void step(Fault& fault) { assign(fault.time, "TIME (as 5ms or -5ms)", time_span(take("TIME").value_or(""))); }
     void bit(Fault& fault) { assign(fault.bit, "BIT", number(take("BIT").value_or(""), std::numeric_limits<std::uint32_t>::max())); }
     void on_off(Fault& fault) {
         const auto word = take("on or off").value_or("");
@@ -204,7 +210,7 @@ void read(Arguments& in, Fault& fault) {
         case K::refuse: in.slave(fault), in.state(fault), in.code_or_off(fault, fault.al_code); break;
         case K::abort: in.slave(fault), in.object(fault), in.code_or_off(fault, fault.abort_code); break;
         case K::drift: in.slave(fault), in.ppm(fault); break;
-        case K::clock_step: in.slave(fault), in.time(fault); break;
+        case K::clock_step: in.slave(fault), in.step(fault); break;
     }
 }
 

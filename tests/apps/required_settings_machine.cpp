@@ -27,7 +27,9 @@ TEST(RequiredSettings, ADriveThatWouldRunAwayIsNotEnabledAndTheAlarmSaysWhy) {
     }));
     ASSERT_NO_FATAL_FAILURE(five.bring_up());
     std::size_t da200 = 0;
-    while (five.machine->layout().axes[da200].name != "da200") ++da200;
+    const auto& axes = five.machine->layout().axes;
+    while (da200 < axes.size() && axes[da200].name != "da200") ++da200;
+    ASSERT_LT(da200, axes.size());
 
     bool enabled = false;
     five.runner->after_cycle = [&](Instant) {

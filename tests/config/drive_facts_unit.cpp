@@ -173,7 +173,15 @@ TEST(Sv33E, AlarmsHaveTheCodesAndNamesOfTheManual) {
 }
 
 TEST(EveryDrive, SaysInWordsWhatItAssumes) {
-    for (const char* name : {"sv33-e", "se-808x"}) EXPECT_GE(drive(name).profile->assumed.size(), 5u) << name;
+    for (const char* name : {"sv33-e", "se-808x", "sv-da200", "tsvm-d6", "xp200"}) {
+        const auto& assumed = drive(name).profile->assumed;
+        EXPECT_GE(assumed.size(), 5u) << name;
+        for (const auto& sentence : assumed) {
+            EXPECT_GE(std::count(sentence.begin(), sentence.end(), ' '), 3) << name << ": '" << sentence << "' is no sentence";
+            EXPECT_TRUE(sentence.ends_with('.')) << name << ": " << sentence;
+            EXPECT_EQ(std::count(assumed.begin(), assumed.end(), sentence), 1) << name << ": " << sentence;
+        }
+    }
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tests/drives/drive_desk.hpp"
+#include "tests/patience.hpp"
 
 namespace taktwerk::test {
 namespace {
@@ -60,7 +61,7 @@ TEST(Se808xProfilePosition, BitFiveBlends) {
     drive.control(0x0F);
     ASSERT_TRUE(drive.run_until([&] { return drive.position() >= 7000; }, 2s));
     std::int64_t slowest = 20000;
-    while (drive.position() < 12000) {
+    for (Patience patience; patience.lasts(drive.position() < 12000);) {
         drive.cycle();
         slowest = std::min(slowest, drive.read(0x606C));
     }

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "tests/drives/drive_desk.hpp"
+#include "tests/patience.hpp"
 
 namespace taktwerk::axes::sim {
 namespace {
@@ -116,7 +117,7 @@ TEST_F(Se808xProfilePosition, ASeriesKeepsItsSpeed) {
     bool signalled = false;
     ASSERT_TRUE(drive.run_until([&] { return drive.position() >= 7000; }, 2s));
     std::int64_t slowest = 20000;
-    while (drive.position() < 11900) {  // from 12000 on it slows down for X2
+    for (Patience patience; patience.lasts(drive.position() < 11900);) {  // from 12000 on it slows down for X2
         drive.cycle();
         slowest = std::min(slowest, speed());
         signalled |= is(reached);

@@ -2,6 +2,7 @@
 // The SV-DA200 of config/drives/sv-da200.yaml on its desk, with a cycle of 1 ms, as its guide's examples find it: commissioned [2.1], in OP.
 
 #include "tests/drives/drive_desk.hpp"
+#include "tests/patience.hpp"
 
 namespace taktwerk::test {
 
@@ -50,7 +51,7 @@ protected:
     /// Cyclic targets, `step` counts a millisecond, until the motor is at `place` of the table.
     void follow_to(double place, std::int64_t step = 20) {
         const auto target = read(0x607A) + static_cast<std::int64_t>(place - axis().plant().position());
-        while (std::abs(target - read(0x607A)) > step) {
+        for (Patience patience; patience.lasts(std::abs(target - read(0x607A)) > step);) {
             pdo(0x607A, read(0x607A) + (target > read(0x607A) ? step : -step));
             run(1);
         }

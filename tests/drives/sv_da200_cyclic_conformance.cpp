@@ -32,8 +32,10 @@ TEST_F(SvDa200, TorqueModeKeepsToTheSpeedOf607F) {  // 2.1 note 10
     enable_in(cst);
     pdo(0x6071, 300);
     run(2000);
-    EXPECT_GT(speed(), 20000);
-    EXPECT_LT(speed(), 31000);
+    EXPECT_NEAR(speed(), 30000, 300) << "30 % torque would take it far beyond";
+    pdo(0x607F, 15000);
+    run(2000);
+    EXPECT_NEAR(speed(), 15000, 150) << "the limit of the moment, not the one at the start";
 }
 
 TEST_F(SvDa200, AZeroIn607FIsIgnoredOrHoldsTheMotorAsP443Says) {  // 2.1 note 8 bit 1, note 10

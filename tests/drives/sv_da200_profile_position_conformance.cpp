@@ -2,6 +2,7 @@
 // to CT-7 of its sheet). 6083h is the ramp both up and down [3.2.2 step 3]; lengths are hand calculations.
 
 #include "tests/drives/sv_da200.hpp"
+#include "tests/patience.hpp"
 
 namespace taktwerk::test {
 namespace {
@@ -75,7 +76,7 @@ TEST_F(SvDa200Pp, ASecondSinglePointWaits) {
     run(50);
     trigger(0x0F, 8000);
     bool stood = false;
-    while (at() < 7000) {
+    for (Patience patience; patience.lasts(at() < 7000);) {
         run(1);
         stood = stood || (std::abs(at() - 5000) < 50 && std::abs(speed()) < 500);
     }

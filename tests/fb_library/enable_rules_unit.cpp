@@ -24,9 +24,15 @@ TYPED_TEST(SettingRules, QueuedItWaitsForItsTurnLikeABufferedCommand) {  // P1-2
     EXPECT_TRUE(this->block.Busy);
     EXPECT_FALSE(this->done());
     this->axes.finish(axes::Outcome::done);  // the motion
-    this->axes.finish(axes::Outcome::done);  // the setting, whose turn it is
     this->scan();
+    EXPECT_TRUE(this->block.Busy) << "it is its turn, but it is not over";
+    EXPECT_FALSE(this->done());
+    this->axes.finish(axes::Outcome::done);  // the setting
+    this->scan();
+    EXPECT_TRUE(this->done());
+    EXPECT_FALSE(this->block.Busy);
     EXPECT_FALSE(this->block.Error);
+    EXPECT_EQ(this->axes.calls.size(), 1u) << "asked for once";
 }
 
 TYPED_TEST(SettingRules, ClearedFromTheQueueItIsAnError) {  // no CommandAborted pin

@@ -27,6 +27,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto fault = ecat::sim::parse_fault(line);
     if (!fault && (fault.error().code.empty() || fault.error().what.empty())) std::abort();
     if (fault && (fault->after < Duration{0} || !std::isfinite(fault->drift_ppm))) std::abort();
+    if (fault && fault->time < Duration{0} && fault->kind != ecat::sim::FaultKind::clock_step) std::abort();
     const auto happening = apps::parse_happening(line, demo);
     if (!happening && (happening.error().code.empty() || happening.error().what.empty())) std::abort();
     if (happening && happening->at < Duration{0}) std::abort();

@@ -96,6 +96,8 @@ TEST(LcmUrls, OnlyWhatDoesNotBlockIsTakenAndTheTtlIsAlwaysSaid) {
                             "udpm://239.255.76.67:0", "udpm://239.255.76.67:70000", "udpm://239.255.76.67:7667?ttl=256",
                             "udpm://239.255.76.67:7667?ttl=", "udpm://239.255.76.67:7667?tll=0"})
         EXPECT_FALSE(parse_lcm_url(url)) << url;
+    using namespace std::string_view_literals;
+    EXPECT_FALSE(parse_lcm_url("udpm://239.255.76.67\0.example"sv)) << "the system would read only what stands before the NUL";
 }
 
 TEST(HmiConfigCheck, CommandsNeverLeaveTheHost) {

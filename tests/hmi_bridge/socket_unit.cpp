@@ -16,6 +16,7 @@
 #include "hmi_bridge/hmi_bridge.hpp"
 #include "hmi_bridge/socket_path.hpp"
 #include "tests/hmi_bridge/fake_machine.hpp"
+#include "tests/patience.hpp"
 
 namespace taktwerk::hmi {
 namespace {
@@ -115,7 +116,7 @@ protected:
         return ::recv(socket, &byte, 1, MSG_DONTWAIT) == 0;
     }
     void send_all(int socket, std::string_view text) {
-        while (!text.empty()) {
+        for (Patience patience{1'000'000}; patience.lasts(!text.empty());) {
             const auto sent = ::send(socket, text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
             if (sent > 0) text.remove_prefix(static_cast<std::size_t>(sent));
             else if (errno != EAGAIN) return;

@@ -6,6 +6,7 @@
 
 #include "axes/sim/cia402_device.hpp"
 #include "tests/axes/sim/axis_bench.hpp"
+#include "tests/patience.hpp"
 
 namespace taktwerk::axes::sim {
 namespace {
@@ -124,9 +125,9 @@ TEST(ProfilePositionMode, WithBlendingBitFiveTheSpeedIsKeptAtTheFirstTarget) {
     b.command(0x0F, 5);
     set_point(b, 16000, 0x3F);
     b.in.control = 0x0F;
-    while (b.out.position < 3000) b.cycle();
+    for (Patience patience; patience.lasts(b.out.position < 3000);) b.cycle();
     double slowest = 20000;
-    while (b.out.position < 12000) {
+    for (Patience patience; patience.lasts(b.out.position < 12000);) {
         b.cycle();
         slowest = std::min(slowest, static_cast<double>(b.out.velocity));
     }
@@ -144,7 +145,7 @@ TEST(ProfilePositionMode, WithASharedRampSixtyEightyFourIsNotUsed) {
     b.in.profile_deceleration = 200000;
     set_point(b, 20000);
     b.in.control = 0x0F;
-    while (b.out.position < 18000) b.cycle();
+    for (Patience patience; patience.lasts(b.out.position < 18000);) b.cycle();
     // 2000 counts before the end: v^2 = 2 * 50000 * 2000.
     EXPECT_NEAR(static_cast<double>(b.out.velocity), std::sqrt(2 * 50000.0 * 2000), 300);
 }

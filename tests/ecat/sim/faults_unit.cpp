@@ -49,6 +49,8 @@ TEST(FaultText, WhatIsWrongIsSaidWithWhatToWrite) {
     EXPECT_THAT(problem("drop many"), HasSubstr("'many' is not N"));
     EXPECT_THAT(problem("drop 5 6"), HasSubstr("one word too many"));
     EXPECT_THAT(problem("delay 3 5"), HasSubstr("TIME"));
+    EXPECT_THAT(problem("delay 3 -5ms"), HasSubstr("'-5ms' is not TIME")) << "an answer before its question";
+    EXPECT_THAT(problem("power-cycle x -1s"), HasSubstr("'-1s' is not TIME"));
     EXPECT_THAT(problem("hang x maybe"), HasSubstr("on or off"));
     EXPECT_THAT(problem("refuse x BOOT 1"), HasSubstr("STATE"));
     EXPECT_THAT(problem("abort x zzzz 1"), HasSubstr("INDEX:SUB"));

@@ -155,14 +155,21 @@ TEST_F(SetOverride, ARefusalIsAnErrorThatGoesWithItsCause) {  // P1-206, P1-212
     block.Enable = true;
     block.AccFactor = 0;
     axes.refuse_with = ErrorId::invalid_override;
-    scan();
-    EXPECT_FALSE(block.Enabled);
-    EXPECT_EQ(block.ErrorID, ErrorId::invalid_override);
+    for (int i = 0; i < 3; ++i) {
+        scan();
+        EXPECT_FALSE(block.Enabled);
+        EXPECT_TRUE(block.Error) << "as long as its cause stands";
+        EXPECT_EQ(block.ErrorID, ErrorId::invalid_override);
+    }
+    ASSERT_FALSE(axes.calls.empty());
+    EXPECT_EQ(std::get<axes::Override>(axes.calls.back().setting), (axes::Override{1, 0, 1})) << "the axis judges, not the block";
     axes.refuse_with = ErrorId::none;
-    block.AccFactor = 1;
+    block.AccFactor = 0.5;
     scan();
     EXPECT_TRUE(block.Enabled);
     EXPECT_FALSE(block.Error);
+    EXPECT_EQ(block.ErrorID, ErrorId::none);
+    EXPECT_EQ(factors(), (axes::Override{1, 0.5, 1}));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "fb_library/all_blocks.hpp"
 #include "tests/fb_library/motion/coupled_plc.hpp"
+#include "tests/patience.hpp"
 
 namespace taktwerk::fb {
 namespace {
@@ -114,7 +115,7 @@ TEST_F(Coupling, Figure44GearInPosOfASlaveAtRest) {  // P1-285, P1-280, P1-281
         lead(ctx);
         gear(ctx);
     };
-    while (master() < 99) {
+    for (Patience patience; patience.lasts(master() < 99);) {
         plc.scan();
         ASSERT_FALSE(gear.StartSync || gear.InSync || gear.Error);
         ASSERT_EQ(slave(), 0);
@@ -177,7 +178,7 @@ TEST_F(CamFigure, TheSlaveIsWhereTheProfileSaysInEveryCycleAndPeriod) {  // P1-2
     follow.Execute = true;
     plc.run_until([&] { return follow.InSync; }, 1s);
     lead.Execute = true;
-    while (master() < 350) {
+    for (Patience patience; patience.lasts(master() < 350);) {
         plc.scan();
         ASSERT_NEAR(slave(), cam(std::fmod(master(), 100)), 1e-6) << master();
         ASSERT_EQ(slave_state(), AxisState::SynchronizedMotion);

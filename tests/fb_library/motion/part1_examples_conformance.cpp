@@ -10,6 +10,7 @@
 
 #include "fb_library/all_blocks.hpp"
 #include "tests/fb_library/motion/coupled_plc.hpp"
+#include "tests/patience.hpp"
 
 namespace taktwerk::fb {
 namespace {
@@ -210,7 +211,7 @@ TEST_F(WaveOverConveyor, Figure51TheOrderOfEvents) {
     combine.Execute = true;
     plc.run_until([&] { return combine.InSync; }, 1s);
     bool waited = false;
-    while (!join.StartSync) {
+    for (Patience patience; patience.lasts(!join.StartSync);) {
         ASSERT_LE(plc.position(combined_virtual), 0.1 + 0.01);
         if (plc.position(combined_virtual) < 0.1) {
             ASSERT_EQ(plc.position(real), 0);

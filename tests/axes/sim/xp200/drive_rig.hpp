@@ -9,6 +9,7 @@
 #include "config/drive_loader.hpp"
 #include "modbus/client/client.hpp"
 #include "modbus/line/virtual_line.hpp"
+#include "tests/patience.hpp"
 
 namespace taktwerk::axes::sim::xp200 {
 
@@ -37,11 +38,12 @@ struct DriveRig {
         line.advance(now);
     }
     modbus::Answer ask(const modbus::Request& request) {
-        while (client.ask(request, now) != modbus::Refusal::none) now += 1ms;
-        for (;;) {
+        for (Patience patience; patience.lasts(client.ask(request, now) != modbus::Refusal::none);) now += 1ms;
+        for (Patience patience; patience.lasts(true);) {
             now += 1ms;
             if (auto answer = client.step(now)) return *answer;
         }
+        return {};
     }
     modbus::ExceptionCode refused(const modbus::Request& request) { return ask(request).response.exception; }
     void write(int number, int value) {
