@@ -198,6 +198,24 @@ TEST_F(CommandLine, PlotNamesThePackageItMisses) {
     EXPECT_FALSE(std::filesystem::exists(path("t.svg")));
 }
 
+// gnuplot carries out what stands in backticks of its double-quoted strings: the control shows that it would here, too.
+TEST_F(CommandLine, APlotCarriesOutNothingThatStandsInATrace) {
+    Child control({"gnuplot", "-e", "x = \"`touch " + path("control") + "`\""});
+    ASSERT_EQ(control.wait(10s), 0) << control.text();
+    ASSERT_TRUE(std::filesystem::exists(path("control")));
+
+    const auto attack = [&](const char* name) { return "`touch " + path(name) + "`"; };
+    const auto trace =
+        file("|t.csv", "time_s,emergency_stop,x" + attack("axis") + ".state,x" + attack("axis") + ".set_position[" + attack("unit") +
+                           "'],x" + attack("axis") + ".set_velocity,x" + attack("axis") + ".set_acceleration,x" + attack("axis") +
+                           ".set_jerk,x" + attack("axis") + ".actual_position,x" + attack("axis") + ".actual_velocity,x" + attack("axis") +
+                           ".following_error," + attack("bit") + "\n1,0,1,7,2,3,4,7,1,0,0\n2,0,1,8,2,3,4,7,1,0,1\n");
+    Child plot({taktwerk, "plot", trace, "--title", attack("title")});
+    EXPECT_EQ(plot.wait(20s), exit_ok) << plot.text();
+    EXPECT_TRUE(std::filesystem::exists(path("|t.svg"))) << "it is drawn all the same";
+    for (const char* name : {"axis", "unit", "bit", "title"}) EXPECT_FALSE(std::filesystem::exists(path(name))) << name;
+}
+
 TEST_F(CommandLine, SigtermIsHeardBeforeTheBusIsUp) {
     Child runtime({taktwerk, "run", private_machine()});
     ASSERT_TRUE(runtime.says("bus", 10s)) << runtime.text();
