@@ -2,13 +2,17 @@
 
 #include <filesystem>
 #include <fstream>
+#include <regex>
+#include <thread>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "apps/exit_code.hpp"
 #include "tests/apps/cable.hpp"
+#include "tests/apps/foreign_master.hpp"
 
 namespace taktwerk::apps {
 namespace {
@@ -50,6 +54,69 @@ TEST(BusCommandOnACable, SeesReadsAndExplainsTheSlavesOfSim) {
 
     slaves.signal(SIGTERM);
     EXPECT_EQ(slaves.wait(10s), exit_ok) << slaves.text();
+}
+
+// Beside a master that works with these slaves: it is named, and nothing of what it has set is touched.
+TEST(BusCommandOnACable, BesideAnotherMasterNamesItAndDisturbsNothing) {
+    if (::geteuid() != 0) GTEST_SKIP() << "network namespaces need root";
+    const Cable cable;
+    if (!cable.laid()) GTEST_SKIP() << "this system lets nobody make network namespaces or veth pairs";
+    Child slaves(cable.at_slaves({command, "sim", demo, "--nic", "twk1"}));
+    ASSERT_TRUE(slaves.says("slaves of 'demo'", 20s)) << slaves.text();
+    const ForeignMaster other(cable.master_end(), "twk0");
+    for (int i = 0; i < 1000 && other.answered() < 50; ++i) std::this_thread::sleep_for(10ms);
+    ASSERT_GE(other.answered(), 50) << "the other master does not reach its slave";
+
+    for (const char* doing : {"why", "scan"}) {
+        std::string said;
+        std::vector<std::string> words{command, "bus", doing, "--nic", "twk0"};
+        if (std::string(doing) == "why") words.push_back("--yes");
+        (void)run(cable.at_master(std::move(words)), &said);
+        EXPECT_THAT(said, HasSubstr("another master is sending on this cable")) << doing;
+        EXPECT_THAT(said, HasSubstr("02:46:4f:52:00:42")) << doing;
+        EXPECT_THAT(said, ::testing::Not(HasSubstr("nobody is heard"))) << doing;
+        EXPECT_THAT(said, ::testing::Not(HasSubstr("power-cycle"))) << doing;
+    }
+    std::string said;
+    const auto file = (std::filesystem::temp_directory_path() / ("taktwerk-beside-" + std::to_string(::getpid()) + ".yaml")).string();
+    std::ifstream in(demo);
+    std::string text((std::istreambuf_iterator<char>(in)), {});
+    text = std::regex_replace(text, std::regex("interface: simulated"), "interface: twk0");
+    std::ofstream(file) << text << "\n";
+    EXPECT_EQ(run(cable.at_master({command, "run", file}), &said), exit_bus) << said;
+    EXPECT_THAT(said, HasSubstr("another EtherCAT master is sending on this cable"));
+    EXPECT_THAT(said, HasSubstr("02:46:4f:52:00:42"));
+    std::filesystem::remove(file);
+
+    EXPECT_EQ(other.disturbed(), 0) << "its slave lost its address, or stopped answering";
+    slaves.signal(SIGTERM);
+    EXPECT_EQ(slaves.wait(10s), exit_ok) << slaves.text();
+}
+
+// Long buses on a real cable: two processes, each frame through a veth pair.
+TEST(BusCommandOnACable, ManySlavesReachOp) {
+    if (::geteuid() != 0) GTEST_SKIP() << "network namespaces need root";
+    for (const int count : {30, 33, 64, 100, 200, 300}) {
+        const Cable cable;
+        if (!cable.laid()) GTEST_SKIP() << "this system lets nobody make network namespaces or veth pairs";
+        const auto file =
+            (std::filesystem::temp_directory_path() / fmt::format("taktwerk-long-bus-{}-{}.yaml", ::getpid(), count)).string();
+        std::string slaves_of_file;
+        for (int i = 0; i < count; ++i)
+            slaves_of_file += fmt::format("    - {{ name: t{}, terminal: {{ inputs: 32, outputs: 32 }} }}\n", i);
+        std::ofstream(file) << "version: 1\nname: long\ncycle: 4 ms\nbus:\n  interface: twk0\n  slaves:\n"
+                            << slaves_of_file << "simulation: { supervision: relaxed }\n";
+        Child slaves(cable.at_slaves({command, "sim", file, "--nic", "twk1"}));
+        ASSERT_TRUE(slaves.says("slaves of 'long'", 20s)) << slaves.text();
+        std::string said;
+        Child master(cable.at_master({command, "run", file, "--duration", "1s"}));
+        EXPECT_TRUE(master.says("running, manual mode", 120s)) << count << " slaves: " << master.text();
+        master.signal(SIGTERM);
+        (void)master.wait(30s);
+        slaves.signal(SIGTERM);
+        (void)slaves.wait(10s);
+        std::filesystem::remove(file);
+    }
 }
 
 }  // namespace

@@ -34,6 +34,7 @@ public:
     Cable(const Cable&) = delete;
     Cable& operator=(const Cable&) = delete;
 
+    [[nodiscard]] const std::string& master_end() const { return master_; }
     [[nodiscard]] bool laid() const { return laid_; }
     [[nodiscard]] std::vector<std::string> at_master(std::vector<std::string> words) const { return in(master_, std::move(words)); }
     [[nodiscard]] std::vector<std::string> at_slaves(std::vector<std::string> words) const { return in(slaves_, std::move(words)); }

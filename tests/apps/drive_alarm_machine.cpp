@@ -74,6 +74,76 @@ TEST_F(DriveAlarm, IsCompleteInTheMachineLogForScripts) {
     EXPECT_THAT(said, HasSubstr(R"("reset":"MC_Reset cannot clear it: switch the drive off and on")"));
 }
 
+// Reaction::none is information only, but it is what explains the alarms that follow: a computer that stalls makes drives fall.
+TEST_F(DriveAlarm, NoReactionIsALineInTheMachineLogAllTheSame) {
+    MachineLog log(*m.machine, m.clock.now(), false);
+    log.step(m.clock.now(), &m.state());
+    testing::internal::CaptureStdout();
+    const auto late = [&](Duration by) {
+        m.clock.advance(m.machine->config().cycle);
+        const auto due = m.clock.now();
+        m.machine->cycle({due, due + by, 0});
+        m.machine->service(due);
+        log.step(due, &m.state());
+    };
+    late(700us);
+    m.run(20ms);
+    log.step(m.clock.now(), &m.state());
+    late(900us);
+    late(20ms);
+    const auto said = testing::internal::GetCapturedStdout();
+    EXPECT_THAT(said, HasSubstr("note      machine: The cycle woke 700 us late"));
+    EXPECT_EQ(said.find("900 us"), std::string::npos) << "a moment later, and not twice as late";
+    EXPECT_THAT(said, HasSubstr("note      machine: The cycle woke 20000 us late")) << "far worse than what was said";
+    EXPECT_EQ(said.find("[none]"), std::string::npos);
+}
+
+// What stopped the axes stands before the axes that stopped.
+TEST_F(DriveAlarm, StandsBeforeWhatFollowsFromIt) {
+    MachineLog log(*m.machine, m.clock.now(), false);
+    log.step(m.clock.now(), &m.state());
+    raise(0x3130, true);
+    testing::internal::CaptureStdout();
+    log.step(m.clock.now(), &m.state());
+    const auto said = testing::internal::GetCapturedStdout();
+    const auto alarm = said.find("reports fault 3130h"), state = said.find("-> ErrorStop");
+    ASSERT_NE(alarm, std::string::npos);
+    ASSERT_NE(state, std::string::npos);
+    EXPECT_LT(alarm, state);
+}
+
+// Five cycles without a frame, then the drive complains: who was late stands in the alarm (IsCompleteInTheMachineLog: nobody was).
+TEST_F(DriveAlarm, RightAfterOurOwnStallSaysWhoWasLate) {
+    MachineLog log(*m.machine, m.clock.now(), false);
+    log.step(m.clock.now(), &m.state());
+    m.clock.advance(6 * m.machine->config().cycle);
+    m.machine->cycle({m.clock.now(), m.clock.now(), 5});
+    m.machine->service(m.clock.now());
+    raise(0x3130, true);
+    testing::internal::CaptureStdout();
+    log.step(m.clock.now(), &m.state());
+    const auto said = testing::internal::GetCapturedStdout();
+    EXPECT_THAT(said, HasSubstr("phase failure; right before, this computer sent nothing for 6 ms [the axis stops]"));
+    EXPECT_THAT(said, HasSubstr("why: Probably this computer was late, not the drive (see late_wakeups)"));
+}
+
+// Who fell and who is back, without a look at another screen.
+TEST_F(DriveAlarm, WhatTheBusDidIsInTheMachineLog) {
+    MachineLog log(*m.machine, m.clock.now(), false);
+    log.step(m.clock.now(), &m.state());
+    m.world.network().set_power(0, false);
+    m.run(100ms);
+    m.world.network().set_power(0, true);
+    m.run(3s);
+    testing::internal::CaptureStdout();
+    log.step(m.clock.now(), &m.state());
+    log.step(m.clock.now(), &m.state());
+    const auto said = testing::internal::GetCapturedStdout();
+    const auto back = said.find("is back in OP");
+    ASSERT_NE(back, std::string::npos) << said;
+    EXPECT_EQ(said.find("is back in OP", back + 1), std::string::npos) << "once";
+}
+
 TEST_F(DriveAlarm, IsCompleteOnTheMonitor) {
     raise(0x5530, false);
     const hmi::RuntimeLink link(*m.machine);
