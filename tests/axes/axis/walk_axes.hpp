@@ -80,6 +80,7 @@ inline void any_drive(Dice& dice, const AxisConfig& config, FakeDrive& drive) {
     drive.rated_acceleration = 2000 * counts;
     drive.friction = 0.02;
     drive.caps.probes = 2;
+    drive.caps.digital_outputs = true;
     drive.caps.velocity_limit = dice.once_in(2);
     drive.caps.mode_change_at_standstill = dice.once_in(3);
     drive.caps.profile_buffer = static_cast<std::uint8_t>(dice.below(3));

@@ -45,8 +45,8 @@ inline constexpr std::array walk_kinds{
     WalkKind{CommandKind::external, "external", 3},
     WalkKind{CommandKind::homing_step, "homing_step", 5},
     WalkKind{CommandKind::abort_passive_homing, "abort_passive_homing", 1},
-    WalkKind{CommandKind::touch_probe, "touch_probe", 2},
-    WalkKind{CommandKind::abort_trigger, "abort_trigger", 1},
+    WalkKind{CommandKind::touch_probe, "touch_probe", 3},
+    WalkKind{CommandKind::abort_trigger, "abort_trigger", 2},
     WalkKind{CommandKind::setting, "setting", 4},
     WalkKind{CommandKind::set_controller_mode, "set_controller_mode", 1},
     WalkKind{CommandKind::drive_move_absolute, "drive_move_absolute", 2},
@@ -228,8 +228,11 @@ private:
                 break;
             case homing_step: step(command, stands); break;
             case touch_probe:
-            case abort_trigger:
-                command.details = ProbeDetails{.trigger = trigger(), .window_only = dice_.once_in(3), .first = -50, .last = 50};
+                last_trigger_ = trigger();
+                command.details = ProbeDetails{.trigger = last_trigger_, .window_only = dice_.once_in(3), .first = -50, .last = 50};
+                break;
+            case abort_trigger:  // mostly one that may still wait
+                command.details = ProbeDetails{.trigger = dice_.once_in(4) ? trigger() : last_trigger_};
                 break;
             case setting:
                 command.details = any_setting(axis);
@@ -299,6 +302,7 @@ private:
     }
 
     Dice& dice_;
+    TriggerRef last_trigger_{};
     unsigned axes_;
     Views views_;
     const WalkTables& tables_;
