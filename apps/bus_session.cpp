@@ -163,7 +163,8 @@ Result<ecat::Survey> BusSession::look() {
             foreign_sender_ = foreign_frames_ > 0 ? ecat::sender_text(probe_->bus().link) : std::string{};
         }
     }
-    Result<ecat::Survey> found = probe_->run(ecat::survey(probe_->port()));
+    Result<ecat::Survey> found =
+        probe_->run(ecat::survey(probe_->port(), foreign_frames_ > 0 ? ecat::SurveyMay::only_look : ecat::SurveyMay::give_addresses));
     if (!found) {
         Error error = found.error();
         if (error.code == "bus.no_frame")

@@ -1,5 +1,6 @@
 #include "hmi_bridge/socket_path.hpp"
 
+#include <fcntl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -33,7 +34,7 @@ bool usable(const std::string& folder) {
     if (::mkdir(folder.c_str(), 0755) != 0 && errno != EEXIST) return false;
     struct stat info {};
     if (::lstat(folder.c_str(), &info) != 0 || !S_ISDIR(info.st_mode)) return false;
-    return (info.st_uid == ::geteuid() || folder.starts_with("/run/")) && ::access(folder.c_str(), W_OK) == 0;
+    return (info.st_uid == ::geteuid() || folder.starts_with("/run/")) && ::faccessat(AT_FDCWD, folder.c_str(), W_OK, AT_EACCESS) == 0;
 }
 
 /// A socket whose runtime was killed stays behind, and nobody listens. (Its lock is the runtime's alone: it cannot be asked.)

@@ -68,13 +68,6 @@ void limits(Remarks& remarks, const AxisBinding& binding, const std::string& her
 void homing(Remarks& remarks, const AxisBinding& binding, const std::string& here, bool simulated) {
     const auto& axis = binding.axis;
     const auto& home = axis.homing;
-    const bool by_us = home.kind == HomingKind::home_switch || home.kind == HomingKind::limit_switch || home.kind == HomingKind::block ||
-                       home.kind == HomingKind::reference_pulse;
-    if (by_us && std::abs(home.search_velocity) > axis.limits.velocity)
-        remarks.add(
-            "homing_speed", here + ".homing.search_velocity",
-            fmt::format("{:g} {}/s is above limits.velocity, {:g} {}/s", home.search_velocity, axis.unit, axis.limits.velocity, axis.unit),
-            "a search for a switch is slower than the work: give a part of the limit");
     if (!simulated) return;
     const auto& world = binding.simulation;
     const bool no_switch = (home.kind == HomingKind::home_switch || home.kind == HomingKind::reference_pulse) && !world.home_from;

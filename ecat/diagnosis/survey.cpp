@@ -137,7 +137,7 @@ Script<bool> read_counters(DatagramPort& port, SurveyedSlave& slave) {
     co_return true;
 }
 
-Script<Result<Survey>> survey(DatagramPort& port) {
+Script<Result<Survey>> survey(DatagramPort& port, SurveyMay may) {
     Survey result;
     const Reply count = co_await port.brd(reg::type, 1);
     if (count.lost) co_return unanswered("bus", "the count of slaves", count);
@@ -151,7 +151,7 @@ Script<Result<Survey>> survey(DatagramPort& port) {
     co_await all(std::move(scripts), DatagramPort::slaves_at_once);
     for (const auto& slave : result.slaves) result.highest_state = std::max(result.highest_state, slave.state);
 
-    if (result.highest_state < AlState::safeop) {
+    if (may == SurveyMay::give_addresses && result.highest_state < AlState::safeop) {
         co_await port.bwr(reg::eeprom_configuration, std::uint8_t{2});  // from an application that holds it
         co_await port.bwr(reg::eeprom_configuration, std::uint8_t{0});
         if (!addresses_are_ours(result))

@@ -72,8 +72,11 @@ struct Survey {
     [[nodiscard]] std::string subject(std::size_t position) const;
 };
 
+/// What it may write: station addresses (and who holds the EEPROM) of slaves below SAFEOP, or, beside another master, nothing at all.
+enum class SurveyMay : std::uint8_t { give_addresses, only_look };
+
 /// Errors: bus.no_frame, bus.empty. What is wrong with single slaves stands in their FoundSlave::error.
-[[nodiscard]] Script<Result<Survey>> survey(DatagramPort& port);
+[[nodiscard]] Script<Result<Survey>> survey(DatagramPort& port, SurveyMay may = SurveyMay::give_addresses);
 
 /// The explicit device ids, for configurations that address by them. Asks through AL control, which slaves take in any state.
 [[nodiscard]] Script<Result<void>> read_device_ids(DatagramPort& port, Survey& survey);

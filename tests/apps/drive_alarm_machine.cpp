@@ -139,9 +139,10 @@ TEST_F(DriveAlarm, WhatTheBusDidIsInTheMachineLog) {
     log.step(m.clock.now(), &m.state());
     log.step(m.clock.now(), &m.state());
     const auto said = testing::internal::GetCapturedStdout();
-    const auto back = said.find("is back in OP");
+    constexpr std::string_view returned = "slave 0 'x_drive' (test servo) is back in OP";
+    const auto back = said.find(returned);
     ASSERT_NE(back, std::string::npos) << said;
-    EXPECT_EQ(said.find("is back in OP", back + 1), std::string::npos) << "once";
+    EXPECT_EQ(said.find(returned, back + 1), std::string::npos) << "once:\n" << said;
 }
 
 TEST_F(DriveAlarm, IsCompleteOnTheMonitor) {

@@ -32,10 +32,13 @@ TEST_F(SvDa200, TorqueModeKeepsToTheSpeedOf607F) {  // 2.1 note 10
     enable_in(cst);
     pdo(0x6071, 300);
     run(2000);
-    EXPECT_NEAR(speed(), 30000, 300) << "30 % torque would take it far beyond";
+    // How close to the limit a loaded motor comes is not stated: never above it, and not held far below.
+    EXPECT_LE(speed(), 30000 * 1.01) << "30 % torque would take it far beyond";
+    EXPECT_GE(speed(), 30000 * 0.9);
     pdo(0x607F, 15000);
     run(2000);
-    EXPECT_NEAR(speed(), 15000, 150) << "the limit of the moment, not the one at the start";
+    EXPECT_LE(speed(), 15000 * 1.01) << "the limit of the moment, not the one at the start";
+    EXPECT_GE(speed(), 15000 * 0.9);
 }
 
 TEST_F(SvDa200, AZeroIn607FIsIgnoredOrHoldsTheMotorAsP443Says) {  // 2.1 note 8 bit 1, note 10

@@ -28,6 +28,8 @@ TYPED_TEST(SettingRules, QueuedItWaitsForItsTurnLikeABufferedCommand) {  // P1-2
     EXPECT_TRUE(this->block.Busy) << "it is its turn, but it is not over";
     EXPECT_FALSE(this->done());
     this->axes.finish(axes::Outcome::done);  // the setting
+    if constexpr (requires { this->block.CamTableID; })
+        for (std::size_t i = 0; i < 2; ++i) this->axes.axis(i).selected_as = this->block.wanted;  // as an axis shows it then
     this->scan();
     EXPECT_TRUE(this->done());
     EXPECT_FALSE(this->block.Busy);

@@ -143,7 +143,7 @@ private:
                                   answer.id, static_cast<int>(answer.error));
         if (answer.id == 0) {
             const auto& after = rig_.view(axis);
-            if (command.kind == CommandKind::move_additive) return;  // what was given before it in this scan has its turn first (P1-016)
+            if (command.kind == CommandKind::move_additive) return;  // what was given before it in this scan has its turn first
             if (after.active != before.active || after.state != before.state || after.queued_count != before.queued_count)
                 wrong_ += fmt::format("cycle {}, axis {}: the refused {} changed the axis\n", cycle_, axis, walk_name(command.kind));
             return;

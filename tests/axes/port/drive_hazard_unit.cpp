@@ -42,10 +42,14 @@ TEST_F(Hazards, OneOfSeveralObjectsThatIsForgottenIsEnough) {
 TEST_F(Hazards, AValueIsTheLastWrittenOneElseTheFactorys) {
     const DriveHazard wanted{.when = HazardCondition::not_set_to, .objects = {storage}, .values = {0}};
     const DriveHazard feared{.when = HazardCondition::set_to, .objects = {storage}, .values = {1, 3}};
-    EXPECT_FALSE(applies(wanted)) << "nothing is known of the object";
+    EXPECT_TRUE(applies(wanted)) << "what nobody knows may be the wrong one";
+    EXPECT_FALSE(applies(feared)) << "and is not accused of being one";
     DriveParameter parameter;
     parameter.address = storage;
     parameter.value = 3;
+    profile_.parameters = {parameter};
+    EXPECT_FALSE(applies(feared)) << "a value without a known factory setting says nothing";
+    parameter.factory = FactoryValue::stated;
     profile_.parameters = {parameter};
     EXPECT_TRUE(applies(wanted));
     EXPECT_TRUE(applies(feared));
