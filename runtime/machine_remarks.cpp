@@ -65,17 +65,8 @@ void limits(Remarks& remarks, const AxisBinding& binding, const std::string& her
                     "compare `feed` and `gear` with the mechanics");
 }
 
-void homing(Remarks& remarks, const AxisBinding& binding, const std::string& here, bool simulated) {
-    const auto& axis = binding.axis;
-    const auto& home = axis.homing;
-    const bool by_us = home.kind == HomingKind::home_switch || home.kind == HomingKind::limit_switch || home.kind == HomingKind::block ||
-                       home.kind == HomingKind::reference_pulse;
-    if (by_us && std::abs(home.search_velocity) > axis.limits.velocity)
-        remarks.add(
-            "homing_speed", here + ".homing.search_velocity",
-            fmt::format("{:g} {}/s is above limits.velocity, {:g} {}/s", home.search_velocity, axis.unit, axis.limits.velocity, axis.unit),
-            "a search for a switch is slower than the work: give a part of the limit");
-    if (!simulated) return;
+void simulated_switches(Remarks& remarks, const AxisBinding& binding, const std::string& here) {
+    const auto& home = binding.axis.homing;
     const auto& world = binding.simulation;
     const bool no_switch = (home.kind == HomingKind::home_switch || home.kind == HomingKind::reference_pulse) && !world.home_from;
     const bool no_limit = home.kind == HomingKind::limit_switch && !(home.negative ? world.negative_limit : world.positive_limit);
@@ -143,7 +134,7 @@ std::vector<Error> remarks(const MachineConfig& config, const MachineLayout& lay
         const bool virtual_axis = binding.slave.empty() && binding.drive.empty();
         if (virtual_axis || binding.axis.encoder || binding.axis.disabled) continue;
         limits(out, binding, here);
-        homing(out, binding, here, simulated || binding.axis.simulated);
+        if (simulated || binding.axis.simulated) simulated_switches(out, binding, here);
         simulated_stops(out, binding, here);
     }
     for (const auto& point : config.io)

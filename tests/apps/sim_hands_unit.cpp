@@ -48,8 +48,8 @@ TEST_F(SimHandsTest, LaterIsCountedFromTheStepThatTookIt) {
 }
 
 TEST_F(SimHandsTest, WhatIsWrongIsSaidToWhoAsks) {
-    EXPECT_EQ(code("inptu button 1"), "fault.unknown");
-    EXPECT_EQ(hands.ask("inptu button 1").error().remedy, "did you mean 'input'?");
+    EXPECT_EQ(code("inpt button 1"), "fault.unknown");
+    EXPECT_EQ(hands.ask("inpt button 1").error().remedy, "did you mean 'input'?");
     EXPECT_EQ(code("input button"), "fault.arguments");
     EXPECT_EQ(code("input buton 1"), "fault.no_target");
     EXPECT_EQ(code("drive-fault x 0"), "fault.arguments");

@@ -218,11 +218,6 @@ TEST(MachineRemarks, EachThingThatIsHardlyMeantIsAsked) {
     EXPECT_EQ(of_axis([](AxisBinding& b) { b.axis.manual.fast = b.axis.limits.velocity + 1; }).subject, "axes.x.manual.fast");
     EXPECT_EQ(of_axis([](AxisBinding& b) {
                   b.axis.homing.kind = HomingKind::home_switch;
-                  b.axis.homing.search_velocity = b.axis.limits.velocity * 2;
-              }).code,
-              "remark.homing_speed");
-    EXPECT_EQ(of_axis([](AxisBinding& b) {
-                  b.axis.homing.kind = HomingKind::home_switch;
                   b.simulation.home_from.reset();
               }).code,
               "remark.simulated_switch");
