@@ -76,7 +76,9 @@ private:
                                        state_.at("phase").get<std::string>());
         const std::string flags = fmt::format("{}{}", stop ? " EMERGENCY STOP " : "", simulated ? " SIMULATED " : "");
         const std::string time = fmt::format(" {:.1f} s ", seconds);
-        const auto room = size_.columns - std::min(size_.columns, columns(flags) + columns(time));
+        constexpr std::size_t paper = 100;  // columns of the bar where there is no terminal
+        const auto width = size_.colours ? size_.columns : std::min(size_.columns, paper);
+        const auto room = width - std::min(width, columns(flags) + columns(time));
         Lines out;
         out.push_back(paint(colour::bar, left(text, room)) + (stop ? paint(colour::alert, " EMERGENCY STOP ") : "") +
                       (simulated ? paint(colour::simulated, " SIMULATED ") : "") + paint(colour::bar, time));

@@ -186,7 +186,7 @@ private:
         auto chosen = select_pdos(*drive.device, modules, way, wanted);
         if (chosen) return std::move(*chosen);
         problem(here, chosen.error().code, chosen.error().what, chosen.error().remedy);
-        return {};
+        return way == PdoWay::rx ? drive.rx : drive.tx;  // so that nothing is said of what would be missing
     }
 
     /// The machine's entries replace those of the drive's file for the same object.

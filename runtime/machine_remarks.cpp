@@ -65,10 +65,8 @@ void limits(Remarks& remarks, const AxisBinding& binding, const std::string& her
                     "compare `feed` and `gear` with the mechanics");
 }
 
-void homing(Remarks& remarks, const AxisBinding& binding, const std::string& here, bool simulated) {
-    const auto& axis = binding.axis;
-    const auto& home = axis.homing;
-    if (!simulated) return;
+void simulated_switches(Remarks& remarks, const AxisBinding& binding, const std::string& here) {
+    const auto& home = binding.axis.homing;
     const auto& world = binding.simulation;
     const bool no_switch = (home.kind == HomingKind::home_switch || home.kind == HomingKind::reference_pulse) && !world.home_from;
     const bool no_limit = home.kind == HomingKind::limit_switch && !(home.negative ? world.negative_limit : world.positive_limit);
@@ -136,7 +134,7 @@ std::vector<Error> remarks(const MachineConfig& config, const MachineLayout& lay
         const bool virtual_axis = binding.slave.empty() && binding.drive.empty();
         if (virtual_axis || binding.axis.encoder || binding.axis.disabled) continue;
         limits(out, binding, here);
-        homing(out, binding, here, simulated || binding.axis.simulated);
+        if (simulated || binding.axis.simulated) simulated_switches(out, binding, here);
         simulated_stops(out, binding, here);
     }
     for (const auto& point : config.io)

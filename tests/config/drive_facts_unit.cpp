@@ -174,8 +174,8 @@ TEST(Sv33E, AlarmsHaveTheCodesAndNamesOfTheManual) {
 
 TEST(EveryDrive, SaysInWordsWhatItAssumes) {
     for (const char* name : {"sv33-e", "se-808x", "sv-da200", "tsvm-d6", "xp200"}) {
-        const auto described = drive(name);
-        const auto& assumed = described.profile->assumed;
+        const auto profile = drive(name).profile;  // the drive itself is gone behind this line
+        const auto& assumed = profile->assumed;
         EXPECT_GE(assumed.size(), 5u) << name;
         for (const auto& sentence : assumed) {
             EXPECT_GE(std::count(sentence.begin(), sentence.end(), ' '), 3) << name << ": '" << sentence << "' is no sentence";
