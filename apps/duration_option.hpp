@@ -1,6 +1,7 @@
 #pragma once
 // A time on the command line: "500ms", "2s", "1min", "4h"; a bare number is seconds.
 
+#include <cstdlib>
 #include <map>
 #include <string>
 
@@ -12,6 +13,12 @@ namespace taktwerk::apps {
 inline CLI::Option* add_duration(CLI::App& app, const std::string& name, double& seconds, const std::string& doc) {
     return app.add_option(name, seconds, doc)
         ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"ms", 1e-3}, {"s", 1.0}, {"min", 60.0}, {"h", 3600.0}}))
+        ->check(CLI::Validator(
+            [](const std::string& value) {
+                return std::strtod(value.c_str(), nullptr) > 0 ? std::string{}
+                                                               : "a time above 0 is wanted, not " + value + "; leave it out for no end";
+            },
+            ""))
         ->type_name("TIME");
 }
 

@@ -27,6 +27,7 @@
 #include "apps/trace_csv.hpp"
 #include "core/calendar_distance.hpp"
 #include "core/math.hpp"
+#include "core/realtime.hpp"
 #include "ecat/diagnosis/frame_capture.hpp"
 #include "ecat/transport/raw_socket.hpp"
 #include "hmi_bridge/hmi_bridge.hpp"
@@ -202,8 +203,11 @@ void say_directly(const Error& error) {
 /// Its own thread, so that nothing which the service side does holds up a stop (hmi_bridge/door.hpp).
 class DoorKeeper {
 public:
-    DoorKeeper(hmi::Door& door, Clock& clock)
-        : thread_{[this, &door, &clock] {
+    /// `priority`: SCHED_FIFO, just below the cycle, or busy clients would take this thread's time; nothing where the system refuses it, which the
+    /// report of the cycle's own priority has said.
+    DoorKeeper(hmi::Door& door, Clock& clock, std::optional<int> priority)
+        : thread_{[this, &door, &clock, priority] {
+              if (priority) (void)set_fifo_priority(*priority).ok();
               while (!ended_.load(std::memory_order_acquire)) {
                   door.wait(door_look);
                   door.step(clock.now());
@@ -256,7 +260,8 @@ int serve_real(Machine& machine, World* world, ecat::RawSocketTransport* nic, Fi
 
     say_crashes();
     const SignalsEndMachine signals{machine};
-    const DoorKeeper door{(*bridge)->door(), clock};
+    const int of_cycle = machine.config().realtime.priority;
+    const DoorKeeper door{(*bridge)->door(), clock, of_cycle > 1 ? std::optional<int>{of_cycle - 1} : std::nullopt};
     std::vector<std::unique_ptr<FileThread>> writers;
     const auto write_beside = [&](const char* what, auto file) {
         if (file)

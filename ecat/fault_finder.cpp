@@ -8,6 +8,8 @@ namespace taktwerk::ecat {
 
 namespace {
 
+/// How long after a slave was first seen out of OP a stall of this computer still counts as what came before it.
+constexpr std::uint8_t cycles_of_a_fall = 3;
 constexpr std::int64_t sync_limit_ns = 3000;  // SV33-E P0A.32 default
 /// Cycles without a reference time until it is said: a single outlier is no news, and a recovery takes a few.
 constexpr std::uint32_t reference_times_limit = 50;
@@ -74,9 +76,14 @@ void FaultFinder::look(const BusCondition& bus) noexcept {
         if (in_op(state.seen)) {
             state.fell_after_stall = {};
             state.fell_code = 0;
+            state.cycles_down = 0;
             continue;
         }
-        if (state.fell_after_stall == Duration{}) state.fell_after_stall = bus.stall;
+        // What the fall came behind is known with it or right after it (a stall is noted when the next frame leaves); what comes later is no cause.
+        if (state.cycles_down < cycles_of_a_fall) {
+            ++state.cycles_down;
+            if (state.fell_after_stall == Duration{}) state.fell_after_stall = bus.stall;
+        }
         if (state.seen.al_status_code != 0) state.fell_code = state.seen.al_status_code;
     }
     const std::size_t unnamed = find_lost(bus.slaves_answering);

@@ -74,6 +74,7 @@ private:
         bool lost = false;
         std::size_t gone_with = FaultSlave::none;  ///< the first slave behind the break that took it away; until it is back in OP
         Duration fell_after_stall{};               ///< this computer's own, right before the slave left OP; while it is out of OP
+        std::uint8_t cycles_down = 0;      ///< not in OP for so many, up to `cycles_of_a_fall`
         std::uint16_t fell_code = 0;               ///< why, as it said first: the way back clears it
         std::size_t group = 0, largest_group = 0;  ///< slaves gone with this one, now and at most
         bool group_stops_machine = false;

@@ -85,11 +85,11 @@ void ProcessDataCycle::receive(Instant now) noexcept {
     if (cycle != nullptr) find_faults(*cycle, now);
 }
 
-/// Half a cycle more than a cycle between two frames is later than any slave expects.
+/// Two frames missing in a row are the least that a drive's SYNC supervision or a slave's watchdog (three periods) minds.
 void ProcessDataCycle::note_stall(CycleLink& link, Instant now) noexcept {
     const Duration gap = last_send_ ? now - *last_send_ : Duration{};
     last_send_ = now;
-    if (2 * gap <= 3 * config_.cycle) return;
+    if (2 * gap <= 5 * config_.cycle) return;
     link.stall_ns.store(gap.count(), std::memory_order_relaxed);
     link.stall_ended_ns.store(nanoseconds(now), std::memory_order_relaxed);
 }

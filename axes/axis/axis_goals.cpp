@@ -78,6 +78,12 @@ bool Axis::heads_backwards() const noexcept {
 }
 
 void Axis::aim(Goal::Kind kind, double value, const MotionLimits& limits, VelocityLimiter limiter) noexcept {
+    // The jerk of a slave is not limited. A stop that took over an acceleration in the sense of the motion would run on by a^2 / (2 j).
+    if (kind == Goal::Kind::stop && goal_.kind == Goal::Kind::coupled) {
+        auto base = setpoint_.base();
+        if (base.velocity * base.acceleration >= 0) base.acceleration = 0;
+        setpoint_.set(base);
+    }
     goal_ = {kind, value, limits, limiter};
     goal_pending_ = watch_limits_ = true;
     held_ = false;

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "axes/axis/axis.hpp"
+#include "axes/axis/plannable.hpp"
 
 namespace taktwerk::axes {
 
@@ -154,6 +155,8 @@ ErrorId Axis::refuse(const AxisCommand& command) noexcept {
     if (config_.encoder) return ErrorId::not_supported;  // nothing there that moves
     if (made_by_drive(command.kind) && !drive_makes(command.kind)) return ErrorId::not_supported;
     if (const auto error = check_numbers(command); error != ErrorId::none) return error;
+    if (const auto error = check_plannable(command, units_.counts_per_unit(), config_.limits.velocity); error != ErrorId::none)
+        return error;
     if (const auto error = refuse_state(command); error != ErrorId::none) return error;
     if (waits(command) && waits_for_ever()) return ErrorId::buffer_mode_not_supported;
     if (const auto error = refuse_coupling(command); error != ErrorId::none) return error;

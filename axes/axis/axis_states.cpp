@@ -93,12 +93,13 @@ void Axis::switch_off() noexcept {
     power_dropping_ = true;
     abort_homing();
     goal_ = {};
+    if (setpoint_.at_rest()) setpoint_.place(setpoint_.state().position);  // also when a profile was just about to begin
     fire(AxisEvent::power_off);
 }
 
 void Axis::shut_down() noexcept {
     power_wish_ = false;
-    if (view_.state == AxisState::Disabled) queue_.finish_waiting(Outcome::aborted);  // what waited for power
+    if (view_.state == AxisState::Disabled) queue_.finish_waiting(Outcome::aborted);        // what waited for power
     if (view_.state == AxisState::Disabled || view_.state == AxisState::ErrorStop) return;  // power_wanted() sees the wish
     if (moves()) stop_on_own_account(true);
     else switch_off();

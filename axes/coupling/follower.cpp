@@ -23,6 +23,8 @@ double tame(const MotionState& state, const MotionLimits& limits) noexcept {
     // The jerk takes it away while the velocity still grows: v + a^2 / (2 j) is to stay below the limit.
     if (faster && std::isfinite(limits.jerk))
         most = std::min(most, math::sqrt(2 * limits.jerk * std::max(0.0, limits.velocity - std::abs(state.velocity))));
+    // Braking, it is gone before the velocity is: else whoever stops the slave would run it backwards.
+    else if (std::isfinite(limits.jerk)) most = std::min(most, math::sqrt(2 * limits.jerk * std::abs(state.velocity)));
     return std::clamp(state.acceleration, -most, most);
 }
 
@@ -87,7 +89,8 @@ void Follower::run_down(const MotionState& slave, const MotionState& relation) n
 
 MotionState Follower::held(const MotionState& wanted, const MotionState& before, double period) noexcept {
     const auto& axis = limits_.axis;
-    const bool grows = std::abs(wanted.velocity) > std::abs(before.velocity);
+    // Through zero it brakes first.
+    const bool grows = wanted.velocity * before.velocity >= 0 && std::abs(wanted.velocity) > std::abs(before.velocity);
     const double most = (grows ? axis.acceleration : axis.deceleration) * period;
     const double step = wanted.velocity - before.velocity;
     const double mean = (wanted.position - before.position) / period;
