@@ -18,11 +18,12 @@ public:
     static constexpr AxisRef master{0}, slave{1};
 
     /// `declared`: tables that axes take room for when they are bound, those over time.
-    explicit CoupledPlc(std::size_t count = 2, axes::MotionTables declared = {}) : tables(std::move(declared)) {
+    explicit CoupledPlc(std::size_t count = 2, axes::MotionTables declared = {}, const axes::AxisConfig& config = Plc::roomy_axis())
+        : tables(std::move(declared)) {
         axes_.reserve(count);
         for (std::size_t i = 0; i < count; ++i) {
             drives_.emplace_back(period);
-            axes_.emplace_back(Plc::roomy_axis(), drives_.back(), period, static_cast<std::uint16_t>(i));
+            axes_.emplace_back(config, drives_.back(), period, static_cast<std::uint16_t>(i));
         }
         for (auto& axis : axes_) axis.bind({axes_.data(), axes_.size(), &tables, {}});
         requests_ = axes::DirectRequests{axes_};
