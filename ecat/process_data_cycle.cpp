@@ -80,18 +80,21 @@ void ProcessDataCycle::receive(Instant now) noexcept {
     exchange_.receive(now);
     channel_.collect(now);
     auto* cycle = latest_.load(std::memory_order_acquire);
+    note_stall(now);  // before the answers are judged: a slave or drive that complains of it speaks in the first of them
     if (cycle != nullptr) collect_frames(*cycle);
     copy_statistics();
     if (cycle != nullptr) find_faults(*cycle, now);
 }
 
-/// Two frames missing in a row are the least that a drive's SYNC supervision or a slave's watchdog (three periods) minds.
-void ProcessDataCycle::note_stall(CycleLink& link, Instant now) noexcept {
-    const Duration gap = last_send_ ? now - *last_send_ : Duration{};
-    last_send_ = now;
+/// Two frames missing in a row are the least that a drive's SYNC supervision or a slave's watchdog (three periods) minds. Of several
+/// gaps close behind one another the longest is told: the shorter ones are this computer catching its breath.
+void ProcessDataCycle::note_stall(Instant now) noexcept {
+    auto* link = link_.load(std::memory_order_acquire);
+    if (link == nullptr || !last_departure_) return;
+    const Duration gap = now - *last_departure_;
     if (2 * gap <= 5 * config_.cycle) return;
-    link.stall_ns.store(gap.count(), std::memory_order_relaxed);
-    link.stall_ended_ns.store(nanoseconds(now), std::memory_order_relaxed);
+    link->stall_ns.store(std::max(gap, recent_stall(*link, now)).count(), std::memory_order_relaxed);
+    link->stall_ended_ns.store(nanoseconds(now), std::memory_order_relaxed);
 }
 
 void ProcessDataCycle::find_faults(CyclePlan& cycle, Instant now) noexcept {
@@ -259,13 +262,18 @@ void ProcessDataCycle::send(Instant now) noexcept {
     clock_.steer(now, link);
     auto* cycle = running_.load(std::memory_order_acquire);
     if (cycle != nullptr) {
-        if (link != nullptr) note_stall(*link, now);
         send_frames(*cycle, now);
+        // The cycle may be due in time and still come to its send() late: what counts is when the frames left.
+        const Instant left = std::max(now, exchange_.departed_at(cycle->frames[0]));
+        note_stall(left);
+        last_departure_ = left;
         if (link != nullptr) {
             link->first_send_ns.store(nanoseconds(now) - static_cast<std::int64_t>(cycle->number - 1) * config_.cycle.count(),
                                       std::memory_order_relaxed);
             link->cycles.store(link->cycles.load(std::memory_order_relaxed) + 1, std::memory_order_release);
         }
+    } else {
+        last_departure_.reset();
     }
     if (operational_.load(std::memory_order_relaxed)) channel_.pack(now, config_.acyclic_per_cycle);
     else pack_bring_up(now);

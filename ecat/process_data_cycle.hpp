@@ -90,7 +90,7 @@ private:
     void add_unit(CyclePlan& cycle, const UnitPlan& unit, FramePacker& packer) noexcept;
     void give_up_frames(CyclePlan& cycle) noexcept;
     void find_faults(CyclePlan& cycle, Instant now) noexcept;
-    void note_stall(CycleLink& link, Instant now) noexcept;
+    void note_stall(Instant now) noexcept;
     /// SYNC0 of the slave, as machine time follows from it; 0: does not run, or the reference is not known yet.
     [[nodiscard]] std::int64_t sync0_of(const CyclePlan& cycle, std::size_t slave) const noexcept;
     void copy_statistics() noexcept;
@@ -113,8 +113,8 @@ private:
     struct {
         Instant send_time = Instant::min();
         std::int64_t offset = 0;
-    } mutable next_send_;               // the same when the next frames leave: asked for by every axis
-    std::optional<Instant> last_send_;  // of process data
+    } mutable next_send_;                    // the same when the next frames leave: asked for by every axis
+    std::optional<Instant> last_departure_;  // of process data
     bool all_good_ = true;
     bool any_lost_ = false;
     bool margin_known_ = false;

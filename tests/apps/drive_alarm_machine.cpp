@@ -127,6 +127,27 @@ TEST_F(DriveAlarm, RightAfterOurOwnStallSaysWhoWasLate) {
     EXPECT_THAT(said, HasSubstr("why: Probably this computer was late, not the drive (see late_wakeups)"));
 }
 
+// As a real computer does it: a thread that sleeps too long runs the cycle that was due, its frames leave late, and the grid points that it
+// missed show with the next cycle only. The first answer with the fault comes in that cycle.
+TEST_F(DriveAlarm, WithTheFirstAnswerBehindAStallSaysWhoWasLate) {
+    MachineLog log(*m.machine, m.clock.now(), false);
+    log.step(m.clock.now(), &m.state());
+    m.run(1s);
+    const auto cycle = m.machine->config().cycle;
+    m.clock.advance(cycle);
+    m.world.drive("x")->raise(0x3130, true);
+    m.machine->cycle({m.clock.now(), m.clock.now() + 19 * cycle, 0});
+    m.clock.advance(20 * cycle);
+    m.machine->cycle({m.clock.now(), m.clock.now(), 19});
+    m.machine->service(m.clock.now());
+    m.run(20ms);
+    testing::internal::CaptureStdout();
+    log.step(m.clock.now(), &m.state());
+    const auto said = testing::internal::GetCapturedStdout();
+    EXPECT_THAT(said, HasSubstr("phase failure; right before, this computer sent nothing for 20 ms [the axis stops]"));
+    EXPECT_THAT(said, HasSubstr("why: Probably this computer was late, not the drive (see late_wakeups)"));
+}
+
 // Who fell and who is back, without a look at another screen.
 TEST_F(DriveAlarm, WhatTheBusDidIsInTheMachineLog) {
     MachineLog log(*m.machine, m.clock.now(), false);

@@ -7,6 +7,7 @@
 #include "core/guard/allocation_guard.hpp"
 #include "core/process_image.hpp"
 #include "ecat/alarms.hpp"
+#include "ecat/bringup/bus.hpp"
 #include "tests/ecat/test_bus.hpp"
 
 namespace taktwerk::ecat::test {
@@ -259,6 +260,57 @@ TEST(Faults, ASlaveThatThisComputerStarvedIsNotBlamed) {
             EXPECT_EQ(bus.master->detail(fact), "sync manager watchdog");
         }
     EXPECT_EQ(bus.state(0), sim::EsmState::op);
+}
+
+// A thread that is woken late sends late, although its cycle was due in time: the answer that says what the slaves think of it is
+// judged by a computer that already knows of its own gap.
+TEST(Faults, AGapIsKnownBeforeTheAnswersBehindItAreJudged) {
+    TestBus bus{"s"};
+    ASSERT_TRUE(bus.bring_up());
+    bus.run_for(1s);
+    const auto& link = bus.master->bus().link;
+    ASSERT_EQ(recent_stall(link, bus.now), 0ms);
+    bus.now += 2ms;
+    bus.master->receive(bus.now);
+    EXPECT_EQ(recent_stall(link, bus.now), 0ms) << "one frame is missing: nobody minds";
+    bus.now += 4ms;
+    bus.master->receive(bus.now);
+    EXPECT_EQ(recent_stall(link, bus.now), 6ms);
+    bus.master->send(bus.now);
+
+    bus.now += 3ms;
+    bus.master->receive(bus.now);
+    EXPECT_EQ(recent_stall(link, bus.now), 6ms) << "the longest of those that belong together";
+    bus.master->send(bus.now);
+    bus.run_for(600ms);
+    EXPECT_EQ(recent_stall(link, bus.now), 0ms);
+}
+
+/// Frames leave `late` behind the instant at which they were due.
+struct LateTransport final : Transport {
+    explicit LateTransport(Transport& under) : line(under) {}
+    bool send(std::span<const std::byte> frame, Instant now) noexcept override { return line.send(frame, now + late); }
+    Instant departure(Instant now) const noexcept override { return now + late; }
+    std::optional<ReceivedFrame> receive(std::span<std::byte> buffer, Instant now) noexcept override { return line.receive(buffer, now); }
+    MacAddress mac() const noexcept override { return line.mac(); }
+    bool link_up() const noexcept override { return line.link_up(); }
+    Transport& line;
+    Duration late{};
+};
+
+TEST(Faults, AGapThatBeganBehindTheWakeUpCountsAsWell) {
+    TestBus bus{"s"};
+    LateTransport late{bus.transport};
+    bus.master = std::make_unique<Master>(late, bus.config);
+    ASSERT_TRUE(bus.bring_up());
+    bus.run_for(1s);
+    const auto& link = bus.master->bus().link;
+    ASSERT_EQ(recent_stall(link, bus.now), 0ms);
+    bus.now += 1ms;
+    bus.master->receive(bus.now);
+    late.late = 7ms;  // the thread stands between receive and send
+    bus.master->send(bus.now);
+    EXPECT_EQ(recent_stall(link, bus.now), 8ms);
 }
 
 TEST(Sdo, InOpIsAQueuedRequestThatProcessDataDoesNotNotice) {
