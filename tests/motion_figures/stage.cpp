@@ -38,6 +38,7 @@ Stage::Stage(const std::vector<axes::AxisConfig>& configs) {
     for (std::size_t i = 0; i < configs.size(); ++i) {
         drives_.emplace_back(period);
         axes_.emplace_back(configs[i], drives_.back(), period, static_cast<std::uint16_t>(i));
+        oracles_.emplace_back(configs[i], period);
     }
     bind();
     requests_ = axes::DirectRequests{axes_};
@@ -92,7 +93,11 @@ void Stage::cycle() {
     if (before) before(ctx);
     for (const auto& call : calls_) call(ctx);
     axes::plan_axes(axes_, now_, period);
-    for (auto& axis : axes_) axis.encode(now_);
+    for (std::size_t i = 0; i < axes_.size(); ++i) {
+        axes_[i].encode(now_);
+        oracles_[i].observe(axes_[i].view(), axes_[i].drive_command(), axes_[i].config().limits);
+        if (!oracles_[i].clean()) throw std::runtime_error("a figure shows what must not be: " + oracles_[i].report());
+    }
 }
 
 void Stage::note() {

@@ -13,6 +13,7 @@
 #include "fb_library/motion/power.hpp"
 #include "fb_library/motion/stops.hpp"
 #include "tests/axes/axis/fake_drive.hpp"
+#include "tests/axes/axis/motion_oracle.hpp"
 #include "tests/motion_figures/figure.hpp"
 
 namespace taktwerk::figures {
@@ -128,6 +129,7 @@ private:
 
     std::deque<axes::test::FakeDrive> drives_;
     std::vector<axes::Axis> axes_;
+    std::vector<axes::test::MotionOracle> oracles_;
     axes::MotionTables tables_;
     axes::DirectRequests requests_;
     std::vector<fb::MC_Power> powers_;

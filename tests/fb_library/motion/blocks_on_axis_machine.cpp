@@ -38,6 +38,7 @@ TEST_F(JogOnAxis, MovesWhilePressedAndStopsOnRelease) {
     EXPECT_TRUE(jog.Done);
     EXPECT_EQ(plc.velocity(), 0);
     EXPECT_EQ(plc.state(), AxisState::Standstill);
+    EXPECT_GT(plc.oracle.compared(), 500) << "the rig's oracle did not look";
 }
 
 TEST_F(JogOnAxis, ContinuousFollowsVelocityWhileMoving) {

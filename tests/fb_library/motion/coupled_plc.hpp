@@ -24,6 +24,7 @@ public:
         for (std::size_t i = 0; i < count; ++i) {
             drives_.emplace_back(period);
             axes_.emplace_back(config, drives_.back(), period, static_cast<std::uint16_t>(i));
+            oracles_.emplace_back(config, period);
         }
         for (auto& axis : axes_) axis.bind({axes_.data(), axes_.size(), &tables, {}});
         requests_ = axes::DirectRequests{axes_};
@@ -36,6 +37,15 @@ public:
     }
     CoupledPlc(const CoupledPlc&) = delete;
     CoupledPlc& operator=(const CoupledPlc&) = delete;
+    /// Whatever a test is about: what must always hold held.
+    ~CoupledPlc() {
+        bool looked = false;
+        for (const auto& oracle : oracles_) {
+            EXPECT_TRUE(oracle.clean()) << oracle.report();
+            looked = looked || oracle.compared() > 0;
+        }
+        EXPECT_TRUE(looked) << "no oracle compared a motion";
+    }
 
     void scan() {
         now_ += period;
@@ -55,7 +65,10 @@ public:
         for (auto& power : powers_) power(ctx);
         if (program) program(ctx);
         axes::plan_axes(axes_, now_, period);
-        for (auto& axis : axes_) axis.encode(now_);
+        for (std::size_t i = 0; i < axes_.size(); ++i) {
+            axes_[i].encode(now_);
+            oracles_[i].observe(axes_[i].view(), axes_[i].drive_command(), axes_[i].config().limits);
+        }
     }
     Duration run_until(const std::function<bool()>& condition, Duration most) {
         Duration t{};
@@ -75,6 +88,7 @@ public:
 private:
     std::deque<axes::test::FakeDrive> drives_;
     std::vector<axes::Axis> axes_;
+    std::vector<axes::test::MotionOracle> oracles_;
     std::vector<axes::AxisView> seen_;
     std::vector<MC_Power> powers_;
     axes::DirectRequests requests_;

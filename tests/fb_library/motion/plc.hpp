@@ -1,6 +1,8 @@
 #pragma once
 // Blocks on a real axis over a fake drive, in virtual time: scans as a base task runs them. One u is 1000 counts.
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <functional>
 #include <span>
@@ -8,6 +10,7 @@
 #include "axes/axis/direct_requests.hpp"
 #include "fb_library/motion/power.hpp"
 #include "tests/axes/axis/fake_drive.hpp"
+#include "tests/axes/axis/motion_oracle.hpp"
 
 namespace taktwerk::fb {
 
@@ -26,11 +29,16 @@ public:
         return config;
     }
 
-    explicit Plc(const axes::AxisConfig& config = roomy_axis()) : drive(period), axis(config, drive, period), requests_({&axis, 1}) {
+    explicit Plc(const axes::AxisConfig& config = roomy_axis())
+        : drive(period), axis(config, drive, period), oracle(config, period), requests_({&axis, 1}) {
         power.Axis = x;
         power.Enable = true;
         run_until([this] { return power.Status; }, 1s);
     }
+    Plc(const Plc&) = delete;
+    Plc& operator=(const Plc&) = delete;
+    /// Whatever a test is about: what must always hold held.
+    ~Plc() { EXPECT_TRUE(oracle.clean()) << oracle.report(); }
 
     /// One cycle; the program sees the views of its beginning, as copies.
     void scan() {
@@ -50,6 +58,7 @@ public:
         }
         axis.plan(now_, period);
         axis.encode(now_);
+        oracle.observe(axis.view(), axis.drive_command(), axis.config().limits);
     }
     /// The time it took; `most` + 1 period when it did not come true.
     Duration run_until(const std::function<bool()>& condition, Duration most) {
@@ -67,6 +76,7 @@ public:
     static constexpr AxisRef x{0};
     axes::test::FakeDrive drive;
     axes::Axis axis;
+    axes::test::MotionOracle oracle;
     MC_Power power{};
     std::function<void(const MotionContext&)> program;
     bool calls_blocks = true;
