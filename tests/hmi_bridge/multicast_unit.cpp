@@ -70,6 +70,7 @@ std::string in_own_network(const std::function<std::string()>& body) {
     if (::pipe(pipe_ends) != 0) return "no pipe";
     const pid_t child = ::fork();
     if (child == 0) {
+        ::alarm(60);  // what hangs in it ends; the pipe below then closes
         const bool own = (::unshare(CLONE_NEWNET) == 0 || ::unshare(CLONE_NEWUSER | CLONE_NEWNET) == 0) && loopback_up();
         if (!own) ::_exit(not_permitted);
         const auto problem = body();

@@ -20,6 +20,7 @@
 #include "fb_library/all_blocks.hpp"
 #include "hmi_bridge/hmi_bridge.hpp"
 #include "hmi_bridge/runtime_link.hpp"
+#include "tests/patience.hpp"
 #include "tests/runtime/test_machine.hpp"
 #include "tests/runtime/test_program.hpp"
 
@@ -50,7 +51,7 @@ public:
         return ::send(socket_, text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT) == static_cast<ssize_t>(text.size());
     }
     void flood(std::string_view text) const {
-        while (say(text)) {}
+        for (Patience patience{1'000'000}; patience.lasts(say(text));) {}
     }
     [[nodiscard]] std::string hear() const {
         std::string all(1 << 20, '\0');
@@ -268,7 +269,7 @@ const std::vector<Way>& ways() {
              filler.action = runtime::OperatorAction::acknowledge_alarms;
              auto* machine = r.m.machine.get();
              r.each_cycle = [machine, filler] {
-                 while (machine->submit(filler)) {}
+                 for (Patience patience; patience.lasts(machine->submit(filler));) {}
              };
              r.cycles(50);
              c.say(stop_line);

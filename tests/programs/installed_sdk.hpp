@@ -21,7 +21,7 @@ struct Outcome {
 inline Outcome run(const std::string& command) {
     Outcome outcome;
     // The build below is not this one: its flags must not leak in.
-    FILE* pipe = ::popen(("env -u CXXFLAGS -u LDFLAGS -u CPLUS_INCLUDE_PATH -u CPATH " + command + " 2>&1").c_str(), "r");
+    FILE* pipe = ::popen(("timeout 280 env -u CXXFLAGS -u LDFLAGS -u CPLUS_INCLUDE_PATH -u CPATH " + command + " 2>&1").c_str(), "r");
     if (!pipe) return outcome;
     std::array<char, 4096> part{};
     while (const auto n = std::fread(part.data(), 1, part.size(), pipe)) outcome.output.append(part.data(), n);

@@ -7,6 +7,7 @@
 #include "runtime/advance_watch.hpp"
 #include "runtime/end_watch.hpp"
 #include "runtime/inbox_record.hpp"
+#include "tests/patience.hpp"
 #include "tests/runtime/test_machine.hpp"
 #include "tests/runtime/test_program.hpp"
 
@@ -31,7 +32,7 @@ protected:
     void flood() {
         OperatorCommand c;
         c.action = OperatorAction::acknowledge_alarms;
-        while (m.machine->submit(c)) {}
+        for (Patience patience; patience.lasts(m.machine->submit(c));) {}
     }
     void two_cycles() { m.run(2 * m.machine->config().cycle); }
     /// Decelerating towards a stop.

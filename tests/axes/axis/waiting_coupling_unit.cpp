@@ -1,6 +1,7 @@
 // Between the command that couples and the begin of the coupling, and after its end: the axis goes on as it moved, and what waits gets its turn.
 
 #include "tests/axes/axis/coupling_rig.hpp"
+#include "tests/patience.hpp"
 
 namespace taktwerk::axes::test {
 namespace {
@@ -148,7 +149,7 @@ TEST(WaitingCoupling, TheSyncPositionOfACamIsInItsProfile) {
     std::get<CamDetails>(shifted.details).master_offset = 60;
     const auto cam = rig.accept(1, shifted);
     rig.accept(0, at_velocity(20));
-    while (rig.view(0).set_position < 79) {
+    for (Patience patience; patience.lasts(rig.view(0).set_position < 79);) {
         rig.step();
         const double master = rig.view(0).set_position;
         ASSERT_EQ(rig.status(1, cam) == CommandStatus::in_target, master >= 70) << master;
@@ -168,7 +169,7 @@ TEST(WaitingCoupling, TheSyncPositionOfACamIsInItsProfile) {
     const auto follow = relative.accept(1, cam_from(select(relative, 1, other, false, false), 5, 10));
     relative.accept(0, at_velocity(5));
     const auto& curve = *relative.tables.prepared(relative.view(1).selected_cam);
-    while (relative.view(0).set_position < 69) {
+    for (Patience patience; patience.lasts(relative.view(0).set_position < 69);) {
         relative.step();
         const double master = relative.view(0).set_position;
         ASSERT_EQ(relative.status(1, follow) == CommandStatus::in_target, master >= 60) << master;
@@ -268,7 +269,7 @@ TEST(WaitingCoupling, ABufferedPhasingWaitsForItsCoupling) {
     slow.acceleration = 100;  // 0.4 s
     const auto gear = rig.accept(1, slow);
     const auto shift = rig.accept(1, phasing(CommandKind::phasing_absolute, 3, 10, mcBuffered));
-    while (rig.status(1, gear) != CommandStatus::in_target) {
+    for (Patience patience; patience.lasts(rig.status(1, gear) != CommandStatus::in_target);) {
         ASSERT_EQ(rig.status(1, shift), CommandStatus::queued);
         ASSERT_EQ(rig.view(1).phase_shift, 0);
         rig.step();
@@ -326,7 +327,7 @@ TEST(BufferedBehindPower, BeginsWithStatus) {
     const auto first = rig.accept(absolute(5, 50, mcBuffered));
     const auto second = rig.accept(relative(3, 50, mcBuffered));
     EXPECT_EQ(rig.status(first), CommandStatus::queued);
-    while (!rig.view().powered) {
+    for (Patience patience; patience.lasts(!rig.view().powered);) {
         ASSERT_EQ(rig.status(first), CommandStatus::queued);
         ASSERT_EQ(rig.view().set_velocity, 0);
         rig.step();

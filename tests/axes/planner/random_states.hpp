@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <ostream>
+#include <stdexcept>
 
 #include "axes/planner/setting.hpp"
 #include "tests/axes/planner/random_motion.hpp"
@@ -38,15 +39,17 @@ public:
 
     /// The target is one at which a motion inside the limits can arrive; the start is anything.
     StateCase next() {
-        for (;;) {
-            StateCase c = draw();
-            const FrameLimits back = frame_limits(c.limits).reversed().mirrored();
-            const double a = back.jerk_free() ? 0 : c.target.acceleration;
-            if (keeps_limits(c.target.velocity, -a, back, 0) && is_inside(c.target.velocity, -c.target.acceleration, back, 0)) return c;
-        }
+        for (int draws = 0; draws < 100'000; ++draws)
+            if (StateCase c = draw(); can_arrive(c)) return c;
+        throw std::logic_error{"no target of 100,000 at which a motion inside the limits can arrive"};
     }
 
 private:
+    static bool can_arrive(const StateCase& c) {
+        const FrameLimits back = frame_limits(c.limits).reversed().mirrored();
+        const double a = back.jerk_free() ? 0 : c.target.acceleration;
+        return keeps_limits(c.target.velocity, -a, back, 0) && is_inside(c.target.velocity, -c.target.acceleration, back, 0);
+    }
     StateCase draw() {
         const double length = random_.decades(-6, 9);
         const double time = random_.decades(-3, 3);

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -75,9 +76,13 @@ public:
             if ((waits[1].revents & POLLIN) != 0) continue;  // until all is read
             int status = 0;
             if ((waits[1].revents & POLLHUP) != 0 && ::waitpid(child, &status, 0) == child) {
-                ran.status = WEXITSTATUS(status);
+                ran.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
                 break;
             }
+        }
+        if (started && ran.status < 0) {
+            ::kill(child, SIGKILL);
+            ::waitpid(child, nullptr, 0);
         }
         ::close(pipe[0]);
         return ran;
