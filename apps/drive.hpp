@@ -35,6 +35,31 @@ struct Written {
 /// Prints it as the options want; returns the exit code.
 int report_written(const BusOptions& options, const DriveAccess& drive, const Written& written);
 
+/// A setting that is not in a set or not compared, and why.
+struct LeftOut {
+    const axes::DriveParameter* parameter = nullptr;
+    std::string why;
+};
+enum class Kept : std::uint8_t { all, unlike_factory };
+/// What `save` keeps: settings that `restore` and `diff` take back. A drive shows values which its own manual does not allow (SE-808X 2000h:07
+/// reads 0, least is 1), and some cannot be read: those are left out, and the file says so.
+struct KeptSettings {
+    config::ParameterSet set;
+    std::vector<LeftOut> left_out;
+};
+/// Errors: those of the way to the drive; half a set is none.
+[[nodiscard]] Result<KeptSettings> kept_settings(DriveAccess& drive, Kept kept);
+[[nodiscard]] std::string text_of(const KeptSettings& settings);
+
+struct SetDifference {
+    std::vector<Change> changes;    ///< from the set to the drive
+    std::vector<LeftOut> left_out;  ///< the drive does not let read them (SE-808X 6098h)
+    std::size_t not_stated = 0;     ///< against the factory: what its manual does not state, nobody can compare
+};
+/// Errors: those of the way to the drive.
+[[nodiscard]] Result<SetDifference> difference_from(DriveAccess& drive, const config::ParameterSet& set);
+[[nodiscard]] Result<SetDifference> difference_from_factory(DriveAccess& drive);
+
 /// A table of parameters; `values` empty or as many as parameters.
 [[nodiscard]] std::string params_text(const std::vector<const axes::DriveParameter*>& parameters,
                                       const std::vector<std::optional<std::int64_t>>& values, Colours colours);

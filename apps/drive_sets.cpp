@@ -20,48 +20,40 @@ struct Options {
     bool all = false;
 };
 
-/// Every setting that the drive answers. What it does not have is left out and counted.
-struct Present {
-    ParameterSet set;
-    std::vector<std::string> missing;
-};
-
-Present read_all(DriveAccess& drive) {
-    Present out;
-    out.set.drive = drive.profile().name;
-    out.set.comment = fmt::format("{} on {}", drive.subject(), drive.where());
-    for (const auto& parameter : drive.profile().parameters) {
-        if (!axes::is_setting(parameter)) continue;
-        if (const auto raw = drive.read(parameter)) out.set.values.push_back({&parameter, *raw});
-        else out.missing.push_back(axes::name_of(parameter));
-    }
-    return out;
+void print_left_out(const std::vector<LeftOut>& left_out) {
+    if (left_out.empty()) return;
+    fmt::print(stderr, "{} left out:\n", left_out.size() == 1 ? "1 parameter is" : count_text(left_out.size(), "parameter") + " are");
+    for (const auto& out : left_out)
+        fmt::print(stderr, "  {} ({}): {}\n", axes::name_of(*out.parameter), out.parameter->name, out.why);
 }
 
-void print_missing(const std::vector<std::string>& missing) {
-    if (missing.empty()) return;
-    std::string names;
-    for (std::size_t i = 0; i < missing.size() && i < 8; ++i) names += (i ? ", " : "") + missing[i];
-    fmt::print(stderr, "{} did not answer and {} left out: {}{}\n", count_text(missing.size(), "parameter"),
-               missing.size() == 1 ? "is" : "are", names, missing.size() > 8 ? ", ..." : "");
+Json left_out_json(const std::vector<LeftOut>& left_out) {
+    auto out = Json::array();
+    for (const auto& one : left_out) out.push_back(Json{{"parameter", axes::name_of(*one.parameter)}, {"why", one.why}});
+    return out;
 }
 
 int save(const Options& options) {
     return with_drive(*options.drive, [&](DriveAccess& drive) {
-        auto present = read_all(drive);
-        if (!options.all)
-            std::erase_if(present.set.values, [](const auto& value) { return value.parameter->is_stated_factory(value.raw); });
+        const auto read = kept_settings(drive, options.all ? Kept::all : Kept::unlike_factory);
+        if (!read) return fail(*options.drive->bus, read.error());
+        const auto& kept = *read;
         std::ofstream file(options.file);
         file << (options.all ? "# All settings.\n"
                              : "# Settings that differ from the factory value in the drive's manual, and all of which it prints none; "
                                "--all saves every one.\n")
-             << config::text_of(present.set);
+             << text_of(kept);
         file.close();
         if (!file) return fail(*options.drive->bus, Error{"capture.write", options.file, "cannot be written", "choose another file"});
-        print_missing(present.missing);
-        if (options.drive->bus->json)
-            print_json(Json{{"ok", true}, {"file", options.file}, {"values", present.set.values.size()}, {"missing", present.missing}});
-        else fmt::print("{}: {} in {}\n", drive.subject(), count_text(present.set.values.size(), "value"), options.file);
+        if (options.drive->bus->json) {
+            print_json(Json{{"ok", true},
+                            {"file", options.file},
+                            {"values", kept.set.values.size()},
+                            {"left_out", left_out_json(kept.left_out)}});
+        } else {
+            print_left_out(kept.left_out);
+            fmt::print("{}: {} in {}\n", drive.subject(), count_text(kept.set.values.size(), "value"), options.file);
+        }
         return static_cast<int>(exit_ok);
     });
 }
@@ -87,40 +79,35 @@ int restore(const Options& options) {
     });
 }
 
-/// Against a file, or against the factory's values.
+int print_difference(const Options& options, const DriveAccess& drive, const SetDifference& difference) {
+    const auto& changes = difference.changes;
+    if (options.drive->bus->json) {
+        auto json = Json{{"drive", drive.subject()},
+                         {"same", changes.empty()},
+                         {"not_compared", difference.not_stated + difference.left_out.size()},
+                         {"differences", Json::array()}};
+        for (const auto& change : changes) json["differences"].push_back(change_json(change));
+        if (!difference.left_out.empty()) json["left_out"] = left_out_json(difference.left_out);
+        print_json(json);
+        return exit_ok;
+    }
+    const auto other = options.file.empty() ? std::string("the factory's values, as far as the manual states them") : options.file;
+    print_left_out(difference.left_out);
+    if (changes.empty()) fmt::print("{}: as {}\n", drive.subject(), other);
+    else
+        fmt::print("{}: {} from {} (was) to the drive (is)\n{}", drive.subject(), count_text(changes.size(), "difference"), other,
+                   changes_text(changes, colours_of_output()));
+    if (difference.not_stated > 0)
+        fmt::print("{} not compared: the manual states no factory value\n", count_text(difference.not_stated, "parameter"));
+    return exit_ok;
+}
+
 int diff(const Options& options) {
-    const auto& bus = *options.drive->bus;
     return with_drive(*options.drive, [&](DriveAccess& drive) {
-        std::vector<Change> changes;
-        std::size_t unknown = 0;  // whether they are as the factory left them, nobody can say
-        if (options.file.empty()) {
-            for (const auto& value : read_all(drive).set.values) {
-                if (value.parameter->factory != axes::FactoryValue::stated) ++unknown;
-                else if (value.raw != value.parameter->value) changes.push_back({value.parameter, value.parameter->value, value.raw});
-            }
-        } else {
-            const auto read = config::read_parameter_set(options.file, drive.profile());
-            if (const auto* errors = std::get_if<std::vector<Error>>(&read)) return bad_file(options, *errors);
-            for (const auto& value : std::get<ParameterSet>(read).values) {
-                const auto now = drive.read(*value.parameter);
-                if (!now) return fail(bus, now.error());
-                if (*now != value.raw) changes.push_back({value.parameter, value.raw, *now});
-            }
-        }
-        if (bus.json) {
-            auto json =
-                Json{{"drive", drive.subject()}, {"same", changes.empty()}, {"not_compared", unknown}, {"differences", Json::array()}};
-            for (const auto& change : changes) json["differences"].push_back(change_json(change));
-            print_json(json);
-        } else {
-            const auto other = options.file.empty() ? std::string("the factory's values, as far as the manual states them") : options.file;
-            if (changes.empty()) fmt::print("{}: as {}\n", drive.subject(), other);
-            else
-                fmt::print("{}: {} from {} (was) to the drive (is)\n{}", drive.subject(), count_text(changes.size(), "difference"), other,
-                           changes_text(changes, colours_of_output()));
-            if (unknown > 0) fmt::print("{} not compared: the manual states no factory value\n", count_text(unknown, "parameter"));
-        }
-        return static_cast<int>(exit_ok);
+        const auto read = options.file.empty() ? std::variant<ParameterSet, std::vector<Error>>{} : config::read_parameter_set(options.file, drive.profile());
+        if (const auto* errors = std::get_if<std::vector<Error>>(&read)) return bad_file(options, *errors);
+        const auto found = options.file.empty() ? difference_from_factory(drive) : difference_from(drive, std::get<ParameterSet>(read));
+        return found ? print_difference(options, drive, *found) : fail(*options.drive->bus, found.error());
     });
 }
 

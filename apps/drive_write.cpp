@@ -58,6 +58,9 @@ private:
             if (now && *now == value.raw && !stores_each()) continue;
             wanted_.push_back({value.parameter, now ? std::optional{*now} : std::nullopt, value.raw});
         }
+        // A set holds the storage switch among the others: written in its place it would decide what becomes of those behind it.
+        std::stable_partition(wanted_.begin(), wanted_.end(),
+                              [&](const Change& change) { return change.parameter->address != profile_.storage_switch; });
     }
 
     bool may_store() {
@@ -116,12 +119,13 @@ private:
                        "{} was {}: now 0, so that these writes do not wear the EEPROM. They are lost at power off; --store keeps them.",
                        axes::name_of(*sw), *now));
         else if (storing_ == Storing::volatile_only) out_.notes.emplace_back(lost_at_power_off);
-        if (storing_ == Storing::asked && *now == 0) {
+        // Values between store a part only (SV33-E P05.10 = 1: the 2000h, 2: the 6000h).
+        if (storing_ == Storing::asked && *now != sw->value) {
             // Who writes the switch itself decides how it stays.
             const bool meant = std::any_of(wanted_.begin(), wanted_.end(), [&](const Change& change) { return change.parameter == sw; });
-            if (!meant) switched_ = sw;  // before the write: a drive may have taken what it did not answer
-            set(sw->value, fmt::format("{} was 0: {} while these values are stored{}", axes::name_of(*sw), sw->value,
-                                       meant ? "." : ", then 0 again."));
+            if (!meant) switched_ = sw, switched_from_ = *now;  // before the write: a drive may have taken what it did not answer
+            set(sw->value, fmt::format("{} was {}: {} while these values are stored{}", axes::name_of(*sw), *now, sw->value,
+                                       meant ? std::string(".") : fmt::format(", then {} again.", *now)));
         }
     }
 
@@ -140,8 +144,7 @@ private:
             return;
         }
         ++written_;
-        if (change.parameter->waits_for_restart())
-            out_.notes.push_back(fmt::format("{} counts after the drive's next restart.", axes::name_of(*change.parameter)));
+        if (change.parameter->waits_for_restart() && change.from != change.to) late_.push_back(axes::name_of(*change.parameter));
         if (stores_each()) drive_.wait(between_stored_writes);
     }
 
@@ -149,17 +152,29 @@ private:
     void put_back() {
         if (!switched_) return;
         drive_.finish_undisturbed();
-        const auto done = drive_.write(*switched_, 0, Storing::volatile_only);
+        const auto done = drive_.write(*switched_, switched_from_, Storing::volatile_only);
         if (done) return;
         const auto name = axes::name_of(*switched_);
         out_.notes.push_back(
-            fmt::format("{} may still be {}: it could not be set back to 0 ({}). Until it is, every write wears the EEPROM: "
-                        "taktwerk drive set {} {}=0",
-                        name, switched_->value, done.error().what, drive_.word(), name));
+            fmt::format("{} may still be {}: it could not be set back to {} ({}). Until it is, every write wears the EEPROM: "
+                        "taktwerk drive set {} {}={}",
+                        name, switched_->value, switched_from_, done.error().what, drive_.word(), name, switched_from_));
         if (!out_.error) out_.error = done.error();
     }
 
+    /// One line, however many they are.
+    void tell_late() {
+        if (late_.empty()) return;
+        constexpr std::size_t named = 8;
+        std::string names;
+        for (std::size_t i = 0; i < std::min(late_.size(), named); ++i) names += (i ? ", " : "") + late_[i];
+        if (late_.size() > named) names += fmt::format(" and {} others", late_.size() - named);
+        out_.notes.push_back(
+            fmt::format("{} {} after the drive's next restart: switch it off and on.", names, late_.size() == 1 ? "counts" : "count"));
+    }
+
     void finish() {
+        tell_late();
         if (stores_each()) {
             out_.notes.push_back(fmt::format("{} stored in the EEPROM.", written_ == wanted_.size()
                                                                              ? count_text(written_, "value")
@@ -180,7 +195,9 @@ private:
     Storing storing_;
     std::vector<Change> wanted_;
     std::size_t written_ = 0;
+    std::vector<std::string> late_;  ///< names of what does not count yet
     const DriveParameter* switched_ = nullptr;
+    std::int64_t switched_from_ = 0;
     Written out_;
 };
 

@@ -243,7 +243,7 @@ Table<ObjectRow> object_table() {
                 "change", [parameter](R & r) -> auto& { return parameter(r).change; }, parameter_change(), "when the drive takes a write"),
             field_at<R>(
                 "action", [parameter](R & r) -> auto& { return parameter(r).action; }, boolean(),
-                "writing it does something (store, restore, clear turns): never part of a saved set"),
+                "writing it does something (store, restore, clear turns), or nothing (a filler): never part of a saved set"),
             field_at<R>(
                 "section", [parameter](R & r) -> auto& { return parameter(r).section; }, text(), "of the manual"),
         },

@@ -112,6 +112,16 @@ TEST(DriveWrite, StoringSwitchesOnStoresAndSwitchesOffAgain) {
     EXPECT_THAT(written.notes, Contains(HasSubstr("1 value stored")));
 }
 
+// SV33-E 7.2: P05.10 = 1 stores the 2000h only, 2 the 6000h only; 3, as delivered, both. The fake drive as delivered has 1, so 2 is "a part".
+TEST(DriveWrite, ASwitchThatStoresAPartOnlyIsSetForTheWriting) {
+    FakeDrive drive{ParameterStorage::each_write};
+    drive.ram[store_switch.sub] = 2;
+    const auto written = write_values(drive, {drive.value(brake_release, 300)}, Storing::asked);
+    EXPECT_FALSE(written.error);
+    EXPECT_THAT(written.notes, Contains(HasSubstr("P05.10 was 2: 1 while these values are stored, then 2 again")));
+    EXPECT_EQ(drive.ram[store_switch.sub], 2);
+}
+
 TEST(DriveWrite, AValueThatIsInForceButWasNeverStoredIsStored) {
     FakeDrive each{ParameterStorage::each_write};
     each.ram[store_switch.sub] = 0;
@@ -193,6 +203,44 @@ TEST(DriveWrite, WhoWritesTheSwitchItselfDecidesHowItStays) {
     EXPECT_FALSE(written.error);
     EXPECT_EQ(drive.ram[store_switch.sub], 1);
     EXPECT_THAT(written.notes, Not(Contains(HasSubstr("then 0 again"))));
+}
+
+// A set that `save` took from a running machine holds P05.10 = 0, in the midst of the others: those behind it are stored all the same.
+TEST(DriveWrite, ASetThatSwitchesStoringOffIsStoredAsAWhole) {
+    for (const std::int64_t before : {0, 1}) {
+        FakeDrive drive{ParameterStorage::each_write};
+        drive.ram[store_switch.sub] = before;
+        const auto written = write_values(
+            drive, {drive.value(brake_hold, 200), drive.value(store_switch, 0), drive.value(brake_release, 300)}, Storing::asked);
+        EXPECT_FALSE(written.error);
+        EXPECT_EQ(drive.eeprom[brake_hold.sub], 200) << before;
+        EXPECT_EQ(drive.eeprom[brake_release.sub], 300) << before;
+        EXPECT_EQ(drive.ram[store_switch.sub], 0) << before;
+        EXPECT_THAT(written.notes, Contains(HasSubstr("3 values stored in the EEPROM"))) << before;
+    }
+}
+
+// The other way round: a set from a drive as delivered holds P05.10 = 1, and nobody asked to store.
+TEST(DriveWrite, ASetThatSwitchesStoringOnStoresNothingUnasked) {
+    FakeDrive drive{ParameterStorage::each_write};
+    drive.ram[store_switch.sub] = 0;
+    const auto written = write_values(drive, {drive.value(store_switch, 1), drive.value(brake_release, 300)}, Storing::volatile_only);
+    EXPECT_FALSE(written.error);
+    EXPECT_EQ(drive.eeprom[brake_release.sub], 250);
+    EXPECT_EQ(drive.ram[brake_release.sub], 300);
+    EXPECT_EQ(drive.ram[store_switch.sub], 1);
+}
+
+// Half a set is none: a cable that fails while it is read is an error, not a parameter that the drive does not have.
+TEST(KeptSettings, AreAllOrAnError) {
+    FakeDrive drive{ParameterStorage::each_write};
+    ASSERT_TRUE(kept_settings(drive, Kept::all));
+    drive.accesses = 0, drive.fails_at = 3;
+    const auto kept = kept_settings(drive, Kept::all);
+    ASSERT_FALSE(kept);
+    EXPECT_EQ(kept.error().code, "bus.interrupted");
+    drive.accesses = 0;
+    EXPECT_FALSE(difference_from_factory(drive));
 }
 
 }  // namespace
