@@ -136,6 +136,10 @@ Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::strin
             if (answer.error == axes::ErrorId::interlocked) {
                 error.what = "the emergency stop is pressed, or its circuit is open";
                 error.remedy = "Release it when nobody is in danger, reset, then give the command again.";
+            } else if (kind == CommandKind::program_start && answer.error == axes::ErrorId::in_error_stop) {
+                error.what = "an emergency stop is not reset yet: its alarm waits, or an axis is still in ErrorStop by it, and a start given "
+                             "now would leave the motion to whoever resets later";
+                error.remedy = "When nobody is in danger: `taktwerk reset --wait`, then start again.";
             } else if (kind == CommandKind::set_output) {
                 error.what = "a program is running, and it drives the outputs";
                 error.remedy = "Stop the programs first.";

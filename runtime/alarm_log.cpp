@@ -72,10 +72,23 @@ void AlarmLog::end_cycle(Instant now) noexcept {
 }
 
 void AlarmLog::acknowledge() noexcept {
-    for (std::size_t i = 0; i < count_; ++i) {
-        alarms_[i].acknowledged = true;
-        rules_[i].cleared = rules_[i].cleared || (!alarms_[i].standing && rules_[i].reset == ResetRule::acknowledge);
-    }
+    for (std::size_t i = 0; i < count_; ++i) acknowledge_at(i);
+}
+
+void AlarmLog::acknowledge(AlarmId id) noexcept {
+    for (std::size_t i = 0; i < count_; ++i)
+        if (alarms_[i].fact.id == id) acknowledge_at(i);
+}
+
+void AlarmLog::acknowledge_at(std::size_t index) noexcept {
+    alarms_[index].acknowledged = true;
+    rules_[index].cleared = rules_[index].cleared || (!alarms_[index].standing && rules_[index].reset == ResetRule::acknowledge);
+}
+
+bool AlarmLog::lists(AlarmId id) const noexcept {
+    for (const auto& alarm : alarms())
+        if (alarm.fact.id == id) return true;
+    return false;
 }
 
 void AlarmLog::reset() noexcept {

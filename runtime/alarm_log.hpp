@@ -28,6 +28,9 @@ public:
     /// Marks all as seen; those whose rule is `acknowledge` and that do not hold any more go. One that still holds needs another
     /// acknowledgement when it is over.
     void acknowledge() noexcept;
+    /// The same for one alarm of the machine.
+    void acknowledge(AlarmId id) noexcept;
+    [[nodiscard]] bool lists(AlarmId id) const noexcept;
     /// Acknowledges; and what needs a reset and does not hold any more goes. `restart` stays.
     void reset() noexcept;
 
@@ -43,6 +46,7 @@ private:
         ResetRule reset;
         bool raised, cleared;  // cleared: by the person its rule asks for, after it held
     };
+    void acknowledge_at(std::size_t index) noexcept;
     bool make_room(Reaction reaction) noexcept;
     void remove(std::size_t index) noexcept;
 

@@ -23,16 +23,17 @@ enum class MachineAlarm : AlarmId {
     base_task_overrun = 0x6010,
     axis_of_two_programs = 0x6011,
     undeclared_use = 0x6012,
+    start_withdrawn = 0x6013,
 };
 /// First number of emergency_stop: nobody pressed it, the slave with its input is not exchanged.
 inline constexpr double emergency_stop_unread = 1;
 
 [[nodiscard]] constexpr AlarmId id(MachineAlarm alarm) noexcept { return static_cast<AlarmId>(alarm); }
 
-inline constexpr std::array<AlarmInfo, 14> machine_alarms{{
+inline constexpr std::array<AlarmInfo, 15> machine_alarms{{
     {id(MachineAlarm::emergency_stop), "emergency_stop", "Emergency stop: the axes stop along their ramps, then power goes off",
      "急停:各轴沿减速斜坡停止,随后断开动力", "The emergency stop button is pressed, or its circuit is open",
-     "Release the button, acknowledge, then enable again", ResetRule::acknowledge, Reaction::power_off,
+     "Release the button, `taktwerk reset`, then enable again or `taktwerk start`", ResetRule::acknowledge, Reaction::power_off,
      "The safety circuit acts on the drives by hardware (STO); this software is not part of it"},
     {id(MachineAlarm::cycle_overrun), "cycle_overrun", "{a} cycles in a row came too late (limit {b})", "连续 {a} 个周期超时(上限 {b})",
      "The computer does not keep up: another process, power saving, or too short a cycle",
@@ -101,7 +102,8 @@ inline constexpr std::array<AlarmInfo, 14> machine_alarms{{
      "After the emergency stop the program waits: its axes get no power",
      "急停之后程序处于等待状态:其轴不通电",
      "An emergency stop was pressed while it ran, and a release alone switches nothing on",
-     "When nobody is in danger: `taktwerk reset`, then `taktwerk start`, or the button of `emergency_stop.restart`",
+     "When nobody is in danger: `taktwerk reset`, then `taktwerk start`, or the button of `emergency_stop.restart` (its first press "
+     "resets, the next one starts)",
      ResetRule::self_clearing,
      Reaction::warn,
      {}},
@@ -137,6 +139,15 @@ inline constexpr std::array<AlarmInfo, 14> machine_alarms{{
      "A handle was given no value in declare(): its line was forgotten, or another member is used than was declared",
      "Declare it (d.input, d.output, d.parameter) in the program, then build and start it again",
      ResetRule::self_clearing,
+     Reaction::warn,
+     {}},
+    {id(MachineAlarm::start_withdrawn),
+     "start_withdrawn",
+     "The program was not started: a stop was given while it was still starting",
+     "程序未启动:启动过程中收到停止命令",
+     "Its start was given first (or it starts by itself), and what was given before a stop moves nothing behind it",
+     "When nobody is in danger: `taktwerk reset`, then `taktwerk start`",
+     ResetRule::acknowledge,
      Reaction::warn,
      {}},
 }};

@@ -112,6 +112,7 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, const std
     outputs_by_hand.resize(io.outputs().size());
     requests = WatchedRequests{axes};
     axis_claims.resize(axes.size());
+    start_after.resize(config.programs.size());
     for (std::size_t p = 0; p < config.programs.size(); ++p)
         program_requests.emplace_back(requests, axis_claims, static_cast<std::uint16_t>(p));
     if (!config.emergency_stop.input.empty()) {
@@ -204,7 +205,7 @@ Result<void> Machine::Impl::arm() {
     for (auto& axis : axes) axis.set_mode(operating);
     if (mode == Mode::automatic)
         for (std::size_t p = 0; p < config.programs.size(); ++p)
-            if (config.programs[p].autostart) (void)start_program(p);
+            if (config.programs[p].autostart) (void)start_program(p, 0);
     phase.store(MachinePhase::running, std::memory_order_release);
     armed.store(true, std::memory_order_release);
     return {};

@@ -64,9 +64,10 @@ void Machine::Impl::take_levels(Instant at) noexcept {
             shutdown_taken = true;
             return;
         }
-        if (!armed.load(std::memory_order_relaxed)) return;  // nothing moves yet
+        const bool moves = armed.load(std::memory_order_relaxed);  // before that nothing does; a program that starts by itself shall not then
         for (std::size_t i = axis == all ? 0 : axis; i < (axis == all ? axes.size() : axis + std::size_t{1}); ++i) {
             stopped_at[i] = std::max(stopped_at[i], number);
+            if (!moves) continue;
             // A program's axis was never jogged: that press was refused.
             const bool spared = what == StopLevel::release_jog && axes[i].view().owner == Owner::program;
             if (!config.axes[i].axis.disabled && !spared) (void)stop(i);
@@ -74,8 +75,17 @@ void Machine::Impl::take_levels(Instant at) noexcept {
     });
 }
 
-/// Given before a stop of its axis, and only now at its turn: it must not start what that stop has ended.
+std::uint64_t Machine::Impl::stopped_axes_of(std::size_t program) const noexcept {
+    std::uint64_t newest = 0;
+    for (std::size_t i = 0; i < stopped_at.size(); ++i)
+        if (host->uses(program, i)) newest = std::max(newest, stopped_at[i]);
+    return newest;
+}
+
+/// Given before a stop of its axis (a program: of one of its axes), and only now at its turn: it must not start what that stop has ended.
 bool Machine::Impl::overtaken(const OperatorCommand& command) const noexcept {
+    if (command.action == OperatorAction::program_start)
+        return command.index < program_states.size() && command.after < stopped_axes_of(command.index);
     const bool starts_motion = command.action == OperatorAction::home || command.action == OperatorAction::move_absolute ||
                                (command.action == OperatorAction::jog && command.value != 0);
     return starts_motion && command.axis < stopped_at.size() && command.after < stopped_at[command.axis];

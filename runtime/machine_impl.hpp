@@ -59,6 +59,8 @@ struct Machine::Impl {
     // machine_commands.cpp, machine_programs.cpp
     void take_levels(Instant now) noexcept;
     void drain_inbox(Instant now) noexcept;
+    /// The newest stop of an axis that the program has declared; 0: none.
+    [[nodiscard]] std::uint64_t stopped_axes_of(std::size_t program) const noexcept;
     [[nodiscard]] bool overtaken(const OperatorCommand& command) const noexcept;
     void answer(const OperatorCommand& command, Answer answer, axes::ErrorId error = axes::ErrorId::none) noexcept;
     void tell_limit(const OperatorCommand& command, CommandAnswer& reply) const noexcept;
@@ -77,7 +79,8 @@ struct Machine::Impl {
     Verdict stop(std::size_t axis) noexcept;
     void reset_machine() noexcept;
     void set_mode(Mode wanted) noexcept;
-    [[nodiscard]] bool start_program(std::size_t program) noexcept;
+    /// `after`: OperatorCommand::after; 0 where it starts by itself.
+    [[nodiscard]] bool start_program(std::size_t program, std::uint64_t after) noexcept;
     void stop_program(std::size_t program, ProgramState state) noexcept;
     void end_motion(std::size_t axis) noexcept;
     [[nodiscard]] bool start_pending(std::size_t program) const noexcept;
@@ -94,6 +97,10 @@ struct Machine::Impl {
     void supervise(Instant now, const CycleTick& tick) noexcept;
     void watch_emergency_stop() noexcept;
     void watch_restart() noexcept;
+    void reset_after_emergency() noexcept;
+    [[nodiscard]] bool stopped_by_emergency(std::size_t axis) const noexcept;
+    /// An axis is in ErrorStop by an emergency stop that is over: whoever lets a program go on now would leave the motion to the reset.
+    [[nodiscard]] bool axes_to_reset() const noexcept;
     void watch_cycle(const CycleTick& tick) noexcept;
     void blame_base_task(const CycleTick& tick) noexcept;
     void watch_programs() noexcept;
@@ -143,7 +150,9 @@ struct Machine::Impl {
     WatchedRequests requests;                       // of operators; of programs through theirs
     std::vector<AxisClaims> axis_claims;            // per axis
     std::vector<ProgramRequests> program_requests;  // per program
+    std::vector<std::uint64_t> start_after;         // per program: stop levels raised when its start was given; 0: it starts by itself
     bool restart_pressed = true;                    // the last level of its input: only a rising edge counts
+    Instant restart_deaf_until{};                   // the press that resets may bounce, and must not be taken for the next one
     std::unique_ptr<ProgramHost> host;
     std::unique_ptr<ObjectRequests> objects;
     std::unique_ptr<PositionKeeper> positions;  // nullptr: nothing is kept

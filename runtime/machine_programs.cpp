@@ -17,12 +17,13 @@ Machine::Impl::Verdict Machine::Impl::execute_program(const OperatorCommand& com
         case OperatorAction::program_start:
             if (mode != Mode::automatic) return {Answer::wrong_mode};
             if (emergency) return {Answer::not_possible_now, ErrorId::interlocked};
+            if (log.lists(id(MachineAlarm::emergency_stop)) || axes_to_reset()) return {Answer::not_possible_now, ErrorId::in_error_stop};
             if (state == ProgramState::running) {
                 program_requests[command.index].go_on();
                 return {};
             }
             if (state == ProgramState::fault) return {Answer::not_possible_now};
-            if (!start_program(command.index)) return {Answer::not_possible_now};  // its stop() is still to come
+            if (!start_program(command.index, command.after)) return {Answer::not_possible_now};  // its stop() is still to come
             program_requests[command.index].go_on();
             return {};
         case OperatorAction::program_stop:
@@ -39,7 +40,8 @@ bool Machine::Impl::start_pending(std::size_t program) const noexcept {
     return asked == Handshake::start_asked || asked == Handshake::started;
 }
 
-bool Machine::Impl::start_program(std::size_t program) noexcept {
+bool Machine::Impl::start_program(std::size_t program, std::uint64_t after) noexcept {
+    start_after[program] = after;
     auto expected = Handshake::none;
     return handshakes[program].compare_exchange_strong(expected, Handshake::start_asked, std::memory_order_release) ||
            expected == Handshake::start_asked || expected == Handshake::started;

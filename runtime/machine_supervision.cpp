@@ -16,6 +16,8 @@ namespace {
 constexpr Duration late_wakeups_shown = std::chrono::seconds{1};
 /// The same for a base task that computes too long: one in a hundred cycles is one alarm, too.
 constexpr Duration long_task_shown = std::chrono::seconds{5};
+/// After a press that resets: its contact may bounce, and nobody means a start so soon after it.
+constexpr Duration button_bounce = std::chrono::milliseconds{500};
 
 }  // namespace
 
@@ -45,16 +47,39 @@ void Machine::Impl::watch_emergency_stop() noexcept {
     watch_restart();
 }
 
-// After the release a person lets programs go on: by a start of each, or by this input, which wants a new edge.
+bool Machine::Impl::stopped_by_emergency(std::size_t axis) const noexcept {
+    if (axes[axis].view().state != axes::AxisState::ErrorStop) return false;
+    for (const auto& fact : axes[axis].active_alarms())
+        if (fact.id == axes::id(axes::AxisAlarm::emergency_stop)) return true;
+    return false;
+}
+
+bool Machine::Impl::axes_to_reset() const noexcept {
+    for (std::size_t i = 0; i < axes.size(); ++i)
+        if (stopped_by_emergency(i)) return true;
+    return false;
+}
+
+// After the release a person lets programs go on: by a start of each, or by this input, which wants a new edge. Where an axis is still to be
+// reset a press resets and starts nothing (IEC 60204-1, 9.2.5.4.2: the reset only permits a restart); the start is another press.
 void Machine::Impl::watch_restart() noexcept {
     const bool pressed = restart_input >= 0 && io.inputs()[static_cast<std::size_t>(restart_input)] != 0;
-    const bool wanted = pressed && !restart_pressed && !emergency;
+    const bool wanted = pressed && !restart_pressed && !emergency && now >= restart_deaf_until;
     restart_pressed = pressed;
+    const bool resets = wanted && axes_to_reset();
+    if (resets) reset_after_emergency();
+    if (wanted) log.acknowledge(id(MachineAlarm::emergency_stop));
     for (std::size_t p = 0; p < program_requests.size(); ++p) {
-        if (wanted) program_requests[p].go_on();
+        if (wanted && !resets) program_requests[p].go_on();
         if (!emergency && program_requests[p].held() && program_states[p] == ProgramState::running)
             raise(MachineAlarm::program_waits, AlarmSource::program, static_cast<std::uint16_t>(p), 0, 0);
     }
+}
+
+void Machine::Impl::reset_after_emergency() noexcept {
+    restart_deaf_until = now + button_bounce;
+    for (std::size_t i = 0; i < axes.size(); ++i)
+        if (stopped_by_emergency(i)) (void)requests.reset(axes::AxisRef{static_cast<std::uint16_t>(i)}, axes::Owner::operator_panel);
 }
 
 // A cycle that comes late behind one that went past its own end, with a base task taking most of that time, is late by that task and

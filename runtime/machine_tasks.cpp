@@ -86,6 +86,11 @@ void Machine::Impl::run_slow_releases() noexcept {
 void Machine::Impl::take_handshakes() noexcept {
     for (std::size_t p = 0; p < program_states.size(); ++p) {
         auto expected = Handshake::started;
+        // Its start() may have taken any time: what was given before a stop moves nothing behind it, a program neither.
+        if (handshakes[p].load(std::memory_order_acquire) == Handshake::started && start_after[p] < stopped_axes_of(p)) {
+            stop_program(p, ProgramState::stopped);
+            raise(MachineAlarm::start_withdrawn, AlarmSource::program, static_cast<std::uint16_t>(p), 0, 0);
+        }
         if (handshakes[p].compare_exchange_strong(expected, Handshake::none, std::memory_order_acquire)) {
             program_states[p] = ProgramState::running;
             program_faults[p] = {};

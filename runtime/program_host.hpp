@@ -62,6 +62,13 @@ public:
         return false;
     }
 
+    /// The program has declared the axis. Real-time safe.
+    [[nodiscard]] bool uses(std::size_t program, std::size_t axis) const noexcept {
+        for (const auto& use : axis_uses_)
+            if (use.program == program && use.axis == axis) return true;
+        return false;
+    }
+
     /// Value of a monitored variable. Real-time safe.
     [[nodiscard]] static double read(const Variable& variable) noexcept;
 

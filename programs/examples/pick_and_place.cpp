@@ -69,6 +69,7 @@ class PickAndPlace final : public Program {
     R_TRIG start_pressed_;
     TON grip_;
 
+    bool wanted_ = false;  // start was pressed, and power is still on its way: after an emergency stop the same press brings it back
     std::int32_t step_ = waiting;
     std::int64_t pieces_ = 0;
 
@@ -95,6 +96,7 @@ public:
 
     void start() override {
         step_ = waiting;
+        wanted_ = false;
         pieces_ = 0;
     }
 
@@ -105,6 +107,8 @@ public:
         const bool error = x_.failed(ctx) || y_.failed(ctx) || z_.failed(ctx);
         const bool ready = x_.power.Status && y_.power.Status && z_.power.Status;
         ctx.alarm(0, error);
+        if (start_pressed_.Q && step_ == waiting) wanted_ = true;
+        if (error) wanted_ = false;  // that press resets
         if (error || !ready) step_ = waiting;  // whatever was moving has been stopped by its axis
         else run_sequence(ctx);
 
@@ -120,7 +124,8 @@ private:
     void run_sequence(TaskContext& ctx) {
         switch (step_) {
             case waiting:
-                if (!start_pressed_.Q && !(pieces_ == 0 && ctx.get(start_))) break;
+                if (!wanted_ && !(pieces_ == 0 && ctx.get(start_))) break;
+                wanted_ = false;
                 z_.find_home(ctx);  // z first: nothing must hang down while x and y search
                 step_ = homing_z;
                 break;

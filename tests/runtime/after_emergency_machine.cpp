@@ -45,6 +45,26 @@ public:
     }
 };
 
+/// The same, and leaves resets to people.
+class Runner final : public Program {
+public:
+    AxisRef x;
+    MC_Power power;
+    MC_MoveVelocity move;
+    void declare(Declaration& d) override {
+        x = d.axis("x");
+        d.task<&Runner::scan>("main");
+    }
+    void scan(TaskContext& ctx) {
+        power.Axis = move.Axis = x;
+        power.Enable = true;
+        power(ctx);
+        move.Execute = power.Status && ctx.view(x)->state == AxisState::Standstill;
+        move.Velocity = 100;
+        move(ctx);
+    }
+};
+
 struct AfterEmergency : ::testing::TestWithParam<std::uint16_t> {
     std::unique_ptr<TestMachine> machine;
     TestMachine& m() { return *machine; }
@@ -66,6 +86,12 @@ struct AfterEmergency : ::testing::TestWithParam<std::uint16_t> {
         m().run(500ms);
         m().world.set_input("estop_ok", true);
         m().run(100ms);
+    }
+    void press_button(Duration each) {
+        m().world.set_input("button", true);
+        m().run(each);
+        m().world.set_input("button", false);
+        m().run(each);
     }
     /// For as long as anybody would wait.
     void expect_off(const char* when) {
@@ -150,6 +176,104 @@ TEST_P(AfterEmergency, AProgramThatStartsWhileItHoldsWaitsToo) {
     EXPECT_EQ(m().command(OperatorAction::reset).answer, Answer::accepted);
     EXPECT_EQ(m().command(OperatorAction::program_start, 0).answer, Answer::accepted);
     EXPECT_TRUE(runs());
+}
+
+// Whoever resets later has not started anything: a start counts only when nothing is left to be reset.
+TEST_P(AfterEmergency, AStartBetweenReleaseAndResetIsRefusedAndTheResetStartsNothing) {
+    start(&entry_of<Runner>);
+    ASSERT_TRUE(runs());
+    press_and_release();
+    ASSERT_EQ(m().axis(0).state, AxisState::ErrorStop);
+    const auto refused = m().command(OperatorAction::program_start, 0);
+    EXPECT_EQ(refused.answer, Answer::not_possible_now);
+    EXPECT_EQ(refused.error, ErrorId::in_error_stop);
+    EXPECT_EQ(m().command(OperatorAction::reset).answer, Answer::accepted);
+    expect_off("started too early, then reset");
+
+    EXPECT_EQ(m().command(OperatorAction::program_start, 0).answer, Answer::accepted);
+    EXPECT_TRUE(runs());
+}
+
+TEST_P(AfterEmergency, AProgramThatWasStoppedMeanwhileIsNotStartedBeforeTheResetEither) {
+    start(&entry_of<Runner>);
+    ASSERT_TRUE(runs());
+    press_and_release();
+    ASSERT_EQ(m().command(OperatorAction::program_stop, 0).answer, Answer::accepted);
+    m().run(100ms);
+    EXPECT_EQ(m().command(OperatorAction::program_start, 0).answer, Answer::not_possible_now);
+    EXPECT_EQ(m().command(OperatorAction::reset).answer, Answer::accepted);
+    expect_off("started too early, then reset");
+    EXPECT_EQ(m().state().programs[0], ProgramState::stopped);
+    EXPECT_EQ(m().command(OperatorAction::program_start, 0).answer, Answer::accepted);
+    EXPECT_TRUE(runs());
+}
+
+// Each half is not enough: the axes alone, or the alarm alone.
+TEST_P(AfterEmergency, TheAlarmMustBeAcknowledgedAndTheAxesReset) {
+    start(&entry_of<Runner>);
+    ASSERT_TRUE(runs());
+    press_and_release();
+    EXPECT_EQ(m().command(OperatorAction::acknowledge_alarms).answer, Answer::accepted);
+    m().run(10ms);
+    ASSERT_FALSE(m().has_alarm(id(MachineAlarm::emergency_stop)));
+    EXPECT_EQ(m().command(OperatorAction::program_start, 0).answer, Answer::not_possible_now) << "x is in ErrorStop";
+    press_and_release();
+    EXPECT_EQ(m().command(OperatorAction::reset, 0).answer, Answer::accepted);
+    ASSERT_TRUE(m().until([&] { return m().axis(0).state == AxisState::Disabled; }, 1s));
+    EXPECT_EQ(m().command(OperatorAction::program_start, 0).answer, Answer::not_possible_now) << "the alarm waits";
+    EXPECT_EQ(m().command(OperatorAction::acknowledge_alarms).answer, Answer::accepted);
+    EXPECT_EQ(m().command(OperatorAction::program_start, 0).answer, Answer::accepted);
+    EXPECT_TRUE(runs());
+}
+
+// One button for both: what is left to be reset takes the first press, and the start wants another.
+TEST_P(AfterEmergency, TheFirstPressOfTheButtonResetsTheSecondStarts) {
+    start(&entry_of<Runner>);
+    ASSERT_TRUE(runs());
+    press_and_release();
+    press_button(100ms);
+    expect_off("one press");
+    EXPECT_EQ(m().axis(0).state, AxisState::Disabled);
+    EXPECT_FALSE(m().has_alarm(id(MachineAlarm::emergency_stop)));
+    EXPECT_TRUE(m().has_alarm(id(MachineAlarm::program_waits)));
+    press_button(100ms);
+    EXPECT_TRUE(runs());
+}
+
+TEST_P(AfterEmergency, AButtonWhoseContactBouncesIsPressedOnce) {
+    start(&entry_of<Runner>);
+    ASSERT_TRUE(runs());
+    press_and_release();
+    for (int i = 0; i < 10; ++i) press_button(5ms);
+    expect_off("one press that bounced");
+    press_button(100ms);
+    EXPECT_TRUE(runs());
+}
+
+// Somebody has reset already, by command or by the program: then the press is the start.
+TEST_P(AfterEmergency, WhereTheAxesAreResetOnePressStartsAndAcknowledges) {
+    start(&entry_of<Runner>);
+    ASSERT_TRUE(runs());
+    press_and_release();
+    EXPECT_EQ(m().command(OperatorAction::reset, 0).answer, Answer::accepted);
+    ASSERT_TRUE(m().until([&] { return m().axis(0).state == AxisState::Disabled; }, 1s));
+    press_button(100ms);
+    EXPECT_TRUE(runs());
+    EXPECT_FALSE(m().has_alarm(id(MachineAlarm::emergency_stop)));
+}
+
+// Another fault that waits for its reset is none of the button's business.
+TEST_P(AfterEmergency, TheButtonResetsNothingElse) {
+    start(&entry_of<Runner>);
+    ASSERT_TRUE(runs());
+    m().world.drive("x")->raise(0x3130);
+    ASSERT_TRUE(m().until([&] { return m().axis(0).state == AxisState::ErrorStop; }, 1s));
+    m().run(500ms);
+    const auto before = m().alarms();
+    press_button(200ms);
+    expect_off("pressed beside a drive's fault");
+    EXPECT_EQ(m().axis(0).state, AxisState::ErrorStop);
+    EXPECT_EQ(m().alarms(), before);
 }
 
 struct HandAndEmergency : ::testing::Test {

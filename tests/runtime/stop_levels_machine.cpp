@@ -2,9 +2,11 @@
 // the axis again behind it. In virtual time; the ways in which threads, terminals and clients get in the way are in tests/apps.
 
 #include <array>
+#include <functional>
 
 #include "fb_library/all_blocks.hpp"
 #include "runtime/advance_watch.hpp"
+#include "runtime/alarms.hpp"
 #include "runtime/end_watch.hpp"
 #include "runtime/inbox_record.hpp"
 #include "tests/patience.hpp"
@@ -163,6 +165,117 @@ TEST(LevelsOfPrograms, AProgramsAxisIsSparedByAJogLetGoAndStoppedByAStop) {
     EXPECT_EQ(m.axis(0).set_velocity, 50.0) << "nobody jogged it: that press was refused";
     m.machine->request_stop(0);
     EXPECT_TRUE(m.until([&] { return m.axis(0).set_velocity == 0.0; }, 5s));
+}
+
+/// Its start() takes long: what happens meanwhile happens in there.
+class SlowStarter final : public Idle {
+public:
+    AxisRef x;
+    fb::MC_Power power;
+    fb::MC_MoveVelocity move;
+    inline static std::function<void()> meanwhile;
+    inline static int ended = 0;
+    void declare(Declaration& d) override {
+        x = d.axis("x");
+        d.task<&SlowStarter::run>("main");
+    }
+    void start() override {
+        power = {};
+        move = {};
+        if (meanwhile) meanwhile();
+    }
+    void stop() override { ++ended; }
+    void run(TaskContext& ctx) {
+        power.Axis = move.Axis = x;
+        power.Enable = true;
+        power(ctx);
+        move.Velocity = 50;
+        move.Execute = power.Status;
+        move(ctx);
+    }
+};
+
+struct StopWhileStarting : ::testing::Test {
+    void SetUp() override {
+        SlowStarter::meanwhile = {};
+        SlowStarter::ended = 0;
+    }
+    void TearDown() override { SlowStarter::meanwhile = {}; }
+    static MachineConfig config(bool autostart) {
+        auto config = with_program(2, &entry_of<SlowStarter>);
+        config.programs[0].autostart = autostart;
+        return config;
+    }
+    static void expect_never_moves(TestMachine& m) {
+        for (int i = 0; i < 50; ++i) {
+            m.run(100ms);
+            ASSERT_EQ(m.axis(0).set_velocity, 0.0);
+            ASSERT_FALSE(m.axis(0).powered);
+        }
+        EXPECT_EQ(m.state().programs[0], ProgramState::stopped);
+        EXPECT_TRUE(m.has_alarm(id(MachineAlarm::start_withdrawn))) << m.alarms();
+        EXPECT_EQ(SlowStarter::ended, 1) << "its stop() ends what start() has begun";
+    }
+    static void expect_starts(TestMachine& m) {
+        SlowStarter::meanwhile = {};
+        EXPECT_EQ(m.command(OperatorAction::program_start, 0).answer, Answer::accepted);
+        EXPECT_TRUE(m.until([&] { return m.axis(0).set_velocity == 50.0; }, 5s)) << "what is given after the stop starts";
+    }
+};
+
+TEST_F(StopWhileStarting, AProgramWhoseStartWasGivenBeforeAStopDoesNotBeginBehindIt) {
+    TestMachine m{config(false)};
+    ASSERT_TRUE(m.up());
+    SlowStarter::meanwhile = [&] { m.machine->request_stop(0); };
+    OperatorCommand start;
+    start.action = OperatorAction::program_start;
+    start.index = 0;
+    start.after = m.machine->levels_raised();
+    ASSERT_EQ(m.command(start).answer, Answer::accepted);
+    expect_never_moves(m);
+    expect_starts(m);
+    m.machine->request_stop(0);
+    EXPECT_EQ(m.state().programs[0], ProgramState::running) << "one that runs goes on";
+}
+
+TEST_F(StopWhileStarting, AStopOfAllBindsItToo) {
+    TestMachine m{config(true)};
+    SlowStarter::meanwhile = [&] { m.machine->request_stop(StopLevels::all_axes); };
+    ASSERT_TRUE(m.up());
+    expect_never_moves(m);
+    expect_starts(m);
+}
+
+TEST_F(StopWhileStarting, AStopOfAnAxisThatItDoesNotUseIsNoneOfItsBusiness) {
+    TestMachine m{config(true)};
+    SlowStarter::meanwhile = [&] { m.machine->request_stop(1); };
+    ASSERT_TRUE(m.up());
+    EXPECT_TRUE(m.until([&] { return m.axis(0).set_velocity == 50.0; }, 5s));
+    EXPECT_FALSE(m.has_alarm(id(MachineAlarm::start_withdrawn)));
+}
+
+TEST_F(StopWhileStarting, AStopDuringTheBringUpKeepsAProgramThatStartsByItselfFromStarting) {
+    TestMachine m{config(true)};
+    m.machine->request_stop(StopLevels::all_axes);
+    ASSERT_TRUE(m.up());
+    expect_never_moves(m);
+    expect_starts(m);
+}
+
+TEST_F(StopWhileStarting, AStartThatComesToItsTurnBehindAStopIsStale) {
+    TestMachine m{config(false)};
+    ASSERT_TRUE(m.up());
+    OperatorCommand start;
+    start.action = OperatorAction::program_start;
+    start.index = 0;
+    start.after = m.machine->levels_raised();
+    m.machine->request_stop(0);
+    EXPECT_EQ(m.command(start).answer, Answer::stale);
+    m.run(1s);
+    EXPECT_EQ(m.state().programs[0], ProgramState::stopped);
+    start.after = m.machine->levels_raised();
+    EXPECT_EQ(m.command(start).answer, Answer::accepted);
+    EXPECT_TRUE(m.until([&] { return m.axis(0).set_velocity == 50.0; }, 5s));
 }
 
 // --- the cycle, seen from outside ------------------------------------------------------------------------------------------------------
