@@ -23,8 +23,7 @@ struct Options {
 void print_left_out(const std::vector<LeftOut>& left_out) {
     if (left_out.empty()) return;
     fmt::print(stderr, "{} left out:\n", left_out.size() == 1 ? "1 parameter is" : count_text(left_out.size(), "parameter") + " are");
-    for (const auto& out : left_out)
-        fmt::print(stderr, "  {} ({}): {}\n", axes::name_of(*out.parameter), out.parameter->name, out.why);
+    for (const auto& out : left_out) fmt::print(stderr, "  {} ({}): {}\n", axes::name_of(*out.parameter), out.parameter->name, out.why);
 }
 
 Json left_out_json(const std::vector<LeftOut>& left_out) {
@@ -46,10 +45,8 @@ int save(const Options& options) {
         file.close();
         if (!file) return fail(*options.drive->bus, Error{"capture.write", options.file, "cannot be written", "choose another file"});
         if (options.drive->bus->json) {
-            print_json(Json{{"ok", true},
-                            {"file", options.file},
-                            {"values", kept.set.values.size()},
-                            {"left_out", left_out_json(kept.left_out)}});
+            print_json(
+                Json{{"ok", true}, {"file", options.file}, {"values", kept.set.values.size()}, {"left_out", left_out_json(kept.left_out)}});
         } else {
             print_left_out(kept.left_out);
             fmt::print("{}: {} in {}\n", drive.subject(), count_text(kept.set.values.size(), "value"), options.file);
@@ -104,7 +101,8 @@ int print_difference(const Options& options, const DriveAccess& drive, const Set
 
 int diff(const Options& options) {
     return with_drive(*options.drive, [&](DriveAccess& drive) {
-        const auto read = options.file.empty() ? std::variant<ParameterSet, std::vector<Error>>{} : config::read_parameter_set(options.file, drive.profile());
+        const auto read = options.file.empty() ? std::variant<ParameterSet, std::vector<Error>>{}
+                                               : config::read_parameter_set(options.file, drive.profile());
         if (const auto* errors = std::get_if<std::vector<Error>>(&read)) return bad_file(options, *errors);
         const auto found = options.file.empty() ? difference_from_factory(drive) : difference_from(drive, std::get<ParameterSet>(read));
         return found ? print_difference(options, drive, *found) : fail(*options.drive->bus, found.error());

@@ -13,6 +13,7 @@
 #include "config/floor_checks.hpp"
 #include "config/machine_tables.hpp"
 #include "config/pdo_selection.hpp"
+#include "config/setting_conflicts.hpp"
 #include "core/nearest_name.hpp"
 #include "ecat/sim/digital_terminal.hpp"
 #include "runtime/keeps_positions.hpp"
@@ -203,6 +204,7 @@ private:
     void add_stored(LoadedMachine& out) {
         for (const auto& entry : file_.slaves) {
             const auto known = std::find_if(profiles_.begin(), profiles_.end(), [&](const auto& p) { return p.first == entry.name; });
+            refuse_startup_commands(reader_, entry.name, entry.startup, known == profiles_.end() ? nullptr : known->second.get());
             if (known == profiles_.end()) {
                 if (!entry.stored.empty() && !entry.broken)
                     reader_.problem(entry.stored.front().where, "config.stored_no_drive",
@@ -210,9 +212,17 @@ private:
                 continue;
             }
             refuse_late_startup(reader_, entry.name, entry.startup, *known->second);
-            for (auto& stored : resolve_stored(reader_, entry.name, entry.stored, entry.startup, *known->second))
+            const auto& slaves = out.machine.bus.slaves;
+            const auto slave = std::find_if(slaves.begin(), slaves.end(), [&](const auto& s) { return s.name == entry.name; });
+            if (slave == slaves.end()) continue;
+            for (auto& stored : resolve_stored(reader_, entry.name, entry.stored, slave->startup, *known->second))
                 for (auto& binding : out.machine.axes)
                     if (binding.slave == entry.name && binding.drive_axis == stored.axis) binding.stored.push_back(stored.setting);
+            for (const auto& binding : out.machine.axes)
+                if (binding.slave == entry.name)
+                    refuse_contradictions(
+                        reader_, entry.name, entry.stored, entry.startup, *known->second,
+                        {binding.axis.name, binding.drive_axis, binding.axis.gearing.counts_per_revolution, out.machine.cycle, slave->dc});
         }
     }
 

@@ -1,5 +1,7 @@
 #include "config/startup_entry.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "config/codecs.hpp"
@@ -60,8 +62,22 @@ std::vector<ecat::StartupSdo> resolve_startup(Reader& reader, const std::string&
     const auto problem = [&](const StartupEntry& entry, std::string code, std::string what, std::string remedy) {
         reader.errors().push_back({std::move(code), located(file, entry.where), std::move(what), std::move(remedy)});
     };
+    // A PDO's count is written 0, its entries, then its count: there, and only there, twice has a meaning.
+    constexpr std::uint16_t first_of_drive = 0x2000;
     for (const auto& entry : entries) {
         if (entry.object.index == 0) continue;  // already reported
+        const auto earlier = std::find_if(entries.begin(), entries.end(), [&](const StartupEntry& other) {
+            return &other == &entry ||
+                   (other.object.index == entry.object.index && other.object.sub == entry.object.sub && other.at == entry.at);
+        });
+        if (&*earlier != &entry && entry.object.index >= first_of_drive)
+            problem(entry, "config.startup_twice",
+                    fmt::format("{} stands in the list already, in line {}{}", show_object(entry.object.index, entry.object.sub),
+                                earlier->where.line,
+                                earlier->value == entry.value
+                                    ? std::string{}
+                                    : fmt::format(", with {} instead of {}: only the last would count", earlier->value, entry.value)),
+                    "keep the one that is meant");
         const auto shown = show_object(entry.object.index, entry.object.sub);
         if (!device.mailbox) {
             problem(entry, "config.startup_no_mailbox", fmt::format("{} has no mailbox: nothing can be written to it", device.name),

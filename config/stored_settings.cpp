@@ -12,16 +12,17 @@ namespace taktwerk::config {
 
 namespace {
 
-struct Found {
-    std::size_t axis = 0;
-    axes::ParameterAddress object;  ///< as of the first axis
-    const axes::DriveParameter* parameter = nullptr;
-};
+std::string named(const axes::DriveParameter& parameter, const ObjectAddress& at) {
+    const auto object = show_object(at.index, at.sub);
+    return parameter.parameter.empty() ? fmt::format("{} ({})", object, parameter.name)
+                                       : fmt::format("{} ({})", object, parameter.parameter);
+}
 
-/// Of a drive with several axes the objects of each stand `object_offset` higher.
-Found find(const axes::DriveProfile& profile, const ObjectAddress& at) {
+}  // namespace
+
+DriveObject find_drive_object(const axes::DriveProfile& profile, const ObjectAddress& at) {
     constexpr std::uint16_t first_vendor = 0x2000, first_standard = 0x6000;
-    Found out{0, {at.index, at.sub}};
+    DriveObject out{0, {at.index, at.sub}};
     if (profile.axes > 1 && profile.object_offset != 0 && at.index >= first_vendor) {
         const unsigned base = at.index >= first_standard ? first_standard : first_vendor;
         const unsigned axis = (at.index - base) / profile.object_offset;
@@ -34,14 +35,6 @@ Found find(const axes::DriveProfile& profile, const ObjectAddress& at) {
         if (row.address == out.object && row.reach == axes::ParameterReach::bus) out.parameter = &row;
     return out;
 }
-
-std::string named(const axes::DriveParameter& parameter, const ObjectAddress& at) {
-    const auto object = show_object(at.index, at.sub);
-    return parameter.parameter.empty() ? fmt::format("{} ({})", object, parameter.name)
-                                       : fmt::format("{} ({})", object, parameter.parameter);
-}
-
-}  // namespace
 
 Table<StoredEntry> stored_table() {
     using S = StoredEntry;
@@ -61,11 +54,11 @@ Table<StoredEntry> stored_table() {
 }
 
 std::vector<AxisStored> resolve_stored(Reader& reader, const std::string& slave, const std::vector<StoredEntry>& entries,
-                                       const std::vector<StartupEntry>& startup, const axes::DriveProfile& profile) {
+                                       const std::vector<ecat::StartupSdo>& startup, const axes::DriveProfile& profile) {
     std::vector<AxisStored> out;
     for (const auto& entry : entries) {
         if (entry.object.index == 0) continue;  // already reported
-        const auto found = find(profile, entry.object);
+        const auto found = find_drive_object(profile, entry.object);
         const auto shown = show_object(entry.object.index, entry.object.sub);
         const auto problem = [&](std::string code, std::string what, std::string remedy) {
             reader.problem(entry.where, std::move(code), std::move(what), std::move(remedy));
@@ -86,11 +79,23 @@ std::vector<AxisStored> resolve_stored(Reader& reader, const std::string& slave,
                     fmt::format("give {} to {}, raw", parameter.minimum.value_or(0), parameter.maximum.value_or(0)));
             continue;
         }
-        const auto same = [&](const StartupEntry& other) {
-            return other.object.index == entry.object.index && other.object.sub == entry.object.sub;
-        };
-        if (std::any_of(startup.begin(), startup.end(), same)) {
-            problem("config.stored_twice", fmt::format("{} stands under `startup`, too", named(parameter, entry.object)),
+        const auto earlier = std::find_if(entries.begin(), entries.end(), [&](const StoredEntry& other) {
+            return &other == &entry || (other.object.index == entry.object.index && other.object.sub == entry.object.sub);
+        });
+        if (&*earlier != &entry) {
+            problem("config.stored_twice",
+                    fmt::format("{} stands under `stored` already, in line {}{}", named(parameter, entry.object), earlier->where.line,
+                                earlier->value == entry.value ? std::string{}
+                                                              : fmt::format(", with {} instead of {}", earlier->value, entry.value)),
+                    "keep the one that the drive really holds (`taktwerk drive get`)");
+            continue;
+        }
+        const auto written = std::find_if(startup.begin(), startup.end(), [&](const ecat::StartupSdo& other) {
+            return other.index == entry.object.index && other.sub == entry.object.sub;
+        });
+        if (written != startup.end()) {
+            problem("config.stored_twice",
+                    fmt::format("{} is written at each start, too ({})", named(parameter, entry.object), written->origin),
                     "keep `stored` for what the drive keeps, `startup` for what is written each time");
             continue;
         }
@@ -103,7 +108,7 @@ void refuse_late_startup(Reader& reader, const std::string& slave, const std::ve
                          const axes::DriveProfile& profile) {
     for (const auto& entry : entries) {
         if (entry.object.index == 0) continue;
-        const auto found = find(profile, entry.object);
+        const auto found = find_drive_object(profile, entry.object);
         if (!found.parameter || !found.parameter->waits_for_restart()) continue;
         const auto& parameter = *found.parameter;
         const bool saved = parameter.effect == axes::ParameterEffect::after_saving;

@@ -13,7 +13,7 @@ const char* remedy_of(std::uint32_t code) {
         case sdo_abort::no_object: return "this firmware does not have the object: check the profile against the drive's manual";
         case sdo_abort::no_subindex: return "this firmware does not have the sub-index: check the profile against the drive's manual";
         case sdo_abort::read_only: return "the object cannot be written: remove it from the start-up list";
-        case sdo_abort::write_only: return "the object cannot be read back: set verify: false";
+        case sdo_abort::write_only: return "the object cannot be read; a start-up entry for it needs `verify: false`";
         case sdo_abort::device_state:
         case sdo_abort::local_control: return "the drive does not accept it in its present state: disable the axis, or write it in PREOP";
         case sdo_abort::value_range:

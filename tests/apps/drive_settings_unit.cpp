@@ -141,9 +141,8 @@ TEST(SettingsLeftOut, AreThoseThatTheManualDoesNotAllowOrTheDriveDoesNotTell) {
     with({"stepper_drive"}, [](DriveAccess& drive) {
         const auto kept = kept_settings(drive, Kept::all);
         ASSERT_TRUE(kept) << kept.error().text();
-        EXPECT_THAT(names_of(kept->left_out),
-                    ::testing::UnorderedElementsAre("6098h", "2000h:07", "2000h:08", "2000h:09", "2000h:0A", "2000h:0D", "2000h:0E",
-                                                    "2000h:10", "2000h:12"));
+        EXPECT_THAT(names_of(kept->left_out), ::testing::UnorderedElementsAre("6098h", "2000h:07", "2000h:08", "2000h:09", "2000h:0A",
+                                                                              "2000h:0D", "2000h:0E", "2000h:10", "2000h:12"));
         const auto text = text_of(*kept);
         EXPECT_THAT(text, HasSubstr("# 2000h:07 (inductance) is left out: the drive shows 0 mH, its manual allows 1 .. 65535 mH"));
         EXPECT_THAT(text, HasSubstr("# 6098h (homing method) is left out: reading 6098h:00 was refused: abort 06010001h"));
