@@ -97,7 +97,7 @@ std::string scan_text(const std::string& where, const Survey& survey, Colours co
             branch.resize(branch.size() - std::string_view{"│  "}.size());
             branch += fmt::format("├{}─", survey.topology->slaves[i].parent_port);
         }
-        std::string head = fmt::format("{:<3}{}", i, name_of(slave));
+        std::string head = fmt::format("{:<2} {}", i, name_of(slave));
         if (!slave.name.empty()) head += fmt::format("  '{}' {}", slave.name, slave.expected);
         const Cell state = state_cell(slave.state, slave.al_error);
         const std::size_t room = 80 - columns(state.text) - columns(branch);

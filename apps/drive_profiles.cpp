@@ -5,6 +5,7 @@
 
 #include "apps/load.hpp"
 #include "config/drive_library.hpp"
+#include "core/nearest_name.hpp"
 #include "ecat/bringup/slave_match.hpp"
 
 namespace taktwerk::apps {
@@ -35,7 +36,11 @@ Result<std::shared_ptr<const axes::DriveProfile>> profile_named(const DriveOptio
     config::DriveLibrary library(drive_folders(options.bus->machine));
     if (const auto* drive = library.find(name)) return drive->profile;
     if (!library.errors().empty()) return library.errors().front();
-    return Error{"drive.no_profile", name, "there is no such kind of drive", fmt::format("there is: {}", fmt::join(library.names(), ", "))};
+    const auto names = library.names();
+    const auto near = nearest_name(name, names);
+    return Error{
+        "drive.no_profile", name, "there is no such kind of drive",
+        fmt::format("{}there is: {}", near.empty() ? std::string{} : fmt::format("did you mean {}? ", near), fmt::join(names, ", "))};
 }
 
 std::vector<std::string> profiles_of(const DriveOptions& options, const ecat::SurveyedSlave& slave) {

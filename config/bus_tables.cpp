@@ -23,6 +23,7 @@ Table<Terminal> terminal_table() {
                    {},
                    {}};
     table.after = [](Reader& reader, const Node& node, T& t) {
+        if (reader.already_bad(reader.path())) return;  // a number that was refused is not a 0 that was written
         if (t.inputs + t.outputs == 0)
             reader.problem(node.at, "config.terminal", "the terminal has neither inputs nor outputs", "give `inputs: 8` or `outputs: 8`");
         if (t.inputs % 8 != 0 || t.outputs % 8 != 0)

@@ -118,10 +118,7 @@ private:
             const auto here = fmt::format("serial.{}.drives.{}", line.name, listed.drive.drive.name);
             auto drive = listed.drive;
             if (const auto* type = drives_.find(listed.profile)) drive.drive.profile = type->profile;
-            else if (!drives_.exists(listed.profile))
-                problem(here + ".profile", "config.unknown_profile",
-                        fmt::format("there is no drive type '{}' (there is: {})", listed.profile, joined(drives_.names())),
-                        "correct the name");
+            else if (!drives_.exists(listed.profile)) no_such_drive(here, listed.profile);
             if (!drive.drive.profile) reader_.mark_bad(here + ".profile");
             for (const auto& parameter : listed.parameters) {
                 int number = -1;
@@ -147,19 +144,20 @@ private:
             if (axis.slave == slave) reader_.mark_bad(fmt::format("axes.{}.slave", axis.axis.name));
     }
 
+    void no_such_drive(const std::string& here, const std::string& profile) {
+        const auto names = drives_.names();
+        const auto near = nearest_name(profile, names);
+        problem(here + ".profile", "config.unknown_profile",
+                fmt::format("there is no drive type '{}' in {} (there is: {})", profile, joined(drives_.folders()), joined(names)),
+                near.empty() ? "correct the name, or add its file" : fmt::format("did you mean `{}`?", near));
+    }
+
     void add_drive(ecat::SlaveConfig& slave, const SlaveEntry& entry, const std::string& here,
                    const std::vector<runtime::AxisBinding>& axes) {
         const auto* drive = drives_.find(entry.profile);
         if (!drive) {
             forgive(entry.name, axes);
-            if (!drives_.exists(entry.profile)) {
-                const auto names = drives_.names();
-                const auto near = nearest_name(entry.profile, names);
-                problem(here + ".profile", "config.unknown_profile",
-                        fmt::format("there is no drive type '{}' in {} (there is: {})", entry.profile, joined(drives_.folders()),
-                                    joined(names)),
-                        near.empty() ? "correct the name, or add its file" : fmt::format("did you mean `{}`?", near));
-            }
+            if (!drives_.exists(entry.profile)) no_such_drive(here, entry.profile);
             return;
         }
         if (!drive->device) {

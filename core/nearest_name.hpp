@@ -7,7 +7,7 @@
 
 namespace taktwerk {
 
-/// The candidate nearest to `name`, or empty when none is near enough to be a slip of the keyboard.
+/// The candidate nearest to `name`, whatever the case of its letters, or empty when none is near enough to be a slip of the keyboard.
 [[nodiscard]] std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates);
 
 }  // namespace taktwerk

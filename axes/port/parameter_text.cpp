@@ -33,6 +33,42 @@ int digits_of(double scale) {
     return digits;
 }
 
+/// How many of `to` one of `from` is; nothing: they do not measure the same.
+std::optional<double> in_unit(std::string_view from, std::string_view to) {
+    struct Unit {
+        std::string_view name, measures;
+        double factor;
+    };
+    static constexpr std::array units{
+        Unit{"ns", "time", 1e-9},      Unit{"us", "time", 1e-6},     Unit{"ms", "time", 1e-3},  Unit{"s", "time", 1},
+        Unit{"min", "time", 60},       Unit{"rpm", "speed", 1},      Unit{"r/min", "speed", 1}, Unit{"mA", "current", 1e-3},
+        Unit{"A", "current", 1},       Unit{"mV", "voltage", 1e-3},  Unit{"V", "voltage", 1},   Unit{"Hz", "frequency", 1},
+        Unit{"kHz", "frequency", 1e3}, Unit{"W", "power", 1},        Unit{"kW", "power", 1e3},  Unit{"mOhm", "resistance", 1e-3},
+        Unit{"ohm", "resistance", 1},  Unit{"Ohm", "resistance", 1},
+    };
+    const auto find = [](std::string_view name) {
+        return std::find_if(units.begin(), units.end(), [&](const Unit& unit) { return unit.name == name; });
+    };
+    if (from == to) return 1;
+    const auto a = find(from), b = find(to);
+    if (a == units.end() || b == units.end() || a->measures != b->measures) return std::nullopt;
+    return a->factor / b->factor;
+}
+
+/// One slip of the keyboard: a digit more, less or other, or the same ones in another order. Numbers that merely look alike are other
+/// parameters.
+bool is_slip(std::string_view word, std::string_view name) {
+    auto a = lower(word), b = lower(name);
+    const auto longer = std::max(a.size(), b.size()), shorter = std::min(a.size(), b.size());
+    std::size_t front = 0, back = 0;
+    while (front < shorter && a[front] == b[front]) ++front;
+    while (back < shorter - front && a[a.size() - 1 - back] == b[b.size() - 1 - back]) ++back;
+    if (longer - (front + back) <= 1) return true;
+    std::sort(a.begin(), a.end());
+    std::sort(b.begin(), b.end());
+    return a == b;
+}
+
 Error bad_value(const DriveParameter& parameter, std::string_view text, std::string_view why) {
     return {"drive.value", name_of(parameter), fmt::format("'{}' {}", text, why),
             parameter.unit.empty() ? std::string("give a whole number") : fmt::format("give a number in {}", parameter.unit)};
@@ -78,7 +114,7 @@ Result<const DriveParameter*> find_parameter(const DriveProfile& profile, std::s
         const bool addressed = parameter.reach == ParameterReach::bus;
         const bool first_entry = addressed && parameter.address.sub == 0 && wanted == object + ":00";
         if (wanted == lower(name_of(parameter)) || (addressed && wanted == object) || first_entry) return &parameter;
-        names.push_back(name_of(parameter));
+        if (is_slip(trimmed(word), name_of(parameter))) names.push_back(name_of(parameter));
     }
     const auto near = nearest_name(std::string(trimmed(word)), names);
     return Error{"drive.no_parameter", std::string(word), fmt::format("{} has no such parameter", profile.name),
@@ -136,10 +172,11 @@ Result<std::int64_t> parse_value(const DriveParameter& parameter, std::string_vi
         const auto [rest, error] = std::from_chars(begin, end, value);
         if (error != std::errc{} || !std::isfinite(value)) return bad_value(parameter, text, "is no number");
         const auto unit = trimmed({rest, static_cast<std::size_t>(end - rest)});
-        if (!unit.empty() && unit != parameter.unit)
+        const auto factor = unit.empty() ? std::optional<double>{1} : in_unit(unit, parameter.unit);
+        if (!factor)
             return bad_value(parameter, text,
                              parameter.unit.empty() ? "has a unit, this parameter has none" : fmt::format("is not in {}", parameter.unit));
-        const double steps = value / parameter.scale;
+        const double steps = value * *factor / parameter.scale;
         if (std::abs(steps) > 9.0e18) return bad_value(parameter, text, "is too large for any parameter");
         if (std::abs(steps - std::round(steps)) > 1e-6 * std::max(1.0, std::abs(steps) * 1e-6))
             return bad_value(parameter, text, fmt::format("lies between two steps of {}", value_text(parameter, 1)));

@@ -31,7 +31,8 @@ namespace taktwerk::axes {
 /// "0 .. 500 ms"; empty where the manual gives none.
 [[nodiscard]] std::string range_text(const DriveParameter& parameter);
 
-/// A number in the parameter's unit, which may stand behind it, or a raw one in hexadecimal (0x.. or ..h).
+/// A number in the parameter's unit, which may stand behind it, as may another unit of the same thing (0.3 s for 300 ms), or a raw
+/// one in hexadecimal (0x.. or ..h).
 /// Errors: drive.value (no number, another unit, between two steps), drive.out_of_range, drive.read_only, drive.no_address.
 [[nodiscard]] Result<std::int64_t> parse_value(const DriveParameter& parameter, std::string_view text);
 
@@ -44,7 +45,7 @@ namespace taktwerk::axes {
 [[nodiscard]] bool is_setting(const DriveParameter& parameter) noexcept;
 
 /// How a value gets into the EEPROM of a drive and counts: the command, or why there is none. `drive` as its user names it, `axis` from 0.
-[[nodiscard]] std::string way_to_store(const DriveProfile& profile, std::string_view drive, std::size_t axis, const DriveParameter& parameter,
-                                       std::int64_t raw);
+[[nodiscard]] std::string way_to_store(const DriveProfile& profile, std::string_view drive, std::size_t axis,
+                                       const DriveParameter& parameter, std::int64_t raw);
 
 }  // namespace taktwerk::axes

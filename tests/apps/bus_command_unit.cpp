@@ -234,6 +234,14 @@ TEST(BusText, ScanDrawsBranchesAndTheEbusBudget) {
     EXPECT_THAT(text, HasSubstr("port 0 from the master, 1 to slave 3, 3 to slave 1"));
 }
 
+TEST(BusText, ScanKeepsThePositionApartFromTheNameHoweverLongTheBusIs) {
+    ecat::Survey survey;
+    survey.slaves.resize(101);
+    for (auto& slave : survey.slaves) slave.device_name = "terminal";
+    const std::string text = scan_text("eth1", survey, Colours::off);
+    for (const char* head : {"\n0  terminal", "\n99 terminal", "\n100 terminal"}) EXPECT_THAT(text, HasSubstr(head));
+}
+
 TEST(TextTable, AlignsColumnsCutsLongCellsAndLeavesNoTrailingSpace) {
     TextTable table{{{"name", TextTable::Column::Side::left, 6}, {"n", TextTable::Column::Side::right}, {"x"}}};
     table.add({"abcdefgh", "5", ""});

@@ -111,7 +111,8 @@ TEST(DriveCommand, WhatCannotBeMeantIsRefusedBeforeAnythingIsWritten) {
         EXPECT_THAT(set.out, Not(HasSubstr("P05.14"))) << "nothing is half done";
     };
     refused("P05.13=501", "give 0 .. 500 ms");
-    refused("P05.13=1 s", "is not in ms");
+    refused("P05.13=1 V", "is not in ms");
+    refused("P05.13=3s", "3000 ms is not in the range");
     refused("P05.13", "has no '='");
     refused("P05.99=1", "no such parameter");
     refused("603Fh=1", "read-only");

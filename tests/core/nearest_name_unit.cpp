@@ -9,6 +9,7 @@ TEST(NearestName, FindsASlipOfTheKeyboard) {
     EXPECT_EQ(nearest_name("velocitty", {"position", "velocity", "jerk"}), "velocity");
     EXPECT_EQ(nearest_name("strat_button", {"start_button", "stop_button"}), "start_button");
     EXPECT_EQ(nearest_name("y", {"x"}), "x");
+    EXPECT_EQ(nearest_name("SV33-E", {"sv-da200", "sv33-e"}), "sv33-e");
 }
 
 TEST(NearestName, SaysNothingWhenNothingIsNear) {

@@ -59,6 +59,15 @@ TEST(ParameterText, ASlipOfTheKeyboardIsAnsweredByTheNearestName) {
     EXPECT_NE(found.error().remedy.find("P05.13"), std::string::npos) << found.error().text();
 }
 
+// A number that merely looks alike is another parameter: whoever asks for P99.99 does not mean P05.13.
+TEST(ParameterText, ADifferentNumberIsNoSlip) {
+    const auto other = find_parameter(profile(), "P99.99");
+    ASSERT_FALSE(other);
+    EXPECT_EQ(other.error().remedy, "`taktwerk drive params` lists them all");
+    for (const char* slip : {"P5.13", "P05.133", "P05.12", "p05.31"})
+        EXPECT_EQ(find_parameter(profile(), slip).error().remedy, "did you mean P05.13?") << slip;
+}
+
 TEST(ParameterText, ValuesAreShownInTheirUnitWithTheDigitsOfOneStep) {
     EXPECT_EQ(value_text(brake_release(), 250), "250 ms");
     EXPECT_EQ(value_text(torque_limit(), 1000), "100.0 %");
@@ -77,6 +86,8 @@ TEST(ParameterText, ValuesAreShownInTheirUnitWithTheDigitsOfOneStep) {
 TEST(ParameterText, WhatIsWrittenInTheUnitBecomesRaw) {
     EXPECT_EQ(*parse_value(brake_release(), "300"), 300);
     EXPECT_EQ(*parse_value(brake_release(), "300 ms"), 300);
+    EXPECT_EQ(*parse_value(brake_release(), "0.3 s"), 300) << "another unit of the same thing";
+    EXPECT_EQ(*parse_value(brake_release(), "0.3s"), 300);
     EXPECT_EQ(*parse_value(torque_limit(), "99.9%"), 999);
     EXPECT_EQ(*parse_value(torque_limit(), "0x3E7"), 999);
     EXPECT_EQ(*parse_value(home_offset(), "-12"), -12);
@@ -90,7 +101,10 @@ TEST(ParameterText, WhatCannotBeMeantIsRefusedWithAReason) {
     };
     EXPECT_EQ(code(brake_release(), "501"), "drive.out_of_range");
     EXPECT_EQ(code(brake_release(), "-1"), "drive.out_of_range");
-    EXPECT_EQ(code(brake_release(), "0.3 s"), "drive.value");
+    EXPECT_EQ(code(brake_release(), "3s"), "drive.out_of_range") << "3000 ms, in the unit of the range";
+    EXPECT_EQ(code(brake_release(), "0.3 V"), "drive.value");
+    EXPECT_EQ(code(brake_release(), "100 us"), "drive.value") << "between two steps";
+    EXPECT_EQ(code(torque_limit(), "10 ms"), "drive.value");
     EXPECT_EQ(code(brake_release(), "fast"), "drive.value");
     EXPECT_EQ(code(brake_release(), ""), "drive.value");
     EXPECT_EQ(code(brake_release(), "nan"), "drive.value");
