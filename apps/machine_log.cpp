@@ -8,6 +8,7 @@
 
 #include "apps/json_text.hpp"
 #include "axes/axis/alarms.hpp"
+#include "ecat/alarms.hpp"
 #include "ecat/bringup/bus.hpp"
 #include "hmi_bridge/event_text.hpp"
 
@@ -42,6 +43,18 @@ std::string_view text(ProgramState state) {
 bool of_a_drive(const AlarmFact& fact) {
     return fact.source == AlarmSource::axis &&
            (fact.id == axes::id(axes::AxisAlarm::drive_fault) || fact.id == axes::id(axes::AxisAlarm::drive_warning));
+}
+
+/// The bus says at once that slaves fell, and some milliseconds later why, and how many.
+bool bus_tells_more(const AlarmFact& before, const AlarmFact& now) {
+    switch (now.id) {
+        case ecat::alarm::slave_left_op: return before.a == 0 && now.a != 0;
+        case ecat::alarm::starved_slave_left_op:
+        case ecat::alarm::starved_slave_dropped_out: return now.b > before.b;
+        case ecat::alarm::foreign_command:
+        case ecat::alarm::foreign_command_tolerated: return now.a > before.a;
+        default: return false;
+    }
 }
 
 /// Whoever ends the run knows that it ends, and that its bus does.
@@ -132,14 +145,15 @@ void MachineLog::alarms(Instant now, const Snapshot& s) {
             note(now, alarm.fact, is_new);
             continue;
         }
-        if (!is_new && !(alarm.standing && other_numbers && of_a_drive(alarm.fact))) continue;
+        const bool of_the_bus = !is_new && alarm.standing && bus_tells_more(before, alarm.fact);
+        if (!is_new && !of_the_bus && !(alarm.standing && other_numbers && of_a_drive(alarm.fact))) continue;
         const auto words = machine_.describe(alarm.fact);
         if (ends_the_run(words)) continue;
         // The alarm is announced at once, with its code. Where several alarms of the drive share that code, the detail that tells them apart
         // is read some milliseconds later and completes it; where the code said all, the words are the same and nothing is said.
         if (!is_new && words.english == known->said) continue;
         known->said = words.english;
-        say_alarm(now, !is_new && (before.a == alarm.fact.a || before.a == 0) ? "detail" : "ALARM", words);
+        say_alarm(now, of_the_bus || (!is_new && (before.a == alarm.fact.a || before.a == 0)) ? "detail" : "ALARM", words);
     }
     std::erase_if(known_, [&](const Known& k) {
         for (std::size_t i = 0; i < s.alarm_count; ++i)

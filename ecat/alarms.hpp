@@ -26,6 +26,8 @@ inline constexpr AlarmId mailbox_silent = 0x101A;
 inline constexpr AlarmId other_device_tolerated = 0x101B;
 inline constexpr AlarmId starved_slave_left_op = 0x101C;
 inline constexpr AlarmId starved_slave_dropped_out = 0x101D;
+inline constexpr AlarmId foreign_command = 0x101E;
+inline constexpr AlarmId foreign_command_tolerated = 0x101F;
 inline constexpr AlarmId dc_out_of_sync = 0x1020;
 inline constexpr AlarmId dc_not_locked = 0x1021;
 inline constexpr AlarmId reference_clock_lost = 0x1022;
@@ -57,23 +59,33 @@ inline constexpr std::array bus_alarms{
               "power lost, cable pulled, or its controller was reset",
               "check its power and cable; it is taken back to OP by itself when it returns", ResetRule::acknowledge, Reaction::stop_machine,
               "the drive stops by its SM watchdog"},
-    AlarmInfo{alarm::slave_left_op, "slave_left_op", "The slave left OP (AL status code {b:x4}h)",
-              "从站退出 OP 状态（AL 状态代码 {b:x4}h）",
-              "the code says why: 001Bh no frames within its watchdog time, 001Ah and 002Ch to 0034h synchronisation, others are its own",
+    AlarmInfo{alarm::slave_left_op, "slave_left_op", "The slave left OP", "从站退出 OP 状态",
+              "the AL status code says why: 001Bh no frames within its watchdog time, 001Ah and 002Ch to 0034h synchronisation, others are "
+              "its own",
               "read the text behind the code; the bus acknowledges it and returns the slave to OP", ResetRule::acknowledge,
               Reaction::stop_machine, "the drive reacts by its own fault reaction"},
-    AlarmInfo{alarm::starved_slave_left_op, "starved_slave_left_op",
-              "The slave left OP (AL status code {a:x4}h) right after this computer sent nothing for {b} ms",
-              "本控制器 {b} ms 未发送报文后，从站退出 OP 状态（AL 状态代码 {a:x4}h）",
-              "this computer was late, not the slave: its watchdog or its synchronisation did what it is there for",
-              "see late_wakeups: a task that computes too long, another process, no real time; the slave is returned to OP by itself",
-              ResetRule::acknowledge, Reaction::stop_machine, "the drive reacts by its own fault reaction"},
+    AlarmInfo{alarm::starved_slave_left_op, "starved_slave_left_op", "This computer sent nothing for {a} ms, and {b} slave(s) left OP",
+              "本控制器 {a} ms 未发送报文，{b} 个从站退出 OP 状态",
+              "this computer was late, not the slaves: their watchdogs or their synchronisation did what they are there for",
+              "see late_wakeups: a task that computes too long, another process, no real time; the slaves are returned to OP by themselves",
+              ResetRule::acknowledge, Reaction::stop_machine, "the drives react by their own fault reactions"},
     AlarmInfo{alarm::starved_slave_dropped_out, "starved_slave_dropped_out",
-              "The slave dropped out (AL status code {a:x4}h) right after this computer sent nothing for {b} ms; the others run on",
-              "本控制器 {b} ms 未发送报文后，从站已退出（AL 状态代码 {a:x4}h），其余从站继续运行",
-              "this computer was late, not the slave: its watchdog or its synchronisation did what it is there for",
-              "see late_wakeups: a task that computes too long, another process, no real time; the slave is returned to OP by itself",
-              ResetRule::acknowledge, Reaction::warn, "the drive stops by its SM watchdog"},
+              "This computer sent nothing for {a} ms, and {b} slave(s) dropped out; the others run on",
+              "本控制器 {a} ms 未发送报文，{b} 个从站已退出，其余从站继续运行",
+              "this computer was late, not the slaves: their watchdogs or their synchronisation did what they are there for",
+              "see late_wakeups: a task that computes too long, another process, no real time; the slaves are returned to OP by themselves",
+              ResetRule::acknowledge, Reaction::warn, "the drives stop by their SM watchdogs"},
+    AlarmInfo{alarm::foreign_command, "foreign_command", "Somebody else took {a} slave(s) out of OP: they report no error of their own",
+              "其他主站使 {a} 个从站退出 OP 状态：从站未报告自身错误",
+              "another master or a configuration tool gave them another state (one that is in INIT may have restarted by itself)",
+              "connect the bus to this controller only; the slaves are returned to OP by themselves", ResetRule::acknowledge,
+              Reaction::stop_machine, "the drives react by their own fault reactions"},
+    AlarmInfo{alarm::foreign_command_tolerated, "foreign_command_tolerated",
+              "Somebody else took {a} slave(s) out of OP, and they report no error of their own; the others run on",
+              "其他主站使 {a} 个从站退出 OP 状态，从站未报告自身错误；其余从站继续运行",
+              "another master or a configuration tool gave them another state (one that is in INIT may have restarted by itself)",
+              "connect the bus to this controller only; the slaves are returned to OP by themselves", ResetRule::acknowledge, Reaction::warn,
+              "the drives react by their own fault reactions"},
     AlarmInfo{alarm::cable_broken, "cable_broken", "{a} slaves behind one cable do not answer", "同一电缆后的 {a} 个从站无应答",
               "the cable to this slave is pulled or broken, or its power went",
               "check cable and power at the place named; the slaves are taken back to OP by themselves when they return",
@@ -82,8 +94,8 @@ inline constexpr std::array bus_alarms{
               "power lost or cable pulled; who it is will be known in a moment", "read the alarm that follows", ResetRule::self_clearing,
               Reaction::stop_machine, "the drives stop by their SM watchdog"},
     // Slaves with on_loss: stop_own_axes. Their axes stop by axis_feedback_lost.
-    AlarmInfo{alarm::slave_dropped_out, "slave_dropped_out", "The slave dropped out (AL status code {b:x4}h); the others run on",
-              "从站已退出（AL 状态代码 {b:x4}h），其余从站继续运行",
+    AlarmInfo{alarm::slave_dropped_out, "slave_dropped_out", "The slave dropped out; the others run on",
+              "从站已退出，其余从站继续运行",
               "power lost, cable pulled, or an error of its own; its configuration says on_loss: stop_own_axes",
               "check its power, cable and AL status code; it is taken back to OP by itself", ResetRule::acknowledge, Reaction::warn,
               "the drive stops by its SM watchdog"},
@@ -129,8 +141,8 @@ inline constexpr std::array bus_alarms{
               "电缆上存在其他 EtherCAT 主站的报文",
               "a second controller or a configuration tool is connected to the bus, or the cable goes into an office network",
               "connect the bus to this controller only; its address stands behind this text", ResetRule::self_clearing, Reaction::warn, ""},
-    AlarmInfo{alarm::slave_emergency, "slave_emergency", "The slave sent emergency 0x{a:x} (error register 0x{b:x})",
-              "从站发出紧急报文 0x{a:x}（错误寄存器 0x{b:x}）", "the slave found an error of its own; the code is that of its object 603Fh",
+    AlarmInfo{alarm::slave_emergency, "slave_emergency", "The slave sent emergency {a:x4}h (error register {b:x2}h)",
+              "从站发出紧急报文 {a:x4}h（错误寄存器 {b:x2}h）", "the slave found an error of its own; the code is that of its object 603Fh",
               "look the code up in the device's manual; goes when the slave says that the error is gone, or starts anew",
               ResetRule::self_clearing, Reaction::warn, "the drive reacts by its own fault reaction"},
 };

@@ -1,6 +1,7 @@
 #include "ecat/fault_finder.hpp"
 
 #include <algorithm>
+#include <tuple>
 
 #include "ecat/alarms.hpp"
 
@@ -8,7 +9,7 @@ namespace taktwerk::ecat {
 
 namespace {
 
-/// How long after a slave was first seen out of OP a stall of this computer still counts as what came before it.
+/// How long after a slave was first seen out of OP what is then known still counts as what came before it.
 constexpr std::uint8_t cycles_of_a_fall = 3;
 constexpr std::int64_t sync_limit_ns = 3000;  // SV33-E P0A.32 default
 /// Cycles without a reference time until it is said: a single outlier is no news, and a recovery takes a few.
@@ -16,7 +17,7 @@ constexpr std::uint32_t reference_times_limit = 50;
 /// So many cycles the watch has to name who is missing before each slave speaks for itself.
 constexpr std::uint32_t naming_cycles = 200;
 constexpr std::uint32_t attempts_limit = 3;
-constexpr std::size_t facts_of_bus = 6, facts_of_slave = 4;
+constexpr std::size_t facts_of_bus = 12, facts_of_slave = 4;
 
 /// AL status codes by which a slave says that frames or SYNC0 and frames did not come as they should (ETG.1000.6 table 11).
 bool for_want_of_frames(std::uint16_t code) noexcept {
@@ -31,16 +32,24 @@ bool for_want_of_frames(std::uint16_t code) noexcept {
     }
 }
 
-double milliseconds(Duration d) noexcept { return to_seconds(d) * 1e3; }
+/// To the microsecond.
+double milliseconds(Duration d) noexcept { return static_cast<double>(d / std::chrono::microseconds{1}) / 1e3; }
 
 bool in_op(const SlaveCondition& slave) noexcept { return slave.al_state == AlState::op && !slave.al_error; }
+
+constexpr auto all_in_op = static_cast<std::uint16_t>(AlState::op);
+/// Among these is one that a controller enters by its own restart.
+bool some_in_init(std::uint16_t states) noexcept { return (states & static_cast<std::uint16_t>(AlState::init)) != 0; }
 
 }  // namespace
 
 std::vector<FaultSlave> fault_slaves(const Bus& bus) {
     std::vector<FaultSlave> slaves;
-    for (const auto& slave : bus.slaves)
-        slaves.push_back({slave->index, FaultSlave::none, slave->config->on_loss, bus.reference == slave->index});
+    for (const auto& slave : bus.slaves) {
+        const auto unit = slave->index < bus.plan.slaves.size() ? bus.plan.slaves[slave->index].unit : std::nullopt;
+        slaves.push_back({slave->index, FaultSlave::none, slave->config->on_loss, bus.reference == slave->index,
+                          unit && bus.plan.units[*unit].slaves.size() == 1});
+    }
     const auto position = [&](const FaultSlave& s) { return std::size_t{bus.slaves[s.index]->found.position}; };
     std::sort(slaves.begin(), slaves.end(), [&](const FaultSlave& a, const FaultSlave& b) { return position(a) < position(b); });
     for (std::size_t i = 0; i < slaves.size(); ++i) {
@@ -68,36 +77,98 @@ void FaultFinder::raise(AlarmId id, AlarmSource source, std::size_t index, doubl
 
 void FaultFinder::look(const BusCondition& bus) noexcept {
     facts_.clear();
-    if (bus.foreign_master) raise(alarm::foreign_master, AlarmSource::bus, 0);
-    if (!bus.link_up) return raise(alarm::link_down, AlarmSource::bus, 0);
-    if (bus.lost_in_a_row >= limit_) return raise(alarm::frames_lost, AlarmSource::bus, 0, bus.lost_in_a_row);
-
-    for (auto& state : states_) {
-        if (in_op(state.seen)) {
-            state.fell_after_stall = {};
-            state.fell_code = 0;
-            state.cycles_down = 0;
-            continue;
-        }
-        // What the fall came behind is known with it or right after it (a stall is noted when the next frame leaves); what comes later is no cause.
-        if (state.cycles_down < cycles_of_a_fall) {
-            ++state.cycles_down;
-            if (state.fell_after_stall == Duration{}) state.fell_after_stall = bus.stall;
-        }
-        if (state.seen.al_status_code != 0) state.fell_code = state.seen.al_status_code;
+    const bool silent = !bus.link_up || bus.lost_in_a_row >= limit_;
+    if (silent) {
+        if (bus.foreign_master) raise(alarm::foreign_master, AlarmSource::bus, 0);
+        // The first frames behind a link that is back are still those that it could not carry.
+        linked_cycles_ = bus.link_up ? linked_cycles_ + 1 : 0;
+        if (!bus.link_up) silence_id_ = alarm::link_down;
+        else if (linked_cycles_ > limit_ || !was_silent_) silence_id_ = alarm::frames_lost;
+        was_silent_ = true;
+        silence_cycles_ = bus.lost_in_a_row;
+        return raise(silence_id_, AlarmSource::bus, 0, silence_cycles_);
     }
+    was_silent_ = false;
+    note_falls(bus);
     const std::size_t unnamed = find_lost(bus.slaves_answering);
     form_groups();
+    raise_falls(bus);
     raise_groups();
     raise_unnamed(unnamed);
     bool reference_gone = false;
     for (std::size_t i = 0; i < slaves_.size(); ++i) {
-        if (slaves_[i].reference) reference_gone = !in_op(states_[i].seen);
+        if (slaves_[i].reference) reference_gone = states_[i].fall.now();
         raise_slave(i, unnamed > 0);
     }
     if (bus.reference_times_missing >= reference_times_limit && !reference_gone)
         raise(alarm::reference_clock_lost, AlarmSource::bus, 0, bus.reference_times_missing);
     if (bus.dc_difference_ns > sync_limit_ns) raise(alarm::dc_out_of_sync, AlarmSource::bus, 0, static_cast<double>(bus.dc_difference_ns));
+}
+
+// The broadcast says that somebody is out of OP before the watch has asked who: a slave that is not exchanged then is the one.
+void FaultFinder::note_falls(const BusCondition& bus) noexcept {
+    const bool somebody_fell = bus.states != 0 && bus.states != all_in_op;
+    for (std::size_t i = 0; i < slaves_.size(); ++i) {
+        const auto& seen = states_[i].seen;
+        Fall& fall = states_[i].fall;
+        const bool unread = in_op(seen) && somebody_fell && slaves_[i].alone && stale(states_[i]) && seen.age < limit_ + naming_cycles;
+        if (in_op(seen) && !unread) {
+            fall = {};
+            continue;
+        }
+        // What it came behind is known with it; what comes later is no cause.
+        if (fall.cycles_down < cycles_of_a_fall) {
+            ++fall.cycles_down;
+            if (fall.stall == Duration{}) fall.stall = bus.stall;
+            fall.silence = fall.silence || bus.silence;
+        }
+        if (seen.presence == Presence::silent && seen.age > 0) fall.restarted = true;
+        if (seen.al_status_code != 0) fall.code = seen.al_status_code;
+        if (unread) {
+            fall.by_command = (bus.states & al_status_error) == 0 && !some_in_init(bus.states);
+        } else if (!fall.read && seen.presence == Presence::answers && seen.al_state != AlState::unknown) {
+            fall.read = true;
+            fall.by_command = !seen.al_error && seen.al_status_code == 0 && !seen.taken_down;
+        }
+    }
+}
+
+FaultFinder::Fallen* FaultFinder::fallen_with(std::size_t at) noexcept {
+    const State& state = states_[at];
+    const Fall& fall = state.fall;
+    if (!fall.now() || fall.restarted || state.gone_with != FaultSlave::none || !(fall.read || stale(state))) return nullptr;
+    const std::size_t policy = slaves_[at].on_loss == LossPolicy::stop_own_axes ? 1 : 0;
+    const bool wanted_frames = fall.read ? for_want_of_frames(fall.code) : !fall.by_command;
+    if (wanted_frames && fall.stall > Duration{}) return &starved_[policy];
+    if (wanted_frames && fall.silence) return &silenced_;
+    return fall.by_command ? &commanded_[policy] : nullptr;
+}
+
+void FaultFinder::raise_falls(const BusCondition& bus) noexcept {
+    const std::array groups{&starved_[0], &starved_[1], &commanded_[0], &commanded_[1], &silenced_};
+    for (auto* group : groups) group->count = 0;
+    for (std::size_t i = 0; i < slaves_.size(); ++i) {
+        auto* group = fallen_with(i);
+        if (group == nullptr) continue;
+        ++group->count;
+        group->stall = std::max(group->stall, states_[i].fall.stall);
+    }
+    for (auto* group : groups) {
+        if (group->count == 0) *group = {};
+        group->most = std::max(group->most, group->count);
+    }
+    const bool commanded = commanded_[0].count + commanded_[1].count > 0;
+    if (bus.foreign_master || (commanded && bus.foreign_heard)) raise(alarm::foreign_master, AlarmSource::bus, 0);
+    constexpr std::array starved_ids{alarm::starved_slave_left_op, alarm::starved_slave_dropped_out};
+    constexpr std::array commanded_ids{alarm::foreign_command, alarm::foreign_command_tolerated};
+    for (std::size_t policy = 0; policy < 2; ++policy) {
+        const auto& starved = starved_[policy];
+        if (starved.count > 0)
+            raise(starved_ids[policy], AlarmSource::bus, 0, milliseconds(starved.stall), static_cast<double>(starved.most));
+        const auto& sent = commanded_[policy];
+        if (sent.count > 0) raise(commanded_ids[policy], AlarmSource::bus, 0, static_cast<double>(sent.most));
+    }
+    if (silenced_.count > 0) raise(silence_id_, AlarmSource::bus, 0, silence_cycles_, static_cast<double>(silenced_.count));
 }
 
 std::size_t FaultFinder::find_lost(std::uint16_t answering) noexcept {
@@ -166,6 +237,7 @@ void FaultFinder::raise_slave(std::size_t at, bool counted_out) noexcept {
     if (seen.trouble == ReturnTrouble::refused && seen.attempts >= attempts_limit)
         raise(alarm::slave_does_not_return, AlarmSource::slave, slave.index, seen.attempts);
     if (state.gone_with != FaultSlave::none) return;  // said with the cable, or it is just coming back
+    if (fallen_with(at) != nullptr) return;           // said with what took it down
     if (seen.mailbox_silent) raise(alarm::mailbox_silent, AlarmSource::slave, slave.index);
 
     const bool waits = counted_out && seen.age < limit_ + naming_cycles;  // probably one of those who are just being named
@@ -173,7 +245,9 @@ void FaultFinder::raise_slave(std::size_t at, bool counted_out) noexcept {
         // Only who exchanges in this very cycle has power and cable, and lost nothing but its address.
         if (seen.age == 0) raise(alarm::station_address_lost, AlarmSource::slave, slave.index);
         else if (stale(state)) raise(tolerated ? alarm::slave_dropped_out : alarm::slave_lost, AlarmSource::slave, slave.index);
-    } else if (seen.presence == Presence::answers && !in_op(seen)) {
+    } else if (seen.presence == Presence::answers && state.fall.restarted) {
+        raise(tolerated ? alarm::slave_dropped_out : alarm::slave_lost, AlarmSource::slave, slave.index);  // until it is back in OP
+    } else if (seen.presence == Presence::answers && state.fall.now()) {
         raise_left_op(at);
     } else if (stale(state) && !waits) {
         if (tolerated) raise_left_op(at);
@@ -183,17 +257,10 @@ void FaultFinder::raise_slave(std::size_t at, bool counted_out) noexcept {
 
 void FaultFinder::raise_left_op(std::size_t at) noexcept {
     const auto& slave = slaves_[at];
-    const auto& seen = states_[at].seen;
+    const auto& [seen, fall] = std::tie(states_[at].seen, states_[at].fall);
     const bool tolerated = slave.on_loss == LossPolicy::stop_own_axes;
-    const Duration stall = states_[at].fell_after_stall;
-    const std::uint16_t code = states_[at].fell_code;
-    if (stall > Duration{} && for_want_of_frames(code)) {
-        raise(tolerated ? alarm::starved_slave_dropped_out : alarm::starved_slave_left_op, AlarmSource::slave, slave.index, code,
-              milliseconds(stall));
-        return;
-    }
-    raise(tolerated ? alarm::slave_dropped_out : alarm::slave_left_op, AlarmSource::slave, slave.index, static_cast<double>(seen.al_state),
-          code);
+    raise(tolerated ? alarm::slave_dropped_out : alarm::slave_left_op, AlarmSource::slave, slave.index,
+          fall.read ? static_cast<double>(seen.al_state) : 0, fall.code);
 }
 
 }  // namespace taktwerk::ecat

@@ -3,14 +3,19 @@
 // breaks takes everybody behind it along; that is one condition, named at the first slave behind the break, and it stands until
 // the last of them is back in OP. Allocates when it is made; look() is real-time safe and belongs to the cycle.
 //
-//   no frame comes back          link_down or frames_lost, nothing else: nothing else is known
+//   no frame comes back          link_down or frames_lost, nothing else: nothing else is known; it stands until all who fell by it are back
 //   slaves do not answer         slave_lost, or cable_broken where it is more than one behind the same place
 //   the cycle counts fewer slaves than it can name (a moment after a break): slaves_missing
-//   a slave leaves OP by a watchdog or for want of frames, right after this computer sent none    starved_slave_left_op
+//   slaves leave OP by a watchdog or for want of frames, right after this computer sent none      starved_slave_left_op, one for all
+//   slaves leave OP without an error of their own: somebody sent them there                       foreign_command, one for all
 //   a slave answers, but not as it should    slave_left_op, working_counter_wrong, station_address_lost, other_device, ...
+//
+// In this order suspicion falls: on this computer, on another master, on the cable, and only then on the slave. The broadcast says at
+// once that somebody left OP and whether an error is why; who it was and the code of the error the watch reads some milliseconds later.
 //
 // Slaves whose loss stops only their own axes (LossPolicy::stop_own_axes) have conditions of their own with another reaction.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -32,6 +37,7 @@ struct SlaveCondition {
     ReturnTrouble trouble = ReturnTrouble::none;
     std::uint32_t attempts = 0;
     bool mailbox_silent = false;
+    bool taken_down = false;  ///< by this master itself, to set it up again
 };
 
 /// The bus as a whole.
@@ -42,7 +48,10 @@ struct BusCondition {
     std::uint32_t reference_times_missing = 0;  ///< in a row
     std::int64_t dc_difference_ns = 0;
     bool foreign_master = false;
-    Duration stall{};  ///< so long this computer sent nothing a moment ago; 0: it was in time
+    Duration stall{};           ///< so long this computer sent nothing a moment ago; 0: it was in time
+    bool silence = false;       ///< frames did not come back a moment ago, for longer than the limit
+    bool foreign_heard = false; ///< a frame of another sender came in lately, be it a single one
+    std::uint16_t states = 0;   ///< OR of the AL states of all slaves, with the error bit; 0: not all of them answered
 };
 
 /// A slave as it was configured and found. In the order of positions, so that parents come before their children.
@@ -52,6 +61,7 @@ struct FaultSlave {
     std::size_t parent = none;  ///< in this order: the next configured slave towards the master
     LossPolicy on_loss = LossPolicy::stop_machine;
     bool reference = false;  ///< its clock is the bus' clock
+    bool alone = true;       ///< no other slave's process data is valid or not together with its own
 };
 
 /// The configured slaves of a bus that was scanned.
@@ -69,13 +79,27 @@ public:
     [[nodiscard]] std::span<const AlarmFact> facts() const noexcept { return facts_; }
 
 private:
+    /// Of a slave that is out of OP: what came before it. Empty as long as it is in OP.
+    struct Fall {
+        Duration stall{};               ///< this computer sent nothing for so long
+        bool silence = false;           ///< no frame came back
+        bool by_command = false;        ///< it names no error of its own
+        bool restarted = false;         ///< it did not answer to its address meanwhile: its controller began anew
+        bool read = false;              ///< the watch has asked it
+        std::uint8_t cycles_down = 0;   ///< up to `cycles_of_a_fall`
+        std::uint16_t code = 0;         ///< why, as it said first: the way back clears it
+        [[nodiscard]] bool now() const noexcept { return cycles_down > 0; }
+    };
+    /// Slaves that fell by one thing outside of them.
+    struct Fallen {
+        std::size_t count = 0, most = 0;  ///< now, and at most since the first fell
+        Duration stall{};
+    };
     struct State {
         SlaveCondition seen;
         bool lost = false;
         std::size_t gone_with = FaultSlave::none;  ///< the first slave behind the break that took it away; until it is back in OP
-        Duration fell_after_stall{};               ///< this computer's own, right before the slave left OP; while it is out of OP
-        std::uint8_t cycles_down = 0;      ///< not in OP for so many, up to `cycles_of_a_fall`
-        std::uint16_t fell_code = 0;               ///< why, as it said first: the way back clears it
+        Fall fall;
         std::size_t group = 0, largest_group = 0;  ///< slaves gone with this one, now and at most
         bool group_stops_machine = false;
     };
@@ -85,8 +109,12 @@ private:
     void form_groups() noexcept;
     void raise_groups() noexcept;
     void raise_slave(std::size_t at, bool counted_out) noexcept;
-    /// A slave that answers, but not from OP: whose doing was it?
+    void note_falls(const BusCondition& bus) noexcept;
+    /// What many slaves fell by is said once.
+    void raise_falls(const BusCondition& bus) noexcept;
+    /// A slave that answers, but not from OP, and nothing outside of it explains that.
     void raise_left_op(std::size_t at) noexcept;
+    [[nodiscard]] Fallen* fallen_with(std::size_t at) noexcept;
     void raise_unnamed(std::size_t unnamed) noexcept;
     [[nodiscard]] bool stale(const State& state) const noexcept { return state.seen.age >= limit_; }
 
@@ -96,6 +124,11 @@ private:
     std::vector<AlarmFact> facts_;    ///< capacity for all there can be
     std::uint16_t expected_;
     std::uint32_t limit_;
+    std::array<Fallen, 2> starved_, commanded_;  ///< stop_machine, stop_own_axes
+    Fallen silenced_;
+    AlarmId silence_id_ = 0;  ///< link_down or frames_lost, which was last
+    std::uint32_t silence_cycles_ = 0, linked_cycles_ = 0;
+    bool was_silent_ = false;
 };
 
 }  // namespace taktwerk::ecat

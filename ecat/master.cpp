@@ -249,23 +249,58 @@ std::size_t Master::active_faults(std::span<AlarmFact> out) const noexcept {
     return count;
 }
 
+namespace {
+
+std::string code_text(std::uint16_t code) { return fmt::format("AL status code {:04X}h {}", code, al_status_info(code).text); }
+
+/// Who is out of OP, and the reason of the first who gave one.
+std::string fallen_text(const Bus& bus) {
+    constexpr std::size_t named = 3;
+    std::string names, why;
+    std::size_t count = 0;
+    for (const auto& slave : bus.slaves) {
+        const std::uint32_t al = slave->al.load();
+        const bool in_op = al == static_cast<std::uint32_t>(AlState::op);
+        if (in_op && slave->age.load() < bus.config.lost_frames_limit) continue;
+        if (count++ < named) names += (names.empty() ? "" : ", ") + slave->subject;
+        if (why.empty() && (al & al_status_error) != 0) why = fmt::format(" ({})", code_text(static_cast<std::uint16_t>(al >> 16)));
+    }
+    if (count > named) names += fmt::format(" and {} more", count - named);
+    return names + why;
+}
+
+}  // namespace
+
 std::string Master::detail(const AlarmFact& fact) const {
     const auto& slaves = impl_->bus->slaves;
-    if (fact.id == alarm::foreign_master) return sender_text(impl_->bus->link);
+    const auto& link = impl_->bus->link;
+    switch (fact.id) {
+        case alarm::foreign_master: return sender_text(link);
+        case alarm::foreign_command:
+        case alarm::foreign_command_tolerated:
+            return fallen_text(*impl_->bus) + (link.foreign_frames.load() > 0 ? "; of whom frames were heard: " + sender_text(link) : "");
+        case alarm::starved_slave_left_op:
+        case alarm::starved_slave_dropped_out: return fallen_text(*impl_->bus);
+        case alarm::link_down:
+        case alarm::frames_lost:
+            return fact.b > 0 ? fmt::format("it is over; slaves on their way back to OP: {:.0f}", fact.b) : std::string{};
+        default: break;
+    }
     if (fact.source != AlarmSource::slave || fact.index >= slaves.size()) return {};
-    const auto code_text = [](double code) { return std::string{al_status_info(static_cast<std::uint16_t>(code)).text}; };
+    const auto& slave = *slaves[fact.index];
     switch (fact.id) {
         case alarm::slave_left_op:
         case alarm::slave_dropped_out:
-            return fmt::format("{}; it is in {}", code_text(fact.b), name(static_cast<AlState>(static_cast<std::uint8_t>(fact.a))));
-        case alarm::starved_slave_left_op:
-        case alarm::starved_slave_dropped_out: return code_text(fact.a);
+            if (fact.a != 0)
+                return fmt::format("{}; it is in {}", code_text(static_cast<std::uint16_t>(fact.b)),
+                                   name(static_cast<AlState>(static_cast<std::uint8_t>(fact.a))));
+            return fact.id == alarm::slave_left_op ? std::string{"its reason is being read"} : connection_text(*impl_->bus, slave);
         case alarm::cable_broken:
         case alarm::branch_dropped_out:
-        case alarm::slave_lost: return connection_text(*impl_->bus, *slaves[fact.index]);
+        case alarm::slave_lost: return connection_text(*impl_->bus, slave);
         case alarm::other_device:
         case alarm::other_device_tolerated:
-        case alarm::slave_does_not_return: return slaves[fact.index]->last_trouble;
+        case alarm::slave_does_not_return: return slave.last_trouble;
         default: return {};
     }
 }

@@ -13,6 +13,9 @@ namespace {
 constexpr std::int64_t bringup_share = 4;
 constexpr Duration longest_frame = std::chrono::microseconds{124};  ///< 1518 bytes, preamble and gap at 100 Mbit/s
 
+/// A command of another master shows in the states with the next cycle; the watch may take some more to read them.
+constexpr Duration foreign_remembered = std::chrono::seconds{1};
+
 std::int64_t nanoseconds(Instant t) noexcept { return t.time_since_epoch().count(); }
 
 }  // namespace
@@ -108,13 +111,20 @@ void ProcessDataCycle::find_faults(CyclePlan& cycle, Instant now) noexcept {
                                      slave.presence.load(std::memory_order_relaxed),
                                      slave.trouble.load(std::memory_order_relaxed),
                                      slave.attempts.load(std::memory_order_relaxed),
-                                     slave.mailbox_silent.load(std::memory_order_relaxed)};
+                                     slave.mailbox_silent.load(std::memory_order_relaxed),
+                                     slave.taken_down.load(std::memory_order_relaxed)};
     }
+    if (!transport_.link_up() || statistics_.lost_in_a_row >= config_.lost_frames_limit) silence_at_ = now;
+    if (statistics_.frames_foreign != foreign_before_) foreign_at_ = now;
+    foreign_before_ = statistics_.frames_foreign;
+    const auto lately = [&](const std::optional<Instant>& at, Duration window) { return at && now - *at <= window; };
     const auto* link = link_.load(std::memory_order_acquire);
     cycle.faults.look({transport_.link_up(), statistics_.lost_in_a_row, statistics_.slaves_answering,
                        clock_.reference().rejected_in_a_row(), statistics_.dc_difference_ns,
                        link != nullptr && link->foreign_master.load(std::memory_order_relaxed),
-                       link != nullptr ? recent_stall(*link, now) : Duration{}});
+                       link != nullptr ? recent_stall(*link, now) : Duration{}, lately(silence_at_, stall_remembered),
+                       lately(foreign_at_, foreign_remembered),
+                       link != nullptr ? static_cast<std::uint16_t>(link->states_seen.load(std::memory_order_relaxed)) : std::uint16_t{0}});
 }
 
 void ProcessDataCycle::collect_frames(CyclePlan& cycle) noexcept {

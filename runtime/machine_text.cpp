@@ -15,24 +15,27 @@ namespace taktwerk::runtime {
 
 namespace {
 
-std::string number(double value, bool hex, bool four_digits = false) {
-    if (four_digits) return fmt::format("{:04X}", static_cast<std::uint32_t>(value));
-    if (hex) return fmt::format("{:X}", static_cast<std::uint32_t>(value));
+std::string number(double value) {
     if (value == std::floor(value) && std::abs(value) < 1e15) return fmt::format("{}", static_cast<std::int64_t>(value));
-    return fmt::format("{:.6g}", value);
+    if (std::abs(value) >= 1e4 && std::abs(value) < 1e15) return fmt::format("{:.0f}", value);  // nobody reads 1.99901e+06
+    return fmt::format("{:.4g}", value);
 }
 
-/// {a}, {b}, {a:x}, {b:x} and, with four digits as AL status codes are written, {a:x4}, {b:x4} in a text of an alarm table.
+/// {a}, {b} and, in so many hexadecimal digits as codes of that kind are written, {a:x2}, {b:x4}, ... in a text of an alarm table.
 std::string fill(std::string_view text, double a, double b) {
     std::string out;
     for (std::size_t i = 0; i < text.size();) {
         const auto rest = text.substr(i);
-        const bool plain = rest.starts_with("{a}") || rest.starts_with("{b}");
-        const bool hex = rest.starts_with("{a:x}") || rest.starts_with("{b:x}");
-        const bool code = rest.starts_with("{a:x4}") || rest.starts_with("{b:x4}");
-        if (plain || hex || code) {
-            out += number(rest[1] == 'a' ? a : b, hex, code);
-            i += plain ? 3 : hex ? 5 : 6;
+        const auto end = rest.find('}');
+        const auto place = rest.substr(0, end == std::string_view::npos ? 0 : end + 1);
+        const bool known = place.starts_with("{a") || place.starts_with("{b");
+        const double value = known && place[1] == 'a' ? a : b;
+        if (known && place.size() == 3) {
+            out += number(value);
+            i += place.size();
+        } else if (known && place.size() == 6 && place.substr(2, 2) == ":x") {
+            out += fmt::format("{:0{}X}", static_cast<std::uint32_t>(value), place[4] - '0');
+            i += place.size();
         } else {
             out += text[i++];
         }
@@ -150,8 +153,8 @@ AlarmText Machine::describe(const AlarmFact& fact) const {
     }
 
     if (fact.id == id(MachineAlarm::undeclared_use) && fact.b != 0) {
-        out.english = fmt::format("The program raises alarm {}, which its declare() never named: nobody sees it", number(fact.a, false));
-        out.chinese = fmt::format("程序触发了 declare() 中未声明的报警 {}:无人可见", number(fact.a, false));
+        out.english = fmt::format("The program raises alarm {}, which its declare() never named: nobody sees it", number(fact.a));
+        out.chinese = fmt::format("程序触发了 declare() 中未声明的报警 {}:无人可见", number(fact.a));
         out.cause = "An alarm needs a number of 0 to 63 and a text";
         out.remedy = "Declare it with d.alarm(number, reaction, text, ...), then build and start it again";
     }

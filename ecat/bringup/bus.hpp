@@ -143,6 +143,7 @@ struct BusSlave {
     std::atomic<ReturnTrouble> trouble{ReturnTrouble::none};
     std::atomic<std::uint32_t> attempts{0};  ///< to get it back, in a row
     std::atomic<bool> mailbox_silent{false};
+    std::atomic<bool> taken_down{false};       ///< to set it up again; until it is back in OP
     std::atomic<std::uint32_t> al{0};          ///< AL status in the low word, status code in the high word
     std::atomic<std::int64_t> sync0_start{0};  ///< an instant of SYNC0 in system time; 0: does not run
     std::atomic<std::uint32_t> recoveries{0};

@@ -75,6 +75,11 @@ Duration round_of_watch(const Bus& bus) {
 std::string fall_text(const Bus& bus, const BusSlave& slave, const Result<std::uint16_t>& status, Instant now) {
     if (!status) return status.error().text();
     const auto code = static_cast<std::uint16_t>(slave.al.load() >> 16);
+    if ((*status & al_status_error) == 0 && code == 0) {
+        const std::string heard = bus.link.foreign_frames.load() > 0 ? "; of whom frames were heard: " + sender_text(bus.link) : "";
+        return fmt::format("{} is in {} without an error of its own: somebody else sent it there (another master, a tool), or it restarted{}",
+                           slave.subject, name(al_state(*status)), heard);
+    }
     std::string text = fmt::format("{} left OP: it is in {}, AL status code {:04X}h {}", slave.subject, name(al_state(*status)), code,
                                    al_status_info(code).text);
     if (const Duration stall = recent_stall(bus.link, now); stall > Duration{})
@@ -138,6 +143,7 @@ Script<void> SlaveWatch::look_after(Instant now) {
     reported_ = false;
     back_off_.healthy(now);
     slave_.trouble.store(ReturnTrouble::none);
+    slave_.taken_down.store(false);
     slave_.attempts.store(0);
     if (slave_.dc && bus_.reference != slave_.index && now - difference_at_ >= difference_period) {
         difference_at_ = now;
@@ -154,6 +160,7 @@ Script<void> SlaveWatch::check_settings(Instant now) {
     const Result<bool> intact = co_await settings_intact(bus_, slave_);
     if (!intact || *intact) co_return;
     bus_.remember(slave_.subject + " has other sync managers or FMMUs than it was given: it is set up again");
+    slave_.taken_down.store(true);
     const Reply down = co_await bus_.port.fpwr(slave_.found.station, reg::al_control, static_cast<std::uint16_t>(AlState::init));
     if (!down.ok()) co_return;
     slave_.al.store(static_cast<std::uint32_t>(AlState::init));
@@ -225,15 +232,20 @@ Script<void> watch_mailboxes(Bus& bus) {
     }
 }
 
+/// Said as soon as there are enough of them; gone when none came for a while.
 Script<void> watch_senders(Bus& bus) {
-    std::uint64_t before = bus.link.foreign_frames.load();
+    std::uint64_t seen = bus.link.foreign_frames.load(), before = seen;
+    Instant window = co_await time(), heard = window;
     for (;;) {
-        co_await pause(foreign_window);
-        const std::uint64_t seen = bus.link.foreign_frames.load();
-        const bool foreign = seen - before >= foreign_limit;
-        if (foreign && !bus.link.foreign_master.exchange(true))
+        const Instant now = co_await pause(watch_glance);
+        const std::uint64_t frames = bus.link.foreign_frames.load();
+        if (frames != seen) heard = now;
+        seen = frames;
+        if (seen - before >= foreign_limit && !bus.link.foreign_master.exchange(true))
             bus.remember("frames of another EtherCAT master are on the cable: " + sender_text(bus.link));
-        if (!foreign) bus.link.foreign_master.store(false);
+        if (now - heard >= foreign_window) bus.link.foreign_master.store(false);
+        if (now - window < foreign_window) continue;
+        window = now;
         before = seen;
     }
 }

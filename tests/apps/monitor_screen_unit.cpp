@@ -39,7 +39,7 @@ Json axis(const std::string& name) {
 
 Json alarm(const std::string& source) {
     return Json{{"source", source},
-                {"english", "The drive reports fault 0x3130"},
+                {"english", "The drive reports fault 3130h"},
                 {"chinese", "驱动器报告故障 0x3130"},
                 {"cause", "A phase is missing"},
                 {"remedy", "Check the mains"},
@@ -87,7 +87,7 @@ TEST(MonitorScreen, ThreeAxesWithAlarmsFitAPlainTerminal) {
     for (const auto& line : lines) EXPECT_LE(columns(line), 80u) << line;
     EXPECT_THAT(lines, Contains(HasSubstr("SIMULATED")));
     EXPECT_THAT(lines, Contains(HasSubstr("missed 3")));
-    EXPECT_THAT(lines, Contains(HasSubstr("axis a1: The drive reports fault 0x3130")));
+    EXPECT_THAT(lines, Contains(HasSubstr("axis a1: The drive reports fault 3130h")));
     EXPECT_THAT(lines, Contains(HasSubstr("驱动器报告故障 0x3130")));
     EXPECT_THAT(lines, Contains(HasSubstr("why: A phase is missing")));
     EXPECT_THAT(lines, Contains(HasSubstr("-> Check the mains (reset)")));

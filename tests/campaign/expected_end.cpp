@@ -88,7 +88,7 @@ ExpectedEnd of_operation(FaultKind kind) {
         case FaultKind::link_down: return stops({alarm::link_down});
         case FaultKind::foreign_frames: return runs_on({alarm::foreign_master});
         case FaultKind::address_changed: return runs_on({alarm::station_address_lost});
-        case FaultKind::state_changed: return stops({alarm::slave_left_op, alarm::working_counter_wrong});
+        case FaultKind::state_changed: return stops({alarm::foreign_command});
         case FaultKind::settings_changed: return stops({alarm::working_counter_wrong});
         case FaultKind::mailbox_stuck: return runs_on();
         case FaultKind::mailbox_dead: {
@@ -100,7 +100,7 @@ ExpectedEnd of_operation(FaultKind kind) {
         case FaultKind::reference_frozen: return runs_on({alarm::reference_clock_lost});
         case FaultKind::stall_20ms:
         case FaultKind::stall_200ms:
-        case FaultKind::stall_2s: return stops({alarm::starved_slave_left_op, alarm::working_counter_wrong});
+        case FaultKind::stall_2s: return stops({alarm::starved_slave_left_op});
         // A wrong input may be an emergency stop or a following error; a wrong register may be anything of a slave. Nobody can see
         // a flipped bit in a target behind a valid checksum: there the drive's own supervision of increments is what remains.
         case FaultKind::answer_bits_flipped: {

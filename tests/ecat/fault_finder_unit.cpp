@@ -80,8 +80,9 @@ TEST(FaultFinder, ASlaveThatFallsRightAfterOurOwnStallIsNotBlamed) {
         f.bus.stall = {};
         EXPECT_THAT(f.look(), ElementsAre(starved ? alarm::starved_slave_left_op : alarm::slave_left_op)) << "as long as it stands";
         if (starved) {
-            EXPECT_EQ(f.finder.facts()[0].a, code);
-            EXPECT_EQ(f.finder.facts()[0].b, 20.0);
+            EXPECT_EQ(f.finder.facts()[0].source, AlarmSource::bus) << "no slave is accused";
+            EXPECT_EQ(f.finder.facts()[0].a, 20.0) << "ms";
+            EXPECT_EQ(f.finder.facts()[0].b, 1) << "slaves";
         }
         slave = {};
         slave.al_state = AlState::op;
@@ -91,6 +92,93 @@ TEST(FaultFinder, ASlaveThatFallsRightAfterOurOwnStallIsNotBlamed) {
         slave.al_status_code = code;
         EXPECT_THAT(f.look(), ElementsAre(alarm::slave_left_op)) << "the next time it falls by itself";
     }
+}
+
+// The broadcast knows it in the same cycle, the watch reads the codes one after the other: from the first cycle to the last it is one alarm.
+TEST(FaultFinder, ManyThatFallBehindOneStallAreOneAlarm) {
+    Finder f{{-1, 0, 1, 2, 3}};
+    f.bus.stall = std::chrono::milliseconds{20};
+    f.bus.states = 0x14;  // SAFEOP, error
+    for (std::size_t i = 0; i < 5; ++i) f.finder.condition(i).age = limit;
+    ASSERT_THAT(f.look(), ElementsAre(alarm::starved_slave_left_op));
+    f.bus.stall = {};
+    for (std::size_t i = 0; i < 5; ++i) {
+        f.finder.condition(i) = {.al_state = AlState::safeop, .al_error = true, .al_status_code = 0x1B, .age = limit + 20};
+        EXPECT_THAT(f.look(), ElementsAre(alarm::starved_slave_left_op)) << i;
+    }
+    EXPECT_EQ(f.finder.facts()[0].b, 5);
+    f.bus.states = 0x0C;
+    for (std::size_t i = 0; i < 4; ++i) {
+        f.finder.condition(i) = {.al_state = AlState::op};
+        ASSERT_THAT(f.look(), ElementsAre(alarm::starved_slave_left_op));
+    }
+    EXPECT_EQ(f.finder.facts()[0].b, 5) << "as many as it were";
+    f.finder.condition(4) = {.al_state = AlState::op};
+    EXPECT_THAT(f.look(), IsEmpty());
+}
+
+// Whoever falls while no frame comes back says so later, one by one: it is still the same alarm, until the last one is back.
+TEST(FaultFinder, WhoFellWhileNoFrameCameBackIsPartOfThatAlarm) {
+    for (const bool link : {true, false}) {
+        Finder f{{-1, 0, 1}};
+        f.bus.link_up = link;
+        f.bus.lost_in_a_row = 150;
+        const auto id = link ? alarm::frames_lost : alarm::link_down;
+        ASSERT_THAT(f.look(), ElementsAre(id));
+        f.bus = {.slaves_answering = 3, .silence = true, .states = 0x14};
+        for (std::size_t i = 0; i < 3; ++i) f.finder.condition(i).age = 150;
+        ASSERT_THAT(f.look(), ElementsAre(id));
+        EXPECT_EQ(f.finder.facts()[0].a, 150);
+        EXPECT_EQ(f.finder.facts()[0].b, 3) << "on their way back";
+        f.bus.silence = false;
+        for (std::size_t i = 0; i < 3; ++i)
+            f.finder.condition(i) = {.al_state = AlState::safeop, .al_error = true, .al_status_code = 0x1B, .age = 190};
+        ASSERT_THAT(f.look(), ElementsAre(id));
+        // An error of its own is not explained by that.
+        f.finder.condition(1) = {.al_state = AlState::safeop, .al_error = true, .al_status_code = 0x1D, .age = 191};
+        ASSERT_THAT(f.look(), ElementsAre(id, alarm::slave_left_op));
+        for (std::size_t i = 0; i < 3; ++i) f.finder.condition(i) = {.al_state = AlState::op};
+        f.bus.states = 8;
+        EXPECT_THAT(f.look(), IsEmpty());
+    }
+}
+
+// ETG.1000.6: a slave that changes its state by itself says so with the error bit and a code. One that does not was told to.
+TEST(FaultFinder, WithoutAnErrorOfItsOwnSomebodyElseSentIt) {
+    Finder f{{-1, 0, 1}};
+    f.bus.states = 0x02;  // PREOP
+    for (std::size_t i = 0; i < 3; ++i) f.finder.condition(i).age = limit;
+    ASSERT_THAT(f.look(), ElementsAre(alarm::foreign_command)) << "known before the watch has asked";
+    EXPECT_EQ(f.finder.facts()[0].a, 3);
+    f.bus.foreign_heard = true;
+    for (std::size_t i = 0; i < 3; ++i) f.finder.condition(i) = {.al_state = AlState::preop, .age = 30};
+    EXPECT_THAT(f.look(), ElementsAre(alarm::foreign_master, alarm::foreign_command)) << "a single frame is enough then, and it stands first";
+    f.finder.condition(1) = {.al_state = AlState::safeop, .al_error = true, .al_status_code = 0x1B, .age = 40};
+    EXPECT_THAT(f.look(), ElementsAre(alarm::foreign_master, alarm::foreign_command)) << "errors of the way back change nothing";
+
+    Finder own{{-1, 0}};
+    own.bus.states = 0x1C;  // one in SAFEOP, error
+    own.finder.condition(1).age = limit;
+    ASSERT_THAT(own.look(), ElementsAre(alarm::slave_left_op));
+    EXPECT_EQ(own.finder.facts()[0].a, 0) << "not read yet";
+
+    Finder down{{-1}};  // this master itself took it down, to set it up again
+    down.finder.condition(0) = {.al_state = AlState::init, .age = 30, .taken_down = true};
+    EXPECT_THAT(down.look(), ElementsAre(alarm::slave_left_op));
+}
+
+// Gone for less than it takes to miss it, then back from INIT without its address: it had no power.
+TEST(FaultFinder, AShortPowerCutIsNobodysCommand) {
+    Finder f{{-1, 0}};
+    f.bus.states = 0x09;
+    f.finder.condition(1).age = limit;
+    EXPECT_THAT(f.look(), ElementsAre(alarm::slave_left_op)) << "INIT: not known yet";
+    f.finder.condition(1) = {.al_state = AlState::unknown, .age = 20, .presence = Presence::silent};
+    EXPECT_THAT(f.look(), ElementsAre(alarm::slave_lost));
+    f.finder.condition(1) = {.al_state = AlState::unknown, .age = 40};
+    EXPECT_THAT(f.look(), ElementsAre(alarm::slave_lost)) << "it has its address again, and nothing else";
+    f.finder.condition(1) = {.al_state = AlState::init, .age = 50};
+    EXPECT_THAT(f.look(), ElementsAre(alarm::slave_lost));
 }
 
 // Between power and silence: not answering to its address, and not exchanged either.
