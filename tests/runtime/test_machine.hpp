@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "runtime/world.hpp"
 #include "tests/ecat/tampered_cable.hpp"
 #include "tests/machines/plain_machine.hpp"
+#include "tests/runtime/drive_oracle.hpp"
 
 namespace taktwerk::runtime::testing {
 
@@ -39,7 +41,14 @@ public:
         machine = std::move(std::get<0>(built));
         runner = std::make_unique<VirtualRunner>(*machine, world, clock);
         watch.resize(machine->layout().axes.size());
+        for (const auto& binding : machine->config().axes) oracles.emplace_back(binding, machine->config().cycle);
         runner->after_cycle = [this](Instant) { each_cycle(); };
+    }
+    TestMachine(const TestMachine&) = delete;
+    TestMachine& operator=(const TestMachine&) = delete;
+    /// Whatever a test is about: what must always hold held.
+    ~TestMachine() {
+        for (const auto& oracle : oracles) EXPECT_TRUE(oracle.clean()) << oracle.report();
     }
     bool up() {
         auto ok = runner->bring_up();
@@ -57,6 +66,9 @@ public:
         return *s;
     }
     const axes::AxisView& axis(std::size_t i) { return state().axes[i]; }
+
+    /// What the drive of an axis is told since this cycle.
+    ToldDrive told(std::size_t i) { return taps_[i]->drive.told(machine->bus().outputs()); }
 
     /// Sends an operator command and returns its answer.
     CommandAnswer command(OperatorCommand c) {
@@ -130,13 +142,47 @@ public:
     std::unique_ptr<Machine> machine;
     std::unique_ptr<VirtualRunner> runner;
     std::vector<AxisWatch> watch;
+    std::vector<DriveOracle> oracles;
     std::uint64_t sequence = 0;
     std::function<void()> on_cycle;
 
 private:
+    struct Tap {
+        DriveTap drive;
+        ecat::sim::SimSlave* slave;
+    };
+    void tap_drives() {
+        const auto& config = machine->config();
+        auto& bus = machine->bus();
+        taps_.resize(config.axes.size());
+        for (std::size_t i = 0; i < config.axes.size(); ++i) {
+            if (!config.axes[i].profile || world.drive(config.axes[i].axis.name) == nullptr) continue;
+            for (std::size_t slave = 0; slave < bus.slave_count(); ++slave)
+                if (bus.slave(slave).name == config.axes[i].slave)
+                    taps_[i].emplace(Tap{DriveTap(bus, slave, config.axes[i]), simulated(config.axes[i].slave)});
+        }
+    }
+    ecat::sim::SimSlave* simulated(const std::string& slave) {
+        for (std::size_t i = 0; i < world.network().size(); ++i)
+            if (auto& there = world.network().slave(i); there.options().name == slave) return &there;
+        return nullptr;
+    }
+    void look(std::size_t i, const axes::AxisView& view) {
+        auto& oracle = oracles[i];
+        if (!taps_[i]) return oracle.observe(view);
+        const auto& [tap, slave] = *taps_[i];
+        const auto& health = tap.health();
+        const auto told = this->told(i);
+        oracle.observe(view, told, health.fresh);
+        const bool reached = slave != nullptr && health.age == 0 && slave->state() == ecat::sim::EsmState::op;
+        if (reached) oracle.arrived(tap.arrived(slave->dictionary()), told, health.due);
+        else oracle.out_of_reach();
+    }
     void each_cycle() {
         const auto* s = machine->latest();
         if (!s) return;
+        if (taps_.empty()) tap_drives();
+        for (std::size_t i = 0; i < oracles.size() && i < s->axes.size(); ++i) look(i, s->axes[i]);
         for (std::size_t i = 0; i < watch.size() && i < s->axes.size(); ++i) {
             const auto& view = s->axes[i];
             auto& w = watch[i];
@@ -152,6 +198,8 @@ private:
         }
         if (on_cycle) on_cycle();
     }
+
+    std::vector<std::optional<Tap>> taps_;
 };
 
 }  // namespace taktwerk::runtime::testing

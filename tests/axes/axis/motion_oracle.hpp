@@ -50,24 +50,28 @@ public:
 
     /// After encode(). `now`: the limits that hold at present, as parameters have made them.
     void observe(const AxisView& view, const DriveCommand& command, const AxisLimits& now) {
-        told_ = true;
+        told_ = tells_velocity_ = true;
         look(view, command, now);
     }
     /// Where what the drive is told cannot be seen beside the view (behind a bus: tests/runtime/drive_oracle.hpp).
     void observe(const AxisView& view) {
-        told_ = false;
+        told_ = tells_velocity_ = false;
         DriveCommand unseen;
         unseen.power = view.state != AxisState::Disabled ? PowerRequest::on : PowerRequest::off;
         unseen.mode = view.state == AxisState::Homing && !view.homing_procedure && config_.homing.kind == HomingKind::drive
                           ? DriveMode::homing
                           : view.drive_mode;
-        auto limits = config_.limits;
-        limits.position_min = view.parameters[place_of(enable_limit_negative)] != 0 ? view.parameters[place_of(software_limit_negative)]
-                                                                                    : -std::numeric_limits<double>::infinity();
-        limits.position_max = view.parameters[place_of(enable_limit_positive)] != 0 ? view.parameters[place_of(software_limit_positive)]
-                                                                                    : std::numeric_limits<double>::infinity();
-        look(view, unseen, limits);
+        look(view, unseen, shown_limits(view));
     }
+
+    /// `command` was read back from process data, which has a position in modes of position only; of the limits what the view shows.
+    void observe(const AxisView& view, const DriveCommand& command) {
+        told_ = command.mode != DriveMode::cyclic_velocity;
+        tells_velocity_ = true;
+        look(view, command, shown_limits(view));
+    }
+    /// How coarse a velocity is told [counts/s]; without it to the last digit.
+    void velocity_grain(double grain) { velocity_grain_ = grain; }
 
     [[nodiscard]] bool clean() const { return breaches_ == 0; }
     [[nodiscard]] const std::string& report() const { return report_; }
@@ -80,6 +84,14 @@ public:
     void look_away(const char* reason) { away_ = reason; }
 
 private:
+    [[nodiscard]] AxisLimits shown_limits(const AxisView& view) const {
+        auto limits = config_.limits;
+        limits.position_min = view.parameters[place_of(enable_limit_negative)] != 0 ? view.parameters[place_of(software_limit_negative)]
+                                                                                    : -std::numeric_limits<double>::infinity();
+        limits.position_max = view.parameters[place_of(enable_limit_positive)] != 0 ? view.parameters[place_of(software_limit_positive)]
+                                                                                    : std::numeric_limits<double>::infinity();
+        return limits;
+    }
     void look(const AxisView& view, const DriveCommand& command, const AxisLimits& now) {
         ++cycle_;
         Sample next;
@@ -93,7 +105,7 @@ private:
         next.modulo = view.modulo;
         next.driven = takes_setpoints(view, command);
         check_state(view, next.driven);
-        if (next.driven && told_) check_told(view, command);
+        if (next.driven && tells_velocity_) check_told(view, command);
         continues_ = false;
         if (seen_ && last_.driven && next.driven) {
             check_motion(view, next, now);
@@ -167,7 +179,7 @@ private:
     /// The other values that go to the drive with its position.
     void check_told(const AxisView& view, const DriveCommand& command) {
         const auto& control = config_.control;
-        const double grain = 1e-9 * config_.limits.velocity * std::abs(counts_);
+        const double grain = velocity_grain_ + 1e-9 * config_.limits.velocity * std::abs(counts_);
         if (command.mode == DriveMode::cyclic_position) {
             const double velocity = control.feed_forward * view.set_velocity * counts_;
             if (std::abs(command.velocity - velocity) > grain)
@@ -311,11 +323,11 @@ private:
     AxisConfig config_;
     double period_;
     long settling_;
-    double counts_ = 1, pitch_slope_ = 0;
+    double counts_ = 1, pitch_slope_ = 0, velocity_grain_ = 0;
     bool compensates_ = false;
 
     Sample last_;
-    bool seen_ = false, told_ = true, continues_ = false;
+    bool seen_ = false, told_ = true, tells_velocity_ = true, continues_ = false;
     bool loose_ = true;  // the drive has just begun to take set-points
     bool summed_ = false, excused_ = true;
     double most_ = 0;  // u/s, the greatest velocity limit since the axis rested
