@@ -1,5 +1,7 @@
 // Settings of one homing run, and the turns of an absolute encoder: what is written beside the cycle and what the cycle waits for.
 
+#include <gtest/gtest.h>
+
 #include "tests/axes/drives/cia402/scripted_drive.hpp"
 
 namespace taktwerk::axes::cia402::test {

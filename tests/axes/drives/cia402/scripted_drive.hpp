@@ -10,8 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include <gtest/gtest.h>
-
 #include "axes/drives/cia402/cia402_drive.hpp"
 #include "ecat/master.hpp"
 #include "ecat/sim/device_model.hpp"
