@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "axes/drives/xp200/registers.hpp"
+#include "axes/drives/xp200/settings.hpp"
 #include "core/nearest_name.hpp"
 #include "runtime/machine_config.hpp"
 
@@ -108,6 +109,19 @@ private:
             add("serial.parameter_range", subject,
                 fmt::format("{} is outside {} to {}", wanted.value, row->minimum.value_or(0), row->maximum.value_or(0)),
                 "correct the value");
+        else if ((row->action || forces(wanted.number)) && wanted.value != 0)
+            add("serial.parameter_owned", subject, fmt::format("{} is no setting: it would act each time the line comes up", row->name),
+                "remove it; what it does belongs to whoever stands at the panel [5.4]");
+        else if (axes::xp200::Settings::owns(wanted.number) && !forces(wanted.number))
+            add("serial.parameter_owned", subject,
+                fmt::format("{} is what the runtime commands the motor by, and writes itself", row->name),
+                "remove it; the axis' `limits` say how fast and how hard");
+    }
+
+    /// The motor on, or an input as if it were switched (5.4.1, 5.4.2); 0 is nothing.
+    static bool forces(std::uint16_t number) noexcept {
+        namespace pr = axes::xp200::pr;
+        return number == pr::forced_enable || (number >= pr::force_1 && number <= pr::force_5);
     }
 
     void check_axis(const AxisBinding& binding) {

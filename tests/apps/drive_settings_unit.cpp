@@ -158,6 +158,30 @@ TEST(SettingsLeftOut, AreThoseThatTheManualDoesNotAllowOrTheDriveDoesNotTell) {
     });
 }
 
+// SV-DA200 4.4 and XP200 5.1 list commands among the parameters: a set from one drive that enables, moves, saves or clears the next one when it is
+// restored would be a trap. (Named here as in the manuals: saving, restoring, clearing turns and records, tuning, enabling, commands of the
+// bus, triggers, the tunnel to any other object, what a probe latched; forced enabling and forced inputs.)
+TEST(SettingsLeftOut, ACommandIsNoSetting) {
+    const auto keeps = [](const Drive& which, const std::vector<std::string>& commands, const std::string& a_setting) {
+        with(which, [&](DriveAccess& drive) {
+            const auto kept = kept_settings(drive, Kept::all);
+            ASSERT_TRUE(kept) << kept.error().text();
+            std::vector<std::string> names;
+            for (const auto& value : kept->set.values) names.push_back(axes::name_of(*value.parameter));
+            for (const auto& command : commands) {
+                EXPECT_TRUE(axes::find_parameter(drive.profile(), command)) << command;
+                EXPECT_THAT(names, Not(Contains(command)));
+            }
+            EXPECT_THAT(names, Contains(a_setting));
+        });
+    };
+    keeps({"da200_drive"}, {"4002h", "4003h", "P0.04", "P0.71", "P1.04", "P4.11", "P4.12",    "P4.13",    "P4.14",
+                            "P4.15", "P4.20", "P4.22", "P4.23", "P4.90", "P4.91", "P4.92",    "P4.93",    "P4.94",
+                            "P4.95", "P4.96", "P4.97", "P4.99", "P5.15", "P5.20", "4300h:01", "4300h:02", "4020h"},
+          "P5.14");
+    keeps({"xp200_drive"}, {"Pr098", "Pr119", "Pr120", "Pr121", "Pr122", "Pr123", "Pr124"}, "Pr136");
+}
+
 // SV33-E table 6-22: 5FFEh fills a byte of the process data, and sets nothing.
 TEST(SettingsLeftOut, AFillerIsNoSetting) {
     with({"sv33_drive"}, [](DriveAccess& drive) {

@@ -266,6 +266,15 @@ TEST(SerialCheck, NamesStationsAndParametersMustMeet) {
     auto range = good;
     range.serial[0].drives[0].drive.parameters.push_back({136, 2});
     EXPECT_TRUE(complains(range, "serial.parameter_range"));
+    // Pr098 enables by itself, Pr120 forces SON; Pr137 is the speed that the runtime commands (5.4.1, 5.4.2).
+    for (const auto& [number, value] : {std::pair{98, 1}, {120, 10}, {137, 100}}) {
+        auto ours = good;
+        ours.serial[0].drives[0].drive.parameters.push_back({static_cast<std::uint16_t>(number), value});
+        EXPECT_TRUE(complains(ours, "serial.parameter_owned")) << number;
+    }
+    auto zero = good;
+    zero.serial[0].drives[0].drive.parameters.push_back({98, 0});
+    EXPECT_FALSE(complains(zero, "serial.parameter_owned")) << "as the runtime wants it";
     auto baud = good;
     baud.serial[0].settings.baud = 115200;
     EXPECT_TRUE(complains(baud, "serial.baud"));
