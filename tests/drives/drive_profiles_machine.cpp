@@ -8,9 +8,8 @@
 
 #include "axes/axis/alarms.hpp"
 #include "axes/sim/cia402_axis.hpp"
-#include "config/machine_loader.hpp"
 #include "fb_library/all_blocks.hpp"
-#include "tests/runtime/test_program.hpp"
+#include "tests/drives/one_drive_machine.hpp"
 
 namespace taktwerk::runtime::testing {
 namespace {
@@ -47,34 +46,11 @@ public:
 };
 
 struct Bench {
-    explicit Bench(const std::string& slave, const std::string& axis) : m{machine(slave, axis)}, desk{*Desk::here} {
+    explicit Bench(const std::string& slave, const std::string& axis) : m{one_drive_machine<Desk>(slave, axis)}, desk{*Desk::here} {
         EXPECT_TRUE(m.up());
         EXPECT_TRUE(m.until([&] { return desk.power.Status; }, 5s)) << m.alarms();
         desk.home.Execute = true;
         EXPECT_TRUE(m.until([&] { return desk.home.Done; }, 1s)) << m.alarms();
-    }
-    static MachineConfig machine(const std::string& slave, const std::string& axis) {
-        const std::string text =
-            "version: 1\nname: profiles\ncycle: 1 ms\nstart_mode: automatic\nbus:\n  interface: simulated\n  slaves:\n    - name: drive\n" +
-            slave + "axes:\n  x:\n    slave: drive\n    unit: mm\n    homing: { kind: set_here }\n" + axis;
-        config::LoadOptions options;
-        options.simulate = true;
-        auto loaded = config::load_machine_text(std::string(TAKTWERK_SOURCE_DIR) + "/config/machines/profiles.yaml", text, options);
-        if (auto* errors = std::get_if<std::vector<Error>>(&loaded)) {
-            for (const auto& error : *errors) ADD_FAILURE() << error.text();
-            return machine_config(1);
-        }
-        auto config = std::get<config::LoadedMachine>(std::move(loaded)).machine;
-        ProgramConfig program;
-        program.name = "p";
-        program.entry = &entry_of<Desk>;
-        program.autostart = true;
-        config.programs.push_back(program);
-        TaskConfig task;
-        task.name = "main";
-        task.program = "p";
-        config.tasks.push_back(task);
-        return config;
     }
     [[nodiscard]] const axes::AxisView& x() { return m.axis(0); }
     axes::sim::Cia402Axis& drive() { return *m.world.drive("x"); }

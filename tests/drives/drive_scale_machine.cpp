@@ -9,9 +9,8 @@
 
 #include "axes/axis/alarms.hpp"
 #include "axes/sim/cia402_axis.hpp"
-#include "config/machine_loader.hpp"
 #include "fb_library/all_blocks.hpp"
-#include "tests/runtime/test_program.hpp"
+#include "tests/drives/one_drive_machine.hpp"
 
 namespace taktwerk::runtime::testing {
 namespace {
@@ -39,29 +38,10 @@ public:
 };
 
 MachineConfig scaled(const std::string& slave, const std::string& gearing) {
-    const std::string text =
-        "version: 1\nname: scale\ncycle: 1 ms\nstart_mode: automatic\nbus:\n  interface: simulated\n  slaves:\n    - name: drive\n" +
-        slave + "axes:\n  x:\n    slave: drive\n    unit: mm\n    homing: { kind: set_here }\n    gearing: " + gearing +
-        "\n    limits: { velocity: 20 mm/s, acceleration: 100 mm/s2, jerk: 1000 mm/s3, position: [-200 mm, 400 mm] }\n"
-        "    following_error: { window: 5 mm, time: 20 ms }\n";
-    config::LoadOptions options;
-    options.simulate = true;
-    auto loaded = config::load_machine_text(std::string(TAKTWERK_SOURCE_DIR) + "/config/machines/scale.yaml", text, options);
-    if (auto* errors = std::get_if<std::vector<Error>>(&loaded)) {
-        for (const auto& error : *errors) ADD_FAILURE() << error.text();
-        return machine_config(1);
-    }
-    auto config = std::get<config::LoadedMachine>(std::move(loaded)).machine;
-    ProgramConfig program;
-    program.name = "p";
-    program.entry = &entry_of<Pusher>;
-    program.autostart = true;
-    config.programs.push_back(program);
-    TaskConfig task;
-    task.name = "main";
-    task.program = "p";
-    config.tasks.push_back(task);
-    return config;
+    return one_drive_machine<Pusher>(
+        slave, "    gearing: " + gearing +
+                   "\n    limits: { velocity: 20 mm/s, acceleration: 100 mm/s2, jerk: 1000 mm/s3, position: [-200 mm, 400 mm] }\n"
+                   "    following_error: { window: 5 mm, time: 20 ms }\n");
 }
 
 /// Turns of the motor's own shaft while the axis goes from 0 to 10 mm. Negative: it could not.
