@@ -13,6 +13,7 @@
 #include "ecat/wire/frame.hpp"
 #include "ecat/wire/mailbox.hpp"
 #include "ecat/wire/registers.hpp"
+#include "tests/ecat/coe/scripted_mailbox.hpp"
 
 using namespace taktwerk;
 using namespace taktwerk::ecat;
@@ -20,36 +21,19 @@ using namespace std::chrono_literals;
 
 namespace {
 
-constexpr std::uint16_t out_start = 0x1000, in_start = 0x1400, box_size = 0x80;
+constexpr auto out_start = test::ScriptedMailbox::out_start, in_start = test::ScriptedMailbox::in_start,
+               box_size = test::ScriptedMailbox::box_size;
 using Bytes = std::vector<std::byte>;
 
-/// A slave that is only a mailbox; one answer a request.
-class MailboxSlave final : public FrameSink {
+/// One answer a request.
+class MailboxSlave final : public test::ScriptedMailbox {
 public:
     std::deque<Bytes> script;
 
-    void advance(Instant) noexcept override {}
-    std::optional<Duration> process(std::span<std::byte> frame, Instant) noexcept override {
-        FrameEditor editor{frame};
-        while (auto datagram = editor.next()) {
-            const std::uint16_t ado = datagram->address.ado();
-            bool taken = true;
-            if (datagram->command == Command::FPWR && ado == out_start) {
-                if (!script.empty()) waiting_ = std::move(script.front()), script.pop_front();
-            } else if (datagram->command == Command::FPRD && ado == reg::sync_manager_at(1) + sm_status_offset) {
-                datagram->data[0] = static_cast<std::byte>(waiting_ ? SyncManager::mailbox_full : 0);
-            } else if (datagram->command == Command::FPRD && ado == in_start) {
-                taken = waiting_.has_value();
-                if (taken) std::copy_n(waiting_->begin(), std::min(waiting_->size(), datagram->data.size()), datagram->data.begin());
-                waiting_.reset();
-            }
-            if (taken) datagram->wkc[0] = std::byte{1};
-        }
-        return 1us;
-    }
-
 private:
-    std::optional<Bytes> waiting_;
+    void request(std::span<const std::byte>) override {
+        if (!script.empty()) put_out(std::move(script.front())), script.pop_front();
+    }
 };
 
 template <class T>

@@ -9,6 +9,7 @@
 #include "ecat/transport/loopback.hpp"
 #include "ecat/wire/mailbox.hpp"
 #include "ecat/wire/registers.hpp"
+#include "tests/ecat/coe/scripted_mailbox.hpp"
 
 namespace taktwerk::ecat {
 namespace {
@@ -18,7 +19,8 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
-constexpr std::uint16_t out_start = 0x1000, in_start = 0x1400, box_size = 0x80;
+constexpr auto out_start = test::ScriptedMailbox::out_start, in_start = test::ScriptedMailbox::in_start,
+               box_size = test::ScriptedMailbox::box_size;
 using Bytes = std::vector<std::byte>;
 
 Bytes bytes(std::initializer_list<int> values) {
@@ -27,8 +29,8 @@ Bytes bytes(std::initializer_list<int> values) {
     return result;
 }
 
-/// A slave that is only a mailbox. Replies wait in `script`; one is put out for each request, `unasked` ones at once.
-class MailboxSlave final : public FrameSink {
+/// Replies wait in `script`; those of a request are put out when it comes.
+class MailboxSlave final : public test::ScriptedMailbox {
 public:
     struct Reply {
         MailboxType type = MailboxType::coe;
@@ -36,44 +38,19 @@ public:
     };
     std::deque<std::vector<Reply>> script;  ///< replies to the first, second, ... request
     std::vector<Bytes> requests;
-    bool full = false;  ///< takes no request
-
-    void advance(Instant) noexcept override {}
-    std::optional<Duration> process(std::span<std::byte> frame, Instant) noexcept override {
-        FrameEditor editor{frame};
-        while (auto datagram = editor.next()) {
-            const std::uint16_t ado = datagram->address.ado();
-            bool taken = true;
-            if (datagram->command == Command::FPWR && ado == out_start) {
-                taken = !full;
-                if (taken) request(datagram->data);
-            } else if (datagram->command == Command::FPRD && ado == reg::sync_manager_at(1) + sm_status_offset) {
-                datagram->data[0] = static_cast<std::byte>(outbox_.empty() ? 0 : SyncManager::mailbox_full);
-            } else if (datagram->command == Command::FPRD && ado == in_start) {
-                taken = !outbox_.empty();
-                if (taken) {
-                    std::copy(outbox_.front().begin(), outbox_.front().end(), datagram->data.begin());
-                    outbox_.pop_front();
-                }
-            }
-            if (taken) datagram->wkc[0] = std::byte{1};
-        }
-        return 1us;
-    }
 
 private:
-    void request(std::span<const std::byte> mailbox) {
+    void request(std::span<const std::byte> mailbox) override {
         requests.emplace_back(mailbox.begin(), mailbox.end());
         if (script.empty()) return;
         for (const auto& reply : script.front()) {
             Bytes message(box_size);
             std::copy(reply.payload.begin(), reply.payload.end(), message.begin() + mailbox_header_size);
             finish_mailbox(message, reply.type, 1, reply.payload.size());
-            outbox_.push_back(message);
+            put_out(std::move(message));
         }
         script.pop_front();
     }
-    std::deque<Bytes> outbox_;
 };
 
 template <class T>
