@@ -75,6 +75,7 @@ public:
         else if (phase_ == Phase::stopping) while_stopping();
         else in_operation();
         check_jumps();
+        check_told();
         result_.story = story();
         return std::move(result_);
     }
@@ -255,6 +256,7 @@ private:
         const auto now = m_.clock.now();
         m_.machine->cycle({now, now, 0});
         m_.machine->service(now);
+        m_.runner->after_cycle(now);
     }
 
     /// Stale or reordered frames may cost one increment: what was missed comes at once.
@@ -270,6 +272,13 @@ private:
             if (!expected_.drives_may_see_a_jump && seen > 2 * most * counts + 2)
                 problem(fmt::format("the drive of axis {} saw its target jump by {:.1f} counts (most {:.1f})", i, seen, 2 * most * counts));
         }
+    }
+
+    /// Whatever happened to the bus, what the drives were told is what the axes showed.
+    void check_told() {
+        for (const auto& oracle : m_.oracles)
+            if (!oracle.clean()) problem(oracle.report());
+        if (phase_ > Phase::safeop && m_.oracles[0].motion().compared() < 100) problem("no motion was compared");
     }
 
     std::string story() {
