@@ -76,7 +76,7 @@ TEST(Seams, ATableAbortedBeforeItBeganLeavesNothing) {
         CouplingRig rig(jerked(1));
         const auto table = rig.tables.add_time_table(std::vector<TimePoint>{{200ms, 100.0}, {200ms, 0.0}});
         rig.start();
-        const double scale = kind == CommandKind::acceleration_profile ? 1 : 0.05;
+        const double scale = kind == CommandKind::acceleration_profile ? 1 : kind == CommandKind::velocity_profile ? 0.05 : 0.01;
         const auto given = rig.accept(0, {.kind = kind, .details = TimeProfileDetails{table, 1, scale, 0}});
         const auto move = rig.accept(0, absolute(10, 50));
         EXPECT_EQ(rig.status(0, given), CommandStatus::aborted);
