@@ -11,6 +11,7 @@
 #include "ecat/alarms.hpp"
 #include "ecat/bringup/bus.hpp"
 #include "hmi_bridge/event_text.hpp"
+#include "runtime/alarms.hpp"
 
 namespace taktwerk::apps {
 
@@ -211,7 +212,12 @@ void MachineLog::step(Instant now, const Snapshot* snapshot) {
     alarms(now, s);  // first: what follows below, follows from them
     if (s.mode != mode_) say(now, "mode", std::string(text(s.mode)));
     mode_ = s.mode;
-    if (s.emergency_stop != emergency_) say(now, "E-STOP", s.emergency_stop ? "pressed" : "released");
+    if (s.emergency_stop != emergency_) {
+        const bool unread = std::any_of(s.alarms.begin(), s.alarms.begin() + static_cast<std::ptrdiff_t>(s.alarm_count), [](const auto& alarm) {
+            return alarm.fact.id == id(MachineAlarm::emergency_stop) && alarm.standing && alarm.fact.a == emergency_stop_unread;
+        });
+        say(now, "E-STOP", !s.emergency_stop ? "released" : unread ? "cannot be read: counts as pressed" : "pressed");
+    }
     emergency_ = s.emergency_stop;
     for (std::size_t i = 0; i < s.axes.size(); ++i) {
         const auto& view = s.axes[i];

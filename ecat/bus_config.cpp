@@ -39,6 +39,26 @@ std::vector<PdoDescription> effective(const PdoSelection& selection, const std::
     return result;
 }
 
+/// What the planner is told of a slave that nobody has asked: selected PDOs, else its factory ones.
+PlanSlave plan_slave(const SlaveConfig& slave, const std::string& subject) {
+    const auto& device = *slave.device;
+    PlanSlave input;
+    input.subject = subject;
+    input.sync_unit = slave.sync_unit;
+    input.sync_managers = device.sync_managers;
+    input.coe = device.mailbox && device.mailbox->coe;
+    const auto offered = pdos_of(device, slave.modules);
+    input.rx = effective(slave.rx, offered.rx, offered.rx_assigned);
+    input.tx = effective(slave.tx, offered.tx, offered.tx_assigned);
+    input.fmmus = device.fmmus;
+    input.sync_manager_count = device.sync_manager_count;
+    const auto mailbox = std::find_if(device.sync_managers.begin(), device.sync_managers.end(),
+                                      [](const SyncManagerDescription& sm) { return sm.use == SmUse::mailbox_in; });
+    if (input.coe && mailbox != device.sync_managers.end())
+        input.mailbox_in = static_cast<std::uint8_t>(mailbox - device.sync_managers.begin());
+    return input;
+}
+
 class Check {
 public:
     explicit Check(const BusConfig& config) : config_(config) {}
@@ -57,6 +77,7 @@ public:
         check_shift("bus", config_.sync0_shift);
         check_places(config_, errors_);
         for (const auto& slave : config_.slaves) check_slave(slave);
+        check_load();
         return std::move(errors_);
     }
 
@@ -77,6 +98,7 @@ private:
         const std::string subject = subject_of(slave);
         if (!slave.device) {
             add("bus.no_device", subject, "it has no device description", "name its drive or terminal profile");
+            plannable_ = false;
             return;
         }
         const auto& device = *slave.device;
@@ -96,7 +118,7 @@ private:
         check_pdos(slave, device, subject, true);
         check_pdos(slave, device, subject, false);
         check_startup(slave, device, subject);
-        check_plan(slave, device, subject);
+        check_plan(slave, subject);
     }
 
     void check_clock(const SlaveConfig& slave, const DeviceDescription& device, const std::string& subject) {
@@ -253,23 +275,30 @@ private:
         }
     }
 
-    /// The sizes as far as they are known without the slave: selected, else factory PDOs.
-    void check_plan(const SlaveConfig& slave, const DeviceDescription& device, const std::string& subject) {
-        PlanSlave input;
-        input.subject = subject;
-        input.sync_managers = device.sync_managers;
-        input.coe = device.mailbox && device.mailbox->coe;
-        const auto offered = pdos_of(device, slave.modules);
-        input.rx = effective(slave.rx, offered.rx, offered.rx_assigned);
-        input.tx = effective(slave.tx, offered.tx, offered.tx_assigned);
-        input.fmmus = device.fmmus;
-        input.sync_manager_count = device.sync_manager_count;
-        const std::vector inputs{input};
+    void check_plan(const SlaveConfig& slave, const std::string& subject) {
+        const std::vector inputs{plan_slave(slave, subject)};
         if (const auto plan = plan_process_data(inputs); !plan) errors_.push_back(plan.error());
+        else return;
+        plannable_ = false;
+    }
+
+    void check_load() {
+        if (!plannable_ || config_.cycle < minimum_cycle) return;
+        const BusLoad load = bus_load(config_);
+        const Duration least = load.wire + static_cast<std::int64_t>(config_.slaves.size()) * least_hop_both_ways;
+        if (least <= config_.cycle) return;
+        const auto whole = [](Duration d) { return fmt::format("{:.0f} us", to_seconds(d) * 1e6); };
+        add("bus.cycle_too_short_for_frames", "bus",
+            fmt::format("the process data of a cycle is {} bytes in {} frame(s): at 100 Mbit/s {} on the wire, and {} until it is back through "
+                        "{} slaves; the cycle is {}",
+                        load.bytes, load.frames, whole(load.wire), whole(load.round_trip), config_.slaves.size(), micro(config_.cycle)),
+            fmt::format("choose a cycle of at least {}, map fewer objects, put slaves into slower sync units, or use two buses",
+                        whole(load.round_trip * 4 / 3)));
     }
 
     const BusConfig& config_;
     std::vector<Error> errors_;
+    bool plannable_ = true;
 };
 
 }  // namespace
@@ -285,6 +314,18 @@ Duration estimated_flight(const BusConfig& config) {
     bytes += datagram_overhead + 8 + datagram_overhead + 2;  // clock and AL states
     const std::size_t frames = bytes / frame_capacity + 1;
     return flight_time(bytes + frames * (ethernet_header_size + ecat_header_size), frames, config.slaves.size());
+}
+
+BusLoad bus_load(const BusConfig& config) {
+    std::vector<PlanSlave> inputs;
+    for (const auto& slave : config.slaves) {
+        if (!slave.device) return {};
+        inputs.push_back(plan_slave(slave, slave.name));
+    }
+    const auto plan = plan_process_data(inputs, config.sync_units);
+    if (!plan) return {};
+    const auto load = fullest_cycle(*plan);
+    return {load.wire, load.wire + static_cast<std::int64_t>(config.slaves.size()) * usual_hop, load.bytes, load.frames};
 }
 
 Duration time_to_compute(const BusConfig& config, const SlaveConfig& slave) {

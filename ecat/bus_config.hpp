@@ -113,6 +113,15 @@ struct BusConfig {
 /// What of a slave's SYNC0 shift is left for computing and jitter, when the frames' flight is taken off.
 [[nodiscard]] Duration time_to_compute(const BusConfig& config, const SlaveConfig& slave);
 
+/// The process data of the fullest cycle: how long it keeps the line busy, and until it is back through all slaves. From the sizes
+/// that are known without the bus; all 0 where a slave cannot be planned.
+struct BusLoad {
+    Duration wire{};        ///< at 100 Mbit/s, with preamble, FCS and gaps
+    Duration round_trip{};  ///< with the usual delay of each slave
+    std::size_t bytes = 0, frames = 0;
+};
+[[nodiscard]] BusLoad bus_load(const BusConfig& config);
+
 /// Every problem of a configuration, found without a bus.
 [[nodiscard]] std::vector<Error> check(const BusConfig& config);
 

@@ -1,5 +1,6 @@
 #include "runtime/alarm_log.hpp"
 
+#include "axes/axis/alarms.hpp"
 #include "runtime/alarms.hpp"
 
 namespace taktwerk::runtime {
@@ -7,6 +8,22 @@ namespace taktwerk::runtime {
 namespace {
 
 constexpr auto full = id(MachineAlarm::alarm_log_full);
+/// What appears within so long of one another belongs together: the watch of the bus needs some of it to name a slave.
+constexpr Duration one_event = std::chrono::milliseconds{500};
+
+/// How far down the chain of causes an alarm stands: this computer and its bus, slaves, programs, axes, and those that only say that they
+/// stopped by another.
+int distance(const AlarmFact& fact) noexcept {
+    if (fact.id == full) return 5;
+    if (fact.id == axes::id(axes::AxisAlarm::stopped_by_machine) || fact.id == axes::id(axes::AxisAlarm::axis_feedback_lost)) return 4;
+    if (fact.id == id(MachineAlarm::emergency_stop) && fact.a == emergency_stop_unread) return 2;
+    switch (fact.source) {
+        case AlarmSource::slave: return 1;
+        case AlarmSource::program: return 2;
+        case AlarmSource::axis: return 3;
+        default: return 0;
+    }
+}
 
 }  // namespace
 
@@ -29,9 +46,13 @@ void AlarmLog::raise(const AlarmFact& fact, Reaction reaction, ResetRule reset, 
         return;
     }
     if (fact.id != full && !make_room(reaction)) return;
-    alarms_[count_] = {fact, now, 1, true, false, reaction};
-    rules_[count_] = {reset, true, false};
-    ++count_;
+    auto at = count_++;
+    for (; at > 0 && now - alarms_[at - 1].since < one_event && distance(alarms_[at - 1].fact) > distance(fact); --at) {
+        alarms_[at] = alarms_[at - 1];
+        rules_[at] = rules_[at - 1];
+    }
+    alarms_[at] = {fact, now, 1, true, false, reaction};
+    rules_[at] = {reset, true, false};
 }
 
 bool AlarmLog::make_room(Reaction reaction) noexcept {
@@ -95,6 +116,12 @@ void AlarmLog::reset() noexcept {
     acknowledge();
     for (std::size_t i = 0; i < count_; ++i)
         rules_[i].cleared = rules_[i].cleared || (!alarms_[i].standing && rules_[i].reset == ResetRule::reset);
+}
+
+const ActiveAlarm* AlarmLog::find(AlarmId id) const noexcept {
+    for (std::size_t i = 0; i < count_; ++i)
+        if (alarms_[i].fact.id == id) return &alarms_[i];
+    return nullptr;
 }
 
 Reaction AlarmLog::strongest() const noexcept {

@@ -36,7 +36,9 @@ public:
 
     /// The strongest reaction of what is listed: an alarm that waits for somebody reacts on.
     [[nodiscard]] Reaction strongest() const noexcept;
-    /// In order of their appearance.
+    /// The first with this id, or nullptr.
+    [[nodiscard]] const ActiveAlarm* find(AlarmId id) const noexcept;
+    /// In order of their appearance; of those that appear together, causes before what follows from them.
     [[nodiscard]] std::span<const ActiveAlarm> alarms() const noexcept { return {alarms_.data(), count_}; }
     /// Conditions of the cycle before that found no place.
     [[nodiscard]] std::uint32_t dropped() const noexcept { return dropped_; }

@@ -82,6 +82,8 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, const std
     stall_before_fault = std::make_unique<std::atomic<std::int64_t>[]>(config.axes.size());
     for (std::size_t i = 0; i < config.axes.size(); ++i) stall_before_fault[i].store(-1);
     views.resize(config.axes.size());
+    drive_emergencies.resize(bus.slave_count());
+    explained_until.resize(config.axes.size());
     for (std::size_t i = 0; i < config.axes.size(); ++i) {
         const auto& binding = config.axes[i];
         std::size_t slave = no_slave;

@@ -105,6 +105,8 @@ struct Machine::Impl {
     void blame_base_task(const CycleTick& tick) noexcept;
     void watch_programs() noexcept;
     void raise_bus_alarms() noexcept;
+    [[nodiscard]] bool told_by_an_axis(const AlarmFact& emergency) noexcept;
+    [[nodiscard]] bool follows_from_another(const AlarmFact& fact) noexcept;
     void stop_axes_of_faulted_drives() noexcept;
     void raise(MachineAlarm alarm, AlarmSource source, std::uint16_t index, double a, double b) noexcept;
     void raise_fact(const AlarmFact& fact, std::span<const AlarmInfo> table) noexcept;
@@ -138,6 +140,14 @@ struct Machine::Impl {
     /// ns that this computer sent nothing right before the fault that the drive of an axis shows; 0: it was in time; -1: no fault.
     std::unique_ptr<std::atomic<std::int64_t>[]> stall_before_fault;
     void note_stall_before_fault(std::size_t axis) noexcept;
+    struct DriveEmergency {
+        std::uint16_t code = 0;
+        Instant since{};
+        bool told = false;  // its axis has shown the same code meanwhile
+        bool seen = false;  // in this cycle
+    };
+    std::vector<DriveEmergency> drive_emergencies;        // per slave
+    std::vector<Instant> explained_until;                 // per axis: what follows from another alarm is not listed until then
     std::vector<axes::AxisView> views;                    // where the axes keep theirs; what programs read
     std::vector<std::size_t> axis_slave;                  // index in the bus configuration; npos for virtual axes
     std::vector<std::vector<std::size_t>> shared_drives;  // the axes of each slave that carries more than one

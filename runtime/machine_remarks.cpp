@@ -17,6 +17,8 @@ constexpr double usual_rpm = 6000;             // hardly a servo motor turns fas
 constexpr double usual_settling_s = 1;         // who waits longer for in-position mostly meant ms
 constexpr double following_of_velocity_s = 1;  // a window as wide as the way of a second at full speed is none
 
+constexpr int full_percent = 75;                // of the cycle: what mailboxes, recovery and lateness need besides process data
+
 class Remarks {
 public:
     void add(std::string_view code, std::string subject, std::string what, std::string remedy) {
@@ -92,6 +94,20 @@ void simulated_stops(Remarks& remarks, const AxisBinding& binding, const std::st
                     "a software limit stands before the stop: correct one of them");
 }
 
+void bus_load(Remarks& remarks, const MachineConfig& config) {
+    auto bus = config.bus;
+    bus.cycle = config.cycle;
+    const auto load = ecat::bus_load(bus);
+    const auto percent = load.round_trip * 100 / bus.cycle;
+    if (percent < full_percent) return;
+    remarks.add("bus_load", "cycle",
+                fmt::format("process data takes about {:.0f} us of the cycle of {:.0f} us there and back ({} bytes in {} frame(s), {} slaves): "
+                            "{} %",
+                            to_seconds(load.round_trip) * 1e6, to_seconds(bus.cycle) * 1e6, load.bytes, load.frames, bus.slaves.size(), percent),
+                fmt::format("choose a cycle of {:.0f} us or more, or slower sync units: mailboxes, recovery and this computer's lateness need the rest",
+                            to_seconds(load.round_trip) * 1e6 * 100 / full_percent));
+}
+
 void programs(Remarks& remarks, const MachineConfig& config, const MachineLayout& layout) {
     for (const auto& axis : layout.axes)
         if (axis.programs.size() > 1)
@@ -146,6 +162,7 @@ std::vector<Error> remarks(const MachineConfig& config, const MachineLayout& lay
         if (cpus > 0 && static_cast<unsigned>(cpu) >= cpus)
             out.add("cpu", "realtime.cpus", fmt::format("this computer has the CPUs 0 to {}; there is no {}", cpus - 1, cpu),
                     "choose one that is there, best an isolated one");
+    if (!config.bus.slaves.empty()) bus_load(out, config);
     programs(out, config, layout);
     return out.found;
 }

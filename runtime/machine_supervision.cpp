@@ -19,6 +19,11 @@ constexpr Duration long_task_shown = std::chrono::seconds{5};
 /// After a press that resets: its contact may bounce, and nobody means a start so soon after it.
 constexpr Duration button_bounce = std::chrono::milliseconds{500};
 
+/// A drive that sent an emergency shows it in its status word within this time, or it is no fault of the drive.
+constexpr Duration drive_speaks_within = std::chrono::milliseconds{100};
+/// A drive takes so long at most to clear its fault, and its axis with it, after the reset that cleared the alarm of the cause.
+constexpr Duration reset_takes = std::chrono::seconds{1};
+
 }  // namespace
 
 void Machine::Impl::raise_fact(const AlarmFact& fact, std::span<const AlarmInfo> table) noexcept {
@@ -171,7 +176,8 @@ void Machine::Impl::supervise(Instant, const CycleTick& tick) noexcept {
         if (emergency) axis.shut_down();  // no wish for power outlives it; an axis in ErrorStop ramps down as before
         // An axis keeps its alarms until they are reset there: what it does not show any more is gone.
         for (const auto& fact : axis.active_alarms())
-            if (const auto* info = find_alarm(axes::axis_alarms, fact.id)) log.raise(fact, info->reaction, ResetRule::self_clearing, now);
+            if (const auto* info = find_alarm(axes::axis_alarms, fact.id); info != nullptr && !follows_from_another(fact))
+                log.raise(fact, info->reaction, ResetRule::self_clearing, now);
         note_stall_before_fault(static_cast<std::size_t>(&axis - axes.data()));
         AlarmFact fetched;
         while (axis.fetch_alarm(fetched)) {}
@@ -210,15 +216,43 @@ void Machine::Impl::stop_axes_of_faulted_drives() noexcept {
 void Machine::Impl::raise_bus_alarms() noexcept {
     std::array<AlarmFact, AlarmLog::capacity> facts;
     const auto count = bus.active_faults(facts);
-    // A drive's emergency repeats by its number what its axis says in the words of the drive's manual.
-    const auto told_by_an_axis = [this](const AlarmFact& fact) {
-        if (fact.id != ecat::alarm::slave_emergency) return false;
-        for (std::size_t axis = 0; axis < axes.size(); ++axis)
-            if (axis_slave[axis] == fact.index && ports[axis]->alarm().code == static_cast<std::uint16_t>(fact.a)) return true;
-        return false;
-    };
+    for (auto& emergency_of_slave : drive_emergencies) emergency_of_slave.seen = false;
     for (std::size_t i = 0; i < count; ++i)
-        if (!told_by_an_axis(facts[i])) raise_fact(facts[i], ecat::bus_alarms);
+        if (facts[i].id != ecat::alarm::slave_emergency || !told_by_an_axis(facts[i])) raise_fact(facts[i], ecat::bus_alarms);
+    for (auto& emergency_of_slave : drive_emergencies)
+        if (!emergency_of_slave.seen) emergency_of_slave = {};
+}
+
+// A drive's emergency repeats by its number what its axis says in the words of the drive's manual. The two do not come and go at the same
+// moment: the status word may be some milliseconds behind, and the message that the error is gone comes that much after a reset.
+bool Machine::Impl::told_by_an_axis(const AlarmFact& fact) noexcept {
+    auto& last = drive_emergencies[fact.index];
+    const auto code = static_cast<std::uint16_t>(fact.a);
+    if (last.code != code) last = {code, now, false, true};
+    last.seen = true;
+    bool has_axis = false;
+    for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+        has_axis = has_axis || axis_slave[axis] == fact.index;
+        last.told = last.told || (axis_slave[axis] == fact.index && ports[axis]->alarm().code == code);
+    }
+    return last.told || (has_axis && now - last.since < drive_speaks_within);
+}
+
+// The axes behind a bus that is gone, and those that stopped by an alarm that is listed, say nothing new: one cause is one alarm. What stays
+// when the cause has been acknowledged and is no longer listed is said then, but not while both are just being reset.
+bool Machine::Impl::follows_from_another(const AlarmFact& fact) noexcept {
+    const bool stopped = fact.id == axes::id(axes::AxisAlarm::stopped_by_machine);
+    if (!stopped && fact.id != axes::id(axes::AxisAlarm::axis_feedback_lost)) return false;
+    bool explained = stopped && log.find(static_cast<AlarmId>(fact.a)) != nullptr;
+    const bool of_the_bus = axis_slave[fact.index] < bus.slave_count();
+    for (const auto& alarm : log.alarms()) {
+        const bool bus_alarm = alarm.fact.id >= 0x1000 && alarm.fact.id < 0x2000 && alarm.reaction >= Reaction::stop_machine;
+        const bool same_slave = alarm.fact.source != AlarmSource::slave || alarm.fact.id == ecat::alarm::cable_broken ||
+                                alarm.fact.index == axis_slave[fact.index];
+        explained = explained || (!stopped && of_the_bus && bus_alarm && same_slave);
+    }
+    if (explained) explained_until[fact.index] = now + reset_takes;
+    return now < explained_until[fact.index];
 }
 
 void Machine::Impl::react() noexcept {

@@ -145,6 +145,12 @@ AlarmText Machine::describe(const AlarmFact& fact) const {
         out.chinese = fmt::format("因机器其他部分而停止({})", name);
     }
 
+    // Its drive itself is out of operation: that counts before the limit of missing values is reached.
+    if (fact.id == axes::id(axes::AxisAlarm::axis_feedback_lost) && fact.a <= fact.b) {
+        out.english = "The drive is not in operation on its bus any more";
+        out.chinese = "驱动器已退出总线运行状态";
+    }
+
     // Not the host, another process or its power saving: a task of the machine's own.
     if (fact.id == id(MachineAlarm::cycle_overrun) && fact.source == AlarmSource::task) {
         const auto& task = *find_alarm(machine_alarms, id(MachineAlarm::base_task_overrun));

@@ -6,9 +6,11 @@
 
 #include "ecat/bringup/al_control.hpp"
 #include "ecat/bringup/clocks.hpp"
+#include "ecat/bringup/frame_schedule.hpp"
 #include "ecat/bringup/recovery.hpp"
 #include "ecat/bringup/scan.hpp"
 #include "ecat/bringup/slave_setup.hpp"
+#include "ecat/dc/sync0_budget.hpp"
 
 namespace taktwerk::ecat {
 
@@ -31,6 +33,23 @@ std::string slaves_of(const Bus& bus, const DatagramPlan& datagram) {
     return text;
 }
 
+/// Frames that go out and do not come back before the next cycle: is there time for them at all?
+Error no_answer_in_time(const Bus& bus) {
+    const auto load = fullest_cycle(bus.plan);
+    const auto us = [](Duration d) { return to_seconds(d) * 1e6; };
+    const Duration way = load.wire + static_cast<std::int64_t>(bus.found.size()) * usual_hop;
+    std::string what = fmt::format("process data does not come back within the cycle of {:.6g} us", us(bus.config.cycle));
+    if (way < bus.config.cycle * 3 / 4)
+        return Error{"bus.no_frame", "bus", what + fmt::format("; on the wire its way takes some {:.0f} us", us(way)),
+                     "this computer sends or receives too late (see late_wakeups, another load, power saving of the NIC), or the link loses "
+                     "frames: check cable and NIC, or lengthen the cycle"};
+    return Error{"bus.no_frame", "bus",
+                 what + fmt::format(": {} frame(s) of {} bytes in all are {:.0f} us on the wire at 100 Mbit/s, and pass {} slaves", load.frames,
+                                    load.bytes, us(load.wire), bus.found.size()),
+                 fmt::format("the cycle is too short for this bus: choose at least {:.0f} us, put slaves into slower sync units, or use two buses",
+                             us(way * 4 / 3))};
+}
+
 /// Drives want valid outputs before OP (pain 2 of the reference).
 Script<Result<void>> await_valid_outputs(Bus& bus) {
     bus.progress = "waiting for valid process data";
@@ -45,15 +64,15 @@ Script<Result<void>> await_valid_outputs(Bus& bus) {
             if (bus.link.cycles.load() - cycles_before < valid_cycles)
                 co_return Error{"bus.no_cycle", "bus", "all slaves are in SAFEOP, but no cycle sends process data",
                                 "start the machine's cycle before the bus is brought to OP"};
+            // As long as frames are missing nobody can say what the slaves would have added to them.
+            if (bus.link.lost_in_a_row.load() > 0) co_return no_answer_in_time(bus);
             const std::size_t d = bus.link.worst_datagram.load();
             if (d < bus.plan.datagrams.size() && bus.link.worst_wkc.load() != bus.plan.datagrams[d].expected_wkc)
                 co_return Error{"bus.working_counter", slaves_of(bus, bus.plan.datagrams[d]),
                                 fmt::format("process data comes back with working counter {}, expected {}", bus.link.worst_wkc.load(),
                                             bus.plan.datagrams[d].expected_wkc),
                                 "the slave does not take part: check its sync managers and FMMUs, and that it is the device configured"};
-            co_return Error{
-                "bus.no_frame", "bus", "process data frames do not come back in time",
-                "the cycle is too short for the way out and back, or the link loses frames: check cable and NIC, or lengthen the cycle"};
+            co_return no_answer_in_time(bus);
         }
         co_await pause(bus.config.cycle);
     }

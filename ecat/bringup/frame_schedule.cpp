@@ -4,6 +4,8 @@
 #include <numeric>
 #include <vector>
 
+#include "ecat/dc/sync0_budget.hpp"
+
 namespace taktwerk::ecat {
 
 namespace {
@@ -18,6 +20,13 @@ std::size_t bytes_of(const ProcessDataPlan& plan, const UnitPlan& unit) {
     std::size_t bytes = 0;
     for (std::size_t d = unit.first; d < unit.first + unit.count; ++d) bytes += plan.datagrams[d].size() + datagram_overhead;
     return bytes;
+}
+
+/// After so many cycles the pattern of due units begins again.
+std::size_t horizon_of(const ProcessDataPlan& plan) {
+    std::size_t horizon = 1;
+    for (const auto& unit : plan.units) horizon = std::min(longest_horizon, std::lcm(horizon, std::size_t{unit.divisor}));
+    return horizon;
 }
 
 template <class Due>
@@ -61,8 +70,7 @@ std::optional<std::size_t> FramePacker::place(std::size_t data_size, std::size_t
 }
 
 void stagger(ProcessDataPlan& plan) {
-    std::size_t horizon = 1;
-    for (const auto& unit : plan.units) horizon = std::min(longest_horizon, std::lcm(horizon, std::size_t{unit.divisor}));
+    const std::size_t horizon = horizon_of(plan);
     std::vector<std::size_t> load(horizon, 0), order(plan.units.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {  // large ones first: small ones fill what is left
@@ -85,6 +93,21 @@ void stagger(ProcessDataPlan& plan) {
 
 std::size_t frames_in_cycle(const ProcessDataPlan& plan, std::uint64_t cycle) noexcept {
     return pack(plan, [&](const UnitPlan& unit) { return unit.due(cycle); }).value_or(max_cyclic_frames);
+}
+
+CycleLoad fullest_cycle(const ProcessDataPlan& plan) {
+    constexpr std::size_t headers = ethernet_header_size + ecat_header_size;
+    const std::size_t mailbox = plan.mailbox.size > 0 ? datagram_overhead + plan.mailbox.size : 0;
+    CycleLoad most;
+    for (std::size_t n = 0; n < horizon_of(plan); ++n) {
+        CycleLoad load{clock_datagram + state_datagram + mailbox, frames_in_cycle(plan, n), {}};
+        for (const auto& unit : plan.units)
+            if (unit.due(n)) load.bytes += bytes_of(plan, unit);
+        load.bytes = std::max(load.bytes + load.frames * headers, load.frames * min_frame_size);
+        load.wire = flight_time(load.bytes, load.frames, 0);
+        if (load.wire > most.wire) most = load;
+    }
+    return most;
 }
 
 std::optional<std::size_t> frames_at_most(const ProcessDataPlan& plan) noexcept {

@@ -42,6 +42,15 @@ void stagger(ProcessDataPlan& plan);
 /// Frames that leave in a cycle.
 [[nodiscard]] std::size_t frames_in_cycle(const ProcessDataPlan& plan, std::uint64_t cycle) noexcept;
 
+/// What one cycle puts on the wire.
+struct CycleLoad {
+    std::size_t bytes = 0;  ///< of frames with their headers, without preamble, FCS and gap
+    std::size_t frames = 0;
+    Duration wire{};        ///< so long the line is busy with them, at 100 Mbit/s
+};
+/// Of the cycle in which most is due. For a plan that is staggered; not for the cycle itself.
+[[nodiscard]] CycleLoad fullest_cycle(const ProcessDataPlan& plan);
+
 /// Frames when all units are due at once; nothing when there would be too many.
 [[nodiscard]] std::optional<std::size_t> frames_at_most(const ProcessDataPlan& plan) noexcept;
 

@@ -14,6 +14,9 @@ inline constexpr Duration usual_hop = std::chrono::microseconds{1};
 /// Preamble, start of frame, FCS and the gap to the next frame.
 inline constexpr std::size_t wire_overhead = 24;
 
+/// What a slave costs a frame there and back at the very least: processing on the way out and forwarding on the way back, on E-bus.
+inline constexpr Duration least_hop_both_ways = std::chrono::nanoseconds{300};
+
 /// From the departure of the first bit until `bytes` of frames are through the last of `slaves` slaves.
 [[nodiscard]] constexpr Duration flight_time(std::size_t bytes, std::size_t frames, std::size_t slaves) noexcept {
     return static_cast<std::int64_t>(bytes + frames * wire_overhead) * wire_time_of_byte + static_cast<std::int64_t>(slaves) * usual_hop;

@@ -7,6 +7,7 @@
 
 #include "ecat/alarms.hpp"
 #include "ecat/module_pdos.hpp"
+#include "ecat/sim/digital_terminal.hpp"
 #include "tests/ecat/test_bus.hpp"
 
 namespace taktwerk::ecat::test {
@@ -62,6 +63,50 @@ TEST(Sync0Budget, IsWhatTheFramesLeaveOfTheShift) {
     const BusConfig config = good();
     EXPECT_EQ(estimated_flight(config), 8'960ns + 2us);
     EXPECT_EQ(time_to_compute(config, config.slaves[0]), 500us - 10'960ns);
+}
+
+BusConfig many_terminals(int count, Duration cycle) {
+    BusConfig config;
+    config.cycle = cycle;
+    const auto device = std::make_shared<DeviceDescription>(sim::digital_input_output_terminal(128, 128));
+    for (int i = 0; i < count; ++i) {
+        SlaveConfig slave;
+        slave.name = "t" + std::to_string(i);
+        slave.device = device;
+        slave.position = static_cast<std::uint16_t>(i);
+        slave.dc = false;
+        config.slaves.push_back(slave);
+    }
+    return config;
+}
+
+// 100 terminals of 16 + 16 bytes: 100 x (12 + 32), clock 20, states 14 = 4434 bytes of datagrams in 3 frames of 1498, each with 16 bytes of
+// headers and 24 of preamble, FCS and gap: 4554 bytes of 80 ns = 364.32 us. Each slave adds about 1 us there and back.
+TEST(BusLoad, IsTheTimeOfTheFramesOnTheWireAndThroughTheSlaves) {
+    const auto load = bus_load(many_terminals(100, 1ms));
+    EXPECT_EQ(load.frames, 3u);
+    EXPECT_EQ(load.bytes, 4434u + 3 * 16);
+    EXPECT_EQ(load.wire, 364'320ns);
+    EXPECT_EQ(load.round_trip, 464'320ns);
+}
+
+TEST(BusLoad, ACycleThatTheFramesDoNotFitIntoIsRefusedWithTheNumbers) {
+    const auto problems = check(many_terminals(100, 125us));
+    ASSERT_THAT(problems, SizeIs(1));
+    EXPECT_EQ(problems[0].code, "bus.cycle_too_short_for_frames");
+    EXPECT_THAT(problems[0].what, HasSubstr("4482 bytes in 3 frame(s): at 100 Mbit/s 364 us on the wire"));
+    EXPECT_THAT(problems[0].what, HasSubstr("the cycle is 125 us"));
+    EXPECT_THAT(problems[0].remedy, HasSubstr("at least 619 us"));
+    EXPECT_THAT(check(many_terminals(100, 500us)), IsEmpty()) << "tight, and possible";
+}
+
+// A quarter of them in each cycle.
+TEST(BusLoad, SlowerSyncUnitsAreSpread) {
+    auto config = many_terminals(100, 125us);
+    for (std::size_t i = 0; i < 100; ++i) config.slaves[i].sync_unit = "u" + std::to_string(i % 8);
+    for (int u = 0; u < 8; ++u) config.sync_units.push_back({"u" + std::to_string(u), 8});
+    EXPECT_LT(bus_load(config).wire, 364'320ns / 7);
+    EXPECT_THAT(check(config), IsEmpty());
 }
 
 StartupSdo quick_stop(std::int64_t value) {

@@ -1,6 +1,7 @@
 // 64 servos with mailbox, distributed clock and SYNC0 come up within ten seconds of machine time. The simulated EEPROM is busy for
 // 100 us a read, a transition takes 200 us, a mailbox answer 200 us (sim::SlaveOptions); the cycle is 1 ms, so that every
 // acyclic datagram takes at least a cycle there and back.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -34,6 +35,20 @@ TEST(LargeBus, SixtyFourServosReachOpWithinTenSeconds) {
         EXPECT_EQ(bus.state(s), sim::EsmState::op);
         EXPECT_TRUE(bus.master->health(s).fresh);
     }
+}
+
+// 150 terminals there and back take longer than the cycle (simulated: 1.16 us each and 174 us in all): the cycle is named, and no slave.
+TEST(LargeBus, ACycleThatIsTooShortForTheWayIsNamedInsteadOfASlave) {
+    TestBus bus{std::string(150, 't'), 125us};
+    bus.start();
+    bus.run_until([&] { return bus.master->phase() == Master::Phase::operational || bus.master->phase() == Master::Phase::failed; }, 60s);
+    ASSERT_EQ(bus.master->phase(), Master::Phase::failed);
+    const auto& error = bus.master->failure();
+    EXPECT_EQ(error.code, "bus.no_frame") << error.text();
+    EXPECT_EQ(error.subject, "bus");
+    EXPECT_THAT(error.what, ::testing::HasSubstr("does not come back within the cycle of 125 us: 2 frame(s) of"));
+    EXPECT_THAT(error.what, ::testing::HasSubstr("pass 150 slaves"));
+    EXPECT_THAT(error.remedy, ::testing::HasSubstr("the cycle is too short for this bus"));
 }
 
 }  // namespace

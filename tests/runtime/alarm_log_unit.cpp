@@ -36,6 +36,26 @@ TEST_F(Log, ASelfClearingAlarmGoesWithItsCause) {
     EXPECT_TRUE(log.alarms().empty());
 }
 
+// Slaves are named some milliseconds later, axes stop in the next cycle: what a person reads first is what it came from.
+TEST_F(Log, CausesStandBeforeWhatFollowsFromThem) {
+    const AlarmFact axis{0x3002, AlarmSource::axis, 0, 0, 0}, stopped{0x3010, AlarmSource::axis, 1, 0, 0};
+    const AlarmFact slave{0x1012, AlarmSource::slave, 2, 0, 0}, bus{0x1030, AlarmSource::bus, 0, 0, 0};
+    cycle({stopped});
+    cycle({stopped, axis});
+    cycle({stopped, axis, slave});
+    cycle({stopped, axis, slave, bus});
+    std::vector<AlarmId> ids;
+    for (const auto& alarm : log.alarms()) ids.push_back(alarm.fact.id);
+    EXPECT_EQ(ids, (std::vector<AlarmId>{0x1030, 0x1012, 0x3002, 0x3010}));
+    cycle({stopped, axis, slave});
+    EXPECT_EQ(log.alarms().size(), 3u) << "the rules moved with their alarms";
+    EXPECT_EQ(log.alarms()[0].fact.id, 0x1012);
+
+    now += 1s;  // another event: it comes behind
+    cycle({stopped, axis, slave, bus});
+    EXPECT_EQ(log.alarms().back().fact.id, 0x1030);
+}
+
 TEST_F(Log, AnAcknowledgedOneStaysWhileItHoldsAndWantsAnotherAcknowledgementWhenItIsOver) {
     cycle({fact(1)}, ResetRule::acknowledge);
     log.acknowledge();

@@ -150,6 +150,53 @@ TEST_F(Fault, ADeadLineStopsTheAxes) {
     m().expect_no_jump();
 }
 
+// One cable, one alarm: not one for each slave that falls by its watchdog and each axis that stops by it, and nothing new while it is reset.
+// What a drive itself has in its display (its watchdog has stopped it) is said in its words, behind that.
+TEST_F(Fault, ALostLineIsOneAlarmUntilItIsReset) {
+    start();
+    std::vector<std::string> seen;
+    m().on_cycle = [&] {
+        const auto& s = m().state();
+        for (std::size_t i = 0; i < s.alarm_count; ++i) {
+            const auto name = m().machine->describe(s.alarms[i].fact).name;
+            if (name == "drive_fault") {
+                for (std::size_t k = i + 1; k < s.alarm_count; ++k)
+                    EXPECT_NE(s.alarms[k].fact.id, ecat::alarm::link_down) << "the cause stands first";
+                continue;
+            }
+            if (name != "emergency_stop" && name != "dc_not_locked" && std::find(seen.begin(), seen.end(), name) == seen.end())
+                seen.push_back(name);
+        }
+    };
+    m().world.transport().faults.link_down = true;
+    ASSERT_TRUE(m().until([&] { return m().axis(0).state == AxisState::ErrorStop && m().axis(1).state == AxisState::ErrorStop; }, 200ms));
+    m().run(300ms);
+    ASSERT_EQ(seen, std::vector<std::string>{"link_down"}) << m().alarms();
+    m().world.transport().faults.link_down = false;
+    ASSERT_TRUE(m().until([&] { return m().axis(0).online && m().axis(1).online; }, 20s)) << m().alarms();
+    recover(true);
+    m().run(1500ms);
+    EXPECT_EQ(seen, std::vector<std::string>{"link_down"}) << m().alarms();
+    EXPECT_EQ(m().state().alarm_count, 0u) << m().alarms();
+}
+
+// The message that the error is gone comes some milliseconds behind the reset; the one with the error some before the status word.
+TEST_F(Fault, AnEmergencyThatTheAxisTellsIsNotToldAgain) {
+    start();
+    bool drive = false, emergency = false;
+    m().on_cycle = [&] {
+        drive = drive || m().has_alarm(axes::id(axes::AxisAlarm::drive_fault));
+        emergency = emergency || m().has_alarm(ecat::alarm::slave_emergency);
+    };
+    m().world.drive("x")->raise(0x3130, true);
+    m().run(300ms);
+    EXPECT_TRUE(drive);
+    m().command(OperatorAction::reset);
+    m().run(300ms);
+    EXPECT_FALSE(emergency);
+    EXPECT_FALSE(m().has_alarm(axes::id(axes::AxisAlarm::drive_fault)));
+}
+
 TEST_F(Fault, LateFramesAreDiscardedAndCounted) {
     start();
     auto& faults = m().world.transport().faults;

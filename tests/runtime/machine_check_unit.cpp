@@ -197,6 +197,20 @@ TEST(MachineRemarks, TheMotorsSpeedIsComputedAndAnUnusualOneIsAsked) {
 
 // By hand: 800 mm at 100 mm/s and 1000 mm/s2 both ways: 8 s, and 0.1 s for the ramps together. A short way never reaches the speed:
 // 5 mm at 1000 mm/s2 is 2.5 mm up and 2.5 mm down, sqrt(2 * 2.5 / 1000) = 0.0707 s each.
+// 6 servos of the test machine there and back: some 20 us of the wire and 7 us of slaves. A cycle of 1 ms has room, one of 30 us has not much.
+TEST(MachineRemarks, ABusThatFillsItsCycleIsAsked) {
+    auto config = machine_config(6);
+    const MachineLayout layout;
+    const auto load = ecat::bus_load(config.bus);
+    config.cycle = load.round_trip * 10 / 8;
+    const auto told = remarks(config, layout, 1);
+    ASSERT_EQ(told.size(), 1u);
+    EXPECT_EQ(told[0].code, "remark.bus_load");
+    EXPECT_TRUE(contains(told[0].what, "7 slaves): 80 %")) << told[0].what;
+    config.cycle = load.round_trip * 10 / 7;
+    EXPECT_TRUE(remarks(config, layout, 1).empty());
+}
+
 TEST(MachineRemarks, TheTimeOfAStroke) {
     axes::AxisConfig axis;
     EXPECT_FALSE(stroke_seconds(axis));
