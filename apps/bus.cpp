@@ -15,7 +15,7 @@ std::shared_ptr<BusOptions> add_bus_options(CLI::App& sub) {
     sub.add_flag("--simulate", options->simulate, "the simulated slaves of the machine file, in virtual time");
     sub.add_option("--pcap", options->pcap, "write all frames to this file, for Wireshark and tshark")->type_name("FILE");
     sub.add_flag("--json", options->json, "the answer as one JSON object");
-    sub.add_flag("--force", options->force, "also while another master is on the cable");
+    sub.add_flag("--force", options->force, "write also while another master is on the cable (never to bring the bus up beside it)");
     return options;
 }
 

@@ -189,7 +189,7 @@ Result<void> BusSession::may_write(const ecat::Survey& survey, std::string_view 
     if (foreign_frames_ > 0)
         return Error{"bus.foreign_master", where_,
                      fmt::format("another master is sending on this cable; {} would disturb it: {}", doing, foreign_sender_),
-                     "end that master first; --force does it all the same"};
+                     "end that master first; with --force it is done all the same"};
     if (survey.highest_state >= ecat::AlState::safeop)
         print_warning(Error{"bus.foreign_master", where_,
                             fmt::format("slaves are in {} although nobody is heard on this cable: another master may have left them so",
@@ -218,13 +218,22 @@ Result<void> BusSession::confirm_operation(const ecat::Survey& survey) {
 }
 
 Result<void> BusSession::bring_up(const ecat::Survey& survey) {
+    // Whoever is told --force may write beside it; but each master resets and addresses the slaves anew, and neither gets them to OP.
+    if (!up_ && foreign_frames_ > 0)
+        return Error{
+            "bus.foreign_master", where_,
+            fmt::format("another master is sending on this cable, and two masters never bring up one bus, with --force neither: {}",
+                        foreign_sender_),
+            "end that master first; the slaves were left as they are"};
     if (auto allowed = may_write(survey, "bringing the bus up"); !allowed) return allowed;
     if (auto confirmed = confirm_operation(survey); !confirmed) return confirmed;
     auto config = configured_.slaves.empty() ? ecat::derived_config(survey) : configured_;
     config.lock_required = configured_.lock_required;
     new_probe(std::move(config));
     up_ = true;
-    return probe_->bring_up();
+    auto done = probe_->bring_up();
+    if (!done && done.error().code == "bus.foreign_master") up_ = false;  // it has touched nothing: close() must not take theirs down
+    return done;
 }
 
 Result<void> BusSession::close() {

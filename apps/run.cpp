@@ -164,7 +164,11 @@ int run_virtual(LoadedFile loaded, const Options& options) {
         if (!options.quiet) log.step(now, snapshot);
         if (stop_requested()) machine->request_shutdown();
     };
-    if (auto up = runner.bring_up(); !up) {
+    auto up = runner.bring_up();
+    if (up && stop_requested())
+        up = Error{std::string(RealtimeRunner::ended_early), "run",
+                   fmt::format("ended by {}: the bus was not operational yet", stop_signal_name()), "nothing has moved; start it again"};
+    if (!up) {
         finish(capture.get(), options);
         print_error(up.error());
         return exit_bus;
@@ -243,8 +247,7 @@ int serve_real(Machine& machine, World* world, ecat::RawSocketTransport* nic, Fi
     bridge_options.log = [&](std::string_view text) {
         const bool of_the_house = text.ends_with(" connected") || text.starts_with("commands are taken");
         if (options.quiet && of_the_house) return;
-        if (options.json) log.say(clock.now(), "gateway", std::string(text));
-        else out.put(std::string(text) + "\n");
+        log.say(clock.now(), "gateway", std::string(text));
     };
     std::optional<SimHands> hands;
     if (world) {
@@ -309,14 +312,14 @@ int serve_real(Machine& machine, World* world, ecat::RawSocketTransport* nic, Fi
         out.put(std::move(lines));
     }
     int code = exit_ok;
-    bool said_stop = false;
+    bool said_stop = false, time_up = false;
     auto served = runner.serve([&](Instant now) {
         if (nic) nic->refresh();
         (*bridge)->set_progress(machine.bus_progress());
         (*bridge)->step(now);
         judge((*bridge)->snapshot(), code);
         if (!options.quiet) log.step(now, (*bridge)->snapshot());
-        const bool time_up = options.duration_s > 0 && to_seconds(now - start) >= options.duration_s;
+        time_up = options.duration_s > 0 && to_seconds(now - start) >= options.duration_s;
         if (stop_requested() && !said_stop) {
             said_stop = true;
             if (!options.quiet)
@@ -337,7 +340,13 @@ int serve_real(Machine& machine, World* world, ecat::RawSocketTransport* nic, Fi
     if (served) print_summary(machine, options, to_seconds(clock.now() - start), to_seconds(clock.now() - start), put);
     out.finish(last_lines_patience);
     if (!served) {
-        print_error(served.error());
+        auto error = served.error();
+        if (error.code == RealtimeRunner::ended_early)
+            error.what.replace(0, std::string_view("ended").size(),
+                               fmt::format("ended by {}", stop_requested() ? stop_signal_name()
+                                                          : time_up        ? "--duration"
+                                                                           : "a client's shutdown"));
+        print_error(error);
         return exit_bus;
     }
     return written == FileThread::End::complete ? code : static_cast<int>(exit_bad_file);

@@ -20,11 +20,18 @@ std::vector<SimWord> sim_words() {
 }
 
 SimHands::SimHands(runtime::World& world, const runtime::MachineConfig& machine)
-    : machine_(machine), injector_(world.network(), world.transport().faults), happenings_(world) {}
+    : machine_(machine), world_(world), injector_(world.network(), world.transport().faults), happenings_(world) {}
 
 Result<SimHands::Order> SimHands::understand(const std::string& line) const {
     auto happening = parse_happening(line, machine_);
-    if (happening) return Order{std::move(*happening)};
+    if (happening) {
+        const bool button = happening->kind == runtime::SimulationEvent::Kind::input && world_.is_single_bit(happening->target);
+        if (button && happening->value != 0 && happening->value != 1)
+            return Error{"fault.arguments", line,
+                         fmt::format("input '{}' is a single bit, and {} is neither 0 nor 1", happening->target, happening->value),
+                         fmt::format("write `input {0} 1` or `input {0} 0`", happening->target)};
+        return Order{std::move(*happening)};
+    }
     if (happening.error().code != "fault.unknown") return happening.error();
     auto fault = ecat::sim::parse_fault(line);
     if (!fault) {

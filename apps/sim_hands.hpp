@@ -42,6 +42,7 @@ private:
     [[nodiscard]] Result<void> carry_out(Order order, Instant now);
 
     const runtime::MachineConfig& machine_;
+    const runtime::World& world_;
     ecat::sim::FaultInjector injector_;
     Happenings happenings_;
     std::mutex mutex_;

@@ -73,7 +73,9 @@ std::string subject_of(const runtime::MachineLayout& layout, TargetKind target, 
         case TargetKind::axis:
         case TargetKind::axis_or_all: return axis < layout.axes.size() ? "axis " + layout.axes[axis].name : "all axes";
         case TargetKind::program: return index < layout.programs.size() ? "program " + layout.programs[index] : "";
-        case TargetKind::parameter: return index < layout.parameters.size() ? "parameter " + layout.parameters[index].name : "";
+        case TargetKind::parameter:
+            return index < layout.parameters.size() ? "parameter " + layout.parameters[index].program + "." + layout.parameters[index].name
+                                                    : "";
         case TargetKind::output: return index < layout.outputs.size() ? "output " + layout.outputs[index] : "";
     }
     return "";
@@ -137,8 +139,9 @@ Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::strin
                 error.what = "the emergency stop is pressed, or its circuit is open";
                 error.remedy = "Release it when nobody is in danger, reset, then give the command again.";
             } else if (kind == CommandKind::program_start && answer.error == axes::ErrorId::in_error_stop) {
-                error.what = "an emergency stop is not reset yet: its alarm waits, or an axis is still in ErrorStop by it, and a start given "
-                             "now would leave the motion to whoever resets later";
+                error.what =
+                    "an emergency stop is not reset yet: its alarm waits, or an axis is still in ErrorStop by it, and a start given "
+                    "now would leave the motion to whoever resets later";
                 error.remedy = "When nobody is in danger: `taktwerk reset --wait`, then start again.";
             } else if (kind == CommandKind::set_output) {
                 error.what = "a program is running, and it drives the outputs";

@@ -76,6 +76,7 @@ void Door::on_line(ConnectionId connection, std::string_view line, Instant) {
                           : urgent->axis == 0xFFFF       ? std::string("stop")
                                                          : "stop axis " + machine_.layout().axes[urgent->axis].name;
         deeds_.say(guests_[connection].name, deed, now_);
+        if (urgent->doubled) return hand_on(connection, line, {read_at_, machine_.levels_raised(), false});
         pending_.push_back({connection, urgent->id, urgent->kind, ticket, now_});
         return;
     }
@@ -90,6 +91,10 @@ void Door::on_line(ConnectionId connection, std::string_view line, Instant) {
             holds_.insert({urgent->axis, {connection, urgent->id, now_}});
         }
     }
+    hand_on(connection, line, arrival);
+}
+
+void Door::hand_on(ConnectionId connection, std::string_view line, const Arrival& arrival) {
     if (guests_[connection].in_reserve) {
         server_->send(connection, refusal_line("null", no_place()));
         return;

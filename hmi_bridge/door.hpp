@@ -93,6 +93,8 @@ private:
     [[nodiscard]] bool holds(ConnectionId connection) const;
     /// True when a level was raised for it.
     bool let_go(ConnectionId connection, std::uint16_t axis);
+    /// To the service side, or refused: in reserve, or too much of it.
+    void hand_on(ConnectionId connection, std::string_view line, const Arrival& arrival);
     void settle_pending(Instant now);
 
     MachineLink& machine_;

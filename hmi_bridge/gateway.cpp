@@ -65,6 +65,9 @@ std::optional<Error> check_values(const CommandWord& word, const CommandRequest&
             if (request.value < parameter.minimum || request.value > parameter.maximum)
                 return bad_value(fmt::format("{} is outside its range", with_unit(request.value, parameter.unit)),
                                  fmt::format("Give {:g} to {}.", parameter.minimum, with_unit(parameter.maximum, parameter.unit)));
+            if (!parameter.takes(request.value))
+                return bad_value(fmt::format("{:g} is not a whole number, and the program counts with this parameter", request.value),
+                                 fmt::format("Give {:g} or {:g}.", std::floor(request.value), std::ceil(request.value)));
             return std::nullopt;
         }
         case CommandKind::set_output:

@@ -39,12 +39,13 @@ bool JsonFields::flag(std::string_view key) {
     return wrong(key, "true or false"), false;
 }
 
-std::int64_t JsonFields::integer(std::string_view key) {
+std::optional<std::int64_t> JsonFields::maybe_integer(std::string_view key) {
     const auto* value = find(key, false);
-    if (!value) return 0;
-    if (value->is_number_unsigned() && value->get<std::uint64_t>() > INT64_MAX) return wrong(key, "a whole number below 2^63"), 0;
+    if (!value) return std::nullopt;
+    if (value->is_number_unsigned() && value->get<std::uint64_t>() > INT64_MAX)
+        return wrong(key, "a whole number below 2^63"), std::nullopt;
     if (value->is_number_integer()) return value->get<std::int64_t>();
-    return wrong(key, "a whole number"), 0;
+    return wrong(key, "a whole number"), std::nullopt;
 }
 
 void JsonFields::finish() {

@@ -24,7 +24,11 @@ public:
     double number(std::string_view key, bool required);
     bool flag(std::string_view key);
     /// 0 when absent.
-    std::int64_t integer(std::string_view key);
+    std::int64_t integer(std::string_view key) { return maybe_integer(key).value_or(0); }
+    /// Where 0 means something else than nothing.
+    std::optional<std::int64_t> maybe_integer(std::string_view key);
+    /// The key is there, whatever its value.
+    [[nodiscard]] bool has(std::string_view key) const { return json_.contains(std::string(key)); }
     /// Keys that nobody asked for.
     void finish();
     [[nodiscard]] const std::optional<Error>& error() const { return error_; }

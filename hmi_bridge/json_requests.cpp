@@ -34,6 +34,7 @@ constexpr std::array<DriveWord, 4> drive_words{{
     {"drive_clear_turns", DriveRequestKind::clear_turns},
 }};
 constexpr int deepest_nesting = 4;
+constexpr std::size_t most_keys = 64;  ///< of one request; no command has ten
 
 std::string_view key_of(TargetKind target) {
     switch (target) {
@@ -49,8 +50,15 @@ std::string_view key_of(TargetKind target) {
 
 Result<Json> parse(std::string_view line) {
     bool too_deep = false;
-    const auto bounded = [&](int depth, Json::parse_event_t, Json&) {
+    std::vector<std::string> keys;
+    std::optional<std::string> twice;  // the last one would win, and whoever looks at the first sees another request
+    const auto bounded = [&](int depth, Json::parse_event_t event, Json& value) {
         too_deep = too_deep || depth > deepest_nesting;
+        if (event == Json::parse_event_t::key && depth == 1 && keys.size() < most_keys) {
+            const auto& key = value.get_ref<const std::string&>();
+            if (!twice && std::find(keys.begin(), keys.end(), key) != keys.end()) twice = key;
+            keys.push_back(key);
+        }
         return !too_deep;
     };
     auto json = Json::parse(line, bounded, false);
@@ -63,6 +71,12 @@ Result<Json> parse(std::string_view line) {
     if (!json.is_object())
         return request_error("not_an_object", "the request is not a JSON object",
                              R"(Send one JSON object a line: {"id":1,"cmd":"state"}.)");
+    if (keys.size() >= most_keys)
+        return request_error("unknown_key", fmt::format("the request has {} keys or more", most_keys), "Send the keys of one command.");
+    if (twice)
+        return request_error("duplicate_key",
+                             fmt::format("the key {} stands in the line twice, and nobody can tell which one is meant", shown(*twice)),
+                             "Give each key once. A line that asks for a stop stops all axes all the same.");
     return json;
 }
 
@@ -87,6 +101,10 @@ Result<CommandRequest> read_command(const CommandWord& entry, JsonFields& fields
     if (entry.target != TargetKind::none) {
         const bool optional = entry.kind == CommandKind::stop || entry.kind == CommandKind::reset;
         request.target = fields.text(key_of(entry.target), !optional);
+        // An empty name is a name that somebody forgot to fill in. A stop then stops everything; a reset must not reset everything.
+        if (entry.kind == CommandKind::reset && request.target.empty() && fields.has("axis") && !fields.error())
+            return Error{"command.unknown_name", "", "\"axis\" is empty",
+                         "Name the axis; to reset all axes and the machine leave \"axis\" out."};
     }
     if (!entry.value.empty()) request.value = fields.number(entry.value, true);
     if (!entry.value2.empty()) request.value2 = fields.number(entry.value2, true);
@@ -104,12 +122,12 @@ Result<CommandRequest> read_command(const CommandWord& entry, JsonFields& fields
     }
     request.commissioning = fields.flag("commissioning");
     // A validity beyond what fits is as wrong as one beyond the gateway's limit.
-    if (const auto ms = fields.integer("valid_ms"); ms != 0)
-        request.valid_for = std::chrono::milliseconds{std::clamp<std::int64_t>(ms, -1, 1'000'000)};
-    if (const auto utime = fields.integer("utime"); utime != 0) {
+    if (const auto ms = fields.maybe_integer("valid_ms"))
+        request.valid_for = std::chrono::milliseconds{std::clamp<std::int64_t>(*ms, -1, 1'000'000)};
+    if (const auto utime = fields.maybe_integer("utime")) {
         constexpr std::int64_t day = 86'400'000'000;
-        const bool far = utime < wall_utime - day || utime > wall_utime + day || utime < 0;
-        request.age = std::chrono::microseconds{far ? (utime < wall_utime ? day : -day) : wall_utime - utime};
+        const bool far = *utime < wall_utime - day || *utime > wall_utime + day || *utime < 0;
+        request.age = std::chrono::microseconds{far ? (*utime < wall_utime ? day : -day) : wall_utime - *utime};
     }
     fields.finish();
     if (fields.error()) return *fields.error();

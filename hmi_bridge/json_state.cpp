@@ -233,6 +233,7 @@ std::string layout_json(const runtime::MachineLayout& layout) {
                                   {"doc", p.doc},
                                   {"minimum", p.minimum},
                                   {"maximum", p.maximum},
+                                  {"whole", p.whole},
                                   {"value", p.value}});
     return text(std::move(out));
 }

@@ -1,5 +1,8 @@
 #include "hmi_bridge/urgent_line.hpp"
 
+#include <algorithm>
+#include <vector>
+
 #include <nlohmann/json.hpp>
 
 #include "hmi_bridge/target_names.hpp"
@@ -35,13 +38,24 @@ std::optional<std::uint16_t> axis_of(const Json& line, const runtime::MachineLay
 
 std::optional<UrgentLine> urgent_line(std::string_view line, const runtime::MachineLayout& layout) {
     if (!may_be(line)) return std::nullopt;
-    bool too_deep = false;
-    const auto bounded = [&](int depth, Json::parse_event_t, Json&) {
+    bool too_deep = false, twice = false, asks_for_a_stop = false, at_cmd = false;
+    std::vector<std::string> keys;
+    const auto looked_at = [&](int depth, Json::parse_event_t event, Json& value) {
         too_deep = too_deep || depth > deepest_nesting;
+        if (event == Json::parse_event_t::key && depth == 1) {
+            const auto& key = value.get_ref<const std::string&>();
+            at_cmd = key == "cmd";
+            twice = twice || std::find(keys.begin(), keys.end(), key) != keys.end();
+            keys.push_back(key);
+        }
+        if (event == Json::parse_event_t::value && depth == 1) asks_for_a_stop = asks_for_a_stop || (at_cmd && value == "stop");
         return !too_deep;
     };
-    const auto json = Json::parse(line, bounded, false);
+    const auto json = Json::parse(line, looked_at, false);
     if (too_deep || !json.is_object()) return std::nullopt;
+    if (twice && !asks_for_a_stop)
+        return std::nullopt;  // refused by who reads it in full; a jog that it was to keep alive ends with its lease
+    if (twice) return UrgentLine{UrgentLine::Kind::stop, all_axes, false, true, "null"};
     const auto cmd = json.find("cmd");
     if (cmd == json.end() || !cmd->is_string()) return std::nullopt;
 

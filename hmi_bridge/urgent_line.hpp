@@ -16,6 +16,8 @@ struct UrgentLine {
     Kind kind = Kind::stop;
     std::uint16_t axis = 0xFFFF;  ///< 0xFFFF: all
     bool press = false;
+    /// A key stands in it twice, so that nobody can tell what exactly was meant: it stops every axis, and is refused all the same.
+    bool doubled = false;
     std::string id = "null";  ///< as the answer repeats it
 };
 

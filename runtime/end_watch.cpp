@@ -1,5 +1,7 @@
 #include "runtime/end_watch.hpp"
 
+#include <string_view>
+
 #include <fmt/format.h>
 
 namespace taktwerk::runtime {
@@ -16,6 +18,7 @@ constexpr Duration threads_home = 5s;   // the disk, too, must have taken the la
 std::string EndWatch::who() const {
     if (stuck_) return stuck_->text();
     if (const auto code = machine_.program_at_work(); !code.empty()) return code + " does not return";
+    if (machine_.disk_at_work()) return "a disk does not take the positions of the axes";
     return "the bus or the system did not end in time";
 }
 
@@ -27,9 +30,15 @@ std::optional<Error> EndWatch::look(Instant now) {
     const bool late = asked_ && now - *asked_ > machine_.longest_stop() + (stuck_ ? Duration{} : bus_and_files);
     const bool left_behind = alone_ && now - *alone_ > threads_home;
     if (!late && !left_behind) return std::nullopt;
+    const bool a_program = stuck_ || !machine_.program_at_work().empty();
+    const std::string_view cure = a_program ? "Mend that program"
+                                  : machine_.disk_at_work()
+                                      ? "Look at the disk of `retain`; axes may not be homed, or stand elsewhere, after the next start"
+                                      : "Look at the log before this line";
     return Error{"run.ended_hard", "run", "the run was told to end and cannot: " + who(),
-                 left_behind && !stuck_ ? "Mend that program; the axes had stopped and the bus was down."
-                                        : "Mend that program. No frame leaves any more: the drives stop by their own watchdogs."};
+                 fmt::format("{}{}", cure,
+                             left_behind && !stuck_ ? "; the axes had stopped and the bus was down."
+                                                    : ". No frame leaves any more: the drives stop by their own watchdogs.")};
 }
 
 }  // namespace taktwerk::runtime

@@ -380,6 +380,7 @@ std::string Machine::program_at_work() const {
         return fmt::format("start() or stop() of program '{}'", impl_->config.programs[static_cast<std::size_t>(program)].name);
     return {};
 }
+bool Machine::disk_at_work() const noexcept { return impl_->positions && impl_->positions->writing(); }
 axes::DrivePort* Machine::drive_port(std::size_t axis) noexcept {
     const bool on_drive = axis < impl_->ports.size() && !impl_->layout.axes[axis].drive.empty();
     return on_drive ? impl_->ports[axis].get() : nullptr;

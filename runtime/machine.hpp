@@ -114,6 +114,8 @@ public:
     /// "task 'plan' of program 'cell'", or "start() of ...": code of a program that runs beside the cycle and has not returned; empty: none.
     /// Any thread.
     [[nodiscard]] std::string program_at_work() const;
+    /// The positions are being written: one call of the disk that has not come back yet. Any thread.
+    [[nodiscard]] bool disk_at_work() const noexcept;
     [[nodiscard]] MachinePhase phase() const noexcept;
     /// Before arm(): each cycle becomes a row of `columns()`; `rows` is how far a reader may fall behind.
     TraceRing& enable_trace(std::size_t rows);

@@ -64,7 +64,8 @@ void Machine::Impl::take_levels(Instant at) noexcept {
             shutdown_taken = true;
             return;
         }
-        const bool moves = armed.load(std::memory_order_relaxed);  // before that nothing does; a program that starts by itself shall not then
+        const bool moves =
+            armed.load(std::memory_order_relaxed);  // before that nothing does; a program that starts by itself shall not then
         for (std::size_t i = axis == all ? 0 : axis; i < (axis == all ? axes.size() : axis + std::size_t{1}); ++i) {
             stopped_at[i] = std::max(stopped_at[i], number);
             if (!moves) continue;
@@ -170,7 +171,7 @@ Machine::Impl::Verdict Machine::Impl::execute_machine(const OperatorCommand& com
         case OperatorAction::set_parameter: {
             if (command.index >= host->parameters().size()) return {Answer::unknown_name};
             const auto& info = host->parameter(command.index);
-            if (!(command.value >= info.minimum && command.value <= info.maximum)) return {Answer::bad_value};  // also NaN
+            if (!info.takes(command.value)) return {Answer::bad_value};
             host->parameters()[command.index] = command.value;
             return {};
         }

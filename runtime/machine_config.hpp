@@ -106,7 +106,8 @@ enum class Mode : std::uint8_t { manual, setup, automatic };
 struct EmergencyStop {
     std::string input;  ///< name of an input point that is TRUE while all is well (normally closed); empty: none
     Duration power_off_after = std::chrono::milliseconds{500};  ///< power goes off when the axes stand, at the latest then
-    /// Input whose rising edge after the release lets the programs power their axes again, as program_start does: a button. Empty: none.
+    /// Input of a button. Its rising edge after the release resets the axes that the emergency stop holds in ErrorStop; where none is left it
+    /// lets the programs power their axes again, as program_start does. Empty: none.
     std::string restart;
 };
 

@@ -164,7 +164,8 @@ void Machine::Impl::supervise(Instant, const CycleTick& tick) noexcept {
             raise(MachineAlarm::axis_of_two_programs, AlarmSource::axis, static_cast<std::uint16_t>(i), rivals.winner, rivals.loser);
     if (positions && positions->lost()) raise(MachineAlarm::positions_lost, AlarmSource::machine, 0, 0, 0);
     if (positions && positions->outdated()) raise(MachineAlarm::positions_outdated, AlarmSource::machine, 0, 0, 0);
-    else if (positions && positions->failing()) raise(MachineAlarm::positions_not_kept, AlarmSource::machine, 0, 0, 0);
+    else if (positions && (positions->failing() || positions->hangs(now)))
+        raise(MachineAlarm::positions_not_kept, AlarmSource::machine, 0, 0, 0);
 
     auto level = axes::EmergencyStop::none;
     if (emergency)

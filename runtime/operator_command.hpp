@@ -32,11 +32,12 @@ enum class OperatorAction : std::uint8_t {
                       ///< block shows CommandAborted; program_stop ends it. People's stops come as levels (stop_levels.hpp)
     reset,            ///< axis, or all: then also the machine's alarms and programs in fault
     program_start,    ///< index = program. One that runs and waits after an emergency stop goes on [wrong_mode outside automatic;
-                      ///< not_possible_now in fault, while its stop() is to come, while the emergency stop holds]
+                      ///< not_possible_now in fault, while its stop() is to come, while the emergency stop holds (interlocked) or is not
+                      ///< reset yet (in_error_stop)]. A stop of one of its axes before it has begun withdraws it
     program_stop,     ///< index = program; axes that it powers ramp down, then power goes off; others that it moves stop; outputs that no
                       ///< other running program has declared go to their safe values
     program_reset,    ///< index = program
-    set_parameter,    ///< index = parameter; value within its range [bad_value]
+    set_parameter,    ///< index = parameter; value within its range, whole where it takes nothing else [bad_value]
     set_output,       ///< index = output point; value, whole and within its bits. Holds until the client goes, the mode changes or the
                       ///< emergency stop is pressed; then it is safe again [bad_value; wrong_mode in automatic; not_possible_now
                       ///< while a program runs or the emergency stop holds]

@@ -11,6 +11,7 @@ using namespace std::chrono_literals;
 
 constexpr Duration standing_time = 2s;  // machines that stop and go do not write each time
 constexpr Duration retry_after = 1s;
+constexpr Duration slow_disk = 3s;  // a disk that was asleep takes about as long
 
 /// Its reference may become another at any moment: what stands on the disk must not be believed from now on.
 bool homes(const axes::AxisView& view) noexcept {
@@ -75,6 +76,11 @@ void PositionKeeper::watch(std::span<const axes::Axis> axes, Instant now, bool e
     latest_.publish();
 }
 
+bool PositionKeeper::hangs(Instant now) const noexcept {
+    const auto since = writing_since_.load(std::memory_order_relaxed);
+    return since >= 0 && now.time_since_epoch() - Duration{since} > slow_disk;
+}
+
 void PositionKeeper::step(Instant now) {
     const auto reading = latest_.read();
     if (reading.is_new)
@@ -85,7 +91,9 @@ void PositionKeeper::step(Instant now) {
     std::vector<RetainedAxis> homed;
     for (const auto& axis : kept_)
         if (axis.position.homed) homed.push_back(axis);
+    writing_since_.store(now.time_since_epoch().count(), std::memory_order_relaxed);
     const auto saved = store_.save(homed);
+    writing_since_.store(-1, std::memory_order_relaxed);
     failing_.store(!saved.ok(), std::memory_order_relaxed);
     outdated_.store(!saved.ok() && saved.error().code == "positions.outdated", std::memory_order_relaxed);
     retry_at_ = now + retry_after;

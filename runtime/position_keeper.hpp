@@ -9,6 +9,7 @@
 
 #include <array>
 #include <atomic>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -33,6 +34,10 @@ public:
     [[nodiscard]] bool lost() const noexcept { return lost_; }
     /// The last writing failed. Any thread.
     [[nodiscard]] bool failing() const noexcept { return failing_.load(std::memory_order_relaxed); }
+    /// One is under way. Any thread.
+    [[nodiscard]] bool writing() const noexcept { return writing_since_.load(std::memory_order_relaxed) >= 0; }
+    /// It has been for so long that the disk does not take it: what changed since is not kept. Any thread.
+    [[nodiscard]] bool hangs(Instant now) const noexcept;
     /// Worse: the disk says something of an axis that is not so any more, and would be believed after a restart. Any thread.
     [[nodiscard]] bool outdated() const noexcept { return outdated_.load(std::memory_order_relaxed); }
 
@@ -52,6 +57,7 @@ private:
     std::vector<Watched> watched_;    // cycle
     LatestValue<std::vector<axes::RetainedPosition>> latest_;
     std::atomic<bool> failing_{false}, outdated_{false};
+    std::atomic<std::int64_t> writing_since_{-1};  // ns of machine time; -1: nothing is being written
     bool lost_ = false;
     bool proved_ = false;  // the disk has taken something since the start, or refused it
     Instant retry_at_{};

@@ -57,6 +57,13 @@ public:
                 "program.parameter_range",
                 fmt::format("parameter '{}' has default {} outside its own range {} to {}", name, spec.value, spec.minimum, spec.maximum),
                 "correct the declaration in the program");
+        const bool whole = spec.kind == ParameterKind::whole;
+        const auto is_whole = [](double number) { return number == std::floor(number); };
+        if (whole && !(is_whole(spec.value) && is_whole(spec.minimum) && is_whole(spec.maximum)))
+            problem("program.parameter_range",
+                    fmt::format("parameter '{}' takes whole numbers, and its default {} or its range {} to {} has others", name, spec.value,
+                                spec.minimum, spec.maximum),
+                    "correct the declaration in the program");
         for (const auto& set : program.parameters) {
             if (set.name != name) continue;
             const auto given = value_of(set, spec.unit);
@@ -69,11 +76,15 @@ public:
                 problem("program.parameter_range",
                         fmt::format("parameter '{}' = {} {} is outside {} to {}", name, *given, spec.unit, spec.minimum, spec.maximum),
                         "choose a value inside the range");
+            else if (whole && !is_whole(*given))
+                problem("program.parameter_range",
+                        fmt::format("parameter '{}' = {} is not a whole number, and the program counts with it", name, *given),
+                        fmt::format("write {} or {}", std::floor(*given), std::ceil(*given)));
             else value = *given;
         }
         host_.parameters_.push_back(value);
         host_.parameter_info_.push_back(
-            {program.name, std::string(name), std::string(spec.unit), std::string(spec.doc), spec.minimum, spec.maximum, value});
+            {program.name, std::string(name), std::string(spec.unit), std::string(spec.doc), spec.minimum, spec.maximum, value, whole});
         parameter_names_.emplace_back(name);
         return {static_cast<std::uint16_t>(host_.parameters_.size() - 1)};
     }

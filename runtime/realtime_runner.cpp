@@ -125,7 +125,10 @@ Result<void> RealtimeRunner::bring_up(const std::function<bool(Instant)>& keep_o
         service();
         if (auto failure = machine_.bus_failure()) return *failure;
         if (!keep_on(clock_.now())) machine_.request_shutdown();
-        if (machine_.phase() == MachinePhase::stopped) return {};
+        if (machine_.phase() == MachinePhase::stopped)
+            return Error{std::string(ended_early), "run",
+                         fmt::format("ended: the bus was not operational yet; last: {}", machine_.bus_progress()),
+                         "nothing has moved; start it again"};
         if (clock_.now() > until)
             return Error{"bus.timeout", "bus",
                          fmt::format("not operational after {:.0f} s; last: {}", to_seconds(patience), machine_.bus_progress()),

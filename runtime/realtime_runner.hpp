@@ -27,6 +27,9 @@ namespace taktwerk::runtime {
 
 class RealtimeRunner {
 public:
+    /// Code of the error with which a run ends that was told to before it was up.
+    static constexpr std::string_view ended_early = "run.ended_early";
+
     /// `world` is null on a real bus. Both outlive the runner.
     RealtimeRunner(Machine& machine, World* world);
     ~RealtimeRunner();

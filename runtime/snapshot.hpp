@@ -3,6 +3,7 @@
 // sized when the machine is built; copying allocates nothing.
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -80,6 +81,10 @@ struct MachineLayout {
     struct ParameterInfo {
         std::string program, name, unit, doc;
         double minimum = 0, maximum = 0, value = 0;
+        bool whole = false;                                       ///< no other numbers than whole ones
+        [[nodiscard]] bool takes(double number) const noexcept {  // also not NaN
+            return number >= minimum && number <= maximum && (!whole || number == std::floor(number));
+        }
     };
     struct AxisInfo {
         std::string name, unit;

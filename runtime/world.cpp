@@ -159,6 +159,12 @@ axes::sim::Cia402Axis* World::drive(std::string_view axis) noexcept {
     return found ? found->axis : nullptr;
 }
 
+bool World::is_single_bit(std::string_view input) const noexcept {
+    for (const auto& point : points_)
+        if (point.terminal && point.config.name == input && point.config.direction == IoDirection::input) return true;
+    return false;
+}
+
 void World::set_input_value(std::string_view name, std::int64_t value) {
     for (auto& point : points_) {
         if (point.config.name != name || point.config.direction != IoDirection::input) continue;

@@ -41,6 +41,8 @@ public:
     void set_input(std::string_view point, bool value) { set_input_value(point, value ? 1 : 0); }
     /// What the field gives a named input point, of any width: the raw value of its object. A one-bit point of a terminal takes 0 as FALSE.
     void set_input_value(std::string_view point, std::int64_t value);
+    /// An input of a terminal: 0 or 1, and nothing else.
+    [[nodiscard]] bool is_single_bit(std::string_view input) const noexcept;
     /// What a named output point drives at the terminal.
     [[nodiscard]] bool output(std::string_view point) const;
     void set_slave_power(std::string_view slave, bool on);

@@ -65,7 +65,7 @@ bool Transfer::ready(Instant now) {
 Error unanswered(const std::string& subject, const std::string& what, const Reply& reply) {
     if (reply.lost) {
         return Error{"bus.no_frame", subject, fmt::format("no frame came back for {}", what),
-                     "check the cable between master and first slave, and that the cycle or pump() is running"};
+                     "check the cable between master and first slave; a computer that stood still meanwhile says so (late_wakeups)"};
     }
     if (reply.wkc == 0) {
         return Error{"bus.no_slave", subject, fmt::format("the slave did not answer to {} (working counter 0)", what),

@@ -11,6 +11,7 @@
 
 #include "core/nearest_name.hpp"
 #include "ecat/sim/faults.hpp"
+#include "ecat/wire/frame.hpp"
 #include "ecat/wire/sdo.hpp"
 
 namespace taktwerk::ecat::sim {
@@ -18,6 +19,9 @@ namespace taktwerk::ecat::sim {
 namespace {
 
 using K = FaultKind;
+
+/// Of the longest frame; a frame that is shorter flips that bit modulo its own length.
+constexpr std::uint32_t largest_bit = max_frame_size * 8 - 1;
 
 constexpr std::array commands{
     FaultCommand{K::unplug, "unplug", "SLAVE", "pulls the cable that leads to SLAVE; `unplug master`: the one at the master"},
@@ -112,7 +116,9 @@ public:
         assign(fault.time, "TIME (as 5ms)", value);
     }
     void step(Fault& fault) { assign(fault.time, "TIME (as 5ms or -5ms)", time_span(take("TIME").value_or(""))); }
-    void bit(Fault& fault) { assign(fault.bit, "BIT", number(take("BIT").value_or(""), std::numeric_limits<std::uint32_t>::max())); }
+    void bit(Fault& fault) {
+        assign(fault.bit, fmt::format("a bit of a frame (0 to {})", largest_bit), number(take("BIT").value_or(""), largest_bit));
+    }
     void on_off(Fault& fault) {
         const auto word = take("on or off").value_or("");
         if (word == "on" || word == "off") fault.on = word == "on";

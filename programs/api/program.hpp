@@ -60,12 +60,17 @@ struct Parameter {
     std::uint16_t index = 0xFFFF;
 };
 
+/// What a parameter may be. `whole`: a count, a number of a recipe; 1.5 is refused in the machine file and to the operator, and get() gives
+/// the number exactly.
+enum class ParameterKind : std::uint8_t { real, whole };
+
 /// All in `unit`. minimum <= value <= maximum, otherwise the machine does not start. The machine file may set another value.
 struct ParameterSpec {
     double value = 0;                 ///< default
     double minimum = 0, maximum = 0;  ///< inclusive; the runtime refuses anything else, also from the operator
     std::string_view unit{};
     std::string_view doc{};
+    ParameterKind kind = ParameterKind::real;
 };
 
 /// Types of monitored variables.

@@ -78,6 +78,17 @@ TEST(BusCommandOnACable, BesideAnotherMasterNamesItAndDisturbsNothing) {
         EXPECT_THAT(said, ::testing::Not(HasSubstr("power-cycle"))) << doing;
         EXPECT_EQ(other.disturbed(), 0) << doing << ": its slave lost its address, or stopped answering";
     }
+    // --force writes beside it, but brings nothing up.
+    for (const std::vector<std::string>& doing : {std::vector<std::string>{"why"}, {"state", "op"}}) {
+        std::vector<std::string> words{command, "bus"};
+        words.insert(words.end(), doing.begin(), doing.end());
+        words.insert(words.end(), {"--nic", "twk0", "--yes", "--force"});
+        std::string said;
+        EXPECT_EQ(run(cable.at_master(std::move(words)), &said), exit_bus) << said;
+        EXPECT_THAT(said, HasSubstr("two masters never bring up one bus")) << doing.back();
+        EXPECT_THAT(said, ::testing::Not(HasSubstr("all the same"))) << doing.back();
+        EXPECT_EQ(other.disturbed(), 0) << doing.back();
+    }
     std::string said;
     const auto file = (std::filesystem::temp_directory_path() / ("taktwerk-beside-" + std::to_string(::getpid()) + ".yaml")).string();
     std::ifstream in(demo);

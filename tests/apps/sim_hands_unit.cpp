@@ -57,6 +57,17 @@ TEST_F(SimHandsTest, WhatIsWrongIsSaidToWhoAsks) {
     EXPECT_EQ(hands.ask("unplug x_driv").error().remedy, "did you mean 'x_drive'?");
     EXPECT_EQ(code("unplug master"), "");
     EXPECT_EQ(code(""), "fault.unknown");
+    EXPECT_EQ(code("corrupt 1 12111"), "");
+    EXPECT_EQ(code("corrupt 1 12112"), "fault.arguments") << "no frame is longer than 1514 bytes";
+    EXPECT_EQ(code("corrupt 1 999999999"), "fault.arguments");
+}
+
+TEST_F(SimHandsTest, AButtonIsPressedOrNotAndNothingElse) {
+    EXPECT_EQ(code("input button 1"), "");
+    EXPECT_EQ(code("input button 0"), "");
+    EXPECT_EQ(code("input button 2"), "fault.arguments");
+    EXPECT_EQ(code("input button -1"), "fault.arguments");
+    EXPECT_EQ(code("after 1s input button 2"), "fault.arguments") << "not in a second, when nobody hears it";
 }
 
 TEST_F(SimHandsTest, EveryWordOfTheListIsUnderstood) {

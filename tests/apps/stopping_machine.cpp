@@ -83,6 +83,17 @@ protected:
                             << more;
         return file;
     }
+    /// With an absolute encoder.
+    std::string absolute() {
+        const auto file = machine();
+        std::ostringstream text;
+        text << std::ifstream(file).rdbuf();
+        auto changed = text.str();
+        const std::string homing = "    homing: { kind: set_here }\n";
+        changed.replace(changed.find(homing), homing.size(), homing + "    position_memory: { absolute: true }\n");
+        std::ofstream(file) << changed;
+        return file;
+    }
     /// With the program that dies.
     std::string dying(int how, int every = 1) {
         return machine("start_mode: automatic\nprograms:\n  dying:\n    library: " + std::string(TAKTWERK_BINARY_DIR) +
@@ -222,6 +233,32 @@ TEST_F(Stopping, SignalsThatMeanNothingToAMachineChangeNothing) {
     EXPECT_TRUE(moves()) << refused.text();
     run.signal(SIGTERM);
     EXPECT_EQ(run.wait(20s), exit_ok) << run.text();
+}
+
+TEST_F(Stopping, ARunThatEndsBeforeItIsUpSaysWhatEndedItAndHasNotEndedWell) {
+    Child timed({taktwerk, "run", machine(), "--duration", "5ms"});  // the bring-up listens longer than that before it sends anything
+    EXPECT_EQ(timed.wait(60s), exit_bus) << timed.text();
+    EXPECT_THAT(timed.text(), HasSubstr("ended by --duration: the bus was not operational yet")) << timed.text();
+}
+
+TEST_F(Stopping, PositionsOnADiskThatTakesNothingHoldUpNeitherTheAxesNorTheBusAndEndIn9) {
+    const auto kept = folder / "kept";
+    std::filesystem::create_directories(kept);
+    // The first writing, at the start, goes well; the next one never comes back from the kernel.
+    const FullPipe disk{(kept / "positions.1.new").string()};
+    Child run({taktwerk, "run", absolute(), "--retain", kept.string()});
+    ASSERT_TRUE(runs()) << run.text();
+    ASSERT_TRUE(until([&] { return std::filesystem::exists(kept / "positions.0"); })) << run.text();
+    ASSERT_TRUE(moves()) << refused.text();
+    EXPECT_TRUE(ask({{"cmd", "stop"}})) << refused.text();
+    EXPECT_TRUE(until([&] { return velocity() == 0; }));
+    EXPECT_FALSE(std::filesystem::exists(kept / "positions.1")) << "the disk was not to take it";
+    EXPECT_TRUE(run.says("The positions of the axes cannot be written", 60s)) << "a person is told: " << run.text();
+    run.signal(SIGTERM);
+    EXPECT_TRUE(run.says("-> Disabled", 30s)) << "the axis lost its power in order: " << run.text();
+    EXPECT_EQ(run.wait(30s), exit_hung) << run.text();
+    EXPECT_THAT(run.text(), HasSubstr("a disk does not take the positions of the axes"));
+    EXPECT_THAT(run.text(), ::testing::Not(HasSubstr("Mend that program"))) << "no program is to blame";
 }
 
 // --- what never returns, and what crashes ------------------------------------------------------------------------------------------------

@@ -124,6 +124,25 @@ TEST_F(DoorTest, AStopIsRaisedAndAnsweredAlthoughNobodyServesBehindTheDoor) {
     EXPECT_EQ(caller.hear(), "{\"id\":3,\"ok\":true}\n{\"id\":4,\"ok\":true}\n{\"id\":5,\"ok\":true}\n");
 }
 
+// What the last key of a name hides is not lost where it is a stop: everything stops, and the line is refused behind the door.
+TEST_F(DoorTest, AStopInALineWithAKeyTwiceStopsEverything) {
+    const auto caller = call();
+    caller.say(
+        "{\"id\":1,\"cmd\":\"stop\",\"cmd\":\"state\"}\n"
+        "{\"id\":2,\"cmd\":\"state\",\"cmd\":\"stop\",\"axis\":\"y\"}\n"
+        "{\"id\":3,\"cmd\":\"stop\",\"axis\":\"x\",\"axis\":\"y\"}\n");
+    step();
+    EXPECT_THAT(machine.stops, ElementsAre(0xFFFF, 0xFFFF, 0xFFFF));
+    EXPECT_THAT(caller.hear(), IsEmpty()) << "its answer is the refusal";
+    door->pass_on(desk, now);
+    EXPECT_THAT(desk.lines, SizeIs(3));
+
+    caller.say("{\"id\":4,\"cmd\":\"state\",\"cmd\":\"hello\",\"stop\":1}\n{\"id\":5,\"cmd\":\"shutdown\",\"cmd\":\"state\"}\n");
+    step();
+    EXPECT_THAT(machine.stops, SizeIs(3)) << "nobody asked for one";
+    EXPECT_FALSE(machine.shutdown_requested);
+}
+
 TEST_F(DoorTest, NoAgeNoMissingIdAndNoStrangeKeyHoldsUpAStop) {
     const auto caller = call();
     for (const char* line : {R"({"id":1,"cmd":"stop","utime":1})", R"({"id":1,"cmd":"stop","valid_ms":-1})", R"({"cmd":"stop"})",

@@ -74,7 +74,7 @@ TEST_F(Deeds, EachKindIsToldWithWhoAndWhatAndItsNumbers) {
     told(CommandKind::program_start, "cell", 0, 0, "program_start program cell");
     told(CommandKind::program_stop, "cell", 0, 0, "program_stop program cell");
     told(CommandKind::program_reset, "cell", 0, 0, "program_reset program cell");
-    told(CommandKind::set_parameter, "speed", 250, 0, "set_parameter parameter speed = 250 mm/s");
+    told(CommandKind::set_parameter, "speed", 250, 0, "set_parameter parameter cell.speed = 250 mm/s");
     told(CommandKind::set_output, "lamp_run", 1, 0, "set_output output lamp_run = 1");
     told(CommandKind::acknowledge, "", 0, 0, "acknowledge");
     told(CommandKind::shutdown, "", 0, 0, "shutdown");

@@ -235,7 +235,7 @@ TEST_F(GatewayTest, ValuesOutsideTheirRangeAreRefusedWithTheRange) {
     speed.value = 500.1;
     const auto reply = outcome(speed);
     EXPECT_EQ(reply.answer, Answer::bad_value);
-    EXPECT_EQ(reply.error.subject, "parameter speed");
+    EXPECT_EQ(reply.error.subject, "parameter cell.speed");
     EXPECT_THAT(reply.error.remedy, HasSubstr("10 to 500 mm/s"));
 
     for (const double value : {nan, infinity, -infinity, 9.9}) {

@@ -120,6 +120,37 @@ TEST_F(RequestsTest, BrokenLinesGetOneClearErrorEach) {
     EXPECT_TRUE(machine.submitted.empty());
 }
 
+TEST_F(RequestsTest, ZeroIsANumberAndNotNothing) {
+    EXPECT_EQ(code_for(R"({"id":1,"cmd":"home","axis":"x","valid_ms":0})"), "command.bad_value");
+    EXPECT_EQ(code_for(R"({"id":2,"cmd":"home","axis":"x","utime":0})"), "command.stale") << "1970";
+    EXPECT_TRUE(machine.submitted.empty());
+}
+
+TEST_F(RequestsTest, AKeyThatStandsTwiceIsRefused) {
+    EXPECT_EQ(code_for(R"({"id":1,"cmd":"home","axis":"x","axis":"y"})"), "request.duplicate_key");
+    EXPECT_EQ(code_for(R"({"id":2,"cmd":"state","cmd":"home","axis":"x"})"), "request.duplicate_key");
+    EXPECT_EQ(code_for(R"({"id":3,"id":4,"cmd":"home","axis":"x"})"), "request.duplicate_key");
+    std::string many = R"({"id":5,"cmd":"home","axis":"x")";
+    for (int i = 0; i < 100; ++i) many += ",\"k" + std::to_string(i) + "\":1";
+    EXPECT_EQ(code_for(many + "}"), "request.unknown_key");
+    EXPECT_TRUE(machine.submitted.empty());
+}
+
+TEST_F(RequestsTest, AResetWithAnEmptyNameResetsNothing) {
+    EXPECT_EQ(code_for(R"({"id":1,"cmd":"reset","axis":""})"), "command.unknown_name");
+    EXPECT_TRUE(machine.submitted.empty());
+    EXPECT_EQ(ask(R"({"id":2,"cmd":"reset"})")["ok"], true);
+    ASSERT_EQ(machine.submitted.size(), 1u);
+    EXPECT_EQ(machine.submitted[0].axis, 0xFFFF);
+}
+
+TEST_F(RequestsTest, AParameterThatCountsTakesWholeNumbersOnly) {
+    machine.layout_.parameters[0].whole = true;
+    EXPECT_EQ(code_for(R"({"id":1,"cmd":"set_parameter","parameter":"speed","value":20.5})"), "command.bad_value");
+    EXPECT_TRUE(machine.submitted.empty());
+    EXPECT_EQ(ask(R"({"id":2,"cmd":"set_parameter","parameter":"speed","value":20})")["ok"], true);
+}
+
 TEST_F(RequestsTest, DeepNestingIsRefusedWithoutRecursion) {
     EXPECT_EQ(code_for(R"({"id":1,"cmd":)" + std::string(60'000, '[')), "request.too_deep");
     EXPECT_EQ(code_for(std::string(60'000, '{')), "request.not_json");

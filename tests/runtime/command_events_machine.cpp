@@ -365,6 +365,40 @@ TEST(ProgramDeclarations, WhatAProgramHasWrongIsToldBesideWhatTheFileHasWrong) {
     EXPECT_EQ(codes[1], "program.duplicate_name");
 }
 
+class Counting final : public Idle {
+    void declare(Declaration& d) override {
+        Idle::declare(d);
+        parts = d.parameter("parts", {.value = 3, .minimum = 0, .maximum = 10, .unit = "", .doc = "", .kind = ParameterKind::whole});
+    }
+    Parameter parts;
+};
+
+class CountsInHalves final : public Idle {
+    void declare(Declaration& d) override {
+        Idle::declare(d);
+        (void)d.parameter("parts", {.value = 2.5, .minimum = 0, .maximum = 10, .unit = "", .doc = "", .kind = ParameterKind::whole});
+    }
+};
+
+TEST(ProgramDeclarations, AParameterThatCountsTakesWholeNumbersOnly) {
+    auto config = with_program(1, &entry_of<Counting>);
+    ParameterValue value;
+    value.name = "parts";
+    value.value = 1.5;
+    config.programs[0].parameters = {value};
+    EXPECT_EQ(codes_of(config), std::vector<std::string>{"program.parameter_range"});
+    config.programs[0].parameters[0].value = 7;
+    EXPECT_TRUE(codes_of(config).empty());
+    EXPECT_EQ(codes_of(with_program(1, &entry_of<CountsInHalves>)), std::vector<std::string>{"program.parameter_range"});
+
+    TestMachine m{config};
+    ASSERT_TRUE(m.up());
+    ASSERT_EQ(m.machine->layout().parameters[1].name, "parts");
+    EXPECT_EQ(m.command(OperatorAction::set_parameter, 1, false, 4.5).answer, Answer::bad_value);
+    EXPECT_EQ(m.command(OperatorAction::set_parameter, 1, false, 4).answer, Answer::accepted);
+    EXPECT_EQ(m.command(OperatorAction::set_parameter, 0, false, 4.5).answer, Answer::accepted) << "the other one takes any";
+}
+
 /// "60 mm" as the loader hands it over; Idle's parameter p has no unit.
 TEST(ProgramDeclarations, AParameterWithAUnitNeedsOneThatConverts) {
     auto config = with_program(1, &entry_of<Idle>);

@@ -152,8 +152,10 @@ TEST(Realtime, AnEndDuringTheBringUpTakesTheBusDownInOrder) {
     RealtimeRunner runner{machine, &world};
     ASSERT_TRUE(runner.start().ok());
     int calls = 0;
-    EXPECT_TRUE(runner.serve([&](Instant) { return ++calls < 20; }).ok());
+    const auto served = runner.serve([&](Instant) { return ++calls < 20; });
     runner.finish();
+    ASSERT_FALSE(served) << "a machine that never ran has not ended well";
+    EXPECT_EQ(served.error().code, RealtimeRunner::ended_early);
     EXPECT_EQ(machine.bus().phase(), ecat::Master::Phase::stopped);
     EXPECT_EQ(machine.phase(), MachinePhase::stopped);
 }
