@@ -205,7 +205,8 @@ TEST_F(DriveRequestsTest, TheTurnsAreClearedOnlyOnRequestWithTheMotorOff) {
 
 TEST_F(DriveRequestsTest, WhatCannotBeMeantIsRefusedBeforeTheDriveIsAsked) {
     EXPECT_EQ(refusal(write, "P05.13", "501"), "drive.out_of_range");
-    EXPECT_EQ(refusal(write, "P05.13", "1 s"), "drive.value");
+    EXPECT_EQ(refusal(write, "P05.13", "1 s"), "drive.out_of_range") << "1000 ms";
+    EXPECT_EQ(refusal(write, "P05.13", "1 V"), "drive.value");
     EXPECT_EQ(refusal(write, "603Fh", "1"), "drive.read_only");
     EXPECT_EQ(refusal(write, "P20.05", "2"), "drive.action") << "the axis would lose its reference unseen";
     EXPECT_EQ(refusal(read, "P99.99"), "drive.no_parameter");
