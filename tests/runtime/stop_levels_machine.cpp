@@ -299,6 +299,13 @@ TEST(Advance, ACycleThatStandsIsSeenAfterItsPatienceAndOneThatRunsIsNot) {
     EXPECT_FALSE(watch.look(now + 10ms));
 }
 
+// Before its first cycle a machine shows nothing that could be old, however long the start takes.
+TEST(Advance, BeforeTheFirstCycleNothingIsStuck) {
+    TestMachine m{machine_config(1)};
+    AdvanceWatch watch(*m.machine);
+    for (Instant now{}; now < Instant{} + 3s; now += 50ms) EXPECT_FALSE(watch.look(now));
+}
+
 TEST(Advance, WhoDidNotLookForLongAccusesNobody) {
     TestMachine m{machine_config(1)};
     ASSERT_TRUE(m.up());

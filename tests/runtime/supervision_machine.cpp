@@ -114,6 +114,35 @@ TEST_F(Supervised, AnUnacknowledgedEmergencyStopDoesNotHideAnotherReaction) {
     EXPECT_EQ(m().axis(0).state, AxisState::ErrorStop);
 }
 
+/// Keeps x powered, and has two things to say at once.
+class Shouts final : public Idle {
+public:
+    static inline bool loud = false;
+    void declare(Declaration& d) override {
+        (void)d.axis("x");
+        d.alarm(0, Reaction::stop_machine, "one", "一", "one");
+        d.alarm(1, Reaction::power_off, "two", "二", "two");
+        d.alarm(2, Reaction::stop_machine, "three", "三", "three");
+        d.task<&Shouts::scan>("main");
+    }
+    void scan(TaskContext& ctx) {
+        (void)ctx.requests->power({0}, true, true, true, ctx.owner);
+        for (std::uint8_t number = 0; number < 3; ++number) ctx.alarm(number, loud);
+    }
+};
+
+// Of all alarms that stand the strongest reaction is carried out.
+TEST_F(Supervised, TheStrongestOfSeveralReactionsIsCarriedOut) {
+    Shouts::loud = false;
+    start(with_program(1, &entry_of<Shouts>));
+    ASSERT_TRUE(m().until([&] { return m().axis(0).powered; }, 3s)) << m().alarms();
+    Shouts::loud = true;
+    m().run(500ms);
+    EXPECT_EQ(m().axis(0).state, AxisState::ErrorStop);
+    EXPECT_FALSE(m().axis(0).powered);
+    Shouts::loud = false;
+}
+
 TEST_F(Supervised, TooManyMissedTicksInARowStopTheMachineUntilAReset) {
     auto config = machine_config(1);
     config.watch.overruns_allowed = 2;
@@ -161,6 +190,8 @@ TEST_F(Supervised, LateWakeUpsAreOneAlarmThatGoesByItself) {
     EXPECT_EQ(m().axis(0).state, AxisState::DiscreteMotion);
     m().run(1100ms);
     EXPECT_EQ(m().state().alarm_count, 0u);
+    cycle(300us);  // another one tells its own worst, not that of the one before
+    EXPECT_EQ(m().state().alarms[0].fact.a, 300.0);
 }
 
 TEST_F(Supervised, TheRunEndsAlthoughADriveDoesNotAnswer) {

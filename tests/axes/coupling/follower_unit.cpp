@@ -66,6 +66,23 @@ TEST(Follower, AGearRampsToTheRatioAndKeepsTheDistanceLost) {
     slave.expect_inside_its_limits();
 }
 
+// The master's place jumps while its velocity stays: the slave cannot be where the gear says, so in that cycle it is not in gear. What it loses by
+// it stays lost.
+TEST(Follower, AGearWhoseMasterJumpsIsOutOfGearForThatCycle) {
+    Slave slave;
+    slave.follower.begin(gear({1, 1}), RunDown::velocity, slave.limits);
+    for (int i = 1; i <= 100; ++i) slave.step(rolling(40, i));
+    ASSERT_TRUE(slave.follower.in_sync());
+    const auto jumped = [](int i) { return EndlessMotion{{0, 40e-3 * i + 5}, 40, 0}; };
+    slave.step(jumped(101));
+    EXPECT_TRUE(slave.follower.held_back());
+    EXPECT_FALSE(slave.follower.in_sync());
+    slave.step(jumped(102));
+    EXPECT_TRUE(slave.follower.in_sync());
+    EXPECT_NEAR(slave.state.position, 40e-3 * 102 - 0.8, 1e-9);
+    slave.expect_inside_its_limits();
+}
+
 // P1-275
 TEST(Follower, AccelerationAndDecelerationAreThoseOfTheSlave) {
     Slave slave;

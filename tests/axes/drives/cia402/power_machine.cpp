@@ -163,6 +163,16 @@ TEST(Cia402Power, FaultWithLowNibbleFIsAFaultWhereTheQuirkSaysSo) {
     EXPECT_TRUE(rig.feedback().fault);
 }
 
+// TSVM 5.3.2: bit 7 stands with faults, too. Then it is no warning besides.
+TEST(Cia402Power, AFaultIsNoWarningBesides) {
+    DriveRig rig;
+    ASSERT_TRUE(rig.build()) << rig.refusal.text();
+    rig.status(0x0288);
+    rig.run(5);
+    EXPECT_TRUE(rig.feedback().fault);
+    EXPECT_FALSE(rig.feedback().warning);
+}
+
 // SV33-E 5.3: A.220 and A.221 are warnings; the drive stays in Operation enabled.
 TEST(Cia402Power, AWarningIsAnAlarmButNoFault) {
     DriveRig rig;

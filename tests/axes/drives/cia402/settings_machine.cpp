@@ -85,6 +85,31 @@ TEST_F(DriveSettings, EnablingWaitsForTheReading) {
     EXPECT_TRUE(told_to_enable());
 }
 
+// Somebody changed it while the drive was away: until it was read again, what was read before says nothing.
+TEST_F(DriveSettings, WhatWasReadBeforeARestartDoesNotCount) {
+    rig.profile.required_settings = {row({0x2005, 0x0B}, {0})};
+    build();
+    rig.run(200);
+    ASSERT_TRUE(told_to_enable());
+    rig.network.set_power(0, false);
+    rig.run(50);
+    rig.network.set_power(0, true);
+    bool away = false;
+    int back = 0, enabled = 0;
+    rig.on_cycle = [&] {
+        away = away || !rig.feedback().online;
+        if (!away || !rig.feedback().online) return;
+        if (back++ == 0) rig.put(0x2005, 1, 0x0B);  // before anybody has asked
+        rig.status(0x1233);
+        rig.mode(8);
+        if (back > 2 && told_to_enable()) ++enabled;  // what was sent before it was back is under way
+    };
+    rig.run(5000);
+    ASSERT_GT(back, 100);
+    EXPECT_EQ(enabled, 0);
+    EXPECT_TRUE(rig.feedback().setup_refused);
+}
+
 TEST_F(DriveSettings, WhatCannotBeReadIsNotTakenForRight) {
     rig.profile.required_settings = {row({0x2006, 1}, {0})};  // the drive has no such object
     build();
