@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
-#include <source_location>
 
 namespace taktwerk {
 
@@ -19,15 +18,14 @@ public:
     [[nodiscard]] static Patience of_threads() { return Patience{100'000'000}; }
 
     /// `waiting` itself while there are turns left; then false, and the test has failed at the caller's line.
-    [[nodiscard]] bool lasts(bool waiting, std::source_location here = std::source_location::current()) {
+    /// (Not std::source_location: libstdc++ 12 has it for g++ only, and clang++ 14 compiles the tests, too.)
+    [[nodiscard]] bool lasts(bool waiting, const char* file = __builtin_FILE(), int line = __builtin_LINE()) {
         if (!waiting) return false;
         if (turns_ > 0) {
             --turns_;
             return true;
         }
-        if (!said_)
-            ADD_FAILURE_AT(here.file_name(), static_cast<int>(here.line()))
-            << "this wait has no end: the condition still held after the last turn";
+        if (!said_) ADD_FAILURE_AT(file, line) << "this wait has no end: the condition still held after the last turn";
         said_ = true;
         return false;
     }

@@ -165,10 +165,10 @@ Script<Result<void>> bring_up(Bus& bus) {
 
 Script<Result<void>> take_down(Bus& bus) {
     bus.phase.store(BusPhase::stopping);
-    co_await for_each_slave(bus, &down_to<AlState::safeop>);
+    (void)co_await for_each_slave(bus, &down_to<AlState::safeop>);
     bus.link.supervise.store(false);
-    co_await for_each_slave(bus, &down_to<AlState::preop>);
-    co_await for_each_slave(bus, &down_to<AlState::init>);
+    (void)co_await for_each_slave(bus, &down_to<AlState::preop>);
+    (void)co_await for_each_slave(bus, &down_to<AlState::init>);
     bus.phase.store(BusPhase::stopped);
     bus.progress = "stopped";
     co_return Result<void>{};
