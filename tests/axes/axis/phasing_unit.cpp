@@ -52,6 +52,23 @@ TEST(Phasing, AbsoluteShiftsToTheValueAndStays) {
     }
 }
 
+// Velocity and ramps are the master's units, so the master's limits hold, not those of a slower slave: 10 u with 1000 u/s2 take 2 * sqrt(10 / 1000) s
+// and reach its 100 u/s just so. The slave, at most 30 u/s, falls behind meanwhile.
+TEST(Phasing, ItsLimitsAreThoseOfTheMaster) {
+    auto slow = plain_slave();
+    slow.limits.velocity = 30;
+    CouplingRig rig({plain_slave(), slow});
+    rig.start();
+    const auto gear = rig.accept(1, gear_in(0));
+    ASSERT_TRUE(rig.run_to_sync(1, gear));
+    const auto phase = rig.accept(1, phasing(absolutely, 10, 0));
+    int cycles = 0;
+    for (; rig.status(1, phase) == CommandStatus::active && cycles < 1000; ++cycles) rig.step();
+    EXPECT_EQ(rig.status(1, phase), CommandStatus::done);
+    EXPECT_NEAR(cycles, 200, 2);
+    rig.expect_no_jump();
+}
+
 // P1-293, P1-295
 TEST(Phasing, RelativeAddsToTheShift) {
     PhasedRig rig;
