@@ -300,10 +300,10 @@ void Axis::step_coupled(Duration period) noexcept {
     if (endless_ && units_.far_from_anchor(setpoint_.base().position)) reanchor();
     auto& follower = coupling_.follower;
     auto limits = follower_limits(coupling_.running.command);
-    // The axis' velocity holds for the sum: what is superimposed has its part, and the slave falls behind with the rest.
+    // The axis' velocity holds for the sum: what is superimposed has its part in its sense, and the slave falls behind with the rest.
     const auto beside = setpoint_.superimposed().velocity;
-    if (beside * setpoint_.base().velocity > 0)
-        limits.axis.velocity = std::max(0.0, std::min(limits.axis.velocity, config_.limits.velocity - std::abs(beside)));
+    limits.forward = std::clamp(config_.limits.velocity - beside, 0.0, limits.forward);
+    limits.backward = std::clamp(config_.limits.velocity + beside, 0.0, limits.backward);
     follower.set_limits(limits);
     const bool two = coupling_.running.masters.axes[1].valid();
     const auto first = seen(coupling_.running, 0);

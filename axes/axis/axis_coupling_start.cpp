@@ -84,7 +84,7 @@ bool Axis::starts_now(Link& link) const noexcept {
 
 FollowerLimits Axis::follower_limits(const AxisCommand& command) const noexcept {
     FollowerLimits limits{full_limits(config_.limits), dynamics_of(command, config_.limits, config_.defaults)};
-    limits.axis.velocity = std::min(limits.axis.velocity, velocity_cap());
+    limits.axis.velocity = limits.forward = limits.backward = std::min(limits.axis.velocity, velocity_cap());
     return limits;
 }
 

@@ -17,12 +17,14 @@ MotionState sum(const MotionState& a, const MotionState& b) noexcept {
 }
 
 /// The acceleration from which whatever takes the slave over can go on inside its limits: a relation may have any for a moment.
-double tame(const MotionState& state, const MotionLimits& limits) noexcept {
+double tame(const MotionState& state, const FollowerLimits& follower) noexcept {
+    const auto& limits = follower.axis;
     const bool faster = state.velocity * state.acceleration >= 0;
+    const double room = follower.room(state.velocity != 0 ? state.velocity : state.acceleration) - std::abs(state.velocity);
     double most = faster ? limits.acceleration : limits.deceleration;
     // The jerk takes it away while the velocity still grows: v + a^2 / (2 j) is to stay below the limit.
     if (faster && std::isfinite(limits.jerk))
-        most = std::min(most, math::sqrt(2 * limits.jerk * std::max(0.0, limits.velocity - std::abs(state.velocity))));
+        most = std::min(most, math::sqrt(2 * limits.jerk * std::max(0.0, room)));
     // Braking, it is gone before the velocity is: else whoever stops the slave would run it backwards.
     else if (std::isfinite(limits.jerk)) most = std::min(most, math::sqrt(2 * limits.jerk * std::abs(state.velocity)));
     return std::clamp(state.acceleration, -most, most);
@@ -38,7 +40,7 @@ SignedLimits difference_limits(const MotionState& slave, const MotionState& rela
         acceleration = goal >= now ? limits.approach.acceleration : limits.approach.deceleration;
     acceleration = std::max(acceleration - std::abs(relation.acceleration), least_share * acceleration);
     const double jerk = limits.approach.jerk;
-    double up = limits.axis.velocity, down = limits.axis.velocity;
+    double up = limits.forward, down = limits.backward;
     if (target == RunDown::velocity) up = down = std::abs(slave.velocity - relation.velocity) + limits.axis.velocity;
     else {
         up = std::max(up - relation.velocity, least_share * limits.axis.velocity);
@@ -95,13 +97,16 @@ MotionState Follower::held(const MotionState& wanted, const MotionState& before,
     const double step = wanted.velocity - before.velocity;
     const double mean = (wanted.position - before.position) / period;
     const bool follows = std::abs(mean - (wanted.velocity + before.velocity) / 2) <= most / 2 + rounding * axis.velocity;
-    const bool inside = std::abs(step) <= most * (1 + rounding) + rounding * rounding * axis.velocity &&
-                        std::abs(wanted.velocity) <= axis.velocity * (1 + rounding) && std::abs(mean) <= axis.velocity * (1 + rounding);
+    const auto allowed = [&](double velocity) noexcept {
+        return std::abs(velocity - limits_.inside(velocity)) <= rounding * axis.velocity;
+    };
+    const bool inside =
+        std::abs(step) <= most * (1 + rounding) + rounding * rounding * axis.velocity && allowed(wanted.velocity) && allowed(mean);
     held_back_ = !(follows && inside);  // also when something is not a number
     if (!held_back_) return wanted;
 
     // A place that its velocity does not lead to asks for nothing: the slave keeps to the velocity, the difference to the rest.
-    const double target = std::isfinite(wanted.velocity) ? std::clamp(wanted.velocity, -axis.velocity, axis.velocity) : 0.0;
+    const double target = std::isfinite(wanted.velocity) ? limits_.inside(wanted.velocity) : 0.0;
     MotionState out;
     out.velocity = before.velocity + std::clamp(target - before.velocity, -most, most);
     out.acceleration = (out.velocity - before.velocity) / period;
@@ -122,7 +127,7 @@ MotionState Follower::step(const EndlessMotion& first, const EndlessMotion& seco
     }
     const auto want = sum(relation, difference_.advance(period));
     auto out = held(want, before, seconds);
-    out.acceleration = tame(out, limits_.axis);
+    out.acceleration = tame(out, limits_);
     if (held_back_) run_down(out, relation);
     in_sync_ = !approaching_ && !held_back_ && difference_.finished();
     if (in_sync_ && difference_.state().position != 0) {

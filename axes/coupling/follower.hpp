@@ -9,6 +9,7 @@
 // a master too fast) is not followed further than they allow; the slave falls behind, is not in sync, and runs the difference down
 // again. So |velocity| stays below the limit, and its change in a cycle below acceleration times period, whatever the master does.
 
+#include <algorithm>
 #include <cstdint>
 #include <variant>
 
@@ -34,6 +35,10 @@ struct SlaveFrame {
 struct FollowerLimits {
     MotionLimits axis;      ///< never exceeded (but for the jerk)
     MotionLimits approach;  ///< of the difference motion; its velocity is not used
+    double forward = axis.velocity, backward = axis.velocity;  ///< velocity in each sense, u/s, >= 0: less where something else moves the axis too
+
+    [[nodiscard]] double room(double sense) const noexcept { return sense < 0 ? backward : forward; }
+    [[nodiscard]] double inside(double velocity) const noexcept { return std::clamp(velocity, -backward, forward); }
 };
 
 class Follower {

@@ -285,6 +285,28 @@ TEST(Gear, InGearFallsWhileTheSlaveCannotFollow) {
     rig.expect_no_jump();
 }
 
+// What is superimposed uses all of the slave's velocity: from standstill the slave may then set off against it, and not with it.
+TEST(Gear, BesideAnAdditionAtTheLimitTheSlaveSetsOffOnlyAgainstIt) {
+    for (const double sense : {1.0, -1.0}) {
+        CouplingRig rig(2);
+        rig.start();
+        const auto gear = rig.accept(1, gear_in(0));
+        ASSERT_TRUE(rig.run_to_sync(1, gear));
+        const auto beside = rig.accept(1, {.kind = CommandKind::move_superimposed, .position = 40, .velocity = 100});
+        ASSERT_TRUE(rig.run_until([&] { return rig.view(1).set_velocity > 100 - 1e-9; }, 200));
+        auto start = at_velocity(50);
+        start.direction = sense > 0 ? mcPositiveDirection : mcNegativeDirection;
+        rig.accept(0, start);
+        rig.run(100);
+        EXPECT_EQ(rig.status(1, beside), CommandStatus::active);
+        EXPECT_NEAR(rig.view(1).set_velocity, sense > 0 ? 100 : 50, 1e-6);
+        ASSERT_TRUE(rig.run_until([&] { return rig.status(1, beside) == CommandStatus::done; }, 2000));
+        ASSERT_TRUE(rig.run_to_sync(1, gear));
+        EXPECT_NEAR(rig.view(1).set_velocity, sense * 50, 1e-6);
+        rig.expect_no_jump();
+    }
+}
+
 // ContinuousUpdate: another ratio in the same command.
 TEST(Gear, AnUpdateChangesTheRatio) {
     CouplingRig rig(2);
