@@ -182,9 +182,13 @@ private:
         else if (!blocked) {
             const auto target = target_at(now - latch_age * cycle) - lag;
             const auto held = std::clamp(target, negative_stop, positive_stop);
-            position = static_cast<double>(held);
+            // Let go, it makes up what it missed no faster than a motor could.
+            const double missing = static_cast<double>(held) - position;
+            freed_ = freed_ && std::abs(missing) > catching_up;
+            position += freed_ ? std::copysign(catching_up, missing) : missing;
             held_back_ = std::clamp(stiffness * static_cast<double>(target - held), -3.0, 3.0);  // no more than a drive has
         }
+        freed_ = freed_ || blocked;
         for (std::size_t i = 0; i < 2; ++i) step_probe(i, std::llround(before), std::llround(position));
         if (mode_ != DriveMode::homing) attained_ = homing_error_ = false;
         if (power != PowerState::enabled || !by_torque()) velocity_ = (position - before) / to_seconds(cycle);
@@ -270,12 +274,14 @@ private:
             if (sent.effective <= t) found = sent;
         return found;
     }
+    static constexpr double catching_up = 150;  // counts per cycle
     std::deque<Sent> sent_;
     DriveFeedback feedback_;
     DriveMode mode_ = DriveMode::cyclic_position;
     int ticks_ = 0, mode_ticks_ = 0;
     std::array<int, 2> armed_for_{};
     bool attained_ = false, homing_error_ = false, obeyed_ = false;
+    bool freed_ = false;  // was blocked, and still makes up what it missed
     std::int64_t last_target_ = 0;
     double velocity_ = 0, torque_ = 0;
     double held_back_ = 0;  // torque against a hard stop
