@@ -8,6 +8,13 @@
 
 namespace taktwerk::axes {
 
+namespace {
+
+// A way that takes longer than this at the axis' velocity, s, is a long one; all but a third of it is covered in the other.
+constexpr double long_way = 1, long_way_time = 0.1;
+
+}  // namespace
+
 void Axis::plan(Instant now, Duration period) noexcept {
     now_ = now;
     if (coupling_.phasing_next.id != 0) settle_waiting_phasing();
@@ -66,9 +73,12 @@ void Axis::follow_actual(Duration period) noexcept {
         aligned_ = false;
         return;
     }
-    // Never faster than the axis may be, so that no trace shows a jump where a drive falls with a following error.
+    // Not faster than the axis may be, so that no trace shows a jump where a drive falls with a following error. But who turned a motor without
+    // power by hand, fast or far, does not wait for it: power is asked for when the set-point has come.
     const double way = actual_local() - setpoint_.state().position;
-    const double most = config_.limits.velocity * to_seconds(period);
+    const double velocity = config_.limits.velocity;
+    const bool far = std::abs(way) > velocity * long_way;
+    const double most = (far ? std::abs(way) / long_way_time : velocity) * to_seconds(period);
     aligned_ = drive_homing_.busy() || std::abs(way) <= most;
     setpoint_.place(aligned_ ? actual_local() : setpoint_.state().position + std::copysign(most, way));
     if (endless_ && units_.far_from_anchor(actual_local())) reanchor();  // an encoder turns for years

@@ -64,6 +64,24 @@ TEST(AxisPower, IsNotAskedForBeforeTheSetpointHasComeBack) {
     rig.expect_no_jump();
 }
 
+// Turned by hand, further than the axis would go in the time that the drive has to switch on.
+TEST(AxisPower, IsNotRefusedForAWayThatSomebodyTurnedTheMotor) {
+    auto config = plain_axis();
+    config.enable_timeout = 2s;
+    Rig rig(config);
+    rig.power_on();
+    rig.enable = false;
+    rig.run(10);
+    rig.drive.coasting = 1000;  // counts per cycle: 1000 u/s, ten times the axis' limit
+    rig.run(20'000);
+    rig.drive.coasting = 0;
+    rig.enable = true;
+    ASSERT_TRUE(rig.run_to(AxisState::Standstill, 3000));
+
+    EXPECT_NEAR(rig.view().set_position, 20'000, 1e-9);
+    EXPECT_LE(rig.drive.largest_step, 100);  // counts: the limit for a cycle
+}
+
 // P1-022: a bus that comes up late is no enable timeout (the time runs from when the drive can be asked), and no Standstill without feedback.
 TEST(AxisPower, WaitsForALateBusWithoutAnError) {
     auto config = plain_axis();
