@@ -398,7 +398,10 @@ private:
 
     // axis_profiles.cpp
     [[nodiscard]] ErrorId refuse_given(const AxisCommand& command, bool starts_now) noexcept;
-    [[nodiscard]] ErrorId make_curve(const AxisCommand& command, double behind = 0) noexcept;
+    /// What is superimposed when the curve begins: part of its start, or beside it all the time.
+    enum class Addition : std::uint8_t { folded, stays };
+    [[nodiscard]] ErrorId make_curve(const AxisCommand& command, Addition addition, double behind = 0) noexcept;
+    [[nodiscard]] double base_speed(double sense) const noexcept;
     [[nodiscard]] ErrorId update_curve(const AxisCommand& command) noexcept;
     ErrorId set_goal_given(const AxisCommand& command) noexcept;
     void start_given(double late) noexcept;
@@ -548,6 +551,7 @@ private:
 
         void reserve(std::size_t rows);
         [[nodiscard]] TimeCurve& running() noexcept { return curves[current]; }
+        [[nodiscard]] const TimeCurve& running() const noexcept { return curves[current]; }
         [[nodiscard]] TimeCurve& spare() noexcept { return curves[1 - current]; }
         void take_spare() noexcept { current = 1 - current; }
     };

@@ -69,7 +69,8 @@ void check_modulo(Problems& problems, const AxisConfig& config) {
 
 /// Homing by the drive knows nothing of the axis' limits: what it is told has to be inside them.
 void check_homing_speeds(Problems& problems, const HomingConfig& homing, const AxisLimits& limits) {
-    const char* const remedy = "Homing may not be faster than the axis: give a smaller value, or raise the limit where the mechanics bear it";
+    const char* const remedy =
+        "Homing may not be faster than the axis: give a smaller value, or raise the limit where the mechanics bear it";
     const auto above = [](double value, double limit) { return limit > 0 && value > limit; };  // a limit that is none is said elsewhere
     if (above(homing.search_velocity, limits.velocity)) problems.add("homing.search_velocity", "is above limits.velocity", remedy);
     if (above(homing.latch_velocity, limits.velocity)) problems.add("homing.latch_velocity", "is above limits.velocity", remedy);

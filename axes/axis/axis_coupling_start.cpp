@@ -55,11 +55,13 @@ void Axis::find_start(Link& link) noexcept {
     link.waits = distance != 0;
     link.ahead = link.sense * way(counted_from, link.begin, units.feed());
     if (link.waits && !link.started && link.ahead < 0)
-        fail(AxisAlarm::coupling_start_passed, units.to_program(way({units.anchor(), 0}, link.begin, units.feed())), units.to_program(here));
+        fail(AxisAlarm::coupling_start_passed, units.to_program(way({units.anchor(), 0}, link.begin, units.feed())),
+             units.to_program(here));
 }
 
 /// Where the lowest master position of the table lies for a master at `entry`.
-EndlessPlace Axis::cam_origin(const CamDetails& cam, const PreparedCam& table, const Axis& master, const EndlessPlace& entry) const noexcept {
+EndlessPlace Axis::cam_origin(const CamDetails& cam, const PreparedCam& table, const Axis& master,
+                              const EndlessPlace& entry) const noexcept {
     if (cam.start == mcRelative || !table.master_absolute()) return moved(entry, cam.master_offset);
     const auto& units = master.units_;
     double origin = units.to_local(cam.master_offset + cam.master_scaling * table.begin());

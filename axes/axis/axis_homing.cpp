@@ -140,7 +140,8 @@ DriveHomingSetup Axis::drive_homing_setup() const noexcept {
     const double scale = std::abs(units_.counts_per_unit());
     const auto& homing = config_.homing;
     const auto& limits = config_.limits;
-    return {homing.method, std::min(homing.search_velocity, limits.velocity) * scale, std::min(homing.latch_velocity, limits.velocity) * scale,
+    return {homing.method, std::min(homing.search_velocity, limits.velocity) * scale,
+            std::min(homing.latch_velocity, limits.velocity) * scale,
             std::min({homing.acceleration, limits.acceleration, limits.deceleration}) * scale};
 }
 

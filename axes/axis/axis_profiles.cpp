@@ -24,7 +24,7 @@ void Axis::GivenProfile::reserve(std::size_t rows) {
 }
 
 /// Into the spare curve: a running one is not touched by a command that is refused.
-ErrorId Axis::make_curve(const AxisCommand& command, double behind) noexcept {
+ErrorId Axis::make_curve(const AxisCommand& command, Addition addition, double behind) noexcept {
     const auto& details = std::get<TimeProfileDetails>(command.details);
     const auto* table = scene_.tables ? scene_.tables->time_table(details.table) : nullptr;
     if (!table) return ErrorId::invalid_table;
@@ -47,7 +47,12 @@ ErrorId Axis::make_curve(const AxisCommand& command, double behind) noexcept {
     if (error != ErrorId::none) return error;
 
     CurveLimits limits{full_limits(config_.limits), -std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-    limits.motion.velocity = std::min(limits.motion.velocity, velocity_cap());
+    limits.motion.velocity = limits.forward = limits.backward = std::min(limits.motion.velocity, velocity_cap());
+    if (addition == Addition::stays) {
+        // A table waits for nothing: it is taken where it leaves what moves on top of it its velocity.
+        limits.forward = std::min(limits.forward, config_.limits.velocity - setpoint_.superimposed_top(1));
+        limits.backward = std::min(limits.backward, config_.limits.velocity - setpoint_.superimposed_top(-1));
+    }
     if (software_limits_hold()) {
         limits.position_min = units_.to_local(config_.limits.position_min);
         limits.position_max = units_.to_local(config_.limits.position_max);
@@ -64,14 +69,14 @@ ErrorId Axis::refuse_given(const AxisCommand& command, bool starts_now) noexcept
     // Nothing says when an axis that is fed would have finished.
     if (!starts_now && queue_.active().command.kind == CommandKind::external) return ErrorId::buffer_mode_not_supported;
     if (!is_profile(command.kind)) return ErrorId::none;
-    if (starts_now) return make_curve(command);
+    if (starts_now) return make_curve(command, Addition::folded);
     const auto& details = std::get<TimeProfileDetails>(command.details);
     return scene_.tables && scene_.tables->time_table(details.table) ? ErrorId::none : ErrorId::invalid_table;
 }
 
 ErrorId Axis::set_goal_given(const AxisCommand& command) noexcept {
     if (is_profile(command.kind)) {
-        if (const auto error = make_curve(command); error != ErrorId::none) return error;
+        if (const auto error = make_curve(command, Addition::stays); error != ErrorId::none) return error;
         profile_.take_spare();
         profile_.behind = 0;
     } else {
@@ -86,7 +91,7 @@ ErrorId Axis::update_curve(const AxisCommand& command) noexcept {
     const double elapsed = profile_.late + to_seconds(profile_.elapsed);
     if (goal_.kind != Goal::Kind::given || elapsed + time_grain >= profile_.running().duration()) return ErrorId::update_not_possible;
     const double behind = profile_.behind + elapsed / std::get<TimeProfileDetails>(queue_.active().command.details).time_scale;
-    if (const auto error = make_curve(command, behind); error != ErrorId::none) return error;
+    if (const auto error = make_curve(command, Addition::stays, behind); error != ErrorId::none) return error;
     profile_.take_spare();
     profile_.behind = behind;
     profile_.elapsed = Duration{};
@@ -132,6 +137,12 @@ void Axis::follow_curve(double t) noexcept {
     setpoint_.sample();
 }
 
+/// Largest velocity that the base is going to have in the sense 1 or -1, u/s, as far as anybody knows.
+double Axis::base_speed(double sense) const noexcept {
+    const bool by_table = goal_.kind == Goal::Kind::given && is_profile(queue_.active().command.kind);
+    return by_table ? profile_.running().top_velocity(sense) : setpoint_.base_speed(sense);
+}
+
 ErrorId Axis::check_feed(const MotionState& next) const noexcept {
     const auto& from = setpoint_.base();
     const double period = to_seconds(cycle_);
@@ -141,6 +152,10 @@ ErrorId Axis::check_feed(const MotionState& next) const noexcept {
     // The last digits of large positions are no motion.
     const double grain = 4 * std::numeric_limits<double>::epsilon() * std::abs(next.position) / period;
     if (std::abs(mean) > velocity + grain || std::abs(next.velocity) > velocity) return ErrorId::invalid_velocity;
+    // Nor may it with what is superimposed.
+    const double sense = next.velocity < 0 ? -1 : 1;
+    const double beside = std::max(0.0, setpoint_.superimposed_top(sense));
+    if (std::abs(next.velocity) + beside > config_.limits.velocity * (1 + 1e-9)) return ErrorId::invalid_velocity;
     if (std::abs(next.velocity - from.velocity) > change) return ErrorId::invalid_dynamics;
     // Position and velocity must tell of one motion: the axis would brake from the one with the other.
     if (std::abs(mean - (next.velocity + from.velocity) / 2) > change + grain) return ErrorId::invalid_dynamics;

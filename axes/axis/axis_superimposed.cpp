@@ -76,7 +76,7 @@ void Axis::run_superimposed() noexcept {
     // An acceleration built up with another jerk is taken away as fast as the sum needs to stay below the axis' limit.
     if (part.acceleration != 0) {
         const double sense = part.acceleration > 0 ? 1 : -1;
-        const double base_top = std::max({0.0, setpoint_.base_speed(sense), wants_speed_});
+        const double base_top = std::max({0.0, base_speed(sense), wants_speed_});
         const double room = config_.limits.velocity - base_top - sense * part.velocity;
         const double needed = part.acceleration * part.acceleration / 2;
         if (needed > limits.jerk * room)
@@ -87,8 +87,7 @@ void Axis::run_superimposed() noexcept {
         plan = plan_stop(part, limits);
     } else {
         const double rest = own.distance - own.covered;
-        const double base_speed = std::max({0.0, setpoint_.base_speed(rest < 0 ? -1 : 1), wants_speed_});
-        const double left = config_.limits.velocity - base_speed;
+        const double left = config_.limits.velocity - std::max({0.0, base_speed(rest < 0 ? -1 : 1), wants_speed_});
         double speed = std::min(command.velocity > 0 ? command.velocity : config_.limits.velocity, velocity_cap());
         speed = std::min(speed * (follows_master ? 1 : override_.velocity), left);
         own.waiting = !(speed > least_speed * config_.limits.velocity);

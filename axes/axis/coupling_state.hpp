@@ -73,8 +73,8 @@ struct CouplingState {
     std::uint32_t cam_ends_seen = 0;  ///< of the running cam
 
     PhaseShift phase;
-    AxisRef phase_master;     ///< whose position is shifted
-    AcceptedCommand phasing;  ///< running; id 0: none
+    AxisRef phase_master;          ///< whose position is shifted
+    AcceptedCommand phasing;       ///< running; id 0: none
     AcceptedCommand phasing_next;  ///< buffered; id 0: none
     CommandId phasing_behind = 0;  ///< the coupling whose signal it waits for
 

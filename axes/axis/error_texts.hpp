@@ -47,7 +47,7 @@ inline constexpr std::array<ErrorText, error_id_count> error_texts{{
       "用 MC_ReadStatus 确认轴已静止，并撤销 MC_Stop 的 Execute；回零期间只接受 MC_Stop"}},
     {ErrorId::invalid_velocity, "invalid_velocity",
      {"The velocity cannot be used",
-      "For a move to a position it is zero or negative, it is not a finite number, or a time profile is faster than the axis' limit",
+      "For a move to a position it is zero or negative, it is not a finite number, or a time profile, with what is superimposed on it, is faster than the axis' limit",
       "Give a velocity above zero (direction comes from position or distance); slow a time profile down with TimeScale"},
      {"速度值不可用", "定位运动的速度为零、为负或不是有限数字，或时间曲线的速度超过轴的速度限制",
       "给定大于零的速度（方向由位置或距离决定）；时间曲线过快时增大 TimeScale"}},

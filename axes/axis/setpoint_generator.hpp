@@ -109,6 +109,10 @@ public:
         if (layered_) layer_elapsed_ += period;
     }
     [[nodiscard]] bool superimposed_finished() const noexcept { return !layered_ || to_seconds(layer_elapsed_) >= layer_.duration(); }
+    /// Largest velocity that the contribution has or had since superimpose() in the sense 1 or -1, u/s; 0 when it is over.
+    [[nodiscard]] double superimposed_top(double sense) const noexcept {
+        return superimposed_finished() ? 0.0 : std::max(0.0, layer_.top_velocity(sense));
+    }
     /// How far the contribution still goes, u.
     [[nodiscard]] double superimposed_rest() const noexcept {
         return layered_ ? layer_.end().position - layer_.at(to_seconds(layer_elapsed_)).position : 0.0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace taktwerk::axes {
 
@@ -206,16 +207,27 @@ ErrorId TimeCurve::make_acceleration(const MotionState& from, std::span<const Ti
     return ErrorId::none;
 }
 
+double TimeCurve::top_of(const Piece& piece, double sense) noexcept {
+    const double start = sense * piece.start.velocity, stop = sense * travel(piece.start, piece.jerk, piece.duration).velocity;
+    if (std::isnan(start) || std::isnan(stop)) return std::numeric_limits<double>::quiet_NaN();
+    const double turn = piece.jerk != 0 ? -piece.start.acceleration / piece.jerk : 0;
+    if (!(turn > 0 && turn < piece.duration)) return std::max(start, stop);
+    return std::max({start, stop, sense * travel(piece.start, piece.jerk, turn).velocity});
+}
+
+double TimeCurve::top_velocity(double sense) const noexcept {
+    double top = sense * end_.velocity;
+    for (std::size_t i = cursor_; i < pieces_.size(); ++i) top = std::max(top, top_of(pieces_[i], sense));
+    return top;
+}
+
 ErrorId TimeCurve::check_piece(const Piece& piece, const CurveLimits& limits) const noexcept {
     const auto& l = limits.motion;
     const auto beyond = [](double value, double limit) { return !(std::abs(value) <= limit * (1 + rounding)); };
     const auto stop = travel(piece.start, piece.jerk, piece.duration);
-    if (beyond(piece.start.velocity, l.velocity) || beyond(stop.velocity, l.velocity)) return ErrorId::invalid_velocity;
-    if (piece.jerk != 0) {
-        const double top = -piece.start.acceleration / piece.jerk;
-        if (top > 0 && top < piece.duration && beyond(travel(piece.start, piece.jerk, top).velocity, l.velocity))
-            return ErrorId::invalid_velocity;
-    }
+    // Not a number is beyond, too.
+    if (!(top_of(piece, 1) <= limits.forward * (1 + rounding) + rounding * l.velocity)) return ErrorId::invalid_velocity;
+    if (!(top_of(piece, -1) <= limits.backward * (1 + rounding) + rounding * l.velocity)) return ErrorId::invalid_velocity;
     if (smooth_ && beyond(piece.jerk, l.jerk)) return ErrorId::invalid_dynamics;
 
     const auto turned = turns(piece.start, piece.jerk, piece.duration);

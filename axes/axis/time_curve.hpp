@@ -32,6 +32,8 @@ struct CurveScale {
 struct CurveLimits {
     MotionLimits motion;
     double position_min, position_max;  ///< u, local
+    double forward = motion.velocity,
+           backward = motion.velocity;  ///< u/s, >= 0, in each sense: less where something else moves the axis too
 };
 
 class TimeCurve {
@@ -54,6 +56,8 @@ public:
     /// s
     [[nodiscard]] double duration() const noexcept { return duration_; }
     [[nodiscard]] const MotionState& end() const noexcept { return end_; }
+    /// Largest velocity that is still to come in the sense 1 or -1, u/s. Linear in the rows.
+    [[nodiscard]] double top_velocity(double sense) const noexcept;
     /// `t` must not fall from call to call. After duration(): moving on at the end's velocity. Real-time safe.
     [[nodiscard]] MotionState at(double t) noexcept;
     [[nodiscard]] double jerk_at(double t) noexcept;
@@ -67,6 +71,7 @@ private:
     void clear() noexcept;
     void add(double duration, const MotionState& start, double jerk) noexcept;
     void seek(double t) noexcept;
+    [[nodiscard]] static double top_of(const Piece& piece, double sense) noexcept;
     [[nodiscard]] ErrorId check_piece(const Piece& piece, const CurveLimits& limits) const noexcept;
 
     std::vector<Piece> pieces_;

@@ -23,8 +23,7 @@ double tame(const MotionState& state, const FollowerLimits& follower) noexcept {
     const double room = follower.room(state.velocity != 0 ? state.velocity : state.acceleration) - std::abs(state.velocity);
     double most = faster ? limits.acceleration : limits.deceleration;
     // The jerk takes it away while the velocity still grows: v + a^2 / (2 j) is to stay below the limit.
-    if (faster && std::isfinite(limits.jerk))
-        most = std::min(most, math::sqrt(2 * limits.jerk * std::max(0.0, room)));
+    if (faster && std::isfinite(limits.jerk)) most = std::min(most, math::sqrt(2 * limits.jerk * std::max(0.0, room)));
     // Braking, it is gone before the velocity is: else whoever stops the slave would run it backwards.
     else if (std::isfinite(limits.jerk)) most = std::min(most, math::sqrt(2 * limits.jerk * std::abs(state.velocity)));
     return std::clamp(state.acceleration, -most, most);

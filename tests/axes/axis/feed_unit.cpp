@@ -44,6 +44,22 @@ TEST(SetpointFeed, IsFollowedInTheCycleInWhichItComes) {
     rig.expect_no_jump();
 }
 
+// A feed of 70 u/s beside an addition of 40: the sum passes 100 u/s, so the feed is refused where it does, and the axis brakes.
+TEST(SetpointFeed, WithWhatIsSuperimposedItKeepsTheVelocity) {
+    FedRig rig;
+    const auto id = rig.accept(external());
+    rig.accept({.kind = CommandKind::move_superimposed, .position = 60, .velocity = 40});
+    rig.top = 70;
+    rig.feeding = true;
+    ASSERT_TRUE(rig.run_until([&] { return rig.answer != ErrorId::none; }, 500));
+    EXPECT_EQ(rig.answer, ErrorId::invalid_velocity);
+    EXPECT_NEAR(rig.velocity, 60, 0.51);
+    EXPECT_EQ(rig.status(id), CommandStatus::error);
+    rig.feeding = false;
+    rig.run(500);
+    rig.expect_no_jump();
+}
+
 TEST(SetpointFeed, AMotionCommandTakesOverFromTheFedState) {
     FedRig rig;
     const auto id = rig.accept(external());

@@ -109,5 +109,22 @@ TEST(VelocityProfileUpdate, BehindTheLastRowNothingIsLeftToUpdate) {
     EXPECT_EQ(p.view().set_velocity, 10);
 }
 
+// A table waits for nothing: what is superimposed takes what the fastest row that is to come leaves of the axis' 100 u/s, from its first cycle
+// on, and other scales that would not leave it that are refused until it is done.
+TEST(VelocityProfileUpdate, LeavesWhatIsSuperimposedItsVelocity) {
+    UpdateRig p(CommandKind::velocity_profile, {{500ms, 30.0}, {1s, 60.0}});
+    const auto beside = p.rig.accept({.kind = CommandKind::move_superimposed, .position = 60, .velocity = 80});
+    p.rig.run(500);
+    EXPECT_NEAR(p.view().set_velocity, 30 + 40, 1e-6);
+    EXPECT_EQ(p.update(1, 1.1), ErrorId::invalid_velocity);
+    p.rig.run(999);
+    EXPECT_NEAR(p.view().set_velocity, 100, 0.1);
+    ASSERT_EQ(p.rig.status(beside), CommandStatus::active);
+    p.rig.run(1000);
+    EXPECT_EQ(p.rig.status(beside), CommandStatus::done);
+    EXPECT_NEAR(p.view().set_velocity, 60, 1e-9);
+    p.rig.expect_no_jump();
+}
+
 }  // namespace
 }  // namespace taktwerk::axes::test
