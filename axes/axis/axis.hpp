@@ -248,6 +248,7 @@ private:
     void anchor_near_actual() noexcept;
     void reanchor() noexcept;
     void keep_close_to_anchor() noexcept;
+    void end_release() noexcept;
     void run_goal(double late) noexcept;
     [[nodiscard]] Plan plan_way(const MotionState& from, MotionLimits limits, double most) noexcept;
 
@@ -289,7 +290,7 @@ private:
     bool guard_software_limits(const MotionState& before) noexcept;
     void brake_as_both_layers(const MotionState& from, double room, MotionLimits& limits) const noexcept;
     void brake_inside_limits(const MotionState& from, MotionLimits& limits) const noexcept;
-    void release_below_limit(const MotionState& from, MotionLimits& limits) const noexcept;
+    [[nodiscard]] bool release_below_limit(const MotionState& from, MotionLimits& limits) const noexcept;
     [[nodiscard]] bool leaves_limits(const Profile& profile) const noexcept;
     [[nodiscard]] bool sum_stays_inside() const noexcept;
 
@@ -301,6 +302,7 @@ private:
     // axis_superimposed.cpp
     Submitted submit_superimposed(const AxisCommand& command, Owner owner) noexcept;
     [[nodiscard]] ErrorId refuse_superimposed(const AxisCommand& command) const noexcept;
+    [[nodiscard]] bool ramps_of_two() const noexcept;
     void run_superimposed() noexcept;
     void wait_for_room(const MotionState& from, MotionLimits limits, Plan& plan) noexcept;
     void complete_superimposed() noexcept;
@@ -524,6 +526,7 @@ private:
     bool begin_pending_ = false;  // the active command has not been turned into a goal yet
     bool goal_pending_ = false;   // the goal has no profile yet
     bool held_ = false;           // override 0: the axis waits on its way to a position
+    bool releases_ = false;       // the plan has another jerk than the command, until the acceleration it found is gone
     bool summed_ = false;         // two layers in motion became one: until it rests, its ramps may be as hard as both together were
     double wants_speed_ = 0;      // u/s that the base will have once the superimposed motion has made room; 0: it waits for nothing
     bool watch_limits_ = true;    // the base might pass a software limit

@@ -107,16 +107,17 @@ void Axis::brake_as_both_layers(const MotionState& from, double room, MotionLimi
 
 /// The acceleration the axis has now was built up with another jerk. Taken away with a smaller one it would carry the velocity beyond the
 /// axis' limit, also through zero to the one of the other sense: then it is taken away as fast as that needs.
-void Axis::release_below_limit(const MotionState& from, MotionLimits& limits) const noexcept {
-    if (from.acceleration == 0) return;
+bool Axis::release_below_limit(const MotionState& from, MotionLimits& limits) const noexcept {
+    if (from.acceleration == 0) return false;
     const double sense = from.acceleration > 0 ? 1 : -1;
     const double beside = std::max(0.0, sense * setpoint_.superimposed().velocity);
     const double room = config_.limits.velocity - beside - sense * from.velocity;
     const double needed = from.acceleration * from.acceleration / 2;
-    if (needed <= limits.jerk * room) return;
+    if (needed <= limits.jerk * room) return false;
     constexpr double surely = 1 + 1e-9;
     const double most = config_.limits.jerk * (summed_ ? both_layers : 1);
     limits.jerk = std::max(limits.jerk, room > 0 ? std::min(surely * needed / room, most) : most);
+    return true;
 }
 
 /// Does it go further than both its ends and the software limits?

@@ -42,6 +42,7 @@ void Axis::plan(Instant now, Duration period) noexcept {
     if (coupling_.shown) follow_masters(period);
 
     const MotionState before = setpoint_.state();
+    if (releases_) end_release();
     if (goal_pending_) run_goal(0);
     if (superimposed_.pending) run_superimposed();
     if (goal_.kind == Goal::Kind::given) step_given(period);
@@ -94,7 +95,7 @@ void Axis::run_goal(double late) noexcept {
     wants_speed_ = 0;
     const auto from = setpoint_.base();
     auto limits = with_override(goal_.limits);
-    release_below_limit(from, limits);
+    releases_ = release_below_limit(from, limits);
     Plan plan;
     switch (goal_.kind) {
         case Goal::Kind::rest:
@@ -120,6 +121,14 @@ void Axis::run_goal(double late) noexcept {
     setpoint_.run(plan.profile, late);
     setpoint_.sample();
     if (queue_.beside(SideSlot::superimposed) != 0) superimposed_.pending = true;
+}
+
+/// The rest of the way belongs to the command's own jerk.
+void Axis::end_release() noexcept {
+    const bool planned = goal_.kind == Goal::Kind::position || goal_.kind == Goal::Kind::velocity || goal_.kind == Goal::Kind::stop;
+    auto limits = with_override(goal_.limits);
+    releases_ = planned && release_below_limit(setpoint_.base(), limits);
+    if (planned && !releases_) goal_pending_ = true;
 }
 
 /// `most`: u/s that also an end velocity may not pass.

@@ -58,8 +58,17 @@ Submitted Axis::submit_superimposed(const AxisCommand& command, Owner owner) noe
     return {accepted.id, ErrorId::none};
 }
 
+/// Two layers in motion became one, and its ramps are still as hard as both together: a third on top would be one too many.
+bool Axis::ramps_of_two() const noexcept {
+    constexpr double rounding = 1 + 1e-9;
+    const auto& limits = config_.limits;
+    return summed_ && (std::abs(setpoint_.base().acceleration) > std::max(limits.acceleration, limits.deceleration) * rounding ||
+                       std::abs(setpoint_.base_jerk()) > limits.jerk * rounding);
+}
+
 void Axis::run_superimposed() noexcept {
     auto& own = superimposed_;
+    if (!own.begun && ramps_of_two()) return;  // stays pending: a few cycles
     own.pending = false;
     own.covered = own.begun ? own.covered + setpoint_.superimposed_way() : 0;
     own.begun = true;

@@ -91,6 +91,9 @@ public:
         return finished() ? sense * base().velocity : profile_.top_velocity(sense);
     }
 
+    /// Of the base, from here on. u/s3
+    [[nodiscard]] double base_jerk() const noexcept { return moving_profile_ ? profile_.sample(time_, piece_).jerk : jerk_; }
+
     // --- the superimposed layer ------------------------------------------------------------------------------------------
     /// `profile` begins at superimposed().
     void superimpose(const Profile& profile) noexcept {

@@ -201,15 +201,20 @@ private:
         const auto& b = next.at;
         const bool stopping = either(last_, next, AxisState::Stopping) || either(last_, next, AxisState::ErrorStop);
         const auto& system = config_.limits;
-        double most_acceleration = std::max(system.acceleration, system.deceleration);
-        double most_jerk = system.jerk;
-        if (stopping) {
-            most_acceleration = std::max(most_acceleration, system.stop_deceleration);
-            most_jerk = std::max(most_jerk, system.stop_jerk);
-        }
         if (last_.layer != 0 && next.layer == 0 && view.status(last_.layer) != CommandStatus::done) summed_ = true;
         const bool layered = last_.layer != 0 || next.layer != 0 || summed_;
-        most_acceleration *= layered ? 2 : 1;
+        double most_slowing = system.deceleration;
+        double most_jerk = system.jerk;
+        if (stopping) {
+            most_slowing = std::max(most_slowing, system.stop_deceleration);
+            most_jerk = std::max(most_jerk, system.stop_jerk);
+        }
+        // Which of the two holds says the velocity, as long as there is one motion and it keeps its sense.
+        const bool either_way = layered || a.velocity * b.velocity <= 0;
+        const double most_acceleration = std::max(system.acceleration, most_slowing) * (layered ? 2 : 1);
+        const auto most_of = [&](bool faster) {
+            return std::max(either_way ? most_acceleration : faster ? system.acceleration : most_slowing, std::abs(a.acceleration));
+        };
         most_jerk *= layered ? 2 : 1;
         const bool fed = last_.kind == CommandKind::external || next.kind == CommandKind::external;
         const bool coupled = either(last_, next, AxisState::SynchronizedMotion);
@@ -221,16 +226,19 @@ private:
 
         // Acceleration and jerk.
         const double bound = std::max(most_acceleration, std::abs(a.acceleration));
-        if (!fed && std::abs(b.acceleration) > bound * rounding)
-            breach("accelerates with {} u/s2, {} before; {} is the most", b.acceleration, a.acceleration, most_acceleration);
+        const double most_now = most_of(b.acceleration * b.velocity > 0);
+        if (!fed && std::abs(b.acceleration) > most_now * rounding)
+            breach("accelerates with {} u/s2 at {} u/s, {} before; {} is the most", b.acceleration, b.velocity, a.acceleration, most_now);
         if (jerked && std::abs(b.acceleration - a.acceleration) > most_jerk * T * rounding + 1e-9 * most_acceleration)
             breach("acceleration {} after {} u/s2 in a cycle; the jerk {} allows {}", b.acceleration, a.acceleration, most_jerk,
                    most_jerk * T);
 
         // Velocity with acceleration.
         const double change = b.velocity - a.velocity;
-        if (std::abs(change) > (fed ? most_acceleration : bound) * T * rounding + speed_grain)
-            breach("velocity {} after {} u/s in a cycle; the acceleration {} allows {}", b.velocity, a.velocity, bound, bound * T);
+        const double most_change = fed ? most_acceleration : most_of(std::abs(b.velocity) > std::abs(a.velocity));
+        if (std::abs(change) > most_change * T * rounding + speed_grain)
+            breach("velocity {} after {} u/s in a cycle; the acceleration {} allows {}", b.velocity, a.velocity, most_change,
+                   most_change * T);
         else if (jerked && std::abs(change - (a.acceleration + b.acceleration) / 2 * T) > most_jerk * T * T / 4 * rounding + speed_grain)
             breach("velocity {} after {} u/s does not agree with accelerations {} and {}", b.velocity, a.velocity, a.acceleration,
                    b.acceleration);

@@ -158,6 +158,25 @@ TEST(Superimposed, AbortingCommandEndsBothAWaitingOneNeither) {
     }
 }
 
+// Two ramps that became one are taken away as hard as both together. An addition that comes then waits for that: three jerks and
+// accelerations on top of each other are asked of nobody (what two may be: the rig's oracle).
+TEST(Superimposed, WaitsWhileTheRampsOfTwoAreTakenAway) {
+    for (int later = 0; later < 60; ++later) {
+        Rig rig;
+        rig.power_on();
+        rig.accept(absolute(-7.2, 60));
+        rig.accept(superimposed(-9.6, 100));
+        rig.run(53);
+        rig.accept(absolute(-1.6, 34));
+        rig.run(later);
+        const auto extra = rig.accept(superimposed(7.5, 33));
+        ASSERT_TRUE(rig.run_until([&] { return rig.status(extra) == CommandStatus::done; })) << later;
+        ASSERT_TRUE(rig.run_to(AxisState::Standstill));
+        ASSERT_NEAR(rig.view().set_position, -1.6 + 7.5, 1e-9);
+        ASSERT_TRUE(rig.oracle.clean()) << later << rig.oracle.report();
+    }
+}
+
 // P1-152: a second one replaces the first only, and goes on from its velocity: nothing of the first's rest is made up.
 TEST(Superimposed, SecondReplacesOnlyTheFirst) {
     Rig rig(trapezoids());
