@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/math.hpp"
+#include "runtime/bring_up_patience.hpp"
 #include "runtime/code_at_work.hpp"
 
 namespace taktwerk::runtime {
@@ -11,7 +12,6 @@ namespace {
 
 constexpr Duration service_period = std::chrono::milliseconds{1};
 constexpr Duration bring_up_patience = std::chrono::seconds{30};
-constexpr Duration patience_for_each_slave = std::chrono::milliseconds{200};
 constexpr Duration bus_down_patience = std::chrono::seconds{5};
 constexpr Duration watch_period = std::chrono::milliseconds{20};
 
@@ -118,8 +118,7 @@ Result<void> RealtimeRunner::serve(const std::function<bool(Instant)>& keep_on) 
 }
 
 Result<void> RealtimeRunner::bring_up(const std::function<bool(Instant)>& keep_on) {
-    const auto slaves = static_cast<std::int64_t>(machine_.bus().slave_count());
-    const Duration patience = bring_up_patience + slaves * patience_for_each_slave;
+    const Duration patience = bring_up_patience + patience_with(machine_.bus().slave_count(), machine_.config().cycle);
     const auto until = clock_.now() + patience;
     while (!machine_.bus_operational()) {
         service();

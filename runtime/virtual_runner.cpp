@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/bring_up_patience.hpp"
+
 namespace taktwerk::runtime {
 
 VirtualRunner::VirtualRunner(Machine& machine, World& world, VirtualClock& clock)
@@ -19,6 +21,7 @@ void VirtualRunner::one_cycle() {
 
 Result<void> VirtualRunner::bring_up(Duration patience) {
     machine_.start_bus();
+    patience += patience_with(machine_.bus().slave_count(), period_);
     const auto until = clock_.now() + patience;
     while (!machine_.bus_operational()) {
         one_cycle();

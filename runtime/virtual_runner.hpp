@@ -20,7 +20,7 @@ public:
     /// After each cycle, for whoever reads the trace, plays the operator, or checks something.
     std::function<void(Instant)> after_cycle;
 
-    /// Bus into OP and machine armed. Fails with the bus' own words, or when `patience` of machine time has passed.
+    /// Bus into OP and machine armed. Fails with the bus' own words, or after `patience` and what many slaves take.
     [[nodiscard]] Result<void> bring_up(Duration patience = std::chrono::seconds{30});
     /// Runs cycles for `duration` of machine time, or until the machine has stopped.
     void run_for(Duration duration);
