@@ -54,7 +54,9 @@ std::vector<std::string> fallen(const ecat::Bus& bus) {
         const auto code = static_cast<std::uint16_t>(al >> 16);
         const bool out = al != static_cast<std::uint32_t>(ecat::AlState::op);
         const auto returned = slave->recoveries.load();
-        if (out)
+        if (ecat::al_state(static_cast<std::uint16_t>(al)) == ecat::AlState::unknown)
+            fell.push_back(fmt::format("{} does not answer any more", slave->subject));
+        else if (out)
             fell.push_back(fmt::format("{} is in {}{}", slave->subject, ecat::name(ecat::al_state(static_cast<std::uint16_t>(al))),
                                        code != 0 ? fmt::format(", AL status code {:04X}h {}", code, ecat::al_status_info(code).text) : ""));
         else if (returned > 0) fell.push_back(fmt::format("{} left OP and came back {} times", slave->subject, returned));

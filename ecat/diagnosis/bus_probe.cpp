@@ -8,7 +8,8 @@ BusProbe::BusProbe(Transport& transport, BusConfig config, NextRound next_round)
 DatagramPort& BusProbe::port() noexcept { return master_.bus().port; }
 
 std::optional<Instant> BusProbe::next_round() {
-    const std::optional<Instant> now = next_round_(cycling_ ? config_.cycle : pump_period);
+    // Longer or shorter as the machine's own runners do it: else no reference clock that drifts is ever locked to.
+    const std::optional<Instant> now = next_round_(cycling_ ? config_.cycle + master_.period_correction() : pump_period);
     if (!now) return std::nullopt;
     if (cycling_) {
         master_.receive(*now);
