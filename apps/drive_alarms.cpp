@@ -114,7 +114,7 @@ int list(const DriveOptions& options) {
 std::string alarm_text(const std::string& subject, const axes::DriveProfile& profile, const axes::ShownAlarm& alarm, Colours colours) {
     if (alarm.code == 0) return subject + ": " + toned("no alarm", Tone::good, colours) + "\n";
     const auto* row = axes::find_alarm(profile, alarm).row;
-    const auto words = axes::words(profile, alarm);
+    const auto words = axes::words(profile, alarm, "taktwerk drive reset");
     auto out = fmt::format("{}: {}\n", subject, toned(words.english, row && row->warning ? Tone::warning : Tone::bad, colours));
     const auto more = [&](std::string_view before, std::string_view text) {
         if (!text.empty()) out += fmt::format("  {}{}\n", before, wrapped(text, 10));

@@ -75,7 +75,7 @@ EventText describe(const CommandEvent& event, const runtime::MachineLayout& layo
         return out;
     }
     out.what = error ? fmt::format("{} was refused: {} ({})", out.who, error->english.text, error->name)
-                     : fmt::format("{} was refused with error 0x{:04X}", out.who, static_cast<unsigned>(event.error));
+                     : fmt::format("{} was refused with error {:04X}h", out.who, static_cast<unsigned>(event.error));
     out.remedy = error ? sentence(error->english.remedy) : std::string{};
     if (event.held) {
         out.what += fmt::format("; {} holds the axis", out.by.empty() ? std::string("an MC_Stop") : out.by);

@@ -21,7 +21,7 @@ void tell_drive_alarm(AlarmText& text, const AxisBinding& axis, const axes::Show
     if (!axis.profile) return;
     const auto drive = drive_of(axis);
     const bool warning = alarm.as == axes::ShownAlarm::As::warning;
-    auto words = axes::words(*axis.profile, alarm);
+    auto words = axes::words(*axis.profile, alarm, "taktwerk reset " + axis.axis.name);
     text.english = fmt::format("{} reports {} {}", drive, warning ? "warning" : "fault", words.english);
     text.chinese = fmt::format("{} 报告{} {}", drive, warning ? "警告" : "故障", words.chinese);
     if (!words.cause.empty()) text.cause = std::move(words.cause);

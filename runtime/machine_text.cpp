@@ -140,7 +140,7 @@ AlarmText Machine::describe(const AlarmFact& fact) const {
         if (!by) by = find_alarm(ecat::bus_alarms, cause);
         const auto name = by                                  ? std::string(by->name)
                           : cause >= 0x5000 && cause < 0x5040 ? fmt::format("program_alarm_{}", cause - 0x5000)
-                                                              : fmt::format("alarm 0x{:04X}", cause);
+                                                              : fmt::format("alarm {:04X}h", cause);
         out.english = fmt::format("Stopped because of another part of the machine ({})", name);
         out.chinese = fmt::format("因机器其他部分而停止({})", name);
     }

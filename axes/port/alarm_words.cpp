@@ -30,7 +30,16 @@ std::string listed(const std::vector<std::string_view>& panels, std::string_view
     return out;
 }
 
-void name(AlarmWords& out, const DriveAlarmText& row) {
+/// At the machine first: whoever reads an alarm mostly stands there, and has no program before him.
+std::string reset_it(std::string_view command) { return fmt::format("press reset or `{}`, in a program MC_Reset", command); }
+
+constexpr std::string_view switch_off_and_on = "switch the drive off and on", cause_gone = "once its cause is gone: ";
+
+std::string after_switching(std::string_view command) {
+    return fmt::format("no reset clears it: {}, then {}", switch_off_and_on, reset_it(command));
+}
+
+void name(AlarmWords& out, const DriveAlarmText& row, std::string_view command) {
     if (!row.panel.empty()) {
         out.english += fmt::format(", panel {}", row.panel);
         out.chinese += fmt::format(",面板 {}", row.panel);
@@ -43,10 +52,10 @@ void name(AlarmWords& out, const DriveAlarmText& row) {
     }
     out.cause = row.cause;
     out.remedy = row.remedy;
-    out.reset = cleared_by(row);
+    out.reset = cleared_by(row, command);
 }
 
-void name_all(AlarmWords& out, const DriveProfile& profile, const ShownAlarm& alarm) {
+void name_all(AlarmWords& out, const DriveProfile& profile, const ShownAlarm& alarm, std::string_view command) {
     std::vector<std::string_view> panels;
     bool any = false, all = true;
     for_each_candidate(profile, alarm, [&](const DriveAlarmText& row) {
@@ -56,37 +65,36 @@ void name_all(AlarmWords& out, const DriveProfile& profile, const ShownAlarm& al
     });
     out.english += ", panel " + listed(panels, " or ", " others");
     out.chinese += ",面板 " + listed(panels, " 或 ", " 个其他");
-    out.reset = all   ? "MC_Reset clears it once its cause is gone"
-                : any ? "MC_Reset clears some of these, others only switching the drive off and on"
-                      : "MC_Reset cannot clear it: switch the drive off and on";
+    if (!any) out.reset = after_switching(command);
+    else out.reset = fmt::format("{}{}{}", cause_gone, reset_it(command), all ? "" : "; if it stays, " + std::string(switch_off_and_on));
 }
 
 }  // namespace
 
-std::string_view cleared_by(const DriveAlarmText& alarm) noexcept {
+std::string cleared_by(const DriveAlarmText& alarm, std::string_view command) {
     if (alarm.warning) return "goes with its cause";
-    if (alarm.clears_itself) return "the drive clears it with its cause, MC_Reset then the axis";
-    return alarm.resettable ? "MC_Reset clears it once its cause is gone" : "MC_Reset cannot clear it: switch the drive off and on";
+    if (alarm.clears_itself) return "the drive clears it with its cause; then the axis: " + reset_it(command);
+    return alarm.resettable ? std::string(cause_gone) + reset_it(command) : after_switching(command);
 }
 
-AlarmWords words(const DriveProfile& profile, const ShownAlarm& alarm) {
+AlarmWords words(const DriveProfile& profile, const ShownAlarm& alarm, std::string_view command) {
     AlarmWords out;
     if (alarm.code == 0) {  // some drives show the fault first
         out.english = "without a number";
         out.chinese = "无代码";
-        out.reset = "MC_Reset tries to clear it";
+        out.reset = "to try: " + reset_it(command);
         return out;
     }
     out.english = out.chinese = number_of(profile, alarm);
     const auto found = find_alarm(profile, alarm);
     if (found.row) {
-        name(out, *found.row);
+        name(out, *found.row, command);
     } else if (found.candidates > 0) {
-        name_all(out, profile, alarm);
+        name_all(out, profile, alarm, command);
     } else {
         out.english += ", not in the drive's alarm list";
         out.chinese += ",不在驱动器报警表中";
-        out.reset = "MC_Reset tries to clear it; the drive's list does not name this number";
+        out.reset = fmt::format("to try: {}; the drive's list does not name this number", reset_it(command));
     }
     if (alarm.as == ShownAlarm::As::warning) out.reset = "goes with its cause";
     return out;

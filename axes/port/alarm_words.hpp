@@ -14,11 +14,12 @@ struct AlarmWords {
     /// As long as it can be several alarms: "7500h, panel E.011, E.012 or E.013"; not listed: "1234h, not in the drive's alarm list".
     std::string english, chinese;
     std::string cause, remedy;  ///< empty where it is not known which alarm it is, or the manual says nothing
-    std::string reset;          ///< whether MC_Reset clears it
+    std::string reset;          ///< what a person does to clear it, and the block for a program
 };
-[[nodiscard]] AlarmWords words(const DriveProfile& profile, const ShownAlarm& alarm);
+/// `command`: what the operator types to reset this axis or drive, such as "taktwerk reset x".
+[[nodiscard]] AlarmWords words(const DriveProfile& profile, const ShownAlarm& alarm, std::string_view command);
 
 /// What clears an alarm of the table, as a sentence.
-[[nodiscard]] std::string_view cleared_by(const DriveAlarmText& alarm) noexcept;
+[[nodiscard]] std::string cleared_by(const DriveAlarmText& alarm, std::string_view command);
 
 }  // namespace taktwerk::axes

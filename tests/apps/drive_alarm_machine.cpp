@@ -1,5 +1,5 @@
 // A drive's alarm as a person reads it in the machine log, in `taktwerk monitor` and over LCM: axis, drive, panel, name in English and
-// Chinese, cause, remedy, and whether MC_Reset clears it.
+// Chinese, cause, remedy, and what a person does to clear it.
 
 #include <algorithm>
 
@@ -58,7 +58,8 @@ TEST_F(DriveAlarm, IsCompleteInTheMachineLog) {
     EXPECT_THAT(said, HasSubstr("axis x: servo-7 'x_drive' reports fault 3130h, panel E.999: phase failure [the axis stops]\n"));
     EXPECT_THAT(said, HasSubstr("servo-7 'x_drive' 报告故障 3130h,面板 E.999:缺相\n"));
     EXPECT_THAT(said, HasSubstr("why: a phase is missing\n"));
-    EXPECT_THAT(said, HasSubstr("-> check the supply (MC_Reset clears it once its cause is gone)\n"));
+    EXPECT_THAT(said,
+                HasSubstr("-> check the supply (once its cause is gone: press reset or `taktwerk reset x`, in a program MC_Reset)\n"));
 }
 
 TEST_F(DriveAlarm, IsCompleteInTheMachineLogForScripts) {
@@ -71,7 +72,10 @@ TEST_F(DriveAlarm, IsCompleteInTheMachineLogForScripts) {
                 HasSubstr(R"("event":"ALARM","text":"axis x: servo-7 'x_drive' reports fault 5530h, panel E.017: parameter storage )"));
     EXPECT_THAT(said, HasSubstr(R"("chinese":"servo-7 'x_drive' 报告故障 5530h,面板 E.017:参数存储故障")"));
     EXPECT_THAT(said, HasSubstr(R"("cause":"EEPROM damaged","remedy":"restore the parameters")"));
-    EXPECT_THAT(said, HasSubstr(R"("reset":"MC_Reset cannot clear it: switch the drive off and on")"));
+    EXPECT_THAT(
+        said,
+        HasSubstr(
+            R"("reset":"no reset clears it: switch the drive off and on, then press reset or `taktwerk reset x`, in a program MC_Reset")"));
 }
 
 // Reaction::none is information only, but it is what explains the alarms that follow: a computer that stalls makes drives fall.
@@ -174,7 +178,7 @@ TEST_F(DriveAlarm, IsCompleteOnTheMonitor) {
     EXPECT_THAT(lines, Contains(HasSubstr("axis x: servo-7 'x_drive' reports fault 5530h, panel E.017: parameter storage")));
     EXPECT_THAT(lines, Contains(HasSubstr("报告故障 5530h,面板 E.017:参数存储故障")));
     EXPECT_THAT(lines, Contains(HasSubstr("why: EEPROM damaged")));
-    EXPECT_THAT(lines, Contains(HasSubstr("-> restore the parameters (MC_Reset cannot clear it: switch the drive off and on)")));
+    EXPECT_THAT(lines, Contains(HasSubstr("-> restore the parameters (no reset clears it: switch the drive off and on, then press reset")));
 }
 
 TEST_F(DriveAlarm, IsCompleteOverLcm) {
@@ -197,7 +201,7 @@ TEST_F(DriveAlarm, IsCompleteOverLcm) {
     EXPECT_EQ(alarm.chinese, "servo-7 'x_drive' 报告故障 3130h,面板 E.999:缺相");
     EXPECT_EQ(alarm.cause, "a phase is missing");
     EXPECT_EQ(alarm.remedy, "check the supply");
-    EXPECT_EQ(alarm.reset, "MC_Reset clears it once its cause is gone");
+    EXPECT_EQ(alarm.reset, "once its cause is gone: press reset or `taktwerk reset x`, in a program MC_Reset");
 }
 
 }  // namespace

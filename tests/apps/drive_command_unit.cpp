@@ -248,7 +248,7 @@ TEST(DriveCommand, AnAlarmSaysWhatItIsWhyItCameAndWhatClearsIt) {
         return alarm_text("x", profile, {code, detail, axes::ShownAlarm::As::unknown}, Colours::off);
     };
     EXPECT_THAT(shown(0x7500, 0x11), AllOf(HasSubstr("7500h/11h, panel E.011: start"), HasSubstr("off and on")));
-    EXPECT_THAT(shown(0x7500, 0x12), AllOf(HasSubstr("new firmware"), HasSubstr("MC_Reset clears it")));
+    EXPECT_THAT(shown(0x7500, 0x12), AllOf(HasSubstr("new firmware"), HasSubstr("press reset or `taktwerk drive reset`")));
     EXPECT_THAT(shown(0x7500, std::nullopt), AllOf(HasSubstr("7500h, panel E.011 or E.012\n"), Not(HasSubstr("new firmware"))));
     EXPECT_THAT(shown(0x4310, std::nullopt), HasSubstr("goes with its cause"));
     EXPECT_THAT(shown(0x1234, std::nullopt), HasSubstr("not in the drive's alarm list"));

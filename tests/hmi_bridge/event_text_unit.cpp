@@ -85,5 +85,11 @@ TEST_F(EventTextTest, AnOperatorsCommandIsHis) {
     EXPECT_THAT(text().remedy, HasSubstr("`taktwerk reset`"));
 }
 
+// Numbers are written as on drives' panels and in their manuals, here as everywhere: 9ABCh.
+TEST_F(EventTextTest, AnErrorThatNoListNamesIsWrittenAsAllOtherNumbersAre) {
+    event.error = static_cast<ErrorId>(0x9ABC);
+    EXPECT_THAT(text().what, HasSubstr("was refused with error 9ABCh"));
+}
+
 }  // namespace
 }  // namespace taktwerk::hmi::test

@@ -23,6 +23,7 @@ AxisBinding axis() {
     overload.code = 0x8311, overload.english = "overload", overload.chinese = "过载", overload.whole_drive = true;
     profile->alarms = {firmware, interrupt, limit, overload};
     AxisBinding out;
+    out.axis.name = "x";
     out.slave = "x_drive";
     out.profile = profile;
     return out;
@@ -41,14 +42,14 @@ TEST(DriveAlarmWords, NameDrivePanelAlarmInBothLanguagesCauseRemedyAndReset) {
     EXPECT_EQ(text.chinese, "a-1 'x_drive' 报告故障 7500h/13h,面板 E.013:中断");
     EXPECT_EQ(text.cause, "it is lost");
     EXPECT_EQ(text.remedy, "replace it");
-    EXPECT_EQ(text.reset, "MC_Reset clears it once its cause is gone");
+    EXPECT_EQ(text.reset, "once its cause is gone: press reset or `taktwerk reset x`, in a program MC_Reset");
 }
 
-TEST(DriveAlarmWords, SayWhatMcResetCannotClear) {
+TEST(DriveAlarmWords, SayWhatNoResetClears) {
     auto text = general();
     tell_drive_alarm(text, axis(), {0x7500, 0x12, fault});
     EXPECT_EQ(text.english, "a-1 'x_drive' reports fault 7500h/12h, panel E.012: firmware");
-    EXPECT_EQ(text.reset, "MC_Reset cannot clear it: switch the drive off and on");
+    EXPECT_EQ(text.reset, "no reset clears it: switch the drive off and on, then press reset or `taktwerk reset x`, in a program MC_Reset");
 }
 
 // The detail is read by SDO after the fault: until then it can be either, and neither cause nor remedy is claimed.
@@ -59,7 +60,8 @@ TEST(DriveAlarmWords, NameAllThatItCanBeUntilTheDetailIsRead) {
     EXPECT_EQ(text.chinese, "a-1 'x_drive' 报告故障 7500h,面板 E.012 或 E.013");
     EXPECT_EQ(text.cause, "see the manual");
     EXPECT_EQ(text.remedy, "remove it");
-    EXPECT_EQ(text.reset, "MC_Reset clears some of these, others only switching the drive off and on");
+    EXPECT_EQ(text.reset,
+              "once its cause is gone: press reset or `taktwerk reset x`, in a program MC_Reset; if it stays, switch the drive off and on");
 }
 
 TEST(DriveAlarmWords, OfAWarningGoWithItsCause) {
@@ -83,7 +85,7 @@ TEST(DriveAlarmWords, OfANumberThatNobodyListsStillNameDriveAndNumber) {
     tell_drive_alarm(text, axis(), {0x1234, std::nullopt, fault});
     EXPECT_EQ(text.english, "a-1 'x_drive' reports fault 1234h, not in the drive's alarm list");
     EXPECT_EQ(text.cause, "see the manual");
-    EXPECT_EQ(text.reset, "MC_Reset tries to clear it; the drive's list does not name this number");
+    EXPECT_EQ(text.reset, "to try: press reset or `taktwerk reset x`, in a program MC_Reset; the drive's list does not name this number");
 }
 
 TEST(DriveAlarmWords, StayGeneralWithoutAProfile) {

@@ -88,6 +88,7 @@ TEST_F(Supervised, AnAxisThatStopsForAnotherPartNamesItsAlarm) {
     };
     EXPECT_EQ(told(id(MachineAlarm::program_fault)), "Stopped because of another part of the machine (program_fault)");
     EXPECT_EQ(told(0x5003), "Stopped because of another part of the machine (program_alarm_3)");
+    EXPECT_EQ(told(0x0ABC), "Stopped because of another part of the machine (alarm 0ABCh)") << "in no list: the number, as everywhere";
 }
 
 TEST_F(Supervised, AnEmergencyStopThatCannotBeReadCountsAsPressed) {

@@ -86,34 +86,38 @@ TEST(FindAlarm, ACodeOfItsOwnNeedsNoDetail) {
 
 TEST(AlarmWords, NameOneAlarmOrAllThatItCanBe) {
     const auto p = profile();
-    EXPECT_EQ(words(p, {0x7305, 0x0911u, As::fault}).english, "7305h/911h, panel E.911: E.911");
-    EXPECT_EQ(words(p, {0x7305, std::nullopt, As::fault}).english, "7305h, panel E.911, E.917 or E.918");
-    EXPECT_EQ(words(p, {0x7305, 0x0999u, As::fault}).english, "7305h/999h, not in the drive's alarm list");
+    EXPECT_EQ(words(p, {0x7305, 0x0911u, As::fault}, "taktwerk reset x").english, "7305h/911h, panel E.911: E.911");
+    EXPECT_EQ(words(p, {0x7305, std::nullopt, As::fault}, "taktwerk reset x").english, "7305h, panel E.911, E.917 or E.918");
+    EXPECT_EQ(words(p, {0x7305, 0x0999u, As::fault}, "taktwerk reset x").english, "7305h/999h, not in the drive's alarm list");
 }
 
 TEST(AlarmWords, ACodeThatSaysAllIsNotNamedTwice) {
     const auto p = profile();
     for (const auto& detail : {std::optional<std::uint32_t>{}, std::optional<std::uint32_t>{0x0017}})
-        EXPECT_EQ(words(p, {0x5530, detail, As::fault}).english, "5530h, panel E.017: E.017");
-    EXPECT_EQ(words(p, {0x5530, 0x99u, As::fault}).english, "5530h/99h, panel E.017: E.017") << "not the one of the list";
+        EXPECT_EQ(words(p, {0x5530, detail, As::fault}, "taktwerk reset x").english, "5530h, panel E.017: E.017");
+    EXPECT_EQ(words(p, {0x5530, 0x99u, As::fault}, "taktwerk reset x").english, "5530h/99h, panel E.017: E.017")
+        << "not the one of the list";
 }
 
 TEST(AlarmWords, AMultitudeIsCounted) {
     DriveProfile p;
     for (std::uint32_t detail = 1; detail <= 7; ++detail) p.alarms.push_back(row(0x6320, detail, "P"));
-    EXPECT_EQ(words(p, {0x6320, std::nullopt, As::fault}).english, "6320h, panel P, P, P or 4 others");
+    EXPECT_EQ(words(p, {0x6320, std::nullopt, As::fault}, "taktwerk reset x").english, "6320h, panel P, P, P or 4 others");
 }
 
 TEST(AlarmWords, SayWhatClearsIt) {
     const auto p = profile();
-    EXPECT_EQ(words(p, {0x7305, 0x0911u, As::fault}).reset, "MC_Reset cannot clear it: switch the drive off and on");
-    EXPECT_EQ(words(p, {0x7305, 0x0917u, As::fault}).reset, "MC_Reset clears it once its cause is gone");
-    EXPECT_EQ(words(p, {0x7305, std::nullopt, As::fault}).reset,
-              "MC_Reset clears some of these, others only switching the drive off and on");
-    EXPECT_EQ(words(p, {0x7305, 0x0921u, As::warning}).reset, "goes with its cause");
+    EXPECT_EQ(words(p, {0x7305, 0x0911u, As::fault}, "taktwerk reset x").reset,
+              "no reset clears it: switch the drive off and on, then press reset or `taktwerk reset x`, in a program MC_Reset");
+    EXPECT_EQ(words(p, {0x7305, 0x0917u, As::fault}, "taktwerk reset x").reset,
+              "once its cause is gone: press reset or `taktwerk reset x`, in a program MC_Reset");
+    EXPECT_EQ(words(p, {0x7305, std::nullopt, As::fault}, "taktwerk reset x").reset,
+              "once its cause is gone: press reset or `taktwerk reset x`, in a program MC_Reset; if it stays, switch the drive off and on");
+    EXPECT_EQ(words(p, {0x7305, 0x0921u, As::warning}, "taktwerk reset x").reset, "goes with its cause");
     auto itself = row(0x5442, 0x0218, "E.218");  // SV33-E 5.4: by itself, once the emergency stop is released
     itself.clears_itself = true;
-    EXPECT_EQ(cleared_by(itself), "the drive clears it with its cause, MC_Reset then the axis");
+    EXPECT_EQ(cleared_by(itself, "taktwerk reset x"),
+              "the drive clears it with its cause; then the axis: press reset or `taktwerk reset x`, in a program MC_Reset");
 }
 
 }  // namespace

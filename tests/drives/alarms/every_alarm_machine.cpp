@@ -72,10 +72,11 @@ protected:
         out.cause = row.cause;
         // Where the manual has none (SV33-E E.430) that of the axis' own alarm stays.
         out.remedy = row.remedy.empty() ? "Remove the cause named by the drive's alarm text, then reset" : row.remedy;
+        const auto reset_it = fmt::format("press reset or `taktwerk reset {}`, in a program MC_Reset", GetParam().axis);
         out.reset = row.warning         ? "goes with its cause"
-                    : row.clears_itself ? "the drive clears it with its cause, MC_Reset then the axis"
-                    : row.resettable    ? "MC_Reset clears it once its cause is gone"
-                                        : "MC_Reset cannot clear it: switch the drive off and on";
+                    : row.clears_itself ? "the drive clears it with its cause; then the axis: " + reset_it
+                    : row.resettable    ? "once its cause is gone: " + reset_it
+                                        : "no reset clears it: switch the drive off and on, then " + reset_it;
         return out;
     }
 
