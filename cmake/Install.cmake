@@ -1,6 +1,8 @@
 # cmake --install BUILD --prefix P [--component runtime|sdk]
 #
 #   runtime  bin/taktwerk · share/taktwerk/{drives,machines} · lib/taktwerk/programs (the examples)
+#            share/taktwerk/schema (JSON Schema of machine and drive files, for editors) · share/taktwerk/lcm (the types of the channels)
+#            share/doc/taktwerk (README, LICENSE, docs/ and the protocol of the socket, with their links to each other intact)
 #   sdk      include/taktwerk/ · lib/cmake/Taktwerk: what find_package(Taktwerk) needs to build programs elsewhere
 #
 # The SDK holds no library: blocks are headers, and a program reaches the machine only through what it is handed.
@@ -20,6 +22,14 @@ foreach(folder drives machines)
   install(DIRECTORY "${PROJECT_SOURCE_DIR}/config/${folder}" DESTINATION "${CMAKE_INSTALL_DATADIR}/taktwerk" COMPONENT runtime
     FILES_MATCHING PATTERN "*.yaml")
 endforeach()
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/config/schema" DESTINATION "${CMAKE_INSTALL_DATADIR}/taktwerk" COMPONENT runtime
+  FILES_MATCHING PATTERN "*.json")
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/hmi_bridge/lcm" DESTINATION "${CMAKE_INSTALL_DATADIR}/taktwerk" COMPONENT runtime
+  FILES_MATCHING PATTERN "*.lcm")
+set(doc_folder "${CMAKE_INSTALL_DATAROOTDIR}/doc/taktwerk")  # Debian's name for it, not the project's capital
+install(FILES "${PROJECT_SOURCE_DIR}/README.md" "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${doc_folder}" COMPONENT runtime)
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/docs" DESTINATION "${doc_folder}" COMPONENT runtime)
+install(FILES "${PROJECT_SOURCE_DIR}/hmi_bridge/README.md" DESTINATION "${doc_folder}/hmi_bridge" COMPONENT runtime)
 get_property(examples GLOBAL PROPERTY TAKTWERK_EXAMPLE_PROGRAMS)
 if(examples)
   install(TARGETS ${examples} LIBRARY DESTINATION "${programs_folder}" COMPONENT runtime)
