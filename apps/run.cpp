@@ -171,7 +171,7 @@ int run_virtual(LoadedFile loaded, const Options& options) {
     if (!up) {
         finish(capture.get(), options);
         print_error(up.error());
-        return exit_bus;
+        return stop_requested() ? exit_ok : exit_bus;
     }
     const auto duration = options.duration_s > 0 ? from_seconds(options.duration_s) : Duration::max() / 4;
     runner.run_for(std::max(duration - (clock.now() - Instant{}), Duration{}));
@@ -347,7 +347,9 @@ int serve_real(Machine& machine, World* world, ecat::RawSocketTransport* nic, Fi
                                                           : time_up        ? "--duration"
                                                                            : "a client's shutdown"));
         print_error(error);
-        return exit_bus;
+        // Who asked for the end got it: a service that is stopped while it starts has not failed. A run that was to last has.
+        const bool asked = error.code == RealtimeRunner::ended_early && !time_up;
+        return asked ? exit_ok : exit_bus;
     }
     return written == FileThread::End::complete ? code : static_cast<int>(exit_bad_file);
 }

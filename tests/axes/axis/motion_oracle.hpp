@@ -210,7 +210,8 @@ private:
             most_jerk = std::max(most_jerk, system.stop_jerk);
         }
         // Which of the two holds says the velocity, as long as there is one motion and it keeps its sense.
-        const bool either_way = layered || a.velocity * b.velocity <= 0;
+        const double least = 1e-9 * system.velocity;
+        const bool either_way = layered || a.velocity * b.velocity <= 0 || std::abs(a.velocity) <= least || std::abs(b.velocity) <= least;
         const double most_acceleration = std::max(system.acceleration, most_slowing) * (layered ? 2 : 1);
         const auto most_of = [&](bool faster) {
             return std::max(either_way ? most_acceleration : faster ? system.acceleration : most_slowing, std::abs(a.acceleration));
