@@ -17,6 +17,11 @@ namespace {
 /// Far more than any client reads at once; each connection has its own bound in the server.
 constexpr std::size_t most_answer_bytes = std::size_t{16} << 20;
 
+Error unclear_axis() {
+    return {"request.unclear_axis", "axis", "names no axis of this machine, so nobody can tell what is to stop: every axis stops",
+            "Give the name of an axis, or leave \"axis\" out to stop all."};
+}
+
 const Error& no_place() {
     static const Error error{
         "socket.too_many_clients", "",
@@ -77,7 +82,8 @@ void Door::on_line(ConnectionId connection, std::string_view line, Instant) {
                                                          : "stop axis " + machine_.layout().axes[urgent->axis].name;
         deeds_.say(guests_[connection].name, deed, now_);
         if (urgent->doubled) return hand_on(connection, line, {read_at_, machine_.levels_raised(), false});
-        pending_.push_back({connection, urgent->id, urgent->kind, ticket, now_});
+        if (urgent->unclear_axis) server_->send(connection, refusal_line(urgent->id, unclear_axis()));
+        else pending_.push_back({connection, urgent->id, urgent->kind, ticket, now_});
         return;
     }
     if (urgent && urgent->kind == Kind::jog_release) arrival.level_raised = let_go(connection, urgent->axis);

@@ -219,7 +219,8 @@ void SocketServer::read(Connection& connection, Instant now, LineHandler& handle
         connection.in.clear();
         connection.closing = true;
     }
-    // A half line at the end is nobody's request.
+    // Who closes behind a whole request has ended its line; half a line at the end is nobody's request.
+    if (ended && !connection.closing && connection.in.ends_with('}')) handler.on_line(connection.id, connection.in, now);
     if (ended) connection.dead = true;
 }
 

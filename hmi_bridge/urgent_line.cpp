@@ -69,8 +69,9 @@ std::optional<UrgentLine> urgent_line(std::string_view line, const runtime::Mach
     const bool stop = *cmd == "stop";
     if (!stop && *cmd != "jog") return std::nullopt;
     const auto axis = axis_of(json, layout, stop);
-    if (!axis) return std::nullopt;
-    urgent.axis = *axis;
+    urgent.unclear_axis = stop && !axis;
+    if (!axis && !stop) return std::nullopt;
+    urgent.axis = axis.value_or(all_axes);
     if (stop) return urgent;
     const auto velocity = json.find("velocity");
     if (velocity == json.end() || !velocity->is_number()) return std::nullopt;

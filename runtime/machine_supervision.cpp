@@ -70,6 +70,8 @@ bool Machine::Impl::axes_to_reset() const noexcept {
 void Machine::Impl::watch_restart() noexcept {
     const bool pressed = restart_input >= 0 && io.inputs()[static_cast<std::size_t>(restart_input)] != 0;
     const bool wanted = pressed && !restart_pressed && !emergency && now >= restart_deaf_until;
+    // Contacts bounce when they are let go, too, however long they were held.
+    if (restart_pressed && !pressed) restart_deaf_until = std::max(restart_deaf_until, now + button_bounce);
     restart_pressed = pressed;
     const bool resets = wanted && axes_to_reset();
     if (resets) reset_after_emergency();

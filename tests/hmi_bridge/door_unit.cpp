@@ -18,6 +18,7 @@ namespace {
 
 using namespace std::chrono_literals;
 using test::FakeMachine;
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -150,12 +151,42 @@ TEST_F(DoorTest, NoAgeNoMissingIdAndNoStrangeKeyHoldsUpAStop) {
         caller.say(std::string(line) + "\n");
     step();
     EXPECT_THAT(machine.stops, SizeIs(5));
-    caller.say(R"({"id":7,"cmd":"stop","axis":"turet"})"
+}
+
+// In doubt all stop: a name that this machine does not have, and what is no name.
+TEST_F(DoorTest, AStopOfAnAxisThatNobodyKnowsStopsEverythingAndSaysSo) {
+    const auto caller = call();
+    int stops = 0;
+    for (const char* axis : {R"("turet")", "0", "null", R"(["x"])"}) {
+        caller.say(std::string(R"({"id":7,"cmd":"stop","axis":)") + axis + "}\n");
+        step();
+        ASSERT_THAT(machine.stops, SizeIs(++stops)) << axis;
+        EXPECT_EQ(machine.stops.back(), 0xFFFF) << axis;
+        EXPECT_THAT(caller.hear(), AllOf(HasSubstr(R"("id":7,"ok":false)"), HasSubstr("every axis stops"))) << axis;
+    }
+    caller.say(R"({"id":8,"cmd":"jog","axis":"turet","velocity":0})"
                "\n");
     step();
-    EXPECT_THAT(machine.stops, SizeIs(5)) << "whom it means is not clear: the service side says so";
-    door->pass_on(desk, now);
-    EXPECT_THAT(desk.lines, SizeIs(1));
+    EXPECT_THAT(machine.stops, SizeIs(stops)) << "only a stop";
+}
+
+// A script that writes and goes: the end of the connection ends the line.
+TEST_F(DoorTest, AStopWithoutItsNewlineCountsWhenTheConnectionEnds) {
+    {
+        const auto caller = call();
+        caller.say(R"({"cmd":"stop"})");
+        step();
+        EXPECT_THAT(machine.stops, IsEmpty()) << "it may go on";
+    }
+    step();
+    EXPECT_THAT(machine.stops, ElementsAre(0xFFFF));
+    {
+        const auto caller = call();
+        caller.say(R"({"cmd":"stop")");
+        step();
+    }
+    step();
+    EXPECT_THAT(machine.stops, SizeIs(1)) << "half a line is nobody's request";
 }
 
 TEST_F(DoorTest, AStopBehindItsClientsOwnFloodActsInTheStepThatReadsIt) {

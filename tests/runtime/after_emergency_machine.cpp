@@ -250,6 +250,20 @@ TEST_P(AfterEmergency, AButtonWhoseContactBouncesIsPressedOnce) {
     EXPECT_TRUE(runs());
 }
 
+TEST_P(AfterEmergency, AButtonThatBouncesWhenItIsLetGoIsPressedOnceHoweverLongItWasHeld) {
+    start(&entry_of<Runner>);
+    ASSERT_TRUE(runs());
+    press_and_release();
+    m().world.set_input("button", true);
+    m().run(700ms);
+    m().world.set_input("button", false);
+    m().run(4ms);
+    for (int i = 0; i < 10; ++i) press_button(4ms);
+    expect_off("one long press that bounced when it was let go");
+    press_button(100ms);
+    EXPECT_TRUE(runs());
+}
+
 // Somebody has reset already, by command or by the program: then the press is the start.
 TEST_P(AfterEmergency, WhereTheAxesAreResetOnePressStartsAndAcknowledges) {
     start(&entry_of<Runner>);
