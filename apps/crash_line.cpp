@@ -44,7 +44,7 @@ std::string_view name_of(int signal) noexcept {
     }
 }
 
-void crashed(int signal) {
+[[maybe_unused]] void crashed(int signal) {  // a sanitizer keeps its own handlers
     const int kept = errno;
     const auto code = runtime::code_at_work();
     Line line;

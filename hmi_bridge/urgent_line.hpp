@@ -18,9 +18,9 @@ struct UrgentLine {
     bool press = false;
     /// A key stands in it twice, so that nobody can tell what exactly was meant: it stops every axis, and is refused all the same.
     bool doubled = false;
+    std::string id = "null";  ///< as the answer repeats it
     /// The axis of a stop is none of this machine's, or no name: it stops every axis, and is refused all the same.
     bool unclear_axis = false;
-    std::string id = "null";  ///< as the answer repeats it
 };
 
 /// A stop whose target is clear is a stop, however odd the rest of its line: no age, no missing id, no unknown key holds it up. nullopt:
