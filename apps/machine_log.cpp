@@ -213,9 +213,10 @@ void MachineLog::step(Instant now, const Snapshot* snapshot) {
     if (s.mode != mode_) say(now, "mode", std::string(text(s.mode)));
     mode_ = s.mode;
     if (s.emergency_stop != emergency_) {
-        const bool unread = std::any_of(s.alarms.begin(), s.alarms.begin() + static_cast<std::ptrdiff_t>(s.alarm_count), [](const auto& alarm) {
-            return alarm.fact.id == id(MachineAlarm::emergency_stop) && alarm.standing && alarm.fact.a == emergency_stop_unread;
-        });
+        const bool unread =
+            std::any_of(s.alarms.begin(), s.alarms.begin() + static_cast<std::ptrdiff_t>(s.alarm_count), [](const auto& alarm) {
+                return alarm.fact.id == id(MachineAlarm::emergency_stop) && alarm.standing && alarm.fact.a == emergency_stop_unread;
+            });
         say(now, "E-STOP", !s.emergency_stop ? "released" : unread ? "cannot be read: counts as pressed" : "pressed");
     }
     emergency_ = s.emergency_stop;

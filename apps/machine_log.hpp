@@ -54,7 +54,7 @@ private:
     std::vector<Known> known_;
     std::vector<Noted> notes_;
     std::uint64_t notes_of_bus_ = 0;  // how many were said
-    std::uint64_t last_event_ = 0;  // its number
+    std::uint64_t last_event_ = 0;    // its number
     std::uint64_t events_dropped_ = 0;
     runtime::Mode mode_ = runtime::Mode::manual;
     bool first_ = true, emergency_ = false;

@@ -69,17 +69,17 @@ int wait_for(const Order& order, hmi::Client& client, bool (*reached)(const Json
                               Error{"axis.error_stop", "axis " + name, "the axis is in ErrorStop", "See `taktwerk monitor`; then reset."});
             }
             if (given_up && given_up(axis))
-                return report(order.remote, Error{"axis.ended", "axis " + name, "the command was ended before it was done",
-                                                  "Another command, or power that went, took it; see `taktwerk monitor`, then give it again."});
+                return report(order.remote,
+                              Error{"axis.ended", "axis " + name, "the command was ended before it was done",
+                                    "Another command, or power that went, took it; see `taktwerk monitor`, then give it again."});
             all = all && reached(axis);
         }
         if (all) return report(order.remote, done);
         if (clock.now() >= end) break;
         std::this_thread::sleep_for(50ms);
     }
-    return report(order.remote,
-                  Error{"axis.not_in_time", order.target.empty() ? "axes" : "axis " + order.target,
-                        fmt::format("not finished within {:g} s", patience), "See `taktwerk monitor` what it waits for."});
+    return report(order.remote, Error{"axis.not_in_time", order.target.empty() ? "axes" : "axis " + order.target,
+                                      fmt::format("not finished within {:g} s", patience), "See `taktwerk monitor` what it waits for."});
 }
 
 bool is_powered(const Json& axis) { return axis.at("powered").get<bool>(); }

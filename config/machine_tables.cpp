@@ -340,18 +340,19 @@ Table<runtime::SimulationConfig> simulation_table() {
 
 Table<runtime::EmergencyStop> emergency_stop_table() {
     using E = runtime::EmergencyStop;
-    return {"emergency_stop",
-            "Reaction of the software. What protects people belongs in hardware.",
-            {
-                required(field("input", &E::input, name(), "input that is TRUE while all is well")),
-                field("power_off_after", &E::power_off_after, duration(1ms, 60s), "power goes off when the axes stand, at the latest then"),
-                with_default(field("restart", &E::restart, name(),
-                                   "input of a button, pressed after the release: a first press resets the axes, the next one lets programs "
-                                   "power them again"),
-                             "`taktwerk start` alone"),
-            },
-            {},
-            {}};
+    return {
+        "emergency_stop",
+        "Reaction of the software. What protects people belongs in hardware.",
+        {
+            required(field("input", &E::input, name(), "input that is TRUE while all is well")),
+            field("power_off_after", &E::power_off_after, duration(1ms, 60s), "power goes off when the axes stand, at the latest then"),
+            with_default(field("restart", &E::restart, name(),
+                               "input of a button, pressed after the release: a first press resets the axes, the next one lets programs "
+                               "power them again"),
+                         "`taktwerk start` alone"),
+        },
+        {},
+        {}};
 }
 
 Table<runtime::CycleWatch> watch_table() {

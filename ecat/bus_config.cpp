@@ -289,9 +289,10 @@ private:
         if (least <= config_.cycle) return;
         const auto whole = [](Duration d) { return fmt::format("{:.0f} us", to_seconds(d) * 1e6); };
         add("bus.cycle_too_short_for_frames", "bus",
-            fmt::format("the process data of a cycle is {} bytes in {} frame(s): at 100 Mbit/s {} on the wire, and {} until it is back through "
-                        "{} slaves; the cycle is {}",
-                        load.bytes, load.frames, whole(load.wire), whole(load.round_trip), config_.slaves.size(), micro(config_.cycle)),
+            fmt::format(
+                "the process data of a cycle is {} bytes in {} frame(s): at 100 Mbit/s {} on the wire, and {} until it is back through "
+                "{} slaves; the cycle is {}",
+                load.bytes, load.frames, whole(load.wire), whole(load.round_trip), config_.slaves.size(), micro(config_.cycle)),
             fmt::format("choose a cycle of at least {}, map fewer objects, put slaves into slower sync units, or use two buses",
                         whole(load.round_trip * 4 / 3)));
     }

@@ -48,10 +48,10 @@ struct BusCondition {
     std::uint32_t reference_times_missing = 0;  ///< in a row
     std::int64_t dc_difference_ns = 0;
     bool foreign_master = false;
-    Duration stall{};           ///< so long this computer sent nothing a moment ago; 0: it was in time
-    bool silence = false;       ///< frames did not come back a moment ago, for longer than the limit
-    bool foreign_heard = false; ///< a frame of another sender came in lately, be it a single one
-    std::uint16_t states = 0;   ///< OR of the AL states of all slaves, with the error bit; 0: not all of them answered
+    Duration stall{};            ///< so long this computer sent nothing a moment ago; 0: it was in time
+    bool silence = false;        ///< frames did not come back a moment ago, for longer than the limit
+    bool foreign_heard = false;  ///< a frame of another sender came in lately, be it a single one
+    std::uint16_t states = 0;    ///< OR of the AL states of all slaves, with the error bit; 0: not all of them answered
 };
 
 /// A slave as it was configured and found. In the order of positions, so that parents come before their children.
@@ -81,13 +81,13 @@ public:
 private:
     /// Of a slave that is out of OP: what came before it. Empty as long as it is in OP.
     struct Fall {
-        Duration stall{};               ///< this computer sent nothing for so long
-        bool silence = false;           ///< no frame came back
-        bool by_command = false;        ///< it names no error of its own
-        bool restarted = false;         ///< it did not answer to its address meanwhile: its controller began anew
-        bool read = false;              ///< the watch has asked it
-        std::uint8_t cycles_down = 0;   ///< up to `cycles_of_a_fall`
-        std::uint16_t code = 0;         ///< why, as it said first: the way back clears it
+        Duration stall{};              ///< this computer sent nothing for so long
+        bool silence = false;          ///< no frame came back
+        bool by_command = false;       ///< it names no error of its own
+        bool restarted = false;        ///< it did not answer to its address meanwhile: its controller began anew
+        bool read = false;             ///< the watch has asked it
+        std::uint8_t cycles_down = 0;  ///< up to `cycles_of_a_fall`
+        std::uint16_t code = 0;        ///< why, as it said first: the way back clears it
         [[nodiscard]] bool now() const noexcept { return cycles_down > 0; }
     };
     /// Slaves that fell by one thing outside of them.

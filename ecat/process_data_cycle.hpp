@@ -113,8 +113,8 @@ private:
     struct {
         Instant send_time = Instant::min();
         std::int64_t offset = 0;
-    } mutable next_send_;                    // the same when the next frames leave: asked for by every axis
-    std::optional<Instant> last_departure_;  // of process data
+    } mutable next_send_;                             // the same when the next frames leave: asked for by every axis
+    std::optional<Instant> last_departure_;           // of process data
     std::optional<Instant> silence_at_, foreign_at_;  // no frame came back for too long; one of another sender came
     std::uint64_t foreign_before_ = 0;
     bool all_good_ = true;

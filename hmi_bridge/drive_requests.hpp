@@ -36,10 +36,10 @@ enum class DriveRequestKind : std::uint8_t {
 struct DriveRequest {
     DriveRequestKind kind = DriveRequestKind::read;
     std::string axis;
-    std::string parameter;     ///< "P05.13", "6084h", "2005h:0E"
-    std::string value;         ///< in the parameter's unit: "300 ms"
-    bool store = false;        ///< writes: meant for the EEPROM
-    std::string who;           ///< for the log: "process 812 of user 0"
+    std::string parameter;  ///< "P05.13", "6084h", "2005h:0E"
+    std::string value;      ///< in the parameter's unit: "300 ms"
+    bool store = false;     ///< writes: meant for the EEPROM
+    std::string who;        ///< for the log: "process 812 of user 0"
     std::uint64_t tag = 0;
     std::string id;
     std::uint32_t client = 0;  ///< of the gateway: whose hand is on an axis

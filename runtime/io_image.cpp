@@ -58,7 +58,8 @@ Result<void> IoImage::resolve(const ecat::Master& bus) {
         }
     }
     output_bits_.clear();
-    for (const auto& point : output_points_) output_bits_.push_back(static_cast<std::uint8_t>(std::min(64, static_cast<int>(point.signal.bits))));
+    for (const auto& point : output_points_)
+        output_bits_.push_back(static_cast<std::uint8_t>(std::min(64, static_cast<int>(point.signal.bits))));
     return {};
 }
 

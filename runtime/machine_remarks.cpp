@@ -17,7 +17,7 @@ constexpr double usual_rpm = 6000;             // hardly a servo motor turns fas
 constexpr double usual_settling_s = 1;         // who waits longer for in-position mostly meant ms
 constexpr double following_of_velocity_s = 1;  // a window as wide as the way of a second at full speed is none
 
-constexpr int full_percent = 75;                // of the cycle: what mailboxes, recovery and lateness need besides process data
+constexpr int full_percent = 75;  // of the cycle: what mailboxes, recovery and lateness need besides process data
 
 class Remarks {
 public:
@@ -100,12 +100,14 @@ void bus_load(Remarks& remarks, const MachineConfig& config) {
     const auto load = ecat::bus_load(bus);
     const auto percent = load.round_trip * 100 / bus.cycle;
     if (percent < full_percent) return;
-    remarks.add("bus_load", "cycle",
-                fmt::format("process data takes about {:.0f} us of the cycle of {:.0f} us there and back ({} bytes in {} frame(s), {} slaves): "
-                            "{} %",
-                            to_seconds(load.round_trip) * 1e6, to_seconds(bus.cycle) * 1e6, load.bytes, load.frames, bus.slaves.size(), percent),
-                fmt::format("choose a cycle of {:.0f} us or more, or slower sync units: mailboxes, recovery and this computer's lateness need the rest",
-                            to_seconds(load.round_trip) * 1e6 * 100 / full_percent));
+    remarks.add(
+        "bus_load", "cycle",
+        fmt::format("process data takes about {:.0f} us of the cycle of {:.0f} us there and back ({} bytes in {} frame(s), {} slaves): "
+                    "{} %",
+                    to_seconds(load.round_trip) * 1e6, to_seconds(bus.cycle) * 1e6, load.bytes, load.frames, bus.slaves.size(), percent),
+        fmt::format(
+            "choose a cycle of {:.0f} us or more, or slower sync units: mailboxes, recovery and this computer's lateness need the rest",
+            to_seconds(load.round_trip) * 1e6 * 100 / full_percent));
 }
 
 void programs(Remarks& remarks, const MachineConfig& config, const MachineLayout& layout) {

@@ -8,7 +8,7 @@ namespace taktwerk::axes {
 
 namespace {
 
-constexpr double limit_lost = 1e10;      // times the limit: its digits are gone from what was braked
+constexpr double limit_lost = 1e10;  // times the limit: its digits are gone from what was braked
 constexpr double beyond_reason = 1e15;
 
 /// From (`top`, 0) down to (v1, a1), in a frame where top > 0: backwards in time and mirrored it is a climb.

@@ -72,10 +72,11 @@ struct ScaleObjects {
     std::int64_t counts_high_unit = 0;
     ParameterAddress encoder{};                   ///< counts of the encoder (SV33-E P01.05)
     ParameterAddress numerator{}, denominator{};  ///< encoder counts = counts * numerator / denominator (SV33-E 6091h)
-    std::vector<ParameterAddress> only_one;  ///< ratios whose part in it is not stated: with another value than 1 nobody knows (SV-DA200 6091h)
-    std::string doubt{};                     ///< why nobody knows, where the objects do not tell; one sentence
-    std::string remedy{};                    ///< how the drive is given another scale
-    std::string section{};                   ///< of the manual
+    std::vector<ParameterAddress>
+        only_one;           ///< ratios whose part in it is not stated: with another value than 1 nobody knows (SV-DA200 6091h)
+    std::string doubt{};    ///< why nobody knows, where the objects do not tell; one sentence
+    std::string remedy{};   ///< how the drive is given another scale
+    std::string section{};  ///< of the manual
 };
 
 /// An analogue output that the bus sets: its volts are value / gain while the selection is 0.

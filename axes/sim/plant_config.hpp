@@ -32,8 +32,8 @@ struct PlantConfig {
     double negative_limit = -std::numeric_limits<double>::infinity();  ///< switch active below
     double positive_limit = std::numeric_limits<double>::infinity();   ///< switch active above
     double home_from = 1, home_to = 0;                                 ///< switch active in between; from > to = no switch
-    double home_every = 0;                                             ///< it comes again after so many, as on a turning load; 0 = there is one
-    double index_pulse = 0;                                            ///< one of the encoder's index pulses; one each revolution
+    double home_every = 0;   ///< it comes again after so many, as on a turning load; 0 = there is one
+    double index_pulse = 0;  ///< one of the encoder's index pulses; one each revolution
     Battery battery = Battery::good;
     struct Signal {
         double from = 1, to = 0;

@@ -40,14 +40,16 @@ Error no_answer_in_time(const Bus& bus) {
     const Duration way = load.wire + static_cast<std::int64_t>(bus.found.size()) * usual_hop;
     std::string what = fmt::format("process data does not come back within the cycle of {:.6g} us", us(bus.config.cycle));
     if (way < bus.config.cycle * 3 / 4)
-        return Error{"bus.no_frame", "bus", what + fmt::format("; on the wire its way takes some {:.0f} us", us(way)),
-                     "this computer sends or receives too late (see late_wakeups, another load, power saving of the NIC), or the link loses "
-                     "frames: check cable and NIC, or lengthen the cycle"};
-    return Error{"bus.no_frame", "bus",
-                 what + fmt::format(": {} frame(s) of {} bytes in all are {:.0f} us on the wire at 100 Mbit/s, and pass {} slaves", load.frames,
-                                    load.bytes, us(load.wire), bus.found.size()),
-                 fmt::format("the cycle is too short for this bus: choose at least {:.0f} us, put slaves into slower sync units, or use two buses",
-                             us(way * 4 / 3))};
+        return Error{
+            "bus.no_frame", "bus", what + fmt::format("; on the wire its way takes some {:.0f} us", us(way)),
+            "this computer sends or receives too late (see late_wakeups, another load, power saving of the NIC), or the link loses "
+            "frames: check cable and NIC, or lengthen the cycle"};
+    return Error{
+        "bus.no_frame", "bus",
+        what + fmt::format(": {} frame(s) of {} bytes in all are {:.0f} us on the wire at 100 Mbit/s, and pass {} slaves", load.frames,
+                           load.bytes, us(load.wire), bus.found.size()),
+        fmt::format("the cycle is too short for this bus: choose at least {:.0f} us, put slaves into slower sync units, or use two buses",
+                    us(way * 4 / 3))};
 }
 
 /// Drives want valid outputs before OP (pain 2 of the reference).

@@ -61,8 +61,8 @@ struct CycleLink {
     std::atomic<bool> dc_measured{false};            ///< dc_offset_ns is
     std::atomic<std::int64_t> dc_phase_error_ns{0};  ///< of the servo
     std::atomic<DcLock> dc_lock{DcLock::none};
-    std::atomic<std::uint32_t> dc_missing{0};      ///< cycles since the reference's time came
-    std::atomic<std::uint32_t> states_seen{0};     ///< OR of all AL states (low 5 bits), of the last BRD
+    std::atomic<std::uint32_t> dc_missing{0};           ///< cycles since the reference's time came
+    std::atomic<std::uint32_t> states_seen{0};          ///< OR of all AL states (low 5 bits), of the last BRD
     std::atomic<std::uint16_t> worst_datagram{0xFFFF};  ///< a datagram whose working counter was wrong last; FFFFh: none was
     std::atomic<std::uint16_t> worst_wkc{0};
     MailboxBits mailbox;

@@ -46,7 +46,7 @@ void stagger(ProcessDataPlan& plan);
 struct CycleLoad {
     std::size_t bytes = 0;  ///< of frames with their headers, without preamble, FCS and gap
     std::size_t frames = 0;
-    Duration wire{};        ///< so long the line is busy with them, at 100 Mbit/s
+    Duration wire{};  ///< so long the line is busy with them, at 100 Mbit/s
 };
 /// Of the cycle in which most is due. For a plan that is staggered; not for the cycle itself.
 [[nodiscard]] CycleLoad fullest_cycle(const ProcessDataPlan& plan);

@@ -77,8 +77,9 @@ std::string fall_text(const Bus& bus, const BusSlave& slave, const Result<std::u
     const auto code = static_cast<std::uint16_t>(slave.al.load() >> 16);
     if ((*status & al_status_error) == 0 && code == 0) {
         const std::string heard = bus.link.foreign_frames.load() > 0 ? "; of whom frames were heard: " + sender_text(bus.link) : "";
-        return fmt::format("{} is in {} without an error of its own: somebody else sent it there (another master, a tool), or it restarted{}",
-                           slave.subject, name(al_state(*status)), heard);
+        return fmt::format(
+            "{} is in {} without an error of its own: somebody else sent it there (another master, a tool), or it restarted{}",
+            slave.subject, name(al_state(*status)), heard);
     }
     std::string text = fmt::format("{} left OP: it is in {}, AL status code {:04X}h {}", slave.subject, name(al_state(*status)), code,
                                    al_status_info(code).text);

@@ -33,8 +33,8 @@ struct MC_DigitalCamSwitch {
     static consteval auto pins() {
         return pin_table(shared<&Self::Axis>(), in_out<&Self::Switches>("", "list of cam switches"),
                          in_out<&Self::Outputs>("", "a point of the machine, or an axis for its drive's outputs"),
-                         in_out<&Self::TrackOptions>("", "compensation and hysteresis by track, as they stand in each scan; none: zero"), shared<&Self::Enable>(),
-                         in<&Self::EnableMask>("", "bit n - 1 enables track n; at first all of them"),
+                         in_out<&Self::TrackOptions>("", "compensation and hysteresis by track, as they stand in each scan; none: zero"),
+                         shared<&Self::Enable>(), in<&Self::EnableMask>("", "bit n - 1 enables track n; at first all of them"),
                          in<&Self::ValueSource>("", "whose position and velocity: the set-point's or the actual ones"),
                          out<&Self::InOperation>("", "the tracks are switched"), shared<&Self::Busy>(),
                          out<&Self::Error>("", "cannot switch; the tracks are off"), shared<&Self::ErrorID>());

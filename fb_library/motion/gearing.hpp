@@ -73,19 +73,18 @@ struct MC_GearInPos : CommandBlock<MC_GearInPos> {
     static constexpr bool MC_GearInPos::*in_target_pin = &MC_GearInPos::InSync;
     static constexpr std::string_view summary = "Couples the slave's position to the master's from a pair of positions on.";
     static consteval auto pins() {
-        return pin_table(shared<&Self::Master, &Self::Slave, &Self::Execute>(),
-                         in<&Self::RatioNumerator>("", "slave's part of the ratio, signed; default 1"),
-                         in<&Self::RatioDenominator>("", "master's part of the ratio, > 0; default 1"),
-                         in<&Self::MasterValueSource>("", "set or actual value of the master"),
-                         in<&Self::MasterSyncPosition>("u of master", "where the master is when the slave is in sync"),
-                         in<&Self::SlaveSyncPosition>("u", "where the slave is then"),
-                         in<&Self::SyncMode>("", "which way a modulo slave takes"),
-                         in<&Self::MasterStartDistance>("u of master", "before the sync position; there the slave begins. 0 = at once"),
-                         in<&Self::Velocity>("u/s", "limit until InSync; 0 = the axis' limit"),
-                         shared<&Self::Acceleration, &Self::Deceleration>(),
-                         in<&Self::Jerk>("u/s3", "most on the way to the sync point; 0 = no limit"), shared<&Self::BufferMode>(),
-                         out<&Self::StartSync>("", "the slave is on its way into sync"),
-                         out<&Self::InSync>("", "the slave has the position of the gear"), outcome<Self>());
+        return pin_table(
+            shared<&Self::Master, &Self::Slave, &Self::Execute>(),
+            in<&Self::RatioNumerator>("", "slave's part of the ratio, signed; default 1"),
+            in<&Self::RatioDenominator>("", "master's part of the ratio, > 0; default 1"),
+            in<&Self::MasterValueSource>("", "set or actual value of the master"),
+            in<&Self::MasterSyncPosition>("u of master", "where the master is when the slave is in sync"),
+            in<&Self::SlaveSyncPosition>("u", "where the slave is then"), in<&Self::SyncMode>("", "which way a modulo slave takes"),
+            in<&Self::MasterStartDistance>("u of master", "before the sync position; there the slave begins. 0 = at once"),
+            in<&Self::Velocity>("u/s", "limit until InSync; 0 = the axis' limit"), shared<&Self::Acceleration, &Self::Deceleration>(),
+            in<&Self::Jerk>("u/s3", "most on the way to the sync point; 0 = no limit"), shared<&Self::BufferMode>(),
+            out<&Self::StartSync>("", "the slave is on its way into sync"),
+            out<&Self::InSync>("", "the slave has the position of the gear"), outcome<Self>());
     }
 
     [[nodiscard]] axes::GearInPosDetails details() const noexcept {

@@ -28,7 +28,8 @@ struct MC_TorqueControl : CommandBlock<MC_TorqueControl> {
                          in<&Self::TorqueRamp>("1/s", "largest rate of the set torque, in fractions of the rated one; 0 = at once"),
                          in<&Self::Velocity>("u/s", "limit, >= 0, in both senses; 0 = the axis' limit"),
                          in<&Self::Acceleration>("u/s2", "limit while torque and velocity have one sign; 0 = the axis' default"),
-                         in<&Self::Deceleration>("u/s2", "limit while their signs differ; 0 = the axis' default"), in<&Self::Jerk>("u/s3", "no effect: the torque changes by TorqueRamp"),
+                         in<&Self::Deceleration>("u/s2", "limit while their signs differ; 0 = the axis' default"),
+                         in<&Self::Jerk>("u/s3", "no effect: the torque changes by TorqueRamp"),
                          in<&Self::Direction>("", "sense of the torque: positive, negative or current"), shared<&Self::BufferMode>(),
                          out<&Self::InTorque>("", "the set torque is the commanded one"), outcome<Self>());
     }

@@ -23,4 +23,3 @@ inline constexpr std::uint32_t program_magic = 0x54574B31;  // "TWK1"
 inline constexpr const char* program_entry_symbol = "taktwerk_program_entry";
 
 }  // namespace taktwerk
-

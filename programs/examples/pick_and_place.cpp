@@ -108,7 +108,7 @@ public:
         const bool ready = x_.power.Status && y_.power.Status && z_.power.Status;
         ctx.alarm(0, error);
         if (start_pressed_.Q && step_ == waiting) wanted_ = true;
-        if (error) wanted_ = false;  // that press resets
+        if (error) wanted_ = false;            // that press resets
         if (error || !ready) step_ = waiting;  // whatever was moving has been stopped by its axis
         else run_sequence(ctx);
 

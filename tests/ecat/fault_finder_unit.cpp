@@ -152,7 +152,8 @@ TEST(FaultFinder, WithoutAnErrorOfItsOwnSomebodyElseSentIt) {
     EXPECT_EQ(f.finder.facts()[0].a, 3);
     f.bus.foreign_heard = true;
     for (std::size_t i = 0; i < 3; ++i) f.finder.condition(i) = {.al_state = AlState::preop, .age = 30};
-    EXPECT_THAT(f.look(), ElementsAre(alarm::foreign_master, alarm::foreign_command)) << "a single frame is enough then, and it stands first";
+    EXPECT_THAT(f.look(), ElementsAre(alarm::foreign_master, alarm::foreign_command))
+        << "a single frame is enough then, and it stands first";
     f.finder.condition(1) = {.al_state = AlState::safeop, .al_error = true, .al_status_code = 0x1B, .age = 40};
     EXPECT_THAT(f.look(), ElementsAre(alarm::foreign_master, alarm::foreign_command)) << "errors of the way back change nothing";
 

@@ -33,8 +33,8 @@ inline ecat::ObjectEntry object(std::uint16_t index, std::uint8_t sub = 0) {
         {0x60B8, DataType::U16}, {0x60B9, DataType::U16}, {0x60BA, DataType::I32}, {0x60BB, DataType::I32}, {0x60E0, DataType::U16},
         {0x60E1, DataType::U16}, {0x60FD, DataType::U32}, {0x60FF, DataType::I32}, {0x2021, DataType::U16}, {0x2005, DataType::U16},
         {0x6098, DataType::I8},  {0x6099, DataType::U32}, {0x609A, DataType::U32}, {0x2020, DataType::U16}, {0x6081, DataType::U32},
-        {0x6084, DataType::U32}, {0x6087, DataType::U32},
-        {0x2000, DataType::U32}, {0x2001, DataType::U32}, {0x2051, DataType::U16}, {0x2054, DataType::U16}, {0x6091, DataType::U32}};
+        {0x6084, DataType::U32}, {0x6087, DataType::U32}, {0x2000, DataType::U32}, {0x2001, DataType::U32}, {0x2051, DataType::U16},
+        {0x2054, DataType::U16}, {0x6091, DataType::U32}};
     ecat::ObjectEntry e;
     e.index = index;
     e.sub = sub;
