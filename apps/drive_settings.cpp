@@ -82,6 +82,10 @@ Result<SetDifference> difference_from_factory(DriveAccess& drive) {
     SetDifference out;
     const auto read = read_settings(drive);
     if (!read) return read.error();
+    for (const auto& one : read->left_out) {
+        if (one.parameter->factory != axes::FactoryValue::stated) ++out.not_stated;
+        else out.left_out.push_back(one);
+    }
     for (const auto& value : read->values) {
         if (value.parameter->factory != axes::FactoryValue::stated) ++out.not_stated;
         else if (value.raw != value.parameter->value) out.changes.push_back({value.parameter, value.parameter->value, value.raw});

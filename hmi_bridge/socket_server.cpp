@@ -14,6 +14,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -186,6 +187,13 @@ void SocketServer::accept_all(Instant now, LineHandler& handler) {
     }
 }
 
+// What stands behind it may be a stop: the rest of the line is passed over, and the connection stays.
+void SocketServer::refuse_long_line(ConnectionId connection) {
+    send(connection,
+         refusal_line("null", {"request.too_long", "", fmt::format("a line is longer than {} bytes; it was not taken", max_line),
+                               "Send one request a line."}));
+}
+
 void SocketServer::read(Connection& connection, Instant now, LineHandler& handler) {
     char buffer[16 * 1024];
     bool ended = false;
@@ -201,26 +209,26 @@ void SocketServer::read(Connection& connection, Instant now, LineHandler& handle
     std::size_t start = 0;
     for (auto end = connection.in.find('\n'); end != std::string::npos; end = connection.in.find('\n', start)) {
         auto line = std::string_view(connection.in).substr(start, end - start);
+        start = end + 1;
+        if (std::exchange(connection.skips, false)) continue;
         if (line.ends_with('\r')) line.remove_suffix(1);
-        if (line.size() > max_line) break;
+        if (line.size() > max_line) {
+            refuse_long_line(connection.id);
+            continue;
+        }
         if (!line.empty()) {
             connection.heard = now;
             handler.on_line(connection.id, line, now);
         }
-        start = end + 1;
     }
     connection.in.erase(0, start);
-    if (connection.in.size() > max_line) {
-        send(
-            connection.id,
-            fmt::format(
-                R"({{"id":null,"ok":false,"error":{{"code":"request.too_long","subject":"","what":"a line is longer than {} bytes","remedy":"Send one request a line."}}}})",
-                max_line));
+    if (connection.in.size() > max_line || connection.skips) {
+        if (!connection.skips) refuse_long_line(connection.id);
+        connection.skips = true;
         connection.in.clear();
-        connection.closing = true;
     }
     // Who closes behind a whole request has ended its line; half a line at the end is nobody's request.
-    if (ended && !connection.closing && connection.in.ends_with('}')) handler.on_line(connection.id, connection.in, now);
+    if (ended && connection.in.ends_with('}')) handler.on_line(connection.id, connection.in, now);
     if (ended) connection.dead = true;
 }
 
@@ -235,7 +243,6 @@ void SocketServer::flush(Connection& connection) {
         if (sent < 0 && errno != EAGAIN && errno != EWOULDBLOCK) connection.dead = true;
         break;
     }
-    if (connection.closing && connection.out.empty()) connection.dead = true;
 }
 
 void SocketServer::send(ConnectionId id, std::string_view line) {
@@ -266,7 +273,7 @@ void SocketServer::remove_dead(LineHandler& handler) {
 void SocketServer::step(Instant now, LineHandler& handler) {
     accept_all(now, handler);
     for (auto& connection : connections_) {
-        if (!connection.closing && !connection.dead) read(connection, now, handler);
+        if (!connection.dead) read(connection, now, handler);
         if (!connection.dead) flush(connection);
         if (connection.in_reserve && now - connection.heard > reserve_stay) connection.dead = true;
     }
@@ -280,7 +287,7 @@ void SocketServer::wait(Duration most) {
     ready[count++] = {wake_, POLLIN, 0};
     for (const auto& connection : connections_) {
         if (count == ready.size()) break;
-        const auto wanted = (connection.closing ? 0 : POLLIN) | (connection.out.empty() ? 0 : POLLOUT);
+        const auto wanted = POLLIN | (connection.out.empty() ? 0 : POLLOUT);
         ready[count++] = {connection.socket, static_cast<short>(wanted), 0};
     }
     const auto left = std::chrono::duration_cast<std::chrono::microseconds>(most).count();

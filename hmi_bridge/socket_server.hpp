@@ -56,7 +56,7 @@ private:
         std::string in, out;
         Instant heard{};  ///< of its last line, or of its coming
         bool in_reserve = false;
-        bool closing = false;  ///< no more reading; closed when the rest is sent
+        bool skips = false;  ///< the rest of a line that is too long
         bool dead = false;
     };
     SocketServer(std::string path, int listener, int lock, int wake, std::function<void(std::string_view)> log);
@@ -65,6 +65,7 @@ private:
     bool make_room(Instant now, LineHandler& handler);
     void dismiss(Connection& connection, const Error& why);
     void remove_dead(LineHandler& handler);
+    void refuse_long_line(ConnectionId connection);
     void read(Connection& connection, Instant now, LineHandler& handler);
     void flush(Connection& connection);
 

@@ -24,8 +24,7 @@ struct UrgentLine {
 };
 
 /// A stop whose target is clear is a stop, however odd the rest of its line: no age, no missing id, no unknown key holds it up. nullopt:
-/// none of these, or one that is written so that only the full reader understands it (longer than 1 KiB, escaped words); it then goes
-/// the ordinary way, which ends in the same level.
+/// none of these, or a line longer than 1 KiB; that goes the ordinary way, which ends in the same level.
 [[nodiscard]] std::optional<UrgentLine> urgent_line(std::string_view line, const runtime::MachineLayout& layout);
 
 }  // namespace taktwerk::hmi

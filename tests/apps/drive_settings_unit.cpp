@@ -155,6 +155,9 @@ TEST(SettingsLeftOut, AreThoseThatTheManualDoesNotAllowOrTheDriveDoesNotTell) {
         const auto difference = difference_from(drive, by_hand);
         ASSERT_TRUE(difference) << difference.error().text();
         EXPECT_EQ(names_of(difference->left_out), std::vector<std::string>{"6098h"});
+        const auto factory = difference_from_factory(drive);
+        ASSERT_TRUE(factory) << factory.error().text();
+        EXPECT_EQ(names_of(factory->left_out), std::vector<std::string>{"6098h"}) << "its factory value is stated: 20";
     });
 }
 

@@ -24,15 +24,7 @@ MachineConfig one_drive_machine(const std::string& slave, const std::string& axi
         return machine_config(1);
     }
     auto config = std::get<config::LoadedMachine>(std::move(loaded)).machine;
-    ProgramConfig program;
-    program.name = "p";
-    program.entry = &entry_of<Desk>;
-    program.autostart = true;
-    config.programs.push_back(program);
-    TaskConfig task;
-    task.name = "main";
-    task.program = "p";
-    config.tasks.push_back(task);
+    add_program(config, "p", &entry_of<Desk>);
     return config;
 }
 

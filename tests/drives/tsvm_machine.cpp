@@ -6,6 +6,7 @@
 #include "config/machine_loader.hpp"
 #include "fb_library/all_blocks.hpp"
 #include "programs/api/entry.hpp"
+#include "tests/machines/add_program.hpp"
 #include "tests/runtime/test_machine.hpp"
 
 namespace taktwerk {
@@ -97,15 +98,7 @@ runtime::MachineConfig machine() {
     strict.alarms.push_back(abnormality);
     const auto shared = std::make_shared<const axes::DriveProfile>(strict);
     for (auto& binding : config.axes) binding.profile = shared;
-    runtime::ProgramConfig program;
-    program.name = "p";
-    program.entry = robot_entry;
-    program.autostart = true;
-    config.programs.push_back(program);
-    runtime::TaskConfig task;
-    task.name = "main";
-    task.program = "p";
-    config.tasks.push_back(task);
+    runtime::testing::add_program(config, "p", robot_entry);
     return config;
 }
 

@@ -189,6 +189,35 @@ TEST_F(DoorTest, AStopWithoutItsNewlineCountsWhenTheConnectionEnds) {
     EXPECT_THAT(machine.stops, SizeIs(1)) << "half a line is nobody's request";
 }
 
+TEST_F(DoorTest, AStopBehindALineThatIsTooLongCounts) {
+    const auto caller = call();
+    const std::string stop = "{\"id\":2,\"cmd\":\"stop\"}\n";
+    for (const std::size_t size : {SocketServer::max_line + 1, SocketServer::max_line + 40'000}) {  // the second in pieces
+        machine.stops.clear();
+        const std::string line(size, 'x');
+        ASSERT_EQ(caller.say(line.substr(0, size / 2)), size / 2);
+        step();
+        ASSERT_EQ(caller.say(line.substr(size / 2)), size - size / 2);
+        step();
+        ASSERT_EQ(caller.say("\n" + stop), 1 + stop.size());
+        step();
+        EXPECT_THAT(machine.stops, ElementsAre(0xFFFF));
+        EXPECT_THAT(caller.hear(), AllOf(HasSubstr("request.too_long"), HasSubstr("{\"id\":2,\"ok\":true}")));
+    }
+    caller.say(std::string(SocketServer::max_line + 1, 'x') + stop);
+    step();
+    EXPECT_THAT(machine.stops, SizeIs(1)) << "its own end is no line";
+}
+
+// JSON lets any letter be written by its number; the words are the same.
+TEST_F(DoorTest, AStopInEscapedWordsIsAStop) {
+    const auto caller = call();
+    caller.say("{\"\\u0063md\":\"\\u0073to\\u0070\"}\n");
+    step();
+    EXPECT_THAT(machine.stops, ElementsAre(0xFFFF));
+    EXPECT_THAT(caller.hear(), HasSubstr("\"ok\":true"));
+}
+
 TEST_F(DoorTest, AStopBehindItsClientsOwnFloodActsInTheStepThatReadsIt) {
     const auto caller = call();
     std::string flood;

@@ -3,10 +3,8 @@
 //
 // A failure names its seed; TAKTWERK_WALK_SEED=<seed> runs that walk alone and tells all that was asked in it.
 
-#include <cstdlib>
-
 #include "tests/machine_walk/machine_walk.hpp"
-#include "tests/property_cases.hpp"
+#include "tests/walk_seeds.hpp"
 
 namespace taktwerk::runtime::testing {
 namespace {
@@ -34,25 +32,15 @@ void expect_all_seen(const WalkCounts& counts) {
 TEST(MachineWalks, TellDrivesWhatTheirAxesShow) {
     WalkCounts counts;
     long cycles = 0, compared = 0, arrived = 0;
-    const char* only = std::getenv("TAKTWERK_WALK_SEED");
-    const auto seeds = static_cast<unsigned>(property_cases(usual));
-    const unsigned first = only ? static_cast<unsigned>(std::strtoul(only, nullptr, 10)) : 1;
-    const char* most = std::getenv("TAKTWERK_WALK_FAILURES");
-    int failures = most ? std::atoi(most) : 1;
-    for (unsigned seed = first; seed <= (only ? first : seeds) && failures > 0; ++seed) {
-        MachineWalk walk(seed, counts);
-        walk.logs = only != nullptr;
-        const auto wrong = walk.run(length);
-        if (!wrong.empty()) {
-            ADD_FAILURE() << "seed " << seed << "\n" << wrong << walk.log();
-            --failures;
-        }
-        cycles += walk.cycles();
-        compared += walk.compared;
-        arrived += walk.arrived;
-    }
+    const auto walked = taktwerk::test::walk_seeds(
+        usual, length, [&](unsigned seed) { return MachineWalk(seed, counts); },
+        [&](MachineWalk& walk) {
+            cycles += walk.cycles();
+            compared += walk.compared;
+            arrived += walk.arrived;
+        });
     std::printf("%ld cycles of axes; in %ld the motion was compared, in %ld what arrived\n", cycles, compared, arrived);
-    if (only || HasFailure()) return;
+    if (walked.one_alone || HasFailure()) return;
     EXPECT_GT(cycles, 100'000);
     EXPECT_GT(compared, cycles / 3);
     EXPECT_GT(arrived, cycles / 2);

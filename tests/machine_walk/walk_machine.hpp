@@ -5,6 +5,7 @@
 
 #include "programs/api/abi.hpp"
 #include "tests/axes/axis/walk_axes.hpp"
+#include "tests/machines/add_program.hpp"
 #include "tests/machines/plain_machine.hpp"
 
 namespace taktwerk::runtime::testing {
@@ -79,15 +80,7 @@ inline MachineConfig walk_machine(axes::test::Dice& dice, const ProgramEntry* (*
     turning.limits.position_max = std::numeric_limits<double>::infinity();
     turning.homing.kind = axes::HomingKind::set_here;
     if (program == nullptr) return config;
-    ProgramConfig code;
-    code.name = "walker";
-    code.entry = program;
-    code.autostart = true;
-    config.programs.push_back(code);
-    TaskConfig task;
-    task.name = "main";
-    task.program = "walker";
-    config.tasks.push_back(task);
+    add_program(config, "walker", program);
     config.start_mode = Mode::automatic;
     return config;
 }

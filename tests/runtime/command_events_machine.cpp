@@ -90,15 +90,7 @@ struct CommandEventsOf : ::testing::Test {
     }
     static MachineConfig two_programs() {
         auto config = with_program(1, &entry_of<Mover>);
-        ProgramConfig second;
-        second.name = "q";
-        second.entry = &entry_of<Rival>;
-        second.autostart = true;
-        config.programs.push_back(second);
-        TaskConfig task;
-        task.name = "main";
-        task.program = "q";
-        config.tasks.push_back(task);
+        add_program(config, "q", &entry_of<Rival>);
         return config;
     }
     std::string_view block(const CommandGiver& giver) { return m().machine->layout().block_at(giver.block); }

@@ -137,7 +137,7 @@ TEST(LevelsRecorded, EachIsOneCommandOfNobodyInTheOrderInWhichTheCycleTookThem) 
 
 // --- a program's axis ------------------------------------------------------------------------------------------------------------------
 
-class Mover final : public Idle {
+class Mover : public Idle {
 public:
     AxisRef x;
     fb::MC_Power power;
@@ -168,31 +168,16 @@ TEST(LevelsOfPrograms, AProgramsAxisIsSparedByAJogLetGoAndStoppedByAStop) {
 }
 
 /// Its start() takes long: what happens meanwhile happens in there.
-class SlowStarter final : public Idle {
+class SlowStarter final : public Mover {
 public:
-    AxisRef x;
-    fb::MC_Power power;
-    fb::MC_MoveVelocity move;
     inline static std::function<void()> meanwhile;
     inline static int ended = 0;
-    void declare(Declaration& d) override {
-        x = d.axis("x");
-        d.task<&SlowStarter::run>("main");
-    }
     void start() override {
         power = {};
         move = {};
         if (meanwhile) meanwhile();
     }
     void stop() override { ++ended; }
-    void run(TaskContext& ctx) {
-        power.Axis = move.Axis = x;
-        power.Enable = true;
-        power(ctx);
-        move.Velocity = 50;
-        move.Execute = power.Status;
-        move(ctx);
-    }
 };
 
 struct StopWhileStarting : ::testing::Test {

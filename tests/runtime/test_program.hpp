@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "programs/api/abi.hpp"
+#include "tests/machines/add_program.hpp"
 #include "tests/runtime/test_machine.hpp"
 
 namespace taktwerk::runtime::testing {
@@ -24,16 +25,7 @@ const ProgramEntry* entry_of() {
 /// Program "p" with task "main", started by itself.
 inline MachineConfig with_program(std::size_t axes, const ProgramEntry* (*entry)(), std::uint16_t divisor = 1) {
     auto config = machine_config(axes);
-    ProgramConfig program;
-    program.name = "p";
-    program.entry = entry;
-    program.autostart = true;
-    config.programs.push_back(program);
-    TaskConfig task;
-    task.name = "main";
-    task.program = "p";
-    task.divisor = divisor;
-    config.tasks.push_back(task);
+    add_program(config, "p", entry, divisor);
     config.start_mode = Mode::automatic;
     return config;
 }

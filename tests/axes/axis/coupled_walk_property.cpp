@@ -3,10 +3,8 @@
 //
 // A failure names its seed; TAKTWERK_WALK_SEED=<seed> runs that walk alone and tells all that was asked in it.
 
-#include <cstdlib>
-
 #include "tests/axes/axis/coupled_walk.hpp"
-#include "tests/property_cases.hpp"
+#include "tests/walk_seeds.hpp"
 
 namespace taktwerk::axes::test {
 namespace {
@@ -44,30 +42,19 @@ void expect_all_seen(const WalkCounts& counts, long walks) {
 
 TEST(CoupledWalks, KeepEveryRule) {
     WalkCounts counts;
-    long walks = 0, cycles = 0, compared = 0;
-    const char* only = std::getenv("TAKTWERK_WALK_SEED");
-    const auto seeds = static_cast<unsigned>(property_cases(usual));
-    const unsigned first = only ? static_cast<unsigned>(std::strtoul(only, nullptr, 10)) : 1;
-    const char* most = std::getenv("TAKTWERK_WALK_FAILURES");
-    int failures = most ? std::atoi(most) : 1;
-    for (unsigned seed = first; seed <= (only ? first : seeds) && failures > 0; ++seed) {
-        CoupledWalk walk(seed, counts);
-        walk.logs = only != nullptr;
-        const auto wrong = walk.run(length);
-        if (!wrong.empty()) {
-            ADD_FAILURE() << "seed " << seed << "\n" << wrong << walk.log();
-            --failures;
-        }
-        ++walks;
-        cycles += walk.cycles() * static_cast<long>(walk.rig().axes.size());
-        for (const auto& oracle : walk.rig().oracles) compared += oracle.compared();
-    }
-    std::printf("seeds %u to %u: %ld cycles of axes, in %ld of them the motion was compared\n", first,
-                first + static_cast<unsigned>(walks) - 1, cycles, compared);
-    if (only || HasFailure()) return;
+    long cycles = 0, compared = 0;
+    const auto walked = taktwerk::test::walk_seeds(
+        usual, length, [&](unsigned seed) { return CoupledWalk(seed, counts); },
+        [&](CoupledWalk& walk) {
+            cycles += walk.cycles() * static_cast<long>(walk.rig().axes.size());
+            for (const auto& oracle : walk.rig().oracles) compared += oracle.compared();
+        });
+    std::printf("seeds %u to %u: %ld cycles of axes, in %ld of them the motion was compared\n", walked.first,
+                walked.first + static_cast<unsigned>(walked.walks) - 1, cycles, compared);
+    if (walked.one_alone || HasFailure()) return;
     EXPECT_GT(compared, cycles / 2);
     EXPECT_GT(cycles, 100'000);
-    expect_all_seen(counts, walks);
+    expect_all_seen(counts, walked.walks);
 }
 
 }  // namespace
