@@ -36,8 +36,10 @@ constexpr OperatorWords operator_words[] = {
      "an emergency stop holds, the axis stands on the limit switch of this direction, or a program forbids this direction; with both limit "
      "switches on their wiring or polarity is wrong",
      "Release the emergency stop, or move the other way: `taktwerk monitor` shows limit- and limit+ of {}."},
-    {axes::ErrorId::drive_not_ready, "the drive is not reachable over the bus, has no supply, or the file leaves it out (`disabled: true`)",
-     "Check bus cable and supply; `taktwerk monitor` shows whether {} is offline."},
+    {axes::ErrorId::drive_not_ready,
+     "its drive is offline: the bus or the serial line does not reach it, it has no supply, or the file leaves it out (`disabled: true`)",
+     "Check cable and supply, on a serial line also station, baud and format; `taktwerk monitor` shows whether {} is offline, and an alarm "
+     "why."},
     {axes::ErrorId::state_forbids, "it is stopping or homing, or something holds it",
      "Wait until it stands; `taktwerk monitor` shows what {} does."},
     {axes::ErrorId::queue_full, "too many commands wait for it", "Wait until {} stands, then give it again."},

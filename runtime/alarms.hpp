@@ -24,13 +24,15 @@ enum class MachineAlarm : AlarmId {
     axis_of_two_programs = 0x6011,
     undeclared_use = 0x6012,
     start_withdrawn = 0x6013,
+    drive_silent = 0x6014,
+    drive_not_ready_on_line = 0x6015,
 };
 /// First number of emergency_stop: nobody pressed it, the slave with its input is not exchanged.
 inline constexpr double emergency_stop_unread = 1;
 
 [[nodiscard]] constexpr AlarmId id(MachineAlarm alarm) noexcept { return static_cast<AlarmId>(alarm); }
 
-inline constexpr std::array<AlarmInfo, 15> machine_alarms{{
+inline constexpr std::array<AlarmInfo, 17> machine_alarms{{
     {id(MachineAlarm::emergency_stop), "emergency_stop", "Emergency stop: the axes stop along their ramps, then power goes off",
      "急停:各轴沿减速斜坡停止,随后断开动力", "The emergency stop button is pressed, or its circuit is open",
      "Release the button, `taktwerk reset`, then enable again or `taktwerk start`", ResetRule::acknowledge, Reaction::power_off,
@@ -148,6 +150,27 @@ inline constexpr std::array<AlarmInfo, 15> machine_alarms{{
      "Its start was given first (or it starts by itself), and what was given before a stop moves nothing behind it",
      "When nobody is in danger: `taktwerk reset`, then `taktwerk start`",
      ResetRule::acknowledge,
+     Reaction::warn,
+     {}},
+    {id(MachineAlarm::drive_silent),
+     "drive_silent",
+     "The drive at station {a} of its serial line has not answered for {b} s",
+     "串行线路上站号 {a} 的驱动器已 {b} 秒无应答",
+     "It has no supply; its port is closed or it has another station (Pr181; -1, as delivered, is closed), another baud rate (Pr182) or "
+     "format (Pr183) than the machine file says; the cable is off, A and B are exchanged, or `device` is another port",
+     "At the drive's panel compare Pr181 with `station`, Pr182 with `baud`, Pr183 with `format` (what was changed there counts when it is "
+     "saved and the drive was switched off and on); then its supply, the cable and `device`",
+     ResetRule::self_clearing,
+     Reaction::warn,
+     {}},
+    {id(MachineAlarm::drive_not_ready_on_line),
+     "drive_not_ready_on_line",
+     "The drive at station {a} of its serial line answers, but has not become ready for {b} s",
+     "串行线路上站号 {a} 的驱动器有应答,但 {b} 秒内未就绪",
+     "It refuses to be stopped or disabled over the line, most of its answers are lost or damaged, or the line has too many drives for its "
+     "baud rate",
+     "Check cable, shield and termination of the line, raise `baud` (and Pr182), and see whether two drives have the same station",
+     ResetRule::self_clearing,
      Reaction::warn,
      {}},
 }};

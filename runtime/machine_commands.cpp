@@ -260,6 +260,8 @@ Machine::Impl::Verdict Machine::Impl::power(const OperatorCommand& command, std:
     if (view.owner != command.owner) return verdict(ErrorId::owned_by_other);
     if (command.flag && emergency) return verdict(ErrorId::interlocked);
     if (command.flag && view.state == AxisState::ErrorStop) return verdict(ErrorId::in_error_stop);
+    // Else the wish would wait, and the motor be switched on whenever the drive comes. A program's wish waits: it sees what it waits for.
+    if (command.flag && !view.online) return verdict(ErrorId::drive_not_ready);
     operator_power[axis].held = command.flag;
     if (!command.flag) axes[axis].shut_down();  // ramps down first
     return {};

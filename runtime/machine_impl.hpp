@@ -42,6 +42,9 @@ struct Machine::Impl {
     axes::xp200::Xp200Drive* serial_drive(const AxisBinding& binding);
     void hold_watchdog_outputs() noexcept;
     void record_samples() noexcept;
+    void watch_serial_drives() noexcept;
+    /// " of line 'rs485' (/dev/ttyUSB0, 38400 baud, 8E1)"; for words, not real-time.
+    [[nodiscard]] std::string line_of(std::size_t axis) const;
 
     // machine_tasks.cpp
     void run_tasks() noexcept;
@@ -134,6 +137,12 @@ struct Machine::Impl {
     std::vector<std::unique_ptr<axes::xp200::DriveLine>> lines;  // as config.serial; nullptr: nobody needs it
     std::vector<axes::xp200::Xp200Drive*> serial_drives;         // those of `ports` that are on a line
     std::vector<std::uint32_t> recorded_samples;                 // number of the newest one, per serial drive
+    struct SerialWatch {
+        std::uint16_t axis = 0;
+        std::uint8_t station = 0;
+        Instant online{};  // last; before that since when it is waited for
+    };
+    std::vector<SerialWatch> serial_watches;  // per serial drive
     std::vector<WatchdogOutput> watchdog_outputs;
     axes::MotionTables tables;
     std::vector<axes::Axis> axes;

@@ -1,7 +1,10 @@
 // The drives on serial lines: who stands on which, the outputs that watch over them, what they say in the recording.
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
+#include "axes/drives/xp200/line_codes.hpp"
 #include "runtime/inbox_record.hpp"
 #include "runtime/machine_impl.hpp"
 
@@ -16,6 +19,11 @@ const AxisBinding* axis_on(const MachineConfig& config, const SerialLineConfig& 
             if (!binding.drive.empty() && !binding.axis.simulated && binding.drive == entry.drive.name) return &binding;
     return nullptr;
 }
+
+/// A drive takes 1.5 s to start (XP200 manual 4.1), and its line asks it every half second.
+constexpr Duration silent_for = std::chrono::seconds{5};
+/// Stopping it, reading and writing its settings takes about a second; on a slow line that several drives share some more.
+constexpr Duration not_ready_for = std::chrono::seconds{30};
 
 }  // namespace
 
@@ -48,6 +56,7 @@ axes::xp200::Xp200Drive* Machine::Impl::serial_drive(const AxisBinding& binding)
             lines[i]->add(*drive);
             serial_drives.push_back(drive.get());
             recorded_samples.push_back(0);
+            serial_watches.push_back({static_cast<std::uint16_t>(ports.size()), entry.drive.station, Instant{}});
             if (const int output = io.find(IoDirection::output, entry.watchdog_output); output >= 0)
                 watchdog_outputs.push_back({static_cast<std::size_t>(output), drive.get()});
             ports.push_back(std::move(drive));
@@ -60,6 +69,29 @@ axes::xp200::Xp200Drive* Machine::Impl::serial_drive(const AxisBinding& binding)
 /// it falls by the terminal's own SM watchdog.
 void Machine::Impl::hold_watchdog_outputs() noexcept {
     for (const auto& watchdog : watchdog_outputs) io.outputs()[watchdog.output] = watchdog.drive->supervised(now) ? 1 : 0;
+}
+
+/// An axis whose drive was never heard has nothing to lose, and no alarm of its own; nor has one without power whose drive falls silent.
+void Machine::Impl::watch_serial_drives() noexcept {
+    for (std::size_t i = 0; i < serial_drives.size(); ++i) {
+        const auto& sample = serial_drives[i]->newest();
+        auto& watch = serial_watches[i];
+        if (sample.online || watch.online == Instant{}) watch.online = now;
+        const auto since_heard = now - std::max(sample.heard, watch.online), since_online = now - watch.online;
+        if (since_heard >= silent_for)
+            raise(MachineAlarm::drive_silent, AlarmSource::axis, watch.axis, watch.station, to_seconds(silent_for));
+        else if (since_online >= not_ready_for)
+            raise(MachineAlarm::drive_not_ready_on_line, AlarmSource::axis, watch.axis, watch.station, to_seconds(not_ready_for));
+    }
+}
+
+std::string Machine::Impl::line_of(std::size_t axis) const {
+    for (const auto& line : config.serial)
+        for (const auto& entry : line.drives)
+            if (axis < config.axes.size() && config.axes[axis].drive == entry.drive.name)
+                return fmt::format(" of line '{}' ({}, {} baud, {})", line.name, line.device.empty() ? "simulated" : line.device,
+                                   line.settings.baud, axes::xp200::format_text(line.settings));
+    return {};
 }
 
 void Machine::Impl::record_samples() noexcept {

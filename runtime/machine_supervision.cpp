@@ -161,6 +161,7 @@ void Machine::Impl::supervise(Instant, const CycleTick& tick) noexcept {
     watch_cycle(tick);
     watch_programs();
     raise_bus_alarms();
+    watch_serial_drives();
     for (std::size_t i = 0; i < axes.size(); ++i)
         if (const auto& rivals = requests.rivals(i); now < rivals.until)
             raise(MachineAlarm::axis_of_two_programs, AlarmSource::axis, static_cast<std::uint16_t>(i), rivals.winner, rivals.loser);

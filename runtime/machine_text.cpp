@@ -151,6 +151,13 @@ AlarmText Machine::describe(const AlarmFact& fact) const {
         out.chinese = "驱动器已退出总线运行状态";
     }
 
+    if (fact.id == id(MachineAlarm::drive_silent) || fact.id == id(MachineAlarm::drive_not_ready_on_line)) {
+        constexpr std::string_view somewhere = " of its serial line";
+        if (const auto at = out.english.find(somewhere); at != std::string::npos)
+            out.english.replace(at, somewhere.size(), m.line_of(fact.index));
+        out.chinese += m.line_of(fact.index);
+    }
+
     // Not the host, another process or its power saving: a task of the machine's own.
     if (fact.id == id(MachineAlarm::cycle_overrun) && fact.source == AlarmSource::task) {
         const auto& task = *find_alarm(machine_alarms, id(MachineAlarm::base_task_overrun));

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "axes/drives/xp200/line_codes.hpp"
 #include "axes/drives/xp200/registers.hpp"
 #include "axes/drives/xp200/settings.hpp"
 #include "core/nearest_name.hpp"
@@ -14,8 +15,7 @@ namespace taktwerk::runtime {
 
 namespace {
 
-constexpr std::uint32_t bauds[] = {4800, 9600, 19200, 38400};  // XP200 manual 9.2, Pr182
-constexpr int highest_station = 247;                           // 9.2
+constexpr int highest_station = 247;  // XP200 manual 9.2
 
 std::string listed(const std::vector<std::string>& names) {
     std::string out;
@@ -54,7 +54,7 @@ private:
         if (!line.device.empty() && !devices_.insert(line.device).second)
             add("serial.device_taken", here + ".device", fmt::format("{} already belongs to another line", line.device),
                 "name the other port");
-        if (std::find(std::begin(bauds), std::end(bauds), line.settings.baud) == std::end(bauds))
+        if (axes::xp200::baud_code(line.settings.baud) < 0)
             add("serial.baud", here + ".baud", fmt::format("{} baud is no rate of an XP200", line.settings.baud),
                 "choose 4800, 9600, 19200 or 38400, as Pr182 says");
         std::set<int> stations;
@@ -91,6 +91,7 @@ private:
         for (const auto& parameter : drive.parameters) {
             limits = limits || parameter.number == axes::xp200::pr::limit_use;
             check_parameter(drive, parameter, here);
+            check_against_line(line, drive, parameter, here);
         }
         if (!limits)
             add("serial.limit_policy", here + ".parameters",
@@ -116,6 +117,45 @@ private:
             add("serial.parameter_owned", subject,
                 fmt::format("{} is what the runtime commands the motor by, and writes itself", row->name),
                 "remove it; the axis' `limits` say how fast and how hard");
+    }
+
+    /// What the drive needs to be reached at all: it counts after a restart, and then nobody hears it (9.2, 9.3).
+    void check_against_line(const SerialLineConfig& line, const axes::xp200::DriveConfig& drive,
+                            const axes::xp200::ParameterSetting& wanted, const std::string& here) {
+        namespace pr = axes::xp200::pr;
+        const auto& settings = line.settings;
+        std::int64_t needed = wanted.value;
+        std::string key, meant;
+        switch (wanted.number) {
+            case pr::station:
+                needed = drive.station, key = fmt::format("its `station` is {}", needed), meant = station_meant(wanted.value);
+                break;
+            case pr::baud:
+                needed = axes::xp200::baud_code(settings.baud);
+                key = fmt::format("the line's `baud` is {}", settings.baud);
+                meant = meant_by(axes::xp200::baud_rates, wanted.value, " baud");
+                break;
+            case pr::format:
+                needed = axes::xp200::format_code(settings);
+                key = fmt::format("the line's `format` is {}", axes::xp200::format_text(settings));
+                meant = meant_by(axes::xp200::character_formats, wanted.value, "");
+                break;
+            default: return;
+        }
+        if (needed < 0 || meant.empty() || needed == wanted.value) return;  // no code at all: said already
+        add("serial.parameter_against_line", fmt::format("{}.parameters.Pr{:03}", here, wanted.number),
+            fmt::format("{} {}, but {}: after its next restart nobody would hear the drive", wanted.value, meant, key),
+            fmt::format("write {}, or leave it away: what the drive is set to at its panel has to be what stands at the line", needed));
+    }
+
+    static std::string station_meant(std::int64_t value) {
+        if (value < -1 || value > highest_station) return {};
+        return value == -1 ? "closes the port" : "is another station";
+    }
+    template <class Table>
+    static std::string meant_by(const Table& table, std::int64_t code, std::string_view unit) {
+        if (code < 0 || code >= static_cast<std::int64_t>(table.size())) return {};
+        return fmt::format("means {}{}", table[static_cast<std::size_t>(code)], unit);
     }
 
     /// The motor on, or an input as if it were switched (5.4.1, 5.4.2); 0 is nothing.

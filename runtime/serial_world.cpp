@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "axes/drives/xp200/line_codes.hpp"
 #include "axes/drives/xp200/registers.hpp"
 
 namespace taktwerk::runtime {
@@ -11,12 +12,6 @@ namespace pr = axes::xp200::pr;
 namespace {
 
 constexpr int emergency_open = -15;  // EMG, on while the contact is open (XP200 manual 5.2, 5.4.2)
-
-std::int64_t baud_code(std::uint32_t baud) { return baud == 4800 ? 0 : baud == 9600 ? 1 : baud == 38400 ? 3 : 2; }  // Pr182 (9.2)
-std::int64_t format_code(const modbus::LineSettings& line) {                                                        // Pr183 (9.2)
-    const int parity = line.parity == modbus::Parity::none ? 0 : line.parity == modbus::Parity::even ? 1 : 2;
-    return parity + (line.stop_bits == 2 ? 3 : 0);
-}
 
 }  // namespace
 
@@ -40,8 +35,8 @@ void SerialWorld::build(const MachineConfig& config, const std::vector<axes::sim
             auto& parameters = drive->model.servo().parameters();
             // As its commissioner leaves it (9.2): on this line, in speed control, with what the machine file asks for.
             parameters.commission(pr::station, entry.drive.station);
-            parameters.commission(pr::baud, baud_code(line_config.settings.baud));
-            parameters.commission(pr::format, format_code(line_config.settings));
+            parameters.commission(pr::baud, axes::xp200::baud_code(line_config.settings.baud));
+            parameters.commission(pr::format, axes::xp200::format_code(line_config.settings));
             parameters.commission(pr::control_mode, 1);
             parameters.commission(pr::encoder_lines, plant.counts_per_revolution / 4);
             for (const auto& parameter : entry.drive.parameters) {
