@@ -121,7 +121,7 @@ TEST(AbsentDrive, WhatAnswersAndNeverGetsReadyIsSaidInOtherWords) {
         ASSERT_FALSE(m.axis(u).online) << "the case under test";
         ASSERT_FALSE(m.has_alarm(id(MachineAlarm::drive_silent)));
         said = m.has_alarm(id(MachineAlarm::drive_not_ready_on_line));
-        if (i < 42) ASSERT_FALSE(said) << "within 29 s";
+        EXPECT_TRUE(i >= 42 || !said) << "within 29 s";
     }
     EXPECT_TRUE(said) << m.alarms();
 }
