@@ -46,6 +46,8 @@ bool of_a_drive(const AlarmFact& fact) {
            (fact.id == axes::id(axes::AxisAlarm::drive_fault) || fact.id == axes::id(axes::AxisAlarm::drive_warning));
 }
 
+bool same_alarm(const AlarmFact& a, const AlarmFact& b) { return a.id == b.id && a.source == b.source && a.index == b.index; }
+
 /// The bus says at once that slaves fell, and some milliseconds later why, and how many.
 bool bus_tells_more(const AlarmFact& before, const AlarmFact& now) {
     switch (now.id) {
@@ -93,17 +95,15 @@ void MachineLog::say_alarm(Instant now, const std::string& event, const AlarmTex
     sink_(std::move(lines));
 }
 
-void MachineLog::note(Instant now, const AlarmFact& fact, bool is_new) {
-    const auto known = std::find_if(notes_.begin(), notes_.end(), [&](const Noted& n) {
-        return n.fact.id == fact.id && n.fact.source == fact.source && n.fact.index == fact.index;
-    });
+void MachineLog::note(Instant now, const AlarmFact& fact, bool is_new, const std::string& event) {
+    const auto known = std::find_if(notes_.begin(), notes_.end(), [&](const Noted& n) { return same_alarm(n.fact, fact); });
     const bool worse = known != notes_.end() && std::abs(fact.a) > 2 * std::abs(known->fact.a);
     if (!is_new && !worse) return;
     const auto words = machine_.describe(fact);
     if (ends_the_run(words)) return;
     if (known == notes_.end()) {
         notes_.push_back({fact, now, 0});
-        say_alarm(now, "note", words);
+        say_alarm(now, event, words);
         return;
     }
     if (!worse && now - known->said_at < notes_apart) {
@@ -112,7 +112,7 @@ void MachineLog::note(Instant now, const AlarmFact& fact, bool is_new) {
     }
     const auto before = known->unsaid == 0 ? std::string{} : fmt::format(" ({} more since the last line)", known->unsaid);
     *known = {fact, now, 0};
-    say(now, "note", fmt::format("{}: {}{}", words.source, words.english, before));
+    say(now, event, fmt::format("{}: {}{}", words.source, words.english, before));
 }
 
 /// What the watch of the bus did: who left OP and why, who is back.
@@ -126,13 +126,12 @@ void MachineLog::bus_notes(Instant now) {
 }
 
 void MachineLog::alarms(Instant now, const Snapshot& s) {
-    const auto same = [](const AlarmFact& a, const AlarmFact& b) { return a.id == b.id && a.source == b.source && a.index == b.index; };
     for (std::size_t i = 0; i < s.alarm_count; ++i) {
         const auto& alarm = s.alarms[i];
         Known* known = nullptr;
         for (auto& k : known_)
-            if (same(k.fact, alarm.fact)) known = &k;
-        const bool is_new = !known || (alarm.standing && !known->standing) || alarm.count != known->count;
+            if (same_alarm(k.fact, alarm.fact)) known = &k;
+        const bool is_new = !known || (alarm.standing && !known->standing) || alarm.count != known->count || alarm.since != known->since;
         const bool other_numbers = known && (known->fact.a != alarm.fact.a || known->fact.b != alarm.fact.b);
         if (!known) {
             known_.push_back({});
@@ -140,6 +139,8 @@ void MachineLog::alarms(Instant now, const Snapshot& s) {
         }
         const auto before = known->fact;
         known->fact = alarm.fact;
+        known->since = alarm.since;
+        known->is_note = alarm.reaction == Reaction::none;
         known->standing = alarm.standing;
         known->count = alarm.count;
         if (alarm.reaction == Reaction::none) {
@@ -158,13 +159,25 @@ void MachineLog::alarms(Instant now, const Snapshot& s) {
     }
     std::erase_if(known_, [&](const Known& k) {
         for (std::size_t i = 0; i < s.alarm_count; ++i)
-            if (same(s.alarms[i].fact, k.fact)) return false;
+            if (same_alarm(s.alarms[i].fact, k.fact)) return false;
         const auto words = machine_.describe(k.fact);
-        const bool a_note = std::any_of(notes_.begin(), notes_.end(), [&](const Noted& n) { return same(n.fact, k.fact); });
-        if (a_note || ends_the_run(words)) return true;
+        if (k.is_note || ends_the_run(words)) return true;
         say(now, "gone", fmt::format("{}: {}", words.source, words.name));
         return true;
     });
+}
+
+void MachineLog::passed_alarms(Instant now, const Snapshot& s) {
+    const auto& passed = s.passed_alarms;
+    if (passed.oldest() > next_passed_)
+        say(now, "missed", fmt::format("{} alarms came and went too fast to be shown", passed.oldest() - next_passed_));
+    for (auto number = std::max(next_passed_, passed.oldest()); number < passed.noted(); ++number) {
+        const auto& alarm = passed.at(number);
+        const bool was_seen = std::any_of(known_.begin(), known_.end(),
+                                          [&](const Known& k) { return same_alarm(k.fact, alarm.fact) && k.since == alarm.since; });
+        if (!was_seen) note(now, alarm.fact, true, alarm.reaction == Reaction::none ? "note" : "ALARM");
+    }
+    next_passed_ = passed.noted();
 }
 
 /// Commands that were refused, or ended early.
@@ -209,7 +222,8 @@ void MachineLog::step(Instant now, const Snapshot* snapshot) {
                         s.simulated ? ", SIMULATED bus" : ""));
     }
     bus_notes(now);
-    alarms(now, s);  // first: what follows below, follows from them
+    passed_alarms(now, s);  // first: what follows below, follows from them
+    alarms(now, s);
     if (s.mode != mode_) say(now, "mode", std::string(text(s.mode)));
     mode_ = s.mode;
     if (s.emergency_stop != emergency_) {

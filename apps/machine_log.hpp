@@ -28,13 +28,16 @@ private:
     void bus_notes(Instant now);
     void alarms(Instant now, const runtime::Snapshot& snapshot);
     /// An alarm to which the machine does not react: it is information, and it may come again each second.
-    void note(Instant now, const AlarmFact& fact, bool is_new);
+    void note(Instant now, const AlarmFact& fact, bool is_new, const std::string& event = "note");
+    /// What came and went between two looks.
+    void passed_alarms(Instant now, const runtime::Snapshot& snapshot);
     void events(Instant now, const runtime::Snapshot& snapshot);
     void say_alarm(Instant now, const std::string& event, const runtime::AlarmText& words);
 
     struct Known {
         AlarmFact fact;
-        bool standing = false;
+        Instant since{};
+        bool standing = false, is_note = false;
         std::uint32_t count = 0;
         std::string said;  // in English
     };
@@ -55,6 +58,7 @@ private:
     std::vector<Noted> notes_;
     std::uint64_t notes_of_bus_ = 0;  // how many were said
     std::uint64_t last_event_ = 0;    // its number
+    std::uint64_t next_passed_ = 0;   // likewise
     std::uint64_t events_dropped_ = 0;
     runtime::Mode mode_ = runtime::Mode::manual;
     bool first_ = true, emergency_ = false;

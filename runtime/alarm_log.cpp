@@ -87,8 +87,12 @@ void AlarmLog::end_cycle(Instant now) noexcept {
         const bool over = alarm.standing && !rules_[i].raised;
         alarm.standing = rules_[i].raised;
         if (over && rules_[i].reset != ResetRule::self_clearing) alarm.acknowledged = false;
-        if (!alarm.standing && (rules_[i].reset == ResetRule::self_clearing || rules_[i].cleared)) remove(i);
-        else ++i;
+        if (alarm.standing || (rules_[i].reset != ResetRule::self_clearing && !rules_[i].cleared)) {
+            ++i;
+            continue;
+        }
+        if (now - alarm.since < PassedAlarms::moment) passed_.note({alarm.fact, alarm.reaction, alarm.since, now});
+        remove(i);
     }
 }
 

@@ -40,6 +40,8 @@ public:
     [[nodiscard]] const ActiveAlarm* find(AlarmId id) const noexcept;
     /// In order of their appearance; of those that appear together, causes before what follows from them.
     [[nodiscard]] std::span<const ActiveAlarm> alarms() const noexcept { return {alarms_.data(), count_}; }
+    /// Those that left the list by themselves, so soon that a reader may have missed them.
+    [[nodiscard]] const PassedAlarms& passed() const noexcept { return passed_; }
     /// Conditions of the cycle before that found no place.
     [[nodiscard]] std::uint32_t dropped() const noexcept { return dropped_; }
 
@@ -56,6 +58,7 @@ private:
     std::array<Rule, capacity> rules_{};
     std::size_t count_ = 0;
     std::uint32_t dropped_ = 0;
+    PassedAlarms passed_;
 };
 
 }  // namespace taktwerk::runtime

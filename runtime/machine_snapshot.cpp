@@ -47,6 +47,7 @@ void Machine::Impl::take_snapshot() noexcept {
     const auto alarms = log.alarms();
     s.alarm_count = alarms.size();
     std::copy(alarms.begin(), alarms.end(), s.alarms.begin());
+    if (s.passed_alarms.noted() != log.passed().noted()) s.passed_alarms = log.passed();
     const auto& events = requests.events();
     if (s.event_revision != events.revision()) {
         s.event_revision = events.revision();

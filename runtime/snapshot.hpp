@@ -15,6 +15,7 @@
 #include "programs/api/program.hpp"
 #include "runtime/command_events.hpp"
 #include "runtime/machine_config.hpp"
+#include "runtime/passed_alarms.hpp"
 
 namespace taktwerk::runtime {
 
@@ -67,6 +68,7 @@ struct Snapshot {
     std::vector<TaskStatistics> tasks;
     std::vector<ActiveAlarm> alarms;  ///< capacity fixed; the first alarm_count are valid, newest last
     std::size_t alarm_count = 0;
+    PassedAlarms passed_alarms;
     std::array<CommandEvent, CommandEvents::capacity> events{};  ///< the first event_count are valid, newest last
     std::size_t event_count = 0;
     std::uint64_t event_revision = 0, events_dropped = 0;

@@ -36,6 +36,32 @@ TEST_F(Log, ASelfClearingAlarmGoesWithItsCause) {
     EXPECT_TRUE(log.alarms().empty());
 }
 
+// Who looks now and then would not know that it was there.
+TEST_F(Log, OneThatGoesAtOnceIsKeptAmongThosePassed) {
+    cycle({fact(1)});
+    EXPECT_EQ(log.passed().noted(), 0u) << "it still holds";
+    cycle({});
+    ASSERT_EQ(log.passed().noted(), 1u);
+    const auto& passed = log.passed().at(0);
+    EXPECT_EQ(passed.fact.id, 1);
+    EXPECT_EQ(passed.reaction, Reaction::warn);
+    EXPECT_EQ(passed.gone - passed.since, 1ms);
+
+    cycle({fact(2)});
+    now += PassedAlarms::moment;
+    cycle({fact(2)});
+    cycle({});
+    EXPECT_EQ(log.passed().noted(), 1u) << "everybody has seen it";
+
+    for (std::uint16_t i = 0; i < PassedAlarms::capacity + 2; ++i) {
+        cycle({fact(3, i)});
+        cycle({});
+    }
+    EXPECT_EQ(log.passed().noted(), 1 + PassedAlarms::capacity + 2);
+    EXPECT_EQ(log.passed().oldest(), 3u);
+    EXPECT_EQ(log.passed().at(log.passed().oldest()).fact.index, 2);
+}
+
 // Slaves are named some milliseconds later, axes stop in the next cycle: what a person reads first is what it came from.
 TEST_F(Log, CausesStandBeforeWhatFollowsFromThem) {
     const AlarmFact axis{0x3002, AlarmSource::axis, 0, 0, 0}, stopped{0x3010, AlarmSource::axis, 1, 0, 0};
