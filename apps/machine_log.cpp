@@ -200,6 +200,23 @@ void MachineLog::events(Instant now, const Snapshot& s) {
     events_dropped_ = s.events_dropped;
 }
 
+/// Whoever reads "released" looks for the person who did it: an input that becomes readable again has nobody.
+void MachineLog::emergency(Instant now, const Snapshot& s) {
+    const bool unread =
+        std::any_of(s.alarms.begin(), s.alarms.begin() + static_cast<std::ptrdiff_t>(s.alarm_count), [](const auto& alarm) {
+            return alarm.fact.id == id(MachineAlarm::emergency_stop) && alarm.standing && alarm.fact.a == emergency_stop_unread;
+        });
+    const auto before = emergency_;
+    emergency_ = !s.emergency_stop ? Emergency::none : unread ? Emergency::unread : Emergency::pressed;
+    if (emergency_ == before) return;
+    const bool was_unread = before == Emergency::unread;
+    switch (emergency_) {
+        case Emergency::unread: return say(now, "E-STOP", "cannot be read: counts as pressed");
+        case Emergency::pressed: return say(now, "E-STOP", was_unread ? "can be read again: it is pressed" : "pressed");
+        case Emergency::none: return say(now, "E-STOP", was_unread ? "can be read again: it is not pressed" : "released");
+    }
+}
+
 void MachineLog::step(Instant now, const Snapshot* snapshot) {
     if (!snapshot) {
         const auto progress = machine_.bus_progress();
@@ -226,14 +243,7 @@ void MachineLog::step(Instant now, const Snapshot* snapshot) {
     alarms(now, s);
     if (s.mode != mode_) say(now, "mode", std::string(text(s.mode)));
     mode_ = s.mode;
-    if (s.emergency_stop != emergency_) {
-        const bool unread =
-            std::any_of(s.alarms.begin(), s.alarms.begin() + static_cast<std::ptrdiff_t>(s.alarm_count), [](const auto& alarm) {
-                return alarm.fact.id == id(MachineAlarm::emergency_stop) && alarm.standing && alarm.fact.a == emergency_stop_unread;
-            });
-        say(now, "E-STOP", !s.emergency_stop ? "released" : unread ? "cannot be read: counts as pressed" : "pressed");
-    }
-    emergency_ = s.emergency_stop;
+    emergency(now, s);
     for (std::size_t i = 0; i < s.axes.size(); ++i) {
         const auto& view = s.axes[i];
         // Moves come and go too fast to read: what a person wants to know is power, homing, stops and errors.

@@ -32,6 +32,7 @@ private:
     /// What came and went between two looks.
     void passed_alarms(Instant now, const runtime::Snapshot& snapshot);
     void events(Instant now, const runtime::Snapshot& snapshot);
+    void emergency(Instant now, const runtime::Snapshot& snapshot);
     void say_alarm(Instant now, const std::string& event, const runtime::AlarmText& words);
 
     struct Known {
@@ -61,7 +62,8 @@ private:
     std::uint64_t next_passed_ = 0;   // likewise
     std::uint64_t events_dropped_ = 0;
     runtime::Mode mode_ = runtime::Mode::manual;
-    bool first_ = true, emergency_ = false;
+    bool first_ = true;
+    enum class Emergency : std::uint8_t { none, pressed, unread } emergency_ = Emergency::none;
 };
 
 }  // namespace taktwerk::apps

@@ -41,14 +41,19 @@ constexpr auto all_in_op = static_cast<std::uint16_t>(AlState::op);
 /// Among these is one that a controller enters by its own restart.
 bool some_in_init(std::uint16_t states) noexcept { return (states & static_cast<std::uint16_t>(AlState::init)) != 0; }
 
+bool exchanged_alone(const Bus& bus, std::size_t slave) {
+    if (slave >= bus.plan.slaves.size() || !bus.plan.slaves[slave].unit) return false;
+    return bus.plan.units[*bus.plan.slaves[slave].unit].slaves.size() == 1;
+}
+
 }  // namespace
 
 std::vector<FaultSlave> fault_slaves(const Bus& bus) {
     std::vector<FaultSlave> slaves;
     for (const auto& slave : bus.slaves) {
-        const auto unit = slave->index < bus.plan.slaves.size() ? bus.plan.slaves[slave->index].unit : std::nullopt;
+        const auto watchdog = sm_watchdog(bus.config, *slave->config) / bus.config.cycle - 1;  // a frame may just have come when the gap began
         slaves.push_back({slave->index, FaultSlave::none, slave->config->on_loss, bus.reference == slave->index,
-                          unit && bus.plan.units[*unit].slaves.size() == 1});
+                          exchanged_alone(bus, slave->index), static_cast<std::uint32_t>(std::max<std::int64_t>(2, watchdog))});
     }
     const auto position = [&](const FaultSlave& s) { return std::size_t{bus.slaves[s.index]->found.position}; };
     std::sort(slaves.begin(), slaves.end(), [&](const FaultSlave& a, const FaultSlave& b) { return position(a) < position(b); });
@@ -66,7 +71,7 @@ std::vector<FaultSlave> fault_slaves(const Bus& bus) {
 }
 
 FaultFinder::FaultFinder(std::vector<FaultSlave> slaves, std::uint16_t expected, std::uint32_t limit)
-    : slaves_(std::move(slaves)), states_(slaves_.size()), order_(slaves_.size()), expected_(expected), limit_(limit) {
+    : slaves_(std::move(slaves)), states_(slaves_.size()), order_(slaves_.size()), expected_(expected), limit_(limit), silence_id_(alarm::frames_lost) {
     for (std::size_t i = 0; i < slaves_.size(); ++i) order_[slaves_[i].index] = i;
     facts_.reserve(facts_of_bus + facts_of_slave * slaves_.size());
 }
@@ -100,7 +105,9 @@ void FaultFinder::look(const BusCondition& bus) noexcept {
         if (slaves_[i].reference) reference_gone = states_[i].fall.now();
         raise_slave(i, unnamed > 0);
     }
-    if (bus.reference_times_missing >= reference_times_limit && !reference_gone)
+    // What no frame brings back is no fault of the clock.
+    const bool unasked = bus.lost_in_a_row > 0 || bus.gap >= bus.reference_times_missing;
+    if (bus.reference_times_missing >= reference_times_limit && !reference_gone && !unasked)
         raise(alarm::reference_clock_lost, AlarmSource::bus, 0, bus.reference_times_missing);
     if (bus.dc_difference_ns > sync_limit_ns) raise(alarm::dc_out_of_sync, AlarmSource::bus, 0, static_cast<double>(bus.dc_difference_ns));
 }
@@ -120,7 +127,7 @@ void FaultFinder::note_falls(const BusCondition& bus) noexcept {
         if (fall.cycles_down < cycles_of_a_fall) {
             ++fall.cycles_down;
             if (fall.stall == Duration{}) fall.stall = bus.stall;
-            fall.silence = fall.silence || bus.silence;
+            fall.gap = std::max(fall.gap, bus.gap);
         }
         if (seen.presence == Presence::silent && seen.age > 0) fall.restarted = true;
         if (seen.al_status_code != 0) fall.code = seen.al_status_code;
@@ -133,14 +140,28 @@ void FaultFinder::note_falls(const BusCondition& bus) noexcept {
     }
 }
 
+std::uint32_t FaultFinder::explaining_gap(std::size_t at) const noexcept {
+    constexpr std::uint32_t watchdog = 0x001B, least_gap = 2;
+    const Fall& fall = states_[at].fall;
+    const bool synchronisation = fall.read && fall.code != watchdog;
+    return std::min(limit_, synchronisation ? least_gap : slaves_[at].watchdog_cycles);
+}
+
+bool FaultFinder::stuck(const SlaveCondition& slave) noexcept {
+    return slave.presence == Presence::answers && !in_op(slave) &&
+           (slave.trouble == ReturnTrouble::other_device || (slave.trouble == ReturnTrouble::refused && slave.attempts >= attempts_limit));
+}
+
 FaultFinder::Fallen* FaultFinder::fallen_with(std::size_t at) noexcept {
     const State& state = states_[at];
     const Fall& fall = state.fall;
-    if (!fall.now() || fall.restarted || state.gone_with != FaultSlave::none || !(fall.read || stale(state))) return nullptr;
+    if (!fall.now() || fall.restarted || stuck(state.seen) || state.gone_with != FaultSlave::none || !(fall.read || stale(state))) return nullptr;
     const std::size_t policy = slaves_[at].on_loss == LossPolicy::stop_own_axes ? 1 : 0;
     const bool wanted_frames = fall.read ? for_want_of_frames(fall.code) : !fall.by_command;
     if (wanted_frames && fall.stall > Duration{}) return &starved_[policy];
-    if (wanted_frames && fall.silence) return &silenced_;
+    // Short of the limit lost frames stop nobody who may drop out; the reason of one who does stands in its own alarm.
+    const bool explained = fall.gap >= explaining_gap(at) && (policy == 0 || fall.gap >= limit_);
+    if (wanted_frames && explained) return &silenced_;
     return fall.by_command ? &commanded_[policy] : nullptr;
 }
 
@@ -152,6 +173,7 @@ void FaultFinder::raise_falls(const BusCondition& bus) noexcept {
         if (group == nullptr) continue;
         ++group->count;
         group->stall = std::max(group->stall, states_[i].fall.stall);
+        group->gap = std::max(group->gap, states_[i].fall.gap);
     }
     for (auto* group : groups) {
         if (group->count == 0) *group = {};
@@ -168,7 +190,8 @@ void FaultFinder::raise_falls(const BusCondition& bus) noexcept {
         const auto& sent = commanded_[policy];
         if (sent.count > 0) raise(commanded_ids[policy], AlarmSource::bus, 0, static_cast<double>(sent.most));
     }
-    if (silenced_.count > 0) raise(silence_id_, AlarmSource::bus, 0, silence_cycles_, static_cast<double>(silenced_.count));
+    if (silenced_.count > 0) raise(silence_id_, AlarmSource::bus, 0, silenced_.gap, static_cast<double>(silenced_.most));
+    else if (bus.gap == 0) silence_id_ = alarm::frames_lost;
 }
 
 std::size_t FaultFinder::find_lost(std::uint16_t answering) noexcept {
@@ -180,10 +203,16 @@ std::size_t FaultFinder::find_lost(std::uint16_t answering) noexcept {
     }
     // When exactly as many are not exchanged as are missing, they are the missing ones: no need to wait for the watch.
     const bool suspects_are_missing = suspect == missing;
-    for (auto& state : states_)
-        state.lost = missing > 0 && (state.seen.presence == Presence::silent || (suspects_are_missing && stale(state)));
     const std::size_t named = suspects_are_missing ? suspect : silent;
-    return missing > named ? missing - named : 0;
+    const std::size_t unnamed = missing > named ? missing - named : 0;
+    naming_for_ = missing == missing_ ? std::min(naming_for_ + 1, naming_cycles) : 0;
+    missing_ = missing;
+    naming_ = unnamed > 0 && naming_for_ < naming_cycles;
+    for (auto& state : states_) {
+        const bool gone = missing > 0 && (state.seen.presence == Presence::silent || (suspects_are_missing && stale(state)));
+        state.lost = gone && (!naming_ || state.gone_with != FaultSlave::none);
+    }
+    return unnamed;
 }
 
 void FaultFinder::form_groups() noexcept {
@@ -196,7 +225,7 @@ void FaultFinder::form_groups() noexcept {
         if (state.lost) {
             const std::size_t parent = slaves_[i].parent;
             state.gone_with = parent != FaultSlave::none && states_[parent].lost ? states_[parent].gone_with : i;
-        } else if (in_op(state.seen) && !stale(state)) {
+        } else if ((in_op(state.seen) && !stale(state)) || stuck(state.seen)) {
             state.gone_with = FaultSlave::none;
         }
         if (state.gone_with == FaultSlave::none) continue;
@@ -214,7 +243,8 @@ void FaultFinder::raise_groups() noexcept {
         const bool branch = first.largest_group > 1;
         const AlarmId id = branch ? (first.group_stops_machine ? alarm::cable_broken : alarm::branch_dropped_out)
                                   : (first.group_stops_machine ? alarm::slave_lost : alarm::slave_dropped_out);
-        raise(id, AlarmSource::slave, slaves_[i].index, branch ? static_cast<double>(first.group) : 0);
+        const auto [most, away] = std::pair{static_cast<double>(first.largest_group), static_cast<double>(first.group)};
+        raise(id, AlarmSource::slave, slaves_[i].index, branch ? most : 0, branch ? away : 0);
     }
 }
 
@@ -222,7 +252,7 @@ void FaultFinder::raise_unnamed(std::size_t unnamed) noexcept {
     if (unnamed == 0) return;
     for (std::size_t i = 0; i < slaves_.size(); ++i)
         if (stale(states_[i]) && states_[i].gone_with == FaultSlave::none && slaves_[i].on_loss == LossPolicy::stop_machine)
-            return raise(alarm::slaves_missing, AlarmSource::bus, 0, static_cast<double>(unnamed), expected_);
+            return raise(alarm::slaves_missing, AlarmSource::bus, 0, static_cast<double>(missing_), expected_);
 }
 
 void FaultFinder::raise_slave(std::size_t at, bool counted_out) noexcept {
@@ -240,11 +270,15 @@ void FaultFinder::raise_slave(std::size_t at, bool counted_out) noexcept {
     if (fallen_with(at) != nullptr) return;           // said with what took it down
     if (seen.mailbox_silent) raise(alarm::mailbox_silent, AlarmSource::slave, slave.index);
 
-    const bool waits = counted_out && seen.age < limit_ + naming_cycles;  // probably one of those who are just being named
-    if (seen.presence == Presence::silent) {
+    // Probably one of those who are just being named.
+    const bool waits = naming_ || (counted_out && seen.age < limit_ + naming_cycles);
+    if (stuck(seen)) {
+        raise_left_op(at);
+    } else if (seen.presence == Presence::silent) {
         // Only who exchanges in this very cycle has power and cable, and lost nothing but its address.
         if (seen.age == 0) raise(alarm::station_address_lost, AlarmSource::slave, slave.index);
-        else if (stale(state)) raise(tolerated ? alarm::slave_dropped_out : alarm::slave_lost, AlarmSource::slave, slave.index);
+        else if (stale(state) && !naming_)
+            raise(tolerated ? alarm::slave_dropped_out : alarm::slave_lost, AlarmSource::slave, slave.index);
     } else if (seen.presence == Presence::answers && state.fall.restarted) {
         raise(tolerated ? alarm::slave_dropped_out : alarm::slave_lost, AlarmSource::slave, slave.index);  // until it is back in OP
     } else if (seen.presence == Presence::answers && state.fall.now()) {

@@ -5,8 +5,9 @@
 //
 //   no frame comes back          link_down or frames_lost, nothing else: nothing else is known; it stands until all who fell by it are back
 //   slaves do not answer         slave_lost, or cable_broken where it is more than one behind the same place
-//   the cycle counts fewer slaves than it can name (a moment after a break): slaves_missing
+//   the cycle counts fewer slaves than it can name (a moment after a break): slaves_missing, and nobody is named before all are
 //   slaves leave OP by a watchdog or for want of frames, right after this computer sent none      starved_slave_left_op, one for all
+//   the same after frames that did not come back, although for less than the limit                 frames_lost, one for all
 //   slaves leave OP without an error of their own: somebody sent them there                       foreign_command, one for all
 //   a slave answers, but not as it should    slave_left_op, working_counter_wrong, station_address_lost, other_device, ...
 //
@@ -49,7 +50,7 @@ struct BusCondition {
     std::int64_t dc_difference_ns = 0;
     bool foreign_master = false;
     Duration stall{};            ///< so long this computer sent nothing a moment ago; 0: it was in time
-    bool silence = false;        ///< frames did not come back a moment ago, for longer than the limit
+    std::uint32_t gap = 0;       ///< so many cycles in a row were not answered a moment ago; 0: no two
     bool foreign_heard = false;  ///< a frame of another sender came in lately, be it a single one
     std::uint16_t states = 0;    ///< OR of the AL states of all slaves, with the error bit; 0: not all of them answered
 };
@@ -62,6 +63,7 @@ struct FaultSlave {
     LossPolicy on_loss = LossPolicy::stop_machine;
     bool reference = false;  ///< its clock is the bus' clock
     bool alone = true;       ///< no other slave's process data is valid or not together with its own
+    std::uint32_t watchdog_cycles = 2;  ///< without a frame until its watchdog of process data trips
 };
 
 /// The configured slaves of a bus that was scanned.
@@ -82,7 +84,7 @@ private:
     /// Of a slave that is out of OP: what came before it. Empty as long as it is in OP.
     struct Fall {
         Duration stall{};              ///< this computer sent nothing for so long
-        bool silence = false;          ///< no frame came back
+        std::uint32_t gap = 0;         ///< so many cycles in a row no frame came back
         bool by_command = false;       ///< it names no error of its own
         bool restarted = false;        ///< it did not answer to its address meanwhile: its controller began anew
         bool read = false;             ///< the watch has asked it
@@ -94,6 +96,7 @@ private:
     struct Fallen {
         std::size_t count = 0, most = 0;  ///< now, and at most since the first fell
         Duration stall{};
+        std::uint32_t gap = 0;
     };
     struct State {
         SlaveCondition seen;
@@ -104,7 +107,8 @@ private:
         bool group_stops_machine = false;
     };
     void raise(AlarmId id, AlarmSource source, std::size_t index, double a = 0, double b = 0) noexcept;
-    /// Returns how many slaves are missing that cannot be named yet.
+    /// Returns how many slaves are missing that cannot be named yet. As long as there are some nobody new is named: whoever of them is found
+    /// first is seldom the one that took the others along.
     std::size_t find_lost(std::uint16_t answering) noexcept;
     void form_groups() noexcept;
     void raise_groups() noexcept;
@@ -115,6 +119,10 @@ private:
     /// A slave that answers, but not from OP, and nothing outside of it explains that.
     void raise_left_op(std::size_t at) noexcept;
     [[nodiscard]] Fallen* fallen_with(std::size_t at) noexcept;
+    /// So many cycles without an answer explain that this slave fell.
+    [[nodiscard]] std::uint32_t explaining_gap(std::size_t at) const noexcept;
+    /// Its way back has ended: it answers, and nothing between it and the master is the reason.
+    [[nodiscard]] static bool stuck(const SlaveCondition& slave) noexcept;
     void raise_unnamed(std::size_t unnamed) noexcept;
     [[nodiscard]] bool stale(const State& state) const noexcept { return state.seen.age >= limit_; }
 
@@ -126,9 +134,12 @@ private:
     std::uint32_t limit_;
     std::array<Fallen, 2> starved_, commanded_;  ///< stop_machine, stop_own_axes
     Fallen silenced_;
-    AlarmId silence_id_ = 0;  ///< link_down or frames_lost, which was last
+    AlarmId silence_id_;  ///< link_down or frames_lost, which was last
     std::uint32_t silence_cycles_ = 0, linked_cycles_ = 0;
     bool was_silent_ = false;
+    std::size_t missing_ = 0;       ///< at the last look
+    std::uint32_t naming_for_ = 0;  ///< cycles since that number changed
+    bool naming_ = false;           ///< somebody is missing, and not all who are are known
 };
 
 }  // namespace taktwerk::ecat

@@ -269,6 +269,35 @@ std::string fallen_text(const Bus& bus) {
     return names + why;
 }
 
+bool is_back(const Bus& bus, const BusSlave& slave) {
+    return slave.al.load() == static_cast<std::uint32_t>(AlState::op) && slave.age.load() < bus.config.lost_frames_limit;
+}
+
+/// `at` stands behind `first`, or is it.
+bool behind(const Bus& bus, std::size_t first, std::size_t at) {
+    const auto& places = bus.topology.slaves;
+    for (std::optional<std::size_t> up = at; up; up = places[*up].parent) {
+        if (*up == first) return true;
+        if (*up >= places.size()) break;
+    }
+    return false;
+}
+
+/// What has become of it: an alarm that waits for its acknowledgement must not say that somebody is away who is back. Of the slaves
+/// behind `first`, or of all.
+std::string outcome(const Bus& bus, const BusSlave* first) {
+    std::size_t away = 0, all = 0;
+    for (const auto& slave : bus.slaves) {
+        if (first != nullptr && !behind(bus, first->found.position, slave->found.position)) continue;
+        ++all;
+        away += is_back(bus, *slave) ? 0 : 1;
+    }
+    if (away == 0) return all == 1 ? "it is back in OP" : "all slaves are back in OP";
+    return away == all ? "" : fmt::format("slaves still away: {}", away);
+}
+
+std::string with_outcome(std::string text, const std::string& outcome) { return outcome.empty() ? text : text + "; " + outcome; }
+
 }  // namespace
 
 std::string Master::detail(const AlarmFact& fact) const {
@@ -283,7 +312,7 @@ std::string Master::detail(const AlarmFact& fact) const {
         case alarm::starved_slave_dropped_out: return fallen_text(*impl_->bus);
         case alarm::link_down:
         case alarm::frames_lost:
-            return fact.b > 0 ? fmt::format("it is over; slaves on their way back to OP: {:.0f}", fact.b) : std::string{};
+            return fact.b > 0 ? with_outcome(fmt::format("{:.0f} slave(s) fell by it", fact.b), outcome(*impl_->bus, nullptr)) : std::string{};
         default: break;
     }
     if (fact.source != AlarmSource::slave || fact.index >= slaves.size()) return {};
@@ -292,12 +321,15 @@ std::string Master::detail(const AlarmFact& fact) const {
         case alarm::slave_left_op:
         case alarm::slave_dropped_out:
             if (fact.a != 0)
-                return fmt::format("{}; it is in {}", code_text(static_cast<std::uint16_t>(fact.b)),
-                                   name(static_cast<AlState>(static_cast<std::uint8_t>(fact.a))));
-            return fact.id == alarm::slave_left_op ? std::string{"its reason is being read"} : connection_text(*impl_->bus, slave);
+                return fmt::format("{}; it is {}", code_text(static_cast<std::uint16_t>(fact.b)),
+                                   is_back(*impl_->bus, slave) ? std::string{"back in OP"}
+                                                               : fmt::format("in {}", name(static_cast<AlState>(static_cast<std::uint8_t>(fact.a)))));
+            if (fact.id == alarm::slave_left_op) return is_back(*impl_->bus, slave) ? "it is back in OP" : "its reason is being read";
+            return with_outcome(connection_text(*impl_->bus, slave), is_back(*impl_->bus, slave) ? "it is back in OP" : "");
+        case alarm::slave_lost:
+            return with_outcome(connection_text(*impl_->bus, slave), is_back(*impl_->bus, slave) ? "it is back in OP" : "");
         case alarm::cable_broken:
-        case alarm::branch_dropped_out:
-        case alarm::slave_lost: return connection_text(*impl_->bus, slave);
+        case alarm::branch_dropped_out: return with_outcome(connection_text(*impl_->bus, slave), outcome(*impl_->bus, &slave));
         case alarm::other_device:
         case alarm::other_device_tolerated:
         case alarm::slave_does_not_return: return slave.last_trouble;

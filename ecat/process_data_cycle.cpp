@@ -85,6 +85,7 @@ void ProcessDataCycle::receive(Instant now) noexcept {
     auto* cycle = latest_.load(std::memory_order_acquire);
     note_stall(now);  // before the answers are judged: a slave or drive that complains of it speaks in the first of them
     if (cycle != nullptr) collect_frames(*cycle);
+    note_gap(now);
     copy_statistics();
     if (cycle != nullptr) find_faults(*cycle, now);
 }
@@ -98,6 +99,16 @@ void ProcessDataCycle::note_stall(Instant now) noexcept {
     if (2 * gap <= 5 * config_.cycle) return;
     link->stall_ns.store(std::max(gap, recent_stall(*link, now)).count(), std::memory_order_relaxed);
     link->stall_ended_ns.store(nanoseconds(now), std::memory_order_relaxed);
+}
+
+/// The same of frames that this computer sent and that did not come back: short of the limit they are only counted, but slaves and drives
+/// have watchdogs of their own, and what these say then is no fault of theirs.
+void ProcessDataCycle::note_gap(Instant now) noexcept {
+    constexpr std::uint32_t least_gap = 2;
+    auto* link = link_.load(std::memory_order_acquire);
+    if (link == nullptr || statistics_.lost_in_a_row < least_gap) return;
+    link->gap_cycles.store(std::max(statistics_.lost_in_a_row, recent_gap(*link, now)), std::memory_order_relaxed);
+    link->gap_ended_ns.store(nanoseconds(now), std::memory_order_relaxed);
 }
 
 void ProcessDataCycle::find_faults(CyclePlan& cycle, Instant now) noexcept {
@@ -114,16 +125,14 @@ void ProcessDataCycle::find_faults(CyclePlan& cycle, Instant now) noexcept {
                                      slave.mailbox_silent.load(std::memory_order_relaxed),
                                      slave.taken_down.load(std::memory_order_relaxed)};
     }
-    if (!transport_.link_up() || statistics_.lost_in_a_row >= config_.lost_frames_limit) silence_at_ = now;
     if (statistics_.frames_foreign != foreign_before_) foreign_at_ = now;
     foreign_before_ = statistics_.frames_foreign;
-    const auto lately = [&](const std::optional<Instant>& at, Duration window) { return at && now - *at <= window; };
+    const bool foreign_lately = foreign_at_ && now - *foreign_at_ <= foreign_remembered;
     const auto* link = link_.load(std::memory_order_acquire);
     cycle.faults.look({transport_.link_up(), statistics_.lost_in_a_row, statistics_.slaves_answering,
                        clock_.reference().rejected_in_a_row(), statistics_.dc_difference_ns,
                        link != nullptr && link->foreign_master.load(std::memory_order_relaxed),
-                       link != nullptr ? recent_stall(*link, now) : Duration{}, lately(silence_at_, stall_remembered),
-                       lately(foreign_at_, foreign_remembered),
+                       link != nullptr ? recent_stall(*link, now) : Duration{}, link != nullptr ? recent_gap(*link, now) : 0, foreign_lately,
                        link != nullptr ? static_cast<std::uint16_t>(link->states_seen.load(std::memory_order_relaxed)) : std::uint16_t{0}});
 }
 

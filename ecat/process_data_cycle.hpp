@@ -91,6 +91,7 @@ private:
     void give_up_frames(CyclePlan& cycle) noexcept;
     void find_faults(CyclePlan& cycle, Instant now) noexcept;
     void note_stall(Instant now) noexcept;
+    void note_gap(Instant now) noexcept;
     /// SYNC0 of the slave, as machine time follows from it; 0: does not run, or the reference is not known yet.
     [[nodiscard]] std::int64_t sync0_of(const CyclePlan& cycle, std::size_t slave) const noexcept;
     void copy_statistics() noexcept;
@@ -114,8 +115,8 @@ private:
         Instant send_time = Instant::min();
         std::int64_t offset = 0;
     } mutable next_send_;                             // the same when the next frames leave: asked for by every axis
-    std::optional<Instant> last_departure_;           // of process data
-    std::optional<Instant> silence_at_, foreign_at_;  // no frame came back for too long; one of another sender came
+    std::optional<Instant> last_departure_;  // of process data
+    std::optional<Instant> foreign_at_;      // a frame of another sender came
     std::uint64_t foreign_before_ = 0;
     bool all_good_ = true;
     bool any_lost_ = false;

@@ -80,6 +80,7 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, const std
     build_lines(serial_lines, errors);
     axes.reserve(config.axes.size());
     stall_before_fault = std::make_unique<std::atomic<std::int64_t>[]>(config.axes.size());
+    gap_before_fault = std::make_unique<std::atomic<std::uint32_t>[]>(config.axes.size());
     for (std::size_t i = 0; i < config.axes.size(); ++i) stall_before_fault[i].store(-1);
     views.resize(config.axes.size());
     drive_emergencies.resize(bus.slave_count());

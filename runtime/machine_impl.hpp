@@ -108,7 +108,6 @@ struct Machine::Impl {
     void blame_base_task(const CycleTick& tick) noexcept;
     void watch_programs() noexcept;
     void raise_bus_alarms() noexcept;
-    [[nodiscard]] bool told_by_an_axis(const AlarmFact& emergency) noexcept;
     [[nodiscard]] bool follows_from_another(const AlarmFact& fact) noexcept;
     void stop_axes_of_faulted_drives() noexcept;
     void raise(MachineAlarm alarm, AlarmSource source, std::uint16_t index, double a, double b) noexcept;
@@ -148,13 +147,25 @@ struct Machine::Impl {
     std::vector<axes::Axis> axes;
     /// ns that this computer sent nothing right before the fault that the drive of an axis shows; 0: it was in time; -1: no fault.
     std::unique_ptr<std::atomic<std::int64_t>[]> stall_before_fault;
-    void note_stall_before_fault(std::size_t axis) noexcept;
+    /// Cycles in a row that were not answered right before it; valid as stall_before_fault is.
+    std::unique_ptr<std::atomic<std::uint32_t>[]> gap_before_fault;
+    void note_what_preceded_fault(std::size_t axis) noexcept;
     struct DriveEmergency {
-        std::uint16_t code = 0;
+        AlarmFact fact{};       // a is its code; 0: none
         Instant since{};
-        bool told = false;  // its axis has shown the same code meanwhile
-        bool seen = false;  // in this cycle
+        bool told = false;      // its axis has shown the same code meanwhile
+        bool raised = false;    // it has been an alarm of its own
+        bool seen = false;      // in this cycle
+        AlarmFact missed{};     // one that was over before anybody had told it ...
+        Instant shown_until{};  // ... is an alarm until then
     };
+    /// Keeps what a slave sent; true where it is no alarm of its own (yet).
+    [[nodiscard]] bool told_by_an_axis(const AlarmFact& emergency) noexcept;
+    /// Emergencies that came and went with nobody telling them.
+    void raise_missed_emergencies() noexcept;
+    void miss(DriveEmergency& last) noexcept;
+    /// Notes whether an axis of that slave shows the same; false where it has none.
+    bool axis_tells(DriveEmergency& last) noexcept;
     std::vector<DriveEmergency> drive_emergencies;        // per slave
     std::vector<Instant> explained_until;                 // per axis: what follows from another alarm is not listed until then
     std::vector<axes::AxisView> views;                    // where the axes keep theirs; what programs read

@@ -110,6 +110,31 @@ void bus_load(Remarks& remarks, const MachineConfig& config) {
             to_seconds(load.round_trip) * 1e6 * 100 / full_percent));
 }
 
+/// Frames may be lost for longer than the slaves bear it: the limit says something that does not hold.
+void watchdogs(Remarks& remarks, const MachineConfig& config) {
+    const bool relaxed = config.simulation.supervision == Supervision::relaxed;
+    const std::int64_t cycles = std::int64_t{config.bus.lost_frames_limit} * (relaxed ? 100 : 1);
+    const Duration borne = cycles * config.cycle;
+    std::vector<std::string> earlier;
+    Duration shortest = borne;
+    for (const auto& slave : config.bus.slaves) {
+        const Duration watchdog = sm_watchdog(config, slave);
+        if (!slave.device || slave.device->rx_pdos.empty() || watchdog >= borne) continue;
+        earlier.push_back("'" + slave.name + "'");
+        shortest = std::min(shortest, watchdog);
+    }
+    if (earlier.empty()) return;
+    constexpr std::size_t named = 3;
+    const std::size_t more = earlier.size() > named ? earlier.size() - named : 0;
+    earlier.resize(std::min(earlier.size(), named));
+    remarks.add("watchdog_below_limit", "bus.lost_frames_limit",
+                fmt::format("the machine bears {} cycles in a row without an answer{}, {:g} ms, but the watchdog of {}{} trips after {:g} ms",
+                            cycles, relaxed ? " (100 times the limit: relaxed)" : "", to_seconds(borne) * 1e3, fmt::join(earlier, ", "),
+                            more > 0 ? fmt::format(" and {} more", more) : "", to_seconds(shortest) * 1e3),
+                "lost frames stop these slaves, and the machine with them, before the limit is reached: give a smaller `lost_frames_limit`, or "
+                "them a longer `sm_watchdog`");
+}
+
 void programs(Remarks& remarks, const MachineConfig& config, const MachineLayout& layout) {
     for (const auto& axis : layout.axes)
         if (axis.programs.size() > 1)
@@ -165,6 +190,7 @@ std::vector<Error> remarks(const MachineConfig& config, const MachineLayout& lay
             out.add("cpu", "realtime.cpus", fmt::format("this computer has the CPUs 0 to {}; there is no {}", cpus - 1, cpu),
                     "choose one that is there, best an isolated one");
     if (!config.bus.slaves.empty()) bus_load(out, config);
+    watchdogs(out, config);
     programs(out, config, layout);
     return out.found;
 }

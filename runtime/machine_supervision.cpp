@@ -21,6 +21,8 @@ constexpr Duration button_bounce = std::chrono::milliseconds{500};
 
 /// A drive that sent an emergency shows it in its status word within this time, or it is no fault of the drive.
 constexpr Duration drive_speaks_within = std::chrono::milliseconds{100};
+/// An emergency that was over before an axis told it is an alarm for so long: nobody sees one of a cycle.
+constexpr Duration missed_emergency_shown = std::chrono::seconds{1};
 /// A drive takes so long at most to clear its fault, and its axis with it, after the reset that cleared the alarm of the cause.
 constexpr Duration reset_takes = std::chrono::seconds{1};
 
@@ -182,7 +184,7 @@ void Machine::Impl::supervise(Instant, const CycleTick& tick) noexcept {
         for (const auto& fact : axis.active_alarms())
             if (const auto* info = find_alarm(axes::axis_alarms, fact.id); info != nullptr && !follows_from_another(fact))
                 log.raise(fact, info->reaction, ResetRule::self_clearing, now);
-        note_stall_before_fault(static_cast<std::size_t>(&axis - axes.data()));
+        note_what_preceded_fault(static_cast<std::size_t>(&axis - axes.data()));
         AlarmFact fetched;
         while (axis.fetch_alarm(fetched)) {}
     }
@@ -193,15 +195,20 @@ void Machine::Impl::supervise(Instant, const CycleTick& tick) noexcept {
     run_shutdown(now);
 }
 
-// A drive supervises the frames; what it says right after this computer sent none is no fault of the drive (docs/faults.md).
-void Machine::Impl::note_stall_before_fault(std::size_t axis) noexcept {
+// A drive supervises the frames; what it says right after this computer sent none, or after some were lost, is no fault of the drive
+// (docs/faults.md).
+void Machine::Impl::note_what_preceded_fault(std::size_t axis) noexcept {
     const auto facts = axes[axis].active_alarms();
-    const bool faulted =
-        std::any_of(facts.begin(), facts.end(), [](const AlarmFact& fact) { return fact.id == axes::id(axes::AxisAlarm::drive_fault); });
+    const bool faulted = std::any_of(facts.begin(), facts.end(), [](const AlarmFact& fact) {
+        return fact.id == axes::id(axes::AxisAlarm::drive_fault) || fact.id == axes::id(axes::AxisAlarm::following_error);
+    });
     auto& stall = stall_before_fault[axis];
     if (!faulted) stall.store(-1, std::memory_order_relaxed);
-    else if (stall.load(std::memory_order_relaxed) < 0)
-        stall.store(ecat::recent_stall(bus.bus().link, now).count(), std::memory_order_relaxed);
+    if (!faulted || stall.load(std::memory_order_relaxed) >= 0) return;
+    const bool on_the_bus = axis_slave[axis] < bus.slave_count();
+    const auto& link = bus.bus().link;
+    gap_before_fault[axis].store(on_the_bus ? ecat::recent_gap(link, now) : 0, std::memory_order_relaxed);
+    stall.store(ecat::recent_stall(link, now).count(), std::memory_order_relaxed);
 }
 
 // TSVM 7.1: some alarms have no axis. Whichever axis shows one, the others behind the same slave must not go on; those that show it too
@@ -223,23 +230,52 @@ void Machine::Impl::raise_bus_alarms() noexcept {
     for (auto& emergency_of_slave : drive_emergencies) emergency_of_slave.seen = false;
     for (std::size_t i = 0; i < count; ++i)
         if (facts[i].id != ecat::alarm::slave_emergency || !told_by_an_axis(facts[i])) raise_fact(facts[i], ecat::bus_alarms);
-    for (auto& emergency_of_slave : drive_emergencies)
-        if (!emergency_of_slave.seen) emergency_of_slave = {};
+    raise_missed_emergencies();
+}
+
+// What is over may still be told for a moment: the status word is behind.
+void Machine::Impl::raise_missed_emergencies() noexcept {
+    for (auto& last : drive_emergencies) {
+        const bool over = !last.seen && last.fact.a != 0;
+        if (over) (void)axis_tells(last);
+        if (over && (last.told || last.raised || now - last.since >= drive_speaks_within)) miss(last);
+        if (now < last.shown_until) raise_fact(last.missed, ecat::bus_alarms);
+    }
+}
+
+void Machine::Impl::miss(DriveEmergency& last) noexcept {
+    if (last.fact.a != 0 && !last.told && !last.raised) {
+        last.missed = last.fact;
+        last.shown_until = now + missed_emergency_shown;
+    }
+    last.fact = {};
+}
+
+bool Machine::Impl::axis_tells(DriveEmergency& last) noexcept {
+    bool has_axis = false;
+    for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+        if (axis_slave[axis] != last.fact.index) continue;
+        has_axis = true;
+        last.told = last.told || ports[axis]->alarm().code == static_cast<std::uint16_t>(last.fact.a);
+    }
+    return has_axis;
 }
 
 // A drive's emergency repeats by its number what its axis says in the words of the drive's manual. The two do not come and go at the same
 // moment: the status word may be some milliseconds behind, and the message that the error is gone comes that much after a reset.
 bool Machine::Impl::told_by_an_axis(const AlarmFact& fact) noexcept {
     auto& last = drive_emergencies[fact.index];
-    const auto code = static_cast<std::uint16_t>(fact.a);
-    if (last.code != code) last = {code, now, false, true};
-    last.seen = true;
-    bool has_axis = false;
-    for (std::size_t axis = 0; axis < axes.size(); ++axis) {
-        has_axis = has_axis || axis_slave[axis] == fact.index;
-        last.told = last.told || (axis_slave[axis] == fact.index && ports[axis]->alarm().code == code);
+    if (last.fact.a != fact.a) {
+        miss(last);
+        last.since = now;
+        last.told = last.raised = false;
     }
-    return last.told || (has_axis && now - last.since < drive_speaks_within);
+    last.fact = fact;
+    last.seen = true;
+    const bool has_axis = axis_tells(last);
+    if (last.told || (has_axis && now - last.since < drive_speaks_within)) return true;
+    last.raised = true;
+    return false;
 }
 
 // The axes behind a bus that is gone, and those that stopped by an alarm that is listed, say nothing new: one cause is one alarm. What stays

@@ -7,6 +7,7 @@
 
 #include "axes/axis/alarms.hpp"
 #include "axes/homing/index_doubt.hpp"
+#include "axes/port/find_alarm.hpp"
 #include "ecat/alarms.hpp"
 #include "runtime/drive_alarm_words.hpp"
 #include "runtime/machine_impl.hpp"
@@ -62,6 +63,26 @@ std::string_view text(ResetRule rule) {
         case ResetRule::restart: return "power cycle or restart";
     }
     return "";
+}
+
+/// The drive complains of frames or SYNC0 that did not come: by its manual's table, else by the groups of IEC 61800-7-201, 603Fh.
+bool of_the_bus(const axes::DriveProfile& profile, const axes::ShownAlarm& alarm) {
+    using axes::DriveAlarmKind;
+    const auto found = axes::find_alarm(profile, alarm);
+    if (found.row != nullptr || found.kind != DriveAlarmKind::other)
+        return found.kind == DriveAlarmKind::communication || found.kind == DriveAlarmKind::sync_lost ||
+               found.kind == DriveAlarmKind::left_operational || found.kind == DriveAlarmKind::link_changed;
+    const unsigned group = alarm.code & 0xFF00u;
+    return group == 0x7500 || group == 0x8100 || group == 0x8700;  // communication, communication, synchronisation
+}
+
+void tell_gap(AlarmText& out, std::uint32_t cycles, std::string_view otherwise) {
+    if (cycles == 0) return;
+    out.english += fmt::format("; right before, {} bus cycles in a row were not answered", cycles);
+    out.chinese += fmt::format(";此前连续 {} 个总线周期无应答", cycles);
+    out.cause = fmt::format("Probably frames were lost, and not by the drive (this computer too late for the cycle, another master, a cable "
+                            "or connector){}{}",
+                            otherwise, out.cause);
 }
 
 }  // namespace
@@ -195,6 +216,11 @@ AlarmText Machine::describe(const AlarmFact& fact) const {
             out.chinese += ":" + problem;
         }
 
+    // The set-point went on without its drive: with relaxed supervision for longer than any drive follows.
+    if (fact.id == axes::id(axes::AxisAlarm::following_error) && fact.index < m.config.axes.size())
+        if (const auto gap = m.gap_before_fault[fact.index].load(std::memory_order_relaxed); gap >= m.config.bus.lost_frames_limit)
+            tell_gap(out, gap, "; else: ");
+
     // A drive's own alarm has its words in the profile.
     const bool fault = fact.id == axes::id(axes::AxisAlarm::drive_fault), warning = fact.id == axes::id(axes::AxisAlarm::drive_warning);
     if ((fault || warning) && fact.index < m.config.axes.size()) {
@@ -202,12 +228,16 @@ AlarmText Machine::describe(const AlarmFact& fact) const {
                                fault ? axes::ShownAlarm::As::fault : axes::ShownAlarm::As::warning};
         if (fact.b != 0) shown.detail = static_cast<std::uint32_t>(fact.b);  // 0: not read yet, or none
         tell_drive_alarm(out, m.config.axes[fact.index], shown);
+        const auto* profile = m.config.axes[fact.index].profile.get();
+        const bool of_frames = fault && profile != nullptr && of_the_bus(*profile, shown);
         const std::int64_t stall = fault ? m.stall_before_fault[fact.index].load(std::memory_order_relaxed) : 0;
         if (stall > 0) {
             const double milliseconds = static_cast<double>(stall) * 1e-6;
             out.english += fmt::format("; right before, this computer sent nothing for {:.4g} ms", milliseconds);
             out.chinese += fmt::format(";此前本控制器 {:.4g} ms 未发送报文", milliseconds);
             out.cause = "Probably this computer was late, not the drive (see late_wakeups); what the drive says of it: " + out.cause;
+        } else if (of_frames) {
+            tell_gap(out, m.gap_before_fault[fact.index].load(std::memory_order_relaxed), "; what the drive says of it: ");
         }
     }
     return out;

@@ -72,6 +72,8 @@ struct CycleLink {
     std::atomic<std::uint64_t> foreign_source{0};    ///< address of the last of them, first byte on top
     std::atomic<std::int64_t> stall_ns{0};           ///< so long this computer sent nothing when it last came too late
     std::atomic<std::int64_t> stall_ended_ns{0};     ///< and when it sent again; 0: it never was
+    std::atomic<std::uint32_t> gap_cycles{0};        ///< so many cycles in a row were not answered when two or more last were
+    std::atomic<std::int64_t> gap_ended_ns{0};       ///< and when the last of them was missed; 0: never
     // Written by the scripts.
     std::atomic<bool> supervise{false};             ///< slaves are in SAFEOP or above: wrong working counters count
     std::atomic<std::int64_t> dc_difference_ns{0};  ///< worst 092Ch
@@ -89,6 +91,13 @@ inline constexpr Duration stall_remembered = std::chrono::milliseconds{500};
     const std::int64_t ended = link.stall_ended_ns.load(std::memory_order_relaxed);
     const bool recent = ended != 0 && now.time_since_epoch().count() - ended <= stall_remembered.count();
     return recent ? Duration{link.stall_ns.load(std::memory_order_relaxed)} : Duration{};
+}
+
+/// How many cycles in a row were not answered right before `now`, at most; 0: no two of them.
+[[nodiscard]] inline std::uint32_t recent_gap(const CycleLink& link, Instant now) noexcept {
+    const std::int64_t ended = link.gap_ended_ns.load(std::memory_order_relaxed);
+    const bool recent = ended != 0 && now.time_since_epoch().count() - ended <= stall_remembered.count();
+    return recent ? link.gap_cycles.load(std::memory_order_relaxed) : 0;
 }
 
 /// What the watch heard from a slave at its station address when it asked last.

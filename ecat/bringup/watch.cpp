@@ -127,8 +127,10 @@ Script<void> SlaveWatch::run() {
         }
         // Without its address a slave still exchanges, and the broadcast says that everybody is in OP: its axes need not stop.
         const bool known_in_op = bus_.link.states_seen.load() == in_op && bus_.link.lost_in_a_row.load() == 0 && slave_.age.load() == 0;
-        if (!status && !known_in_op) slave_.al.store(0);
-        if (presence == Presence::unheard) continue;  // nothing is known; nothing can be done
+        // Where no frame came back nothing is known: its state is what it was, for as long as the machine bears lost frames.
+        const bool bearable = presence == Presence::unheard && bus_.link.lost_in_a_row.load() < bus_.config.lost_frames_limit;
+        if (!status && !known_in_op && !bearable) slave_.al.store(0);
+        if (presence == Presence::unheard) continue;
         if (status && *status == in_op) {
             co_await look_after(now);
             continue;

@@ -125,12 +125,12 @@ TEST(FaultFinder, WhoFellWhileNoFrameCameBackIsPartOfThatAlarm) {
         f.bus.lost_in_a_row = 150;
         const auto id = link ? alarm::frames_lost : alarm::link_down;
         ASSERT_THAT(f.look(), ElementsAre(id));
-        f.bus = {.slaves_answering = 3, .silence = true, .states = 0x14};
+        f.bus = {.slaves_answering = 3, .gap = 150, .states = 0x14};
         for (std::size_t i = 0; i < 3; ++i) f.finder.condition(i).age = 150;
         ASSERT_THAT(f.look(), ElementsAre(id));
         EXPECT_EQ(f.finder.facts()[0].a, 150);
-        EXPECT_EQ(f.finder.facts()[0].b, 3) << "on their way back";
-        f.bus.silence = false;
+        EXPECT_EQ(f.finder.facts()[0].b, 3) << "fell by it";
+        f.bus.gap = 0;
         for (std::size_t i = 0; i < 3; ++i)
             f.finder.condition(i) = {.al_state = AlState::safeop, .al_error = true, .al_status_code = 0x1B, .age = 190};
         ASSERT_THAT(f.look(), ElementsAre(id));
@@ -234,7 +234,8 @@ TEST(FaultFinder, AGroupStandsUntilItsLastSlaveIsBackInOp) {
     EXPECT_THAT(f.look(), ElementsAre(alarm::cable_broken));
     f.finder.condition(1) = {.al_state = AlState::op};
     ASSERT_THAT(f.look(), ElementsAre(alarm::cable_broken));
-    EXPECT_EQ(f.finder.facts()[0].a, 1);
+    EXPECT_EQ(f.finder.facts()[0].a, 2) << "as many as it took along";
+    EXPECT_EQ(f.finder.facts()[0].b, 1) << "still away";
     f.finder.condition(2) = {.al_state = AlState::op};
     EXPECT_THAT(f.look(), IsEmpty());
 }
@@ -272,11 +273,94 @@ TEST(FaultFinder, TroubleOnTheWayBackIsSaidAlsoOfAGroup) {
     f.vanish({1, 2});
     (void)f.look();
     f.bus.slaves_answering = 3;
+    f.finder.condition(1).al_state = AlState::init;
     f.finder.condition(1).trouble = ReturnTrouble::other_device;
     f.finder.condition(2).trouble = ReturnTrouble::refused;
-    f.finder.condition(2).attempts = 3;
+    f.finder.condition(2).attempts = 2;
     f.finder.condition(2).al_state = AlState::preop;
-    EXPECT_THAT(f.look(), ElementsAre(alarm::cable_broken, alarm::other_device, alarm::slave_does_not_return));
+    EXPECT_THAT(f.look(), ElementsAre(alarm::cable_broken, alarm::other_device)) << "the second is still on its way";
+    f.finder.condition(2).attempts = 3;
+    EXPECT_THAT(f.look(), ElementsAre(alarm::other_device, alarm::slave_does_not_return, alarm::slave_left_op)) << "the cable is whole";
+    f.finder.condition(2).al_state = AlState::op;
+    f.finder.condition(2).age = 0;
+    f.finder.condition(2).trouble = ReturnTrouble::none;
+    EXPECT_THAT(f.look(), ElementsAre(alarm::other_device));
+}
+
+// The watch asks one slave after the other. Whoever it finds first has mostly lost nothing but the one before it.
+TEST(FaultFinder, NobodyIsNamedBeforeAllWhoAreMissingAreKnown) {
+    for (const bool exchange_missed : {false, true}) {
+        Finder f{{-1, 0, 1, 2}};
+        (void)f.look();
+        f.bus.slaves_answering = 1;
+        const auto waiting = [&] {
+            const auto said = f.look();
+            EXPECT_EQ(said, exchange_missed ? std::vector<AlarmId>{alarm::slaves_missing} : std::vector<AlarmId>{});
+        };
+        for (const std::size_t gone : {1u, 2u, 3u}) f.finder.condition(gone).age = exchange_missed && gone != 1 ? limit : 1;
+        waiting();
+        f.finder.condition(2).presence = Presence::silent;
+        waiting();
+        f.finder.condition(3).presence = Presence::silent;
+        waiting();
+        if (exchange_missed) {
+            EXPECT_EQ(f.finder.facts()[0].a, 3);
+        }
+        f.finder.condition(1).presence = Presence::silent;
+        ASSERT_THAT(f.look(), ElementsAre(alarm::cable_broken));
+        EXPECT_EQ(f.finder.facts()[0].index, 1) << "the first of them";
+        EXPECT_EQ(f.finder.facts()[0].a, 3);
+    }
+}
+
+// A device without a configuration is on the cable, and nobody can name it: those who can be named are, after a while.
+TEST(FaultFinder, WhoIsKnownIsNamedAlthoughOneNeverWillBe) {
+    FaultFinder finder{{{.index = 0}, {.index = 1, .parent = 0}}, 3, limit};
+    for (std::size_t i = 0; i < 2; ++i) finder.condition(i).al_state = AlState::op;
+    finder.condition(1).presence = Presence::silent;
+    finder.condition(1).age = limit;
+    const BusCondition bus{.slaves_answering = 1};
+    finder.look(bus);
+    ASSERT_EQ(finder.facts().size(), 1u);
+    EXPECT_EQ(finder.facts()[0].id, alarm::slaves_missing);
+    for (int i = 0; i < 250; ++i) finder.look(bus);
+    ASSERT_FALSE(finder.facts().empty());
+    EXPECT_EQ(finder.facts()[0].id, alarm::slave_lost);
+    EXPECT_EQ(finder.facts()[0].index, 1);
+}
+
+// The machine bears more than this slave's watchdog does: what it says then is still no fault of the slave.
+TEST(FaultFinder, AWatchdogShorterThanTheLimitIsNoFaultOfTheSlave) {
+    struct Case {
+        std::uint32_t gap;
+        std::uint16_t code;
+        AlarmId said;
+    };
+    for (const auto& c : {Case{150, 0x1B, alarm::frames_lost}, Case{50, 0x1B, alarm::slave_left_op}, Case{4, 0x1A, alarm::frames_lost},
+                          Case{0, 0x1A, alarm::slave_left_op}, Case{150, 0x1D, alarm::slave_left_op}}) {
+        FaultFinder finder{{{.index = 0, .watchdog_cycles = 99}}, 1, 300};
+        finder.condition(0) = {.al_state = AlState::safeop, .al_error = true, .al_status_code = c.code, .age = c.gap};
+        finder.look({.slaves_answering = 1, .gap = c.gap, .states = 0x14});
+        ASSERT_EQ(finder.facts().size(), 1u);
+        EXPECT_EQ(finder.facts()[0].id, c.said) << c.gap << " cycles, code " << c.code;
+        if (c.said == alarm::frames_lost) {
+            EXPECT_EQ(finder.facts()[0].source, AlarmSource::bus);
+            EXPECT_EQ(finder.facts()[0].a, c.gap);
+            EXPECT_EQ(finder.facts()[0].b, 1) << "slaves";
+        }
+    }
+}
+
+TEST(FaultFinder, AClockIsNotToBlameForFramesThatDoNotComeBack) {
+    FaultFinder finder{{{.index = 0}}, 1, 300};
+    finder.condition(0).al_state = AlState::op;
+    finder.look({.lost_in_a_row = 60, .slaves_answering = 1, .reference_times_missing = 60, .gap = 60});
+    EXPECT_TRUE(finder.facts().empty());
+    finder.look({.slaves_answering = 1, .reference_times_missing = 60, .gap = 60});
+    EXPECT_TRUE(finder.facts().empty());
+    finder.look({.slaves_answering = 1, .reference_times_missing = 61});
+    ASSERT_EQ(finder.facts().size(), 1u);
+    EXPECT_EQ(finder.facts()[0].id, alarm::reference_clock_lost);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <array>
 
 #include "ecat/alarms.hpp"
+#include "ecat/bringup/bus.hpp"
 #include "ecat/wire/sii.hpp"
 #include "tests/ecat/test_bus.hpp"
 
@@ -89,9 +90,12 @@ TEST_F(Health, ACableThatBreaksIsOneAlarmThatNamesItsEnds) {
     EXPECT_TRUE(bus->master->health(2).fresh) << "who stands before the break exchanges on";
 
     bus->network.set_cable(3, true);
-    bus->run_until([&] { return !facts().empty() && facts().front().a < 5; }, 5s);
-    EXPECT_THAT(faults(), ElementsAre(alarm::cable_broken)) << "until the last is back it is still this one";
+    bus->run_until([&] { return !facts().empty() && facts().front().b < 5; }, 5s);
+    ASSERT_THAT(faults(), ElementsAre(alarm::cable_broken)) << "until the last is back it is still this one";
+    EXPECT_EQ(facts().front().a, 5) << "as many as it took along";
     expect_recovery();
+    EXPECT_EQ(bus->master->detail(broken), "between slave 2 'c' (sv33-e) port 1 and slave 3 'd' (dio8); all slaves are back in OP")
+        << "what waits for its acknowledgement";
     EXPECT_EQ(bus->servo(0).watchdogs, 0) << "the others were not disturbed";
 }
 
@@ -211,7 +215,7 @@ TEST_F(Health, ASlaveThatRefusesToReturnIsTriedEverMoreSeldomAndSaidSo) {
     bus->run_for(50ms);
     bus->network.set_power(1, true);
     bus->run_for(6s);
-    EXPECT_THAT(faults(), Contains(alarm::slave_does_not_return));
+    EXPECT_THAT(faults(), ElementsAre(alarm::slave_does_not_return, alarm::slave_left_op)) << "it answers: no cable, no supply";
     for (const auto& fact : facts())
         if (fact.id == alarm::slave_does_not_return) {
             EXPECT_THAT(bus->master->detail(fact), HasSubstr("refused SAFEOP: 001Dh"));
@@ -223,6 +227,36 @@ TEST_F(Health, ASlaveThatRefusesToReturnIsTriedEverMoreSeldomAndSaidSo) {
 
     bus->network.slave(1).refuse_state(sim::EsmState::safeop, 0);
     expect_recovery(10s);
+}
+
+// A power cycle in the middle takes those behind it along: whatever of it the watch sees first, the first slave is named, and only it.
+TEST_F(Health, APowerCycleInTheMiddleIsOneAlarmThatNamesTheFirst) {
+    for (const std::uint16_t limit : {std::uint16_t{3}, std::uint16_t{300}})
+        for (int phase = 0; phase < 100; phase += 7) {
+            bus.emplace("ssst");
+            bus->config.lost_frames_limit = limit;
+            bus->config.acyclic_per_cycle = 1;  // the watch hears of one slave a cycle, as on a busy bus
+            if (limit > 3)
+                for (auto& slave : bus->config.slaves) slave.sm_watchdog = 500ms;
+            ASSERT_TRUE(bus->bring_up()) << bus->why();
+            bus->run_for(200ms + phase * 1ms);
+            ASSERT_THAT(faults(), IsEmpty());
+            std::vector<AlarmFact> said;
+            bus->on_cycle = [&] {
+                for (const auto& fact : facts()) {
+                    const auto same = [&](const AlarmFact& f) { return f.id == fact.id && f.index == fact.index; };
+                    if (fact.id != alarm::dc_not_locked && std::none_of(said.begin(), said.end(), same)) said.push_back(fact);
+                }
+            };
+            bus->network.set_power(1, false);
+            bus->run_for(500ms);
+            bus->network.set_power(1, true);
+            expect_recovery(10s);
+            std::erase_if(said, [](const AlarmFact& f) { return f.id == alarm::slaves_missing; });
+            ASSERT_EQ(said.size(), 1u) << "limit " << limit << ", phase " << phase << ": " << said[0].id << " " << said[0].index;
+            EXPECT_EQ(said[0].id, alarm::cable_broken);
+            EXPECT_EQ(said[0].index, 1);
+        }
 }
 
 // --- slaves that are there, but not well ------------------------------------------------------------------------------------------
@@ -325,9 +359,10 @@ TEST_F(Health, WhatFallsWhileNoFrameComesBackIsPartOfTheSameAlarm) {
         bus->run_for(10ms);
         const auto now = facts();
         ASSERT_FALSE(now.empty());
-        EXPECT_EQ(now[0].b, 4) << "on their way back";
-        EXPECT_THAT(bus->master->detail(now[0]), "it is over; slaves on their way back to OP: 4");
+        EXPECT_EQ(now[0].b, 4) << "fell by it";
+        EXPECT_THAT(bus->master->detail(now[0]), "4 slave(s) fell by it");
         expect_recovery();
+        EXPECT_THAT(bus->master->detail(now[0]), "4 slave(s) fell by it; all slaves are back in OP");
         std::erase(said, alarm::dc_not_locked);
         EXPECT_THAT(said, ElementsAre(link ? alarm::frames_lost : alarm::link_down));
     }
@@ -467,6 +502,54 @@ TEST_F(Health, DuplicatedAndReorderedAnswersAreTakenOnceAndInOrder) {
     bus->run_for(100ms);
     EXPECT_GE(bus->master->statistics().frames_late, 3u);
     expect_recovery();
+}
+
+// Frames that the machine bears: nobody is accused, and what the watch could not read meanwhile changes nothing.
+TEST_F(Health, LostFramesShortOfTheLimitAccuseNobody) {
+    for (int phase = 0; phase < 100; phase += 9) {
+        bus.emplace("sst");
+        bus->config.lost_frames_limit = 300;
+        for (auto& slave : bus->config.slaves) slave.sm_watchdog = 500ms;
+        ASSERT_TRUE(bus->bring_up()) << bus->why();
+        bus->run_for(200ms + phase * 1ms);
+        std::vector<AlarmId> said;
+        bool in_op = true;
+        bus->on_cycle = [&] {
+            for (const auto id : faults()) said.push_back(id);
+            for (std::size_t i = 0; i < 3; ++i) in_op = in_op && bus->master->health(i).al_state == AlState::op;
+        };
+        bus->transport.faults.drop_requests = 250;  // those of the watch are among them
+        bus->run_until([&] { return bus->transport.faults.drop_requests == 0; }, 1s);
+        EXPECT_GE(recent_gap(bus->master->bus().link, bus->now), 130u);
+        EXPECT_LT(recent_gap(bus->master->bus().link, bus->now), 300u);
+        bus->run_for(300ms);
+        EXPECT_TRUE(in_op) << phase;
+        EXPECT_THAT(said, IsEmpty()) << phase;
+        bus->on_cycle = nullptr;
+        bus->run_for(300ms);
+        EXPECT_EQ(recent_gap(bus->master->bus().link, bus->now), 0u);
+    }
+}
+
+// The limit lets through what the slaves' watchdogs do not: what is said is that frames were lost.
+TEST_F(Health, AWatchdogThatIsShorterThanTheLimitIsSaidAsLostFrames) {
+    bus.emplace("sst");
+    bus->config.lost_frames_limit = 300;
+    for (auto& slave : bus->config.slaves) slave.sm_watchdog = 100ms;
+    ASSERT_TRUE(bus->bring_up()) << bus->why();
+    bus->run_for(200ms);
+    std::vector<AlarmId> said;
+    bus->on_cycle = [&] {
+        for (const auto id : faults())
+            if (std::find(said.begin(), said.end(), id) == said.end()) said.push_back(id);
+    };
+    bus->transport.faults.drop_requests = 250;
+    bus->run_until([&] { return bus->transport.faults.drop_requests == 0; }, 1s);
+    ASSERT_EQ(bus->state(0), sim::EsmState::safeop);
+    EXPECT_LT(recent_gap(bus->master->bus().link, bus->now), 300u);
+    expect_recovery();
+    std::erase(said, alarm::dc_not_locked);
+    EXPECT_THAT(said, ElementsAre(alarm::frames_lost));
 }
 
 TEST_F(Health, LinkDownIsSaidAloneAndTheBusReturns) {

@@ -3,6 +3,7 @@
 
 #include "axes/axis/alarms.hpp"
 #include "ecat/alarms.hpp"
+#include "ecat/sim/sim_slave.hpp"
 #include "runtime/alarms.hpp"
 #include "tests/runtime/test_machine.hpp"
 
@@ -195,6 +196,123 @@ TEST_F(Fault, AnEmergencyThatTheAxisTellsIsNotToldAgain) {
     m().run(300ms);
     EXPECT_FALSE(emergency);
     EXPECT_FALSE(m().has_alarm(axes::id(axes::AxisAlarm::drive_fault)));
+}
+
+struct Voice : ecat::sim::DeviceModel {
+    static constexpr auto says = &Voice::send_emergency;
+};
+
+// A drive need not show in its status word what it says in an emergency. Whatever it says is an alarm once, however short it is.
+TEST_F(Fault, AnEmergencyThatIsOverBeforeItsAxisTellsItIsSaidOnce) {
+    for (const Duration length : {10ms, 90ms, 400ms}) {
+        start();
+        int times = 0;
+        bool before = false, drive = false;
+        std::string said;
+        m().on_cycle = [&] {
+            const bool now = m().has_alarm(ecat::alarm::slave_emergency);
+            if (now && !before) ++times, said = m().alarms();
+            before = now;
+            drive = drive || m().has_alarm(axes::id(axes::AxisAlarm::drive_fault));
+        };
+        auto& model = m().world.network().slave(0).model();
+        (model.*Voice::says)({0xFF01, 0x81, {}});
+        m().run(length);
+        (model.*Voice::says)({});
+        m().run(3s);
+        EXPECT_EQ(times, 1) << length.count();
+        EXPECT_NE(said.find("slave 'x_drive': The slave sent emergency FF01h (error register 81h)"), std::string::npos) << said;
+        EXPECT_FALSE(before) << "it goes by itself";
+        EXPECT_FALSE(drive);
+        EXPECT_EQ(m().axis(0).state, AxisState::DiscreteMotion);
+    }
+}
+
+/// Relaxed: 300 cycles may be lost. The drive has a watchdog of its own of 100 ms.
+MachineConfig watchful_drives() {
+    auto config = machine_config(2);
+    config.simulation.supervision = Supervision::relaxed;
+    auto device = std::make_shared<ecat::DeviceDescription>(*config.bus.slaves[0].device);
+    ecat::ObjectEntry time = device->objects.front();
+    time.index = 0x2009;
+    time.type = ecat::DataType::U16;
+    time.access = ecat::Access::rw;
+    time.value = 100;
+    device->objects.push_back(time);
+    auto profile = std::make_shared<axes::DriveProfile>(*config.axes[0].profile);
+    profile->behaviour.lost_data_time = {0x2009, 0};
+    for (std::size_t i = 0; i < 2; ++i) {
+        config.bus.slaves[i].device = device;
+        config.axes[i].profile = profile;
+    }
+    return config;
+}
+
+// What the machine bears stops nothing and accuses nobody, although the watch of the bus hears nothing from anybody meanwhile.
+TEST_F(Fault, LostFramesShortOfTheLimitAreOnlyCounted) {
+    auto config = machine_config(2);
+    config.simulation.supervision = Supervision::relaxed;
+    start(std::move(config));
+    ASSERT_EQ(m().command(OperatorAction::stop, 0).answer, Answer::accepted);
+    ASSERT_TRUE(m().until([&] { return m().axis(0).state == AxisState::Standstill; }, 3s));
+    bool alarm = false;
+    m().on_cycle = [&] { alarm = alarm || m().state().alarm_count > 0; };
+    m().world.transport().faults.drop_requests = 200;
+    m().run(1s);
+    EXPECT_GE(m().state().bus.frames_lost, 200u);
+    EXPECT_FALSE(alarm) << m().alarms();
+    EXPECT_TRUE(m().axis(0).powered);
+    m().expect_no_jump();
+
+    // An axis in motion is left behind by its set-point: that is said, and by what.
+    m().on_cycle = nullptr;
+    ASSERT_EQ(m().command(OperatorAction::move_absolute, 0, false, 700, 150).answer, Answer::accepted);
+    ASSERT_TRUE(m().until([&] { return m().axis(0).set_velocity > 140; }, 3s));
+    m().world.transport().faults.drop_requests = 200;
+    ASSERT_TRUE(m().until([&] { return m().axis(0).state == AxisState::ErrorStop; }, 1s));
+    ASSERT_EQ(m().state().alarm_count, 1u) << m().alarms();
+    const auto words = m().machine->describe(m().state().alarms[0].fact);
+    EXPECT_EQ(words.name, "following_error");
+    EXPECT_NE(words.english.find(" bus cycles in a row were not answered"), std::string::npos) << words.english;
+    EXPECT_EQ(words.cause.find("Probably frames were lost"), 0u) << words.cause;
+}
+
+TEST_F(Fault, AFollowingErrorWithoutLostFramesDoesNotNameThem) {
+    start();
+    m().world.drive("x")->jam(true);
+    ASSERT_TRUE(m().until([&] { return m().axis(0).state == AxisState::ErrorStop; }, 1s));
+    EXPECT_EQ(m().alarms().find("not answered"), std::string::npos) << m().alarms();
+}
+
+// The drive's own watchdog is shorter than the limit: it is the drive that stops, and what it says names the lost frames.
+TEST_F(Fault, ADriveThatStopsByLostFramesIsNotBlamed) {
+    start(watchful_drives());
+    m().world.transport().faults.drop_requests = 250;
+    ASSERT_TRUE(m().until([&] { return m().axis(0).state == AxisState::ErrorStop; }, 400ms));
+    m().run(20ms);
+    const auto& s = m().state();
+    ASSERT_EQ(s.alarm_count, 2u) << "one for each drive: " << m().alarms();
+    for (std::size_t i = 0; i < s.alarm_count; ++i) {
+        const auto words = m().machine->describe(s.alarms[i].fact);
+        EXPECT_EQ(words.name, "drive_fault");
+        EXPECT_NE(words.english.find("; right before, "), std::string::npos) << words.english;
+        EXPECT_NE(words.english.find(" bus cycles in a row were not answered"), std::string::npos) << words.english;
+        EXPECT_EQ(words.cause.find("Probably frames were lost, and not by the drive (this computer too late"), 0u) << words.cause;
+    }
+    m().run(1s);
+    recover();
+    // Long after it, or when the drive complains of something else, lost frames explain nothing.
+    m().run(1s);
+    m().world.drive("x")->raise(0x7500);
+    m().run(20ms);
+    EXPECT_EQ(m().alarms().find("not answered"), std::string::npos) << m().alarms();
+    recover();
+    m().world.transport().faults.drop_requests = 20;
+    m().run(30ms);
+    m().world.drive("x")->raise(0x3130);
+    m().run(20ms);
+    EXPECT_TRUE(m().has_alarm(id(AxisAlarm::drive_fault)));
+    EXPECT_EQ(m().alarms().find("not answered"), std::string::npos) << m().alarms();
 }
 
 TEST_F(Fault, LateFramesAreDiscardedAndCounted) {

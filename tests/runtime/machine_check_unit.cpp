@@ -253,6 +253,7 @@ TEST(MachineRemarks, EachThingThatIsHardlyMeantIsAsked) {
               }).code,
               "remark.emergency_stop_inverted");
     EXPECT_EQ(remark([](MachineConfig& m) { m.realtime.cpus = {99}; }).code, "remark.cpu");
+    EXPECT_EQ(remark([](MachineConfig& m) { m.bus.lost_frames_limit = 11; }).code, "remark.watchdog_below_limit") << "10 ms";
     EXPECT_EQ(remark([](MachineConfig& m) {
                   ProgramConfig program;
                   program.library = "cell.so";
@@ -262,6 +263,22 @@ TEST(MachineRemarks, EachThingThatIsHardlyMeantIsAsked) {
                   }
               }).code,
               "remark.same_library");
+}
+
+// Relaxed, three cycles are 300 ms, and who says nothing has a watchdog of 500 ms.
+TEST(MachineRemarks, AWatchdogThatTripsBeforeTheLimitIsReached) {
+    auto config = machine_config(2);
+    config.simulation.supervision = Supervision::relaxed;
+    EXPECT_TRUE(remarks(config, {}, 4).empty());
+    config.bus.slaves[1].sm_watchdog = 300ms;
+    EXPECT_TRUE(remarks(config, {}, 4).empty());
+    config.bus.slaves[1].sm_watchdog = 100ms;
+    const auto found = remarks(config, {}, 4);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0].subject, "bus.lost_frames_limit");
+    EXPECT_EQ(found[0].what,
+              "the machine bears 300 cycles in a row without an answer (100 times the limit: relaxed), 300 ms, but the watchdog of "
+              "'y_drive' trips after 100 ms");
 }
 
 TEST(MachineRemarks, AnAxisThatTwoProgramsDeclare) {

@@ -71,6 +71,7 @@ void SettingsCheck::changed(ParameterAddress address) noexcept {
 
 SettingsCheck::Verdict SettingsCheck::verdict() const noexcept {
     if (readings_.empty()) return Verdict::fits;
+    if (!online_) return Verdict::unknown;  // frames reach a drive in OP before anybody has heard that it is there
     const auto judged = judged_.load(std::memory_order_acquire);
     if (static_cast<std::uint32_t>(judged >> 8) != wanted_.load(std::memory_order_acquire)) return Verdict::unknown;
     return static_cast<Verdict>(judged & 0xFFu);

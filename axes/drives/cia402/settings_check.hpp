@@ -32,7 +32,7 @@ public:
     // --- in the cycle; real-time safe ---------------------------------------------------------------------------------
     /// Whether the drive is in OP; what is known of its parameters ends when it leaves.
     void online(bool now) noexcept;
-    /// `unknown` as long as the reading goes on: the drive is not enabled meanwhile.
+    /// `unknown` as long as the drive is away or the reading goes on: it is not enabled meanwhile.
     [[nodiscard]] Verdict verdict() const noexcept;
     /// 606Ch, 60FFh, 607Fh raw = counts/s times this, in the units that the drive is in.
     [[nodiscard]] double velocity_counts_per_unit() const noexcept { return velocity_.load(std::memory_order_relaxed); }
