@@ -99,12 +99,12 @@ TEST_F(DriveSettings, WhatWasReadBeforeARestartDoesNotCount) {
     rig.on_cycle = [&] {
         away = away || !rig.feedback().online;
         if (!away) return;
+        rig.status(0x1233);
+        rig.mode(8);
         // The first frame that reaches it in OP, too, although nobody has heard yet that it is there.
         if (rig.network.slave(0).state() == ecat::sim::EsmState::op && told_to_enable()) ++enabled;
         if (!rig.feedback().online) return;
         if (back++ == 0) rig.put(0x2005, 1, 0x0B);  // before anybody has asked
-        rig.status(0x1233);
-        rig.mode(8);
     };
     rig.run(5000);
     ASSERT_GT(back, 100);
