@@ -202,10 +202,9 @@ void MachineLog::events(Instant now, const Snapshot& s) {
 
 /// Whoever reads "released" looks for the person who did it: an input that becomes readable again has nobody.
 void MachineLog::emergency(Instant now, const Snapshot& s) {
-    const bool unread =
-        std::any_of(s.alarms.begin(), s.alarms.begin() + static_cast<std::ptrdiff_t>(s.alarm_count), [](const auto& alarm) {
-            return alarm.fact.id == id(MachineAlarm::emergency_stop) && alarm.standing && alarm.fact.a == emergency_stop_unread;
-        });
+    const bool unread = std::any_of(s.alarms.begin(), s.alarms.begin() + static_cast<std::ptrdiff_t>(s.alarm_count), [](const auto& alarm) {
+        return alarm.fact.id == id(MachineAlarm::emergency_stop) && alarm.standing && alarm.fact.a == emergency_stop_unread;
+    });
     const auto before = emergency_;
     emergency_ = !s.emergency_stop ? Emergency::none : unread ? Emergency::unread : Emergency::pressed;
     if (emergency_ == before) return;

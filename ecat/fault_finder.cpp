@@ -51,7 +51,8 @@ bool exchanged_alone(const Bus& bus, std::size_t slave) {
 std::vector<FaultSlave> fault_slaves(const Bus& bus) {
     std::vector<FaultSlave> slaves;
     for (const auto& slave : bus.slaves) {
-        const auto watchdog = sm_watchdog(bus.config, *slave->config) / bus.config.cycle - 1;  // a frame may just have come when the gap began
+        const auto watchdog =
+            sm_watchdog(bus.config, *slave->config) / bus.config.cycle - 1;  // a frame may just have come when the gap began
         slaves.push_back({slave->index, FaultSlave::none, slave->config->on_loss, bus.reference == slave->index,
                           exchanged_alone(bus, slave->index), static_cast<std::uint32_t>(std::max<std::int64_t>(2, watchdog))});
     }
@@ -71,7 +72,12 @@ std::vector<FaultSlave> fault_slaves(const Bus& bus) {
 }
 
 FaultFinder::FaultFinder(std::vector<FaultSlave> slaves, std::uint16_t expected, std::uint32_t limit)
-    : slaves_(std::move(slaves)), states_(slaves_.size()), order_(slaves_.size()), expected_(expected), limit_(limit), silence_id_(alarm::frames_lost) {
+    : slaves_(std::move(slaves)),
+      states_(slaves_.size()),
+      order_(slaves_.size()),
+      expected_(expected),
+      limit_(limit),
+      silence_id_(alarm::frames_lost) {
     for (std::size_t i = 0; i < slaves_.size(); ++i) order_[slaves_[i].index] = i;
     facts_.reserve(facts_of_bus + facts_of_slave * slaves_.size());
 }
@@ -155,7 +161,8 @@ bool FaultFinder::stuck(const SlaveCondition& slave) noexcept {
 FaultFinder::Fallen* FaultFinder::fallen_with(std::size_t at) noexcept {
     const State& state = states_[at];
     const Fall& fall = state.fall;
-    if (!fall.now() || fall.restarted || stuck(state.seen) || state.gone_with != FaultSlave::none || !(fall.read || stale(state))) return nullptr;
+    if (!fall.now() || fall.restarted || stuck(state.seen) || state.gone_with != FaultSlave::none || !(fall.read || stale(state)))
+        return nullptr;
     const std::size_t policy = slaves_[at].on_loss == LossPolicy::stop_own_axes ? 1 : 0;
     const bool wanted_frames = fall.read ? for_want_of_frames(fall.code) : !fall.by_command;
     if (wanted_frames && fall.stall > Duration{}) return &starved_[policy];
@@ -277,8 +284,7 @@ void FaultFinder::raise_slave(std::size_t at, bool counted_out) noexcept {
     } else if (seen.presence == Presence::silent) {
         // Only who exchanges in this very cycle has power and cable, and lost nothing but its address.
         if (seen.age == 0) raise(alarm::station_address_lost, AlarmSource::slave, slave.index);
-        else if (stale(state) && !naming_)
-            raise(tolerated ? alarm::slave_dropped_out : alarm::slave_lost, AlarmSource::slave, slave.index);
+        else if (stale(state) && !naming_) raise(tolerated ? alarm::slave_dropped_out : alarm::slave_lost, AlarmSource::slave, slave.index);
     } else if (seen.presence == Presence::answers && state.fall.restarted) {
         raise(tolerated ? alarm::slave_dropped_out : alarm::slave_lost, AlarmSource::slave, slave.index);  // until it is back in OP
     } else if (seen.presence == Presence::answers && state.fall.now()) {

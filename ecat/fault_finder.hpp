@@ -61,8 +61,8 @@ struct FaultSlave {
     std::size_t index = 0;      ///< in the configuration
     std::size_t parent = none;  ///< in this order: the next configured slave towards the master
     LossPolicy on_loss = LossPolicy::stop_machine;
-    bool reference = false;  ///< its clock is the bus' clock
-    bool alone = true;       ///< no other slave's process data is valid or not together with its own
+    bool reference = false;             ///< its clock is the bus' clock
+    bool alone = true;                  ///< no other slave's process data is valid or not together with its own
     std::uint32_t watchdog_cycles = 2;  ///< without a frame until its watchdog of process data trips
 };
 

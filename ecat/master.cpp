@@ -312,7 +312,8 @@ std::string Master::detail(const AlarmFact& fact) const {
         case alarm::starved_slave_dropped_out: return fallen_text(*impl_->bus);
         case alarm::link_down:
         case alarm::frames_lost:
-            return fact.b > 0 ? with_outcome(fmt::format("{:.0f} slave(s) fell by it", fact.b), outcome(*impl_->bus, nullptr)) : std::string{};
+            return fact.b > 0 ? with_outcome(fmt::format("{:.0f} slave(s) fell by it", fact.b), outcome(*impl_->bus, nullptr))
+                              : std::string{};
         default: break;
     }
     if (fact.source != AlarmSource::slave || fact.index >= slaves.size()) return {};
@@ -322,8 +323,9 @@ std::string Master::detail(const AlarmFact& fact) const {
         case alarm::slave_dropped_out:
             if (fact.a != 0)
                 return fmt::format("{}; it is {}", code_text(static_cast<std::uint16_t>(fact.b)),
-                                   is_back(*impl_->bus, slave) ? std::string{"back in OP"}
-                                                               : fmt::format("in {}", name(static_cast<AlState>(static_cast<std::uint8_t>(fact.a)))));
+                                   is_back(*impl_->bus, slave)
+                                       ? std::string{"back in OP"}
+                                       : fmt::format("in {}", name(static_cast<AlState>(static_cast<std::uint8_t>(fact.a)))));
             if (fact.id == alarm::slave_left_op) return is_back(*impl_->bus, slave) ? "it is back in OP" : "its reason is being read";
             return with_outcome(connection_text(*impl_->bus, slave), is_back(*impl_->bus, slave) ? "it is back in OP" : "");
         case alarm::slave_lost:

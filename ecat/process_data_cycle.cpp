@@ -129,11 +129,11 @@ void ProcessDataCycle::find_faults(CyclePlan& cycle, Instant now) noexcept {
     foreign_before_ = statistics_.frames_foreign;
     const bool foreign_lately = foreign_at_ && now - *foreign_at_ <= foreign_remembered;
     const auto* link = link_.load(std::memory_order_acquire);
-    cycle.faults.look({transport_.link_up(), statistics_.lost_in_a_row, statistics_.slaves_answering,
-                       clock_.reference().rejected_in_a_row(), statistics_.dc_difference_ns,
-                       link != nullptr && link->foreign_master.load(std::memory_order_relaxed),
-                       link != nullptr ? recent_stall(*link, now) : Duration{}, link != nullptr ? recent_gap(*link, now) : 0, foreign_lately,
-                       link != nullptr ? static_cast<std::uint16_t>(link->states_seen.load(std::memory_order_relaxed)) : std::uint16_t{0}});
+    cycle.faults.look(
+        {transport_.link_up(), statistics_.lost_in_a_row, statistics_.slaves_answering, clock_.reference().rejected_in_a_row(),
+         statistics_.dc_difference_ns, link != nullptr && link->foreign_master.load(std::memory_order_relaxed),
+         link != nullptr ? recent_stall(*link, now) : Duration{}, link != nullptr ? recent_gap(*link, now) : 0, foreign_lately,
+         link != nullptr ? static_cast<std::uint16_t>(link->states_seen.load(std::memory_order_relaxed)) : std::uint16_t{0}});
 }
 
 void ProcessDataCycle::collect_frames(CyclePlan& cycle) noexcept {

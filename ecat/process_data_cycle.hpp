@@ -114,7 +114,7 @@ private:
     struct {
         Instant send_time = Instant::min();
         std::int64_t offset = 0;
-    } mutable next_send_;                             // the same when the next frames leave: asked for by every axis
+    } mutable next_send_;                    // the same when the next frames leave: asked for by every axis
     std::optional<Instant> last_departure_;  // of process data
     std::optional<Instant> foreign_at_;      // a frame of another sender came
     std::uint64_t foreign_before_ = 0;

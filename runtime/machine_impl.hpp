@@ -151,7 +151,7 @@ struct Machine::Impl {
     std::unique_ptr<std::atomic<std::uint32_t>[]> gap_before_fault;
     void note_what_preceded_fault(std::size_t axis) noexcept;
     struct DriveEmergency {
-        AlarmFact fact{};       // a is its code; 0: none
+        AlarmFact fact{};  // a is its code; 0: none
         Instant since{};
         bool told = false;      // its axis has shown the same code meanwhile
         bool raised = false;    // it has been an alarm of its own

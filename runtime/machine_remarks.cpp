@@ -127,12 +127,13 @@ void watchdogs(Remarks& remarks, const MachineConfig& config) {
     constexpr std::size_t named = 3;
     const std::size_t more = earlier.size() > named ? earlier.size() - named : 0;
     earlier.resize(std::min(earlier.size(), named));
-    remarks.add("watchdog_below_limit", "bus.lost_frames_limit",
-                fmt::format("the machine bears {} cycles in a row without an answer{}, {:g} ms, but the watchdog of {}{} trips after {:g} ms",
-                            cycles, relaxed ? " (100 times the limit: relaxed)" : "", to_seconds(borne) * 1e3, fmt::join(earlier, ", "),
-                            more > 0 ? fmt::format(" and {} more", more) : "", to_seconds(shortest) * 1e3),
-                "lost frames stop these slaves, and the machine with them, before the limit is reached: give a smaller `lost_frames_limit`, or "
-                "them a longer `sm_watchdog`");
+    remarks.add(
+        "watchdog_below_limit", "bus.lost_frames_limit",
+        fmt::format("the machine bears {} cycles in a row without an answer{}, {:g} ms, but the watchdog of {}{} trips after {:g} ms",
+                    cycles, relaxed ? " (100 times the limit: relaxed)" : "", to_seconds(borne) * 1e3, fmt::join(earlier, ", "),
+                    more > 0 ? fmt::format(" and {} more", more) : "", to_seconds(shortest) * 1e3),
+        "lost frames stop these slaves, and the machine with them, before the limit is reached: give a smaller `lost_frames_limit`, or "
+        "them a longer `sm_watchdog`");
 }
 
 void programs(Remarks& remarks, const MachineConfig& config, const MachineLayout& layout) {

@@ -80,9 +80,10 @@ void tell_gap(AlarmText& out, std::uint32_t cycles, std::string_view otherwise) 
     if (cycles == 0) return;
     out.english += fmt::format("; right before, {} bus cycles in a row were not answered", cycles);
     out.chinese += fmt::format(";此前连续 {} 个总线周期无应答", cycles);
-    out.cause = fmt::format("Probably frames were lost, and not by the drive (this computer too late for the cycle, another master, a cable "
-                            "or connector){}{}",
-                            otherwise, out.cause);
+    out.cause = fmt::format(
+        "Probably frames were lost, and not by the drive (this computer too late for the cycle, another master, a cable "
+        "or connector){}{}",
+        otherwise, out.cause);
 }
 
 }  // namespace
