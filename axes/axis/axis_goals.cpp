@@ -7,6 +7,21 @@
 
 namespace taktwerk::axes {
 
+namespace {
+
+/// The part of the acceleration that `jerk` takes away before the speed passes `most`, or zero where the axis brakes. A stop (0) that took
+/// over any in the sense of the motion would run on by a^2 / (2 j).
+double releasable(const MotionState& state, double most, double jerk) noexcept {
+    const double speed = std::abs(state.velocity);
+    const bool faster = state.velocity * state.acceleration >= 0;
+    const double room = faster ? std::max(0.0, most - speed) : speed;
+    if (room > 0 && !std::isfinite(jerk)) return state.acceleration;
+    const double bound = room > 0 ? std::sqrt(2 * jerk * room) : 0;
+    return std::clamp(state.acceleration, -bound, bound);
+}
+
+}  // namespace
+
 void Axis::begin_command() noexcept {
     begin_pending_ = false;
     const auto error = set_goal(queue_.active());
@@ -78,10 +93,11 @@ bool Axis::heads_backwards() const noexcept {
 }
 
 void Axis::aim(Goal::Kind kind, double value, const MotionLimits& limits, VelocityLimiter limiter) noexcept {
-    // The jerk of a slave is not limited. A stop that took over an acceleration in the sense of the motion would run on by a^2 / (2 j).
-    if (kind == Goal::Kind::stop && goal_.kind == Goal::Kind::coupled) {
+    // The jerk of a slave, a table and a feed is not limited: what comes next takes over of their acceleration what it can release.
+    const bool stops = kind == Goal::Kind::stop;
+    if (goal_.kind == Goal::Kind::given || (stops && goal_.kind == Goal::Kind::coupled)) {
         auto base = setpoint_.base();
-        if (base.velocity * base.acceleration >= 0) base.acceleration = 0;
+        base.acceleration = releasable(base, stops ? 0 : config_.limits.velocity, limits.jerk);
         setpoint_.set(base);
     }
     goal_ = {kind, value, limits, limiter};

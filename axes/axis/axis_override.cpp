@@ -3,15 +3,18 @@
 #include <cmath>
 
 #include "axes/axis/axis.hpp"
+#include "axes/axis/plannable.hpp"
 
 namespace taktwerk::axes {
 
 ErrorId Axis::set_override(const Override& factors) noexcept {
     const auto in_range = [](double factor) noexcept { return factor >= 0 && factor <= 1; };
     if (!in_range(factors.velocity) || !in_range(factors.acceleration) || !in_range(factors.jerk)) return ErrorId::invalid_override;
-    if (factors.acceleration == 0 || factors.jerk == 0) return ErrorId::invalid_override;
-    if (factors == override_) return ErrorId::none;  // called each scan
-    override_ = factors;
+    if (factors.acceleration < least_share || factors.jerk < least_share) return ErrorId::invalid_override;
+    auto taken = factors;
+    if (taken.velocity < least_share) taken.velocity = 0;  // the end of a filter that never reaches it
+    if (taken == override_) return ErrorId::none;          // called each scan
+    override_ = taken;
     goal_.kept = false;
     // A coupling that has just been commanded may have to wait.
     if (override_counts() && (!begin_pending_ || couples(queue_.active().command.kind))) goal_pending_ = true;

@@ -156,7 +156,7 @@ ErrorId Axis::check_feed(const MotionState& next) const noexcept {
     const double sense = next.velocity < 0 ? -1 : 1;
     const double beside = std::max(0.0, setpoint_.superimposed_top(sense));
     if (std::abs(next.velocity) + beside > config_.limits.velocity * (1 + 1e-9)) return ErrorId::invalid_velocity;
-    if (std::abs(next.velocity - from.velocity) > change) return ErrorId::invalid_dynamics;
+    if (std::abs(next.velocity - from.velocity) > change || std::abs(next.acceleration) * period > change) return ErrorId::invalid_dynamics;
     // Position and velocity must tell of one motion: the axis would brake from the one with the other.
     if (std::abs(mean - (next.velocity + from.velocity) / 2) > change + grain) return ErrorId::invalid_dynamics;
     if (software_limits_hold()) {

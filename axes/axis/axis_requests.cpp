@@ -154,9 +154,7 @@ ErrorId Axis::refuse_target(const AxisCommand& command, bool starts_now) const n
 ErrorId Axis::refuse(const AxisCommand& command) noexcept {
     if (config_.encoder) return ErrorId::not_supported;  // nothing there that moves
     if (made_by_drive(command.kind) && !drive_makes(command.kind)) return ErrorId::not_supported;
-    if (const auto error = check_numbers(command); error != ErrorId::none) return error;
-    if (const auto error = check_plannable(command, units_.counts_per_unit(), config_.limits.velocity); error != ErrorId::none)
-        return error;
+    if (const auto error = check_inputs(command, units_.counts_per_unit(), config_.limits); error != ErrorId::none) return error;
     if (const auto error = refuse_state(command); error != ErrorId::none) return error;
     if (waits(command) && waits_for_ever()) return ErrorId::buffer_mode_not_supported;
     if (const auto error = refuse_coupling(command); error != ErrorId::none) return error;
@@ -249,7 +247,10 @@ ErrorId Axis::set_position(const SetPosition& wanted) noexcept {
     if (!std::isfinite(wanted.position)) return ErrorId::invalid_position;
     if (!online()) return ErrorId::drive_not_ready;
     if (view_.state == AxisState::Homing) return ErrorId::state_forbids;
-    shift_coordinates(wanted.relative ? wanted.position : wanted.position - units_.to_program(actual_local()));
+    const double here = units_.to_program(actual_local());
+    const double shift = wanted.relative ? wanted.position : wanted.position - here;
+    if (!is_place(here + shift, units_.counts_per_unit())) return ErrorId::invalid_position;
+    shift_coordinates(shift);
     publish();
     return ErrorId::none;
 }
@@ -282,7 +283,7 @@ ErrorId Axis::renew_jog(CommandId id, double velocity, Owner owner) noexcept {
     if (!may(owner)) return ErrorId::owned_by_other;
     auto& active = queue_.active();
     if (id == 0 || id != active.id || active.command.kind != CommandKind::jog || jog_expired_) return ErrorId::state_forbids;
-    if (!std::isfinite(velocity)) return ErrorId::invalid_velocity;
+    if (!std::isfinite(velocity) || as_good_as_none(velocity, config_.limits.velocity)) return ErrorId::invalid_velocity;
     if (!permitted(velocity)) return ErrorId::interlocked;
     jog_renewed_ = now_;
     if (velocity != active.command.velocity) {

@@ -20,9 +20,7 @@ constexpr double room_grain = 1e-9;   // of the limit: rounding
 }  // namespace
 
 ErrorId Axis::refuse_superimposed(const AxisCommand& command) const noexcept {
-    if (const auto error = check_numbers(command); error != ErrorId::none) return error;
-    if (const auto error = check_plannable(command, units_.counts_per_unit(), config_.limits.velocity); error != ErrorId::none)
-        return error;
+    if (const auto error = check_inputs(command, units_.counts_per_unit(), config_.limits); error != ErrorId::none) return error;
     if (view_.state == AxisState::Disabled) return ErrorId::not_powered;
     if (view_.state == AxisState::ErrorStop) return ErrorId::in_error_stop;
     if (emergency_ != EmergencyStop::none) return ErrorId::interlocked;

@@ -5,6 +5,7 @@
 
 #include "axes/axis/axis.hpp"
 #include "axes/axis/junction.hpp"
+#include "axes/axis/plannable.hpp"
 
 namespace taktwerk::axes {
 
@@ -23,7 +24,7 @@ ErrorId Axis::update(CommandId id, const AxisCommand& command, Owner owner) noex
 
 ErrorId Axis::update_waiting(AcceptedCommand& waiting, const AxisCommand& command) noexcept {
     if (command.kind != waiting.command.kind || command.buffer_mode == mcAborting) return ErrorId::update_not_possible;
-    if (const auto error = check_numbers(command); error != ErrorId::none) return error;
+    if (const auto error = check_inputs(command, units_.counts_per_unit(), config_.limits); error != ErrorId::none) return error;
     if (const auto error = refuse_target(command, false); error != ErrorId::none) return error;
     const bool last = waiting.id == queue_.waiting_at(queue_.waiting() - 1).id;
     if (!last && never_ends(command)) return ErrorId::buffer_mode_not_supported;
@@ -37,7 +38,7 @@ ErrorId Axis::update_waiting(AcceptedCommand& waiting, const AxisCommand& comman
 ErrorId Axis::update_active(const AxisCommand& command) noexcept {
     auto& active = queue_.active();
     if (command.kind != active.command.kind) return ErrorId::update_not_possible;
-    if (const auto error = check_numbers(command); error != ErrorId::none) return error;
+    if (const auto error = check_inputs(command, units_.counts_per_unit(), config_.limits); error != ErrorId::none) return error;
     if (goal_.limiter == VelocityLimiter::software_limit) return ErrorId::update_not_possible;
     if (begin_pending_) {  // not begun: as if it had come with these inputs
         if (const auto error = refuse_target(command, true); error != ErrorId::none) return error;

@@ -141,10 +141,49 @@ INSTANTIATE_TEST_SUITE_P(Kinds, SetpointFeedRefused,
                                            BadFeed{"step", {0.01, 0, 0}, ErrorId::invalid_dynamics},             // 60 u/s, says 50
                                            BadFeed{"kink", {0.0005, 1.1, 0}, ErrorId::invalid_dynamics},         // 1100 u/s2
                                            BadFeed{"speed", {0, 51, 0}, ErrorId::invalid_velocity},              // 101 u/s
+                                           BadFeed{"acceleration", {0, 0, 1001}, ErrorId::invalid_dynamics},     // of another unit, say
                                            BadFeed{"no_position", {nan, 0, 0}, ErrorId::invalid_position},       //
                                            BadFeed{"no_velocity", {0, nan, 0}, ErrorId::invalid_velocity},       //
                                            BadFeed{"no_acceleration", {0, 0, nan}, ErrorId::invalid_dynamics}),  //
                          [](const auto& tested) { return tested.param.what; });
+
+// A source that tells an acceleration which is not there. What a stop or a motion takes over from it carries the axis past no limit and back
+// beyond no standstill.
+class SetpointFeedLeft : public ::testing::TestWithParam<double> {};
+
+TEST_P(SetpointFeedLeft, KeepsTheAxisInsideItsLimits) {
+    using Leave = std::function<void(Rig&)>;
+    const std::vector<std::pair<const char*, Leave>> ways{
+        {"emergency stop", [](Rig& r) { r.axis.demand_emergency_stop(EmergencyStop::stop_and_power_off); }},
+        {"halt", [](Rig& r) { r.accept(halt()); }},
+        {"stop", [](Rig& r) { r.accept(stop()); }},
+        {"move", [](Rig& r) { r.accept(relative(60, 100)); }},
+        {"velocity", [](Rig& r) { r.accept(at_velocity(100)); }},
+        {"nothing more", [](Rig&) {}},
+    };
+    for (const double velocity : {1.0, 20.0, 99.0}) {
+        for (const auto& [name, leave] : ways) {
+            SCOPED_TRACE(std::string(name) + " at " + std::to_string(velocity));
+            FedRig rig;
+            rig.accept(external());
+            rig.top = velocity;
+            rig.feeding = true;
+            ASSERT_TRUE(rig.run_until([&] { return rig.velocity == velocity; }, 1000));
+            rig.feeding = false;
+            rig.position += velocity * 1e-3;
+            ASSERT_EQ(rig.axis.set(SetpointFeed{rig.position, velocity, GetParam()}, Owner::program), ErrorId::none);
+            rig.step();
+            leave(rig);
+            for (int i = 0; i < 2000; ++i) {
+                rig.step();
+                ASSERT_GE(rig.view().set_velocity, -1e-9) << i;
+                ASSERT_LE(rig.view().set_velocity, 100 * (1 + 1e-9)) << i;
+            }
+            rig.expect_no_jump();
+        }
+    }
+}
+INSTANTIATE_TEST_SUITE_P(Told, SetpointFeedLeft, ::testing::Values(-1000.0, -300.0, 0.0, 300.0, 1000.0));
 
 TEST(SetpointFeed, StopsInsideTheSoftwareLimits) {
     auto config = plain_axis();

@@ -154,5 +154,48 @@ TEST(AxisOverride, StopsAreNotSlowedDown) {
     EXPECT_EQ(rig.view().override_factors.acceleration, 0.1);
 }
 
+// A filter that decays for ever: the axis stands as with 0, and goes on from there.
+TEST(AxisOverride, AFactorThatIsAsGoodAsNoneIsNone) {
+    OverrideRig rig;
+    const auto id = rig.accept(absolute(300, 100));
+    rig.run(500);
+    for (double factor = 1; factor > 0; factor *= 0.5) {
+        ASSERT_EQ(rig.factors(factor), ErrorId::none) << factor;
+        rig.run(10);
+        ASSERT_EQ(rig.view().state, AxisState::DiscreteMotion) << factor;
+    }
+    rig.run(500);
+    EXPECT_EQ(rig.view().set_velocity, 0);
+    EXPECT_EQ(rig.view().override_factors.velocity, 0);
+    EXPECT_EQ(rig.factors(0.5, 1e-300), ErrorId::invalid_override);
+    EXPECT_EQ(rig.factors(0.5, 1, 1e-300), ErrorId::invalid_override);
+    EXPECT_EQ(rig.factors(1), ErrorId::none);
+    ASSERT_TRUE(rig.run_to(AxisState::Standstill));
+    EXPECT_EQ(rig.status(id), CommandStatus::done);
+    EXPECT_EQ(rig.view().set_position, 300);
+}
+
+// The slowest that is taken, with the smallest factors that are: no number is refused by the planner, and the axis goes on from it.
+TEST(AxisOverride, TheLeastOfEverythingStillHasAPlan) {
+    for (const double share : {1e-9, 3e-9, 1e-6}) {
+        Rig rig;
+        rig.power_on();
+        auto slow = absolute(300, 100 * share);
+        slow.acceleration = slow.deceleration = 1000 * share;
+        slow.jerk = 1000 * share;
+        rig.accept(at_velocity(60));
+        rig.run(500);
+        rig.accept(slow);
+        for (const double factor : {1.0, share, 0.5}) {
+            ASSERT_EQ(rig.axis.set(Override{factor, share, share}, Owner::program), ErrorId::none);
+            rig.run(20);
+            ASSERT_NE(rig.view().state, AxisState::ErrorStop) << share << " " << factor;
+        }
+        rig.accept(halt());
+        rig.run(500);
+        EXPECT_NE(rig.view().state, AxisState::ErrorStop);
+    }
+}
+
 }  // namespace
 }  // namespace taktwerk::axes::test

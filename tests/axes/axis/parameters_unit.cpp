@@ -298,6 +298,21 @@ TEST(DriveOutputs, ADriveWithoutThemSaysSo) {
     EXPECT_EQ(rig.axis.set(WriteOutput{0, true}, Owner::program), ErrorId::not_supported);
 }
 
+// A count is told from the next up to 2^52 of them: a position beyond is none, and what comes back from there would not be the same.
+TEST(SetPositionOf, APlaceThatNoCountTellsIsRefused) {
+    ParameterRig rig;
+    const auto set = [&](double position, bool relative) { return rig.axis.set(SetPosition{position, relative}, Owner::program); };
+    for (const double absurd : {1e300, -1e300, 1e18, std::numeric_limits<double>::infinity()}) {
+        EXPECT_EQ(set(absurd, false), ErrorId::invalid_position) << absurd;
+        EXPECT_EQ(set(absurd, true), ErrorId::invalid_position) << absurd;
+    }
+    EXPECT_EQ(rig.view().set_position, 0);
+    EXPECT_EQ(set(4e12, false), ErrorId::none) << "1000 counts a unit: 4e15 of 4.5e15";
+    EXPECT_EQ(set(1e12, true), ErrorId::invalid_position) << "together too far";
+    EXPECT_EQ(set(0, false), ErrorId::none);
+    EXPECT_EQ(rig.view().set_position, 0);
+}
+
 TEST(DriveInputs, StandInTheViewAsTheDriveGivesThem) {
     ParameterRig rig;
     rig.drive.inputs = 0x8000'0005u;

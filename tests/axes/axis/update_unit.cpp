@@ -210,5 +210,34 @@ TEST(AxisUpdate, BufferModeOfARunningCommandHasNoEffect) {
     EXPECT_EQ(rig.status(id), CommandStatus::done);
 }
 
+// Values that no plan can be made of are not taken, and the motion goes on as if they had never come: running, waiting or superimposed.
+TEST(AxisUpdate, AbsurdValuesAreNotTakenAndTheMotionGoesOn) {
+    struct Absurd {
+        AxisCommand values;
+        ErrorId error;
+    };
+    auto gentle = relative(100, 10);
+    gentle.jerk = 1e-300;
+    auto lazy = relative(100, 10);
+    lazy.deceleration = 1e-300;
+    for (const auto& absurd :
+         {Absurd{relative(100, 1e-300), ErrorId::invalid_velocity}, Absurd{relative(1e300, 10), ErrorId::invalid_position},
+          Absurd{gentle, ErrorId::invalid_dynamics}, Absurd{lazy, ErrorId::invalid_dynamics}}) {
+        UpdateRig rig;
+        EXPECT_EQ(rig.refuse(absurd.values), absurd.error) << "as if it were new";
+        const auto id = rig.accept(relative(100, 10));
+        auto waiting = absurd.values;
+        waiting.buffer_mode = mcBuffered;
+        const auto behind = rig.accept(relative(5, 10, mcBuffered));
+        rig.run(500);
+        EXPECT_EQ(rig.update(id, absurd.values), absurd.error);
+        EXPECT_EQ(rig.update(behind, waiting), absurd.error);
+        ASSERT_TRUE(rig.run_to(AxisState::Standstill));
+        EXPECT_EQ(rig.status(id), CommandStatus::done);
+        EXPECT_EQ(rig.status(behind), CommandStatus::done);
+        EXPECT_EQ(rig.view().set_position, 105);
+    }
+}
+
 }  // namespace
 }  // namespace taktwerk::axes::test
