@@ -18,6 +18,14 @@ void add_drive_sets(CLI::App& drive, Action& action);    ///< save, restore, dif
 void add_drive_alarms(CLI::App& drive, Action& action);  ///< alarms, reset
 void add_drive_turns(CLI::App& drive, Action& action);   ///< clear-turns
 
+/// What of these is no setting but does something when it is written: stores, restores, tunes, commands. Nothing: all are settings.
+[[nodiscard]] std::optional<Error> needs_a_yes(const DriveAccess& drive, const std::vector<config::ParameterSet::Value>& values);
+/// Asks on the terminal; without one only `yes` counts, and `refusal` is the answer.
+[[nodiscard]] Result<void> confirm(const DriveAccess& drive, const Error& refusal, bool yes);
+/// "P05.13=300 ms": the words of `drive set`. Errors: drive.value, drive.twice, those of axes::find_parameter and axes::parse_value.
+[[nodiscard]] Result<std::vector<config::ParameterSet::Value>> parsed_assignments(const axes::DriveProfile& profile,
+                                                                                  const std::vector<std::string>& words);
+
 struct Change {
     const axes::DriveParameter* parameter = nullptr;
     std::optional<std::int64_t> from;  ///< nothing: the drive does not say what it was
@@ -27,6 +35,7 @@ struct Change {
 struct Written {
     std::vector<Change> changes;     ///< those before an error, too
     std::vector<std::string> notes;  ///< for the user: EEPROM, restarts
+    std::size_t acts = 0;            ///< written that are no settings; the notes say which
     std::optional<Error> error;
 };
 /// Writes what differs and reads each back. With storing asked everything is stored, whether it differs or not: what is in force may never

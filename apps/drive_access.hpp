@@ -70,6 +70,8 @@ public:
                                                    Storing storing) = 0;
     /// All parameters into the EEPROM at once, for drives that store on request. Error drive.cannot_store. Waits until the drive is done.
     [[nodiscard]] virtual Result<void> store_all() = 0;
+    /// The way there refuses by itself what could move a motor by this parameter: nobody needs to be asked first.
+    [[nodiscard]] virtual bool guards(const axes::DriveParameter&) const { return false; }
     [[nodiscard]] virtual Result<DriveComplaint> complaint() = 0;
     /// Asks the drive to forget its fault and ends when it has, or after `patience`. True: no fault any more.
     [[nodiscard]] virtual Result<bool> reset_fault(Duration patience) = 0;

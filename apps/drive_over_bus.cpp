@@ -1,7 +1,9 @@
 #include "apps/drive_over_bus.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include "apps/drive_over_line.hpp"
 #include "apps/drive_profiles.hpp"
 #include "axes/drives/cia402/cia402_drive.hpp"
 #include "ecat/diagnosis/mailbox_access.hpp"
@@ -147,12 +149,18 @@ int with_drive_over_bus(const DriveOptions& options, const std::function<int(Dri
         const Result<ecat::Survey> found = session.look();
         if (!found) return refuse(found.error());
         const Result<std::size_t> position = find_slave(*found, options.drive);
-        if (!position) return refuse(position.error());
+        if (!position) {
+            auto error = position.error();
+            if (const auto others = drives_on_lines(options); !others.empty())
+                error.remedy += fmt::format("; on serial lines there is: {}", fmt::join(others, ", "));
+            return refuse(error);
+        }
         const auto profile = profile_of_slave(options, *found, *position);
         if (!profile) return refuse(profile.error());
         if (options.axis > (*profile)->axes)
             return refuse({"drive.no_axis", found->subject(*position),
-                           fmt::format("{} has {}", (*profile)->name, count_text((*profile)->axes, "axis")),
+                           fmt::format("{} has {}", (*profile)->name,
+                                       (*profile)->axes == 1 ? std::string("1 axis") : fmt::format("{} axes", (*profile)->axes)),
                            "leave --axis away, or choose one it has"});
         if (auto allowed = session.may_write(*found, "speaking to its mailboxes"); !allowed) return refuse(allowed.error());
         session.adopt(*found);

@@ -1,5 +1,6 @@
 #include "apps/drive_over_line.hpp"
 
+#include <algorithm>
 #include <charconv>
 
 #include <fmt/format.h>
@@ -102,6 +103,7 @@ public:
     }
     [[nodiscard]] Result<void> write_bytes(const axes::DriveParameter& parameter, std::vector<std::byte> value, Storing) override;
     [[nodiscard]] Result<void> store_all() override;
+    [[nodiscard]] bool guards(const axes::DriveParameter& parameter) const override;
     [[nodiscard]] Result<DriveComplaint> complaint() override;
     [[nodiscard]] Result<bool> reset_fault(Duration patience) override;
     void wait(Duration time) override { (void)session_.wait(time); }  // interrupted: the next access says so
@@ -145,15 +147,18 @@ Result<std::vector<std::uint16_t>> DriveOverLine::ask(const modbus::Request& req
 }
 
 /// What forces an input on, or enables: for whoever stands beside the motor, at its panel.
-Result<void> DriveOverLine::write_bytes(const axes::DriveParameter& parameter, std::vector<std::byte> value, Storing) {
+bool DriveOverLine::guards(const axes::DriveParameter& parameter) const {
     const auto number = parameter.address.index;
+    return number == pr::forced_enable || (number >= pr::force_1 && number <= pr::force_5);
+}
+
+Result<void> DriveOverLine::write_bytes(const axes::DriveParameter& parameter, std::vector<std::byte> value, Storing) {
     const auto word = static_cast<std::uint16_t>(std::to_integer<unsigned>(value[0]) | (std::to_integer<unsigned>(value[1]) << 8));
-    const bool forces = number == pr::forced_enable || (number >= pr::force_1 && number <= pr::force_5);
-    if (forces && word != 0)
+    if (guards(parameter) && word != 0)
         return refused(fmt::format("{} forces the drive's inputs: it could enable or move the motor, or defeat its limit switches",
                                    axes::name_of(parameter)),
                        "0 is taken; anything else only at the panel [5.4.2]");
-    const auto done = ask(modbus::write_parameter(place_.station, number, word));
+    const auto done = ask(modbus::write_parameter(place_.station, parameter.address.index, word));
     if (!done) return done.error();
     return {};
 }
@@ -248,13 +253,18 @@ Result<void> for_places(const DriveOptions& options, const std::function<Result<
 
 bool is_on_line(const DriveOptions& options) {
     if (!options.line.empty()) return true;
-    if (options.bus->machine.empty() || options.drive.empty()) return false;
+    if (options.drive.empty()) return false;
+    const auto names = drives_on_lines(options);
+    return std::find(names.begin(), names.end(), options.drive) != names.end();
+}
+
+std::vector<std::string> drives_on_lines(const DriveOptions& options) {
+    std::vector<std::string> out;
+    if (options.bus->machine.empty()) return out;
     const auto result = read_machine_without_programs(options.bus->machine, options.bus->simulate);
-    const auto* loaded = std::get_if<LoadedFile>(&result);
-    if (loaded == nullptr) return false;
-    for (const auto& place : places_of(loaded->machine))
-        if (place.name == options.drive) return true;
-    return false;
+    if (const auto* loaded = std::get_if<LoadedFile>(&result))
+        for (const auto& place : places_of(loaded->machine)) out.push_back(place.name);
+    return out;
 }
 
 int with_drive_over_line(const DriveOptions& options, const std::function<int(DriveAccess&)>& work) {

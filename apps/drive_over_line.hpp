@@ -10,6 +10,8 @@ namespace taktwerk::apps {
 
 /// --line says so, or the machine file has a drive of this name on a serial line.
 [[nodiscard]] bool is_on_line(const DriveOptions& options);
+/// Names of the drives on serial lines of the machine file; none where it cannot be read.
+[[nodiscard]] std::vector<std::string> drives_on_lines(const DriveOptions& options);
 /// Refuses while another program has the port. Forces nothing on and enables nothing: what would move the motor cannot be written, and storing
 /// and resetting want it disabled.
 int with_drive_over_line(const DriveOptions& options, const std::function<int(DriveAccess&)>& work);

@@ -1,11 +1,6 @@
 // taktwerk drive clear-turns: an absolute encoder forgets its turns. Guarded: asked for by name, at a motor without power, and the axis has no
 // reference until it is homed again.
 
-#include <iostream>
-#include <string>
-
-#include <unistd.h>
-
 #include <fmt/format.h>
 
 #include "apps/drive.hpp"
@@ -15,22 +10,12 @@ namespace taktwerk::apps {
 
 namespace {
 
-/// Asks on the terminal; without one only --yes counts.
-Result<void> confirm(const DriveAccess& drive, bool yes) {
-    if (yes) return {};
-    const auto what =
-        fmt::format("{} forgets the turns of its encoder: its position becomes another, and it must be homed", drive.subject());
-    if (::isatty(STDIN_FILENO) == 0) return Error{"drive.not_confirmed", drive.subject(), what, "say --yes if that is meant"};
-    fmt::print(stderr, "{}. Go on? [y/N] ", what);
-    std::string answer;
-    std::getline(std::cin, answer);
-    if (answer == "y" || answer == "Y" || answer == "yes") return {};
-    return Error{"drive.not_confirmed", drive.subject(), "nothing was done", ""};
-}
-
 int clear_turns(const DriveOptions& options) {
     return with_drive(options, [&](DriveAccess& drive) {
-        if (const auto sure = confirm(drive, options.bus->yes); !sure) return fail(*options.bus, sure.error());
+        const Error refusal{"drive.not_confirmed", drive.subject(),
+                            "the encoder forgets its turns: the position becomes another, and the axis must be homed",
+                            "say --yes if that is meant"};
+        if (const auto sure = confirm(drive, refusal, options.bus->yes); !sure) return fail(*options.bus, sure.error());
         if (const auto done = drive.clear_turns(); !done) return fail(*options.bus, done.error());
         if (options.bus->json) print_json(Json{{"ok", true}, {"drive", drive.subject()}});
         else fmt::print("{}: the turns are cleared; home the axis before it moves to positions\n", drive.subject());

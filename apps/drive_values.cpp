@@ -1,5 +1,7 @@
 // taktwerk drive get, set: single parameters.
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "apps/drive.hpp"
@@ -54,32 +56,49 @@ int get(const Options& options) {
     });
 }
 
-/// "P05.13=300 ms".
-Result<Values> parsed(const axes::DriveProfile& profile, const std::vector<std::string>& words) {
-    Values out;
-    for (const auto& word : words) {
-        const auto equals = word.find('=');
-        if (equals == std::string::npos) return Error{"drive.value", word, "has no '='", "write it as P05.13=300"};
-        const auto found = axes::find_parameter(profile, word.substr(0, equals));
-        if (!found) return found.error();
-        const auto raw = axes::parse_value(**found, word.substr(equals + 1));
-        if (!raw) return raw.error();
-        out.push_back({*found, *raw});
-    }
-    return out;
+/// Of this drive, and such as it could be meant.
+std::string example(const axes::DriveProfile& profile, const std::vector<std::string>& words, std::size_t at) {
+    if (axes::find_parameter(profile, words[at])) return fmt::format("write {}=VALUE", words[at]);
+    if (at > 0) return fmt::format("if it belongs to the value before it, put both in quotes: '{} {}'", words[at - 1], words[at]);
+    const auto& rows = profile.parameters;
+    const auto setting = std::find_if(rows.begin(), rows.end(), [](const DriveParameter& p) { return axes::is_setting(p); });
+    if (setting == rows.end()) return "write PARAMETER=VALUE";
+    const bool known = setting->factory != axes::FactoryValue::unknown;
+    return fmt::format("write PARAMETER=VALUE, such as '{}={}'", axes::name_of(*setting),
+                       known ? axes::value_text(*setting, setting->value) : "VALUE");
 }
 
 int set(const Options& options) {
     const auto& bus = *options.drive->bus;
     return with_drive(*options.drive, [&](DriveAccess& drive) {
-        const auto values = parsed(drive.profile(), options.words);
+        const auto values = parsed_assignments(drive.profile(), options.words);
         if (!values) return fail(bus, values.error());
+        if (const auto refusal = needs_a_yes(drive, *values))
+            if (const auto sure = confirm(drive, *refusal, bus.yes); !sure) return fail(bus, sure.error());
         const auto written = write_values(drive, *values, options.drive->storing);
         return report_written(bus, drive, written);
     });
 }
 
 }  // namespace
+
+Result<Values> parsed_assignments(const axes::DriveProfile& profile, const std::vector<std::string>& words) {
+    Values out;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        const auto& word = words[i];
+        const auto equals = word.find('=');
+        if (equals == std::string::npos) return Error{"drive.value", word, "has no '='", example(profile, words, i)};
+        const auto found = axes::find_parameter(profile, word.substr(0, equals));
+        if (!found) return found.error();
+        const auto raw = axes::parse_value(**found, word.substr(equals + 1));
+        if (!raw) return raw.error();
+        if (std::any_of(out.begin(), out.end(), [&](const auto& earlier) { return earlier.parameter == *found; }))
+            return Error{"drive.twice", axes::name_of(**found), "is given twice: nobody can tell which value is meant",
+                         "leave one of them away"};
+        out.push_back({*found, *raw});
+    }
+    return out;
+}
 
 void add_drive_values(CLI::App& drive, Action& action) {
     auto* getting = drive.add_subcommand("get", "parameters of a drive");
@@ -95,6 +114,7 @@ void add_drive_values(CLI::App& drive, Action& action) {
     add_drive_choice(*setting, *set_options->drive);
     setting->add_option("PARAMETER=VALUE", set_options->words, "P05.13=300, 'P05.13=300 ms', 6084h=0x1000")->required();
     add_store_option(*setting, *set_options->drive);
+    setting->add_flag("--yes", set_options->drive->bus->yes, "do not ask before what is no setting is written: a command to the drive");
     setting->callback([&action, set_options] { action = [set_options] { return set(*set_options); }; });
 }
 

@@ -35,7 +35,7 @@ public:
         find_wanted(values);
         const bool nothing = wanted_.empty() && storing_ == Storing::volatile_only;
         if (nothing || values.empty() || !may_store() || !may_count()) return std::move(out_);
-        prepare();
+        if (settings() > 0) prepare();
         for (const auto& change : wanted_) {
             if (out_.error) break;
             write(change);
@@ -50,8 +50,20 @@ private:
         return storing_ == Storing::asked && profile_.storage == ParameterStorage::each_write;
     }
 
+    /// Does something when it is written; what it reads afterwards is its state or nothing (CiA 301 1011h: what can be restored).
+    [[nodiscard]] static bool is_act(const DriveParameter& parameter) noexcept { return parameter.action; }
+
+    [[nodiscard]] std::size_t settings() const {
+        return static_cast<std::size_t>(
+            std::count_if(wanted_.begin(), wanted_.end(), [](const Change& change) { return !is_act(*change.parameter); }));
+    }
+
     void find_wanted(const std::vector<config::ParameterSet::Value>& values) {
         for (const auto& value : values) {
+            if (is_act(*value.parameter)) {
+                wanted_.push_back({value.parameter, std::nullopt, value.raw});  // what it reads says nothing about what it does
+                continue;
+            }
             const auto now = drive_.read(*value.parameter);
             // What is in force may never have been stored: a drive that stores by writing gets it again. What cannot be read is
             // written unseen (SE-808X 6098h).
@@ -134,6 +146,12 @@ private:
             out_.error = done.error();
             return;
         }
+        if (is_act(*change.parameter)) {
+            ++out_.acts;
+            out_.notes.push_back(fmt::format("{} ({}): {} written, and the drive took it", axes::name_of(*change.parameter),
+                                             change.parameter->name, axes::value_text(*change.parameter, change.to)));
+            return;
+        }
         if (change.from != change.to) out_.changes.push_back(change);
         const auto back = drive_.read(*change.parameter);
         if (back && *back != change.to) {
@@ -175,10 +193,11 @@ private:
 
     void finish() {
         tell_late();
+        if (settings() == 0 && !wanted_.empty()) return;  // what was ordered is told, and nothing of it is kept or lost
         if (stores_each()) {
-            out_.notes.push_back(fmt::format("{} stored in the EEPROM.", written_ == wanted_.size()
+            out_.notes.push_back(fmt::format("{} stored in the EEPROM.", written_ == settings()
                                                                              ? count_text(written_, "value")
-                                                                             : fmt::format("{} of {} values", written_, wanted_.size())));
+                                                                             : fmt::format("{} of {} values", written_, settings())));
             return;
         }
         if (out_.error) return;
@@ -218,7 +237,7 @@ int report_written(const BusOptions& options, const DriveAccess& drive, const Wr
     if (!written.changes.empty())
         fmt::print("{}: {} changed\n{}", drive.subject(), count_text(written.changes.size(), "value"),
                    changes_text(written.changes, colours_of_output()));
-    else if (!written.error) fmt::print("{}: nothing to change\n", drive.subject());
+    else if (!written.error && written.acts == 0) fmt::print("{}: nothing to change\n", drive.subject());
     for (const auto& note : written.notes) fmt::print("{}\n", wrapped(note, 0));
     return written.error ? fail(options, *written.error) : static_cast<int>(exit_ok);
 }

@@ -168,6 +168,11 @@ int run_virtual(LoadedFile loaded, const Options& options) {
     if (up && stop_requested())
         up = Error{std::string(RealtimeRunner::ended_early), "run",
                    fmt::format("ended by {}: the bus was not operational yet", stop_signal_name()), "nothing has moved; start it again"};
+    if (const double took = to_seconds(clock.now() - Instant{}); up && options.duration_s > 0 && took >= options.duration_s)
+        up = Error{std::string(RealtimeRunner::ended_early), "run",
+                   fmt::format("ended by --duration: the bus needed {:.3g} s to become operational, and the run was to last {:.3g} s", took,
+                               options.duration_s),
+                   "nothing has moved; give --duration more than the bus needs"};
     if (!up) {
         finish(capture.get(), options);
         print_error(up.error());

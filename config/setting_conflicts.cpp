@@ -12,7 +12,36 @@ namespace taktwerk::config {
 
 namespace {
 
-constexpr std::uint16_t store_parameters = 0x1010, restore_parameters = 0x1011;  // CiA 301 7.5.2.13, 7.5.2.14
+/// What no start-up list may write, whatever the drive: it would be done again at each start. {0}: the slave.
+struct StartupCommand {
+    std::uint16_t index;
+    std::string_view what, remedy;
+};
+constexpr StartupCommand startup_commands[] = {
+    {0x1010,
+     "saves the parameters of '{0}' when it is written: at each start, whatever they are just then; its EEPROM bears some 100,000 writes "
+     "[CiA 301, 1010h]",
+     "remove the entry; store once, when the drive is commissioned: `taktwerk drive set {0} PARAMETER=VALUE --store`, and name what has to "
+     "be there under `stored`"},
+    {0x1011, "puts the factory's values of '{0}' back when it is written: each start would undo what was stored [CiA 301, 1011h]",
+     "remove the entry; for a known state keep a file: `taktwerk drive save {0} FILE`, `taktwerk drive restore {0} FILE --store`"},
+};
+
+/// What the cycle writes in OP, in every drive of CiA 402: a start-up list moves or enables the drive by it before the machine knows, or has no
+/// effect, since the next frame overwrites it.
+struct CyclicCommand {
+    std::uint16_t index;
+    std::string_view name, instead;
+};
+constexpr CyclicCommand cyclic_commands[] = {
+    {0x6040, "control word", "the axis enables its drive: `taktwerk enable`, MC_Power"},
+    {0x6071, "target torque", "MC_TorqueControl gives it"},
+    {0x607A, "target position", "the axis gives it: `taktwerk move`, MC_MoveAbsolute"},
+    {0x60B0, "position offset", "the axis gives it"},
+    {0x60B1, "velocity offset", "the axis gives it"},
+    {0x60B2, "torque offset", "the axis gives it"},
+    {0x60FF, "target velocity", "the axis gives it: MC_MoveVelocity"},
+};
 
 /// What the machine file says that an object holds.
 struct Said {
@@ -107,22 +136,22 @@ void refuse_startup_commands(Reader& reader, const std::string& slave, const std
         const auto refuse = [&](std::string what, std::string remedy) {
             reader.problem(entry.where, "config.startup_command", std::move(what), std::move(remedy));
         };
-        if (entry.object.index == store_parameters) {
-            refuse(fmt::format("{} saves the parameters of '{}' when it is written: at each start, whatever they are just then; its EEPROM "
-                               "bears some 100,000 writes [CiA 301, 1010h]",
-                               shown, slave),
-                   fmt::format("remove the entry; store once, when the drive is commissioned: `taktwerk drive set {} PARAMETER=VALUE "
-                               "--store`, and name what has to be there under `stored`",
-                               slave));
+        const auto command = std::find_if(std::begin(startup_commands), std::end(startup_commands),
+                                          [&](const StartupCommand& row) { return row.index == entry.object.index; });
+        if (command != std::end(startup_commands)) {
+            refuse(fmt::format("{} {}", shown, fmt::format(fmt::runtime(command->what), slave)),
+                   fmt::format(fmt::runtime(command->remedy), slave));
             continue;
         }
-        if (entry.object.index == restore_parameters) {
-            refuse(fmt::format("{} puts the factory's values of '{}' back when it is written: each start would undo what was stored "
-                               "[CiA 301, 1011h]",
-                               shown, slave),
-                   fmt::format("remove the entry; for a known state keep a file: `taktwerk drive save {0} FILE`, `taktwerk drive restore "
-                               "{0} FILE --store`",
-                               slave));
+        const auto standard = profile ? find_drive_object(*profile, entry.object).object.index : entry.object.index;
+        const auto cyclic = std::find_if(std::begin(cyclic_commands), std::end(cyclic_commands),
+                                         [&](const CyclicCommand& row) { return row.index == standard; });
+        if (profile && cyclic != std::end(cyclic_commands)) {
+            refuse(fmt::format(
+                       "{} ({}) is no setting but a command of the cycle: at a start it would act on the drive of '{}' before its axis "
+                       "is there, and the first process data overwrite it [CiA 402]",
+                       shown, cyclic->name, slave),
+                   fmt::format("remove the entry; {}", cyclic->instead));
             continue;
         }
         const auto* parameter = profile ? find_drive_object(*profile, entry.object).parameter : nullptr;

@@ -50,6 +50,10 @@ Table<StoredEntry> stored_table() {
                    {},
                    {}};
     table.before = [](Reader&, const Node& node, S& entry) { entry.where = node.at; };
+    // An entry that could not be read says nothing, so nothing follows from it.
+    table.after = [](Reader& reader, const Node&, S& entry) {
+        if (reader.already_bad(reader.path())) entry.object = {};
+    };
     return table;
 }
 

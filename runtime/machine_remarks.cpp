@@ -100,11 +100,16 @@ void bus_load(Remarks& remarks, const MachineConfig& config) {
     const auto load = ecat::bus_load(bus);
     const auto percent = load.round_trip * 100 / bus.cycle;
     if (percent < full_percent) return;
+    // Refused is only what fits in no case (check_load of ecat/bus_config.cpp): a slave on an E-bus costs a third of one with cables.
+    const auto* beyond = percent < 100 ? ""
+                                       : ". The frames come back behind the next ones, and the bus does not come up, unless most of the "
+                                         "slaves are terminals on an E-bus";
     remarks.add(
         "bus_load", "cycle",
         fmt::format("process data takes about {:.0f} us of the cycle of {:.0f} us there and back ({} bytes in {} frame(s), {} slaves): "
-                    "{} %",
-                    to_seconds(load.round_trip) * 1e6, to_seconds(bus.cycle) * 1e6, load.bytes, load.frames, bus.slaves.size(), percent),
+                    "{} %{}",
+                    to_seconds(load.round_trip) * 1e6, to_seconds(bus.cycle) * 1e6, load.bytes, load.frames, bus.slaves.size(), percent,
+                    beyond),
         fmt::format(
             "choose a cycle of {:.0f} us or more, or slower sync units: mailboxes, recovery and this computer's lateness need the rest",
             to_seconds(load.round_trip) * 1e6 * 100 / full_percent));

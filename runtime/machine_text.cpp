@@ -22,7 +22,16 @@ std::string number(double value) {
     return fmt::format("{:.4g}", value);
 }
 
-/// {a}, {b} and, in so many hexadecimal digits as codes of that kind are written, {a:x2}, {b:x4}, ... in a text of an alarm table.
+/// Nanoseconds in the unit that a person reads.
+std::string time_text(double nanoseconds) {
+    const double size = std::abs(nanoseconds);
+    if (size >= 1e9) return fmt::format("{:.3g} s", nanoseconds * 1e-9);
+    if (size >= 1e6) return fmt::format("{:.3g} ms", nanoseconds * 1e-6);
+    if (size >= 1e3) return fmt::format("{:.3g} us", nanoseconds * 1e-3);
+    return fmt::format("{:.0f} ns", nanoseconds);
+}
+
+/// {a:ns}: a time. {a}, {b} and, in so many hexadecimal digits as codes of that kind are written, {a:x2}, {b:x4}, ... in a text of an alarm table.
 std::string fill(std::string_view text, double a, double b) {
     std::string out;
     for (std::size_t i = 0; i < text.size();) {
@@ -33,6 +42,9 @@ std::string fill(std::string_view text, double a, double b) {
         const double value = known && place[1] == 'a' ? a : b;
         if (known && place.size() == 3) {
             out += number(value);
+            i += place.size();
+        } else if (known && place.substr(2) == ":ns}") {
+            out += time_text(value);
             i += place.size();
         } else if (known && place.size() == 6 && place.substr(2, 2) == ":x") {
             out += fmt::format("{:0{}X}", static_cast<std::uint32_t>(value), place[4] - '0');

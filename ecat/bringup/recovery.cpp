@@ -13,7 +13,8 @@ namespace taktwerk::ecat {
 namespace {
 
 Error not_there(const BusSlave& slave) {
-    return Error{"bus.no_slave", slave.subject, "is not on the cable", "check its power and its cable"};
+    return Error{"bus.no_slave", slave.subject, "was not there when the slaves on the cable were counted last",
+                 "they are counted again by themselves; when it stays away check its power and its cable"};
 }
 
 Script<Result<void>> write_address(Bus& bus, BusSlave& slave, std::uint16_t position, std::uint16_t station) {

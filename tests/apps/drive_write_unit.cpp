@@ -196,13 +196,18 @@ TEST(DriveWrite, ASwitchThatCannotBePutBackIsSaidWithTheCommandThatDoesIt) {
     EXPECT_THAT(written.notes, Contains(HasSubstr("taktwerk drive set x P05.10=0")));
 }
 
+// A set from a drive as delivered holds P05.10 = 1: it stays so, and whether this write is stored is still what its user asked.
 TEST(DriveWrite, WhoWritesTheSwitchItselfDecidesHowItStays) {
-    FakeDrive drive{ParameterStorage::each_write};
-    drive.ram[store_switch.sub] = 0;
-    const auto written = write_values(drive, {drive.value(store_switch, 1), drive.value(brake_hold, 200)}, Storing::asked);
-    EXPECT_FALSE(written.error);
-    EXPECT_EQ(drive.ram[store_switch.sub], 1);
-    EXPECT_THAT(written.notes, Not(Contains(HasSubstr("then 0 again"))));
+    for (const auto& [storing, kept] : {std::pair{Storing::asked, 300}, {Storing::volatile_only, 250}}) {
+        FakeDrive drive{ParameterStorage::each_write};
+        drive.ram[store_switch.sub] = 0;
+        const auto written = write_values(drive, {drive.value(store_switch, 1), drive.value(brake_release, 300)}, storing);
+        EXPECT_FALSE(written.error);
+        EXPECT_EQ(drive.ram[brake_release.sub], 300);
+        EXPECT_EQ(drive.eeprom[brake_release.sub], kept);
+        EXPECT_EQ(drive.ram[store_switch.sub], 1);
+        EXPECT_THAT(written.notes, Not(Contains(HasSubstr("then 0 again"))));
+    }
 }
 
 // A set that `save` took from a running machine holds P05.10 = 0, in the midst of the others: those behind it are stored all the same.
@@ -218,17 +223,6 @@ TEST(DriveWrite, ASetThatSwitchesStoringOffIsStoredAsAWhole) {
         EXPECT_EQ(drive.ram[store_switch.sub], 0) << before;
         EXPECT_THAT(written.notes, Contains(HasSubstr("3 values stored in the EEPROM"))) << before;
     }
-}
-
-// The other way round: a set from a drive as delivered holds P05.10 = 1, and nobody asked to store.
-TEST(DriveWrite, ASetThatSwitchesStoringOnStoresNothingUnasked) {
-    FakeDrive drive{ParameterStorage::each_write};
-    drive.ram[store_switch.sub] = 0;
-    const auto written = write_values(drive, {drive.value(store_switch, 1), drive.value(brake_release, 300)}, Storing::volatile_only);
-    EXPECT_FALSE(written.error);
-    EXPECT_EQ(drive.eeprom[brake_release.sub], 250);
-    EXPECT_EQ(drive.ram[brake_release.sub], 300);
-    EXPECT_EQ(drive.ram[store_switch.sub], 1);
 }
 
 // Half a set is none: a cable that fails while it is read is an error, not a parameter that the drive does not have.

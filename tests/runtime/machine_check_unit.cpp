@@ -207,8 +207,14 @@ TEST(MachineRemarks, ABusThatFillsItsCycleIsAsked) {
     ASSERT_EQ(told.size(), 1u);
     EXPECT_EQ(told[0].code, "remark.bus_load");
     EXPECT_TRUE(contains(told[0].what, "7 slaves): 80 %")) << told[0].what;
+    EXPECT_FALSE(contains(told[0].what, "come back behind")) << told[0].what;
     config.cycle = load.round_trip * 10 / 7;
     EXPECT_TRUE(remarks(config, layout, 1).empty());
+    // 100 / 94 = 106 %: too short with a cable to each slave, and refused only where it fits in no case.
+    config.cycle = load.round_trip * 94 / 100;
+    const auto over = remarks(config, layout, 1);
+    ASSERT_EQ(over.size(), 1u);
+    EXPECT_TRUE(contains(over[0].what, "106 %. The frames come back behind the next ones, and the bus does not come up")) << over[0].what;
 }
 
 TEST(MachineRemarks, TheTimeOfAStroke) {

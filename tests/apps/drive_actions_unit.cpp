@@ -1,0 +1,117 @@
+// What `drive set` writes that is no setting does something: stores, restores, tunes, commands. It takes a yes, and is not read back as if it
+// were a value.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "apps/drive.hpp"
+#include "apps/exit_code.hpp"
+#include "tests/apps/in_process.hpp"
+
+namespace taktwerk::apps {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const std::string five = std::string(TAKTWERK_SOURCE_DIR) + "/config/machines/five-drives.yaml";
+
+const std::string serial_axis = std::string(TAKTWERK_SOURCE_DIR) + "/config/machines/serial-axis.yaml";  // no program
+
+Outcome drive(std::vector<std::string> words) {
+    words.insert(words.begin(), "drive");
+    words.insert(words.end(), {"--machine", five, "--simulate"});
+    return in_process(std::move(words));
+}
+
+struct Act {
+    const char* drive;
+    const char* assignment;
+    const char* name;   ///< in the manual
+    const char* other;  ///< the command that does it with care, or nothing
+};
+class Acts : public ::testing::TestWithParam<Act> {};
+
+// SE-808X 4.2: 1010h "save" and 1011h "load". SV-DA200 4.4: P4.91, P4.92. SV33-E 7.2: P05.01 initialises, P20.03 resets, P20.05 = 2 clears turns.
+// CiA 402: 6040h is the control word.
+TEST_P(Acts, AreNotDoneUnasked) {
+    const auto& act = GetParam();
+    const auto unasked = drive({"set", act.drive, act.assignment});
+    EXPECT_NE(unasked.code, exit_ok) << act.assignment;
+    EXPECT_THAT(unasked.err, AllOf(HasSubstr(act.name), HasSubstr("is no setting"), HasSubstr("--yes"), HasSubstr(act.other)))
+        << act.assignment;
+    EXPECT_THAT(unasked.out, Not(HasSubstr("written")));
+}
+INSTANTIATE_TEST_SUITE_P(
+    Each, Acts,
+    ::testing::Values(Act{"stepper_drive", "1010h:01=0x65766173", "save all parameters", "--store"},
+                      Act{"stepper_drive", "1011h:01=0x64616F6C", "restore all parameters", "drive save stepper_drive FILE"},
+                      Act{"da200_drive", "P4.91=1", "Parameter save", "manual"}, Act{"da200_drive", "P4.92=1", "Restore factory", "manual"},
+                      Act{"da200_drive", "P1.04=1", "Offline inertia tuning", "manual"},
+                      Act{"sv33_drive", "P05.01=1", "system parameter initialisation", "drive save sv33_drive FILE"},
+                      Act{"sv33_drive", "P20.03=1", "fault reset", "drive reset sv33_drive"},
+                      Act{"sv33_drive", "P20.05=2", "encoder reset", "clear-turns sv33_drive"}));
+
+// A setting beside it is not written either.
+TEST(DriveActs, NothingIsHalfDone) {
+    const auto both = drive({"set", "da200_drive", "P0.05=300", "P4.92=1"});
+    EXPECT_NE(both.code, exit_ok);
+    EXPECT_THAT(both.out, Not(HasSubstr("P0.05")));
+}
+
+// 1011h:01 reads what can be restored (CiA 301: bit 0), not what was written to it.
+TEST(DriveActs, WithAYesAreDoneAndNotReadBackAsAValue) {
+    for (const char* assignment : {"1011h:01=0x64616F6C", "1010h:01=0x65766173"}) {
+        const auto done = drive({"set", "stepper_drive", assignment, "--yes"});
+        EXPECT_EQ(done.code, exit_ok) << assignment << ": " << done.err;
+        EXPECT_THAT(done.out, AllOf(HasSubstr("written"), Not(HasSubstr("nothing to change")), Not(HasSubstr("lost at power off"))));
+    }
+    EXPECT_EQ(drive({"set", "da200_drive", "P4.91=1", "--yes"}).code, exit_ok);
+    EXPECT_EQ(drive({"set", "da200_drive", "P0.05=300"}).code, exit_ok) << "a setting needs none";
+}
+
+// --- what is typed -----------------------------------------------------------------------------------------------------------------
+
+TEST(DriveWords, WhatIsProposedIsOfThisDrive) {
+    const auto loose = drive({"set", "da200_drive", "P0.05=300", "rpm"});
+    EXPECT_EQ(loose.code, exit_usage);
+    EXPECT_THAT(loose.err, AllOf(HasSubstr("rpm"), HasSubstr("has no '='"), HasSubstr("'P0.05=300 rpm'"), Not(HasSubstr("P05.13"))));
+    EXPECT_THAT(drive({"set", "da200_drive", "P0.05"}).err, AllOf(HasSubstr("write P0.05=VALUE"), Not(HasSubstr("P05.13"))));
+    const auto nothing = drive({"set", "da200_drive", "rpm"});
+    EXPECT_THAT(nothing.err, AllOf(HasSubstr("PARAMETER=VALUE, such as"), Not(HasSubstr("P05.13"))));
+}
+
+TEST(DriveWords, AParameterTwiceIsRefused) {
+    for (const char* second : {"P0.05=400", "P0.05=300", "2005h=400"}) {
+        const auto twice = drive({"set", "da200_drive", "P0.05=300", second});
+        EXPECT_EQ(twice.code, exit_usage) << second;
+        EXPECT_THAT(twice.err, AllOf(HasSubstr("P0.05"), HasSubstr("given twice"))) << second;
+        EXPECT_THAT(twice.out, Not(HasSubstr("changed")));
+    }
+}
+
+TEST(DriveWords, WhoIsNotThereIsToldOfTheSerialLinesToo) {
+    const auto unknown = drive({"save", "xp200", "/nowhere/x.yaml"});
+    EXPECT_NE(unknown.code, exit_ok);
+    EXPECT_THAT(unknown.err, AllOf(HasSubstr("stepper_drive"), HasSubstr("xp200_drive")));
+}
+
+TEST(DriveWords, SixAxesAreAxes) {
+    EXPECT_THAT(drive({"get", "robot", "PA17", "--axis", "7"}).err, AllOf(HasSubstr("6 axes"), Not(HasSubstr("axiss"))));
+}
+
+// --- run ---------------------------------------------------------------------------------------------------------------------------
+
+TEST(RunDuration, ThatIsOverBeforeTheBusIsUpIsSaid) {
+    const auto run = [](const char* duration) {
+        return in_process({"run", serial_axis, "--simulate", "--virtual-time", "--quiet", "--duration", duration});
+    };
+    const auto ended = run("0.01s");
+    EXPECT_EQ(ended.code, exit_bus);
+    EXPECT_THAT(ended.err, AllOf(HasSubstr("ended by --duration"), HasSubstr("the bus needed"), HasSubstr("0.01 s")));
+    EXPECT_EQ(run("5s").code, exit_ok) << "positive control";
+}
+
+}  // namespace
+}  // namespace taktwerk::apps
