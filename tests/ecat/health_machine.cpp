@@ -147,8 +147,12 @@ TEST_F(Health, InATreeNobodyIsTakenForAnotherWhoseBranchIsOut) {
     EXPECT_TRUE(bus->run_until([&] { return faults().size() == 1 && d.state() == sim::EsmState::op; }, 5s));
     EXPECT_TRUE(bus->master->health(3).fresh);
     EXPECT_FALSE(bus->master->health(1).fresh);
+    const auto notes_before = bus->master->notes().size();
     bus->network.set_cable(b, true);
     expect_recovery();
+    // Who has been plugged in is on the cable, also before the slaves are counted again.
+    EXPECT_GT(bus->master->notes().size(), notes_before);
+    for (const auto& note : bus->master->notes()) EXPECT_EQ(note.find("is not on the cable"), std::string::npos) << note;
 }
 
 TEST_F(Health, WhereTheConfigurationSaysSoOnlyItsOwnAxesAreConcerned) {
