@@ -51,10 +51,10 @@ bool exchanged_alone(const Bus& bus, std::size_t slave) {
 std::vector<FaultSlave> fault_slaves(const Bus& bus) {
     std::vector<FaultSlave> slaves;
     for (const auto& slave : bus.slaves) {
-        const auto watchdog =
-            sm_watchdog(bus.config, *slave->config) / bus.config.cycle - 1;  // a frame may just have come when the gap began
+        const Duration watchdog = sm_watchdog(bus.config, *slave->config) - bus.config.cycle;  // a frame had just come when the gap began
+        const auto cycles = static_cast<std::uint32_t>(std::max<std::int64_t>(2, watchdog / bus.config.cycle));
         slaves.push_back({slave->index, FaultSlave::none, slave->config->on_loss, bus.reference == slave->index,
-                          exchanged_alone(bus, slave->index), static_cast<std::uint32_t>(std::max<std::int64_t>(2, watchdog))});
+                          exchanged_alone(bus, slave->index), cycles, watchdog});
     }
     const auto position = [&](const FaultSlave& s) { return std::size_t{bus.slaves[s.index]->found.position}; };
     std::sort(slaves.begin(), slaves.end(), [&](const FaultSlave& a, const FaultSlave& b) { return position(a) < position(b); });
@@ -146,11 +146,19 @@ void FaultFinder::note_falls(const BusCondition& bus) noexcept {
     }
 }
 
+bool FaultFinder::lost_synchronisation(const Fall& fall) noexcept {
+    constexpr std::uint16_t watchdog = 0x001B;
+    return fall.read && fall.code != watchdog;
+}
+
 std::uint32_t FaultFinder::explaining_gap(std::size_t at) const noexcept {
-    constexpr std::uint32_t watchdog = 0x001B, least_gap = 2;
-    const Fall& fall = states_[at].fall;
-    const bool synchronisation = fall.read && fall.code != watchdog;
-    return std::min(limit_, synchronisation ? least_gap : slaves_[at].watchdog_cycles);
+    constexpr std::uint32_t least_gap = 2;
+    return std::min(limit_, lost_synchronisation(states_[at].fall) ? least_gap : slaves_[at].watchdog_cycles);
+}
+
+Duration FaultFinder::explaining_stall(std::size_t at) const noexcept {
+    constexpr Duration any{1};
+    return lost_synchronisation(states_[at].fall) ? any : std::max(any, slaves_[at].watchdog);
 }
 
 bool FaultFinder::stuck(const SlaveCondition& slave) noexcept {
@@ -165,7 +173,9 @@ FaultFinder::Fallen* FaultFinder::fallen_with(std::size_t at) noexcept {
         return nullptr;
     const std::size_t policy = slaves_[at].on_loss == LossPolicy::stop_own_axes ? 1 : 0;
     const bool wanted_frames = fall.read ? for_want_of_frames(fall.code) : !fall.by_command;
-    if (wanted_frames && fall.stall > Duration{}) return &starved_[policy];
+    // Until its code is known a stall of any length counts, unless frames were lost for longer.
+    const bool starved = fall.stall >= explaining_stall(at) || (!fall.read && fall.stall > Duration{} && fall.gap < explaining_gap(at));
+    if (wanted_frames && starved) return &starved_[policy];
     // Short of the limit lost frames stop nobody who may drop out; the reason of one who does stands in its own alarm.
     const bool explained = fall.gap >= explaining_gap(at) && (policy == 0 || fall.gap >= limit_);
     if (wanted_frames && explained) return &silenced_;

@@ -64,6 +64,7 @@ struct FaultSlave {
     bool reference = false;             ///< its clock is the bus' clock
     bool alone = true;                  ///< no other slave's process data is valid or not together with its own
     std::uint32_t watchdog_cycles = 2;  ///< without a frame until its watchdog of process data trips
+    Duration watchdog{};                ///< the same as a time
 };
 
 /// The configured slaves of a bus that was scanned.
@@ -119,8 +120,11 @@ private:
     /// A slave that answers, but not from OP, and nothing outside of it explains that.
     void raise_left_op(std::size_t at) noexcept;
     [[nodiscard]] Fallen* fallen_with(std::size_t at) noexcept;
-    /// So many cycles without an answer explain that this slave fell.
+    /// So many cycles without an answer, and so long without a frame of ours, explain that this slave fell.
     [[nodiscard]] std::uint32_t explaining_gap(std::size_t at) const noexcept;
+    [[nodiscard]] Duration explaining_stall(std::size_t at) const noexcept;
+    /// It was the synchronisation that failed, which bears less than the watchdog does.
+    [[nodiscard]] static bool lost_synchronisation(const Fall& fall) noexcept;
     /// Its way back has ended: it answers, and nothing between it and the master is the reason.
     [[nodiscard]] static bool stuck(const SlaveCondition& slave) noexcept;
     void raise_unnamed(std::size_t unnamed) noexcept;

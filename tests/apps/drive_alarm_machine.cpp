@@ -152,6 +152,28 @@ TEST_F(DriveAlarm, WithTheFirstAnswerBehindAStallSaysWhoWasLate) {
     EXPECT_THAT(said, HasSubstr("why: Probably this computer was late, not the drive (see late_wakeups)"));
 }
 
+// An input that nobody could read was not pressed, and whoever mends its cable has not released it.
+TEST_F(DriveAlarm, AnEmergencyStopThatCouldNotBeReadIsNeverSaidToBeReleased) {
+    MachineLog log(*m.machine, m.clock.now(), false);
+    const auto said_while = [&](auto what) {
+        testing::internal::CaptureStdout();
+        what();
+        m.run(1s);
+        log.step(m.clock.now(), &m.state());
+        return testing::internal::GetCapturedStdout();
+    };
+    log.step(m.clock.now(), &m.state());
+    EXPECT_THAT(said_while([&] { m.world.set_slave_power("io", false); }), HasSubstr("E-STOP    cannot be read: counts as pressed\n"));
+    const auto back = said_while([&] {
+        m.world.set_slave_power("io", true);
+        ASSERT_TRUE(m.until([&] { return !m.state().emergency_stop; }, 10s));
+    });
+    EXPECT_THAT(back, HasSubstr("E-STOP    can be read again: it is not pressed\n"));
+    EXPECT_EQ(back.find("released\n"), std::string::npos);
+    EXPECT_THAT(said_while([&] { m.world.set_input("estop_ok", false); }), HasSubstr("E-STOP    pressed\n"));
+    EXPECT_THAT(said_while([&] { m.world.set_input("estop_ok", true); }), HasSubstr("E-STOP    released\n"));
+}
+
 // Who fell and who is back, without a look at another screen.
 TEST_F(DriveAlarm, WhatTheBusDidIsInTheMachineLog) {
     MachineLog log(*m.machine, m.clock.now(), false);

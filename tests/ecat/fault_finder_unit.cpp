@@ -351,6 +351,33 @@ TEST(FaultFinder, AWatchdogShorterThanTheLimitIsNoFaultOfTheSlave) {
     }
 }
 
+// A computer that is some milliseconds late in the middle of half a second without frames has not starved anybody.
+TEST(FaultFinder, AStallThatIsShorterThanTheWatchdogExplainsNoWatchdog) {
+    struct Case {
+        Duration stall;
+        std::uint32_t gap;
+        std::uint16_t code;
+        AlarmId said;
+    };
+    using std::chrono::milliseconds;
+    for (const auto& c :
+         {Case{milliseconds{7}, 520, 0x1B, alarm::frames_lost}, Case{milliseconds{510}, 2, 0x1B, alarm::starved_slave_left_op},
+          Case{milliseconds{7}, 0, 0x1B, alarm::slave_left_op}, Case{milliseconds{7}, 0, 0x1A, alarm::starved_slave_left_op}}) {
+        FaultFinder finder{{{.index = 0, .watchdog_cycles = 499, .watchdog = milliseconds{499}}}, 1, 300};
+        const BusCondition bus{.slaves_answering = 1, .stall = c.stall, .gap = c.gap, .states = 0x14};
+        finder.condition(0) = {.al_state = AlState::unknown, .age = 520};  // not read yet
+        finder.look(bus);
+        ASSERT_EQ(finder.facts().size(), 1u);
+        if (c.gap > 2) {
+            EXPECT_EQ(finder.facts()[0].id, c.said) << "from the first cycle on";
+        }
+        finder.condition(0) = {.al_state = AlState::safeop, .al_error = true, .al_status_code = c.code, .age = 520};
+        finder.look(bus);
+        ASSERT_EQ(finder.facts().size(), 1u);
+        EXPECT_EQ(finder.facts()[0].id, c.said) << c.stall.count() << " ns, " << c.gap << " cycles, code " << c.code;
+    }
+}
+
 TEST(FaultFinder, AClockIsNotToBlameForFramesThatDoNotComeBack) {
     FaultFinder finder{{{.index = 0}}, 1, 300};
     finder.condition(0).al_state = AlState::op;
