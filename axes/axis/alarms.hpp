@@ -38,8 +38,9 @@ enum class AxisAlarm : AlarmId {
     drive_too_fast = 0x301A,
     coupling_start_passed = 0x301B,
     both_limit_switches = 0x301C,
+    motor_turns = 0x301D,
 };
-inline constexpr std::size_t axis_alarm_count = 28;
+inline constexpr std::size_t axis_alarm_count = 29;
 
 [[nodiscard]] constexpr AlarmId id(AxisAlarm alarm) noexcept { return static_cast<AlarmId>(alarm); }
 
@@ -185,6 +186,11 @@ inline constexpr std::array<AlarmInfo, axis_alarm_count> axis_alarms{{
      "An axis is never at both its ends: the polarity of the inputs is inverted (contacts that open, configured as contacts that close), the switches have no supply, or their cable is off",
      "Check supply and cable of the switches, then the polarity of the limit inputs in the drive's own parameters",
      ResetRule::self_clearing, Reaction::warn, ""},
+    {id(AxisAlarm::motor_turns), "motor_turns",
+     "Power was not switched on: the motor turns by itself, at {a} u/s", "未接通动力：电机自行转动，速度 {a} u/s",
+     "It still coasts, or a load, a master or a hand turns it, faster than a tenth of the axis' velocity ({b} u/s): power would hold it with a jolt",
+     "Let it come to rest, or hold its load (brake, counterweight); then reset and enable again",
+     ResetRule::reset, Reaction::stop_axis, "The drive stays without power"},
 }};
 // clang-format on
 

@@ -183,7 +183,8 @@ void Axis::run_power() noexcept {
             if (queue_.waiting() > 0) start_waiting(0);  // table 4: Status lets begin what is buffered behind MC_Power
             break;
         case PowerSequence::Event::timeout:
-            fail(AxisAlarm::enable_timeout, to_seconds(config_.enable_timeout), static_cast<double>(feedback_.power));
+            if (turns_by_itself()) fail(AxisAlarm::motor_turns, view_.actual_velocity, turning_by_itself * config_.limits.velocity);
+            else fail(AxisAlarm::enable_timeout, to_seconds(config_.enable_timeout), static_cast<double>(feedback_.power));
             break;
         case PowerSequence::Event::lost:
             abort_homing();

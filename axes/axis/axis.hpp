@@ -244,6 +244,9 @@ private:
     [[nodiscard]] double velocity_cap() const noexcept;
 
     // axis_motion.cpp: one cycle of the set-point
+    /// Of the axis' velocity: a motor that turns faster without power is not held by switching it on.
+    static constexpr double turning_by_itself = 0.1;
+    [[nodiscard]] bool turns_by_itself() const noexcept;
     void follow_actual(Duration period) noexcept;
     void anchor_near_actual() noexcept;
     void reanchor() noexcept;

@@ -12,6 +12,8 @@ namespace {
 
 // A way that takes longer than this at the axis' velocity, s, is a long one; all but a third of it is covered in the other.
 constexpr double long_way = 1, long_way_time = 0.1;
+// Of the axis' velocity: whoever follows it as a master takes twice of it for another zero.
+constexpr double followed_by_slaves = 1.9;
 
 }  // namespace
 
@@ -69,19 +71,26 @@ void Axis::plan(Instant now, Duration period) noexcept {
     if (may_be_homed || units_.shift() != coordinates) publish_feedback(actual_local());  // in other coordinates
 }
 
+/// Power would hold it with a jolt: it is asked for when the motor is slow, or not at all.
+bool Axis::turns_by_itself() const noexcept {
+    return !drive_homing_.busy() && std::abs(view_.actual_velocity) > turning_by_itself * config_.limits.velocity;
+}
+
 void Axis::follow_actual(Duration period) noexcept {
     if (!online()) {
         aligned_ = false;
         return;
     }
-    // Not faster than the axis may be, so that no trace shows a jump where a drive falls with a following error. But who turned a motor without
-    // power by hand, fast or far, does not wait for it: power is asked for when the set-point has come.
+    // Not faster than the axis may be or its motor turns, so that no trace shows a jump where a drive falls with a following error. But who
+    // turned a motor without power by hand, very fast and far, does not wait for it: power is asked for when the set-point has come.
     const double way = actual_local() - setpoint_.state().position;
-    const double velocity = config_.limits.velocity;
+    const double limit = config_.limits.velocity, turns = std::abs(view_.actual_velocity);
+    const double velocity = std::clamp(turns, limit, followed_by_slaves * limit);
     const bool far = std::abs(way) > velocity * long_way;
     const double most = (far ? std::abs(way) / long_way_time : velocity) * to_seconds(period);
-    aligned_ = drive_homing_.busy() || std::abs(way) <= most;
-    setpoint_.place(aligned_ ? actual_local() : setpoint_.state().position + std::copysign(most, way));
+    const bool here = drive_homing_.busy() || std::abs(way) <= most;
+    aligned_ = here && !turns_by_itself();
+    setpoint_.place(here ? actual_local() : setpoint_.state().position + std::copysign(most, way));
     if (endless_ && units_.far_from_anchor(actual_local())) reanchor();  // an encoder turns for years
     if (!power_.follows_actual()) return;
     end_drive_profile();

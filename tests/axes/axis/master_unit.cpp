@@ -217,5 +217,23 @@ TEST(Master, EndlessAxesDoNotDrift) {
     rig.expect_no_jump();
 }
 
+// Somebody turns the master's motor without power faster than the axis may be, and long enough that its set-point would have stayed far behind.
+TEST(MasterWithoutPower, IsFollowedAlsoFasterThanItsLimit) {
+    auto slave = plain_slave();
+    slave.limits.velocity = 500;
+    CouplingRig rig({plain_axis(), slave});
+    rig.start();
+    rig.enabled[0] = false;
+    rig.run(50);
+    ASSERT_EQ(rig.view(0).state, AxisState::Disabled);
+    const auto id = rig.accept(1, gear_in(0));
+    rig.run(5);
+    rig.drives[0]->coasting = 120;  // u/s, of 100
+    rig.run(8000);
+    EXPECT_EQ(rig.status(1, id), CommandStatus::in_target);
+    EXPECT_NEAR(rig.view(1).set_velocity, 120, 1e-6);
+    EXPECT_NEAR(rig.view(0).set_position, rig.view(0).actual_position, 1e-6);
+}
+
 }  // namespace
 }  // namespace taktwerk::axes::test

@@ -96,6 +96,42 @@ TEST(AxisPower, WaitsForALateBusWithoutAnError) {
     EXPECT_TRUE(rig.alarms.empty());
 }
 
+// The drive was never asked: what it must not be blamed for.
+TEST(AxisPower, IsNotAskedForWhileTheMotorTurnsFast) {
+    for (const double velocity : {11.0, 50.0, 99.0, 101.0, 150.0, -60.0}) {  // u/s; the axis' limit is 100
+        SCOPED_TRACE(velocity);
+        auto config = plain_axis();
+        config.enable_timeout = 500ms;
+        Rig rig(config);
+        rig.drive.coasting = velocity;  // 1000 counts a unit, 1 ms a cycle
+        rig.run(100);
+        rig.enable = true;
+        for (int i = 0; i < 520; ++i) {
+            rig.step();
+            ASSERT_EQ(rig.drive.last.power, PowerRequest::off);
+        }
+        EXPECT_EQ(rig.view().state, AxisState::ErrorStop);
+        EXPECT_TRUE(rig.raised(AxisAlarm::motor_turns));
+        EXPECT_FALSE(rig.raised(AxisAlarm::enable_timeout));
+    }
+}
+
+TEST(AxisPower, ComesWhenTheMotorHasCoastedOut) {
+    Rig rig;
+    rig.drive.coasting = 99;
+    rig.run(100);
+    rig.enable = true;
+    for (int i = 0; i < 1000; ++i) {
+        rig.drive.coasting = std::max(0.0, rig.drive.coasting - 0.1);
+        rig.step();
+        if (rig.drive.last.power == PowerRequest::on) {
+            ASSERT_LE(rig.drive.coasting, 10) << i;
+        }
+    }
+    EXPECT_EQ(rig.view().state, AxisState::Standstill);
+    EXPECT_TRUE(rig.alarms.empty());
+}
+
 // P1-117 asks that a drive that never enables hangs nothing; we make it an axis error after enable_timeout.
 TEST(AxisPower, DriveThatNeverEnablesIsAnErrorAfterTheTimeout) {
     auto config = plain_axis();
