@@ -17,6 +17,7 @@
 #include "core/nearest_name.hpp"
 #include "ecat/sim/digital_terminal.hpp"
 #include "runtime/keeps_positions.hpp"
+#include "runtime/program_check.hpp"
 
 namespace taktwerk::config {
 
@@ -421,6 +422,19 @@ void add_floor_errors(Reader& reader, const LoadedMachine& loaded) {
     }
 }
 
+/// What the programs have wrong is told in the same breath: nobody wants to mend a file twice. Names are compared with sections that were read
+/// whole only.
+void add_program_errors(Reader& reader, runtime::MachineConfig machine) {
+    std::erase_if(machine.programs, [&](const auto& program) { return reader.already_bad("programs." + program.name); });
+    for (auto& error : runtime::check_programs(machine)) {
+        const std::string_view section = error.code == "program.unknown_axis"                                              ? "axes"
+                                         : error.code == "program.unknown_device"                                          ? "bus"
+                                         : error.code == "program.unknown_input" || error.code == "program.unknown_output" ? "io"
+                                                                                                                           : "";
+        if (section.empty() || !reader.already_bad(section)) reader.errors().push_back(std::move(error));
+    }
+}
+
 /// By file, line and column; the machine's own file first.
 void sort_errors(std::vector<Error>& errors, const std::string& first_file) {
     const auto key = [&](const Error& error) {
@@ -449,6 +463,7 @@ LoadResult load(const std::string& path, Document document, const LoadOptions& o
     add_floor_errors(reader, loaded);
     if (reader.errors().empty()) return loaded;
     sort_errors(reader.errors(), path);
+    if (options.resolve_programs) add_program_errors(reader, std::move(loaded.machine));
     return std::move(reader.errors());
 }
 

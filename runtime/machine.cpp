@@ -11,6 +11,7 @@
 #include "runtime/inbox_record.hpp"
 #include "runtime/machine_impl.hpp"
 #include "runtime/present_slaves.hpp"
+#include "runtime/program_check.hpp"
 #include "runtime/stop_time.hpp"
 
 namespace taktwerk::runtime {
@@ -302,8 +303,8 @@ std::variant<std::unique_ptr<Machine>, std::vector<Error>> Machine::build(Machin
     auto errors = check(config);
     if (!errors.empty()) {
         // What the programs have wrong is told in the same breath: nobody wants to mend a file twice.
-        axes::MotionTables tables;
-        const ProgramHost host{config, IoImage{config.io}, tables, errors};
+        const auto of_programs = check_programs(config);
+        errors.insert(errors.end(), of_programs.begin(), of_programs.end());
         return errors;
     }
     auto impl = std::make_unique<Impl>(std::move(config), transport, lines, errors);

@@ -92,6 +92,33 @@ TEST_F(CommandLine, BadFilesEndWithAllTheirProblems) {
     EXPECT_EQ(command({"plot", file("no_trace.csv", "a,b\n1,2\n")}).code, exit_bad_file);
 }
 
+// Nobody wants to mend a file twice. What follows from what was said already is not said: the names of a section that has errors.
+TEST_F(CommandLine, CheckTellsTheErrorsOfTheFileAndOfItsProgramsAtOnce) {
+    const std::string axis =
+        "    slave: d\n    unit: mm\n    gearing: { counts_per_revolution: 131072, feed: 10 mm }\n"
+        "    limits: { velocity: 300 mm/s, acceleration: 2000 mm/s2, jerk: none }\n    homing: { kind: set_here }\n";
+    const auto machine = [&](const std::string& cycle, const std::string& name, const std::string& unit) {
+        std::filesystem::create_directories(folder_ + "/machines");
+        if (!std::filesystem::exists(folder_ + "/drives"))
+            std::filesystem::create_directory_symlink(std::filesystem::path(machines) / ".." / "drives", folder_ + "/drives");
+        auto wanted = axis;
+        wanted.replace(wanted.find("300 mm/s"), 8, "300 " + unit);
+        return file("machines/m.yaml", "version: 1\nname: m\ncycle: " + cycle +
+                                           "\nbus: { interface: simulated, slaves: [{ name: d, profile: sv33-e }] }\naxes:\n  " + name +
+                                           ":\n" + wanted + "programs:\n  p: { library: minimal.so, parameters: { speed: 3 } }\n");
+    };
+    const auto unknown_parameter = HasSubstr("there is no parameter 'speed'"), unknown_axis = HasSubstr("there is no axis 'x'");
+    const auto both = command({"check", machine("1 mm", "y", "mm/s")});
+    EXPECT_EQ(both.code, exit_bad_file);
+    EXPECT_THAT(both.text, AllOf(HasSubstr("m.yaml:3:"), unknown_parameter, unknown_axis));
+    const auto broken_axes = command({"check", machine("1 ms", "y", "bananas")});
+    EXPECT_EQ(broken_axes.code, exit_bad_file);
+    EXPECT_THAT(broken_axes.text, AllOf(HasSubstr("m.yaml:10:"), unknown_parameter, Not(unknown_axis)));
+    const auto programs_alone = command({"check", machine("1 ms", "y", "mm/s")});
+    EXPECT_EQ(programs_alone.code, exit_bad_file);
+    EXPECT_THAT(programs_alone.text, AllOf(unknown_parameter, unknown_axis));
+}
+
 TEST_F(CommandLine, CheckSaysWhatADriveDoesWhenTheMasterIsGone) {
     const auto checked = command({"check", machines + "demo.yaml"});
     EXPECT_EQ(checked.code, exit_ok) << checked.text;
