@@ -1,5 +1,7 @@
 #pragma once
 // What a slave still differs from its relation: a motion of its own that runs down. Real-time safe.
+//
+// It is planned for a relation that keeps its acceleration, and beside it.
 
 #include "axes/planner/plan.hpp"
 #include "core/time.hpp"
@@ -11,14 +13,13 @@ enum class RunDown : std::uint8_t { velocity, position };
 
 class Difference {
 public:
-    /// From `from` on. False when nothing can be planned: the difference then stays as it is.
-    [[nodiscard]] bool begin(const MotionState& from, RunDown target, const SignedLimits& limits) noexcept {
-        const auto plan = target == RunDown::velocity ? plan_to_velocity(from, 0, limits) : plan_to_state(from, {}, limits);
-        if (plan.error != PlanError::none) return false;
-        profile_ = plan.profile;
-        state_ = from;
+    [[nodiscard]] static Plan plan(const MotionState& from, RunDown target, const SignedLimits& limits) noexcept {
+        return target == RunDown::velocity ? plan_to_velocity(from, 0, limits) : plan_to_state(from, {}, limits);
+    }
+    void run(const Profile& profile) noexcept {
+        profile_ = profile;
+        state_ = profile.start();
         elapsed_ = {};
-        return true;
     }
     void clear() noexcept {
         profile_ = Profile{};
@@ -31,6 +32,8 @@ public:
         return state_;
     }
     [[nodiscard]] const MotionState& state() const noexcept { return state_; }
+    /// s
+    [[nodiscard]] double remaining() const noexcept { return profile_.duration() - to_seconds(elapsed_); }
     [[nodiscard]] bool finished() const noexcept { return to_seconds(elapsed_) >= profile_.duration(); }
 
 private:

@@ -9,7 +9,9 @@ namespace taktwerk::axes {
 
 namespace {
 
-constexpr double least_share = 0.2;  // of the acceleration, and of the velocity, that is left for a difference beside a fast relation
+constexpr double least_share = 0.2;   // of the acceleration that is left for a difference beside a fast relation
+constexpr double least_room = 0.01;   // of the velocity
+constexpr double noticed = 1.0 / 64;  // of the slave's limits: a relation that changes by less is the one foreseen
 constexpr double rounding = 1e-9;
 
 MotionState sum(const MotionState& a, const MotionState& b) noexcept {
@@ -29,23 +31,31 @@ double tame(const MotionState& state, const FollowerLimits& follower) noexcept {
     return std::clamp(state.acceleration, -most, most);
 }
 
-/// Room for the difference beside the relation's own motion.
-SignedLimits difference_limits(const MotionState& slave, const MotionState& relation, RunDown target,
+/// PLCopen's words follow the slave's own velocity: a change of it without reversal needs one of the two.
+double acceleration_for(const MotionState& slave, const MotionState& relation, RunDown target, const MotionLimits& approach) noexcept {
+    if (target == RunDown::position || slave.velocity * relation.velocity < 0)
+        return std::min(approach.acceleration, approach.deceleration);
+    return std::abs(relation.velocity) >= std::abs(slave.velocity) ? approach.acceleration : approach.deceleration;
+}
+
+/// Where the slave can go: the relation, but for what its own limits leave no room beside.
+MotionState reachable(const MotionState& relation, double acceleration, RunDown target, const FollowerLimits& limits) noexcept {
+    const double margin = target == RunDown::velocity ? 0 : least_room * limits.axis.velocity;
+    MotionState out = relation;
+    out.velocity = std::clamp(relation.velocity, -std::max(0.0, limits.backward - margin), std::max(0.0, limits.forward - margin));
+    const double most = (1 - least_share) * acceleration;
+    out.acceleration = out.velocity != relation.velocity ? 0.0 : std::clamp(relation.acceleration, -most, most);
+    return out;
+}
+
+/// Room for the difference beside the goal's own motion.
+SignedLimits difference_limits(const MotionState& lack, const MotionState& goal, double acceleration, RunDown target,
                                const FollowerLimits& limits) noexcept {
-    const double now = std::abs(slave.velocity), goal = std::abs(relation.velocity);
-    double acceleration = std::min(limits.approach.acceleration, limits.approach.deceleration);
-    // PLCopen's words follow the slave's own velocity: a change of it without reversal needs one of the two.
-    if (target == RunDown::velocity && slave.velocity * relation.velocity >= 0)
-        acceleration = goal >= now ? limits.approach.acceleration : limits.approach.deceleration;
-    acceleration = std::max(acceleration - std::abs(relation.acceleration), least_share * acceleration);
-    const double jerk = limits.approach.jerk;
-    double up = limits.forward, down = limits.backward;
-    if (target == RunDown::velocity) up = down = std::abs(slave.velocity - relation.velocity) + limits.axis.velocity;
-    else {
-        up = std::max(up - relation.velocity, least_share * limits.axis.velocity);
-        down = std::max(down + relation.velocity, least_share * limits.axis.velocity);
-    }
-    return {SignLimits{up, acceleration, acceleration, jerk}, SignLimits{down, acceleration, acceleration, jerk}};
+    double up = limits.forward - goal.velocity, down = limits.backward + goal.velocity;
+    if (target == RunDown::velocity) up = down = std::abs(lack.velocity) + limits.axis.velocity;
+    const double least = least_room * limits.axis.velocity, jerk = limits.approach.jerk;
+    const double faster = acceleration - goal.acceleration, slower = acceleration + goal.acceleration;
+    return {SignLimits{std::max(up, least), faster, faster, jerk}, SignLimits{std::max(down, least), slower, slower, jerk}};
 }
 
 }  // namespace
@@ -78,34 +88,70 @@ MotionState Follower::wanted(const EndlessMotion& first, const EndlessMotion& se
     return {frame.local(approach_origin_) + under_way.position, under_way.velocity, under_way.acceleration};
 }
 
-void Follower::run_down(const MotionState& slave, const MotionState& relation) noexcept {
-    const MotionState lack{slave.position - relation.position, slave.velocity - relation.velocity,
-                           slave.acceleration - relation.acceleration};
-    if (!difference_.begin(lack, target_, difference_limits(slave, relation, target_, limits_))) {
-        // Only numbers beyond the planner's bounds: without acceleration it always has an answer.
-        (void)difference_.begin({lack.position, lack.velocity, 0}, RunDown::velocity,
-                                difference_limits(slave, relation, RunDown::velocity, limits_));
-    }
+/// The relation moves as it did when the difference was planned.
+bool Follower::foreseen(const MotionState& relation) const noexcept {
+    return std::abs(relation.acceleration - goal_.acceleration) <= noticed * limits_.approach.acceleration &&
+           std::abs(limits_.forward - relation.velocity - room_) <= noticed * limits_.axis.velocity;
 }
 
-MotionState Follower::held(const MotionState& wanted, const MotionState& before, double period) noexcept {
+/// From the slave's state one period ago, as if the goal had held then already. `acceleration`: the slave's own.
+Plan Follower::plan_from(const MotionState& before, const MotionState& goal, double acceleration, double period) const noexcept {
+    const MotionState then{goal.position - period * (goal.velocity - period * goal.acceleration / 2),
+                           goal.velocity - period * goal.acceleration, goal.acceleration};
+    const MotionState lack{before.position - then.position, before.velocity - then.velocity, acceleration - then.acceleration};
+    const double most = acceleration_for(before, goal, target_, limits_.approach);
+    return Difference::plan(lack, target_, difference_limits(lack, goal, most, target_, limits_));
+}
+
+/// The difference begins anew, one period ago, beside what the slave can follow of the relation.
+void Follower::make_up(const MotionState& before, const MotionState& relation, double period) noexcept {
+    const double most = acceleration_for(before, relation, target_, limits_.approach);
+    goal_ = reachable(relation, most, target_, limits_);
+    room_ = limits_.forward - relation.velocity;
+    exact_ = goal_ == relation;
+    auto plan = plan_from(before, goal_, before.acceleration, period);
+    // A slave that came to its acceleration with its master, by no jerk of its own, loses it with its master too.
+    if (!fresh_) {
+        const auto along = plan_from(before, goal_, goal_.acceleration + own_acceleration_, period);
+        const bool sooner = plan.error != PlanError::none || along.profile.duration() < plan.profile.duration();
+        if (along.error == PlanError::none && sooner) plan = along;
+    }
+    if (plan.error == PlanError::none) difference_.run(plan.profile);
+    else difference_.clear();  // only numbers beyond the planner's bounds
+}
+
+/// The relation has another acceleration than was foreseen, or leaves other room: is there a way now that ends sooner?
+void Follower::look_for_a_sooner_way(const MotionState& before, const MotionState& relation, double period) noexcept {
+    const double most = acceleration_for(before, relation, target_, limits_.approach);
+    if (reachable(relation, most, target_, limits_) != relation) return;
+    const auto plan = plan_from(before, relation, before.acceleration, period);
+    if (plan.error != PlanError::none || !(plan.profile.duration() < difference_.remaining() - period)) return;
+    goal_ = relation;
+    room_ = limits_.forward - relation.velocity;
+    difference_.run(plan.profile);
+}
+
+bool Follower::possible(const MotionState& wanted, const MotionState& before, double period) const noexcept {
     const auto& axis = limits_.axis;
     // Through zero it brakes first.
     const bool grows = wanted.velocity * before.velocity >= 0 && std::abs(wanted.velocity) > std::abs(before.velocity);
     const double most = (grows ? axis.acceleration : axis.deceleration) * period;
     const double step = wanted.velocity - before.velocity;
     const double mean = (wanted.position - before.position) / period;
-    const bool follows = std::abs(mean - (wanted.velocity + before.velocity) / 2) <= most / 2 + rounding * axis.velocity;
     const auto allowed = [&](double velocity) noexcept {
         return std::abs(velocity - limits_.inside(velocity)) <= rounding * axis.velocity;
     };
-    const bool inside =
-        std::abs(step) <= most * (1 + rounding) + rounding * rounding * axis.velocity && allowed(wanted.velocity) && allowed(mean);
-    held_back_ = !(follows && inside);  // also when something is not a number
-    if (!held_back_) return wanted;
+    const bool follows = std::abs(mean - (wanted.velocity + before.velocity) / 2) <= most / 2 + rounding * axis.velocity;
+    // Nothing of it holds of something that is not a number.
+    return follows && std::abs(step) <= most * (1 + rounding) + rounding * rounding * axis.velocity && allowed(wanted.velocity) &&
+           allowed(mean);
+}
 
-    // A place that its velocity does not lead to asks for nothing: the slave keeps to the velocity, the difference to the rest.
+/// The velocity as far as it can be had, and the place to which it leads.
+MotionState Follower::kept_inside(const MotionState& wanted, const MotionState& before, double period) const noexcept {
     const double target = std::isfinite(wanted.velocity) ? limits_.inside(wanted.velocity) : 0.0;
+    const bool grows = target * before.velocity >= 0 && std::abs(target) > std::abs(before.velocity);
+    const double most = (grows ? limits_.axis.acceleration : limits_.axis.deceleration) * period;
     MotionState out;
     out.velocity = before.velocity + std::clamp(target - before.velocity, -most, most);
     out.acceleration = (out.velocity - before.velocity) / period;
@@ -117,19 +163,28 @@ MotionState Follower::step(const EndlessMotion& first, const EndlessMotion& seco
                            Duration period) noexcept {
     const double seconds = to_seconds(period);
     const auto relation = wanted(first, second, frame);
-    if (fresh_) {
-        // As if the relation had held one period ago already: the slave goes on from where it was then.
-        const MotionState then{relation.position - seconds * (relation.velocity - seconds * relation.acceleration / 2),
-                               relation.velocity - seconds * relation.acceleration, relation.acceleration};
-        run_down(before, then);
-        fresh_ = false;
+    own_acceleration_ = difference_.state().acceleration;
+    bool anew = fresh_ || !(exact_ || difference_.finished());
+    if (anew) make_up(before, relation, seconds);
+    else if (!difference_.finished() && !foreseen(relation)) look_for_a_sooner_way(before, relation, seconds);
+    auto out = sum(anew ? goal_ : relation, difference_.advance(period));
+    held_back_ = false;
+    if (!anew && !possible(out, before, seconds)) {
+        make_up(before, relation, seconds);
+        out = sum(goal_, difference_.advance(period));
+        anew = held_back_ = true;
     }
-    const auto want = sum(relation, difference_.advance(period));
-    auto out = held(want, before, seconds);
+    if (anew && !possible(out, before, seconds)) {
+        out = kept_inside(out, before, seconds);
+        exact_ = false;
+    }
+    held_back_ = held_back_ || (anew && !exact_);
+    fresh_ = false;
     out.acceleration = tame(out, limits_);
-    if (held_back_) run_down(out, relation);
     in_sync_ = !approaching_ && !held_back_ && difference_.finished();
-    if (in_sync_ && difference_.state().position != 0) {
+    if (!in_sync_) return out;
+    target_ = RunDown::position;  // from now on the gear is locked by place
+    if (difference_.state().position != 0) {
         // Lost for good: one rounding, and the difference is out of the way.
         const double lost = difference_.state().position;
         std::visit([&](auto& line) { line.shift(lost); }, relation_);

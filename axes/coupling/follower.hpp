@@ -2,12 +2,16 @@
 // A slave on its master: relation + a difference that runs down, inside the slave's limits. One per axis, real-time safe.
 //
 // However a coupling begins, changes or is disturbed, the slave goes on from the state it has: what it lacks becomes the difference
-// motion. For gears that runs down to no velocity (the distance lost stays lost), for cams and sums to nothing at all. In sync means: no
-// difference left.
+// motion. For a gear that is not locked yet it runs down to no velocity (the distance lost stays lost), else to nothing at all: a gear is
+// locked by place, and what holds the slave back afterwards is made up. In sync means: no difference left.
 //
 // The slave's own limits are kept in every cycle: a relation that asks for more velocity or acceleration (a straight cam with corners,
-// a master too fast) is not followed further than they allow; the slave falls behind, is not in sync, and runs the difference down
-// again. So |velocity| stays below the limit, and its change in a cycle below acceleration times period, whatever the master does.
+// a master too fast) is not followed further than they allow; the slave falls behind, is not in sync, and makes it up. So |velocity|
+// stays below the limit, and its change in a cycle below acceleration times period, whatever the master does.
+//
+// What the slave makes up is planned from the acceleration that it has itself, towards a relation that keeps its own as far as
+// the slave can follow that, and again as soon as the relation does otherwise: an acceleration that the master had is none that the slave
+// would have to take away.
 
 #include <algorithm>
 #include <cstdint>
@@ -50,7 +54,7 @@ public:
     void begin(const Relation& relation, RunDown target, const FollowerLimits& limits) noexcept;
     /// As begin(), but first over `approach` (positions in local u of `frame` as it is now) to the sync point.
     void begin(const Relation& relation, const SyncApproach& approach, const SlaveFrame& frame, const FollowerLimits& limits) noexcept;
-    /// They may change at any time; a difference that runs already keeps its own.
+    /// They may change at any time.
     void set_limits(const FollowerLimits& limits) noexcept { limits_ = limits; }
 
     /// The slave's next state in local coordinates. `before`: its state one period ago, in the same ones. The masters are where they are now.
@@ -67,8 +71,12 @@ public:
 
 private:
     [[nodiscard]] MotionState wanted(const EndlessMotion& first, const EndlessMotion& second, const SlaveFrame& frame) noexcept;
-    void run_down(const MotionState& slave, const MotionState& relation) noexcept;
-    [[nodiscard]] MotionState held(const MotionState& wanted, const MotionState& before, double period) noexcept;
+    [[nodiscard]] bool possible(const MotionState& wanted, const MotionState& before, double period) const noexcept;
+    [[nodiscard]] MotionState kept_inside(const MotionState& wanted, const MotionState& before, double period) const noexcept;
+    [[nodiscard]] bool foreseen(const MotionState& relation) const noexcept;
+    [[nodiscard]] Plan plan_from(const MotionState& before, const MotionState& goal, double acceleration, double period) const noexcept;
+    void make_up(const MotionState& before, const MotionState& relation, double period) noexcept;
+    void look_for_a_sooner_way(const MotionState& before, const MotionState& relation, double period) noexcept;
 
     Relation relation_;
     SyncApproach approach_;
@@ -76,7 +84,11 @@ private:
     RunDown target_ = RunDown::velocity;
     FollowerLimits limits_;
     Difference difference_;
-    bool fresh_ = false;  // the next step is the first one
+    MotionState goal_;             // what the difference is planned beside: the relation as far as the slave can follow it
+    double room_ = 0;              // u/s that were left then between it and the forward limit
+    double own_acceleration_ = 0;  // of the difference, one period ago
+    bool exact_ = true;            // it was the relation
+    bool fresh_ = false;           // the next step is the first one
     bool approaching_ = false, in_sync_ = false, held_back_ = false;
 };
 

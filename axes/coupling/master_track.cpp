@@ -23,6 +23,7 @@ bool MasterTrack::next(const Reading& reading, double period) noexcept {
         gap_ = 0;
         last_ = now.place;
         filter_ = {now.place, now.velocity, 0};
+        acceleration_ = 0;
     }
     ++gap_;
     const double passed = period * gap_;  // since the last fresh one
@@ -35,10 +36,12 @@ bool MasterTrack::next(const Reading& reading, double period) noexcept {
     if (reading.planned) {
         out_ = now;
         filter_ = {now.place, now.velocity, 0};
+        acceleration_ = now.acceleration;
         return true;
     }
 
     // A reading that is not fresh has become older instead.
+    const double before = filter_.velocity;
     if (reading.fresh && !first) {
         filter_.place.local += filter_.velocity * passed;
         // The filter keeps the reading's feeds, so its local part stays small.
@@ -47,9 +50,13 @@ bool MasterTrack::next(const Reading& reading, double period) noexcept {
         filter_.place.local += position_gain * error;
         filter_.velocity += velocity_gain * error / passed;
     }
+    if (reading.fresh) acceleration_ += (1 - pole) * ((filter_.velocity - before) / passed - acceleration_);
+    const auto given = out_.place;
     out_ = filter_;
-    out_.acceleration = 0;
+    out_.acceleration = acceleration_;
     out_.place.local += filter_.velocity * reading.age;
+    // The filter's own velocity comes late after its place while the master speeds up: whoever followed both would leave the place.
+    if (!first) out_.velocity = way(given, out_.place, reading.feed) / period;
     return true;
 }
 

@@ -3,7 +3,8 @@
 //
 // Set-points come as they are. Measured positions are filtered (a critically damped tracking filter: no lag at constant velocity, noise
 // damped, time constant `settling_cycles` periods), extrapolated with the velocity over the dead time between their latch and the instant at
-// which the slave's set-point acts, and bridged with it while no fresh one arrives.
+// which the slave's set-point acts, and bridged with it while no fresh one arrives. The velocity given out
+// is that of the place given out.
 
 #include "axes/coupling/endless.hpp"
 #include "core/time.hpp"
@@ -34,9 +35,10 @@ public:
 
 private:
     bool known_ = false;
-    int gap_ = 0;           // cycles since the last fresh one
-    EndlessPlace last_;     // as read
-    EndlessMotion filter_;  // of measured positions, at their latch
+    int gap_ = 0;              // cycles since the last fresh one
+    EndlessPlace last_;        // as read
+    EndlessMotion filter_;     // of measured positions, at their latch
+    double acceleration_ = 0;  // of the filter, smoothed once more
     EndlessMotion out_;
 };
 

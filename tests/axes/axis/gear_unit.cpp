@@ -265,6 +265,29 @@ TEST(Gear, ABufferedCommandStartsOnInGear) {
     rig.expect_no_jump();
 }
 
+// MC_GearIn.Jerk below that of the axes, in the middle of the master's ramp: the slave goes up to its master's velocity, and nowhere else.
+// P1-275
+TEST(Gear, ALowJerkInTheMastersRampTakesTheSlaveUpAndNowhereElse) {
+    for (const double jerk : {1000.0, 3000.0, 8000.0})
+        for (int begin = 5; begin < 120; begin += 23) {
+            CouplingRig rig({plain_axis(), plain_axis()});
+            rig.start();
+            rig.accept(0, at_velocity(80));
+            rig.run(begin);
+            auto command = gear_in(0);
+            command.jerk = jerk;
+            const auto gear = rig.accept(1, command);
+            for (int i = 0; i < 1500; ++i) {
+                const double before = rig.view(1).set_velocity;
+                rig.step();
+                ASSERT_GE(rig.view(1).set_velocity, before - 1e-9) << jerk << ' ' << begin << ' ' << i;
+                ASSERT_LE(rig.view(1).set_velocity, 80 + 1e-9) << jerk << ' ' << begin << ' ' << i;
+            }
+            EXPECT_EQ(rig.status(1, gear), CommandStatus::in_target);
+            rig.expect_no_jump();
+        }
+}
+
 // InGear: the slave's limit forbids it, then allows it.
 // P1-070
 TEST(Gear, InGearFallsWhileTheSlaveCannotFollow) {

@@ -106,6 +106,86 @@ TEST(Encoder, NoiseComesWithTheActualSourceOnly) {
     }
 }
 
+// A slave with a jerk of its own on a measured master: it goes as the master goes, and no faster than the master and what the filter makes up.
+// P1-275, P1-278
+TEST(Master, ASlaveOfAMeasuredMasterIsNoFasterThanItsMaster) {
+    CouplingRig rig({plain_axis(), plain_axis(), plain_axis(), plain_axis()});
+    rig.start();
+    const auto gear = rig.accept(1, measured(gear_in(0)));
+    auto sum = combine(0, 2);
+    std::get<CombineDetails>(sum.details).source1 = std::get<CombineDetails>(sum.details).source2 = mcActualValue;
+    const auto both = rig.accept(3, sum);
+    rig.run(50);
+    for (const double velocity : {5.0, 60.0}) {
+        auto gently = at_velocity(velocity);
+        gently.acceleration = 100;
+        rig.accept(0, gently);
+        const double before = rig.view(0).set_velocity;
+        for (int i = 0; i < 2000; ++i) {
+            rig.step();
+            for (const std::size_t slave : {1, 3}) {
+                ASSERT_GE(rig.view(slave).set_velocity, before - 0.5) << slave << ' ' << i;
+                ASSERT_LE(rig.view(slave).set_velocity, velocity + 0.5) << slave << ' ' << i;
+            }
+        }
+        EXPECT_EQ(rig.status(1, gear), CommandStatus::in_target);
+        EXPECT_EQ(rig.status(3, both), CommandStatus::in_target);
+        EXPECT_NEAR(rig.view(1).set_position, rig.view(0).set_position, 1e-3);
+        EXPECT_NEAR(rig.view(3).set_position, rig.view(0).set_position, 1e-3);
+    }
+    rig.expect_no_jump();
+}
+
+// A belt that never runs steadily: its slave stays in gear and where the belt is.
+// P1-275, P1-278
+TEST(Encoder, AnUnsteadyBeltIsFollowedInGear) {
+    for (const double swing : {1.0, 5.0})
+        for (const double frequency : {0.5, 2.0, 10.0}) {
+            auto belt = plain_axis();
+            belt.encoder = true;
+            CouplingRig rig({belt, plain_axis()});
+            rig.start();
+            rig.drives[0]->coasting = 50;  // counts per cycle: u/s
+            const auto gear = rig.accept(1, measured(gear_in(0)));
+            ASSERT_TRUE(rig.run_to_sync(1, gear, 1000));
+            rig.run(200);
+            const auto apart = [&] { return rig.view(1).set_position - rig.view(0).actual_position; };
+            const double before = apart();
+            for (int i = 0; i < 3000; ++i) {
+                rig.drives[0]->coasting = 50 + swing * std::sin(2 * 3.14159265358979 * frequency * i * 1e-3);
+                rig.step();
+                ASSERT_EQ(rig.status(1, gear), CommandStatus::in_target) << swing << ' ' << frequency << ' ' << i;
+                ASSERT_NEAR(rig.view(1).set_velocity, 50, 1.2 * swing + 0.5) << swing << ' ' << frequency << ' ' << i;
+                // The dead time of two cycles, and what the filter is late while the belt speeds up.
+                ASSERT_NEAR(apart(), before, 0.005 * swing + 0.003) << swing << ' ' << frequency << ' ' << i;
+            }
+            rig.expect_no_jump();
+        }
+}
+
+// An encoder so coarse that one count is more than the slave can follow in a cycle: the slave rounds the steps, about as fast as the belt, and
+// once it has been in gear it loses no way.
+// P1-275, P1-278
+TEST(Encoder, TheStepsOfACoarseEncoderAreRoundedAndNoWayIsLost) {
+    auto belt = plain_axis();
+    belt.encoder = true;
+    belt.gearing.counts_per_revolution = 200;  // 0.05 u
+    CouplingRig rig({belt, plain_axis()});
+    rig.start();
+    rig.drives[0]->coasting = 0.3;  // 15 u/s
+    const auto gear = rig.accept(1, measured(gear_in(0)));
+    ASSERT_TRUE(rig.run_to_sync(1, gear, 3000));
+    rig.run(500);
+    const auto apart = [&] { return rig.view(1).set_position - rig.view(0).actual_position; };
+    const double before = apart();
+    for (int i = 0; i < 10000; ++i) {
+        rig.step();
+        ASSERT_NEAR(rig.view(1).set_velocity, 15, 5) << i;
+        ASSERT_NEAR(apart(), before, 0.15) << i;
+    }
+    rig.expect_no_jump();
+}
+
 // A measured master whose feedback stops: a short gap is bridged, a long one ends the coupling in an error, along the slave's own ramp.
 TEST(Master, LossOfFeedbackStopsTheSlave) {
     CouplingRig rig({encoder(), plain_slave()});

@@ -226,5 +226,33 @@ TEST(Phasing, Figure48AShiftOverTheWrap) {
     rig.expect_no_jump();
 }
 
+// A shift faster than the slave may follow: the slave comes later, and then it is shifted by what was asked, without having gone back.
+// P1-290, P1-291
+TEST(Phasing, ASlaveHeldAtItsLimitsIsShiftedByWhatWasAskedAllTheSame) {
+    for (const std::int32_t ratio : {1, 2}) {
+        CouplingRig rig({plain_axis(), plain_axis()});
+        rig.start();
+        const auto gear = rig.accept(1, gear_in(0, ratio, 1));
+        ASSERT_TRUE(rig.run_to_sync(1, gear));
+        rig.accept(0, at_velocity(30));
+        rig.run(600);
+        const auto apart = [&] { return rig.view(1).set_position - ratio * rig.view(0).set_position; };
+        const double before = apart();
+        const auto phase = rig.accept(1, phasing(relatively, 10));
+        bool held = false;
+        for (int i = 0; i < 2000; ++i) {
+            rig.step();
+            held = held || rig.status(1, gear) == CommandStatus::active;
+            ASSERT_GT(rig.view(1).set_velocity, 0) << i;
+            ASSERT_LE(apart() - before, 10 * ratio * 1.05) << i;
+        }
+        EXPECT_TRUE(held);
+        EXPECT_EQ(rig.status(1, phase), CommandStatus::done);
+        EXPECT_EQ(rig.status(1, gear), CommandStatus::in_target);
+        EXPECT_NEAR(apart() - before, 10 * ratio, 1e-9);
+        rig.expect_no_jump();
+    }
+}
+
 }  // namespace
 }  // namespace taktwerk::axes::test

@@ -66,9 +66,8 @@ TEST(Follower, AGearRampsToTheRatioAndKeepsTheDistanceLost) {
     slave.expect_inside_its_limits();
 }
 
-// The master's place jumps while its velocity stays: the slave cannot be where the gear says, so in that cycle it is not in gear. What it loses by
-// it stays lost.
-TEST(Follower, AGearWhoseMasterJumpsIsOutOfGearForThatCycle) {
+// The master's place jumps while its velocity stays: the slave cannot be where the gear says, so it is not in gear until it is there again.
+TEST(Follower, AGearWhoseMasterJumpsIsOutOfGearUntilItIsMadeUp) {
     Slave slave;
     slave.follower.begin(gear({1, 1}), RunDown::velocity, slave.limits);
     for (int i = 1; i <= 100; ++i) slave.step(rolling(40, i));
@@ -77,9 +76,90 @@ TEST(Follower, AGearWhoseMasterJumpsIsOutOfGearForThatCycle) {
     slave.step(jumped(101));
     EXPECT_TRUE(slave.follower.held_back());
     EXPECT_FALSE(slave.follower.in_sync());
-    slave.step(jumped(102));
+    // 5 u beside the master at 1000 u/s2, up to 60 u/s faster: 60 ms up, 23 ms, 60 ms down.
+    int more = 0;
+    while (!slave.follower.in_sync() && more < 1000) slave.step(jumped(102 + more++));
+    EXPECT_NEAR(more, 143, 2);
+    EXPECT_NEAR(slave.state.position, 40e-3 * (101 + more) - 0.8 + 5, 1e-9);
+    slave.expect_inside_its_limits();
+}
+
+/// Speeds up from rest with `acceleration`, at once, to `velocity`.
+EndlessMotion ramping(double acceleration, double velocity, int cycles) {
+    const double t = cycles * to_seconds(cycle), ramp = velocity / acceleration;
+    if (t < ramp) return {{0, acceleration * t * t / 2}, acceleration * t, acceleration};
+    return {{0, velocity * (t - ramp / 2)}, velocity, 0};
+}
+
+// A slave takes away the acceleration that it has itself, not the one that its master has: with this jerk 900 u/s2 would cost 202 u/s.
+// P1-275
+TEST(Follower, AGearEnteredInTheMastersRampRunsUpToItAndNeverBack) {
+    for (const double jerk : {1000.0, 2000.0, 5000.0, 20000.0})
+        for (const int begin : {1, 20, 40, 80, 88}) {
+            Slave slave;
+            slave.limits.axis.jerk = slave.limits.approach.jerk = jerk;
+            slave.follower.begin(gear({1, 1}), RunDown::velocity, slave.limits);
+            double fastest_loss = 0;
+            for (int i = begin; i < begin + 2000; ++i) {
+                const double before = slave.state.velocity;
+                slave.step(ramping(900, 80, i));
+                fastest_loss = std::max(fastest_loss, before - slave.state.velocity);
+                ASSERT_LE(slave.state.velocity, 80 + 1e-9) << jerk << ' ' << begin << ' ' << i;
+            }
+            EXPECT_LE(fastest_loss, 1e-9) << jerk << ' ' << begin;
+            EXPECT_TRUE(slave.follower.in_sync());
+            EXPECT_EQ(slave.state.velocity, 80);
+            slave.expect_inside_its_limits();
+        }
+}
+
+// In gear, and the master speeds up harder than the slave can: the slave falls behind, goes on upwards, and makes up what it lost.
+TEST(Follower, AGearThatCannotFollowGoesOnUpwardsAndMakesUp) {
+    Slave slave;
+    slave.limits.axis = slave.limits.approach = {100, 300, 300, 2000};
+    slave.follower.begin(gear({1, 1}), RunDown::velocity, slave.limits);
+    slave.step({});
+    ASSERT_TRUE(slave.follower.in_sync());
+    double furthest_behind = 0;
+    for (int i = 1; i < 3000; ++i) {
+        const double before = slave.state.velocity;
+        const auto master = ramping(1000, 50, i);
+        slave.step(master);
+        const double behind = master.place.local - slave.state.position;
+        furthest_behind = std::max(furthest_behind, behind);
+        ASSERT_GE(behind, -1e-9) << i;
+        if (slave.state.velocity < before) {
+            ASSERT_GE(before, 50) << "slows down below its master in cycle " << i;
+        }
+    }
+    EXPECT_GT(furthest_behind, 50.0 * 50 / 2 / 300 - 50.0 * 50 / 2 / 1000);
     EXPECT_TRUE(slave.follower.in_sync());
-    EXPECT_NEAR(slave.state.position, 40e-3 * 102 - 0.8, 1e-9);
+    EXPECT_NEAR(slave.state.position, ramping(1000, 50, 2999).place.local, 1e-9);
+    slave.expect_inside_its_limits();
+}
+
+// A sum whose master comes to rest while the slave is behind: with all of its deceleration the slave stops where the master stands.
+TEST(Follower, ASumBehindItsMasterStopsWhereTheMasterDoes) {
+    Slave slave;
+    slave.limits.axis = slave.limits.approach = {100, 100, 100, infinite};
+    GearSum sum;
+    ASSERT_TRUE(sum.set({1, 1}, {1, 1}, feed, feed, feed, {}, {}, {}));
+    slave.follower.begin(sum, RunDown::position, slave.limits);
+    // 0 to 50 u/s and back at 1000 u/s2 in 400 ms: it then stands at 17.5. The slave is at 8 with 40 u/s, and needs 8 more to stop.
+    const auto master = [](int i) {
+        if (i <= 350) return ramping(1000, 50, i);
+        const double t = std::min(i - 350, 50) * to_seconds(cycle);
+        return EndlessMotion{{0, 16.25 + 50 * t - 500 * t * t}, 50 - 1000 * t, i < 400 ? -1000.0 : 0.0};
+    };
+    for (int i = 1; i < 3000; ++i) {
+        slave.step(master(i), {});
+        if (i == 400) {
+            ASSERT_LT(slave.state.position + slave.state.velocity * slave.state.velocity / 200, 17.5);
+        }
+        ASSERT_LE(slave.state.position, 17.5 + 1e-9) << i;
+    }
+    EXPECT_TRUE(slave.follower.in_sync());
+    EXPECT_NEAR(slave.state.position, 17.5, 1e-9);
     slave.expect_inside_its_limits();
 }
 
