@@ -174,7 +174,9 @@ private:
         double covered = 0;    ///< u, before the present profile
         bool pending = false;  ///< has no profile yet, or one made for another base
         bool begun = false;
-        bool waiting = false;  ///< the base uses the whole velocity limit
+        bool waiting = false;  ///< the base uses the whole velocity limit in the sense that it needs
+        double sense = 1;      ///< of the way that the present profile has to go, once it has braked
+        double room = 0;       ///< u/s that the present profile may have in that sense
     };
 
     // axis.cpp
@@ -291,7 +293,8 @@ private:
     void guard(const MotionState& before, Duration period) noexcept;
     bool guard_switches() noexcept;
     bool guard_software_limits(const MotionState& before) noexcept;
-    void brake_as_both_layers(const MotionState& from, double room, MotionLimits& limits) const noexcept;
+    [[nodiscard]] double layers_in_base() const noexcept;
+    void brake_as_both_layers(const MotionState& from, double sense, double room, MotionLimits& limits) const noexcept;
     void brake_inside_limits(const MotionState& from, MotionLimits& limits) const noexcept;
     [[nodiscard]] bool release_below_limit(const MotionState& from, MotionLimits& limits) const noexcept;
     [[nodiscard]] bool leaves_limits(const Profile& profile) const noexcept;
@@ -306,6 +309,11 @@ private:
     Submitted submit_superimposed(const AxisCommand& command, Owner owner) noexcept;
     [[nodiscard]] ErrorId refuse_superimposed(const AxisCommand& command) const noexcept;
     [[nodiscard]] bool ramps_of_two() const noexcept;
+    [[nodiscard]] double room_beside_base(double sense) const noexcept;
+    [[nodiscard]] double superimposed_wish() const noexcept;
+    [[nodiscard]] double superimposed_reach(double sense) const noexcept;
+    [[nodiscard]] bool room_has_grown() const noexcept;
+    [[nodiscard]] Plan plan_addition(const MotionState& part, const MotionLimits& limits) noexcept;
     void run_superimposed() noexcept;
     void wait_for_room(const MotionState& from, MotionLimits limits, Plan& plan) noexcept;
     void complete_superimposed() noexcept;
@@ -531,7 +539,7 @@ private:
     bool held_ = false;           // override 0: the axis waits on its way to a position
     bool releases_ = false;       // the plan has another jerk than the command, until the acceleration it found is gone
     bool summed_ = false;         // two layers in motion became one: until it rests, its ramps may be as hard as both together were
-    double wants_speed_ = 0;      // u/s that the base will have once the superimposed motion has made room; 0: it waits for nothing
+    double wants_speed_ = 0;      // u/s, signed, that the base will have once what is superimposed has made room; 0: it waits for nothing
     bool watch_limits_ = true;    // the base might pass a software limit
     bool backwards_ = false;      // sense of the last motion
     Override override_;

@@ -17,9 +17,20 @@ double stops_within(const MotionState& state, const AxisLimits& limits) noexcept
     return speed * (a * ease + (speed / limits.deceleration + std::max(limits.deceleration, a) * ease));
 }
 
-/// Two layers brake with a ramp each (P1-155). What they would have stopped within, one motion of both does with twice the ramps: the sum of
-/// theirs is no harder.
-constexpr double both_layers = 2;
+/// The acceleration that brakes a motion in `sense` turns it round while it runs out.
+bool turns_back(const MotionState& from, const MotionLimits& limits, double sense) noexcept {
+    const double speed = sense * from.velocity, braking = -sense * from.acceleration;
+    return speed > 0 && braking > 0 && braking * braking > 2 * limits.jerk * speed;
+}
+
+/// How far a stop gets in `sense`, u. Where the acceleration drives the axis back, the stop ends on this side of that.
+double reach_of_stop(const MotionState& from, const MotionLimits& limits, double sense) noexcept {
+    if (!turns_back(from, limits, sense)) return sense * stopping_distance(from, limits);
+    const double speed = sense * from.velocity, braking = -sense * from.acceleration;
+    const double turns = braking * braking - 2 * limits.jerk * speed;
+    const double time = 2 * speed / (braking + std::sqrt(turns));  // until it turns, the acceleration running out
+    return time * (speed + time * (limits.jerk * time / 6 - braking / 2));
+}
 
 }  // namespace
 
@@ -50,24 +61,38 @@ bool Axis::guard_software_limits(const MotionState& before) noexcept {
     if (!(base_might_pass || setpoint_.layered()) || !software_limits_hold() || goal_.limiter == VelocityLimiter::software_limit)
         return false;
     const auto& next = setpoint_.state();
-    if (next.velocity == 0 || (!base_might_pass && sum_stays_inside())) return false;
-    const double edge = next.velocity > 0 ? config_.limits.position_max : config_.limits.position_min;
-    const double edge_local = units_.to_local(edge);
-    const double room = next.velocity > 0 ? edge_local - next.position : next.position - edge_local;
-    if (room > stops_within(next, config_.limits)) return false;
-
+    if ((next.velocity == 0 && next.acceleration == 0) || (!base_might_pass && sum_stays_inside())) return false;
     auto limits = full_limits(config_.limits);
     // What is planned to end on the limit must not be taken for more because of its last digits.
     const double surely = goal_.kind == Goal::Kind::velocity ? 1 : 1 - 1e-9;
-    if (std::abs(stopping_distance(next, limits)) * surely <= room) return false;
+    // Also the one in the back of an axis that is turning round: two layers may do that harder than one can brake.
+    double sense = 0, edge = 0, edge_local = 0;
+    for (const double way : {1.0, -1.0}) {
+        const double limit = way > 0 ? config_.limits.position_max : config_.limits.position_min;
+        const double local = units_.to_local(limit);
+        const double room = way * (local - next.position);
+        if (room > stops_within(next, config_.limits)) continue;
+        const double reach = reach_of_stop(next, limits, way);
+        if (reach <= 0 || reach * surely <= room) continue;
+        sense = way;
+        edge = limit;
+        edge_local = local;
+    }
+    if (sense == 0) return false;
 
     // One period ago stopping was still possible: from there the way to the limit ends exactly on it.
-    limits.velocity = std::min(limits.velocity, std::max(std::abs(next.velocity), std::abs(before.velocity)));
+    double fastest = std::max(std::abs(next.velocity), std::abs(before.velocity));
+    if (sense * next.velocity <= 0)  // what it cannot help having once it has turned
+        fastest = std::max(fastest, sense * next.velocity + next.acceleration * next.acceleration / (2 * limits.jerk));
+    limits.velocity = std::min(limits.velocity, fastest);
     // A jog ends there and is done; whatever else was to go further is cut off.
     if (view_.state != AxisState::ErrorStop && queue_.active().command.kind != CommandKind::jog)
         fail(AxisAlarm::software_limit_reached, units_.to_program(before.position), edge);
+    // An addition that began in this very cycle has not moved yet: it is not two motions that became one.
+    const bool two = summed_ || setpoint_.superimposed_has_moved(cycle_);
     end_superimposed(Outcome::error, ErrorId::beyond_software_limit);
-    brake_as_both_layers(before, std::abs(edge_local - before.position), limits);
+    summed_ = summed_ && two;
+    brake_as_both_layers(before, sense, std::abs(edge_local - before.position), limits);
     // Also in ErrorStop: its own stop might be softer and pass the limit.
     aim(Goal::Kind::position, edge_local, limits, VelocityLimiter::software_limit);
     return true;
@@ -88,21 +113,28 @@ bool Axis::sum_stays_inside() const noexcept {
 
 /// Ramps that would carry the axis past a software limit become as hard as the axis can.
 void Axis::brake_inside_limits(const MotionState& from, MotionLimits& limits) const noexcept {
-    if (!software_limits_hold() || from.velocity == 0) return;
-    const double edge = from.velocity > 0 ? config_.limits.position_max : config_.limits.position_min;
-    const double edge_local = units_.to_local(edge);
-    const double room = from.velocity > 0 ? edge_local - from.position : from.position - edge_local;
-    if (room > stops_within(from, {.deceleration = limits.deceleration, .jerk = limits.jerk})) return;
-    if (std::abs(stopping_distance(from, limits)) <= room) return;
-    limits.deceleration = std::max(limits.deceleration, config_.limits.deceleration);
-    limits.jerk = std::max(limits.jerk, config_.limits.jerk);
-    brake_as_both_layers(from, room, limits);
+    if (!software_limits_hold() || (from.velocity == 0 && from.acceleration == 0)) return;
+    for (const double sense : {1.0, -1.0}) {
+        const double edge = units_.to_local(sense > 0 ? config_.limits.position_max : config_.limits.position_min);
+        const double room = sense * (edge - from.position);
+        if (room > stops_within(from, {.deceleration = limits.deceleration, .jerk = limits.jerk})) continue;
+        // What turns back in front of the limit was within it by that only: the next command could not rely on it.
+        const double reach = reach_of_stop(from, limits, sense);
+        if (reach <= 0 || (reach <= room && !turns_back(from, limits, sense))) continue;
+        limits.deceleration = std::max(limits.deceleration, config_.limits.deceleration);
+        limits.jerk = std::max(limits.jerk, config_.limits.jerk);
+        brake_as_both_layers(from, sense, room, limits);
+    }
 }
 
-void Axis::brake_as_both_layers(const MotionState& from, double room, MotionLimits& limits) const noexcept {
-    if (!summed_ || std::abs(stopping_distance(from, limits)) <= room) return;
-    limits.deceleration *= both_layers;
-    limits.jerk *= both_layers;
+/// Two layers brake with a ramp each (P1-155). What they would have stopped within, one motion of both does with twice the ramps: the sum of
+/// theirs is no harder. Where a new one moves on top it has its own, and the base one: no more than two.
+double Axis::layers_in_base() const noexcept { return summed_ && setpoint_.superimposed_finished() ? 2 : 1; }
+
+void Axis::brake_as_both_layers(const MotionState& from, double sense, double room, MotionLimits& limits) const noexcept {
+    if (layers_in_base() == 1 || reach_of_stop(from, limits, sense) <= room) return;
+    limits.deceleration = std::max(limits.deceleration, layers_in_base() * config_.limits.deceleration);
+    limits.jerk = std::max(limits.jerk, layers_in_base() * config_.limits.jerk);
 }
 
 /// The acceleration the axis has now was built up with another jerk. Taken away with a smaller one it would carry the velocity beyond the
@@ -110,12 +142,12 @@ void Axis::brake_as_both_layers(const MotionState& from, double room, MotionLimi
 bool Axis::release_below_limit(const MotionState& from, MotionLimits& limits) const noexcept {
     if (from.acceleration == 0) return false;
     const double sense = from.acceleration > 0 ? 1 : -1;
-    const double beside = std::max(0.0, sense * setpoint_.superimposed().velocity);
+    const double beside = superimposed_reach(sense);
     const double room = config_.limits.velocity - beside - sense * from.velocity;
     const double needed = from.acceleration * from.acceleration / 2;
     if (needed <= limits.jerk * room) return false;
     constexpr double surely = 1 + 1e-9;
-    const double most = config_.limits.jerk * (summed_ ? both_layers : 1);
+    const double most = config_.limits.jerk * layers_in_base();
     limits.jerk = std::max(limits.jerk, room > 0 ? std::min(surely * needed / room, most) : most);
     return true;
 }

@@ -63,7 +63,7 @@ void Axis::plan(Instant now, Duration period) noexcept {
         setpoint_.place(actual_local());
     if (may_complete()) complete();
     if (coupling_.shown) complete_phasing();
-    if (queue_.beside(SideSlot::superimposed) != 0 || wants_speed_ > 0) complete_superimposed();
+    if (queue_.beside(SideSlot::superimposed) != 0 || wants_speed_ != 0) complete_superimposed();
     if (const double velocity = setpoint_.state().velocity; velocity != 0) backwards_ = velocity < 0;
     else if (summed_) summed_ = !setpoint_.at_rest();
     publish_commands();
@@ -112,6 +112,7 @@ void Axis::run_goal(double late) noexcept {
         case Goal::Kind::given: start_given(late); return;
         case Goal::Kind::position: plan = plan_way(from, limits, config_.limits.velocity); break;
         case Goal::Kind::velocity:
+            brake_inside_limits(from, limits);
             plan = plan_to_velocity(from, override_counts() ? goal_.value * override_.velocity : goal_.value, limits);
             watch_limits_ = true;
             break;

@@ -16,6 +16,8 @@ namespace {
 
 constexpr double least_speed = 1e-6;  // of the limit: as good as none
 constexpr double room_grain = 1e-9;   // of the limit: rounding
+constexpr double way_grain = 1e-9;    // of the way: rounding
+constexpr double notably = 9.0 / 8;   // times the room of the present plan: worth another one
 
 }  // namespace
 
@@ -56,17 +58,40 @@ Submitted Axis::submit_superimposed(const AxisCommand& command, Owner owner) noe
     return {accepted.id, ErrorId::none};
 }
 
-/// Two layers in motion became one, and its ramps are still as hard as both together: a third on top would be one too many.
+/// Two layers in motion became one, and its ramps are or are going to be as hard as both together: a third on top would be one too many.
 bool Axis::ramps_of_two() const noexcept {
+    if (!summed_) return false;
     constexpr double rounding = 1 + 1e-9;
     const auto& limits = config_.limits;
-    return summed_ && (std::abs(setpoint_.base().acceleration) > std::max(limits.acceleration, limits.deceleration) * rounding ||
-                       std::abs(setpoint_.base_jerk()) > limits.jerk * rounding);
+    const auto ramps = setpoint_.base_ramps();
+    return ramps.acceleration > std::max(limits.acceleration, limits.deceleration) * rounding || ramps.jerk > limits.jerk * rounding;
+}
+
+/// u/s that the axis' limit leaves in `sense` beside the base, as far as anybody knows, and beside what the base waits to become.
+double Axis::room_beside_base(double sense) const noexcept {
+    return config_.limits.velocity - std::max({0.0, base_speed(sense), sense * wants_speed_});
+}
+
+/// u/s, were there room.
+double Axis::superimposed_wish() const noexcept {
+    const double commanded = superimposed_.accepted.command.velocity;
+    const double speed = std::min(commanded > 0 ? commanded : config_.limits.velocity, velocity_cap());
+    return view_.state == AxisState::SynchronizedMotion ? speed : speed * override_.velocity;
+}
+
+/// u/s in `sense` that the superimposed motion cannot help having from here on: what its acceleration still brings while it runs out.
+double Axis::superimposed_reach(double sense) const noexcept {
+    const auto part = setpoint_.superimposed();
+    double reach = sense * part.velocity;
+    const auto own = dynamics_of(superimposed_.accepted.command, config_.limits, config_.defaults);
+    if (sense * part.acceleration > 0 && std::isfinite(own.jerk))
+        reach += part.acceleration * part.acceleration / (2 * own.jerk * override_.jerk);
+    return std::max(0.0, reach);
 }
 
 void Axis::run_superimposed() noexcept {
     auto& own = superimposed_;
-    if (!own.begun && ramps_of_two()) return;  // stays pending: a few cycles
+    if (!own.begun && setpoint_.superimposed_finished() && ramps_of_two()) return;  // stays pending: a few cycles
     own.pending = false;
     own.covered = own.begun ? own.covered + setpoint_.superimposed_way() : 0;
     own.begun = true;
@@ -74,8 +99,7 @@ void Axis::run_superimposed() noexcept {
     const auto& command = own.accepted.command;
     const auto part = setpoint_.superimposed();
     auto limits = dynamics_of(command, config_.limits, config_.defaults);
-    const bool follows_master = view_.state == AxisState::SynchronizedMotion;
-    if (!follows_master) {
+    if (view_.state != AxisState::SynchronizedMotion) {
         limits.acceleration *= override_.acceleration;
         limits.deceleration *= override_.acceleration;
         limits.jerk *= override_.jerk;
@@ -83,24 +107,12 @@ void Axis::run_superimposed() noexcept {
     // An acceleration built up with another jerk is taken away as fast as the sum needs to stay below the axis' limit.
     if (part.acceleration != 0) {
         const double sense = part.acceleration > 0 ? 1 : -1;
-        const double base_top = std::max({0.0, base_speed(sense), wants_speed_});
-        const double room = config_.limits.velocity - base_top - sense * part.velocity;
+        const double room = room_beside_base(sense) - sense * part.velocity;
         const double needed = part.acceleration * part.acceleration / 2;
         if (needed > limits.jerk * room)
             limits.jerk = std::max(limits.jerk, room > 0 ? std::min(needed / room, config_.limits.jerk) : config_.limits.jerk);
     }
-    Plan plan;
-    if (command.kind == CommandKind::halt_superimposed) {
-        plan = plan_stop(part, limits);
-    } else {
-        const double rest = own.distance - own.covered;
-        const double left = config_.limits.velocity - std::max({0.0, base_speed(rest < 0 ? -1 : 1), wants_speed_});
-        double speed = std::min(command.velocity > 0 ? command.velocity : config_.limits.velocity, velocity_cap());
-        speed = std::min(speed * (follows_master ? 1 : override_.velocity), left);
-        own.waiting = !(speed > least_speed * config_.limits.velocity);
-        if (!own.waiting) limits.velocity = speed;
-        plan = own.waiting ? plan_stop(part, limits) : plan_to_position(part, part.position + rest, limits);
-    }
+    const auto plan = command.kind == CommandKind::halt_superimposed ? plan_stop(part, limits) : plan_addition(part, limits);
     if (plan.error != PlanError::none) {
         fail(AxisAlarm::planner_refused, units_.to_program(setpoint_.state().position), part.velocity);
         if (goal_pending_) run_goal(0);
@@ -109,21 +121,56 @@ void Axis::run_superimposed() noexcept {
     setpoint_.superimpose(plan.profile);
 }
 
+/// The rest of the way, with what there is room for in each sense: a way that became shorter is overshot, and the way back may be the base's own
+/// sense. Where there is no room in the sense in which it has to go it comes to rest and waits.
+Plan Axis::plan_addition(const MotionState& part, const MotionLimits& limits) noexcept {
+    auto& own = superimposed_;
+    const double limit = config_.limits.velocity;
+    const double rest = own.distance - own.covered;
+    const double behind_stop = rest - stopping_distance(part, limits);
+    const double wish = superimposed_wish();
+    const auto allowed = [&](double sense) noexcept { return std::min(wish, room_beside_base(sense)); };
+    own.sense = behind_stop < 0 ? -1 : 1;
+    own.room = allowed(own.sense);
+    // The last digits of a way that is done are not worth waiting for.
+    const bool there = std::abs(behind_stop) <= way_grain * std::max(std::abs(own.distance), std::abs(own.covered));
+    own.waiting = !there && !(own.room > least_speed * limit);
+    if (own.waiting) return plan_stop(part, limits);
+    SignedLimits both{limits};
+    both.positive.velocity = std::max(allowed(1), room_grain * limit);
+    both.negative.velocity = std::max(allowed(-1), room_grain * limit);
+    return plan_to_position(part, part.position + rest, both);
+}
+
+/// Worth a new plan: it may begin, or go notably faster on a way that it goes as fast as it may; or all there is, where the base changes no more.
+/// Its room grows from plan to plan, which bounds their number.
+bool Axis::room_has_grown() const noexcept {
+    const auto& own = superimposed_;
+    const double limit = config_.limits.velocity;
+    const double room = std::min(superimposed_wish(), room_beside_base(own.sense));
+    if (own.waiting) return room > least_speed * limit;
+    const bool settled = setpoint_.finished() && setpoint_.base().acceleration == 0;
+    if (!(room > own.room * notably || (settled && room > own.room + room_grain * limit))) return false;
+    return setpoint_.superimposed_top(own.sense) >= own.room * (1 - room_grain);
+}
+
 /// `plan` of the base would add up to more than the limit with what still moves on top of it: as fast as there is room, for now.
 void Axis::wait_for_room(const MotionState& from, MotionLimits limits, Plan& plan) noexcept {
     if (goal_.kind == Goal::Kind::stop || held_ || plan.error != PlanError::none) return;
-    const auto beside = setpoint_.superimposed();
-    if (beside.velocity == 0) return;
-    const double sense = beside.velocity < 0 ? -1 : 1;
     const double limit = config_.limits.velocity;
-    // What it has, and what it cannot help gaining while its acceleration runs out.
-    const auto own = dynamics_of(superimposed_.accepted.command, config_.limits, config_.defaults);
-    const double rising = beside.acceleration * beside.velocity > 0 ? std::abs(beside.acceleration) : 0;
-    const double used = std::abs(beside.velocity) + (std::isfinite(own.jerk) ? rising * rising / (2 * own.jerk * override_.jerk) : 0);
-    const double room = std::max(limit - used, sense * from.velocity);
-    const double wanted = plan.profile.top_velocity(sense);
-    if (wanted <= room + room_grain * limit) return;
-    wants_speed_ = wanted;
+    double sense = 0, room = 0, wanted = 0;
+    for (const double way : {1.0, -1.0}) {
+        const double reach = superimposed_reach(way);
+        if (reach == 0) continue;
+        const double left = std::max(limit - reach, way * from.velocity);
+        const double top = plan.profile.top_velocity(way);
+        if (top <= left + room_grain * limit || top - left <= wanted - room) continue;
+        sense = way;
+        room = left;
+        wanted = top;
+    }
+    if (sense == 0) return;
+    wants_speed_ = sense * wanted;
     if (!(room > least_speed * limit)) {
         held_ = true;
         plan = plan_stop(from, limits);
@@ -138,11 +185,15 @@ void Axis::wait_for_room(const MotionState& from, MotionLimits limits, Plan& pla
 void Axis::complete_superimposed() noexcept {
     auto& own = superimposed_;
     const double limit = config_.limits.velocity;
-    if (wants_speed_ > 0 && std::abs(setpoint_.superimposed().velocity) <= limit - wants_speed_ + room_grain * limit) goal_pending_ = true;
+    if (wants_speed_ != 0) {
+        const double left = std::max(0.0, limit - std::abs(wants_speed_));
+        if (superimposed_reach(wants_speed_ < 0 ? -1 : 1) <= left + room_grain * limit) goal_pending_ = true;
+    }
     if (!own.begun || queue_.beside(SideSlot::superimposed) == 0) return;
-    if (own.accepted.command.kind == CommandKind::move_superimposed)
+    if (own.accepted.command.kind == CommandKind::move_superimposed) {
         view_.superimposed_covered = own.covered + setpoint_.superimposed_way();
-    if (own.waiting && setpoint_.base().velocity == 0 && setpoint_.base().acceleration == 0) own.pending = override_.velocity > 0;
+        if (!own.pending && room_has_grown()) own.pending = true;
+    }
     if (own.pending || own.waiting || !setpoint_.superimposed_finished()) return;
     queue_.finish_beside(SideSlot::superimposed, Outcome::done);
     if (view_.state == AxisState::DiscreteMotion && !queue_.has_active() && !moves()) start_waiting(0);

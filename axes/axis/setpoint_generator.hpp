@@ -5,6 +5,9 @@
 // and takes nothing from the base, whose times stay what they are (P1-155). What a superimposed motion has covered stays as an offset between base
 // and total until somebody folds it into the base. Without it the two are the same and cost nothing more.
 
+#include <algorithm>
+#include <cmath>
+
 #include "axes/planner/plan.hpp"
 #include "core/time.hpp"
 
@@ -88,11 +91,24 @@ public:
     }
     /// Largest velocity that the base is going to have in the sense 1 or -1, u/s.
     [[nodiscard]] double base_speed(double sense) const noexcept {
-        return finished() ? sense * base().velocity : profile_.top_velocity(sense);
+        return finished() ? sense * base().velocity : profile_.top_velocity(sense, time_);
     }
 
-    /// Of the base, from here on. u/s3
-    [[nodiscard]] double base_jerk() const noexcept { return moving_profile_ ? profile_.sample(time_, piece_).jerk : jerk_; }
+    /// The hardest that the base has from here on: magnitudes, u/s2 and u/s3.
+    struct Ramps {
+        double acceleration = 0, jerk = 0;
+    };
+    [[nodiscard]] Ramps base_ramps() const noexcept {
+        Ramps most{std::abs(base().acceleration), moving_profile_ ? 0.0 : std::abs(jerk_)};
+        if (finished()) return most;
+        for (int i = piece_; i < profile_.piece_count(); ++i) {
+            most.jerk = std::max(most.jerk, std::abs(profile_.piece_jerk(i)));
+            const double begin = std::max(profile_.piece_begin(i), time_);
+            for (const double at : {begin, std::max(begin, profile_.piece_end(i))})
+                most.acceleration = std::max(most.acceleration, std::abs(profile_.on_piece(i, at).acceleration));
+        }
+        return most;
+    }
 
     // --- the superimposed layer ------------------------------------------------------------------------------------------
     /// `profile` begins at superimposed().
@@ -112,9 +128,13 @@ public:
         if (layered_) layer_elapsed_ += period;
     }
     [[nodiscard]] bool superimposed_finished() const noexcept { return !layered_ || to_seconds(layer_elapsed_) >= layer_.duration(); }
-    /// Largest velocity that the contribution has or had since superimpose() in the sense 1 or -1, u/s; 0 when it is over.
+    /// Largest velocity that the contribution has or is going to have in the sense 1 or -1, u/s; 0 when it is over.
     [[nodiscard]] double superimposed_top(double sense) const noexcept {
-        return superimposed_finished() ? 0.0 : std::max(0.0, layer_.top_velocity(sense));
+        return superimposed_finished() ? 0.0 : std::max(0.0, layer_.top_velocity(sense, to_seconds(layer_elapsed_)));
+    }
+    /// The contribution moved already before the last advance() by `period`.
+    [[nodiscard]] bool superimposed_has_moved(Duration period) const noexcept {
+        return layered_ && (layer_elapsed_ > period || !rests(layer_.start()));
     }
     /// How far the contribution still goes, u.
     [[nodiscard]] double superimposed_rest() const noexcept {

@@ -72,7 +72,7 @@ void TimeCurve::reserve(std::size_t rows) {
 void TimeCurve::clear() noexcept {
     pieces_.clear();
     cursor_ = 0;
-    duration_ = 0;
+    duration_ = asked_ = 0;
 }
 
 void TimeCurve::add(double duration, const MotionState& start, double jerk) noexcept {
@@ -160,6 +160,7 @@ ErrorId TimeCurve::make_position(const MotionState& from, std::span<const TimePo
         piece.begin = duration_;
         duration_ += piece.duration;
     }
+    note_tops();
     return ErrorId::none;
 }
 
@@ -182,6 +183,7 @@ ErrorId TimeCurve::make_velocity(const MotionState& from, std::span<const TimePo
         add(seconds, {end_.position, end_.velocity, (velocity - end_.velocity) / seconds}, 0);
         end_ = {end_.position + (end_.velocity + velocity) / 2 * seconds, velocity, 0};
     }
+    note_tops();
     return pieces_.empty() ? ErrorId::invalid_table : ErrorId::none;
 }
 
@@ -204,6 +206,7 @@ ErrorId TimeCurve::make_acceleration(const MotionState& from, std::span<const Ti
     double swing = 0;
     for (const auto& piece : pieces_) swing = std::max(swing, std::abs(piece.start.velocity));
     if (std::abs(end_.velocity) <= 1e-12 * swing) end_.velocity = 0;
+    note_tops();
     return ErrorId::none;
 }
 
@@ -215,10 +218,25 @@ double TimeCurve::top_of(const Piece& piece, double sense) noexcept {
     return std::max({start, stop, sense * travel(piece.start, piece.jerk, turn).velocity});
 }
 
+/// From the end to the beginning, once: what is still to come is asked for in each cycle.
+void TimeCurve::note_tops() noexcept {
+    double top = end_.velocity, low = end_.velocity;
+    for (std::size_t i = pieces_.size(); i-- > 0;) {
+        auto& piece = pieces_[i];
+        piece.top_behind = top;
+        piece.low_behind = low;
+        top = std::max(top, top_of(piece, 1));
+        low = std::min(low, -top_of(piece, -1));
+    }
+}
+
 double TimeCurve::top_velocity(double sense) const noexcept {
-    double top = sense * end_.velocity;
-    for (std::size_t i = cursor_; i < pieces_.size(); ++i) top = std::max(top, top_of(pieces_[i], sense));
-    return top;
+    if (!(asked_ < duration_)) return sense * end_.velocity;
+    auto rest = pieces_[cursor_];
+    const double gone = std::max(0.0, asked_ - rest.begin);
+    rest.start = travel(rest.start, rest.jerk, gone);
+    rest.duration -= gone;
+    return std::max(top_of(rest, sense), sense > 0 ? rest.top_behind : -rest.low_behind);
 }
 
 ErrorId TimeCurve::check_piece(const Piece& piece, const CurveLimits& limits) const noexcept {
@@ -262,6 +280,7 @@ void TimeCurve::seek(double t) noexcept {
 }
 
 MotionState TimeCurve::at(double t) noexcept {
+    asked_ = t;
     if (!(t < duration_)) return {end_.position + end_.velocity * (t - duration_), end_.velocity, 0};
     seek(t);
     const auto& piece = pieces_[cursor_];

@@ -56,7 +56,7 @@ public:
     /// s
     [[nodiscard]] double duration() const noexcept { return duration_; }
     [[nodiscard]] const MotionState& end() const noexcept { return end_; }
-    /// Largest velocity that is still to come in the sense 1 or -1, u/s. Linear in the rows.
+    /// Largest velocity that is still to come in the sense 1 or -1 after the last at(), u/s. Cheap, for every cycle.
     [[nodiscard]] double top_velocity(double sense) const noexcept;
     /// `t` must not fall from call to call. After duration(): moving on at the end's velocity. Real-time safe.
     [[nodiscard]] MotionState at(double t) noexcept;
@@ -67,7 +67,9 @@ private:
         double begin = 0, duration = 0;  // s
         MotionState start;
         double jerk = 0;
+        double top_behind = 0, low_behind = 0;  // u/s, largest and smallest velocity from its end on
     };
+    void note_tops() noexcept;
     void clear() noexcept;
     void add(double duration, const MotionState& start, double jerk) noexcept;
     void seek(double t) noexcept;
@@ -78,6 +80,7 @@ private:
     std::vector<double> diagonal_, right_;  // of the spline's equations
     std::size_t room_ = 0, cursor_ = 0;
     double duration_ = 0;
+    double asked_ = 0;  // s, of the last at()
     MotionState end_;
     bool smooth_ = false;
 };

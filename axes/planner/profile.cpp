@@ -58,11 +58,12 @@ bool Profile::append(const Profile& next) noexcept {
     return true;
 }
 
-double Profile::top_velocity(double sense) const noexcept {
-    double speed = std::max(sense * start_.velocity, sense * end_.velocity);
+double Profile::top_velocity(double sense, double from) const noexcept {
+    double speed = std::max(sense * at(from).velocity, sense * end_.velocity);
     for (int i = 0; i < count_; ++i) {
-        const double begin = piece_begin(i);
+        const double begin = std::max(piece_begin(i), from);
         const double end = piece_end(i);
+        if (end <= from) continue;
         speed = std::max(speed, sense * on_piece(i, end).velocity);
         const Piece& piece = pieces_[static_cast<std::size_t>(i)];
         if (piece.jerk == 0) continue;

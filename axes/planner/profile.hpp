@@ -71,8 +71,8 @@ public:
     /// The jerk at `t`, from the right; 0 from duration() on. u/s3.
     [[nodiscard]] double jerk_at(double t) const noexcept { return sample(t, 0).jerk; }
 
-    /// The largest velocity on the way in the sense 1 or -1; negative where it always goes the other way. u/s.
-    [[nodiscard]] double top_velocity(double sense) const noexcept;
+    /// The largest velocity on the way in the sense 1 or -1, from the time `from` on; negative where it always goes the other way. u/s.
+    [[nodiscard]] double top_velocity(double sense, double from = 0) const noexcept;
     /// The largest |velocity| on the way. u/s.
     [[nodiscard]] double max_speed() const noexcept { return std::max(top_velocity(1), top_velocity(-1)); }
 

@@ -105,6 +105,7 @@ private:
 
     void program() {
         for (std::size_t i = 0; i < rig_.axes.size(); ++i) feed(i);
+        for (std::size_t i = 0; i < rig_.axes.size(); ++i) stir(i);
         if (gap_ > 0 && --gap_ == 0) rig_.drives[gap_axis_]->silent = false;
         if (!lively_) return;
         if (!dice_.once_in(12)) return;
@@ -200,6 +201,39 @@ private:
         double position = view.set_position + (view.set_velocity + velocity) / 2 * period;
         if (view.modulo > 0) position -= view.modulo * std::floor(position / view.modulo);
         if (rig_.axes[axis].set(SetpointFeed{position, velocity, acceleration}, view.owner) == ErrorId::none) count("SetpointFeed");
+    }
+    /// What layers do to one another: a jog that changes its velocity, an addition replaced by a shorter or a reversed one, a base that takes the
+    /// whole velocity and leaves room again.
+    void stir(std::size_t axis) {
+        if (!lively_) return;
+        const auto& view = rig_.view(axis);
+        const bool layered = view.side[static_cast<std::size_t>(SideSlot::superimposed)] != 0;
+        const bool jogs = view.active_kind == CommandKind::jog;
+        if (jogs && dice_.once_in(4)) {
+            if (rig_.axes[axis].renew_jog(view.active, dice_.between(-110, 110), view.owner) == ErrorId::none && layered)
+                count("jog renewed under an addition");
+        }
+        const auto add = [&](double most) {
+            auto command = any_.of(axis, CommandKind::move_superimposed);
+            command.position = dice_.between(-most, most);
+            submit(axis, command);
+        };
+        if (jogs ? dice_.once_in(60) : layered && dice_.once_in(100)) {
+            if (layered) count("addition replaced");
+            add(jogs ? 5 : dice_.once_in(2) ? 1 : 20);
+        }
+        if (view.active_kind != CommandKind::move_velocity || !dice_.once_in(80)) return;
+        if (!layered) {
+            add(20);
+            return;
+        }
+        auto command = at_velocity(dice_.once_in(2) ? dice_.one_of({-100.0, 100.0}) : dice_.between(-100, 100));
+        if (dice_.once_in(3)) command.jerk = dice_.between(3000, 25'000);
+        const auto id = view.active;
+        if (rig_.axes[axis].update(id, command, view.owner) != ErrorId::none) return;
+        note(axis, fmt::format("update {} under an addition: v {} jerk {}", id, command.velocity, command.jerk));
+        count("base updated under an addition");
+        ledger_.updated(axis, id, command);
     }
     void disturb(std::size_t axis) {
         auto& drive = *rig_.drives[axis];

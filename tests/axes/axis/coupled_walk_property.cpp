@@ -37,6 +37,7 @@ void expect_all_seen(const WalkCounts& counts, long walks) {
     for (const auto* what :
          {"in sync", "phasing", "on the way to a sync point", "commands wait", "overridden", "in torque", "in a profile of the drive"})
         at_least(what, 1);
+    for (const auto* what : {"jog renewed under an addition", "addition replaced", "base updated under an addition"}) at_least(what, 0.3);
     at_least("came to rest", 1);
 }
 

@@ -155,5 +155,36 @@ TEST(StopJerk, LessJerkWhileItBrakesDoesNotCarryTheAxisBeyondItsLimitBackwards) 
     EXPECT_NEAR(rig.view().set_velocity, -20, 1e-9);
 }
 
+// Two that brake together become one when the jog turns round in front of the limit: what carries the axis back later than at the limit is beyond it
+// although the stop ends inside. 1 u: the way that is left when both brake from 100 u/s with 2000 u/s2 together.
+TEST(Guards, AJogThatTurnsRoundBesideAnAdditionStaysInside) {
+    auto config = plain_axis();
+    config.limits.position_min = -10;
+    config.limits.position_max = 10;
+    config.homing.kind = HomingKind::set_here;
+    for (const double sense : {1.0, -1.0})
+        for (int first = 60; first < 260; first += 3)
+            for (int second = 1; second < 40; second += 9) {
+                Rig rig(config);
+                rig.power_on();
+                rig.accept(home(0));
+                rig.run(10);
+                rig.accept(jog(sense * 60));
+                (void)rig.axis.submit({.kind = CommandKind::move_superimposed, .position = sense * 5, .velocity = 40}, Owner::program);
+                rig.run(first);
+                (void)rig.axis.submit(jog(sense * -60), Owner::program);
+                rig.run(second);
+                (void)rig.axis.submit({.kind = CommandKind::move_superimposed, .position = sense * 0.3, .velocity = 30}, Owner::program);
+                (void)rig.axis.submit(jog(sense * 30), Owner::program);
+                rig.run(15);
+                (void)rig.axis.submit(jog(sense * -100), Owner::program);
+                for (int i = 0; i < 100; ++i) {
+                    rig.step();
+                    ASSERT_LE(std::abs(rig.view().set_position), 10 + 1e-9) << first << ", " << second;
+                }
+                ASSERT_TRUE(rig.oracle.clean()) << first << ", " << second << rig.oracle.report();
+            }
+}
+
 }  // namespace
 }  // namespace taktwerk::axes::test

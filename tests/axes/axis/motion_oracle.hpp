@@ -243,10 +243,9 @@ private:
         else if (jerked && std::abs(change - (a.acceleration + b.acceleration) / 2 * T) > most_jerk * T * T / 4 * rounding + speed_grain)
             breach("velocity {} after {} u/s does not agree with accelerations {} and {}", b.velocity, a.velocity, a.acceleration,
                    b.acceleration);
-        // While a superimposed motion turns round the sum swings a little beyond (axes/axis/README.md).
+        // Also of base and addition together, whatever either is about to do.
         most_ = std::max(most_, now.velocity);
-        const double swing = layered ? 1.02 : 1;
-        if (std::abs(b.velocity) > std::max(most_ * swing, std::abs(a.velocity)) * (1 + 1e-8))
+        if (std::abs(b.velocity) > std::max(most_, std::abs(a.velocity)) * (1 + 1e-8))
             breach("runs at {} u/s; {} is the most", b.velocity, most_);
 
         // Place with velocity: at the drive, and in the view as long as its coordinates are the same.

@@ -99,6 +99,22 @@ TEST(TimeCurve, VelocitiesAreJoinedByStraightLinesAndTheLastIsKept) {
     EXPECT_EQ(curve.at(2.5).acceleration, 0);
 }
 
+// By hand: 0 to 10 in 1 s, 10 to -4 in 2 s, -4 to 2 in 1 s; then 2 is kept. At 1.5 s the velocity is 10 - 7 * 0.5 = 6.5.
+TEST(TimeCurve, TheTopVelocityIsThatOfWhatIsStillToCome) {
+    auto curve = with_room();
+    ASSERT_EQ(curve.make_velocity({}, Rows{{1s, 10.0}, {2s, -4.0}, {1s, 2.0}}, {}, 0), ErrorId::none);
+    EXPECT_DOUBLE_EQ(curve.top_velocity(1), 10);
+    EXPECT_DOUBLE_EQ(curve.top_velocity(-1), 4);
+    (void)curve.at(1.5);
+    EXPECT_NEAR(curve.top_velocity(1), 6.5, 1e-12);
+    EXPECT_NEAR(curve.top_velocity(-1), 4, 1e-12);
+    (void)curve.at(3.5);
+    EXPECT_NEAR(curve.top_velocity(1), 2, 1e-12);
+    EXPECT_NEAR(curve.top_velocity(-1), 1, 1e-12);
+    (void)curve.at(9);
+    EXPECT_DOUBLE_EQ(curve.top_velocity(-1), -2);
+}
+
 TEST(TimeCurve, AFirstRowWithoutTimeIsTheStart) {
     auto curve = with_room();
     const MotionState from{5, 3, 0};

@@ -37,8 +37,8 @@ inline AxisConfig any_axis(Dice& dice) {
     if (dice.once_in(4)) config.modulo = dice.one_of({360.0, 25.0});
     else if (dice.once_in(4)) config.gearing.feed = 0.7;
     if (config.modulo == 0 && dice.once_in(2)) {
-        limits.position_min = -80;
-        limits.position_max = 80;
+        limits.position_max = dice.once_in(4) ? 25 : 80;  // the narrow ones are met by what begins anywhere
+        limits.position_min = -limits.position_max;
     }
     config.homing = {.kind = static_cast<HomingKind>(dice.below(8)),
                      .search_velocity = 40,

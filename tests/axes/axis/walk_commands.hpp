@@ -29,7 +29,7 @@ inline constexpr std::array walk_kinds{
     WalkKind{CommandKind::halt_superimposed, "halt_superimposed", 3},
     WalkKind{CommandKind::stop, "stop", 2},
     WalkKind{CommandKind::home, "home", 3},
-    WalkKind{CommandKind::jog, "jog", 2},
+    WalkKind{CommandKind::jog, "jog", 4},
     WalkKind{CommandKind::gear_in, "gear_in", 8},
     WalkKind{CommandKind::gear_in_pos, "gear_in_pos", 10},
     WalkKind{CommandKind::cam_in, "cam_in", 12},

@@ -90,8 +90,8 @@ private:
         // Behind what never shows its Inxxx (a slave out of reach, a torque that is not had, a cam whose master stands) others wait.
         if (view.status(entry.id) == CommandStatus::queued)
             return view.active != 0 && (!view.active_in_target || view.active_kind == cam_in);
-        // Where the base takes the whole velocity there is no room.
-        if (kind == move_superimposed || kind == halt_superimposed) return view.set_velocity != 0;
+        // Only where the base takes nearly the whole velocity there is no room.
+        if (kind == move_superimposed) return std::abs(view.set_velocity) > 0.9 * view.parameters[place_of(velocity_of_application)];
         // Other coordinates make any way of an absolute target: it is on it.
         if (kind == move_absolute) return patience == Patience::over && view.set_velocity != 0;
         switch (kind) {

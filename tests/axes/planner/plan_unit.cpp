@@ -253,5 +253,16 @@ TEST(PlanErrors, BadInputIsRefusedAndTheProfileStaysFinite) {
     EXPECT_EQ(plan_to_position({3, 0, 0}, unlimited, good).profile.at(1).position, 3);
 }
 
+// 10 u at 2 u/s with 1 u/s2: top speed until 5 s, then down to 0 at 7 s.
+TEST(PlannedProfile, TheTopVelocityFromATimeOnForgetsWhatIsOver) {
+    const auto profile = plan_to_position({}, 10, MotionLimits{2, 1, 1, std::numeric_limits<double>::infinity()}).profile;
+    EXPECT_NEAR(profile.top_velocity(1), 2, 1e-12);
+    EXPECT_NEAR(profile.top_velocity(1, 5), 2, 1e-12);
+    EXPECT_NEAR(profile.top_velocity(1, 6), 1, 1e-12);
+    EXPECT_NEAR(profile.top_velocity(1, 6.5), 0.5, 1e-12);
+    EXPECT_EQ(profile.top_velocity(1, 9), 0);
+    EXPECT_EQ(profile.top_velocity(-1, 6), 0);
+}
+
 }  // namespace
 }  // namespace taktwerk::axes
