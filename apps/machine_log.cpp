@@ -233,6 +233,9 @@ void MachineLog::step(Instant now, const Snapshot* snapshot) {
         homed_.resize(s.axes.size());
         programs_.resize(s.programs.size());
         mode_ = s.mode;
+        // What was before this log began is none of its business.
+        const auto& passed = s.passed_alarms;
+        for (next_passed_ = passed.oldest(); next_passed_ < passed.noted() && passed.at(next_passed_).since < start_;) ++next_passed_;
         say(now, "machine",
             fmt::format("running, {} mode, {} axes, cycle {} us{}", text(s.mode), s.axes.size(), layout.cycle.count() / 1000,
                         s.simulated ? ", SIMULATED bus" : ""));

@@ -85,6 +85,17 @@ TEST_F(MachineLogOf, OneThatGoesAndComesBackBetweenTwoLooksIsNews) {
     EXPECT_THAT(said, HasSubstr("ALARM"));
 }
 
+TEST_F(MachineLogOf, WhatPassedBeforeItBeganIsNotTold) {
+    for (int i = 0; i < 30; ++i) jam();
+    std::string later;
+    MachineLog other{*m.machine, m.clock.now(), false, [&](std::string lines) { later += lines; }};
+    other.step(m.clock.now(), &m.state());
+    EXPECT_THAT(later, AllOf(Not(HasSubstr("feeder")), Not(HasSubstr("missed"))));
+    jam();
+    other.step(m.clock.now(), &m.state());
+    EXPECT_THAT(later, HasSubstr("the feeder is jammed"));
+}
+
 // A hundred of them are not a hundred lines, but their number is.
 TEST_F(MachineLogOf, ManyOfTheSameAreCounted) {
     for (int i = 0; i < 100; ++i) {
