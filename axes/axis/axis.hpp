@@ -165,6 +165,7 @@ private:
         VelocityLimiter limiter = VelocityLimiter::none;
         bool goes_on = false;     ///< position: passes it with end_velocity and keeps that (MC_MoveContinuous...)
         double end_velocity = 0;  ///< u/s, signed
+        double former_jerk = 0;   ///< stop: of the motion that it ends, u/s3
         bool kept = false;        ///< velocity: that of a motion that is over; an override counts from its next change on
     };
     /// What runs on top of the base.
@@ -172,6 +173,7 @@ private:
         AcceptedCommand accepted;
         double distance = 0;   ///< u, since its start
         double covered = 0;    ///< u, before the present profile
+        double jerk = 0;       ///< u/s3, which the present profile was planned with
         bool pending = false;  ///< has no profile yet, or one made for another base
         bool begun = false;
         bool waiting = false;  ///< the base uses the whole velocity limit in the sense that it needs
@@ -262,6 +264,8 @@ private:
     ErrorId set_goal(const AcceptedCommand& accepted) noexcept;
     void start_at_base() noexcept;
     void aim(Goal::Kind kind, double value, const MotionLimits& limits, VelocityLimiter limiter) noexcept;
+    void aim_at_rest(const MotionLimits& limits) noexcept;
+    [[nodiscard]] double jerk_of_motion() const noexcept;
     void aim_at_velocity(double velocity, const MotionLimits& dynamics) noexcept;
     void aim_at_target(const AxisCommand& command, double target) noexcept;
     void aim_at_stop(const AxisCommand& command) noexcept;
@@ -292,6 +296,11 @@ private:
     }
     void guard(const MotionState& before, Duration period) noexcept;
     bool guard_switches() noexcept;
+    bool guard_limit_switches() noexcept;
+    bool guard_permits() noexcept;
+    [[nodiscard]] bool barred(double velocity) const noexcept {
+        return velocity > 0 ? !permit_positive_ : velocity < 0 && !permit_negative_;
+    }
     bool guard_software_limits(const MotionState& before) noexcept;
     [[nodiscard]] double layers_in_base() const noexcept;
     void brake_as_both_layers(const MotionState& from, double sense, double room, MotionLimits& limits) const noexcept;
@@ -539,6 +548,7 @@ private:
     bool held_ = false;           // override 0: the axis waits on its way to a position
     bool releases_ = false;       // the plan has another jerk than the command, until the acceleration it found is gone
     bool summed_ = false;         // two layers in motion became one: until it rests, its ramps may be as hard as both together were
+    double folded_jerk_ = 0;      // u/s3 of an addition that ended in motion, until the goal after it has its profile
     double wants_speed_ = 0;      // u/s, signed, that the base will have once what is superimposed has made room; 0: it waits for nothing
     bool watch_limits_ = true;    // the base might pass a software limit
     bool backwards_ = false;      // sense of the last motion

@@ -264,7 +264,9 @@ bool Axis::halt_drive_profile(Duration period) noexcept {
         go_mode(ModePhase::leaving);
         return step_mode(period);
     }
-    if (view_.state != AxisState::ErrorStop && view_.state != AxisState::Stopping) (void)guard_switches();
+    if (drive_run_.mode() != DriveMode::profile_position) guard_motor(stop_limits(config_.limits));
+    else if (view_.state == AxisState::Stopping) (void)guard_limit_switches();
+    else if (view_.state != AxisState::ErrorStop) (void)guard_switches();
     return true;
 }
 

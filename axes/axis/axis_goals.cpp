@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "axes/axis/axis.hpp"
 
@@ -105,6 +106,26 @@ void Axis::aim(Goal::Kind kind, double value, const MotionLimits& limits, Veloci
     held_ = false;
 }
 
+/// Every stop of a planned motion begins here, whoever asked for it.
+void Axis::aim_at_rest(const MotionLimits& limits) noexcept {
+    const double jerk = jerk_of_motion();
+    aim(Goal::Kind::stop, 0, limits, VelocityLimiter::stopping);
+    goal_.former_jerk = jerk;
+}
+
+/// Of what moves the axis now, base and addition together. That of a slave, a table or a fed set-point is not limited.
+double Axis::jerk_of_motion() const noexcept {
+    switch (goal_.kind) {
+        case Goal::Kind::rest: return folded_jerk_;
+        case Goal::Kind::position:
+        case Goal::Kind::velocity: return with_override(goal_.limits).jerk + folded_jerk_;
+        case Goal::Kind::stop: return std::max(goal_.limits.jerk, goal_.former_jerk) + folded_jerk_;
+        case Goal::Kind::given:
+        case Goal::Kind::coupled: break;
+    }
+    return std::numeric_limits<double>::infinity();
+}
+
 void Axis::aim_at_velocity(double velocity, const MotionLimits& dynamics) noexcept {
     const auto allowed = allowed_speed(std::abs(velocity), config_.limits.velocity, velocity_cap());
     const auto limiter = velocity == 0 ? VelocityLimiter::stopping : allowed.limiter;
@@ -127,15 +148,7 @@ void Axis::aim_at_target(const AxisCommand& command, double target) noexcept {
     has_commanded_target_ = true;
 }
 
-void Axis::aim_at_stop(const AxisCommand& command) noexcept {
-    auto dynamics = dynamics_of(command, config_.limits, config_.defaults);
-    // A stop that comes while the axis speeds up takes the acceleration away first. With a smaller jerk than the acceleration was built
-    // up with, the axis would get faster after the stop than it was ever meant to.
-    const auto& now = setpoint_.base();
-    const bool running = goal_.kind == Goal::Kind::position || goal_.kind == Goal::Kind::velocity;
-    if (now.velocity * now.acceleration > 0 && running) dynamics.jerk = std::max(dynamics.jerk, goal_.limits.jerk);
-    aim(Goal::Kind::stop, 0, dynamics, VelocityLimiter::stopping);
-}
+void Axis::aim_at_stop(const AxisCommand& command) noexcept { aim_at_rest(dynamics_of(command, config_.limits, config_.defaults)); }
 
 double Axis::signed_velocity(const AxisCommand& command, bool backwards) const noexcept {
     if (command.kind != CommandKind::move_velocity && command.kind != CommandKind::drive_move_velocity) return command.velocity;

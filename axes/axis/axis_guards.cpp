@@ -35,29 +35,44 @@ double reach_of_stop(const MotionState& from, const MotionLimits& limits, double
 }  // namespace
 
 void Axis::guard(const MotionState& before, Duration period) noexcept {
-    if (view_.state == AxisState::Homing) return;
-    if ((goal_.kind == Goal::Kind::rest || goal_.kind == Goal::Kind::stop) && !setpoint_.layered()) return;
+    if (view_.state == AxisState::Homing || (goal_.kind == Goal::Kind::rest && !setpoint_.layered())) return;
     if (!guard_switches() && !guard_software_limits(before)) return;
     setpoint_.restore(before);
     run_goal(0);
     setpoint_.advance(period);
 }
 
-bool Axis::guard_switches() noexcept {
+bool Axis::guard_switches() noexcept { return guard_limit_switches() || guard_permits(); }
+
+bool Axis::guard_limit_switches() noexcept {
     const double velocity = setpoint_.state().velocity;
-    if ((velocity > 0 && positive_switch_) || (velocity < 0 && negative_switch_)) {
-        fail(velocity > 0 ? AxisAlarm::positive_limit_switch : AxisAlarm::negative_limit_switch,
-             units_.to_program(setpoint_.state().position));
-        aim(Goal::Kind::stop, 0, stop_limits(config_.limits), VelocityLimiter::stopping);  // also on the way to a software limit
-    } else if ((velocity > 0 && !permit_positive_) || (velocity < 0 && !permit_negative_)) {
+    if (!(velocity > 0 ? positive_switch_ : velocity < 0 && negative_switch_)) return false;
+    if (view_.state == AxisState::ErrorStop && goal_.kind == Goal::Kind::stop) return false;  // it brakes as hard as it can
+    fail(velocity > 0 ? AxisAlarm::positive_limit_switch : AxisAlarm::negative_limit_switch, units_.to_program(setpoint_.state().position));
+    aim_at_rest(stop_limits(config_.limits));  // also on the way to a software limit
+    return true;
+}
+
+/// A command that moves on ends; one that stops goes on, as hard as the axis does by itself.
+bool Axis::guard_permits() noexcept {
+    if (!barred(setpoint_.state().velocity)) return false;
+    if (goal_.kind != Goal::Kind::stop || setpoint_.layered()) {
         queue_.finish_active(Outcome::error, ErrorId::interlocked);
         halt_on_own_account();
-    } else return false;
+        return true;
+    }
+    const auto hard = full_limits(config_.limits);
+    auto& soft = goal_.limits;
+    if (soft.deceleration >= hard.deceleration && soft.jerk >= hard.jerk) return false;
+    soft.deceleration = std::max(soft.deceleration, hard.deceleration);
+    soft.jerk = std::max(soft.jerk, hard.jerk);
+    goal_pending_ = true;
     return true;
 }
 
 bool Axis::guard_software_limits(const MotionState& before) noexcept {
-    const bool base_might_pass = watch_limits_ && goal_.kind != Goal::Kind::rest;
+    const bool stops_inside = goal_.kind == Goal::Kind::stop && refuse_place(units_.to_program(setpoint_.end().position)) == ErrorId::none;
+    const bool base_might_pass = watch_limits_ && goal_.kind != Goal::Kind::rest && !stops_inside;
     if (!(base_might_pass || setpoint_.layered()) || !software_limits_hold() || goal_.limiter == VelocityLimiter::software_limit)
         return false;
     const auto& next = setpoint_.state();

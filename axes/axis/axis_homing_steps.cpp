@@ -132,7 +132,7 @@ ErrorId Axis::begin_homing_step(const AxisCommand& command) noexcept {
             }
             [[fallthrough]];
         case HomingStep::direct:
-        case HomingStep::absolute: aim(Goal::Kind::stop, 0, dynamics, VelocityLimiter::stopping); return ErrorId::none;
+        case HomingStep::absolute: aim_at_rest(dynamics); return ErrorId::none;
         case HomingStep::flying_switch:
         case HomingStep::flying_reference_pulse: return ErrorId::invalid_parameter;  // they have a slot of their own
     }
@@ -163,7 +163,7 @@ void Axis::drive_step(const TriggerRef& reference, const MotionLimits& dynamics)
     if (!step_run_.busy()) return;
     switch (step_run_.demand()) {
         case StepRun::Demand::stop:
-            if (goal_.kind != Goal::Kind::stop) aim(Goal::Kind::stop, 0, dynamics, VelocityLimiter::stopping);
+            if (goal_.kind != Goal::Kind::stop) aim_at_rest(dynamics);
             break;
         case StepRun::Demand::velocity: {
             // Homing has velocities of its own; only the axis' limit holds them down.
@@ -212,7 +212,7 @@ void Axis::guard_finish() noexcept {
     step_succeeded_ = false;
     queue_.finish_active(Outcome::error, ErrorId::interlocked);
     queue_.finish_waiting(Outcome::aborted);
-    aim(Goal::Kind::stop, 0, stop_limits(config_.limits), VelocityLimiter::stopping);
+    aim_at_rest(stop_limits(config_.limits));
 }
 
 void Axis::end_homing_step(ErrorId error) noexcept {

@@ -224,8 +224,10 @@ bool Axis::run_torque(Duration period) noexcept {
             return step_mode(period);
         }
         const bool error = view_.state == AxisState::ErrorStop;
-        torque_.brake(error ? stop_limits(config_.limits).deceleration
-                            : dynamics_of(queue_.active().command, config_.limits, config_.defaults).deceleration);
+        double braking = error ? stop_limits(config_.limits).deceleration
+                               : dynamics_of(queue_.active().command, config_.limits, config_.defaults).deceleration;
+        if (barred(setpoint_.state().velocity)) braking = std::max(braking, config_.limits.deceleration);
+        torque_.brake(braking);
     } else if (begin_pending_) {
         begin_command();
     }
@@ -243,8 +245,9 @@ bool Axis::run_torque(Duration period) noexcept {
 
 /// As the guards of planned motion, but early by what leaving the mode takes.
 void Axis::guard_motor(const MotionLimits& braking) noexcept {
-    const bool stops = view_.state == AxisState::ErrorStop || view_.state == AxisState::Stopping || halts_alone();
-    if (stops || guard_switches() || !software_limits_hold()) return;
+    if (view_.state == AxisState::ErrorStop || guard_limit_switches()) return;
+    const bool stops = view_.state == AxisState::Stopping || halts_alone();
+    if ((!stops && guard_permits()) || !software_limits_hold()) return;
     auto reach = setpoint_.state();
     if (reach.velocity == 0) return;
     const auto& drive = port_.capabilities();

@@ -5,6 +5,7 @@
 
 #include "axes/axis/axis.hpp"
 #include "axes/axis/junction.hpp"
+#include "axes/axis/stop_ramp.hpp"
 
 namespace taktwerk::axes {
 
@@ -101,9 +102,19 @@ void Axis::follow_actual(Duration period) noexcept {
 
 void Axis::run_goal(double late) noexcept {
     goal_pending_ = held_ = false;
-    wants_speed_ = 0;
-    const auto from = setpoint_.base();
+    wants_speed_ = folded_jerk_ = 0;
+    auto from = setpoint_.base();
     auto limits = with_override(goal_.limits);
+    if (goal_.kind == Goal::Kind::stop && from.velocity * from.acceleration > 0) {
+        // What speeds up loses its acceleration with the jerk it was built up with, at once where none limited that: with less the axis would get
+        // faster after the stop than it was ever meant to.
+        if (std::isfinite(goal_.former_jerk)) {
+            limits.jerk = std::max(limits.jerk, goal_.former_jerk);
+        } else {
+            from.acceleration = 0;
+            setpoint_.set(from);
+        }
+    }
     releases_ = release_below_limit(from, limits);
     Plan plan;
     switch (goal_.kind) {
@@ -111,12 +122,16 @@ void Axis::run_goal(double late) noexcept {
         case Goal::Kind::coupled: return;
         case Goal::Kind::given: start_given(late); return;
         case Goal::Kind::position: plan = plan_way(from, limits, config_.limits.velocity); break;
-        case Goal::Kind::velocity:
+        case Goal::Kind::velocity: {
+            const double velocity = override_counts() ? goal_.value * override_.velocity : goal_.value;
+            if (velocity == 0) limits = never_reversing(from, limits, to_seconds(cycle_));
             brake_inside_limits(from, limits);
-            plan = plan_to_velocity(from, override_counts() ? goal_.value * override_.velocity : goal_.value, limits);
+            plan = plan_to_velocity(from, velocity, limits);
             watch_limits_ = true;
             break;
+        }
         case Goal::Kind::stop:
+            limits = never_reversing(from, limits, to_seconds(cycle_));
             brake_inside_limits(from, limits);
             plan = plan_stop(from, limits);
             watch_limits_ = false;
@@ -125,7 +140,7 @@ void Axis::run_goal(double late) noexcept {
     if (setpoint_.layered()) wait_for_room(from, limits, plan);
     if (plan.error != PlanError::none) {
         fail(AxisAlarm::planner_refused, units_.to_program(from.position), from.velocity);
-        plan = plan_stop(setpoint_.base(), stop_limits(config_.limits));
+        plan = plan_stop(setpoint_.base(), never_reversing(setpoint_.base(), stop_limits(config_.limits), to_seconds(cycle_)));
         goal_pending_ = false;
     }
     setpoint_.run(plan.profile, late);
@@ -152,7 +167,7 @@ Plan Axis::plan_way(const MotionState& from, MotionLimits limits, double most) n
     Plan plan;
     if (held_) {
         limits.velocity = config_.limits.velocity;
-        plan = plan_stop(from, limits);
+        plan = plan_stop(from, never_reversing(from, limits, to_seconds(cycle_)));
     } else if (goal_.goes_on) {
         const double factor = override_counts() ? override_.velocity : 1;
         const double end = std::clamp(goal_.end_velocity * factor, -most, most);

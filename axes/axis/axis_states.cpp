@@ -57,7 +57,7 @@ void Axis::enter_error_stop(AlarmId reason, bool then_power_off) noexcept {
     view_.lock = 0;
     off_when_stopped_ = begin_pending_ = false;
     abort_homing();
-    aim(Goal::Kind::stop, 0, stop_limits(config_.limits), VelocityLimiter::stopping);
+    aim_at_rest(stop_limits(config_.limits));
 }
 
 void Axis::stop_on_own_account(bool then_power_off) noexcept {
@@ -69,7 +69,7 @@ void Axis::stop_on_own_account(bool then_power_off) noexcept {
     off_when_stopped_ = off_when_stopped_ || then_power_off;
     abort_homing();
     if (view_.state != AxisState::Stopping) fire(AxisEvent::stop);
-    aim(Goal::Kind::stop, 0, full_limits(config_.limits), VelocityLimiter::stopping);
+    aim_at_rest(full_limits(config_.limits));
 }
 
 /// A command could not go on, which is an error of its instance and none of the axis: it comes to rest as by MC_Halt, and may be moved again at
@@ -81,7 +81,7 @@ void Axis::halt_on_own_account() noexcept {
     end_superimposed(Outcome::aborted);
     begin_pending_ = false;
     fire(AxisEvent::discrete);
-    aim(Goal::Kind::stop, 0, full_limits(config_.limits), VelocityLimiter::stopping);
+    aim_at_rest(full_limits(config_.limits));
 }
 
 void Axis::switch_off() noexcept {

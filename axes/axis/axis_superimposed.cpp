@@ -9,6 +9,7 @@
 
 #include "axes/axis/axis.hpp"
 #include "axes/axis/plannable.hpp"
+#include "axes/axis/stop_ramp.hpp"
 
 namespace taktwerk::axes {
 
@@ -48,7 +49,7 @@ Submitted Axis::submit_superimposed(const AxisCommand& command, Owner owner) noe
         queue_.record(accepted.id, Outcome::done, ErrorId::none);  // there is nothing to halt
     } else {
         queue_.occupy(SideSlot::superimposed, accepted.id);
-        superimposed_ = {.accepted = accepted, .distance = command.position, .pending = true};
+        superimposed_ = {.accepted = accepted, .distance = command.position, .jerk = superimposed_.jerk, .pending = true};
         if (command.kind == CommandKind::move_superimposed) {
             view_.superimposed_covered = 0;
             if (view_.state == AxisState::Standstill) fire(AxisEvent::superimposed);  // P1-030
@@ -112,7 +113,11 @@ void Axis::run_superimposed() noexcept {
         if (needed > limits.jerk * room)
             limits.jerk = std::max(limits.jerk, room > 0 ? std::min(needed / room, config_.limits.jerk) : config_.limits.jerk);
     }
-    const auto plan = command.kind == CommandKind::halt_superimposed ? plan_stop(part, limits) : plan_addition(part, limits);
+    const bool halts = command.kind == CommandKind::halt_superimposed;
+    // As every stop: what speeds up loses its acceleration with the jerk it was built up with, and nothing turns round.
+    if (halts && part.velocity * part.acceleration > 0) limits.jerk = std::max(limits.jerk, own.jerk);
+    own.jerk = limits.jerk;
+    const auto plan = halts ? plan_stop(part, never_reversing(part, limits, to_seconds(cycle_))) : plan_addition(part, limits);
     if (plan.error != PlanError::none) {
         fail(AxisAlarm::planner_refused, units_.to_program(setpoint_.state().position), part.velocity);
         if (goal_pending_) run_goal(0);
@@ -213,7 +218,10 @@ void Axis::end_superimposed(Outcome outcome, ErrorId error) noexcept {
     queue_.finish_beside(SideSlot::superimposed, outcome, error);
     superimposed_.pending = superimposed_.waiting = false;
     if (!setpoint_.layered()) return;
-    summed_ = summed_ || !setpoint_.superimposed_finished();
+    if (!setpoint_.superimposed_finished()) {
+        summed_ = true;
+        folded_jerk_ = superimposed_.jerk;
+    }
     commanded_target_ += setpoint_.superimposed().position;
     setpoint_.fold();
 }

@@ -46,6 +46,7 @@ struct Rig {
     MotionOracle oracle;
     Instant now{};
     bool enable = false;
+    bool permit_positive = true;
     bool jog_alive = true;
     std::vector<AlarmFact> alarms;
     double largest_step = 0;      ///< of the set position in the view, u
@@ -60,7 +61,7 @@ struct Rig {
         axis.update(now);
         axis.supervise(now);
         fetch_alarms();
-        axis.power(enable, true, true, view().owner);
+        axis.power(enable, permit_positive, true, view().owner);
         if (program) program();
         const double before = view().set_position;
         const bool homed = view().homed;

@@ -7,6 +7,7 @@
 //   acceleration with jerk       where it is limited
 //   drive with view              the target in counts is the set position, but for a rounding and what compensation adds
 //   limits                       velocity, acceleration, jerk, software limits
+//   stops                        from its first cycle on the velocity keeps its sign, and 0 stays 0, whoever stops the axis and whatever it did before
 //   state with motion            Standstill stands and holds nothing; a command that waits for nothing begins
 //
 // Where it looks away, and why:
@@ -14,6 +15,10 @@
 //   * tables over time have corners, and a slave keeps no jerk (axes/axis/README.md): there no jerk is asked for
 //   * a slave held at its limits keeps its place within acceleration * period^2 / 2; a fed set-point within acceleration * period^2, and its
 //     acceleration is the feeder's
+//   * a stop's jerk may be as high as it takes not to reverse: a^2 / (2 |v|) while v and a differ in sign. What takes no cycle longer than it lasts
+//     (2 |v| / |a|) may come to rest at once
+//   * of an addition that is halted, or of the base that stops beside one, the view does not say how fast it is: there no jerk is asked for
+//   * while something is superimposed the sum may change its sign in a stop: the addition is a motion of its own
 //   * while something is superimposed, and after it was given up until the axis rests, ramps add up: twice acceleration and jerk (clause 155 of Part 1)
 //   * coordinates may change (homing, MC_SetPosition) where the drive sees nothing of it and the actual position changes alike
 //   * a software limit that comes over a moving axis, or is moved with its coordinates, holds once the axis has rested
@@ -100,6 +105,8 @@ private:
         next.counts = command.position;
         next.state = view.state;
         next.kind = view.active_kind;
+        next.stops = stops(view);
+        next.covered = view.superimposed_covered;
         next.layer = view.side[static_cast<std::size_t>(SideSlot::superimposed)];
         next.homed = view.homed;
         next.modulo = view.modulo;
@@ -123,12 +130,12 @@ private:
     };
     struct Sample {
         Place at;
-        double actual = 0, modulo = 0;
+        double actual = 0, modulo = 0, covered = 0;
         std::int64_t counts = 0;
         AxisState state = AxisState::Disabled;
         CommandKind kind = CommandKind::none;
         CommandId layer = 0;  // the superimposed command
-        bool driven = false, homed = false;
+        bool driven = false, homed = false, stops = false;
     };
 
     template <class... Args>
@@ -217,12 +224,25 @@ private:
             return std::max(either_way ? most_acceleration : faster ? system.acceleration : most_slowing, std::abs(a.acceleration));
         };
         most_jerk *= layered ? 2 : 1;
+        constexpr double rounding = 1 + 1e-6;
+        const double T = period_;
+        bool rests_now = false;
+        const bool rests = b.velocity == 0 && b.acceleration == 0;
+        // What begins and ends in one cycle shows no limiter: by what may have been a stop.
+        const bool stops = next.stops || last_.stops ||
+                           (rests && (view.active == 0 || view.override_factors.velocity == 0 || runs_at_velocity(next.kind) ||
+                                      next.kind == CommandKind::halt));
+        if (stops && a.velocity * a.acceleration <= 0) {
+            rests_now = rests && 2 * std::abs(a.velocity) <= std::abs(a.acceleration) * T * rounding;
+            if (a.velocity != 0) most_jerk = std::max(most_jerk, a.acceleration * a.acceleration / (2 * std::abs(a.velocity)));
+        }
         const bool fed = last_.kind == CommandKind::external || next.kind == CommandKind::external;
         const bool coupled = either(last_, next, AxisState::SynchronizedMotion);
         const bool by_table = is_table(last_.kind) || is_table(next.kind);
-        const bool jerked = std::isfinite(most_jerk) && !fed && !coupled && !by_table;
-        constexpr double rounding = 1 + 1e-6;
-        const double T = period_;
+        // How fast an addition is, the view says by its way; of one that is halted it does not, nor of the base beside it.
+        const bool beside = last_.layer != 0 || next.layer != 0;
+        const bool addition_stops = beside && (next.stops || next.covered == last_.covered);
+        const bool jerked = std::isfinite(most_jerk) && !fed && !coupled && !by_table && !rests_now && !addition_stops;
         const double speed_grain = 1e-9 * system.velocity;
 
         // Acceleration and jerk.
@@ -231,8 +251,12 @@ private:
         if (!fed && std::abs(b.acceleration) > most_now * rounding)
             breach("accelerates with {} u/s2 at {} u/s, {} before; {} is the most", b.acceleration, b.velocity, a.acceleration, most_now);
         if (jerked && std::abs(b.acceleration - a.acceleration) > most_jerk * T * rounding + 1e-9 * most_acceleration)
-            breach("acceleration {} after {} u/s2 in a cycle; the jerk {} allows {}", b.acceleration, a.acceleration, most_jerk,
-                   most_jerk * T);
+            breach("acceleration {} after {} u/s2 in a cycle; the jerk {} allows {}; {} after {} u/s", b.acceleration, a.acceleration,
+                   most_jerk, most_jerk * T, b.velocity, a.velocity);
+
+        // A stop turns nothing round and begins no motion.
+        if (next.stops && !beside && std::abs(b.velocity) > speed_grain && a.velocity * b.velocity <= 0)
+            breach("runs at {} after {} u/s ({} u/s2) while it stops", b.velocity, a.velocity, a.acceleration);
 
         // Velocity with acceleration.
         const double change = b.velocity - a.velocity;
@@ -296,7 +320,7 @@ private:
         check_software_limits(view, next, now, renumbered);
         continues_ = !renumbered;
         loose_ = false;
-        if (b.velocity == 0 && b.acceleration == 0 && next.layer == 0) {
+        if (rests && next.layer == 0) {
             summed_ = false;
             most_ = now.velocity;
         }
@@ -318,6 +342,11 @@ private:
     }
 
     [[nodiscard]] static bool either(const Sample& a, const Sample& b, AxisState state) { return a.state == state || b.state == state; }
+    [[nodiscard]] static bool runs_at_velocity(CommandKind kind) { return kind == CommandKind::move_velocity || kind == CommandKind::jog; }
+    [[nodiscard]] static bool stops(const AxisView& view) {
+        const bool held = view.limiter == VelocityLimiter::override_factor && view.override_factors.velocity == 0;
+        return held || view.limiter == VelocityLimiter::stopping || view.state == AxisState::Stopping || view.state == AxisState::ErrorStop;
+    }
     [[nodiscard]] static bool changes_mode(CommandKind kind) {
         return kind == CommandKind::torque || kind == CommandKind::set_controller_mode || kind >= CommandKind::drive_move_absolute;
     }

@@ -79,6 +79,62 @@ TEST(MotionOracle, SeesEachKindOfBreak) {
     for (const auto& [words, alter] : breaks) EXPECT_NE(told_of(alter).find(words), std::string::npos) << words << "\n" << told_of(alter);
 }
 
+/// From 2 u/s on with -200 u/s2: released with the axis' own jerk of 20000 u/s3 it would come to 2 - 200^2 / 40000 = 1 u/s; with 5000 u/s3 to -2.
+std::string told_of_a_stop(double jerk, const std::function<void(AxisView&)>& how, double begin = 2) {
+    const auto config = plain_axis();
+    MotionOracle oracle(config, cycle);
+    for (int k = -20; k < 60; ++k) {
+        const double t = k * 1e-3;
+        const double release = 200 / jerk, s = std::clamp(t, 0.0, release), before = std::min(t, 0.0), after = std::max(t - release, 0.0);
+        auto story = at(0);
+        story.view.set_acceleration = -200 + jerk * s;
+        const double end = begin - 200 * release / 2;
+        story.view.set_velocity = begin - 200 * before - 200 * s + jerk * s * s / 2;
+        story.view.set_position = (begin - 100 * before) * before + (begin - 100 * s) * s + jerk * s * s * s / 6 + end * after;
+        story.view.actual_position = story.view.set_position;
+        story.command.position = std::llround(story.view.set_position * 1000);
+        if (k > 0) how(story.view);
+        story.command.velocity = story.view.set_velocity * 1000;
+        oracle.observe(story.view, story.command, config.limits);
+    }
+    EXPECT_GT(oracle.compared(), 50);
+    return oracle.report();
+}
+
+// Whoever stops it: from then on it does not turn round. A motion may.
+TEST(MotionOracle, AStopNeverReverses) {
+    const std::vector<std::function<void(AxisView&)>> stops{
+        [](AxisView& view) { view.limiter = VelocityLimiter::stopping; },
+        [](AxisView& view) { view.state = AxisState::Stopping; },
+        [](AxisView& view) { view.state = AxisState::ErrorStop, view.error = 1; },
+        [](AxisView& view) { view.limiter = VelocityLimiter::override_factor, view.override_factors.velocity = 0; },
+    };
+    const auto moves = [](AxisView&) {};
+    for (const auto& stop : stops) {
+        EXPECT_NE(told_of_a_stop(5000, stop).find("while it stops"), std::string::npos) << told_of_a_stop(5000, stop);
+        EXPECT_EQ(told_of_a_stop(10'000, stop), "") << "just ends at 0";
+        EXPECT_EQ(told_of_a_stop(20'000, stop), "");
+    }
+    EXPECT_EQ(told_of_a_stop(5000, moves), "");
+    // Standing, it begins nothing.
+    const auto creeps = [n = 0](AxisView& view) mutable {
+        view.state = AxisState::Stopping;
+        if (++n > 40) view.set_velocity = 0.1;
+    };
+    EXPECT_NE(told_of_a_stop(10'000, creeps).find("runs at"), std::string::npos);
+}
+
+// A jerk above the axis' own is for stops, and only as high as it has to be.
+TEST(MotionOracle, AStopsJerkIsWhatItNeeds) {
+    const auto stop = [](AxisView& view) { view.state = AxisState::Stopping; };
+    EXPECT_EQ(told_of_a_stop(40'000, stop, 0.5), "");
+    EXPECT_NE(told_of_a_stop(50'000, stop, 0.5).find("the jerk"), std::string::npos);
+    EXPECT_NE(told_of_a_stop(
+                  40'000, [](AxisView&) {}, 0.5)
+                  .find("the jerk"),
+              std::string::npos);
+}
+
 // A new number for the same place is no jump; a jump of the drive with a new number is one.
 TEST(MotionOracle, KnowsCoordinatesFromMotion) {
     const auto renumber = [](Story& s, int) { s.view.set_position += 7, s.view.actual_position += 7; };
