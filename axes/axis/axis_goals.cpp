@@ -111,6 +111,7 @@ void Axis::aim_at_rest(const MotionLimits& limits) noexcept {
     const double jerk = jerk_of_motion();
     aim(Goal::Kind::stop, 0, limits, VelocityLimiter::stopping);
     goal_.former_jerk = jerk;
+    folded_jerk_ = 0;  // it counts once, also where one stop is given after the other
 }
 
 /// Of what moves the axis now, base and addition together. That of a slave, a table or a fed set-point is not limited.

@@ -124,6 +124,23 @@ TEST(StopSense, OfTwoLayersThatSpeedUp) {
     EXPECT_EQ(rig.lowest, 0);
 }
 
+// Two stops before the next set-point: what the addition had counts once. The rig's oracle would see the jerk of three.
+TEST(StopSense, OfTwoLayersTwiceInACycle) {
+    auto config = plain_axis();
+    config.limits.velocity = 200;
+    Watched rig(config);
+    rig.power_on();
+    rig.accept(at_velocity(100));
+    rig.accept(addition(100, 100));
+    ASSERT_TRUE(rig.run_until([&] { return rig.view().set_acceleration > 1999; }));
+    const double v = rig.view().set_velocity;
+    rig.axis.set_mode(OperatingMode::manual);
+    rig.axis.stop_for_error(AlarmId{4711}, false);
+    rig.watch();
+    EXPECT_NEAR(rig.highest, v + 50, 0.1);
+    EXPECT_EQ(rig.lowest, 0);
+}
+
 // A motion that is about to turn round is stopped at the turning point, not behind it; one that has just begun to speed up the other way stops there.
 TEST(StopSense, OfAMotionThatTurnsRound) {
     for (const double at : {5.0, 0.6, 0.2, -0.3, -20.0}) {
