@@ -74,7 +74,8 @@ void Axis::plan(Instant now, Duration period) noexcept {
 
 /// Power would hold it with a jolt: it is asked for when the motor is slow, or not at all.
 bool Axis::turns_by_itself() const noexcept {
-    return !drive_homing_.busy() && std::abs(view_.actual_velocity) > turning_by_itself * config_.limits.velocity;
+    // What counts as standstill is none, however slow the axis is: the velocity of a drive at rest is seldom 0.
+    return !drive_homing_.busy() && !drive_stands() && std::abs(view_.actual_velocity) > turning_by_itself * config_.limits.velocity;
 }
 
 void Axis::follow_actual(Duration period) noexcept {

@@ -116,6 +116,20 @@ TEST(AxisPower, IsNotAskedForWhileTheMotorTurnsFast) {
     }
 }
 
+// A tenth of so slow an axis is less than what a drive at rest shows.
+TEST(AxisPower, ComesAlsoForAnAxisThatIsSlowerThanTheNoiseOfItsFeedback) {
+    auto config = plain_axis();
+    config.limits.velocity = 1;
+    config.windows.standstill_velocity = 0.5;
+    Rig rig(config);
+    rig.drive.coasting = 0.4;
+    rig.run(100);
+    ASSERT_GT(rig.view().actual_velocity, 0.1);
+    rig.enable = true;
+    EXPECT_TRUE(rig.run_to(AxisState::Standstill, 1000));
+    EXPECT_TRUE(rig.alarms.empty());
+}
+
 TEST(AxisPower, ComesWhenTheMotorHasCoastedOut) {
     Rig rig;
     rig.drive.coasting = 99;

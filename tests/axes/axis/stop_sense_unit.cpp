@@ -35,6 +35,20 @@ void brake_to_28(Watched& rig, double target = 100) {
     ASSERT_GT(rig.view().set_velocity, 25);
 }
 
+AxisConfig twice_as_fast() {
+    auto config = plain_axis();
+    config.limits.velocity = 200;
+    return config;
+}
+
+/// A motion and an addition, each with 1000 u/s2.
+void speed_up_with_both(Watched& rig) {
+    rig.power_on();
+    rig.accept(at_velocity(100));
+    rig.accept(addition(100, 100));
+    ASSERT_TRUE(rig.run_until([&] { return rig.view().set_acceleration > 1999; }));
+}
+
 // Two layers brake at once: together with nearly 2000 u/s2, which one jerk takes away over 80 u/s.
 TEST(StopSense, OfTwoLayersThatBrake) {
     const std::vector<std::function<void(Rig&)>> stops{
@@ -108,13 +122,8 @@ TEST(StopSense, OfAConfiguredStopJerkBelowTheJerk) {
 
 // Two layers that speed up, folded by the stop: with the jerk of one their acceleration would carry the axis twice as far up.
 TEST(StopSense, OfTwoLayersThatSpeedUp) {
-    auto config = plain_axis();
-    config.limits.velocity = 200;
-    Watched rig(config);
-    rig.power_on();
-    rig.accept(at_velocity(100));
-    rig.accept(addition(100, 100));
-    ASSERT_TRUE(rig.run_until([&] { return rig.view().set_acceleration > 1999; }));
+    Watched rig(twice_as_fast());
+    speed_up_with_both(rig);
     const double v = rig.view().set_velocity;
     auto soft = stop();
     soft.jerk = 3000;
@@ -126,13 +135,8 @@ TEST(StopSense, OfTwoLayersThatSpeedUp) {
 
 // Two stops before the next set-point: what the addition had counts once. The rig's oracle would see the jerk of three.
 TEST(StopSense, OfTwoLayersTwiceInACycle) {
-    auto config = plain_axis();
-    config.limits.velocity = 200;
-    Watched rig(config);
-    rig.power_on();
-    rig.accept(at_velocity(100));
-    rig.accept(addition(100, 100));
-    ASSERT_TRUE(rig.run_until([&] { return rig.view().set_acceleration > 1999; }));
+    Watched rig(twice_as_fast());
+    speed_up_with_both(rig);
     const double v = rig.view().set_velocity;
     rig.axis.set_mode(OperatingMode::manual);
     rig.axis.stop_for_error(AlarmId{4711}, false);
