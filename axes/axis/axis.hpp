@@ -257,6 +257,7 @@ private:
     void keep_close_to_anchor() noexcept;
     void end_release() noexcept;
     void run_goal(double late) noexcept;
+    [[nodiscard]] bool base_comes_to_rest() const noexcept;
     [[nodiscard]] Plan plan_way(const MotionState& from, MotionLimits limits, double most) noexcept;
 
     // axis_goals.cpp: from a command to its goal
@@ -328,6 +329,8 @@ private:
     void complete_superimposed() noexcept;
     void end_superimposed(Outcome outcome, ErrorId error = ErrorId::none) noexcept;
     void abandon_superimposed() noexcept;
+    [[nodiscard]] bool abandoned_addition_moves() const noexcept;
+    void stop_as_one() noexcept;
 
     // axis_update.cpp: ContinuousUpdate
     ErrorId update_active(const AxisCommand& command) noexcept;

@@ -101,7 +101,18 @@ void Axis::follow_actual(Duration period) noexcept {
     goal_pending_ = begin_pending_ = held_ = false;
 }
 
+/// Whatever it is on its way to: the base is about to stop, or does.
+bool Axis::base_comes_to_rest() const noexcept {
+    const bool no_speed = override_counts() && override_.velocity == 0;
+    return goal_.kind == Goal::Kind::stop || (goal_.kind == Goal::Kind::velocity && (goal_.value == 0 || no_speed)) ||
+           (goal_.kind == Goal::Kind::position && no_speed);
+}
+
 void Axis::run_goal(double late) noexcept {
+    if (abandoned_addition_moves() && base_comes_to_rest()) {
+        stop_as_one();
+        late = 0;  // both are where they are now
+    }
     goal_pending_ = held_ = false;
     wants_speed_ = folded_jerk_ = 0;
     auto from = setpoint_.base();

@@ -211,6 +211,20 @@ void Axis::abandon_superimposed() noexcept {
     superimposed_.accepted.command.kind = CommandKind::halt_superimposed;
     superimposed_.pending = !setpoint_.superimposed_finished();
     superimposed_.waiting = false;
+    if (abandoned_addition_moves() && base_comes_to_rest()) goal_pending_ = true;
+}
+
+/// Nobody commands it any more, and it has not come to rest yet.
+bool Axis::abandoned_addition_moves() const noexcept {
+    return setpoint_.layered() && queue_.beside(SideSlot::superimposed) == 0 && !setpoint_.superimposed_finished();
+}
+
+/// The base stops and so does what was given up on top of it, each with its own ramp: between them they would turn the axis round. One motion does
+/// not. It may go on later (an override): what was covered on top is part of where it goes.
+void Axis::stop_as_one() noexcept {
+    if (goal_.kind == Goal::Kind::stop) goal_.former_jerk += superimposed_.jerk;
+    if (goal_.kind == Goal::Kind::position) goal_.value += setpoint_.superimposed().position;
+    end_superimposed(Outcome::aborted);
 }
 
 /// From here on there is one motion again. A goal must follow where it moves.
