@@ -35,7 +35,7 @@ struct Laden : CouplingRig {
 
 AxisCommand far_away() { return relative(100, 30); }
 
-// P1-281, P1-203: the former motion goes on and its override with it; at 0 it comes to rest.
+// P1-281: the former motion goes on and its override with it; at 0 it comes to rest.
 TEST(AbandonedAddition, StopsWithItsBaseAtOverrideZero) {
     for (const bool to_position : {false, true}) {
         SCOPED_TRACE(to_position);

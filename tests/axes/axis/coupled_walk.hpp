@@ -363,8 +363,11 @@ private:
         count("came to rest");
     }
     void quiet_step() {
-        for (std::size_t i = 0; i < rig_.axes.size(); ++i)
+        for (std::size_t i = 0; i < rig_.axes.size(); ++i) {
+            // What waited may have been another override: at 0 the axis would be held for ever, and rightly so.
+            if (rig_.view(i).override_factors != Override{}) (void)rig_.axes[i].set(Override{}, Owner::program);
             if (rig_.view(i).state == AxisState::ErrorStop && !rig_.view(i).resetting) (void)rig_.axes[i].reset(Owner::program);
+        }
         step();
     }
     [[nodiscard]] bool all_rest() const {

@@ -241,7 +241,9 @@ private:
         const bool by_table = is_table(last_.kind) || is_table(next.kind);
         // How fast an addition is, the view says by its way; of one that is halted it does not, nor of the base beside it.
         const bool beside = last_.layer != 0 || next.layer != 0;
-        const bool addition_stops = beside && (next.stops || next.covered == last_.covered);
+        // In the cycle in which the base comes to rest the view shows no limiter any more, nor its command, which may have had one cycle to stop in.
+        const bool base_ends = last_.stops || (last_.kind != CommandKind::none && next.kind == CommandKind::none);
+        const bool addition_stops = beside && (next.stops || base_ends || next.covered == last_.covered);
         const bool jerked = std::isfinite(most_jerk) && !fed && !coupled && !by_table && !rests_now && !addition_stops;
         const double speed_grain = 1e-9 * system.velocity;
 

@@ -194,6 +194,37 @@ TEST(StopSense, OfAnAdditionAlone) {
     }
 }
 
+// A jog that nobody renews ends while it turns round, beside an addition that goes on: the base takes its acceleration away as fast as that needs,
+// the addition knows nothing of it.
+TEST(StopSense, OfABaseThatTurnsRoundBesideAnAddition) {
+    auto config = plain_axis();
+    config.jog_lease = 10ms;
+    int turning = 0;
+    for (int renewals = 20; renewals < 60; ++renewals) {
+        SCOPED_TRACE(renewals);
+        Watched rig(config);
+        rig.power_on();
+        const auto id = rig.accept(jog(-30));
+        double velocity = -30;
+        int left = 200;
+        rig.program = [&] {
+            if (left-- > 0) (void)rig.axis.renew_jog(id, velocity, Owner::program);
+        };
+        rig.run(150);
+        rig.accept(addition(20, 40));
+        velocity = 30;
+        left = renewals;
+        ASSERT_TRUE(rig.run_until([&] { return rig.status(id) == CommandStatus::error; }, 500));
+        EXPECT_EQ(rig.error_of(id), static_cast<ErrorId>(AxisAlarm::jog_lease_expired));
+        if (rig.view().set_velocity < 39) ++turning;  // the addition is not at its velocity yet
+        rig.watch(1500);
+        EXPECT_EQ(rig.view().state, AxisState::Standstill);
+        EXPECT_GE(rig.lowest, 0);
+        EXPECT_LE(rig.highest, 40 + 1e-9);
+    }
+    EXPECT_GT(turning, 5);
+}
+
 // --- what ends every motion -------------------------------------------------------------------------------------------------------
 
 AxisConfig homed_between(double low, double high) {

@@ -90,10 +90,13 @@ private:
         // Behind what never shows its Inxxx (a slave out of reach, a torque that is not had, a cam whose master stands) others wait.
         if (view.status(entry.id) == CommandStatus::queued)
             return view.active != 0 && (!view.active_in_target || view.active_kind == cam_in);
-        // Only where the base takes nearly the whole velocity there is no room.
-        if (kind == move_superimposed) return std::abs(view.set_velocity) > 0.9 * view.parameters[place_of(velocity_of_application)];
         // Other coordinates make any way of an absolute target: it is on it.
-        if (kind == move_absolute) return patience == Patience::over && view.set_velocity != 0;
+        const bool on_long_way = patience == Patience::over && view.set_velocity != 0;
+        if (kind == move_absolute) return on_long_way;
+        // Only where the base takes nearly the whole velocity there is no room; at the end of such a way it has just become less.
+        if (kind == move_superimposed)
+            return std::abs(view.set_velocity) > 0.9 * view.parameters[place_of(velocity_of_application)] ||
+                   (on_long_way && view.active_kind == move_absolute);
         switch (kind) {
             case move_velocity:
             case move_continuous_absolute:
