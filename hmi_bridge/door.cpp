@@ -81,7 +81,7 @@ void Door::on_line(ConnectionId connection, std::string_view line, Instant) {
                           : urgent->axis == 0xFFFF       ? std::string("stop")
                                                          : "stop axis " + machine_.layout().axes[urgent->axis].name;
         deeds_.say(guests_[connection].name, deed, now_);
-        if (urgent->doubled) return hand_on(connection, line, {read_at_, machine_.levels_raised(), false});
+        if (urgent->unclear) return hand_on(connection, line, {read_at_, machine_.levels_raised(), false});
         if (urgent->unclear_axis) server_->send(connection, refusal_line(urgent->id, unclear_axis()));
         else pending_.push_back({connection, urgent->id, urgent->kind, ticket, now_});
         return;

@@ -227,7 +227,9 @@ void SocketServer::read(Connection& connection, Instant now, LineHandler& handle
         connection.skips = true;
         connection.in.clear();
     }
-    // Who closes behind a whole request has ended its line; half a line at the end is nobody's request.
+    // Who closes behind a whole request has ended its line; half a line at the end is nobody's request. A NUL is what C has behind its texts.
+    constexpr std::string_view behind_a_line{" \t\r\0", 4};
+    if (ended) connection.in.erase(connection.in.find_last_not_of(behind_a_line) + 1);
     if (ended && connection.in.ends_with('}')) handler.on_line(connection.id, connection.in, now);
     if (ended) connection.dead = true;
 }

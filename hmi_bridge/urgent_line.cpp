@@ -15,9 +15,24 @@ using Json = nlohmann::json;
 constexpr std::size_t longest_line = 1024;
 constexpr int deepest_nesting = 4;
 
+/// As it is written, wherever in the line: who asks for one must not have to write the rest without a fault.
+bool asks_for(std::string_view line, std::string_view command) {
+    constexpr std::string_view key = "\"cmd\"", blanks = " \t\r\n";
+    for (auto at = line.find(key); at != std::string_view::npos; at = line.find(key, at + 1)) {
+        auto rest = line.substr(at + key.size());
+        const auto skip_blanks = [&] { rest.remove_prefix(std::min(rest.find_first_not_of(blanks), rest.size())); };
+        skip_blanks();
+        if (!rest.starts_with(':')) continue;
+        rest.remove_prefix(1);
+        skip_blanks();
+        if (rest.starts_with(command)) return true;
+    }
+    return false;
+}
+
 /// Cheap: most lines are none of these. Behind a backslash any word may stand, letter by letter.
 bool may_be(std::string_view line) {
-    if (line.size() > longest_line) return false;
+    if (line.size() > longest_line) return asks_for(line, "\"stop\"") || asks_for(line, "\"shutdown\"");
     for (const std::string_view word : {"\"stop\"", "\"shutdown\"", "\"jog\"", "\\"})
         if (line.find(word) != std::string_view::npos) return true;
     return false;
@@ -52,10 +67,11 @@ std::optional<UrgentLine> urgent_line(std::string_view line, const runtime::Mach
         return !too_deep;
     };
     const auto json = Json::parse(line, looked_at, false);
-    if (too_deep || !json.is_object()) return std::nullopt;
+    const UrgentLine unclear_stop{UrgentLine::Kind::stop, all_axes, false, true};
+    if (too_deep || !json.is_object()) return asks_for(line, "\"stop\"") ? std::optional{unclear_stop} : std::nullopt;
     if (twice && !asks_for_a_stop)
         return std::nullopt;  // refused by who reads it in full; a jog that it was to keep alive ends with its lease
-    if (twice) return UrgentLine{UrgentLine::Kind::stop, all_axes, false, true, "null"};
+    if (twice) return unclear_stop;
     const auto cmd = json.find("cmd");
     if (cmd == json.end() || !cmd->is_string()) return std::nullopt;
 

@@ -16,15 +16,17 @@ struct UrgentLine {
     Kind kind = Kind::stop;
     std::uint16_t axis = 0xFFFF;  ///< 0xFFFF: all
     bool press = false;
-    /// A key stands in it twice, so that nobody can tell what exactly was meant: it stops every axis, and is refused all the same.
-    bool doubled = false;
+    /// A key stands in it twice, or it cannot be read to its end, so that nobody can tell what exactly was meant: it stops every axis, and is
+    /// refused all the same.
+    bool unclear = false;
     std::string id = "null";  ///< as the answer repeats it
     /// The axis of a stop is none of this machine's, or no name: it stops every axis, and is refused all the same.
     bool unclear_axis = false;
 };
 
-/// A stop whose target is clear is a stop, however odd the rest of its line: no age, no missing id, no unknown key holds it up. nullopt:
-/// none of these, or a line longer than 1 KiB; that goes the ordinary way, which ends in the same level.
+/// A stop is a stop, however odd the rest of its line: no age, no missing id, no unknown key, no length holds it up, nor that something beside
+/// it is no JSON (a name that is not UTF-8, a number that is none). nullopt: none of these, or a press or a release in a line longer than 1 KiB;
+/// that goes the ordinary way, which ends in the same level.
 [[nodiscard]] std::optional<UrgentLine> urgent_line(std::string_view line, const runtime::MachineLayout& layout);
 
 }  // namespace taktwerk::hmi

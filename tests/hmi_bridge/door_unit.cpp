@@ -180,13 +180,22 @@ TEST_F(DoorTest, AStopWithoutItsNewlineCountsWhenTheConnectionEnds) {
     }
     step();
     EXPECT_THAT(machine.stops, ElementsAre(0xFFFF));
+    std::size_t stops = 1;
+    for (const auto behind : {std::string(" "), std::string("\r"), std::string("\t\r "), std::string(1, '\0')}) {
+        {
+            const auto caller = call();
+            caller.say(R"({"cmd":"stop"})" + behind);
+        }
+        step();
+        EXPECT_THAT(machine.stops, SizeIs(++stops)) << "behind it: " << int{behind.front()};
+    }
     {
         const auto caller = call();
         caller.say(R"({"cmd":"stop")");
         step();
     }
     step();
-    EXPECT_THAT(machine.stops, SizeIs(1)) << "half a line is nobody's request";
+    EXPECT_THAT(machine.stops, SizeIs(stops)) << "half a line is nobody's request";
 }
 
 TEST_F(DoorTest, AStopBehindALineThatIsTooLongCounts) {
@@ -216,6 +225,44 @@ TEST_F(DoorTest, AStopInEscapedWordsIsAStop) {
     step();
     EXPECT_THAT(machine.stops, ElementsAre(0xFFFF));
     EXPECT_THAT(caller.hear(), HasSubstr("\"ok\":true"));
+}
+
+// Who asks for a stop must not have to write the rest of the line without a fault, nor shortly: a name in Latin-1, a number that is none, two
+// requests in one line, a NUL before it, as C programs send. What it says beside that nobody can tell, so everything stops.
+TEST_F(DoorTest, AStopInALineThatIsNoJsonStopsEverythingAndIsRefused) {
+    const auto caller = call();
+    using std::string_view_literals::operator""sv;
+    std::size_t stops = 0;
+    for (const auto line : {"{\"cmd\":\"stop\",\"axis\":\"x\",\"client\":\"M\xFCller\"}"sv, "{\"cmd\" : \"stop\",\"utime\":NaN}"sv,
+                            R"({"cmd":"stop","utime":1e999})"sv, R"({"cmd":"stop",})"sv, R"({"cmd":"state"}{"cmd":"stop"})"sv,
+                            R"({"cmd":"stop","x":[[[[[[1]]]]]]})"sv, "\0{\"cmd\":\"stop\"}"sv, R"([{"cmd":"stop"}])"sv}) {
+        caller.say(std::string(line) + "\n");
+        step();
+        ASSERT_THAT(machine.stops, SizeIs(++stops)) << line;
+        EXPECT_EQ(machine.stops.back(), 0xFFFF) << line;
+    }
+    EXPECT_THAT(caller.hear(), IsEmpty()) << "the answers are the refusals behind the door";
+    door->pass_on(desk, now);
+    EXPECT_THAT(desk.lines, SizeIs(stops));
+    for (const char* line : {R"({"cmd":"state","x":NaN})", R"({"cmd","stop"})", R"({"cmd":"stopped",})", R"({"stop":1,})"})
+        caller.say(std::string(line) + "\n");
+    step();
+    EXPECT_THAT(machine.stops, SizeIs(stops)) << "nobody asked for one";
+}
+
+// hmi_bridge/README.md: a line has up to 64 KiB, a stop needs no id and waits for nobody.
+TEST_F(DoorTest, NoLengthHoldsUpAStopOrAShutdown) {
+    const auto caller = call();
+    for (const std::size_t size : {1'000, 2'000, 60'000}) {
+        machine.stops.clear();
+        caller.say(R"({"cmd":"stop","axis":"y","n":")" + std::string(size, 'x') + "\"}\n");
+        step();
+        EXPECT_THAT(machine.stops, ElementsAre(1)) << size;
+        EXPECT_THAT(caller.hear(), HasSubstr("\"ok\":true")) << size;
+    }
+    caller.say(R"({"cmd":"shutdown","n":")" + std::string(2'000, 'x') + "\"}\n");
+    step();
+    EXPECT_TRUE(machine.shutdown_requested);
 }
 
 TEST_F(DoorTest, AStopBehindItsClientsOwnFloodActsInTheStepThatReadsIt) {
