@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "apps/bus.hpp"
 #include "apps/exit_code.hpp"
 #include "apps/load.hpp"
 #include "apps/master_gone.hpp"
@@ -68,7 +69,7 @@ void print_slaves(const MachineConfig& config) {
         const auto where = slave.position ? fmt::format("position {}", *slave.position) : fmt::format("alias {}", slave.alias.value_or(0));
         fmt::print("  {:<14} {:<22} {:<12} {}{}\n", slave.name, slave.device ? slave.device->name : "?", where,
                    slave.dc ? "distributed clock" : "free running",
-                   slave.startup.empty() ? "" : fmt::format(", {} start-up SDOs", slave.startup.size()));
+                   slave.startup.empty() ? "" : ", " + count_text(slave.startup.size(), "start-up SDO"));
     }
 }
 
@@ -253,8 +254,9 @@ int check(const Options& options) {
         return exit_ok;
     }
     for (const auto& warning : loaded.warnings) print_warning(warning);
-    fmt::print("{}: machine '{}', cycle {:g} ms, {} slaves, {} axes, {} programs: no problem found\n", options.file, config.name,
-               to_seconds(config.cycle) * 1e3, config.bus.slaves.size(), config.axes.size(), config.programs.size());
+    fmt::print("{}: machine '{}', cycle {:g} ms, {}, {} {}, {}: no problem found\n", options.file, config.name,
+               to_seconds(config.cycle) * 1e3, count_text(config.bus.slaves.size(), "slave"), config.axes.size(),
+               config.axes.size() == 1 ? "axis" : "axes", count_text(config.programs.size(), "program"));
     if (!remarks.empty()) fmt::print("\nRuns, but is it meant?\n");
     for (const auto& remark : remarks) fmt::print("  {}: {}\n      {}\n", remark.subject, remark.what, remark.remedy);
     print_slaves(config);

@@ -237,8 +237,8 @@ void MachineLog::step(Instant now, const Snapshot* snapshot) {
         const auto& passed = s.passed_alarms;
         for (next_passed_ = passed.oldest(); next_passed_ < passed.noted() && passed.at(next_passed_).since < start_;) ++next_passed_;
         say(now, "machine",
-            fmt::format("running, {} mode, {} axes, cycle {} us{}", text(s.mode), s.axes.size(), layout.cycle.count() / 1000,
-                        s.simulated ? ", SIMULATED bus" : ""));
+            fmt::format("running, {} mode, {} {}, cycle {} us{}", text(s.mode), s.axes.size(), s.axes.size() == 1 ? "axis" : "axes",
+                        layout.cycle.count() / 1000, s.simulated ? ", SIMULATED bus" : ""));
     }
     bus_notes(now);
     passed_alarms(now, s);  // first: what follows below, follows from them

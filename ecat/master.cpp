@@ -296,6 +296,15 @@ std::string outcome(const Bus& bus, const BusSlave* first) {
     return away == all ? "" : fmt::format("slaves still away: {}", away);
 }
 
+/// Whose clock it is.
+std::string furthest_clock(const Bus& bus) {
+    const BusSlave* furthest = nullptr;
+    for (const auto& slave : bus.slaves)
+        if (slave->dc_difference > (furthest != nullptr ? furthest->dc_difference : 0)) furthest = slave.get();
+    if (furthest == nullptr || !bus.reference || *bus.reference == furthest->index) return {};
+    return fmt::format("most of all {} from {}, the reference", furthest->subject, bus.slaves[*bus.reference]->subject);
+}
+
 std::string with_outcome(std::string text, const std::string& outcome) { return outcome.empty() ? text : text + "; " + outcome; }
 
 }  // namespace
@@ -312,8 +321,10 @@ std::string Master::detail(const AlarmFact& fact) const {
         case alarm::starved_slave_dropped_out: return fallen_text(*impl_->bus);
         case alarm::link_down:
         case alarm::frames_lost:
-            return fact.b > 0 ? with_outcome(fmt::format("{:.0f} slave(s) fell by it", fact.b), outcome(*impl_->bus, nullptr))
+            return fact.b > 0 ? with_outcome(fmt::format("{:.0f} slave{} fell by it", fact.b, fact.b == 1 ? "" : "s"),
+                                             outcome(*impl_->bus, nullptr))
                               : std::string{};
+        case alarm::dc_out_of_sync: return furthest_clock(*impl_->bus);
         default: break;
     }
     if (fact.source != AlarmSource::slave || fact.index >= slaves.size()) return {};

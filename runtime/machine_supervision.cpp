@@ -281,9 +281,11 @@ bool Machine::Impl::told_by_an_axis(const AlarmFact& fact) noexcept {
 // The axes behind a bus that is gone, and those that stopped by an alarm that is listed, say nothing new: one cause is one alarm. What stays
 // when the cause has been acknowledged and is no longer listed is said then, but not while both are just being reset.
 bool Machine::Impl::follows_from_another(const AlarmFact& fact) noexcept {
-    const bool stopped = fact.id == axes::id(axes::AxisAlarm::stopped_by_machine);
+    const bool by_emergency = fact.id == axes::id(axes::AxisAlarm::emergency_stop);
+    const bool stopped = by_emergency || fact.id == axes::id(axes::AxisAlarm::stopped_by_machine);
     if (!stopped && fact.id != axes::id(axes::AxisAlarm::axis_feedback_lost)) return false;
-    bool explained = stopped && log.find(static_cast<AlarmId>(fact.a)) != nullptr;
+    const auto cause = by_emergency ? id(MachineAlarm::emergency_stop) : static_cast<AlarmId>(fact.a);
+    bool explained = stopped && log.find(cause) != nullptr;
     const bool of_the_bus = axis_slave[fact.index] < bus.slave_count();
     for (const auto& alarm : log.alarms()) {
         const bool bus_alarm = alarm.fact.id >= 0x1000 && alarm.fact.id < 0x2000 && alarm.reaction >= Reaction::stop_machine;

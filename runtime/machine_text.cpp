@@ -1,5 +1,6 @@
 // Words for alarms, made outside the cycle.
 
+#include <cctype>
 #include <cmath>
 #include <string>
 
@@ -56,6 +57,17 @@ std::string fill(std::string_view text, double a, double b) {
     return out;
 }
 
+/// The tables say `u` for the unit of the axis whose alarm it is: {a} u, {b} u/s.
+std::string in_units_of(std::string_view text, const std::string& unit) {
+    std::string out(text);
+    for (const std::string_view place : {"{a} u", "{b} u"})
+        for (auto at = out.find(place); at != std::string::npos; at = out.find(place, at + 1)) {
+            const auto unit_at = at + place.size() - 1, behind = unit_at + 1;
+            if (behind == out.size() || std::isalpha(static_cast<unsigned char>(out[behind])) == 0) out.replace(unit_at, 1, unit);
+        }
+    return out;
+}
+
 std::string_view text(Reaction reaction) {
     switch (reaction) {
         case Reaction::none: return "none";
@@ -77,15 +89,23 @@ std::string_view text(ResetRule rule) {
     return "";
 }
 
-/// The drive complains of frames or SYNC0 that did not come: by its manual's table, else by the groups of IEC 61800-7-201, 603Fh.
-bool of_the_bus(const axes::DriveProfile& profile, const axes::ShownAlarm& alarm) {
+/// The drive complains of what frames that stay away do to it: of frames or SYNC0 that did not come, or of a set-point that went on meanwhile.
+/// By its manual's table, else by the groups of IEC 61800-7-201, 603Fh. Nobody's frames explain a mains phase that is lost.
+bool of_missing_frames(const axes::DriveProfile& profile, const axes::ShownAlarm& alarm) {
     using axes::DriveAlarmKind;
     const auto found = axes::find_alarm(profile, alarm);
-    if (found.row != nullptr || found.kind != DriveAlarmKind::other)
-        return found.kind == DriveAlarmKind::communication || found.kind == DriveAlarmKind::sync_lost ||
-               found.kind == DriveAlarmKind::left_operational || found.kind == DriveAlarmKind::link_changed;
+    if (found.row != nullptr || found.kind != DriveAlarmKind::other) switch (found.kind) {
+            case DriveAlarmKind::communication:
+            case DriveAlarmKind::sync_lost:
+            case DriveAlarmKind::left_operational:
+            case DriveAlarmKind::link_changed:
+            case DriveAlarmKind::following_error:
+            case DriveAlarmKind::setpoint_leap: return true;
+            default: return false;
+        }
     const unsigned group = alarm.code & 0xFF00u;
-    return group == 0x7500 || group == 0x8100 || group == 0x8700;  // communication, communication, synchronisation
+    // communication, communication, position controller, synchronisation
+    return group == 0x7500 || group == 0x8100 || group == 0x8600 || group == 0x8700;
 }
 
 void tell_gap(AlarmText& out, std::uint32_t cycles, std::string_view otherwise) {
@@ -138,10 +158,14 @@ AlarmText Machine::describe(const AlarmFact& fact) const {
         return out;
     }
     out.name = info->name;
-    out.english = fill(info->english, fact.a, fact.b);
-    out.chinese = fill(info->chinese, fact.a, fact.b);
-    out.cause = info->cause;
-    out.remedy = info->remedy;
+    const bool of_an_axis = fact.source == AlarmSource::axis && fact.index < m.config.axes.size();
+    const auto filled = [&](std::string_view text) {
+        return fill(of_an_axis ? in_units_of(text, m.config.axes[fact.index].axis.unit) : std::string(text), fact.a, fact.b);
+    };
+    out.english = filled(info->english);
+    out.chinese = filled(info->chinese);
+    out.cause = filled(info->cause);
+    out.remedy = filled(info->remedy);
     out.reaction = text(info->reaction);
     out.reset = text(info->reset);
 
@@ -242,8 +266,8 @@ AlarmText Machine::describe(const AlarmFact& fact) const {
         if (fact.b != 0) shown.detail = static_cast<std::uint32_t>(fact.b);  // 0: not read yet, or none
         tell_drive_alarm(out, m.config.axes[fact.index], shown);
         const auto* profile = m.config.axes[fact.index].profile.get();
-        const bool of_frames = fault && profile != nullptr && of_the_bus(*profile, shown);
-        const std::int64_t stall = fault ? m.stall_before_fault[fact.index].load(std::memory_order_relaxed) : 0;
+        const bool of_frames = fault && profile != nullptr && of_missing_frames(*profile, shown);
+        const std::int64_t stall = of_frames ? m.stall_before_fault[fact.index].load(std::memory_order_relaxed) : 0;
         if (stall > 0) {
             const double milliseconds = static_cast<double>(stall) * 1e-6;
             out.english += fmt::format("; right before, this computer sent nothing for {:.4g} ms", milliseconds);

@@ -73,6 +73,8 @@ Duration round_of_watch(const Bus& bus) {
 }
 
 std::string fall_text(const Bus& bus, const BusSlave& slave, const Result<std::uint16_t>& status, Instant now) {
+    // Why, the alarm says, when all who are missing are known: who stands behind a broken cable has power and cable.
+    if (presence_of(status) == Presence::silent) return fmt::format("{} does not answer", slave.subject);
     if (!status) return status.error().text();
     const auto code = static_cast<std::uint16_t>(slave.al.load() >> 16);
     if ((*status & al_status_error) == 0 && code == 0) {

@@ -33,7 +33,8 @@ struct Act {
 };
 class Acts : public ::testing::TestWithParam<Act> {};
 
-// SE-808X 4.2: 1010h "save" and 1011h "load". SV-DA200 4.4: P4.91, P4.92. SV33-E 7.2: P05.01 initialises, P20.03 resets, P20.05 = 2 clears turns.
+// SE-808X 4.2: 1010h "save" and 1011h "load". SV-DA200 4.4: P4.91, P4.92. SV33-E 7.2: P05.01 initialises, P20.03 resets, P20.05 = 2 clears turns;
+// 4.2: the offline inertia identification turns the motor.
 // CiA 402: 6040h is the control word.
 TEST_P(Acts, AreNotDoneUnasked) {
     const auto& act = GetParam();
@@ -50,6 +51,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Act{"da200_drive", "P4.91=1", "Parameter save", "manual"}, Act{"da200_drive", "P4.92=1", "Restore factory", "manual"},
                       Act{"da200_drive", "P1.04=1", "Offline inertia tuning", "manual"},
                       Act{"sv33_drive", "P05.01=1", "system parameter initialisation", "drive save sv33_drive FILE"},
+                      Act{"sv33_drive", "P1A.05=1", "offline inertia identification", "manual"},
                       Act{"sv33_drive", "P20.03=1", "fault reset", "drive reset sv33_drive"},
                       Act{"sv33_drive", "P20.05=2", "encoder reset", "clear-turns sv33_drive"}));
 

@@ -33,6 +33,10 @@ runtime::MachineConfig config() {
     storage.code = 0x5530, storage.panel = "E.017", storage.english = "parameter storage", storage.chinese = "参数存储故障";
     storage.cause = "EEPROM damaged", storage.remedy = "restore the parameters", storage.resettable = false;
     profile->alarms.push_back(storage);
+    axes::DriveAlarmText frames;
+    frames.code = 0x8700, frames.english = "no frame came", frames.cause = "the master is late",
+    frames.kind = axes::DriveAlarmKind::sync_lost;
+    profile->alarms.push_back(frames);
     out.axes[0].profile = profile;
     return out;
 }
@@ -123,11 +127,11 @@ TEST_F(DriveAlarm, RightAfterOurOwnStallSaysWhoWasLate) {
     m.clock.advance(6 * m.machine->config().cycle);
     m.machine->cycle({m.clock.now(), m.clock.now(), 5});
     m.machine->service(m.clock.now());
-    raise(0x3130, true);
+    raise(0x8700, true);
     testing::internal::CaptureStdout();
     log.step(m.clock.now(), &m.state());
     const auto said = testing::internal::GetCapturedStdout();
-    EXPECT_THAT(said, HasSubstr("phase failure; right before, this computer sent nothing for 6 ms [the axis stops]"));
+    EXPECT_THAT(said, HasSubstr("no frame came; right before, this computer sent nothing for 6 ms [the axis stops]"));
     EXPECT_THAT(said, HasSubstr("why: Probably this computer was late, not the drive (see late_wakeups)"));
 }
 
@@ -139,7 +143,7 @@ TEST_F(DriveAlarm, WithTheFirstAnswerBehindAStallSaysWhoWasLate) {
     m.run(1s);
     const auto cycle = m.machine->config().cycle;
     m.clock.advance(cycle);
-    m.world.drive("x")->raise(0x3130, true);
+    m.world.drive("x")->raise(0x8700, true);
     m.machine->cycle({m.clock.now(), m.clock.now() + 19 * cycle, 0});
     m.clock.advance(20 * cycle);
     m.machine->cycle({m.clock.now(), m.clock.now(), 19});
@@ -148,8 +152,23 @@ TEST_F(DriveAlarm, WithTheFirstAnswerBehindAStallSaysWhoWasLate) {
     testing::internal::CaptureStdout();
     log.step(m.clock.now(), &m.state());
     const auto said = testing::internal::GetCapturedStdout();
-    EXPECT_THAT(said, HasSubstr("phase failure; right before, this computer sent nothing for 20 ms [the axis stops]"));
+    EXPECT_THAT(said, HasSubstr("no frame came; right before, this computer sent nothing for 20 ms [the axis stops]"));
     EXPECT_THAT(said, HasSubstr("why: Probably this computer was late, not the drive (see late_wakeups)"));
+}
+
+// No frame of ours feeds the mains: who was late a moment before has not taken a phase away.
+TEST_F(DriveAlarm, OfTheMainsRightAfterAStallAccusesNobody) {
+    MachineLog log(*m.machine, m.clock.now(), false);
+    log.step(m.clock.now(), &m.state());
+    m.clock.advance(6 * m.machine->config().cycle);
+    m.machine->cycle({m.clock.now(), m.clock.now(), 5});
+    m.machine->service(m.clock.now());
+    raise(0x3130, true);
+    testing::internal::CaptureStdout();
+    log.step(m.clock.now(), &m.state());
+    const auto said = testing::internal::GetCapturedStdout();
+    EXPECT_THAT(said, HasSubstr("phase failure [the axis stops]"));
+    EXPECT_THAT(said, HasSubstr("why: a phase is missing\n"));
 }
 
 // An input that nobody could read was not pressed, and whoever mends its cable has not released it.

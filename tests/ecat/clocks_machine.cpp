@@ -218,6 +218,9 @@ TEST(DcOutOfSync, IsRaisedWhenASlavesClockDiffersAndEndsWithIt) {
     bus->run_for(1200ms);
     EXPECT_THAT(faults(*bus), Contains(alarm::dc_out_of_sync));
     EXPECT_GT(bus->master->statistics().dc_difference_ns, 100'000);
+    EXPECT_THAT(bus->master->detail({alarm::dc_out_of_sync, AlarmSource::bus, 0, 0, 0}),
+                testing::ContainsRegex("most of all slave 1 .* from slave 0"))
+        << "whose clock it is";
 
     bus->run_for(5s);
     EXPECT_THAT(faults(*bus), Not(Contains(alarm::dc_out_of_sync)));

@@ -88,6 +88,10 @@ TEST_F(Health, ACableThatBreaksIsOneAlarmThatNamesItsEnds) {
     EXPECT_EQ(broken.a, 5) << "the slave behind the break and four more";
     EXPECT_EQ(bus->master->detail(broken), "between slave 2 'c' (sv33-e) port 1 and slave 3 'd' (dio8)");
     EXPECT_TRUE(bus->master->health(2).fresh) << "who stands before the break exchanges on";
+    bus->run_for(300ms);
+    EXPECT_THAT(bus->master->notes(),
+                ::testing::AllOf(Contains(HasSubstr("slave 3 'd' (dio8) does not answer")), Not(Contains(HasSubstr("check its power")))))
+        << "of those behind it: the alarm says where to look";
 
     bus->network.set_cable(3, true);
     bus->run_until([&] { return !facts().empty() && facts().front().b < 5; }, 5s);
@@ -364,9 +368,9 @@ TEST_F(Health, WhatFallsWhileNoFrameComesBackIsPartOfTheSameAlarm) {
         const auto now = facts();
         ASSERT_FALSE(now.empty());
         EXPECT_EQ(now[0].b, 4) << "fell by it";
-        EXPECT_THAT(bus->master->detail(now[0]), "4 slave(s) fell by it");
+        EXPECT_THAT(bus->master->detail(now[0]), "4 slaves fell by it");
         expect_recovery();
-        EXPECT_THAT(bus->master->detail(now[0]), "4 slave(s) fell by it; all slaves are back in OP");
+        EXPECT_THAT(bus->master->detail(now[0]), "4 slaves fell by it; all slaves are back in OP");
         std::erase(said, alarm::dc_not_locked);
         EXPECT_THAT(said, ElementsAre(link ? alarm::frames_lost : alarm::link_down));
     }

@@ -181,7 +181,7 @@ TEST_F(DoorTest, AStopWithoutItsNewlineCountsWhenTheConnectionEnds) {
     step();
     EXPECT_THAT(machine.stops, ElementsAre(0xFFFF));
     std::size_t stops = 1;
-    for (const auto behind : {std::string(" "), std::string("\r"), std::string("\t\r "), std::string(1, '\0')}) {
+    for (const auto& behind : {std::string(" "), std::string("\r"), std::string("\t\r "), std::string(1, '\0')}) {
         {
             const auto caller = call();
             caller.say(R"({"cmd":"stop"})" + behind);
@@ -233,7 +233,7 @@ TEST_F(DoorTest, AStopInALineThatIsNoJsonStopsEverythingAndIsRefused) {
     const auto caller = call();
     using std::string_view_literals::operator""sv;
     std::size_t stops = 0;
-    for (const auto line : {"{\"cmd\":\"stop\",\"axis\":\"x\",\"client\":\"M\xFCller\"}"sv, "{\"cmd\" : \"stop\",\"utime\":NaN}"sv,
+    for (const auto& line : {"{\"cmd\":\"stop\",\"axis\":\"x\",\"client\":\"M\xFCller\"}"sv, "{\"cmd\" : \"stop\",\"utime\":NaN}"sv,
                             R"({"cmd":"stop","utime":1e999})"sv, R"({"cmd":"stop",})"sv, R"({"cmd":"state"}{"cmd":"stop"})"sv,
                             R"({"cmd":"stop","x":[[[[[[1]]]]]]})"sv, "\0{\"cmd\":\"stop\"}"sv, R"([{"cmd":"stop"}])"sv}) {
         caller.say(std::string(line) + "\n");

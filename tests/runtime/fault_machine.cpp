@@ -52,6 +52,7 @@ TEST_F(Fault, EmergencyStopRampsDownThenTakesPowerAwayAndNeedsAReset) {
     EXPECT_EQ(m().axis(0).state, AxisState::ErrorStop);
     EXPECT_GT(m().axis(0).set_velocity, 0) << "it ramps, it does not stop dead";
     EXPECT_TRUE(m().has_alarm(id(MachineAlarm::emergency_stop)));
+    EXPECT_FALSE(m().has_alarm(axes::id(axes::AxisAlarm::emergency_stop))) << "one cause is one alarm";
 
     EXPECT_TRUE(m().until([&] { return m().axis(0).drive_state != axes::PowerState::enabled; }, 500ms))
         << "power goes within power_off_after";
@@ -273,6 +274,7 @@ TEST_F(Fault, LostFramesShortOfTheLimitAreOnlyCounted) {
     ASSERT_EQ(m().state().alarm_count, 1u) << m().alarms();
     const auto words = m().machine->describe(m().state().alarms[0].fact);
     EXPECT_EQ(words.name, "following_error");
+    EXPECT_NE(words.english.find(" mm is beyond the window of "), std::string::npos) << words.english;
     EXPECT_NE(words.english.find(" bus cycles in a row were not answered"), std::string::npos) << words.english;
     EXPECT_EQ(words.cause.find("Probably frames were lost"), 0u) << words.cause;
 }
@@ -300,6 +302,13 @@ TEST_F(Fault, ADriveThatStopsByLostFramesIsNotBlamed) {
         EXPECT_EQ(words.cause.find("Probably frames were lost, and not by the drive (this computer too late"), 0u) << words.cause;
     }
     m().run(1s);
+    recover();
+    // A drive that is left behind by its set-point says so in its own words, too: 8611h (IEC 61800-7-201, 603Fh).
+    m().world.transport().faults.drop_requests = 50;
+    m().run(60ms);
+    m().world.drive("x")->raise(0x8611);
+    m().run(20ms);
+    EXPECT_NE(m().alarms().find("bus cycles in a row were not answered"), std::string::npos) << m().alarms();
     recover();
     // Long after it, or when the drive complains of something else, lost frames explain nothing.
     m().run(1s);
