@@ -251,7 +251,20 @@ void Axis::guard_motor(const MotionLimits& braking) noexcept {
     auto reach = setpoint_.state();
     if (reach.velocity == 0) return;
     const auto& drive = port_.capabilities();
-    reach.position += reach.velocity * (dead_cycles * to_seconds(cycle_) + to_seconds(drive.mode_change_delay + round_trip(drive)));
+    const double delay = dead_cycles * to_seconds(cycle_) + to_seconds(drive.mode_change_delay + round_trip(drive));
+    // Until then it may get faster, up to the velocity commanded: by its torque, or along the ramp of the drive.
+    const double sense = reach.velocity > 0 ? 1 : -1, speed = std::abs(reach.velocity);
+    double push = 0, most = speed;
+    if (mode_phase_ == ModePhase::torque) {
+        push = sense * torque_.torque() * config_.control.rated_acceleration;
+        most = torque_velocity_;
+    } else if (mode_phase_ == ModePhase::profile && drive_run_.mode() == DriveMode::profile_velocity) {
+        push = drive_run_.setpoint().acceleration / std::abs(units_.counts_per_unit());
+        most = sense * drive_run_.setpoint().velocity / units_.counts_per_unit();
+    }
+    const double gain = std::clamp(push * delay, 0.0, std::max(most - speed, 0.0));
+    reach.position += (reach.velocity + sense * gain / 2) * delay;
+    reach.velocity += sense * gain;
     const double end = units_.to_program(reach.position + stopping_distance(reach, braking));
     const double edge = reach.velocity > 0 ? config_.limits.position_max : config_.limits.position_min;
     if (reach.velocity > 0 ? end > edge : end < edge)

@@ -111,8 +111,13 @@ bool Axis::beyond_reach(double edge, bool positive) const noexcept {
     const auto& state = setpoint_.state();
     const double here = units_.to_program(state.position);
     const double stop = here + stopping_distance(state, full_limits(config_.limits));
-    const double target = goal_.kind == Goal::Kind::position ? units_.to_program(goal_.value) : here;
-    return positive ? std::max({here, stop, target}) > edge : std::min({here, stop, target}) < edge;
+    double target = goal_.kind == Goal::Kind::position ? units_.to_program(goal_.value) : here, next = target;
+    if (mode_phase_ == ModePhase::profile && drive_run_.mode() == DriveMode::profile_position && drive_run_.under_way()) {
+        // The drive goes to its targets, whatever the axis thinks of them later.
+        target = units_.to_program(drive_run_.front().target);
+        next = units_.to_program(drive_run_.last().target);
+    }
+    return positive ? std::max({here, stop, target, next}) > edge : std::min({here, stop, target, next}) < edge;
 }
 
 /// What only the axis knows: whether the change would leave a moving axis without its way to stop.

@@ -585,6 +585,44 @@ TEST(DriveProfileLimits, AVelocityEndsInsideTheSoftwareLimits) {
     EXPECT_GT(rig.at(), 15);
 }
 
+// The drive's ramp goes on until the axis has its own mode again, and counts.
+TEST(DriveProfileLimits, AVelocityThatStillRisesEndsInsideTheSoftwareLimits) {
+    for (const double limit : {2.0, 4.0}) {
+        auto config = plain_axis();
+        config.limits.position_max = limit;
+        config.homing.kind = HomingKind::set_here;
+        ProfileRig rig({}, config);
+        rig.accept(home(0));
+        rig.run(5);
+        rig.accept(drive_at(100));
+        ASSERT_TRUE(rig.run_to(AxisState::ErrorStop, 2000));
+        ASSERT_TRUE(rig.run_until([&] { return rig.speed() == 0; }, 300));
+        EXPECT_LE(rig.at(), limit);
+        EXPECT_GT(rig.at(), limit - 1);
+    }
+}
+
+// What the axis knows of a move of the drive is its target: a limit is not moved in between (axes/axis/README.md, written parameters).
+TEST(DriveProfileLimits, ALimitIsNotMovedIntoTheWayOfAMove) {
+    auto config = plain_axis();
+    config.limits.position_min = -100;
+    config.limits.position_max = 100;
+    config.homing.kind = HomingKind::set_here;
+    ProfileRig rig([](FakeDrive& drive) { drive.caps.profile_buffer = 2; }, config);
+    rig.accept(home(0));
+    rig.run(5);
+    rig.accept(drive_to(40));
+    const auto last = rig.accept(drive_to(60, 50, mcBuffered));
+    ASSERT_TRUE(rig.run_to_speed(50));
+    const auto limit = [&](double value) { return rig.axis.set(WriteParameter{software_limit_positive, value}, Owner::program); };
+    EXPECT_EQ(limit(30), ErrorId::beyond_software_limit);
+    EXPECT_EQ(limit(50), ErrorId::beyond_software_limit) << "the one that the drive has ahead";
+    EXPECT_EQ(limit(60), ErrorId::none);
+    ASSERT_TRUE(rig.run_until([&] { return rig.status(last) == CommandStatus::done; }, 5000));
+    EXPECT_EQ(rig.at(), 60);
+    EXPECT_EQ(limit(60), ErrorId::none);
+}
+
 // A move to the very limit is allowed, however hard the drive brakes there.
 TEST(DriveProfileLimits, AMoveMayEndOnTheSoftwareLimit) {
     auto config = plain_axis();

@@ -332,6 +332,27 @@ struct OutOfTorque : Watched {
     }
 };
 
+// 1000 u/s2 go on until the axis has its own mode again, and count.
+TEST(GuardedStop, OutOfTorqueThatStillSpeedsTheAxisUp) {
+    for (const double limit : {2.0, 5.0, 8.0}) {
+        auto config = homed_between(-50, limit);
+        config.control.rated_acceleration = 2000;
+        Watched rig(config);
+        rig.power_on();
+        rig.accept(home(0));
+        rig.run(20);
+        rig.accept({.kind = CommandKind::torque, .velocity = 100, .details = TorqueDetails{0.5, 0}});
+        double furthest = 0;
+        for (int i = 0; i < 500; ++i) {
+            rig.step();
+            furthest = std::max(furthest, rig.view().actual_position);
+        }
+        EXPECT_EQ(rig.view().state, AxisState::ErrorStop);
+        EXPECT_LE(furthest, limit);
+        EXPECT_GT(furthest, limit - 1);
+    }
+}
+
 TEST(GuardedStop, OutOfTorqueEndsBeforeTheSoftwareLimit) {
     for (const auto kind : {CommandKind::stop, CommandKind::halt}) {
         OutOfTorque rig;
