@@ -35,10 +35,11 @@ Result<Read> read_settings(DriveAccess& drive) {
 }
 
 /// Why the reader of a set would refuse what the drive shows; empty: it takes it, and takes it for the same.
-std::string why_refused(const DriveParameter& parameter, std::int64_t raw) {
+std::string why_refused(const axes::DriveProfile& profile, const DriveParameter& parameter, std::int64_t raw) {
     const auto shown = axes::value_text(parameter, raw);
-    const auto back = axes::parse_value(parameter, shown);
+    const auto back = axes::parse_value(profile, parameter, shown);
     if (back && *back == raw) return {};
+    if (!axes::check_homing_method(profile, parameter.address, raw)) return back.error().what;
     return fmt::format("the drive shows {}, its manual allows {}: it would refuse that value, if it were written", shown,
                        axes::range_text(parameter));
 }
@@ -54,7 +55,7 @@ Result<KeptSettings> kept_settings(DriveAccess& drive, Kept kept) {
     out.left_out = std::move(read->left_out);
     for (const auto& value : read->values) {
         if (kept == Kept::unlike_factory && value.parameter->is_stated_factory(value.raw)) continue;
-        if (auto why = why_refused(*value.parameter, value.raw); why.empty()) out.set.values.push_back(value);
+        if (auto why = why_refused(drive.profile(), *value.parameter, value.raw); why.empty()) out.set.values.push_back(value);
         else out.left_out.push_back({value.parameter, std::move(why)});
     }
     return out;

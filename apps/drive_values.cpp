@@ -90,7 +90,7 @@ Result<Values> parsed_assignments(const axes::DriveProfile& profile, const std::
         if (equals == std::string::npos) return Error{"drive.value", word, "has no '='", example(profile, words, i)};
         const auto found = axes::find_parameter(profile, word.substr(0, equals));
         if (!found) return found.error();
-        const auto raw = axes::parse_value(**found, word.substr(equals + 1));
+        const auto raw = axes::parse_value(profile, **found, word.substr(equals + 1));
         if (!raw) return raw.error();
         if (std::any_of(out.begin(), out.end(), [&](const auto& earlier) { return earlier.parameter == *found; }))
             return Error{"drive.twice", axes::name_of(**found), "is given twice: nobody can tell which value is meant",

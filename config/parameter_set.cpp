@@ -75,7 +75,7 @@ std::variant<ParameterSet, std::vector<Error>> from_document(const std::string& 
                      "remove the line"});
                 continue;
             }
-            if (const auto raw = axes::parse_value(parameter, entry.value.text)) set.values.push_back({&parameter, *raw});
+            if (const auto raw = axes::parse_value(profile, parameter, entry.value.text)) set.values.push_back({&parameter, *raw});
             else refuse({raw.error().code, "", fmt::format("{}: {}", axes::name_of(parameter), raw.error().what), raw.error().remedy});
         }
     if (!reader.errors().empty()) return std::move(reader.errors());

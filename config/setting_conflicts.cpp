@@ -154,6 +154,10 @@ void refuse_startup_commands(Reader& reader, const std::string& slave, const std
                    fmt::format("remove the entry; {}", cyclic->instead));
             continue;
         }
+        if (profile)
+            if (const auto documented = axes::check_homing_method(*profile, {standard, entry.object.sub}, entry.value); !documented)
+                reader.problem(entry.where, "config.homing_method", fmt::format("{}: {}", shown, documented.error().what),
+                               documented.error().remedy);
         const auto* parameter = profile ? find_drive_object(*profile, entry.object).parameter : nullptr;
         if (!parameter || !parameter->action) continue;
         refuse(fmt::format("{} ({}) is no setting: writing it does something{}, and a start-up list does it at each start [{} {}]", shown,

@@ -122,7 +122,12 @@ Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::strin
             error.remedy = kind == CommandKind::program_start ? "Change to automatic mode first." : "Change to manual or setup mode first.";
             break;
         case Answer::refused_by_axis:
-            if (const auto* words = words_for_operator(answer.error)) {
+            // Neither has a direction: nothing else interlocks them.
+            if (answer.error == axes::ErrorId::interlocked && (kind == CommandKind::enable || kind == CommandKind::reset)) {
+                error.what = "the emergency stop is pressed, or its circuit is open";
+                error.remedy = kind == CommandKind::reset ? "Release it when nobody is in danger, then reset."
+                                                          : "Release it when nobody is in danger, reset, then give the command again.";
+            } else if (const auto* words = words_for_operator(answer.error)) {
                 const auto axis = error.subject.rfind("axis ", 0) == 0 ? error.subject.substr(5) : std::string("the axis");
                 const auto* text = axes::find_error(answer.error);
                 error.what = fmt::format("{} ({}): {}", text->english.text, text->name, words->cause);

@@ -149,7 +149,7 @@ std::optional<Error> DriveRequests::start_write(const DriveRequest& request, con
     if (!found) return found.error();
     const auto& parameter = **found;
     const auto name = axes::name_of(parameter);
-    const auto raw = axes::parse_value(parameter, request.value);
+    const auto raw = axes::parse_value(profile, parameter, request.value);
     if (!raw) return raw.error();
     if (auto refused = check_authority(request, place)) return refused;
     if (parameter.action)

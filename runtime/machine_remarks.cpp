@@ -141,6 +141,18 @@ void watchdogs(Remarks& remarks, const MachineConfig& config) {
         "them a longer `sm_watchdog`");
 }
 
+/// It is copied along with the rest of a file that ran simulated.
+void relaxed_on_a_port(Remarks& remarks, const MachineConfig& config) {
+    if (config.bus.interface.empty() || config.simulation.supervision != Supervision::relaxed) return;
+    const std::int64_t cycles = std::int64_t{config.bus.lost_frames_limit} * 100;
+    remarks.add(
+        "relaxed_on_a_port", "simulation.supervision",
+        fmt::format("relaxed holds on '{}', too: {} cycles without an answer are borne, and behind such a gap a drive leaps to where its "
+                    "axis is by then",
+                    config.bus.interface, cycles),
+        "with real drives: strict; relaxed is for slaves that `taktwerk sim` plays");
+}
+
 void programs(Remarks& remarks, const MachineConfig& config, const MachineLayout& layout) {
     for (const auto& axis : layout.axes)
         if (axis.programs.size() > 1)
@@ -197,6 +209,7 @@ std::vector<Error> remarks(const MachineConfig& config, const MachineLayout& lay
                     "choose one that is there, best an isolated one");
     if (!config.bus.slaves.empty()) bus_load(out, config);
     watchdogs(out, config);
+    relaxed_on_a_port(out, config);
     programs(out, config, layout);
     return out.found;
 }

@@ -192,6 +192,23 @@ Result<std::int64_t> parse_value(const DriveParameter& parameter, std::string_vi
     return raw;
 }
 
+Result<void> check_homing_method(const DriveProfile& profile, const ParameterAddress& object, std::int64_t raw) {
+    constexpr std::uint16_t homing_method = 0x6098;
+    const auto& known = profile.homing_methods;
+    if (object.index != homing_method || raw == 0 || known.empty() || std::find(known.begin(), known.end(), raw) != known.end()) return {};
+    std::string all;
+    for (const int method : known) all += (all.empty() ? "" : ", ") + std::to_string(method);
+    return Error{"drive.out_of_range", object_text(object), fmt::format("{} does not document homing method {}", profile.name, raw),
+                 "choose one of " + all};
+}
+
+Result<std::int64_t> parse_value(const DriveProfile& profile, const DriveParameter& parameter, std::string_view text) {
+    auto raw = parse_value(parameter, text);
+    if (!raw) return raw;
+    if (auto documented = check_homing_method(profile, parameter.address, *raw); !documented) return documented.error();
+    return raw;
+}
+
 std::vector<std::byte> to_bytes(const DriveParameter& parameter, std::int64_t raw) {
     std::vector<std::byte> out((parameter.bits + 7u) / 8u);
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = static_cast<std::byte>(static_cast<std::uint64_t>(raw) >> (8 * i) & 0xFFu);

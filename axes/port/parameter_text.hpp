@@ -35,6 +35,10 @@ namespace taktwerk::axes {
 /// one in hexadecimal (0x.. or ..h).
 /// Errors: drive.value (no number, another unit, between two steps), drive.out_of_range, drive.read_only, drive.no_address.
 [[nodiscard]] Result<std::int64_t> parse_value(const DriveParameter& parameter, std::string_view text);
+/// The same for a parameter of this drive, which may document less than the range of its object: homing methods (6098h). 0 is none of them.
+[[nodiscard]] Result<std::int64_t> parse_value(const DriveProfile& profile, const DriveParameter& parameter, std::string_view text);
+/// 6098h with a method that the drive's manual says does not exist: drive.out_of_range, with those that do.
+[[nodiscard]] Result<void> check_homing_method(const DriveProfile& profile, const ParameterAddress& object, std::int64_t raw);
 
 /// As SDOs and registers carry it: little-endian, `bits` wide. Errors of from_bytes: drive.size.
 [[nodiscard]] std::vector<std::byte> to_bytes(const DriveParameter& parameter, std::int64_t raw);

@@ -103,6 +103,18 @@ TEST(DriveWords, SixAxesAreAxes) {
     EXPECT_THAT(drive({"get", "robot", "PA17", "--axis", "7"}).err, AllOf(HasSubstr("6 axes"), Not(HasSubstr("axiss"))));
 }
 
+// SV33-E 5.5, A.D35: methods 15, 16, 31 and 32 do not exist, although 7.3 gives -2 to 35. SE-808X 4.3: 605Ah and 605Dh are 1 or 2.
+TEST(DriveWords, AValueThatTheManualForbidsIsRefused) {
+    for (const auto* word : {"6098h=15", "6098h=32"}) {
+        const auto refused = drive({"set", "sv33_drive", word});
+        EXPECT_NE(refused.code, exit_ok) << word;
+        EXPECT_THAT(refused.err, AllOf(HasSubstr("does not document homing method"), HasSubstr("33, 34, 35"))) << word;
+    }
+    EXPECT_EQ(drive({"set", "sv33_drive", "6098h=17"}).code, exit_ok) << "positive control";
+    for (const auto* word : {"605Ah=3", "605Dh=0"})
+        EXPECT_THAT(drive({"set", "stepper_drive", word}).err, HasSubstr("give 1 .. 2")) << word;
+}
+
 // --- run ---------------------------------------------------------------------------------------------------------------------------
 
 TEST(RunDuration, ThatIsOverBeforeTheBusIsUpIsSaid) {

@@ -287,6 +287,20 @@ TEST(MachineRemarks, AWatchdogThatTripsBeforeTheLimitIsReached) {
               "'y_drive' trips after 100 ms");
 }
 
+// docs/faults.md, "What a drive sees behind lost frames".
+TEST(MachineRemarks, RelaxedSupervisionOfARealPort) {
+    auto config = machine_config(1);
+    config.bus.interface = "eth1";
+    EXPECT_TRUE(remarks(config, {}, 4).empty());
+    config.simulation.supervision = Supervision::relaxed;
+    const auto found = remarks(config, {}, 4);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0].subject, "simulation.supervision");
+    EXPECT_EQ(found[0].what,
+              "relaxed holds on 'eth1', too: 300 cycles without an answer are borne, and behind such a gap a drive leaps to where "
+              "its axis is by then");
+}
+
 TEST(MachineRemarks, AnAxisThatTwoProgramsDeclare) {
     const auto config = machine_config(1);
     MachineLayout layout;
