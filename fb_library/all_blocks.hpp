@@ -2,9 +2,6 @@
 // Every block there is: the one list that monitor, documentation, typed tests and compiler iterate. A new block is added here.
 
 #include <array>
-#include <cstdint>
-#include <span>
-#include <string_view>
 
 #include "fb_library/block_type.hpp"
 #include "fb_library/fieldbus/sdo.hpp"
@@ -45,8 +42,6 @@ namespace taktwerk::fb {
 
 template <class... Blocks>
 struct BlockList {
-    static constexpr std::array types{block_type<Blocks>()...};
-
     /// E.g. `IecBlocks::as<testing::Types>` for a typed test.
     template <template <class...> class Other>
     using as = Other<Blocks...>;
@@ -85,36 +80,14 @@ using HomingBlocks =
 
 using FieldbusBlocks = BlockList<EC_SdoRead, EC_SdoWrite>;
 
-namespace detail {
-template <class... Blocks>
-consteval bool names_differ(BlockList<Blocks...>) {
-    constexpr auto& types = BlockList<Blocks...>::types;
-    for (std::size_t i = 0; i < types.size(); ++i)
-        for (std::size_t j = 0; j < i; ++j)
-            if (types[i].name == types[j].name) return false;
-    return true;
-}
-}  // namespace detail
-
 using MotionBlocks = decltype(detail::joined(
     detail::joined(detail::joined(AxisBlocks{}, AdministrativeBlocks{}), detail::joined(CouplingBlocks{}, VendorBlocks{})), DriveBlocks{}));
 using AllBlocks = decltype(detail::joined(detail::joined(detail::joined(IecBlocks{}, MotionBlocks{}), HomingBlocks{}), FieldbusBlocks{}));
-static_assert(detail::names_differ(AllBlocks{}));
 
-[[nodiscard]] constexpr std::span<const BlockType> all_block_types() noexcept { return AllBlocks::types; }
-
-/// nullptr when there is none of that name. Not for the cycle.
-[[nodiscard]] constexpr const BlockType* find_block_type(std::string_view name) noexcept {
-    for (const BlockType& type : all_block_types())
-        if (type.name == name) return &type;
-    return nullptr;
-}
-
-/// The library's part of the ABI hash: differs when a block or pin is added, removed, moved, renamed or retyped.
-inline constexpr std::uint64_t block_abi_hash = [] {
-    std::uint64_t hash = 0xCBF29CE484222325;
-    for (const BlockType& type : all_block_types()) hash = layout_hash(hash, type);
-    return hash;
-}();
+/// The blocks of a list as bytes and pins, e.g. types_of<IecBlocks>. It costs the compiler seconds: name it where it is needed and not in a header.
+template <class List>
+inline constexpr int types_of = 0;
+template <class... Blocks>
+inline constexpr std::array types_of<BlockList<Blocks...>>{block_type<Blocks>()...};
 
 }  // namespace taktwerk::fb

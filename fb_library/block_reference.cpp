@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "fb_library/all_blocks.hpp"
+#include "fb_library/block_types.hpp"
 
 namespace taktwerk::fb {
 namespace {
@@ -49,14 +50,14 @@ std::string block_reference_markdown() {
         "Pins keep their values between calls; a block acts only when called.\n";
 
     page += "\n## IEC 61131-3\n";
-    for (const BlockType& type : IecBlocks::types) append_block(page, type);
+    for (const BlockType& type : types_of<IecBlocks>) append_block(page, type);
     page += "\n## PLCopen motion\n";
-    for (const BlockType& type : MotionBlocks::types) append_block(page, type);
+    for (const BlockType& type : types_of<MotionBlocks>) append_block(page, type);
     page += "\n## PLCopen homing\n";
-    for (const BlockType& type : HomingBlocks::types) append_block(page, type);
+    for (const BlockType& type : types_of<HomingBlocks>) append_block(page, type);
 
     page += "\n## Fieldbus\n";
-    for (const BlockType& type : FieldbusBlocks::types) append_block(page, type);
+    for (const BlockType& type : types_of<FieldbusBlocks>) append_block(page, type);
 
     std::map<std::string_view, std::span<const std::string_view>> enumerations;
     for (const BlockType& type : all_block_types())

@@ -62,6 +62,8 @@ Result<ProgramLibrary> ProgramLibrary::open(const std::string& path) {
     return ProgramLibrary{std::move(handle), entry};
 }
 
+std::uint64_t ProgramLibrary::expected_abi() noexcept { return abi_hash(); }
+
 Result<ProgramLibrary> ProgramLibrary::linked(const ProgramEntry* entry) {
     if (auto ok = check_entry(entry, "linked program"); !ok) return ok.error();
     return ProgramLibrary{nullptr, entry};

@@ -1,6 +1,7 @@
 #pragma once
 // Loading a program from a shared object, with an answer for everything that can be wrong with it. Not real-time.
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -18,6 +19,8 @@ public:
     static Result<ProgramLibrary> open(const std::string& path);
     /// A program linked into this executable.
     static Result<ProgramLibrary> linked(const ProgramEntry* entry);
+    /// What a program must have been built against (programs/api/abi.hpp).
+    [[nodiscard]] static std::uint64_t expected_abi() noexcept;
 
     [[nodiscard]] const ProgramEntry& entry() const noexcept { return *entry_; }
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "axes/axis/motion_context.hpp"
-#include "fb_library/all_blocks.hpp"
+#include "fb_library/block_abi.hpp"
 #include "programs/api/program.hpp"
 
 namespace taktwerk {

@@ -11,8 +11,8 @@
 
 #include "core/math.hpp"
 #include "fb_library/all_blocks.hpp"
-#include "programs/api/abi.hpp"
 #include "runtime/machine.hpp"
+#include "runtime/program_library.hpp"
 #include "runtime/world.hpp"
 #include "tests/bench/between_cycles.hpp"
 #include "tests/machines/plain_machine.hpp"
@@ -76,8 +76,8 @@ void run(std::size_t axes, int cycles) {
     }
     static const ProgramEntry entry{program_magic,
                                     sizeof(ProgramEntry),
-                                    abi_hash(),
-                                    sdk_version,
+                                    runtime::ProgramLibrary::expected_abi(),
+                                    "0.1.0",
                                     "shuttle",
                                     []() -> Program* { return new Shuttle; },
                                     [](Program* p) { delete p; }};

@@ -1,5 +1,6 @@
 // The list of all blocks: pin tables against the standards, blocks as bytes, the ABI hash and the reference page.
 #include "fb_library/all_blocks.hpp"
+#include "fb_library/block_types.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -40,7 +41,7 @@ std::map<std::string, std::vector<part1::StandardPin>> standard_blocks() {
 // P1-001, P1-002, P1-003, P1-004, P1-013, P1-098
 TEST(PinTables, HaveEveryPinOfPart1InItsOrderAndNoOther) {
     const auto standard = standard_blocks();
-    for (const BlockType& type : MotionBlocks::types) {
+    for (const BlockType& type : types_of<MotionBlocks>) {
         const auto found = standard.find(std::string{type.name});
         if (found == standard.end()) continue;  // not of Part 1
         const auto& expected = found->second;
@@ -106,7 +107,7 @@ TEST(PinTables, OfTheOtherMotionBlocksFollowTheirDocuments) {
 // Every block is of Part 1 or has its pins checked against another document.
 TEST(PinTables, EveryMotionBlockIsCheckedAgainstADocument) {
     const auto standard = standard_blocks();
-    for (const BlockType& type : MotionBlocks::types) {
+    for (const BlockType& type : types_of<MotionBlocks>) {
         const std::string name{type.name};
         EXPECT_TRUE(standard.contains(name) || other_documents().contains(name)) << name;
     }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fb_library/all_blocks.hpp"
+#include "fb_library/block_types.hpp"
 #include "tests/fb_library/fake_axes.hpp"
 #include "tests/fb_library/part5_pins.hpp"
 
@@ -19,8 +20,8 @@ TEST(HomingPins, HaveEveryPinOfPart5AndNoOther) {
     std::map<std::string_view, std::vector<part1::StandardPin>> standard;
     for (const auto& pin : part5::pins) standard[pin.block].push_back(pin);
     EXPECT_EQ(standard.size(), 11u);
-    ASSERT_EQ(HomingBlocks::types.size(), 11u);
-    for (const BlockType& type : HomingBlocks::types) {
+    ASSERT_EQ(types_of<HomingBlocks>.size(), 11u);
+    for (const BlockType& type : types_of<HomingBlocks>) {
         const auto& expected = standard[type.name];
         ASSERT_EQ(type.pins.size(), expected.size()) << type.name;
         for (std::size_t i = 0; i < expected.size(); ++i) {

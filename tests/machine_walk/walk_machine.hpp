@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "programs/api/abi.hpp"
 #include "tests/axes/axis/walk_axes.hpp"
 #include "tests/machines/add_program.hpp"
 #include "tests/machines/plain_machine.hpp"

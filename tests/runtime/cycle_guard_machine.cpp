@@ -10,7 +10,7 @@
 #include "core/guard/allocation_guard.hpp"
 #include "core/realtime_guard.hpp"
 #include "fb_library/all_blocks.hpp"
-#include "programs/api/abi.hpp"
+#include "runtime/program_library.hpp"
 #include "tests/patience.hpp"
 #include "tests/runtime/test_machine.hpp"
 
@@ -69,8 +69,8 @@ public:
 MachineConfig config() {
     static const ProgramEntry entry{program_magic,
                                     sizeof(ProgramEntry),
-                                    abi_hash(),
-                                    sdk_version,
+                                    ProgramLibrary::expected_abi(),
+                                    "0.1.0",
                                     "shuttle",
                                     []() -> Program* { return new Shuttle; },
                                     [](Program* p) { delete p; }};

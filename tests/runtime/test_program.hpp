@@ -3,7 +3,7 @@
 
 #include <stdexcept>
 
-#include "programs/api/abi.hpp"
+#include "runtime/program_library.hpp"
 #include "tests/machines/add_program.hpp"
 #include "tests/runtime/test_machine.hpp"
 
@@ -14,8 +14,8 @@ template <class Body>
 const ProgramEntry* entry_of() {
     static const ProgramEntry entry{program_magic,
                                     sizeof(ProgramEntry),
-                                    abi_hash(),
-                                    sdk_version,
+                                    ProgramLibrary::expected_abi(),
+                                    "0.1.0",
                                     "test",
                                     []() -> Program* { return new Body; },
                                     [](Program* p) { delete p; }};
