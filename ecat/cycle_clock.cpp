@@ -16,8 +16,6 @@ constexpr std::int64_t phase_smoothing = 16;
 /// from it; a real clock moves by a fraction of a tick then.
 constexpr std::int64_t mark_ns = 10'000;
 
-std::int64_t nanoseconds(Instant t) noexcept { return t.time_since_epoch().count(); }
-
 /// `value` in -period/2 .. period/2.
 std::int64_t centred(std::int64_t value, std::int64_t period) noexcept {
     const std::int64_t into = ((value % period) + period) % period;

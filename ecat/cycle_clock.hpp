@@ -19,6 +19,9 @@
 
 namespace taktwerk::ecat {
 
+/// As clocks and links keep an instant: ns of the host's steady clock.
+[[nodiscard]] constexpr std::int64_t nanoseconds(Instant t) noexcept { return t.time_since_epoch().count(); }
+
 class CycleClock {
 public:
     explicit CycleClock(Duration cycle) noexcept : cycle_(cycle), servo_(cycle) {}

@@ -16,8 +16,6 @@ constexpr Duration longest_frame = std::chrono::microseconds{124};  ///< 1518 by
 /// A command of another master shows in the states with the next cycle; the watch may take some more to read them.
 constexpr Duration foreign_remembered = std::chrono::seconds{1};
 
-std::int64_t nanoseconds(Instant t) noexcept { return t.time_since_epoch().count(); }
-
 }  // namespace
 
 CyclePlan::CyclePlan(const Bus& bus)

@@ -10,7 +10,7 @@ namespace taktwerk::ecat {
 namespace {
 
 constexpr Duration state_poll_period = std::chrono::milliseconds{1};
-constexpr std::uint32_t valid_cycles = 1;
+constexpr std::uint32_t fresh_cycles = 1;
 
 std::uint16_t code_of(const BusSlave& slave) noexcept { return static_cast<std::uint16_t>(slave.al.load() >> 16); }
 
@@ -117,7 +117,7 @@ Script<Refusal> read_refusal(Bus& bus, BusSlave& slave, AlState asked) {
     refusal.reached = al_state(refusal.status);
     refusal.code = code_of(slave);
     refusal.last_abort = slave.last_abort;
-    refusal.valid_outputs = bus.link.good_in_a_row.load() >= valid_cycles;
+    refusal.valid_outputs = bus.link.good_in_a_row.load() >= fresh_cycles;
     refusal.clock.supported = slave.device().dc.supported;
     refusal.clock.required = slave.device().dc.required;
     refusal.clock.configured = slave.config->dc;

@@ -30,7 +30,7 @@ constexpr Duration least_census = std::chrono::milliseconds{100};  ///< between 
 constexpr Duration slow_census = std::chrono::seconds{2};          ///< while somebody is missing and the count stays
 constexpr Duration mailbox_period = std::chrono::seconds{5};
 constexpr Duration foreign_window = std::chrono::seconds{1};
-constexpr std::uint64_t foreign_limit = 3;  ///< frames a window: fewer may be our own with a bit flipped in the address
+constexpr std::uint64_t foreign_in_window = 3;  ///< frames a window: fewer may be our own with a bit flipped in the address
 constexpr auto in_op = static_cast<std::uint32_t>(AlState::op);
 
 /// When to try again: at once the first time, then after ever longer pauses, until the slave has stayed in OP for a while.
@@ -246,7 +246,7 @@ Script<void> watch_senders(Bus& bus) {
         const std::uint64_t frames = bus.link.foreign_frames.load();
         if (frames != seen) heard = now;
         seen = frames;
-        if (seen - before >= foreign_limit && !bus.link.foreign_master.exchange(true))
+        if (seen - before >= foreign_in_window && !bus.link.foreign_master.exchange(true))
             bus.remember("frames of another EtherCAT master are on the cable: " + sender_text(bus.link));
         if (now - heard >= foreign_window) bus.link.foreign_master.store(false);
         if (now - window < foreign_window) continue;

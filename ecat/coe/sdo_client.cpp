@@ -27,13 +27,14 @@ Conversation conversation(const char* verb, std::uint16_t index, std::uint8_t su
 }
 
 /// An answer with the bytes it points into.
-struct Answer {
+struct SdoAnswer {
     Bytes payload;
     SdoMessage message;
 };
 
 /// One request, one answer of the wanted kind. Aborts become errors.
-Script<Result<Answer>> ask_sdo(DatagramPort& port, MailboxEndpoint& mailbox, const Conversation& transfer, Bytes payload, SdoKind wanted) {
+Script<Result<SdoAnswer>> ask_sdo(DatagramPort& port, MailboxEndpoint& mailbox, const Conversation& transfer, Bytes payload,
+                                  SdoKind wanted) {
     MailboxRequest request;
     request.about = transfer.about;
     request.payload = std::move(payload);
@@ -47,7 +48,7 @@ Script<Result<Answer>> ask_sdo(DatagramPort& port, MailboxEndpoint& mailbox, con
     };
     Result<Bytes> bytes = co_await ask(port, mailbox, request);
     if (!bytes) co_return bytes.error();
-    Answer answer;
+    SdoAnswer answer;
     answer.payload = std::move(*bytes);
     answer.message = *parse_sdo(answer.payload);  // answered_by has parsed the same bytes
     if (answer.message.kind == SdoKind::abort) co_return abort_error(mailbox, transfer.about, answer.message.abort_code);
@@ -85,7 +86,7 @@ Script<Result<std::vector<std::byte>>> sdo_upload(DatagramPort& port, MailboxEnd
 
     Bytes request(sdo_initiate_size);
     encode_upload_request(request, index, sub, transfer.complete());
-    const Result<Answer> first = co_await ask_sdo(port, mailbox, transfer, std::move(request), SdoKind::upload_response);
+    const Result<SdoAnswer> first = co_await ask_sdo(port, mailbox, transfer, std::move(request), SdoKind::upload_response);
     if (!first) co_return first.error();
     const SdoMessage& head = first->message;
     Bytes value(head.data.begin(), head.data.end());
@@ -96,7 +97,7 @@ Script<Result<std::vector<std::byte>>> sdo_upload(DatagramPort& port, MailboxEnd
     while (!last) {
         Bytes segment(sdo_initiate_size);
         encode_upload_segment_request(segment, toggle);
-        const Result<Answer> next = co_await ask_sdo(port, mailbox, transfer, std::move(segment), SdoKind::upload_segment_response);
+        const Result<SdoAnswer> next = co_await ask_sdo(port, mailbox, transfer, std::move(segment), SdoKind::upload_segment_response);
         if (!next) co_return next.error();
         const SdoMessage& part = next->message;
         if (part.toggle != toggle) {
@@ -132,7 +133,7 @@ Script<Result<void>> sdo_download(DatagramPort& port, MailboxEndpoint& mailbox, 
     const std::size_t used = encode_download_request(request, index, sub, data, transfer.complete());
     std::size_t done = data.size() <= 4 ? data.size() : used - sdo_initiate_size;
     request.resize(used);
-    const Result<Answer> first = co_await ask_sdo(port, mailbox, transfer, std::move(request), SdoKind::download_response);
+    const Result<SdoAnswer> first = co_await ask_sdo(port, mailbox, transfer, std::move(request), SdoKind::download_response);
     if (!first) co_return first.error();
 
     bool toggle = false;
@@ -143,7 +144,7 @@ Script<Result<void>> sdo_download(DatagramPort& port, MailboxEndpoint& mailbox, 
         const auto piece = std::span<const std::byte>{data}.subspan(done, part);
         const std::size_t size = encode_download_segment_request(segment, toggle, done + part == data.size(), piece);
         segment.resize(size);
-        const Result<Answer> next = co_await ask_sdo(port, mailbox, transfer, std::move(segment), SdoKind::download_segment_response);
+        const Result<SdoAnswer> next = co_await ask_sdo(port, mailbox, transfer, std::move(segment), SdoKind::download_segment_response);
         if (!next) co_return next.error();
         if (next->message.toggle != toggle) {
             const Error error = co_await wrong_segment(port, mailbox, transfer, sdo_abort::toggle,

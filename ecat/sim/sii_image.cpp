@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "ecat/coe_type_number.hpp"
 #include "ecat/sim/process_data.hpp"
 #include "ecat/wire/sii.hpp"
 
@@ -12,24 +13,8 @@ namespace {
 constexpr std::size_t bytes_per_kbit = 128;
 constexpr std::uint16_t usual_size_code = 0x000F;  ///< 16 kbit: size in kbit, less 1
 
-/// CoE type numbers (ETG.1000.6 table 64).
-std::uint8_t type_number(DataType type) noexcept {
-    switch (type) {
-        case DataType::BOOL: return 0x01;
-        case DataType::I8: return 0x02;
-        case DataType::I16: return 0x03;
-        case DataType::I32: return 0x04;
-        case DataType::U8: return 0x05;
-        case DataType::U16: return 0x06;
-        case DataType::U32: return 0x07;
-        case DataType::REAL32: return 0x08;
-        case DataType::STRING: return 0x09;
-        case DataType::REAL64: return 0x11;
-        case DataType::I64: return 0x15;
-        case DataType::U64: return 0x1B;
-    }
-    return 0;
-}
+/// An EEPROM has a byte for it.
+std::uint8_t sii_type(DataType type) noexcept { return static_cast<std::uint8_t>(type_number(type)); }
 
 SiiPdo pdo_of(const DeviceDescription& description, const PdoDescription& pdo, const std::vector<std::uint16_t>& assigned, Sii& sii) {
     constexpr std::uint16_t fixed_content = 1u << 4;
@@ -45,13 +30,13 @@ SiiPdo pdo_of(const DeviceDescription& description, const PdoDescription& pdo, c
         e.sub = entry.sub;
         e.bits = entry.bits;
         e.data_type = entry.index == 0 ? 0
-                                       : type_number(entry.bits == 1    ? DataType::BOOL
-                                                     : entry.bits <= 8  ? DataType::U8
-                                                     : entry.bits <= 16 ? DataType::U16
-                                                                        : DataType::U32);
+                                       : sii_type(entry.bits == 1    ? DataType::BOOL
+                                                  : entry.bits <= 8  ? DataType::U8
+                                                  : entry.bits <= 16 ? DataType::U16
+                                                                     : DataType::U32);
         for (const auto& object : description.objects)
             if (entry.index != 0 && object.index == entry.index && object.sub == entry.sub) {
-                e.data_type = type_number(object.type);
+                e.data_type = sii_type(object.type);
                 e.name = sii.add_string(object.name);
             }
         out.entries.push_back(e);

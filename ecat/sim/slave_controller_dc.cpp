@@ -11,7 +11,7 @@ namespace taktwerk::ecat::sim {
 namespace {
 
 /// A write is stored, nothing else happens at once. They exist only where the controller has the unit.
-constexpr std::pair<std::uint16_t, std::uint16_t> stored[] = {
+constexpr std::pair<std::uint16_t, std::uint16_t> dc_stored[] = {
     {reg::dc_system_offset, 8},  {reg::dc_system_delay, 4}, {reg::dc_speed_start, 2}, {reg::dc_difference_filter, 2},
     {reg::dc_cyclic_control, 2}, {reg::dc_sync0_cycle, 4},  {reg::dc_sync1_cycle, 4}, {reg::dc_latch0_control, 2},
 };
@@ -43,7 +43,7 @@ void SlaveController::write_dc(std::uint32_t address, std::span<const std::byte>
         for (std::uint32_t a = std::max(address, first); a < std::min<std::size_t>(address + in.size(), first + size); ++a)
             to[a - first] = in[a - address];
     };
-    for (const auto& [first, size] : stored) store(first, size, memory_.data() + first);
+    for (const auto& [first, size] : dc_stored) store(first, size, memory_.data() + first);
     store(reg::dc_start_time, 8, start_time_.data());
 
     if (address == reg::dc_system_time && in.size() >= 8 && settings_.dc_64bit) clock_.correct(load_le<std::int64_t>(in), at);

@@ -26,6 +26,8 @@ inline constexpr std::uint16_t size = 0x3E, version = 0x3F;
 inline constexpr std::uint16_t categories = 0x40;  ///< type, length in words, data; and again until sii_category::end
 }  // namespace sii_word
 
+inline constexpr std::size_t sii_header_bytes = std::size_t{2} * sii_word::categories;
+
 namespace sii_category {
 inline constexpr std::uint16_t nop = 0, strings = 10, data_types = 20, general = 30, fmmu = 40, sync_manager = 41, fmmu_extension = 42,
                                sync_unit = 43, tx_pdo = 50, rx_pdo = 51, dc = 60, end = 0xFFFF;

@@ -7,7 +7,6 @@ namespace taktwerk::ecat {
 
 namespace {
 
-constexpr std::size_t header_bytes = 2 * sii_word::categories;
 constexpr std::size_t byte_limit = 255;
 
 void put8(std::vector<std::byte>& bytes, unsigned value) { bytes.push_back(static_cast<std::byte>(value & 0xFFu)); }
@@ -126,7 +125,7 @@ std::uint8_t Sii::add_string(std::string_view string) {
 }
 
 std::vector<std::byte> build_sii(const Sii& sii) {
-    std::vector<std::byte> image(header_bytes);
+    std::vector<std::byte> image(sii_header_bytes);
     const auto set = [&image](std::size_t word_address, std::uint16_t value) { store_le<std::uint16_t>(image, 2 * word_address, value); };
     const auto set_mailbox = [&set](std::size_t word_address, const SiiMailbox& mailbox) {
         set(word_address, mailbox.start);

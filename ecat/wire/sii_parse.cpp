@@ -7,8 +7,6 @@ namespace taktwerk::ecat {
 
 namespace {
 
-constexpr std::size_t header_bytes = 2 * sii_word::categories;
-
 /// Word at a word address; 0 beyond the image.
 std::uint16_t word(std::span<const std::byte> image, std::size_t address) noexcept {
     return 2 * address + 2 <= image.size() ? load_le<std::uint16_t>(image, 2 * address) : std::uint16_t{0};
@@ -196,7 +194,7 @@ Sii parse_sii(std::span<const std::byte> image) {
         sii.defects.push_back(SiiDefect::empty);
         return sii;
     }
-    if (image.size() < header_bytes) note(sii, SiiDefect::truncated_header);
+    if (image.size() < sii_header_bytes) note(sii, SiiDefect::truncated_header);
     sii.pdi_control = word(image, sii_word::pdi_control);
     sii.pdi_configuration = word(image, sii_word::pdi_configuration);
     sii.sync_pulse_length = word(image, sii_word::sync_pulse_length);
@@ -216,7 +214,7 @@ Sii parse_sii(std::span<const std::byte> image) {
     if (image.size() >= 16 && sii_checksum(image) != static_cast<std::uint8_t>(word(image, sii_word::checksum) & 0xFFu))
         note(sii, SiiDefect::bad_checksum);
 
-    for (std::size_t at = header_bytes;;) {
+    for (std::size_t at = sii_header_bytes;;) {
         if (at + 2 > image.size()) {
             note(sii, SiiDefect::no_end);
             break;

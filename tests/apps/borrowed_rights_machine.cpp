@@ -22,7 +22,7 @@ using namespace std::chrono_literals;
 using ::testing::HasSubstr;
 namespace fs = std::filesystem;
 
-const std::string build = TAKTWERK_BINARY_DIR, source = TAKTWERK_SOURCE_DIR;
+const std::string build = TAKTWERK_BINARY_DIR, tree = TAKTWERK_SOURCE_DIR;
 constexpr const char* nobody = "65534";
 
 class BorrowedRights : public ::testing::Test {
@@ -43,12 +43,12 @@ protected:
         const auto given = give(probe) && give(binary) ? nobody_runs({probe.string(), "/proc/self/status"}).second : std::string();
         if (given.find("CapEff:\t0000000000003000") == std::string::npos)
             GTEST_SKIP() << "this file system or container gives no file capabilities";
-        std::ifstream minimal(source + "/config/machines/minimal.yaml");
+        std::ifstream minimal(tree + "/config/machines/minimal.yaml");
         std::stringstream text;
         text << minimal.rdbuf() << "hmi: { socket: '" << (folder / "socket").string()
              << "', lcm: { enabled: false } }\nprograms:\n  telling:\n    library: " << program.string() << "\n";
         fs::create_directories(folder / "machines");
-        fs::create_directory_symlink(source + "/config/drives", folder / "drives");
+        fs::create_directory_symlink(tree + "/config/drives", folder / "drives");
         machine = folder / "machines" / "machine.yaml";
         std::ofstream(machine) << text.str();
     }

@@ -13,6 +13,7 @@
 #include "apps/exit_code.hpp"
 #include "tests/apps/cable.hpp"
 #include "tests/apps/foreign_master.hpp"
+#include "tests/apps/machine_files.hpp"
 
 namespace taktwerk::apps {
 namespace {
@@ -21,15 +22,12 @@ using namespace std::chrono_literals;
 using ::testing::HasSubstr;
 using Json = nlohmann::json;
 
-const std::string command = std::string(TAKTWERK_BINARY_DIR) + "/taktwerk";
-const std::string demo = std::string(TAKTWERK_SOURCE_DIR) + "/config/machines/demo.yaml";
-
 TEST(BusCommandOnACable, SeesReadsAndExplainsTheSlavesOfSim) {
     if (::geteuid() != 0) GTEST_SKIP() << "network namespaces need root";
     const Cable cable;
     if (!cable.laid()) GTEST_SKIP() << "this system lets nobody make network namespaces or veth pairs";
     const auto bus = [&](std::vector<std::string> words, int expected) {
-        words.insert(words.begin(), {command, "bus"});
+        words.insert(words.begin(), {taktwerk, "bus"});
         words.insert(words.end(), {"--nic", "twk0"});
         std::string said;
         EXPECT_EQ(run(cable.at_master(std::move(words)), &said), expected) << said;
@@ -39,7 +37,7 @@ TEST(BusCommandOnACable, SeesReadsAndExplainsTheSlavesOfSim) {
     // Nobody at the other end yet.
     EXPECT_THAT(bus({"scan"}, exit_bus), HasSubstr("no frame came back"));
 
-    Child slaves(cable.at_slaves({command, "sim", demo, "--nic", "twk1"}));
+    Child slaves(cable.at_slaves({taktwerk, "sim", demo, "--nic", "twk1"}));
     ASSERT_TRUE(slaves.says("slaves of 'demo'", 20s)) << slaves.text();
 
     const Json scan = Json::parse(bus({"scan", "--json"}, exit_ok));
@@ -61,7 +59,7 @@ TEST(BusCommandOnACable, BesideAnotherMasterNamesItAndDisturbsNothing) {
     if (::geteuid() != 0) GTEST_SKIP() << "network namespaces need root";
     const Cable cable;
     if (!cable.laid()) GTEST_SKIP() << "this system lets nobody make network namespaces or veth pairs";
-    Child slaves(cable.at_slaves({command, "sim", demo, "--nic", "twk1"}));
+    Child slaves(cable.at_slaves({taktwerk, "sim", demo, "--nic", "twk1"}));
     ASSERT_TRUE(slaves.says("slaves of 'demo'", 20s)) << slaves.text();
     const ForeignMaster other(cable.master_end(), "twk0");
     for (int i = 0; i < 1000 && other.answered() < 50; ++i) std::this_thread::sleep_for(10ms);
@@ -69,7 +67,7 @@ TEST(BusCommandOnACable, BesideAnotherMasterNamesItAndDisturbsNothing) {
 
     for (const char* doing : {"why", "scan"}) {
         std::string said;
-        std::vector<std::string> words{command, "bus", doing, "--nic", "twk0"};
+        std::vector<std::string> words{taktwerk, "bus", doing, "--nic", "twk0"};
         if (std::string(doing) == "why") words.push_back("--yes");
         (void)run(cable.at_master(std::move(words)), &said);
         EXPECT_THAT(said, HasSubstr("another master is sending on this cable")) << doing;
@@ -80,7 +78,7 @@ TEST(BusCommandOnACable, BesideAnotherMasterNamesItAndDisturbsNothing) {
     }
     // --force writes beside it, but brings nothing up.
     for (const std::vector<std::string>& doing : {std::vector<std::string>{"why"}, {"state", "op"}}) {
-        std::vector<std::string> words{command, "bus"};
+        std::vector<std::string> words{taktwerk, "bus"};
         words.insert(words.end(), doing.begin(), doing.end());
         words.insert(words.end(), {"--nic", "twk0", "--yes", "--force"});
         std::string said;
@@ -97,7 +95,7 @@ TEST(BusCommandOnACable, BesideAnotherMasterNamesItAndDisturbsNothing) {
     text =
         std::regex_replace(text, std::regex("library: pick_and_place.so"), "library: " TAKTWERK_BINARY_DIR "/programs/pick_and_place.so");
     std::ofstream(file) << text << "\n";
-    EXPECT_EQ(run(cable.at_master({command, "run", file}), &said), exit_bus) << said;
+    EXPECT_EQ(run(cable.at_master({taktwerk, "run", file}), &said), exit_bus) << said;
     EXPECT_THAT(said, HasSubstr("another EtherCAT master is sending on this cable"));
     EXPECT_THAT(said, HasSubstr("02:46:4f:52:00:42"));
     std::filesystem::remove(file);
@@ -120,10 +118,10 @@ TEST(BusCommandOnACable, ManySlavesReachOp) {
             slaves_of_file += fmt::format("    - {{ name: t{}, terminal: {{ inputs: 32, outputs: 32 }} }}\n", i);
         std::ofstream(file) << "version: 1\nname: long\ncycle: " << (count > 200 ? 10 : 4) << " ms\nbus:\n  interface: twk0\n  slaves:\n"
                             << slaves_of_file << "simulation: { supervision: relaxed }\n";
-        Child slaves(cable.at_slaves({command, "sim", file, "--nic", "twk1"}));
+        Child slaves(cable.at_slaves({taktwerk, "sim", file, "--nic", "twk1"}));
         ASSERT_TRUE(slaves.says("slaves of 'long'", 20s)) << slaves.text();
         std::string said;
-        Child master(cable.at_master({command, "run", file}));
+        Child master(cable.at_master({taktwerk, "run", file}));
         EXPECT_TRUE(master.says("running, manual mode", 120s)) << count << " slaves: " << master.text();
         master.signal(SIGTERM);
         (void)master.wait(30s);

@@ -11,6 +11,7 @@
 #include "apps/exit_code.hpp"
 #include "apps/terminal_text.hpp"
 #include "tests/apps/in_process.hpp"
+#include "tests/apps/machine_files.hpp"
 
 namespace taktwerk::apps {
 namespace {
@@ -21,10 +22,8 @@ using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::StartsWith;
 
-const std::string demo = std::string(TAKTWERK_SOURCE_DIR) + "/config/machines/demo.yaml";
-
 /// On the simulated demo: SV33-E 'x_drive' and 'y_drive', SE-808X 'z_drive', terminal 'io'.
-Outcome on_demo(std::vector<std::string> words) {
+Outcome bus_on_demo(std::vector<std::string> words) {
     words.insert(words.begin(), "bus");
     words.insert(words.end(), {"--machine", demo, "--simulate"});
     return in_process(std::move(words));
@@ -38,7 +37,7 @@ std::size_t widest_line(const std::string& text) {
 }
 
 TEST(BusCommand, ScanShowsEverySlaveWithIdentityAndNameWithinEightyColumns) {
-    const auto scan = on_demo({"scan"});
+    const auto scan = bus_on_demo({"scan"});
     EXPECT_EQ(scan.code, exit_ok) << scan.err;
     EXPECT_THAT(scan.out, AllOf(HasSubstr("4 slaves"), HasSubstr("'x_drive' sv33-e"), HasSubstr("'io'"), HasSubstr("INIT")));
     EXPECT_THAT(scan.out, HasSubstr("vendor 000007FBh product 000C0108h"));  // SV33-E manual
@@ -48,7 +47,7 @@ TEST(BusCommand, ScanShowsEverySlaveWithIdentityAndNameWithinEightyColumns) {
 }
 
 TEST(BusCommand, ScanAsJsonHoldsTheSame) {
-    const auto scan = on_demo({"scan", "--json"});
+    const auto scan = bus_on_demo({"scan", "--json"});
     ASSERT_EQ(scan.code, exit_ok) << scan.err;
     const Json json = scan.json();
     ASSERT_EQ(json["slaves"].size(), 4u);
@@ -60,63 +59,63 @@ TEST(BusCommand, ScanAsJsonHoldsTheSame) {
 }
 
 TEST(BusCommand, StateShowsOpWhileTheMachineHoldsIt) {
-    const auto low = on_demo({"state"});
+    const auto low = bus_on_demo({"state"});
     EXPECT_EQ(low.code, exit_ok);
     EXPECT_THAT(low.out, AllOf(HasSubstr("slave 2 'z_drive'"), HasSubstr("INIT")));
-    const auto preop = on_demo({"state", "preop", "--slave", "y_drive", "--json"});
+    const auto preop = bus_on_demo({"state", "preop", "--slave", "y_drive", "--json"});
     ASSERT_EQ(preop.code, exit_ok) << preop.err;
     EXPECT_EQ(preop.json()["slaves"][1]["state"], "PREOP");
     EXPECT_EQ(preop.json()["slaves"][0]["state"], "INIT");
-    const auto op = on_demo({"state", "op", "--for", "100ms", "--json"});
+    const auto op = bus_on_demo({"state", "op", "--for", "100ms", "--json"});
     ASSERT_EQ(op.code, exit_ok) << op.err;
     for (const auto& slave : op.json()["slaves"]) EXPECT_EQ(slave["state"], "OP");
 }
 
 TEST(BusCommand, PdoShowsEntriesWithOffsetsAndInOpTheirValues) {
-    const auto pdo = on_demo({"pdo", "x_drive", "--operational"});
+    const auto pdo = bus_on_demo({"pdo", "x_drive", "--operational"});
     ASSERT_EQ(pdo.code, exit_ok) << pdo.err;
     EXPECT_THAT(pdo.out, AllOf(StartsWith("slave 0 'x_drive'"), HasSubstr("SM2 outputs"), HasSubstr("6040h:00"), HasSubstr("6064h:00"),
                                HasSubstr("FMMU0")));
     EXPECT_LE(widest_line(pdo.out), 96u) << "with values it may be wider than a small terminal, but not by much";
-    const auto json = on_demo({"pdo", "3", "--json"}).json();
+    const auto json = bus_on_demo({"pdo", "3", "--json"}).json();
     ASSERT_EQ(json["slaves"].size(), 1u);
     EXPECT_EQ(json["slaves"][0]["position"], 3);
     EXPECT_FALSE(json["slaves"][0]["sync_managers"].empty());
 }
 
 TEST(BusCommand, SdoReadsByNameAndPositionAndSaysTheType) {
-    const auto read = on_demo({"sdo", "read", "x_drive", "1018h:01"});
+    const auto read = bus_on_demo({"sdo", "read", "x_drive", "1018h:01"});
     ASSERT_EQ(read.code, exit_ok) << read.err;
     EXPECT_THAT(read.out, HasSubstr("2043 (000007FBh)"));
-    const auto json = on_demo({"sdo", "read", "0", "6085", "--json"}).json();
+    const auto json = bus_on_demo({"sdo", "read", "0", "6085", "--json"}).json();
     EXPECT_EQ(json["index"], 0x6085);
     EXPECT_EQ(json["type"], "U32");
     EXPECT_EQ(json["bytes"].get<std::string>().size(), 8u);
 }
 
 TEST(BusCommand, SdoWritesAndReadsBack) {
-    const auto written = on_demo({"sdo", "write", "x_drive", "6085h", "500000"});
+    const auto written = bus_on_demo({"sdo", "write", "x_drive", "6085h", "500000"});
     ASSERT_EQ(written.code, exit_ok) << written.err;
     EXPECT_THAT(written.out, AllOf(HasSubstr("6085h:00"), HasSubstr("reads back 500000")));
 }
 
 TEST(BusCommand, AnSdoThatTheSlaveRefusesIsARefusalWithTheAbortText) {
-    const auto missing = on_demo({"sdo", "read", "x_drive", "2FFFh", "--type", "U16"});
+    const auto missing = bus_on_demo({"sdo", "read", "x_drive", "2FFFh", "--type", "U16"});
     EXPECT_EQ(missing.code, exit_refused);
     EXPECT_THAT(missing.err, AllOf(HasSubstr("2FFFh"), HasSubstr("06020000h")));
-    const auto read_only = on_demo({"sdo", "write", "x_drive", "6041h", "1", "--json"});
+    const auto read_only = bus_on_demo({"sdo", "write", "x_drive", "6041h", "1", "--json"});
     EXPECT_EQ(read_only.code, exit_refused);
     EXPECT_EQ(read_only.json()["ok"], false);
     EXPECT_EQ(read_only.json()["error"]["code"], "sdo.abort");
 }
 
 TEST(BusCommand, WrongWordsAreUsageErrors) {
-    EXPECT_EQ(on_demo({"sdo", "read", "9", "6041h"}).code, exit_usage);
-    EXPECT_THAT(on_demo({"sdo", "read", "w_drive", "6041h"}).err, AllOf(HasSubstr("0 to 3"), HasSubstr("z_drive")));
-    EXPECT_EQ(on_demo({"sdo", "read", "0", "statusword"}).code, exit_usage);
-    EXPECT_EQ(on_demo({"sdo", "read", "0", "6041h", "--type", "word"}).code, exit_usage);
-    EXPECT_EQ(on_demo({"sdo", "write", "0", "6040h", "70000"}).code, exit_usage);
-    EXPECT_EQ(on_demo({"state", "fly"}).code, exit_usage);
+    EXPECT_EQ(bus_on_demo({"sdo", "read", "9", "6041h"}).code, exit_usage);
+    EXPECT_THAT(bus_on_demo({"sdo", "read", "w_drive", "6041h"}).err, AllOf(HasSubstr("0 to 3"), HasSubstr("z_drive")));
+    EXPECT_EQ(bus_on_demo({"sdo", "read", "0", "statusword"}).code, exit_usage);
+    EXPECT_EQ(bus_on_demo({"sdo", "read", "0", "6041h", "--type", "word"}).code, exit_usage);
+    EXPECT_EQ(bus_on_demo({"sdo", "write", "0", "6040h", "70000"}).code, exit_usage);
+    EXPECT_EQ(bus_on_demo({"state", "fly"}).code, exit_usage);
     EXPECT_EQ(in_process({"bus"}).code, exit_usage);
     const auto nowhere = in_process({"bus", "scan"});
     EXPECT_EQ(nowhere.code, exit_usage);
@@ -132,41 +131,41 @@ TEST(BusCommand, AMissingInterfaceOrFileIsNamed) {
     EXPECT_EQ(json.code, exit_bus);
     EXPECT_EQ(json.json()["error"]["code"], "transport.no_such_interface");
     EXPECT_EQ(in_process({"bus", "why", "--machine", "/nowhere.yaml"}).code, exit_bad_file);
-    EXPECT_EQ(on_demo({"scan", "--pcap", "/nowhere/bus.pcap"}).code, exit_bad_file);
+    EXPECT_EQ(bus_on_demo({"scan", "--pcap", "/nowhere/bus.pcap"}).code, exit_bad_file);
 }
 
 TEST(BusCommand, SdoDumpListsTheDictionary) {
-    const auto dump = on_demo({"sdo", "dump", "x_drive"});
+    const auto dump = bus_on_demo({"sdo", "dump", "x_drive"});
     ASSERT_EQ(dump.code, exit_ok) << dump.err;
     EXPECT_THAT(dump.out, AllOf(HasSubstr("6041h"), HasSubstr("1018h"), HasSubstr("access: read and write in PREOP, SAFEOP, OP")));
-    const auto json = on_demo({"sdo", "dump", "x_drive", "--json"}).json();
+    const auto json = bus_on_demo({"sdo", "dump", "x_drive", "--json"}).json();
     EXPECT_GT(json["objects"].size(), 20u);
 }
 
 TEST(BusCommand, DcShowsTheReferenceAndSync0InOp) {
-    const auto free = on_demo({"dc"});
+    const auto free = bus_on_demo({"dc"});
     EXPECT_EQ(free.code, exit_ok);
     EXPECT_THAT(free.out, HasSubstr("run free"));
-    const auto op = on_demo({"dc", "--operational"});
+    const auto op = bus_on_demo({"dc", "--operational"});
     ASSERT_EQ(op.code, exit_ok) << op.err;
     EXPECT_THAT(op.out, AllOf(HasSubstr("reference"), HasSubstr("1000 us")));
     EXPECT_LE(widest_line(op.out), 80u);
 }
 
 TEST(BusCommand, CountersSayWhenAllIsWell) {
-    const auto counters = on_demo({"counters"});
+    const auto counters = bus_on_demo({"counters"});
     EXPECT_EQ(counters.code, exit_ok) << counters.err;
     EXPECT_THAT(counters.out, HasSubstr("No port has counted an error"));
     EXPECT_LE(widest_line(counters.out), 80u);
-    EXPECT_EQ(on_demo({"counters", "--watch", "--for", "3s", "--reset"}).code, exit_ok);
-    EXPECT_TRUE(on_demo({"counters", "--json"}).json()["findings"].empty());
+    EXPECT_EQ(bus_on_demo({"counters", "--watch", "--for", "3s", "--reset"}).code, exit_ok);
+    EXPECT_TRUE(bus_on_demo({"counters", "--json"}).json()["findings"].empty());
 }
 
 TEST(BusCommand, WhySaysWhenThereIsNothingToExplain) {
-    const auto why = on_demo({"why"});
+    const auto why = bus_on_demo({"why"});
     EXPECT_EQ(why.code, exit_ok) << why.out << why.err;
     EXPECT_THAT(why.out, HasSubstr("reaches OP with 4 slaves"));
-    EXPECT_EQ(on_demo({"why", "--json"}).json()["operational"], true);
+    EXPECT_EQ(bus_on_demo({"why", "--json"}).json()["operational"], true);
 }
 
 // One page about the slave in the way, with the facts a technician asks for.

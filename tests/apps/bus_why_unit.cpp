@@ -85,23 +85,23 @@ TEST(BusWhy, ASlaveThatIsBackInOpBeforeTheEndOfTheProofIsNamedToo) {
 std::string drifting(const char* supervision, int ppm) {
     return fmt::format("  supervision: {}\n  slaves: {{ a: {{ drift: {} ppm }} }}\n", supervision, ppm);
 }
-const std::string drive = "    - { name: a, profile: sv33-e }\n";
+const std::string one_drive = "    - { name: a, profile: sv33-e }\n";
 
 // The cycle follows the reference clock as the machine's does: 100 ppm, what ETG.1000.4 permits two clocks to differ, and more.
 TEST(BusWhy, LocksToAReferenceClockThatTheMachineLocksTo) {
     for (const int ppm : {-200, -100, 100, 200}) {
-        const auto said = why(drive, drifting("strict", ppm), "--json");
+        const auto said = why(one_drive, drifting("strict", ppm), "--json");
         EXPECT_EQ(said.code, exit_ok) << ppm << " ppm: " << said.out << said.err;
     }
 }
 
 // 2 % is twice what the cycle can be corrected by. Strict, that is the reason; without real time the machine does not wait, nor does this.
 TEST(BusWhy, WaitsForTheLockOnlyWhereTheMachineDoes) {
-    const auto strict = why(drive, drifting("strict", 20000), "--json");
+    const auto strict = why(one_drive, drifting("strict", 20000), "--json");
     EXPECT_EQ(strict.code, exit_bus);
     EXPECT_EQ(strict.json()["failure"]["code"], "bus.dc_not_locked") << strict.out;
 
-    const auto relaxed = why(drive, drifting("relaxed", 20000), "--json");
+    const auto relaxed = why(one_drive, drifting("relaxed", 20000), "--json");
     EXPECT_EQ(relaxed.code, exit_ok) << relaxed.out;
     EXPECT_EQ(relaxed.json()["operational"], true);
 }

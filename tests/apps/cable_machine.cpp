@@ -15,6 +15,7 @@
 
 #include "apps/exit_code.hpp"
 #include "tests/apps/cable.hpp"
+#include "tests/apps/machine_files.hpp"
 
 namespace taktwerk::apps {
 namespace {
@@ -22,9 +23,6 @@ namespace {
 using namespace std::chrono_literals;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-const std::string taktwerk = std::string(TAKTWERK_BINARY_DIR) + "/taktwerk";
-const std::filesystem::path source = TAKTWERK_SOURCE_DIR;
 
 std::string text_of(const std::filesystem::path& path) {
     std::ifstream in(path);

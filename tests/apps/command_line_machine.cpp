@@ -13,6 +13,7 @@
 #include "apps/trace_file.hpp"
 #include "axes/words/types.hpp"
 #include "tests/apps/child.hpp"
+#include "tests/apps/machine_files.hpp"
 
 namespace taktwerk::apps {
 namespace {
@@ -21,7 +22,6 @@ using namespace std::chrono_literals;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-const std::string taktwerk = std::string(TAKTWERK_BINARY_DIR) + "/taktwerk";
 const std::string machines = std::string(TAKTWERK_SOURCE_DIR) + "/config/machines/";
 
 class CommandLine : public ::testing::Test {

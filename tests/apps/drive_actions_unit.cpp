@@ -7,6 +7,7 @@
 #include "apps/drive.hpp"
 #include "apps/exit_code.hpp"
 #include "tests/apps/in_process.hpp"
+#include "tests/apps/machine_files.hpp"
 
 namespace taktwerk::apps {
 namespace {
@@ -15,14 +16,9 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const std::string five = std::string(TAKTWERK_SOURCE_DIR) + "/config/machines/five-drives.yaml";
-
-const std::string serial_axis = std::string(TAKTWERK_SOURCE_DIR) + "/config/machines/serial-axis.yaml";  // no program
-
-Outcome drive(std::vector<std::string> words) {
-    words.insert(words.begin(), "drive");
+Outcome on_five(std::vector<std::string> words) {
     words.insert(words.end(), {"--machine", five, "--simulate"});
-    return in_process(std::move(words));
+    return drive(std::move(words));
 }
 
 struct Act {
@@ -38,7 +34,7 @@ class Acts : public ::testing::TestWithParam<Act> {};
 // CiA 402: 6040h is the control word.
 TEST_P(Acts, AreNotDoneUnasked) {
     const auto& act = GetParam();
-    const auto unasked = drive({"set", act.drive, act.assignment});
+    const auto unasked = on_five({"set", act.drive, act.assignment});
     EXPECT_NE(unasked.code, exit_ok) << act.assignment;
     EXPECT_THAT(unasked.err, AllOf(HasSubstr(act.name), HasSubstr("is no setting"), HasSubstr("--yes"), HasSubstr(act.other)))
         << act.assignment;
@@ -57,7 +53,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 // A setting beside it is not written either.
 TEST(DriveActs, NothingIsHalfDone) {
-    const auto both = drive({"set", "da200_drive", "P0.05=300", "P4.92=1"});
+    const auto both = on_five({"set", "da200_drive", "P0.05=300", "P4.92=1"});
     EXPECT_NE(both.code, exit_ok);
     EXPECT_THAT(both.out, Not(HasSubstr("P0.05")));
 }
@@ -65,28 +61,28 @@ TEST(DriveActs, NothingIsHalfDone) {
 // 1011h:01 reads what can be restored (CiA 301: bit 0), not what was written to it.
 TEST(DriveActs, WithAYesAreDoneAndNotReadBackAsAValue) {
     for (const char* assignment : {"1011h:01=0x64616F6C", "1010h:01=0x65766173"}) {
-        const auto done = drive({"set", "stepper_drive", assignment, "--yes"});
+        const auto done = on_five({"set", "stepper_drive", assignment, "--yes"});
         EXPECT_EQ(done.code, exit_ok) << assignment << ": " << done.err;
         EXPECT_THAT(done.out, AllOf(HasSubstr("written"), Not(HasSubstr("nothing to change")), Not(HasSubstr("lost at power off"))));
     }
-    EXPECT_EQ(drive({"set", "da200_drive", "P4.91=1", "--yes"}).code, exit_ok);
-    EXPECT_EQ(drive({"set", "da200_drive", "P0.05=300"}).code, exit_ok) << "a setting needs none";
+    EXPECT_EQ(on_five({"set", "da200_drive", "P4.91=1", "--yes"}).code, exit_ok);
+    EXPECT_EQ(on_five({"set", "da200_drive", "P0.05=300"}).code, exit_ok) << "a setting needs none";
 }
 
 // --- what is typed -----------------------------------------------------------------------------------------------------------------
 
 TEST(DriveWords, WhatIsProposedIsOfThisDrive) {
-    const auto loose = drive({"set", "da200_drive", "P0.05=300", "rpm"});
+    const auto loose = on_five({"set", "da200_drive", "P0.05=300", "rpm"});
     EXPECT_EQ(loose.code, exit_usage);
     EXPECT_THAT(loose.err, AllOf(HasSubstr("rpm"), HasSubstr("has no '='"), HasSubstr("'P0.05=300 rpm'"), Not(HasSubstr("P05.13"))));
-    EXPECT_THAT(drive({"set", "da200_drive", "P0.05"}).err, AllOf(HasSubstr("write P0.05=VALUE"), Not(HasSubstr("P05.13"))));
-    const auto nothing = drive({"set", "da200_drive", "rpm"});
+    EXPECT_THAT(on_five({"set", "da200_drive", "P0.05"}).err, AllOf(HasSubstr("write P0.05=VALUE"), Not(HasSubstr("P05.13"))));
+    const auto nothing = on_five({"set", "da200_drive", "rpm"});
     EXPECT_THAT(nothing.err, AllOf(HasSubstr("PARAMETER=VALUE, such as"), Not(HasSubstr("P05.13"))));
 }
 
 TEST(DriveWords, AParameterTwiceIsRefused) {
     for (const char* second : {"P0.05=400", "P0.05=300", "2005h=400"}) {
-        const auto twice = drive({"set", "da200_drive", "P0.05=300", second});
+        const auto twice = on_five({"set", "da200_drive", "P0.05=300", second});
         EXPECT_EQ(twice.code, exit_usage) << second;
         EXPECT_THAT(twice.err, AllOf(HasSubstr("P0.05"), HasSubstr("given twice"))) << second;
         EXPECT_THAT(twice.out, Not(HasSubstr("changed")));
@@ -94,13 +90,13 @@ TEST(DriveWords, AParameterTwiceIsRefused) {
 }
 
 TEST(DriveWords, WhoIsNotThereIsToldOfTheSerialLinesToo) {
-    const auto unknown = drive({"save", "xp200", "/nowhere/x.yaml"});
+    const auto unknown = on_five({"save", "xp200", "/nowhere/x.yaml"});
     EXPECT_NE(unknown.code, exit_ok);
     EXPECT_THAT(unknown.err, AllOf(HasSubstr("stepper_drive"), HasSubstr("xp200_drive")));
 }
 
 TEST(DriveWords, SixAxesAreAxes) {
-    EXPECT_THAT(drive({"get", "robot", "PA17", "--axis", "7"}).err, AllOf(HasSubstr("6 axes"), Not(HasSubstr("axiss"))));
+    EXPECT_THAT(on_five({"get", "robot", "PA17", "--axis", "7"}).err, AllOf(HasSubstr("6 axes"), Not(HasSubstr("axiss"))));
 }
 
 // SV33-E 5.5, A.D35: methods 15, 16, 31 and 32 do not exist, although 7.3 gives -2 to 35. SE-808X 4.3: 605Ah and 605Dh are 1 or 2.

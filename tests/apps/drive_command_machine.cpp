@@ -9,6 +9,7 @@
 
 #include "apps/exit_code.hpp"
 #include "tests/apps/child.hpp"
+#include "tests/apps/machine_files.hpp"
 
 namespace taktwerk::apps {
 namespace {
@@ -17,9 +18,6 @@ using namespace std::chrono_literals;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-const std::string taktwerk = std::string(TAKTWERK_BINARY_DIR) + "/taktwerk";
-const std::filesystem::path source = TAKTWERK_SOURCE_DIR;
 
 class DriveOfARunningMachine : public ::testing::Test {
 protected:

@@ -16,6 +16,7 @@
 #include "core/clock.hpp"
 #include "modbus/line/pseudo_terminal.hpp"
 #include "tests/apps/in_process.hpp"
+#include "tests/apps/machine_files.hpp"
 
 namespace taktwerk::apps {
 namespace {
@@ -24,13 +25,6 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using namespace std::chrono_literals;
-
-const std::string serial_axis = std::string(TAKTWERK_SOURCE_DIR) + "/config/machines/serial-axis.yaml";
-
-Outcome drive(std::vector<std::string> words) {
-    words.insert(words.begin(), "drive");
-    return in_process(std::move(words));
-}
 
 /// XP200 'u_drive' at station 1, as its machine file has it; each call begins with mains just on.
 Outcome on_line(std::vector<std::string> words, const std::string& file = serial_axis) {

@@ -11,14 +11,13 @@
 #include <iterator>
 
 #include "config/drive_library.hpp"
+#include "tests/apps/machine_files.hpp"
 
 namespace taktwerk::apps {
 namespace {
 
 using testing::HasSubstr;
 using testing::Not;
-
-const std::string source = TAKTWERK_SOURCE_DIR;
 
 config::LoadedDrive a_drive() {
     auto device = std::make_shared<ecat::DeviceDescription>();
@@ -128,7 +127,7 @@ TEST(WithFeatures, ReplacesWhatStandsBetweenTheMarks) {
 }
 
 TEST(DrivePages, AreErrorsWhereThePageIsMissing) {
-    const auto refused = drive_pages(a_drive(), source + "/docs");
+    const auto refused = drive_pages(a_drive(), source.string() + "/docs");
     ASSERT_FALSE(refused.ok());
     EXPECT_EQ(refused.error().code, "docs.no_page");
 }
@@ -140,17 +139,17 @@ std::string committed(const std::string& file) {
 
 // TAKTWERK_REGENERATE=1 writes them; so does `taktwerk docs drives -o docs`.
 TEST(DrivePages, EqualTheGeneratedText) {
-    config::DriveLibrary library({source + "/config/drives"});
+    config::DriveLibrary library({source.string() + "/config/drives"});
     const auto names = library.names();
     ASSERT_FALSE(names.empty());
     for (const auto& name : names) {
         const auto* drive = library.find(name);
         ASSERT_NE(drive, nullptr) << name << ": " << library.errors().front().text();
-        if (!std::filesystem::exists(source + "/docs/drives/" + name + ".md")) continue;
-        const auto pages = drive_pages(*drive, source + "/docs");
+        if (!std::filesystem::exists(source.string() + "/docs/drives/" + name + ".md")) continue;
+        const auto pages = drive_pages(*drive, source.string() + "/docs");
         ASSERT_TRUE(pages.ok()) << pages.error().text();
         for (const auto& page : *pages) {
-            const auto file = source + "/docs/" + page.file;
+            const auto file = source.string() + "/docs/" + page.file;
             if (std::getenv("TAKTWERK_REGENERATE") != nullptr) std::ofstream(file) << page.text;
             EXPECT_TRUE(committed(file) == page.text)
                 << page.file << " is not what the drive file gives: run `taktwerk docs drives " << name << " -o docs` and commit it";

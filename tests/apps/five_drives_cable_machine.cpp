@@ -13,6 +13,7 @@
 
 #include "apps/exit_code.hpp"
 #include "tests/apps/cable.hpp"
+#include "tests/apps/machine_files.hpp"
 
 namespace taktwerk::apps {
 namespace {
@@ -21,9 +22,6 @@ using namespace std::chrono_literals;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using Json = nlohmann::json;
-
-const std::string taktwerk = std::string(TAKTWERK_BINARY_DIR) + "/taktwerk";
-const std::filesystem::path source = TAKTWERK_SOURCE_DIR;
 
 class FiveDrivesOnACable : public ::testing::Test {
 protected:

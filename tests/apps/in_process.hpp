@@ -32,4 +32,9 @@ inline Outcome in_process(std::vector<std::string> words) {
     return {code, std::move(out), ::testing::internal::GetCapturedStderr()};
 }
 
+inline Outcome drive(std::vector<std::string> words) {
+    words.insert(words.begin(), "drive");
+    return in_process(std::move(words));
+}
+
 }  // namespace taktwerk::apps

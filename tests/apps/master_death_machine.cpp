@@ -9,15 +9,13 @@
 #include <gtest/gtest.h>
 
 #include "tests/apps/cable.hpp"
+#include "tests/apps/machine_files.hpp"
 
 namespace taktwerk::apps {
 namespace {
 
 using namespace std::chrono_literals;
 using ::testing::HasSubstr;
-
-const std::string taktwerk = std::string(TAKTWERK_BINARY_DIR) + "/taktwerk";
-const std::filesystem::path source = TAKTWERK_SOURCE_DIR;
 
 struct Death {
     const char* name;

@@ -16,6 +16,7 @@
 #include "apps/line_writer.hpp"
 #include "hmi_bridge/client.hpp"
 #include "tests/apps/child.hpp"
+#include "tests/apps/machine_files.hpp"
 
 namespace taktwerk::apps {
 namespace {
@@ -23,9 +24,6 @@ namespace {
 using namespace std::chrono_literals;
 using ::testing::AnyOf;
 using ::testing::HasSubstr;
-
-const std::string taktwerk = std::string(TAKTWERK_BINARY_DIR) + "/taktwerk";
-const std::filesystem::path source = TAKTWERK_SOURCE_DIR;
 
 /// A named pipe that is full and stays so: whoever writes to it waits.
 class FullPipe {

@@ -35,13 +35,13 @@ const LoadedDrive& tsvm() {
     return loaded;
 }
 
-const ecat::ObjectEntry* object(unsigned index) {
+const ecat::ObjectEntry* tsvm_object(unsigned index) {
     for (const auto& o : tsvm().device->objects)
         if (o.index == index && o.sub == 0) return &o;
     return nullptr;
 }
 
-const DriveParameter* parameter(std::string_view name) {
+const DriveParameter* tsvm_parameter(std::string_view name) {
     for (const auto& p : tsvm().profile->parameters)
         if (p.parameter == name) return &p;
     return nullptr;
@@ -64,31 +64,31 @@ TEST(TsvmObjects, StandAtTheNumbersThatTheManualPrintsForEachAxis) {
                                        {0x603F, 0x683F, 0x703F, 0x783F, 0x803F, 0x883F}, {0x6060, 0x6860, 0x7060, 0x7860, 0x8060, 0x8860}};
     for (const auto& row : printed)
         for (const auto index : row) {
-            ASSERT_NE(object(index), nullptr) << std::hex << index;
-            EXPECT_EQ(object(index)->type, object(row[0])->type) << std::hex << index;
+            ASSERT_NE(tsvm_object(index), nullptr) << std::hex << index;
+            EXPECT_EQ(tsvm_object(index)->type, tsvm_object(row[0])->type) << std::hex << index;
         }
-    EXPECT_EQ(object(0x8041)->access, ecat::Access::ro);  // the statusword of axis 5, whatever 5.4.3 item 4 says of modes
-    EXPECT_EQ(object(0x8841)->access, ecat::Access::ro);
+    EXPECT_EQ(tsvm_object(0x8041)->access, ecat::Access::ro);  // the statusword of axis 5, whatever 5.4.3 item 4 says of modes
+    EXPECT_EQ(tsvm_object(0x8841)->access, ecat::Access::ro);
     EXPECT_EQ(tsvm().device->objects.size() % 6, 0u);
 }
 
 TEST(TsvmObjects, VendorAreasLieWhereTheManualPutsThem) {
     // 5.4.3 item 1: 2000h to 27FFh, 2800h, 3000h, 3800h, 4000h, 4800h to 4FFFh.
     for (const unsigned base : {0x2000u, 0x2800u, 0x3000u, 0x3800u, 0x4000u, 0x4800u}) {
-        EXPECT_NE(object(base + 0x50), nullptr) << std::hex << base;  // PA80, 6.1
+        EXPECT_NE(tsvm_object(base + 0x50), nullptr) << std::hex << base;  // PA80, 6.1
         EXPECT_EQ(std::count_if(tsvm().device->objects.begin(), tsvm().device->objects.end(),
                                 [&](const auto& o) { return o.index >= base && o.index <= base + 0x7FF; }),
                   11)
             << "6.1 prints eleven bus addresses";
     }
-    EXPECT_EQ(object(0x5000), nullptr);
-    EXPECT_EQ(object(0x9040), nullptr) << "there is no seventh axis";
+    EXPECT_EQ(tsvm_object(0x5000), nullptr);
+    EXPECT_EQ(tsvm_object(0x9040), nullptr) << "there is no seventh axis";
 }
 
 TEST(TsvmObjects, ThatTheManualDoesNotHaveAreNotThere) {
     // 5.4.1: no homing; 2.6, 6.2: inputs on no object; no touch probe.
     for (const unsigned index : {0x6098u, 0x6099u, 0x609Au, 0x607Cu, 0x60FDu, 0x60B8u, 0x607Fu, 0x60E0u})
-        for (unsigned axis = 0; axis < 6; ++axis) EXPECT_EQ(object(index + axis * 0x800), nullptr) << std::hex << index;
+        for (unsigned axis = 0; axis < 6; ++axis) EXPECT_EQ(tsvm_object(index + axis * 0x800), nullptr) << std::hex << index;
 }
 
 TEST(TsvmPdos, StandAtTheNumbersOfTheManual) {
@@ -196,7 +196,7 @@ TEST(TsvmParameters, AddressesRangesAndFactoryValuesAreThoseOfTheTable) {
         {"PA74", "内部电流指令", 0, -300, 300, 0},
     };
     for (const auto& row : rows) {
-        const auto* found = parameter(row.name);
+        const auto* found = tsvm_parameter(row.name);
         ASSERT_NE(found, nullptr) << row.name;
         EXPECT_EQ(found->chinese, row.chinese);
         EXPECT_EQ(found->address.index, row.index) << row.name;

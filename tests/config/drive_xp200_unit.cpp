@@ -16,7 +16,7 @@ const LoadedDrive& xp200() {
     return std::get<0>(loaded);
 }
 
-const axes::DriveParameter* parameter(std::string_view name) {
+const axes::DriveParameter* xp200_parameter(std::string_view name) {
     for (const auto& p : xp200().profile->parameters)
         if (p.parameter == name) return &p;
     return nullptr;
@@ -106,7 +106,7 @@ TEST(Xp200File, RangesFactoryValuesAndUnits) {
         {"Pr207", 1, 30000, 2500, "r/min", 1},
     };
     for (const auto& row : rows) {
-        const auto* p = parameter(row.name);
+        const auto* p = xp200_parameter(row.name);
         ASSERT_NE(p, nullptr) << row.name;
         EXPECT_EQ(p->minimum, row.low) << row.name;
         EXPECT_EQ(p->maximum, row.high) << row.name;
@@ -123,8 +123,8 @@ TEST(Xp200File, WhatCountsAfterARestartOnly) {
     for (const auto& p : xp200().profile->parameters)
         if (p.effect == axes::ParameterEffect::after_restart) numbers.push_back(p.address.index);
     EXPECT_EQ(numbers, (std::vector{2, 4, 35, 38, 39, 181, 182, 183}));
-    EXPECT_EQ(parameter("Pr001")->change, axes::ParameterChange::never);  // 5.4.1
-    EXPECT_EQ(parameter("Pr003")->change, axes::ParameterChange::never);
+    EXPECT_EQ(xp200_parameter("Pr001")->change, axes::ParameterChange::never);  // 5.4.1
+    EXPECT_EQ(xp200_parameter("Pr003")->change, axes::ParameterChange::never);
 }
 
 TEST(Xp200File, AlarmsByCode) {

@@ -7,7 +7,7 @@
 #include "tests/drives/alarm_causes.hpp"
 #include "tests/drives/moving_desk.hpp"
 
-namespace taktwerk::test {
+namespace taktwerk::test::alarm_causes {
 namespace {
 
 using axes::sim::Battery;
@@ -272,4 +272,4 @@ INSTANTIATE_TEST_SUITE_P(Drives, FoundAlarm, ::testing::ValuesIn(of_the_bus()), 
 });
 
 }  // namespace
-}  // namespace taktwerk::test
+}  // namespace taktwerk::test::alarm_causes

@@ -4,7 +4,7 @@
 #include "axes/port/find_alarm.hpp"
 #include "tests/drives/moving_desk.hpp"
 
-namespace taktwerk::test {
+namespace taktwerk::test::the_every_alarm {
 namespace {
 
 using axes::DriveAlarmKind;
@@ -159,4 +159,4 @@ INSTANTIATE_TEST_SUITE_P(Drives, EveryAlarm, ::testing::ValuesIn(drives), [](con
 });
 
 }  // namespace
-}  // namespace taktwerk::test
+}  // namespace taktwerk::test::the_every_alarm

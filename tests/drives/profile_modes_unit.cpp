@@ -7,7 +7,7 @@
 #include "tests/drives/drive_desk.hpp"
 #include "tests/patience.hpp"
 
-namespace taktwerk::test {
+namespace taktwerk::test::profile_modes {
 namespace {
 
 constexpr unsigned reached = 0x0400, acknowledged = 0x1000;
@@ -122,4 +122,4 @@ TEST(CyclicVelocity, OnlyADriveThatSaysSoRampsOnTopOfTheMaster) {
 }
 
 }  // namespace
-}  // namespace taktwerk::test
+}  // namespace taktwerk::test::profile_modes

@@ -8,7 +8,7 @@
 #include "tests/drives/drive_desk.hpp"
 #include "tests/patience.hpp"
 
-namespace taktwerk::axes::sim {
+namespace taktwerk::axes::sim::se_808x_conformance {
 namespace {
 
 using taktwerk::test::RunningDesk;
@@ -237,4 +237,4 @@ TEST(Se808xProfileVelocity, RampsToTheTargetVelocityAndBack) {
 }
 
 }  // namespace
-}  // namespace taktwerk::axes::sim
+}  // namespace taktwerk::axes::sim::se_808x_conformance

@@ -13,7 +13,7 @@
 
 #include "tests/drives/drive_desk.hpp"
 
-namespace taktwerk::axes::sim {
+namespace taktwerk::axes::sim::se_808x_homing {
 namespace {
 
 using taktwerk::test::RunningDesk;
@@ -190,4 +190,4 @@ TEST(Se808xHomingSettings, AHomeSwitchThatIsPassedWithinAMillisecondIsNotSeen) {
 }
 
 }  // namespace
-}  // namespace taktwerk::axes::sim
+}  // namespace taktwerk::axes::sim::se_808x_homing

@@ -8,7 +8,7 @@
 
 #include "tests/drives/drive_desk.hpp"
 
-namespace taktwerk::test {
+namespace taktwerk::test::se_808x_open_loop {
 namespace {
 
 constexpr double period = 200, pull_out = 3.81;
@@ -210,4 +210,4 @@ TEST(Se808xClosedLoop, ABlockedMotorIsAPositionError) {
 }
 
 }  // namespace
-}  // namespace taktwerk::test
+}  // namespace taktwerk::test::se_808x_open_loop

@@ -5,7 +5,7 @@
 
 #include "tests/drives/drive_desk.hpp"
 
-namespace taktwerk::axes::sim {
+namespace taktwerk::axes::sim::se_808x_states {
 namespace {
 
 using taktwerk::test::RunningDesk;
@@ -134,4 +134,4 @@ TEST_F(Se808xStates, CyclicPositionFollowsTheTarget) {
 }
 
 }  // namespace
-}  // namespace taktwerk::axes::sim
+}  // namespace taktwerk::axes::sim::se_808x_states

@@ -4,7 +4,7 @@
 
 #include "tests/drives/drive_desk.hpp"
 
-namespace taktwerk::test {
+namespace taktwerk::test::se_808x_unit {
 namespace {
 
 constexpr std::int64_t save = 0x65766173, load = 0x64616F6C;                   // 4.2
@@ -270,4 +270,4 @@ TEST_F(Se808x, TheSupplyIsWatchedByItsLimits) {
 }
 
 }  // namespace
-}  // namespace taktwerk::test
+}  // namespace taktwerk::test::se_808x_unit

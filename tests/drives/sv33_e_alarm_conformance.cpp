@@ -3,7 +3,7 @@
 
 #include "tests/drives/sv33_e.hpp"
 
-namespace taktwerk::test {
+namespace taktwerk::test::sv33_e_alarm {
 namespace {
 
 constexpr std::uint8_t p0a31 = 0x20, p0a32 = 0x21;                              // of 200Ah
@@ -172,4 +172,4 @@ TEST_F(Sv33EAlarms, TheInputComesWhileTheBusHasEnabled) {
 }
 
 }  // namespace
-}  // namespace taktwerk::test
+}  // namespace taktwerk::test::sv33_e_alarm

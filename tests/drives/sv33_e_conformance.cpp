@@ -6,7 +6,7 @@
 #include "ecat/sim/process_data.hpp"
 #include "tests/drives/drive_desk.hpp"
 
-namespace taktwerk::test {
+namespace taktwerk::test::sv33_e_conformance {
 namespace {
 
 constexpr std::int64_t turn = 131'072;  // 17-bit encoder [1.1.2], gear 1:1 [7.3, 6091h]
@@ -258,4 +258,4 @@ TEST_F(Sv33EExamples, Homing) {
 }
 
 }  // namespace
-}  // namespace taktwerk::test
+}  // namespace taktwerk::test::sv33_e_conformance

@@ -3,7 +3,7 @@
 
 #include "tests/drives/sv33_e.hpp"
 
-namespace taktwerk::test {
+namespace taktwerk::test::sv33_e_limit {
 namespace {
 
 constexpr std::int64_t turn = 131'072, pp = 1, pv = 3, pt = 4, csv = 9, cst = 10;
@@ -223,4 +223,4 @@ TEST_F(Sv33ESwitches, InPpASwitchEndsTheMotionUntilAPointLeadsBack) {
 }
 
 }  // namespace
-}  // namespace taktwerk::test
+}  // namespace taktwerk::test::sv33_e_limit

@@ -2,7 +2,7 @@
 
 #include "tests/drives/sv33_e.hpp"
 
-namespace taktwerk::test {
+namespace taktwerk::test::sv33_e_unit {
 namespace {
 
 using State = axes::sim::Cia402Axis::State;
@@ -294,4 +294,4 @@ TEST_F(Sv33E, EarlierAlarmsCanBeLookedUp) {
 }
 
 }  // namespace
-}  // namespace taktwerk::test
+}  // namespace taktwerk::test::sv33_e_unit

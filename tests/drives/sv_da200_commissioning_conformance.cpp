@@ -2,7 +2,7 @@
 
 #include "tests/drives/sv_da200.hpp"
 
-namespace taktwerk::test {
+namespace taktwerk::test::sv_da200_commissioning {
 namespace {
 
 TEST_F(SvDa200, ObeysTheBusOnlyWithP003At8AndThatFromARestartOn) {  // 2.1 item 1, note 1
@@ -66,4 +66,4 @@ TEST_F(SvDa200, RunsFreeWithP408At0AndThatFromARestartOn) {
 }
 
 }  // namespace
-}  // namespace taktwerk::test
+}  // namespace taktwerk::test::sv_da200_commissioning

@@ -2,7 +2,7 @@
 
 #include "tests/drives/sv_da200.hpp"
 
-namespace taktwerk::test {
+namespace taktwerk::test::sv_da200_communication {
 namespace {
 
 constexpr std::int64_t er24_c = 0x180C, er24_a = 0x180A;  // 5.1: main code, sub-code
@@ -58,4 +58,4 @@ TEST_F(SvDa200, GoesOnByTheLastIncrementForAsManyCyclesAsP427Says) {  // 2.1 not
 }
 
 }  // namespace
-}  // namespace taktwerk::test
+}  // namespace taktwerk::test::sv_da200_communication

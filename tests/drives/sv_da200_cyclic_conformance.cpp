@@ -2,7 +2,7 @@
 
 #include "tests/drives/sv_da200.hpp"
 
-namespace taktwerk::test {
+namespace taktwerk::test::sv_da200_cyclic {
 namespace {
 
 TEST_F(SvDa200, CspFollowsAbsoluteTargets) {
@@ -94,4 +94,4 @@ TEST_F(SvDa200, ATorqueIsTenthsOfAPercentOfTheRatedOne) {
 }
 
 }  // namespace
-}  // namespace taktwerk::test
+}  // namespace taktwerk::test::sv_da200_cyclic

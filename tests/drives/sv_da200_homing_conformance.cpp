@@ -2,7 +2,7 @@
 
 #include "tests/drives/sv_da200.hpp"
 
-namespace taktwerk::test {
+namespace taktwerk::test::sv_da200_homing {
 namespace {
 
 TEST_F(SvDa200, HomesToTheSwitchWhileBit4IsHeld) {
@@ -81,4 +81,4 @@ TEST_F(SvDa200, TheZeroLiesTheHomeOffsetBesideTheReference) {  // 3.4.2 step 3: 
 }
 
 }  // namespace
-}  // namespace taktwerk::test
+}  // namespace taktwerk::test::sv_da200_homing

@@ -2,7 +2,7 @@
 
 #include "tests/drives/sv_da200.hpp"
 
-namespace taktwerk::test {
+namespace taktwerk::test::sv_da200_limit {
 namespace {
 
 constexpr std::int64_t er22_0 = 0x1600, er21_0 = 0x1500, er21_1 = 0x1501;  // 5.1: main code, sub-code
@@ -93,4 +93,4 @@ TEST_F(SvDa200, P433IsTheFollowingErrorThatTripsIt) {  // Er22-0
 }
 
 }  // namespace
-}  // namespace taktwerk::test
+}  // namespace taktwerk::test::sv_da200_limit

@@ -5,7 +5,7 @@
 #include "ecat/sim/process_data.hpp"
 #include "tests/drives/drive_desk.hpp"
 
-namespace taktwerk::test {
+namespace taktwerk::test::sv_da200_mapping {
 namespace {
 
 constexpr std::uint32_t device_state = 0x08000022, sub0_not_zero = 0x06010003, too_high = 0x06090031;  // CiA 301 table 22
@@ -121,4 +121,4 @@ TEST_F(SvDa200Mapping, OnlyMappableObjectsAreTaken) {
 }
 
 }  // namespace
-}  // namespace taktwerk::test
+}  // namespace taktwerk::test::sv_da200_mapping

@@ -2,7 +2,7 @@
 
 #include "tests/drives/sv_da200.hpp"
 
-namespace taktwerk::test {
+namespace taktwerk::test::sv_da200_output {
 namespace {
 
 TEST_F(SvDa200, TheTunnelReadsAndWritesParameters) {
@@ -48,4 +48,4 @@ TEST_F(SvDa200, AnAnalogueOutputIsTheValueDividedByItsGain) {
 }
 
 }  // namespace
-}  // namespace taktwerk::test
+}  // namespace taktwerk::test::sv_da200_output

@@ -2,7 +2,7 @@
 
 #include "tests/drives/sv_da200.hpp"
 
-namespace taktwerk::test {
+namespace taktwerk::test::sv_da200_probe {
 namespace {
 
 class SvDa200Probe : public SvDa200 {
@@ -143,4 +143,4 @@ TEST_F(SvDa200Probe, TheSecondProbeGoesByP301AndItsOwnBits) {
 }
 
 }  // namespace
-}  // namespace taktwerk::test
+}  // namespace taktwerk::test::sv_da200_probe

@@ -4,7 +4,7 @@
 #include "tests/drives/sv_da200.hpp"
 #include "tests/patience.hpp"
 
-namespace taktwerk::test {
+namespace taktwerk::test::sv_da200_profile_position {
 namespace {
 
 constexpr double in_place = 10;  // counts: the window of bit 10 while 6067h, whose factory value is not printed, is 0
@@ -207,4 +207,4 @@ TEST_F(SvDa200PpVertical, HaltWithMinusOneHoldsTheLoad) { EXPECT_NEAR(sinks(-1),
 TEST_F(SvDa200PpVertical, HaltWithZeroLetsItFall) { EXPECT_GT(sinks(0), 10000); }
 
 }  // namespace
-}  // namespace taktwerk::test
+}  // namespace taktwerk::test::sv_da200_profile_position

@@ -2,7 +2,7 @@
 
 #include "tests/drives/sv_da200.hpp"
 
-namespace taktwerk::test {
+namespace taktwerk::test::sv_da200_profile_velocity {
 namespace {
 
 class SvDa200Pv : public SvDa200 {
@@ -107,4 +107,4 @@ TEST_F(SvDa200Pv, InCsvAGentlerProfileOfTheMasterPasses) {
 }
 
 }  // namespace
-}  // namespace taktwerk::test
+}  // namespace taktwerk::test::sv_da200_profile_velocity

@@ -2,7 +2,7 @@
 
 #include "tests/drives/sv_da200.hpp"
 
-namespace taktwerk::test {
+namespace taktwerk::test::sv_da200_units {
 namespace {
 
 TEST_F(SvDa200, VelocitiesAreCountsASecondOrRpmAsP425Says) {  // 2.1 note 3; 10000 counts a turn: note 4
@@ -68,4 +68,4 @@ TEST_F(SvDa200, WithP425At3TheVendorsBitsAreGoneAtOnce) {
 }
 
 }  // namespace
-}  // namespace taktwerk::test
+}  // namespace taktwerk::test::sv_da200_units

@@ -5,7 +5,7 @@
 
 #include "tests/drives/drive_desk.hpp"
 
-namespace taktwerk::test {
+namespace taktwerk::test::tsvm_d6 {
 namespace {
 
 using axes::sim::Personality;
@@ -239,4 +239,4 @@ TEST_F(TsvmBattery, Pa80ClearsTheTurnsOfItsAxisOnly) {
 }
 
 }  // namespace
-}  // namespace taktwerk::test
+}  // namespace taktwerk::test::tsvm_d6

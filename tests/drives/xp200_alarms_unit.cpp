@@ -6,7 +6,7 @@
 #include "tests/axes/sim/xp200/drive_rig.hpp"
 #include "tests/drives/alarm_causes.hpp"
 
-namespace taktwerk::test {
+namespace taktwerk::test::xp200_alarms {
 namespace {
 
 using namespace std::chrono_literals;
@@ -142,4 +142,4 @@ TEST(Xp200FoundAlarm, ByComputing) {
 }
 
 }  // namespace
-}  // namespace taktwerk::test
+}  // namespace taktwerk::test::xp200_alarms

@@ -39,16 +39,8 @@ struct Health : ::testing::Test {
         bus->run_for(200ms);
         ASSERT_THAT(faults(), IsEmpty());
     }
-    std::vector<AlarmFact> facts() {
-        std::array<AlarmFact, 32> all;
-        const std::size_t count = bus->master->active_faults(all);
-        return {all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count)};
-    }
-    std::vector<AlarmId> faults() {
-        std::vector<AlarmId> ids;
-        for (const auto& fact : facts()) ids.push_back(fact.id);
-        return ids;
-    }
+    std::vector<AlarmFact> facts() { return bus->facts(); }
+    std::vector<AlarmId> faults() { return bus->faults(); }
     bool said_within(AlarmId id, Duration limit) {
         return bus->run_until(
             [&] {

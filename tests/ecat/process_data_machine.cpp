@@ -18,14 +18,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-std::vector<AlarmId> faults(const TestBus& bus) {
-    std::array<AlarmFact, 16> facts;
-    std::vector<AlarmId> ids;
-    const std::size_t count = bus.master->active_faults(facts);
-    for (std::size_t i = 0; i < count; ++i) ids.push_back(facts[i].id);
-    return ids;
-}
-
 TEST(ProcessData, ReachesTheDriveAndComesBackTwoCyclesLater) {
     TestBus bus{"s"};
     ASSERT_TRUE(bus.bring_up()) << bus.why();
@@ -137,19 +129,19 @@ TEST(Faults, ThreeLostFramesInARowAgeTheInputsAndRaiseTheAlarm) {
     TestBus bus{"s"};
     ASSERT_TRUE(bus.bring_up());
     bus.run_for(50ms);
-    ASSERT_THAT(faults(bus), Not(Contains(alarm::frames_lost)));
+    ASSERT_THAT(bus.faults(), Not(Contains(alarm::frames_lost)));
 
     // Every frame of four cycles is lost, acyclic ones too: the answers of three of them are missed before frames come again.
     bus.network.lose_frames(1000);
     for (int i = 0; i < 4; ++i) bus.cycle_once();
-    EXPECT_THAT(faults(bus), Contains(alarm::frames_lost));
+    EXPECT_THAT(bus.faults(), Contains(alarm::frames_lost));
     EXPECT_GE(bus.master->statistics().frames_lost, 3u);
     EXPECT_GE(bus.master->health(0).age, 3u);
     bus.network.lose_frames(0);
     for (int i = 0; i < 3; ++i) bus.cycle_once();
     EXPECT_TRUE(bus.master->health(0).fresh) << "and fresh again";
     EXPECT_EQ(bus.master->health(0).age, 0u);
-    EXPECT_THAT(faults(bus), Not(Contains(alarm::frames_lost)));
+    EXPECT_THAT(bus.faults(), Not(Contains(alarm::frames_lost)));
 }
 
 TEST(Faults, LostFramesUpToTheLimitAreOnlyCounted) {
@@ -188,15 +180,15 @@ TEST(Faults, APowerCycledSlaveReturnsToOpAndTheOtherIsNotDisturbed) {
     bus.run_for(20ms);
     EXPECT_FALSE(bus.master->health(1).fresh);
     EXPECT_TRUE(bus.master->health(0).fresh) << "its sync unit is its own";
-    EXPECT_THAT(faults(bus), ElementsAre(alarm::slave_lost)) << "as many are silent as are missing: it has a name at once";
+    EXPECT_THAT(bus.faults(), ElementsAre(alarm::slave_lost)) << "as many are silent as are missing: it has a name at once";
     bus.run_for(200ms);
-    EXPECT_THAT(faults(bus), ElementsAre(alarm::slave_lost));
+    EXPECT_THAT(bus.faults(), ElementsAre(alarm::slave_lost));
 
     bus.network.set_power(1, true);
     ASSERT_TRUE(bus.run_until([&] { return bus.state(1) == sim::EsmState::op; }, 5s));
     bus.run_for(300ms);
     EXPECT_TRUE(bus.master->health(1).fresh);
-    EXPECT_TRUE(faults(bus).empty());
+    EXPECT_TRUE(bus.faults().empty());
     EXPECT_EQ(bus.state(0), sim::EsmState::op);
     EXPECT_EQ(bus.servo(0).watchdogs, 0);
     EXPECT_THAT(bus.master->notes(), Contains(HasSubstr("slave 1 'b' (sv33-e) is back in OP")));
@@ -213,7 +205,7 @@ TEST(Faults, ThePowerCycledReferenceClockReturnsWithoutThrowingTheOthersClocks) 
     bus.network.set_power(1, true);
     ASSERT_TRUE(bus.run_until([&] { return bus.state(1) == sim::EsmState::op && bus.state(2) == sim::EsmState::op; }, 10s)) << bus.why();
     bus.run_for(1s);
-    EXPECT_TRUE(faults(bus).empty());
+    EXPECT_TRUE(bus.faults().empty());
     EXPECT_LT(std::abs(bus.master->statistics().dc_offset_ns), 100'000);
     const auto spread = bus.servo(1).last_exchange - bus.servo(2).last_exchange;
     EXPECT_LT(std::abs(spread.count()), 2000);
@@ -234,7 +226,7 @@ TEST(Faults, ASlaveThatFellBySmWatchdogIsAcknowledgedAndReturns) {
     EXPECT_THAT(bus.master->notes(),
                 Contains(HasSubstr("AL status code 001Bh sync manager watchdog; right before, this computer sent nothing for 51 ms")));
     bus.run_for(200ms);
-    EXPECT_TRUE(faults(bus).empty());
+    EXPECT_TRUE(bus.faults().empty());
 }
 
 // The same as alarms: who stood still is named, not the slave.

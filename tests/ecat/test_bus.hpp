@@ -157,6 +157,16 @@ public:
         run_until([&] { return master->phase() == Master::Phase::operational || master->phase() == Master::Phase::failed; }, limit);
         return master->phase() == Master::Phase::operational;
     }
+    [[nodiscard]] std::vector<AlarmFact> facts() const {
+        std::array<AlarmFact, 32> all;
+        const std::size_t count = master->active_faults(all);
+        return {all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count)};
+    }
+    [[nodiscard]] std::vector<AlarmId> faults() const {
+        std::vector<AlarmId> ids;
+        for (const auto& fact : facts()) ids.push_back(fact.id);
+        return ids;
+    }
     [[nodiscard]] std::string why() const { return master->failure().text() + " | " + master->progress(); }
 
     BusConfig config;

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "axes/axis/axis.hpp"
@@ -23,6 +24,30 @@ inline AxisConfig plain_axis() {
     config.limits = {.velocity = 100, .acceleration = 1000, .deceleration = 1000, .jerk = 20000};
     config.require_homed = false;
     return config;
+}
+
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// plain_axis() with ramps of constant acceleration.
+inline AxisConfig trapezoids(double velocity = 1000, double ramp = 1000) {
+    auto config = plain_axis();
+    config.limits = {.velocity = velocity, .acceleration = ramp, .deceleration = ramp, .jerk = infinity};
+    return config;
+}
+
+inline AxisConfig homing_by(HomingKind kind, Duration timeout = 10s) {
+    auto config = plain_axis();
+    config.homing.kind = kind;
+    config.homing.search_velocity = 20;
+    config.homing.latch_velocity = 1;
+    config.homing.timeout = timeout;
+    config.following.window = 0.5;
+    return config;
+}
+
+/// A way added to whatever the axis does.
+inline AxisCommand on_top(double distance, double velocity) {
+    return {.kind = CommandKind::move_superimposed, .position = distance, .velocity = velocity};
 }
 
 struct Rig {

@@ -7,21 +7,19 @@
 namespace taktwerk::axes::test {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-AxisConfig trapezoids() {
-    auto config = plain_axis();
-    config.limits = {.velocity = 1000, .acceleration = 1000, .deceleration = 1000, .jerk = infinity};
-    config.queue_depth = 8;
-    return config;
-}
-
 AxisCommand with_ramps(AxisCommand command, double ramp) {
     command.acceleration = command.deceleration = ramp;
     return command;
 }
 
 /// What was seen of one command's end.
+/// Room for a chain of moves.
+AxisConfig chained() {
+    auto config = trapezoids();
+    config.queue_depth = 8;
+    return config;
+}
+
 struct Joint {
     double time = 0;      ///< s since the start, end of the cycle in which it was done
     double position = 0;  ///< at the end of that cycle
@@ -29,7 +27,7 @@ struct Joint {
     double before = 0;  ///< velocity one cycle earlier
 };
 
-struct Watched : Rig {
+struct JointRig : Rig {
     using Rig::Rig;
     std::vector<CommandId> ids;
     std::vector<Joint> joints;
@@ -61,7 +59,7 @@ struct Watched : Rig {
 
 // P1-310, P1-088, P1-314: appendix A, example 4. 10.625 + 20 + 10.625 s; 50 at both joints and between them.
 TEST(Blending, LowTakesTheLowerOfBothVelocities) {
-    Watched rig(trapezoids());
+    JointRig rig(chained());
     rig.power_on();
     rig.play({with_ramps(absolute(1000, 100), 100), with_ramps(absolute(2000, 50, mcBlendingLow), 50),
               with_ramps(absolute(3000, 100, mcBlendingLow), 100)});
@@ -78,7 +76,7 @@ TEST(Blending, LowTakesTheLowerOfBothVelocities) {
 
 // P1-311, P1-089, P1-314: example 5. 100 at 1000, 50 at 2000; 10.5 + 19.875 + 10.625 s.
 TEST(Blending, PreviousKeepsTheVelocityOfTheFirst) {
-    Watched rig(trapezoids());
+    JointRig rig(chained());
     rig.power_on();
     rig.play({with_ramps(absolute(1000, 100), 100), with_ramps(absolute(2000, 50, mcBlendingPrevious), 200),
               with_ramps(absolute(3000, 100, mcBlendingPrevious), 100)});
@@ -93,7 +91,7 @@ TEST(Blending, PreviousKeepsTheVelocityOfTheFirst) {
 
 // P1-312, P1-090, P1-314: example 6. Brakes to 50 inside the first, speeds up to 100 inside the second; 10.625 + 19.5 + 10.5 s.
 TEST(Blending, NextHasTheVelocityOfTheSecondAtTheJoint) {
-    Watched rig(trapezoids());
+    JointRig rig(chained());
     rig.power_on();
     rig.play({with_ramps(absolute(1000, 100), 100), with_ramps(absolute(2000, 50, mcBlendingNext), 50),
               with_ramps(absolute(3000, 100, mcBlendingNext), 100)});
@@ -108,7 +106,7 @@ TEST(Blending, NextHasTheVelocityOfTheSecondAtTheJoint) {
 
 // P1-313, P1-091, P1-314: example 7. 100 at both joints, 50 between them: the second exceeds its own velocity before 2000; 10.5 + 19.75 + 10.5 s.
 TEST(Blending, HighTakesTheHigherOfBothVelocities) {
-    Watched rig(trapezoids());
+    JointRig rig(chained());
     rig.power_on();
     rig.play({with_ramps(absolute(1000, 100), 100), with_ramps(absolute(2000, 50, mcBlendingHigh), 200),
               with_ramps(absolute(3000, 100, mcBlendingHigh), 100)});
@@ -123,7 +121,7 @@ TEST(Blending, HighTakesTheHigherOfBothVelocities) {
 
 // P1-308: example 2, aborting: 100 to 50 in 0.25 s, the first is aborted, the end is 2000.
 TEST(Blending, AbortingTakesOverAtOnce) {
-    Rig rig(trapezoids());
+    Rig rig(chained());
     rig.power_on();
     const auto first = rig.accept(with_ramps(absolute(1000, 100), 100));
     rig.run(5000);
@@ -141,7 +139,7 @@ TEST(Blending, AbortingTakesOverAtOnce) {
 // The joint lies inside a cycle: what is left of it belongs to the second move. At 100 u/s P1 = 10.0437 is passed at v = 100 in both modes,
 // so the whole blended way is one trapezoid: 20 u at 100 u/s and 1000 u/s2 take 0.2 + 0.1 s, and each set-point is the trapezoid's.
 TEST(Blending, ThePointIsPassedInsideACycleWithoutATrace) {
-    Watched rig(trapezoids());
+    JointRig rig(chained());
     rig.power_on();
     const auto start = rig.now;
     rig.program = [&] {
@@ -159,7 +157,7 @@ TEST(Blending, ThePointIsPassedInsideACycleWithoutATrace) {
 
 // Rule 3: in the other direction the joint is passed with 0, and it is visited exactly.
 TEST(Blending, ReversalStopsAtTheJoint) {
-    Watched rig(trapezoids());
+    JointRig rig(chained());
     rig.power_on();
     rig.play({absolute(100, 50), absolute(20, 80, mcBlendingHigh)});
     EXPECT_NEAR(rig.joints[0].before, 0, 1.01);  // one cycle before the stop: 1000 u/s2 * 1 ms
@@ -171,7 +169,7 @@ TEST(Blending, ReversalStopsAtTheJoint) {
 // Rule 4: 2 u behind the joint with 1000 u/s2 can be stopped from sqrt(2 * 1000 * 2) = 63.2456 u/s. With 50 u more behind it (blended too) from more.
 TEST(Blending, ShortSecondMoveLimitsTheVelocityAtTheJoint) {
     for (const bool longer : {false, true}) {
-        Watched rig(trapezoids());
+        JointRig rig(chained());
         rig.power_on();
         std::vector<AxisCommand> moves{absolute(50, 200), absolute(52, 200, mcBlendingHigh)};
         if (longer) moves.push_back(absolute(102, 200, mcBlendingHigh));
@@ -188,7 +186,7 @@ TEST(Blending, ShortSecondMoveLimitsTheVelocityAtTheJoint) {
 
 // Rule 2, faster than it can be: from rest 5 u with 1000 u/s2 reach sqrt(2 * 1000 * 5) = 100 u/s, not 400.
 TEST(Blending, VelocityOutOfReachBecomesTheNearestOne) {
-    Watched rig(trapezoids());
+    JointRig rig(chained());
     rig.power_on();
     rig.play({absolute(5, 300), absolute(500, 400, mcBlendingNext)});
     EXPECT_NEAR(rig.joints[0].before, 100, 1.01);
@@ -197,7 +195,7 @@ TEST(Blending, VelocityOutOfReachBecomesTheNearestOne) {
 
 // Rule 6: given inside the braking ramp of the first, from there on the best is made of it.
 TEST(Blending, LateCommandIsNoErrorAndStopsNothing) {
-    Rig rig(trapezoids());
+    Rig rig(chained());
     rig.power_on();
     const auto first = rig.accept(with_ramps(absolute(100, 100), 100));  // brakes over the last 50 u, from 1.0 s on
     rig.run(1500);
@@ -223,7 +221,7 @@ TEST(Blending, LateCommandIsNoErrorAndStopsNothing) {
 TEST(Blending, BehindVelocityEveryModeIsPrevious) {
     std::array<Instant, 4> ends{};
     for (int mode = mcBlendingLow; mode <= mcBlendingHigh; ++mode) {
-        Rig rig(trapezoids());
+        Rig rig(chained());
         rig.power_on();
         const auto first = rig.accept(at_velocity(60));
         const auto second = rig.accept(absolute(200, 120, static_cast<MC_BufferMode>(mode)));
@@ -242,7 +240,7 @@ TEST(Blending, BehindVelocityEveryModeIsPrevious) {
 
 // Into an endless motion: MC_MoveVelocity behind a move takes over at the joint with the velocity of the rule.
 TEST(Blending, VelocityCommandTakesOverAtTheJoint) {
-    Watched rig(trapezoids());
+    JointRig rig(chained());
     rig.power_on();
     const auto move = rig.accept(absolute(50, 100));
     const auto endless = rig.accept(at_velocity(40, mcBlendingNext));
@@ -255,7 +253,7 @@ TEST(Blending, VelocityCommandTakesOverAtTheJoint) {
 // P1-304: fast forward, feed, in one go: with blending the velocity is zero only at the end.
 TEST(Blending, FastForwardIntoFeedDoesNotStop) {
     for (const auto mode : {mcBuffered, mcBlendingLow}) {
-        Rig rig(trapezoids());
+        Rig rig(chained());
         rig.power_on();
         rig.accept(absolute(30, 100));
         rig.accept(relative(10, 25, mode));
@@ -274,7 +272,7 @@ TEST(Blending, FastForwardIntoFeedDoesNotStop) {
 
 // P1-040: an axis error is the error of the active command and of all that wait, whatever their mode.
 TEST(Blending, AxisErrorEndsActiveAndWaitingWithErrors) {
-    Rig rig(trapezoids());
+    Rig rig(chained());
     rig.power_on();
     std::array<CommandId, 3> ids{rig.accept(absolute(100, 50)), rig.accept(absolute(200, 50, mcBlendingHigh)),
                                  rig.accept(absolute(300, 50, mcBuffered))};
@@ -288,7 +286,7 @@ TEST(Blending, AxisErrorEndsActiveAndWaitingWithErrors) {
 
 // A follower that cannot run is no reason to pass the joint: the first stops at its end, the second ends with its own error.
 TEST(Blending, ImpossibleFollowerIsNotBlendedInto) {
-    auto config = trapezoids();
+    auto config = chained();
     config.limits.position_min = -10;
     config.limits.position_max = 100;
     config.homing.kind = HomingKind::set_here;

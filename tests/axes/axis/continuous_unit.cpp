@@ -5,14 +5,6 @@
 namespace taktwerk::axes::test {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-AxisConfig trapezoids(double velocity = 1000, double ramp = 1000) {
-    auto config = plain_axis();
-    config.limits = {.velocity = velocity, .acceleration = ramp, .deceleration = ramp, .jerk = infinity};
-    return config;
-}
-
 AxisCommand additive(double distance, double velocity = 100, MC_BufferMode mode = mcAborting) {
     return {.kind = CommandKind::move_additive, .buffer_mode = mode, .position = distance, .velocity = velocity};
 }

@@ -9,8 +9,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-struct Watched {
-    Watched() {
+struct WatchedRun {
+    WatchedRun() {
         run.enter(DriveMode::profile_velocity);
         run.hand({}, {}, now);
         said.fresh = true;
@@ -28,7 +28,7 @@ struct Watched {
 
 // The word of the set-point before stands for some cycles of dead time; one that never falls is believed after 50 ms.
 TEST(DriveProfileRun, TargetReachedCountsOnceItFellOrAfterAWhile) {
-    Watched never_falls;
+    WatchedRun never_falls;
     never_falls.hears(10ms, true, true);
     EXPECT_FALSE(never_falls.run.in_target());
     never_falls.hears(49ms, true, true);
@@ -36,7 +36,7 @@ TEST(DriveProfileRun, TargetReachedCountsOnceItFellOrAfterAWhile) {
     never_falls.hears(1ms, true, true);
     EXPECT_TRUE(never_falls.run.in_target());
 
-    Watched falls;
+    WatchedRun falls;
     falls.hears(10ms, true, true);
     falls.hears(3ms, true, false);
     EXPECT_FALSE(falls.run.in_target());
@@ -47,7 +47,7 @@ TEST(DriveProfileRun, TargetReachedCountsOnceItFellOrAfterAWhile) {
 }
 
 TEST(DriveProfileRun, NothingCountsBeforeTheDriveHasTakenIt) {
-    Watched r;
+    WatchedRun r;
     r.hears(100ms, false, false);
     r.hears(100ms, false, true);
     EXPECT_FALSE(r.run.in_target());
@@ -56,7 +56,7 @@ TEST(DriveProfileRun, NothingCountsBeforeTheDriveHasTakenIt) {
 
 // Inside the axis' own window the drive's word and standstill are enough; outside it must have fallen and last half a second.
 TEST(DriveProfileRun, AMoveIsOverStandingAtItsTargetByTheDrivesWord) {
-    Watched r;
+    WatchedRun r;
     r.hears(1ms, true, true, false);
     EXPECT_FALSE(r.run.arrived(true, r.now)) << "it moves";
     r.hears(1ms, true, true);
@@ -72,12 +72,12 @@ TEST(DriveProfileRun, AMoveIsOverStandingAtItsTargetByTheDrivesWord) {
 }
 
 TEST(DriveProfileRun, ASetPointIsRefusedAfterTwoSeconds) {
-    Watched r;
+    WatchedRun r;
     r.hears(1999ms, false, false);
     EXPECT_FALSE(r.run.refused(r.now));
     r.hears(1ms, false, false);
     EXPECT_TRUE(r.run.refused(r.now));
-    Watched taken;
+    WatchedRun taken;
     taken.hears(100ms, true, false);
     taken.hears(3s, true, false);
     EXPECT_FALSE(taken.run.refused(taken.now));
@@ -85,7 +85,7 @@ TEST(DriveProfileRun, ASetPointIsRefusedAfterTwoSeconds) {
 
 // Never one number twice, also over a change of mode: the port remembers the last one that was taken.
 TEST(DriveProfileRun, EachSetPointHasANumberOfItsOwn) {
-    Watched r;
+    WatchedRun r;
     const auto first = r.run.announced().sequence;
     r.hears(1ms, true, true);
     r.run.end();

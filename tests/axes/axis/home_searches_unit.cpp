@@ -6,15 +6,6 @@
 namespace taktwerk::axes::test {
 namespace {
 
-AxisConfig homing_by(HomingKind kind) {
-    auto config = plain_axis();
-    config.homing.kind = kind;
-    config.homing.search_velocity = 20;
-    config.homing.latch_velocity = 1;
-    config.homing.timeout = 30s;
-    config.following.window = 0.5;
-    return config;
-}
 void with_limits(FakeDrive& drive) {
     drive.switches = true;
     drive.home_low = -10'000;
@@ -25,7 +16,7 @@ void with_limits(FakeDrive& drive) {
 
 class HomeByLimitSwitch : public ::testing::TestWithParam<double> {};
 TEST_P(HomeByLimitSwitch, TakesTheEdgeSlowlyOnTheWayBack) {
-    Rig rig(homing_by(HomingKind::limit_switch), [](FakeDrive& drive) {
+    Rig rig(homing_by(HomingKind::limit_switch, 30s), [](FakeDrive& drive) {
         with_limits(drive);
         drive.position = GetParam() * 1000;
     });
@@ -43,7 +34,7 @@ TEST_P(HomeByLimitSwitch, TakesTheEdgeSlowlyOnTheWayBack) {
 INSTANTIATE_TEST_SUITE_P(FromFreeAndFromOnIt, HomeByLimitSwitch, ::testing::Values(0.0, -30.5, 29.0));
 
 TEST(HomeByBlock, TakesTheStopAndStandsThere) {
-    auto config = homing_by(HomingKind::block);
+    auto config = homing_by(HomingKind::block, 30s);
     config.homing.torque = 0.2;
     config.homing.negative = false;
     Rig rig(config, [](FakeDrive& drive) {
@@ -62,7 +53,7 @@ TEST(HomeByBlock, TakesTheStopAndStandsThere) {
 }
 
 TEST(HomeByBlock, NothingInReachIsATimeoutOfTheAxis) {
-    auto config = homing_by(HomingKind::block);
+    auto config = homing_by(HomingKind::block, 30s);
     config.homing.torque = 0.2;
     config.homing.timeout = 1s;
     Rig rig(config);
@@ -75,7 +66,7 @@ TEST(HomeByBlock, NothingInReachIsATimeoutOfTheAxis) {
 
 // The switch's edge at -8 u only says which turn; the pulse behind it, at -6.5 u, is the reference and exact.
 TEST(HomeByReferencePulse, TakesTheFirstPulseBehindTheSwitch) {
-    Rig rig(homing_by(HomingKind::reference_pulse), [](FakeDrive& drive) {
+    Rig rig(homing_by(HomingKind::reference_pulse, 30s), [](FakeDrive& drive) {
         with_limits(drive);
         drive.caps.probes = 1;
         drive.index_distance = 10'000;
@@ -91,14 +82,14 @@ TEST(HomeByReferencePulse, TakesTheFirstPulseBehindTheSwitch) {
     rig.expect_no_jump();
     EXPECT_FALSE(rig.drive.last.probes[0].armed);
 
-    Rig without(homing_by(HomingKind::reference_pulse), with_limits);
+    Rig without(homing_by(HomingKind::reference_pulse, 30s), with_limits);
     without.power_on();
     EXPECT_EQ(without.refuse(home(0)), ErrorId::no_such_probe);
 }
 
 // The encoder's zero becomes Position; a raw position that has wrapped has its zero at the next multiple of the range.
 TEST(HomeByAbsoluteEncoder, NeedsNoMotion) {
-    auto config = homing_by(HomingKind::absolute);
+    auto config = homing_by(HomingKind::absolute, 30s);
     config.memory = {.absolute = true, .range = 100'000};
     Rig rig(config, [](FakeDrive& drive) { drive.position = 302'500; });
     rig.power_on();
@@ -109,7 +100,7 @@ TEST(HomeByAbsoluteEncoder, NeedsNoMotion) {
     EXPECT_DOUBLE_EQ(rig.view().actual_position, 42.5);
     EXPECT_EQ(rig.drive.largest_step, 0);
 
-    Rig incremental(homing_by(HomingKind::absolute));
+    Rig incremental(homing_by(HomingKind::absolute, 30s));
     incremental.power_on();
     EXPECT_EQ(incremental.refuse(home(0)), ErrorId::not_supported);
 }

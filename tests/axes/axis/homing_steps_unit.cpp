@@ -8,7 +8,6 @@ namespace taktwerk::axes::test {
 namespace {
 
 using enum MC_SwitchMode;
-using enum MC_HomeDirection;
 
 AxisCommand step(HomingStepDetails details, double velocity = 20, MC_BufferMode mode = mcAborting) {
     if (details.step == HomingStep::absolute_switch) details.reference.source = TriggerSource::home_switch;
@@ -55,7 +54,7 @@ struct StepRig : Rig {
 // The procedure: Homing from the first step until MC_FinishHoming, not homed in between, the coordinate set where the edge is.
 TEST(HomingSteps, StayInHomingUntilFinishedAndAreNotHomedBefore) {
     StepRig rig;
-    const auto id = rig.accept(to_switch(mcEdgeSwitchNegative, mcNegativeDirection, 100));
+    const auto id = rig.accept(to_switch(mcEdgeSwitchNegative, MC_HomeDirection::mcNegativeDirection, 100));
     EXPECT_EQ(rig.view().state, AxisState::Homing);
     ASSERT_EQ(rig.finished(id), CommandStatus::done);
     EXPECT_EQ(rig.view().state, AxisState::Homing);
@@ -80,8 +79,8 @@ TEST(HomingSteps, StayInHomingUntilFinishedAndAreNotHomedBefore) {
 // Coarse and fine, buffered, as in the example procedure HomeAbsSwitch: each begins when the one before it is done.
 TEST(HomingSteps, BufferedStepsFollowOneAnother) {
     StepRig rig;
-    const auto coarse = rig.accept(to_switch(mcOn, mcNegativeDirection));
-    auto fine_step = to_switch(mcEdgeSwitchNegative, mcPositiveDirection, 50);
+    const auto coarse = rig.accept(to_switch(mcOn, MC_HomeDirection::mcNegativeDirection));
+    auto fine_step = to_switch(mcEdgeSwitchNegative, MC_HomeDirection::mcPositiveDirection, 50);
     fine_step.velocity = 1;
     fine_step.buffer_mode = mcBuffered;
     const auto fine = rig.accept(fine_step);
@@ -120,24 +119,24 @@ TEST_P(AbsoluteSwitch, FindsItsEdgeFromAnywhereWithRamps) {
 }
 INSTANTIATE_TEST_SUITE_P(
     AllModes, AbsoluteSwitch,
-    ::testing::Values(FromSomewhere{mcRisingEdge, mcPositiveDirection, -30, -10}, FromSomewhere{mcRisingEdge, mcPositiveDirection, -9, -10},
-                      FromSomewhere{mcRisingEdge, mcPositiveDirection, 30, -10}, FromSomewhere{mcRisingEdge, mcNegativeDirection, -30, -8},
-                      FromSomewhere{mcFallingEdge, mcNegativeDirection, 10, -10},
-                      FromSomewhere{mcFallingEdge, mcNegativeDirection, -30, -10},
-                      FromSomewhere{mcEdgeSwitchPositive, mcSwitchNegative, -9, -10},
-                      FromSomewhere{mcEdgeSwitchNegative, mcPositiveDirection, 20, -8}, FromSomewhere{mcOn, mcSwitchPositive, -30, -10},
-                      FromSomewhere{mcOff, mcSwitchPositive, -9, -10}, FromSomewhere{mcOff, mcSwitchNegative, -9, -8},
-                      FromSomewhere{mcOn, mcPositiveDirection, 20, -8}));
+    ::testing::Values(FromSomewhere{mcRisingEdge, MC_HomeDirection::mcPositiveDirection, -30, -10}, FromSomewhere{mcRisingEdge, MC_HomeDirection::mcPositiveDirection, -9, -10},
+                      FromSomewhere{mcRisingEdge, MC_HomeDirection::mcPositiveDirection, 30, -10}, FromSomewhere{mcRisingEdge, MC_HomeDirection::mcNegativeDirection, -30, -8},
+                      FromSomewhere{mcFallingEdge, MC_HomeDirection::mcNegativeDirection, 10, -10},
+                      FromSomewhere{mcFallingEdge, MC_HomeDirection::mcNegativeDirection, -30, -10},
+                      FromSomewhere{mcEdgeSwitchPositive, MC_HomeDirection::mcSwitchNegative, -9, -10},
+                      FromSomewhere{mcEdgeSwitchNegative, MC_HomeDirection::mcPositiveDirection, 20, -8}, FromSomewhere{mcOn, MC_HomeDirection::mcSwitchPositive, -30, -10},
+                      FromSomewhere{mcOff, MC_HomeDirection::mcSwitchPositive, -9, -10}, FromSomewhere{mcOff, MC_HomeDirection::mcSwitchNegative, -9, -8},
+                      FromSomewhere{mcOn, MC_HomeDirection::mcPositiveDirection, 20, -8}));
 
 // An inverted axis: counts fall where u rises, the drive's switches are exchanged.
 TEST(HomingSteps, InvertedAxisFindsTheSameEdge) {
     auto config = StepRig::watched();
     config.gearing.inverted = true;
     StepRig rig(config);
-    const auto id = rig.accept(to_switch(mcRisingEdge, mcPositiveDirection, 7));  // in counts: downwards to the edge at -8000
+    const auto id = rig.accept(to_switch(mcRisingEdge, MC_HomeDirection::mcPositiveDirection, 7));  // in counts: downwards to the edge at -8000
     ASSERT_EQ(rig.finished(id), CommandStatus::done);
     EXPECT_NEAR(rig.view().actual_position + rig.drive.position / 1000, 7 - 8, 0.011);
-    const auto limit = rig.accept(step({.step = HomingStep::limit_switch, .direction = mcPositiveDirection, .switch_mode = mcOn}));
+    const auto limit = rig.accept(step({.step = HomingStep::limit_switch, .direction = MC_HomeDirection::mcPositiveDirection, .switch_mode = mcOn}));
     ASSERT_EQ(rig.finished(limit), CommandStatus::done);
     EXPECT_LT(rig.drive.position, -59'000);  // u's positive end is the drive's negative one
 }
@@ -148,7 +147,7 @@ TEST(HomingSteps, SwitchMayBeAnInputOfTheMachine) {
     std::array<std::int64_t, 2> inputs{0, 0b100};
     rig.axis.bind({.inputs = inputs});
     rig.program = [&] { inputs[1] = rig.drive.position > 5000 ? 0 : 0b100; };
-    auto command = step({.step = HomingStep::absolute_switch, .direction = mcPositiveDirection, .switch_mode = mcOn, .set_position = 20});
+    auto command = step({.step = HomingStep::absolute_switch, .direction = MC_HomeDirection::mcPositiveDirection, .switch_mode = mcOn, .set_position = 20});
     std::get<HomingStepDetails>(command.details).reference = {.source = TriggerSource::input, .falling = true, .point = 1, .bit = 2};
     const auto id = rig.accept(command);
     ASSERT_EQ(rig.finished(id), CommandStatus::done);
@@ -160,7 +159,7 @@ TEST(HomingSteps, SwitchMayBeAnInputOfTheMachine) {
 TEST(HomingSteps, LimitSwitchIsReferenceAndFinishMovesOffIt) {
     StepRig rig;
     const auto id = rig.accept(
-        step({.step = HomingStep::limit_switch, .direction = mcNegativeDirection, .switch_mode = mcRisingEdge, .set_position = -200}));
+        step({.step = HomingStep::limit_switch, .direction = MC_HomeDirection::mcNegativeDirection, .switch_mode = mcRisingEdge, .set_position = -200}));
     ASSERT_EQ(rig.finished(id), CommandStatus::done);
     EXPECT_NEAR(rig.zero_is(), -140, 0.011);
     EXPECT_TRUE(rig.view().negative_limit_switch);
@@ -173,7 +172,7 @@ TEST(HomingSteps, LimitSwitchIsReferenceAndFinishMovesOffIt) {
 
 TEST(HomingSteps, FinishDoesNotMoveFurtherIntoALimitSwitch) {
     StepRig rig;
-    const auto id = rig.accept(step({.step = HomingStep::limit_switch, .direction = mcNegativeDirection, .switch_mode = mcOn}));
+    const auto id = rig.accept(step({.step = HomingStep::limit_switch, .direction = MC_HomeDirection::mcNegativeDirection, .switch_mode = mcOn}));
     ASSERT_EQ(rig.finished(id), CommandStatus::done);
     const double there = rig.drive.position;
     const auto end = rig.accept(finish(-5));
@@ -193,7 +192,7 @@ TEST(HomingSteps, BlockIsFoundByTorqueAndStandstill) {
         drive.caps.torque_limits = true;
     });
     const auto id = rig.accept(step({.step = HomingStep::block,
-                                     .direction = mcPositiveDirection,
+                                     .direction = MC_HomeDirection::mcPositiveDirection,
                                      .set_position = 300,
                                      .torque_limit = 0.3,
                                      .detection_velocity_limit = 1,
@@ -247,7 +246,7 @@ TEST(HomingSteps, ReferencePulseIsExact) {
         drive.index_distance = 10'000;
         drive.index_at = 1234;
     });
-    const auto id = rig.accept(step({.step = HomingStep::reference_pulse, .direction = mcNegativeDirection, .set_position = 0}));
+    const auto id = rig.accept(step({.step = HomingStep::reference_pulse, .direction = MC_HomeDirection::mcNegativeDirection, .set_position = 0}));
     ASSERT_EQ(rig.finished(id), CommandStatus::done);
     EXPECT_NEAR(rig.zero_is(), 8.766, 1e-9);  // the pulse at -8766 counts
     EXPECT_FALSE(rig.drive.last.probes[0].armed);
@@ -304,7 +303,7 @@ TEST(HomingSteps, FailedStepCannotBeFinished) {
         drive.home_low = 1;
         drive.home_high = 0;
     });
-    const auto id = rig.accept(to_switch(mcRisingEdge, mcNegativeDirection));
+    const auto id = rig.accept(to_switch(mcRisingEdge, MC_HomeDirection::mcNegativeDirection));
     const auto end = rig.accept(finish(0, 0, mcBuffered));
     ASSERT_EQ(rig.finished(id), CommandStatus::error);
     EXPECT_EQ(rig.error_of(id), ErrorId::homing_failed);
@@ -323,7 +322,7 @@ TEST(HomingSteps, FailedStepCannotBeFinished) {
 
 TEST(HomingSteps, TimeAndDistanceLimitsStopTheSearch) {
     StepRig rig;
-    auto command = to_switch(mcOn, mcPositiveDirection);
+    auto command = to_switch(mcOn, MC_HomeDirection::mcPositiveDirection);
     std::get<HomingStepDetails>(command.details).time_limit = 500ms;
     const auto time = rig.accept(command);
     ASSERT_EQ(rig.finished(time), CommandStatus::error);
@@ -344,7 +343,7 @@ TEST(HomingSteps, TorqueWhereThereShouldBeNoneStopsTheSearch) {
         with_switches(drive);
         drive.positive_stop = 10'000;
     });
-    auto command = to_switch(mcOn, mcPositiveDirection);
+    auto command = to_switch(mcOn, MC_HomeDirection::mcPositiveDirection);
     std::get<HomingStepDetails>(command.details).torque_limit = 0.1;  // at 0.1 u of lag
     const auto id = rig.accept(command);
     ASSERT_EQ(rig.finished(id), CommandStatus::error);
@@ -357,27 +356,27 @@ TEST(HomingSteps, NotWhileMovingNorInTheMiddleOfHome) {
     StepRig rig(config);
     rig.accept(absolute(30));
     rig.run(50);
-    EXPECT_EQ(rig.refuse(to_switch(mcOn, mcNegativeDirection)), ErrorId::state_forbids);
+    EXPECT_EQ(rig.refuse(to_switch(mcOn, MC_HomeDirection::mcNegativeDirection)), ErrorId::state_forbids);
     ASSERT_TRUE(rig.run_to(AxisState::Standstill));
     rig.accept(home(0));
     rig.run(50);
-    EXPECT_EQ(rig.refuse(to_switch(mcOn, mcNegativeDirection)), ErrorId::state_forbids);
+    EXPECT_EQ(rig.refuse(to_switch(mcOn, MC_HomeDirection::mcNegativeDirection)), ErrorId::state_forbids);
 }
 
 TEST(HomingSteps, BadInputsAreRefusedAndTheAxisStaysInStandstill) {
     StepRig rig;
     const auto nan = std::nan("");
     EXPECT_EQ(rig.refuse({.kind = CommandKind::homing_step, .velocity = 1}), ErrorId::invalid_parameter);
-    auto command = to_switch(mcOn, mcNegativeDirection);
+    auto command = to_switch(mcOn, MC_HomeDirection::mcNegativeDirection);
     command.velocity = 0;
     EXPECT_EQ(rig.refuse(command), ErrorId::invalid_velocity);
-    EXPECT_EQ(rig.refuse(to_switch(mcOn, mcNegativeDirection, INFINITY)), ErrorId::invalid_position);
+    EXPECT_EQ(rig.refuse(to_switch(mcOn, MC_HomeDirection::mcNegativeDirection, INFINITY)), ErrorId::invalid_position);
     EXPECT_EQ(rig.refuse(step({.step = HomingStep::direct, .set_position = nan})), ErrorId::invalid_position);
     EXPECT_EQ(rig.refuse(step({.step = HomingStep::limit_switch, .switch_mode = mcEdgeSwitchPositive})), ErrorId::invalid_parameter);
     EXPECT_EQ(rig.refuse(step({.step = HomingStep::block, .torque_limit = 0.1})), ErrorId::invalid_parameter);
     EXPECT_EQ(rig.refuse(step({.step = HomingStep::block, .detection_velocity_limit = 1})), ErrorId::invalid_parameter);
     EXPECT_EQ(
-        rig.refuse(step({.step = HomingStep::block, .direction = mcSwitchPositive, .torque_limit = 0.1, .detection_velocity_limit = 1})),
+        rig.refuse(step({.step = HomingStep::block, .direction = MC_HomeDirection::mcSwitchPositive, .torque_limit = 0.1, .detection_velocity_limit = 1})),
         ErrorId::invalid_direction);
     EXPECT_EQ(rig.refuse(step({.step = HomingStep::absolute_switch, .time_limit = -1ms})), ErrorId::invalid_parameter);
     EXPECT_EQ(rig.refuse(step({.step = HomingStep::absolute_switch, .distance_limit = nan})), ErrorId::invalid_parameter);
@@ -389,10 +388,10 @@ TEST(HomingSteps, BadInputsAreRefusedAndTheAxisStaysInStandstill) {
 // A step in the middle of another: the former is aborted, the axis goes on without a jump.
 TEST(HomingSteps, AbortingStepTakesOverInMotion) {
     StepRig rig;
-    const auto first = rig.accept(to_switch(mcOn, mcPositiveDirection));
+    const auto first = rig.accept(to_switch(mcOn, MC_HomeDirection::mcPositiveDirection));
     rig.run(300);
     ASSERT_EQ(rig.view().set_velocity, 20);
-    const auto second = rig.accept(to_switch(mcRisingEdge, mcNegativeDirection, 0));
+    const auto second = rig.accept(to_switch(mcRisingEdge, MC_HomeDirection::mcNegativeDirection, 0));
     EXPECT_EQ(rig.status(first), CommandStatus::aborted);
     ASSERT_EQ(rig.finished(second), CommandStatus::done);
     EXPECT_NEAR(rig.zero_is(), 8, 0.011);
@@ -401,7 +400,7 @@ TEST(HomingSteps, AbortingStepTakesOverInMotion) {
 
 TEST(HomingSteps, PowerOffEndsTheProcedure) {
     StepRig rig;
-    const auto id = rig.accept(to_switch(mcOn, mcPositiveDirection));
+    const auto id = rig.accept(to_switch(mcOn, MC_HomeDirection::mcPositiveDirection));
     rig.run(100);
     rig.enable = false;
     ASSERT_TRUE(rig.run_to(AxisState::Disabled));
@@ -486,7 +485,7 @@ TEST(PassiveHoming, IsCancelledAloneAndHasLimits) {
 TEST(PassiveHoming, EndsWithPowerWithErrorsAndWithActiveHoming) {
     StepRig rig;
     const auto by_homing = rig.accept(flying({.set_position = 0}));
-    rig.accept(to_switch(mcOn, mcPositiveDirection));
+    rig.accept(to_switch(mcOn, MC_HomeDirection::mcPositiveDirection));
     rig.step();
     EXPECT_EQ(rig.status(by_homing), CommandStatus::aborted);
     EXPECT_EQ(rig.refuse(flying({.set_position = 0})), ErrorId::state_forbids);

@@ -5,16 +5,6 @@
 namespace taktwerk::axes::test {
 namespace {
 
-AxisConfig homing_by(HomingKind kind) {
-    auto config = plain_axis();
-    config.homing.kind = kind;
-    config.homing.search_velocity = 20;
-    config.homing.latch_velocity = 1;
-    config.homing.timeout = 10s;
-    config.following.window = 0.5;
-    return config;
-}
-
 // P1-121: the position at the reference becomes Position; here the reference is where the axis stands.
 TEST(HomeHere, GivesThePresentPositionItsCoordinate) {
     Rig rig(homing_by(HomingKind::set_here), [](FakeDrive& drive) { drive.position = 4321; });

@@ -10,8 +10,6 @@
 namespace taktwerk::axes::test {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 /// Way of the fastest change of speed from v to u without acceleration at both ends.
 double ramp_way(double v, double u, double ramp, double jerk) {
     const double dv = std::abs(v - u);

@@ -7,7 +7,7 @@
 namespace taktwerk::axes::test {
 namespace {
 
-AxisConfig any_axis(std::mt19937& random) {
+AxisConfig any_layered_axis(std::mt19937& random) {
     auto config = plain_axis();
     if (random() % 2) config.limits.jerk = std::numeric_limits<double>::infinity();
     if (random() % 2) config.gearing.inverted = true;
@@ -41,7 +41,7 @@ TEST_P(RandomLayers, KeepTheirRules) {
     std::mt19937 random(GetParam());
     const auto pick = [&](double low, double high) { return low + (high - low) * static_cast<double>(random() % 10001) / 10000; };
     const bool with_additions = GetParam() % 2 == 0;
-    Rig rig(any_axis(random));
+    Rig rig(any_layered_axis(random));
     rig.power_on();
     rig.accept(home(1));
     rig.run(3);

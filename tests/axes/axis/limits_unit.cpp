@@ -5,7 +5,7 @@
 namespace taktwerk::axes::test {
 namespace {
 
-AxisConfig limited() {
+AxisConfig fenced() {
     auto config = plain_axis();
     config.limits.position_min = -50;
     config.limits.position_max = 150;
@@ -13,8 +13,8 @@ AxisConfig limited() {
     return config;
 }
 
-struct HomedRig : Rig {
-    explicit HomedRig(const AxisConfig& config = limited()) : Rig(config) {
+struct FencedRig : Rig {
+    explicit FencedRig(const AxisConfig& config = fenced()) : Rig(config) {
         power_on();
         accept(home(0));
         run(3);
@@ -23,7 +23,7 @@ struct HomedRig : Rig {
 };
 
 TEST(SoftwareLimits, TargetsBeyondAreRefusedAndTheAxisIsUntouched) {
-    HomedRig rig;
+    FencedRig rig;
     EXPECT_EQ(rig.refuse(absolute(150.001)), ErrorId::beyond_software_limit);
     EXPECT_EQ(rig.refuse(absolute(-50.001)), ErrorId::beyond_software_limit);
     EXPECT_EQ(rig.refuse(relative(151)), ErrorId::beyond_software_limit);
@@ -39,7 +39,7 @@ TEST(SoftwareLimits, TargetsBeyondAreRefusedAndTheAxisIsUntouched) {
 
 // A waiting relative move is checked where it begins.
 TEST(SoftwareLimits, WaitingRelativeMoveIsCheckedAtItsStart) {
-    HomedRig rig;
+    FencedRig rig;
     rig.accept(absolute(100));
     const auto waiting = rig.accept(relative(60, 100, mcBuffered));
     ASSERT_TRUE(rig.run_to(AxisState::Standstill));
@@ -51,7 +51,7 @@ TEST(SoftwareLimits, WaitingRelativeMoveIsCheckedAtItsStart) {
 // A velocity command runs until it must brake, ends exactly on the limit, and is an axis error.
 TEST(SoftwareLimits, VelocityCommandEndsOnTheLimitWithAnAlarm) {
     for (const double velocity : {100.0, 37.0, -80.0, 3.0}) {
-        HomedRig rig;
+        FencedRig rig;
         const auto id = rig.accept(at_velocity(velocity));
         const double edge = velocity > 0 ? 150 : -50;
         double farthest = 0;
@@ -72,7 +72,7 @@ TEST(SoftwareLimits, VelocityCommandEndsOnTheLimitWithAnAlarm) {
 
 // Started so near the limit that it never reaches its speed.
 TEST(SoftwareLimits, AccelerationNearTheLimitIsCutShort) {
-    HomedRig rig;
+    FencedRig rig;
     rig.accept(absolute(149));
     ASSERT_TRUE(rig.run_to(AxisState::Standstill));
     rig.accept(at_velocity(100));
@@ -87,7 +87,7 @@ TEST(SoftwareLimits, AccelerationNearTheLimitIsCutShort) {
 
 // A jog stops on the limit and is done, without an error; the other direction works.
 TEST(SoftwareLimits, JogStopsOnTheLimitAndStands) {
-    HomedRig rig;
+    FencedRig rig;
     auto id = rig.accept(jog(90));
     rig.program = [&] { (void)rig.axis.renew_jog(id, 90, Owner::program); };
     ASSERT_TRUE(rig.run_to(AxisState::Standstill));
@@ -103,7 +103,7 @@ TEST(SoftwareLimits, JogStopsOnTheLimitAndStands) {
 
 // An aborting move with gentle dynamics, given at full speed close to the limit, must not overshoot through it.
 TEST(SoftwareLimits, GentleAbortNearTheLimitBrakesHardEnough) {
-    HomedRig rig;
+    FencedRig rig;
     rig.accept(absolute(150));
     ASSERT_TRUE(rig.run_until([&] { return rig.view().set_position > 138; }));
     auto gentle = absolute(0, 10);
@@ -124,7 +124,7 @@ TEST(SoftwareLimits, GentleAbortNearTheLimitBrakesHardEnough) {
 
 // Before homing the coordinates mean nothing, so neither do the limits.
 TEST(SoftwareLimits, DoNotHoldBeforeHoming) {
-    Rig rig(limited());
+    Rig rig(fenced());
     rig.power_on();
     const auto id = rig.accept(absolute(200));
     ASSERT_TRUE(rig.run_to(AxisState::Standstill));

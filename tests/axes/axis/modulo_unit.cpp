@@ -6,8 +6,6 @@
 namespace taktwerk::axes::test {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 /// A table of 360 degrees over a gear of 7:3.
 AxisConfig table() {
     auto config = plain_axis();

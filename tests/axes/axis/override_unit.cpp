@@ -5,14 +5,6 @@
 namespace taktwerk::axes::test {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-AxisConfig trapezoids() {
-    auto config = plain_axis();
-    config.limits = {.velocity = 1000, .acceleration = 1000, .deceleration = 1000, .jerk = infinity};
-    return config;
-}
-
 struct OverrideRig : Rig {
     OverrideRig() : Rig(trapezoids()) { power_on(); }
     ErrorId factors(double velocity, double acceleration = 1, double jerk = 1) {

@@ -7,8 +7,8 @@
 namespace taktwerk::axes::test {
 namespace {
 
-struct ProfileRig {
-    explicit ProfileRig(std::vector<TimePoint> rows, const AxisConfig& config = plain_axis()) : rig(config) {
+struct TableRig {
+    explicit TableRig(std::vector<TimePoint> rows, const AxisConfig& config = plain_axis()) : rig(config) {
         table = tables.add_time_table(rows, 16);
         rig.axis.bind({&rig.axis, 1, &tables, {}});
         rig.power_on();
@@ -25,7 +25,7 @@ struct ProfileRig {
 
 // P1-188, P1-189, P1-191: each point at the sum of the times up to it, no step of the velocity, once, Done at the last point.
 TEST(PositionProfile, IsAtEachPointAtItsTimeAndDoneAtTheLast) {
-    ProfileRig p({{200ms, 1.0}, {100ms, 2.5}, {400ms, 1.5}, {300ms, 3.0}});
+    TableRig p({{200ms, 1.0}, {100ms, 2.5}, {400ms, 1.5}, {300ms, 3.0}});
     auto& rig = p.rig;
     const auto id = rig.accept(p.positions());
     EXPECT_EQ(rig.view().state, AxisState::DiscreteMotion);
@@ -60,7 +60,7 @@ TEST(PositionProfile, IsAtEachPointAtItsTimeAndDoneAtTheLast) {
 
 // P1-190
 TEST(PositionProfile, TimeScalePositionScaleAndOffset) {
-    ProfileRig p({{100ms, -4.0}, {100ms, -3.0}});
+    TableRig p({{100ms, -4.0}, {100ms, -3.0}});
     p.rig.accept(p.profile(CommandKind::position_profile, {.time = 2, .value = 2, .offset = 10}));
     p.rig.run(200);
     EXPECT_NEAR(p.rig.view().set_position, 2, 1e-12);
@@ -71,7 +71,7 @@ TEST(PositionProfile, TimeScalePositionScaleAndOffset) {
 
 // From a moving axis: the curve takes up its velocity; the set-point keeps every limit.
 TEST(PositionProfile, BeginsFromAMovingAxisWithoutAStep) {
-    ProfileRig p({{300ms, 20.0}, {300ms, 22.0}});
+    TableRig p({{300ms, 20.0}, {300ms, 22.0}});
     p.rig.accept(at_velocity(40));
     p.rig.run(150);
     ASSERT_EQ(p.rig.view().set_velocity, 40);
@@ -92,7 +92,7 @@ TEST(PositionProfile, BeginsFromAMovingAxisWithoutAStep) {
 TEST(PositionProfile, BufferedBeginsWhereTheMoveBeforeItEnded) {
     auto config = plain_axis();
     config.limits.jerk = std::numeric_limits<double>::infinity();
-    ProfileRig p({{100ms, 21.0}, {100ms, 22.0}}, config);
+    TableRig p({{100ms, 21.0}, {100ms, 22.0}}, config);
     // 20 u at 90 u/s, 1000 u/s2: 20/90 + 90/1000 = 312.22 ms
     const auto begin = p.rig.now;
     p.rig.accept(absolute(20, 90));
@@ -106,7 +106,7 @@ TEST(PositionProfile, BufferedBeginsWhereTheMoveBeforeItEnded) {
 
 // What cannot be is refused before it begins, and the motion that runs goes on.
 TEST(PositionProfile, BeyondALimitIsRefusedAndTheAxisUntouched) {
-    ProfileRig p({{100ms, 50.0}, {100ms, 51.0}});  // 500 u/s on average
+    TableRig p({{100ms, 50.0}, {100ms, 51.0}});  // 500 u/s on average
     const auto running = p.rig.accept(absolute(5, 10));
     p.rig.run(50);
     EXPECT_EQ(p.rig.refuse(p.positions()), ErrorId::invalid_velocity);
@@ -120,7 +120,7 @@ TEST(PositionProfile, BeyondALimitIsRefusedAndTheAxisUntouched) {
 }
 
 TEST(PositionProfile, ARefusedOneDoesNotDisturbTheRunningOne) {
-    ProfileRig p({{200ms, 2.0}, {200ms, 4.0}});
+    TableRig p({{200ms, 2.0}, {200ms, 4.0}});
     const auto id = p.rig.accept(p.positions());
     p.rig.run(100);
     EXPECT_EQ(p.rig.refuse(p.profile(CommandKind::position_profile, {.value = 100})), ErrorId::invalid_velocity);
@@ -132,7 +132,7 @@ TEST(PositionProfile, ARefusedOneDoesNotDisturbTheRunningOne) {
 
 // P1-191: the table may be exchanged; what runs is what it was when it began.
 TEST(PositionProfile, EditingTheTableConcernsTheNextOneOnly) {
-    ProfileRig p({{200ms, 2.0}, {200ms, 4.0}});
+    TableRig p({{200ms, 2.0}, {200ms, 4.0}});
     p.rig.accept(p.positions());
     p.rig.run(10);
     p.tables.time_table(p.table)->points[1].value = 3;
@@ -146,7 +146,7 @@ TEST(PositionProfile, EditingTheTableConcernsTheNextOneOnly) {
 // Out to 1.9 u, still there a little later, and back: in between the curve is beyond its points. How far is measured first.
 TEST(PositionProfile, SoftwareLimitsHoldBetweenThePoints) {
     const std::vector<TimePoint> rows{{200ms, 1.9}, {60ms, 1.9}, {200ms, 0.0}};
-    ProfileRig free(rows);
+    TableRig free(rows);
     free.rig.accept(free.positions());
     double furthest = 0;
     ASSERT_TRUE(free.rig.run_until([&] {
@@ -160,7 +160,7 @@ TEST(PositionProfile, SoftwareLimitsHoldBetweenThePoints) {
         config.homing.kind = HomingKind::set_here;
         config.limits.position_min = -5;
         config.limits.position_max = furthest + room;
-        ProfileRig p(rows, config);
+        TableRig p(rows, config);
         p.rig.accept(home(0));
         p.rig.run(5);
         EXPECT_EQ(p.rig.axis.submit(p.positions(), Owner::program).error, room > 0 ? ErrorId::none : ErrorId::beyond_software_limit);
@@ -169,7 +169,7 @@ TEST(PositionProfile, SoftwareLimitsHoldBetweenThePoints) {
 
 // P1-193, P1-194: the last velocity is kept, the state stays; ProfileCompleted is the status in_target.
 TEST(VelocityProfile, KeepsTheLastVelocity) {
-    ProfileRig p({{100ms, 10.0}, {200ms, -5.0}, {100ms, -2.5}});
+    TableRig p({{100ms, 10.0}, {200ms, -5.0}, {100ms, -2.5}});
     auto& rig = p.rig;
     const auto id = rig.accept(p.profile(CommandKind::velocity_profile, {.time = 2, .value = 2, .offset = 1}));
     EXPECT_EQ(rig.view().state, AxisState::ContinuousMotion);
@@ -195,7 +195,7 @@ TEST(VelocityProfile, KeepsTheLastVelocity) {
 
 // P1-092: ProfileCompleted starts what waits.
 TEST(VelocityProfile, ABufferedCommandBeginsWhenItIsCompleted) {
-    ProfileRig p({{100ms, 10.0}});
+    TableRig p({{100ms, 10.0}});
     const auto id = p.rig.accept(p.profile(CommandKind::velocity_profile));
     const auto next = p.rig.accept(absolute(2, 10, mcBuffered));
     p.rig.run(100);
@@ -213,7 +213,7 @@ TEST(VelocityProfile, AVelocityThatStaysMustLeaveRoomToStop) {
     config.limits.jerk = std::numeric_limits<double>::infinity();
     config.limits.position_min = -5;
     config.limits.position_max = 6.25;
-    ProfileRig p({{100ms, 50.0}, {75ms, 50.0}}, config);  // 2.5 + 3.75 = 6.25 u, and 50^2 / 2000 = 1.25 u to stop
+    TableRig p({{100ms, 50.0}, {75ms, 50.0}}, config);  // 2.5 + 3.75 = 6.25 u, and 50^2 / 2000 = 1.25 u to stop
     p.rig.accept(home(0));
     p.rig.run(5);
     EXPECT_EQ(p.rig.refuse(p.profile(CommandKind::velocity_profile)), ErrorId::beyond_software_limit);
@@ -230,7 +230,7 @@ TEST(AccelerationProfile, TenSegmentsGiveTheirDoubleIntegral) {
     const std::vector<double> accelerations{100, 200, 100, -300, -100, -200, 50, 150, -50, 50};
     std::vector<TimePoint> rows;
     for (const double a : accelerations) rows.push_back({60ms, a});
-    ProfileRig p(rows);
+    TableRig p(rows);
     auto& rig = p.rig;
     const auto id = rig.accept(p.profile(CommandKind::acceleration_profile));
     double v = 0, x = 0;
@@ -249,7 +249,7 @@ TEST(AccelerationProfile, TenSegmentsGiveTheirDoubleIntegral) {
 
 // P1-195: the velocity reached is kept, for 1000 cycles.
 TEST(AccelerationProfile, TheVelocityReachedIsKept) {
-    ProfileRig p({{100ms, 50.0}, {50ms, -20.0}});
+    TableRig p({{100ms, 50.0}, {50ms, -20.0}});
     p.rig.accept(p.profile(CommandKind::acceleration_profile, {.time = 2, .value = 2, .offset = 10}));
     // 110 u/s2 in 0.2 s, -30 u/s2 in 0.1 s
     p.rig.run(300);
@@ -263,7 +263,7 @@ TEST(AccelerationProfile, TheVelocityReachedIsKept) {
 }
 
 TEST(AccelerationProfile, ALimitSwitchOnTheWayStopsIt) {
-    ProfileRig p({{1s, 50.0}});
+    TableRig p({{1s, 50.0}});
     p.rig.drive.switches = true;
     p.rig.drive.positive_end = 3000;
     p.rig.accept(p.profile(CommandKind::acceleration_profile));

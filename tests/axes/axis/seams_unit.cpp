@@ -6,9 +6,6 @@
 namespace taktwerk::axes::test {
 namespace {
 
-AxisCommand on_top(double distance, double velocity) {
-    return {.kind = CommandKind::move_superimposed, .position = distance, .velocity = velocity};
-}
 AxisCommand torque(double value) { return {.kind = CommandKind::torque, .details = TorqueDetails{value, 0}}; }
 
 /// Several axes with a jerk limit: 100 u/s, 1000 u/s2, 20000 u/s3.

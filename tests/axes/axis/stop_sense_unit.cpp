@@ -6,9 +6,6 @@
 namespace taktwerk::axes::test {
 namespace {
 
-AxisCommand addition(double distance, double velocity) {
-    return {.kind = CommandKind::move_superimposed, .position = distance, .velocity = velocity};
-}
 AxisCommand with_jerk(CommandKind kind, double jerk) { return {.kind = kind, .jerk = jerk}; }
 
 struct Watched : Rig {
@@ -45,7 +42,7 @@ AxisConfig twice_as_fast() {
 void speed_up_with_both(Watched& rig) {
     rig.power_on();
     rig.accept(at_velocity(100));
-    rig.accept(addition(100, 100));
+    rig.accept(on_top(100, 100));
     ASSERT_TRUE(rig.run_until([&] { return rig.view().set_acceleration > 1999; }));
 }
 
@@ -69,7 +66,7 @@ TEST(StopSense, OfTwoLayersThatBrake) {
         rig.power_on();
         rig.accept(absolute(30, 60));
         rig.run(10);
-        rig.accept(addition(20, 40));
+        rig.accept(on_top(20, 40));
         ASSERT_TRUE(rig.run_until([&] { return rig.view().set_acceleration < -1700 && rig.view().set_velocity < 42; }));
         const double before = rig.view().set_velocity;
         ASSERT_GT(before, 30);
@@ -173,7 +170,7 @@ TEST(StopSense, OfAnAdditionAlone) {
         braking.power_on();
         braking.accept(at_velocity(20));
         braking.run(300);
-        braking.accept(addition(20, 60));
+        braking.accept(on_top(20, 60));
         ASSERT_TRUE(braking.run_until([&] { return braking.view().set_acceleration < -900 && braking.view().set_velocity < 46; }));
         braking.accept(with_jerk(CommandKind::halt_superimposed, jerk));
         braking.watch(1500);
@@ -184,7 +181,7 @@ TEST(StopSense, OfAnAdditionAlone) {
         rising.power_on();
         rising.accept(at_velocity(20));
         rising.run(300);
-        rising.accept(addition(40, 60));
+        rising.accept(on_top(40, 60));
         ASSERT_TRUE(rising.run_until([&] { return rising.view().set_acceleration > 790; }));
         const double v = rising.view().set_velocity, a = rising.view().set_acceleration;
         rising.accept(with_jerk(CommandKind::halt_superimposed, jerk));
@@ -211,7 +208,7 @@ TEST(StopSense, OfABaseThatTurnsRoundBesideAnAddition) {
             if (left-- > 0) (void)rig.axis.renew_jog(id, velocity, Owner::program);
         };
         rig.run(150);
-        rig.accept(addition(20, 40));
+        rig.accept(on_top(20, 40));
         velocity = 30;
         left = renewals;
         ASSERT_TRUE(rig.run_until([&] { return rig.status(id) == CommandStatus::error; }, 500));

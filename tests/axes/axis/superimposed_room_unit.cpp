@@ -8,10 +8,6 @@
 namespace taktwerk::axes::test {
 namespace {
 
-AxisCommand on_top(double distance, double velocity) {
-    return {.kind = CommandKind::move_superimposed, .position = distance, .velocity = velocity};
-}
-
 /// The base runs at the whole limit in the sense 1 or -1 and an addition in the same sense waits beside it.
 struct Waiting {
     explicit Waiting(double sense) : speed(at_velocity(sense * 100)) {

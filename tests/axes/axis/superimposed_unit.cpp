@@ -6,13 +6,6 @@
 namespace taktwerk::axes::test {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-AxisConfig trapezoids() {
-    auto config = plain_axis();
-    config.limits = {.velocity = 1000, .acceleration = 1000, .deceleration = 1000, .jerk = infinity};
-    return config;
-}
 AxisCommand superimposed(double distance, double velocity = 20) {
     return {.kind = CommandKind::move_superimposed, .position = distance, .velocity = velocity};
 }

@@ -5,14 +5,6 @@
 namespace taktwerk::axes::test {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-AxisConfig trapezoids() {
-    auto config = plain_axis();
-    config.limits = {.velocity = 1000, .acceleration = 1000, .deceleration = 1000, .jerk = infinity};
-    return config;
-}
-
 struct UpdateRig : Rig {
     explicit UpdateRig(const AxisConfig& config = trapezoids()) : Rig(config) { power_on(); }
     ErrorId update(CommandId id, const AxisCommand& command) { return axis.update(id, command, view().owner); }

@@ -6,10 +6,6 @@
 namespace taktwerk::axes::test {
 namespace {
 
-AxisCommand on_top(double distance, double velocity) {
-    return {.kind = CommandKind::move_superimposed, .position = distance, .velocity = velocity};
-}
-
 AxisCommand cam_from(CamId table, double distance, double sync) {
     auto command = cam_in(0, table);
     auto& cam = std::get<CamDetails>(command.details);

@@ -8,7 +8,6 @@ namespace taktwerk::axes {
 namespace {
 
 using namespace std::chrono_literals;
-using Phase = SwitchHoming::Phase;
 
 struct Search {
     SwitchHoming homing;
@@ -36,7 +35,7 @@ TEST(SwitchHoming, SearchesStopsBacksOffAndTakesTheEdge) {
     s.in.position = 9999;  // it stops a little later; the edge counts
     s.step();
 
-    EXPECT_EQ(s.homing.phase(), Phase::finished);
+    EXPECT_EQ(s.homing.phase(), SwitchHoming::Phase::finished);
     EXPECT_EQ(s.homing.reference(), 4711);
     EXPECT_FALSE(s.homing.busy());
 }
@@ -81,8 +80,8 @@ TEST(SwitchHoming, LimitReversesOnceThenFails) {
     s.in.negative_limit = true;
     EXPECT_EQ(s.step(), 0);
     s.step();
-    EXPECT_EQ(s.homing.phase(), Phase::failed);
-    EXPECT_EQ(s.homing.failed_in(), Phase::search);
+    EXPECT_EQ(s.homing.phase(), SwitchHoming::Phase::failed);
+    EXPECT_EQ(s.homing.failed_in(), SwitchHoming::Phase::search);
 }
 
 TEST(SwitchHoming, OldInputsDecideNothing) {
@@ -98,7 +97,7 @@ TEST(SwitchHoming, TimeIsLimitedAndItStillStands) {
     s.step();
     EXPECT_EQ(s.step(10s), 0);
     s.step();
-    EXPECT_EQ(s.homing.phase(), Phase::timed_out);
+    EXPECT_EQ(s.homing.phase(), SwitchHoming::Phase::timed_out);
 }
 
 }  // namespace

@@ -9,14 +9,13 @@
 #include <xmmintrin.h>
 #endif
 
+#include "tests/axes/planner/plan_figures.hpp"
 #include "tests/axes/planner/random_motion.hpp"
 
 namespace taktwerk::axes {
 namespace {
 
-constexpr double unlimited = std::numeric_limits<double>::infinity();
 constexpr double smallest = std::numeric_limits<double>::denorm_min();
-constexpr double eps = std::numeric_limits<double>::epsilon();
 
 const MotionLimits limits_to_try[] = {
     {1, 1, 1, 1},

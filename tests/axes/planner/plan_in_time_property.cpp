@@ -5,13 +5,12 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/axes/planner/plan_figures.hpp"
 #include "tests/axes/planner/random_states.hpp"
 #include "tests/property_cases.hpp"
 
 namespace taktwerk::axes {
 namespace {
-
-constexpr double eps = std::numeric_limits<double>::epsilon();
 
 void expect_arrival_inside_limits(const StateCase& c, const Profile& profile) {
     // Times are parts of the given one and known to its rounding; what that makes of a velocity adds up over the time.

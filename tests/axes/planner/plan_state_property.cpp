@@ -5,17 +5,17 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/axes/planner/plan_figures.hpp"
 #include "tests/axes/planner/random_states.hpp"
 #include "tests/property_cases.hpp"
 
 namespace taktwerk::axes {
 namespace {
 
-constexpr double eps = std::numeric_limits<double>::epsilon();
-constexpr std::size_t usual_cases = 100'000;
+constexpr std::size_t state_cases = 100'000;
 
 template <typename Rule>
-void for_random_states(std::uint64_t seed, Rule rule, std::size_t usual = usual_cases) {
+void for_random_states(std::uint64_t seed, Rule rule, std::size_t usual = state_cases) {
     RandomStates random{seed};
     const std::size_t cases = property_cases(usual);
     for (std::size_t i = 0; i < cases && !::testing::Test::HasFailure(); ++i) {
@@ -114,7 +114,7 @@ TEST(PlanStateProperty, ArrivesContinuouslyInsideTheLimits) {
         ++inside;
         expect_limits_kept(c, plan.profile, most);
     });
-    EXPECT_GT(inside, usual_cases / 3);
+    EXPECT_GT(inside, state_cases / 3);
 }
 
 TEST(PlanStateProperty, MirroredMotionTakesTheSameTime) {

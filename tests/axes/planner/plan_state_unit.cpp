@@ -6,12 +6,11 @@
 #include <gtest/gtest.h>
 
 #include "axes/planner/plan.hpp"
+#include "tests/axes/planner/plan_figures.hpp"
 
 namespace taktwerk::axes {
 namespace {
 
-constexpr double unlimited = std::numeric_limits<double>::infinity();
-constexpr double tight = 1e-12;
 const MotionLimits unit_limits{.velocity = 10, .acceleration = 1, .deceleration = 1, .jerk = 1};
 
 TEST(PlanToState, PassesTheTargetAtItsVelocity) {

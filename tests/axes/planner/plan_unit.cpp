@@ -2,6 +2,7 @@
 // reached and 2 sqrt(v/j) where it is not; while it lasts the mean velocity is v/2.
 
 #include "axes/planner/plan.hpp"
+#include "tests/axes/planner/plan_figures.hpp"
 
 #include <cmath>
 #include <limits>
@@ -12,9 +13,6 @@
 
 namespace taktwerk::axes {
 namespace {
-
-constexpr double unlimited = std::numeric_limits<double>::infinity();
-constexpr double tight = 1e-12;
 
 static_assert(std::is_trivially_copyable_v<Profile>);
 static_assert(noexcept(plan_to_position({}, 0, {})));

@@ -77,17 +77,17 @@ struct Rounding {
     double time = 0;  ///< what correcting errors of this size costs, plus 1e-9 of the duration
 
     Rounding(const MotionCase& c, const Profile& profile) {
-        constexpr double eps = 64 * std::numeric_limits<double>::epsilon();
+        constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
         const MotionLimits& l = c.limits;
         const double t = profile.duration();
         const double a = std::max({l.acceleration, l.deceleration, std::abs(c.from.acceleration)});
         const double least = std::min(l.acceleration, l.deceleration);
         const double v = profile.max_speed();
-        position = eps * (std::abs(c.from.position) + std::abs(c.target) + v * t);
-        velocity = eps * v;
-        acceleration = std::isinf(l.jerk) ? 0 : eps * std::min(a, l.jerk * t);
-        if (!std::isinf(l.jerk)) acceleration += eps * l.jerk * t;
-        velocity += eps * a * t;
+        position = rounding * (std::abs(c.from.position) + std::abs(c.target) + v * t);
+        velocity = rounding * v;
+        acceleration = std::isinf(l.jerk) ? 0 : rounding * std::min(a, l.jerk * t);
+        if (!std::isinf(l.jerk)) acceleration += rounding * l.jerk * t;
+        velocity += rounding * a * t;
         time = 1e-9 * t + 4 * position / l.velocity + 4 * std::sqrt(position / least) + 4 * velocity / least;
         if (!std::isinf(l.jerk)) time += 8 * std::cbrt(position / l.jerk) + 8 * std::sqrt(velocity / l.jerk) + 4 * acceleration / l.jerk;
     }

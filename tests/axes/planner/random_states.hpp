@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "axes/planner/setting.hpp"
+#include "tests/axes/planner/plan_figures.hpp"
 #include "tests/axes/planner/random_motion.hpp"
 
 namespace taktwerk::axes {
@@ -82,7 +83,6 @@ private:
     }
 
     SignedLimits limits(double v, double a, double j) {
-        constexpr double unlimited = std::numeric_limits<double>::infinity();
         const double d = a * random_.decades(-1, 1);
         SignLimits up{v, a, a, j};
         SignLimits down = up;

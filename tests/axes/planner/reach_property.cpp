@@ -13,7 +13,7 @@
 namespace taktwerk::axes {
 namespace {
 
-constexpr std::size_t usual_cases = 20'000;
+constexpr std::size_t reach_cases = 20'000;
 
 double finite_velocity(const StateCase& c, double sign) {
     const double limit = sign > 0 ? c.limits.positive.velocity : c.limits.negative.velocity;
@@ -40,7 +40,7 @@ Way way_to_velocity(double v, double a, double to, const SignedLimits& limits) {
 TEST(ReachProperty, ReachableVelocityUsesUpTheDistanceOrIsTheLimit) {
     RandomStates random{1};
     std::size_t used_up = 0;
-    for (std::size_t i = 0; i < property_cases(usual_cases) && !HasFailure(); ++i) {
+    for (std::size_t i = 0; i < property_cases(reach_cases) && !HasFailure(); ++i) {
         const StateCase c = random.next();
         const double distance = c.target.position - c.from.position;
         const double sign = distance < 0 ? -1 : 1;
@@ -54,13 +54,13 @@ TEST(ReachProperty, ReachableVelocityUsesUpTheDistanceOrIsTheLimit) {
         ASSERT_GE(sign * more.way, sign * distance - more.known_to);
         ++used_up;
     }
-    EXPECT_GT(used_up, usual_cases / 10);
+    EXPECT_GT(used_up, reach_cases / 10);
 }
 
 TEST(ReachProperty, EntryVelocityJustReachesTheEndVelocity) {
     RandomStates random{2};
     std::size_t used_up = 0;
-    for (std::size_t i = 0; i < property_cases(usual_cases) && !HasFailure(); ++i) {
+    for (std::size_t i = 0; i < property_cases(reach_cases) && !HasFailure(); ++i) {
         const StateCase c = random.next();
         const double distance = c.target.position - c.from.position;
         const double sign = distance < 0 ? -1 : 1;
@@ -75,7 +75,7 @@ TEST(ReachProperty, EntryVelocityJustReachesTheEndVelocity) {
         ASSERT_GE(sign * more.way, sign * distance - more.known_to);
         ++used_up;
     }
-    EXPECT_GT(used_up, usual_cases / 10);
+    EXPECT_GT(used_up, reach_cases / 10);
 }
 
 TEST(ReachProperty, StoppingIsThePlainStop) {

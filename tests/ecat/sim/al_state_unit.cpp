@@ -192,7 +192,7 @@ TEST(AlState, ATestMayMakeAStateFailAndLetItGoAgain) {
     EXPECT_EQ(bus.request(0, 0x12), 2);
 }
 
-DeviceDescription dc_drive() {
+DeviceDescription clocked_drive() {
     auto description = small_drive();
     description.dc.supported = description.dc.required = true;
     description.dc.minimum_cycle = 125us;
@@ -209,7 +209,7 @@ std::uint16_t code_with_sync0(std::int64_t start_in_ns, std::uint32_t cycle) {
             bus.write(0, 0x09A0, le<std::uint32_t>(cycle));
             bus.write(0, 0x0981, bytes({0x03}));
         },
-        dc_drive());
+        clocked_drive());
 }
 
 TEST(AlState, ADriveThatNeedsSync0WantsItBeforeSafeop) {
@@ -223,7 +223,7 @@ TEST(AlState, ADriveThatNeedsSync0WantsItBeforeSafeop) {
 // SV-DA200 2.1: 250 us, 500 us, 1 ms, 2 ms, 4 ms and 8 ms are the only cycles.
 TEST(AlState, ADriveThatKnowsSomeCyclesOnlyRefusesAllOthers) {
     const auto code = [](std::uint32_t cycle) {
-        auto description = dc_drive();
+        auto description = clocked_drive();
         description.dc.cycles = {250us, 500us, 1ms, 2ms, 4ms, 8ms};
         return safeop_code(
             [&](BusProbe& bus) {

@@ -7,7 +7,7 @@
 namespace taktwerk::ecat::sim {
 namespace {
 
-DeviceDescription dc_drive(bool wide = true) {
+DeviceDescription latching_drive(bool wide = true) {
     auto description = small_drive();
     description.dc.supported = true;
     description.dc.clock_64bit = wide;
@@ -18,7 +18,7 @@ struct Sync1Test : testing::Test {
     /// Starts SYNC0 (1 ms) and SYNC1, runs for 20 SYNC0 pulses; SYNC0 and SYNC1 pulses.
     std::pair<std::uint64_t, std::uint64_t> pulses(std::uint32_t sync1_cycle, std::uint8_t activation = 0x07) {
         BusProbe bus;
-        auto& slave = bus.add_drive({}, dc_drive());
+        auto& slave = bus.add_drive({}, latching_drive());
         first = bus.value<std::int64_t>(0, 0x0910) + 5'000'000;
         bus.write(0, 0x0990, le<std::int64_t>(first));
         bus.write(0, 0x09A0, le<std::uint32_t>(1'000'000));
@@ -49,7 +49,7 @@ TEST_F(Sync1Test, IsOffWithoutItsBit) { EXPECT_EQ(pulses(250'000, 0x03), std::pa
 
 TEST_F(Sync1Test, AloneRunsTooWithoutAnySync0ForTheDevice) {
     BusProbe bus;
-    auto description = dc_drive();
+    auto description = latching_drive();
     description.dc.required = true;
     bus.add_drive({}, description);
     bus.to_preop(0);
@@ -63,7 +63,7 @@ TEST_F(Sync1Test, AloneRunsTooWithoutAnySync0ForTheDevice) {
 }
 
 struct LatchTest : testing::Test {
-    LatchTest() { slave = &bus.add_drive({}, dc_drive()); }
+    LatchTest() { slave = &bus.add_drive({}, latching_drive()); }
     void edge(bool level) { slave->controller().set_latch_input(0, level, bus.now); }
     /// System time of a direct neighbour of the master without offset: machine time since power-on.
     std::int64_t positive() { return bus.value<std::int64_t>(0, 0x09B0); }
@@ -109,7 +109,7 @@ TEST_F(LatchTest, SingleEventKeepsTheFirstEdgeUntilItWasRead) {
 // 4.29 s of a 32-bit clock: 2^32 ns = 4 294 967 296 ns.
 TEST(NarrowClock, WrapsAndHasNoUpperHalves) {
     BusProbe bus;
-    bus.add_drive({.clock_start = 4'294'967'296ns}, dc_drive(false));
+    bus.add_drive({.clock_start = 4'294'967'296ns}, latching_drive(false));
     bus.wait(1ms);
 
     EXPECT_EQ(bus.value<std::uint16_t>(0, 0x0008) & 0x000C, 0x0004);
@@ -122,7 +122,7 @@ TEST(NarrowClock, WrapsAndHasNoUpperHalves) {
 
 TEST(NarrowClock, StartsSync0WhenItsLow32BitsCome) {
     BusProbe bus;
-    auto& slave = bus.add_drive({.clock_start = 4'294'000'000ns}, dc_drive(false));
+    auto& slave = bus.add_drive({.clock_start = 4'294'000'000ns}, latching_drive(false));
     bus.write(0, 0x0990, le<std::uint32_t>(32'704));  // 4'295'000'000 - 2^32: 1 ms ahead
     bus.write(0, 0x09A0, le<std::uint32_t>(1'000'000));
     bus.write(0, 0x0981, bytes({0x03}));

@@ -11,11 +11,6 @@ namespace {
 
 using axes::AxisState;
 
-void expect_time(Duration measured, Duration expected) {
-    EXPECT_GE(measured, expected - 1ms);
-    EXPECT_LE(measured, expected + 3ms);
-}
-
 /// The master runs at 100 u/s.
 struct Coupling : testing::Test {
     Coupling() {

@@ -14,12 +14,6 @@ namespace {
 
 using axes::AxisState;
 
-/// A ramp or move of `expected` took `measured`: one scan to start, one to see the end, and the rounding to whole scans.
-void expect_time(Duration measured, Duration expected) {
-    EXPECT_GE(measured, expected - 1ms);
-    EXPECT_LE(measured, expected + 3ms);
-}
-
 struct StopFigure : testing::Test {
     StopFigure() {
         move.Axis = stop.Axis = halt.Axis = Plc::x;

@@ -10,12 +10,6 @@ namespace {
 
 using axes::AxisState;
 
-/// One scan to start, one to see the end, and the rounding to whole scans.
-void expect_time(Duration measured, Duration expected) {
-    EXPECT_GE(measured, expected - 1ms);
-    EXPECT_LE(measured, expected + 3ms);
-}
-
 // --- ContinuousUpdate ----------------------------------------------------------------------------------------------------
 
 /// a = d = 100 u/s2.

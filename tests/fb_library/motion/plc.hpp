@@ -16,6 +16,12 @@ namespace taktwerk::fb {
 
 using namespace std::chrono_literals;
 
+/// A ramp or move of `expected` took `measured`: one scan to start, one to see the end, and the rounding to whole scans.
+inline void expect_time(Duration measured, Duration expected) {
+    EXPECT_GE(measured, expected - 1ms);
+    EXPECT_LE(measured, expected + 3ms);
+}
+
 class Plc {
 public:
     static constexpr Duration period = 1ms;

@@ -2,7 +2,7 @@
 
 #include "tests/programs/examples/example_machine.hpp"
 
-namespace taktwerk {
+namespace taktwerk::five_drives_example {
 namespace {
 
 using namespace std::chrono_literals;
@@ -29,4 +29,4 @@ TEST(FiveDrives, AllHomeAndMoveAndComeBackAfterTheirFaults) {
 }
 
 }  // namespace
-}  // namespace taktwerk
+}  // namespace taktwerk::five_drives_example

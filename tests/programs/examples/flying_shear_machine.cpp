@@ -5,7 +5,7 @@
 
 #include "tests/programs/examples/example_machine.hpp"
 
-namespace taktwerk {
+namespace taktwerk::flying_shear_example {
 namespace {
 
 using namespace std::chrono_literals;
@@ -43,4 +43,4 @@ TEST(FlyingShear, CutsEqualLengthsAlsoWhenTheSpeedChanges) {
 }
 
 }  // namespace
-}  // namespace taktwerk
+}  // namespace taktwerk::flying_shear_example

@@ -4,7 +4,7 @@
 
 #include "tests/programs/examples/example_machine.hpp"
 
-namespace taktwerk {
+namespace taktwerk::indexing_table_example {
 namespace {
 
 using namespace std::chrono_literals;
@@ -36,4 +36,4 @@ TEST(IndexingTable, StopsExactlyAtItsStationsAndNeverTurnsBack) {
 }
 
 }  // namespace
-}  // namespace taktwerk
+}  // namespace taktwerk::indexing_table_example

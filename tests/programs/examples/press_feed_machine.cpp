@@ -8,7 +8,7 @@
 
 #include "tests/programs/examples/example_machine.hpp"
 
-namespace taktwerk {
+namespace taktwerk::press_feed_example {
 namespace {
 
 using namespace std::chrono_literals;
@@ -174,4 +174,4 @@ TEST(PressFeed, StopsThePressWhenTheStripMovesInTheClosedTool) {
 }
 
 }  // namespace
-}  // namespace taktwerk
+}  // namespace taktwerk::press_feed_example

@@ -8,7 +8,7 @@
 
 #include "tests/programs/examples/example_machine.hpp"
 
-namespace taktwerk {
+namespace taktwerk::print_mark_example {
 namespace {
 
 using namespace std::chrono_literals;
@@ -116,4 +116,4 @@ TEST(PrintMark, MissingMarksAreAnAlarmAndAreSearchedForAnew) {
 }
 
 }  // namespace
-}  // namespace taktwerk
+}  // namespace taktwerk::print_mark_example

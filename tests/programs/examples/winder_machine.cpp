@@ -8,7 +8,7 @@
 
 #include "tests/programs/examples/example_machine.hpp"
 
-namespace taktwerk {
+namespace taktwerk::winder_example {
 namespace {
 
 using namespace std::chrono_literals;
@@ -138,4 +138,4 @@ TEST(Winder, StopsTheLineWhenTheRollIsFull) {
 }
 
 }  // namespace
-}  // namespace taktwerk
+}  // namespace taktwerk::winder_example

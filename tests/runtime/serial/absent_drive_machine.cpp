@@ -15,7 +15,6 @@ using axes::ErrorId;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 namespace pr = axes::xp200::pr;
-constexpr std::uint16_t u = 1;
 
 /// As it stands at its panel, whatever the machine file says. Counts after power off and on (9.3).
 void set_at_the_panel(TestMachine& m, std::uint16_t number, std::int64_t value) {

@@ -6,6 +6,8 @@
 
 namespace taktwerk::runtime::testing {
 
+inline constexpr std::uint16_t u = 1;  ///< the axis of with_line()
+
 /// x on the bus as ever; u on a line of 38400 baud, 10 mm a turn, watched over by output `u_stop` on the terminal, wired to DI6 (EMG).
 inline MachineConfig with_line(MachineConfig m) {
     SerialDriveConfig drive;

@@ -11,7 +11,6 @@ namespace {
 
 using namespace fb;
 using axes::AxisState;
-constexpr std::uint16_t u = 1;
 
 axes::sim::xp200::Servo& servo(TestMachine& m) { return m.world.serial().drive("u")->servo(); }
 

@@ -8,7 +8,7 @@ namespace taktwerk::runtime::testing {
 namespace {
 
 using axes::AxisState;
-constexpr std::uint16_t u = 1, v = 2, w = 3;
+constexpr std::uint16_t axis_u = 1, axis_v = 2, axis_w = 3;
 
 AxisBinding axis(const std::string& name) {
     AxisBinding binding;
@@ -56,16 +56,16 @@ MachineConfig three_off_the_bus() {
 TEST(SharedAlarmMachine, DrivesThatAreOnNoBusDoNotStopEachOther) {
     TestMachine m{three_off_the_bus()};
     ASSERT_TRUE(m.up()) << m.alarms();
-    ASSERT_TRUE(m.until([&] { return m.axis(u).online && m.axis(v).online; }, 5s)) << m.alarms();
-    for (const auto axis : {u, v, w}) m.enable(axis);
+    ASSERT_TRUE(m.until([&] { return m.axis(axis_u).online && m.axis(axis_v).online; }, 5s)) << m.alarms();
+    for (const auto axis : {axis_u, axis_v, axis_w}) m.enable(axis);
 
     m.world.serial().drive("u")->servo().raise(12);
-    ASSERT_TRUE(m.until([&] { return m.axis(u).state == AxisState::ErrorStop; }, 1s)) << m.alarms();
+    ASSERT_TRUE(m.until([&] { return m.axis(axis_u).state == AxisState::ErrorStop; }, 1s)) << m.alarms();
     m.run(200ms);
 
-    EXPECT_EQ(m.axis(v).state, AxisState::Standstill) << m.alarms();
-    EXPECT_EQ(m.axis(w).state, AxisState::Standstill) << m.alarms();
-    EXPECT_TRUE(m.axis(w).powered);
+    EXPECT_EQ(m.axis(axis_v).state, AxisState::Standstill) << m.alarms();
+    EXPECT_EQ(m.axis(axis_w).state, AxisState::Standstill) << m.alarms();
+    EXPECT_TRUE(m.axis(axis_w).powered);
 }
 
 }  // namespace

@@ -100,15 +100,6 @@ TEST(HomingPerRunCapability, NeedsTheObjects) {
     EXPECT_FALSE(rig.drive->capabilities().homing_per_run);
 }
 
-std::optional<Result<ServiceAnswer>> wait(DriveRig& rig, ServiceTicket ticket) {
-    std::optional<Result<ServiceAnswer>> answer;
-    for (int i = 0; i < 500 && !answer; ++i) {
-        rig.run(1);
-        answer = rig.drive->service_answer(ticket);
-    }
-    return answer;
-}
-
 // SV33-E P20.05 = 2 (7.2): reset of encoder faults and turns, only while the motor has no power.
 TEST(ClearTurns, ByAnObject) {
     DriveRig rig;
@@ -127,7 +118,7 @@ TEST(ClearTurns, ByAnObject) {
     const auto position_epoch = rig.feedback().position_epoch;
     const auto ticket = rig.drive->start_service(DriveService::clear_multi_turn);
     ASSERT_NE(ticket, 0u);
-    const auto answer = wait(rig, ticket);
+    const auto answer = rig.answer_to(ticket);
     ASSERT_TRUE(answer && answer->ok());
     EXPECT_EQ(rig.got(0x2020, 6), 2);
     EXPECT_EQ(rig.feedback().reference_epoch, 1);
@@ -146,7 +137,7 @@ TEST(ClearTurns, ByTheControlWord) {
     const auto ticket = rig.drive->start_service(DriveService::clear_multi_turn);
     ASSERT_NE(ticket, 0u);
     EXPECT_EQ(rig.drive->start_service(DriveService::clear_multi_turn), 0u) << "one at a time";
-    const auto answer = wait(rig, ticket);
+    const auto answer = rig.answer_to(ticket);
     ASSERT_TRUE(answer && answer->ok());
     rig.run(10);
     EXPECT_NEAR(cycles, 100, 2);

@@ -13,7 +13,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-constexpr unsigned enable_operation = 0x0F;  // control word, CiA 402: bits 0 to 3
 constexpr ParameterAddress encoder{0x2001, 6}, numerator{0x6091, 1}, denominator{0x6091, 2}, steps{0x2000, 2};
 
 /// A drive in CSP that would be Operation enabled at once if it were told so.
@@ -44,7 +43,6 @@ protected:
         row.effect = effect;
         rig.profile.parameters.push_back(row);
     }
-    [[nodiscard]] bool told_to_enable() { return (rig.control() & enable_operation) == enable_operation; }
     DriveRig rig;
 };
 
@@ -52,7 +50,7 @@ protected:
 TEST_F(DriveScaleBeforeEnabling, AGearThatFitsIsEnabled) {
     rig.wants.counts_per_revolution = 131072;
     as_sv33(1048576, 8, 1);
-    EXPECT_TRUE(told_to_enable());
+    EXPECT_TRUE(rig.told_to_enable());
     EXPECT_THAT(rig.drive->setup_problems(), IsEmpty());
 }
 
@@ -60,7 +58,7 @@ TEST_F(DriveScaleBeforeEnabling, AGearThatFitsIsEnabled) {
 TEST_F(DriveScaleBeforeEnabling, AnotherGearIsRefusedWithBothNumbersAndTheRemedy) {
     rig.wants.counts_per_revolution = 131072;
     as_sv33(1048576, 1, 1);
-    EXPECT_FALSE(told_to_enable());
+    EXPECT_FALSE(rig.told_to_enable());
     EXPECT_TRUE(rig.feedback().setup_refused);
     EXPECT_THAT(rig.drive->setup_problems(),
                 ElementsAre(AllOf(HasSubstr("'z_drive'"), HasSubstr("1048576 counts for the drive"), HasSubstr("131072 for the axis"),
@@ -71,7 +69,7 @@ TEST_F(DriveScaleBeforeEnabling, AnotherGearIsRefusedWithBothNumbersAndTheRemedy
 TEST_F(DriveScaleBeforeEnabling, ANearlyFittingGearIsRefused) {
     rig.wants.counts_per_revolution = 131073;
     as_sv33(1048576, 8, 1);
-    EXPECT_FALSE(told_to_enable());
+    EXPECT_FALSE(rig.told_to_enable());
 }
 
 TEST_F(DriveScaleBeforeEnabling, WhatNobodyKnowsHoldsNobodyBack) {
@@ -81,7 +79,7 @@ TEST_F(DriveScaleBeforeEnabling, WhatNobodyKnowsHoldsNobodyBack) {
     rig.profile.scale.counts_high_unit = 10000;
     build();
     rig.run(200);
-    EXPECT_TRUE(told_to_enable()) << "PA81 = PA84 = 0: a turn is what the encoder has, which no object tells (TSVM 6.1)";
+    EXPECT_TRUE(rig.told_to_enable()) << "PA81 = PA84 = 0: a turn is what the encoder has, which no object tells (TSVM 6.1)";
 }
 
 TEST_F(DriveScaleBeforeEnabling, ANumberInTwoPartsIsAddedUp) {
@@ -92,7 +90,7 @@ TEST_F(DriveScaleBeforeEnabling, ANumberInTwoPartsIsAddedUp) {
     rig.holds = {{{0x2051, 0}, 1072}, {{0x2054, 0}, 13}};
     build();
     rig.run(200);
-    EXPECT_TRUE(told_to_enable());
+    EXPECT_TRUE(rig.told_to_enable());
 }
 
 // The case of an audit: the list writes 50000, the read-back agrees with the axis, and the drive still works with what it had at power-on.
@@ -106,7 +104,7 @@ TEST_F(DriveScaleBeforeEnabling, AStartUpListThatWritesWhatCountsAfterSavingIsRe
     build();
     rig.run(200);
     ASSERT_EQ(rig.got(0x2000, 2), 50000) << "it reads back";
-    EXPECT_FALSE(told_to_enable());
+    EXPECT_FALSE(rig.told_to_enable());
     EXPECT_THAT(rig.drive->setup_problems(),
                 ElementsAre(AllOf(HasSubstr("2000h:02 (steps per revolution) was written"), HasSubstr("nobody knows"))));
 }
@@ -123,7 +121,7 @@ TEST_F(DriveScaleBeforeEnabling, WhatWasWrittenWhileTheMachineRunsIsRefusedUntil
     ASSERT_NE(rig.drive->write_parameter(steps, {std::byte{0x10}, std::byte{0x27}, std::byte{0}, std::byte{0}}), 0u);
     rig.command.power = PowerRequest::on;
     rig.run(200);
-    EXPECT_FALSE(told_to_enable()) << "10000 again, but nobody knows what it was between";
+    EXPECT_FALSE(rig.told_to_enable()) << "10000 again, but nobody knows what it was between";
 }
 
 TEST_F(DriveScaleBeforeEnabling, WhatTheMachineHasStoredIsComparedToo) {
@@ -131,7 +129,7 @@ TEST_F(DriveScaleBeforeEnabling, WhatTheMachineHasStoredIsComparedToo) {
     rig.holds = {{{0x2000, 2}, 400}};
     build();
     rig.run(200);
-    EXPECT_FALSE(told_to_enable());
+    EXPECT_FALSE(rig.told_to_enable());
     EXPECT_THAT(rig.drive->setup_problems(),
                 ElementsAre(AllOf(HasSubstr("shall be 10000"), HasSubstr("reads 400"), HasSubstr("store it"))));
 }

@@ -148,6 +148,17 @@ public:
     // --- what the drive was told ----------------------------------------------------------------------------------------------
     std::int64_t got(std::uint16_t index, std::uint8_t sub = 0) { return puppet->objects->value(index, sub); }
     std::uint16_t control() { return static_cast<std::uint16_t>(got(0x6040)); }
+    /// Control word bits 0 to 3 (CiA 402): Enable operation.
+    bool told_to_enable() { return (control() & 0x0F) == 0x0F; }
+    /// Of an acyclic request, if it comes within 500 cycles.
+    std::optional<Result<ServiceAnswer>> answer_to(ServiceTicket ticket) {
+        std::optional<Result<ServiceAnswer>> answer;
+        for (int i = 0; i < 500 && !answer; ++i) {
+            run(1);
+            answer = drive->service_answer(ticket);
+        }
+        return answer;
+    }
 
     void run(int cycles) {
         for (int i = 0; i < cycles; ++i) {

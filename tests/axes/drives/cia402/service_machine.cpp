@@ -82,25 +82,16 @@ TEST_F(SharedCode, AnUnknownCodeHasNoEntryAndMayBeReset) {
     EXPECT_TRUE(rig.drive->alarm().resettable);
 }
 
-std::optional<Result<ServiceAnswer>> wait(DriveRig& rig, ServiceTicket ticket) {
-    std::optional<Result<ServiceAnswer>> answer;
-    for (int i = 0; i < 500 && !answer; ++i) {
-        rig.run(1);
-        answer = rig.drive->service_answer(ticket);
-    }
-    return answer;
-}
-
 TEST(Cia402Parameter, IsWrittenAndReadByIndexAndSubIndex) {
     DriveRig rig;
     ASSERT_TRUE(rig.build()) << rig.refusal.text();
     const auto write = rig.drive->write_parameter({0x2005, 0x0B}, {std::byte{0x03}, std::byte{0x00}});
     ASSERT_NE(write, 0u);
-    const auto written = wait(rig, write);
+    const auto written = rig.answer_to(write);
     ASSERT_TRUE(written && written->ok());
     EXPECT_EQ(rig.got(0x2005, 0x0B), 3);
 
-    const auto read = wait(rig, rig.drive->read_parameter({0x2005, 0x0B}));
+    const auto read = rig.answer_to(rig.drive->read_parameter({0x2005, 0x0B}));
     ASSERT_TRUE(read && read->ok());
     EXPECT_EQ(read->value(), (ServiceAnswer{std::byte{0x03}, std::byte{0x00}}));
 }
@@ -115,7 +106,7 @@ TEST(Cia402Parameter, WhatIsMappedIsNotWrittenBesideTheCycle) {
 TEST(Cia402Parameter, WhatTheDriveRefusesComesBackAsItsError) {
     DriveRig rig;
     ASSERT_TRUE(rig.build()) << rig.refusal.text();
-    const auto answer = wait(rig, rig.drive->read_parameter({0x605B, 0}));  // SV33-E: not in the dictionary
+    const auto answer = rig.answer_to(rig.drive->read_parameter({0x605B, 0}));  // SV33-E: not in the dictionary
     ASSERT_TRUE(answer.has_value());
     EXPECT_FALSE(answer->ok());
 }

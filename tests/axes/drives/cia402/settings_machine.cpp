@@ -13,8 +13,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-constexpr unsigned enable_operation = 0x0F;  // control word, CiA 402: bits 0 to 3
-
 RequiredSetting row(ParameterAddress object, std::vector<std::int64_t> values) {
     RequiredSetting out;
     out.object = object;
@@ -34,7 +32,6 @@ protected:
         rig.mode(8);
         rig.command.power = PowerRequest::on;
     }
-    [[nodiscard]] bool told_to_enable() { return (rig.control() & enable_operation) == enable_operation; }
     DriveRig rig;
 };
 
@@ -42,7 +39,7 @@ TEST_F(DriveSettings, AWrongOneIsSaidAndTheDriveIsNotEnabled) {
     rig.profile.required_settings = {row({0x2005, 0x0B}, {1})};  // reads 0
     build();
     rig.run(200);
-    EXPECT_FALSE(told_to_enable());
+    EXPECT_FALSE(rig.told_to_enable());
     EXPECT_TRUE(rig.feedback().setup_refused);
     EXPECT_THAT(rig.drive->setup_problems(),
                 ElementsAre(AllOf(HasSubstr("'z_drive'"), HasSubstr("targets are increments"), HasSubstr("2005h:0B reads 0"),
@@ -53,11 +50,11 @@ TEST_F(DriveSettings, OnceItIsRightTheDriveIsEnabled) {
     rig.profile.required_settings = {row({0x2005, 0x0B}, {1})};
     build();
     rig.run(200);
-    ASSERT_FALSE(told_to_enable());
+    ASSERT_FALSE(rig.told_to_enable());
     const auto ticket = rig.drive->write_parameter({0x2005, 0x0B}, {std::byte{1}, std::byte{0}});
     ASSERT_NE(ticket, 0u);
     rig.run(200);
-    EXPECT_TRUE(told_to_enable());
+    EXPECT_TRUE(rig.told_to_enable());
     EXPECT_FALSE(rig.feedback().setup_refused);
     EXPECT_THAT(rig.drive->setup_problems(), IsEmpty());
 }
@@ -66,7 +63,7 @@ TEST_F(DriveSettings, WhatFitsLetsItBeEnabled) {
     rig.profile.required_settings = {row({0x2005, 0x0B}, {0, 2}), row({0x2021, 9}, {0})};
     build();
     rig.run(200);
-    EXPECT_TRUE(told_to_enable());
+    EXPECT_TRUE(rig.told_to_enable());
 }
 
 // Every SDO takes several cycles: while they go on nobody knows, and nothing is enabled.
@@ -77,12 +74,12 @@ TEST_F(DriveSettings, EnablingWaitsForTheReading) {
     }
     build();
     int waited = 0;
-    rig.on_cycle = [&] { waited += told_to_enable() ? 0 : 1; };
+    rig.on_cycle = [&] { waited += rig.told_to_enable() ? 0 : 1; };
     rig.run(3);
     EXPECT_EQ(waited, 3) << "ten objects were not read in eight cycles";
     EXPECT_FALSE(rig.feedback().setup_refused) << "not known is not refused";
     rig.run(300);
-    EXPECT_TRUE(told_to_enable());
+    EXPECT_TRUE(rig.told_to_enable());
 }
 
 // Somebody changed it while the drive was away: until it was read again, what was read before says nothing.
@@ -90,7 +87,7 @@ TEST_F(DriveSettings, WhatWasReadBeforeARestartDoesNotCount) {
     rig.profile.required_settings = {row({0x2005, 0x0B}, {0})};
     build();
     rig.run(200);
-    ASSERT_TRUE(told_to_enable());
+    ASSERT_TRUE(rig.told_to_enable());
     rig.network.set_power(0, false);
     rig.run(50);
     rig.network.set_power(0, true);
@@ -102,7 +99,7 @@ TEST_F(DriveSettings, WhatWasReadBeforeARestartDoesNotCount) {
         rig.status(0x1233);
         rig.mode(8);
         // The first frame that reaches it in OP, too, although nobody has heard yet that it is there.
-        if (rig.network.slave(0).state() == ecat::sim::EsmState::op && told_to_enable()) ++enabled;
+        if (rig.network.slave(0).state() == ecat::sim::EsmState::op && rig.told_to_enable()) ++enabled;
         if (!rig.feedback().online) return;
         if (back++ == 0) rig.put(0x2005, 1, 0x0B);  // before anybody has asked
     };
@@ -116,7 +113,7 @@ TEST_F(DriveSettings, WhatCannotBeReadIsNotTakenForRight) {
     rig.profile.required_settings = {row({0x2006, 1}, {0})};  // the drive has no such object
     build();
     rig.run(200);
-    EXPECT_FALSE(told_to_enable());
+    EXPECT_FALSE(rig.told_to_enable());
     EXPECT_THAT(rig.drive->setup_problems(), ElementsAre(HasSubstr("2006h:01 could not be read")));
 }
 
@@ -127,7 +124,7 @@ TEST_F(DriveSettings, ACycleThatIsNotThatOfTheBusIsRefused) {
     rig.profile.required_settings = {cycle};
     build();
     rig.run(200);
-    EXPECT_TRUE(told_to_enable()) << "reads 0: 1 ms";
+    EXPECT_TRUE(rig.told_to_enable()) << "reads 0: 1 ms";
     rig.put(0x2005, 1, 0x0B);
     ASSERT_NE(rig.drive->write_parameter({0x2005, 0x0B}, {std::byte{1}, std::byte{0}}), 0u);
     rig.run(200);
@@ -143,7 +140,7 @@ TEST_F(DriveSettings, ARowForABusWithoutClocksDoesNotCountOnOneWithThem) {
     rig.profile.required_settings = {with, without};
     build();
     rig.run(200);
-    EXPECT_TRUE(told_to_enable());
+    EXPECT_TRUE(rig.told_to_enable());
     EXPECT_THAT(rig.drive->setup_problems(), IsEmpty());
 }
 
