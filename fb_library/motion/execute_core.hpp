@@ -87,8 +87,7 @@ public:
                          : completion == Completion::in_target ? Phase::in_target
                                                                : Phase::active;
                 break;
-            // A block without a Done pin has not completed: a buffered successor took over.
-            case Status::done: phase_ = completion == Completion::in_target ? Phase::aborted : Phase::done; break;
+            case Status::done: phase_ = Phase::done; break;  // never of a motion without end: its successor aborts it
             case Status::aborted: phase_ = Phase::aborted; break;
             case Status::error: refuse(error != axes::ErrorId::none ? error : axes::ErrorId::aborted_by_axis_error); break;
         }

@@ -13,10 +13,10 @@
 namespace taktwerk::axes::test {
 namespace {
 
-constexpr std::size_t usual = 1;   // instants of each motion and stop
-constexpr int last_instant = 280;  // cycles from the begin of a motion
-constexpr int longest = 4000;      // cycles until a stop is over
-constexpr int stands = 40;         // cycles that it must stand
+constexpr std::size_t usual_stops = 1;  // instants of each motion and stop
+constexpr int last_instant = 280;       // cycles from the begin of a motion
+constexpr int longest = 4000;           // cycles until a stop is over
+constexpr int stands = 40;              // cycles that it must stand
 constexpr std::array configurations{"jerk-limited", "trapezoidal", "small deceleration"};
 
 AxisConfig configured(std::size_t which) {
@@ -145,7 +145,7 @@ TEST(StopSweep, EveryStopEndsEveryMotionWithoutTurningItRound) {
     int failures = most ? std::atoi(most) : 1;
     std::map<std::string_view, int> stopped;
     std::map<std::string_view, std::set<std::string_view>> ended_by;
-    for (std::size_t round = 0; round < property_cases(usual); ++round)
+    for (std::size_t round = 0; round < property_cases(usual_stops); ++round)
         for (std::size_t c = 0; c < configurations.size(); ++c)
             for (std::size_t m = 0; m < swept_motions.size(); ++m)
                 for (std::size_t s = 0; s < swept_stops.size() && failures > 0; ++s) {
