@@ -604,6 +604,7 @@ private:
     Instant mode_since_{}, mode_seen_at_{};
     bool mode_waits_ = false;   // for standstill of the motor, before it is asked for
     bool mode_seen_ = false;    // the drive shows the wanted mode
+    bool motor_leads_ = false;  // since the last steady cycle the drive was in a mode that takes no set-point
     bool torque_idle_ = false;  // set_controller_mode has chosen torque: without a command it is 0
     bool drive_halt_ = false;   // bit 8, until the drive is back in the axis' own mode
     DriveProfileRun drive_run_;

@@ -6,6 +6,7 @@
 //   steady -> profile_entering -> profile -> (profile_halting ->) leaving -> steady   a profile of the drive: axis_drive_profile.cpp
 //
 // In torque, and while the drive makes the profile, the set-point follows the motor, so that leaving begins where the motor is and as fast as it is.
+// A drive that was asked for another mode and has not shown it yet takes set-points as ever: there the set-point follows nothing, and goes on.
 
 #include <algorithm>
 #include <cmath>
@@ -126,6 +127,7 @@ void Axis::begin_mode_change(const AxisCommand& command) noexcept {
 }
 
 void Axis::go_mode(ModePhase phase) noexcept {
+    if (mode_phase_ == ModePhase::steady) motor_leads_ = false;
     mode_phase_ = phase;
     mode_since_ = now_;
     mode_seen_ = mode_waits_ = false;
@@ -171,19 +173,25 @@ bool Axis::leave_mode(bool confirmed, bool late, Duration period) noexcept {
     }
     if (confirmed) {  // the set-point goes on from the last one the drive was given
         end_drive_profile();
+        if (!motor_leads_) return false;
         if (goal_.kind != Goal::Kind::rest && goal_.kind != Goal::Kind::given) goal_pending_ = true;
         else if (!begin_pending_ && !goal_pending_) stop_or_stand();
         return false;
     }
     follow_motor();
-    if (drive_run_.may_still_turn(now_) && !drive_stands()) {  // it stops along its own ramp first (SV33-E 3.4.3 (4), (7), (8))
+    if (!motor_leads_ && feedback_.mode == own_mode_) {  // it never left; what it is told now begins as ever
+        mode_since_ = now_;
+        return false;
+    }
+    if (motor_leads_ && drive_run_.may_still_turn(now_) &&
+        !drive_stands()) {  // it stops along its own ramp first (SV33-E 3.4.3 (4), (7), (8))
         drive_halt_ = drive_halt_ || (drive_run_.mode() != DriveMode::none && drive_run_.turns_too_long(now_));
         mode_since_ = now_;
         return true;
     }
     if (!late) return true;
     end_drive_profile();
-    setpoint_.place(actual_local());
+    if (motor_leads_) setpoint_.place(actual_local());
     fail(AxisAlarm::drive_mode_mismatch, static_cast<double>(feedback_.mode), static_cast<double>(own_mode_));
     return false;
 }
@@ -298,8 +306,12 @@ void Axis::stop_or_stand() noexcept {
 
 double Axis::motor_velocity() const noexcept { return drive_stands() ? 0 : feedback_.velocity / units_.counts_per_unit(); }
 
-/// Where the motor will be when this cycle's set-point takes effect.
+/// Where the motor will be when this cycle's set-point takes effect, once the drive has been seen in a mode that takes none.
 void Axis::follow_motor() noexcept {
+    const bool takes_setpoints = feedback_.mode == own_mode_ || feedback_.mode == former_mode_;
+    const bool confirmed = mode_phase_ == ModePhase::torque || mode_phase_ == ModePhase::profile;
+    motor_leads_ = motor_leads_ || confirmed || (feedback_.fresh && !takes_setpoints);
+    if (!motor_leads_) return;
     const double velocity = motor_velocity();
     const double ahead = velocity * to_seconds(port_.setpoint_effective(now_) - feedback_.latched);
     setpoint_.set({actual_local() + ahead, velocity, 0});

@@ -167,5 +167,63 @@ TEST(ControllerMode, ADriveThatDoesNotTakeItIsAnErrorAfterATime) {
     EXPECT_TRUE(rig.alarms.empty());
 }
 
+// The motor is 30 counts behind what it is told. Told its own place instead, it would be pulled back by as much.
+TEST(ControllerMode, AChangeTakenBackBeforeTheDriveShowedItMovesNothing) {
+    auto config = plain_axis();
+    config.control.kv = 20;
+    config.stale_limit = 10;
+    for (const auto mode : {DriveMode::cyclic_position, DriveMode::cyclic_velocity}) {
+        Rig rig(config);
+        rig.drive.lag = 30;
+        rig.power_on();
+        rig.accept(absolute(5));
+        ASSERT_TRUE(rig.run_to(AxisState::Standstill));
+        rig.run(20);
+        ASSERT_DOUBLE_EQ(rig.view().actual_position, 4.97);
+        rig.drive.silent = true;
+        rig.accept(controller_mode(mode));
+        rig.step();
+        rig.accept(halt());
+        for (int i = 0; i < 3; ++i) {
+            rig.step();
+            EXPECT_EQ(rig.drive.last.position, 5000) << name(mode);
+            EXPECT_EQ(rig.view().set_position, 5) << name(mode);
+        }
+        rig.drive.silent = false;
+        ASSERT_TRUE(rig.run_to(AxisState::Standstill, 100));
+        rig.run(20);
+        EXPECT_EQ(rig.view().set_position, 5) << name(mode);
+    }
+}
+
+// Torque was asked for in motion and given up in the next cycle, while the feedback is missing: 50 u/s go on, 0.05 u in each cycle.
+TEST(ControllerMode, ATorqueGivenUpBeforeTheDriveShowedItLetsTheMotionGoOn) {
+    auto config = plain_axis();
+    config.control.rated_acceleration = 2000;
+    config.stale_limit = 10;
+    Rig rig(config);
+    rig.drive.lag = 30;
+    rig.power_on();
+    rig.accept(at_velocity(50));
+    ASSERT_TRUE(rig.run_until([&] { return rig.view().active_in_target; }));
+    rig.run(5);
+    const double from = rig.view().set_position;
+    rig.drive.silent = true;
+    rig.accept({.kind = CommandKind::torque, .velocity = 60, .details = TorqueDetails{0.1, 0}});
+    rig.step();
+    rig.accept(at_velocity(50));
+    for (int i = 2; i < 5; ++i) {
+        rig.step();
+        EXPECT_NEAR(rig.view().set_position, from + i * 0.05, 1e-9);
+        EXPECT_EQ(rig.drive.last.position, std::llround(rig.view().set_position * 1000));
+    }
+    rig.drive.silent = false;
+    rig.run(20);
+    EXPECT_NEAR(rig.view().set_position, from + 24 * 0.05, 1e-9);
+    EXPECT_EQ(rig.view().state, AxisState::ContinuousMotion);
+    EXPECT_EQ(rig.view().drive_mode, DriveMode::cyclic_position);
+    EXPECT_TRUE(rig.alarms.empty());
+}
+
 }  // namespace
 }  // namespace taktwerk::axes::test

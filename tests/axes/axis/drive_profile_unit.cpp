@@ -46,6 +46,23 @@ struct ProfileRig : Rig {
     }
 };
 
+// The motor is 30 counts behind what it is told: until the drive has the mode, it is told the same.
+TEST(DriveMove, ADriveThatHasNotTheModeYetIsToldTheSamePlace) {
+    ProfileRig rig([](FakeDrive& made) { made.mode_delay = 5; });
+    rig.drive.lag = 30;
+    rig.accept(absolute(5));
+    ASSERT_TRUE(rig.run_to(AxisState::Standstill));
+    rig.run(20);
+    ASSERT_DOUBLE_EQ(rig.at(), 4.97);
+    rig.accept(drive_at(20));
+    int cycles = 0;
+    for (rig.step(); rig.view().drive_mode == DriveMode::cyclic_position && cycles < 50; rig.step(), ++cycles)
+        EXPECT_EQ(rig.view().set_position, 5) << cycles;
+    EXPECT_GE(cycles, 4);
+    ASSERT_TRUE(rig.run_to_speed(20));
+    EXPECT_TRUE(rig.alarms.empty());
+}
+
 // CiA 402-2 PP: mode 1, target, speed and ramps, then the handshake; Done is the drive's "target reached", and the axis has its own mode again.
 TEST(DriveMove, EndsAtItsTargetByTheDrivesWord) {
     auto config = plain_axis();

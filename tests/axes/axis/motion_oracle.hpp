@@ -20,7 +20,8 @@
 //   * of an addition that is halted, or of the base that stops beside one, the view does not say how fast it is: there no jerk is asked for
 //   * while something is superimposed the sum may change its sign in a stop: the addition is a motion of its own
 //   * while something is superimposed, and after it was given up until the axis rests, ramps add up: twice acceleration and jerk (clause 155 of Part 1)
-//   * coordinates may change (homing, MC_SetPosition) where the drive sees nothing of it and the actual position changes alike
+//   * coordinates may change (homing, MC_SetPosition) where the drive sees nothing of it and the actual position changes alike; where it comes
+//     with the first feedback after a gap, by what the axis was told meanwhile as well
 //   * a software limit that comes over a moving axis, or is moved with its coordinates, holds once the axis has rested
 
 #include <fmt/format.h>
@@ -119,6 +120,7 @@ private:
         } else {
             summed_ = false;
             most_ = now.velocity;
+            unseen_ = 0;
             loose_ = true;
         }
         last_ = next;
@@ -297,17 +299,22 @@ private:
         const double way = b.position - a.position;
         const bool follows = std::abs(way - expected) <= left * rounding + grain;
         bool renumbered = false;
+        double shown = next.actual - last_.actual;  // what the motor did, as far as anybody saw
         if (!follows) {
             const double shift = way - expected;
-            const double actual = modulo_of(next.actual - last_.actual - shift, next.modulo);
+            // An actual value that was missing comes with the way that the axis was told meanwhile.
+            const double late = shown != 0 ? unseen_ : 0;
+            shown = modulo_of(shown - shift, next.modulo);
+            const double moved = shown - std::clamp(shown, std::min(late, 0.0), std::max(late, 0.0));
             renumbered = std::abs(shift) > told_grain && (!told_ || std::abs(told - expected) <= left * rounding + told_grain + grain) &&
-                         std::abs(actual) <= 2 * system.velocity * T + told_grain;
+                         std::abs(moved) <= 2 * system.velocity * T + told_grain;
             // Not again and again: that is a view that stands still while the drive is led on.
             again_ = renumbered ? again_ + 1 : 0;
             if (!renumbered || again_ == 4)
                 breach("set position {} after {} u: a way of {} at a set velocity of {} after {} u/s, off by {}", b.position, a.position,
                        way, b.velocity, a.velocity, way - expected);
         } else again_ = 0;
+        unseen_ = std::abs(shown) <= grain ? unseen_ + expected : 0;
         // Drive with view: the same place ever since, but for the rounding to counts.
         if (!compensates_ && told_) {
             const double offset = b.position - static_cast<double>(next.counts) / counts_;
@@ -371,6 +378,7 @@ private:
     bool summed_ = false, excused_ = true;
     double most_ = 0;  // u/s, the greatest velocity limit since the axis rested
     double low_ = 0, high_ = 0, lowest_ = 0, highest_ = 0;
+    double unseen_ = 0;  // u that the axis was told since its actual position changed last
     long steady_ = 0;
     int abandoned_ = 0, done_ = 0, again_ = 0;
 

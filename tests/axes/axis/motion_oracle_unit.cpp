@@ -142,6 +142,23 @@ TEST(MotionOracle, KnowsCoordinatesFromMotion) {
     EXPECT_NE(told_of([&](Story& s, int k) { renumber(s, k), s.command.position += 7000; }), "");
 }
 
+// Feedback that was lost comes back with the new number: the actual position has 30 cycles to make up, 0.39 u, and no more.
+TEST(MotionOracle, KnowsCoordinatesFromMotionWhereFeedbackComesBack) {
+    const auto returns = [](double more) {
+        return [more](Story& s, int k) {
+            if (k < 90) s.view.actual_position = at(59).view.actual_position;
+            else s.view.set_position += 7, s.view.actual_position += 7 + more;
+        };
+    };
+    EXPECT_EQ(told_of(returns(0)), "");
+    EXPECT_NE(told_of(returns(1)).find("off by"), std::string::npos);
+    EXPECT_NE(told_of([&](Story& s, int k) {
+                  returns(0)(s, k);
+                  if (k >= 90) s.command.position += 7000;
+              }).find("is told a way"),
+              std::string::npos);
+}
+
 TEST(MotionOracle, WatchesVelocityAndSoftwareLimits) {
     auto config = plain_axis();
     config.limits.velocity = 5;
