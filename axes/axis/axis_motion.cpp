@@ -16,6 +16,20 @@ constexpr double long_way = 1, long_way_time = 0.1;
 // Of the axis' velocity: whoever follows it as a master takes twice of it for another zero.
 constexpr double followed_by_slaves = 1.9;
 
+/// Limits lowered since the command came hold from here on. A stop, and the way to a software limit, are as hard as they have to be.
+template <class Goal>
+void hold_to_limits(Goal& goal, const AxisLimits& now) noexcept {
+    const bool velocity = goal.kind == Goal::Kind::velocity;
+    if ((!velocity && goal.kind != Goal::Kind::position) || goal.limiter == VelocityLimiter::software_limit) return;
+    auto& limits = goal.limits;
+    const double wanted = velocity ? std::abs(goal.value) : limits.velocity;
+    limits = {std::min(limits.velocity, now.velocity), std::min(limits.acceleration, now.acceleration),
+              std::min(limits.deceleration, now.deceleration), std::min(limits.jerk, now.jerk)};
+    if (wanted <= now.velocity) return;
+    if (velocity) goal.value = std::copysign(now.velocity, goal.value);
+    goal.limiter = VelocityLimiter::axis_limit;
+}
+
 }  // namespace
 
 void Axis::plan(Instant now, Duration period) noexcept {
@@ -115,6 +129,7 @@ void Axis::run_goal(double late) noexcept {
     }
     goal_pending_ = held_ = false;
     wants_speed_ = folded_jerk_ = 0;
+    hold_to_limits(goal_, config_.limits);
     auto from = setpoint_.base();
     auto limits = with_override(goal_.limits);
     if (goal_.kind == Goal::Kind::stop && from.velocity * from.acceleration > 0) {

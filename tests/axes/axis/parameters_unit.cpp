@@ -122,6 +122,35 @@ TEST(Parameters, LoweredLimitsHoldForTheNextCommand) {  // P1-217
     EXPECT_DOUBLE_EQ(rig.view().set_position, 30);
 }
 
+// Held by an override of 0, a motion is planned anew when it is let go.
+TEST(Parameters, LoweredLimitsHoldFromTheNextPlanningOn) {  // P1-217
+    auto beyond = absolute(60, 80);
+    beyond.kind = CommandKind::move_continuous_absolute;
+    beyond.end_velocity = 70;
+    for (const auto& command : {absolute(60, 80), at_velocity(80), beyond}) {
+        ParameterRig rig;
+        const auto id = rig.accept(command);
+        rig.run(100);
+        ASSERT_EQ(rig.axis.set(Override{.velocity = 0}, Owner::program), ErrorId::none);
+        ASSERT_TRUE(rig.run_until([&] { return rig.view().set_velocity == 0; }, 300));
+        ASSERT_EQ(rig.write(9, 30), ErrorId::none);
+        ASSERT_EQ(rig.write(13, 200), ErrorId::none);
+        ASSERT_EQ(rig.write(15, 250), ErrorId::none);
+        ASSERT_EQ(rig.axis.set(Override{}, Owner::program), ErrorId::none);
+        rig.largest_velocity = rig.largest_acceleration = 0;
+        rig.run(1000);
+        EXPECT_EQ(rig.view().set_velocity, 30);
+        EXPECT_EQ(rig.view().limiter, VelocityLimiter::axis_limit);
+        if (command.kind == CommandKind::move_velocity) {
+            EXPECT_EQ(rig.status(id), CommandStatus::in_target);
+        }
+        rig.run(2000);
+        EXPECT_EQ(rig.status(id), command.kind == CommandKind::move_absolute ? CommandStatus::done : CommandStatus::in_target);
+        EXPECT_NEAR(rig.largest_velocity, 30, 1e-9);
+        EXPECT_LE(rig.largest_acceleration, 250 * (1 + 1e-9));
+    }
+}
+
 // Lowering what commands may ask for must not make the stop after an error longer: 1000 u/s2 as configured, not 100.
 TEST(Parameters, StopsForErrorsStayAsHardAsConfigured) {
     ParameterRig rig;
