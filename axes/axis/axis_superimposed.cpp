@@ -68,8 +68,12 @@ bool Axis::ramps_of_two() const noexcept {
     return ramps.acceleration > std::max(limits.acceleration, limits.deceleration) * rounding || ramps.jerk > limits.jerk * rounding;
 }
 
-/// u/s that the axis' limit leaves in `sense` beside the base, as far as anybody knows, and beside what the base waits to become.
+/// u/s that the axis' limit leaves in `sense` beside the base, as far as anybody knows, and beside what the base waits to become. For what has not
+/// begun nothing while the base is faster than the limit (lowered since, or out of a mode of the drive): what slows it down on its way would make
+/// it faster again at its end.
 double Axis::room_beside_base(double sense) const noexcept {
+    constexpr double beyond = 1 + room_grain;
+    if (std::abs(setpoint_.base().velocity) > config_.limits.velocity * beyond && setpoint_.superimposed_finished()) return 0;
     return config_.limits.velocity - std::max({0.0, base_speed(sense), sense * wants_speed_});
 }
 

@@ -187,5 +187,30 @@ TEST(SuperimposedRoom, ABaseThatIsUpdatedWithLessJerkLeavesRoomForWhatTheAdditio
     }
 }
 
+// The limit was lowered to 50 u/s below a base at 80, which comes down with 100 u/s2 only. An addition against it would be slow at its end, and the
+// sum fast again: it waits until the base is inside the limit.
+TEST(SuperimposedRoom, NothingBeginsOnTopOfABaseBeyondTheLimit) {
+    for (const double sense : {1.0, -1.0}) {
+        Rig rig;
+        rig.power_on();
+        auto base = at_velocity(sense * 80);
+        base.deceleration = 100;
+        rig.accept(base);
+        rig.run(400);
+        ASSERT_EQ(rig.axis.set(WriteParameter{velocity_of_application, 50}, Owner::program), ErrorId::none);
+        ASSERT_EQ(rig.axis.set(Override{.velocity = 0.9}, Owner::program), ErrorId::none);
+        const auto addition = rig.accept(on_top(sense * -0.3, 20));
+        double before = 80;
+        for (int i = 0; i < 600; ++i) {
+            rig.step();
+            const double speed = sense * rig.view().set_velocity;
+            EXPECT_LE(speed, std::max(50.0, before) * (1 + 1e-9)) << i;
+            before = speed;
+        }
+        EXPECT_EQ(rig.status(addition), CommandStatus::done);
+        EXPECT_NEAR(before, 45, 1e-9);
+    }
+}
+
 }  // namespace
 }  // namespace taktwerk::axes::test
