@@ -264,6 +264,7 @@ bool Axis::halt_drive_profile(Duration period) noexcept {
         go_mode(ModePhase::leaving);
         return step_mode(period);
     }
+    if (guard_drive_speed(setpoint_.state().velocity)) return true;
     if (drive_run_.mode() != DriveMode::profile_position) guard_motor(stop_limits(config_.limits));
     else if (view_.state == AxisState::Stopping) (void)guard_limit_switches();
     else if (view_.state != AxisState::ErrorStop) (void)guard_switches();
@@ -285,6 +286,7 @@ void Axis::fill_drive_profile() noexcept {
     command_.torque_slope = made.torque_slope;
     command_.velocity_limit = made.velocity_limit;
     if (!drive_halt_) return;
+    command_.torque = 0;  // what the halt does is the drive's affair; at least nothing drives on
     const auto& stopping = queue_.active().command;
     const bool error = view_.state == AxisState::ErrorStop;
     const auto braking = error ? stop_limits(config_.limits) : dynamics_of(stopping, config_.limits, config_.defaults);

@@ -183,8 +183,9 @@ bool Axis::leave_mode(bool confirmed, bool late, Duration period) noexcept {
         mode_since_ = now_;
         return false;
     }
-    if (motor_leads_ && drive_run_.may_still_turn(now_) &&
-        !drive_stands()) {  // it stops along its own ramp first (SV33-E 3.4.3 (4), (7), (8))
+    if (drive_run_.mode() != DriveMode::none) guard_drive_speed(setpoint_.state().velocity);
+    // It stops along its own ramp first (SV33-E 3.4.3 (4), (7), (8)).
+    if (motor_leads_ && drive_run_.may_still_turn(now_) && !drive_stands()) {
         drive_halt_ = drive_halt_ || (drive_run_.mode() != DriveMode::none && drive_run_.turns_too_long(now_));
         mode_since_ = now_;
         return true;

@@ -668,5 +668,26 @@ TEST(DriveProfileLimits, ADriveThatRunsTooFastIsStopped) {
     EXPECT_TRUE(rig.raised(AxisAlarm::drive_too_fast));
 }
 
+// A load that pulls makes the motor faster than its limit while the drive should halt, or leaves its mode: that is said, and no motion begins.
+TEST(DriveProfileLimits, ADriveThatRunsAwayOnItsWayOutIsStopped) {
+    for (const bool halts : {true, false}) {
+        ProfileRig rig([&](FakeDrive& drive) {
+            drive.caps.mode_change_at_standstill = halts;
+            drive.profile.stuck = true;  // knows no halt
+            drive.load = -0.1;
+        });
+        rig.accept(drive_torque(0.1));
+        ASSERT_TRUE(rig.run_until([&] { return rig.speed() > 50; }, 3000)) << halts;
+        EXPECT_TRUE(rig.alarms.empty());
+        rig.drive.mode_delay = 10'000;
+        rig.accept(at_velocity(20));
+        for (int i = 0; rig.speed() < 119 && i < 1000; ++i) rig.step();
+        EXPECT_FALSE(rig.raised(AxisAlarm::drive_too_fast)) << halts << " at " << rig.speed();
+        EXPECT_EQ(rig.drive.last.torque, 0) << halts;
+        ASSERT_TRUE(rig.run_to(AxisState::ErrorStop, 100)) << halts << " at " << rig.speed();
+        EXPECT_TRUE(rig.raised(AxisAlarm::drive_too_fast)) << halts;
+    }
+}
+
 }  // namespace
 }  // namespace taktwerk::axes::test

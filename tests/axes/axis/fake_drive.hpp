@@ -226,6 +226,12 @@ private:
         return std::max(turn(from), turn(to)) * index_distance + index_at;
     }
     void step_torque(Instant now) {
+        if (profiled() && last.halt && !profile.stuck) {  // 605Dh = 1: along the ramp, whatever torque is asked for
+            torque_ = 0;
+            velocity_ -= std::copysign(std::min(std::abs(velocity_), last.deceleration * to_seconds(cycle)), velocity_);
+            position += velocity_ * to_seconds(cycle);
+            return;
+        }
         torque_ = at(now - (latch_age + 1) * cycle).torque;  // what held during the cycle that ended at the latch
         constexpr int parts = 8;
         const double dt = to_seconds(cycle) / parts;

@@ -18,7 +18,7 @@ public:
     bool takes_setpoints = true;
     int taking = 3;            ///< cycles from the announcement to the acceptance
     bool ramps_first = false;  ///< out of PV it stops along its ramp before it changes (SV33-E 3.4.3 (7))
-    bool stuck = false;        ///< keeps its profile mode whatever it is told
+    bool stuck = false;        ///< keeps its profile mode whatever it is told, and knows no halt
     double overshoot = 1;      ///< factor on the speed it was given
 
     // what a test reads
