@@ -266,6 +266,7 @@ EndlessMotion Axis::seen(const Link& link, std::size_t master) const noexcept {
     const auto& shift = coupling_.phase.state();
     motion.place.local += shift.position;
     motion.velocity += shift.velocity;
+    motion.trend += shift.velocity;
     motion.acceleration += shift.acceleration;
     return motion;
 }

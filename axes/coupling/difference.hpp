@@ -8,14 +8,9 @@
 
 namespace taktwerk::axes {
 
-/// What a difference comes to: no velocity (the distance stays, as MC_GearIn wants it), or nothing at all.
-enum class RunDown : std::uint8_t { velocity, position };
-
 class Difference {
 public:
-    [[nodiscard]] static Plan plan(const MotionState& from, RunDown target, const SignedLimits& limits) noexcept {
-        return target == RunDown::velocity ? plan_to_velocity(from, 0, limits) : plan_to_state(from, {}, limits);
-    }
+    [[nodiscard]] static Plan plan(const MotionState& from, const SignedLimits& limits) noexcept { return plan_to_state(from, {}, limits); }
     void run(const Profile& profile) noexcept {
         profile_ = profile;
         state_ = profile.start();

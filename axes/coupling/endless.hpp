@@ -23,6 +23,8 @@ struct EndlessMotion {
     EndlessPlace place{};
     double velocity = 0;
     double acceleration = 0;
+    double trend =
+        0;  ///< u/s; of a filtered master: its velocity without overshoot. In another sense than `velocity`: it does not move so. 0: not told
 };
 
 /// Where it was `seconds` before, had it moved with its acceleration all the time.

@@ -31,28 +31,22 @@ double tame(const MotionState& state, const FollowerLimits& follower) noexcept {
     return std::clamp(state.acceleration, -most, most);
 }
 
-/// PLCopen's words follow the slave's own velocity: a change of it without reversal needs one of the two.
-double acceleration_for(const MotionState& slave, const MotionState& relation, RunDown target, const MotionLimits& approach) noexcept {
-    if (target == RunDown::position || slave.velocity * relation.velocity < 0)
-        return std::min(approach.acceleration, approach.deceleration);
-    return std::abs(relation.velocity) >= std::abs(slave.velocity) ? approach.acceleration : approach.deceleration;
-}
+/// PLCopen's words follow the slave's own velocity, which may turn round on the way: what holds for either.
+double either_way(const MotionLimits& approach) noexcept { return std::min(approach.acceleration, approach.deceleration); }
 
 /// Where the slave can go: the relation, but for what its own limits leave no room beside.
-MotionState reachable(const MotionState& relation, double acceleration, RunDown target, const FollowerLimits& limits) noexcept {
-    const double margin = target == RunDown::velocity ? 0 : least_room * limits.axis.velocity;
+MotionState reachable(const MotionState& relation, const FollowerLimits& limits) noexcept {
+    const double margin = least_room * limits.axis.velocity;
     MotionState out = relation;
     out.velocity = std::clamp(relation.velocity, -std::max(0.0, limits.backward - margin), std::max(0.0, limits.forward - margin));
-    const double most = (1 - least_share) * acceleration;
+    const double most = (1 - least_share) * either_way(limits.approach);
     out.acceleration = out.velocity != relation.velocity ? 0.0 : std::clamp(relation.acceleration, -most, most);
     return out;
 }
 
 /// Room for the difference beside the goal's own motion.
-SignedLimits difference_limits(const MotionState& lack, const MotionState& goal, double acceleration, RunDown target,
-                               const FollowerLimits& limits) noexcept {
-    double up = limits.forward - goal.velocity, down = limits.backward + goal.velocity;
-    if (target == RunDown::velocity) up = down = std::abs(lack.velocity) + limits.axis.velocity;
+SignedLimits difference_limits(const MotionState& goal, const FollowerLimits& limits) noexcept {
+    const double up = limits.forward - goal.velocity, down = limits.backward + goal.velocity, acceleration = either_way(limits.approach);
     const double least = least_room * limits.axis.velocity, jerk = limits.approach.jerk;
     const double faster = acceleration - goal.acceleration, slower = acceleration + goal.acceleration;
     return {SignLimits{std::max(up, least), faster, faster, jerk}, SignLimits{std::max(down, least), slower, slower, jerk}};
@@ -64,6 +58,7 @@ void Follower::begin(const Relation& relation, RunDown target, const FollowerLim
     relation_ = relation;
     target_ = target;
     limits_ = limits;
+    catch_up_.begin();
     fresh_ = true;
     approaching_ = in_sync_ = held_back_ = false;
 }
@@ -83,6 +78,7 @@ MotionState Follower::wanted(const EndlessMotion& first, const EndlessMotion& se
     else if (auto* both = std::get_if<GearSum>(&relation_)) at = both->at(first, second);
     else if (auto* cam = std::get_if<CamCurve>(&relation_)) at = cam->at(first);
     if (approaching_ && approach_.passed(first.place)) approaching_ = false;
+    trend_ = at.trend;
     if (!approaching_) return {frame.local(at.place), at.velocity, at.acceleration};
     const auto under_way = approach_.at(first);
     return {frame.local(approach_origin_) + under_way.position, under_way.velocity, under_way.acceleration};
@@ -99,14 +95,12 @@ Plan Follower::plan_from(const MotionState& before, const MotionState& goal, dou
     const MotionState then{goal.position - period * (goal.velocity - period * goal.acceleration / 2),
                            goal.velocity - period * goal.acceleration, goal.acceleration};
     const MotionState lack{before.position - then.position, before.velocity - then.velocity, acceleration - then.acceleration};
-    const double most = acceleration_for(before, goal, target_, limits_.approach);
-    return Difference::plan(lack, target_, difference_limits(lack, goal, most, target_, limits_));
+    return Difference::plan(lack, difference_limits(goal, limits_));
 }
 
 /// The difference begins anew, one period ago, beside what the slave can follow of the relation.
 void Follower::make_up(const MotionState& before, const MotionState& relation, double period) noexcept {
-    const double most = acceleration_for(before, relation, target_, limits_.approach);
-    goal_ = reachable(relation, most, target_, limits_);
+    goal_ = reachable(relation, limits_);
     room_ = limits_.forward - relation.velocity;
     exact_ = goal_ == relation;
     auto plan = plan_from(before, goal_, before.acceleration, period);
@@ -122,8 +116,7 @@ void Follower::make_up(const MotionState& before, const MotionState& relation, d
 
 /// The relation has another acceleration than was foreseen, or leaves other room: is there a way now that ends sooner?
 void Follower::look_for_a_sooner_way(const MotionState& before, const MotionState& relation, double period) noexcept {
-    const double most = acceleration_for(before, relation, target_, limits_.approach);
-    if (reachable(relation, most, target_, limits_) != relation) return;
+    if (reachable(relation, limits_) != relation) return;
     const auto plan = plan_from(before, relation, before.acceleration, period);
     if (plan.error != PlanError::none || !(plan.profile.duration() < difference_.remaining() - period)) return;
     goal_ = relation;
@@ -159,10 +152,35 @@ MotionState Follower::kept_inside(const MotionState& wanted, const MotionState& 
     return out;
 }
 
+/// Towards the velocity of the gear. Once there, the distance lost is lost for good: the gear is moved by it, and from now on locked by place.
+MotionState Follower::catch_up(const MotionState& relation, const MotionState& before, double period) noexcept {
+    const auto next = catch_up_.next(before, {relation.velocity, relation.acceleration, trend_}, limits_, period);
+    MotionState out{next.place, relation.velocity, relation.acceleration};
+    in_sync_ = next.caught && possible(out, before, period);
+    if (in_sync_) {
+        held_back_ = false;
+        exact_ = true;
+        target_ = RunDown::position;  // from now on
+        std::visit([&](auto& line) { line.shift(out.position - relation.position); }, relation_);
+        difference_.clear();
+        out.acceleration = tame(out, limits_);
+        return out;
+    }
+    // Its accelerations are inside, but for what the slave brought along; the velocity limit may have come down on it.
+    const double velocity = next.state.velocity;
+    const bool inside = std::abs(velocity - limits_.inside(velocity)) <= rounding * limits_.axis.velocity;
+    held_back_ = next.held_back || !inside;
+    return inside ? next.state : kept_inside(next.state, before, period);
+}
+
 MotionState Follower::step(const EndlessMotion& first, const EndlessMotion& second, const MotionState& before, const SlaveFrame& frame,
                            Duration period) noexcept {
     const double seconds = to_seconds(period);
     const auto relation = wanted(first, second, frame);
+    if (target_ == RunDown::velocity) {
+        fresh_ = false;
+        return catch_up(relation, before, seconds);
+    }
     own_acceleration_ = difference_.state().acceleration;
     bool anew = fresh_ || !(exact_ || difference_.finished());
     if (anew) make_up(before, relation, seconds);
@@ -182,14 +200,6 @@ MotionState Follower::step(const EndlessMotion& first, const EndlessMotion& seco
     fresh_ = false;
     out.acceleration = tame(out, limits_);
     in_sync_ = !approaching_ && !held_back_ && difference_.finished();
-    if (!in_sync_) return out;
-    target_ = RunDown::position;  // from now on the gear is locked by place
-    if (difference_.state().position != 0) {
-        // Lost for good: one rounding, and the difference is out of the way.
-        const double lost = difference_.state().position;
-        std::visit([&](auto& line) { line.shift(lost); }, relation_);
-        difference_.clear();
-    }
     return out;
 }
 

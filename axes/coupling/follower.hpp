@@ -2,8 +2,8 @@
 // A slave on its master: relation + a difference that runs down, inside the slave's limits. One per axis, real-time safe.
 //
 // However a coupling begins, changes or is disturbed, the slave goes on from the state it has: what it lacks becomes the difference
-// motion. For a gear that is not locked yet it runs down to no velocity (the distance lost stays lost), else to nothing at all: a gear is
-// locked by place, and what holds the slave back afterwards is made up. In sync means: no difference left.
+// motion, which runs down to nothing. A gear first catches up with the velocity (catch_up.hpp) and the distance lost stays lost; then it
+// is locked by place too, and what holds the slave back afterwards is made up. In sync means: no difference left.
 //
 // The slave's own limits are kept in every cycle: a relation that asks for more velocity or acceleration (a straight cam with corners,
 // a master too fast) is not followed further than they allow; the slave falls behind, is not in sync, and makes it up. So |velocity|
@@ -18,7 +18,9 @@
 #include <variant>
 
 #include "axes/coupling/cam_curve.hpp"
+#include "axes/coupling/catch_up.hpp"
 #include "axes/coupling/difference.hpp"
+#include "axes/coupling/follower_limits.hpp"
 #include "axes/coupling/gear_line.hpp"
 #include "axes/coupling/gear_sum.hpp"
 #include "axes/coupling/sync_approach.hpp"
@@ -36,15 +38,8 @@ struct SlaveFrame {
     [[nodiscard]] EndlessPlace place(double local) const noexcept { return {anchor, local}; }
 };
 
-struct FollowerLimits {
-    MotionLimits axis;      ///< never exceeded (but for the jerk)
-    MotionLimits approach;  ///< of the difference motion; its velocity is not used
-    double forward = axis.velocity,
-           backward = axis.velocity;  ///< velocity in each sense, u/s, >= 0: less where something else moves the axis too
-
-    [[nodiscard]] double room(double sense) const noexcept { return sense < 0 ? backward : forward; }
-    [[nodiscard]] double inside(double velocity) const noexcept { return std::clamp(velocity, -backward, forward); }
-};
+/// What a slave has to come to: the velocity (the distance lost stays, as MC_GearIn wants it), or the place.
+enum class RunDown : std::uint8_t { velocity, position };
 
 class Follower {
 public:
@@ -75,6 +70,7 @@ private:
     [[nodiscard]] MotionState kept_inside(const MotionState& wanted, const MotionState& before, double period) const noexcept;
     [[nodiscard]] bool foreseen(const MotionState& relation) const noexcept;
     [[nodiscard]] Plan plan_from(const MotionState& before, const MotionState& goal, double acceleration, double period) const noexcept;
+    [[nodiscard]] MotionState catch_up(const MotionState& relation, const MotionState& before, double period) noexcept;
     void make_up(const MotionState& before, const MotionState& relation, double period) noexcept;
     void look_for_a_sooner_way(const MotionState& before, const MotionState& relation, double period) noexcept;
 
@@ -83,7 +79,9 @@ private:
     EndlessPlace approach_origin_;  // of the approach's positions
     RunDown target_ = RunDown::velocity;
     FollowerLimits limits_;
+    CatchUp catch_up_;
     Difference difference_;
+    double trend_ = 0;             // of the relation
     MotionState goal_;             // what the difference is planned beside: the relation as far as the slave can follow it
     double room_ = 0;              // u/s that were left then between it and the forward limit
     double own_acceleration_ = 0;  // of the difference, one period ago

@@ -32,7 +32,8 @@ public:
         const double n = static_cast<double>(ratio_.numerator), d = static_cast<double>(ratio_.denominator);
         return {{slave_.feeds + feeds_.whole(), slave_.local + feeds_.rest() + n * (master.place.local - master_.local) / d},
                 n * master.velocity / d,
-                n * master.acceleration / d};
+                n * master.acceleration / d,
+                n * master.trend / d};
     }
 
     /// The whole line moves by `delta` u of the slave.

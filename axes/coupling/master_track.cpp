@@ -35,6 +35,7 @@ bool MasterTrack::next(const Reading& reading, double period) noexcept {
     }
     if (reading.planned) {
         out_ = now;
+        out_.trend = now.velocity;
         filter_ = {now.place, now.velocity, 0};
         acceleration_ = now.acceleration;
         return true;
@@ -54,6 +55,7 @@ bool MasterTrack::next(const Reading& reading, double period) noexcept {
     const auto given = out_.place;
     out_ = filter_;
     out_.acceleration = acceleration_;
+    out_.trend = filter_.velocity;
     out_.place.local += filter_.velocity * reading.age;
     // The filter's own velocity comes late after its place while the master speeds up: whoever followed both would leave the place.
     if (!first) out_.velocity = way(given, out_.place, reading.feed) / period;

@@ -186,6 +186,31 @@ TEST(Encoder, TheStepsOfACoarseEncoderAreRoundedAndNoWayIsLost) {
     rig.expect_no_jump();
 }
 
+// A belt that is stopped at once while its slave catches up: what the filter makes of that reaches as far as the slave's place in gear, not before.
+// P1-275, P1-278
+TEST(Encoder, ABeltThatIsStoppedTurnsNoSlaveRoundThatCatchesUp) {
+    for (const double jerk : {0.0, 10'000.0})  // 0: none
+        for (const int stop : {5, 20, 40, 60}) {
+            CouplingRig rig({encoder(), plain_slave()});
+            rig.start();
+            rig.drives[0]->coasting = 80;  // counts per cycle: u/s
+            rig.run(300);
+            auto command = measured(gear_in(0));
+            command.jerk = jerk;
+            const auto gear = rig.accept(1, command);
+            rig.run(stop);
+            rig.drives[0]->coasting = 0;
+            bool in_gear = false;
+            for (int i = 0; i < 2000 && !in_gear; ++i) {
+                rig.step();
+                in_gear = rig.status(1, gear) == CommandStatus::in_target;
+                ASSERT_TRUE(in_gear || rig.view(1).set_velocity >= -0.2) << jerk << ' ' << stop << ' ' << i;  // a count's share of noise
+            }
+            EXPECT_TRUE(in_gear) << jerk << ' ' << stop;
+            rig.expect_no_jump();
+        }
+}
+
 // A measured master whose feedback stops: a short gap is bridged, a long one ends the coupling in an error, along the slave's own ramp.
 TEST(Master, LossOfFeedbackStopsTheSlave) {
     CouplingRig rig({encoder(), plain_slave()});
