@@ -35,8 +35,10 @@ namespace state_table {
 
 using enum AxisState;
 inline constexpr AxisState no = static_cast<AxisState>(0xFF);
+// As wide as a column of the table. NOLINTBEGIN(readability-identifier-naming)
 inline constexpr AxisState Still = Standstill, Discr = DiscreteMotion, Cont = ContinuousMotion, Sync = SynchronizedMotion;
 inline constexpr AxisState Error = ErrorStop, Off = Disabled, Stop = Stopping, Home = Homing;
+// NOLINTEND(readability-identifier-naming)
 
 // clang-format off
 inline constexpr std::array<std::array<AxisState, axis_event_count>, axis_state_count> rows{{

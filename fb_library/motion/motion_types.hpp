@@ -40,7 +40,7 @@ using axes::TrackRef;
 using axes::TriggerRef;
 
 // One table over time, three meanings: the pin's type says which (positions, velocities, accelerations). A declared table is assigned
-// as it is: `profile.TimePosition = d.time_table(...)`.
+// as it is: `profile.TimePosition = d.time_table(...)`. NOLINTBEGIN(google-explicit-constructor)
 struct MC_TP_REF : TimeTableRef {
     constexpr MC_TP_REF(TimeTableRef table = {}) noexcept : TimeTableRef{table} {}
 };
@@ -50,6 +50,7 @@ struct MC_TV_REF : TimeTableRef {
 struct MC_TA_REF : TimeTableRef {
     constexpr MC_TA_REF(TimeTableRef table = {}) noexcept : TimeTableRef{table} {}
 };
+// NOLINTEND(google-explicit-constructor)
 
 /// The modes of TwinCAT's MC_Jog, in its order.
 enum MC_JogMode : std::uint8_t {

@@ -42,8 +42,8 @@ enum class PinKind : std::uint8_t {
 struct DWORD {
     std::uint32_t bits = 0;
     constexpr DWORD() noexcept = default;
-    constexpr DWORD(std::uint32_t value) noexcept : bits(value) {}
-    constexpr operator std::uint32_t() const noexcept { return bits; }
+    constexpr DWORD(std::uint32_t value) noexcept : bits(value) {}      // NOLINT(google-explicit-constructor): a literal may be
+    constexpr operator std::uint32_t() const noexcept { return bits; }  // NOLINT(google-explicit-constructor): assigned to one
 };
 
 struct PinType {
