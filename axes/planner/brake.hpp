@@ -40,7 +40,7 @@ private:
     void add(double duration, double acceleration, double jerk, double end_acceleration) noexcept;
     void jump(double dv) noexcept;
 
-    std::array<Stretch, 4> stretches_{};
+    std::array<Stretch, 4> stretches_;  // the first count_
     int count_ = 0;
     double sign_ = 1;  // the frame is mirrored where it is -1
     double velocity_ = 0;

@@ -21,14 +21,14 @@ double descent(double top, double v1, double a1, const FrameLimits& limits) noex
 }  // namespace
 
 Brake brake_towards(double v, double a, double v1, double a1, double way, const FrameLimits& limits) noexcept {
-    const Brake brake{v, a, limits};
+    Brake brake{v, a, limits};
     if (!(brake.beyond() > limit_lost)) return brake;
     Brake down = brake;
     down.go_to_limit(limits);
-    if (brake.beyond() > beyond_reason) return down;
     const double s = brake.sense();
     const FrameLimits l = s > 0 ? limits : limits.mirrored();
-    return s * (way - down.travel()) >= descent(l.up.velocity, s * v1, s * a1, l) ? down : brake;
+    if (brake.beyond() > beyond_reason || s * (way - down.travel()) >= descent(l.up.velocity, s * v1, s * a1, l)) brake = down;
+    return brake;
 }
 
 }  // namespace taktwerk::axes

@@ -111,16 +111,20 @@ Extremal fastest(const Problem& problem, double rounding, const Ends& ends) noex
     constexpr std::array curves{Curve::peak_up,     Curve::peak_down,       Curve::trough_up,
                                 Curve::trough_down, Curve::early_trough_up, Curve::early_trough_down};
     Extremal best;
+    int looked_at = 0;
     for (const Curve c : curves) {
         if (!may_exist(problem, c) || !keeps_limits_on(problem, c, ends)) continue;
         const Problem p = in_frame(problem, c);
-        const Found found = is_peak(c) ? PeakFamily{p}.over_way(rounding) : TroughFamily{p}.over_way(rounding);
-        if (!found.found || found.duration >= best.found.duration) continue;
+        const double longest = best.found.duration;
+        const Found found = is_peak(c) ? PeakFamily{p}.over_way(rounding, longest) : TroughFamily{p}.over_way(rounding, longest);
+        looked_at += found.looked_at;
+        if (!found.found || found.duration >= longest) continue;
         best = {c, found};
         if (only_one && found.parameter > 0) break;  // at its very end a curve meets the next one
     }
-    if (best.found.found || !ends.start_releases || !ends.end_releases) return best;
-    return nearest(problem, curves);
+    if (!best.found.found && ends.start_releases && ends.end_releases) best = nearest(problem, curves);
+    best.found.looked_at = looked_at;
+    return best;
 }
 
 Extremal furthest(const Problem& problem, double time, double slack) noexcept {

@@ -32,7 +32,7 @@ public:
     }
 
 private:
-    std::array<Stretch, Profile::max_pieces> items_{};
+    std::array<Stretch, Profile::max_pieces> items_;  // the first count_
     std::size_t count_ = 0;
 };
 

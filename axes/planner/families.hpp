@@ -14,6 +14,7 @@ struct Found {
     double parameter = 0;
     double cruise = 0;
     double duration = std::numeric_limits<double>::infinity();
+    int looked_at = 0;  ///< members of the family
 };
 
 /// Climb to a highest velocity c, where the acceleration is 0, cruise there if c is the limit, and descend to the end. The parameter is
@@ -34,15 +35,12 @@ public:
     };
     [[nodiscard]] Motion at(double x) const noexcept;
 
-    /// The fastest motion over the problem's way. The way is known to `known_to`: a member that misses it by
-    /// no more will do.
-    [[nodiscard]] Found over_way(double known_to) const noexcept;
+    /// The fastest motion over the problem's way, if it takes less than `longest`: the first member whose way grows through it. The way is
+    /// known to `known_to`: a member that misses it by no more will do.
+    [[nodiscard]] Found over_way(double known_to, double longest) const noexcept;
     /// The motion that takes `time`: it goes further up than any other of that duration.
     /// A time outside the family's by no more than `slack` is taken for its end.
     [[nodiscard]] Found in_time(double time, double slack) const noexcept;
-
-    /// Rate of the end over the duration, d way / d time, along the family. It rises with x.
-    [[nodiscard]] double rate(const Motion& m) const noexcept;
 
 private:
     [[nodiscard]] double excess(double x) const noexcept { return ease_ > 0 ? x * (x * ease_ / 2) : x; }
@@ -81,7 +79,7 @@ public:
     };
     [[nodiscard]] Motion at(double u) const noexcept;
 
-    [[nodiscard]] Found over_way(double known_to) const noexcept;
+    [[nodiscard]] Found over_way(double known_to, double longest) const noexcept;
     [[nodiscard]] Found in_time(double time, double slack) const noexcept;
 
     /// d way / d time along the family: falls and then rises with the parameter's trough.
@@ -90,6 +88,7 @@ public:
 private:
     [[nodiscard]] double time_slope(const Motion& m) const noexcept;
     [[nodiscard]] double slowest_trough() const noexcept;
+    [[nodiscard]] double holding_trough() const noexcept;
 
     const Problem& problem_;
     double square_ = 0;  // peak^2 - trough^2

@@ -9,6 +9,7 @@ namespace taktwerk::axes {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -36,12 +37,6 @@ PeakFamily::Motion PeakFamily::at(double x) const noexcept {
     return {Ramp{climb_above_release(problem_.v0, problem_.a0, problem_.released0, excess_start_ + e, problem_.limits), problem_.limits},
             Ramp{climb_above_release(problem_.v1, -problem_.a1, released1_, excess_end_ + e, back_limits_), back_limits_},
             at_limit ? top : floor_velocity_ + e};
-}
-
-double PeakFamily::rate(const Motion& m) const noexcept {
-    const double ease = problem_.limits.down.ease;
-    if (ease == 0) return m.peak_velocity;
-    return m.peak_velocity + m.up.peak() * m.back.peak() * ease / 2;
 }
 
 double PeakFamily::way_slope(double x, const Motion& m) const noexcept {
@@ -83,51 +78,44 @@ double PeakFamily::guess_for(double missing) const noexcept {
     return parameter(2 * rest / (linear + std::sqrt(linear * linear + 4 * square * rest)));
 }
 
-Found PeakFamily::over_way(double known_to) const noexcept {
+Found PeakFamily::over_way(double known_to, double longest) const noexcept {
     const double way = problem_.way;
     Found last{true};  // member looked at, as a result
-    const auto difference = [&](double x) noexcept -> RootSample {
+    const auto look = [&](double x) noexcept -> Motion {
         const Motion m = at(x);
         last.parameter = x;
         last.duration = m.duration();
-        return {m.travel() - way, way_slope(x, m), 2 * epsilon * (std::abs(way) + m.path())};
+        ++last.looked_at;
+        return m;
     };
-    const auto result = [&](double x) noexcept -> Found { return x == last.parameter ? last : Found{true, x, 0, at(x).duration()}; };
+    const auto none = [&]() noexcept -> Found { return {false, 0, 0, infinity, last.looked_at}; };
+    const auto between = [&](double low, double high, double guess) noexcept -> Found {
+        const auto miss = [&](double x) noexcept -> RootSample {
+            const Motion m = look(x);
+            return {m.travel() - way, way_slope(x, m), 2 * epsilon * (std::abs(way) + m.path())};
+        };
+        const double x = bracketed_root(miss, low, high, guess, true);
+        if (x != last.parameter) look(x);
+        return last;
+    };
 
     double low = 0;
-    const Motion lowest = at(0);
+    const Motion lowest = look(0);
+    if (last.duration >= longest) return none();
     double low_travel = lowest.travel();
     const double rounding = known_to + 2 * epsilon * lowest.path();
-    if (std::abs(low_travel - way) <= rounding) return {true, 0, 0, lowest.duration()};
-    if (way < low_travel) {
-        if (!(floor_velocity_ < 0 && rate(lowest) < 0)) return {};
-        // The way first shrinks: up to where the rate passes 0, which it does before the velocity.
-        const double most = std::min(widest_, parameter(-floor_velocity_));
-        const double turn = bracketed_root(
-            [&](double x) noexcept -> RootSample {
-                const Motion m = at(x);
-                const double p = m.up.peak();
-                const double q = m.back.peak();
-                const double fall = problem_.limits.down.ease;
-                // dp/dx = x/p while no acceleration limit is reached; a guess is enough here.
-                const double bend = fall > 0 && p > 0 && q > 0 ? x * (q / p + p / q) * fall / 2 : 0;
-                return {rate(m), excess_slope(x) + bend, 4 * epsilon * (std::abs(m.peak_velocity) + (fall > 0 ? p * q * fall : 0))};
-            },
-            0, most, most / 2, true);
-        const Motion turning = at(turn);
-        const double turn_travel = turning.travel();
-        if (way < turn_travel - rounding) return {};
-        if (way <= turn_travel) return {true, turn, 0, turning.duration()};
-        return result(bracketed_root(difference, 0, turn, turn / 2, false));
-    }
+    if (std::abs(low_travel - way) <= rounding) return last;
+    // With a peak below velocity 0 the way first shrinks with the time, but who is passed backwards was within reach before
+    // (mathematics.md, "Why these are all").
+    if (way < low_travel) return none();
 
     double high = widest_;
     // Where the lowest motion ends at negative velocity, the way back to 0 comes first (and may shrink before it grows).
     if (floor_velocity_ < 0) {
         const double stand = parameter(-floor_velocity_);
         if (stand > low && stand < widest_) {
-            const double stand_travel = at(stand).travel();
-            if (way <= stand_travel) return result(bracketed_root(difference, low, stand, (low + stand) / 2, true));
+            const double stand_travel = look(stand).travel();
+            if (way <= stand_travel) return between(low, stand, (low + stand) / 2);
             low = stand;
             low_travel = stand_travel;
         }
@@ -136,16 +124,16 @@ Found PeakFamily::over_way(double known_to) const noexcept {
     const auto above_low = [&](double x) noexcept -> double { return ease_ > 0 ? std::sqrt(low * low + x * x) : low + x; };
     const double sum = above_low(enough) * (1 + 4 * epsilon);
     if (sum >= widest_) {
-        const Motion widest = at(widest_);
+        const Motion widest = look(widest_);
         const double rest = way - widest.travel();
         if (rest >= 0) {
             const double cruise = rest / widest.peak_velocity;
-            return {true, widest_, cruise, widest.duration() + cruise};
+            return {true, widest_, cruise, widest.duration() + cruise, last.looked_at};
         }
     } else {
         high = sum;
     }
-    return result(bracketed_root(difference, low, high, above_low(guess_for(way - low_travel)), true));
+    return between(low, high, above_low(guess_for(way - low_travel)));
 }
 
 Found PeakFamily::in_time(double time, double slack) const noexcept {

@@ -13,8 +13,8 @@ struct PlanBounds {
 /// Evaluations in one search for a root in the worst case; usually four to eight.
 inline constexpr int max_root_steps = 100;
 
-/// Searches for a root in one plan in the worst case: two families of peaks with a turning point and up to two roots each, four
-/// families of troughs with two turning points and up to three roots each (mathematics.md).
-inline constexpr int max_roots = 2 * 3 + 4 * 5;
+/// Searches in one plan in the worst case: two families of peaks with one root, four families of troughs with a turning point to look for
+/// on either side of the valley and a root (mathematics.md).
+inline constexpr int max_roots = 2 * 1 + 4 * 3;
 
 }  // namespace taktwerk::axes

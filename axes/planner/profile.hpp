@@ -14,11 +14,12 @@ namespace taktwerk::axes {
 /// Without a jerk limit the acceleration jumps from one stretch to the next; otherwise it continues. Without an acceleration limit the
 /// velocity jumps as well, by `velocity_step` before the stretch; a stretch of no duration is such a jump alone. (Before a cruise it
 /// takes the rounding errors of the velocity away.)
+/// Without initial values: a search looks at dozens of motions, and their arrays are not to be filled with zeros each time.
 struct Stretch {
-    double duration = 0;
-    double acceleration = 0;
-    double jerk = 0;
-    double velocity_step = 0;
+    double duration;
+    double acceleration;
+    double jerk;
+    double velocity_step;
 
     [[nodiscard]] double end_acceleration() const noexcept { return acceleration + duration * jerk; }
 };

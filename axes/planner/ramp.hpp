@@ -1,13 +1,19 @@
 #pragma once
 // The brick every profile is built from: the fastest climb of the velocity. Internal to the planner.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <span>
 
 #include "axes/planner/frame.hpp"
 #include "axes/planner/profile.hpp"
+
+// In the plane of velocity and acceleration a jerk of constant magnitude draws parabolas, v = c + a^2/2j and v = c - a^2/2j.
+// With the eases r = 1/j of the rise and f of the fall, a climb of dv from a0 over the peak p to a1 has
+//     dv = (p^2 - a0^2) r/2 + (p^2 - a1^2) f/2,   also for a0 < 0.
 
 namespace taktwerk::axes {
 
@@ -29,7 +35,19 @@ struct Climb {
 /// that both sides allow, so a reversal does not stop in between. The start must be able to keep the limits (see brake.hpp).
 class Ramp {
 public:
-    Ramp(const Climb& climb, const FrameLimits& limits) noexcept;
+    Ramp(const Climb& climb, const FrameLimits& limits) noexcept : velocity_{climb.v0}, turn_velocity_{climb.v0} {
+        const double before = limits.up.slowing_down;
+        const double after = limits.up.speeding_up;
+        if (limits.jerk_free()) {
+            jerk_free(climb, limits);
+        } else if (before == after || !(climb.lowest < 0 && climb.v1 > 0)) {
+            // At standstill alone, acceleration only comes and goes: whichever side it is of has it.
+            const double bound = climb.v1 > 0 ? after : (climb.lowest < 0 ? before : std::max(before, after));
+            leg(climb.a0, climb.a1, climb.fall_square, climb.rise_square, bound, limits);
+        } else {
+            two_legs(climb, limits);
+        }
+    }
 
     [[nodiscard]] std::span<const Stretch> stretches() const noexcept { return {stretches_.data(), static_cast<std::size_t>(count_)}; }
     /// Signed way from beginning to end, u.
@@ -46,13 +64,46 @@ public:
     [[nodiscard]] double fall_duration() const noexcept { return fall_duration_; }
 
 private:
-    void add(double duration, double acceleration, double jerk) noexcept;
+    void jerk_free(const Climb& climb, const FrameLimits& limits) noexcept;
     void gain(double dv, double bound) noexcept;
-    void leg(double a0, double a1, double fall_square, double rise_square, double bound) noexcept;
-    double leg_to_standstill(double a0, double a1, double bound) noexcept;
+    void two_legs(const Climb& climb, const FrameLimits& limits) noexcept;
+    double leg_to_standstill(double a0, double a1, double bound, const FrameLimits& limits) noexcept;
 
-    const FrameLimits& limits_;
-    std::array<Stretch, 6> stretches_{};
+    /// From acceleration a to b.
+    void add(double duration, double a, double b, double jerk) noexcept {
+        if (!(duration > 0)) return;
+        stretches_[static_cast<std::size_t>(count_++)] = {duration, a, jerk, 0};
+        const double way = duration * (velocity_ + duration * ((a + a + b) * (1.0 / 6)));
+        velocity_ += duration * ((a + b) / 2);
+        travel_ += way;
+        path_ += std::abs(way);
+        duration_ += duration;
+    }
+
+    /// Rise, hold, fall.
+    void leg(double a0, double a1, double fall_square, double rise_square, double bound, const FrameLimits& limits) noexcept {
+        const double rise = limits.up.ease;
+        const double fall = limits.down.ease;
+        fall_square = std::max(fall_square, 0.0);
+        const double square = a1 * a1 + fall_square;
+        double drop = 0;
+        if (square <= bound * bound) {
+            peak_ = std::sqrt(square);
+            const double climb = a0 > 0 ? std::max(rise_square, 0.0) / (peak_ + a0) : peak_ - a0;
+            add(climb * rise, a0, peak_, limits.up.jerk);
+            if (fall_square > 0) drop = a1 == 0 ? peak_ : fall_square / (peak_ + a1);
+        } else {
+            peak_ = bound;
+            add((bound - a0) * rise, a0, bound, limits.up.jerk);
+            add((fall_square + (a1 - bound) * (a1 + bound)) * (rise + fall) / (2 * bound), bound, bound, 0);
+            drop = bound - a1;
+        }
+        turn_velocity_ = velocity_;
+        fall_duration_ = drop * fall;
+        add(fall_duration_, peak_, a1, -limits.down.jerk);
+    }
+
+    std::array<Stretch, 6> stretches_;  // the first count_
     int count_ = 0;
     double velocity_ = 0;  // at the end of what was added so far
     double travel_ = 0;

@@ -1,14 +1,15 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "axes/planner/families.hpp"
+#include "axes/planner/turning_point.hpp"
 
 namespace taktwerk::axes {
 
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -61,6 +62,16 @@ double TroughFamily::time_slope(const Motion& m) const noexcept {
     return peak > 0 ? ease * std::max(peak - m.trough, 0.0) / peak : 0;
 }
 
+/// Beyond this trough the crossing of velocity 0 holds the climb up, and what falls last falls above velocity 0: the rate is positive.
+double TroughFamily::holding_trough() const noexcept {
+    if (problem_.limits.convex()) return problem_.a1;
+    const double fall = problem_.limits.down.ease;
+    const double beyond = std::min(problem_.limits.up.speeding_up, problem_.limits.up.slowing_down);
+    const double end = released_velocity(problem_.v1, -problem_.a1, problem_.limits.reversed().mirrored());
+    const double square = (beyond * beyond * fall - 2 * end) / (problem_.limits.up.ease + fall);
+    return std::min(problem_.a1, std::sqrt(std::max(square, 0.0)) * (1 - 8 * epsilon));
+}
+
 /// The trough at which the rate is lowest (mathematics.md, "troughs").
 double TroughFamily::slowest_trough() const noexcept {
     const double rise = problem_.limits.up.ease;
@@ -73,57 +84,61 @@ double TroughFamily::slowest_trough() const noexcept {
         const double reached = std::sqrt(std::max(bound * bound - square_, 0.0));
         trough = std::max(reached, bound * fall / (2 * both));
     }
-    if (!problem_.limits.convex()) {
-        // Beyond this trough the crossing of velocity 0 holds the climb up, and what falls last falls above velocity 0.
-        const double beyond = std::min(problem_.limits.up.speeding_up, problem_.limits.up.slowing_down);
-        const double end = released_velocity(problem_.v1, -problem_.a1, problem_.limits.reversed().mirrored());
-        const double square = (beyond * beyond * fall - 2 * end) / both;
-        trough = std::min(trough, std::sqrt(std::max(square, 0.0)) * (1 - 8 * epsilon));
-    }
-    return std::clamp(trough, problem_.a1 - widest_, problem_.a1);
+    return std::clamp(std::min(trough, holding_trough()), problem_.a1 - widest_, problem_.a1);
 }
 
-Found TroughFamily::over_way(double known_to) const noexcept {
+Found TroughFamily::over_way(double known_to, double longest) const noexcept {
     if (!exists_) return {};
-    const double way = problem_.way;
-    const auto rate_at = [&](double u) noexcept -> RootSample {
+    Found last{true};  // member looked at, as a result
+    const auto look = [&](double u) noexcept -> Turn {
         const Motion m = at(u);
-        const double part = m.up.peak() * m.up.fall_duration() / 2;
-        return {rate(m), 0, 4 * epsilon * (std::abs(m.up.turn_velocity()) + part)};
+        last.parameter = u;
+        last.duration = m.duration();
+        ++last.looked_at;
+        return {u, m.travel() - problem_.way, rate(m), last.duration, time_slope(m), m.path()};
     };
-    const auto difference = [&](double u) noexcept -> RootSample {
-        const Motion m = at(u);
-        return {m.travel() - way, time_slope(m) * rate(m), 2 * epsilon * (std::abs(way) + m.path())};
+    const auto none = [&]() noexcept -> Found { return {false, 0, 0, infinity, last.looked_at}; };
+    const auto at_end = [&](const Turn& t) noexcept -> Found { return {true, t.parameter, 0, t.time, last.looked_at}; };
+    const auto between = [&](const Turn& below, const Turn& above) noexcept -> Found {
+        const auto miss = [&](double u) noexcept -> RootSample {
+            const Turn t = look(u);
+            return {t.miss, t.time_slope * t.rate, 2 * epsilon * (std::abs(problem_.way) + t.path)};
+        };
+        const double guess = below.parameter - (above.parameter - below.parameter) * (below.miss / (above.miss - below.miss));
+        const double u = bracketed_root(miss, below.parameter, above.parameter, guess, true);
+        if (u != last.parameter) look(u);
+        return last;
     };
 
-    // Where the way stops growing or shrinking with the parameter.
-    std::array<double, 4> ends{0, widest_, widest_, widest_};
-    std::size_t count = 1;
-    const double valley = problem_.a1 - slowest_trough();
-    if (rate_at(valley).value < 0) {
-        if (rate_at(0).value > 0) ends[count++] = bracketed_root(rate_at, 0, valley, 0, false);
-        if (rate_at(widest_).value > 0) ends[count++] = bracketed_root(rate_at, valley, widest_, 0, true);
+    const Turn start = look(0);
+    if (start.time >= longest) return none();
+    const double rounding = known_to + 4 * epsilon * start.path;
+    if (std::abs(start.miss) <= rounding) return at_end(start);
+    const Turn end = look(widest_);
+    const auto nothing_between = [&]() noexcept -> Found { return std::abs(end.miss) <= rounding ? at_end(end) : none(); };
+    // Only where the way grows through the target is it the first time (mathematics.md, "Why these are all"): before the valley of the rate
+    // from a shorter way, behind it to a longer one.
+    if (start.miss > 0 && end.miss < 0) return nothing_between();
+    const double time = end.time - start.time;
+    if (problem_.limits.convex()) {
+        // Before the valley the way lies below its first tangent, behind it above its last.
+        if (end.miss < 0 && start.miss + std::max(start.rate, 0.0) * time < -rounding) return nothing_between();
+        if (start.miss > 0 && end.miss - std::max(end.rate, 0.0) * time > rounding) return nothing_between();
     }
-    ends[count++] = widest_;
-
-    double here = 0;
-    Motion first = at(here);
-    double before = first.travel();
-    const double rounding = known_to + 4 * epsilon * first.path();
-    if (std::abs(before - way) <= rounding) return {true, 0, 0, first.duration()};
-    for (std::size_t i = 1; i < count; ++i) {
-        const double there = ends[i];
-        const Motion m = at(there);
-        const double after = m.travel();
-        if ((before < way && after >= way) || (before > way && after <= way)) {
-            const double u = bracketed_root(difference, here, there, here + (there - here) / 2, before < after);
-            return {true, u, 0, at(u).duration()};
-        }
-        if (std::abs(after - way) <= rounding) return {true, there, 0, m.duration()};
-        here = there;
-        before = after;
+    const Turn valley = look(problem_.a1 - slowest_trough());
+    if (!(valley.rate < 0)) return start.miss < 0 && end.miss >= 0 ? between(start, end) : nothing_between();
+    if (start.miss < 0) {
+        if (valley.miss >= 0) return between(start, valley);
+        const double held = std::min(problem_.a1 - holding_trough(), valley.parameter);
+        const Turn first = held > 0 ? look(held) : start;
+        if (first.miss >= 0) return between(start, first);
+        if (const auto top = top_beyond_zero(look, first, valley, 1, rounding)) return between(first, *top);
     }
-    return {};
+    if (end.miss >= 0) {
+        if (valley.miss <= 0) return between(valley, end);
+        if (const auto bottom = top_beyond_zero(look, valley, end, -1, rounding)) return between(*bottom, end);
+    }
+    return nothing_between();
 }
 
 Found TroughFamily::in_time(double time, double slack) const noexcept {
