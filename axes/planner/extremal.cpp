@@ -71,7 +71,7 @@ Extremal nearest(const Problem& problem, std::span<const Curve> curves) noexcept
         double miss = least;
         double duration = 0;
         if (is_peak(c)) {
-            const auto m = PeakFamily{p}.at(0);
+            const auto m = PeakFamily{p}.measured(0);
             miss = std::abs(m.travel() - p.way);
             duration = m.duration();
         } else if (const TroughFamily family{p}; family.exists()) {

@@ -4,6 +4,7 @@
 
 #include "axes/planner/bracketed_root.hpp"
 #include "axes/planner/frame.hpp"
+#include "axes/planner/measured_climb.hpp"
 #include "axes/planner/ramp.hpp"
 
 namespace taktwerk::axes {
@@ -29,11 +30,19 @@ public:
         Ramp up;
         Ramp back;
         double peak_velocity;
-        [[nodiscard]] double travel() const noexcept { return up.travel() + back.travel(); }
-        [[nodiscard]] double path() const noexcept { return up.path() + back.path(); }
-        [[nodiscard]] double duration() const noexcept { return up.duration() + back.duration(); }
     };
     [[nodiscard]] Motion at(double x) const noexcept;
+
+    /// What at(x) comes to.
+    struct Measured {
+        MeasuredClimb up;
+        MeasuredClimb back;
+        double peak_velocity;
+        [[nodiscard]] double travel() const noexcept { return up.travel + back.travel; }
+        [[nodiscard]] double path() const noexcept { return up.path + back.path; }
+        [[nodiscard]] double duration() const noexcept { return up.duration + back.duration; }
+    };
+    [[nodiscard]] Measured measured(double x) const noexcept;
 
     /// The fastest motion over the problem's way, if it takes less than `longest`: the first member whose way grows through it. The way is
     /// known to `known_to`: a member that misses it by no more will do.
@@ -43,19 +52,40 @@ public:
     [[nodiscard]] Found in_time(double time, double slack) const noexcept;
 
 private:
+    /// The highest velocity that belongs to x; square: of x.
+    struct Top {
+        double velocity;
+        double square;
+    };
+    [[nodiscard]] Top top(double x) const noexcept;
+    /// A climb from one of the ends: what does not depend on x.
+    struct End {
+        double v = 0;
+        double a = 0;
+        double lowest = 0;
+        double held_square = 0;  ///< a^2 where a > 0
+        double square = 0;       ///< of the x of a climb by that
+    };
+    [[nodiscard]] static Climb climb(const End& end, const Top& top) noexcept {
+        const double square = end.square + top.square;
+        return {end.v, end.a, top.velocity, 0, end.lowest, square + end.held_square, square};
+    }
+    [[nodiscard]] End end_at(double v, double a, double released, double excess) const noexcept;
+
     [[nodiscard]] double excess(double x) const noexcept { return ease_ > 0 ? x * (x * ease_ / 2) : x; }
+    /// Without a jerk limit the parameter is the gain of velocity itself, and stands for its square.
+    [[nodiscard]] double square_of(double excess) const noexcept { return ease_ > 0 ? 2 * excess / ease_ : excess; }
     [[nodiscard]] double parameter(double excess) const noexcept { return ease_ > 0 ? std::sqrt(2 * excess / ease_) : excess; }
     [[nodiscard]] double excess_slope(double x) const noexcept { return ease_ > 0 ? x * ease_ : 1; }
-    [[nodiscard]] double way_slope(double x, const Motion& m) const noexcept;
+    [[nodiscard]] double way_slope(double x, const Measured& m) const noexcept;
     [[nodiscard]] double enough_for(double missing) const noexcept;
     [[nodiscard]] double guess_for(double missing) const noexcept;
 
     const Problem& problem_;
     FrameLimits back_limits_;
-    double released1_ = 0;       // of the end, backwards in time
+    End start_;
+    End end_;                    // backwards in time
     double floor_velocity_ = 0;  // c0
-    double excess_start_ = 0;    // c0 above the start's released velocity
-    double excess_end_ = 0;      // c0 above the end's
     double ease_ = 0;            // of rise and fall together
     double widest_ = 0;          // x at the velocity limit
 };

@@ -15,7 +15,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 PeakFamily::PeakFamily(const Problem& problem) noexcept : problem_{problem}, back_limits_{problem.limits.reversed().mirrored()} {
     const double start = problem.released0;
-    const double end = released1_ = released_velocity(problem.v1, -problem.a1, back_limits_);
+    const double end = released_velocity(problem.v1, -problem.a1, back_limits_);
     // v1 - v0 first: where both are large and close, it is exact.
     const double release0 = release(problem.a0, problem.limits);
     const double release1 = release(-problem.a1, back_limits_);
@@ -23,25 +23,38 @@ PeakFamily::PeakFamily(const Problem& problem) noexcept : problem_{problem}, bac
     if (problem.braked) gap = end - start;
     // Equal as far as the numbers can tell is equal: the root of a rounding error is not small.
     if (std::abs(gap) <= 4 * epsilon * (std::abs(problem.v0) + std::abs(problem.v1) + std::abs(release0) + std::abs(release1))) gap = 0;
-    excess_start_ = std::max(gap, 0.0);
-    excess_end_ = std::max(-gap, 0.0);
-    floor_velocity_ = std::max(start, end);
     ease_ = problem.limits.up.ease + problem.limits.down.ease;
+    start_ = end_at(problem.v0, problem.a0, start, std::max(gap, 0.0));
+    end_ = end_at(problem.v1, -problem.a1, end, std::max(-gap, 0.0));
+    floor_velocity_ = std::max(start, end);
     widest_ = parameter(std::max(problem.limits.up.velocity - floor_velocity_, 0.0));
 }
 
-PeakFamily::Motion PeakFamily::at(double x) const noexcept {
-    const bool at_limit = x == widest_;
-    const double top = std::max(problem_.limits.up.velocity, floor_velocity_);
-    const double e = at_limit ? top - floor_velocity_ : excess(x);
-    return {Ramp{climb_above_release(problem_.v0, problem_.a0, problem_.released0, excess_start_ + e, problem_.limits), problem_.limits},
-            Ramp{climb_above_release(problem_.v1, -problem_.a1, released1_, excess_end_ + e, back_limits_), back_limits_},
-            at_limit ? top : floor_velocity_ + e};
+PeakFamily::End PeakFamily::end_at(double v, double a, double released, double excess) const noexcept {
+    return {v, a, a < 0 ? released : v, a > 0 && ease_ > 0 ? a * a : 0, square_of(excess)};
 }
 
-double PeakFamily::way_slope(double x, const Motion& m) const noexcept {
-    const double p = m.up.peak();
-    const double q = m.back.peak();
+PeakFamily::Top PeakFamily::top(double x) const noexcept {
+    if (x == widest_) {
+        const double velocity = std::max(problem_.limits.up.velocity, floor_velocity_);
+        return {velocity, square_of(velocity - floor_velocity_)};
+    }
+    return {floor_velocity_ + excess(x), ease_ > 0 ? x * x : x};
+}
+
+PeakFamily::Motion PeakFamily::at(double x) const noexcept {
+    const Top t = top(x);
+    return {Ramp{climb(start_, t), problem_.limits}, Ramp{climb(end_, t), back_limits_}, t.velocity};
+}
+
+PeakFamily::Measured PeakFamily::measured(double x) const noexcept {
+    const Top t = top(x);
+    return {axes::measured(climb(start_, t), problem_.limits), axes::measured(climb(end_, t), back_limits_), t.velocity};
+}
+
+double PeakFamily::way_slope(double x, const Measured& m) const noexcept {
+    const double p = m.up.peak;
+    const double q = m.back.peak;
     const double ease = problem_.limits.down.ease;
     return excess_slope(x) * (m.peak_velocity * (1 / p + 1 / q) + (ease > 0 ? (p + q) * ease / 2 : 0));
 }
@@ -81,8 +94,8 @@ double PeakFamily::guess_for(double missing) const noexcept {
 Found PeakFamily::over_way(double known_to, double longest) const noexcept {
     const double way = problem_.way;
     Found last{true};  // member looked at, as a result
-    const auto look = [&](double x) noexcept -> Motion {
-        const Motion m = at(x);
+    const auto look = [&](double x) noexcept -> Measured {
+        const Measured m = measured(x);
         last.parameter = x;
         last.duration = m.duration();
         ++last.looked_at;
@@ -91,7 +104,7 @@ Found PeakFamily::over_way(double known_to, double longest) const noexcept {
     const auto none = [&]() noexcept -> Found { return {false, 0, 0, infinity, last.looked_at}; };
     const auto between = [&](double low, double high, double guess) noexcept -> Found {
         const auto miss = [&](double x) noexcept -> RootSample {
-            const Motion m = look(x);
+            const Measured m = look(x);
             return {m.travel() - way, way_slope(x, m), 2 * epsilon * (std::abs(way) + m.path())};
         };
         const double x = bracketed_root(miss, low, high, guess, true);
@@ -100,7 +113,7 @@ Found PeakFamily::over_way(double known_to, double longest) const noexcept {
     };
 
     double low = 0;
-    const Motion lowest = look(0);
+    const Measured lowest = look(0);
     if (last.duration >= longest) return none();
     double low_travel = lowest.travel();
     const double rounding = known_to + 2 * epsilon * lowest.path();
@@ -124,7 +137,7 @@ Found PeakFamily::over_way(double known_to, double longest) const noexcept {
     const auto above_low = [&](double x) noexcept -> double { return ease_ > 0 ? std::sqrt(low * low + x * x) : low + x; };
     const double sum = above_low(enough) * (1 + 4 * epsilon);
     if (sum >= widest_) {
-        const Motion widest = look(widest_);
+        const Measured widest = look(widest_);
         const double rest = way - widest.travel();
         if (rest >= 0) {
             const double cruise = rest / widest.peak_velocity;
@@ -137,7 +150,7 @@ Found PeakFamily::over_way(double known_to, double longest) const noexcept {
 }
 
 Found PeakFamily::in_time(double time, double slack) const noexcept {
-    const double shortest = at(0).duration();
+    const double shortest = measured(0).duration();
     if (time < shortest - slack) return {};
     if (time <= shortest) return {true, 0, 0, time};
     // A climb of e takes at least e/a, and at least sqrt(2 e / j).
@@ -147,12 +160,12 @@ Found PeakFamily::in_time(double time, double slack) const noexcept {
     double most = hardest * time;
     if (ease > 0) most = std::min(most, time * (time / (2 * ease)));
     const double high = std::min(widest_, parameter(most));
-    const Motion widest = at(high);
+    const Measured widest = measured(high);
     if (time >= widest.duration()) return {true, high, time - widest.duration(), time};
     const double x_in_time = bracketed_root(
         [&](double x) noexcept -> RootSample {
-            const Motion m = at(x);
-            return {m.duration() - time, excess_slope(x) * (1 / m.up.peak() + 1 / m.back.peak()), 2 * epsilon * time};
+            const Measured m = measured(x);
+            return {m.duration() - time, excess_slope(x) * (1 / m.up.peak + 1 / m.back.peak), 2 * epsilon * time};
         },
         0, high, high / 2, true);
     return {true, x_in_time, 0, time};

@@ -36,17 +36,19 @@ struct Climb {
 class Ramp {
 public:
     Ramp(const Climb& climb, const FrameLimits& limits) noexcept : velocity_{climb.v0}, turn_velocity_{climb.v0} {
-        const double before = limits.up.slowing_down;
-        const double after = limits.up.speeding_up;
-        if (limits.jerk_free()) {
-            jerk_free(climb, limits);
-        } else if (before == after || !(climb.lowest < 0 && climb.v1 > 0)) {
-            // At standstill alone, acceleration only comes and goes: whichever side it is of has it.
-            const double bound = climb.v1 > 0 ? after : (climb.lowest < 0 ? before : std::max(before, after));
-            leg(climb.a0, climb.a1, climb.fall_square, climb.rise_square, bound, limits);
-        } else {
-            two_legs(climb, limits);
-        }
+        if (is_one_leg(climb, limits)) leg(climb.a0, climb.a1, climb.fall_square, climb.rise_square, bound_of(climb, limits), limits);
+        else if (limits.jerk_free()) jerk_free(climb, limits);
+        else two_legs(climb, limits);
+    }
+
+    /// Rise, hold and fall on one side of velocity 0, or where both sides have the same bound.
+    [[nodiscard]] static bool is_one_leg(const Climb& c, const FrameLimits& l) noexcept {
+        return !l.jerk_free() && (l.up.slowing_down == l.up.speeding_up || !(c.lowest < 0 && c.v1 > 0));
+    }
+    /// At standstill alone, acceleration only comes and goes: whichever side it is of has it.
+    [[nodiscard]] static double bound_of(const Climb& c, const FrameLimits& l) noexcept {
+        if (c.v1 > 0) return l.up.speeding_up;
+        return c.lowest < 0 ? l.up.slowing_down : std::max(l.up.slowing_down, l.up.speeding_up);
     }
 
     [[nodiscard]] std::span<const Stretch> stretches() const noexcept { return {stretches_.data(), static_cast<std::size_t>(count_)}; }
