@@ -51,6 +51,47 @@ void add_reversed(Chain& chain, std::span<const Stretch> stretches, double sign)
     }
 }
 
+/// The member that was found.
+void write(const PeakFamily& family, const Extremal& extremal, Motion& motion) noexcept {
+    const double sign = sign_of(extremal.curve);
+    const PeakFamily::Motion m = family.at(extremal.found.parameter);
+    motion.clear();
+    add_climb(motion.forward, m.up, sign);
+    // The cruise keeps its velocity to the last bit: over a long one the least difference would add up.
+    const bool cruises = extremal.found.cruise > 0;
+    if (cruises) motion.forward.add({extremal.found.cruise, 0, 0, m.peak_velocity - m.up.end_velocity()}, sign);
+    add_descent(motion.backward, m.back, sign);
+    // Both halves have no acceleration where they meet.
+    if (!cruises && family.falls_gradually()) motion.forward.join(motion.backward);
+}
+
+void write(const TroughFamily& family, const Extremal& extremal, Motion& motion) noexcept {
+    const double sign = sign_of(extremal.curve);
+    const TroughFamily::Motion m = family.at(extremal.found.parameter);
+    motion.clear();
+    if (extremal.curve == Curve::trough_up || extremal.curve == Curve::trough_down) {
+        add_climb(motion.forward, m.up, sign);
+        motion.backward.add(m.last, sign);
+    } else {
+        add_reversed(motion.forward, std::array{m.last}, sign);
+        add_reversed(motion.backward, m.up.stretches(), sign);
+    }
+}
+
+constexpr std::array up_first{Curve::peak_up,     Curve::peak_down,       Curve::trough_up,
+                              Curve::trough_down, Curve::early_trough_up, Curve::early_trough_down};
+constexpr std::array down_first{Curve::peak_down, Curve::peak_up,           Curve::trough_down,
+                                Curve::trough_up, Curve::early_trough_down, Curve::early_trough_up};
+
+/// Is the way longer than that of the plain change of velocity? Roughly: it only says where to look first.
+bool likely_up(const Problem& p) noexcept {
+    const double change = p.v1 - p.released0;
+    if (change == 0) return p.way >= 0;
+    const double bound = change > 0 ? p.limits.up.speeding_up : p.limits.down.slowing_down;
+    const double time = std::abs(change) / bound + bound * (p.limits.up.ease + p.limits.down.ease) / 2;
+    return p.way >= (p.released0 + p.v1) / 2 * time;
+}
+
 Extremal in_time(const Problem& problem, double time, double slack, std::span<const Curve> curves) noexcept {
     for (const Curve c : curves) {
         if (!may_exist(problem, c)) continue;
@@ -105,24 +146,30 @@ void add_descent(Chain& chain, const Ramp& back, double sign) noexcept {
     if (step != 0) chain.add({0, 0, 0, step}, sign);
 }
 
-Extremal fastest(const Problem& problem, double rounding, const Ends& ends) noexcept {
+FastestMotion fastest(const Problem& problem, double rounding, const Ends& ends) noexcept {
     // With one end at rest the ends of the curves follow each other: the first root found is the only one.
     const bool only_one = (problem.v1 == 0 && problem.a1 == 0) || (problem.v0 == 0 && problem.a0 == 0);
-    constexpr std::array curves{Curve::peak_up,     Curve::peak_down,       Curve::trough_up,
-                                Curve::trough_down, Curve::early_trough_up, Curve::early_trough_down};
-    Extremal best;
+    FastestMotion best;
     int looked_at = 0;
-    for (const Curve c : curves) {
+    const auto search = [&](const auto& family, Curve c) noexcept {
+        const Found found = family.over_way(rounding, best.found.duration);
+        looked_at += found.looked_at;
+        if (!found.found || found.duration >= best.found.duration) return;
+        best.found = found;
+        write(family, {c, found}, best.motion);
+    };
+    for (const Curve c : likely_up(problem) ? up_first : down_first) {
         if (!may_exist(problem, c) || !keeps_limits_on(problem, c, ends)) continue;
         const Problem p = in_frame(problem, c);
-        const double longest = best.found.duration;
-        const Found found = is_peak(c) ? PeakFamily{p}.over_way(rounding, longest) : TroughFamily{p}.over_way(rounding, longest);
-        looked_at += found.looked_at;
-        if (!found.found || found.duration >= longest) continue;
-        best = {c, found};
-        if (only_one && found.parameter > 0) break;  // at its very end a curve meets the next one
+        if (is_peak(c)) search(PeakFamily{p}, c);
+        else search(TroughFamily{p}, c);
+        if (only_one && best.found.found && best.found.parameter > 0) break;  // at its very end a curve meets the next one
     }
-    if (!best.found.found && ends.start_releases && ends.end_releases) best = nearest(problem, curves);
+    if (!best.found.found && ends.start_releases && ends.end_releases) {
+        const Extremal e = nearest(problem, up_first);
+        best.found = e.found;
+        if (e.found.found) best.motion = motion_of(problem, e);
+    }
     best.found.looked_at = looked_at;
     return best;
 }
@@ -139,26 +186,9 @@ Extremal least_far(const Problem& problem, double time, double slack) noexcept {
 
 Motion motion_of(const Problem& problem, const Extremal& extremal) noexcept {
     const Problem p = in_frame(problem, extremal.curve);
-    const double sign = sign_of(extremal.curve);
     Motion motion;
-    if (is_peak(extremal.curve)) {
-        const PeakFamily::Motion m = PeakFamily{p}.at(extremal.found.parameter);
-        add_climb(motion.forward, m.up, sign);
-        // The cruise keeps its velocity to the last bit: over a long one the least difference would add up.
-        if (extremal.found.cruise > 0) motion.forward.add({extremal.found.cruise, 0, 0, m.peak_velocity - m.up.end_velocity()}, sign);
-        add_descent(motion.backward, m.back, sign);
-        // Both halves have no acceleration where they meet.
-        if (!(extremal.found.cruise > 0) && p.limits.down.ease > 0) motion.forward.join(motion.backward);
-        return motion;
-    }
-    const TroughFamily::Motion m = TroughFamily{p}.at(extremal.found.parameter);
-    if (extremal.curve == Curve::trough_up || extremal.curve == Curve::trough_down) {
-        add_climb(motion.forward, m.up, sign);
-        motion.backward.add(m.last, sign);
-    } else {
-        add_reversed(motion.forward, std::array{m.last}, sign);
-        add_reversed(motion.backward, m.up.stretches(), sign);
-    }
+    if (is_peak(extremal.curve)) write(PeakFamily{p}, extremal, motion);
+    else write(TroughFamily{p}, extremal, motion);
     return motion;
 }
 

@@ -15,6 +15,7 @@ namespace taktwerk::axes {
 class Chain {
 public:
     [[nodiscard]] std::span<const Stretch> stretches() const noexcept { return {items_.data(), count_}; }
+    void clear() noexcept { count_ = 0; }
     /// `sign` mirrors it. A stretch that neither lasts nor jumps is left out.
     void add(Stretch s, double sign) noexcept {
         if ((!(s.duration > 0) && s.velocity_step == 0) || count_ == items_.size()) return;
@@ -40,6 +41,11 @@ private:
 struct Motion {
     Chain forward;
     Chain backward;
+
+    void clear() noexcept {
+        forward.clear();
+        backward.clear();
+    }
 };
 
 enum class Curve : unsigned char { peak_up, peak_down, trough_up, trough_down, early_trough_up, early_trough_down };
@@ -56,8 +62,13 @@ struct Ends {
     bool end_releases = true;
 };
 
+struct FastestMotion {
+    Found found;
+    Motion motion;
+};
+
 /// The fastest motion over the problem's way, known to `rounding`. Always found where both ends release.
-[[nodiscard]] Extremal fastest(const Problem& problem, double rounding, const Ends& ends) noexcept;
+[[nodiscard]] FastestMotion fastest(const Problem& problem, double rounding, const Ends& ends) noexcept;
 
 /// The motion of duration `time` whose way is the longest of all, or the shortest. Times known to `slack`.
 [[nodiscard]] Extremal furthest(const Problem& problem, double time, double slack) noexcept;

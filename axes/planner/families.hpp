@@ -33,6 +33,9 @@ public:
     };
     [[nodiscard]] Motion at(double x) const noexcept;
 
+    /// The end of the first half and the beginning of the second are one stretch, unless both are jumps.
+    [[nodiscard]] bool falls_gradually() const noexcept { return problem_.limits.down.ease > 0; }
+
     /// What at(x) comes to.
     struct Measured {
         MeasuredClimb up;
@@ -78,8 +81,11 @@ private:
     [[nodiscard]] double parameter(double excess) const noexcept { return ease_ > 0 ? std::sqrt(2 * excess / ease_) : excess; }
     [[nodiscard]] double excess_slope(double x) const noexcept { return ease_ > 0 ? x * ease_ : 1; }
     [[nodiscard]] double way_slope(double x, const Measured& m) const noexcept;
-    [[nodiscard]] double enough_for(double missing) const noexcept;
-    [[nodiscard]] double guess_for(double missing) const noexcept;
+    struct Step {
+        double guess;
+        double enough;
+    };
+    [[nodiscard]] Step step_over(double missing) const noexcept;
 
     const Problem& problem_;
     FrameLimits back_limits_;

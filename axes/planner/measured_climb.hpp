@@ -18,7 +18,7 @@ struct MeasuredClimb {
 
 /// travel(), path(), duration() and peak() of Ramp{c, limits}, to the same bits, for a climb that ends without acceleration: the operations of
 /// Ramp::leg with a1 = 0. (plan_search_unit.cpp compares the two.)
-[[nodiscard]] inline MeasuredClimb measured(const Climb& c, const FrameLimits& limits) noexcept {
+[[gnu::always_inline]] [[nodiscard]] inline MeasuredClimb measured(const Climb& c, const FrameLimits& limits) noexcept {
     if (!Ramp::is_one_leg(c, limits)) {
         const Ramp ramp{c, limits};
         return {ramp.travel(), ramp.path(), ramp.duration(), ramp.peak()};

@@ -59,36 +59,30 @@ double PeakFamily::way_slope(double x, const Measured& m) const noexcept {
     return excess_slope(x) * (m.peak_velocity * (1 / p + 1 / q) + (ease > 0 ? (p + q) * ease / 2 : 0));
 }
 
-/// Above a c0 >= 0 each half adds to the way at least e^2/2a for an excess e, and with the eases q of both jerks and f of the fall at
-/// least x^3 q sqrt(q f) / 3: the x that is certainly enough.
-double PeakFamily::enough_for(double missing) const noexcept {
-    if (!(missing > 0)) return 0;
-    const double hardest = std::min(problem_.limits.up.speeding_up, back_limits_.up.speeding_up);
-    const double fall = problem_.limits.down.ease;
-    const double x = parameter(std::sqrt(2 * hardest * missing));
-    return fall > 0 ? std::min(x, math::cbrt(3 * missing / (ease_ * std::sqrt(ease_ * fall)))) : x;
-}
-
-/// The x whose halves would cover `missing` from and to the floor's velocity c0 >= 0 if each were a climb from rest on top of it: exact
-/// between two ends at rest, a guess otherwise. With the eases r of the rise and f of the fall and the highest acceleration A a climb by
-/// e takes x^3 (r^2/6 + rf/2 + f^2/3) while x <= A, and e^2/2A + e f A/2 + A^3 (r^2 - f^2)/24 beyond.
-double PeakFamily::guess_for(double missing) const noexcept {
+/// Where the x lies whose halves cover `missing` from and to the floor's velocity c0 >= 0. With the eases r of the rise and f of the fall, q of
+/// both and the highest acceleration A a climb by e from rest on top of the floor takes x^3 (r^2/6 + rf/2 + f^2/3) = x^3 q (r + 2f)/6
+/// while x <= A, and e^2/2A + e f A/2 + A^3 (r^2 - f^2)/24 beyond: the guess, exact between two ends at rest.
+/// Each half adds at least e^2/2A, and at least x^3 q sqrt(q f)/3: that is certainly enough. The second of these is the cube root above times that of
+/// (r + 2f)/sqrt(q f), which is not more than a third of 2 + that.
+PeakFamily::Step PeakFamily::step_over(double missing) const noexcept {
+    if (!(missing > 0)) return {0, 0};
     const double rise = problem_.limits.up.ease;
     const double fall = problem_.limits.down.ease;
     const double first = problem_.limits.up.speeding_up;
     const double second = back_limits_.up.speeding_up;
     const double v = std::max(floor_velocity_, 0.0);
+    double enough = parameter(std::sqrt(2 * std::min(first, second) * missing));
     if (ease_ > 0) {
-        const double cube = 2 * (rise * rise / 6 + rise * fall / 2 + fall * fall / 3);
-        double x = math::cbrt(missing / cube);
+        double x = math::cbrt(3 * missing / (ease_ * (rise + 2 * fall)));
+        if (fall > 0) enough = std::min(enough, x * ((2 + (rise + 2 * fall) / std::sqrt(ease_ * fall)) / 3));
         if (v > 0) x = std::min(x, missing / (2 * v * ease_));
-        if (x <= std::min(first, second)) return x;
+        if (x <= std::min(first, second)) return {x, enough};
     }
     const double square = 0.5 / first + 0.5 / second;
     const double linear = fall * (first + second) / 2 + v * (1 / first + 1 / second);
     const double rest =
         missing - (first * first * first + second * second * second) * (rise * rise - fall * fall) / 24 - v * ease_ * (first + second) / 2;
-    return parameter(2 * rest / (linear + std::sqrt(linear * linear + 4 * square * rest)));
+    return {parameter(2 * rest / (linear + std::sqrt(linear * linear + 4 * square * rest))), enough};
 }
 
 Found PeakFamily::over_way(double known_to, double longest) const noexcept {
@@ -133,9 +127,9 @@ Found PeakFamily::over_way(double known_to, double longest) const noexcept {
             low_travel = stand_travel;
         }
     }
-    const double enough = enough_for(way - low_travel);
+    const Step step = step_over(way - low_travel);
     const auto above_low = [&](double x) noexcept -> double { return ease_ > 0 ? std::sqrt(low * low + x * x) : low + x; };
-    const double sum = above_low(enough) * (1 + 4 * epsilon);
+    const double sum = above_low(step.enough) * (1 + 4 * epsilon);
     if (sum >= widest_) {
         const Measured widest = look(widest_);
         const double rest = way - widest.travel();
@@ -146,7 +140,7 @@ Found PeakFamily::over_way(double known_to, double longest) const noexcept {
     } else {
         high = sum;
     }
-    return between(low, high, above_low(guess_for(way - low_travel)));
+    return between(low, high, above_low(step.guess));
 }
 
 Found PeakFamily::in_time(double time, double slack) const noexcept {

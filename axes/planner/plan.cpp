@@ -87,12 +87,12 @@ Plan plan_to_state(const MotionState& from, const MotionState& target, const Sig
     if (!setting.brake.stretches().empty() && !setting.start_is_outside()) {
         // Inside the limits, but not for long: unless the target comes first.
         const Setting unbraked{from, target, limits, Setting::Unbraked{}};
-        const Extremal extremal = fastest(unbraked.problem, unbraked.rounding(), {false, setting.target_releases()});
-        if (extremal.found.found) return {unbraked.profile(motion_of(unbraked.problem, extremal)), PlanError::none};
+        const FastestMotion fast = fastest(unbraked.problem, unbraked.rounding(), {false, setting.target_releases()});
+        if (fast.found.found) return {unbraked.profile(fast.motion), PlanError::none};
     }
-    const Extremal extremal = fastest(setting.problem, setting.rounding(), {true, setting.target_releases()});
-    if (!extremal.found.found) return refuse(from, PlanError::target_outside_limits);
-    return {setting.profile(motion_of(setting.problem, extremal)), PlanError::none};
+    const FastestMotion fast = fastest(setting.problem, setting.rounding(), {true, setting.target_releases()});
+    if (!fast.found.found) return refuse(from, PlanError::target_outside_limits);
+    return {setting.profile(fast.motion), PlanError::none};
 }
 
 Plan plan_to_position(const MotionState& from, double target, const SignedLimits& limits) noexcept {

@@ -11,8 +11,8 @@
 namespace taktwerk::axes {
 
 [[nodiscard]] inline PlanError check_number(double x) noexcept {
-    if (!std::isfinite(x)) return PlanError::invalid_input;
-    return std::abs(x) <= PlanBounds::largest ? PlanError::none : PlanError::out_of_bounds;
+    if (std::abs(x) <= PlanBounds::largest) return PlanError::none;
+    return std::isfinite(x) ? PlanError::out_of_bounds : PlanError::invalid_input;
 }
 
 [[nodiscard]] inline PlanError check_limit(double x) noexcept {
@@ -30,7 +30,15 @@ namespace taktwerk::axes {
     return worse(worse(check_number(s.position), check_number(s.velocity)), check_number(s.acceleration));
 }
 
+/// All of them finite and within the bounds: then there is nothing else to ask.
+[[nodiscard]] inline bool are_usual(const SignLimits& l) noexcept {
+    const double least = std::min(std::min(l.velocity, l.speeding_up), std::min(l.slowing_down, l.jerk));
+    const double sum = (l.velocity + l.speeding_up) + (l.slowing_down + l.jerk);  // NaN where one of them is
+    return least >= PlanBounds::smallest_limit && sum <= PlanBounds::largest;
+}
+
 [[nodiscard]] inline PlanError check_limits(const SignedLimits& l) noexcept {
+    if (are_usual(l.positive) && are_usual(l.negative)) return PlanError::none;
     PlanError error = PlanError::none;
     for (const SignLimits* s : {&l.positive, &l.negative})
         for (const double x : {s->velocity, s->speeding_up, s->slowing_down, s->jerk}) error = worse(error, check_limit(x));

@@ -6,17 +6,21 @@
 
 namespace taktwerk::axes {
 
-Profile::Profile(const MotionState& state) noexcept : start_{state.position, state.velocity, 0}, end_{state.position, state.velocity, 0} {}
+Profile::Profile(const MotionState& state) noexcept : start_{state.position, state.velocity, 0}, end_{state.position, state.velocity, 0} {
+    pieces_[0] = {};
+}
 
 Profile::Profile(const MotionState& start, std::span<const Stretch> forward, std::span<const Stretch> backward,
                  const MotionState& end) noexcept
     : start_{start}, end_{end} {
+    pieces_[0] = {};
     MotionState state = start;
     for (const Stretch& s : forward) {
         state.velocity += s.velocity_step;
         if (!(s.duration > 0) || count_ == max_pieces) continue;
         state.acceleration = s.acceleration;
-        pieces_[static_cast<std::size_t>(count_++)] = {duration_ + s.duration, duration_, s.jerk, state};
+        pieces_[static_cast<std::size_t>(count_++)] = {duration_ + s.duration, duration_,      s.jerk,
+                                                       state.position,         state.velocity, state.acceleration};
         state = travel(state, s.jerk, s.duration);
         duration_ += s.duration;
     }
@@ -25,7 +29,7 @@ Profile::Profile(const MotionState& start, std::span<const Stretch> forward, std
     for (const Stretch& s : backward) {
         if (!(s.duration > 0) || count_ == max_pieces) continue;
         duration_ += s.duration;
-        pieces_[static_cast<std::size_t>(count_++)] = {duration_, duration_, s.jerk, {}};
+        pieces_[static_cast<std::size_t>(count_++)] = {duration_, duration_, s.jerk, 0, 0, 0};
     }
     state = end;
     int i = count_;
@@ -38,7 +42,7 @@ Profile::Profile(const MotionState& start, std::span<const Stretch> forward, std
             const bool continues =
                 std::abs(arrives - state.acceleration) <= 1e-12 * (std::abs(s.acceleration) + std::abs(s.duration * s.jerk));
             if (!continues || s.jerk == 0) state.acceleration = arrives;
-            pieces_[static_cast<std::size_t>(i)].anchor = state;
+            pieces_[static_cast<std::size_t>(i)].set_anchor(state);
             state = travel(state, s.jerk, -s.duration);
         }
         state.velocity -= s.velocity_step;
@@ -67,7 +71,7 @@ double Profile::top_velocity(double sense, double from) const noexcept {
         speed = std::max(speed, sense * on_piece(i, end).velocity);
         const Piece& piece = pieces_[static_cast<std::size_t>(i)];
         if (piece.jerk == 0) continue;
-        const double top = piece.anchor_time - piece.anchor.acceleration / piece.jerk;  // where the acceleration is 0
+        const double top = piece.anchor_time - piece.acceleration / piece.jerk;  // where the acceleration is 0
         if (top > begin && top < end) speed = std::max(speed, sense * on_piece(i, top).velocity);
     }
     return speed;

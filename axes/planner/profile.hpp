@@ -34,7 +34,7 @@ public:
     static constexpr int max_pieces = 19;
 
     /// Stands still at position 0.
-    Profile() noexcept = default;
+    Profile() noexcept { pieces_[0] = {}; }
 
     /// Moves on with `state` from time 0, at its velocity, without acceleration.
     explicit Profile(const MotionState& state) noexcept;
@@ -85,15 +85,24 @@ public:
     /// State on piece i at time t (meant for its begin and end, where without a jerk limit the neighbour's acceleration differs).
     [[nodiscard]] MotionState on_piece(int i, double t) const noexcept {
         const Piece& piece = pieces_[static_cast<std::size_t>(i)];
-        return travel(piece.anchor, piece.jerk, t - piece.anchor_time);
+        return travel(piece.anchor(), piece.jerk, t - piece.anchor_time);
     }
 
 private:
     struct Piece {
-        double end_time = 0;     // s since the start
-        double anchor_time = 0;  // where `anchor` is known exactly: the piece's begin or its end
-        double jerk = 0;
-        MotionState anchor;
+        double end_time;     // s since the start
+        double anchor_time;  // where the anchor is known exactly: the piece's begin or its end
+        double jerk;
+        double position;  // of the anchor
+        double velocity;
+        double acceleration;
+
+        [[nodiscard]] MotionState anchor() const noexcept { return {position, velocity, acceleration}; }
+        void set_anchor(const MotionState& s) noexcept {
+            position = s.position;
+            velocity = s.velocity;
+            acceleration = s.acceleration;
+        }
     };
 
     [[nodiscard]] static MotionState travel(const MotionState& from, double jerk, double t) noexcept {
@@ -105,7 +114,7 @@ private:
     int count_ = 0;
     MotionState start_;
     MotionState end_;
-    std::array<Piece, max_pieces> pieces_{};
+    std::array<Piece, max_pieces> pieces_;  // the first count_, and the first one always: a time before the start asks for it
 };
 
 }  // namespace taktwerk::axes

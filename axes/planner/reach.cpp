@@ -37,7 +37,7 @@ double highest_velocity(double distance, double v, double a, const FrameLimits& 
     if (limits.jerk_free() && std::isinf(limits.up.speeding_up)) return limits.up.velocity;  // it jumps
     if (!(missing > 0)) return released + excess(low);
     double high = parameter(most);
-    // More is certainly not reached (PeakFamily::enough_for).
+    // More is certainly not reached (PeakFamily::step_over).
     double enough = parameter(std::sqrt(2 * limits.up.speeding_up * missing));
     if (limits.down.ease > 0) enough = std::min(enough, math::cbrt(3 * missing / (ease * std::sqrt(ease * limits.down.ease))));
     const double sum = (ease > 0 ? std::sqrt(low * low + enough * enough) : low + enough) * (1 + 4 * epsilon);

@@ -57,11 +57,14 @@ struct Setting {
         return limits.jerk_free() || runs_away || !is_inside(v, a, at_any_velocity, 0) ||
                (v * target.velocity < 0 && !keeps_limits(v, a, at_any_velocity, 0));
     }
+    [[nodiscard]] bool target_is_at_rest() const noexcept { return problem.v1 == 0 && problem.a1 == 0; }
     [[nodiscard]] bool target_is_outside() const noexcept {
+        if (target_is_at_rest()) return false;
         return !is_inside(problem.v1, -problem.a1, limits.reversed().mirrored(), slack);
     }
     /// Could a motion inside the limits arrive with the target's acceleration built up from 0? Backwards in time it must be able to leave.
     [[nodiscard]] bool target_releases() const noexcept {
+        if (target_is_at_rest()) return true;
         return keeps_limits(problem.v1, -problem.a1, limits.reversed().mirrored(), slack);
     }
 
@@ -81,6 +84,7 @@ struct Setting {
     }
 
     [[nodiscard]] Profile profile(const Motion& motion) const noexcept {
+        if (brake.stretches().empty()) return Profile{from, motion.forward.stretches(), motion.backward.stretches(), target};
         Chain forward;
         for (const Stretch& s : brake.stretches()) forward.add(s, 1);
         for (const Stretch& s : motion.forward.stretches()) forward.add(s, 1);
