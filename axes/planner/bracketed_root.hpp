@@ -32,8 +32,11 @@ template <typename F>
         }
         if (miss <= y.rounding) break;
         ((y.value < 0) == rising ? low : high) = x;
-        double next = x - y.value / y.slope;
-        if (!(next > low && next < high) || miss > last_miss / 2) {
+        const double step = y.value / y.slope;
+        const bool tiny = step != 0 && std::abs(step) <= 8 * std::numeric_limits<double>::epsilon() * x;  // misses are rounding errors here
+        double next = x - step;
+        if (!(next > low && next < high) || (miss > last_miss / 2 && !tiny)) {
+            if (tiny) break;
             next = low > 0 && high > 8 * low ? std::sqrt(low * high) : low + (high - low) / 2;
             if (!(next > low)) next = low + (high - low) / 2;
         }

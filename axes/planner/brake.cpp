@@ -10,23 +10,26 @@ namespace {
 
 /// Square of the acceleration with which a rising motion at v < 0 that gives its acceleration back crosses velocity 0; negative where it
 /// does not get there.
-double crossing_square(double v, double a, const FrameLimits& l) noexcept { return l.down.ease > 0 ? a * a + 2 * v / l.down.ease : 0; }
+double crossing_square(double v, double a, const Bounds& down) noexcept { return down.ease > 0 ? a * a + 2 * v / down.ease : 0; }
 
-bool keeps_limits_upwards(double v, double a, const FrameLimits& l, double slack) noexcept {
+/// `released`: velocity once the acceleration is given back.
+bool keeps_limits_upwards(double v, double a, double released, const Bounds& up, const Bounds& down, double slack) noexcept {
     const double more = 1 + slack;
-    if (!(released_velocity(v, a, l) <= l.up.velocity * more)) return false;
+    if (!(released <= up.velocity * more)) return false;
     if (!(a > 0)) return true;
     if (v < 0) {
-        const double most = l.up.speeding_up * more;
-        return a <= l.up.slowing_down * more && crossing_square(v, a, l) <= most * most;
+        const double most = up.speeding_up * more;
+        return a <= up.slowing_down * more && crossing_square(v, a, down) <= most * most;
     }
-    return a <= l.up.speeding_up * more;
+    return a <= up.speeding_up * more;
 }
 
 }  // namespace
 
 bool keeps_limits(double v, double a, const FrameLimits& limits, double slack) noexcept {
-    return keeps_limits_upwards(v, a, limits, slack) && keeps_limits_upwards(-v, -a, limits.mirrored(), slack);
+    const double released = released_velocity(v, a, limits);
+    return keeps_limits_upwards(v, a, released, limits.up, limits.down, slack) &&
+           keeps_limits_upwards(-v, -a, -released, limits.down, limits.up, slack);
 }
 
 Brake::Brake(double v, double a, const FrameLimits& limits) noexcept : velocity_{v}, acceleration_{limits.jerk_free() ? 0 : a} {
@@ -57,7 +60,7 @@ void Brake::give_acceleration_back(const FrameLimits& l) noexcept {
     const double here = velocity_ < 0 ? l.up.slowing_down : l.up.speeding_up;
     const double beyond = l.up.speeding_up;
     const double fall = l.down.ease;
-    const double crossing = velocity_ < 0 ? crossing_square(velocity_, acceleration_, l) : 0;
+    const double crossing = velocity_ < 0 ? crossing_square(velocity_, acceleration_, l.down) : 0;
     double end = acceleration_;
     bool to_standstill = false;
     if (velocity_ < 0 && crossing > beyond * beyond) {

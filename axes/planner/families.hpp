@@ -32,6 +32,8 @@ public:
         double peak_velocity;
     };
     [[nodiscard]] Motion at(double x) const noexcept;
+    /// The parameter of the last member, which reaches the velocity limit.
+    [[nodiscard]] double widest() const noexcept { return widest_; }
 
     /// The end of the first half and the beginning of the second are one stretch, unless both are jumps.
     [[nodiscard]] bool falls_gradually() const noexcept { return problem_.limits.down.ease > 0; }
@@ -60,14 +62,18 @@ private:
         double velocity;
         double square;
     };
-    [[nodiscard]] Top top(double x) const noexcept;
+    [[nodiscard]] Top top(double x) const noexcept {
+        if (x != widest_) return {floor_velocity_ + excess(x), ease_ > 0 ? x * x : x};
+        const double velocity = std::max(problem_.limits.up.velocity, floor_velocity_);
+        return {velocity, square_of(velocity - floor_velocity_)};
+    }
     /// A climb from one of the ends: what does not depend on x.
     struct End {
         double v = 0;
         double a = 0;
         double lowest = 0;
         double held_square = 0;  ///< a^2 where a > 0
-        double square = 0;       ///< of the x of a climb by that
+        double square = 0;       ///< x^2 of a climb from the released velocity to c0
     };
     [[nodiscard]] static Climb climb(const End& end, const Top& top) noexcept {
         const double square = end.square + top.square;
@@ -77,15 +83,18 @@ private:
 
     [[nodiscard]] double excess(double x) const noexcept { return ease_ > 0 ? x * (x * ease_ / 2) : x; }
     /// Without a jerk limit the parameter is the gain of velocity itself, and stands for its square.
-    [[nodiscard]] double square_of(double excess) const noexcept { return ease_ > 0 ? 2 * excess / ease_ : excess; }
-    [[nodiscard]] double parameter(double excess) const noexcept { return ease_ > 0 ? std::sqrt(2 * excess / ease_) : excess; }
+    [[nodiscard]] double square_of(double excess) const noexcept { return excess * square_per_excess_; }
+    [[nodiscard]] double parameter(double excess) const noexcept { return ease_ > 0 ? std::sqrt(square_of(excess)) : excess; }
     [[nodiscard]] double excess_slope(double x) const noexcept { return ease_ > 0 ? x * ease_ : 1; }
     [[nodiscard]] double way_slope(double x, const Measured& m) const noexcept;
+    /// Both ends.
+    [[nodiscard]] bool at_rest() const noexcept { return start_.v == 0 && start_.a == 0 && end_.v == 0 && end_.a == 0; }
     struct Step {
         double guess;
         double enough;
     };
     [[nodiscard]] Step step_over(double missing) const noexcept;
+    [[nodiscard]] double looked_up(double guess, double low, double high) const noexcept;
 
     const Problem& problem_;
     FrameLimits back_limits_;
@@ -93,7 +102,8 @@ private:
     End end_;                    // backwards in time
     double floor_velocity_ = 0;  // c0
     double ease_ = 0;            // of rise and fall together
-    double widest_ = 0;          // x at the velocity limit
+    double square_per_excess_ = 1;
+    double widest_ = 0;  // x at the velocity limit
 };
 
 /// For an end with acceleration a1 > 0 that is reached without ever losing all of it: climb over a peak, fall to a trough t >= 0, rise
@@ -103,6 +113,8 @@ public:
     explicit TroughFamily(const Problem& problem) noexcept;
 
     [[nodiscard]] bool exists() const noexcept { return exists_; }
+    /// The parameter of the last member, whose trough is the lowest.
+    [[nodiscard]] double widest() const noexcept { return widest_; }
 
     struct Motion {
         Ramp up;

@@ -13,7 +13,7 @@ namespace taktwerk::axes {
 
 namespace {
 
-Plan refuse(const MotionState& from, PlanError error) noexcept { return {Profile{from}, error}; }
+Plan refuse(const MotionState& from, PlanError error) noexcept { return {Profile{from}, error, 0}; }
 
 /// The fastest change of velocity, after a brake of the acceleration alone.
 struct VelocityChange {
@@ -84,15 +84,17 @@ Plan plan_to_state(const MotionState& from, const MotionState& target, const Sig
     if (const PlanError error = check_plan(from, target, limits); error != PlanError::none) return refuse(from, error);
     const Setting setting{from, target, limits};
     if (setting.target_is_outside()) return refuse(from, PlanError::target_outside_limits);
+    int looked_at = 0;
     if (!setting.brake.stretches().empty() && !setting.start_is_outside()) {
         // Inside the limits, but not for long: unless the target comes first.
         const Setting unbraked{from, target, limits, Setting::Unbraked{}};
         const FastestMotion fast = fastest(unbraked.problem, unbraked.rounding(), {false, setting.target_releases()});
-        if (fast.found.found) return {unbraked.profile(fast.motion), PlanError::none};
+        looked_at = fast.found.looked_at;
+        if (fast.found.found) return {unbraked.profile(fast.motion), PlanError::none, looked_at};
     }
     const FastestMotion fast = fastest(setting.problem, setting.rounding(), {true, setting.target_releases()});
     if (!fast.found.found) return refuse(from, PlanError::target_outside_limits);
-    return {setting.profile(fast.motion), PlanError::none};
+    return {setting.profile(fast.motion), PlanError::none, looked_at + fast.found.looked_at};
 }
 
 Plan plan_to_position(const MotionState& from, double target, const SignedLimits& limits) noexcept {

@@ -33,6 +33,7 @@ enum class PlanError : std::uint8_t {
 struct Plan {
     Profile profile;
     PlanError error = PlanError::none;
+    int looked_at = 0;  ///< motions that the search for the fastest one looked at: what it cost, on whatever machine
 };
 
 /// The fastest motion to `target` [u], ending there at rest: velocity 0, acceleration 0, position equal to the last bit.

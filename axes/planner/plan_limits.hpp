@@ -14,7 +14,7 @@ struct PlanBounds {
 inline constexpr int max_root_steps = 100;
 
 /// Searches in one plan in the worst case: two families of peaks with one root, four families of troughs with a turning point to look for
-/// on either side of the valley and a root (mathematics.md).
-inline constexpr int max_roots = 2 * 1 + 4 * 3;
+/// and a root (mathematics.md).
+inline constexpr int max_roots = 2 * 1 + 4 * 2;
 
 }  // namespace taktwerk::axes

@@ -43,7 +43,7 @@ public:
 
     /// Rise, hold and fall on one side of velocity 0, or where both sides have the same bound.
     [[nodiscard]] static bool is_one_leg(const Climb& c, const FrameLimits& l) noexcept {
-        return !l.jerk_free() && (l.up.slowing_down == l.up.speeding_up || !(c.lowest < 0 && c.v1 > 0));
+        return l.up.ease + l.down.ease > 0 && (l.up.slowing_down == l.up.speeding_up || !(c.lowest < 0 && c.v1 > 0));
     }
     /// At standstill alone, acceleration only comes and goes: whichever side it is of has it.
     [[nodiscard]] static double bound_of(const Climb& c, const FrameLimits& l) noexcept {

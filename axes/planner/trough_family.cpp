@@ -115,30 +115,20 @@ Found TroughFamily::over_way(double known_to, double longest) const noexcept {
     const double rounding = known_to + 4 * epsilon * start.path;
     if (std::abs(start.miss) <= rounding) return at_end(start);
     const Turn end = look(widest_);
-    const auto nothing_between = [&]() noexcept -> Found { return std::abs(end.miss) <= rounding ? at_end(end) : none(); };
-    // Only where the way grows through the target is it the first time (mathematics.md, "Why these are all"): before the valley of the rate
-    // from a shorter way, behind it to a longer one.
-    if (start.miss > 0 && end.miss < 0) return nothing_between();
-    const double time = end.time - start.time;
-    if (problem_.limits.convex()) {
-        // Before the valley the way lies below its first tangent, behind it above its last.
-        if (end.miss < 0 && start.miss + std::max(start.rate, 0.0) * time < -rounding) return nothing_between();
-        if (start.miss > 0 && end.miss - std::max(end.rate, 0.0) * time > rounding) return nothing_between();
-    }
+    const auto not_before_end = [&]() noexcept -> Found { return std::abs(end.miss) <= rounding ? at_end(end) : none(); };
+    // Whose way begins beyond the target can only come back to it (mathematics.md, "Why these are all").
+    if (start.miss > 0) return not_before_end();
+    // Before the valley of the rate the way lies below its first tangent, behind it below its end.
+    const double highest = start.miss + std::max(start.rate, 0.0) * (end.time - start.time);
+    if (problem_.limits.convex() && end.miss < 0 && highest < -rounding) return not_before_end();
     const Turn valley = look(problem_.a1 - slowest_trough());
-    if (!(valley.rate < 0)) return start.miss < 0 && end.miss >= 0 ? between(start, end) : nothing_between();
-    if (start.miss < 0) {
-        if (valley.miss >= 0) return between(start, valley);
-        const double held = std::min(problem_.a1 - holding_trough(), valley.parameter);
-        const Turn first = held > 0 ? look(held) : start;
-        if (first.miss >= 0) return between(start, first);
-        if (const auto top = top_beyond_zero(look, first, valley, 1, rounding)) return between(first, *top);
-    }
-    if (end.miss >= 0) {
-        if (valley.miss <= 0) return between(valley, end);
-        if (const auto bottom = top_beyond_zero(look, valley, end, -1, rounding)) return between(*bottom, end);
-    }
-    return nothing_between();
+    if (!(valley.rate < 0)) return end.miss >= 0 ? between(start, end) : not_before_end();
+    if (valley.miss >= 0) return between(start, valley);
+    const double held = std::min(problem_.a1 - holding_trough(), valley.parameter);
+    const Turn first = held > 0 ? look(held) : start;
+    if (first.miss >= 0) return between(start, first);
+    if (const auto top = top_beyond_zero(look, first, valley, rounding)) return between(first, *top);
+    return end.miss >= 0 ? between(valley, end) : not_before_end();
 }
 
 Found TroughFamily::in_time(double time, double slack) const noexcept {
