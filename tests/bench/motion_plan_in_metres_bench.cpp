@@ -21,6 +21,7 @@ constexpr int passes = 9;
 
 /// Measured in one run on one machine: both planners in turn, blocks of 1,000 motions, the least of nine passes of each motion, ns without the clock;
 /// instructions per plan by callgrind. Ruckig 0.17.3 (commit 53f42b3) with g++ 12.2 -O3, Taktwerk with -O2. What travels to another machine is the ratio.
+/// (The largest of any to any is of the run before; docs/performance.md.)
 struct Cited {
     double p50, p99, max, instructions;
 };
