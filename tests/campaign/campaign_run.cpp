@@ -61,8 +61,7 @@ Duration longest(Phase phase) {
 class Run {
 public:
     Run(FaultKind kind, Phase phase, std::uint32_t seed)
-        : kind_(kind),
-          phase_(phase),
+        : phase_(phase),
           expected_(expected_end(kind, phase)),
           random_(seed * 1000 + static_cast<std::uint32_t>(kind) * 10 + static_cast<std::uint32_t>(phase)),
           m_(config()),
@@ -296,7 +295,6 @@ private:
         return out;
     }
 
-    FaultKind kind_;
     Phase phase_;
     ExpectedEnd expected_;
     std::mt19937 random_;

@@ -14,7 +14,7 @@ namespace {
 constexpr double width = 760, left = 144, right = 58, top = 12, state_height = 16, panel_gap = 12, bit_height = 15, bits_gap = 30,
                  block_gap = 5, foot = 8;
 constexpr double plot = width - left - right;
-constexpr double tolerance = 0.12;
+constexpr double line_tolerance = 0.12;
 
 constexpr std::array<const char*, 6> block_colours{"#1f6fb2", "#d9730d", "#2f8f5b", "#8a4fa8", "#b0313f", "#5b6b7b"};
 constexpr const char* idle_colour = "#56616b";
@@ -173,7 +173,7 @@ private:
         const std::vector<double> part(pixels.begin() + static_cast<std::ptrdiff_t>(from),
                                        pixels.begin() + static_cast<std::ptrdiff_t>(to) + 1);
         std::string points;
-        for (const auto i : simplified(part, plot / static_cast<double>(samples_ - 1), tolerance))
+        for (const auto i : simplified(part, plot / static_cast<double>(samples_ - 1), line_tolerance))
             points += fmt::format("{}{},{}", points.empty() ? "" : " ", px(x(static_cast<double>(from + i))), px(part[i]));
         put("<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-linejoin=\"round\"/>", points, colour,
             px(wide));
