@@ -171,7 +171,7 @@ void Axis::wait_for_room(const MotionState& from, MotionLimits limits, Plan& pla
     for (const double way : {1.0, -1.0}) {
         const double reach = superimposed_reach(way);
         if (reach == 0) continue;
-        const double left = std::max(limit - reach, way * from.velocity);
+        const double left = std::max({0.0, limit - reach, way * from.velocity});
         const double top = plan.profile.top_velocity(way);
         if (top <= left + room_grain * limit || top - left <= wanted - room) continue;
         sense = way;

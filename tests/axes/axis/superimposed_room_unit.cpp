@@ -212,5 +212,23 @@ TEST(SuperimposedRoom, NothingBeginsOnTopOfABaseBeyondTheLimit) {
     }
 }
 
+// An addition of 80 u/s is faster than the limit since that was lowered to 50 u/s. What its base wants in the other sense, or no more, waits for no
+// room: a jog whose lease is over ends.
+TEST(SuperimposedRoom, AJogEndsAlsoAgainstAnAdditionThatIsBeyondTheLimit) {
+    for (const double sense : {1.0, -1.0}) {
+        Rig rig;
+        rig.power_on();
+        const auto back = rig.accept(jog(sense * -10));
+        rig.run(50);
+        const auto addition = rig.accept(on_top(sense * 30, 80));
+        rig.run(140);  // of a lease of 200 ms
+        ASSERT_GT(sense * rig.view().set_velocity, 60);
+        ASSERT_EQ(rig.axis.set(WriteParameter{velocity_of_application, 50}, Owner::program), ErrorId::none);
+        ASSERT_TRUE(rig.run_until([&] { return rig.status(addition) == CommandStatus::done; }, 2000));
+        EXPECT_TRUE(rig.run_until([&] { return rig.status(back) == CommandStatus::error; }, 100));
+        EXPECT_EQ(rig.view().state, AxisState::Standstill);
+    }
+}
+
 }  // namespace
 }  // namespace taktwerk::axes::test
