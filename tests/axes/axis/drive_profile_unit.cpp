@@ -46,6 +46,26 @@ struct ProfileRig : Rig {
     }
 };
 
+// The drive's own motion begins from rest: wherever a move that turns round is when it comes, the axis stops for it and turns round no more, also
+// where that takes less than a cycle: 15.3 u/s, at -1000 u/s2, become 0.3.
+TEST(DriveMove, TheStopInFrontOfItNeverTurnsTheAxisRound) {
+    for (int later = 60; later < 70; ++later) {
+        ProfileRig rig;
+        rig.accept(at_velocity(40.3));
+        rig.run(150);
+        rig.accept(absolute(-20));
+        rig.run(later);
+        const double before = rig.view().set_velocity;
+        rig.accept(drive_at(-20));
+        for (int i = 0; i < 200 && rig.view().set_velocity != 0; ++i) {
+            rig.step();
+            EXPECT_GE(before * rig.view().set_velocity, 0) << later;
+        }
+        EXPECT_EQ(rig.view().set_velocity, 0) << later;
+        EXPECT_TRUE(rig.run_to_speed(-20)) << later;
+    }
+}
+
 // The motor is 30 counts behind what it is told: until the drive has the mode, it is told the same.
 TEST(DriveMove, ADriveThatHasNotTheModeYetIsToldTheSamePlace) {
     ProfileRig rig([](FakeDrive& made) { made.mode_delay = 5; });

@@ -230,10 +230,10 @@ private:
         const double T = period_;
         bool rests_now = false;
         const bool rests = b.velocity == 0 && b.acceleration == 0;
-        // What begins and ends in one cycle shows no limiter: by what may have been a stop.
+        // What begins and ends in one cycle shows no limiter: by what may have been a stop, as that in front of another mode of the drive.
         const bool stops = next.stops || last_.stops ||
                            (rests && (view.active == 0 || view.override_factors.velocity == 0 || runs_at_velocity(next.kind) ||
-                                      next.kind == CommandKind::halt));
+                                      changes_mode(next.kind) || next.kind == CommandKind::halt));
         if (stops && a.velocity * a.acceleration <= 0) {
             rests_now = rests && 2 * std::abs(a.velocity) <= std::abs(a.acceleration) * T * rounding;
             if (a.velocity != 0) most_jerk = std::max(most_jerk, a.acceleration * a.acceleration / (2 * std::abs(a.velocity)));
