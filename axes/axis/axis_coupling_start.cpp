@@ -121,7 +121,9 @@ ErrorId Axis::engage(Duration period) noexcept {
     coupling_.running.waits = false;
     coupling_.next = {};  // what it held goes on being held
     coupling_.cam_ends_seen = 0;
+    const double former_jerk = jerk_of_motion();
     goal_ = {Goal::Kind::coupled, 0, full_limits(config_.limits), VelocityLimiter::command};
+    goal_.former_jerk = former_jerk;
     goal_pending_ = held_ = false;
     watch_limits_ = true;
     return ErrorId::none;

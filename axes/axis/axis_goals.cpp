@@ -96,25 +96,27 @@ bool Axis::heads_backwards() const noexcept {
 void Axis::aim(Goal::Kind kind, double value, const MotionLimits& limits, VelocityLimiter limiter) noexcept {
     // The jerk of a slave, a table and a feed is not limited: what comes next takes over of their acceleration what it can release.
     const bool stops = kind == Goal::Kind::stop;
-    if (goal_.kind == Goal::Kind::given || (stops && goal_.kind == Goal::Kind::coupled)) {
+    const double former_jerk = jerk_of_motion();
+    const bool unlimited = !std::isfinite(former_jerk);
+    if (unlimited && (goal_.kind == Goal::Kind::given || (stops && goal_.kind == Goal::Kind::coupled))) {
         auto base = setpoint_.base();
         base.acceleration = releasable(base, stops ? 0 : config_.limits.velocity, limits.jerk);
         setpoint_.set(base);
     }
     goal_ = {kind, value, limits, limiter};
+    goal_.former_jerk = former_jerk;
     goal_pending_ = watch_limits_ = true;
     held_ = false;
 }
 
 /// Every stop of a planned motion begins here, whoever asked for it.
 void Axis::aim_at_rest(const MotionLimits& limits) noexcept {
-    const double jerk = jerk_of_motion();
     aim(Goal::Kind::stop, 0, limits, VelocityLimiter::stopping);
-    goal_.former_jerk = jerk;
     folded_jerk_ = 0;  // it counts once, also where one stop is given after the other
 }
 
-/// Of what moves the axis now, base and addition together. That of a slave, a table or a fed set-point is not limited.
+/// Of what moves the axis now, base and addition together. That of a slave, a table or a fed set-point is not limited once it has moved the axis: until
+/// then it is that of the motion before.
 double Axis::jerk_of_motion() const noexcept {
     switch (goal_.kind) {
         case Goal::Kind::rest: return folded_jerk_;
@@ -124,7 +126,7 @@ double Axis::jerk_of_motion() const noexcept {
         case Goal::Kind::given:
         case Goal::Kind::coupled: break;
     }
-    return std::numeric_limits<double>::infinity();
+    return goal_.former_jerk > 0 ? goal_.former_jerk : std::numeric_limits<double>::infinity();
 }
 
 void Axis::aim_at_velocity(double velocity, const MotionLimits& dynamics) noexcept {

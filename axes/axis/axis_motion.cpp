@@ -77,6 +77,7 @@ void Axis::plan(Instant now, Duration period) noexcept {
         setpoint_.finished() && online() && drive_stands() && feedback_.commands_acknowledged)
         setpoint_.place(actual_local());
     if (may_complete()) complete();
+    if (goal_.kind == Goal::Kind::given || goal_.kind == Goal::Kind::coupled) goal_.former_jerk = 0;  // it has moved the axis itself
     if (coupling_.shown) complete_phasing();
     if (queue_.beside(SideSlot::superimposed) != 0 || wants_speed_ != 0) complete_superimposed();
     if (const double velocity = setpoint_.state().velocity; velocity != 0) backwards_ = velocity < 0;

@@ -126,6 +126,37 @@ TEST(Seams, AWaitingCouplingEndsAMotionThatHadNotBegun) {
     EXPECT_GT(rig.view(1).set_velocity, 1);
 }
 
+// The axis speeds up when its direction is barred and loses its acceleration with its own jerk. What is given meanwhile is stopped in the very cycle in
+// which it begins and has moved nothing: the acceleration goes on as it went. (A slave's, or a table's, would be dropped at once.)
+TEST(Seams, WhatIsBarredInItsFirstCycleHasNotMadeTheAcceleration) {
+    CouplingRig rig(jerked(2));
+    const auto table = rig.tables.add_time_table(std::vector<TimePoint>{{1s, 60.0}, {1s, 0.0}});
+    rig.start();
+    const std::vector<AxisCommand> given{
+        gear_in(0),
+        combine(0, 0),
+        {.kind = CommandKind::velocity_profile, .details = TimeProfileDetails{table, 1, 1, 0}},
+        {.kind = CommandKind::external},
+    };
+    for (const auto& command : given) {
+        SCOPED_TRACE(static_cast<int>(command.kind));
+        rig.permits[1] = 3;
+        rig.step();
+        rig.accept(1, at_velocity(80));
+        ASSERT_TRUE(rig.run_until([&] { return rig.view(1).set_acceleration > 900; }, 100));
+        rig.permits[1] = 2;
+        rig.run(20);  // 900 u/s2 with 20000 u/s3: 45 cycles
+        const double before = rig.view(1).set_acceleration;
+        ASSERT_GT(before, 400);
+        const auto barred = rig.accept(1, command);
+        rig.step();
+        EXPECT_EQ(rig.error_of(1, barred), ErrorId::interlocked);
+        EXPECT_NEAR(rig.view(1).set_acceleration, before - 20, 1e-6);
+        rig.run(300);
+        EXPECT_EQ(rig.view(1).state, AxisState::Standstill);
+    }
+}
+
 // MC_Home behind a move, in place: the view's set and actual position change their coordinates in one cycle.
 TEST(Seams, AHomingBehindAMoveShowsBothPositionsAnewAtOnce) {
     auto config = plain_axis();
