@@ -59,6 +59,20 @@ TEST(VelocityProfileUpdate, OtherValuesAreReachedByTheNextRow) {
     EXPECT_EQ(p.rig.status(p.id), CommandStatus::in_target);
 }
 
+// A table that runs keeps what it was checked for when it began; its rest, looked at again, is refused as a new table would be.
+TEST(VelocityProfileUpdate, ALimitLoweredMeanwhileHoldsForTheNextTableOnly) {
+    UpdateRig p(CommandKind::velocity_profile, {{1s, 60.0}, {1s, 60.0}, {1s, 20.0}});
+    p.rig.run(500);
+    ASSERT_EQ(p.rig.axis.set(WriteParameter{velocity_of_application, 40}, Owner::program), ErrorId::none);
+    p.rig.run(1000);
+    EXPECT_NEAR(p.view().set_velocity, 60, 1e-9);
+    EXPECT_EQ(p.update(2, 1), ErrorId::invalid_velocity);
+    EXPECT_EQ(p.rig.refuse(p.command()), ErrorId::invalid_velocity);
+    p.rig.run(1500);
+    EXPECT_NEAR(p.view().set_velocity, 20, 1e-9);
+    EXPECT_EQ(p.rig.status(p.id), CommandStatus::in_target);
+}
+
 // 10 u/s2 for 1 s of the 2 s, then 20 u/s2 for the second that is left: 10 + 20 u/s.
 TEST(AccelerationProfileUpdate, TheRestOfARowHasTheNewValue) {
     UpdateRig p(CommandKind::acceleration_profile, {{2s, 10.0}});
