@@ -107,7 +107,14 @@ bool Axis::guard_software_limits(const MotionState& before) noexcept {
     const bool two = summed_ || setpoint_.superimposed_has_moved(cycle_);
     end_superimposed(Outcome::error, ErrorId::beyond_software_limit);
     summed_ = summed_ && two;
-    brake_as_both_layers(before, sense, std::abs(edge_local - before.position), limits);
+    const double room = sense * (edge_local - before.position);
+    brake_as_both_layers(before, sense, room, limits);
+    // Coordinates were moved and the limit with them (MC_SetPosition, homing in motion): no stop turns round to run back to it.
+    constexpr double rounding = 1e-6;
+    if (const double reach = reach_of_stop(before, limits, sense); reach * (1 - rounding) > room && reach > 0) {
+        aim_at_rest(stop_limits(config_.limits));
+        return true;
+    }
     // Also in ErrorStop: its own stop might be softer and pass the limit.
     aim(Goal::Kind::position, edge_local, limits, VelocityLimiter::software_limit);
     return true;

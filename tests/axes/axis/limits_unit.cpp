@@ -123,6 +123,40 @@ TEST(SoftwareLimits, GentleAbortNearTheLimitBrakesHardEnough) {
 }
 
 // Before homing the coordinates mean nothing, so neither do the limits.
+// The limits come over it with its coordinates. It stops where it is: nobody asked for the way back, which may be as long as the number.
+TEST(SoftwareLimits, MovedWithTheCoordinatesOfAMovingAxisTheyStopItAndItDoesNotRunBack) {
+    for (const double jerk : {20'000.0, infinity}) {
+        for (const double velocity : {50.0, -50.0}) {
+            for (const double shift : {1000.0, 160.0}) {
+                for (const bool by_jog : {false, true}) {
+                    auto config = fenced();
+                    config.limits.jerk = jerk;
+                    config.jog_lease = 10s;
+                    FencedRig rig(config);
+                    const double sense = velocity > 0 ? 1 : -1;
+                    const auto id = rig.accept(by_jog ? jog(velocity) : at_velocity(velocity));
+                    rig.run(100);
+                    ASSERT_EQ(rig.axis.set(SetPosition{sense * shift, true}, Owner::program), ErrorId::none);
+                    const double from = rig.view().set_position;
+                    ASSERT_TRUE(rig.run_until(
+                        [&] {
+                            EXPECT_GE(sense * rig.view().set_velocity, 0);
+                            return rig.view().set_velocity == 0;
+                        },
+                        200));
+                    rig.run(50);
+                    EXPECT_EQ(rig.view().set_velocity, 0);
+                    // v^2 / 2a = 1.25 u and with a jerk v * a / 2j = 1.25 u more; and the cycle that saw it.
+                    EXPECT_LE(sense * (rig.view().set_position - from), (jerk == infinity ? 1.25 : 2.5) + 0.051);
+                    EXPECT_EQ(rig.status(id), by_jog ? CommandStatus::done : CommandStatus::error);
+                    EXPECT_EQ(rig.raised(AxisAlarm::software_limit_reached), !by_jog);
+                    EXPECT_EQ(rig.view().state, by_jog ? AxisState::Standstill : AxisState::ErrorStop);
+                }
+            }
+        }
+    }
+}
+
 TEST(SoftwareLimits, DoNotHoldBeforeHoming) {
     Rig rig(fenced());
     rig.power_on();

@@ -341,9 +341,10 @@ private:
         const bool other = now.position_min != low_ || now.position_max != high_ || renumbered || last_.homed != next.homed || loose_;
         low_ = now.position_min;
         high_ = now.position_max;
+        const bool moved_until_now = excused_;
         if (either(last_, next, AxisState::Homing) || !hold || (other && !rests)) excused_ = true;
         else if (rests) excused_ = false;
-        if (excused_ || !hold) return;
+        if (moved_until_now || excused_ || !hold || renumbered) return;  // another number is no way
         constexpr double grain = 1e-9;
         const bool above = next.at.position > high_ + grain && next.at.position > last_.at.position;
         const bool below = next.at.position < low_ - grain && next.at.position < last_.at.position;
