@@ -313,7 +313,10 @@ void Axis::follow_motor() noexcept {
     const bool confirmed = mode_phase_ == ModePhase::torque || mode_phase_ == ModePhase::profile;
     motor_leads_ = motor_leads_ || confirmed || (feedback_.fresh && !takes_setpoints);
     if (!motor_leads_) return;
-    const double velocity = motor_velocity();
+    // A drive that shows its own mode again may take what it is told before it has to. What is measured then is the echo of this set-point a
+    // few cycles ago, whose rounding would grow with every turn: it is led on as fast as it was.
+    const bool echoes = mode_phase_ == ModePhase::leaving && mode_seen_ && !drive_stands();
+    const double velocity = echoes ? setpoint_.state().velocity : motor_velocity();
     const double ahead = velocity * to_seconds(port_.setpoint_effective(now_) - feedback_.latched);
     setpoint_.set({actual_local() + ahead, velocity, 0});
 }

@@ -35,6 +35,28 @@ struct TorqueRig : Rig {
     [[nodiscard]] double motor_velocity() const { return view().actual_velocity; }
 };
 
+// A drive that wants a pause after a change of its mode may yet take set-points in it. The axis would follow its own echo meanwhile.
+TEST(TorqueAxis, APauseAfterTheChangeOfModeMakesNoDriveRunAwayThatTakesSetpointsInIt) {
+    for (const int dead : {1, 2, 5}) {
+        for (const auto pause : {1ms, 5ms, 30ms}) {
+            for (const auto& next : {at_velocity(40), stop(), absolute(20, 40)}) {
+                TorqueRig rig(torque_axis(), [&](FakeDrive& drive) {
+                    drive.caps.mode_change_delay = pause;
+                    drive.dead_cycles = dead;
+                });
+                rig.accept(torque(0.3, 0, 40));
+                ASSERT_TRUE(rig.run_until([&] { return rig.motor_velocity() > 39; }, 1000));
+                rig.accept(next);
+                for (int i = 0; i < 300; ++i) {
+                    rig.step();
+                    ASSERT_LE(std::abs(rig.motor_velocity()), 46) << dead << " cycles late, pause " << to_seconds(pause);
+                }
+                EXPECT_TRUE(rig.alarms.empty());
+            }
+        }
+    }
+}
+
 // P1-178, P1-179: the drive goes into cyclic torque, the torque follows its ramp, InTorque when it is there.
 TEST(TorqueAxis, ApproachesTheTorqueWithItsRampAndHoldsIt) {
     TorqueRig rig;
