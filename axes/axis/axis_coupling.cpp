@@ -302,9 +302,12 @@ void Axis::step_coupled(Duration period) noexcept {
     auto& follower = coupling_.follower;
     auto limits = follower_limits(coupling_.running.command);
     // The axis' velocity holds for the sum: what is superimposed has its part in its sense, and the slave falls behind with the rest.
-    const auto beside = setpoint_.superimposed().velocity;
-    limits.forward = std::clamp(config_.limits.velocity - beside, 0.0, limits.forward);
-    limits.backward = std::clamp(config_.limits.velocity + beside, 0.0, limits.backward);
+    // Also what it is about to have: it may speed up faster than the slave slows down.
+    const auto beside = [&](double sense) noexcept {
+        return std::max(sense * setpoint_.superimposed().velocity, setpoint_.superimposed_top(sense));
+    };
+    limits.forward = std::clamp(config_.limits.velocity - beside(1), 0.0, limits.forward);
+    limits.backward = std::clamp(config_.limits.velocity - beside(-1), 0.0, limits.backward);
     follower.set_limits(limits);
     const bool two = coupling_.running.masters.axes[1].valid();
     const auto first = seen(coupling_.running, 0);

@@ -94,11 +94,12 @@ bool Axis::heads_backwards() const noexcept {
 }
 
 void Axis::aim(Goal::Kind kind, double value, const MotionLimits& limits, VelocityLimiter limiter) noexcept {
-    // The jerk of a slave, a table and a feed is not limited: what comes next takes over of their acceleration what it can release.
+    // The jerk of a slave, a table and a feed is not limited: what comes next takes over of their acceleration what it can release. (A slave alone
+    // holds itself to that; with what was on top of it, it does not.)
     const bool stops = kind == Goal::Kind::stop;
     const double former_jerk = jerk_of_motion();
     const bool unlimited = !std::isfinite(former_jerk);
-    if (unlimited && (goal_.kind == Goal::Kind::given || (stops && goal_.kind == Goal::Kind::coupled))) {
+    if (unlimited && (goal_.kind == Goal::Kind::given || ((stops || summed_) && goal_.kind == Goal::Kind::coupled))) {
         auto base = setpoint_.base();
         base.acceleration = releasable(base, stops ? 0 : config_.limits.velocity, limits.jerk);
         setpoint_.set(base);

@@ -230,5 +230,55 @@ TEST(SuperimposedRoom, AJogEndsAlsoAgainstAnAdditionThatIsBeyondTheLimit) {
     }
 }
 
+// The master speeds up while an addition does, which is quicker by far than the slave slows down: the room for it was measured when it began.
+TEST(SuperimposedRoom, ASlaveGetsNoFasterThanTheAdditionThatSpeedsUpLeavesRoomFor) {
+    for (const double sense : {1.0, -1.0}) {
+        for (int instant = 100; instant < 400; instant += 20) {
+            auto master = plain_slave(), slave = plain_slave();
+            master.limits.acceleration = 48;
+            slave.limits = {.velocity = 20, .acceleration = 30'000, .deceleration = 50, .jerk = 3e6};
+            CouplingRig rig({master, slave});
+            rig.start();
+            rig.accept(1, gear_in(0));
+            rig.accept(0, at_velocity(sense * 100));
+            rig.run(instant);
+            const auto addition = rig.accept(1, on_top(sense * 3, 0));
+            double fastest = 0;
+            for (int i = 0; i < 400; ++i) {
+                rig.step();
+                fastest = std::max(fastest, std::abs(rig.view(1).set_velocity));
+            }
+            EXPECT_LE(fastest, 20 * (1 + 1e-9)) << "sense " << sense << " after " << instant;
+            EXPECT_GT(rig.view(1).superimposed_covered * sense, 0) << addition;
+        }
+    }
+}
+
+// A slave and its addition speed up together; then they are one motion at a velocity, whose jerk could not release that below the limit.
+TEST(SuperimposedRoom, WhatASlaveAndItsAdditionHadIsReleasedBelowTheLimit) {
+    for (const double sense : {1.0, -1.0}) {
+        for (int instant = 5; instant < 80; instant += 5) {
+            auto master = plain_slave(), slave = plain_slave();
+            master.limits.acceleration = 200;
+            slave.limits = {.velocity = 20, .acceleration = 1000, .deceleration = 1000, .jerk = 3000};
+            CouplingRig rig({master, slave});
+            rig.start();
+            rig.accept(1, gear_in(0));
+            rig.run(20);
+            rig.accept(0, at_velocity(sense * 100));
+            rig.run(20);
+            rig.accept(1, on_top(sense * 20, 0));
+            rig.run(instant);
+            rig.accept(1, at_velocity(sense * 15));
+            double fastest = 0;
+            for (int i = 0; i < 300; ++i) {
+                rig.step();
+                fastest = std::max(fastest, std::abs(rig.view(1).set_velocity));
+            }
+            EXPECT_LE(fastest, 20 * (1 + 1e-9)) << "sense " << sense << " after " << instant;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace taktwerk::axes::test
