@@ -102,13 +102,13 @@ TEST(DriveWords, SixAxesAreAxes) {
 // SV33-E 5.5, A.D35: methods 15, 16, 31 and 32 do not exist, although 7.3 gives -2 to 35. SE-808X 4.3: 605Ah and 605Dh are 1 or 2.
 TEST(DriveWords, AValueThatTheManualForbidsIsRefused) {
     for (const auto* word : {"6098h=15", "6098h=32"}) {
-        const auto refused = drive({"set", "sv33_drive", word});
+        const auto refused = on_five({"set", "sv33_drive", word});
         EXPECT_NE(refused.code, exit_ok) << word;
         EXPECT_THAT(refused.err, AllOf(HasSubstr("does not document homing method"), HasSubstr("33, 34, 35"))) << word;
     }
-    EXPECT_EQ(drive({"set", "sv33_drive", "6098h=17"}).code, exit_ok) << "positive control";
+    EXPECT_EQ(on_five({"set", "sv33_drive", "6098h=17"}).code, exit_ok) << "positive control";
     for (const auto* word : {"605Ah=3", "605Dh=0"})
-        EXPECT_THAT(drive({"set", "stepper_drive", word}).err, HasSubstr("give 1 .. 2")) << word;
+        EXPECT_THAT(on_five({"set", "stepper_drive", word}).err, HasSubstr("give 1 .. 2")) << word;
 }
 
 // --- run ---------------------------------------------------------------------------------------------------------------------------
