@@ -116,6 +116,7 @@ protected:
     }
     void TearDown() override {
         m.expect_no_jump();
+        m.on_cycle = {};  // what it watches has gone with the test's body
         m.runner->shut_down();
         Robot::running = nullptr;
     }
