@@ -72,7 +72,8 @@ void append_error(std::string& page, const axes::ErrorText& error) {
 std::string alarm_reference_markdown() {
     std::string page =
         "# Alarms\n\n"
-        "Generated from the alarm tables (`taktwerk docs alarms`). {a} and {b} stand for the numbers of the occasion ({a:ns}: a time). A drive's own\n"
+        "Generated from the alarm tables (`taktwerk docs alarms`). {a} and {b} stand for the numbers of the occasion ({a:ns}: a time). A "
+        "drive's own\n"
         "alarms come with its profile and are shown with `drive_fault` and `drive_warning`; a program's alarms are declared by the "
         "program.\n";
     append_table(page, "Bus", "EtherCAT, 1xxxh.", ecat::bus_alarms);

@@ -234,8 +234,8 @@ TEST_F(DoorTest, AStopInALineThatIsNoJsonStopsEverythingAndIsRefused) {
     using std::string_view_literals::operator""sv;
     std::size_t stops = 0;
     for (const auto& line : {"{\"cmd\":\"stop\",\"axis\":\"x\",\"client\":\"M\xFCller\"}"sv, "{\"cmd\" : \"stop\",\"utime\":NaN}"sv,
-                            R"({"cmd":"stop","utime":1e999})"sv, R"({"cmd":"stop",})"sv, R"({"cmd":"state"}{"cmd":"stop"})"sv,
-                            R"({"cmd":"stop","x":[[[[[[1]]]]]]})"sv, "\0{\"cmd\":\"stop\"}"sv, R"([{"cmd":"stop"}])"sv}) {
+                             R"({"cmd":"stop","utime":1e999})"sv, R"({"cmd":"stop",})"sv, R"({"cmd":"state"}{"cmd":"stop"})"sv,
+                             R"({"cmd":"stop","x":[[[[[[1]]]]]]})"sv, "\0{\"cmd\":\"stop\"}"sv, R"([{"cmd":"stop"}])"sv}) {
         caller.say(std::string(line) + "\n");
         step();
         ASSERT_THAT(machine.stops, SizeIs(++stops)) << line;

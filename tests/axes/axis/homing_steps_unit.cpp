@@ -117,26 +117,31 @@ TEST_P(AbsoluteSwitch, FindsItsEdgeFromAnywhereWithRamps) {
     EXPECT_LE(rig.largest_velocity, 20 * (1 + 1e-12));
     EXPECT_LE(rig.drive.largest_step, 21);
 }
-INSTANTIATE_TEST_SUITE_P(
-    AllModes, AbsoluteSwitch,
-    ::testing::Values(FromSomewhere{mcRisingEdge, MC_HomeDirection::mcPositiveDirection, -30, -10}, FromSomewhere{mcRisingEdge, MC_HomeDirection::mcPositiveDirection, -9, -10},
-                      FromSomewhere{mcRisingEdge, MC_HomeDirection::mcPositiveDirection, 30, -10}, FromSomewhere{mcRisingEdge, MC_HomeDirection::mcNegativeDirection, -30, -8},
-                      FromSomewhere{mcFallingEdge, MC_HomeDirection::mcNegativeDirection, 10, -10},
-                      FromSomewhere{mcFallingEdge, MC_HomeDirection::mcNegativeDirection, -30, -10},
-                      FromSomewhere{mcEdgeSwitchPositive, MC_HomeDirection::mcSwitchNegative, -9, -10},
-                      FromSomewhere{mcEdgeSwitchNegative, MC_HomeDirection::mcPositiveDirection, 20, -8}, FromSomewhere{mcOn, MC_HomeDirection::mcSwitchPositive, -30, -10},
-                      FromSomewhere{mcOff, MC_HomeDirection::mcSwitchPositive, -9, -10}, FromSomewhere{mcOff, MC_HomeDirection::mcSwitchNegative, -9, -8},
-                      FromSomewhere{mcOn, MC_HomeDirection::mcPositiveDirection, 20, -8}));
+INSTANTIATE_TEST_SUITE_P(AllModes, AbsoluteSwitch,
+                         ::testing::Values(FromSomewhere{mcRisingEdge, MC_HomeDirection::mcPositiveDirection, -30, -10},
+                                           FromSomewhere{mcRisingEdge, MC_HomeDirection::mcPositiveDirection, -9, -10},
+                                           FromSomewhere{mcRisingEdge, MC_HomeDirection::mcPositiveDirection, 30, -10},
+                                           FromSomewhere{mcRisingEdge, MC_HomeDirection::mcNegativeDirection, -30, -8},
+                                           FromSomewhere{mcFallingEdge, MC_HomeDirection::mcNegativeDirection, 10, -10},
+                                           FromSomewhere{mcFallingEdge, MC_HomeDirection::mcNegativeDirection, -30, -10},
+                                           FromSomewhere{mcEdgeSwitchPositive, MC_HomeDirection::mcSwitchNegative, -9, -10},
+                                           FromSomewhere{mcEdgeSwitchNegative, MC_HomeDirection::mcPositiveDirection, 20, -8},
+                                           FromSomewhere{mcOn, MC_HomeDirection::mcSwitchPositive, -30, -10},
+                                           FromSomewhere{mcOff, MC_HomeDirection::mcSwitchPositive, -9, -10},
+                                           FromSomewhere{mcOff, MC_HomeDirection::mcSwitchNegative, -9, -8},
+                                           FromSomewhere{mcOn, MC_HomeDirection::mcPositiveDirection, 20, -8}));
 
 // An inverted axis: counts fall where u rises, the drive's switches are exchanged.
 TEST(HomingSteps, InvertedAxisFindsTheSameEdge) {
     auto config = StepRig::watched();
     config.gearing.inverted = true;
     StepRig rig(config);
-    const auto id = rig.accept(to_switch(mcRisingEdge, MC_HomeDirection::mcPositiveDirection, 7));  // in counts: downwards to the edge at -8000
+    const auto id =
+        rig.accept(to_switch(mcRisingEdge, MC_HomeDirection::mcPositiveDirection, 7));  // in counts: downwards to the edge at -8000
     ASSERT_EQ(rig.finished(id), CommandStatus::done);
     EXPECT_NEAR(rig.view().actual_position + rig.drive.position / 1000, 7 - 8, 0.011);
-    const auto limit = rig.accept(step({.step = HomingStep::limit_switch, .direction = MC_HomeDirection::mcPositiveDirection, .switch_mode = mcOn}));
+    const auto limit =
+        rig.accept(step({.step = HomingStep::limit_switch, .direction = MC_HomeDirection::mcPositiveDirection, .switch_mode = mcOn}));
     ASSERT_EQ(rig.finished(limit), CommandStatus::done);
     EXPECT_LT(rig.drive.position, -59'000);  // u's positive end is the drive's negative one
 }
@@ -147,7 +152,8 @@ TEST(HomingSteps, SwitchMayBeAnInputOfTheMachine) {
     std::array<std::int64_t, 2> inputs{0, 0b100};
     rig.axis.bind({.inputs = inputs});
     rig.program = [&] { inputs[1] = rig.drive.position > 5000 ? 0 : 0b100; };
-    auto command = step({.step = HomingStep::absolute_switch, .direction = MC_HomeDirection::mcPositiveDirection, .switch_mode = mcOn, .set_position = 20});
+    auto command = step(
+        {.step = HomingStep::absolute_switch, .direction = MC_HomeDirection::mcPositiveDirection, .switch_mode = mcOn, .set_position = 20});
     std::get<HomingStepDetails>(command.details).reference = {.source = TriggerSource::input, .falling = true, .point = 1, .bit = 2};
     const auto id = rig.accept(command);
     ASSERT_EQ(rig.finished(id), CommandStatus::done);
@@ -158,8 +164,10 @@ TEST(HomingSteps, SwitchMayBeAnInputOfTheMachine) {
 
 TEST(HomingSteps, LimitSwitchIsReferenceAndFinishMovesOffIt) {
     StepRig rig;
-    const auto id = rig.accept(
-        step({.step = HomingStep::limit_switch, .direction = MC_HomeDirection::mcNegativeDirection, .switch_mode = mcRisingEdge, .set_position = -200}));
+    const auto id = rig.accept(step({.step = HomingStep::limit_switch,
+                                     .direction = MC_HomeDirection::mcNegativeDirection,
+                                     .switch_mode = mcRisingEdge,
+                                     .set_position = -200}));
     ASSERT_EQ(rig.finished(id), CommandStatus::done);
     EXPECT_NEAR(rig.zero_is(), -140, 0.011);
     EXPECT_TRUE(rig.view().negative_limit_switch);
@@ -172,7 +180,8 @@ TEST(HomingSteps, LimitSwitchIsReferenceAndFinishMovesOffIt) {
 
 TEST(HomingSteps, FinishDoesNotMoveFurtherIntoALimitSwitch) {
     StepRig rig;
-    const auto id = rig.accept(step({.step = HomingStep::limit_switch, .direction = MC_HomeDirection::mcNegativeDirection, .switch_mode = mcOn}));
+    const auto id =
+        rig.accept(step({.step = HomingStep::limit_switch, .direction = MC_HomeDirection::mcNegativeDirection, .switch_mode = mcOn}));
     ASSERT_EQ(rig.finished(id), CommandStatus::done);
     const double there = rig.drive.position;
     const auto end = rig.accept(finish(-5));
@@ -246,7 +255,8 @@ TEST(HomingSteps, ReferencePulseIsExact) {
         drive.index_distance = 10'000;
         drive.index_at = 1234;
     });
-    const auto id = rig.accept(step({.step = HomingStep::reference_pulse, .direction = MC_HomeDirection::mcNegativeDirection, .set_position = 0}));
+    const auto id =
+        rig.accept(step({.step = HomingStep::reference_pulse, .direction = MC_HomeDirection::mcNegativeDirection, .set_position = 0}));
     ASSERT_EQ(rig.finished(id), CommandStatus::done);
     EXPECT_NEAR(rig.zero_is(), 8.766, 1e-9);  // the pulse at -8766 counts
     EXPECT_FALSE(rig.drive.last.probes[0].armed);
@@ -375,9 +385,11 @@ TEST(HomingSteps, BadInputsAreRefusedAndTheAxisStaysInStandstill) {
     EXPECT_EQ(rig.refuse(step({.step = HomingStep::limit_switch, .switch_mode = mcEdgeSwitchPositive})), ErrorId::invalid_parameter);
     EXPECT_EQ(rig.refuse(step({.step = HomingStep::block, .torque_limit = 0.1})), ErrorId::invalid_parameter);
     EXPECT_EQ(rig.refuse(step({.step = HomingStep::block, .detection_velocity_limit = 1})), ErrorId::invalid_parameter);
-    EXPECT_EQ(
-        rig.refuse(step({.step = HomingStep::block, .direction = MC_HomeDirection::mcSwitchPositive, .torque_limit = 0.1, .detection_velocity_limit = 1})),
-        ErrorId::invalid_direction);
+    EXPECT_EQ(rig.refuse(step({.step = HomingStep::block,
+                               .direction = MC_HomeDirection::mcSwitchPositive,
+                               .torque_limit = 0.1,
+                               .detection_velocity_limit = 1})),
+              ErrorId::invalid_direction);
     EXPECT_EQ(rig.refuse(step({.step = HomingStep::absolute_switch, .time_limit = -1ms})), ErrorId::invalid_parameter);
     EXPECT_EQ(rig.refuse(step({.step = HomingStep::absolute_switch, .distance_limit = nan})), ErrorId::invalid_parameter);
     EXPECT_EQ(rig.refuse(finish(nan)), ErrorId::invalid_position);
