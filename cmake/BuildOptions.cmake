@@ -3,7 +3,8 @@
 add_library(taktwerk_build_options INTERFACE)
 target_compile_features(taktwerk_build_options INTERFACE cxx_std_20)
 target_compile_options(taktwerk_build_options INTERFACE
-  -ffp-contract=off -fno-math-errno -Wall -Wextra -Wpedantic $<$<NOT:$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>:-Wshadow> -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor)
+  -ffp-contract=off -fno-math-errno -Wall -Wextra -Wpedantic $<$<NOT:$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>:-Wshadow> -Wconversion
+  -Wno-sign-conversion -Wnon-virtual-dtor)
 # Nobody replaces a function of ours from outside (programs get what they are handed): calls may be inlined although the code is
 # position independent. What ships only: a test's binary is linked more often than it is run.
 target_compile_options(taktwerk_build_options INTERFACE $<$<CONFIG:Release>:-fno-semantic-interposition>)

@@ -165,7 +165,7 @@ private:
         VelocityLimiter limiter = VelocityLimiter::none;
         bool goes_on = false;     ///< position: passes it with end_velocity and keeps that (MC_MoveContinuous...)
         double end_velocity = 0;  ///< u/s, signed
-        double former_jerk = 0;   ///< stop: of the motion that it ends, u/s3
+        double former_jerk = 0;   ///< u/s3, of the motion before: a stop's; a coupling's, table's or feed's until it has moved the axis
         bool kept = false;        ///< velocity: that of a motion that is over; an override counts from its next change on
     };
     /// What runs on top of the base.
