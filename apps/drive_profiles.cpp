@@ -38,6 +38,9 @@ Result<std::shared_ptr<const axes::DriveProfile>> profile_named(const DriveOptio
     if (!library.errors().empty()) return library.errors().front();
     const auto names = library.names();
     const auto near = nearest_name(name, names);
+    if (names.empty())
+        return Error{"drive.no_profile", name, "no drive description was found at all",
+                     "name the machine file, whose `drives:` are looked through, or install Taktwerk with its own"};
     return Error{
         "drive.no_profile", name, "there is no such kind of drive",
         fmt::format("{}there is: {}", near.empty() ? std::string{} : fmt::format("did you mean {}? ", near), fmt::join(names, ", "))};

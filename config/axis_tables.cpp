@@ -356,8 +356,8 @@ Table<AxisBinding> axis_table() {
               "cycles without fresh feedback until the axis stops in error"),
         field("feed_patience", &A::feed_patience, integer<std::uint16_t>(0, 1000),
               "set-points from outside that may miss in a row while the axis moves; then it brakes"),
-        field("jog_lease", &A::jog_lease, duration(std::chrono::milliseconds{1}, std::chrono::seconds{5}),
-              "a jogging client must repeat its command within this time"),
+        field("jog_lease", &A::jog_lease, duration(std::chrono::milliseconds{100}, std::chrono::seconds{5}),
+              "a jogging client must repeat its command within this time (ours repeat each 50 ms)"),
         field("enable_timeout", &A::enable_timeout, duration(std::chrono::milliseconds{1}, std::chrono::seconds{60}),
               "a drive that takes longer to enable is an alarm"),
     };

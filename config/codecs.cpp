@@ -92,6 +92,11 @@ std::string wanted_text(const Shape& shape, std::string_view axis_unit) {
 }
 
 void report_unknown_key(Reader& reader, const Entry& entry, const std::vector<std::string>& known) {
+    if (entry.key == "<<") {  // YAML 1.1 had it, YAML 1.2 has not
+        reader.problem(entry.at, "config.unknown_key", "`<<` would merge another section, and where a value came from could not be seen",
+                       "write the keys out, or use an anchor for the whole section (`&name`, `*name`)");
+        return;
+    }
     const auto near = nearest_name(entry.key, known);
     reader.problem(entry.at, "config.unknown_key",
                    reader.path().empty() ? fmt::format("there is no key `{}` here", entry.key)

@@ -141,6 +141,22 @@ void watchdogs(Remarks& remarks, const MachineConfig& config) {
         "them a longer `sm_watchdog`");
 }
 
+/// The file may know its drive better than the profile, so this is no error.
+void startup_sizes(Remarks& remarks, const MachineConfig& config) {
+    for (const auto& slave : config.bus.slaves) {
+        if (!slave.device) continue;
+        for (const auto& sdo : slave.startup)
+            for (const auto& object : slave.device->objects) {
+                if (object.index != sdo.index || object.sub != sdo.sub || ecat::bit_size(object.type) == ecat::bit_size(sdo.type)) continue;
+                remarks.add("startup_size", sdo.origin,
+                            fmt::format("writes {:04X}h:{:02X} of '{}' with {} bits, and the description of {} has it with {}", sdo.index,
+                                        sdo.sub, slave.name, ecat::bit_size(sdo.type), slave.device->name, ecat::bit_size(object.type)),
+                            "a slave refuses another length (06070010h) and does not come up: leave `type` out, unless the manual "
+                            "of this very drive says so");
+            }
+    }
+}
+
 /// It is copied along with the rest of a file that ran simulated.
 void relaxed_on_a_port(Remarks& remarks, const MachineConfig& config) {
     if (config.bus.interface.empty() || config.simulation.supervision != Supervision::relaxed) return;
@@ -210,6 +226,7 @@ std::vector<Error> remarks(const MachineConfig& config, const MachineLayout& lay
     if (!config.bus.slaves.empty()) bus_load(out, config);
     watchdogs(out, config);
     relaxed_on_a_port(out, config);
+    startup_sizes(out, config);
     programs(out, config, layout);
     return out.found;
 }

@@ -176,9 +176,9 @@ AlarmText Machine::describe(const AlarmFact& fact) const {
 
     if (fact.id == id(MachineAlarm::emergency_stop) && fact.a == emergency_stop_unread) {
         out.english =
-            "Emergency stop: its input cannot be read, which counts as pressed; the axes stop along their ramps, then power goes off";
-        out.chinese = "急停:无法读取急停输入,按已按下处理;各轴沿减速斜坡停止,随后断开动力";
-        out.cause = "The slave with the input is not exchanged: see the alarm of the bus";
+            "Emergency stop: its input could not be read, which counts as pressed; the axes stop along their ramps, then power goes off";
+        out.chinese = "急停:未能读取急停输入,按已按下处理;各轴沿减速斜坡停止,随后断开动力";
+        out.cause = "The slave with the input was not exchanged: see the alarm of the bus";
         out.remedy = "Mend the bus, acknowledge, then enable again";
     }
 

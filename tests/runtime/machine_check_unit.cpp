@@ -301,6 +301,27 @@ TEST(MachineRemarks, RelaxedSupervisionOfARealPort) {
               "its axis is by then");
 }
 
+TEST(MachineRemarks, AStartupValueOfAnotherSizeThanTheDriveHas) {
+    auto config = machine_config(1);
+    auto device = *config.bus.slaves[0].device;
+    ecat::ObjectEntry velocity;
+    velocity.index = 0x6081;
+    velocity.type = ecat::DataType::U32;
+    device.objects.push_back(velocity);
+    config.bus.slaves[0].device = std::make_shared<const ecat::DeviceDescription>(device);
+    ecat::StartupSdo sdo;
+    sdo.index = 0x6081;
+    sdo.type = ecat::DataType::U32;
+    sdo.origin = "cell.yaml:7:9";
+    config.bus.slaves[0].startup.push_back(sdo);
+    EXPECT_TRUE(remarks(config, {}, 4).empty());
+    config.bus.slaves[0].startup[0].type = ecat::DataType::U16;
+    const auto found = remarks(config, {}, 4);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0].code, "remark.startup_size");
+    EXPECT_EQ(found[0].subject, "cell.yaml:7:9");
+}
+
 TEST(MachineRemarks, AnAxisThatTwoProgramsDeclare) {
     const auto config = machine_config(1);
     MachineLayout layout;
