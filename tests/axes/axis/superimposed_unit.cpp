@@ -41,6 +41,23 @@ TEST(Superimposed, AddsToTheBaseAndLeavesItAlone) {
     EXPECT_EQ(rig.view().state, AxisState::Standstill);
 }
 
+// On a base that is at standstill: what moves is not in position, and the jerk limit is written at standstill only.
+TEST(Superimposed, AnAxisThatOnlyTheAdditionMovesIsNotInPosition) {
+    auto config = trapezoids();
+    config.windows.in_position = 1;
+    Rig rig(config);
+    rig.power_on();
+    rig.run(100);
+    ASSERT_TRUE(rig.view().in_position);
+    const auto extra = rig.accept(superimposed(10));
+    rig.run(200);  // of some 540 cycles, at 20 u/s: the motor follows some hundredths behind
+    ASSERT_NEAR(rig.view().set_velocity, 20, 1e-9);
+    ASSERT_LT(std::abs(rig.view().set_position - rig.view().actual_position), rig.axis.config().windows.in_position);
+    EXPECT_FALSE(rig.view().in_position);
+    ASSERT_TRUE(rig.run_until([&] { return rig.status(extra) == CommandStatus::done; }));
+    ASSERT_TRUE(rig.run_until([&] { return rig.view().in_position; }));
+}
+
 // P1-160 (figure 23): the addition outlasts the underlying motion, which is done at its usual time; the end is 60. The axis stays in
 // DiscreteMotion until nothing moves (U-08).
 TEST(Superimposed, GoesOnAfterTheBaseHasEnded) {

@@ -294,6 +294,25 @@ TEST(WaitingCoupling, ABufferedPhasingWaitsForItsCoupling) {
     rig.expect_no_jump();
 }
 
+// Master of the phasing blocks names whose shift it is; a waiting gear has its master already, so a buffered phasing of another one is refused
+// as an aborting one is.
+TEST(WaitingCoupling, APhasingOfAnotherMasterIsRefusedWhetherItWaitsOrNot) {
+    CouplingRig rig(3);
+    rig.start();
+    rig.accept(0, at_velocity(20));
+    rig.accept(2, gear_in(0));
+    rig.accept(2, buffered(gear_in(1)));
+    const auto of = [](std::size_t master, MC_BufferMode mode) {
+        auto command = phasing(CommandKind::phasing_absolute, 3, 10, mode);
+        command.details = GearDetails{.master = CouplingRig::ref(master), .ratio = {}};
+        return command;
+    };
+    EXPECT_EQ(rig.refuse(2, of(1, mcAborting)), ErrorId::invalid_master);
+    EXPECT_EQ(rig.refuse(2, of(0, mcBuffered)), ErrorId::invalid_master);
+    rig.accept(2, of(0, mcAborting));
+    rig.accept(2, of(1, mcBuffered));
+}
+
 // Of a cam the signal is EndOfProfile; one that repeats has no end that would hand over.
 TEST(WaitingCoupling, APhasingBehindACamWaitsForTheEndOfItsProfile) {
     CouplingRig rig(2);
