@@ -378,6 +378,17 @@ TEST(FaultFinder, AStallThatIsShorterThanTheWatchdogExplainsNoWatchdog) {
     }
 }
 
+// A reference answers a cycle late now and then; without its time for 50 cycles (docs/faults.md) the clocks may have drifted.
+TEST(FaultFinder, AClockThatMissesAFewTimesIsNotLost) {
+    FaultFinder finder{{{.index = 0}}, 1, 300};
+    finder.condition(0).al_state = AlState::op;
+    finder.look({.slaves_answering = 1, .reference_times_missing = 49});
+    EXPECT_TRUE(finder.facts().empty());
+    finder.look({.slaves_answering = 1, .reference_times_missing = 50});
+    ASSERT_EQ(finder.facts().size(), 1u);
+    EXPECT_EQ(finder.facts()[0].id, alarm::reference_clock_lost);
+}
+
 TEST(FaultFinder, AClockIsNotToBlameForFramesThatDoNotComeBack) {
     FaultFinder finder{{{.index = 0}}, 1, 300};
     finder.condition(0).al_state = AlState::op;
