@@ -45,6 +45,10 @@ void make_linear(const Rising& cam, std::size_t i, double (&c)[6]) noexcept {
     c[2] = c[3] = c[4] = c[5] = 0;
 }
 
+LawEnd end_of(const CamPoint& point) noexcept {
+    return {.slave = point.slave, .velocity = point.velocity, .acceleration = point.acceleration};
+}
+
 /// From the value and two derivatives at both ends.
 void make_quintic(const Rising& cam, std::size_t i, double (&c)[6]) noexcept {
     const auto& from = cam.point(i);
@@ -152,6 +156,7 @@ ErrorId PreparedCam::prepare(std::span<const CamPoint> points, bool periodic, bo
     if (!usable(cam)) return ErrorId::invalid_table;
 
     const std::size_t count = cam.segments();
+    std::fill_n(segments_.begin(), count, Segment{});
     for (std::size_t i = 0; i < count;) {
         std::size_t run = 1;
         switch (cam.kind(i)) {
@@ -162,6 +167,9 @@ ErrorId PreparedCam::prepare(std::span<const CamPoint> points, bool periodic, bo
                 if (periodic && run == count) solve_closed_run(points);
                 else solve_open_run(points, i, run);
                 break;
+            default:
+                if (!segments_[i].law.set(cam.kind(i), cam.width(i), end_of(cam.point(i)), end_of(cam.point(i + 1))))
+                    return ErrorId::invalid_table;
         }
         i += run;
     }
@@ -188,6 +196,10 @@ CamValue PreparedCam::at(double master) const noexcept {
     const auto& segment = *(after - 1);
     const auto& c = segment.coefficients;
     const double x = master - segment.begin;
+    if (segment.law) {
+        const auto value = segment.law.at(x);
+        return {.position = value.position, .first = value.velocity, .second = value.acceleration};
+    }
     return {.position = c[0] + x * (c[1] + x * (c[2] + x * (c[3] + x * (c[4] + x * c[5])))),
             .first = c[1] + x * (2 * c[2] + x * (3 * c[3] + x * (4 * c[4] + x * 5 * c[5]))),
             .second = 2 * c[2] + x * (6 * c[3] + x * (12 * c[4] + x * 20 * c[5]))};

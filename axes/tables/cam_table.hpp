@@ -7,16 +7,10 @@
 #include <span>
 #include <vector>
 
+#include "axes/tables/cam_law.hpp"
 #include "axes/words/types.hpp"
 
 namespace taktwerk::axes {
-
-/// How the way from a point to the next one is filled.
-enum class CamSegment : std::uint8_t {
-    linear,   ///< straight: the velocity jumps at the points
-    spline,   ///< cubic spline through a run of such points: position, velocity and acceleration continuous inside the run
-    quintic,  ///< polynomial of fifth order with the velocity and acceleration given at both of its points
-};
 
 /// As the velocity of the first or last point of a cam that begins or ends with a spline: the slope is free, the acceleration there is 0
 /// (a natural spline).
@@ -27,9 +21,10 @@ inline constexpr double cam_free_end = std::numeric_limits<double>::quiet_NaN();
 /// A run of splines leaves its first and reaches its last point with the slope of the neighbouring segment where that is linear, else with
 /// the velocity given at the point (so it meets a quintic one smoothly, and dwells at the ends of the cam unless told otherwise).
 /// Where the run is all of a periodic cam it is closed: what is given at its ends is not used, and nothing jumps at the wrap.
+/// Laws and quintic segments take the velocity that is given at their points, whatever their neighbours do (cam_check.hpp compares).
 struct CamPoint {
     double master = 0, slave = 0;
-    double velocity = 0, acceleration = 0;  ///< quintic segments, and the ends of spline runs
+    double velocity = 0, acceleration = 0;  ///< quintic segments, laws, and the ends of spline runs
     CamSegment segment = CamSegment::quintic;
 };
 
@@ -37,13 +32,6 @@ struct CamSource {
     std::vector<CamPoint> points;  ///< never grows after declaration
     std::size_t used = 0;          ///< points that count, from the first
     [[nodiscard]] std::span<const CamPoint> rows() const noexcept { return {points.data(), used}; }
-};
-
-/// Slave position and its derivatives with respect to the master's position.
-struct CamValue {
-    double position = 0;
-    double first = 0;   ///< du/dM
-    double second = 0;  ///< d2u/dM2
 };
 
 /// Ready to follow. The master runs over [0, length] from the lowest point on; outside of it a cam that is not periodic holds its ends.
@@ -54,7 +42,8 @@ public:
     explicit PreparedCam(std::size_t room);
 
     /// Real-time safe, linear in the number of points: invalid_table when the master neither rises nor falls strictly, a number is not
-    /// finite (cam_free_end excepted), there are fewer than two points or more than the room. Nothing can be followed then.
+    /// finite (cam_free_end excepted), a law cannot join its points, there are fewer than two points or more than the room. Nothing can be
+    /// followed then.
     [[nodiscard]] ErrorId prepare(std::span<const CamPoint> points, bool periodic, bool master_absolute, bool slave_absolute) noexcept;
 
     [[nodiscard]] std::size_t room() const noexcept { return segments_.size(); }
@@ -74,10 +63,11 @@ public:
     [[nodiscard]] bool same_as(const PreparedCam& other) const noexcept;
 
 private:
-    /// Polynomial in (master - begin), coefficients from the constant on.
+    /// Polynomial in (master - begin), coefficients from the constant on; or a law.
     struct Segment {
         double begin = 0;
         double coefficients[6] = {};
+        CamLawCurve law;
         friend bool operator==(const Segment&, const Segment&) = default;
     };
     void solve_open_run(std::span<const CamPoint> points, std::size_t first, std::size_t count) noexcept;
