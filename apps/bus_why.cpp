@@ -50,10 +50,10 @@ int explain_failure(BusSession& session, const Error& failure, const BusOptions&
 std::vector<std::string> fallen(const ecat::Bus& bus) {
     std::vector<std::string> fell;
     for (const auto& slave : bus.slaves) {
-        const std::uint32_t al = slave->al.load();
+        const std::uint32_t al = slave->link.al.load();
         const auto code = static_cast<std::uint16_t>(al >> 16);
         const bool out = al != static_cast<std::uint32_t>(ecat::AlState::op);
-        const auto returned = slave->recoveries.load();
+        const auto returned = slave->link.recoveries.load();
         if (ecat::al_state(static_cast<std::uint16_t>(al)) == ecat::AlState::unknown)
             fell.push_back(fmt::format("{} does not answer any more", slave->subject));
         else if (out)

@@ -6,7 +6,7 @@
 
 #include "axes/port/drive_parameter.hpp"
 #include "config/field_table.hpp"
-#include "ecat/device_description.hpp"
+#include "ecat/description/device_description.hpp"
 
 namespace taktwerk::config {
 

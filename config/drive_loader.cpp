@@ -6,7 +6,7 @@
 
 #include "config/drive_tables.hpp"
 #include "config/pdo_selection.hpp"
-#include "ecat/module_pdos.hpp"
+#include "ecat/description/module_pdos.hpp"
 
 namespace taktwerk::config {
 

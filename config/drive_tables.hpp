@@ -7,7 +7,7 @@
 #include "axes/port/drive_profile.hpp"
 #include "config/device_tables.hpp"
 #include "config/startup_entry.hpp"
-#include "ecat/device_description.hpp"
+#include "ecat/description/device_description.hpp"
 
 namespace taktwerk::config {
 

@@ -7,7 +7,7 @@
 
 #include "config/drive_tables.hpp"
 #include "config/reader.hpp"
-#include "ecat/device_description.hpp"
+#include "ecat/description/device_description.hpp"
 
 namespace taktwerk::config {
 

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "config/startup_entry.hpp"
-#include "ecat/module_pdos.hpp"
+#include "ecat/description/module_pdos.hpp"
 
 namespace taktwerk::config {
 

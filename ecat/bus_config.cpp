@@ -5,11 +5,11 @@
 #include <algorithm>
 
 #include "ecat/bringup/clocks.hpp"
-#include "ecat/bringup/frame_schedule.hpp"
-#include "ecat/bringup/process_data_plan.hpp"
 #include "ecat/dc/sync0_budget.hpp"
-#include "ecat/factory_mapping.hpp"
-#include "ecat/module_pdos.hpp"
+#include "ecat/description/factory_mapping.hpp"
+#include "ecat/description/module_pdos.hpp"
+#include "ecat/layout/frame_schedule.hpp"
+#include "ecat/layout/process_data_plan.hpp"
 #include "ecat/place_check.hpp"
 
 namespace taktwerk::ecat {

@@ -10,7 +10,7 @@
 
 #include "core/result.hpp"
 #include "core/time.hpp"
-#include "ecat/device_description.hpp"
+#include "ecat/description/device_description.hpp"
 
 namespace taktwerk::ecat {
 

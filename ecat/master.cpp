@@ -8,15 +8,14 @@
 
 #include "ecat/alarms.hpp"
 #include "ecat/bringup/bring_up.hpp"
+#include "ecat/bringup/hand_over.hpp"
 #include "ecat/bringup/presence.hpp"
 #include "ecat/bringup/watch.hpp"
-#include "ecat/process_data_cycle.hpp"
+#include "ecat/cycle/process_data_cycle.hpp"
 
 namespace taktwerk::ecat {
 
 namespace {
-
-static_assert(static_cast<int>(BusPhase::stopped) == static_cast<int>(Master::Phase::stopped));
 
 struct SdoJob {
     std::optional<Runner> runner;
@@ -64,7 +63,7 @@ struct Master::Impl {
     void new_bus() {
         buses.push_back(std::make_unique<Bus>(config, cycle.channel()));
         bus = buses.back().get();
-        bus->publish = [this] { cycle.adopt(std::make_unique<CyclePlan>(*bus)); };
+        bus->publish = [this] { cycle.adopt(cycle_plan(*bus)); };
         cycle.connect(bus->link);
     }
 
@@ -123,7 +122,7 @@ void Master::step(Instant now) {
     if (phase_now == BusPhase::stopped) impl.cycle.withdraw();
 }
 
-Master::Phase Master::phase() const noexcept { return static_cast<Phase>(impl_->phase.load()); }
+Master::Phase Master::phase() const noexcept { return impl_->phase.load(); }
 std::string Master::progress() const { return impl_->bus->progress; }
 const Error& Master::failure() const { return impl_->failure; }
 std::span<const std::string> Master::notes() const noexcept { return impl_->bus->notes; }
@@ -259,9 +258,9 @@ std::string fallen_text(const Bus& bus) {
     std::string names, why;
     std::size_t count = 0;
     for (const auto& slave : bus.slaves) {
-        const std::uint32_t al = slave->al.load();
+        const std::uint32_t al = slave->link.al.load();
         const bool in_op = al == static_cast<std::uint32_t>(AlState::op);
-        if (in_op && slave->age.load() < bus.config.lost_frames_limit) continue;
+        if (in_op && slave->link.age.load() < bus.config.lost_frames_limit) continue;
         if (count++ < named) names += (names.empty() ? "" : ", ") + slave->subject;
         if (why.empty() && (al & al_status_error) != 0) why = fmt::format(" ({})", code_text(static_cast<std::uint16_t>(al >> 16)));
     }
@@ -270,7 +269,7 @@ std::string fallen_text(const Bus& bus) {
 }
 
 bool is_back(const Bus& bus, const BusSlave& slave) {
-    return slave.al.load() == static_cast<std::uint32_t>(AlState::op) && slave.age.load() < bus.config.lost_frames_limit;
+    return slave.link.al.load() == static_cast<std::uint32_t>(AlState::op) && slave.link.age.load() < bus.config.lost_frames_limit;
 }
 
 /// `at` stands behind `first`, or is it.

@@ -18,7 +18,7 @@
 #include <cstdint>
 #include <span>
 
-#include "axes/drives/xp200/exchange.hpp"
+#include "axes/drives/xp200/drive_mailbox.hpp"
 #include "core/object_access.hpp"
 #include "core/recorder.hpp"
 #include "runtime/machine.hpp"

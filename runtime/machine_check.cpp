@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/nearest_name.hpp"
-#include "ecat/module_pdos.hpp"
+#include "ecat/description/module_pdos.hpp"
 #include "runtime/machine_config.hpp"
 #include "runtime/stop_time.hpp"
 

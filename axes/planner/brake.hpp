@@ -4,7 +4,7 @@
 #include <array>
 #include <span>
 
-#include "axes/planner/frame.hpp"
+#include "axes/planner/motion_frame.hpp"
 #include "axes/planner/profile.hpp"
 
 namespace taktwerk::axes {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "axes/planner/frame.hpp"
+#include "axes/planner/motion_frame.hpp"
 
 namespace taktwerk::axes {
 

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "axes/planner/families.hpp"
-#include "axes/planner/frame.hpp"
+#include "axes/planner/motion_frame.hpp"
 #include "axes/planner/profile.hpp"
 
 namespace taktwerk::axes {

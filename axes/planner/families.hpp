@@ -3,8 +3,8 @@
 // planner. Both are written for a push upwards; mirroring and reversing time give the others.
 
 #include "axes/planner/bracketed_root.hpp"
-#include "axes/planner/frame.hpp"
 #include "axes/planner/measured_climb.hpp"
+#include "axes/planner/motion_frame.hpp"
 #include "axes/planner/ramp.hpp"
 
 namespace taktwerk::axes {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "axes/planner/frame.hpp"
+#include "axes/planner/motion_frame.hpp"
 #include "axes/planner/ramp.hpp"
 
 namespace taktwerk::axes {

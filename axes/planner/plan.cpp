@@ -7,7 +7,7 @@
 #include "axes/planner/brake.hpp"
 #include "axes/planner/extremal.hpp"
 #include "axes/planner/plan_checks.hpp"
-#include "axes/planner/setting.hpp"
+#include "axes/planner/reduced_problem.hpp"
 
 namespace taktwerk::axes {
 
@@ -82,19 +82,19 @@ double stopping_distance(const MotionState& from, const SignedLimits& limits) no
 
 Plan plan_to_state(const MotionState& from, const MotionState& target, const SignedLimits& limits) noexcept {
     if (const PlanError error = check_plan(from, target, limits); error != PlanError::none) return refuse(from, error);
-    const Setting setting{from, target, limits};
-    if (setting.target_is_outside()) return refuse(from, PlanError::target_outside_limits);
+    const ReducedProblem reduced{from, target, limits};
+    if (reduced.target_is_outside()) return refuse(from, PlanError::target_outside_limits);
     int looked_at = 0;
-    if (!setting.brake.stretches().empty() && !setting.start_is_outside()) {
+    if (!reduced.brake.stretches().empty() && !reduced.start_is_outside()) {
         // Inside the limits, but not for long: unless the target comes first.
-        const Setting unbraked{from, target, limits, Setting::Unbraked{}};
-        const FastestMotion fast = fastest(unbraked.problem, unbraked.rounding(), {false, setting.target_releases()});
+        const ReducedProblem unbraked{from, target, limits, ReducedProblem::Unbraked{}};
+        const FastestMotion fast = fastest(unbraked.problem, unbraked.rounding(), {false, reduced.target_releases()});
         looked_at = fast.found.looked_at;
         if (fast.found.found) return {unbraked.profile(fast.motion), PlanError::none, looked_at};
     }
-    const FastestMotion fast = fastest(setting.problem, setting.rounding(), {true, setting.target_releases()});
+    const FastestMotion fast = fastest(reduced.problem, reduced.rounding(), {true, reduced.target_releases()});
     if (!fast.found.found) return refuse(from, PlanError::target_outside_limits);
-    return {setting.profile(fast.motion), PlanError::none, looked_at + fast.found.looked_at};
+    return {reduced.profile(fast.motion), PlanError::none, looked_at + fast.found.looked_at};
 }
 
 Plan plan_to_position(const MotionState& from, double target, const SignedLimits& limits) noexcept {

@@ -12,7 +12,7 @@
 #include "axes/planner/mixture.hpp"
 #include "axes/planner/plan.hpp"
 #include "axes/planner/plan_checks.hpp"
-#include "axes/planner/setting.hpp"
+#include "axes/planner/reduced_problem.hpp"
 
 namespace taktwerk::axes {
 
@@ -156,14 +156,14 @@ SignedLimits made_convex(const SignedLimits& l) noexcept {
 }
 
 std::optional<Profile> arrive(const MotionState& from, const MotionState& target, double duration, const SignedLimits& limits) noexcept {
-    const Setting setting{from, target, limits};
-    if (setting.target_is_outside() || !setting.target_releases()) return std::nullopt;
+    const ReducedProblem reduced{from, target, limits};
+    if (reduced.target_is_outside() || !reduced.target_releases()) return std::nullopt;
     const double slack = 32 * epsilon * duration;
-    const double time = duration - setting.brake.duration();
+    const double time = duration - reduced.brake.duration();
     if (time < -slack) return std::nullopt;
-    const auto motion = solve(setting.problem, std::max(time, 0.0), slack, setting.rounding());
+    const auto motion = solve(reduced.problem, std::max(time, 0.0), slack, reduced.rounding());
     if (!motion) return std::nullopt;
-    return setting.profile(*motion);
+    return reduced.profile(*motion);
 }
 
 }  // namespace
@@ -171,7 +171,7 @@ std::optional<Profile> arrive(const MotionState& from, const MotionState& target
 Plan plan_in_time(const MotionState& from, const MotionState& target, double duration, const SignedLimits& limits) noexcept {
     PlanError error = worse(check_plan(from, target, limits), check_number(duration));
     if (error == PlanError::none && duration < 0) error = PlanError::invalid_input;
-    if (error == PlanError::none && Setting{from, target, limits}.target_is_outside()) error = PlanError::target_outside_limits;
+    if (error == PlanError::none && ReducedProblem{from, target, limits}.target_is_outside()) error = PlanError::target_outside_limits;
     if (error != PlanError::none) return {Profile{from}, error};
 
     auto profile = arrive(from, target, duration, limits);

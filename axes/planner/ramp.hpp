@@ -8,7 +8,7 @@
 #include <limits>
 #include <span>
 
-#include "axes/planner/frame.hpp"
+#include "axes/planner/motion_frame.hpp"
 #include "axes/planner/profile.hpp"
 
 // In the plane of velocity and acceleration a jerk of constant magnitude draws parabolas, v = c + a^2/2j and v = c - a^2/2j.

@@ -12,7 +12,7 @@ namespace {
 constexpr Duration state_poll_period = std::chrono::milliseconds{1};
 constexpr std::uint32_t fresh_cycles = 1;
 
-std::uint16_t code_of(const BusSlave& slave) noexcept { return static_cast<std::uint16_t>(slave.al.load() >> 16); }
+std::uint16_t code_of(const BusSlave& slave) noexcept { return static_cast<std::uint16_t>(slave.link.al.load() >> 16); }
 
 /// Bytes of the PDOs that the slave says it has in a sync manager; a PDO that names none is in the first of its direction.
 std::optional<std::uint16_t> mapped_bytes(const BusSlave& slave, std::uint8_t number) {
@@ -105,7 +105,7 @@ Script<Result<std::uint16_t>> read_al_status(Bus& bus, BusSlave& slave) {
     const Reply reply = co_await bus.port.fprd(slave.found.station, reg::al_status, 6);
     if (!reply.ok()) co_return unanswered(slave.subject, "AL status (0130h)", reply);
     const std::uint16_t status = reply.u16();
-    slave.al.store(status | (std::uint32_t{reply.u16(4)} << 16));
+    slave.link.al.store(status | (std::uint32_t{reply.u16(4)} << 16));
     co_return status;
 }
 
@@ -113,7 +113,7 @@ Script<Refusal> read_refusal(Bus& bus, BusSlave& slave, AlState asked) {
     Refusal refusal;
     refusal.subject = slave.subject;
     refusal.asked = asked;
-    refusal.status = static_cast<std::uint16_t>(slave.al.load());
+    refusal.status = static_cast<std::uint16_t>(slave.link.al.load());
     refusal.reached = al_state(refusal.status);
     refusal.code = code_of(slave);
     refusal.last_abort = slave.last_abort;
@@ -121,7 +121,7 @@ Script<Refusal> read_refusal(Bus& bus, BusSlave& slave, AlState asked) {
     refusal.clock.supported = slave.device().dc.supported;
     refusal.clock.required = slave.device().dc.required;
     refusal.clock.configured = slave.config->dc;
-    refusal.clock.started = slave.sync0_start.load() != 0;
+    refusal.clock.started = slave.link.sync0_start.load() != 0;
     refusal.clock.bus_cycle = bus.config.cycle;
     note_plan(bus, slave, refusal);
     co_await read_back(bus, slave, refusal);

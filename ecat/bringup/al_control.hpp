@@ -5,7 +5,7 @@
 
 namespace taktwerk::ecat {
 
-/// AL status and code, kept in slave.al. Error bus.no_slave or bus.no_frame.
+/// AL status and code, kept in slave.link.al. Error bus.no_slave or bus.no_frame.
 [[nodiscard]] Script<Result<std::uint16_t>> read_al_status(Bus& bus, BusSlave& slave);
 
 /// Acknowledges an error the slave shows, asks for `target` (one step up, or any way down) and waits for it, at most

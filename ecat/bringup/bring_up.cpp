@@ -6,11 +6,11 @@
 
 #include "ecat/bringup/al_control.hpp"
 #include "ecat/bringup/clocks.hpp"
-#include "ecat/bringup/frame_schedule.hpp"
 #include "ecat/bringup/recovery.hpp"
 #include "ecat/bringup/scan.hpp"
 #include "ecat/bringup/slave_setup.hpp"
 #include "ecat/dc/sync0_budget.hpp"
+#include "ecat/layout/frame_schedule.hpp"
 
 namespace taktwerk::ecat {
 

@@ -300,7 +300,7 @@ Script<Result<void>> start_sync0(Bus& bus, BusSlave& slave) {
         const Reply after = co_await bus.port.fprd(station, reg::dc_system_time, 8);
         if (!after.ok()) co_return unanswered(slave.subject, "its system time (0910h)", after);
         if (after.u64() < start) {
-            slave.sync0_start.store(static_cast<std::int64_t>(start));
+            slave.link.sync0_start.store(static_cast<std::int64_t>(start));
             // The drive must have seen SYNC0 when SAFEOP is asked for.
             co_await pause(Duration{static_cast<std::int64_t>(start - after.u64())} + 2 * sync0_period);
             co_return Result<void>{};
@@ -311,7 +311,7 @@ Script<Result<void>> start_sync0(Bus& bus, BusSlave& slave) {
 }
 
 Script<Result<void>> stop_sync0(Bus& bus, BusSlave& slave) {
-    slave.sync0_start.store(0);
+    slave.link.sync0_start.store(0);
     if (slave.config->dc && slave.dc) co_await bus.port.fpwr(slave.found.station, reg::dc_activation, std::uint8_t{0});
     co_return Result<void>{};
 }

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "ecat/bringup/slave_mapping.hpp"
 #include "ecat/coe/sdo_client.hpp"
+#include "ecat/layout/slave_mapping.hpp"
 
 namespace taktwerk::ecat {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/result.hpp"
-#include "ecat/device_description.hpp"
+#include "ecat/description/device_description.hpp"
 #include "ecat/wire/sii.hpp"
 
 namespace taktwerk::ecat {

@@ -6,7 +6,7 @@
 
 #include "core/bytes.hpp"
 #include "ecat/bringup/slave_objects.hpp"
-#include "ecat/module_pdos.hpp"
+#include "ecat/description/module_pdos.hpp"
 
 namespace taktwerk::ecat {
 

@@ -6,7 +6,7 @@
 
 #include "ecat/bringup/effective_pdos.hpp"
 #include "ecat/bringup/slave_objects.hpp"
-#include "ecat/module_pdos.hpp"
+#include "ecat/description/module_pdos.hpp"
 
 namespace taktwerk::ecat {
 

@@ -94,7 +94,7 @@ Script<bool> reads_as(Bus& bus, std::uint16_t station, std::uint16_t address, co
 Script<Result<void>> recover(Bus& bus, BusSlave& slave) {
     Result<void> done = co_await readdress(bus, slave);
     if (!done) co_return done;
-    slave.presence.store(Presence::answers);  // it has its address again: from here on what it does is its own
+    slave.link.presence.store(Presence::answers);  // it has its address again: from here on what it does is its own
     Result<std::uint16_t> status = co_await read_al_status(bus, slave);
     if (!status) co_return status.error();
 

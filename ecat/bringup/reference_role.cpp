@@ -52,7 +52,7 @@ Script<void> give_role_back(Bus& bus) {
     const BusSlave& present = *bus.slaves[*bus.reference];
     for (BusSlave* slave : clocks_of(bus)) {
         if (slave->found.position >= present.found.position) co_return;
-        if ((slave->al.load() & 0x1Fu) != static_cast<std::uint32_t>(AlState::op)) continue;
+        if ((slave->link.al.load() & 0x1Fu) != static_cast<std::uint32_t>(AlState::op)) continue;
         const bool fit = co_await shows_system_time(bus, *slave);
         if (!fit) continue;
         const Result<void> set = co_await restore_clock(bus, *slave);

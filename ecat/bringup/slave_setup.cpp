@@ -54,7 +54,7 @@ Script<Result<void>> program_process_data(Bus& bus, BusSlave& slave) {
         const Reply reply = co_await bus.port.fpwr(slave.found.station, reg::fmmu_at(static_cast<unsigned>(n)), bytes);
         if (!reply.ok()) co_return unanswered(slave.subject, fmt::format("FMMU {}", n), reply);
     }
-    if (plan.mailbox_bit) slave.mailbox.flag = bus.link.mailbox.flag(*plan.mailbox_bit);
+    if (plan.mailbox_bit) slave.mailbox.flag = {&bus.link.mailbox.words[*plan.mailbox_bit / 64], *plan.mailbox_bit % 64};
     co_return co_await program_watchdogs(bus, slave);
 }
 

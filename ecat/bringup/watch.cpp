@@ -76,7 +76,7 @@ std::string fall_text(const Bus& bus, const BusSlave& slave, const Result<std::u
     // Why, the alarm says, when all who are missing are known: who stands behind a broken cable has power and cable.
     if (presence_of(status) == Presence::silent) return fmt::format("{} does not answer", slave.subject);
     if (!status) return status.error().text();
-    const auto code = static_cast<std::uint16_t>(slave.al.load() >> 16);
+    const auto code = static_cast<std::uint16_t>(slave.link.al.load() >> 16);
     if ((*status & al_status_error) == 0 && code == 0) {
         const std::string heard = bus.link.foreign_frames.load() > 0 ? "; of whom frames were heard: " + sender_text(bus.link) : "";
         return fmt::format(
@@ -121,17 +121,18 @@ Script<void> SlaveWatch::run() {
 
         const Result<std::uint16_t> status = co_await read_al_status(bus_, slave_);
         const Presence presence = presence_of(status);
-        if (presence != slave_.presence.exchange(presence)) {
+        if (presence != slave_.link.presence.exchange(presence)) {
             back_off_.forget();
             slave_.position_now.reset();  // where it was says nothing about where it is, or who it is
             if (presence == Presence::silent) slave_.identified = false;
             bus_.census_wanted = bus_.census_wanted || presence == Presence::silent;
         }
         // Without its address a slave still exchanges, and the broadcast says that everybody is in OP: its axes need not stop.
-        const bool known_in_op = bus_.link.states_seen.load() == in_op && bus_.link.lost_in_a_row.load() == 0 && slave_.age.load() == 0;
+        const bool known_in_op =
+            bus_.link.states_seen.load() == in_op && bus_.link.lost_in_a_row.load() == 0 && slave_.link.age.load() == 0;
         // Where no frame came back nothing is known: its state is what it was, for as long as the machine bears lost frames.
         const bool bearable = presence == Presence::unheard && bus_.link.lost_in_a_row.load() < bus_.config.lost_frames_limit;
-        if (!status && !known_in_op && !bearable) slave_.al.store(0);
+        if (!status && !known_in_op && !bearable) slave_.link.al.store(0);
         if (presence == Presence::unheard) continue;
         if (status && *status == in_op) {
             co_await look_after(now);
@@ -147,9 +148,9 @@ Script<void> SlaveWatch::run() {
 Script<void> SlaveWatch::look_after(Instant now) {
     reported_ = false;
     back_off_.healthy(now);
-    slave_.trouble.store(ReturnTrouble::none);
-    slave_.taken_down.store(false);
-    slave_.attempts.store(0);
+    slave_.link.trouble.store(ReturnTrouble::none);
+    slave_.link.taken_down.store(false);
+    slave_.link.attempts.store(0);
     if (slave_.dc && bus_.reference != slave_.index && now - difference_at_ >= difference_period) {
         difference_at_ = now;
         co_await read_difference(bus_, slave_);
@@ -159,16 +160,16 @@ Script<void> SlaveWatch::look_after(Instant now) {
 
 /// In OP and not exchanged, although frames come back: somebody else may have written its sync managers or FMMUs.
 Script<void> SlaveWatch::check_settings(Instant now) {
-    const bool stale = slave_.age.load() > 0 && bus_.link.lost_in_a_row.load() == 0;
+    const bool stale = slave_.link.age.load() > 0 && bus_.link.lost_in_a_row.load() == 0;
     if (!stale || now - settings_at_ < settings_period) co_return;
     settings_at_ = now;
     const Result<bool> intact = co_await settings_intact(bus_, slave_);
     if (!intact || *intact) co_return;
     bus_.remember(slave_.subject + " has other sync managers or FMMUs than it was given: it is set up again");
-    slave_.taken_down.store(true);
+    slave_.link.taken_down.store(true);
     const Reply down = co_await bus_.port.fpwr(slave_.found.station, reg::al_control, static_cast<std::uint16_t>(AlState::init));
     if (!down.ok()) co_return;
-    slave_.al.store(static_cast<std::uint32_t>(AlState::init));
+    slave_.link.al.store(static_cast<std::uint32_t>(AlState::init));
     co_await bring_back();
 }
 
@@ -176,11 +177,11 @@ Script<void> SlaveWatch::bring_back() {
     const Result<void> back = co_await recover(bus_, slave_);
     const Instant now = co_await time();
     back_off_.tried(now);
-    slave_.attempts.fetch_add(1);
+    slave_.link.attempts.fetch_add(1);
     if (back) {
-        slave_.recoveries.fetch_add(1);
-        slave_.attempts.store(0);
-        slave_.trouble.store(ReturnTrouble::none);
+        slave_.link.recoveries.fetch_add(1);
+        slave_.link.attempts.store(0);
+        slave_.link.trouble.store(ReturnTrouble::none);
         slave_.last_trouble.clear();
         bus_.remember(slave_.subject + " is back in OP");
         reported_ = false;
@@ -189,8 +190,8 @@ Script<void> SlaveWatch::bring_back() {
     const Error& error = back.error();
     if (slave_.last_trouble != error.text()) bus_.remember(error.text());
     slave_.last_trouble = error.text();
-    if (error.code == "bus.wrong_identity") slave_.trouble.store(ReturnTrouble::other_device);
-    else if (error.code != "bus.no_frame" && error.code != "bus.no_slave") slave_.trouble.store(ReturnTrouble::refused);
+    if (error.code == "bus.wrong_identity") slave_.link.trouble.store(ReturnTrouble::other_device);
+    else if (error.code != "bus.no_frame" && error.code != "bus.no_slave") slave_.link.trouble.store(ReturnTrouble::refused);
     if (error.code == "bus.no_slave" || error.code == "bus.wrong_place") {
         slave_.position_now.reset();
         bus_.census_wanted = true;
@@ -210,7 +211,7 @@ Script<void> watch_places(Bus& bus) {
         if (bus.link.lost_in_a_row.load() != 0 || bus.link.cycles.load() == 0) continue;
         const bool changed = bus.link.slaves_answering.load() != bus.counted;
         const bool missing = std::any_of(bus.slaves.begin(), bus.slaves.end(),
-                                         [](const auto& s) { return s->presence.load() == Presence::silent && !s->position_now; });
+                                         [](const auto& s) { return s->link.presence.load() == Presence::silent && !s->position_now; });
         const bool due = (changed || bus.census_wanted) ? now - taken >= least_census : missing && now - taken >= slow_census;
         if (!due) continue;
         taken = now;
@@ -223,15 +224,16 @@ Script<void> ask_mailbox(Bus& bus, BusSlave& slave) {
     const Result<std::vector<std::byte>> type = co_await sdo_upload(bus.port, slave.mailbox, 0x1000, 0);
     const bool spoke = type.ok() || type.error().code == "sdo.abort";
     const bool mute = !spoke && type.error().code.starts_with("sdo.");  // bus.*: the slave or the frames are away
-    if (mute && !slave.mailbox_silent.exchange(true)) bus.remember(slave.subject + " does not answer in its mailbox: " + type.error().what);
-    if (spoke && slave.mailbox_silent.exchange(false)) bus.remember(slave.subject + " answers in its mailbox again");
+    if (mute && !slave.link.mailbox_silent.exchange(true))
+        bus.remember(slave.subject + " does not answer in its mailbox: " + type.error().what);
+    if (spoke && slave.link.mailbox_silent.exchange(false)) bus.remember(slave.subject + " answers in its mailbox again");
 }
 
 Script<void> watch_mailboxes(Bus& bus) {
     for (;;) {
         co_await pause(mailbox_period);
         for (auto& slave : bus.slaves) {
-            if (!slave->has_coe() || slave->al.load() != in_op || bus.link.lost_in_a_row.load() != 0) continue;
+            if (!slave->has_coe() || slave->link.al.load() != in_op || bus.link.lost_in_a_row.load() != 0) continue;
             co_await ask_mailbox(bus, *slave);
         }
     }

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/result.hpp"
-#include "ecat/coe_type_number.hpp"
-#include "ecat/device_description.hpp"
+#include "ecat/description/coe_type_number.hpp"
+#include "ecat/description/device_description.hpp"
 #include "ecat/wire/sdo_info.hpp"
 
 namespace taktwerk::ecat {

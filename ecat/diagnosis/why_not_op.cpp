@@ -29,7 +29,7 @@ Script<void> examine(Bus& bus, BusSlave& slave, WhySlave& why, const Error& fail
     }
     why.state = al_state(*status);
     why.al_error = (*status & al_status_error) != 0;
-    why.al_code = static_cast<std::uint16_t>(slave.al.load() >> 16);
+    why.al_code = static_cast<std::uint16_t>(slave.link.al.load() >> 16);
     const bool named = failure.subject == slave.subject;
     why.failed = named || why.al_error || slave.refusal.has_value();
     if (!why.failed) co_return;

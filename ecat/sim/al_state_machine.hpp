@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/time.hpp"
-#include "ecat/device_description.hpp"
+#include "ecat/description/device_description.hpp"
 #include "ecat/sim/coe_server.hpp"
 #include "ecat/sim/device_model.hpp"
 #include "ecat/sim/process_data.hpp"

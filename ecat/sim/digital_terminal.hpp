@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "ecat/device_description.hpp"
+#include "ecat/description/device_description.hpp"
 #include "ecat/sim/device_model.hpp"
 
 namespace taktwerk::ecat::sim {

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "ecat/device_description.hpp"
+#include "ecat/description/device_description.hpp"
 #include "ecat/wire/sdo_info.hpp"
 
 namespace taktwerk::ecat::sim {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "ecat/factory_mapping.hpp"
+#include "ecat/description/factory_mapping.hpp"
 #include "ecat/sim/process_data.hpp"
 #include "ecat/wire/sdo.hpp"
 

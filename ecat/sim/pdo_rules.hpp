@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "ecat/device_description.hpp"
+#include "ecat/description/device_description.hpp"
 #include "ecat/sim/device_model.hpp"
 #include "ecat/sim/object_dictionary.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "ecat/module_pdos.hpp"
+#include "ecat/description/module_pdos.hpp"
 
 namespace taktwerk::ecat::sim {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/process_image.hpp"
-#include "ecat/device_description.hpp"
+#include "ecat/description/device_description.hpp"
 #include "ecat/sim/object_dictionary.hpp"
 
 namespace taktwerk::ecat::sim {

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "core/bytes.hpp"
-#include "ecat/coe_type_number.hpp"
+#include "ecat/description/coe_type_number.hpp"
 #include "ecat/wire/sdo.hpp"
 
 namespace taktwerk::ecat::sim {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/time.hpp"
-#include "ecat/device_description.hpp"
+#include "ecat/description/device_description.hpp"
 #include "ecat/sim/device_model.hpp"
 #include "ecat/sim/object_dictionary.hpp"
 #include "ecat/wire/sdo.hpp"

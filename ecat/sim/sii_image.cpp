@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "ecat/coe_type_number.hpp"
+#include "ecat/description/coe_type_number.hpp"
 #include "ecat/sim/process_data.hpp"
 #include "ecat/wire/sii.hpp"
 

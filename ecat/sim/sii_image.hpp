@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "ecat/device_description.hpp"
+#include "ecat/description/device_description.hpp"
 
 namespace taktwerk::ecat::sim {
 

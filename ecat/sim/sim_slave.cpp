@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "ecat/module_pdos.hpp"
+#include "ecat/description/module_pdos.hpp"
 #include "ecat/sim/sii_image.hpp"
 
 namespace taktwerk::ecat::sim {

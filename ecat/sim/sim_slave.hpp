@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/time.hpp"
-#include "ecat/device_description.hpp"
+#include "ecat/description/device_description.hpp"
 #include "ecat/sim/al_state_machine.hpp"
 #include "ecat/sim/coe_server.hpp"
 #include "ecat/sim/device_model.hpp"

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "config/drive_loader.hpp"
-#include "ecat/module_pdos.hpp"
+#include "ecat/description/module_pdos.hpp"
 
 namespace taktwerk::config {
 namespace {

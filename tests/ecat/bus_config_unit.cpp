@@ -6,7 +6,7 @@
 #include <set>
 
 #include "ecat/alarms.hpp"
-#include "ecat/module_pdos.hpp"
+#include "ecat/description/module_pdos.hpp"
 #include "ecat/sim/digital_terminal.hpp"
 #include "tests/ecat/test_bus.hpp"
 

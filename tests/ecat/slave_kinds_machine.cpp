@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "core/bytes.hpp"
+#include "ecat/description/module_pdos.hpp"
 #include "ecat/exchange/acyclic_channel.hpp"
-#include "ecat/module_pdos.hpp"
 #include "tests/ecat/test_bus.hpp"
 
 namespace taktwerk::ecat::test {

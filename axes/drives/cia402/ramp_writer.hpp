@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "ecat/device_description.hpp"
+#include "ecat/description/device_description.hpp"
 #include "ecat/master.hpp"
 
 namespace taktwerk::axes::cia402 {

@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "axes/drives/xp200/drive_config.hpp"
-#include "axes/drives/xp200/exchange.hpp"
+#include "axes/drives/xp200/drive_mailbox.hpp"
 #include "axes/drives/xp200/index_pulse.hpp"
 #include "axes/drives/xp200/registers.hpp"
 #include "axes/drives/xp200/settings.hpp"

@@ -28,7 +28,7 @@ void for_random_problems(std::uint64_t seed, std::size_t usual, Rule rule) {
     const std::size_t cases = property_cases(usual);
     for (std::size_t i = 0; i < cases && !::testing::Test::HasFailure(); ++i) {
         const StateCase c = random.next();
-        const Problem p = Setting{c.from, c.target, c.limits}.problem;
+        const Problem p = ReducedProblem{c.from, c.target, c.limits}.problem;
         SCOPED_TRACE(::testing::Message() << "case " << i << " " << c);
         for (const Problem& frame : {p, p.mirrored(), p.reversed(), p.reversed().mirrored()}) rule(frame, random.numbers());
     }

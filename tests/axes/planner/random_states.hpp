@@ -6,7 +6,7 @@
 #include <ostream>
 #include <stdexcept>
 
-#include "axes/planner/setting.hpp"
+#include "axes/planner/reduced_problem.hpp"
 #include "tests/axes/planner/plan_figures.hpp"
 #include "tests/axes/planner/random_motion.hpp"
 

@@ -1,11 +1,11 @@
 // Expected values are calculated by hand from the layout rule at the top of process_data_plan.hpp and from ETG.1000.4
 // (LRW: +2 for outputs, +1 for inputs; datagram overhead 12, frame 1498).
-#include "ecat/bringup/process_data_plan.hpp"
+#include "ecat/layout/process_data_plan.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/ecat/bringup/plan_slaves.hpp"
+#include "tests/ecat/layout/plan_slaves.hpp"
 
 namespace taktwerk::ecat {
 namespace {

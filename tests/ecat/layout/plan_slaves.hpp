@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "ecat/bringup/slave_mapping.hpp"
+#include "ecat/layout/slave_mapping.hpp"
 
 namespace taktwerk::ecat::test {
 

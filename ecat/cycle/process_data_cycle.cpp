@@ -1,4 +1,4 @@
-#include "ecat/process_data_cycle.hpp"
+#include "ecat/cycle/process_data_cycle.hpp"
 
 #include <algorithm>
 
@@ -17,25 +17,6 @@ constexpr Duration longest_frame = std::chrono::microseconds{124};  ///< 1518 by
 constexpr Duration foreign_remembered = std::chrono::seconds{1};
 
 }  // namespace
-
-CyclePlan::CyclePlan(const Bus& bus)
-    : plan(bus.plan),
-      outputs(bus.plan.output_bytes),
-      inputs(bus.plan.input_bytes),
-      health(bus.slaves.size()),
-      faults(fault_slaves(bus), static_cast<std::uint16_t>(std::max(bus.found.size(), bus.slaves.size())), bus.config.lost_frames_limit),
-      frames(bus.plan.frames),
-      places(bus.plan.datagrams.size()),
-      under_way(bus.plan.units.size(), 0) {
-    for (const auto& slave : bus.slaves) {
-        slaves.push_back(slave.get());
-        period.push_back(exchange_period(bus.config, *slave->config));
-        delay.push_back(slave->dc_delay);
-    }
-    sync0.resize(slaves.size());
-    state_wkc = static_cast<std::uint16_t>(std::max(bus.found.size(), bus.slaves.size()));
-    if (bus.reference) reference = bus.slaves[*bus.reference]->found.station;
-}
 
 ProcessDataCycle::ProcessDataCycle(Transport& transport, const BusConfig& config)
     : transport_(transport), config_(config), exchange_(transport), channel_(exchange_), clock_(config.cycle) {}
@@ -112,7 +93,7 @@ void ProcessDataCycle::note_gap(Instant now) noexcept {
 void ProcessDataCycle::find_faults(CyclePlan& cycle, Instant now) noexcept {
     for (std::size_t s = 0; s < cycle.slaves.size(); ++s) {
         const auto& health = cycle.health[s];
-        const auto& slave = *cycle.slaves[s];
+        const auto& slave = *cycle.slaves[s].link;
         cycle.faults.condition(s) = {health.al_state,
                                      health.al_error,
                                      health.al_status_code,
@@ -153,15 +134,15 @@ void ProcessDataCycle::collect_frames(CyclePlan& cycle) noexcept {
     if (auto* link = link_.load(std::memory_order_acquire)) link->lost_in_a_row.store(statistics_.lost_in_a_row, std::memory_order_relaxed);
     for (std::size_t s = 0; s < cycle.slaves.size(); ++s) {
         auto& health = cycle.health[s];
-        const std::uint32_t al = cycle.slaves[s]->al.load(std::memory_order_relaxed);
+        const std::uint32_t al = cycle.slaves[s].link->al.load(std::memory_order_relaxed);
         health.al_state = al_state(static_cast<std::uint16_t>(al));
         health.al_error = (al & al_status_error) != 0;
         health.al_status_code = static_cast<std::uint16_t>(al >> 16);
-        const std::uint32_t emergency = cycle.slaves[s]->mailbox.emergency.load(std::memory_order_relaxed);
+        const std::uint32_t emergency = cycle.slaves[s].emergency->load(std::memory_order_relaxed);
         health.emergency_code = static_cast<std::uint16_t>(emergency);
         health.error_register = static_cast<std::uint8_t>(emergency >> 16);
         if (!cycle.plan.slaves[s].unit) health.fresh = !any_lost_ && health.al_state != AlState::unknown;
-        cycle.slaves[s]->age.store(health.age, std::memory_order_relaxed);
+        cycle.slaves[s].link->age.store(health.age, std::memory_order_relaxed);
     }
     if (auto* link = link_.load(std::memory_order_acquire)) {
         const auto good = link->good_in_a_row.load(std::memory_order_relaxed);
@@ -205,7 +186,7 @@ void ProcessDataCycle::measure_margin(CyclePlan& cycle, SlotId slot) noexcept {
     for (std::size_t s = 0; s < cycle.slaves.size(); ++s) {
         const std::int64_t start = sync0_of(cycle, s);
         if (start == 0 || due < start) continue;
-        const std::int64_t margin = cycle.sync0[s].next(due + 1, start, cycle.period[s].count()) - (through + cycle.delay[s]);
+        const std::int64_t margin = cycle.sync0[s].next(due + 1, start, cycle.slaves[s].period.count()) - (through + cycle.slaves[s].delay);
         least = least ? std::min(*least, margin) : margin;
     }
     if (!least) return;
@@ -265,13 +246,13 @@ void ProcessDataCycle::take_unit(CyclePlan& cycle, const UnitPlan& unit) noexcep
         if (const std::int64_t start = sync0_of(cycle, s); start != 0) {
             const std::int64_t system = nanoseconds(sent) + clock_offset_;
             if (system >= start)
-                health.latched = Instant{Duration{cycle.sync0[s].last(system, start, cycle.period[s].count()) - clock_offset_}};
+                health.latched = Instant{Duration{cycle.sync0[s].last(system, start, cycle.slaves[s].period.count()) - clock_offset_}};
         }
     }
 }
 
 std::int64_t ProcessDataCycle::sync0_of(const CyclePlan& cycle, std::size_t slave) const noexcept {
-    return clock_.known() ? cycle.slaves[slave]->sync0_start.load(std::memory_order_relaxed) : 0;
+    return clock_.known() ? cycle.slaves[slave].link->sync0_start.load(std::memory_order_relaxed) : 0;
 }
 
 void ProcessDataCycle::send(Instant now) noexcept {
@@ -378,8 +359,8 @@ Instant ProcessDataCycle::outputs_effective(std::size_t slave, Instant send_time
     const std::int64_t start = sync0_of(*cycle, slave);
     if (start == 0) return send_time;
     if (next_send_.send_time != send_time) next_send_ = {send_time, clock_.offset_at(send_time)};
-    const std::int64_t arrival = nanoseconds(send_time) + cycle->delay[slave] + next_send_.offset;
-    return Instant{Duration{cycle->sync0[slave].next(arrival + 1, start, cycle->period[slave].count()) - next_send_.offset}};
+    const std::int64_t arrival = nanoseconds(send_time) + cycle->slaves[slave].delay + next_send_.offset;
+    return Instant{Duration{cycle->sync0[slave].next(arrival + 1, start, cycle->slaves[slave].period.count()) - next_send_.offset}};
 }
 
 }  // namespace taktwerk::ecat

@@ -31,8 +31,8 @@
 
 #include "core/process_image.hpp"
 #include "core/result.hpp"
-#include "ecat/bringup/slave_mapping.hpp"
 #include "ecat/bus_config.hpp"
+#include "ecat/layout/slave_mapping.hpp"
 #include "ecat/wire/commands.hpp"
 #include "ecat/wire/registers.hpp"
 

@@ -11,8 +11,8 @@
 
 namespace taktwerk::axes {
 
-struct Setting {
-    Setting(const MotionState& start, const MotionState& end, const SignedLimits& signed_limits) noexcept
+struct ReducedProblem {
+    ReducedProblem(const MotionState& start, const MotionState& end, const SignedLimits& signed_limits) noexcept
         : from{start},
           target{end},
           limits{frame_limits(signed_limits)},
@@ -29,7 +29,7 @@ struct Setting {
 
     struct Unbraked {};
     /// From the start as it is.
-    Setting(const MotionState& start, const MotionState& end, const SignedLimits& signed_limits, Unbraked) noexcept
+    ReducedProblem(const MotionState& start, const MotionState& end, const SignedLimits& signed_limits, Unbraked) noexcept
         : from{start},
           target{end},
           limits{frame_limits(signed_limits)},

@@ -1,5 +1,5 @@
 // What is said when: the rules of the fault finder, without a bus. Slaves here are in the order of their positions.
-#include "ecat/fault_finder.hpp"
+#include "ecat/cycle/fault_finder.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "ecat/bringup/frame_schedule.hpp"
-#include "ecat/bringup/process_data_plan.hpp"
-#include "tests/ecat/bringup/plan_slaves.hpp"
+#include "ecat/layout/frame_schedule.hpp"
+#include "ecat/layout/process_data_plan.hpp"
+#include "tests/ecat/layout/plan_slaves.hpp"
 
 namespace taktwerk::ecat {
 namespace {

@@ -24,7 +24,9 @@
 #include <vector>
 
 #include "core/alarm.hpp"
-#include "ecat/bringup/bus.hpp"
+#include "ecat/bus_config.hpp"
+#include "ecat/cycle/cycle_link.hpp"
+#include "ecat/wire/al_status.hpp"
 
 namespace taktwerk::ecat {
 
@@ -66,9 +68,6 @@ struct FaultSlave {
     std::uint32_t watchdog_cycles = 2;  ///< without a frame until its watchdog of process data trips
     Duration watchdog{};                ///< the same as a time
 };
-
-/// The configured slaves of a bus that was scanned.
-[[nodiscard]] std::vector<FaultSlave> fault_slaves(const Bus& bus);
 
 class FaultFinder {
 public:

@@ -1,4 +1,4 @@
-#include "ecat/cycle_clock.hpp"
+#include "ecat/cycle/cycle_clock.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/result.hpp"
-#include "ecat/device_description.hpp"
+#include "ecat/description/device_description.hpp"
 #include "ecat/wire/registers.hpp"
 
 namespace taktwerk::ecat {

@@ -1,4 +1,4 @@
-#include "ecat/fault_finder.hpp"
+#include "ecat/cycle/fault_finder.hpp"
 
 #include <algorithm>
 #include <tuple>
@@ -41,35 +41,7 @@ constexpr auto all_in_op = static_cast<std::uint16_t>(AlState::op);
 /// Among these is one that a controller enters by its own restart.
 bool some_in_init(std::uint16_t states) noexcept { return (states & static_cast<std::uint16_t>(AlState::init)) != 0; }
 
-bool exchanged_alone(const Bus& bus, std::size_t slave) {
-    if (slave >= bus.plan.slaves.size() || !bus.plan.slaves[slave].unit) return false;
-    return bus.plan.units[*bus.plan.slaves[slave].unit].slaves.size() == 1;
-}
-
 }  // namespace
-
-std::vector<FaultSlave> fault_slaves(const Bus& bus) {
-    std::vector<FaultSlave> slaves;
-    for (const auto& slave : bus.slaves) {
-        const Duration watchdog = sm_watchdog(bus.config, *slave->config) - bus.config.cycle;  // a frame had just come when the gap began
-        const auto cycles = static_cast<std::uint32_t>(std::max<std::int64_t>(2, watchdog / bus.config.cycle));
-        slaves.push_back({slave->index, FaultSlave::none, slave->config->on_loss, bus.reference == slave->index,
-                          exchanged_alone(bus, slave->index), cycles, watchdog});
-    }
-    const auto position = [&](const FaultSlave& s) { return std::size_t{bus.slaves[s.index]->found.position}; };
-    std::sort(slaves.begin(), slaves.end(), [&](const FaultSlave& a, const FaultSlave& b) { return position(a) < position(b); });
-    for (std::size_t i = 0; i < slaves.size(); ++i) {
-        if (position(slaves[i]) >= bus.topology.slaves.size()) {  // the tree could not be read: take it for a line
-            if (i > 0) slaves[i].parent = i - 1;
-            continue;
-        }
-        for (auto up = bus.topology.slaves[position(slaves[i])].parent; up && slaves[i].parent == FaultSlave::none;
-             up = bus.topology.slaves[*up].parent)
-            for (std::size_t k = 0; k < i; ++k)
-                if (position(slaves[k]) == *up) slaves[i].parent = k;
-    }
-    return slaves;
-}
 
 FaultFinder::FaultFinder(std::vector<FaultSlave> slaves, std::uint16_t expected, std::uint32_t limit)
     : slaves_(std::move(slaves)),

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "ecat/device_description.hpp"
+#include "ecat/description/device_description.hpp"
 #include "ecat/wire/sdo_info.hpp"
 
 namespace taktwerk::ecat {

@@ -1,4 +1,4 @@
-#include "ecat/bringup/frame_schedule.hpp"
+#include "ecat/layout/frame_schedule.hpp"
 
 #include <algorithm>
 #include <numeric>

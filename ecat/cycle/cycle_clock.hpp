@@ -12,7 +12,7 @@
 #include <span>
 
 #include "core/time.hpp"
-#include "ecat/bringup/bus.hpp"
+#include "ecat/cycle/cycle_link.hpp"
 #include "ecat/dc/cycle_servo.hpp"
 #include "ecat/dc/reference_clock.hpp"
 #include "ecat/wire/commands.hpp"

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "ecat/device_description.hpp"
+#include "ecat/description/device_description.hpp"
 
 namespace taktwerk::ecat {
 

@@ -9,46 +9,16 @@
 #include <span>
 #include <vector>
 
-#include "ecat/bringup/bus.hpp"
-#include "ecat/bringup/frame_schedule.hpp"
-#include "ecat/cycle_clock.hpp"
-#include "ecat/dc/propagation.hpp"
+#include "ecat/bus_config.hpp"
+#include "ecat/cycle/bus_health.hpp"
+#include "ecat/cycle/cycle_clock.hpp"
+#include "ecat/cycle/cycle_link.hpp"
+#include "ecat/cycle/cycle_plan.hpp"
 #include "ecat/exchange/acyclic_channel.hpp"
 #include "ecat/exchange/exchange.hpp"
-#include "ecat/fault_finder.hpp"
-#include "ecat/master.hpp"
+#include "ecat/layout/frame_schedule.hpp"
 
 namespace taktwerk::ecat {
-
-/// A plan as the cycle runs it: made by the service side, published once, kept until the master dies.
-struct CyclePlan {
-    explicit CyclePlan(const Bus& bus);
-
-    ProcessDataPlan plan;
-    std::vector<BusSlave*> slaves;
-    std::vector<Duration> period;            ///< of each slave's sync unit
-    std::optional<std::uint16_t> reference;  ///< station of the reference clock
-    std::vector<std::int64_t> delay;         ///< ns from the reference to each slave
-    std::uint16_t state_wkc = 0;
-
-    /// Where a datagram is under way.
-    struct Place {
-        static constexpr std::uint8_t nowhere = 0xFF;  ///< it found no slot
-        std::uint8_t frame = nowhere;
-        std::uint8_t number = 0;  ///< in its frame
-    };
-    // Working area of the cycle.
-    std::uint64_t number = 0;  ///< of the next send(); decides which units are due
-    bool sent = false;         ///< and not collected yet
-    std::vector<std::byte> outputs, inputs;
-    std::vector<SlaveHealth> health;
-    FaultFinder faults;
-    std::vector<SlotId> frames;           ///< under way; generation 0: none
-    std::vector<Place> places;            ///< of each datagram; valid while its unit is under way
-    std::vector<std::uint8_t> under_way;  ///< of each unit
-    std::vector<Sync0Pulse> sync0;        ///< of each slave
-    std::size_t state_number = 0;         ///< of BRD AL status in the first frame; the mailbox bits follow it
-};
 
 class ProcessDataCycle {
 public:

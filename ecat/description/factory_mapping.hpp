@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "ecat/device_description.hpp"
+#include "ecat/description/device_description.hpp"
 
 namespace taktwerk::ecat {
 

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "ecat/bringup/process_data_plan.hpp"
+#include "ecat/layout/process_data_plan.hpp"
 
 namespace taktwerk::ecat {
 

@@ -1,4 +1,4 @@
-#include "ecat/bringup/slave_mapping.hpp"
+#include "ecat/layout/slave_mapping.hpp"
 
 #include <fmt/format.h>
 

@@ -1,10 +1,10 @@
-#include "ecat/bringup/process_data_plan.hpp"
+#include "ecat/layout/process_data_plan.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "ecat/bringup/frame_schedule.hpp"
+#include "ecat/layout/frame_schedule.hpp"
 
 namespace taktwerk::ecat {
 

@@ -6,8 +6,8 @@
 #include <random>
 #include <set>
 
-#include "ecat/bringup/frame_schedule.hpp"
-#include "ecat/bringup/process_data_plan.hpp"
+#include "ecat/layout/frame_schedule.hpp"
+#include "ecat/layout/process_data_plan.hpp"
 #include "tests/property_cases.hpp"
 
 namespace taktwerk::ecat {
