@@ -14,7 +14,7 @@ namespace {
 
 using ecat::Survey;
 
-struct Options {
+struct CounterOptions {
     std::shared_ptr<BusOptions> bus;
     bool watch = false, reset = false;
     double duration_s = 0;
@@ -34,7 +34,7 @@ Json counters_json(const Survey& survey) {
     return json;
 }
 
-int show(BusSession& session, const Survey& survey, const BusOptions& options) {
+int show_counters(BusSession& session, const Survey& survey, const BusOptions& options) {
     if (options.json) print_json(counters_json(survey));
     else fmt::print("{}", counters_text(survey, colours_of_output()));
     std::fflush(stdout);
@@ -42,7 +42,7 @@ int show(BusSession& session, const Survey& survey, const BusOptions& options) {
     return exit_ok;
 }
 
-int work(BusSession& session, const Options& options) {
+int read_counters(BusSession& session, const CounterOptions& options) {
     Result<Survey> found = session.look();
     if (!found) return fail(*options.bus, found.error());
     if (options.reset) {
@@ -51,7 +51,7 @@ int work(BusSession& session, const Options& options) {
         if (auto read = session.probe().run(ecat::refresh_counters(session.probe().port(), *found)); !read)
             return fail(*options.bus, read.error());
     }
-    show(session, *found, *options.bus);
+    show_counters(session, *found, *options.bus);
     if (!options.watch) return exit_ok;
     const double seconds = options.duration_s > 0 ? options.duration_s : session.simulated() ? simulated_watch_s : 0;
     const auto rounds = static_cast<std::uint64_t>(seconds / to_seconds(watch_period) + 0.5);
@@ -62,7 +62,7 @@ int work(BusSession& session, const Options& options) {
         for (std::size_t i = 0; i < found->slaves.size(); ++i)
             if (found->slaves[i].ports != before.slaves[i].ports) {
                 if (!options.bus->json) fmt::print("\nafter {} s:\n", round + 1);
-                show(session, *found, *options.bus);
+                show_counters(session, *found, *options.bus);
                 break;
             }
     }
@@ -111,13 +111,13 @@ std::string counters_text(const Survey& survey, Colours colours) {
 
 void add_bus_counters(CLI::App& bus, Action& action) {
     auto* sub = bus.add_subcommand("counters", "error counters of every port, and which cable they speak of");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<CounterOptions>();
     options->bus = add_bus_options(*sub);
     sub->add_flag("--watch", options->watch, "again each second, when one has risen, until Ctrl-C");
     add_duration(*sub, "--for", options->duration_s, "how long to watch");
     sub->add_flag("--reset", options->reset, "set them to 0 first");
     sub->callback([&action, options] {
-        action = [options] { return with_bus(*options->bus, [&](BusSession& session) { return work(session, *options); }); };
+        action = [options] { return with_bus(*options->bus, [&](BusSession& session) { return read_counters(session, *options); }); };
     });
 }
 

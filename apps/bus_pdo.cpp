@@ -15,7 +15,7 @@ using ecat::PdoReport;
 using ecat::SmUse;
 using ecat::SyncManagerReport;
 
-struct Options {
+struct PdoOptions {
     std::shared_ptr<BusOptions> bus;
     std::string slave;
 };
@@ -65,7 +65,7 @@ ecat::Script<Result<PdoReport>> ask(ecat::Bus& bus, ecat::BusSlave& slave) {
     co_return co_await ecat::read_pdos(bus, slave);
 }
 
-int work(BusSession& session, const Options& options) {
+int report_pdos(BusSession& session, const PdoOptions& options) {
     const Result<ecat::Survey> found = session.look();
     if (!found) return fail(*options.bus, found.error());
     std::optional<std::size_t> only;
@@ -177,12 +177,12 @@ Json pdo_json(const PdoReport& report) {
 
 void add_bus_pdo(CLI::App& bus, Action& action) {
     auto* sub = bus.add_subcommand("pdo", "process data: sync managers, FMMUs, PDOs with entries and offsets, values in SAFEOP and OP");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<PdoOptions>();
     options->bus = add_bus_options(*sub);
     sub->add_option("SLAVE", options->slave, "position or name; default: all");
     add_operational(*sub, *options->bus);
     sub->callback([&action, options] {
-        action = [options] { return with_bus(*options->bus, [&](BusSession& session) { return work(session, *options); }); };
+        action = [options] { return with_bus(*options->bus, [&](BusSession& session) { return report_pdos(session, *options); }); };
     });
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 using Bytes = std::vector<std::byte>;
 
-struct Options {
+struct SdoOptions {
     std::shared_ptr<BusOptions> bus;
     std::string slave, object, value, type;
     bool complete = false;  ///< the whole object in one transfer
@@ -28,7 +28,7 @@ struct Target {
 };
 
 /// "6041h", "2000h:02", "0x2000:2", and "6041" as manuals and colleagues say it.
-Result<Target> target_of(const Options& options) {
+Result<Target> target_of(const SdoOptions& options) {
     auto object = config::parse_object(options.object);
     if (!object) {
         const auto colon = options.object.find(':');
@@ -118,7 +118,7 @@ Json answer_json(const ecat::BusSlave& slave, const Target& target, const Answer
 }
 
 /// Finds the slave, opens the bus for writing to mailboxes, and lets `ask` work on it.
-int with_slave(BusSession& session, const Options& options, const std::function<int(ecat::BusSlave&)>& ask) {
+int with_slave(BusSession& session, const SdoOptions& options, const std::function<int(ecat::BusSlave&)>& ask) {
     const Result<ecat::Survey> found = session.look();
     if (!found) return fail(*options.bus, found.error());
     const Result<std::size_t> position = find_slave(*found, options.slave);
@@ -135,7 +135,7 @@ int with_slave(BusSession& session, const Options& options, const std::function<
 }
 
 /// Runs what `script` makes of the slave and shows its answer; `verb` stands before the value.
-int show_answer(BusSession& session, const Options& options, const char* verb,
+int show_answer(BusSession& session, const SdoOptions& options, const char* verb,
                 const std::function<ecat::Script<Result<Answer>>(ecat::BusSlave&, const Target&)>& script) {
     const Result<Target> target = target_of(options);
     if (!target) return fail(*options.bus, target.error());
@@ -153,12 +153,12 @@ int show_answer(BusSession& session, const Options& options, const char* verb,
     });
 }
 
-int read_command(BusSession& session, const Options& options) {
+int read_command(BusSession& session, const SdoOptions& options) {
     return show_answer(session, options, "=",
                        [&](ecat::BusSlave& slave, const Target& target) { return read(session.bus(), slave, target); });
 }
 
-int write_command(BusSession& session, const Options& options) {
+int write_command(BusSession& session, const SdoOptions& options) {
     return show_answer(session, options, "reads back",
                        [&](ecat::BusSlave& slave, const Target& target) { return write(session.bus(), slave, target, options.value); });
 }
@@ -182,7 +182,7 @@ Json dictionary_json(const ecat::Dictionary& dictionary) {
     return Json{{"slave", dictionary.subject}, {"from_slave", dictionary.from_slave}, {"objects", std::move(objects)}};
 }
 
-int dump(BusSession& session, const Options& options) {
+int dump(BusSession& session, const SdoOptions& options) {
     return with_slave(session, options, [&](ecat::BusSlave& slave) {
         if (auto opened = session.probe().run(open(session.bus(), slave)); !opened) return fail(*options.bus, opened.error());
         const Result<ecat::Dictionary> dictionary = session.probe().run(ecat::read_dictionary(session.bus(), slave));
@@ -193,9 +193,9 @@ int dump(BusSession& session, const Options& options) {
     });
 }
 
-void add_slave(CLI::App& sub, Options& options) { sub.add_option("SLAVE", options.slave, "position or name")->required(); }
+void add_slave(CLI::App& sub, SdoOptions& options) { sub.add_option("SLAVE", options.slave, "position or name")->required(); }
 
-void add_object(CLI::App& sub, Options& options) {
+void add_object(CLI::App& sub, SdoOptions& options) {
     sub.add_option("OBJECT", options.object, "6041h, 2000h:02 (index and sub-index hexadecimal)")->required();
     sub.add_flag("--complete", options.complete, "the whole object by complete access, as bytes; not every slave can");
     sub.add_option("--type", options.type,
@@ -229,7 +229,7 @@ void add_bus_sdo(CLI::App& bus, Action& action) {
     sdo->require_subcommand(1);
 
     auto* reading = sdo->add_subcommand("read", "one object");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<SdoOptions>();
     options->bus = add_bus_options(*reading);
     add_slave(*reading, *options);
     add_object(*reading, *options);
@@ -239,7 +239,7 @@ void add_bus_sdo(CLI::App& bus, Action& action) {
     });
 
     auto* writing = sdo->add_subcommand("write", "one object; then it is read back");
-    auto write_options = std::make_shared<Options>();
+    auto write_options = std::make_shared<SdoOptions>();
     write_options->bus = add_bus_options(*writing);
     add_slave(*writing, *write_options);
     add_object(*writing, *write_options);
@@ -252,7 +252,7 @@ void add_bus_sdo(CLI::App& bus, Action& action) {
     });
 
     auto* dumping = sdo->add_subcommand("dump", "every object with name, type, access and value");
-    auto dump_options = std::make_shared<Options>();
+    auto dump_options = std::make_shared<SdoOptions>();
     dump_options->bus = add_bus_options(*dumping);
     add_slave(*dumping, *dump_options);
     add_operational(*dumping, *dump_options->bus);

@@ -20,7 +20,7 @@ namespace {
 using ecat::AlState;
 using ecat::Survey;
 
-struct Options {
+struct StateOptions {
     std::shared_ptr<BusOptions> bus;
     std::string request, slave;
     double hold_s = 0;
@@ -41,7 +41,7 @@ Json state_json(const Survey& survey) {
     return Json{{"slaves", std::move(list)}};
 }
 
-void show(BusSession& session, const Survey& survey, const BusOptions& options) {
+void show_states(BusSession& session, const Survey& survey, const BusOptions& options) {
     if (options.json) print_json(state_json(survey));
     else fmt::print("{}", state_text(session.where(), survey, colours_of_output()));
     std::fflush(stdout);
@@ -74,7 +74,7 @@ bool some_unread(const Survey& survey) {
 }
 
 /// Down to PREOP or INIT, or up to PREOP: no process data, so nobody is asked.
-int request_low(BusSession& session, Survey survey, const Options& options) {
+int request_low(BusSession& session, Survey survey, const StateOptions& options) {
     if (auto allowed = session.may_write(survey, "changing states"); !allowed) return fail(*options.bus, allowed.error());
     std::optional<std::size_t> only;
     if (!options.slave.empty()) {
@@ -100,13 +100,13 @@ int request_low(BusSession& session, Survey survey, const Options& options) {
         if (!done && !refused) refused = done.error();
     }
     const Result<Survey> after = session.look();
-    if (after) show(session, *after, *options.bus);
+    if (after) show_states(session, *after, *options.bus);
     if (refused) return fail(*options.bus, *refused);
     return after ? static_cast<int>(exit_ok) : fail(*options.bus, after.error());
 }
 
 /// OP lasts as long as somebody sends process data: as long as this command lives.
-int request_op(BusSession& session, const Survey& survey, const Options& options) {
+int request_op(BusSession& session, const Survey& survey, const StateOptions& options) {
     if (auto up = session.bring_up(survey); !up) {
         Error error = up.error();
         if (error.code != "bus.not_confirmed" && error.code != "bus.foreign_master") error.remedy += "; `taktwerk bus why` shows more";
@@ -114,7 +114,7 @@ int request_op(BusSession& session, const Survey& survey, const Options& options
     }
     const Result<Survey> reached = session.look();
     if (!reached) return fail(*options.bus, reached.error());
-    show(session, *reached, *options.bus);
+    show_states(session, *reached, *options.bus);
     const bool until_stopped = options.hold_s <= 0 && !session.simulated();
     if (until_stopped && !options.bus->json) fmt::print("\nOP, with outputs 0, until Ctrl-C.\n");
     std::fflush(stdout);
@@ -127,7 +127,7 @@ int request_op(BusSession& session, const Survey& survey, const Options& options
     return exit_ok;
 }
 
-int work(BusSession& session, const Options& options) {
+int show_or_request(BusSession& session, const StateOptions& options) {
     const Result<Survey> found = session.look();
     if (!found) return fail(*options.bus, found.error());
     if (options.request == "op") {
@@ -138,7 +138,7 @@ int work(BusSession& session, const Options& options) {
         return request_op(session, *found, options);
     }
     if (!options.request.empty()) return request_low(session, *found, options);
-    show(session, *found, *options.bus);
+    show_states(session, *found, *options.bus);
     return has_problems(*found) ? exit_bus : exit_ok;
 }
 
@@ -164,7 +164,7 @@ std::string state_text(const std::string& where, const Survey& survey, Colours c
 
 void add_bus_state(CLI::App& bus, Action& action) {
     auto* sub = bus.add_subcommand("state", "the state of each slave, or ask for one: init, preop, op");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<StateOptions>();
     options->bus = add_bus_options(*sub);
     sub->add_option("STATE", options->request, "init, preop, or op (with outputs 0, as long as this command runs)")
         ->check(CLI::IsMember({"init", "preop", "op"}));
@@ -172,7 +172,7 @@ void add_bus_state(CLI::App& bus, Action& action) {
     sub->add_flag("--yes", options->bus->yes, "do not ask before outputs are driven");
     add_duration(*sub, "--for", options->hold_s, "stay in OP for so long; default: until Ctrl-C");
     sub->callback([&action, options] {
-        action = [options] { return with_bus(*options->bus, [&](BusSession& session) { return work(session, *options); }); };
+        action = [options] { return with_bus(*options->bus, [&](BusSession& session) { return show_or_request(session, *options); }); };
     });
 }
 

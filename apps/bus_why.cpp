@@ -85,7 +85,7 @@ int explain_falls(BusSession& session, const std::vector<std::string>& fell, con
     return exit_bus;
 }
 
-int work(BusSession& session, const BusOptions& options) {
+int find_out_why(BusSession& session, const BusOptions& options) {
     const Result<Survey> found = session.look();
     if (!found) {
         // Not one slave: nothing to bring up, and the error says all there is.
@@ -186,7 +186,7 @@ void add_bus_why(CLI::App& bus, Action& action) {
     auto options = add_bus_options(*sub);
     sub->add_flag("--yes", options->yes, "do not ask before outputs are driven (with 0)");
     sub->callback([&action, options] {
-        action = [options] { return with_bus(*options, [&](BusSession& session) { return work(session, *options); }); };
+        action = [options] { return with_bus(*options, [&](BusSession& session) { return find_out_why(session, *options); }); };
     });
 }
 

@@ -28,7 +28,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using runtime::MachineConfig;
 
-struct Options {
+struct CheckOptions {
     std::string file;
     bool json = false;
 };
@@ -227,13 +227,13 @@ Json summary_json(const MachineConfig& config, const runtime::MachineLayout& lay
     return out;
 }
 
-int fail(const Options& options, const std::vector<Error>& errors) {
+int fail(const CheckOptions& options, const std::vector<Error>& errors) {
     if (options.json) fmt::print("{}\n", Json{{"ok", false}, {"errors", problems_json(errors)}}.dump(2));
     else print_errors(errors);
     return exit_bad_file;
 }
 
-int check(const Options& options) {
+int check(const CheckOptions& options) {
     // It loads what it checks, and what is loaded runs: with the rights of whoever asked, and no others.
     if (auto ok = runtime::give_back_rights(); !ok) return fail(options, {ok.error()});
     auto result = read_machine(options.file, false);
@@ -278,7 +278,7 @@ int check(const Options& options) {
 
 void add_check(CLI::App& app, Action& action) {
     auto* sub = app.add_subcommand("check", "check a machine file, its drives and programs; say what it means");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<CheckOptions>();
     sub->add_option("FILE", options->file, "machine file")->required();
     sub->add_flag("--json", options->json, "the result as one JSON object");
     sub->callback([&action, options] { action = [options] { return check(*options); }; });

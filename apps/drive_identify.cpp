@@ -19,7 +19,7 @@ struct Identified {
     std::vector<std::string> fitting;
 };
 
-int show(const DriveOptions& options, const std::vector<Identified>& slaves) {
+int show_identified(const DriveOptions& options, const std::vector<Identified>& slaves) {
     const auto profiles = known_profiles(options);
     const auto profile_of = [&](const std::string& name) -> const axes::DriveProfile* {
         for (const auto& profile : profiles)
@@ -64,7 +64,7 @@ int identify_in_machine(const DriveOptions& options) {
                        fmt::format("as machine '{}' is configured", machine->machine),
                        "",
                        {drive.profile}});
-    return show(options, out);
+    return show_identified(options, out);
 }
 
 /// Drives on serial lines: those of the machine file, or the one that is meant.
@@ -80,7 +80,7 @@ int identify(const DriveOptions& options) {
     if (options.through_machine()) return identify_in_machine(options);
     if (is_on_line(options)) {
         const auto drives = on_lines(options);
-        return drives ? show(options, *drives) : fail(*options.bus, drives.error());
+        return drives ? show_identified(options, *drives) : fail(*options.bus, drives.error());
     }
     return with_bus(*options.bus, [&](BusSession& session) {
         const Result<ecat::Survey> found = session.look();
@@ -104,7 +104,7 @@ int identify(const DriveOptions& options) {
             if (!others) return fail(*options.bus, others.error());
             slaves.insert(slaves.end(), others->begin(), others->end());
         }
-        return show(options, slaves);
+        return show_identified(options, slaves);
     });
 }
 

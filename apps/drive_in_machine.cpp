@@ -20,7 +20,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Duration look_again = 50ms;
+constexpr Duration between_looks = 50ms;
 
 class DriveInMachine final : public DriveAccess {
 public:
@@ -66,7 +66,7 @@ public:
     [[nodiscard]] Result<DriveComplaint> complaint() override;
     [[nodiscard]] Result<bool> reset_fault(Duration patience) override;
     void wait(Duration time) override {
-        for (const auto end = clock_.now() + time; clock_.now() < end && !interrupted();) std::this_thread::sleep_for(look_again);
+        for (const auto end = clock_.now() + time; clock_.now() < end && !interrupted();) std::this_thread::sleep_for(between_looks);
     }
     void finish_undisturbed() override { undisturbed_ = true; }
 
@@ -110,7 +110,7 @@ Result<bool> DriveInMachine::reset_fault(Duration patience) {
     if (const auto asked = ask({{"cmd", "reset"}, {"axis", drive_.axis}}); !asked) return asked.error();
     const auto end = clock_.now() + patience;
     do {
-        wait(look_again);  // the snapshot that still shows the axis as it was before must not count
+        wait(between_looks);  // the snapshot that still shows the axis as it was before must not count
         const auto axis = axis_state();
         if (!axis) return axis.error();
         if (!axis->at("resetting").get<bool>() && axis->at("state") != "ErrorStop") return true;

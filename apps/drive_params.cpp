@@ -17,7 +17,7 @@ using axes::DriveParameter;
 using axes::ParameterChange;
 using axes::ParameterEffect;
 
-struct Options {
+struct ParameterOptions {
     std::shared_ptr<DriveOptions> drive;
     std::string filter;
 };
@@ -50,8 +50,8 @@ std::vector<const DriveParameter*> chosen(const axes::DriveProfile& profile, con
     return out;
 }
 
-int show(const Options& options, const std::string& heading, const axes::DriveProfile& profile,
-         const std::function<std::optional<std::int64_t>(const DriveParameter&)>& value_of) {
+int show_parameters(const ParameterOptions& options, const std::string& heading, const axes::DriveProfile& profile,
+                    const std::function<std::optional<std::int64_t>(const DriveParameter&)>& value_of) {
     const auto parameters = chosen(profile, options.filter);
     if (parameters.empty())
         return fail(*options.drive->bus, Error{"drive.no_parameter", options.filter,
@@ -76,7 +76,7 @@ int show(const Options& options, const std::string& heading, const axes::DrivePr
     return exit_ok;
 }
 
-int params(const Options& options) {
+int params(const ParameterOptions& options) {
     const auto& bus = *options.drive->bus;
     if (options.drive->drive.empty()) {
         if (options.drive->profile.empty())
@@ -84,14 +84,15 @@ int params(const Options& options) {
                                    "`taktwerk drive identify` lists the drives"});
         const auto profile = profile_named(*options.drive, options.drive->profile);
         if (!profile) return fail(bus, profile.error());
-        return show(options, (*profile)->title, **profile, nullptr);
+        return show_parameters(options, (*profile)->title, **profile, nullptr);
     }
     return with_drive(*options.drive, [&](DriveAccess& drive) {
-        return show(options, drive.subject(), drive.profile(), [&](const DriveParameter& parameter) -> std::optional<std::int64_t> {
-            if (parameter.bits == 0) return std::nullopt;
-            const auto value = drive.read(parameter);
-            return value ? std::optional(*value) : std::nullopt;
-        });
+        return show_parameters(options, drive.subject(), drive.profile(),
+                               [&](const DriveParameter& parameter) -> std::optional<std::int64_t> {
+                                   if (parameter.bits == 0) return std::nullopt;
+                                   const auto value = drive.read(parameter);
+                                   return value ? std::optional(*value) : std::nullopt;
+                               });
     });
 }
 
@@ -142,7 +143,7 @@ std::string params_text(const std::vector<const DriveParameter*>& parameters, co
 
 void add_drive_params(CLI::App& drive, Action& action) {
     auto* sub = drive.add_subcommand("params", "the parameters of a drive, or of a kind of drive (--profile)");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<ParameterOptions>();
     options->drive = add_drive_options(*sub);
     sub->add_option("DRIVE", options->drive->drive, "position or name on the bus; none: the manual's list of --profile");
     sub->add_option("--filter", options->filter, "those whose number begins so, or whose name has it")->type_name("TEXT");

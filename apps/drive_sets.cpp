@@ -14,7 +14,7 @@ namespace {
 
 using config::ParameterSet;
 
-struct Options {
+struct SetFileOptions {
     std::shared_ptr<DriveOptions> drive;
     std::string file;
     bool all = false;
@@ -32,7 +32,7 @@ Json left_out_json(const std::vector<LeftOut>& left_out) {
     return out;
 }
 
-int save(const Options& options) {
+int save(const SetFileOptions& options) {
     return with_drive(*options.drive, [&](DriveAccess& drive) {
         const auto read = kept_settings(drive, options.all ? Kept::all : Kept::unlike_factory);
         if (!read) return fail(*options.drive->bus, read.error());
@@ -55,7 +55,7 @@ int save(const Options& options) {
     });
 }
 
-int bad_file(const Options& options, const std::vector<Error>& errors) {
+int bad_file(const SetFileOptions& options, const std::vector<Error>& errors) {
     if (options.drive->bus->json) {
         auto all = Json::array();
         for (const auto& error : errors) all.push_back(error_json(error));
@@ -66,7 +66,7 @@ int bad_file(const Options& options, const std::vector<Error>& errors) {
     return exit_bad_file;
 }
 
-int restore(const Options& options) {
+int restore(const SetFileOptions& options) {
     const auto& bus = *options.drive->bus;
     return with_drive(*options.drive, [&](DriveAccess& drive) {
         const auto read = config::read_parameter_set(options.file, drive.profile());
@@ -76,7 +76,7 @@ int restore(const Options& options) {
     });
 }
 
-int print_difference(const Options& options, const DriveAccess& drive, const SetDifference& difference) {
+int print_difference(const SetFileOptions& options, const DriveAccess& drive, const SetDifference& difference) {
     const auto& changes = difference.changes;
     if (options.drive->bus->json) {
         auto json = Json{{"drive", drive.subject()},
@@ -99,7 +99,7 @@ int print_difference(const Options& options, const DriveAccess& drive, const Set
     return exit_ok;
 }
 
-int diff(const Options& options) {
+int diff(const SetFileOptions& options) {
     return with_drive(*options.drive, [&](DriveAccess& drive) {
         const auto read = options.file.empty() ? std::variant<ParameterSet, std::vector<Error>>{}
                                                : config::read_parameter_set(options.file, drive.profile());
@@ -113,7 +113,7 @@ int diff(const Options& options) {
 
 void add_drive_sets(CLI::App& drive, Action& action) {
     auto* saving = drive.add_subcommand("save", "the drive's settings into a file; reads only");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<SetFileOptions>();
     options->drive = add_drive_options(*saving);
     add_drive_choice(*saving, *options->drive);
     saving->add_option("FILE", options->file, "is overwritten")->required();
@@ -121,7 +121,7 @@ void add_drive_sets(CLI::App& drive, Action& action) {
     saving->callback([&action, options] { action = [options] { return save(*options); }; });
 
     auto* restoring = drive.add_subcommand("restore", "write what differs from a file");
-    auto restore_options = std::make_shared<Options>();
+    auto restore_options = std::make_shared<SetFileOptions>();
     restore_options->drive = add_drive_options(*restoring);
     add_drive_choice(*restoring, *restore_options->drive);
     restoring->add_option("FILE", restore_options->file, "as `save` wrote it")->required();
@@ -129,7 +129,7 @@ void add_drive_sets(CLI::App& drive, Action& action) {
     restoring->callback([&action, restore_options] { action = [restore_options] { return restore(*restore_options); }; });
 
     auto* comparing = drive.add_subcommand("diff", "how the drive differs from a file, or from the factory's values");
-    auto diff_options = std::make_shared<Options>();
+    auto diff_options = std::make_shared<SetFileOptions>();
     diff_options->drive = add_drive_options(*comparing);
     add_drive_choice(*comparing, *diff_options->drive);
     comparing->add_option("FILE", diff_options->file, "as `save` wrote it; default: the factory's values");

@@ -15,7 +15,7 @@ namespace {
 using axes::DriveParameter;
 using Values = std::vector<config::ParameterSet::Value>;
 
-struct Options {
+struct ValueOptions {
     std::shared_ptr<DriveOptions> drive;
     std::vector<std::string> words;
 };
@@ -27,7 +27,7 @@ std::string text_of(const std::vector<std::byte>& bytes) {
     return out;
 }
 
-int get(const Options& options) {
+int get(const ValueOptions& options) {
     const auto& bus = *options.drive->bus;
     return with_drive(*options.drive, [&](DriveAccess& drive) {
         auto json = Json::array();
@@ -68,7 +68,7 @@ std::string example(const axes::DriveProfile& profile, const std::vector<std::st
                        known ? axes::value_text(*setting, setting->value) : "VALUE");
 }
 
-int set(const Options& options) {
+int set(const ValueOptions& options) {
     const auto& bus = *options.drive->bus;
     return with_drive(*options.drive, [&](DriveAccess& drive) {
         const auto values = parsed_assignments(drive.profile(), options.words);
@@ -102,14 +102,14 @@ Result<Values> parsed_assignments(const axes::DriveProfile& profile, const std::
 
 void add_drive_values(CLI::App& drive, Action& action) {
     auto* getting = drive.add_subcommand("get", "parameters of a drive");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<ValueOptions>();
     options->drive = add_drive_options(*getting);
     add_drive_choice(*getting, *options->drive);
     getting->add_option("PARAMETER", options->words, "P05.13, PA17, Pr098, 6084h, 2005h:0E")->required();
     getting->callback([&action, options] { action = [options] { return get(*options); }; });
 
     auto* setting = drive.add_subcommand("set", "change parameters of a drive; each is read back");
-    auto set_options = std::make_shared<Options>();
+    auto set_options = std::make_shared<ValueOptions>();
     set_options->drive = add_drive_options(*setting);
     add_drive_choice(*setting, *set_options->drive);
     setting->add_option("PARAMETER=VALUE", set_options->words, "P05.13=300, 'P05.13=300 ms', 6084h=0x1000")->required();

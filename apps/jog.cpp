@@ -25,7 +25,7 @@ using namespace std::chrono_literals;
 constexpr auto renewal = 50ms;
 constexpr auto settling = 5s;  ///< longest ramp we wait for after letting go
 
-struct Options {
+struct JogOptions {
     RemoteOptions remote;
     std::string axis, speed;
     double for_s = 0;
@@ -38,7 +38,7 @@ nlohmann::ordered_json axis_of(const nlohmann::ordered_json& state, const std::s
     return {};
 }
 
-int jog(const Options& options) {
+int jog(const JogOptions& options) {
     auto client = hmi::Client::connect(options.remote.machine);
     if (!client) return report(options.remote, client.error());
     const auto velocity = velocity_on(*client, options.axis, options.speed);
@@ -94,7 +94,7 @@ int jog(const Options& options) {
 
 void add_jog(CLI::App& app, Action& action) {
     auto* sub = app.add_subcommand("jog", "move an axis while this command lives, in manual or set-up mode");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<JogOptions>();
     add_remote_options(*sub, options->remote);
     sub->add_option("AXIS", options->axis, "axis")->required();
     sub->add_option("--velocity", options->speed, "signed: 20mm/s, 1.2m/min; a bare number is in the axis' unit/s")->required();

@@ -10,7 +10,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Duration look = 1ms;
+constexpr Duration poll_period = 1ms;
 constexpr Duration start_up = 2s;  // a simulated drive answers 1.5 s after its mains (XP200 4.7.1)
 
 Error interrupted() { return Error{"bus.interrupted", "", "ended before it was done", ""}; }
@@ -51,7 +51,7 @@ Instant LineSession::now() const noexcept { return parts_->clock->now(); }
 
 bool LineSession::tick() {
     auto& clock = *parts_->clock;
-    clock.sleep_until(clock.now() + look);
+    clock.sleep_until(clock.now() + poll_period);
     if (parts_->world) parts_->world->apply_events(clock.now());
     return undisturbed_ || !stop_requested();
 }
@@ -69,7 +69,7 @@ Result<modbus::Answer> LineSession::ask(const modbus::Request& request) {
     for (auto refusal = client.ask(request, now()); refusal != modbus::Refusal::none; refusal = client.ask(request, now())) {
         if (refusal != modbus::Refusal::busy && refusal != modbus::Refusal::saving)
             return Error{"serial.request", "", std::string(modbus::name(refusal)), ""};
-        if (!wait(look)) return interrupted();
+        if (!wait(poll_period)) return interrupted();
     }
     for (;;) {
         if (!tick()) return interrupted();

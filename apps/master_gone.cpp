@@ -104,7 +104,7 @@ std::string loss_of(const DriveProfile& profile) {
     return "whether the drive announces it, its manual does not say";
 }
 
-std::string_view words(axes::DriveStop stop) {
+std::string_view unstated_stop(axes::DriveStop stop) {
     return stop == axes::DriveStop::coast ? "taken to coast, its manual does not say"
                                           : "taken to brake and then go off, its manual does not say how";
 }
@@ -167,7 +167,7 @@ std::vector<std::string> master_gone(const runtime::MachineConfig& config, const
             return row.address == axes::ParameterAddress{index, 0};
         });
     };
-    out.push_back(stop_of(*slave, axis, StopCause::fault, "at a fault", std::string(words(axis.profile->fault_stop))));
+    out.push_back(stop_of(*slave, axis, StopCause::fault, "at a fault", std::string(unstated_stop(axis.profile->fault_stop))));
     out.push_back(stop_of(*slave, axis, StopCause::quick_stop, "at a quick stop",
                           shown(0x605A) ? "its manual does not say what the values of 605Ah do" : "its manual does not describe it"));
     return out;

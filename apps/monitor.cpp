@@ -21,7 +21,7 @@ namespace {
 
 constexpr int refresh_ms = 200;
 
-struct Options {
+struct MonitorOptions {
     RemoteOptions remote;
     bool once = false;
 };
@@ -67,7 +67,7 @@ ScreenSize terminal_size() {
     return {std::max<std::size_t>(size.ws_col, 40), size.ws_row, true};
 }
 
-int once(const Options& options, hmi::Client& client) {
+int once(const MonitorOptions& options, hmi::Client& client) {
     const auto state = state_of(client);
     if (!state) return report(options.remote, state.error());
     if (options.remote.json) {
@@ -84,7 +84,7 @@ int once(const Options& options, hmi::Client& client) {
 }
 
 /// A line of JSON each time, for scripts.
-int stream(const Options& options, hmi::Client& client) {
+int stream(const MonitorOptions& options, hmi::Client& client) {
     while (!stop_requested()) {
         const auto state = state_of(client);
         if (!state && state.error().code != "state.not_yet") return report(options.remote, state.error());
@@ -95,7 +95,7 @@ int stream(const Options& options, hmi::Client& client) {
     return exit_ok;
 }
 
-int watch(const Options& options, hmi::Client& client) {
+int watch(const MonitorOptions& options, hmi::Client& client) {
     std::optional<Error> ended;
     {
         const RawTerminal terminal;
@@ -125,7 +125,7 @@ int watch(const Options& options, hmi::Client& client) {
     return ended ? report(options.remote, *ended) : static_cast<int>(exit_ok);
 }
 
-int monitor(const Options& options) {
+int monitor(const MonitorOptions& options) {
     auto client = hmi::Client::connect(options.remote.machine);
     if (!client) return report(options.remote, client.error());
     watch_stop_signals();
@@ -139,7 +139,7 @@ int monitor(const Options& options) {
 
 void add_monitor(CLI::App& app, Action& action) {
     auto* sub = app.add_subcommand("monitor", "watch a running machine on the terminal");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<MonitorOptions>();
     add_remote_options(*sub, options->remote);
     sub->add_flag("--once", options->once, "print the present state and end");
     sub->callback([&action, options] { action = [options] { return monitor(*options); }; });

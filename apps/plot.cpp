@@ -23,7 +23,7 @@ extern char** environ;
 namespace taktwerk::apps {
 namespace {
 
-struct Options {
+struct PlotOptions {
     std::string file, output, title;
     std::vector<std::string> axes, bits, values;
     double from_s = 0, to_s = 0;
@@ -97,7 +97,7 @@ Result<void> draw(const std::string& script) {
     return {};
 }
 
-int plot(const Options& options) {
+int plot(const PlotOptions& options) {
     const auto fail = [](const Error& error) {
         print_error(error);
         return static_cast<int>(exit_bad_file);
@@ -141,7 +141,7 @@ int plot(const Options& options) {
 
 void add_plot(CLI::App& app, Action& action) {
     auto* sub = app.add_subcommand("plot", "draw a trace as SVG: states, position, velocity, acceleration, jerk of each axis");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<PlotOptions>();
     sub->add_option("TRACE", options->file, "CSV file of `taktwerk run --trace`")->required();
     sub->add_option("-o,--output", options->output, "SVG file; default: the trace's name with .svg");
     sub->add_option("--axis", options->axes, "only these axes, e.g. --axis x,y")->delimiter(',');

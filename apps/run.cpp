@@ -44,7 +44,7 @@ namespace {
 
 using namespace runtime;
 
-struct Options {
+struct RunOptions {
     std::string file, trace, pcap, retain;
     bool simulate = false, virtual_time = false, json = false, quiet = false;
     double duration_s = 0;
@@ -63,7 +63,7 @@ void judge(const Snapshot* s, int& code) {
             code = exit_alarm;
 }
 
-void print_summary(Machine& machine, const Options& options, double machine_seconds, double wall_seconds, const MachineLog::Sink& put) {
+void print_summary(Machine& machine, const RunOptions& options, double machine_seconds, double wall_seconds, const MachineLog::Sink& put) {
     const auto* s = machine.latest();
     if (!s || options.quiet) return;
     const auto& total = machine.step_statistics().total();
@@ -98,7 +98,7 @@ void print_summary(Machine& machine, const Options& options, double machine_seco
 }
 
 /// The frames of the bus go into a file, if that was asked for. `capture` outlives the machine's cycle.
-Result<void> capture_frames(Machine& machine, const Options& options, Duration epoch, std::unique_ptr<ecat::FrameCapture>& capture) {
+Result<void> capture_frames(Machine& machine, const RunOptions& options, Duration epoch, std::unique_ptr<ecat::FrameCapture>& capture) {
     if (options.pcap.empty()) return {};
     auto created = ecat::FrameCapture::create(options.pcap, epoch);
     if (!created) return created.error();
@@ -108,14 +108,14 @@ Result<void> capture_frames(Machine& machine, const Options& options, Duration e
 }
 
 /// After the cycle has ended. Says what is missing.
-void say_frames(const ecat::FrameCapture* capture, const Options& options, const MachineLog::Sink& put) {
+void say_frames(const ecat::FrameCapture* capture, const RunOptions& options, const MachineLog::Sink& put) {
     if (capture == nullptr) return;
     if (capture->dropped() > 0)
         print_warning(Error{"capture.dropped", options.pcap, fmt::format("{} frames did not fit and are missing", capture->dropped()), ""});
     if (!options.quiet && !options.json) put(fmt::format("{} frames in {}\n", capture->frames(), options.pcap));
 }
 
-void finish(ecat::FrameCapture* capture, const Options& options) {
+void finish(ecat::FrameCapture* capture, const RunOptions& options) {
     if (capture == nullptr) return;
     if (auto ok = capture->finish(); !ok) print_error(ok.error());
     say_frames(capture, options, &MachineLog::print);
@@ -130,7 +130,7 @@ std::unique_ptr<Machine> build(MachineConfig config, ecat::Transport& transport,
     return std::move(std::get<0>(built));
 }
 
-int run_virtual(LoadedFile loaded, const Options& options) {
+int run_virtual(LoadedFile loaded, const RunOptions& options) {
     math::set_stepping_thread_float_environment();
     VirtualClock clock{Instant{}};
     World world{loaded.machine, clock.now()};
@@ -236,7 +236,7 @@ private:
 
 /// From here on nothing that may wait happens on a thread that somebody else waits for (docs/stopping.md).
 int serve_real(Machine& machine, World* world, ecat::RawSocketTransport* nic, Files files, const hmi::HmiConfig& hmi_config,
-               const Options& options) {
+               const RunOptions& options) {
     SystemClock clock;
     const auto start = clock.now();
     LineWriter out{STDOUT_FILENO, [&options](std::uint64_t count) {
@@ -359,7 +359,7 @@ int serve_real(Machine& machine, World* world, ecat::RawSocketTransport* nic, Fi
     return written == FileThread::End::complete ? code : static_cast<int>(exit_bad_file);
 }
 
-int run_real(LoadedFile loaded, const Options& options) {
+int run_real(LoadedFile loaded, const RunOptions& options) {
     SystemClock clock;
     std::unique_ptr<World> world;
     std::unique_ptr<ecat::RawSocketTransport> nic;
@@ -412,7 +412,7 @@ int run_real(LoadedFile loaded, const Options& options) {
 
 void add_run(CLI::App& app, Action& action) {
     auto* sub = app.add_subcommand("run", "run a machine");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<RunOptions>();
     sub->add_option("FILE", options->file, "machine file")->required();
     sub->add_flag("--simulate", options->simulate, "simulated bus and drives, whatever the file says");
     sub->add_flag("--virtual-time", options->virtual_time, "as fast as the CPU allows, bit-identical each time (simulated only)");

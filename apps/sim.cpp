@@ -24,7 +24,7 @@ namespace taktwerk::apps {
 
 namespace {
 
-struct Options {
+struct SimOptions {
     std::string file, nic;
     bool strict = false;
     double duration_s = 0;
@@ -151,7 +151,7 @@ std::uint64_t return_answers(ecat::LoopbackTransport& cable, ecat::RawSocketTran
     return sent;
 }
 
-int play(const Options& options) {
+int play(const SimOptions& options) {
     auto loaded = load_without_programs(options.file, true);
     if (!loaded) return exit_bad_file;
     auto opened = ecat::RawSocketTransport::open(options.nic);
@@ -223,7 +223,7 @@ int play(const Options& options) {
 
 void add_sim(CLI::App& app, Action& action) {
     auto* sub = app.add_subcommand("sim", "play the slaves of a machine file on a network interface, for any EtherCAT master");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<SimOptions>();
     sub->add_option("FILE", options->file, "machine file")->required();
     sub->add_option("--nic", options->nic, "network interface, e.g. eth1")->required();
     sub->add_flag("--strict", options->strict, "slaves that need SYNC0 refuse SAFEOP without it, as real ones do");

@@ -17,7 +17,7 @@ namespace {
 using runtime::SimulationEvent;
 using Kind = SimulationEvent::Kind;
 
-constexpr std::array<HappeningWord, 8> words{{
+constexpr std::array<HappeningWord, 8> all_happenings{{
     {"drive-fault", "AXIS CODE", "the drive raises this alarm (603Fh, or the number of an XP200)", Kind::drive_fault, 0},
     {"main-power-off", "AXIS", "the drive loses its main power", Kind::main_power, 0},
     {"main-power-on", "AXIS", "and gets it back", Kind::main_power, 1},
@@ -49,7 +49,7 @@ Error bad(std::string_view line, const HappeningWord& word) {
 
 }  // namespace
 
-std::span<const HappeningWord> happening_words() noexcept { return words; }
+std::span<const HappeningWord> happening_words() noexcept { return all_happenings; }
 
 Result<SimulationEvent> parse_happening(std::string_view line, const runtime::MachineConfig& machine) {
     std::istringstream in{std::string(line)};
@@ -63,8 +63,9 @@ Result<SimulationEvent> parse_happening(std::string_view line, const runtime::Ma
         event.at = from_seconds(delay.value);
         parts.erase(parts.begin(), parts.begin() + 2);
     }
-    const auto word = std::find_if(words.begin(), words.end(), [&](const auto& w) { return !parts.empty() && w.word == parts[0]; });
-    if (word == words.end()) return Error{"fault.unknown", std::string(line), "is no happening", "`help` lists them"};
+    const auto word =
+        std::find_if(all_happenings.begin(), all_happenings.end(), [&](const auto& w) { return !parts.empty() && w.word == parts[0]; });
+    if (word == all_happenings.end()) return Error{"fault.unknown", std::string(line), "is no happening", "`help` lists them"};
     const bool with_number = word->kind == Kind::drive_fault || word->kind == Kind::input;
     if (parts.size() != (with_number ? 3u : 2u)) return bad(line, *word);
     event.kind = word->kind;

@@ -11,7 +11,7 @@
 namespace taktwerk::apps {
 namespace {
 
-struct Options {
+struct SimulateOptions {
     RemoteOptions remote;
     std::vector<std::string> words;
 };
@@ -21,7 +21,7 @@ int help() {
     return exit_ok;
 }
 
-int simulate(const Options& options) {
+int simulate(const SimulateOptions& options) {
     if (options.words.empty() || options.words.front() == "help") return help();
     auto client = hmi::Client::connect(options.remote.machine);
     if (!client) return report(options.remote, client.error());
@@ -34,7 +34,7 @@ int simulate(const Options& options) {
 
 void add_simulate(CLI::App& app, Action& action) {
     auto* sub = app.add_subcommand("simulate", "press buttons, set analog values and provoke faults on a machine that runs simulated");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<SimulateOptions>();
     add_remote_options(*sub, options->remote);
     sub->add_option("WORDS", options->words, "e.g. `input start 1`, `after 2s drive-fault x 0x3130`, `unplug y_drive`; `help` lists them")
         ->expected(0, -1);

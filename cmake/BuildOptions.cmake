@@ -2,9 +2,13 @@
 # -ffp-contract=off: the same machine must give the same set-points to the last bit on every x86-64 (recordings replay).
 add_library(taktwerk_build_options INTERFACE)
 target_compile_features(taktwerk_build_options INTERFACE cxx_std_20)
+# Two warnings are of no use for files that are compiled together: a local name hides what another file calls its own, and every file of the
+# group counts as a header, whose types must not have members from an unnamed namespace (libraries have such types, tests do not).
+set(single $<NOT:$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>)
+set(library $<STREQUAL:$<TARGET_PROPERTY:TYPE>,STATIC_LIBRARY>)
 target_compile_options(taktwerk_build_options INTERFACE
-  -ffp-contract=off -fno-math-errno -Wall -Wextra -Wpedantic $<$<NOT:$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>:-Wshadow> -Wconversion
-  -Wno-sign-conversion -Wnon-virtual-dtor)
+  -ffp-contract=off -fno-math-errno -Wall -Wextra -Wpedantic -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor
+  $<${single}:-Wshadow> $<$<AND:$<NOT:${single}>,${library},$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>)
 # Nobody replaces a function of ours from outside (programs get what they are handed): calls may be inlined although the code is
 # position independent. What ships only: a test's binary is linked more often than it is run.
 target_compile_options(taktwerk_build_options INTERFACE $<$<CONFIG:Release>:-fno-semantic-interposition>)

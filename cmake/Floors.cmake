@@ -4,6 +4,8 @@
 #   taktwerk_library(ecat/wire  DEPENDS core)          -> target taktwerk_ecat_wire from ecat/wire/*.cpp
 #   taktwerk_tests(ecat/wire    DEPENDS ecat/wire)     -> one binary per kind: ecat_wire_unit, ecat_wire_property, ...
 #
+# SINGLE, before DEPENDS: the library's files compile each alone, whatever TAKTWERK_UNITY_LIBRARIES says.
+#
 # Sources are globbed (CONFIGURE_DEPENDS): adding a file needs no edit here.
 # A dependency is a folder ("ecat/wire") or a target ("fmt::fmt", yaml-cpp); a folder may be listed before its target exists.
 
@@ -27,13 +29,27 @@ function(taktwerk_link target visibility)
   endforeach()
 endfunction()
 
+# Eight files compile in the time of three: most of it goes into headers. What files call their own in unnamed namespaces has to differ
+# within a library or a test's binary therefore.
+set(TAKTWERK_UNITY 8 CACHE STRING "tests compiled together; 0: each alone")
+set(TAKTWERK_UNITY_LIBRARIES 8 CACHE STRING "a library's files compiled together; 0: each alone, as in the clang preset")
+
+function(taktwerk_compile_together target files)
+  if(files)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${files})
+  endif()
+endfunction()
+
 function(taktwerk_library folder)
-  cmake_parse_arguments(ARG "" "" "DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "SINGLE" "" "DEPENDS" ${ARGN})
   taktwerk_target_name(${folder} target)
   file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/${folder}/*.cpp")
   if(sources)
     set(visibility PUBLIC)
     add_library(${target} STATIC ${sources})
+    if(NOT ARG_SINGLE)
+      taktwerk_compile_together(${target} ${TAKTWERK_UNITY_LIBRARIES})
+    endif()
   else()
     set(visibility INTERFACE)  # headers only, so far
     add_library(${target} INTERFACE)
@@ -83,9 +99,6 @@ function(taktwerk_test_headers target)
   target_precompile_headers(${target} REUSE_FROM taktwerk_test_headers)
 endfunction()
 
-# Eight tests compile in the time of three. What they call their own in unnamed namespaces has to differ within a binary therefore.
-set(TAKTWERK_UNITY 8 CACHE STRING "tests compiled together; 0: each alone")
-
 # tests/<folder>/*_<kind>.cpp -> binary <folder>_<kind> with CTest label <kind>.
 function(taktwerk_tests folder)
   if(NOT TAKTWERK_TESTS)
@@ -104,9 +117,7 @@ function(taktwerk_tests folder)
         TAKTWERK_SOURCE_DIR="${PROJECT_SOURCE_DIR}" TAKTWERK_BINARY_DIR="${PROJECT_BINARY_DIR}")
       taktwerk_link(${binary} PRIVATE ${ARG_DEPENDS} GTest::gmock_main)
       taktwerk_test_headers(${binary})
-      if(TAKTWERK_UNITY)
-        set_target_properties(${binary} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${TAKTWERK_UNITY})
-      endif()
+      taktwerk_compile_together(${binary} ${TAKTWERK_UNITY})
       add_test(NAME ${binary} COMMAND ${binary} WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}")
       set_tests_properties(${binary} PROPERTIES LABELS ${kind} TIMEOUT 300)
     endif()

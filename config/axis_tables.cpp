@@ -209,7 +209,7 @@ Table<runtime::PrintedMarks> printed_marks_table() {
     return table;
 }
 
-Table<AxisSimulation> simulation_table() {
+Table<AxisSimulation> axis_simulation_table() {
     using S = AxisSimulation;
     return {"simulation",
             "The mechanics of the simulated axis. Positions are machine coordinates: 0 is where the homed axis will say 0.",
@@ -362,7 +362,7 @@ Table<AxisBinding> axis_table() {
               "a drive that takes longer to enable is an alarm"),
     };
     include_fields(f, axis, Table<A>{{}, {}, std::move(own), {}, {}});
-    f.push_back(field("simulation", &AxisBinding::simulation, section(simulation_table()), "mechanics of the simulated axis"));
+    f.push_back(field("simulation", &AxisBinding::simulation, section(axis_simulation_table()), "mechanics of the simulated axis"));
     table.before = [](Reader& reader, const Node&, AxisBinding& b) { reader.axis_unit = b.axis.unit; };
     return table;
 }

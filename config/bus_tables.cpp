@@ -32,7 +32,7 @@ Table<Terminal> terminal_table() {
     return table;
 }
 
-Table<ecat::ModuleSelection> module_table() {
+Table<ecat::ModuleSelection> module_selection_table() {
     using M = ecat::ModuleSelection;
     return {"bus.slaves.modules",
             "The module in one slot of a modular slave.",
@@ -89,7 +89,7 @@ Table<SlaveEntry> slave_table() {
                 "as the slave has it"),
             with_default(field("sync1", &S::sync1, maybe(duration()), "run SYNC1 too, this long after SYNC0"), "not used"),
             field("sync_start", &S::sync_start, sync_start(), "when SYNC0 starts; some slaves refuse it before SAFEOP"),
-            field("modules", &S::modules, list(section(module_table())), "what is in the slots of a modular slave"),
+            field("modules", &S::modules, list(section(module_selection_table())), "what is in the slots of a modular slave"),
             group<S>("pdo", "Other process data than the profile's mapping: objects (607Ah, ...) or whole PDOs (1702h).",
                      {
                          field("rx", &S::rx, list(object_address()), "to the drive"),

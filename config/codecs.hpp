@@ -33,6 +33,9 @@ namespace taktwerk::config {
 /// The integer in [minimum, maximum], decimal, 0x.. or ..h.
 [[nodiscard]] std::optional<std::int64_t> read_integer(Reader& reader, const Node& node, std::int64_t minimum, std::int64_t maximum);
 
+/// The largest values of unsigned objects, for `integer`.
+inline constexpr std::int64_t u8 = 0xFF, u16 = 0xFFFF, u32 = 0xFFFFFFFF;
+
 template <class M>
 Codec<M> integer(std::int64_t minimum, std::int64_t maximum) {
     Codec<M> c;

@@ -15,8 +15,6 @@ using ecat::Mappable;
 using ecat::ObjectEntry;
 using ecat::SmUse;
 
-constexpr std::int64_t u8 = 0xFF, u16 = 0xFFFF, u32 = 0xFFFFFFFF;
-
 Table<ecat::Identity> identity_pair_table() {
     using I = ecat::Identity;
     return {"identity.also_accepted",

@@ -12,8 +12,6 @@ using axes::DriveAlarmText;
 
 namespace {
 
-constexpr std::int64_t u16 = 0xFFFF, u32 = 0xFFFFFFFF;
-
 Codec<axes::DriveAlarmKind> alarm_kind() {
     using K = axes::DriveAlarmKind;
     return choice<K>({{"other", K::other},

@@ -12,8 +12,6 @@ using axes::Quirk;
 
 namespace {
 
-constexpr std::int64_t u16 = 0xFFFF;
-
 Codec<axes::DriveStop> drive_stop() {
     return choice<axes::DriveStop>({{"coast", axes::DriveStop::coast}, {"ramp", axes::DriveStop::ramp}});
 }

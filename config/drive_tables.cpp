@@ -15,7 +15,6 @@ namespace {
 
 using ecat::DeviceDescription;
 
-constexpr std::int64_t u32 = 0xFFFFFFFF;
 /// Objects below belong to the communication, not to an axis.
 constexpr std::uint16_t first_axis_object = 0x2000;
 

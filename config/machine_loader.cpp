@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string joined(const std::vector<std::string>& words) {
+std::string names_or_none(const std::vector<std::string>& words) {
     std::string out;
     for (const auto& word : words) out += (out.empty() ? "" : ", ") + word;
     return out.empty() ? "none" : out;
@@ -149,7 +149,8 @@ private:
         const auto names = drives_.names();
         const auto near = nearest_name(profile, names);
         problem(here + ".profile", "config.unknown_profile",
-                fmt::format("there is no drive type '{}' in {} (there is: {})", profile, joined(drives_.folders()), joined(names)),
+                fmt::format("there is no drive type '{}' in {} (there is: {})", profile, names_or_none(drives_.folders()),
+                            names_or_none(names)),
                 near.empty() ? "correct the name, or add its file" : fmt::format("did you mean `{}`?", near));
     }
 
@@ -291,7 +292,7 @@ private:
                 if (try_path(fs::path(folder) / written)) return;
         }
         problem(fmt::format("programs.{}.library", program.name), "config.no_library",
-                fmt::format("there is no program library {}", joined(searched)), "build the program, or correct the path");
+                fmt::format("there is no program library {}", names_or_none(searched)), "build the program, or correct the path");
     }
 
     /// Every simulated slave hangs behind one that stands before it on the cable, each socket has one cable.
@@ -304,7 +305,7 @@ private:
             const auto self = std::find(names.begin(), names.end(), wire.slave);
             const auto report = [&](const std::string& name) {
                 const auto near = nearest_name(name, names);
-                problem(here, "simulation.unknown_slave", fmt::format("there is no slave '{}' (there is: {})", name, joined(names)),
+                problem(here, "simulation.unknown_slave", fmt::format("there is no slave '{}' (there is: {})", name, names_or_none(names)),
                         near.empty() ? "correct the name" : fmt::format("did you mean `{}`?", near));
             };
             if (self == names.end()) {
@@ -348,7 +349,7 @@ private:
                                 : event.kind == Kind::slave_power ? "slave"
                                 : event.kind == Kind::serial_line ? "serial line"
                                                                   : "axis",
-                                event.target, joined(known)),
+                                event.target, names_or_none(known)),
                     near.empty() ? "correct the name" : fmt::format("did you mean `{}`?", near));
         }
     }

@@ -72,7 +72,7 @@ std::string named(const axes::DriveProfile& profile, axes::ParameterAddress obje
     return axes::object_text(object);
 }
 
-std::string joined(const std::vector<std::int64_t>& values) {
+std::string either_of(const std::vector<std::int64_t>& values) {
     std::string out;
     for (const auto value : values) out += (out.empty() ? "" : " or ") + std::to_string(value);
     return out;
@@ -117,7 +117,7 @@ void hold_up_to_required(Reader& reader, const std::vector<Said>& said, const ax
             const auto why = known_cycle ? fmt::format("{} means {} us, the bus exchanges every {} us", one.value,
                                                        row.cycles[place].count() / 1000, axis.cycle.count() / 1000)
                              : by_cycle  ? fmt::format("{} is no cycle", one.value)
-                                         : fmt::format("it must be {}", joined(row.values));
+                                         : fmt::format("it must be {}", either_of(row.values));
             reader.problem(one.where, "config.setting_contradicts",
                            fmt::format("{} = {}: {}; axis '{}' would not be enabled: {} [{} {}]", named(profile, one.object), one.value,
                                        why, axis.name, row.text, profile.name, row.section),

@@ -80,7 +80,7 @@ Table<axes::MotorObjects> motor_table() {
         {}};
 }
 
-Table<axes::InputObjects> input_table() {
+Table<axes::InputObjects> input_objects_table() {
     using I = axes::InputObjects;
     using U = axes::InputUse;
     const auto use = choice<U>({{"negative_limit", U::negative_limit}, {"positive_limit", U::positive_limit}, {"home", U::home}});
@@ -237,7 +237,7 @@ Table<axes::BehaviourObjects> behaviour_table() {
     f.push_back(field("least_voltage", &B::least_voltage, object, "V of the supply, below it an alarm"));
     f.push_back(field("greatest_voltage", &B::greatest_voltage, object, "V of the supply, above it an alarm"));
     f.push_back(field("motor", &B::motor, section(motor_table()), "which motor hangs on it"));
-    f.push_back(field("inputs", &B::inputs, section(input_table()), "switches on its own terminals"));
+    f.push_back(field("inputs", &B::inputs, section(input_objects_table()), "switches on its own terminals"));
     f.push_back(field("state", &B::state, section(state_table()), "objects that show state and errors"));
     return table;
 }

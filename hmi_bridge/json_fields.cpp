@@ -9,13 +9,13 @@
 
 namespace taktwerk::hmi {
 
-using Json = nlohmann::json;
-
 Error request_error(std::string code, std::string what, std::string remedy) {
     return {"request." + code, "", std::move(what), std::move(remedy)};
 }
 
-std::string shown(std::string_view text) { return Json(text.substr(0, 64)).dump(-1, ' ', true, Json::error_handler_t::replace); }
+std::string shown(std::string_view text) {
+    return nlohmann::json(text.substr(0, 64)).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+}
 
 std::string JsonFields::text(std::string_view key, bool required) {
     const auto* value = find(key, required);
@@ -58,7 +58,7 @@ void JsonFields::finish() {
     }
 }
 
-const Json* JsonFields::find(std::string_view key, bool required) {
+const nlohmann::json* JsonFields::find(std::string_view key, bool required) {
     known_.emplace_back(key);
     const auto found = json_.find(std::string(key));
     if (found != json_.end()) return &*found;

@@ -14,13 +14,12 @@
 #include "core/nearest_name.hpp"
 #include "hmi_bridge/answer_line.hpp"
 #include "hmi_bridge/json_state.hpp"
+#include "hmi_bridge/line_handler.hpp"
 #include "hmi_bridge/peer_name.hpp"
 #include "hmi_bridge/words.hpp"
 
 namespace taktwerk::hmi {
 namespace {
-
-using Json = nlohmann::json;
 
 constexpr std::array<std::string_view, 5> questions{"hello", "layout", "state", "alarms", "simulate"};
 struct DriveWord {
@@ -33,7 +32,6 @@ constexpr std::array<DriveWord, 4> drive_words{{
     {"drive_store", DriveRequestKind::store},
     {"drive_clear_turns", DriveRequestKind::clear_turns},
 }};
-constexpr int deepest_nesting = 4;
 constexpr std::size_t most_keys = 64;  ///< of one request; no command has ten
 
 std::string_view key_of(TargetKind target) {
@@ -48,20 +46,20 @@ std::string_view key_of(TargetKind target) {
     return "";
 }
 
-Result<Json> parse(std::string_view line) {
+Result<nlohmann::json> parse(std::string_view line) {
     bool too_deep = false;
     std::vector<std::string> keys;
     std::optional<std::string> twice;  // the last one would win, and whoever looks at the first sees another request
-    const auto bounded = [&](int depth, Json::parse_event_t event, Json& value) {
+    const auto bounded = [&](int depth, nlohmann::json::parse_event_t event, nlohmann::json& value) {
         too_deep = too_deep || depth > deepest_nesting;
-        if (event == Json::parse_event_t::key && depth == 1 && keys.size() < most_keys) {
+        if (event == nlohmann::json::parse_event_t::key && depth == 1 && keys.size() < most_keys) {
             const auto& key = value.get_ref<const std::string&>();
             if (!twice && std::find(keys.begin(), keys.end(), key) != keys.end()) twice = key;
             keys.push_back(key);
         }
         return !too_deep;
     };
-    auto json = Json::parse(line, bounded, false);
+    auto json = nlohmann::json::parse(line, bounded, false);
     if (too_deep)
         return request_error("too_deep", fmt::format("the request is nested deeper than {} levels", deepest_nesting),
                              "Send one flat JSON object a line.");
@@ -216,7 +214,7 @@ void JsonRequests::on_request(ConnectionId connection, std::string_view line, In
                                            {"pid", ::getpid()},
                                            {"cycling", snapshot_ != nullptr && !stuck},
                                            {"progress", stuck ? *stuck : progress_}};
-        return with("hello", hello.dump(-1, ' ', false, Json::error_handler_t::replace));
+        return with("hello", hello.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
     }
     if (cmd == "layout") return with("layout", layout_json(machine_.layout()));
     if (!snapshot_)
@@ -256,14 +254,14 @@ void JsonRequests::step(Instant now) {
             refuse(done->tag, done->id, *done->error);
             continue;
         }
-        nlohmann::ordered_json line{{"id", Json::parse(done->id)}, {"ok", true}};
+        nlohmann::ordered_json line{{"id", nlohmann::json::parse(done->id)}, {"ok", true}};
         if (!done->parameter.empty()) line["parameter"] = done->parameter;
         if (!done->bytes.empty()) {
             line["shown"] = done->shown;
             auto& bytes = line["bytes"] = nlohmann::ordered_json::array();
             for (const auto b : done->bytes) bytes.push_back(std::to_integer<int>(b));
         }
-        answer(done->tag, line.dump(-1, ' ', false, Json::error_handler_t::replace));
+        answer(done->tag, line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
     }
 }
 
@@ -272,7 +270,7 @@ void JsonRequests::deliver(const CommandReply& reply) {
     if (found == connections_.end()) return;
     const auto id = std::to_string(reply.sequence);
     if (reply.accepted() && !reply.note.empty())
-        answer(found->second, fmt::format(R"({{"id":{},"ok":true,"note":{}}})", id, Json(reply.note).dump()));
+        answer(found->second, fmt::format(R"({{"id":{},"ok":true,"note":{}}})", id, nlohmann::json(reply.note).dump()));
     else if (reply.accepted()) answer(found->second, accepted_line(id));
     else refuse(found->second, id, reply.error);
 }

@@ -8,15 +8,13 @@
 #include "ecat/wire/al_status.hpp"
 #include "hmi_bridge/event_text.hpp"
 #include "hmi_bridge/json_number.hpp"
+#include "hmi_bridge/message_count.hpp"
 #include "hmi_bridge/words.hpp"
 
 namespace taktwerk::hmi {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::int64_t count(Duration d) { return d.count(); }
-std::int64_t count(Instant t) { return t.time_since_epoch().count(); }
 
 std::string text(Json json) {
     spell_out_numbers(json);

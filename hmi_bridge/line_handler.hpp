@@ -11,6 +11,9 @@ namespace taktwerk::hmi {
 
 using ConnectionId = std::uint64_t;
 
+/// Of the JSON in a line: who reads a request and who looks for a stop in it refuse what is deeper.
+inline constexpr int deepest_nesting = 4;
+
 /// The other end of a local socket, as the kernel vouches for it.
 struct Peer {
     int pid = 0;

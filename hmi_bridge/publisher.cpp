@@ -8,6 +8,7 @@
 #include "axes/axis/error_table.hpp"
 #include "hmi_bridge/command_words.hpp"
 #include "hmi_bridge/event_text.hpp"
+#include "hmi_bridge/message_count.hpp"
 #include "hmi_bridge/words.hpp"
 #include "taktwerk_lcm/alarm_list_v1_t.hpp"
 #include "taktwerk_lcm/axis_holder_v1_t.hpp"
@@ -30,9 +31,6 @@ constexpr Duration alarm_period = std::chrono::milliseconds{500};
 constexpr Duration holder_period = std::chrono::milliseconds{500};
 constexpr Duration heartbeat_period = std::chrono::milliseconds{100};
 
-std::int64_t count(Duration d) { return d.count(); }
-std::int64_t count(Instant t) { return t.time_since_epoch().count(); }
-std::int64_t count(std::uint64_t n) { return static_cast<std::int64_t>(n); }
 template <class E>
 constexpr std::int32_t number(E value) {
     return static_cast<std::int32_t>(value);

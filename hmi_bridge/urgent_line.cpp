@@ -5,15 +5,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include "hmi_bridge/line_handler.hpp"
 #include "hmi_bridge/target_names.hpp"
 
 namespace taktwerk::hmi {
 namespace {
 
-using Json = nlohmann::json;
-
 constexpr std::size_t longest_line = 1024;
-constexpr int deepest_nesting = 4;
 
 /// As it is written, wherever in the line: who asks for one must not have to write the rest without a fault.
 bool asks_for(std::string_view line, std::string_view command) {
@@ -38,7 +36,7 @@ bool may_be(std::string_view line) {
     return false;
 }
 
-std::optional<std::uint16_t> axis_of(const Json& line, const runtime::MachineLayout& layout, bool or_all) {
+std::optional<std::uint16_t> axis_of(const nlohmann::json& line, const runtime::MachineLayout& layout, bool or_all) {
     const auto found = line.find("axis");
     if (found == line.end()) return or_all ? std::optional<std::uint16_t>{all_axes} : std::nullopt;
     if (!found->is_string()) return std::nullopt;
@@ -55,18 +53,18 @@ std::optional<UrgentLine> urgent_line(std::string_view line, const runtime::Mach
     if (!may_be(line)) return std::nullopt;
     bool too_deep = false, twice = false, asks_for_a_stop = false, at_cmd = false;
     std::vector<std::string> keys;
-    const auto looked_at = [&](int depth, Json::parse_event_t event, Json& value) {
+    const auto looked_at = [&](int depth, nlohmann::json::parse_event_t event, nlohmann::json& value) {
         too_deep = too_deep || depth > deepest_nesting;
-        if (event == Json::parse_event_t::key && depth == 1) {
+        if (event == nlohmann::json::parse_event_t::key && depth == 1) {
             const auto& key = value.get_ref<const std::string&>();
             at_cmd = key == "cmd";
             twice = twice || std::find(keys.begin(), keys.end(), key) != keys.end();
             keys.push_back(key);
         }
-        if (event == Json::parse_event_t::value && depth == 1) asks_for_a_stop = asks_for_a_stop || (at_cmd && value == "stop");
+        if (event == nlohmann::json::parse_event_t::value && depth == 1) asks_for_a_stop = asks_for_a_stop || (at_cmd && value == "stop");
         return !too_deep;
     };
-    const auto json = Json::parse(line, looked_at, false);
+    const auto json = nlohmann::json::parse(line, looked_at, false);
     const UrgentLine unclear_stop{UrgentLine::Kind::stop, all_axes, false, true};
     if (too_deep || !json.is_object()) return asks_for(line, "\"stop\"") ? std::optional{unclear_stop} : std::nullopt;
     if (twice && !asks_for_a_stop)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "axes/coupling/relative_rounding.hpp"
 #include "axes/planner/plan.hpp"
 #include "core/math.hpp"
 
@@ -10,8 +11,7 @@ namespace taktwerk::axes {
 
 namespace {
 
-constexpr double least_share = 0.2;  // of the acceleration that is left to catch up beside a master's own
-constexpr double rounding = 1e-9;
+constexpr double least_catch_up_share = 0.2;  // of the acceleration that is left to catch up beside a master's own
 
 double sign(double value) noexcept { return value > 0 ? 1.0 : value < 0 ? -1.0 : 0.0; }
 
@@ -47,7 +47,7 @@ struct Line {
 Line foreseen(const GearDemand& gear, double velocity, double sense, const Bounds& bounds, const FollowerLimits& limits) noexcept {
     if (velocity != gear.velocity) return {velocity, 0};
     const double room = sense * gear.acceleration >= 0 ? limits.room(sense) - std::abs(velocity) : std::abs(velocity);
-    const double most = released_over(room, bounds.jerk), share = 1 - least_share;
+    const double most = released_over(room, bounds.jerk), share = 1 - least_catch_up_share;
     return {velocity, std::clamp(std::clamp(gear.acceleration, -share * bounds.down, share * bounds.up), -most, most)};
 }
 
@@ -89,7 +89,7 @@ CatchUp::Step CatchUp::next(const MotionState& before, const GearDemand& gear, c
     const bool turns_seemingly = gear.velocity * gear.trend < 0 && std::abs(gear.velocity) > noise;
     const double goal = limits.inside(turns_seemingly ? 0.0 : gear.velocity);
     auto bounds = bounds_of(v, goal, limits);
-    const double up = bounds.up * (1 + rounding), down = bounds.down * (1 + rounding);
+    const double up = bounds.up * (1 + relative_rounding), down = bounds.down * (1 + relative_rounding);
     const double sense = goal != 0 ? sign(goal) : sign(v);
     const bool keeps_sense = v * sense >= 0;
     auto line = foreseen(gear, goal, sense, bounds, limits);
@@ -127,15 +127,15 @@ CatchUp::Step CatchUp::next(const MotionState& before, const GearDemand& gear, c
     const bool follows = goal == gear.velocity && gear.acceleration <= up && gear.acceleration >= -down;
     if (!follows || std::abs(unrest_.step()) > std::max(up, down) * period + noise) return out;
     if (!std::isfinite(bounds.jerk)) {
-        out.caught = met.duration <= period * (1 + rounding);
+        out.caught = met.duration <= period * (1 + relative_rounding);
         out.place = out.state.position;
         return out;
     }
     // A cycle's jerk, what the master itself changes its acceleration by, and what it is unsteady by anyway.
-    const double jerk = bounds.jerk * period * (1 + rounding), change = unrest_.change();
+    const double jerk = bounds.jerk * period * (1 + relative_rounding), change = unrest_.change();
     const double off = gear.velocity - v - (a + gear.acceleration) / 2 * period;
-    out.caught = std::abs(gear.acceleration - a) <= jerk + change + noise / period + rounding * limits.axis.acceleration &&
-                 std::abs(off) <= (jerk / 4 + change) * period + noise + rounding * limits.axis.velocity;
+    out.caught = std::abs(gear.acceleration - a) <= jerk + change + noise / period + relative_rounding * limits.axis.acceleration &&
+                 std::abs(off) <= (jerk / 4 + change) * period + noise + relative_rounding * limits.axis.velocity;
     out.place = before.position + ((v + gear.velocity) / 2 + (a - gear.acceleration) / 12 * period) * period;
     return out;
 }

@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "axes/coupling/relative_rounding.hpp"
 #include "core/math.hpp"
 
 namespace taktwerk::axes {
 
 namespace {
 
-constexpr double least_share = 0.2;   // of the acceleration that is left for a difference beside a fast relation
-constexpr double least_room = 0.01;   // of the velocity
-constexpr double noticed = 1.0 / 64;  // of the slave's limits: a relation that changes by less is the one foreseen
-constexpr double rounding = 1e-9;
+constexpr double least_difference_share = 0.2;  // of the acceleration that is left for a difference beside a fast relation
+constexpr double least_room = 0.01;             // of the velocity
+constexpr double noticed = 1.0 / 64;            // of the slave's limits: a relation that changes by less is the one foreseen
 
 MotionState sum(const MotionState& a, const MotionState& b) noexcept {
     return {a.position + b.position, a.velocity + b.velocity, a.acceleration + b.acceleration};
@@ -39,7 +39,7 @@ MotionState reachable(const MotionState& relation, const FollowerLimits& limits)
     const double margin = least_room * limits.axis.velocity;
     MotionState out = relation;
     out.velocity = std::clamp(relation.velocity, -std::max(0.0, limits.backward - margin), std::max(0.0, limits.forward - margin));
-    const double most = (1 - least_share) * either_way(limits.approach);
+    const double most = (1 - least_difference_share) * either_way(limits.approach);
     out.acceleration = out.velocity != relation.velocity ? 0.0 : std::clamp(relation.acceleration, -most, most);
     return out;
 }
@@ -132,12 +132,12 @@ bool Follower::possible(const MotionState& wanted, const MotionState& before, do
     const double step = wanted.velocity - before.velocity;
     const double mean = (wanted.position - before.position) / period;
     const auto allowed = [&](double velocity) noexcept {
-        return std::abs(velocity - limits_.inside(velocity)) <= rounding * axis.velocity;
+        return std::abs(velocity - limits_.inside(velocity)) <= relative_rounding * axis.velocity;
     };
-    const bool follows = std::abs(mean - (wanted.velocity + before.velocity) / 2) <= most / 2 + rounding * axis.velocity;
+    const bool follows = std::abs(mean - (wanted.velocity + before.velocity) / 2) <= most / 2 + relative_rounding * axis.velocity;
     // Nothing of it holds of something that is not a number.
-    return follows && std::abs(step) <= most * (1 + rounding) + rounding * rounding * axis.velocity && allowed(wanted.velocity) &&
-           allowed(mean);
+    return follows && std::abs(step) <= most * (1 + relative_rounding) + relative_rounding * relative_rounding * axis.velocity &&
+           allowed(wanted.velocity) && allowed(mean);
 }
 
 /// The velocity as far as it can be had, and the place to which it leads.
@@ -168,7 +168,7 @@ MotionState Follower::catch_up(const MotionState& relation, const MotionState& b
     }
     // Its accelerations are inside, but for what the slave brought along; the velocity limit may have come down on it.
     const double velocity = next.state.velocity;
-    const bool inside = std::abs(velocity - limits_.inside(velocity)) <= rounding * limits_.axis.velocity;
+    const bool inside = std::abs(velocity - limits_.inside(velocity)) <= relative_rounding * limits_.axis.velocity;
     held_back_ = next.held_back || !inside;
     return inside ? next.state : kept_inside(next.state, before, period);
 }

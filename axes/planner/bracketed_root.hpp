@@ -2,9 +2,9 @@
 // The root of a monotone function inside a bracket: Newton's method, halving where it does not help. Internal to the planner.
 
 #include <cmath>
-#include <limits>
 
 #include "axes/planner/plan_limits.hpp"
+#include "axes/planner/precision.hpp"
 
 namespace taktwerk::axes {
 
@@ -21,7 +21,7 @@ template <typename F>
 [[nodiscard]] double bracketed_root(F&& f, double low, double high, double guess, bool rising) noexcept {
     double x = guess > low && guess < high ? guess : low + (high - low) / 2;
     double best = x;
-    double best_miss = std::numeric_limits<double>::infinity();
+    double best_miss = infinity;
     double last_miss = best_miss;
     for (int i = 0; i < max_root_steps; ++i) {
         const RootSample y = f(x);
@@ -33,7 +33,7 @@ template <typename F>
         if (miss <= y.rounding) break;
         ((y.value < 0) == rising ? low : high) = x;
         const double step = y.value / y.slope;
-        const bool tiny = step != 0 && std::abs(step) <= 8 * std::numeric_limits<double>::epsilon() * x;  // misses are rounding errors here
+        const bool tiny = step != 0 && std::abs(step) <= 8 * epsilon * x;  // misses are rounding errors here
         double next = x - step;
         if (!(next > low && next < high) || (miss > last_miss / 2 && !tiny)) {
             if (tiny) break;

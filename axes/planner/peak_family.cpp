@@ -5,14 +5,12 @@
 
 #include "axes/planner/climb_polynomial.hpp"
 #include "axes/planner/families.hpp"
+#include "axes/planner/precision.hpp"
 #include "core/math.hpp"
 
 namespace taktwerk::axes {
 
 namespace {
-
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Of a positive number, within 0.1 %: a third of the exponent and one step of Halley's (math::cbrt takes four).
 double rough_cbrt(double x) noexcept {

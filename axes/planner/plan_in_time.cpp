@@ -12,13 +12,12 @@
 #include "axes/planner/mixture.hpp"
 #include "axes/planner/plan.hpp"
 #include "axes/planner/plan_checks.hpp"
+#include "axes/planner/precision.hpp"
 #include "axes/planner/reduced_problem.hpp"
 
 namespace taktwerk::axes {
 
 namespace {
-
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 /// A ramp to velocity c, c held, a ramp to the end: with the time given, the end rises with c, whatever the signs of the velocities.
 class Plateau {

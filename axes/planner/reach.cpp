@@ -7,6 +7,7 @@
 #include "axes/planner/bracketed_root.hpp"
 #include "axes/planner/plan.hpp"
 #include "axes/planner/plan_checks.hpp"
+#include "axes/planner/precision.hpp"
 #include "axes/planner/ramp.hpp"
 #include "core/math.hpp"
 
@@ -14,7 +15,6 @@ namespace taktwerk::axes {
 
 namespace {
 
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
 /// In coordinates where the distance is positive.

@@ -8,6 +8,7 @@
 #include "axes/planner/brake_choice.hpp"
 #include "axes/planner/extremal.hpp"
 #include "axes/planner/plan_checks.hpp"
+#include "axes/planner/precision.hpp"
 
 namespace taktwerk::axes {
 
@@ -72,7 +73,6 @@ struct ReducedProblem {
     /// error would cost time that grows with its cube root, and more where both ends move: a target just missed has to be approached
     /// again. From rest or to rest one unit in the last place is a move.
     [[nodiscard]] double rounding() const noexcept {
-        constexpr double epsilon = std::numeric_limits<double>::epsilon();
         const bool both_move = (problem.v0 != 0 || problem.a0 != 0) && (problem.v1 != 0 || problem.a1 != 0);
         double known_to = std::max(std::abs(from.position), std::abs(target.position)) * (both_move ? 4 : 0.5) + 2 * brake.path();
         if (both_move) {
@@ -91,7 +91,7 @@ struct ReducedProblem {
         return Profile{from, forward.stretches(), motion.backward.stretches(), target};
     }
 
-    static constexpr double slack = 16 * std::numeric_limits<double>::epsilon();
+    static constexpr double slack = 16 * epsilon;
 
     MotionState from;
     MotionState target;

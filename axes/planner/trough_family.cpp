@@ -2,16 +2,10 @@
 #include <cmath>
 
 #include "axes/planner/families.hpp"
+#include "axes/planner/precision.hpp"
 #include "axes/planner/turning_point.hpp"
 
 namespace taktwerk::axes {
-
-namespace {
-
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-}  // namespace
 
 TroughFamily::TroughFamily(const Problem& problem) noexcept : problem_{problem} {
     if (!(problem.a1 > 0) || problem.limits.jerk_free()) return;

@@ -5,12 +5,12 @@
 
 #include "axes/sim/communication_error.hpp"
 #include "axes/sim/object_table.hpp"
+#include "axes/sim/status_bit.hpp"
 
 namespace taktwerk::axes::sim {
 
 namespace {
 
-constexpr std::uint16_t bit(unsigned n) { return static_cast<std::uint16_t>(1u << n); }
 constexpr std::int64_t zero_torque_ignored = 1, zero_speed_ignored = 2, velocity_offset_used = 16;
 
 AlarmCode alarm_of(const DriveProfile& profile, DriveAlarmKind kind, AlarmCode otherwise) {
@@ -164,9 +164,9 @@ void Behaviour::stop_at_limits(const AxisInputs& in, Cia402Axis& axis) noexcept 
 void Behaviour::show(AxisOutputs& out, const Cia402Axis& axis) noexcept {
     demand_ = out.demand;
     const auto& variant = units_.variant();
-    if (clock_bit_8_ && sync0_ && watches_sync() && clock_locks_) out.status |= bit(8);
-    if (standstill_bit_14_ && axis.stands()) out.status |= bit(14);
-    if (variant.cyclic_bit_12 && mode::cyclic(out.mode) && axis.state() == Cia402Axis::State::enabled) out.status |= bit(12);
+    if (clock_bit_8_ && sync0_ && watches_sync() && clock_locks_) out.status |= status_bit(8);
+    if (standstill_bit_14_ && axis.stands()) out.status |= status_bit(14);
+    if (variant.cyclic_bit_12 && mode::cyclic(out.mode) && axis.state() == Cia402Axis::State::enabled) out.status |= status_bit(12);
     out.status = static_cast<std::uint16_t>(out.status & ~variant.status_hidden);
     // The drive's inputs 1 and 2 are those of the probes; SV-DA200 4.6.
     if (units_.present()) {

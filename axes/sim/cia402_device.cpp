@@ -4,16 +4,13 @@
 
 #include "axes/port/drive_scale.hpp"
 #include "axes/sim/object_table.hpp"
+#include "axes/sim/set_if_there.hpp"
 
 namespace taktwerk::axes::sim {
 
 namespace {
 
 using ecat::sim::Entry;
-
-void put(Entry* entry, std::int64_t v) noexcept {
-    if (entry) entry->set(v);
-}
 
 void take(std::span<const InputObject> table, const std::vector<Entry*>& entries, AxisInputs& in) {
     for (std::size_t i = 0; i < entries.size(); ++i)
@@ -156,7 +153,7 @@ std::uint16_t Cia402Device::refuse(ecat::sim::EsmState from, ecat::sim::EsmState
 }
 
 void Cia402Device::entered(ecat::sim::EsmState state, Instant now) {
-    put(bus_state_, 10 + static_cast<std::int64_t>(state));  // SV-DA200 2.1 note 13
+    set_if_there(bus_state_, 10 + static_cast<std::int64_t>(state));  // SV-DA200 2.1 note 13
     const bool op = state == ecat::sim::EsmState::op;
     for (auto& axis : axes_) {
         if (operational_ && !op) axis.model->left_operational();
@@ -209,7 +206,7 @@ void Cia402Device::exchange(Instant now) {
         AxisOutputs out;
         axis.model->exchange(in, cycle_, out);
         axis.behaviour->show(out, *axis.model);
-        for (std::size_t i = 0; i < axis.answers.size(); ++i) put(axis.answers[i], answer_objects()[i].value(out));
+        for (std::size_t i = 0; i < axis.answers.size(); ++i) set_if_there(axis.answers[i], answer_objects()[i].value(out));
         std::int64_t detail = out.error_detail;
         if (out.error_code && detail == 0)
             for (const auto& row : alarms_)
@@ -217,14 +214,14 @@ void Cia402Device::exchange(Instant now) {
                     detail = row.detail;
                     break;
                 }
-        put(alarm_detail_, detail);
+        set_if_there(alarm_detail_, detail);
         if (&axis == &axes_.front()) {
             if ((out.status & status_fault) != 0 && !axis.faulted) display_.remember(out.error_code);
             display_.show(axis.model->powered(), out.error_code, out.error_detail);
         }
         announce(axis, (out.status & status_fault) != 0, out.error_code, static_cast<std::uint32_t>(detail));
     }
-    for (const auto& held : held_) put(held.entry, held.value);
+    for (const auto& held : held_) set_if_there(held.entry, held.value);
     cause_ = {};
 }
 

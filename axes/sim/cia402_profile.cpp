@@ -10,8 +10,8 @@ namespace taktwerk::axes::sim {
 
 namespace {
 
-constexpr double default_position_window = 10;  // counts, of drives without 6067h
-constexpr std::int64_t at_once = 0xFFFFFFFF;    // 6087h (SV33-E 7.3: default 2^32 - 1)
+constexpr double default_position_window = 10;       // counts, of drives without 6067h
+constexpr std::int64_t torque_at_once = 0xFFFFFFFF;  // 6087h (SV33-E 7.3: default 2^32 - 1)
 
 }  // namespace
 
@@ -89,7 +89,7 @@ void Cia402Axis::ramp_velocity(double dt) noexcept {
 }
 
 void Cia402Axis::ramp_torque(double dt) noexcept {
-    if (settings_.torque_slope < 0 || settings_.torque_slope == at_once) {
+    if (settings_.torque_slope < 0 || settings_.torque_slope == torque_at_once) {
         torque_demand_ = torque_target_;
         return;
     }

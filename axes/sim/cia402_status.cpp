@@ -3,14 +3,9 @@
 #include <cmath>
 
 #include "axes/sim/cia402_axis.hpp"
+#include "axes/sim/status_bit.hpp"
 
 namespace taktwerk::axes::sim {
-
-namespace {
-
-constexpr std::uint16_t bit(unsigned n) { return static_cast<std::uint16_t>(1u << n); }
-
-}  // namespace
 
 std::uint16_t Cia402Axis::status_word() const noexcept {
     if (state_ == State::not_ready) return 0;
@@ -26,35 +21,36 @@ std::uint16_t Cia402Axis::status_word() const noexcept {
         case State::fault_reaction: word = 0x0F; break;
         case State::fault: word = personality_.fault_pattern_f ? 0x0F : 0x08; break;
     }
-    if (main_power_) word |= bit(4);
+    if (main_power_) word |= status_bit(4);
     const bool faulted = state_ == State::fault_reaction || state_ == State::fault;
-    if (personality_.quick_stop_bit_rests_high && (faulted || state_ == State::disabled)) word |= bit(5);
-    if (faulted && personality_.alarm_sets_warning_bit) word |= bit(7);
-    if (personality_.remote_bit && (operational_ || (personality_.remote_bit_from_preop && reachable_))) word |= bit(9);
-    if (warning_ || battery_warns() || warnings_.any()) word |= bit(7);
+    if (personality_.quick_stop_bit_rests_high && (faulted || state_ == State::disabled)) word |= status_bit(5);
+    if (faulted && personality_.alarm_sets_warning_bit) word |= status_bit(7);
+    if (personality_.remote_bit && (operational_ || (personality_.remote_bit_from_preop && reachable_))) word |= status_bit(9);
+    if (warning_ || battery_warns() || warnings_.any()) word |= status_bit(7);
     if (mode_ == mode::homing) {
-        if (stands() && !homing_.busy()) word |= bit(10);
-        if (homing_attained_) word |= bit(12);
-        if (homing_error_) word |= bit(13);
+        if (stands() && !homing_.busy()) word |= status_bit(10);
+        if (homing_attained_) word |= status_bit(12);
+        if (homing_error_) word |= status_bit(13);
     } else if (mode_ == mode::profile_position || mode_ == mode::profile_velocity || mode_ == mode::profile_torque) {
         word |= profile_bits();
     } else {
         const bool reports_target = personality_.target_reached_in_cyclic || !mode::cyclic(mode_);
-        if (reports_target && state_ == State::enabled && stands() && std::abs(demand_.position - seen_position()) < 10) word |= bit(10);
-        if (mode::cyclic(mode_) && personality_.csp_following_bits && state_ == State::enabled) word |= bit(12);
+        if (reports_target && state_ == State::enabled && stands() && std::abs(demand_.position - seen_position()) < 10)
+            word |= status_bit(10);
+        if (mode::cyclic(mode_) && personality_.csp_following_bits && state_ == State::enabled) word |= status_bit(12);
     }
-    if (limited_ && personality_.internal_limit_bit) word |= bit(11);
-    if (personality_.home_found_bit_15 && homed_) word |= bit(15);
+    if (limited_ && personality_.internal_limit_bit) word |= status_bit(11);
+    if (personality_.home_found_bit_15 && homed_) word |= status_bit(15);
     return word;
 }
 
 std::uint16_t Cia402Axis::profile_bits() const noexcept {
     std::uint16_t word = 0;
-    if (target_reached_) word |= bit(10);
-    if (mode_ == mode::profile_position && profile_position_.acknowledges()) word |= bit(12);
-    if (mode_ == mode::profile_velocity && personality_.pv_speed_zero_bit && stands()) word |= bit(12);
+    if (target_reached_) word |= status_bit(10);
+    if (mode_ == mode::profile_position && profile_position_.acknowledges()) word |= status_bit(12);
+    if (mode_ == mode::profile_velocity && personality_.pv_speed_zero_bit && stands()) word |= status_bit(12);
     const double limit = personality_.following_error_limit;
-    if (mode_ == mode::profile_position && limit > 0 && std::abs(demand_.position - seen_position()) > limit) word |= bit(13);
+    if (mode_ == mode::profile_position && limit > 0 && std::abs(demand_.position - seen_position()) > limit) word |= status_bit(13);
     return word;
 }
 

@@ -12,14 +12,14 @@ namespace taktwerk::axes::sim {
 namespace {
 
 /// Commands and set-points of CiA 402-2, and the probes that a master arms: no drive comes up with them.
-constexpr ParameterAddress commands[] = {{0x6040, 0}, {0x6060, 0}, {0x6071, 0}, {0x607A, 0}, {0x60B0, 0},
+constexpr ParameterAddress not_kept[] = {{0x6040, 0}, {0x6060, 0}, {0x6071, 0}, {0x607A, 0}, {0x60B0, 0},
                                          {0x60B1, 0}, {0x60B2, 0}, {0x60B8, 0}, {0x60FE, 1}, {0x60FF, 0}};
 
 /// 1010h and 1011h: nothing but the signature is taken (CiA 301 7.5.2.13). A parameter of the maker's goes back to 0.
 constexpr bool takes_signature_only(ParameterAddress at) noexcept { return at.index < 0x2000; }
 
 std::vector<ParameterAddress> never_kept(const DriveProfile& profile) {
-    std::vector<ParameterAddress> out(std::begin(commands), std::end(commands));
+    std::vector<ParameterAddress> out(std::begin(not_kept), std::end(not_kept));
     if (profile.alarm_history.select.index != 0) out.push_back(profile.alarm_history.select);
     return out;
 }

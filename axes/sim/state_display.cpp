@@ -1,14 +1,8 @@
 #include "axes/sim/state_display.hpp"
 
+#include "axes/sim/set_if_there.hpp"
+
 namespace taktwerk::axes::sim {
-
-namespace {
-
-void put(ecat::sim::Entry* entry, std::int64_t value) noexcept {
-    if (entry) entry->set(value);
-}
-
-}  // namespace
 
 void StateDisplay::power_on(ecat::sim::ObjectDictionary& dictionary) {
     const auto find = [&](ParameterAddress at) { return at.index ? dictionary.find(at.index, at.sub) : nullptr; };
@@ -26,9 +20,9 @@ void StateDisplay::show(bool powered, std::uint16_t code, std::uint32_t detail) 
     auto value = powered ? objects_.enabled : objects_.free;
     for (const auto& row : objects_.alarms)
         if (code != 0 && row.code == code) value = row.value;
-    put(state_, value);
-    put(code_, code);
-    put(sub_code_, code == communication_code_ ? detail : 0);
+    set_if_there(state_, value);
+    set_if_there(code_, code);
+    set_if_there(sub_code_, code == communication_code_ ? detail : 0);
 }
 
 void StateDisplay::remember(std::uint16_t code) noexcept {
@@ -39,8 +33,8 @@ void StateDisplay::remember(std::uint16_t code) noexcept {
 }
 
 void StateDisplay::show_records() noexcept {
-    put(next_entry_, records_.empty() ? 0 : static_cast<std::int64_t>(next_) + 1);
-    for (std::size_t i = 0; i < record_entries_.size(); ++i) put(record_entries_[i], records_[i]);
+    set_if_there(next_entry_, records_.empty() ? 0 : static_cast<std::int64_t>(next_) + 1);
+    for (std::size_t i = 0; i < record_entries_.size(); ++i) set_if_there(record_entries_[i], records_[i]);
 }
 
 }  // namespace taktwerk::axes::sim

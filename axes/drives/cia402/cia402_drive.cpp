@@ -13,11 +13,8 @@ namespace taktwerk::axes::cia402 {
 
 namespace {
 
-/// Objects below belong to the communication, not to an axis.
-constexpr std::uint16_t first_axis_object = 0x2000;
-
 std::uint16_t of_axis(std::uint16_t base, std::uint8_t axis, const DriveProfile& profile) noexcept {
-    return base < first_axis_object ? base : static_cast<std::uint16_t>(base + axis * profile.object_offset);
+    return object_of_axis(base, static_cast<std::uint16_t>(axis * profile.object_offset));
 }
 
 }  // namespace

@@ -18,10 +18,6 @@ std::int64_t difference(std::int64_t a, std::int64_t b, unsigned bits) noexcept 
     return static_cast<std::int64_t>(wide << unused) >> unused;
 }
 
-bool cyclic(DriveMode mode) noexcept {
-    return mode == DriveMode::cyclic_position || mode == DriveMode::cyclic_velocity || mode == DriveMode::cyclic_torque;
-}
-
 }  // namespace
 
 const DriveFeedback& Cia402Drive::decode(Instant now) noexcept {
@@ -65,7 +61,7 @@ const DriveFeedback& Cia402Drive::decode(Instant now) noexcept {
     } else {
         feedback_.mode = DriveMode::none;
     }
-    feedback_.follows_target = !capabilities_.reports_following || feedback_.power != PowerState::enabled || !cyclic(feedback_.mode) ||
+    feedback_.follows_target = !capabilities_.reports_following || feedback_.power != PowerState::enabled || !is_cyclic(feedback_.mode) ||
                                (status & bit_follows_target) != 0;
     decode_homing(status, now);
     if (capabilities_.digital_inputs) {

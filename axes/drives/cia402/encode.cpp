@@ -16,9 +16,6 @@ constexpr std::uint32_t reset_low_cycles = 4;
 constexpr std::uint32_t reset_high_cycles = 4;
 constexpr std::uint32_t reset_wait_cycles = 100;
 
-bool cyclic(DriveMode mode) noexcept {
-    return mode == DriveMode::cyclic_position || mode == DriveMode::cyclic_velocity || mode == DriveMode::cyclic_torque;
-}
 bool position_mode(DriveMode mode) noexcept { return mode == DriveMode::cyclic_position || mode == DriveMode::profile_position; }
 bool profile_mode(DriveMode mode) noexcept {
     return mode == DriveMode::profile_position || mode == DriveMode::profile_velocity || mode == DriveMode::profile_torque;
@@ -99,7 +96,7 @@ void Cia402Drive::encode(const DriveCommand& command, Instant now) noexcept {
     // Until the drive follows in this mode its target is its own actual position: enabling and mode switches never step. From one cyclic
     // mode into another the targets of both are the command's: a motor that turns would feel an actual value, old as it is, as a step. So it
     // would out of a profile mode in motion.
-    const bool changes_over = (cyclic(feedback_.mode) || profile_mode(feedback_.mode)) && cyclic(command.mode);
+    const bool changes_over = (is_cyclic(feedback_.mode) || profile_mode(feedback_.mode)) && is_cyclic(command.mode);
     const bool follows = feedback_.power == PowerState::enabled && (mode_confirmed || changes_over) && command.power == PowerRequest::on;
     if (profile_mode(command.mode)) {
         auto held = command;

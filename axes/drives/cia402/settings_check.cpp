@@ -4,13 +4,13 @@
 
 #include <fmt/format.h>
 
+#include "axes/drives/cia402/words.hpp"
 #include "axes/port/drive_scale.hpp"
 
 namespace taktwerk::axes::cia402 {
 
 namespace {
 
-constexpr std::uint16_t first_axis_object = 0x2000;
 constexpr double seconds_per_minute = 60.0;
 
 std::string shown(ParameterAddress object) {
@@ -97,7 +97,7 @@ void SettingsCheck::step(ecat::Master& bus, std::size_t slave) {
     }
     if (next_ < readings_.size()) {
         const auto object = readings_[next_].object;
-        const auto index = object.index < first_axis_object ? object.index : static_cast<std::uint16_t>(object.index + offset_);
+        const auto index = object_of_axis(object.index, offset_);
         ticket_ = bus.upload(slave, index, object.sub);
         return;
     }

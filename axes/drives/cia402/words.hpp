@@ -48,6 +48,16 @@ inline constexpr std::uint16_t bit_homing_error = 1u << 13;
     }
 }
 
+/// CSP, CSV, CST: a new set-point each bus cycle.
+[[nodiscard]] constexpr bool is_cyclic(DriveMode mode) noexcept {
+    return mode == DriveMode::cyclic_position || mode == DriveMode::cyclic_velocity || mode == DriveMode::cyclic_torque;
+}
+
+/// An object of a further axis, from that of the first: `offset` beyond it. Below 2000h they belong to the communication, not to an axis.
+[[nodiscard]] constexpr std::uint16_t object_of_axis(std::uint16_t index, std::uint16_t offset) noexcept {
+    return index < 0x2000 ? index : static_cast<std::uint16_t>(index + offset);
+}
+
 /// 6060h / 6061h value of a mode, and back; 0 / none where there is none.
 [[nodiscard]] constexpr std::int8_t mode_code(DriveMode mode) noexcept {
     switch (mode) {
