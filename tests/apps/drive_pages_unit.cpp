@@ -132,7 +132,7 @@ TEST(DrivePages, AreErrorsWhereThePageIsMissing) {
     EXPECT_EQ(refused.error().code, "docs.no_page");
 }
 
-std::string committed(const std::string& file) {
+std::string committed_page(const std::string& file) {
     std::ifstream stream(file);
     return {std::istreambuf_iterator<char>(stream), {}};
 }
@@ -151,7 +151,7 @@ TEST(DrivePages, EqualTheGeneratedText) {
         for (const auto& page : *pages) {
             const auto file = source.string() + "/docs/" + page.file;
             if (std::getenv("TAKTWERK_REGENERATE") != nullptr) std::ofstream(file) << page.text;
-            EXPECT_TRUE(committed(file) == page.text)
+            EXPECT_TRUE(committed_page(file) == page.text)
                 << page.file << " is not what the drive file gives: run `taktwerk docs drives " << name << " -o docs` and commit it";
         }
     }

@@ -10,7 +10,7 @@ namespace {
 using P = QuantityProblem;
 using D = Dimension;
 
-struct Row {
+struct UnitRow {
     const char* text;
     D dimension;
     const char* axis_unit;
@@ -19,7 +19,7 @@ struct Row {
 };
 
 // Values converted by hand.
-constexpr Row rows[] = {
+constexpr UnitRow rows[] = {
     {"1 ms", D::time, "", P::none, 0.001},
     {"1ms", D::time, "", P::none, 0.001},
     {"  250 us ", D::time, "", P::none, 0.00025},

@@ -18,7 +18,7 @@ using runtime::OperatorAction;
 using test::FakeMachine;
 using testing::HasSubstr;
 
-constexpr std::int64_t wall = 1'800'000'000'000'000;  // us since 1970
+constexpr std::int64_t sent_at = 1'800'000'000'000'000;  // us since 1970
 
 class RequestsTest : public testing::Test {
 protected:
@@ -53,7 +53,7 @@ protected:
 
     FakeMachine machine;
     Gateway gateway{machine};
-    JsonRequests requests{gateway, machine, [] { return wall; }};
+    JsonRequests requests{gateway, machine, [] { return sent_at; }};
     Instant now{10s};
 };
 
@@ -172,7 +172,7 @@ TEST_F(RequestsTest, UnknownCommandsAndKeysComeWithASuggestion) {
 }
 
 TEST_F(RequestsTest, ARequestThatSaysWhenItWasSentIsJudgedByItsAge) {
-    const auto sent = [](std::int64_t us_ago) { return std::to_string(wall - us_ago); };
+    const auto sent = [](std::int64_t us_ago) { return std::to_string(sent_at - us_ago); };
     EXPECT_EQ(code_for(R"({"id":1,"cmd":"home","axis":"x","valid_ms":200,"utime":)" + sent(201'000) + "}"), "command.stale");
     EXPECT_EQ(code_for(R"({"id":2,"cmd":"home","axis":"x","utime":)" + sent(-2'000'000) + "}"), "command.stale");
     EXPECT_EQ(code_for(R"({"id":3,"cmd":"home","axis":"x","utime":-9223372036854775808})"), "command.stale");

@@ -11,8 +11,6 @@ namespace {
 
 using namespace fb;
 
-constexpr std::int64_t mm = 10'000;
-
 void show_switches(Stage& stage) {
     stage.signal("home switch", [&] { return stage.view().home_switch; });
     stage.signal("limit switch", [&] { return stage.view().positive_limit_switch; });

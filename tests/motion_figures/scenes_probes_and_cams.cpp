@@ -10,8 +10,6 @@ namespace {
 
 using namespace fb;
 
-constexpr std::int64_t mm = 10'000;
-
 /// Over the mark and back: it rises at 20 mm on the way out and at 26 mm on the way back.
 Figure touch_probe() {
     Stage stage;

@@ -1,6 +1,7 @@
 #pragma once
 // Real axes over fake drives in virtual time, for pictures: scans as a base task runs them, every one noted.
 
+#include <cstdint>
 #include <deque>
 #include <functional>
 #include <string>
@@ -19,6 +20,9 @@
 namespace taktwerk::figures {
 
 using namespace std::chrono_literals;
+
+/// Counts of the fake drive.
+inline constexpr std::int64_t mm = 10'000;
 
 /// What a picture shows of an axis.
 enum class Quantity { position, velocity, acceleration, actual_position, actual_velocity, actual_torque, given_torque };

@@ -137,14 +137,14 @@ TEST(LevelsRecorded, EachIsOneCommandOfNobodyInTheOrderInWhichTheCycleTookThem) 
 
 // --- a program's axis ------------------------------------------------------------------------------------------------------------------
 
-class Mover : public Idle {
+class StoppedMover : public Idle {
 public:
     AxisRef x;
     fb::MC_Power power;
     fb::MC_MoveVelocity move;
     void declare(Declaration& d) override {
         x = d.axis("x");
-        d.task<&Mover::run>("main");
+        d.task<&StoppedMover::run>("main");
     }
     void run(TaskContext& ctx) {
         power.Axis = move.Axis = x;
@@ -157,7 +157,7 @@ public:
 };
 
 TEST(LevelsOfPrograms, AProgramsAxisIsSparedByAJogLetGoAndStoppedByAStop) {
-    TestMachine m{with_program(1, &entry_of<Mover>)};
+    TestMachine m{with_program(1, &entry_of<StoppedMover>)};
     ASSERT_TRUE(m.up());
     ASSERT_TRUE(m.until([&] { return m.axis(0).set_velocity == 50.0; }, 5s));
     m.machine->release_jog(0);
@@ -168,7 +168,7 @@ TEST(LevelsOfPrograms, AProgramsAxisIsSparedByAJogLetGoAndStoppedByAStop) {
 }
 
 /// Its start() takes long: what happens meanwhile happens in there.
-class SlowStarter final : public Mover {
+class SlowStarter final : public StoppedMover {
 public:
     inline static std::function<void()> meanwhile;
     inline static int ended = 0;

@@ -20,6 +20,14 @@ inline PlantConfig table() {
     return plant;
 }
 
+/// No switch in the way.
+inline PlantConfig long_table() {
+    auto plant = table();
+    plant.negative_limit = -1e9;
+    plant.positive_limit = 1e9;
+    return plant;
+}
+
 /// Exchanges each millisecond, as a master with a 1 ms cycle does.
 struct Bench {
     Cia402Axis axis;

@@ -21,13 +21,6 @@ void run_up(Bench& b) {
     ASSERT_NEAR(b.axis.plant().velocity(), 50000, 1000);
 }
 
-PlantConfig long_table() {
-    auto plant = table();
-    plant.negative_limit = -1e9;
-    plant.positive_limit = 1e9;
-    return plant;
-}
-
 // SV33-E 3.1.2 and P05.13: from enabling to the first command 250 ms, else the command is lost.
 TEST(Brake, WhatIsCommandedBeforeItOpensIsLost) {
     Personality p;

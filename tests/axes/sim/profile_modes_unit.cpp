@@ -13,13 +13,6 @@ namespace {
 
 constexpr unsigned reached = 0x0400, limited = 0x0800, bit_12 = 0x1000;
 
-PlantConfig long_table() {
-    auto plant = table();
-    plant.negative_limit = -1e9;
-    plant.positive_limit = 1e9;
-    return plant;
-}
-
 /// 20000 counts/s, 100000 counts/s2 up and down.
 Bench profile_bench(int mode, Personality personality = {}) {
     Bench b{long_table(), personality};
