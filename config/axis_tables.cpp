@@ -364,6 +364,7 @@ Table<AxisBinding> axis_table() {
     include_fields(f, axis, Table<A>{{}, {}, std::move(own), {}, {}});
     f.push_back(field("simulation", &AxisBinding::simulation, section(axis_simulation_table()), "mechanics of the simulated axis"));
     table.before = [](Reader& reader, const Node&, AxisBinding& b) { reader.axis_unit = b.axis.unit; };
+    table.after = [](Reader& reader, const Node&, AxisBinding& b) { reader.units_of_axes[b.axis.name] = b.axis.unit; };
     return table;
 }
 

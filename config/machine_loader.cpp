@@ -65,6 +65,10 @@ public:
         for (const auto& entry : file_.inputs) add_point(out, entry, runtime::IoDirection::input);
         for (const auto& entry : file_.outputs) add_point(out, entry, runtime::IoDirection::output);
         for (const auto& entry : file_.programs) add_program(out, entry);
+        for (auto& entry : file_.cams) {
+            out.machine.cams.push_back(std::move(entry.cam));
+            out.warnings.insert(out.warnings.end(), entry.remarks.begin(), entry.remarks.end());
+        }
         check_wiring(out.machine);
         check_events(out.machine);
         add_warnings(out);
@@ -430,6 +434,7 @@ void add_program_errors(Reader& reader, runtime::MachineConfig machine) {
     for (auto& error : runtime::check_programs(machine)) {
         const std::string_view section = error.code == "program.unknown_axis"                                              ? "axes"
                                          : error.code == "program.unknown_device"                                          ? "bus"
+                                         : error.code == "program.unknown_cam"                                             ? "cams"
                                          : error.code == "program.unknown_input" || error.code == "program.unknown_output" ? "io"
                                                                                                                            : "";
         if (section.empty() || !reader.already_bad(section)) reader.errors().push_back(std::move(error));

@@ -449,6 +449,8 @@ Table<MachineFile> machine_table() {
         "axes", [](F & m) -> auto& { return m.machine.axes; },
         by_name(section(axis_table()), [](runtime::AxisBinding& b) -> std::string& { return b.axis.name; }),
         "what programs move; none: only a bus"));
+    f.push_back(field("cams", &F::cams, by_name(section(cam_table()), [](CamEntry& c) -> std::string& { return c.cam.name; }),
+                      "tables that slaves follow; programs may declare others"));
     f.push_back(field("programs", &F::programs,
                       by_name(section(program_table()), [](ProgramFile& p) -> std::string& { return p.program.name; }),
                       "what runs on the machine; none is fine"));

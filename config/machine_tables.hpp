@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "config/bus_tables.hpp"
+#include "config/cam_tables.hpp"
 #include "hmi_bridge/hmi_config.hpp"
 #include "runtime/machine_config.hpp"
 
@@ -57,6 +58,7 @@ struct MachineFile {
     std::vector<SlaveEntry> slaves;
     std::vector<SerialLineEntry> serial;
     std::vector<IoEntry> inputs, outputs;
+    std::vector<CamEntry> cams;
     std::vector<ProgramFile> programs;
 };
 

@@ -47,8 +47,10 @@ public:
         std::size_t length_;
     };
 
-    std::string axis_unit = "mm";  ///< of the axis being read
-    Duration cycle{};              ///< of the machine, once read
+    std::string axis_unit = "mm";                                   ///< of the axis being read, and of a cam's slave
+    std::string master_unit;                                        ///< of the master of the cam being read
+    std::map<std::string, std::string, std::less<>> units_of_axes;  ///< once read
+    Duration cycle{};                                               ///< of the machine, once read
 
 private:
     std::string file_, path_;

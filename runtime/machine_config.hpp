@@ -10,6 +10,7 @@
 #include "axes/axis/axis_config.hpp"
 #include "axes/port/drive_profile.hpp"
 #include "axes/sim/plant_config.hpp"
+#include "axes/tables/cam_table.hpp"
 #include "core/result.hpp"
 #include "core/time.hpp"
 #include "ecat/bus_config.hpp"
@@ -101,6 +102,14 @@ struct ProgramConfig {
     bool autostart = false;  ///< starts when the machine is up, in automatic mode
 };
 
+/// A cam of the machine file: every program that asks for it gets a table of its own.
+struct CamConfig {
+    std::string name;
+    std::string master{}, slave{};  ///< axes in whose units the points are
+    bool periodic = false;          ///< meant to be repeated; said to MC_CamTableSelect by the program
+    std::vector<axes::CamPoint> points{};
+};
+
 enum class Mode : std::uint8_t { manual, setup, automatic };
 
 struct EmergencyStop {
@@ -163,6 +172,7 @@ struct MachineConfig {
     std::vector<AxisBinding> axes;
     std::vector<IoPoint> io;
     std::vector<TaskConfig> tasks;
+    std::vector<CamConfig> cams;
     std::vector<ProgramConfig> programs;
     EmergencyStop emergency_stop;
     CycleWatch watch;

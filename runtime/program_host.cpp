@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "axes/tables/cam_check.hpp"
 #include "core/nearest_name.hpp"
 #include "runtime/present_slaves.hpp"
 
@@ -92,6 +93,15 @@ public:
     axes::CamRef cam(std::string_view name, std::span<const axes::CamPoint> points, std::size_t room) override {
         if (const auto why = unusable(points); !why.empty()) bad_table("cam", name, why);
         return tables_.add_cam(points, room);
+    }
+    axes::CamRef cam(std::string_view name) override {
+        std::vector<std::string> names;
+        for (const auto& known : config_.cams) {
+            if (known.name == name) return tables_.add_cam(known.points);
+            names.push_back(known.name);
+        }
+        unknown("program.unknown_cam", "cam", name, names, "cams");
+        return {};
     }
     axes::TimeTableRef time_table(std::string_view name, std::span<const axes::TimePoint> rows, std::size_t room) override {
         if (const auto why = unusable(rows); !why.empty()) bad_table("time table", name, why);
@@ -196,6 +206,8 @@ private:
             if (i > 0 && !(p.master > points[i - 1].master))
                 return fmt::format("point {}: the master's position {} is not beyond {}", i + 1, p.master, points[i - 1].master);
         }
+        if (const auto misfits = axes::misfits_of(points); !misfits.empty())
+            return fmt::format("point {}: its law cannot get to the next one with what is given there", misfits.front() + 1);
         return {};
     }
     static std::string unusable(std::span<const axes::TimePoint> rows) {

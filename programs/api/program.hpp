@@ -151,6 +151,8 @@ public:
     // while the machine runs (TaskContext::tables); room is taken here, once. Points that cannot be used are an error of the machine
     // file's check; a table without points may be filled later.
     virtual axes::CamRef cam(std::string_view name, std::span<const axes::CamPoint> points, std::size_t room = 0) = 0;
+    /// A cam of the machine file (`cams`). The program has it as a table of its own, whose points it may change.
+    virtual axes::CamRef cam(std::string_view name) = 0;
     /// For MC_PositionProfile, MC_VelocityProfile, MC_AccelerationProfile.
     virtual axes::TimeTableRef time_table(std::string_view name, std::span<const axes::TimePoint> rows, std::size_t room = 0) = 0;
     /// For MC_DigitalCamSwitch: its switches, and options of the tracks 1, 2, ... (at most 32).

@@ -17,7 +17,8 @@ using ::testing::HasSubstr;
 /// What the machine makes of a program's declarations.
 template <class P>
 struct Declared {
-    Declared() {
+    explicit Declared(std::vector<CamConfig> cams = {}) {
+        config.cams = std::move(cams);
         ProgramConfig program;
         program.name = "cell";
         program.entry = &entry_of<P>;
@@ -68,6 +69,8 @@ struct Bad final : Program {
         const double nan = std::numeric_limits<double>::quiet_NaN();
         d.cam("alone", std::array{axes::CamPoint{0, 0}});
         d.cam("back", std::array{axes::CamPoint{0, 0}, axes::CamPoint{5, 1}, axes::CamPoint{5, 2}});
+        d.cam("turn",
+              std::array{axes::CamPoint{.master = 0, .slave = 0, .segment = axes::CamSegment::harmonic_combination}, axes::CamPoint{5, 1}});
         d.cam("nan", std::array{axes::CamPoint{0, 0}, axes::CamPoint{5, nan}});
         d.time_table("still", std::array{axes::TimePoint{10ms, 0}, axes::TimePoint{0ms, 3}});
         d.cam_switches("track", std::array{axes::CamSwitch{.track = 33}});
@@ -88,9 +91,33 @@ TEST(DeclaredTables, EveryUnusableOneIsNamedWithTheReason) {
     EXPECT_THAT(texts,
                 ElementsAre(HasSubstr("cam 'alone' cannot be used: it has one point"),
                             HasSubstr("cam 'back' cannot be used: point 3: the master's position 5 is not beyond 5"),
-                            HasSubstr("cam 'nan' cannot be used: point 2"), HasSubstr("time table 'still' cannot be used: row 2"),
+                            HasSubstr("cam 'turn' cannot be used: point 1: its law cannot"), HasSubstr("cam 'nan' cannot be used: point 2"),
+                            HasSubstr("time table 'still' cannot be used: row 2"),
                             HasSubstr("'track' cannot be used: switch 1 is on track 33"), HasSubstr("'time' cannot be used: switch 1"),
                             HasSubstr("'many' cannot be used: it has 33 tracks"), HasSubstr("'hysteresis' cannot be used: track 1")));
+}
+
+struct FromTheFile final : Program {
+    axes::CamRef flap, again, wrong;
+    void declare(Declaration& d) override {
+        flap = d.cam("flap");
+        again = d.cam("flap");
+        wrong = d.cam("flop");
+    }
+    void scan(TaskContext&) {}
+};
+
+// Who changes the points of one changes nobody else's.
+TEST(DeclaredTables, MayStandInTheMachineFile) {
+    Declared<FromTheFile> machine{{{.name = "flap", .points = {{.master = 0, .slave = 0}, {.master = 5, .slave = 2}}}}};
+    ASSERT_EQ(machine.errors.size(), 1u);
+    EXPECT_EQ(machine.errors[0].code, "program.unknown_cam");
+    EXPECT_THAT(machine.errors[0].text(), HasSubstr("did you mean 'flap'?"));
+
+    machine.tables.cam(machine.self->flap)->points[1].slave = 9;
+    ASSERT_EQ(machine.tables.cam(machine.self->again)->used, 2u);
+    EXPECT_EQ(machine.tables.cam(machine.self->again)->points[1].slave, 2);
+    EXPECT_EQ(machine.tables.cam(machine.self->wrong), nullptr);
 }
 
 struct References final : Program {

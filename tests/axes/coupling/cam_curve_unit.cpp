@@ -117,5 +117,20 @@ TEST(CamCurve, ScalingsStretchAndMirror) {
         }
 }
 
+// 8 mm over 90 degrees at 30 deg/s, modified sine: Cv = 1.75960 in the middle, Ca = 5.52796 at an eighth, -Ca at seven eighths.
+TEST(CamCurve, ALawGivesTheSlavesVelocityAndAcceleration) {
+    PreparedCam cam(2);
+    const std::vector<CamPoint> points{{.master = 0, .slave = 0, .segment = CamSegment::modified_sine}, {.master = 90, .slave = 8}};
+    ASSERT_EQ(cam.prepare(points, false, true, true), ErrorId::none);
+    CamCurve curve;
+    ASSERT_TRUE(curve.set(cam, {.master_feed = 360, .slave_feed = 10}));
+    const auto at = [&](double master) { return curve.at({{0, master}, 30, 0}); };
+    EXPECT_NEAR(at(11.25).acceleration, 5.52796 * 8 / 8100 * 900, 1e-4);
+    EXPECT_NEAR(where(at(45).place, 10), 4, 1e-12);
+    EXPECT_NEAR(at(45).velocity, 1.75960 * 8 / 90 * 30, 1e-4);
+    EXPECT_NEAR(at(45).acceleration, 0, 1e-12);
+    EXPECT_NEAR(at(78.75).acceleration, -5.52796 * 8 / 8100 * 900, 1e-4);
+}
+
 }  // namespace
 }  // namespace taktwerk::axes

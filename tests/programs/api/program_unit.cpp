@@ -83,6 +83,7 @@ public:
     Output<std::int64_t> output_word(std::string_view) override { return {}; }
     Parameter parameter(std::string_view, const ParameterSpec&) override { return {}; }
     axes::CamRef cam(std::string_view, std::span<const axes::CamPoint>, std::size_t) override { return {}; }
+    axes::CamRef cam(std::string_view) override { return {}; }
     axes::TimeTableRef time_table(std::string_view, std::span<const axes::TimePoint>, std::size_t) override { return {}; }
     axes::CamSwitchRef cam_switches(std::string_view, std::span<const axes::CamSwitch>, std::size_t) override { return {}; }
     axes::TrackRef tracks(std::string_view, std::span<const axes::TrackOptions>) override { return {}; }
