@@ -132,6 +132,31 @@ Figure cam_in() {
     return stage.figure("cam-in");
 }
 
+/// A saw that runs beside its material for 30 mm of each 100 mm: the cam of programs/examples/flying_saw.cpp, a tenth as long.
+Figure flying_saw() {
+    Stage stage{{Stage::linear("saw"), Stage::linear("material")}};
+    Line line{stage, 50};
+    using axes::CamSegment;
+    Cam cam{stage.cam({{.master = 0, .slave = 0, .segment = CamSegment::inclined_sine},
+                       {.master = 15, .slave = 7.5, .velocity = 1, .segment = CamSegment::linear},
+                       {.master = 45, .slave = 37.5, .velocity = 1, .segment = CamSegment::inclined_sine},
+                       {.master = 60, .slave = 45, .segment = CamSegment::modified_sine},
+                       {.master = 100, .slave = 0}})};
+    stage.before = [&](const MotionContext& ctx) {
+        line.run(ctx);
+        cam.select(ctx);
+        cam.in.CamTableID = cam.select.CamTableID;
+    };
+    stage.block("cam", cam.in);
+    stage.signal("in step", [&] { return stage.view(0).set_velocity > 0 && stage.view(0).set_velocity == stage.view(1).set_velocity; });
+    show_both(stage);
+    cam.select.Execute = true;
+    stage.run(300ms);
+    cam.in.Execute = true;
+    stage.run(4500ms);
+    return stage.figure("flying-saw");
+}
+
 Figure phasing() {
     Stage stage{{Stage::linear("slave"), Stage::linear("master")}};
     Line line{stage, 40};
@@ -183,6 +208,6 @@ Figure combine_axes() {
 
 }  // namespace
 
-std::vector<Figure> couplings() { return {gear_in(), gear_in_pos(), cam_in(), phasing(), combine_axes()}; }
+std::vector<Figure> couplings() { return {gear_in(), gear_in_pos(), cam_in(), flying_saw(), phasing(), combine_axes()}; }
 
 }  // namespace taktwerk::figures

@@ -93,6 +93,7 @@ public:
     }
     /// The hardware behind the bus: what really moves.
     [[nodiscard]] runtime::World& world() { return *world_; }
+    [[nodiscard]] const runtime::MachineConfig& config() const { return machine_->config(); }
     /// Where the mechanics of an axis really are, in its unit, machine coordinates.
     [[nodiscard]] double place(const std::string& name) {
         for (const auto& binding : machine_->config().axes)
