@@ -639,7 +639,7 @@ TEST(DriveProfileLimits, AVelocityThatStillRisesEndsInsideTheSoftwareLimits) {
     }
 }
 
-// What the axis knows of a move of the drive is its target: a limit is not moved in between (axes/axis/README.md, written parameters).
+// What the axis knows of a move of the drive is its target: a limit is not moved in between (docs/motion/decisions.md, written parameters).
 TEST(DriveProfileLimits, ALimitIsNotMovedIntoTheWayOfAMove) {
     auto config = plain_axis();
     config.limits.position_min = -100;

@@ -12,7 +12,7 @@
 //
 // Where it looks away, and why:
 //   * the drive takes no set-point from here (no power, homing by itself, torque, its own profiles, a slow line): the set-point follows the motor
-//   * tables over time have corners, and a slave keeps no jerk (axes/axis/README.md): there no jerk is asked for
+//   * tables over time have corners, and a slave keeps no jerk (docs/motion/decisions.md): there no jerk is asked for
 //   * a slave held at its limits keeps its place within acceleration * period^2 / 2; a fed set-point within acceleration * period^2, and its
 //     acceleration is the feeder's
 //   * a stop's jerk may be as high as it takes not to reverse: a^2 / (2 |v|) while v and a differ in sign. What takes no cycle longer than it lasts

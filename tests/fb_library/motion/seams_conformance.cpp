@@ -1,4 +1,4 @@
-// Where one motion takes over from another: every cycle of the seam is tried. PLCopen Part 1 v2.0, 3.3, 3.4, 4.5; axes/axis/README.md.
+// Where one motion takes over from another: every cycle of the seam is tried. PLCopen Part 1 v2.0, 3.3, 3.4, 4.5; docs/motion/decisions.md.
 #include <gtest/gtest.h>
 
 #include <algorithm>
