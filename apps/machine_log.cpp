@@ -51,11 +51,11 @@ bool same_alarm(const AlarmFact& a, const AlarmFact& b) { return a.id == b.id &&
 /// The bus says at once that slaves fell, and some milliseconds later why, and how many.
 bool bus_tells_more(const AlarmFact& before, const AlarmFact& now) {
     switch (now.id) {
-        case ecat::alarm::slave_left_op: return before.a == 0 && now.a != 0;
-        case ecat::alarm::starved_slave_left_op:
-        case ecat::alarm::starved_slave_dropped_out: return now.b > before.b;
-        case ecat::alarm::foreign_command:
-        case ecat::alarm::foreign_command_tolerated: return now.a > before.a;
+        case ecat::id(ecat::BusAlarm::slave_left_op): return before.a == 0 && now.a != 0;
+        case ecat::id(ecat::BusAlarm::starved_slave_left_op):
+        case ecat::id(ecat::BusAlarm::starved_slave_dropped_out): return now.b > before.b;
+        case ecat::id(ecat::BusAlarm::foreign_command):
+        case ecat::id(ecat::BusAlarm::foreign_command_tolerated): return now.a > before.a;
         default: return false;
     }
 }

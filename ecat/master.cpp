@@ -220,31 +220,9 @@ void Master::set_tap(void (*tap)(void*, std::span<const std::byte>, Instant, boo
 }
 
 std::size_t Master::active_faults(std::span<AlarmFact> out) const noexcept {
-    std::size_t count = 0;
-    const auto raise = [&](AlarmId id) {
-        if (count < out.size()) out[count++] = {id, AlarmSource::bus, 0, 0, 0};
-    };
-    const Phase now = phase();
-    if (now == Phase::failed) raise(alarm::bringup_failed);
-    if (now != Phase::operational) {
-        if (now != Phase::failed) raise(alarm::bus_not_operational);
-        return count;
-    }
-    bool frames = true;
-    for (const auto& fact : impl_->cycle.faults()) {
-        frames = frames && fact.id != alarm::link_down && fact.id != alarm::frames_lost;
-        if (count < out.size()) out[count++] = fact;
-    }
-    for (std::size_t s = 0; s < slave_count() && count < out.size(); ++s) {
-        const auto& state = health(s);
-        if (state.emergency_code == 0) continue;
-        out[count++] = {alarm::slave_emergency, AlarmSource::slave, static_cast<std::uint16_t>(s),
-                        static_cast<double>(state.emergency_code), static_cast<double>(state.error_register)};
-    }
-    const auto& seen = statistics();
-    const bool in_time = seen.dc_lock == DcLock::locked || seen.dc_lock == DcLock::coasting;
-    if (frames && !in_time && impl_->bus->runs_sync0.load(std::memory_order_relaxed) && count < out.size())
-        out[count++] = {alarm::dc_not_locked, AlarmSource::bus, 0, static_cast<double>(seen.dc_phase_error_ns), 0};
+    const auto facts = impl_->cycle.faults(phase());
+    const std::size_t count = std::min(facts.size(), out.size());
+    std::copy_n(facts.begin(), count, out.begin());
     return count;
 }
 
@@ -311,40 +289,41 @@ std::string with_outcome(std::string text, const std::string& outcome) { return 
 std::string Master::detail(const AlarmFact& fact) const {
     const auto& slaves = impl_->bus->slaves;
     const auto& link = impl_->bus->link;
-    switch (fact.id) {
-        case alarm::foreign_master: return sender_text(link);
-        case alarm::foreign_command:
-        case alarm::foreign_command_tolerated:
+    switch (BusAlarm{fact.id}) {
+        case BusAlarm::foreign_master: return sender_text(link);
+        case BusAlarm::foreign_command:
+        case BusAlarm::foreign_command_tolerated:
             return fallen_text(*impl_->bus) + (link.foreign_frames.load() > 0 ? "; of whom frames were heard: " + sender_text(link) : "");
-        case alarm::starved_slave_left_op:
-        case alarm::starved_slave_dropped_out: return fallen_text(*impl_->bus);
-        case alarm::link_down:
-        case alarm::frames_lost:
+        case BusAlarm::starved_slave_left_op:
+        case BusAlarm::starved_slave_dropped_out: return fallen_text(*impl_->bus);
+        case BusAlarm::link_down:
+        case BusAlarm::frames_lost:
             return fact.b > 0 ? with_outcome(fmt::format("{:.0f} slave{} fell by it", fact.b, fact.b == 1 ? "" : "s"),
                                              outcome(*impl_->bus, nullptr))
                               : std::string{};
-        case alarm::dc_out_of_sync: return furthest_clock(*impl_->bus);
+        case BusAlarm::dc_out_of_sync: return furthest_clock(*impl_->bus);
         default: break;
     }
     if (fact.source != AlarmSource::slave || fact.index >= slaves.size()) return {};
     const auto& slave = *slaves[fact.index];
-    switch (fact.id) {
-        case alarm::slave_left_op:
-        case alarm::slave_dropped_out:
+    switch (BusAlarm{fact.id}) {
+        case BusAlarm::slave_left_op:
+        case BusAlarm::slave_dropped_out:
             if (fact.a != 0)
                 return fmt::format("{}; it is {}", code_text(static_cast<std::uint16_t>(fact.b)),
                                    is_back(*impl_->bus, slave)
                                        ? std::string{"back in OP"}
                                        : fmt::format("in {}", name(static_cast<AlState>(static_cast<std::uint8_t>(fact.a)))));
-            if (fact.id == alarm::slave_left_op) return is_back(*impl_->bus, slave) ? "it is back in OP" : "its reason is being read";
+            if (fact.id == id(BusAlarm::slave_left_op))
+                return is_back(*impl_->bus, slave) ? "it is back in OP" : "its reason is being read";
             return with_outcome(connection_text(*impl_->bus, slave), is_back(*impl_->bus, slave) ? "it is back in OP" : "");
-        case alarm::slave_lost:
+        case BusAlarm::slave_lost:
             return with_outcome(connection_text(*impl_->bus, slave), is_back(*impl_->bus, slave) ? "it is back in OP" : "");
-        case alarm::cable_broken:
-        case alarm::branch_dropped_out: return with_outcome(connection_text(*impl_->bus, slave), outcome(*impl_->bus, &slave));
-        case alarm::other_device:
-        case alarm::other_device_tolerated:
-        case alarm::slave_does_not_return: return slave.last_trouble;
+        case BusAlarm::cable_broken:
+        case BusAlarm::branch_dropped_out: return with_outcome(connection_text(*impl_->bus, slave), outcome(*impl_->bus, &slave));
+        case BusAlarm::other_device:
+        case BusAlarm::other_device_tolerated:
+        case BusAlarm::slave_does_not_return: return slave.last_trouble;
         default: return {};
     }
 }

@@ -229,7 +229,7 @@ void Machine::Impl::raise_bus_alarms() noexcept {
     const auto count = bus.active_faults(facts);
     for (auto& emergency_of_slave : drive_emergencies) emergency_of_slave.seen = false;
     for (std::size_t i = 0; i < count; ++i)
-        if (facts[i].id != ecat::alarm::slave_emergency || !told_by_an_axis(facts[i])) raise_fact(facts[i], ecat::bus_alarms);
+        if (facts[i].id != ecat::id(ecat::BusAlarm::slave_emergency) || !told_by_an_axis(facts[i])) raise_fact(facts[i], ecat::bus_alarms);
     raise_missed_emergencies();
 }
 
@@ -289,7 +289,7 @@ bool Machine::Impl::follows_from_another(const AlarmFact& fact) noexcept {
     const bool of_the_bus = axis_slave[fact.index] < bus.slave_count();
     for (const auto& alarm : log.alarms()) {
         const bool bus_alarm = alarm.fact.id >= 0x1000 && alarm.fact.id < 0x2000 && alarm.reaction >= Reaction::stop_machine;
-        const bool same_slave = alarm.fact.source != AlarmSource::slave || alarm.fact.id == ecat::alarm::cable_broken ||
+        const bool same_slave = alarm.fact.source != AlarmSource::slave || alarm.fact.id == ecat::id(ecat::BusAlarm::cable_broken) ||
                                 alarm.fact.index == axis_slave[fact.index];
         explained = explained || (!stopped && of_the_bus && bus_alarm && same_slave);
     }

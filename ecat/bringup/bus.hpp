@@ -79,7 +79,6 @@ struct Bus {
     ProcessDataPlan plan;
     std::optional<std::size_t> reference;  ///< the slave whose clock is the bus' clock
     std::optional<std::int64_t> dc_phase;  ///< system time of a cycle start, modulo the cycle; fixed at the first SYNC0
-    std::atomic<bool> runs_sync0{false};   ///< some slave does, so the cycle has to be locked to the reference
     std::atomic<BusPhase> phase{BusPhase::idle};
     std::string progress;
     std::uint32_t census = 0;    ///< how often position_now was taken anew

@@ -240,7 +240,7 @@ Script<Result<void>> await_clocks(Bus& bus) {
 Script<Result<void>> await_lock(Bus& bus) {
     const bool needed = std::any_of(bus.slaves.begin(), bus.slaves.end(), [](const auto& slave) { return slave->config->dc && slave->dc; });
     const bool required = bus.reference && needed && bus.config.lock_required;
-    bus.runs_sync0.store(required);
+    bus.link.runs_sync0.store(required);
     if (!required) co_return Result<void>{};
     bus.progress = "waiting for the cycle to lock to the reference clock";
     const Instant started = co_await time();

@@ -224,9 +224,9 @@ Script<void> ask_mailbox(Bus& bus, BusSlave& slave) {
     const Result<std::vector<std::byte>> type = co_await sdo_upload(bus.port, slave.mailbox, 0x1000, 0);
     const bool spoke = type.ok() || type.error().code == "sdo.abort";
     const bool mute = !spoke && type.error().code.starts_with("sdo.");  // bus.*: the slave or the frames are away
-    if (mute && !slave.link.mailbox_silent.exchange(true))
+    if (mute && !slave.link.seen.say<BusAlarm::mailbox_silent>(true))
         bus.remember(slave.subject + " does not answer in its mailbox: " + type.error().what);
-    if (spoke && slave.link.mailbox_silent.exchange(false)) bus.remember(slave.subject + " answers in its mailbox again");
+    if (spoke && slave.link.seen.say<BusAlarm::mailbox_silent>(false)) bus.remember(slave.subject + " answers in its mailbox again");
 }
 
 Script<void> watch_mailboxes(Bus& bus) {
@@ -248,9 +248,9 @@ Script<void> watch_senders(Bus& bus) {
         const std::uint64_t frames = bus.link.foreign_frames.load();
         if (frames != seen) heard = now;
         seen = frames;
-        if (seen - before >= foreign_in_window && !bus.link.foreign_master.exchange(true))
+        if (seen - before >= foreign_in_window && !bus.link.seen.say<BusAlarm::foreign_master>(true))
             bus.remember("frames of another EtherCAT master are on the cable: " + sender_text(bus.link));
-        if (now - heard >= foreign_window) bus.link.foreign_master.store(false);
+        if (now - heard >= foreign_window) bus.link.seen.say<BusAlarm::foreign_master>(false);
         if (now - window < foreign_window) continue;
         window = now;
         before = seen;

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "core/time.hpp"
+#include "ecat/alarms.hpp"
 #include "ecat/dc/cycle_servo.hpp"
 #include "ecat/layout/process_data_plan.hpp"
 
@@ -30,6 +31,21 @@ struct MailboxBits {
         }
         if (all_contributed) exact.store(exact.load(std::memory_order_relaxed) + 1, std::memory_order_release);
     }
+};
+
+/// Conditions that only the scripts can see: they say so here, FaultFinder decides what of it is raised.
+class SeenAlarms {
+public:
+    /// Returns whether it held before.
+    template <BusAlarm alarm>
+    bool say(bool holds) noexcept {
+        constexpr std::uint64_t bit = BusAlarmSet::bit<alarm>;
+        return ((holds ? bits_.fetch_or(bit) : bits_.fetch_and(~bit)) & bit) != 0;
+    }
+    [[nodiscard]] BusAlarmSet load() const noexcept { return BusAlarmSet{bits_.load(std::memory_order_relaxed)}; }
+
+private:
+    std::atomic<std::uint64_t> bits_{0};
 };
 
 /// Numbers between the cycle and the scripts.
@@ -62,7 +78,8 @@ struct CycleLink {
     std::atomic<std::int64_t> dc_phase_ns{-1};      ///< system time of send(), modulo the cycle, that the servo keeps; -1: not fixed
     std::atomic<std::uint32_t> clock_holds{0};      ///< above 0: a reference is being set: read its time, give it to nobody
     std::atomic<std::uint64_t> reference{0};        ///< who serves as reference clock: station + (ns behind the first << 16)
-    std::atomic<bool> foreign_master{false};        ///< foreign frames came in lately, more than a defect explains
+    SeenAlarms seen;
+    std::atomic<bool> runs_sync0{false};  ///< some slave does, so the cycle has to be locked to the reference
 };
 
 /// What a slave or drive says so soon after this computer sent nothing for a while follows from that: its watchdogs and counters of
@@ -99,7 +116,7 @@ struct alignas(64) SlaveLink {
     std::atomic<Presence> presence{Presence::answers};
     std::atomic<ReturnTrouble> trouble{ReturnTrouble::none};
     std::atomic<std::uint32_t> attempts{0};  ///< to get it back, in a row
-    std::atomic<bool> mailbox_silent{false};
+    SeenAlarms seen;
     std::atomic<bool> taken_down{false};       ///< to set it up again; until it is back in OP
     std::atomic<std::uint32_t> al{0};          ///< AL status in the low word, status code in the high word
     std::atomic<std::int64_t> sync0_start{0};  ///< an instant of SYNC0 in system time; 0: does not run

@@ -17,7 +17,7 @@ constexpr std::uint32_t reference_times_limit = 50;
 /// So many cycles the watch has to name who is missing before each slave speaks for itself.
 constexpr std::uint32_t naming_cycles = 200;
 constexpr std::uint32_t attempts_limit = 3;
-constexpr std::size_t facts_of_bus = 12, facts_of_slave = 4;
+constexpr std::size_t facts_of_bus = 16, facts_of_slave = 6;  ///< room for more than can hold at once
 
 /// AL status codes by which a slave says that frames or SYNC0 and frames did not come as they should (ETG.1000.6 table 11).
 bool for_want_of_frames(std::uint16_t code) noexcept {
@@ -49,27 +49,47 @@ FaultFinder::FaultFinder(std::vector<FaultSlave> slaves, std::uint16_t expected,
       order_(slaves_.size()),
       expected_(expected),
       limit_(limit),
-      silence_id_(alarm::frames_lost) {
+      silence_(BusAlarm::frames_lost) {
     for (std::size_t i = 0; i < slaves_.size(); ++i) order_[slaves_[i].index] = i;
     facts_.reserve(facts_of_bus + facts_of_slave * slaves_.size());
 }
 
-void FaultFinder::raise(AlarmId id, AlarmSource source, std::size_t index, double a, double b) noexcept {
-    if (facts_.size() < facts_.capacity()) facts_.push_back({id, source, static_cast<std::uint16_t>(index), a, b});
+void FaultFinder::raise(BusAlarm alarm, AlarmSource source, std::size_t index, double a, double b) noexcept {
+    if (facts_.size() < facts_.capacity()) facts_.push_back({id(alarm), source, static_cast<std::uint16_t>(index), a, b});
+}
+
+std::span<const AlarmFact> FaultFinder::facts_before_op(BusPhase phase) noexcept {
+    static constexpr std::array failed{AlarmFact{id(BusAlarm::bringup_failed), AlarmSource::bus, 0, 0, 0}};
+    static constexpr std::array not_there{AlarmFact{id(BusAlarm::bus_not_operational), AlarmSource::bus, 0, 0, 0}};
+    return phase == BusPhase::failed ? failed : not_there;
 }
 
 void FaultFinder::look(const BusCondition& bus) noexcept {
     facts_.clear();
+    look_at_slaves(bus);
+    for (std::size_t s = 0; s < order_.size(); ++s) raise_emergency(s);
+    const bool frames = std::none_of(facts_.begin(), facts_.end(), [](const AlarmFact& fact) {
+        return fact.id == id(BusAlarm::link_down) || fact.id == id(BusAlarm::frames_lost);
+    });
+    if (frames && bus.out_of_lock) raise(BusAlarm::dc_not_locked, AlarmSource::bus, 0, static_cast<double>(bus.dc_phase_error_ns));
+}
+
+void FaultFinder::raise_emergency(std::size_t index) noexcept {
+    const auto& seen = condition(index);
+    if (seen.emergency_code != 0) raise(BusAlarm::slave_emergency, AlarmSource::slave, index, seen.emergency_code, seen.error_register);
+}
+
+void FaultFinder::look_at_slaves(const BusCondition& bus) noexcept {
     const bool silent = !bus.link_up || bus.lost_in_a_row >= limit_;
     if (silent) {
-        if (bus.foreign_master) raise(alarm::foreign_master, AlarmSource::bus, 0);
+        if (bus.seen.has<BusAlarm::foreign_master>()) raise(BusAlarm::foreign_master, AlarmSource::bus, 0);
         // The first frames behind a link that is back are still those that it could not carry.
         linked_cycles_ = bus.link_up ? linked_cycles_ + 1 : 0;
-        if (!bus.link_up) silence_id_ = alarm::link_down;
-        else if (linked_cycles_ > limit_ || !was_silent_) silence_id_ = alarm::frames_lost;
+        if (!bus.link_up) silence_ = BusAlarm::link_down;
+        else if (linked_cycles_ > limit_ || !was_silent_) silence_ = BusAlarm::frames_lost;
         was_silent_ = true;
         silence_cycles_ = bus.lost_in_a_row;
-        return raise(silence_id_, AlarmSource::bus, 0, silence_cycles_);
+        return raise(silence_, AlarmSource::bus, 0, silence_cycles_);
     }
     was_silent_ = false;
     note_falls(bus);
@@ -86,8 +106,9 @@ void FaultFinder::look(const BusCondition& bus) noexcept {
     // What no frame brings back is no fault of the clock.
     const bool unasked = bus.lost_in_a_row > 0 || bus.gap >= bus.reference_times_missing;
     if (bus.reference_times_missing >= reference_times_limit && !reference_gone && !unasked)
-        raise(alarm::reference_clock_lost, AlarmSource::bus, 0, bus.reference_times_missing);
-    if (bus.dc_difference_ns > sync_limit_ns) raise(alarm::dc_out_of_sync, AlarmSource::bus, 0, static_cast<double>(bus.dc_difference_ns));
+        raise(BusAlarm::reference_clock_lost, AlarmSource::bus, 0, bus.reference_times_missing);
+    if (bus.dc_difference_ns > sync_limit_ns)
+        raise(BusAlarm::dc_out_of_sync, AlarmSource::bus, 0, static_cast<double>(bus.dc_difference_ns));
 }
 
 // The broadcast says that somebody is out of OP before the watch has asked who: a slave that is not exchanged then is the one.
@@ -169,18 +190,18 @@ void FaultFinder::raise_falls(const BusCondition& bus) noexcept {
         group->most = std::max(group->most, group->count);
     }
     const bool commanded = commanded_[0].count + commanded_[1].count > 0;
-    if (bus.foreign_master || (commanded && bus.foreign_heard)) raise(alarm::foreign_master, AlarmSource::bus, 0);
-    constexpr std::array starved_ids{alarm::starved_slave_left_op, alarm::starved_slave_dropped_out};
-    constexpr std::array commanded_ids{alarm::foreign_command, alarm::foreign_command_tolerated};
+    if (bus.seen.has<BusAlarm::foreign_master>() || (commanded && bus.foreign_heard)) raise(BusAlarm::foreign_master, AlarmSource::bus, 0);
+    constexpr std::array starved_alarms{BusAlarm::starved_slave_left_op, BusAlarm::starved_slave_dropped_out};
+    constexpr std::array commanded_alarms{BusAlarm::foreign_command, BusAlarm::foreign_command_tolerated};
     for (std::size_t policy = 0; policy < 2; ++policy) {
         const auto& starved = starved_[policy];
         if (starved.count > 0)
-            raise(starved_ids[policy], AlarmSource::bus, 0, milliseconds(starved.stall), static_cast<double>(starved.most));
+            raise(starved_alarms[policy], AlarmSource::bus, 0, milliseconds(starved.stall), static_cast<double>(starved.most));
         const auto& sent = commanded_[policy];
-        if (sent.count > 0) raise(commanded_ids[policy], AlarmSource::bus, 0, static_cast<double>(sent.most));
+        if (sent.count > 0) raise(commanded_alarms[policy], AlarmSource::bus, 0, static_cast<double>(sent.most));
     }
-    if (silenced_.count > 0) raise(silence_id_, AlarmSource::bus, 0, silenced_.gap, static_cast<double>(silenced_.most));
-    else if (bus.gap == 0) silence_id_ = alarm::frames_lost;
+    if (silenced_.count > 0) raise(silence_, AlarmSource::bus, 0, silenced_.gap, static_cast<double>(silenced_.most));
+    else if (bus.gap == 0) silence_ = BusAlarm::frames_lost;
 }
 
 std::size_t FaultFinder::find_lost(std::uint16_t answering) noexcept {
@@ -230,10 +251,10 @@ void FaultFinder::raise_groups() noexcept {
         const State& first = states_[i];
         if (first.group == 0) continue;
         const bool branch = first.largest_group > 1;
-        const AlarmId id = branch ? (first.group_stops_machine ? alarm::cable_broken : alarm::branch_dropped_out)
-                                  : (first.group_stops_machine ? alarm::slave_lost : alarm::slave_dropped_out);
+        const BusAlarm alarm = branch ? (first.group_stops_machine ? BusAlarm::cable_broken : BusAlarm::branch_dropped_out)
+                                      : (first.group_stops_machine ? BusAlarm::slave_lost : BusAlarm::slave_dropped_out);
         const auto [most, away] = std::pair{static_cast<double>(first.largest_group), static_cast<double>(first.group)};
-        raise(id, AlarmSource::slave, slaves_[i].index, branch ? most : 0, branch ? away : 0);
+        raise(alarm, AlarmSource::slave, slaves_[i].index, branch ? most : 0, branch ? away : 0);
     }
 }
 
@@ -241,7 +262,7 @@ void FaultFinder::raise_unnamed(std::size_t unnamed) noexcept {
     if (unnamed == 0) return;
     for (std::size_t i = 0; i < slaves_.size(); ++i)
         if (stale(states_[i]) && states_[i].gone_with == FaultSlave::none && slaves_[i].on_loss == LossPolicy::stop_machine)
-            return raise(alarm::slaves_missing, AlarmSource::bus, 0, static_cast<double>(missing_), expected_);
+            return raise(BusAlarm::slaves_missing, AlarmSource::bus, 0, static_cast<double>(missing_), expected_);
 }
 
 void FaultFinder::raise_slave(std::size_t at, bool counted_out) noexcept {
@@ -250,14 +271,14 @@ void FaultFinder::raise_slave(std::size_t at, bool counted_out) noexcept {
     const auto& seen = state.seen;
     const bool tolerated = slave.on_loss == LossPolicy::stop_own_axes;
     if (seen.trouble == ReturnTrouble::other_device) {
-        raise(tolerated ? alarm::other_device_tolerated : alarm::other_device, AlarmSource::slave, slave.index);
+        raise(tolerated ? BusAlarm::other_device_tolerated : BusAlarm::other_device, AlarmSource::slave, slave.index);
         return;
     }
     if (seen.trouble == ReturnTrouble::refused && seen.attempts >= attempts_limit)
-        raise(alarm::slave_does_not_return, AlarmSource::slave, slave.index, seen.attempts);
+        raise(BusAlarm::slave_does_not_return, AlarmSource::slave, slave.index, seen.attempts);
     if (state.gone_with != FaultSlave::none) return;  // said with the cable, or it is just coming back
     if (fallen_with(at) != nullptr) return;           // said with what took it down
-    if (seen.mailbox_silent) raise(alarm::mailbox_silent, AlarmSource::slave, slave.index);
+    if (seen.seen.has<BusAlarm::mailbox_silent>()) raise(BusAlarm::mailbox_silent, AlarmSource::slave, slave.index);
 
     // Probably one of those who are just being named.
     const bool waits = naming_ || (counted_out && seen.age < limit_ + naming_cycles);
@@ -265,15 +286,16 @@ void FaultFinder::raise_slave(std::size_t at, bool counted_out) noexcept {
         raise_left_op(at);
     } else if (seen.presence == Presence::silent) {
         // Only who exchanges in this very cycle has power and cable, and lost nothing but its address.
-        if (seen.age == 0) raise(alarm::station_address_lost, AlarmSource::slave, slave.index);
-        else if (stale(state) && !naming_) raise(tolerated ? alarm::slave_dropped_out : alarm::slave_lost, AlarmSource::slave, slave.index);
+        if (seen.age == 0) raise(BusAlarm::station_address_lost, AlarmSource::slave, slave.index);
+        else if (stale(state) && !naming_)
+            raise(tolerated ? BusAlarm::slave_dropped_out : BusAlarm::slave_lost, AlarmSource::slave, slave.index);
     } else if (seen.presence == Presence::answers && state.fall.restarted) {
-        raise(tolerated ? alarm::slave_dropped_out : alarm::slave_lost, AlarmSource::slave, slave.index);  // until it is back in OP
+        raise(tolerated ? BusAlarm::slave_dropped_out : BusAlarm::slave_lost, AlarmSource::slave, slave.index);  // until it is back in OP
     } else if (seen.presence == Presence::answers && state.fall.now()) {
         raise_left_op(at);
     } else if (stale(state) && !waits) {
         if (tolerated) raise_left_op(at);
-        else raise(alarm::working_counter_wrong, AlarmSource::slave, slave.index, seen.age);
+        else raise(BusAlarm::working_counter_wrong, AlarmSource::slave, slave.index, seen.age);
     }
 }
 
@@ -281,7 +303,7 @@ void FaultFinder::raise_left_op(std::size_t at) noexcept {
     const auto& slave = slaves_[at];
     const auto& [seen, fall] = std::tie(states_[at].seen, states_[at].fall);
     const bool tolerated = slave.on_loss == LossPolicy::stop_own_axes;
-    raise(tolerated ? alarm::slave_dropped_out : alarm::slave_left_op, AlarmSource::slave, slave.index,
+    raise(tolerated ? BusAlarm::slave_dropped_out : BusAlarm::slave_left_op, AlarmSource::slave, slave.index,
           fall.read ? static_cast<double>(seen.al_state) : 0, fall.code);
 }
 

@@ -24,7 +24,9 @@
 #include <vector>
 
 #include "core/alarm.hpp"
+#include "ecat/alarms.hpp"
 #include "ecat/bus_config.hpp"
+#include "ecat/cycle/bus_phase.hpp"
 #include "ecat/cycle/cycle_link.hpp"
 #include "ecat/wire/al_status.hpp"
 
@@ -39,8 +41,10 @@ struct SlaveCondition {
     Presence presence = Presence::answers;
     ReturnTrouble trouble = ReturnTrouble::none;
     std::uint32_t attempts = 0;
-    bool mailbox_silent = false;
-    bool taken_down = false;  ///< by this master itself, to set it up again
+    bool taken_down = false;           ///< by this master itself, to set it up again
+    BusAlarmSet seen{};                ///< what the scripts see of it
+    std::uint16_t emergency_code = 0;  ///< 0: none
+    std::uint8_t error_register = 0;
 };
 
 /// The bus as a whole.
@@ -50,11 +54,13 @@ struct BusCondition {
     std::uint16_t slaves_answering = 0;
     std::uint32_t reference_times_missing = 0;  ///< in a row
     std::int64_t dc_difference_ns = 0;
-    bool foreign_master = false;
+    BusAlarmSet seen{};          ///< what the scripts see
     Duration stall{};            ///< so long this computer sent nothing a moment ago; 0: it was in time
     std::uint32_t gap = 0;       ///< so many cycles in a row were not answered a moment ago; 0: no two
     bool foreign_heard = false;  ///< a frame of another sender came in lately, be it a single one
     std::uint16_t states = 0;    ///< OR of the AL states of all slaves, with the error bit; 0: not all of them answered
+    bool out_of_lock = false;    ///< some slave runs SYNC0, and the cycle is not locked to the reference clock
+    std::int64_t dc_phase_error_ns = 0;
 };
 
 /// A slave as it was configured and found. In the order of positions, so that parents come before their children.
@@ -77,7 +83,9 @@ public:
     /// Of the slave with this index in the configuration; written before look().
     [[nodiscard]] SlaveCondition& condition(std::size_t index) noexcept { return states_[order_[index]].seen; }
     void look(const BusCondition& bus) noexcept;
-    /// What held at the last look().
+    /// What holds of a bus that is not in OP: only that.
+    [[nodiscard]] static std::span<const AlarmFact> facts_before_op(BusPhase phase) noexcept;
+    /// What held at the last look(), of a bus in OP.
     [[nodiscard]] std::span<const AlarmFact> facts() const noexcept { return facts_; }
 
 private:
@@ -106,7 +114,10 @@ private:
         std::size_t group = 0, largest_group = 0;  ///< slaves gone with this one, now and at most
         bool group_stops_machine = false;
     };
-    void raise(AlarmId id, AlarmSource source, std::size_t index, double a = 0, double b = 0) noexcept;
+    void raise(BusAlarm alarm, AlarmSource source, std::size_t index, double a = 0, double b = 0) noexcept;
+    /// Frames, cables, slaves and the reference clock.
+    void look_at_slaves(const BusCondition& bus) noexcept;
+    void raise_emergency(std::size_t index) noexcept;
     /// Returns how many slaves are missing that cannot be named yet. As long as there are some nobody new is named: whoever of them is found
     /// first is seldom the one that took the others along.
     std::size_t find_lost(std::uint16_t answering) noexcept;
@@ -137,7 +148,7 @@ private:
     std::uint32_t limit_;
     std::array<Fallen, 2> starved_, commanded_;  ///< stop_machine, stop_own_axes
     Fallen silenced_;
-    AlarmId silence_id_;  ///< link_down or frames_lost, which was last
+    BusAlarm silence_;  ///< link_down or frames_lost, which was last
     std::uint32_t silence_cycles_ = 0, linked_cycles_ = 0;
     bool was_silent_ = false;
     std::size_t missing_ = 0;       ///< at the last look

@@ -93,26 +93,41 @@ void ProcessDataCycle::note_gap(Instant now) noexcept {
 void ProcessDataCycle::find_faults(CyclePlan& cycle, Instant now) noexcept {
     for (std::size_t s = 0; s < cycle.slaves.size(); ++s) {
         const auto& health = cycle.health[s];
-        const auto& slave = *cycle.slaves[s].link;
-        cycle.faults.condition(s) = {health.al_state,
-                                     health.al_error,
-                                     health.al_status_code,
-                                     health.age,
-                                     slave.presence.load(std::memory_order_relaxed),
-                                     slave.trouble.load(std::memory_order_relaxed),
-                                     slave.attempts.load(std::memory_order_relaxed),
-                                     slave.mailbox_silent.load(std::memory_order_relaxed),
-                                     slave.taken_down.load(std::memory_order_relaxed)};
+        const auto& link = *cycle.slaves[s].link;
+        cycle.faults.condition(s) = {
+            .al_state = health.al_state,
+            .al_error = health.al_error,
+            .al_status_code = health.al_status_code,
+            .age = health.age,
+            .presence = link.presence.load(std::memory_order_relaxed),
+            .trouble = link.trouble.load(std::memory_order_relaxed),
+            .attempts = link.attempts.load(std::memory_order_relaxed),
+            .taken_down = link.taken_down.load(std::memory_order_relaxed),
+            .seen = link.seen.load(),
+            .emergency_code = health.emergency_code,
+            .error_register = health.error_register,
+        };
     }
     if (statistics_.frames_foreign != foreign_before_) foreign_at_ = now;
     foreign_before_ = statistics_.frames_foreign;
-    const bool foreign_lately = foreign_at_ && now - *foreign_at_ <= foreign_remembered;
-    const auto* link = link_.load(std::memory_order_acquire);
-    cycle.faults.look(
-        {transport_.link_up(), statistics_.lost_in_a_row, statistics_.slaves_answering, clock_.reference().rejected_in_a_row(),
-         statistics_.dc_difference_ns, link != nullptr && link->foreign_master.load(std::memory_order_relaxed),
-         link != nullptr ? recent_stall(*link, now) : Duration{}, link != nullptr ? recent_gap(*link, now) : 0, foreign_lately,
-         link != nullptr ? static_cast<std::uint16_t>(link->states_seen.load(std::memory_order_relaxed)) : std::uint16_t{0}});
+    const bool in_time = statistics_.dc_lock == DcLock::locked || statistics_.dc_lock == DcLock::coasting;
+    BusCondition bus{
+        .link_up = transport_.link_up(),
+        .lost_in_a_row = statistics_.lost_in_a_row,
+        .slaves_answering = statistics_.slaves_answering,
+        .reference_times_missing = clock_.reference().rejected_in_a_row(),
+        .dc_difference_ns = statistics_.dc_difference_ns,
+        .foreign_heard = foreign_at_ && now - *foreign_at_ <= foreign_remembered,
+        .dc_phase_error_ns = statistics_.dc_phase_error_ns,
+    };
+    if (const auto* link = link_.load(std::memory_order_acquire)) {
+        bus.seen = link->seen.load();
+        bus.stall = recent_stall(*link, now);
+        bus.gap = recent_gap(*link, now);
+        bus.states = static_cast<std::uint16_t>(link->states_seen.load(std::memory_order_relaxed));
+        bus.out_of_lock = !in_time && link->runs_sync0.load(std::memory_order_relaxed);
+    }
+    cycle.faults.look(bus);
 }
 
 void ProcessDataCycle::collect_frames(CyclePlan& cycle) noexcept {
@@ -347,7 +362,8 @@ const SlaveHealth& ProcessDataCycle::health(std::size_t slave) const noexcept {
     return cycle != nullptr && slave < cycle->health.size() ? cycle->health[slave] : nothing_;
 }
 
-std::span<const AlarmFact> ProcessDataCycle::faults() const noexcept {
+std::span<const AlarmFact> ProcessDataCycle::faults(BusPhase phase) const noexcept {
+    if (phase != BusPhase::operational) return FaultFinder::facts_before_op(phase);
     const auto* cycle = latest_.load(std::memory_order_acquire);
     return cycle != nullptr ? cycle->faults.facts() : std::span<const AlarmFact>{};
 }

@@ -11,6 +11,7 @@
 
 #include "ecat/bus_config.hpp"
 #include "ecat/cycle/bus_health.hpp"
+#include "ecat/cycle/bus_phase.hpp"
 #include "ecat/cycle/cycle_clock.hpp"
 #include "ecat/cycle/cycle_link.hpp"
 #include "ecat/cycle/cycle_plan.hpp"
@@ -40,8 +41,8 @@ public:
     [[nodiscard]] std::span<const std::byte> inputs() const noexcept;
     [[nodiscard]] std::span<std::byte> outputs() noexcept;
     [[nodiscard]] const SlaveHealth& health(std::size_t slave) const noexcept;
-    /// What is wrong with a bus in OP, as of the last receive().
-    [[nodiscard]] std::span<const AlarmFact> faults() const noexcept;
+    /// What is wrong with a bus in this phase; of one in OP as of the last receive().
+    [[nodiscard]] std::span<const AlarmFact> faults(BusPhase phase) const noexcept;
     [[nodiscard]] const BusStatistics& statistics() const noexcept { return statistics_; }
     [[nodiscard]] Instant outputs_effective(std::size_t slave, Instant send_time) const noexcept;
     [[nodiscard]] Duration period_correction() const noexcept { return clock_.correction(); }

@@ -149,14 +149,15 @@ private:
     /// until somebody resets it, and says so by an emergency: the bus is well all the same.
     bool all_well() {
         const bool condition =
-            std::any_of(standing_.begin(), standing_.end(), [](AlarmId id) { return id != ecat::alarm::slave_emergency; });
+            std::any_of(standing_.begin(), standing_.end(), [](AlarmId id) { return id != ecat::id(ecat::BusAlarm::slave_emergency); });
         if (bus().phase() != Master::Phase::operational || condition) return false;
         for (std::size_t s = 0; s < bus().slave_count(); ++s)
             if (!bus().health(s).fresh || bus().health(s).al_state != ecat::AlState::op) return false;
         return true;
     }
     bool an_announced_alarm_stands() {
-        return std::any_of(standing_.begin(), standing_.end(), [](AlarmId id) { return id != ecat::alarm::reference_clock_lost; });
+        return std::any_of(standing_.begin(), standing_.end(),
+                           [](AlarmId id) { return id != ecat::id(ecat::BusAlarm::reference_clock_lost); });
     }
 
     void judge_operation() {

@@ -8,7 +8,7 @@ namespace taktwerk::campaign {
 
 namespace {
 
-namespace alarm = ecat::alarm;
+using ecat::BusAlarm;
 using Axes = ExpectedEnd::Axes;
 
 constexpr bool in_bring_up(Phase phase) noexcept { return phase <= Phase::safeop; }
@@ -67,7 +67,7 @@ ExpectedEnd of_operation(FaultKind kind) {
         end.degraded = true;
         return end;
     };
-    const std::vector<AlarmId> gone{alarm::slave_lost, alarm::cable_broken, alarm::frames_lost};
+    const std::vector<AlarmId> gone{id(BusAlarm::slave_lost), id(BusAlarm::cable_broken), id(BusAlarm::frames_lost)};
     switch (kind) {
         // Up to two cycles in a row without an answer are counted and nothing else (lost_frames_limit 3).
         case FaultKind::frames_lost:
@@ -75,32 +75,32 @@ ExpectedEnd of_operation(FaultKind kind) {
         case FaultKind::answers_twice:
         case FaultKind::answers_reordered: return runs_on();
         case FaultKind::frames_lost_long:
-        case FaultKind::answers_late_long: return stops({alarm::frames_lost});
+        case FaultKind::answers_late_long: return stops({id(BusAlarm::frames_lost)});
         case FaultKind::counter_too_small:
-        case FaultKind::counter_too_large: return stops({alarm::working_counter_wrong});
+        case FaultKind::counter_too_large: return stops({id(BusAlarm::working_counter_wrong)});
         case FaultKind::state_refused: return runs_on();  // nobody changes a state
         case FaultKind::power_cycled:
         case FaultKind::power_cycled_twice:
         case FaultKind::cable_pulled: return stops(gone);
         case FaultKind::power_gone:
         case FaultKind::cable_gone: return stops_for_good(gone);
-        case FaultKind::other_device: return stops_for_good({alarm::other_device});
-        case FaultKind::link_down: return stops({alarm::link_down});
-        case FaultKind::foreign_frames: return runs_on({alarm::foreign_master});
-        case FaultKind::address_changed: return runs_on({alarm::station_address_lost});
-        case FaultKind::state_changed: return stops({alarm::foreign_command});
-        case FaultKind::settings_changed: return stops({alarm::working_counter_wrong});
+        case FaultKind::other_device: return stops_for_good({id(BusAlarm::other_device)});
+        case FaultKind::link_down: return stops({id(BusAlarm::link_down)});
+        case FaultKind::foreign_frames: return runs_on({id(BusAlarm::foreign_master)});
+        case FaultKind::address_changed: return runs_on({id(BusAlarm::station_address_lost)});
+        case FaultKind::state_changed: return stops({id(BusAlarm::foreign_command)});
+        case FaultKind::settings_changed: return stops({id(BusAlarm::working_counter_wrong)});
         case FaultKind::mailbox_stuck: return runs_on();
         case FaultKind::mailbox_dead: {
-            ExpectedEnd end = runs_on({alarm::mailbox_silent});
+            ExpectedEnd end = runs_on({id(BusAlarm::mailbox_silent)});
             end.operational = false;
             end.degraded = true;
             return end;
         }
-        case FaultKind::reference_frozen: return runs_on({alarm::reference_clock_lost});
+        case FaultKind::reference_frozen: return runs_on({id(BusAlarm::reference_clock_lost)});
         case FaultKind::stall_20ms:
         case FaultKind::stall_200ms:
-        case FaultKind::stall_2s: return stops({alarm::starved_slave_left_op});
+        case FaultKind::stall_2s: return stops({id(BusAlarm::starved_slave_left_op)});
         // A wrong input may be an emergency stop or a following error; a wrong register may be anything of a slave. Nobody can see
         // a flipped bit in a target behind a valid checksum: there the drive's own supervision of increments is what remains.
         case FaultKind::answer_bits_flipped: {

@@ -78,7 +78,7 @@ TEST(CycleLock, HoldsSync0AtOneDistanceBehindTheFrameAgainst50Ppm) {
         EXPECT_LT((most - least).count(), 100) << "at " << ppm << " ppm, with a cycle on the ns grid";
         EXPECT_NEAR(static_cast<double>(most.count()), 500'000, 1'000) << "half a cycle";
         EXPECT_NEAR(static_cast<double>(bus->master->statistics().dc_drift_ppb), ppm * 1000, 10);
-        EXPECT_THAT(bus->faults(), Not(Contains(alarm::dc_not_locked)));
+        EXPECT_THAT(bus->faults(), Not(Contains(id(BusAlarm::dc_not_locked))));
     }
 }
 
@@ -99,7 +99,7 @@ TEST(CycleLock, OfACallerThatIgnoresTheCorrectionIsAnAlarm) {
     ASSERT_TRUE(bus->bring_up()) << bus->why();
     bus->run_for(2s);  // 100 us off
     EXPECT_EQ(bus->master->statistics().dc_lock, DcLock::acquiring);
-    EXPECT_THAT(bus->faults(), Contains(alarm::dc_not_locked));
+    EXPECT_THAT(bus->faults(), Contains(id(BusAlarm::dc_not_locked)));
     EXPECT_LE(std::chrono::abs(bus->master->period_correction()), 10us) << "and nothing winds up";
 }
 
@@ -203,19 +203,19 @@ TEST(DcOutOfSync, IsRaisedWhenASlavesClockDiffersAndEndsWithIt) {
     auto bus = line_of({0, 0});
     ASSERT_TRUE(bus->bring_up()) << bus->why();
     bus->run_for(3s);
-    ASSERT_THAT(bus->faults(), Not(Contains(alarm::dc_out_of_sync)));
+    ASSERT_THAT(bus->faults(), Not(Contains(id(BusAlarm::dc_out_of_sync))));
 
     auto& clock = bus->network.slave(1).controller().clock();
     clock.set_offset(static_cast<std::int64_t>(peek(*bus, 1, reg::dc_system_offset, 8)) + 400'000);
     bus->run_for(1200ms);
-    EXPECT_THAT(bus->faults(), Contains(alarm::dc_out_of_sync));
+    EXPECT_THAT(bus->faults(), Contains(id(BusAlarm::dc_out_of_sync)));
     EXPECT_GT(bus->master->statistics().dc_difference_ns, 100'000);
-    EXPECT_THAT(bus->master->detail({alarm::dc_out_of_sync, AlarmSource::bus, 0, 0, 0}),
+    EXPECT_THAT(bus->master->detail({id(BusAlarm::dc_out_of_sync), AlarmSource::bus, 0, 0, 0}),
                 testing::ContainsRegex("most of all slave 1 .* from slave 0"))
         << "whose clock it is";
 
     bus->run_for(5s);
-    EXPECT_THAT(bus->faults(), Not(Contains(alarm::dc_out_of_sync)));
+    EXPECT_THAT(bus->faults(), Not(Contains(id(BusAlarm::dc_out_of_sync))));
 }
 
 // 500 us from sending to SYNC0. The frame passes the reference after 50 ns of cable and the second slave 650 ns later; it is 14 + 2

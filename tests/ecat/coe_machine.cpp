@@ -26,7 +26,7 @@ TEST(Emergency, IsReadThoughNobodyAskedAndWarns) {
     TestBus bus{"ss"};
     ASSERT_TRUE(bus.bring_up()) << bus.why();
     bus.run_for(100ms);
-    EXPECT_FALSE(fault(bus, alarm::slave_emergency));
+    EXPECT_FALSE(fault(bus, id(BusAlarm::slave_emergency)));
 
     bus.servo(1).raise({0x7305, 0x21, {}});
     const Instant raised = bus.now;
@@ -38,12 +38,12 @@ TEST(Emergency, IsReadThoughNobodyAskedAndWarns) {
     EXPECT_EQ(entry.emergency.code, 0x7305);
     EXPECT_GE(entry.at, raised);
     EXPECT_LE(entry.at, raised + 150ms);
-    const auto warned = fault(bus, alarm::slave_emergency);
+    const auto warned = fault(bus, id(BusAlarm::slave_emergency));
     ASSERT_TRUE(warned);
     EXPECT_EQ(warned->index, 1);
     EXPECT_EQ(warned->a, 0x7305);
     EXPECT_EQ(warned->b, 0x21);
-    EXPECT_EQ(find_alarm(bus_alarms, alarm::slave_emergency)->reaction, Reaction::warn);
+    EXPECT_EQ(find_alarm(bus_alarms, id(BusAlarm::slave_emergency))->reaction, Reaction::warn);
 }
 
 TEST(Emergency, TheWarningGoesWhenTheSlaveTakesItBack) {
@@ -51,12 +51,12 @@ TEST(Emergency, TheWarningGoesWhenTheSlaveTakesItBack) {
     ASSERT_TRUE(bus.bring_up());
     bus.servo(0).raise({0x7305, 0x21, {}});
     bus.run_for(150ms);
-    ASSERT_TRUE(fault(bus, alarm::slave_emergency));
+    ASSERT_TRUE(fault(bus, id(BusAlarm::slave_emergency)));
 
     bus.servo(0).raise({0x0000, 0x00, {}});
     bus.run_for(150ms);
 
-    EXPECT_FALSE(fault(bus, alarm::slave_emergency));
+    EXPECT_FALSE(fault(bus, id(BusAlarm::slave_emergency)));
     EXPECT_THAT(bus.master->emergencies(), SizeIs(2)) << "both stay in the list";
 }
 

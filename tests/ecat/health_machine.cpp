@@ -74,7 +74,7 @@ TEST_F(Health, ACableThatBreaksIsOneAlarmThatNamesItsEnds) {
     start("ststttst");
     bus->network.set_cable(3, false);
     bus->run_for(10ms);
-    ASSERT_THAT(faults(), ElementsAre(alarm::cable_broken));
+    ASSERT_THAT(faults(), ElementsAre(id(BusAlarm::cable_broken)));
     const auto broken = facts().front();
     EXPECT_EQ(broken.index, 3);
     EXPECT_EQ(broken.a, 5) << "the slave behind the break and four more";
@@ -87,7 +87,7 @@ TEST_F(Health, ACableThatBreaksIsOneAlarmThatNamesItsEnds) {
 
     bus->network.set_cable(3, true);
     bus->run_until([&] { return !facts().empty() && facts().front().b < 5; }, 5s);
-    ASSERT_THAT(faults(), ElementsAre(alarm::cable_broken)) << "until the last is back it is still this one";
+    ASSERT_THAT(faults(), ElementsAre(id(BusAlarm::cable_broken))) << "until the last is back it is still this one";
     EXPECT_EQ(facts().front().a, 5) << "as many as it took along";
     expect_recovery();
     EXPECT_EQ(bus->master->detail(broken), "between slave 2 'c' (sv33-e) port 1 and slave 3 'd' (dio8); all slaves are back in OP")
@@ -99,15 +99,15 @@ TEST_F(Health, ABreakNearerToTheMasterTakesTheEarlierOneIn) {
     start("ttttt");
     bus->network.set_cable(4, false);
     bus->run_for(100ms);
-    EXPECT_THAT(faults(), ElementsAre(alarm::slave_lost));
+    EXPECT_THAT(faults(), ElementsAre(id(BusAlarm::slave_lost)));
     bus->network.set_cable(2, false);
     bus->run_for(100ms);
-    ASSERT_THAT(faults(), ElementsAre(alarm::cable_broken));
+    ASSERT_THAT(faults(), ElementsAre(id(BusAlarm::cable_broken)));
     EXPECT_EQ(facts().front().index, 2);
     EXPECT_EQ(facts().front().a, 3);
     bus->network.set_cable(2, true);
     bus->run_for(2s);
-    EXPECT_THAT(faults(), ElementsAre(alarm::slave_lost)) << "the second cable is still out";
+    EXPECT_THAT(faults(), ElementsAre(id(BusAlarm::slave_lost))) << "the second cable is still out";
     bus->network.set_cable(4, true);
     expect_recovery();
 }
@@ -134,11 +134,11 @@ TEST_F(Health, InATreeNobodyIsTakenForAnotherWhoseBranchIsOut) {
 
     bus->network.set_cable(b, false);
     bus->run_for(200ms);
-    ASSERT_THAT(faults(), ElementsAre(alarm::cable_broken));
+    ASSERT_THAT(faults(), ElementsAre(id(BusAlarm::cable_broken)));
     EXPECT_EQ(bus->master->detail(facts().front()), "between slave 0 'a' (dio8) port 3 and slave 1 'b' (dio8)");
     bus->network.set_power(d, false);  // both of its branch lose their addresses
     bus->run_for(200ms);
-    EXPECT_THAT(faults(), ElementsAre(alarm::cable_broken, alarm::cable_broken));
+    EXPECT_THAT(faults(), ElementsAre(id(BusAlarm::cable_broken), id(BusAlarm::cable_broken)));
     bus->network.set_power(d, true);
     EXPECT_TRUE(bus->run_until([&] { return faults().size() == 1 && d.state() == sim::EsmState::op; }, 5s));
     EXPECT_TRUE(bus->master->health(3).fresh);
@@ -155,21 +155,21 @@ TEST_F(Health, WhereTheConfigurationSaysSoOnlyItsOwnAxesAreConcerned) {
     start("stst", 2);
     bus->network.set_cable(2, false);
     bus->run_for(10ms);
-    EXPECT_THAT(faults(), ElementsAre(alarm::branch_dropped_out));
+    EXPECT_THAT(faults(), ElementsAre(id(BusAlarm::branch_dropped_out)));
     bus->network.set_cable(2, true);
     expect_recovery();
     bus->network.set_power(3, false);
     bus->run_for(10ms);
-    EXPECT_THAT(faults(), ElementsAre(alarm::slave_dropped_out));
-    EXPECT_EQ(find_alarm(bus_alarms, alarm::branch_dropped_out)->reaction, Reaction::warn);
-    EXPECT_EQ(find_alarm(bus_alarms, alarm::slave_dropped_out)->reaction, Reaction::warn);
+    EXPECT_THAT(faults(), ElementsAre(id(BusAlarm::slave_dropped_out)));
+    EXPECT_EQ(find_alarm(bus_alarms, id(BusAlarm::branch_dropped_out))->reaction, Reaction::warn);
+    EXPECT_EQ(find_alarm(bus_alarms, id(BusAlarm::slave_dropped_out))->reaction, Reaction::warn);
 }
 
 TEST_F(Health, ABranchWithOneSlaveThatIsNeededStopsTheMachine) {
     start("sttt", 2);
     bus->network.set_cable(1, false);
     bus->run_for(10ms);
-    EXPECT_THAT(faults(), ElementsAre(alarm::cable_broken));
+    EXPECT_THAT(faults(), ElementsAre(id(BusAlarm::cable_broken)));
 }
 
 TEST_F(Health, ASlavePowerCycledTwiceInTheMiddleOfItsReturnComesBack) {
@@ -194,7 +194,7 @@ TEST_F(Health, AnotherDeviceInItsPlaceIsNeverTakenForTheSlave) {
     bus->network.slave(1).controller().eeprom().image()[std::size_t{2} * sii_word::product] = std::byte{0x77};
     bus->network.set_power(1, true);
     bus->run_for(3s);
-    EXPECT_THAT(faults(), Contains(alarm::other_device));
+    EXPECT_THAT(faults(), Contains(id(BusAlarm::other_device)));
     EXPECT_THAT(bus->master->notes(), Contains(HasSubstr("expected vendor 00000ABCh product 00000808h")));
     EXPECT_EQ(bus->state(1), sim::EsmState::init) << "not configured, also not at the second attempt";
     EXPECT_EQ(bus->state(0), sim::EsmState::op);
@@ -215,9 +215,10 @@ TEST_F(Health, ASlaveThatRefusesToReturnIsTriedEverMoreSeldomAndSaidSo) {
     bus->run_for(50ms);
     bus->network.set_power(1, true);
     bus->run_for(6s);
-    EXPECT_THAT(faults(), ElementsAre(alarm::slave_does_not_return, alarm::slave_left_op)) << "it answers: no cable, no supply";
+    EXPECT_THAT(faults(), ElementsAre(id(BusAlarm::slave_does_not_return), id(BusAlarm::slave_left_op)))
+        << "it answers: no cable, no supply";
     for (const auto& fact : facts())
-        if (fact.id == alarm::slave_does_not_return) {
+        if (fact.id == id(BusAlarm::slave_does_not_return)) {
             EXPECT_THAT(bus->master->detail(fact), HasSubstr("refused SAFEOP: 001Dh"));
         }
     bus->run_for(20s);
@@ -245,16 +246,16 @@ TEST_F(Health, APowerCycleInTheMiddleIsOneAlarmThatNamesTheFirst) {
             bus->on_cycle = [&] {
                 for (const auto& fact : facts()) {
                     const auto same = [&](const AlarmFact& f) { return f.id == fact.id && f.index == fact.index; };
-                    if (fact.id != alarm::dc_not_locked && std::none_of(said.begin(), said.end(), same)) said.push_back(fact);
+                    if (fact.id != id(BusAlarm::dc_not_locked) && std::none_of(said.begin(), said.end(), same)) said.push_back(fact);
                 }
             };
             bus->network.set_power(1, false);
             bus->run_for(500ms);
             bus->network.set_power(1, true);
             expect_recovery(10s);
-            std::erase_if(said, [](const AlarmFact& f) { return f.id == alarm::slaves_missing; });
+            std::erase_if(said, [](const AlarmFact& f) { return f.id == id(BusAlarm::slaves_missing); });
             ASSERT_EQ(said.size(), 1u) << "limit " << limit << ", phase " << phase << ": " << said[0].id << " " << said[0].index;
-            EXPECT_EQ(said[0].id, alarm::cable_broken);
+            EXPECT_EQ(said[0].id, id(BusAlarm::cable_broken));
             EXPECT_EQ(said[0].index, 1);
         }
 }
@@ -267,7 +268,7 @@ TEST_F(Health, ALostStationAddressIsNoticedAlthoughProcessDataRunsOnAndIsGivenBa
     second_master_writes(*bus, Address::position(1, reg::station_address), 0);
     second_master_writes(*bus, Address::position(2, reg::station_address), 0);
     bus->run_for(150ms);
-    EXPECT_THAT(faults(), Contains(alarm::station_address_lost));
+    EXPECT_THAT(faults(), Contains(id(BusAlarm::station_address_lost)));
     EXPECT_TRUE(bus->master->health(1).fresh);
     expect_recovery();
     EXPECT_EQ(bus->servo(2).watchdogs, 0);
@@ -277,7 +278,7 @@ TEST_F(Health, TheReferenceClockWithoutItsAddressDoesNotFoolTheMaster) {
     start("ss");
     second_master_writes(*bus, Address::position(0, reg::station_address), 0);
     ASSERT_EQ(station_address(0), 0);
-    EXPECT_TRUE(said_within(alarm::station_address_lost, 150ms));
+    EXPECT_TRUE(said_within(id(BusAlarm::station_address_lost), 150ms));
     expect_recovery();
     EXPECT_EQ(station_address(0), 0x1001);
     EXPECT_LT(std::abs(bus->master->statistics().dc_offset_ns), 100'000);
@@ -291,7 +292,7 @@ TEST_F(Health, SlavesThatSwappedAddressesAreSetRight) {
     second_master_writes(*bus, Address::position(2, reg::station_address), 0);
     ASSERT_EQ(station_address(1), 0x1003);
     ASSERT_EQ(station_address(2), 0);
-    EXPECT_TRUE(said_within(alarm::station_address_lost, 300ms));
+    EXPECT_TRUE(said_within(id(BusAlarm::station_address_lost), 300ms));
     expect_recovery();
     EXPECT_EQ(station_address(1), 0x1002);
     EXPECT_EQ(station_address(2), 0x1003);
@@ -301,7 +302,7 @@ TEST_F(Health, TwoSlavesWithOneAddressAreSetRight) {
     start("ttt");
     second_master_writes(*bus, Address::position(1, reg::station_address), 0x1003);
     ASSERT_EQ(station_address(1), 0x1003);
-    EXPECT_TRUE(said_within(alarm::station_address_lost, 300ms));
+    EXPECT_TRUE(said_within(id(BusAlarm::station_address_lost), 300ms));
     expect_recovery();
     EXPECT_EQ(station_address(1), 0x1002);
     EXPECT_EQ(station_address(2), 0x1003);
@@ -311,7 +312,7 @@ TEST_F(Health, AStateChangedBehindOurBackIsTakenBack) {
     for (const std::uint16_t state : {std::uint16_t{1}, std::uint16_t{2}, std::uint16_t{4}}) {
         start("tst");
         second_master_writes(*bus, Address::position(1, reg::al_control), state);
-        ASSERT_TRUE(said_within(alarm::foreign_command, 50ms)) << state;
+        ASSERT_TRUE(said_within(id(BusAlarm::foreign_command), 50ms)) << state;
         EXPECT_THAT(bus->master->detail(facts().back()), HasSubstr("of whom frames were heard: its network address is 02:11:22:33:44:55"));
         expect_recovery();
         EXPECT_EQ(bus->state(0), sim::EsmState::op);
@@ -333,13 +334,13 @@ TEST_F(Health, ACommandToAllSlavesIsOneAlarmAndNamesTheOtherMaster) {
     (void)bus->network.process(buffer, bus->now);
     bus->transport.inject(buffer, bus->now);
     bus->run_for(8ms);
-    EXPECT_THAT(said, ElementsAre(alarm::foreign_master, alarm::foreign_command)) << "within some cycles";
+    EXPECT_THAT(said, ElementsAre(id(BusAlarm::foreign_master), id(BusAlarm::foreign_command))) << "within some cycles";
     EXPECT_EQ(facts()[1].a, 4);
     bus->run_for(30ms);
     EXPECT_THAT(bus->master->notes(), Contains(HasSubstr("without an error of its own: somebody else sent it there")));
     expect_recovery();
-    std::erase(said, alarm::dc_not_locked);  // the clocks find together again
-    EXPECT_THAT(said, ElementsAre(alarm::foreign_master, alarm::foreign_command));
+    std::erase(said, id(BusAlarm::dc_not_locked));  // the clocks find together again
+    EXPECT_THAT(said, ElementsAre(id(BusAlarm::foreign_master), id(BusAlarm::foreign_command)));
 }
 
 // A cable that is pulled for so long that all watchdogs trip: who falls by it says nothing new.
@@ -363,8 +364,8 @@ TEST_F(Health, WhatFallsWhileNoFrameComesBackIsPartOfTheSameAlarm) {
         EXPECT_THAT(bus->master->detail(now[0]), "4 slaves fell by it");
         expect_recovery();
         EXPECT_THAT(bus->master->detail(now[0]), "4 slaves fell by it; all slaves are back in OP");
-        std::erase(said, alarm::dc_not_locked);
-        EXPECT_THAT(said, ElementsAre(link ? alarm::frames_lost : alarm::link_down));
+        std::erase(said, id(BusAlarm::dc_not_locked));
+        EXPECT_THAT(said, ElementsAre(link ? id(BusAlarm::frames_lost) : id(BusAlarm::link_down)));
     }
 }
 
@@ -383,15 +384,15 @@ TEST_F(Health, AShortPowerCutIsALostSlave) {
     bus->run_for(1ms);
     bus->network.set_power(1, true);
     expect_recovery();
-    EXPECT_THAT(ids, Contains(alarm::slave_lost));
-    EXPECT_THAT(ids, Not(Contains(alarm::foreign_command)));
+    EXPECT_THAT(ids, Contains(id(BusAlarm::slave_lost)));
+    EXPECT_THAT(ids, Not(Contains(id(BusAlarm::foreign_command))));
     EXPECT_THAT(said, Not(HasSubstr("unknown")));
 }
 
 TEST_F(Health, SettingsChangedBehindOurBackAreWrittenAgain) {
     start("tst");
     second_master_writes(*bus, Address::position(0, reg::fmmu_at(0) + 4), 0);  // the FMMU of the outputs maps nothing
-    EXPECT_TRUE(said_within(alarm::working_counter_wrong, 50ms));
+    EXPECT_TRUE(said_within(id(BusAlarm::working_counter_wrong), 50ms));
     expect_recovery();
 }
 
@@ -401,7 +402,7 @@ TEST_F(Health, AnotherMasterIsHeardAndSaidWhileItSends) {
         bus->cycle_once();
         if (i % 100 == 0) second_master_writes(*bus, Address::position(0, 0x0F80), 0);
     }
-    EXPECT_THAT(faults(), ElementsAre(alarm::foreign_master));
+    EXPECT_THAT(faults(), ElementsAre(id(BusAlarm::foreign_master)));
     EXPECT_GE(bus->master->statistics().frames_foreign, 12u);
     EXPECT_EQ(bus->state(0), sim::EsmState::op);
     bus->run_for(2100ms);
@@ -426,8 +427,8 @@ TEST_F(Health, APowerCycledSlaveIsNeverSaidToHaveLostItsAddress) {
             bus->run_for(1s);
         }
         EXPECT_FALSE(said.empty());
-        EXPECT_THAT(said, Not(Contains(alarm::station_address_lost)));
-        EXPECT_THAT(said, Not(Contains(alarm::foreign_master)));
+        EXPECT_THAT(said, Not(Contains(id(BusAlarm::station_address_lost))));
+        EXPECT_THAT(said, Not(Contains(id(BusAlarm::foreign_master))));
         EXPECT_THAT(faults(), IsEmpty());
     }
 }
@@ -438,7 +439,7 @@ TEST_F(Health, TheOtherMasterIsNamedByItsAddress) {
         bus->cycle_once();
         if (i % 10 == 0) second_master_writes(*bus, Address::position(0, 0x0F80), 0);
     }
-    ASSERT_THAT(faults(), ElementsAre(alarm::foreign_master));
+    ASSERT_THAT(faults(), ElementsAre(id(BusAlarm::foreign_master)));
     EXPECT_EQ(bus->master->detail(facts().front()), "its network address is 02:11:22:33:44:55 (the slaves set 02h in its first byte)");
 }
 
@@ -469,7 +470,7 @@ TEST_F(Health, AMailboxThatFellSilentIsNoticedAlthoughNobodyAskedForAnything) {
     start("ts");
     bus->network.slave(1).stick_mailbox(true);
     EXPECT_TRUE(bus->run_until([&] { return !faults().empty(); }, 10s));
-    EXPECT_THAT(faults(), ElementsAre(alarm::mailbox_silent));
+    EXPECT_THAT(faults(), ElementsAre(id(BusAlarm::mailbox_silent)));
     EXPECT_EQ(bus->state(1), sim::EsmState::op);
     EXPECT_TRUE(bus->master->health(1).fresh);
     bus->network.slave(1).stick_mailbox(false);
@@ -485,7 +486,7 @@ TEST_F(Health, AWorkingCounterThatIsTooSmallOrTooLargeKeepsTheOldInputs) {
         bus->run_for(10ms);
         EXPECT_FALSE(bus->master->health(0).fresh);
         EXPECT_GE(bus->master->health(0).age, 5u);
-        EXPECT_THAT(faults(), Contains(alarm::working_counter_wrong)) << offset;
+        EXPECT_THAT(faults(), Contains(id(BusAlarm::working_counter_wrong))) << offset;
         bus->cable.working_counter_offset = 0;
         expect_recovery();
     }
@@ -548,15 +549,15 @@ TEST_F(Health, AWatchdogThatIsShorterThanTheLimitIsSaidAsLostFrames) {
     ASSERT_EQ(bus->state(0), sim::EsmState::safeop);
     EXPECT_LT(recent_gap(bus->master->bus().link, bus->now), 300u);
     expect_recovery();
-    std::erase(said, alarm::dc_not_locked);
-    EXPECT_THAT(said, ElementsAre(alarm::frames_lost));
+    std::erase(said, id(BusAlarm::dc_not_locked));
+    EXPECT_THAT(said, ElementsAre(id(BusAlarm::frames_lost)));
 }
 
 TEST_F(Health, LinkDownIsSaidAloneAndTheBusReturns) {
     start("tst");
     bus->transport.faults.link_down = true;
     bus->run_for(500ms);
-    EXPECT_THAT(faults(), ElementsAre(alarm::link_down));
+    EXPECT_THAT(faults(), ElementsAre(id(BusAlarm::link_down)));
     EXPECT_NE(bus->state(1), sim::EsmState::op) << "its watchdog has acted";
     bus->transport.faults.link_down = false;
     expect_recovery();
@@ -568,7 +569,7 @@ TEST_F(Health, AStallOfTheMasterEndsInOpAgain) {
         bus->now += stall;
         bus->network.advance(bus->now);
         EXPECT_EQ(bus->state(1), sim::EsmState::safeop) << "SM watchdog of 10 ms";
-        EXPECT_TRUE(said_within(alarm::starved_slave_left_op, 50ms));
+        EXPECT_TRUE(said_within(id(BusAlarm::starved_slave_left_op), 50ms));
         expect_recovery();
     }
 }
@@ -580,7 +581,7 @@ TEST_F(Health, AReferenceClockThatStandsIsNotFollowed) {
     const auto offset = bus->master->statistics().dc_offset_ns;
     bus->cable.freeze_reference_time = true;
     bus->run_for(200ms);
-    EXPECT_THAT(faults(), ElementsAre(alarm::reference_clock_lost));
+    EXPECT_THAT(faults(), ElementsAre(id(BusAlarm::reference_clock_lost)));
     EXPECT_NEAR(static_cast<double>(bus->master->statistics().dc_offset_ns), static_cast<double>(offset), 1000);
     bus->cable.freeze_reference_time = false;
     expect_recovery();

@@ -129,19 +129,19 @@ TEST(Faults, ThreeLostFramesInARowAgeTheInputsAndRaiseTheAlarm) {
     TestBus bus{"s"};
     ASSERT_TRUE(bus.bring_up());
     bus.run_for(50ms);
-    ASSERT_THAT(bus.faults(), Not(Contains(alarm::frames_lost)));
+    ASSERT_THAT(bus.faults(), Not(Contains(id(BusAlarm::frames_lost))));
 
     // Every frame of four cycles is lost, acyclic ones too: the answers of three of them are missed before frames come again.
     bus.network.lose_frames(1000);
     for (int i = 0; i < 4; ++i) bus.cycle_once();
-    EXPECT_THAT(bus.faults(), Contains(alarm::frames_lost));
+    EXPECT_THAT(bus.faults(), Contains(id(BusAlarm::frames_lost)));
     EXPECT_GE(bus.master->statistics().frames_lost, 3u);
     EXPECT_GE(bus.master->health(0).age, 3u);
     bus.network.lose_frames(0);
     for (int i = 0; i < 3; ++i) bus.cycle_once();
     EXPECT_TRUE(bus.master->health(0).fresh) << "and fresh again";
     EXPECT_EQ(bus.master->health(0).age, 0u);
-    EXPECT_THAT(bus.faults(), Not(Contains(alarm::frames_lost)));
+    EXPECT_THAT(bus.faults(), Not(Contains(id(BusAlarm::frames_lost))));
 }
 
 TEST(Faults, LostFramesUpToTheLimitAreOnlyCounted) {
@@ -180,9 +180,9 @@ TEST(Faults, APowerCycledSlaveReturnsToOpAndTheOtherIsNotDisturbed) {
     bus.run_for(20ms);
     EXPECT_FALSE(bus.master->health(1).fresh);
     EXPECT_TRUE(bus.master->health(0).fresh) << "its sync unit is its own";
-    EXPECT_THAT(bus.faults(), ElementsAre(alarm::slave_lost)) << "as many are silent as are missing: it has a name at once";
+    EXPECT_THAT(bus.faults(), ElementsAre(id(BusAlarm::slave_lost))) << "as many are silent as are missing: it has a name at once";
     bus.run_for(200ms);
-    EXPECT_THAT(bus.faults(), ElementsAre(alarm::slave_lost));
+    EXPECT_THAT(bus.faults(), ElementsAre(id(BusAlarm::slave_lost)));
 
     bus.network.set_power(1, true);
     ASSERT_TRUE(bus.run_until([&] { return bus.state(1) == sim::EsmState::op; }, 5s));
@@ -243,16 +243,16 @@ TEST(Faults, ASlaveThatThisComputerStarvedIsNotBlamed) {
         std::array<AlarmFact, 16> facts;
         const auto count = static_cast<std::ptrdiff_t>(bus.master->active_faults(facts));
         for (auto fact = facts.begin(); fact != facts.begin() + count; ++fact)
-            if (fact->id != alarm::dc_not_locked) {  // the clocks find together again
+            if (fact->id != id(BusAlarm::dc_not_locked)) {  // the clocks find together again
                 seen.push_back(*fact);
                 said += bus.master->detail(*fact) + "\n";
             }
     };
     bus.run_for(2s);
     ASSERT_FALSE(seen.empty());
-    EXPECT_THAT(seen, Contains(::testing::Field(&AlarmFact::id, alarm::starved_slave_left_op)));
-    EXPECT_THAT(seen, Not(Contains(::testing::Field(&AlarmFact::id, alarm::slave_left_op))));
-    for (const auto& fact : seen) EXPECT_EQ(fact.id, alarm::starved_slave_left_op) << "one cause, one alarm: " << fact.id;
+    EXPECT_THAT(seen, Contains(::testing::Field(&AlarmFact::id, id(BusAlarm::starved_slave_left_op))));
+    EXPECT_THAT(seen, Not(Contains(::testing::Field(&AlarmFact::id, id(BusAlarm::slave_left_op)))));
+    for (const auto& fact : seen) EXPECT_EQ(fact.id, id(BusAlarm::starved_slave_left_op)) << "one cause, one alarm: " << fact.id;
     EXPECT_EQ(seen.front().a, 51.0) << "ms";
     EXPECT_EQ(seen.back().b, 2) << "slaves";
     EXPECT_THAT(said, HasSubstr("slave 0 'a' (sv33-e), slave 1 'b' (sv33-e)"));

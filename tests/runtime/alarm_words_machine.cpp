@@ -16,11 +16,11 @@ TEST(AlarmWords, TimesStandInTheUnitThatTheirSizeAsksFor) {
     const auto said = [&](AlarmId alarm, double nanoseconds) {
         return m.machine->describe({alarm, AlarmSource::slave, 0, nanoseconds, 0}).english;
     };
-    EXPECT_THAT(said(ecat::alarm::dc_out_of_sync, 4'884'786), HasSubstr("differ by 4.88 ms"));
-    EXPECT_THAT(said(ecat::alarm::dc_out_of_sync, 3'214), HasSubstr("differ by 3.21 us"));
-    EXPECT_THAT(said(ecat::alarm::dc_out_of_sync, 812), HasSubstr("differ by 812 ns"));
-    EXPECT_THAT(said(ecat::alarm::dc_out_of_sync, 2.5e9), HasSubstr("differ by 2.5 s"));
-    EXPECT_THAT(said(ecat::alarm::dc_not_locked, -31'000), HasSubstr("(-31 us off)"));
+    EXPECT_THAT(said(ecat::id(ecat::BusAlarm::dc_out_of_sync), 4'884'786), HasSubstr("differ by 4.88 ms"));
+    EXPECT_THAT(said(ecat::id(ecat::BusAlarm::dc_out_of_sync), 3'214), HasSubstr("differ by 3.21 us"));
+    EXPECT_THAT(said(ecat::id(ecat::BusAlarm::dc_out_of_sync), 812), HasSubstr("differ by 812 ns"));
+    EXPECT_THAT(said(ecat::id(ecat::BusAlarm::dc_out_of_sync), 2.5e9), HasSubstr("differ by 2.5 s"));
+    EXPECT_THAT(said(ecat::id(ecat::BusAlarm::dc_not_locked), -31'000), HasSubstr("(-31 us off)"));
 }
 
 // The tables cannot know the unit of an axis, people do.

@@ -119,7 +119,7 @@ TEST_F(Fault, WhoMayDropOutStopsOnlyItsOwnAxes) {
     m().run(300ms);
     EXPECT_EQ(m().axis(0).state, AxisState::DiscreteMotion) << m().alarms();
     EXPECT_EQ(m().axis(1).state, AxisState::ErrorStop);
-    EXPECT_TRUE(m().has_alarm(ecat::alarm::slave_dropped_out)) << m().alarms();
+    EXPECT_TRUE(m().has_alarm(ecat::id(ecat::BusAlarm::slave_dropped_out))) << m().alarms();
 
     m().world.set_slave_power("y_drive", true);
     EXPECT_TRUE(m().until([&] { return m().axis(1).online; }, 20s)) << m().machine->bus_progress();
@@ -143,7 +143,8 @@ TEST_F(Fault, ADeadLineStopsTheAxes) {
     m().world.set_cable("x_drive", false);
     EXPECT_TRUE(m().until([&] { return m().axis(0).state == AxisState::ErrorStop && m().axis(1).state == AxisState::ErrorStop; }, 200ms))
         << m().alarms();
-    EXPECT_TRUE(m().has_alarm(ecat::alarm::frames_lost) || m().has_alarm(ecat::alarm::slave_lost)) << m().alarms();
+    EXPECT_TRUE(m().has_alarm(ecat::id(ecat::BusAlarm::frames_lost)) || m().has_alarm(ecat::id(ecat::BusAlarm::slave_lost)))
+        << m().alarms();
     m().run(500ms);
     m().world.set_cable("x_drive", true);
     EXPECT_TRUE(m().until([&] { return m().axis(0).online && m().axis(1).online; }, 20s))
@@ -163,7 +164,7 @@ TEST_F(Fault, ALostLineIsOneAlarmUntilItIsReset) {
             const auto name = m().machine->describe(s.alarms[i].fact).name;
             if (name == "drive_fault") {
                 for (std::size_t k = i + 1; k < s.alarm_count; ++k)
-                    EXPECT_NE(s.alarms[k].fact.id, ecat::alarm::link_down) << "the cause stands first";
+                    EXPECT_NE(s.alarms[k].fact.id, ecat::id(ecat::BusAlarm::link_down)) << "the cause stands first";
                 continue;
             }
             if (name != "emergency_stop" && name != "dc_not_locked" && std::find(seen.begin(), seen.end(), name) == seen.end())
@@ -188,7 +189,7 @@ TEST_F(Fault, AnEmergencyThatTheAxisTellsIsNotToldAgain) {
     bool drive = false, emergency = false;
     m().on_cycle = [&] {
         drive = drive || m().has_alarm(axes::id(axes::AxisAlarm::drive_fault));
-        emergency = emergency || m().has_alarm(ecat::alarm::slave_emergency);
+        emergency = emergency || m().has_alarm(ecat::id(ecat::BusAlarm::slave_emergency));
     };
     m().world.drive("x")->raise(0x3130, true);
     m().run(300ms);
@@ -211,7 +212,7 @@ TEST_F(Fault, AnEmergencyThatIsOverBeforeItsAxisTellsItIsSaidOnce) {
         bool before = false, drive = false;
         std::string said;
         m().on_cycle = [&] {
-            const bool now = m().has_alarm(ecat::alarm::slave_emergency);
+            const bool now = m().has_alarm(ecat::id(ecat::BusAlarm::slave_emergency));
             if (now && !before) ++times, said = m().alarms();
             before = now;
             drive = drive || m().has_alarm(axes::id(axes::AxisAlarm::drive_fault));

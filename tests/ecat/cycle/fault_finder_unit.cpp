@@ -54,9 +54,9 @@ TEST(FaultFinder, WithoutFramesOnlyThatIsSaid) {
     Finder f{{-1, 0, 1}};
     f.vanish({0, 1, 2});
     f.bus.lost_in_a_row = limit;
-    EXPECT_THAT(f.look(), ElementsAre(alarm::frames_lost));
+    EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::frames_lost)));
     f.bus.link_up = false;
-    EXPECT_THAT(f.look(), ElementsAre(alarm::link_down));
+    EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::link_down)));
     f.bus.lost_in_a_row = limit - 1;
     f.bus.link_up = true;
     f.bus.slaves_answering = 3;
@@ -76,9 +76,10 @@ TEST(FaultFinder, ASlaveThatFallsRightAfterOurOwnStallIsNotBlamed) {
         slave.al_error = true;
         slave.al_status_code = code;
         const bool starved = code != 0x001D && code != 0;
-        EXPECT_THAT(f.look(), ElementsAre(starved ? alarm::starved_slave_left_op : alarm::slave_left_op)) << code;
+        EXPECT_THAT(f.look(), ElementsAre(starved ? id(BusAlarm::starved_slave_left_op) : id(BusAlarm::slave_left_op))) << code;
         f.bus.stall = {};
-        EXPECT_THAT(f.look(), ElementsAre(starved ? alarm::starved_slave_left_op : alarm::slave_left_op)) << "as long as it stands";
+        EXPECT_THAT(f.look(), ElementsAre(starved ? id(BusAlarm::starved_slave_left_op) : id(BusAlarm::slave_left_op)))
+            << "as long as it stands";
         if (starved) {
             EXPECT_EQ(f.finder.facts()[0].source, AlarmSource::bus) << "no slave is accused";
             EXPECT_EQ(f.finder.facts()[0].a, 20.0) << "ms";
@@ -90,7 +91,7 @@ TEST(FaultFinder, ASlaveThatFallsRightAfterOurOwnStallIsNotBlamed) {
         slave.al_state = AlState::safeop;
         slave.al_error = true;
         slave.al_status_code = code;
-        EXPECT_THAT(f.look(), ElementsAre(alarm::slave_left_op)) << "the next time it falls by itself";
+        EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::slave_left_op))) << "the next time it falls by itself";
     }
 }
 
@@ -100,17 +101,17 @@ TEST(FaultFinder, ManyThatFallBehindOneStallAreOneAlarm) {
     f.bus.stall = std::chrono::milliseconds{20};
     f.bus.states = 0x14;  // SAFEOP, error
     for (std::size_t i = 0; i < 5; ++i) f.finder.condition(i).age = limit;
-    ASSERT_THAT(f.look(), ElementsAre(alarm::starved_slave_left_op));
+    ASSERT_THAT(f.look(), ElementsAre(id(BusAlarm::starved_slave_left_op)));
     f.bus.stall = {};
     for (std::size_t i = 0; i < 5; ++i) {
         f.finder.condition(i) = {.al_state = AlState::safeop, .al_error = true, .al_status_code = 0x1B, .age = limit + 20};
-        EXPECT_THAT(f.look(), ElementsAre(alarm::starved_slave_left_op)) << i;
+        EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::starved_slave_left_op))) << i;
     }
     EXPECT_EQ(f.finder.facts()[0].b, 5);
     f.bus.states = 0x0C;
     for (std::size_t i = 0; i < 4; ++i) {
         f.finder.condition(i) = {.al_state = AlState::op};
-        ASSERT_THAT(f.look(), ElementsAre(alarm::starved_slave_left_op));
+        ASSERT_THAT(f.look(), ElementsAre(id(BusAlarm::starved_slave_left_op)));
     }
     EXPECT_EQ(f.finder.facts()[0].b, 5) << "as many as it were";
     f.finder.condition(4) = {.al_state = AlState::op};
@@ -123,20 +124,20 @@ TEST(FaultFinder, WhoFellWhileNoFrameCameBackIsPartOfThatAlarm) {
         Finder f{{-1, 0, 1}};
         f.bus.link_up = link;
         f.bus.lost_in_a_row = 150;
-        const auto id = link ? alarm::frames_lost : alarm::link_down;
-        ASSERT_THAT(f.look(), ElementsAre(id));
+        const auto said = link ? id(BusAlarm::frames_lost) : id(BusAlarm::link_down);
+        ASSERT_THAT(f.look(), ElementsAre(said));
         f.bus = {.slaves_answering = 3, .gap = 150, .states = 0x14};
         for (std::size_t i = 0; i < 3; ++i) f.finder.condition(i).age = 150;
-        ASSERT_THAT(f.look(), ElementsAre(id));
+        ASSERT_THAT(f.look(), ElementsAre(said));
         EXPECT_EQ(f.finder.facts()[0].a, 150);
         EXPECT_EQ(f.finder.facts()[0].b, 3) << "fell by it";
         f.bus.gap = 0;
         for (std::size_t i = 0; i < 3; ++i)
             f.finder.condition(i) = {.al_state = AlState::safeop, .al_error = true, .al_status_code = 0x1B, .age = 190};
-        ASSERT_THAT(f.look(), ElementsAre(id));
+        ASSERT_THAT(f.look(), ElementsAre(said));
         // An error of its own is not explained by that.
         f.finder.condition(1) = {.al_state = AlState::safeop, .al_error = true, .al_status_code = 0x1D, .age = 191};
-        ASSERT_THAT(f.look(), ElementsAre(id, alarm::slave_left_op));
+        ASSERT_THAT(f.look(), ElementsAre(said, id(BusAlarm::slave_left_op)));
         for (std::size_t i = 0; i < 3; ++i) f.finder.condition(i) = {.al_state = AlState::op};
         f.bus.states = 8;
         EXPECT_THAT(f.look(), IsEmpty());
@@ -148,24 +149,25 @@ TEST(FaultFinder, WithoutAnErrorOfItsOwnSomebodyElseSentIt) {
     Finder f{{-1, 0, 1}};
     f.bus.states = 0x02;  // PREOP
     for (std::size_t i = 0; i < 3; ++i) f.finder.condition(i).age = limit;
-    ASSERT_THAT(f.look(), ElementsAre(alarm::foreign_command)) << "known before the watch has asked";
+    ASSERT_THAT(f.look(), ElementsAre(id(BusAlarm::foreign_command))) << "known before the watch has asked";
     EXPECT_EQ(f.finder.facts()[0].a, 3);
     f.bus.foreign_heard = true;
     for (std::size_t i = 0; i < 3; ++i) f.finder.condition(i) = {.al_state = AlState::preop, .age = 30};
-    EXPECT_THAT(f.look(), ElementsAre(alarm::foreign_master, alarm::foreign_command))
+    EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::foreign_master), id(BusAlarm::foreign_command)))
         << "a single frame is enough then, and it stands first";
     f.finder.condition(1) = {.al_state = AlState::safeop, .al_error = true, .al_status_code = 0x1B, .age = 40};
-    EXPECT_THAT(f.look(), ElementsAre(alarm::foreign_master, alarm::foreign_command)) << "errors of the way back change nothing";
+    EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::foreign_master), id(BusAlarm::foreign_command)))
+        << "errors of the way back change nothing";
 
     Finder own{{-1, 0}};
     own.bus.states = 0x1C;  // one in SAFEOP, error
     own.finder.condition(1).age = limit;
-    ASSERT_THAT(own.look(), ElementsAre(alarm::slave_left_op));
+    ASSERT_THAT(own.look(), ElementsAre(id(BusAlarm::slave_left_op)));
     EXPECT_EQ(own.finder.facts()[0].a, 0) << "not read yet";
 
     Finder down{{-1}};  // this master itself took it down, to set it up again
     down.finder.condition(0) = {.al_state = AlState::init, .age = 30, .taken_down = true};
-    EXPECT_THAT(down.look(), ElementsAre(alarm::slave_left_op));
+    EXPECT_THAT(down.look(), ElementsAre(id(BusAlarm::slave_left_op)));
 }
 
 // Gone for less than it takes to miss it, then back from INIT without its address: it had no power.
@@ -173,13 +175,13 @@ TEST(FaultFinder, AShortPowerCutIsNobodysCommand) {
     Finder f{{-1, 0}};
     f.bus.states = 0x09;
     f.finder.condition(1).age = limit;
-    EXPECT_THAT(f.look(), ElementsAre(alarm::slave_left_op)) << "INIT: not known yet";
+    EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::slave_left_op))) << "INIT: not known yet";
     f.finder.condition(1) = {.al_state = AlState::unknown, .age = 20, .presence = Presence::silent};
-    EXPECT_THAT(f.look(), ElementsAre(alarm::slave_lost));
+    EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::slave_lost)));
     f.finder.condition(1) = {.al_state = AlState::unknown, .age = 40};
-    EXPECT_THAT(f.look(), ElementsAre(alarm::slave_lost)) << "it has its address again, and nothing else";
+    EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::slave_lost))) << "it has its address again, and nothing else";
     f.finder.condition(1) = {.al_state = AlState::init, .age = 50};
-    EXPECT_THAT(f.look(), ElementsAre(alarm::slave_lost));
+    EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::slave_lost)));
 }
 
 // Between power and silence: not answering to its address, and not exchanged either.
@@ -187,10 +189,10 @@ TEST(FaultFinder, OnlyWhoExchangesInThisCycleHasLostNothingButItsAddress) {
     Finder f{{-1, 0}};
     auto& slave = f.finder.condition(1);
     slave.presence = Presence::silent;
-    EXPECT_THAT(f.look(), ElementsAre(alarm::station_address_lost));
+    EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::station_address_lost)));
     slave.age = 1;
     f.bus.slaves_answering = 1;
-    EXPECT_THAT(f.look(), ::testing::Not(::testing::Contains(alarm::station_address_lost)));
+    EXPECT_THAT(f.look(), ::testing::Not(::testing::Contains(id(BusAlarm::station_address_lost))));
 }
 
 // 0 - 1 - 2      behind port 3 of slave 0: 1, 2; behind port 1: 3, 4
@@ -198,7 +200,7 @@ TEST(FaultFinder, OnlyWhoExchangesInThisCycleHasLostNothingButItsAddress) {
 TEST(FaultFinder, EachBranchThatIsGoneIsOneAlarm) {
     Finder f{{-1, 0, 1, 0, 3}};
     f.vanish({1, 2, 3, 4});
-    EXPECT_THAT(f.look(), ElementsAre(alarm::cable_broken, alarm::cable_broken));
+    EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::cable_broken), id(BusAlarm::cable_broken)));
     EXPECT_EQ(f.finder.facts()[0].index, 1);
     EXPECT_EQ(f.finder.facts()[0].a, 2);
     EXPECT_EQ(f.finder.facts()[1].index, 3);
@@ -207,7 +209,7 @@ TEST(FaultFinder, EachBranchThatIsGoneIsOneAlarm) {
 TEST(FaultFinder, ALeafAloneIsALostSlave) {
     Finder f{{-1, 0, 1, 0, 3}};
     f.vanish({4});
-    EXPECT_THAT(f.look(), ElementsAre(alarm::slave_lost));
+    EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::slave_lost)));
     EXPECT_EQ(f.finder.facts()[0].index, 4);
 }
 
@@ -216,24 +218,24 @@ TEST(FaultFinder, UntilTheMissingAreNamedTheBusSpeaksForThem) {
     Finder f{{-1, 0, 1}};
     f.finder.condition(2).age = limit;
     f.bus.slaves_answering = 1;
-    EXPECT_THAT(f.look(), ElementsAre(alarm::slaves_missing));
+    EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::slaves_missing)));
     EXPECT_EQ(f.finder.facts()[0].a, 2);
     EXPECT_EQ(f.finder.facts()[0].b, 3);
     f.finder.condition(1).presence = f.finder.condition(2).presence = Presence::silent;
-    EXPECT_THAT(f.look(), ElementsAre(alarm::cable_broken));
+    EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::cable_broken)));
     EXPECT_EQ(f.finder.facts()[0].index, 1);
 }
 
 TEST(FaultFinder, AGroupStandsUntilItsLastSlaveIsBackInOp) {
     Finder f{{-1, 0, 1}};
     f.vanish({1, 2});
-    ASSERT_THAT(f.look(), ElementsAre(alarm::cable_broken));
+    ASSERT_THAT(f.look(), ElementsAre(id(BusAlarm::cable_broken)));
     // Plugged in: both answer again, from INIT.
     f.bus.slaves_answering = 3;
     f.finder.condition(1).al_state = f.finder.condition(2).al_state = AlState::init;
-    EXPECT_THAT(f.look(), ElementsAre(alarm::cable_broken));
+    EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::cable_broken)));
     f.finder.condition(1) = {.al_state = AlState::op};
-    ASSERT_THAT(f.look(), ElementsAre(alarm::cable_broken));
+    ASSERT_THAT(f.look(), ElementsAre(id(BusAlarm::cable_broken)));
     EXPECT_EQ(f.finder.facts()[0].a, 2) << "as many as it took along";
     EXPECT_EQ(f.finder.facts()[0].b, 1) << "still away";
     f.finder.condition(2) = {.al_state = AlState::op};
@@ -244,14 +246,14 @@ TEST(FaultFinder, TheLossPolicyOfWhoIsGoneDecidesTheKind) {
     using enum LossPolicy;
     Finder own{{-1, 0, 1}, {stop_machine, stop_own_axes, stop_own_axes}};
     own.vanish({1, 2});
-    EXPECT_THAT(own.look(), ElementsAre(alarm::branch_dropped_out));
+    EXPECT_THAT(own.look(), ElementsAre(id(BusAlarm::branch_dropped_out)));
     Finder mixed{{-1, 0, 1}, {stop_machine, stop_own_axes, stop_machine}};
     mixed.vanish({1, 2});
-    EXPECT_THAT(mixed.look(), ElementsAre(alarm::cable_broken));
+    EXPECT_THAT(mixed.look(), ElementsAre(id(BusAlarm::cable_broken)));
     Finder fallen{{-1, 0}, {stop_machine, stop_own_axes}};
     fallen.finder.condition(1).al_state = AlState::safeop;
     fallen.finder.condition(1).al_status_code = 0x1B;
-    EXPECT_THAT(fallen.look(), ElementsAre(alarm::slave_dropped_out));
+    EXPECT_THAT(fallen.look(), ElementsAre(id(BusAlarm::slave_dropped_out)));
     EXPECT_EQ(fallen.finder.facts()[0].b, 0x1B);
 }
 
@@ -259,13 +261,13 @@ TEST(FaultFinder, WhoExchangesButDoesNotAnswerHasLostItsAddress) {
     Finder f{{-1, 0}};
     f.finder.condition(1).presence = Presence::silent;
     f.finder.condition(1).al_state = AlState::unknown;
-    EXPECT_THAT(f.look(), ElementsAre(alarm::station_address_lost));
+    EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::station_address_lost)));
 }
 
 TEST(FaultFinder, AnswersOpAndIsNotExchanged) {
     Finder f{{-1, 0}};
     f.finder.condition(1).age = limit;
-    EXPECT_THAT(f.look(), ElementsAre(alarm::working_counter_wrong));
+    EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::working_counter_wrong)));
 }
 
 TEST(FaultFinder, TroubleOnTheWayBackIsSaidAlsoOfAGroup) {
@@ -278,13 +280,14 @@ TEST(FaultFinder, TroubleOnTheWayBackIsSaidAlsoOfAGroup) {
     f.finder.condition(2).trouble = ReturnTrouble::refused;
     f.finder.condition(2).attempts = 2;
     f.finder.condition(2).al_state = AlState::preop;
-    EXPECT_THAT(f.look(), ElementsAre(alarm::cable_broken, alarm::other_device)) << "the second is still on its way";
+    EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::cable_broken), id(BusAlarm::other_device))) << "the second is still on its way";
     f.finder.condition(2).attempts = 3;
-    EXPECT_THAT(f.look(), ElementsAre(alarm::other_device, alarm::slave_does_not_return, alarm::slave_left_op)) << "the cable is whole";
+    EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::other_device), id(BusAlarm::slave_does_not_return), id(BusAlarm::slave_left_op)))
+        << "the cable is whole";
     f.finder.condition(2).al_state = AlState::op;
     f.finder.condition(2).age = 0;
     f.finder.condition(2).trouble = ReturnTrouble::none;
-    EXPECT_THAT(f.look(), ElementsAre(alarm::other_device));
+    EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::other_device)));
 }
 
 // The watch asks one slave after the other. Whoever it finds first has mostly lost nothing but the one before it.
@@ -295,7 +298,7 @@ TEST(FaultFinder, NobodyIsNamedBeforeAllWhoAreMissingAreKnown) {
         f.bus.slaves_answering = 1;
         const auto waiting = [&] {
             const auto said = f.look();
-            EXPECT_EQ(said, exchange_missed ? std::vector<AlarmId>{alarm::slaves_missing} : std::vector<AlarmId>{});
+            EXPECT_EQ(said, exchange_missed ? std::vector<AlarmId>{id(BusAlarm::slaves_missing)} : std::vector<AlarmId>{});
         };
         for (const std::size_t gone : {1u, 2u, 3u}) f.finder.condition(gone).age = exchange_missed && gone != 1 ? limit : 1;
         waiting();
@@ -307,7 +310,7 @@ TEST(FaultFinder, NobodyIsNamedBeforeAllWhoAreMissingAreKnown) {
             EXPECT_EQ(f.finder.facts()[0].a, 3);
         }
         f.finder.condition(1).presence = Presence::silent;
-        ASSERT_THAT(f.look(), ElementsAre(alarm::cable_broken));
+        ASSERT_THAT(f.look(), ElementsAre(id(BusAlarm::cable_broken)));
         EXPECT_EQ(f.finder.facts()[0].index, 1) << "the first of them";
         EXPECT_EQ(f.finder.facts()[0].a, 3);
     }
@@ -322,10 +325,10 @@ TEST(FaultFinder, WhoIsKnownIsNamedAlthoughOneNeverWillBe) {
     const BusCondition bus{.slaves_answering = 1};
     finder.look(bus);
     ASSERT_EQ(finder.facts().size(), 1u);
-    EXPECT_EQ(finder.facts()[0].id, alarm::slaves_missing);
+    EXPECT_EQ(finder.facts()[0].id, id(BusAlarm::slaves_missing));
     for (int i = 0; i < 250; ++i) finder.look(bus);
     ASSERT_FALSE(finder.facts().empty());
-    EXPECT_EQ(finder.facts()[0].id, alarm::slave_lost);
+    EXPECT_EQ(finder.facts()[0].id, id(BusAlarm::slave_lost));
     EXPECT_EQ(finder.facts()[0].index, 1);
 }
 
@@ -336,14 +339,15 @@ TEST(FaultFinder, AWatchdogShorterThanTheLimitIsNoFaultOfTheSlave) {
         std::uint16_t code;
         AlarmId said;
     };
-    for (const auto& c : {Case{150, 0x1B, alarm::frames_lost}, Case{50, 0x1B, alarm::slave_left_op}, Case{4, 0x1A, alarm::frames_lost},
-                          Case{0, 0x1A, alarm::slave_left_op}, Case{150, 0x1D, alarm::slave_left_op}}) {
+    for (const auto& c :
+         {Case{150, 0x1B, id(BusAlarm::frames_lost)}, Case{50, 0x1B, id(BusAlarm::slave_left_op)}, Case{4, 0x1A, id(BusAlarm::frames_lost)},
+          Case{0, 0x1A, id(BusAlarm::slave_left_op)}, Case{150, 0x1D, id(BusAlarm::slave_left_op)}}) {
         FaultFinder finder{{{.index = 0, .watchdog_cycles = 99}}, 1, 300};
         finder.condition(0) = {.al_state = AlState::safeop, .al_error = true, .al_status_code = c.code, .age = c.gap};
         finder.look({.slaves_answering = 1, .gap = c.gap, .states = 0x14});
         ASSERT_EQ(finder.facts().size(), 1u);
         EXPECT_EQ(finder.facts()[0].id, c.said) << c.gap << " cycles, code " << c.code;
-        if (c.said == alarm::frames_lost) {
+        if (c.said == id(BusAlarm::frames_lost)) {
             EXPECT_EQ(finder.facts()[0].source, AlarmSource::bus);
             EXPECT_EQ(finder.facts()[0].a, c.gap);
             EXPECT_EQ(finder.facts()[0].b, 1) << "slaves";
@@ -360,9 +364,10 @@ TEST(FaultFinder, AStallThatIsShorterThanTheWatchdogExplainsNoWatchdog) {
         AlarmId said;
     };
     using std::chrono::milliseconds;
-    for (const auto& c :
-         {Case{milliseconds{7}, 520, 0x1B, alarm::frames_lost}, Case{milliseconds{510}, 2, 0x1B, alarm::starved_slave_left_op},
-          Case{milliseconds{7}, 0, 0x1B, alarm::slave_left_op}, Case{milliseconds{7}, 0, 0x1A, alarm::starved_slave_left_op}}) {
+    for (const auto& c : {Case{milliseconds{7}, 520, 0x1B, id(BusAlarm::frames_lost)},
+                          Case{milliseconds{510}, 2, 0x1B, id(BusAlarm::starved_slave_left_op)},
+                          Case{milliseconds{7}, 0, 0x1B, id(BusAlarm::slave_left_op)},
+                          Case{milliseconds{7}, 0, 0x1A, id(BusAlarm::starved_slave_left_op)}}) {
         FaultFinder finder{{{.index = 0, .watchdog_cycles = 499, .watchdog = milliseconds{499}}}, 1, 300};
         const BusCondition bus{.slaves_answering = 1, .stall = c.stall, .gap = c.gap, .states = 0x14};
         finder.condition(0) = {.al_state = AlState::unknown, .age = 520};  // not read yet
@@ -386,7 +391,7 @@ TEST(FaultFinder, AClockThatMissesAFewTimesIsNotLost) {
     EXPECT_TRUE(finder.facts().empty());
     finder.look({.slaves_answering = 1, .reference_times_missing = 50});
     ASSERT_EQ(finder.facts().size(), 1u);
-    EXPECT_EQ(finder.facts()[0].id, alarm::reference_clock_lost);
+    EXPECT_EQ(finder.facts()[0].id, id(BusAlarm::reference_clock_lost));
 }
 
 TEST(FaultFinder, AClockIsNotToBlameForFramesThatDoNotComeBack) {
@@ -398,7 +403,7 @@ TEST(FaultFinder, AClockIsNotToBlameForFramesThatDoNotComeBack) {
     EXPECT_TRUE(finder.facts().empty());
     finder.look({.slaves_answering = 1, .reference_times_missing = 61});
     ASSERT_EQ(finder.facts().size(), 1u);
-    EXPECT_EQ(finder.facts()[0].id, alarm::reference_clock_lost);
+    EXPECT_EQ(finder.facts()[0].id, id(BusAlarm::reference_clock_lost));
 }
 
 }  // namespace
