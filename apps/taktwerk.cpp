@@ -1,27 +1,16 @@
 #include "apps/taktwerk.hpp"
 
-#include <cstdio>
 #include <optional>
 
 #include <fmt/format.h>
-#include <unistd.h>
-
-#include "apps/exit_code.hpp"
+#include "apps/terminal/exit_code.hpp"
+#include "apps/terminal/print_error.hpp"
 #include "core/nearest_name.hpp"
 #include "programs/api/abi.hpp"
 
 namespace taktwerk::apps {
 
 namespace {
-
-bool colours(int fd) { return ::isatty(fd) != 0; }
-
-void print(const char* colour, const char* word, const Error& error) {
-    const bool tty = colours(STDERR_FILENO);
-    fmt::print(stderr, "{}{}{}: {}{}\n", tty ? colour : "", word, tty ? "\033[0m" : "", error.subject.empty() ? "" : error.subject + ": ",
-               error.what);
-    if (!error.remedy.empty()) fmt::print(stderr, "  -> {}\n", error.remedy);
-}
 
 /// What CLI11 would only call "A subcommand is required", or answer with the general help: a word that is no command, and an option of a
 /// command in front of it.
@@ -52,13 +41,6 @@ std::optional<Error> misplaced(const CLI::App& app, int argc, char** argv) {
 }
 
 }  // namespace
-
-void print_error(const Error& error) { print("\033[1;31m", "error", error); }
-void print_warning(const Error& warning) { print("\033[1;33m", "warning", warning); }
-void print_errors(const std::vector<Error>& errors) {
-    for (const auto& error : errors) print_error(error);
-    if (errors.size() > 1) fmt::print(stderr, "{} problems; nothing was started\n", errors.size());
-}
 
 int run(int argc, char** argv) {
     CLI::App app{"Taktwerk: soft-PLC and motion runtime"};

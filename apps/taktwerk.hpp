@@ -1,13 +1,10 @@
 #pragma once
-// The `taktwerk` command. Each sub-command registers itself on the CLI11 application and returns an exit code (apps/exit_code.hpp).
+// The `taktwerk` command. Each sub-command registers itself on the CLI11 application and returns an exit code (apps/terminal/exit_code.hpp).
 
 #include <functional>
 #include <string>
-#include <vector>
 
 #include <CLI/CLI.hpp>
-
-#include "core/result.hpp"
 
 namespace taktwerk::apps {
 
@@ -27,10 +24,5 @@ void add_plot(CLI::App& app, Action& action);
 void add_monitor(CLI::App& app, Action& action);
 void add_operate(CLI::App& app, Action& action);  ///< jog, home, enable, reset, start, stop, set, mode, ...
 void add_docs(CLI::App& app, Action& action);     ///< generated reference: blocks, configuration, alarms, errors
-
-/// One block a problem on stderr: what, where, why, what to do.
-void print_errors(const std::vector<Error>& errors);
-void print_error(const Error& error);
-void print_warning(const Error& warning);
 
 }  // namespace taktwerk::apps

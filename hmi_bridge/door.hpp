@@ -4,7 +4,7 @@
 // queues: what a client sends too much of is refused to that client. Nobody's answers, floods or silence hold up a stop, and neither
 // does the service thread.
 //
-//   thread of the door    wait(), step()          in real time a thread of its own (apps/run.cpp); in tests whoever steps the bridge
+//   thread of the door    wait(), step()          in real time a thread of its own (apps/machine/run.cpp); in tests whoever steps the bridge
 //   service thread        pass_on(), answer()
 
 #include <cstdint>

@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <sstream>
 
-#include "apps/bus.hpp"
-#include "apps/exit_code.hpp"
-#include "apps/terminal_text.hpp"
+#include "apps/bus/bus.hpp"
+#include "apps/terminal/exit_code.hpp"
+#include "apps/terminal/terminal_text.hpp"
 #include "tests/apps/in_process.hpp"
 #include "tests/apps/machine_files.hpp"
 

@@ -10,7 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "apps/exit_code.hpp"
+#include "apps/terminal/exit_code.hpp"
 #include "tests/apps/in_process.hpp"
 
 namespace taktwerk::apps {

@@ -13,7 +13,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "apps/exit_code.hpp"
+#include "apps/terminal/exit_code.hpp"
 #include "tests/apps/cable.hpp"
 #include "tests/apps/machine_files.hpp"
 

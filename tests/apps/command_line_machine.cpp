@@ -9,8 +9,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "apps/exit_code.hpp"
-#include "apps/trace_file.hpp"
+#include "apps/plot/trace_file.hpp"
+#include "apps/terminal/exit_code.hpp"
 #include "axes/words/types.hpp"
 #include "tests/apps/child.hpp"
 #include "tests/apps/machine_files.hpp"

@@ -4,8 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "apps/drive.hpp"
-#include "apps/exit_code.hpp"
+#include "apps/drive/drive.hpp"
+#include "apps/terminal/exit_code.hpp"
 #include "tests/apps/in_process.hpp"
 #include "tests/apps/machine_files.hpp"
 

@@ -6,8 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "apps/machine_log.hpp"
-#include "apps/monitor_screen.hpp"
+#include "apps/machine/machine_log.hpp"
+#include "apps/machine/monitor_screen.hpp"
 #include "hmi_bridge/json_state.hpp"
 #include "hmi_bridge/memory_bus.hpp"
 #include "hmi_bridge/publisher.hpp"

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "apps/drive.hpp"
-#include "apps/exit_code.hpp"
+#include "apps/drive/drive.hpp"
+#include "apps/terminal/exit_code.hpp"
 #include "tests/apps/in_process.hpp"
 #include "tests/apps/machine_files.hpp"
 

@@ -9,8 +9,8 @@
 #include <fstream>
 #include <thread>
 
-#include "apps/bus_session.hpp"
-#include "apps/exit_code.hpp"
+#include "apps/bus/session.hpp"
+#include "apps/terminal/exit_code.hpp"
 #include "axes/sim/xp200/station.hpp"
 #include "config/drive_loader.hpp"
 #include "core/clock.hpp"

@@ -1,6 +1,6 @@
 // Pages made from drive files: what they show, and that the committed ones are what the files say today.
 
-#include "apps/drive_pages.hpp"
+#include "apps/docs/drive_pages.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

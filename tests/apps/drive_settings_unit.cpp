@@ -7,9 +7,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "apps/drive.hpp"
-#include "apps/drive_access.hpp"
-#include "apps/exit_code.hpp"
+#include "apps/drive/access.hpp"
+#include "apps/drive/drive.hpp"
+#include "apps/terminal/exit_code.hpp"
 #include "axes/port/parameter_text.hpp"
 
 namespace taktwerk::apps {

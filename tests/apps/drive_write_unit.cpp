@@ -5,7 +5,7 @@
 
 #include <map>
 
-#include "apps/drive.hpp"
+#include "apps/drive/drive.hpp"
 
 namespace taktwerk::apps {
 namespace {

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "apps/exit_code.hpp"
+#include "apps/terminal/exit_code.hpp"
 #include "tests/apps/cable.hpp"
 #include "tests/apps/machine_files.hpp"
 

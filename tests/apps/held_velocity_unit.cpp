@@ -1,6 +1,6 @@
 // What holds a velocity down is said where it was asked for.
 
-#include "apps/held_velocity.hpp"
+#include "apps/machine/held_velocity.hpp"
 
 #include <gtest/gtest.h>
 

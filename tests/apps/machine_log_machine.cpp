@@ -1,6 +1,6 @@
 // What the log of a machine tells of alarms that nobody looking at the list would have seen.
 
-#include "apps/machine_log.hpp"
+#include "apps/machine/machine_log.hpp"
 
 #include <gmock/gmock.h>
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/master_gone.hpp"
+#include "apps/machine/master_gone.hpp"
 #include "config/machine_loader.hpp"
 
 namespace taktwerk::apps {

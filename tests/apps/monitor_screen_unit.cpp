@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "apps/monitor_screen.hpp"
-#include "apps/terminal_text.hpp"
+#include "apps/machine/monitor_screen.hpp"
+#include "apps/terminal/terminal_text.hpp"
 
 namespace taktwerk::apps {
 namespace {

@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "apps/plot_data.hpp"
-#include "apps/plot_script.hpp"
-#include "apps/trace_file.hpp"
+#include "apps/plot/plot_data.hpp"
+#include "apps/plot/plot_script.hpp"
+#include "apps/plot/trace_file.hpp"
 
 namespace taktwerk::apps {
 namespace {

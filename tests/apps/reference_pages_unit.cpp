@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "apps/reference_pages.hpp"
+#include "apps/docs/reference_pages.hpp"
 #include "fb_library/block_reference.hpp"
 
 namespace taktwerk::apps {

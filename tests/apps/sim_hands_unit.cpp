@@ -1,6 +1,6 @@
 // Hands on a simulated machine: understood and checked at once, done on the thread that plays the machine.
 
-#include "apps/sim_hands.hpp"
+#include "apps/machine/sim_hands.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "apps/load.hpp"
+#include "apps/machine/load.hpp"
 #include "core/clock.hpp"
 #include "runtime/virtual_runner.hpp"
 

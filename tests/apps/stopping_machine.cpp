@@ -12,8 +12,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "apps/exit_code.hpp"
-#include "apps/line_writer.hpp"
+#include "apps/terminal/exit_code.hpp"
+#include "apps/terminal/line_writer.hpp"
 #include "hmi_bridge/client.hpp"
 #include "tests/apps/child.hpp"
 #include "tests/apps/machine_files.hpp"

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "apps/sim_happenings.hpp"
+#include "apps/machine/sim_happenings.hpp"
 #include "config/machine_loader.hpp"
 #include "ecat/sim/faults.hpp"
 

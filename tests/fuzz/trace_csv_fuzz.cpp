@@ -2,8 +2,8 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "apps/plot_script.hpp"
-#include "apps/trace_file.hpp"
+#include "apps/plot/plot_script.hpp"
+#include "apps/plot/trace_file.hpp"
 
 using namespace taktwerk;
 using namespace taktwerk::apps;

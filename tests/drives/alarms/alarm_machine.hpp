@@ -12,8 +12,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "apps/machine_log.hpp"
-#include "apps/monitor_screen.hpp"
+#include "apps/machine/machine_log.hpp"
+#include "apps/machine/monitor_screen.hpp"
 #include "axes/axis/alarms.hpp"
 #include "config/machine_loader.hpp"
 #include "hmi_bridge/json_state.hpp"

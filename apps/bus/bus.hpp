@@ -1,0 +1,49 @@
+#pragma once
+// The sub-commands of `taktwerk bus`, one file each; what they share is in bus_session.hpp. Their texts are made by pure
+// functions, so that tests read them.
+
+#include <string>
+#include <vector>
+
+#include "apps/bus/session.hpp"
+#include "apps/taktwerk.hpp"
+#include "ecat/diagnosis/clock_report.hpp"
+#include "ecat/diagnosis/dictionary.hpp"
+#include "ecat/diagnosis/pdo_report.hpp"
+#include "ecat/diagnosis/port_errors.hpp"
+#include "ecat/diagnosis/survey.hpp"
+#include "ecat/diagnosis/why_not_op.hpp"
+
+namespace taktwerk::apps {
+
+void add_bus_scan(CLI::App& bus, Action& action);
+void add_bus_state(CLI::App& bus, Action& action);
+void add_bus_pdo(CLI::App& bus, Action& action);
+void add_bus_sdo(CLI::App& bus, Action& action);
+void add_bus_clocks(CLI::App& bus, Action& action);
+void add_bus_counters(CLI::App& bus, Action& action);
+void add_bus_why(CLI::App& bus, Action& action);
+
+/// The options that every sub-command has.
+[[nodiscard]] std::shared_ptr<BusOptions> add_bus_options(CLI::App& sub);
+/// --operational, --yes: for what is worth looking at in OP, too.
+void add_operational(CLI::App& sub, BusOptions& options);
+
+[[nodiscard]] std::string scan_text(const std::string& where, const ecat::Survey& survey, Colours colours);
+[[nodiscard]] Json scan_json(const ecat::Survey& survey);
+[[nodiscard]] std::string state_text(const std::string& where, const ecat::Survey& survey, Colours colours);
+[[nodiscard]] std::string pdo_text(const ecat::PdoReport& report, Colours colours);
+[[nodiscard]] Json pdo_json(const ecat::PdoReport& report);
+[[nodiscard]] std::string clocks_text(const ecat::Survey& survey, const std::vector<ecat::ClockReport>& clocks, Colours colours);
+[[nodiscard]] std::string counters_text(const ecat::Survey& survey, Colours colours);
+[[nodiscard]] std::string dictionary_text(const ecat::Dictionary& dictionary, Colours colours);
+[[nodiscard]] std::string why_text(const std::string& where, const ecat::WhyReport& report, Colours colours);
+[[nodiscard]] Json why_json(const ecat::WhyReport& report);
+
+/// The state as it is shown everywhere: green in OP, red with an error.
+[[nodiscard]] Cell state_cell(ecat::AlState state, bool error);
+/// What is wrong with the bus as a whole and with single slaves, one paragraph each; empty: nothing.
+[[nodiscard]] std::string remarks_text(const ecat::Survey& survey, Colours colours);
+[[nodiscard]] bool has_problems(const ecat::Survey& survey);
+
+}  // namespace taktwerk::apps

@@ -1,0 +1,111 @@
+// taktwerk docs PAGE: reference pages, generated from what the runtime uses. docs/reference/, docs/configuration.md and docs/drives/
+// hold them as committed.
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "apps/docs/drive_pages.hpp"
+#include "apps/docs/reference_pages.hpp"
+#include "apps/machine/load.hpp"
+#include "apps/taktwerk.hpp"
+#include "apps/terminal/exit_code.hpp"
+#include "apps/terminal/print_error.hpp"
+#include "config/drive_library.hpp"
+#include "config/reference.hpp"
+#include "fb_library/block_reference.hpp"
+
+namespace taktwerk::apps {
+namespace {
+
+struct Page {
+    const char* name;
+    std::string (*text)();
+};
+constexpr std::array<Page, 5> pages{{
+    {"blocks", fb::block_reference_markdown},
+    {"configuration", config::reference_page},
+    {"alarms", alarm_reference_markdown},
+    {"errors", error_reference_markdown},
+    {"parameters", parameter_reference_markdown},
+}};
+
+constexpr const char* drives_page = "drives";
+
+/// To standard output when there is no file.
+int write_text(const std::string& text, const std::string& output) {
+    auto* file = output.empty() ? stdout : std::fopen(output.c_str(), "w");
+    if (!file) {
+        print_error(
+            {"docs.output", output, fmt::format("the page cannot be written: {}", std::strerror(errno)), "Choose another place with -o."});
+        return exit_bad_file;
+    }
+    std::fwrite(text.data(), 1, text.size(), file);
+    if (!output.empty()) std::fclose(file);
+    return exit_ok;
+}
+
+int write_drive(const config::LoadedDrive& drive, const std::string& folder) {
+    if (folder.empty()) return write_text(fmt::format("## {}\n\n{}", drive.profile->title, drive_features_markdown(drive)), {});
+    const auto written = drive_pages(drive, folder);
+    if (!written) {
+        print_error(written.error());
+        return exit_bad_file;
+    }
+    for (const auto& page : *written)
+        if (const int code = write_text(page.text, folder + "/" + page.file); code != exit_ok) return code;
+    return exit_ok;
+}
+
+/// One drive, or all that are found when `name` is empty.
+int write_drives(const std::string& name, const std::string& folder) {
+    config::DriveLibrary library(drive_folders({}));
+    const auto names = name.empty() ? library.names() : std::vector<std::string>{name};
+    for (const auto& each : names) {
+        const auto* drive = library.find(each);
+        if (!drive) {
+            if (!library.errors().empty()) print_errors(library.errors());
+            else
+                print_error(
+                    {"docs.no_drive", each, "there is no such drive file", fmt::format("Known: {}.", fmt::join(library.names(), ", "))});
+            return exit_bad_file;
+        }
+        if (const int code = write_drive(*drive, folder); code != exit_ok) return code;
+    }
+    return exit_ok;
+}
+
+int write_page(const std::string& name, const std::string& output) {
+    for (const auto& page : pages)
+        if (name == page.name) return write_text(page.text(), output);
+    return exit_ok;
+}
+
+}  // namespace
+
+void add_docs(CLI::App& app, Action& action) {
+    auto* sub = app.add_subcommand("docs", "print a reference page as Markdown");
+    struct Options {
+        std::string page, drive, output;
+    };
+    auto options = std::make_shared<Options>();
+    std::vector<std::string> names;
+    for (const auto& page : pages) names.emplace_back(page.name);
+    names.emplace_back(drives_page);
+    sub->add_option("PAGE", options->page, "which page")->required()->check(CLI::IsMember(names));
+    sub->add_option("DRIVE", options->drive, "with `drives`: only this one");
+    sub->add_option("-o,--output", options->output, "file; default: standard output. With `drives`: the folder of the documentation");
+    sub->callback([&action, options] {
+        action = [options] {
+            return options->page == drives_page ? write_drives(options->drive, options->output)
+                                                : write_page(options->page, options->output);
+        };
+    });
+}
+
+}  // namespace taktwerk::apps

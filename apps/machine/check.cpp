@@ -1,0 +1,288 @@
+// taktwerk check FILE: everything that can be known without starting: the file, its drives, its programs, and what it means.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <thread>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "apps/machine/load.hpp"
+#include "apps/machine/master_gone.hpp"
+#include "apps/taktwerk.hpp"
+#include "apps/terminal/count_text.hpp"
+#include "apps/terminal/exit_code.hpp"
+#include "apps/terminal/print_error.hpp"
+#include "axes/port/drive_scale.hpp"
+#include "axes/port/parameter_text.hpp"
+#include "runtime/borrowed_rights.hpp"
+#include "runtime/drive_hazards.hpp"
+#include "runtime/machine.hpp"
+#include "runtime/machine_remarks.hpp"
+#include "runtime/world.hpp"
+
+namespace taktwerk::apps {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using runtime::MachineConfig;
+
+struct CheckOptions {
+    std::string file;
+    bool json = false;
+};
+
+Json problem_json(const Error& error) {
+    return Json{{"code", error.code}, {"subject", error.subject}, {"what", error.what}, {"remedy", error.remedy}};
+}
+
+Json problems_json(const std::vector<Error>& errors) {
+    auto out = Json::array();
+    for (const auto& error : errors) out.push_back(problem_json(error));
+    return out;
+}
+
+std::string homing_text(const axes::HomingConfig& homing) {
+    switch (homing.kind) {
+        case axes::HomingKind::none: return "none";
+        case axes::HomingKind::drive: return fmt::format("by the drive, method {}", homing.method);
+        case axes::HomingKind::home_switch: return fmt::format("home switch, {} direction", homing.negative ? "negative" : "positive");
+        case axes::HomingKind::limit_switch: return fmt::format("{} limit switch", homing.negative ? "negative" : "positive");
+        case axes::HomingKind::block: return fmt::format("fixed stop, {} direction", homing.negative ? "negative" : "positive");
+        case axes::HomingKind::reference_pulse:
+            return fmt::format("home switch and index pulse, {} direction", homing.negative ? "negative" : "positive");
+        case axes::HomingKind::absolute: return "absolute encoder";
+        case axes::HomingKind::set_here: return "where it stands";
+    }
+    return "";
+}
+
+std::string range_text(const axes::AxisLimits& limits, const std::string& unit) {
+    if (std::isinf(limits.position_min) && std::isinf(limits.position_max)) return "unlimited";
+    return fmt::format("{:g} .. {:g} {}", limits.position_min, limits.position_max, unit);
+}
+
+void print_slaves(const MachineConfig& config) {
+    fmt::print("\nBus: {}\n", config.bus.interface.empty() ? std::string("simulated") : "EtherCAT on " + config.bus.interface);
+    for (const auto& slave : config.bus.slaves) {
+        const auto where = slave.position ? fmt::format("position {}", *slave.position) : fmt::format("alias {}", slave.alias.value_or(0));
+        fmt::print("  {:<14} {:<22} {:<12} {}{}\n", slave.name, slave.device ? slave.device->name : "?", where,
+                   slave.dc ? "distributed clock" : "free running",
+                   slave.startup.empty() ? "" : ", " + count_text(slave.startup.size(), "start-up SDO"));
+    }
+}
+
+/// What has to fit between the start of a cycle and SYNC0.
+void print_clocks(const MachineConfig& config) {
+    const ecat::SlaveConfig* tightest = nullptr;
+    for (const auto& slave : config.bus.slaves)
+        if (slave.dc && (!tightest || time_to_compute(config.bus, slave) < time_to_compute(config.bus, *tightest))) tightest = &slave;
+    if (!tightest) return;
+    const auto us = [](Duration d) { return to_seconds(d) * 1e6; };
+    const Duration left = time_to_compute(config.bus, *tightest), flight = estimated_flight(config.bus);
+    const Duration late = config.watch.lateness_warning > Duration{} ? config.watch.lateness_warning : config.cycle / 4;
+    fmt::print(
+        "\nSYNC0 of '{}' comes {:.0f} us after the start of the cycle. The frames need about {:.0f} us on the wire; {:.0f} us are left "
+        "for\n"
+        "computing and lateness, of which {:.0f} us of lateness are warned about.{}\n",
+        tightest->name, us(left + flight), us(flight), us(left), us(late),
+        late > left ? " A cycle may be too late for SYNC0 before that warning: shift SYNC0 or lower the limit." : "");
+}
+
+/// What a turn of the motor must be for the drive, what else it must have stored, and what nobody can compare: said here, once.
+std::vector<std::string> scale_sentences(const runtime::AxisBinding& binding) {
+    std::vector<std::string> out;
+    if (!binding.profile || binding.axis.disabled) return out;
+    const auto& profile = *binding.profile;
+    if (const auto words = axes::scale_words(profile); !words.empty())
+        out.push_back(fmt::format("a turn of the motor must be {} counts for the drive: {}, compared before it is enabled",
+                                  binding.axis.gearing.counts_per_revolution, words));
+    if (!profile.scale.doubt.empty())
+        out.push_back(fmt::format("scale: {} [{} {}]", profile.scale.doubt, profile.name, profile.scale.section));
+    for (const auto& stored : binding.stored)
+        for (const auto& row : profile.parameters)
+            if (row.address == stored.object)
+                out.push_back(fmt::format("stored in the drive: {} ({}) = {}, compared before it is enabled", axes::name_of(row), row.name,
+                                          axes::value_text(row, stored.value)));
+    return out;
+}
+
+void print_axis(const MachineConfig& config, const runtime::AxisBinding& binding) {
+    const auto& axis = binding.axis;
+    const auto& u = axis.unit;
+    fmt::print("  {:<8} {}{}{}\n", axis.name,
+               !binding.drive.empty()  ? "drive " + binding.drive + " on a serial line"
+               : binding.slave.empty() ? "virtual"
+                                       : "drive " + binding.slave,
+               axis.disabled ? "  LEFT OUT" : "", axis.simulated ? "  SIMULATED" : "");
+    fmt::print("           velocity {:g} {}/s, acceleration {:g} {}/s2, deceleration {:g} {}/s2, jerk {}\n", axis.limits.velocity, u,
+               axis.limits.acceleration, u, axis.limits.deceleration, u,
+               std::isinf(axis.limits.jerk) ? std::string("unlimited") : fmt::format("{:g} {}/s3", axis.limits.jerk, u));
+    if (!binding.slave.empty() || !binding.drive.empty()) {
+        const auto stroke = runtime::stroke_seconds(axis);
+        fmt::print("           at full velocity the motor turns at {:.0f} r/min{}\n", runtime::motor_rpm(axis, axis.limits.velocity),
+                   stroke ? fmt::format("; from one software limit to the other takes about {:.2f} s", *stroke) : "");
+    }
+    fmt::print("           range {}, homing: {}, jogging {:g} and {:g} {}/s, one {} = {:g} counts\n", range_text(axis.limits, u),
+               homing_text(axis.homing), axis.manual.slow > 0 ? axis.manual.slow : axis.limits.velocity * 0.05,
+               axis.manual.fast > 0 ? axis.manual.fast : axis.limits.velocity * 0.25, u, u, axis.gearing.counts_per_unit());
+    for (const auto& sentence : scale_sentences(binding)) fmt::print("           {}\n", sentence);
+    fmt::print("           if the master is gone:\n");
+    for (const auto& sentence : master_gone(config, binding)) fmt::print("             {}\n", sentence);
+}
+
+void print_programs(const MachineConfig& config, const runtime::MachineLayout& layout) {
+    if (config.programs.empty()) fmt::print("\nNo program: axes are moved from the command line.\n");
+    else fmt::print("\nPrograms\n");
+    for (const auto& program : config.programs) {
+        fmt::print("  {:<16} {}{}\n", program.name, program.library, program.autostart ? ", starts by itself" : "");
+        for (const auto& task : config.tasks)
+            if (task.program == program.name)
+                fmt::print("    task {:<12} every {:g} ms{}\n", task.name, to_seconds(config.cycle) * 1e3 * task.divisor,
+                           task.divisor == 1 ? ", inline in the cycle" : "");
+        for (const auto& p : layout.parameters)
+            if (p.program == program.name)
+                fmt::print("    parameter {:<12} {:g} {} ({:g} .. {:g})  {}\n", p.name, p.value, p.unit, p.minimum, p.maximum, p.doc);
+        for (const auto& v : layout.variables)
+            if (v.program == program.name) fmt::print("    variable  {:<12} {} {}\n", v.name, v.unit, v.doc);
+    }
+}
+
+void print_assumptions(const MachineConfig& config) {
+    std::vector<std::string> seen;
+    for (const auto& binding : config.axes) {
+        if (!binding.profile || binding.profile->assumed.empty() ||
+            std::find(seen.begin(), seen.end(), binding.profile->name) != seen.end())
+            continue;
+        fmt::print("\nAssumed about {}, because its manual leaves it open:\n", binding.profile->name);
+        for (const auto& sentence : binding.profile->assumed) fmt::print("  {}\n", sentence);
+        seen.push_back(binding.profile->name);
+    }
+}
+
+const axes::DriveProfile& profile_of(const MachineConfig& config, const std::string& axis) {
+    return *std::find_if(config.axes.begin(), config.axes.end(), [&](const auto& b) { return b.axis.name == axis; })->profile;
+}
+
+std::string sentence(const std::string& text) { return text.empty() || text.back() == '.' ? text : text + "."; }
+
+/// One sentence for all axes that it concerns.
+void print_hazards(const MachineConfig& config) {
+    auto left = runtime::drive_hazards(config);
+    if (left.empty()) return;
+    fmt::print("\nHazards that the manuals name, and what to do about them:\n");
+    while (!left.empty()) {
+        const auto* hazard = left.front().hazard;
+        const auto& drive = profile_of(config, left.front().axis).name;
+        std::vector<std::string> axes;
+        for (const auto& other : left)
+            if (other.hazard->text == hazard->text && profile_of(config, other.axis).name == drive) axes.push_back(other.axis);
+        fmt::print("  {} ({} {}): {}{}\n", fmt::join(axes, ", "), drive, hazard->section, sentence(hazard->text),
+                   hazard->remedy.empty() ? "" : fmt::format("\n      {}", sentence(hazard->remedy)));
+        std::erase_if(left, [&](const auto& other) {
+            return std::find(axes.begin(), axes.end(), other.axis) != axes.end() && other.hazard->text == hazard->text;
+        });
+    }
+}
+
+Json hazards_json(const MachineConfig& config) {
+    auto out = Json::array();
+    for (const auto& [axis, hazard] : runtime::drive_hazards(config))
+        out.push_back(Json{{"axis", axis},
+                           {"drive", profile_of(config, axis).name},
+                           {"section", hazard->section},
+                           {"what", hazard->text},
+                           {"remedy", hazard->remedy}});
+    return out;
+}
+
+Json summary_json(const MachineConfig& config, const runtime::MachineLayout& layout, const std::vector<Error>& warnings,
+                  const std::vector<Error>& remarks) {
+    Json out{{"ok", true}, {"machine", config.name}, {"cycle_us", config.cycle.count() / 1000}, {"interface", config.bus.interface}};
+    auto& slaves = out["slaves"] = Json::array();
+    for (const auto& slave : config.bus.slaves)
+        slaves.push_back(Json{{"name", slave.name}, {"device", slave.device ? slave.device->name : ""}, {"dc", slave.dc}});
+    auto& axes = out["axes"] = Json::array();
+    for (const auto& binding : config.axes) {
+        const auto& axis = binding.axis;
+        axes.push_back(Json{{"name", axis.name},
+                            {"unit", axis.unit},
+                            {"slave", binding.slave},
+                            {"disabled", axis.disabled},
+                            {"simulated", axis.simulated},
+                            {"velocity", axis.limits.velocity},
+                            {"acceleration", axis.limits.acceleration},
+                            {"motor_rpm", runtime::motor_rpm(axis, axis.limits.velocity)},
+                            {"homing", homing_text(axis.homing)},
+                            {"scale", scale_sentences(binding)},
+                            {"master_gone", master_gone(config, binding)},
+                            {"assumed", binding.profile ? binding.profile->assumed : std::vector<std::string>{}}});
+    }
+    out["programs"] = layout.programs;
+    out["tasks"] = layout.tasks;
+    out["hazards"] = hazards_json(config);
+    out["warnings"] = problems_json(warnings);
+    out["remarks"] = problems_json(remarks);
+    return out;
+}
+
+int fail(const CheckOptions& options, const std::vector<Error>& errors) {
+    if (options.json) fmt::print("{}\n", Json{{"ok", false}, {"errors", problems_json(errors)}}.dump(2));
+    else print_errors(errors);
+    return exit_bad_file;
+}
+
+int check(const CheckOptions& options) {
+    // It loads what it checks, and what is loaded runs: with the rights of whoever asked, and no others.
+    if (auto ok = runtime::give_back_rights(); !ok) return fail(options, {ok.error()});
+    auto result = read_machine(options.file, false);
+    if (const auto* errors = std::get_if<std::vector<Error>>(&result)) return fail(options, *errors);
+    auto& loaded = std::get<LoadedFile>(result);
+    const MachineConfig config = loaded.machine;
+
+    // Building the machine loads the programs and compares what they declare; nothing is started, and what a running machine keeps stays its.
+    loaded.machine.retain.clear();
+    runtime::World world{config, Instant{}};
+    auto built = runtime::Machine::build(std::move(loaded.machine), world.transport(), world.serial().lines());
+    if (const auto* errors = std::get_if<std::vector<Error>>(&built)) return fail(options, *errors);
+    const auto& layout = std::get<0>(built)->layout();
+    const auto remarks = runtime::remarks(config, layout, std::thread::hardware_concurrency());
+
+    if (options.json) {
+        fmt::print("{}\n", summary_json(config, layout, loaded.warnings, remarks).dump(2));
+        return exit_ok;
+    }
+    for (const auto& warning : loaded.warnings) print_warning(warning);
+    fmt::print("{}: machine '{}', cycle {:g} ms, {}, {} {}, {}: no problem found\n", options.file, config.name,
+               to_seconds(config.cycle) * 1e3, count_text(config.bus.slaves.size(), "slave"), config.axes.size(),
+               config.axes.size() == 1 ? "axis" : "axes", count_text(config.programs.size(), "program"));
+    if (!remarks.empty()) fmt::print("\nRuns, but is it meant?\n");
+    for (const auto& remark : remarks) fmt::print("  {}: {}\n      {}\n", remark.subject, remark.what, remark.remedy);
+    print_slaves(config);
+    print_clocks(config);
+    if (!config.axes.empty()) fmt::print("\nAxes\n");
+    for (const auto& binding : config.axes) print_axis(config, binding);
+    print_programs(config, layout);
+    if (config.emergency_stop.input.empty())
+        fmt::print("\nNo emergency stop input: the runtime does not hear when the safety circuit opens.\n");
+    else
+        fmt::print("\nEmergency stop: input {}; power off when the axes stand, at the latest after {:g} ms. This is no safety function.\n",
+                   config.emergency_stop.input, to_seconds(config.emergency_stop.power_off_after) * 1e3);
+    print_hazards(config);
+    print_assumptions(config);
+    return exit_ok;
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, Action& action) {
+    auto* sub = app.add_subcommand("check", "check a machine file, its drives and programs; say what it means");
+    auto options = std::make_shared<CheckOptions>();
+    sub->add_option("FILE", options->file, "machine file")->required();
+    sub->add_flag("--json", options->json, "the result as one JSON object");
+    sub->callback([&action, options] { action = [options] { return check(*options); }; });
+}
+
+}  // namespace taktwerk::apps

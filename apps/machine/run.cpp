@@ -1,0 +1,441 @@
+// taktwerk run FILE: runs a machine, in real time or in virtual time, on its bus or simulated.
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdlib>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "apps/machine/crash_line.hpp"
+#include "apps/machine/file_thread.hpp"
+#include "apps/machine/load.hpp"
+#include "apps/machine/machine_log.hpp"
+#include "apps/machine/sim_hands.hpp"
+#include "apps/machine/stop_signal.hpp"
+#include "apps/machine/trace_csv.hpp"
+#include "apps/taktwerk.hpp"
+#include "apps/terminal/duration_option.hpp"
+#include "apps/terminal/exit_code.hpp"
+#include "apps/terminal/json_text.hpp"
+#include "apps/terminal/line_writer.hpp"
+#include "apps/terminal/print_error.hpp"
+#include "core/calendar_distance.hpp"
+#include "core/math.hpp"
+#include "core/realtime.hpp"
+#include "ecat/diagnosis/frame_capture.hpp"
+#include "ecat/transport/raw_socket.hpp"
+#include "hmi_bridge/hmi_bridge.hpp"
+#include "hmi_bridge/runtime_link.hpp"
+#include "modbus/line/tty_line.hpp"
+#include "runtime/alarms.hpp"
+#include "runtime/keeps_positions.hpp"
+#include "runtime/realtime_runner.hpp"
+#include "runtime/virtual_runner.hpp"
+
+namespace taktwerk::apps {
+
+namespace {
+
+using namespace runtime;
+
+struct RunOptions {
+    std::string file, trace, pcap, retain;
+    bool simulate = false, virtual_time = false, json = false, quiet = false;
+    double duration_s = 0;
+};
+
+constexpr std::size_t trace_rows = 8192;
+
+/// A run that ends with something machine-wide still standing did not end well. What stands while the machine goes down does not
+/// count: then the bus is meant to be silent.
+void judge(const Snapshot* s, int& code) {
+    if (!s || s->phase != MachinePhase::running) return;
+    code = exit_ok;
+    for (std::size_t i = 0; i < s->alarm_count; ++i)
+        if (s->alarms[i].standing && s->alarms[i].reaction >= Reaction::stop_machine &&
+            s->alarms[i].fact.id != id(MachineAlarm::stopped_by_signal))
+            code = exit_alarm;
+}
+
+void print_summary(Machine& machine, const RunOptions& options, double machine_seconds, double wall_seconds, const MachineLog::Sink& put) {
+    const auto* s = machine.latest();
+    if (!s || options.quiet) return;
+    const auto& total = machine.step_statistics().total();
+    if (options.json) {
+        put(fmt::format(
+            "{{\"cycles\":{},\"missed\":{},\"lateness_max_us\":{:.1f},\"compute_p50_us\":{:.2f},\"compute_p99_us\":{:.2f},\"compute_max_"
+            "us\":{:.2f},"
+            "\"frames_lost\":{},\"machine_s\":{:.3f},\"wall_s\":{:.3f}}}\n",
+            s->statistics.cycles, s->statistics.missed_ticks, to_seconds(s->statistics.lateness_max) * 1e6,
+            to_seconds(total.percentile(50)) * 1e6, to_seconds(total.percentile(99)) * 1e6, to_seconds(total.max()) * 1e6,
+            s->bus.frames_lost, machine_seconds, wall_seconds));
+        return;
+    }
+    std::string lines;
+    const auto say = [&lines]<class... T>(fmt::format_string<T...> format, T&&... values) {
+        lines += fmt::format(format, std::forward<T>(values)...);
+    };
+    say("\n{} cycles of {} us, {} missed; {} frames lost, {} late\n", s->statistics.cycles, machine.layout().cycle.count() / 1000,
+        s->statistics.missed_ticks, s->bus.frames_lost, s->bus.frames_late);
+    say("computing per cycle: p50 {:.1f} us, p99 {:.1f} us, max {:.1f} us", to_seconds(total.percentile(50)) * 1e6,
+        to_seconds(total.percentile(99)) * 1e6, to_seconds(total.max()) * 1e6);
+    if (options.virtual_time)
+        say("\n{:.1f} s of machine time in {:.2f} s: {:.0f} times real time\n", machine_seconds, wall_seconds,
+            machine_seconds / std::max(wall_seconds, 1e-9));
+    else say("; wake-up at most {:.0f} us late\n", to_seconds(s->statistics.lateness_max) * 1e6);
+    if (s->statistics.snapshots_dropped > 0) say("{} rows of the trace did not fit and are missing\n", s->statistics.snapshots_dropped);
+    for (std::size_t i = 0; i < machine.layout().variables.size(); ++i) {
+        const auto& v = machine.layout().variables[i];
+        say("{}.{} = {}{}{}\n", v.program, v.name, s->variables[i], v.unit.empty() ? "" : " ", v.unit);
+    }
+    put(std::move(lines));
+}
+
+/// The frames of the bus go into a file, if that was asked for. `capture` outlives the machine's cycle.
+Result<void> capture_frames(Machine& machine, const RunOptions& options, Duration epoch, std::unique_ptr<ecat::FrameCapture>& capture) {
+    if (options.pcap.empty()) return {};
+    auto created = ecat::FrameCapture::create(options.pcap, epoch);
+    if (!created) return created.error();
+    capture = std::move(*created);
+    machine.bus().set_tap(&ecat::FrameCapture::tap, capture.get());
+    return {};
+}
+
+/// After the cycle has ended. Says what is missing.
+void say_frames(const ecat::FrameCapture* capture, const RunOptions& options, const MachineLog::Sink& put) {
+    if (capture == nullptr) return;
+    if (capture->dropped() > 0)
+        print_warning(Error{"capture.dropped", options.pcap, fmt::format("{} frames did not fit and are missing", capture->dropped()), ""});
+    if (!options.quiet && !options.json) put(fmt::format("{} frames in {}\n", capture->frames(), options.pcap));
+}
+
+void finish(ecat::FrameCapture* capture, const RunOptions& options) {
+    if (capture == nullptr) return;
+    if (auto ok = capture->finish(); !ok) print_error(ok.error());
+    say_frames(capture, options, &MachineLog::print);
+}
+
+std::unique_ptr<Machine> build(MachineConfig config, ecat::Transport& transport, std::vector<modbus::SerialLine*> lines) {
+    auto built = Machine::build(std::move(config), transport, std::move(lines));
+    if (auto* errors = std::get_if<1>(&built)) {
+        print_errors(*errors);
+        return nullptr;
+    }
+    return std::move(std::get<0>(built));
+}
+
+int run_virtual(LoadedFile loaded, const RunOptions& options) {
+    math::set_stepping_thread_float_environment();
+    VirtualClock clock{Instant{}};
+    World world{loaded.machine, clock.now()};
+    std::unique_ptr<ecat::FrameCapture> capture;
+    auto machine = build(std::move(loaded.machine), world.transport(), world.serial().lines());
+    if (!machine) return exit_bad_file;
+    if (auto ok = capture_frames(*machine, options, Duration{}, capture); !ok) {
+        print_error(ok.error());
+        return exit_bad_file;
+    }
+    std::unique_ptr<TraceCsv> trace;
+    if (!options.trace.empty()) {
+        auto created = TraceCsv::create(options.trace, machine->enable_trace(trace_rows), machine->layout());
+        if (!created) {
+            print_error(created.error());
+            return exit_bad_file;
+        }
+        trace = std::move(*created);
+    }
+    watch_stop_signals();
+    SystemClock wall;
+    const auto wall_start = wall.now();
+    MachineLog log{*machine, clock.now(), options.json};
+    VirtualRunner runner{*machine, world, clock};
+    int code = exit_ok;
+    runner.after_cycle = [&](Instant now) {
+        if (trace) (void)trace->drain().ok();  // an error comes again from finish()
+        if (capture) (void)capture->drain().ok();
+        const auto* snapshot = machine->latest();
+        judge(snapshot, code);
+        if (!options.quiet) log.step(now, snapshot);
+        if (stop_requested()) machine->request_shutdown();
+    };
+    auto up = runner.bring_up();
+    if (up && stop_requested())
+        up = Error{std::string(RealtimeRunner::ended_early), "run",
+                   fmt::format("ended by {}: the bus was not operational yet", stop_signal_name()), "nothing has moved; start it again"};
+    if (const double took = to_seconds(clock.now() - Instant{}); up && options.duration_s > 0 && took >= options.duration_s)
+        up = Error{std::string(RealtimeRunner::ended_early), "run",
+                   fmt::format("ended by --duration: the bus needed {:.3g} s to become operational, and the run was to last {:.3g} s", took,
+                               options.duration_s),
+                   "nothing has moved; give --duration more than the bus needs"};
+    if (!up) {
+        finish(capture.get(), options);
+        print_error(up.error());
+        return stop_requested() ? exit_ok : exit_bus;
+    }
+    const auto duration = options.duration_s > 0 ? from_seconds(options.duration_s) : Duration::max() / 4;
+    runner.run_for(std::max(duration - (clock.now() - Instant{}), Duration{}));
+    runner.shut_down();
+    finish(capture.get(), options);
+    print_summary(*machine, options, to_seconds(clock.now() - Instant{}), to_seconds(wall.now() - wall_start), &MachineLog::print);
+    if (trace)
+        if (auto ok = trace->finish(); !ok) {
+            print_error(ok.error());
+            return exit_bad_file;
+        }
+    return code;
+}
+
+/// What is written while the machine runs. Shared with the threads that write: one that the disk holds outlives everything.
+struct Files {
+    std::shared_ptr<ecat::FrameCapture> capture;
+    std::shared_ptr<TraceCsv> trace;
+};
+
+constexpr Duration file_patience = std::chrono::seconds{3};
+constexpr Duration last_lines_patience = std::chrono::seconds{1};
+constexpr Duration door_look = std::chrono::milliseconds{5};
+
+/// A line on standard error without stdio, which another thread may hold; a terminal that takes nothing is left alone.
+void say_directly(const Error& error) {
+    const auto text = "error: " + error.text() + "\n";
+    pollfd ready{STDERR_FILENO, POLLOUT, 0};
+    if (::poll(&ready, 1, 100) <= 0) return;
+    [[maybe_unused]] const auto put = ::write(STDERR_FILENO, text.data(), std::min<std::size_t>(text.size(), 4096));
+}
+
+/// Its own thread, so that nothing which the service side does holds up a stop (hmi_bridge/door.hpp).
+class DoorKeeper {
+public:
+    /// `priority`: SCHED_FIFO, just below the cycle, or busy clients would take this thread's time; nothing where the system refuses it, which the
+    /// report of the cycle's own priority has said.
+    DoorKeeper(hmi::Door& door, Clock& clock, std::optional<int> priority)
+        : thread_{[this, &door, &clock, priority] {
+              if (priority) (void)set_fifo_priority(*priority).ok();
+              while (!ended_.load(std::memory_order_acquire)) {
+                  door.wait(door_look);
+                  door.step(clock.now());
+              }
+          }} {}
+    ~DoorKeeper() {
+        ended_.store(true, std::memory_order_release);
+        thread_.join();
+    }
+    DoorKeeper(const DoorKeeper&) = delete;
+    DoorKeeper& operator=(const DoorKeeper&) = delete;
+
+private:
+    std::atomic<bool> ended_{false};
+    std::thread thread_;
+};
+
+/// From here on nothing that may wait happens on a thread that somebody else waits for (docs/stopping.md).
+int serve_real(Machine& machine, World* world, ecat::RawSocketTransport* nic, Files files, const hmi::HmiConfig& hmi_config,
+               const RunOptions& options) {
+    SystemClock clock;
+    const auto start = clock.now();
+    LineWriter out{STDOUT_FILENO, [&options](std::uint64_t count) {
+                       const auto text = fmt::format("{} lines are missing here: standard output did not take them", count);
+                       return options.json ? fmt::format("{{\"event\":\"missing\",\"text\":{}}}\n", json_text(text)) : text + "\n";
+                   }};
+    const auto put = [&out](std::string lines) { out.put(std::move(lines)); };
+    MachineLog log{machine, start, options.json, put};
+
+    hmi::RuntimeLink link{machine};
+    hmi::HmiOptions bridge_options;
+    bridge_options.door = hmi::DoorThread::own;
+    bridge_options.log = [&](std::string_view text) {
+        const bool of_the_house = text.ends_with(" connected") || text.starts_with("commands are taken");
+        if (options.quiet && of_the_house) return;
+        log.say(clock.now(), "gateway", std::string(text));
+    };
+    std::optional<SimHands> hands;
+    if (world) {
+        hands.emplace(*world, machine.config());
+        world->also = [&hands](Instant now) { hands->step(now); };
+        bridge_options.simulate = [&hands](const std::string& line) { return hands->ask(line); };
+    }
+    auto bridge = hmi::HmiBridge::open(hmi_config, link, std::move(bridge_options));
+    if (!bridge) {
+        print_error(bridge.error());
+        return exit_bad_file;
+    }
+
+    say_crashes();
+    const SignalsEndMachine signals{machine};
+    const int of_cycle = machine.config().realtime.priority;
+    const DoorKeeper door{(*bridge)->door(), clock, of_cycle > 1 ? std::optional<int>{of_cycle - 1} : std::nullopt};
+    std::vector<std::unique_ptr<FileThread>> writers;
+    const auto write_beside = [&](const char* what, auto file) {
+        if (file)
+            writers.push_back(std::make_unique<FileThread>([file] { return Result<void>(file->drain()); },
+                                                           [file] { return Result<void>(file->finish()); },
+                                                           [&, what](const Error& error) { log.say(clock.now(), what, error.text()); }));
+    };
+    if (files.trace) files.trace->count_from(start);
+    write_beside("trace", files.trace);
+    write_beside("pcap", files.capture);
+    const auto files_written = [&] {
+        auto worst = FileThread::End::complete;
+        for (auto& writer : writers) worst = std::max(worst, writer->finish(file_patience));
+        return worst;
+    };
+
+    RealtimeRunner runner{machine, world};
+    bool said_stuck = false;
+    runner.on_stuck = [&](const StuckCycle* stuck) {
+        link.tell_stuck(stuck);
+        if (stuck != nullptr && !said_stuck) log.say(clock.now(), "STUCK", stuck->text());
+        if (stuck == nullptr && said_stuck) log.say(clock.now(), "STUCK", "gone: the cycle advances again");
+        said_stuck = stuck != nullptr;
+    };
+    // What hangs holds a thread that cannot be taken back: the process ends as it is, and the drives fall to their watchdogs.
+    runner.give_up = [&](const Error& error) {
+        (void)files_written();
+        out.finish(last_lines_patience);
+        say_directly(error);
+        std::_Exit(exit_hung);
+    };
+    auto started = runner.start();
+    if (!started) {
+        print_error(started.error());
+        return exit_realtime;
+    }
+    if (!options.quiet && !options.json && !started->all_granted()) {
+        std::string lines = "Without real time (the machine runs, but not punctually):\n";
+        for (const auto& item : started->items)
+            if (!item.granted) lines += fmt::format("  {}: {}. It costs: {}\n", item.what, item.reason, item.consequence);
+        if (world && machine.config().simulation.supervision == Supervision::strict)
+            lines +=
+                "  This simulation is supervised as strictly as a real bus: a stall of this computer stops it. If that happens, write\n"
+                "  `simulation: {supervision: relaxed}` into the machine file.\n";
+        out.put(std::move(lines));
+    }
+    int code = exit_ok;
+    bool said_stop = false, time_up = false;
+    auto served = runner.serve([&](Instant now) {
+        if (nic) nic->refresh();
+        (*bridge)->set_progress(machine.bus_progress());
+        (*bridge)->step(now);
+        judge((*bridge)->snapshot(), code);
+        if (!options.quiet) log.step(now, (*bridge)->snapshot());
+        time_up = options.duration_s > 0 && to_seconds(now - start) >= options.duration_s;
+        if (stop_requested() && !said_stop) {
+            said_stop = true;
+            if (!options.quiet)
+                log.say(now, "stop", fmt::format("{}: axes stop along their ramps, then power goes off", stop_signal_name()));
+        }
+        return !time_up && !stop_requested();
+    });
+    runner.finish();
+    const auto written = files_written();
+    if (written == FileThread::End::hangs) {
+        // Its thread hangs in the kernel and holds what it writes from: nothing of this process can be taken down any more.
+        out.finish(last_lines_patience);
+        say_directly({"run.disk_hangs", "run", "the machine is down, but a disk does not take the rest of the trace or capture",
+                      "Look at that disk; the file is not complete."});
+        std::_Exit(exit_bad_file);
+    }
+    say_frames(files.capture.get(), options, put);
+    if (served) print_summary(machine, options, to_seconds(clock.now() - start), to_seconds(clock.now() - start), put);
+    out.finish(last_lines_patience);
+    if (!served) {
+        auto error = served.error();
+        if (error.code == RealtimeRunner::ended_early)
+            error.what.replace(0, std::string_view("ended").size(),
+                               fmt::format("ended by {}", stop_requested() ? stop_signal_name()
+                                                          : time_up        ? "--duration"
+                                                                           : "a client's shutdown"));
+        print_error(error);
+        // Who asked for the end got it: a service that is stopped while it starts has not failed. A run that was to last has.
+        const bool asked = error.code == RealtimeRunner::ended_early && !time_up;
+        return asked ? exit_ok : exit_bus;
+    }
+    return written == FileThread::End::complete ? code : static_cast<int>(exit_bad_file);
+}
+
+int run_real(LoadedFile loaded, const RunOptions& options) {
+    SystemClock clock;
+    std::unique_ptr<World> world;
+    std::unique_ptr<ecat::RawSocketTransport> nic;
+    if (loaded.machine.bus.interface.empty()) {
+        world = std::make_unique<World>(loaded.machine, clock.now());
+    } else {
+        auto opened = ecat::RawSocketTransport::open(loaded.machine.bus.interface, {.clock = &clock});
+        if (!opened) {
+            print_error(opened.error());
+            return exit_bus;
+        }
+        nic = std::move(*opened);
+        if (!options.quiet && !options.json)
+            for (const auto& refused : nic->report().refused) fmt::print("{}: {}\n", nic->interface(), refused);
+    }
+    ecat::Transport& transport = world ? static_cast<ecat::Transport&>(world->transport()) : *nic;
+    std::unique_ptr<ecat::FrameCapture> capture;
+    auto lines = world ? world->serial().lines() : std::vector<modbus::SerialLine*>(loaded.machine.serial.size());
+    std::vector<std::unique_ptr<modbus::TtyLine>> ports;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        const auto& line = loaded.machine.serial[i];
+        if (line.device.empty()) continue;  // simulated; without a simulation Machine::build says who misses it
+        auto opened = modbus::TtyLine::open(line.device, line.settings);
+        if (!opened) {
+            print_error(opened.error());
+            return exit_bus;
+        }
+        lines[i] = opened->get();
+        ports.push_back(std::move(*opened));
+    }
+    auto machine = build(std::move(loaded.machine), transport, std::move(lines));
+    if (!machine) return exit_bad_file;
+    if (auto ok = capture_frames(*machine, options, calendar_minus_machine_time(), capture); !ok) {
+        print_error(ok.error());
+        return exit_bad_file;
+    }
+    std::unique_ptr<TraceCsv> trace;
+    if (!options.trace.empty()) {
+        auto created = TraceCsv::create(options.trace, machine->enable_trace(trace_rows), machine->layout());
+        if (!created) {
+            print_error(created.error());
+            return exit_bad_file;
+        }
+        trace = std::move(*created);
+    }
+    return serve_real(*machine, world.get(), nic.get(), {std::move(capture), std::move(trace)}, loaded.hmi, options);
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, Action& action) {
+    auto* sub = app.add_subcommand("run", "run a machine");
+    auto options = std::make_shared<RunOptions>();
+    sub->add_option("FILE", options->file, "machine file")->required();
+    sub->add_flag("--simulate", options->simulate, "simulated bus and drives, whatever the file says");
+    sub->add_flag("--virtual-time", options->virtual_time, "as fast as the CPU allows, bit-identical each time (simulated only)");
+    add_duration(*sub, "--duration", options->duration_s, "machine time, e.g. 60s; default: until stopped");
+    sub->add_option("--retain", options->retain,
+                    "keep the positions of axes with absolute encoders in this directory, also on a simulated bus");
+    sub->add_option("--trace", options->trace, "write every cycle to this CSV file (see `taktwerk plot`)");
+    sub->add_option("--pcap", options->pcap, "write every frame of the bus to this file, for Wireshark and tshark");
+    sub->add_flag("--json", options->json, "events as one JSON object a line");
+    sub->add_flag("--quiet", options->quiet, "say only errors and what clients change");
+    sub->callback([&action, options] {
+        action = [options] {
+            auto loaded = load(options->file, options->simulate || options->virtual_time);
+            if (!loaded) return static_cast<int>(exit_bad_file);
+            if (!options->retain.empty()) loaded->machine.retain = options->retain;
+            if (!options->retain.empty() && !runtime::keeps_positions(loaded->machine))
+                print_warning(Error{"config.nothing_to_retain", "--retain " + options->retain,
+                                    "no axis has an absolute encoder: nothing will be kept",
+                                    "add `position_memory: {absolute: true}` to the axes that have one"});
+            return options->virtual_time ? run_virtual(std::move(*loaded), *options) : run_real(std::move(*loaded), *options);
+        };
+    });
+}
+
+}  // namespace taktwerk::apps

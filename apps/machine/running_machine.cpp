@@ -1,0 +1,49 @@
+#include "apps/machine/running_machine.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <vector>
+
+#include "hmi_bridge/client.hpp"
+#include "hmi_bridge/socket_path.hpp"
+
+namespace taktwerk::apps {
+
+namespace {
+
+constexpr Duration patience = std::chrono::milliseconds{500};
+
+std::vector<std::string> sockets() {
+    std::vector<std::string> out;
+    for (const auto& folder : hmi::socket_folders()) {
+        std::error_code ignored;
+        for (std::filesystem::directory_iterator entry(folder, ignored), end; !ignored && entry != end; entry.increment(ignored))
+            if (entry->path().extension() == ".sock") out.push_back(entry->path().string());
+    }
+    std::sort(out.begin(), out.end());
+    return out;
+}
+
+bool drives(const nlohmann::ordered_json& hello, const std::string& port) {
+    if (hello.value("interface", "") == port) return true;
+    const auto devices = hello.find("serial_devices");
+    return devices != hello.end() && devices->is_array() && std::find(devices->begin(), devices->end(), port) != devices->end();
+}
+
+}  // namespace
+
+std::optional<RunningMachine> machine_on(const std::string& port, const std::string& further_socket) {
+    auto paths = sockets();
+    if (!further_socket.empty()) paths.push_back(further_socket);
+    for (const auto& path : paths) {
+        auto client = hmi::Client::connect(path);
+        if (!client) continue;
+        const auto answer = client->request({{"cmd", "hello"}}, patience);
+        if (!answer || !answer->contains("hello")) continue;
+        const auto& hello = (*answer)["hello"];
+        if (hello.is_object() && drives(hello, port)) return RunningMachine{hello.value("machine", ""), path, hello.value("pid", 0)};
+    }
+    return std::nullopt;
+}
+
+}  // namespace taktwerk::apps

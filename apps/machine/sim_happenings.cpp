@@ -1,0 +1,106 @@
+#include "apps/machine/sim_happenings.hpp"
+
+#include <algorithm>
+#include <array>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "config/quantity.hpp"
+#include "core/nearest_name.hpp"
+
+namespace taktwerk::apps {
+
+namespace {
+
+using runtime::SimulationEvent;
+using Kind = SimulationEvent::Kind;
+
+constexpr std::array<HappeningWord, 8> all_happenings{{
+    {"drive-fault", "AXIS CODE", "the drive raises this alarm (603Fh, or the number of an XP200)", Kind::drive_fault, 0},
+    {"main-power-off", "AXIS", "the drive loses its main power", Kind::main_power, 0},
+    {"main-power-on", "AXIS", "and gets it back", Kind::main_power, 1},
+    {"jam", "AXIS", "the mechanics do not move any more", Kind::jam, 0},
+    {"free", "AXIS", "and move again", Kind::jam, 1},
+    {"input", "NAME VALUE", "an input takes this value: 0 or 1, an analog one its raw number", Kind::input, 0},
+    {"line-cut", "LINE", "a serial line carries nothing any more", Kind::serial_line, 0},
+    {"line-plugged", "LINE", "and carries again", Kind::serial_line, 1},
+}};
+
+std::vector<std::string> targets(const runtime::MachineConfig& machine, Kind kind) {
+    std::vector<std::string> out;
+    if (kind == Kind::serial_line)
+        for (const auto& line : machine.serial) out.push_back(line.name);
+    else if (kind == Kind::input)
+        for (const auto& point : machine.io) {
+            if (point.direction == runtime::IoDirection::input) out.push_back(point.name);
+        }
+    else
+        for (const auto& binding : machine.axes)
+            if (!binding.slave.empty() || !binding.drive.empty()) out.push_back(binding.axis.name);
+    return out;
+}
+
+Error bad(std::string_view line, const HappeningWord& word) {
+    return {"fault.arguments", std::string(line), "is not complete, or has too much",
+            fmt::format("write it as {} {}", word.word, word.arguments)};
+}
+
+}  // namespace
+
+std::span<const HappeningWord> happening_words() noexcept { return all_happenings; }
+
+Result<SimulationEvent> parse_happening(std::string_view line, const runtime::MachineConfig& machine) {
+    std::istringstream in{std::string(line)};
+    std::vector<std::string> parts;
+    for (std::string part; in >> part;) parts.push_back(part);
+    SimulationEvent event;
+    if (parts.size() >= 2 && parts[0] == "after") {
+        const auto delay = config::parse_quantity(parts[1], config::Dimension::time, "");
+        if (delay.problem != config::QuantityProblem::none || delay.value < 0)
+            return Error{"fault.arguments", std::string(line), fmt::format("'{}' is no time", parts[1]), "write it as 500ms or 2s"};
+        event.at = from_seconds(delay.value);
+        parts.erase(parts.begin(), parts.begin() + 2);
+    }
+    const auto word =
+        std::find_if(all_happenings.begin(), all_happenings.end(), [&](const auto& w) { return !parts.empty() && w.word == parts[0]; });
+    if (word == all_happenings.end()) return Error{"fault.unknown", std::string(line), "is no happening", "`help` lists them"};
+    const bool with_number = word->kind == Kind::drive_fault || word->kind == Kind::input;
+    if (parts.size() != (with_number ? 3u : 2u)) return bad(line, *word);
+    event.kind = word->kind;
+    event.target = parts[1];
+    event.value = word->value;
+    if (with_number) {
+        const auto number = config::parse_integer(parts[2]);
+        if (!number || (word->kind == Kind::drive_fault && (*number < 1 || *number > 0xFFFF))) return bad(line, *word);
+        event.value = *number;
+    }
+    const auto known = targets(machine, event.kind);
+    if (std::find(known.begin(), known.end(), event.target) != known.end()) return event;
+    const auto near = nearest_name(event.target, known);
+    return Error{"fault.no_target", event.target, "this machine has no such name",
+                 !near.empty()   ? fmt::format("did you mean '{}'?", near)
+                 : known.empty() ? "it has none of this kind"
+                                 : fmt::format("choose one of {}", fmt::join(known, ", "))};
+}
+
+void Happenings::take(SimulationEvent event, Instant now) {
+    const auto at = now + event.at;
+    waiting_.push_back({std::move(event), at});
+    step(now);
+}
+
+void Happenings::step(Instant now) {
+    for (const auto& waiting : waiting_)
+        if (waiting.at <= now) world_.happen(waiting.event);
+    std::erase_if(waiting_, [&](const Waiting& waiting) { return waiting.at <= now; });
+}
+
+Instant Happenings::next_event() const noexcept {
+    Instant next = Instant::max();
+    for (const auto& waiting : waiting_) next = std::min(next, waiting.at);
+    return next;
+}
+
+}  // namespace taktwerk::apps

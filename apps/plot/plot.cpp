@@ -1,0 +1,162 @@
+// taktwerk plot out.csv: a trace as a picture. gnuplot draws it; the script is made in apps/plot/plot_script.hpp.
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "apps/plot/plot_script.hpp"
+#include "apps/taktwerk.hpp"
+#include "apps/terminal/duration_option.hpp"
+#include "apps/terminal/exit_code.hpp"
+#include "apps/terminal/print_error.hpp"
+
+extern char** environ;
+
+namespace taktwerk::apps {
+namespace {
+
+struct PlotOptions {
+    std::string file, output, title;
+    std::vector<std::string> axes, bits, values;
+    double from_s = 0, to_s = 0;
+    bool following_error = false;
+};
+
+/// Deleted with everything in it at the end.
+class ScratchFolder {
+public:
+    ScratchFolder() {
+        auto pattern = (std::filesystem::temp_directory_path() / "taktwerk-plot-XXXXXX").string();
+        if (::mkdtemp(pattern.data())) path_ = pattern;
+    }
+    ~ScratchFolder() {
+        std::error_code ignored;
+        if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
+    }
+    ScratchFolder(const ScratchFolder&) = delete;
+    ScratchFolder& operator=(const ScratchFolder&) = delete;
+    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+private:
+    std::filesystem::path path_;
+};
+
+std::string file_text(const std::filesystem::path& path) {
+    std::string text;
+    if (auto* file = std::fopen(path.c_str(), "r")) {
+        std::array<char, 2048> part{};
+        text.assign(part.data(), std::fread(part.data(), 1, part.size(), file));
+        std::fclose(file);
+    }
+    return text;
+}
+
+bool write_text(const std::filesystem::path& path, const std::string& text) {
+    auto* file = std::fopen(path.c_str(), "w");
+    if (!file) return false;
+    const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size();
+    return std::fclose(file) == 0 && written;
+}
+
+Result<void> draw(const std::string& script) {
+    const ScratchFolder scratch;
+    const auto script_file = scratch.path() / "plot.gp", messages = scratch.path() / "messages";
+    if (scratch.path().empty() || !write_text(script_file, script))
+        return Error{"plot.scratch", std::filesystem::temp_directory_path().string(), "no room for the plot's data",
+                     "Free space there, or set TMPDIR to another place."};
+
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, messages.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    // -d: nobody's start-up files.
+    std::string program = "gnuplot", as_delivered = "-d", script_name = script_file.string();
+    std::array<char*, 4> arguments{program.data(), as_delivered.data(), script_name.data(), nullptr};
+    pid_t child = 0;
+    const int failed = ::posix_spawnp(&child, program.c_str(), &actions, nullptr, arguments.data(), environ);
+    posix_spawn_file_actions_destroy(&actions);
+    int status = 0;
+    if (failed == 0)
+        while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {}
+    if (failed == ENOENT || (WIFEXITED(status) && WEXITSTATUS(status) == 127))
+        return Error{"plot.no_gnuplot", "gnuplot", "it is not installed, and it draws the picture",
+                     "Install it: apt-get install gnuplot-nox"};
+    if (failed != 0)
+        return Error{"plot.gnuplot", "gnuplot", fmt::format("it cannot be started: {}", std::strerror(failed)),
+                     "Try to run it by hand: gnuplot --version"};
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+        return Error{"plot.gnuplot", "gnuplot", fmt::format("it did not draw the picture: {}", file_text(messages)),
+                     "Report this: the script is made by this command."};
+    return {};
+}
+
+int plot(const PlotOptions& options) {
+    const auto fail = [](const Error& error) {
+        print_error(error);
+        return static_cast<int>(exit_bad_file);
+    };
+    const auto trace = read_trace(options.file);
+    if (!trace) return fail(trace.error());
+    if (trace->cut_off)
+        print_warning({"trace.cut_off", options.file, "the last line is incomplete: the run was killed while it wrote",
+                       "The plot ends one cycle earlier."});
+
+    const std::filesystem::path file = options.file;
+    PlotRequest request{options.title.empty() ? file.stem().string() : options.title,
+                        options.output,
+                        options.axes,
+                        options.from_s,
+                        options.to_s,
+                        options.following_error,
+                        options.bits,
+                        options.values};
+    if (request.output.empty()) request.output = std::filesystem::path(file).replace_extension(".svg").string();
+    std::error_code ignored;
+    if (std::filesystem::equivalent(request.output, file, ignored))
+        return fail({"plot.output", request.output, "the picture would overwrite the trace", "Choose another place with -o."});
+    const auto script = plot_script(*trace, request);
+    if (!script) {
+        print_error(script.error());
+        return exit_usage;
+    }
+    if (!write_text(request.output, ""))
+        return fail({"plot.output", request.output, fmt::format("the picture cannot be written: {}", std::strerror(errno)),
+                     "Choose another place with -o."});
+    if (const auto drawn = draw(*script); !drawn) {
+        std::remove(request.output.c_str());
+        return fail(drawn.error());
+    }
+    fmt::print("{}\n", request.output);
+    return exit_ok;
+}
+
+}  // namespace
+
+void add_plot(CLI::App& app, Action& action) {
+    auto* sub = app.add_subcommand("plot", "draw a trace as SVG: states, position, velocity, acceleration, jerk of each axis");
+    auto options = std::make_shared<PlotOptions>();
+    sub->add_option("TRACE", options->file, "CSV file of `taktwerk run --trace`")->required();
+    sub->add_option("-o,--output", options->output, "SVG file; default: the trace's name with .svg");
+    sub->add_option("--axis", options->axes, "only these axes, e.g. --axis x,y")->delimiter(',');
+    add_duration(*sub, "--from", options->from_s, "from this time of the trace on, e.g. 2s");
+    add_duration(*sub, "--to", options->to_s, "until this time of the trace");
+    sub->add_option("--bits", options->bits,
+                    "only these inputs, outputs and BOOLs of programs below the axes, e.g. --bits in.start,feeder.busy")
+        ->delimiter(',');
+    sub->add_option("--values", options->values,
+                    "a panel for each of these numbers (analog points, variables of programs), e.g. --values feeder.pressure,in.level")
+        ->delimiter(',');
+    sub->add_option("--title", options->title, "headline; default: the trace's name");
+    sub->add_flag("--following-error", options->following_error, "a panel more for each axis");
+    sub->callback([&action, options] { action = [options] { return plot(*options); }; });
+}
+
+}  // namespace taktwerk::apps
