@@ -10,6 +10,7 @@
 
 #include "axes/axis/axis.hpp"
 #include "tests/axes/axis/fake_drive.hpp"
+#include "tests/axes/axis/motion_digest.hpp"
 #include "tests/axes/axis/motion_oracle.hpp"
 
 namespace taktwerk::axes::test {
@@ -69,6 +70,7 @@ struct Rig {
     FakeDrive drive;
     Axis axis;
     MotionOracle oracle;
+    MotionDigest digest;
     Instant now{};
     bool enable = false;
     bool permit_positive = true;
@@ -93,6 +95,7 @@ struct Rig {
         axis.plan(now, cycle);
         axis.encode(now);
         oracle.observe(view(), axis.drive_command(), axis.config().limits);
+        digest.observe(view(), axis.drive_command());
         fetch_alarms();
         // Homing gives the same place another number: no step.
         if (seen_++ > 0 && homed == view().homed) largest_step = std::max(largest_step, std::abs(view().set_position - before));

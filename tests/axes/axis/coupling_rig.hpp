@@ -72,6 +72,7 @@ struct CouplingRig {
         fetch_alarms();
         for (std::size_t i = 0; i < axes.size(); ++i) {
             oracles[i].observe(view(i), axes[i].drive_command(), axes[i].config().limits);
+            digest.observe(view(i), axes[i].drive_command());
             note(i);
         }
     }
@@ -141,6 +142,7 @@ struct CouplingRig {
     MotionTables tables;
     std::vector<Axis> axes;
     std::vector<MotionOracle> oracles;
+    MotionDigest digest;
     std::vector<Trace> traces;
     std::vector<char> enabled;
     std::vector<std::uint8_t> permits;  ///< bit 0: EnablePositive, bit 1: EnableNegative
