@@ -61,14 +61,14 @@ public:
     [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
 
 private:
-    static constexpr std::size_t line_ = 64;  // the two sides share no cache line
+    static constexpr std::size_t cache_line = 64;  // bytes; the two sides share none
 
     std::size_t mask_;
     std::unique_ptr<T[]> slots_;
-    alignas(line_) std::atomic<std::size_t> tail_{0};  // producer's
+    alignas(cache_line) std::atomic<std::size_t> tail_{0};  // producer's
     std::size_t head_seen_ = 0;
     std::atomic<std::uint64_t> dropped_{0};
-    alignas(line_) std::atomic<std::size_t> head_{0};  // consumer's
+    alignas(cache_line) std::atomic<std::size_t> head_{0};  // consumer's
     std::size_t tail_seen_ = 0;
 };
 

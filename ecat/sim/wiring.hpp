@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include "core/math.hpp"
 #include "core/time.hpp"
 #include "ecat/sim/sim_slave.hpp"
 #include "ecat/topology/topology.hpp"
@@ -28,7 +29,7 @@ struct SlaveDelays {
 };
 
 /// 5 ns a metre: two thirds of the speed of light.
-[[nodiscard]] constexpr Duration cable_delay(double metres) noexcept { return Duration{static_cast<std::int64_t>(metres * 5.0 + 0.5)}; }
+[[nodiscard]] constexpr Duration cable_delay(double metres) noexcept { return Duration{math::round_to_int64(metres * 5.0)}; }
 
 /// One slave and the cable that leads to it from the master's side.
 struct Place {

@@ -30,10 +30,10 @@ public:
             const auto number = static_cast<std::size_t>(std::abs(function));
             if (number > 0 && number < on_.size() && filtered_[i] == (function > 0)) on_[number] = true;
         }
-        for (std::size_t word = 0; word < forced_.size(); ++word) {
+        for (std::size_t word = 0; word < forced.size(); ++word) {
             auto digits = parameters[static_cast<std::uint16_t>(axes::xp200::pr::force_1 + word)];
             for (std::size_t digit = 0; digit < 5; ++digit, digits /= 10) {
-                const auto function = static_cast<std::size_t>(forced_[word][digit]);
+                const auto function = static_cast<std::size_t>(forced[word][digit]);
                 if (digits % 10 != 0 && function != 0) on_[function] = true;
             }
         }
@@ -44,7 +44,7 @@ public:
 
 private:
     /// Dec1 to Dec5 of Pr120 to Pr124; `none` where the manual names nothing that the model has.
-    static constexpr std::array<std::array<Input, 5>, 5> forced_{{
+    static constexpr std::array<std::array<Input, 5>, 5> forced{{
         {Input::none, Input::servo_on, Input::alarm_clear, Input::ccw_allowed, Input::cw_allowed},
         {Input::ccw_torque_limit, Input::cw_torque_limit, Input::zero_clamp, Input::zero_command, Input::invert},
         {Input::speed_1, Input::speed_2, Input::speed_3, Input::torque_1, Input::torque_2},
