@@ -59,37 +59,45 @@ Codec<ecat::ExtraSlaves> extra_slaves() {
     return choice<E>({{"refuse", E::refuse}, {"ignore", E::ignore}});
 }
 
+/// A key that the bus is told as it stands.
+template <class M>
+Field<SlaveEntry> of_bus(std::string key, M ecat::SlaveConfig::*member, Codec<M> codec, std::string doc) {
+    return field_at<SlaveEntry>(
+        std::move(key), [member](SlaveEntry& s) -> M& { return s.slave.*member; }, std::move(codec), std::move(doc));
+}
+
 Table<SlaveEntry> slave_table() {
     using S = SlaveEntry;
+    using C = ecat::SlaveConfig;
     Table<S> table{
         "bus.slaves",
         "One slave on the cable: a drive (with `profile`) or a terminal (with `terminal`).",
         {
-            required(field("name", &S::name, config::name(), "by which axes and I/O points refer to it")),
+            required(of_bus("name", &C::name, config::name(), "by which axes and I/O points refer to it")),
             with_default(field("profile", &S::profile, config::name(), "drive type: a file in config/drives/"), ""),
             field("terminal", &S::terminal, maybe(section(terminal_table())), "a digital terminal instead of a drive"),
-            with_default(field("position", &S::position, maybe(integer<std::uint16_t>(0, 65535)), "place on the cable, from 0"),
+            with_default(of_bus("position", &C::position, maybe(integer<std::uint16_t>(0, 65535)), "place on the cable, from 0"),
                          "its place in this list"),
-            field("alias", &S::alias, maybe(integer<std::uint16_t>(1, 65535)), "station alias instead of the position"),
-            field("device_id", &S::device_id, maybe(integer<std::uint16_t>(1, 65535)),
-                  "explicit device id (switches on the device) instead of the position"),
-            with_default(field("revision_rule", &S::revision_rule, maybe(revision_rule()),
-                               "any · at_least: the drive file's revision or a later one · exact"),
+            of_bus("alias", &C::alias, maybe(integer<std::uint16_t>(1, 65535)), "station alias instead of the position"),
+            of_bus("device_id", &C::device_id, maybe(integer<std::uint16_t>(1, 65535)),
+                   "explicit device id (switches on the device) instead of the position"),
+            with_default(of_bus("revision_rule", &C::revision_rule, maybe(revision_rule()),
+                                "any · at_least: the drive file's revision or a later one · exact"),
                          "as its drive file says"),
-            field("on_loss", &S::on_loss, loss_policy(), "when it is gone: every axis stops, or those on this slave alone"),
+            of_bus("on_loss", &C::on_loss, loss_policy(), "when it is gone: every axis stops, or those on this slave alone"),
             with_default(field("dc", &S::dc, maybe(boolean()), "run SYNC0 on it"), "where the drive supports it"),
-            with_default(field("sync0_shift", &S::sync0_shift, duration(), "SYNC0 after the start of the bus cycle"), "as the bus"),
-            with_default(field("sm_watchdog", &S::sm_watchdog, duration(0ns, 6s), "the slave stops when no outputs come for this long"),
+            with_default(of_bus("sync0_shift", &C::sync0_shift, duration(), "SYNC0 after the start of the bus cycle"), "as the bus"),
+            with_default(of_bus("sm_watchdog", &C::sm_watchdog, duration(0ns, 6s), "the slave stops when no outputs come for this long"),
                          "three periods of its sync unit, at least 10 ms"),
             with_default(
-                field("sync_unit", &S::sync_unit, config::name(), "slaves of one name are exchanged together, and valid or not together"),
+                of_bus("sync_unit", &C::sync_unit, config::name(), "slaves of one name are exchanged together, and valid or not together"),
                 "a unit of its own"),
             with_default(
-                field("pdi_watchdog", &S::pdi_watchdog, duration(0ns, 6s), "the controller notices that the slave's processor hangs"),
+                of_bus("pdi_watchdog", &C::pdi_watchdog, duration(0ns, 6s), "the controller notices that the slave's processor hangs"),
                 "as the slave has it"),
-            with_default(field("sync1", &S::sync1, maybe(duration()), "run SYNC1 too, this long after SYNC0"), "not used"),
-            field("sync_start", &S::sync_start, sync_start(), "when SYNC0 starts; some slaves refuse it before SAFEOP"),
-            field("modules", &S::modules, list(section(module_selection_table())), "what is in the slots of a modular slave"),
+            with_default(of_bus("sync1", &C::sync1, maybe(duration()), "run SYNC1 too, this long after SYNC0"), "not used"),
+            of_bus("sync_start", &C::sync_start, sync_start(), "when SYNC0 starts; some slaves refuse it before SAFEOP"),
+            of_bus("modules", &C::modules, list(section(module_selection_table())), "what is in the slots of a modular slave"),
             group<S>("pdo", "Other process data than the profile's mapping: objects (607Ah, ...) or whole PDOs (1702h).",
                      {
                          field("rx", &S::rx, list(object_address()), "to the drive"),
@@ -105,16 +113,16 @@ Table<SlaveEntry> slave_table() {
         if (f.info.key == "pdo" || f.info.key == "startup" || f.info.key == "stored" || f.info.key == "modules")
             f.info.default_text.clear();
     table.after = [](Reader& reader, const Node& node, S& s) {
-        reader.also_known_as(fmt::format("slave '{}'", s.name), node.at);  // as the bus calls it
+        reader.also_known_as(fmt::format("slave '{}'", s.slave.name), node.at);  // as the bus calls it
         if (s.profile.empty() == !s.terminal.has_value() && !node.find("profile") && !node.find("terminal"))
-            reader.problem(node.at, "config.missing_key", fmt::format("slave '{}' has neither `profile` nor `terminal`", s.name),
+            reader.problem(node.at, "config.missing_key", fmt::format("slave '{}' has neither `profile` nor `terminal`", s.slave.name),
                            "add `profile:` with a drive type or `terminal:` with its inputs and outputs");
         if (node.find("profile") && node.find("terminal"))
-            reader.problem(node.at, "config.conflict", fmt::format("slave '{}' has both `profile` and `terminal`", s.name),
+            reader.problem(node.at, "config.conflict", fmt::format("slave '{}' has both `profile` and `terminal`", s.slave.name),
                            "keep one of them");
-        if (s.position.has_value() + s.alias.has_value() + s.device_id.has_value() > 1)
+        if (s.slave.position.has_value() + s.slave.alias.has_value() + s.slave.device_id.has_value() > 1)
             reader.problem(node.at, "config.conflict",
-                           fmt::format("slave '{}' has more than one of `position`, `alias` and `device_id`", s.name),
+                           fmt::format("slave '{}' has more than one of `position`, `alias` and `device_id`", s.slave.name),
                            "keep the one that identifies it");
         s.broken = reader.already_bad(reader.path());
     };

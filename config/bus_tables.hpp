@@ -17,18 +17,12 @@ struct Terminal {
     std::uint8_t inputs = 0, outputs = 0;
 };
 
+/// One of `slaves`: what the bus is told as it is written, and beside it what the loader has to look up first.
 struct SlaveEntry {
-    std::string name, profile;
+    ecat::SlaveConfig slave;  ///< without device, process data, start-up SDOs; `dc` follows from the one below
+    std::string profile;
     std::optional<Terminal> terminal;
-    std::optional<std::uint16_t> position, alias, device_id;
-    std::optional<ecat::RevisionRule> revision_rule;
-    ecat::LossPolicy on_loss = ecat::LossPolicy::stop_machine;
     std::optional<bool> dc;
-    Duration sync0_shift{}, sm_watchdog{}, pdi_watchdog{};
-    std::optional<Duration> sync1;
-    ecat::SyncStart sync_start = ecat::SyncStart::before_safeop;
-    std::string sync_unit;
-    std::vector<ecat::ModuleSelection> modules;
     std::vector<ObjectAddress> rx, tx;
     std::vector<StartupEntry> startup;
     std::vector<StoredEntry> stored;

@@ -48,12 +48,12 @@ public:
         out.machine.bus.cycle = out.machine.cycle;
         for (std::size_t i = 0; i < file_.slaves.size(); ++i) {
             add_slave(out, file_.slaves[i], i);
-            if (file_.slaves[i].broken) forgive(file_.slaves[i].name, out.machine.axes);
+            if (file_.slaves[i].broken) forgive(file_.slaves[i].slave.name, out.machine.axes);
             for (std::size_t k = 0; k < i; ++k)
-                if (file_.slaves[k].name == file_.slaves[i].name && !file_.slaves[i].name.empty()) {
+                if (file_.slaves[k].slave.name == file_.slaves[i].slave.name && !file_.slaves[i].slave.name.empty()) {
                     problem(fmt::format("bus.slaves.{}.name", i), "config.duplicate_name", fmt::format("slave {} has this name too", k),
                             "choose different names");
-                    forgive(file_.slaves[i].name, out.machine.axes);
+                    forgive(file_.slaves[i].slave.name, out.machine.axes);
                 }
         }
         for (auto& binding : out.machine.axes)
@@ -78,21 +78,8 @@ public:
 
 private:
     void add_slave(LoadedMachine& out, const SlaveEntry& entry, std::size_t place) {
-        ecat::SlaveConfig slave;
-        slave.name = entry.name;
-        slave.position = entry.position;
-        slave.alias = entry.alias;
-        slave.device_id = entry.device_id;
-        if (!entry.position && !entry.alias && !entry.device_id) slave.position = static_cast<std::uint16_t>(place);
-        slave.revision_rule = entry.revision_rule;
-        slave.on_loss = entry.on_loss;
-        slave.modules = entry.modules;
-        slave.sync1 = entry.sync1;
-        slave.sync_start = entry.sync_start;
-        slave.pdi_watchdog = entry.pdi_watchdog;
-        slave.sync0_shift = entry.sync0_shift;
-        slave.sm_watchdog = entry.sm_watchdog;
-        slave.sync_unit = entry.sync_unit;
+        ecat::SlaveConfig slave = entry.slave;
+        if (!slave.position && !slave.alias && !slave.device_id) slave.position = static_cast<std::uint16_t>(place);
         const auto here = fmt::format("bus.slaves.{}", place);
         if (!entry.profile.empty()) add_drive(slave, entry, here, out.machine.axes);
         else if (entry.terminal)
@@ -162,12 +149,12 @@ private:
                    const std::vector<runtime::AxisBinding>& axes) {
         const auto* drive = drives_.find(entry.profile);
         if (!drive) {
-            forgive(entry.name, axes);
+            forgive(entry.slave.name, axes);
             if (!drives_.exists(entry.profile)) no_such_drive(here, entry.profile);
             return;
         }
         if (!drive->device) {
-            forgive(entry.name, axes);
+            forgive(entry.slave.name, axes);
             problem(here + ".profile", "config.not_on_the_bus",
                     fmt::format("{} is a drive on a serial line, not on EtherCAT", entry.profile),
                     "declare it under `serial.<line>.drives`");
@@ -181,7 +168,7 @@ private:
         slave.rx = selection(*drive, slave.modules, PdoWay::rx, entry, here + ".pdo.rx");
         slave.tx = selection(*drive, slave.modules, PdoWay::tx, entry, here + ".pdo.tx");
         slave.startup = drive->startup;
-        profiles_.emplace_back(entry.name, drive->profile);
+        profiles_.emplace_back(entry.slave.name, drive->profile);
     }
 
     ecat::PdoSelection selection(const LoadedDrive& drive, const std::vector<ecat::ModuleSelection>& modules, PdoWay way,
@@ -207,25 +194,25 @@ private:
     /// Objects that a drive looks at when it is switched on only.
     void add_stored(LoadedMachine& out) {
         for (const auto& entry : file_.slaves) {
-            const auto known = std::find_if(profiles_.begin(), profiles_.end(), [&](const auto& p) { return p.first == entry.name; });
-            refuse_startup_commands(reader_, entry.name, entry.startup, known == profiles_.end() ? nullptr : known->second.get());
+            const auto known = std::find_if(profiles_.begin(), profiles_.end(), [&](const auto& p) { return p.first == entry.slave.name; });
+            refuse_startup_commands(reader_, entry.slave.name, entry.startup, known == profiles_.end() ? nullptr : known->second.get());
             if (known == profiles_.end()) {
                 if (!entry.stored.empty() && !entry.broken)
                     reader_.problem(entry.stored.front().where, "config.stored_no_drive",
-                                    fmt::format("'{}' is no drive: it keeps nothing", entry.name), "remove `stored`");
+                                    fmt::format("'{}' is no drive: it keeps nothing", entry.slave.name), "remove `stored`");
                 continue;
             }
-            refuse_late_startup(reader_, entry.name, entry.startup, *known->second);
+            refuse_late_startup(reader_, entry.slave.name, entry.startup, *known->second);
             const auto& slaves = out.machine.bus.slaves;
-            const auto slave = std::find_if(slaves.begin(), slaves.end(), [&](const auto& s) { return s.name == entry.name; });
+            const auto slave = std::find_if(slaves.begin(), slaves.end(), [&](const auto& s) { return s.name == entry.slave.name; });
             if (slave == slaves.end()) continue;
-            for (auto& stored : resolve_stored(reader_, entry.name, entry.stored, slave->startup, *known->second))
+            for (auto& stored : resolve_stored(reader_, entry.slave.name, entry.stored, slave->startup, *known->second))
                 for (auto& binding : out.machine.axes)
-                    if (binding.slave == entry.name && binding.drive_axis == stored.axis) binding.stored.push_back(stored.setting);
+                    if (binding.slave == entry.slave.name && binding.drive_axis == stored.axis) binding.stored.push_back(stored.setting);
             for (const auto& binding : out.machine.axes)
-                if (binding.slave == entry.name)
+                if (binding.slave == entry.slave.name)
                     refuse_contradictions(
-                        reader_, entry.name, entry.stored, entry.startup, *known->second,
+                        reader_, entry.slave.name, entry.stored, entry.startup, *known->second,
                         {binding.axis.name, binding.drive_axis, binding.axis.gearing.counts_per_revolution, out.machine.cycle, slave->dc});
         }
     }
@@ -238,7 +225,7 @@ private:
         point.sub = entry.object ? entry.object->sub : entry.channel.value_or(0);
         const auto here = fmt::format("io.{}.{}", input ? "inputs" : "outputs", point.name);
         for (std::size_t i = 0; i < file_.slaves.size(); ++i) {
-            if (file_.slaves[i].name != point.slave || !entry.channel || file_.slaves[i].broken) continue;
+            if (file_.slaves[i].slave.name != point.slave || !entry.channel || file_.slaves[i].broken) continue;
             const auto& terminal = file_.slaves[i].terminal;
             const int count = !terminal ? 0 : input ? terminal->inputs : terminal->outputs;
             if (!terminal)
