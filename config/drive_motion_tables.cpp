@@ -1,6 +1,6 @@
 #include "config/drive_motion_tables.hpp"
 
-#include "axes/port/quirk_table.hpp"
+#include "axes/port/quirk.hpp"
 #include "config/codecs.hpp"
 #include "config/setting_tables.hpp"
 
@@ -83,6 +83,13 @@ Table<axes::StopOption> stop_option_table() {
             {}};
 }
 
+/// A key that stands in `motion` and in a room of the profile.
+template <class Room, class M>
+Field<DriveProfile> in_room(std::string key, Room DriveProfile::*room, M Room::*member, Codec<M> codec, std::string doc) {
+    return field_at<DriveProfile>(
+        std::move(key), [room, member](DriveProfile& p) -> M& { return p.*room.*member; }, std::move(codec), std::move(doc));
+}
+
 Table<DriveProfile> motion_table() {
     using P = DriveProfile;
     return {
@@ -97,20 +104,24 @@ Table<DriveProfile> motion_table() {
             with_default(field("homing_timeout", &P::homing_timeout, parameter_address(), "object that bounds the drive\'s own homing"),
                          "none"),
             field("homing_timeout_unit", &P::homing_timeout_unit, duration(), "of that object"),
-            field("encoder_turn_bits", &P::encoder_turn_bits, integer<std::uint8_t>(0, 32),
-                  "width of an absolute encoder's turn counter; 0: not stated"),
-            with_default(field("clear_turns", &P::clear_turns, parameter_address(), "object that makes the encoder forget its turns"),
+            in_room("encoder_turn_bits", &P::encoder, &axes::DriveEncoder::turn_bits, integer<std::uint8_t>(0, 32),
+                    "width of an absolute encoder's turn counter; 0: not stated"),
+            with_default(in_room("clear_turns", &P::encoder, &axes::DriveEncoder::clear_turns, parameter_address(),
+                                 "object that makes the encoder forget its turns"),
                          "none"),
-            field("clear_turns_value", &P::clear_turns_value, integer<std::int64_t>(0, 65535), "written to that object"),
-            field("clear_turns_control", &P::clear_turns_control, integer<std::uint16_t>(0, 0xFFFF),
-                  "bits of 6040h that make the encoder forget its turns"),
-            with_default(field("encoder_reset", &P::encoder_reset, parameter_address(),
-                               "object: 1 ends the encoder's fault and its turns, seen at the next power-on"),
+            in_room("clear_turns_value", &P::encoder, &axes::DriveEncoder::clear_turns_value, integer<std::int64_t>(0, 65535),
+                    "written to that object"),
+            in_room("clear_turns_control", &P::encoder, &axes::DriveEncoder::clear_turns_control, integer<std::uint16_t>(0, 0xFFFF),
+                    "bits of 6040h that make the encoder forget its turns"),
+            with_default(in_room("encoder_reset", &P::encoder, &axes::DriveEncoder::reset, parameter_address(),
+                                 "object: 1 ends the encoder's fault and its turns, seen at the next power-on"),
                          "none"),
-            field("battery_low", &P::battery_low, number(), "V of the encoder's battery below which the drive warns; 0: not stated"),
-            field("battery_empty", &P::battery_empty, number(), "V below which the turns are lost at power-off; 0: not stated"),
+            in_room("battery_low", &P::encoder, &axes::DriveEncoder::battery_low, number(),
+                    "V of the encoder's battery below which the drive warns; 0: not stated"),
+            in_room("battery_empty", &P::encoder, &axes::DriveEncoder::battery_empty, number(),
+                    "V below which the turns are lost at power-off; 0: not stated"),
             field("probes", &P::probes, integer<std::uint8_t>(0, 2), "touch probes"),
-            field("motor_has_encoder", &P::motor_has_encoder, boolean(), "false: the actual position is the command"),
+            in_room("motor_has_encoder", &P::encoder, &axes::DriveEncoder::present, boolean(), "false: the actual position is the command"),
             with_default(
                 field("minimum_cycle_csp", &P::minimum_cycle_csp, duration(), "shortest cycle in cyclic synchronous position mode"),
                 "not stated"),
@@ -120,24 +131,30 @@ Table<DriveProfile> motion_table() {
             with_default(field("minimum_cycle_cst", &P::minimum_cycle_cst, duration(), "shortest cycle in cyclic synchronous torque mode"),
                          "not stated"),
             field("enable_delay", &P::enable_delay, duration(), "motion waits this long after enabling (brake)"),
-            field("mode_change_delay", &P::mode_change_delay, duration(), "set-points wait this long after a mode change"),
+            in_room("mode_change_delay", &P::mode_rules, &axes::DriveModeRules::change_delay, duration(),
+                    "set-points wait this long after a mode change"),
             field("enable_timeout", &P::enable_timeout, duration(), "enabling that takes longer has failed"),
-            field("mode_change_at_standstill", &P::mode_change_at_standstill, boolean(), "modes change only while it stands"),
-            field("mode_change_interval", &P::mode_change_interval, duration(), "least time between two changes of 6060h"),
-            field("mode_indeterminate", &P::mode_indeterminate, duration(), "6061h means nothing this long after a change of 6060h"),
-            field("mode_violation", &P::mode_violation,
-                  choice<axes::ModeViolation>({{"obeyed", axes::ModeViolation::obeyed},
-                                               {"ignored", axes::ModeViolation::ignored},
-                                               {"alarm", axes::ModeViolation::alarm}}),
-                  "what a change of mode leads to that comes too soon or in motion"),
+            in_room("mode_change_at_standstill", &P::mode_rules, &axes::DriveModeRules::change_at_standstill, boolean(),
+                    "modes change only while it stands"),
+            in_room("mode_change_interval", &P::mode_rules, &axes::DriveModeRules::change_interval, duration(),
+                    "least time between two changes of 6060h"),
+            in_room("mode_indeterminate", &P::mode_rules, &axes::DriveModeRules::indeterminate, duration(),
+                    "6061h means nothing this long after a change of 6060h"),
+            in_room("mode_violation", &P::mode_rules, &axes::DriveModeRules::violation,
+                    choice<axes::ModeViolation>({{"obeyed", axes::ModeViolation::obeyed},
+                                                 {"ignored", axes::ModeViolation::ignored},
+                                                 {"alarm", axes::ModeViolation::alarm}}),
+                    "what a change of mode leads to that comes too soon or in motion"),
             field("profile_buffer", &P::profile_buffer, integer<std::uint8_t>(1, 64), "set-points that PP takes behind the running one"),
             field("enable_status_bits", &P::enable_status_bits, integer<std::uint16_t>(0, u16),
                   "of 6041h, all set before Enable Operation"),
-            field("brake_release", &P::brake_release, duration(), "after enabling the brake still holds: the drive loses earlier commands"),
-            field("brake_hold", &P::brake_hold, duration(), "after disabling at standstill the motor holds until the brake does"),
-            field("brake_moving_wait", &P::brake_moving_wait, duration(),
-                  "power gone in motion: the brake closes after this at the latest"),
-            field("brake_moving_speed", &P::brake_moving_speed, number(), "rpm below which it closes at once"),
+            in_room("brake_release", &P::brake, &axes::DriveBrake::release, duration(),
+                    "after enabling the brake still holds: the drive loses earlier commands"),
+            in_room("brake_hold", &P::brake, &axes::DriveBrake::hold, duration(),
+                    "after disabling at standstill the motor holds until the brake does"),
+            in_room("brake_moving_wait", &P::brake, &axes::DriveBrake::moving_wait, duration(),
+                    "power gone in motion: the brake closes after this at the latest"),
+            in_room("brake_moving_speed", &P::brake, &axes::DriveBrake::moving_speed, number(), "rpm below which it closes at once"),
             field("self_test", &P::self_test, duration(), "Not Ready To Switch On lasts this long after power-on"),
             field("deaf_after_enable", &P::deaf_after_enable, duration(), "set-points are not obeyed this long after enabling"),
             field("missed_frames_allowed", &P::missed_frames_allowed, integer<std::uint8_t>(0, 255),
@@ -145,9 +162,9 @@ Table<DriveProfile> motion_table() {
             field("overspeed_limit", &P::overspeed_limit, number(), "of the motor's maximum speed, beyond it an alarm; 0: none"),
             field("torque_overload", &P::torque_overload, number(), "rated torques, for longer than `torque_overload_time` an alarm"),
             field("torque_overload_time", &P::torque_overload_time, duration(), "how long more torque than `torque_overload` is allowed"),
-            field("off_stop", &P::off_stop, drive_stop(), "power taken away while it moves"),
-            field("fault_stop", &P::fault_stop, drive_stop(), "its reaction to a fault"),
-            field("quick_stop_leaves", &P::quick_stop_leaves, boolean(), "Quick Stop Active ends by itself"),
+            in_room("off_stop", &P::stops, &axes::DriveStops::off, drive_stop(), "power taken away while it moves"),
+            in_room("fault_stop", &P::stops, &axes::DriveStops::fault, drive_stop(), "its reaction to a fault"),
+            in_room("quick_stop_leaves", &P::stops, &axes::DriveStops::quick_stop_leaves, boolean(), "Quick Stop Active ends by itself"),
             field("csp_interpolates", &P::csp_interpolates, boolean(), "a target is reached one cycle after the SYNC0 that brought it"),
             field("axes", &P::axes, integer<std::uint8_t>(1, 8), "axes in this drive"),
             field("object_offset", &P::object_offset, integer<std::uint16_t>(0, u16), "of the objects of each further axis"),

@@ -96,12 +96,12 @@ void add_profile_fields(std::vector<Field<DriveFile>>& f) {
     f.push_back(required(field("motion", &F::profile, section(motion_table()), "what it means to an axis")));
     f.push_back(field_at<F>(
         "quirks", [](F & d) -> auto& { return d.profile.quirks; }, list(quirk()),
-        "deviations from CiA 402, by name (axes/port/quirk_table.hpp)"));
+        "deviations from CiA 402, by name (axes/port/quirk.hpp)"));
     f.push_back(field_at<F>(
-        "stops", [](F & d) -> auto& { return d.profile.stops; }, list(section(stop_option_table())),
+        "stops", [](F & d) -> auto& { return d.profile.stops.options; }, list(section(stop_option_table())),
         "how it stops by itself, as far as the manual documents options; they go before `off_stop`, `fault_stop`, `quick_stop_leaves`"));
     f.push_back(field_at<F>(
-        "emergency_torque", [](F & d) -> auto& { return d.profile.emergency_torque; }, parameter_address(),
+        "emergency_torque", [](F & d) -> auto& { return d.profile.stops.emergency_torque; }, parameter_address(),
         "object with the torque of stops by emergency_torque"));
     f.push_back(field_at<F>(
         "alarms", [](F & d) -> auto& { return d.profile.alarms; }, list(section(alarm_row_table())), "the drive's alarms"));
@@ -128,14 +128,14 @@ void add_profile_fields(std::vector<Field<DriveFile>>& f) {
         "behaviour", [](F & d) -> auto& { return d.profile.behaviour; }, section(behaviour_table()),
         "objects that the simulated drive obeys"));
     f.push_back(field_at<F>(
-        "storage", [](F & d) -> auto& { return d.profile.storage; },
+        "storage", [](F & d) -> auto& { return d.profile.storage.way; },
         choice<axes::ParameterStorage>({{"not_stated", axes::ParameterStorage::not_stated},
                                         {"each_write", axes::ParameterStorage::each_write},
                                         {"on_request", axes::ParameterStorage::on_request},
                                         {"never", axes::ParameterStorage::never}}),
         "how parameters get into its EEPROM"));
     f.push_back(field_at<F>(
-        "storage_switch", [](F & d) -> auto& { return d.profile.storage_switch; }, parameter_address(),
+        "storage_switch", [](F & d) -> auto& { return d.profile.storage.switched_by; }, parameter_address(),
         "while this object is 0 writes are not stored"));
     f.push_back(field_at<F>(
         "questions", [](F & d) -> auto& { return d.profile.questions; }, list(text()), "what only the vendor or a real drive can answer"));

@@ -157,9 +157,9 @@ std::optional<Error> DriveRequests::start_write(const DriveRequest& request, con
                      "End the machine, then use `taktwerk drive set` on its bus."};
     if (parameter.change == axes::ParameterChange::disabled && powered(place.snapshot->axes[place.axis]))
         return motor_on(name, fmt::format("{} may be written only while the motor is off [manual {}]", parameter.name, parameter.section));
-    const bool each = profile.storage == ParameterStorage::each_write;
-    const bool switches_on = each && parameter.address == profile.storage_switch && *raw != 0;
-    const bool always = each && profile.storage_switch.index == 0;
+    const bool each = profile.storage.way == ParameterStorage::each_write;
+    const bool switches_on = each && parameter.address == profile.storage.switched_by && *raw != 0;
+    const bool always = each && profile.storage.switched_by.index == 0;
     if ((switches_on || always) && !request.store)
         return Error{"drive.would_store", name, "this write would go into the drive's EEPROM", "Say that it may: `store`, or --store."};
     job.ticket = job.port->write_parameter(parameter.address, axes::to_bytes(parameter, *raw));
@@ -175,7 +175,7 @@ std::optional<Error> DriveRequests::start_write(const DriveRequest& request, con
 std::optional<Error> DriveRequests::start_store(const DriveRequest& request, const Place& place, Job& job) {
     const auto& profile = *place.drive.profile;
     const auto subject = "axis " + request.axis;
-    if (profile.storage != ParameterStorage::on_request)
+    if (profile.storage.way != ParameterStorage::on_request)
         return Error{"drive.cannot_store", subject, fmt::format("{} does not store its parameters on request", profile.name),
                      "See its page under docs/drives/."};
     if (auto refused = check_authority(request, place)) return refused;

@@ -110,17 +110,17 @@ World::World(const MachineConfig& config, Instant start)
         if (!profile) profile = &plain;
         setups.resize(profile->axes);
         names.resize(profile->axes);
-        for (auto& setup : setups) setup.personality = axes::sim::personality_of(*profile, setup.plant.counts_per_revolution);
+        for (auto& setup : setups) setup.motor.counts_per_revolution = setup.plant.counts_per_revolution;
         for (const auto& binding : config.axes) {
             if (binding.slave != slave->name || binding.drive_axis >= profile->axes) continue;
             auto& setup = setups[binding.drive_axis];
             setup.plant = plant_of(binding);
-            setup.personality = axes::sim::personality_of(*profile, setup.plant.counts_per_revolution);
-            setup.personality.absolute_encoder = binding.axis.memory.absolute;
+            setup.motor.counts_per_revolution = setup.plant.counts_per_revolution;
+            setup.motor.absolute_encoder = binding.axis.memory.absolute;
             // Three motor turns of following error, and set-points within 6000 turns/min: what a drive of this class guards.
-            setup.personality.following_error_limit = 3.0 * static_cast<double>(setup.plant.counts_per_revolution);
-            setup.personality.maximum_velocity = 100.0 * static_cast<double>(setup.plant.counts_per_revolution);
-            setup.personality.overspeed = profile->overspeed_limit * setup.personality.maximum_velocity;
+            setup.motor.following_error_limit = 3.0 * static_cast<double>(setup.plant.counts_per_revolution);
+            setup.motor.maximum_velocity = 100.0 * static_cast<double>(setup.plant.counts_per_revolution);
+            setup.motor.overspeed = profile->overspeed_limit * setup.motor.maximum_velocity;
             names[binding.drive_axis] = binding.axis.name;
             options.drift_ppm = binding.simulation.clock_drift_ppm;
         }

@@ -8,7 +8,7 @@
 
 #include "apps/docs/drive_pages.hpp"
 #include "axes/port/drive_scale.hpp"
-#include "axes/port/quirk_table.hpp"
+#include "axes/port/quirk.hpp"
 
 namespace taktwerk::apps {
 namespace {
@@ -154,17 +154,18 @@ void motion_rows(Features& out, const DriveProfile& profile, const DeviceDescrip
         out.row("Homing ends with an error after",
                 fmt::format("{} x {}", object_text(profile.homing_timeout.index, profile.homing_timeout.sub),
                             time_text(profile.homing_timeout_unit)));
-    if (profile.encoder_turn_bits != 0) out.row("Turns of an absolute encoder", fmt::format("{} bits", profile.encoder_turn_bits));
-    if (profile.clear_turns.index != 0)
+    if (profile.encoder.turn_bits != 0) out.row("Turns of an absolute encoder", fmt::format("{} bits", profile.encoder.turn_bits));
+    if (profile.encoder.clear_turns.index != 0)
         out.row("The encoder forgets its turns by",
-                fmt::format("{} = {}", object_text(profile.clear_turns.index, profile.clear_turns.sub), profile.clear_turns_value));
-    else if (profile.clear_turns_control != 0)
-        out.row("The encoder forgets its turns by", fmt::format("control word {:04X}h", profile.clear_turns_control));
+                fmt::format("{} = {}", object_text(profile.encoder.clear_turns.index, profile.encoder.clear_turns.sub),
+                            profile.encoder.clear_turns_value));
+    else if (profile.encoder.clear_turns_control != 0)
+        out.row("The encoder forgets its turns by", fmt::format("control word {:04X}h", profile.encoder.clear_turns_control));
     out.row("Touch probes", profile.probes == 0 ? "none" : std::to_string(profile.probes));
     if (profile.axes > 1)
         out.row("Axes",
                 fmt::format("{}; objects {:04X}h apart, PDOs {:02X}h apart", profile.axes, profile.object_offset, profile.pdo_offset));
-    out.row("Actual position", profile.motor_has_encoder ? "measured" : "the commanded one, unless the motor has an encoder");
+    out.row("Actual position", profile.encoder.present ? "measured" : "the commanded one, unless the motor has an encoder");
     if (const auto words = axes::scale_words(profile); !words.empty())
         out.row("Counts of a motor turn", fmt::format("{}: compared with `gearing` before the axis is enabled{}{}", words,
                                                       profile.scale.doubt.empty() ? "" : "; ", profile.scale.doubt));
@@ -189,15 +190,15 @@ void motion_rows(Features& out, const DriveProfile& profile, const DeviceDescrip
     if (profile.enable_status_bits != 0) out.row("Enabled only with", fmt::format("statusword bits {:04X}h", profile.enable_status_bits));
     out.row("Motion waits after enabling", stated(profile.enable_delay));
     out.row("Enabling has failed after", stated(profile.enable_timeout));
-    out.row("Brake opens after", stated(profile.brake_release));
-    out.row("Brake closes after", stated(profile.brake_hold));
-    out.row("Set-points wait after a change of mode", stated(profile.mode_change_delay));
-    out.row("Between two changes of mode", stated(profile.mode_change_interval));
-    out.row("6061h means nothing after a change for", stated(profile.mode_indeterminate));
-    if (profile.mode_change_at_standstill) out.row("Modes change", "at standstill only");
-    out.row("Power taken in motion", std::string(words(profile.off_stop)));
-    out.row("At a fault", std::string(words(profile.fault_stop)));
-    out.row("After a quick stop", profile.quick_stop_leaves ? "Switch On Disabled by itself" : "stays in Quick Stop Active");
+    out.row("Brake opens after", stated(profile.brake.release));
+    out.row("Brake closes after", stated(profile.brake.hold));
+    out.row("Set-points wait after a change of mode", stated(profile.mode_rules.change_delay));
+    out.row("Between two changes of mode", stated(profile.mode_rules.change_interval));
+    out.row("6061h means nothing after a change for", stated(profile.mode_rules.indeterminate));
+    if (profile.mode_rules.change_at_standstill) out.row("Modes change", "at standstill only");
+    out.row("Power taken in motion", std::string(words(profile.stops.off)));
+    out.row("At a fault", std::string(words(profile.stops.fault)));
+    out.row("After a quick stop", profile.stops.quick_stop_leaves ? "Switch On Disabled by itself" : "stays in Quick Stop Active");
     if (profile.alarm_detail_index != 0)
         out.row("Alarms that share a code", "told apart by " + object_text(profile.alarm_detail_index, profile.alarm_detail_sub));
 }
@@ -211,9 +212,9 @@ void count_rows(Features& out, const DriveProfile& profile) {
     if (!profile.parameters.empty())
         out.row("Parameters",
                 fmt::format("{}: [all of them](../reference/drives/{}-parameters.md)", profile.parameters.size(), profile.name));
-    out.row("How parameters are stored", std::string(words(profile.storage)));
-    if (profile.storage_switch.index != 0)
-        out.row("Not stored while", object_text(profile.storage_switch.index, profile.storage_switch.sub) + " = 0");
+    out.row("How parameters are stored", std::string(words(profile.storage.way)));
+    if (profile.storage.switched_by.index != 0)
+        out.row("Not stored while", object_text(profile.storage.switched_by.index, profile.storage.switched_by.sub) + " = 0");
 }
 
 }  // namespace
@@ -230,7 +231,7 @@ std::string drive_features_markdown(const config::LoadedDrive& drive) {
         for (const auto quirk : profile.quirks) {
             const auto* info = axes::find_quirk(quirk);
             fmt::format_to(std::back_inserter(quirks), "| `{}` | {} |\n", info ? info->name : "?",
-                           info ? info->doc : "no line in axes/port/quirk_table.hpp says what it is");
+                           info ? info->doc : "no line in axes/port/quirk.hpp says what it is");
         }
         out.part(quirks);
     }

@@ -31,7 +31,7 @@ std::optional<DriveOrder> order_of(const axes::DriveProfile& profile, const Driv
 /// The command that does the same with care; empty: there is none.
 std::string way_with_care(const DriveAccess& drive, const DriveParameter& parameter) {
     const auto& profile = drive.profile();
-    if (profile.clear_turns.index != 0 && profile.clear_turns == parameter.address)
+    if (profile.encoder.clear_turns.index != 0 && profile.encoder.clear_turns == parameter.address)
         return fmt::format("`taktwerk drive clear-turns {}` clears the turns, and the machine knows that the axis lost its reference",
                            drive.word());
     switch (order_of(profile, parameter).value_or(DriveOrder::emergency_stop)) {

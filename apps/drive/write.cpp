@@ -48,7 +48,7 @@ public:
 
 private:
     [[nodiscard]] bool stores_each() const noexcept {
-        return storing_ == Storing::asked && profile_.storage == ParameterStorage::each_write;
+        return storing_ == Storing::asked && profile_.storage.way == ParameterStorage::each_write;
     }
 
     /// Does something when it is written; what it reads afterwards is its state or nothing (CiA 301 1011h: what can be restored).
@@ -73,15 +73,15 @@ private:
         }
         // A set holds the storage switch among the others: written in its place it would decide what becomes of those behind it.
         std::stable_partition(wanted_.begin(), wanted_.end(),
-                              [&](const Change& change) { return change.parameter->address != profile_.storage_switch; });
+                              [&](const Change& change) { return change.parameter->address != profile_.storage.switched_by; });
     }
 
     bool may_store() {
         if (storing_ != Storing::asked) return true;
-        if (profile_.storage == ParameterStorage::never)
+        if (profile_.storage.way == ParameterStorage::never)
             out_.error = Error{"drive.cannot_store", drive_.subject(), "has no way to store parameters over the bus",
                                "leave --store away, and store with the maker's own tool"};
-        else if (profile_.storage == ParameterStorage::not_stated)
+        else if (profile_.storage.way == ParameterStorage::not_stated)
             out_.error =
                 Error{"drive.cannot_store", drive_.subject(), "its manual does not say how it stores parameters", "leave --store away"};
         return !out_.error;
@@ -89,7 +89,7 @@ private:
 
     /// What counts after a restart, and is lost by then, would never count: better not written, because it would read as if it did.
     bool may_count() {
-        if (storing_ == Storing::asked || profile_.storage == ParameterStorage::not_stated) return true;
+        if (storing_ == Storing::asked || profile_.storage.way == ParameterStorage::not_stated) return true;
         std::string names;
         const DriveParameter* first = nullptr;
         for (const auto& change : wanted_) {
@@ -98,7 +98,7 @@ private:
             if (!first) first = change.parameter;
         }
         if (!first) return true;
-        const bool never = profile_.storage == ParameterStorage::never;
+        const bool never = profile_.storage.way == ParameterStorage::never;
         out_.error =
             Error{never ? "drive.cannot_store" : "drive.needs_store", drive_.subject(),
                   fmt::format("{}: the drive looks at it when it is switched on only, and what is not stored is lost by then. Nothing was "
@@ -111,8 +111,8 @@ private:
 
     /// A drive that stores each write is told not to, or to do it, as asked.
     void prepare() {
-        if (profile_.storage != ParameterStorage::each_write) return;
-        const auto* sw = profile_.storage_switch.index ? parameter_at(profile_, profile_.storage_switch) : nullptr;
+        if (profile_.storage.way != ParameterStorage::each_write) return;
+        const auto* sw = profile_.storage.switched_by.index ? parameter_at(profile_, profile_.storage.switched_by) : nullptr;
         if (!sw) {
             out_.notes.push_back(
                 fmt::format("{} stores every write in its EEPROM: {} more of some 100,000.", profile_.name, wanted_.size()));
@@ -203,7 +203,7 @@ private:
         }
         if (out_.error) return;
         if (storing_ != Storing::asked) {
-            if (profile_.storage == ParameterStorage::on_request) out_.notes.emplace_back(lost_at_power_off);
+            if (profile_.storage.way == ParameterStorage::on_request) out_.notes.emplace_back(lost_at_power_off);
             return;
         }
         if (auto done = drive_.store_all(); !done) out_.error = done.error();

@@ -54,7 +54,7 @@ std::string words(const DriveProfile& profile, const axes::StopWay& way) {
         case StopBy::quick_ramp: text = "it brakes along 6085h"; break;
         case StopBy::torque_slope: text = "its torque goes to 0 along 6087h"; break;
         case StopBy::emergency_torque:
-            text = fmt::format("it brakes at once with the torque of {}, not along a ramp", named(profile, profile.emergency_torque));
+            text = fmt::format("it brakes at once with the torque of {}, not along a ramp", named(profile, profile.stops.emergency_torque));
             break;
         case StopBy::zero_speed: text = "it brakes at once with all its torque"; break;
     }
@@ -73,7 +73,7 @@ std::string stop_of(const ecat::SlaveConfig& slave, const runtime::AxisBinding& 
     const auto& profile = *axis.profile;
     const auto mode =
         axis.axis.control.mode == axes::ControlMode::velocity ? axes::DriveMode::cyclic_velocity : axes::DriveMode::cyclic_position;
-    for (const auto& option : profile.stops) {
+    for (const auto& option : profile.stops.options) {
         if (option.cause != cause) continue;
         const auto way_for = [&](std::optional<std::int64_t> value) {
             return std::find_if(option.ways.begin(), option.ways.end(), [&](const axes::StopWay& way) {
@@ -167,7 +167,7 @@ std::vector<std::string> master_gone(const runtime::MachineConfig& config, const
             return row.address == axes::ParameterAddress{index, 0};
         });
     };
-    out.push_back(stop_of(*slave, axis, StopCause::fault, "at a fault", std::string(unstated_stop(axis.profile->fault_stop))));
+    out.push_back(stop_of(*slave, axis, StopCause::fault, "at a fault", std::string(unstated_stop(axis.profile->stops.fault))));
     out.push_back(stop_of(*slave, axis, StopCause::quick_stop, "at a quick stop",
                           shown(0x605A) ? "its manual does not say what the values of 605Ah do" : "its manual does not describe it"));
     return out;

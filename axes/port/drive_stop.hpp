@@ -33,7 +33,7 @@ enum class StopBy : std::uint8_t {
     ramp,              ///< 6084h; while homing 609Ah
     quick_ramp,        ///< 6085h
     torque_slope,      ///< the torque goes to 0 by 6087h
-    emergency_torque,  ///< speed 0 at once, with the torque of DriveProfile::emergency_torque at most (SV33-E P04.23)
+    emergency_torque,  ///< speed 0 at once, with the torque of DriveStops::emergency_torque at most (SV33-E P04.23)
     zero_speed,        ///< speed 0 at once, with all the torque there is
 };
 

@@ -246,7 +246,7 @@ std::string way_to_store(const DriveProfile& profile, std::string_view drive, st
         return fmt::format("`taktwerk drive set {} {}{}{}`", drive, assignment, profile.axes > 1 ? fmt::format(" --axis {}", axis + 1) : "",
                            store);
     };
-    switch (profile.storage) {
+    switch (profile.storage.way) {
         case ParameterStorage::on_request:
         case ParameterStorage::each_write: return command(" --store") + ", then switch the drive off and on";
         case ParameterStorage::not_stated:

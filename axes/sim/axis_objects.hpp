@@ -33,8 +33,8 @@ struct AxisInputs {
     std::int64_t position_window = -1, position_window_time = 0;                            ///< 6067h, 6068h ms; -1: no such object
     std::int64_t velocity_window = -1, velocity_window_time = 0;                            ///< 606Dh, 606Eh ms
     std::int64_t emergency_torque = 0;                          ///< of StopBy::emergency_torque; 0 = all there is
-    std::array<std::int64_t, most_stop_options> stop_values{};  ///< of Personality::stops, in their order
-    std::int64_t following_error_window = 0;                    ///< 6065h; 0: as the personality says, FFFFFFFFh: no check
+    std::array<std::int64_t, most_stop_options> stop_values{};  ///< of DriveStops::options, in their order
+    std::int64_t following_error_window = 0;                    ///< 6065h; 0: as the motor says, FFFFFFFFh: no check
     std::int64_t software_minimum = 0, software_maximum = 0;
     SoftwareLimits software_limits = SoftwareLimits::off;
 };

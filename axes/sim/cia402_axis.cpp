@@ -8,16 +8,28 @@
 
 namespace taktwerk::axes::sim {
 
-Cia402Axis::Cia402Axis(const PlantConfig& plant, const Personality& personality)
-    : personality_(personality),
-      turn_(static_cast<double>(personality.counts_per_revolution)),
+namespace {
+
+ProbeToggle probe_toggle(const DriveProfile& profile) noexcept {
+    return profile.has(Quirk::probe_toggle_bits) ? ProbeToggle::bits_6_and_7 : ProbeToggle::none;
+}
+
+}  // namespace
+
+Cia402Axis::Cia402Axis(const PlantConfig& plant, std::shared_ptr<const DriveProfile> profile, const SimulatedMotor& motor)
+    : profile_(std::move(profile)),
+      motor_(motor),
+      codes_(*profile_),
+      velocity_unit_(profile_->velocity_counts_per_unit),
+      brake_moving_speed_(profile_->brake.moving_speed / 60.0 * static_cast<double>(motor.counts_per_revolution)),
+      turn_(static_cast<double>(motor.counts_per_revolution)),
       plant_(plant),
-      probes_{TouchProbe(personality.probe_toggle), TouchProbe(personality.probe_toggle)},
-      profile_position_(personality.profile_buffer, personality.pp_bit_5_blends ? BitFive::blends : BitFive::replaces),
-      encoder_(static_cast<double>(personality.counts_per_revolution), plant.index_pulse, personality.encoder_turn_bits),
+      probes_{TouchProbe(probe_toggle(*profile_)), TouchProbe(probe_toggle(*profile_))},
+      profile_position_(profile_->profile_buffer, has(Quirk::pp_bit_5_blends) ? BitFive::blends : BitFive::replaces),
+      encoder_(static_cast<double>(motor.counts_per_revolution), plant.index_pulse, profile_->encoder.turn_bits),
       battery_(plant.battery),
       stored_shift_(-plant.index_pulse),
-      causes_(personality.alarms.size(), false) {
+      causes_(profile_->alarms.size(), false) {
     take_torque_limits({});
 }
 
@@ -30,12 +42,11 @@ void Cia402Axis::scale(double counts_per_revolution) noexcept {
     if (factor == 1) return;
     plant_.rescale(factor);
     encoder_.rescale(factor);
-    auto& p = personality_;
-    for (double* count : {&zero_, &stored_shift_, &demand_.position, &demand_.velocity, &demand_step_, &target_, &p.brake_moving_speed,
-                          &p.quick_stop_deceleration, &p.following_error_limit, &p.maximum_velocity, &p.overspeed, &p.start_speed})
+    for (double* count : {&zero_, &stored_shift_, &demand_.position, &demand_.velocity, &demand_step_, &target_, &brake_moving_speed_,
+                          &motor_.following_error_limit, &motor_.maximum_velocity, &motor_.overspeed, &motor_.start_speed})
         *count *= factor;
     turn_ = counts_per_revolution;
-    p.counts_per_revolution = std::llround(turn_);
+    motor_.counts_per_revolution = std::llround(turn_);
 }
 
 void Cia402Axis::read_switches(Duration dt) noexcept {
@@ -112,7 +123,7 @@ void Cia402Axis::exchange(const AxisInputs& in, Duration cycle, AxisOutputs& out
     settings_ = in;
     take_torque_limits(in);
     constexpr std::int64_t no_check = 0xFFFFFFFF;  // CiA 402-2, 6065h
-    following_limit_ = in.following_error_window == 0          ? personality_.following_error_limit
+    following_limit_ = in.following_error_window == 0          ? motor_.following_error_limit
                        : in.following_error_window == no_check ? 0
                                                                : static_cast<double>(in.following_error_window);
     limited_ = false;

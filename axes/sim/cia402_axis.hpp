@@ -1,11 +1,12 @@
 #pragma once
 // One axis of a simulated CiA 402 drive: power state machine, modes of operation, ways of stopping, alarms, in front of a servo loop and a
 // plant. It answers because it computes. Knows no bus: axes/sim/cia402_device.hpp copies objects in and out.
-// Sources: CiA 402-2; what differs per drive is in Personality, with the manual's section in the drive sheets.
+// Sources: CiA 402-2; what differs per drive is in its DriveProfile, with the manual's section in the drive sheets.
 
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -13,13 +14,14 @@
 #include "axes/sim/absolute_encoder.hpp"
 #include "axes/sim/alarm_history.hpp"
 #include "axes/sim/axis_objects.hpp"
+#include "axes/sim/drive_alarm_codes.hpp"
 #include "axes/sim/homing_run.hpp"
 #include "axes/sim/mode_codes.hpp"
 #include "axes/sim/open_loop_motor.hpp"
-#include "axes/sim/personality.hpp"
 #include "axes/sim/plant.hpp"
 #include "axes/sim/profile_position.hpp"
 #include "axes/sim/servo_loop.hpp"
+#include "axes/sim/simulated_motor.hpp"
 #include "axes/sim/switch_inputs.hpp"
 #include "axes/sim/touch_probe.hpp"
 #include "axes/sim/warning_list.hpp"
@@ -31,7 +33,7 @@ class Cia402Axis {
 public:
     enum class State : std::uint8_t { not_ready, disabled, ready, switched_on, enabled, quick_stop, fault_reaction, fault };
 
-    Cia402Axis(const PlantConfig& plant, const Personality& personality);
+    Cia402Axis(const PlantConfig& plant, std::shared_ptr<const DriveProfile> profile, const SimulatedMotor& motor);
 
     void power_on(Instant now) noexcept;
     /// Control supply gone: the motor is free, the state machine gone.
@@ -76,8 +78,8 @@ public:
 
     /// Objects by which the drive changes while it runs: its unit of velocity (raw = counts/s times this) and what following error is an
     /// alarm [counts; 0 = none].
-    void velocity_unit(double counts_per_unit) noexcept { personality_.velocity_counts_per_unit = counts_per_unit; }
-    void following_limit(double counts) noexcept { personality_.following_error_limit = counts; }
+    void velocity_unit(double counts_per_unit) noexcept { velocity_unit_ = counts_per_unit; }
+    void following_limit(double counts) noexcept { motor_.following_error_limit = counts; }
 
     /// How many of its counts are a turn of the motor: its electronic gear (SE-808X 2000h:02, SV33-E 6091h). The mechanics stay where they are,
     /// all counts are others from now on. Not while the motor has power.
@@ -116,7 +118,7 @@ public:
     [[nodiscard]] bool powered() const noexcept { return energised(); }
     [[nodiscard]] const AlarmHistory& history() const noexcept { return history_; }
     [[nodiscard]] bool alarm_stands() const noexcept { return error_code_ != 0 || warnings_.any(); }
-    [[nodiscard]] double counts_per_revolution() const noexcept { return static_cast<double>(personality_.counts_per_revolution); }
+    [[nodiscard]] double counts_per_revolution() const noexcept { return static_cast<double>(motor_.counts_per_revolution); }
 
 private:
     /// How the motor comes to rest now. `ramp` counts/s2; at_once: the demanded speed is 0 from the start.
@@ -205,13 +207,13 @@ private:
     void end_stop() noexcept;
     [[nodiscard]] bool energised() const noexcept;
     [[nodiscard]] bool has_brake() const noexcept {
-        return personality_.brake_hold > Duration::zero() || personality_.brake_moving_wait > Duration::zero();
+        return profile_->brake.hold > Duration::zero() || profile_->brake.moving_wait > Duration::zero();
     }
     [[nodiscard]] bool brake_told_to_close() const noexcept;
     [[nodiscard]] bool too_early() const noexcept { return now_ < commands_from_; }
     void wind_down(StopCause cause) noexcept;
     [[nodiscard]] bool starts_too_fast() const noexcept {
-        return personality_.start_speed > 0 && std::abs(plant_.velocity()) > personality_.start_speed;
+        return motor_.start_speed > 0 && std::abs(plant_.velocity()) > motor_.start_speed;
     }
     void step_brake() noexcept;
     // cia402_supervision.cpp
@@ -225,7 +227,7 @@ private:
     // cia402_causes.cpp
     void begin_cause(std::size_t row) noexcept;
     void end_cause(std::size_t row) noexcept;
-    void show_cause(const AlarmRow& row) noexcept;
+    void show_cause(const DriveAlarmText& row) noexcept;
     void show_causes() noexcept;
     [[nodiscard]] bool cause_lasts() const noexcept;
     [[nodiscard]] bool shows(const AlarmCode& alarm) const noexcept;
@@ -236,8 +238,15 @@ private:
     [[nodiscard]] std::uint16_t status_word() const noexcept;
     [[nodiscard]] std::uint16_t profile_bits() const noexcept;
 
-    Personality personality_;
-    double turn_ = 10000;  ///< counts per revolution; a gear may make it no whole number
+    [[nodiscard]] bool has(Quirk quirk) const noexcept { return profile_->has(quirk); }
+    [[nodiscard]] bool has_mode(DriveMode mode) const noexcept;
+
+    std::shared_ptr<const DriveProfile> profile_;
+    SimulatedMotor motor_;
+    DriveAlarmCodes codes_;
+    double velocity_unit_;       ///< raw 606Ch/60FFh = counts/s * this
+    double brake_moving_speed_;  ///< counts/s
+    double turn_ = 10000;        ///< counts per revolution; a gear may make it no whole number
     Plant plant_;
     ServoLoop loop_;
     std::optional<OpenLoopMotor> stepper_;  ///< the motor has no encoder
@@ -285,7 +294,7 @@ private:
     bool reachable_ = false;
     bool common_alarm_ = false;  ///< the alarm shown is the whole drive's
     AlarmCode hidden_alarm_;     ///< the axis' own behind it; code 0: none
-    Duration overload_lasts_{};  ///< above Personality::torque_overload
+    Duration overload_lasts_{};  ///< above DriveProfile::torque_overload
     bool winding_down_ = false;  ///< power is to go, but the motor still stops or holds for the brake
     Instant winding_down_until_{};
     Instant power_went_{};      ///< last time that the motor had power
@@ -293,7 +302,7 @@ private:
     bool brake_closed_ = false, encoder_failed_ = false;
     std::int64_t frozen_position_ = 0;
     std::uint32_t early_commands_ = 0;
-    std::vector<bool> causes_;  ///< of each alarm of the personality
+    std::vector<bool> causes_;  ///< of each alarm of the profile
     WarningList warnings_;
     AlarmHistory history_;
     Instant powered_at_{};

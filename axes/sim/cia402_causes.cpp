@@ -8,8 +8,8 @@
 namespace taktwerk::axes::sim {
 
 bool Cia402Axis::provoke(std::string_view panel) noexcept {
-    const auto& rows = personality_.alarms;
-    const auto row = std::find_if(rows.begin(), rows.end(), [&](const AlarmRow& r) { return r.panel == panel; });
+    const auto& rows = profile_->alarms;
+    const auto row = std::find_if(rows.begin(), rows.end(), [&](const DriveAlarmText& r) { return r.panel == panel; });
     if (row == rows.end()) return false;
     begin_cause(static_cast<std::size_t>(row - rows.begin()));
     return true;
@@ -17,12 +17,12 @@ bool Cia402Axis::provoke(std::string_view panel) noexcept {
 
 void Cia402Axis::release(std::string_view panel) noexcept {
     for (std::size_t i = 0; i < causes_.size(); ++i)
-        if (personality_.alarms[i].panel == panel) end_cause(i);
+        if (profile_->alarms[i].panel == panel) end_cause(i);
 }
 
 void Cia402Axis::cause(DriveAlarmKind kind, bool present) noexcept {
     for (std::size_t i = 0; i < causes_.size(); ++i) {
-        if (personality_.alarms[i].kind != kind) continue;
+        if (profile_->alarms[i].kind != kind) continue;
         if (!present && causes_[i]) end_cause(i);
         if (!present) continue;
         if (!causes_[i]) begin_cause(i);
@@ -32,37 +32,38 @@ void Cia402Axis::cause(DriveAlarmKind kind, bool present) noexcept {
 
 void Cia402Axis::begin_cause(std::size_t i) noexcept {
     causes_[i] = true;
-    if (state_ != State::not_ready) show_cause(personality_.alarms[i]);
+    if (state_ != State::not_ready) show_cause(profile_->alarms[i]);
 }
 
-void Cia402Axis::show_cause(const AlarmRow& row) noexcept {
+void Cia402Axis::show_cause(const DriveAlarmText& row) noexcept {
+    const AlarmCode alarm = alarm_code(row);
     if (row.warning) {
-        if (warnings_.set(row.alarm)) remember(row.alarm);
+        if (warnings_.set(alarm)) remember(alarm);
         return;
     }
-    if (row.alarm.whole_drive) raise_common(row.alarm);
-    else raise(row.alarm);
+    if (row.whole_drive) raise_common(alarm);
+    else raise(alarm);
     // Safe torque off means what it says, whatever the drive does at other faults.
     if (row.kind == DriveAlarmKind::safe_torque_off && state_ == State::fault_reaction) enter(State::fault);
 }
 
 void Cia402Axis::end_cause(std::size_t i) noexcept {
     causes_[i] = false;
-    const auto& row = personality_.alarms[i];
-    if (row.warning) warnings_.clear(row.alarm);
-    else if (row.clears_itself && state_ == State::fault && shows(row.alarm)) clear_fault();
+    const auto& row = profile_->alarms[i];
+    if (row.warning) warnings_.clear(alarm_code(row));
+    else if (row.clears_itself && state_ == State::fault && shows(alarm_code(row))) clear_fault();
 }
 
 void Cia402Axis::show_causes() noexcept {
     for (std::size_t i = 0; i < causes_.size(); ++i)
-        if (causes_[i]) show_cause(personality_.alarms[i]);
+        if (causes_[i]) show_cause(profile_->alarms[i]);
 }
 
 bool Cia402Axis::cause_lasts() const noexcept {
     for (std::size_t i = 0; i < causes_.size(); ++i)
-        if (causes_[i] && shows(personality_.alarms[i].alarm)) return true;
-    if (battery_low() && !personality_.battery_low_alarm.warning && shows(personality_.battery_low_alarm)) return true;
-    return encoder_failed_ || encoder_complaint_.code != 0 || (!main_power_ && error_code_ == personality_.undervoltage_alarm.code);
+        if (causes_[i] && shows(alarm_code(profile_->alarms[i]))) return true;
+    if (battery_low() && !codes_[DriveAlarmKind::battery_low].warning && shows(codes_[DriveAlarmKind::battery_low])) return true;
+    return encoder_failed_ || encoder_complaint_.code != 0 || (!main_power_ && error_code_ == codes_[DriveAlarmKind::undervoltage].code);
 }
 
 bool Cia402Axis::shows(const AlarmCode& alarm) const noexcept { return error_code_ == alarm.code && error_detail_ == alarm.detail; }

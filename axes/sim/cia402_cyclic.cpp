@@ -23,21 +23,21 @@ void Cia402Axis::take_position_target(const AxisInputs& in, double seconds) noex
         return;
     }
     largest_increment_ = std::max(largest_increment_, increment);
-    if (personality_.maximum_velocity > 0 && increment > increment_factor * personality_.maximum_velocity * seconds) {
+    if (motor_.maximum_velocity > 0 && increment > increment_factor * motor_.maximum_velocity * seconds) {
         if (++strikes_ >= allowed_strikes) {
-            raise(personality_.increment_alarm);
+            raise(codes_[DriveAlarmKind::setpoint_leap]);
             return;
         }
     } else {
         strikes_ = 0;
     }
     warning_ = false;
-    if (personality_.limit_stop_is_warning) {
+    if (has(Quirk::limit_stop_is_warning)) {
         const bool into_negative = plant_.negative_limit() && wanted < plant_.position();
         const bool into_positive = plant_.positive_limit() && wanted > plant_.position();
         if (into_negative || into_positive) {
             warning_ = true;
-            error_code_ = into_negative ? personality_.negative_limit_code : personality_.positive_limit_code;
+            error_code_ = into_negative ? codes_[DriveAlarmKind::negative_limit].code : codes_[DriveAlarmKind::positive_limit].code;
             target_ = demand_.position = plant_.position();
             demand_.velocity = 0;
             steps_left_ = 0;
@@ -65,7 +65,7 @@ void Cia402Axis::take_velocity_target(const AxisInputs& in) noexcept {
         if (in.target_velocity != 0) ++early_commands_;
         return;
     }
-    velocity_target_ = static_cast<double>(in.target_velocity + in.velocity_offset) / personality_.velocity_counts_per_unit;
+    velocity_target_ = static_cast<double>(in.target_velocity + in.velocity_offset) / velocity_unit_;
     if (!ramps_velocity()) velocity_demand_ = velocity_target_;
 }
 
@@ -89,7 +89,7 @@ double Cia402Axis::with_offset(double torque) const noexcept {
 }
 
 double Cia402Axis::torque_of(std::int64_t raw) const noexcept {
-    return static_cast<double>(raw) / personality_.torque_rated_raw * plant_.config().rated_torque;
+    return static_cast<double>(raw) / profile_->torque_rated_raw * plant_.config().rated_torque;
 }
 
 }  // namespace taktwerk::axes::sim

@@ -46,26 +46,28 @@ Cia402Device::Cia402Device(const DriveProfile& profile, const std::vector<AxisSe
     : parameters_(profile),
       scale_(profile.scale),
       homing_timeout_(profile.homing_timeout),
-      clear_turns_(profile.clear_turns),
-      encoder_reset_(profile.encoder_reset),
+      clear_turns_(profile.encoder.clear_turns),
+      encoder_reset_(profile.encoder.reset),
       homing_timeout_unit_(to_seconds(profile.homing_timeout_unit)),
-      clear_turns_value_(profile.clear_turns_value),
-      clear_turns_control_(profile.clear_turns_control),
+      clear_turns_value_(profile.encoder.clear_turns_value),
+      clear_turns_control_(profile.encoder.clear_turns_control),
       object_offset_(profile.object_offset),
       tunnel_(profile.behaviour.parameter_tunnel),
-      display_(profile.behaviour.state, axes.empty() ? std::uint16_t{0} : axes[0].personality.communication_alarm.code),
+      display_(profile.behaviour.state, axes.empty() ? std::uint16_t{0} : DriveAlarmCodes{profile}[DriveAlarmKind::communication].code),
       bus_state_address_(profile.behaviour.bus_state),
       detail_index_(profile.alarm_detail_index),
       detail_sub_(profile.alarm_detail_sub),
       alarms_(profile.alarms),
-      stops_(profile.stops),
-      emergency_torque_(profile.emergency_torque),
+      stops_(profile.stops.options),
+      emergency_torque_(profile.stops.emergency_torque),
       minimum_cycle_(shortest_cycle(profile)),
       missed_allowed_(profile.missed_frames_allowed) {
-    if (!axes.empty()) missed_alarm_ = axes[0].personality.communication_alarm, link_alarm_ = axes[0].personality.link_alarm;
+    const DriveAlarmCodes codes{profile};
+    if (!axes.empty()) missed_alarm_ = codes[DriveAlarmKind::communication], link_alarm_ = codes[DriveAlarmKind::link_changed];
+    const auto shared = std::make_shared<const DriveProfile>(profile);
     for (const auto& setup : axes) {
         auto& axis = axes_.emplace_back();
-        axis.model = std::make_unique<Cia402Axis>(setup.plant, setup.personality);
+        axis.model = std::make_unique<Cia402Axis>(setup.plant, shared, setup.motor);
         axis.behaviour = std::make_unique<Behaviour>(profile);
         axis.motor = std::make_unique<MotorBehaviour>(profile);
         // The motor has the encoder that the plant was measured with.

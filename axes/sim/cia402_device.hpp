@@ -23,7 +23,7 @@ class Cia402Device final : public ecat::sim::DeviceModel {
 public:
     struct AxisSetup {
         PlantConfig plant;
-        Personality personality;
+        SimulatedMotor motor;
     };
     Cia402Device(const DriveProfile& profile, const std::vector<AxisSetup>& axes);
 

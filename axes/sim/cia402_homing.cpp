@@ -1,6 +1,7 @@
 // Homing by the drive: the rising edge of control word bit 4 starts it, its fall or halt (bit 8) break it off, its end gives the drive a
 // new zero. After a halt a new edge is needed: CiA 402 calls the procedure interrupted then, no manual says how it would go on.
 
+#include <algorithm>
 #include <cmath>
 
 #include "axes/sim/cia402_axis.hpp"
@@ -23,8 +24,10 @@ void Cia402Axis::take_homing_start(const AxisInputs& in) noexcept {
     homing_attained_ = homing_error_ = false;
     home_offset_ = in.home_offset;
     home_position_method_ = in.home_position_method;
-    const auto number = in.homing.method == 19 && personality_.homing_19_starts_negative ? 21 : in.homing.method;
-    const bool known = in.homing.method >= -2 && in.homing.method < 62 && (personality_.homing_methods >> (in.homing.method + 2) & 1u) != 0;
+    const auto number = in.homing.method == 19 && has(Quirk::homing_19_starts_negative) ? 21 : in.homing.method;
+    const auto& documented = profile_->homing_methods;  // none: it knows them all
+    const bool known = in.homing.method >= -2 && in.homing.method < 62 &&
+                       (documented.empty() || std::find(documented.begin(), documented.end(), in.homing.method) != documented.end());
     homing_.start(in.homing, known ? homing_method(number) : HomingMethod{}, homing_view());
 }
 
@@ -41,10 +44,10 @@ void Cia402Axis::homing_step(double dt) noexcept {
 void Cia402Axis::homing_failed() noexcept {
     homing_error_ = true;
     switch (homing_.failure()) {
-        case HomingRun::Failure::method: raise_or_warn(personality_.homing_method_alarm); break;
-        case HomingRun::Failure::time: raise_or_warn(personality_.homing_timeout_alarm); break;
+        case HomingRun::Failure::method: raise_or_warn(codes_[DriveAlarmKind::homing_method]); break;
+        case HomingRun::Failure::time: raise_or_warn(codes_[DriveAlarmKind::homing_timeout]); break;
         case HomingRun::Failure::limit:
-            if (personality_.homing_limit_is_fault) raise_or_warn(personality_.homing_limit_alarm);
+            if (has(Quirk::homing_limit_is_fault)) raise_or_warn(codes_[DriveAlarmKind::homing_limit]);
             break;
         case HomingRun::Failure::speed:
         case HomingRun::Failure::none: break;

@@ -1,20 +1,22 @@
 // Which mode is active, which targets it takes, and who makes the torque in it. The modes themselves: cia402_cyclic.cpp,
 // cia402_profile.cpp, cia402_homing.cpp.
 
+#include <algorithm>
+
 #include "axes/sim/cia402_axis.hpp"
 
 namespace taktwerk::axes::sim {
 
 /// False: the drive does not take this change now. TSVM 5.4.1: at standstill, and so long after the last one.
 bool Cia402Axis::may_change_mode() noexcept {
-    const bool too_soon = mode_changed_at_ && now_ - *mode_changed_at_ < personality_.mode_change_interval;
-    const bool moves = personality_.mode_change_at_standstill && state_ == State::enabled && !stands();
+    const bool too_soon = mode_changed_at_ && now_ - *mode_changed_at_ < profile_->mode_rules.change_interval;
+    const bool moves = profile_->mode_rules.change_at_standstill && state_ == State::enabled && !stands();
     if (!too_soon && !moves) return true;
-    switch (personality_.mode_violation) {
+    switch (profile_->mode_rules.violation) {
         case ModeViolation::obeyed: return true;
         case ModeViolation::ignored: break;
         case ModeViolation::alarm:
-            if (personality_.mode_change_alarm.code) raise(personality_.mode_change_alarm);
+            if (codes_[DriveAlarmKind::mode_change].code) raise(codes_[DriveAlarmKind::mode_change]);
             break;
     }
     return false;
@@ -23,7 +25,7 @@ bool Cia402Axis::may_change_mode() noexcept {
 /// SV33-E 3.4.3 (3), (4), (7), (8): "a ramp stop is carried out, then the other mode may be entered". By which ramp is not stated: 6084h.
 bool Cia402Axis::stops_before_mode_change() noexcept {
     const bool position = !mode::of_velocity(mode_) && !mode::of_torque(mode_);
-    if (!personality_.ramp_before_mode_change || state_ != State::enabled || position || stands()) {
+    if (!has(Quirk::ramp_before_mode_change) || state_ != State::enabled || position || stands()) {
         ramps_out_ = false;
         return false;
     }
@@ -35,6 +37,11 @@ bool Cia402Axis::stops_before_mode_change() noexcept {
     return true;
 }
 
+bool Cia402Axis::has_mode(DriveMode mode) const noexcept {
+    const auto& modes = profile_->modes;  // none: it has them all
+    return modes.empty() || std::find(modes.begin(), modes.end(), mode) != modes.end();
+}
+
 /// 0 and what the drive does not have leave the mode as it is (TSVM 5.4.1 rule 7).
 void Cia402Axis::select_mode(const AxisInputs& in) noexcept {
     if (in.mode == mode_) {
@@ -43,7 +50,7 @@ void Cia402Axis::select_mode(const AxisInputs& in) noexcept {
         return;
     }
     const auto wanted = mode::meaning(in.mode);
-    if (wanted == DriveMode::none || !(personality_.modes >> static_cast<unsigned>(wanted) & 1u)) return;
+    if (wanted == DriveMode::none || !has_mode(wanted)) return;
     if (mode_ == mode::homing && homing_.busy()) return;  // no other while homing runs (SV33-E 3.4.3)
     if (!may_change_mode() || stops_before_mode_change()) return;
     if (mode::of_torque(mode_)) loop_.take_over(torque_);

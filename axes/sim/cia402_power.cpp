@@ -25,7 +25,7 @@ void Cia402Axis::power_on(Instant now) noexcept {
     common_alarm_ = false;
     overload_lasts_ = {};
     enter(State::not_ready);
-    self_test_ends_ = now + personality_.self_test;
+    self_test_ends_ = now + profile_->self_test;
     end_self_test();
 }
 
@@ -49,8 +49,8 @@ void Cia402Axis::enter(State state) noexcept {
         wind_down(state == State::ready ? StopCause::shutdown : state == State::switched_on ? StopCause::disable : StopCause::off);
     else if (state == State::not_ready || state == State::fault_reaction) winding_down_ = false;
     if (state == State::enabled && state_ != State::enabled) {
-        brake_opens_ = now_ + personality_.brake_release;
-        commands_from_ = now_ + std::max(personality_.brake_release, personality_.deaf_after_enable);
+        brake_opens_ = now_ + profile_->brake.release;
+        commands_from_ = now_ + std::max(profile_->brake.release, profile_->deaf_after_enable);
         demand_ = {seen_position(), 0, 0};
         forget_targets();
         strikes_ = 0;
@@ -69,7 +69,7 @@ void Cia402Axis::command(const AxisInputs& in) noexcept {
     const bool reset_edge = (word & 0x80u) && !(last_control_ & 0x80u);
     last_control_ = word;
     if (state_ == State::fault) {
-        const bool dropped = !personality_.reset_needs_disable || (word & 0x0Fu) != 0x0Fu;
+        const bool dropped = !has(Quirk::fault_reset_needs_disable) || (word & 0x0Fu) != 0x0Fu;
         if (reset_edge && dropped) reset_alarm();
         return;
     }
@@ -89,9 +89,9 @@ void Cia402Axis::command(const AxisInputs& in) noexcept {
         case State::switched_on:
             if (!voltage || quick) enter(State::disabled);
             else if (shutdown) enter(State::ready);
-            else if (enable && main_power_ && mode_ == mode::none && personality_.mode_not_set_alarm.code)
-                raise(personality_.mode_not_set_alarm);
-            else if (enable && main_power_ && starts_too_fast()) raise(personality_.start_speed_alarm);
+            else if (enable && main_power_ && mode_ == mode::none && codes_[DriveAlarmKind::mode_not_set].code)
+                raise(codes_[DriveAlarmKind::mode_not_set]);
+            else if (enable && main_power_ && starts_too_fast()) raise(codes_[DriveAlarmKind::start_too_fast]);
             else if (enable && main_power_) enter(State::enabled);
             break;
         case State::enabled:

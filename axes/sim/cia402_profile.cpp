@@ -18,9 +18,9 @@ constexpr std::int64_t torque_at_once = 0xFFFFFFFF;  // 6087h (SV33-E 7.3: defau
 /// counts/s; infinity: none.
 double Cia402Axis::speed_limit(const AxisInputs& in) const noexcept {
     double limit = HUGE_VAL;
-    if (in.maximum_velocity > 0) limit = static_cast<double>(in.maximum_velocity) / personality_.velocity_counts_per_unit;
+    if (in.maximum_velocity > 0) limit = static_cast<double>(in.maximum_velocity) / velocity_unit_;
     if (in.maximum_motor_speed > 0)
-        limit = std::min(limit, static_cast<double>(in.maximum_motor_speed * personality_.counts_per_revolution) / 60.0);
+        limit = std::min(limit, static_cast<double>(in.maximum_motor_speed * motor_.counts_per_revolution) / 60.0);
     return limit;
 }
 
@@ -33,10 +33,10 @@ void Cia402Axis::take_profile_position(const AxisInputs& in) noexcept {
     ProfileTarget target;
     target.relative = relative;
     target.position = static_cast<double>(in.target_position) + (relative ? 0 : zero_);
-    const double wanted = static_cast<double>(in.profile_velocity) / personality_.velocity_counts_per_unit;
+    const double wanted = static_cast<double>(in.profile_velocity) / velocity_unit_;
     target.limits.velocity = std::min(wanted, speed_limit(in));
     target.limits.acceleration = static_cast<double>(in.profile_acceleration);
-    target.limits.deceleration = static_cast<double>(personality_.pp_shared_ramp ? in.profile_acceleration : in.profile_deceleration);
+    target.limits.deceleration = static_cast<double>(has(Quirk::pp_shared_ramp) ? in.profile_acceleration : in.profile_deceleration);
     if (limits_count(in)) {
         target.lowest = static_cast<double>(in.software_minimum) + zero_;
         target.highest = static_cast<double>(in.software_maximum) + zero_;
@@ -51,7 +51,7 @@ void Cia402Axis::take_profile_velocity(const AxisInputs& in) noexcept {
         if (in.target_velocity != 0) ++early_commands_;
         return;
     }
-    const double wanted = static_cast<double>(in.target_velocity + in.velocity_offset) / personality_.velocity_counts_per_unit;
+    const double wanted = static_cast<double>(in.target_velocity + in.velocity_offset) / velocity_unit_;
     const double limit = speed_limit(in);
     velocity_target_ = std::clamp(wanted, -limit, limit);
     limited_ = velocity_target_ != wanted;
@@ -69,7 +69,7 @@ void Cia402Axis::take_profile_torque(const AxisInputs& in) noexcept {
 }
 
 bool Cia402Axis::ramps_velocity() const noexcept {
-    return mode_ == mode::profile_velocity || (mode_ == mode::cyclic_velocity && personality_.csv_ramps);
+    return mode_ == mode::profile_velocity || (mode_ == mode::cyclic_velocity && has(Quirk::csv_ramps));
 }
 
 /// 6083h away from standstill, 6084h towards it; a ramp of 0 moves nothing (SV33-E 8.5.5).
@@ -108,11 +108,11 @@ bool Cia402Axis::profile_reached() const noexcept {
             return profile_position_.arrived() && std::abs(profile_position_.reached_target() - (quantised() + zero_)) <= window;
         }
         case mode::profile_velocity: {
-            const double turn = static_cast<double>(personality_.counts_per_revolution);
+            const double turn = static_cast<double>(motor_.counts_per_revolution);
             const double raw = static_cast<double>(settings_.velocity_window);
-            const double window = settings_.velocity_window < 0         ? 0.01 * turn
-                                  : personality_.velocity_window_in_rpm ? raw * turn / 60.0
-                                                                        : raw / personality_.velocity_counts_per_unit;
+            const double window = settings_.velocity_window < 0        ? 0.01 * turn
+                                  : has(Quirk::velocity_window_in_rpm) ? raw * turn / 60.0
+                                                                       : raw / velocity_unit_;
             return std::abs(velocity_target_ - seen_velocity()) <= window;
         }
         case mode::profile_torque: return torque_demand_ == torque_target_;

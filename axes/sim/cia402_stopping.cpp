@@ -1,5 +1,5 @@
 // How the motor comes to rest when its power is taken, at a quick stop, a halt and a fault; and the holding brake. The ways are the drive's
-// own (Personality::stops, CiA 402-2 605Ah to 605Eh); where its manual documents none, undocumented_stop() decides.
+// own (DriveStops::options, CiA 402-2 605Ah to 605Eh); where its manual documents none, undocumented_stop() decides.
 
 #include <algorithm>
 #include <cmath>
@@ -18,15 +18,13 @@ bool fits(const StopWay& way, DriveMode mode) noexcept {
 
 }  // namespace
 
-bool Cia402Axis::stands() const noexcept {
-    return std::abs(seen_velocity()) < 0.01 * static_cast<double>(personality_.counts_per_revolution);
-}
+bool Cia402Axis::stands() const noexcept { return std::abs(seen_velocity()) < 0.01 * static_cast<double>(motor_.counts_per_revolution); }
 
 double Cia402Axis::ramp_of(StopBy by) const noexcept {
     switch (by) {
         case StopBy::ramp:
             return mode_ == mode::homing ? settings_.homing.acceleration
-                                         : static_cast<double>(mode_ == mode::profile_position && personality_.pp_shared_ramp
+                                         : static_cast<double>(mode_ == mode::profile_position && has(Quirk::pp_shared_ramp)
                                                                    ? settings_.profile_acceleration
                                                                    : settings_.profile_deceleration);
         case StopBy::quick_ramp: return static_cast<double>(settings_.quick_stop_deceleration);
@@ -35,15 +33,14 @@ double Cia402Axis::ramp_of(StopBy by) const noexcept {
 }
 
 Cia402Axis::StopOrder Cia402Axis::undocumented_stop(StopCause cause) const noexcept {
-    const double ramp = personality_.quick_stop_deceleration;
-    const StopOrder braked{StopBy::zero_speed, StopThen::free, ramp, ramp == 0};
+    const StopOrder braked{StopBy::zero_speed, StopThen::free};
     const StopOrder let_go{StopBy::coast, StopThen::free};
     switch (cause) {
-        case StopCause::quick_stop: return {braked.by, personality_.quick_stop_leaves ? StopThen::free : StopThen::lock, ramp, ramp == 0};
-        case StopCause::fault: return personality_.fault_stop == FaultStop::ramp ? braked : let_go;
+        case StopCause::quick_stop: return {braked.by, profile_->stops.quick_stop_leaves ? StopThen::free : StopThen::lock};
+        case StopCause::fault: return profile_->stops.fault == DriveStop::ramp ? braked : let_go;
         case StopCause::off:
         case StopCause::shutdown:
-        case StopCause::disable: return personality_.off_stop == FaultStop::ramp ? braked : let_go;
+        case StopCause::disable: return profile_->stops.off == DriveStop::ramp ? braked : let_go;
         case StopCause::halt: {
             const double by_6084 = ramp_of(StopBy::ramp);
             return {by_6084 > 0 ? StopBy::ramp : StopBy::zero_speed, StopThen::lock, by_6084, by_6084 <= 0};
@@ -54,7 +51,7 @@ Cia402Axis::StopOrder Cia402Axis::undocumented_stop(StopCause cause) const noexc
 }
 
 Cia402Axis::StopOrder Cia402Axis::stop_for(StopCause cause) const noexcept {
-    const auto& stops = personality_.stops;
+    const auto& stops = profile_->stops.options;
     const auto of = [&](StopCause wanted) {
         return std::find_if(stops.begin(), stops.end(), [&](const auto& s) { return s.cause == wanted; });
     };
@@ -82,7 +79,7 @@ void Cia402Axis::begin_stop(const StopOrder& order) noexcept {
     stop_done_ = false;
     demand_ = {seen_position(), seen_velocity(), 0};
     // What was on its way is discarded by a quick stop (SV-DA200 3.2.7, SV33-E 3.4.3(5)).
-    if (state_ != State::enabled || personality_.pp_stop_forgets) profile_position_.forget(seen_position());
+    if (state_ != State::enabled || has(Quirk::pp_stop_forgets)) profile_position_.forget(seen_position());
 }
 
 /// Bit 8. Homing has its own abort.
@@ -172,7 +169,7 @@ void Cia402Axis::wind_down(StopCause cause) noexcept {
     const bool holds = has_brake() && stands();
     phases_shorted_ = order.then == StopThen::dynamic_brake;
     winding_down_ = stops || holds;
-    winding_down_until_ = now_ + personality_.brake_hold;
+    winding_down_until_ = now_ + profile_->brake.hold;
     if (!winding_down_) return;
     if (!stops) order = {StopBy::zero_speed, StopThen::free};
     begin_stop(order);
@@ -180,7 +177,7 @@ void Cia402Axis::wind_down(StopCause cause) noexcept {
 
 void Cia402Axis::step_brake() noexcept {
     if (winding_down_) {
-        if (!stands()) winding_down_until_ = now_ + personality_.brake_hold;
+        if (!stands()) winding_down_until_ = now_ + profile_->brake.hold;
         else if (now_ >= winding_down_until_) winding_down_ = false;
     }
     if (energised()) power_went_ = now_;
@@ -198,8 +195,8 @@ bool Cia402Axis::brake_told_to_close() const noexcept {
     if (state_ == State::enabled) return now_ < brake_opens_ && (stands() || told_before);
     if (winding_down_) return stands() && plant_.config().brake_closing > Duration::zero();
     if (energised()) return false;
-    const bool slow = std::abs(plant_.velocity()) < personality_.brake_moving_speed;
-    const bool waited = personality_.brake_moving_wait > Duration::zero() && now_ - power_went_ >= personality_.brake_moving_wait;
+    const bool slow = std::abs(plant_.velocity()) < brake_moving_speed_;
+    const bool waited = profile_->brake.moving_wait > Duration::zero() && now_ - power_went_ >= profile_->brake.moving_wait;
     return stands() || slow || waited || told_before;
 }
 

@@ -23,7 +23,7 @@ double Cia402Axis::within_software_limits(double wanted, const AxisInputs& in) n
 }
 
 int Cia402Axis::past_switch() const noexcept {
-    if (!personality_.limit_stop_is_warning) return 0;
+    if (!has(Quirk::limit_stop_is_warning)) return 0;
     return plant_.negative_limit() ? -1 : plant_.positive_limit() ? 1 : 0;
 }
 
@@ -65,7 +65,7 @@ void Cia402Axis::watch_travel(const AxisInputs& in) noexcept {
     begin_stop(stop_for(StopCause::overtravel));
     if (at_switch == 0) return;
     warning_ = true;
-    error_code_ = at_switch < 0 ? personality_.negative_limit_code : personality_.positive_limit_code;
+    error_code_ = at_switch < 0 ? codes_[DriveAlarmKind::negative_limit].code : codes_[DriveAlarmKind::positive_limit].code;
 }
 
 }  // namespace taktwerk::axes::sim

@@ -35,7 +35,7 @@ bool Cia402Axis::uncover_alarm() noexcept {
 
 void Cia402Axis::left_operational() noexcept {
     const bool powered = state_ == State::enabled || state_ == State::quick_stop;
-    if (powered && personality_.left_operational_alarm.code) raise(personality_.left_operational_alarm);
+    if (powered && codes_[DriveAlarmKind::left_operational].code) raise(codes_[DriveAlarmKind::left_operational]);
     communication_lost();
 }
 

@@ -15,7 +15,7 @@ constexpr std::int64_t switch_bit(const ParameterAddress& at) noexcept { return 
 }  // namespace
 
 ParameterStore::ParameterStore(const DriveProfile& profile, std::span<const ParameterAddress> transient)
-    : storage_(profile.storage), storage_switch_(profile.storage_switch), recent_(often + 1) {
+    : storage_(profile.storage.way), storage_switch_(profile.storage.switched_by), recent_(often + 1) {
     for (unsigned axis = 0; axis < profile.axes; ++axis)
         for (const auto& row : profile.parameters) {
             if (row.bits == 0) continue;

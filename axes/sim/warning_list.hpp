@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-#include "axes/sim/personality.hpp"
+#include "axes/sim/drive_alarm_codes.hpp"
 
 namespace taktwerk::axes::sim {
 

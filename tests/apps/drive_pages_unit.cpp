@@ -34,7 +34,7 @@ config::LoadedDrive a_drive() {
     profile->homing_methods = {-1, 17};
     profile->quirks = {axes::Quirk::no_remote_bit};
     profile->enable_delay = std::chrono::milliseconds{250};
-    profile->fault_stop = axes::DriveStop::coast;
+    profile->stops.fault = axes::DriveStop::coast;
     axes::DriveAlarmText fault;
     fault.code = 0x3210, fault.detail = 7, fault.panel = "Er.1", fault.english = "over-voltage", fault.chinese = "过压";
     fault.cause = "it | brakes", fault.remedy = "slower", fault.section = "5.1";

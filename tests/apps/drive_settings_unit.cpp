@@ -77,8 +77,8 @@ TEST_P(SavedSettings, GoBackWhateverWasChanged) {
             EXPECT_THAT(difference->left_out, IsEmpty()) << "as saved";
 
             // A drive does not take every value in every state; what it takes is enough.
-            const bool stores = drive.profile().storage == axes::ParameterStorage::each_write ||
-                                drive.profile().storage == axes::ParameterStorage::on_request;
+            const bool stores = drive.profile().storage.way == axes::ParameterStorage::each_write ||
+                                drive.profile().storage.way == axes::ParameterStorage::on_request;
             std::size_t changed = 0;
             for (const auto& value : set.values) {
                 if (!stores && value.parameter->waits_for_restart()) continue;  // `restore` refuses what would never count (TSVM-D6)

@@ -23,8 +23,8 @@ const axes::ParameterAddress encoder_use{0x2004, 0x03};  ///< P04.02 counts afte
 axes::DriveProfile profile_storing(axes::ParameterStorage storage) {
     axes::DriveProfile profile;
     profile.name = "stored";
-    profile.storage = storage;
-    if (storage == axes::ParameterStorage::each_write) profile.storage_switch = store_switch;
+    profile.storage.way = storage;
+    if (storage == axes::ParameterStorage::each_write) profile.storage.switched_by = store_switch;
     const auto add = [&](axes::ParameterAddress address, const char* name, std::int64_t factory) {
         axes::DriveParameter parameter;
         parameter.address = address;
@@ -58,7 +58,7 @@ public:
         if (auto end = count(); !end) return end;
         const auto raw = std::to_integer<std::int64_t>(value[0]) | std::to_integer<std::int64_t>(value[1]) << 8;
         ram[parameter.address.sub] = raw;
-        const bool stores = profile().storage == axes::ParameterStorage::each_write && ram[store_switch.sub] != 0;
+        const bool stores = profile().storage.way == axes::ParameterStorage::each_write && ram[store_switch.sub] != 0;
         if (stores) eeprom[parameter.address.sub] = raw, ++eeprom_writes;
         return {};
     }

@@ -6,7 +6,6 @@
 #include <map>
 #include <set>
 
-#include "axes/sim/personality.hpp"
 #include "tests/axes/sim/homing_walk.hpp"
 #include "tests/config/loaded_drive.hpp"
 
@@ -45,7 +44,7 @@ TEST_P(DriveHoming, KnowsTheMethodsOfItsManual) {
 
 TEST_P(DriveHoming, EndsWhereEachMethodSaysFromEveryStart) {
     const auto loaded = drive(GetParam());
-    const auto personality = axes::sim::personality_of(*loaded.profile, 10000);
+    const auto& profile = *loaded.profile;
     // The one variant that changes the way: the table of SV-DA200 3.4.6 lets 19 set out in reverse, as 21 of CiA 402.
     const bool reverse_19 = loaded.profile->has(axes::Quirk::homing_19_starts_negative);
     const bool limit_is_fault = loaded.profile->has(axes::Quirk::homing_limit_is_fault);
@@ -56,7 +55,7 @@ TEST_P(DriveHoming, EndsWhereEachMethodSaysFromEveryStart) {
         for (const double start : walk::starts) {
             SCOPED_TRACE(testing::Message() << "method " << method << " from " << start);
             const auto wanted = walk::expected(*row, start);
-            const auto seen = walk::home(walk::rail(start), personality, method);
+            const auto seen = walk::home(walk::rail(start), profile, method);
             EXPECT_EQ(seen.way, wanted.way);
             EXPECT_EQ(seen.attained, wanted.end != walk::fails);
             EXPECT_EQ(seen.faulted, wanted.end == walk::fails && limit_is_fault);
@@ -71,10 +70,10 @@ TEST_P(DriveHoming, EndsWhereEachMethodSaysFromEveryStart) {
 
 TEST_P(DriveHoming, RefusesWhatItsManualDoesNotList) {
     const auto loaded = drive(GetParam());
-    const auto personality = axes::sim::personality_of(*loaded.profile, 10000);
+    const auto& profile = *loaded.profile;
     for (int method = -3; method <= 40; ++method) {
         if (documented().at(GetParam()).contains(method)) continue;
-        const auto seen = walk::home(walk::rail(walk::on), personality, method);
+        const auto seen = walk::home(walk::rail(walk::on), profile, method);
         EXPECT_TRUE(seen.error || seen.faulted) << method;
         EXPECT_EQ(seen.way, '0') << method;
     }

@@ -192,9 +192,9 @@ TEST(Sv33EParameters, AreObjectsOfTheDictionaryToo) {
 
 TEST(Sv33EParameters, AreStoredByEachWriteUnlessP0510SaysNo) {
     const auto& profile = *sv33e().profile;
-    EXPECT_EQ(profile.storage, axes::ParameterStorage::each_write);  // 7.2 P05.10 = 3 from the factory
-    EXPECT_EQ(profile.storage_switch.index, 0x2005);
-    EXPECT_EQ(profile.storage_switch.sub, 0x0B);
+    EXPECT_EQ(profile.storage.way, axes::ParameterStorage::each_write);  // 7.2 P05.10 = 3 from the factory
+    EXPECT_EQ(profile.storage.switched_by.index, 0x2005);
+    EXPECT_EQ(profile.storage.switched_by.sub, 0x0B);
 }
 
 TEST(Sv33EMotion, EachModeHasItsShortestCycle) {

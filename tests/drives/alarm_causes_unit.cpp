@@ -11,8 +11,8 @@ namespace taktwerk::test::alarm_causes {
 namespace {
 
 using axes::sim::Battery;
-using axes::sim::Personality;
 using axes::sim::PlantConfig;
+using axes::sim::SimulatedMotor;
 using ::testing::UnorderedElementsAreArray;
 
 // --- what the motor brings into it -------------------------------------------------------------------------------------------------
@@ -33,7 +33,7 @@ PlantConfig plant_for(Cause cause) {
     return plant;
 }
 
-void motor_for(Cause cause, Personality& motor) {
+void motor_for(Cause cause, SimulatedMotor& motor) {
     switch (cause) {
         case Cause::faster_than_allowed: motor.overspeed = 4 * turn; break;
         case Cause::enabled_while_turning: motor.start_speed = 3 * turn; break;
@@ -225,7 +225,8 @@ TEST_P(FoundAlarm, ByComputing) {
     const auto& [name, panel, cause, section] = GetParam();
     const auto* row = config::alarm(*drive_of_file(std::string(name)).profile, panel);
     ASSERT_NE(row, nullptr);
-    MovingDesk desk{std::string(name), plant_for(cause), [cause = cause](Personality& motor) { motor_for(cause, motor); }};
+    MovingDesk desk{std::string(name), plant_for(cause),
+                    [cause = cause](SimulatedMotor& motor, axes::DriveProfile&) { motor_for(cause, motor); }};
     desk.run(50);
     ASSERT_EQ(desk.code(), 0);
 

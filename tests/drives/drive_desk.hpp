@@ -59,8 +59,9 @@ inline axes::sim::PlantConfig long_table() {
     return plant;
 }
 
-/// What no profile says because it depends on the motor or the maker's tool sets it: highest speed, how long it bears an overload, encoder.
-using MotorFacts = std::function<void(axes::sim::Personality&)>;
+/// What no profile says because it depends on the motor or the maker's tool sets it: highest speed, how long it bears an overload, encoder;
+/// and parameters of which the profile has the factory value.
+using MotorFacts = std::function<void(axes::sim::SimulatedMotor&, axes::DriveProfile&)>;
 
 class DriveDesk {
 public:
@@ -69,7 +70,7 @@ public:
                        const MotorFacts& motor = {})
         : drive(drive_of_file(name)),
           dictionary(*drive.device),
-          device(*drive.profile, setups(*drive.profile, plant, motor)),
+          device(device_of(*drive.profile, plant, motor)),
           server_(*drive.device, dictionary, device),
           cycle_(cycle_time) {
         device.power_on(dictionary, now);
@@ -185,7 +186,7 @@ public:
         control(7);
         pdo(0x607A, position());
         control(15);
-        run(drive.profile->brake_release);
+        run(drive.profile->brake.release);
     }
 
     [[nodiscard]] unsigned status() { return static_cast<unsigned>(read(0x6041)) & 0xFFFFu; }
@@ -210,11 +211,10 @@ public:
     ecat::sim::ExchangeCause arrives{.outputs = true, .sync0 = true};  ///< each cycle in OP; what a broken bus leaves out
 
 private:
-    static std::vector<axes::sim::Cia402Device::AxisSetup> setups(const axes::DriveProfile& profile, const axes::sim::PlantConfig& plant,
-                                                                  const MotorFacts& motor) {
-        auto personality = axes::sim::personality_of(profile, plant.counts_per_revolution);
-        if (motor) motor(personality);
-        return std::vector<axes::sim::Cia402Device::AxisSetup>(profile.axes, {plant, personality});
+    static axes::sim::Cia402Device device_of(axes::DriveProfile profile, const axes::sim::PlantConfig& plant, const MotorFacts& facts) {
+        axes::sim::SimulatedMotor motor{.counts_per_revolution = plant.counts_per_revolution};
+        if (facts) facts(motor, profile);
+        return axes::sim::Cia402Device{profile, std::vector<axes::sim::Cia402Device::AxisSetup>(profile.axes, {plant, motor})};
     }
     std::uint32_t outcome(std::span<const std::byte> request, std::size_t size, std::span<std::byte> answer) {
         const auto length = server_.serve(request.first(size), answer, state, now);

@@ -8,7 +8,7 @@
 namespace taktwerk::test::tsvm_d6 {
 namespace {
 
-using axes::sim::Personality;
+using axes::sim::SimulatedMotor;
 
 /// 10000 counts a turn, 2e-4 kg m2, rated torque 1.27 N m, so the brake slows with 2.54 N m.
 axes::sim::PlantConfig motor() {
@@ -47,7 +47,7 @@ struct Tsvm : DriveDesk {
 
 /// How far a vertical axis comes down when its power is taken at standstill.
 double sag(Duration pa47) {
-    Tsvm drive{vertical_axis(), [&](Personality& p) { p.brake_hold = pa47; }};
+    Tsvm drive{vertical_axis(), [&](SimulatedMotor&, axes::DriveProfile& p) { p.brake.hold = pa47; }};
     drive.enable();
     const double from = drive.place();
     drive.control(6);
@@ -65,7 +65,7 @@ constexpr double fall(double t) {
 
 // 6.1, PA47 "wait before enable drops at standstill", 0 from the factory: the brake is told to close as the torque goes.
 TEST(TsvmBrake, AVerticalAxisSagsByFactorySettings) {
-    EXPECT_EQ(drive_of_file("tsvm-d6").profile->brake_hold, 0ms);
+    EXPECT_EQ(drive_of_file("tsvm-d6").profile->brake.hold, 0ms);
     EXPECT_NEAR(sag(0ms), fall(0.040), 60);  // 3963 counts; an inner step of 125 us more or less is 20 of them
 }
 
@@ -148,7 +148,7 @@ axes::sim::PlantConfig two_turns_down() {
 }
 
 /// 2.4: only absolute encoders work.
-void absolute(Personality& p) { p.absolute_encoder = true; }
+void absolute(SimulatedMotor& motor, axes::DriveProfile&) { motor.absolute_encoder = true; }
 
 struct TsvmBattery : ::testing::Test {
     Tsvm drive{two_turns_down(), absolute};

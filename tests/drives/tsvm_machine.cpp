@@ -91,7 +91,7 @@ runtime::MachineConfig machine() {
     }
     auto config = std::move(std::get<0>(loaded).machine);
     auto strict = *config.axes.front().profile;
-    strict.mode_violation = axes::ModeViolation::alarm;
+    strict.mode_rules.violation = axes::ModeViolation::alarm;
     axes::DriveAlarmText abnormality;
     abnormality.code = mode_abnormality;
     abnormality.kind = axes::DriveAlarmKind::mode_change;

@@ -74,8 +74,8 @@ class DriveRequestsTest : public ::testing::Test {
 protected:
     DriveRequestsTest() {
         profile.name = "sv33-e";
-        profile.storage = axes::ParameterStorage::each_write;
-        profile.storage_switch = {0x2005, 0x0B};
+        profile.storage.way = axes::ParameterStorage::each_write;
+        profile.storage.switched_by = {0x2005, 0x0B};
         add({0x2005, 0x0B}, "P05.10", "store writes");
         auto& brake = add({0x2005, 0x0E}, "P05.13", "brake release");
         brake.unit = "ms";
@@ -169,12 +169,12 @@ TEST_F(DriveRequestsTest, NothingGoesIntoTheEepromUnlessTheRequestSaysSo) {
     EXPECT_EQ(refusal(write, "P05.10", "0"), "accepted") << "off wears nothing";
     EXPECT_EQ(refusal(write, "P05.10", "1", true), "accepted");
     EXPECT_THAT(log.back(), HasSubstr("into the EEPROM"));
-    profile.storage_switch = {};  // a drive that always stores
+    profile.storage.switched_by = {};  // a drive that always stores
     EXPECT_EQ(refusal(write, "P05.13", "300"), "drive.would_store");
 }
 
 TEST_F(DriveRequestsTest, StoringAllNeedsEveryMotorOfTheDriveOff) {
-    profile.storage = axes::ParameterStorage::on_request;
+    profile.storage.way = axes::ParameterStorage::on_request;
     machine.snapshot.axes[1].drive_state = axes::PowerState::enabled;  // the other axis of the same drive
     EXPECT_EQ(refusal(store_all), "command.not_possible_now");
     machine.snapshot.axes[1].drive_state = axes::PowerState::disabled;

@@ -38,7 +38,7 @@ inline std::shared_ptr<const axes::DriveProfile> profile_of_all_modes(axes::test
     for (const auto mode : {DriveMode::cyclic_velocity, DriveMode::cyclic_torque, DriveMode::profile_position, DriveMode::profile_velocity,
                             DriveMode::profile_torque})
         profile->modes.push_back(mode);
-    if (dice.once_in(3)) profile->mode_change_delay = 2ms;
+    if (dice.once_in(3)) profile->mode_rules.change_delay = 2ms;
     if (dice.once_in(3)) profile->enable_delay = 50ms;
     return profile;
 }

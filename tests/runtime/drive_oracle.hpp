@@ -27,13 +27,13 @@ class DriveOracle {
 public:
     DriveOracle(const AxisBinding& binding, Duration cycle)
         : config_(binding.axis),
-          motion_(binding.axis, cycle, binding.profile ? binding.profile->mode_change_delay : Duration{}),
+          motion_(binding.axis, cycle, binding.profile ? binding.profile->mode_rules.change_delay : Duration{}),
           counts_(binding.axis.gearing.counts_per_unit()),
           patience_(static_cast<int>(patience / cycle)) {
         if (!binding.profile) return;
         velocity_unit_ = binding.profile->velocity_counts_per_unit;
         position_bits_ = binding.profile->position_bits;
-        patience_ += static_cast<int>((binding.profile->enable_delay + binding.profile->mode_change_interval) / cycle);
+        patience_ += static_cast<int>((binding.profile->enable_delay + binding.profile->mode_rules.change_interval) / cycle);
         motion_.velocity_grain(0.51 / velocity_unit_);
     }
 

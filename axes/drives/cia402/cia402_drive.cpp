@@ -32,15 +32,15 @@ Cia402Drive::Cia402Drive(ecat::Master& bus, std::size_t slave, std::uint8_t axis
     auto& c = capabilities_;
     for (const auto mode : profile_->modes) c.modes = static_cast<std::uint16_t>(c.modes | (1u << static_cast<unsigned>(mode)));
     c.drive_homing = !profile_->homing_methods.empty() && c.has(DriveMode::homing);
-    c.motor_has_encoder = profile_->motor_has_encoder;
+    c.motor_has_encoder = profile_->encoder.present;
     c.position_bits = profile_->position_bits;
     c.minimum_cycle = profile_->minimum_cycle_csp;
     c.feedback_period = cycle;
     c.enable_delay = profile_->enable_delay;
-    c.mode_change_delay = profile_->mode_change_delay;
-    c.mode_change_at_standstill = profile_->mode_change_at_standstill;
+    c.mode_change_delay = profile_->mode_rules.change_delay;
+    c.mode_change_at_standstill = profile_->mode_rules.change_at_standstill;
     c.profile_replaces = !profile_->has(Quirk::pp_bit_5_blends);
-    if (profile_->clear_turns.index != 0 || profile_->clear_turns_control != 0)
+    if (profile_->encoder.clear_turns.index != 0 || profile_->encoder.clear_turns_control != 0)
         c.services = static_cast<std::uint8_t>(c.services | 1u << static_cast<unsigned>(DriveService::clear_multi_turn));
     if (profile_->has(Quirk::probe_toggle_bits))
         for (auto& probe : probes_) probe.use_toggle_bits();
@@ -233,7 +233,7 @@ ServiceTicket Cia402Drive::write_parameter(ParameterAddress address, std::vector
 
 ServiceTicket Cia402Drive::start_service(DriveService service) {
     if (service != DriveService::clear_multi_turn || !capabilities_.has(service) || !turns_.permitted()) return 0;
-    const auto address = profile_->clear_turns;
+    const auto address = profile_->encoder.clear_turns;
     if (address.index == 0) {
         turns_.begin(true);
         return TurnClearing::by_control_word;
@@ -244,7 +244,7 @@ ServiceTicket Cia402Drive::start_service(DriveService service) {
             if (entry.index == object(address.index) && entry.sub == address.sub) bytes = ecat::bit_size(entry.type) / 8;
     std::vector<std::byte> value;
     for (std::size_t i = 0; i < bytes; ++i)
-        value.push_back(static_cast<std::byte>(static_cast<std::uint64_t>(profile_->clear_turns_value) >> (8 * i) & 0xFFu));
+        value.push_back(static_cast<std::byte>(static_cast<std::uint64_t>(profile_->encoder.clear_turns_value) >> (8 * i) & 0xFFu));
     const auto ticket = write_parameter(address, std::move(value));
     if (ticket != 0) turns_.begin(false);
     return ticket;

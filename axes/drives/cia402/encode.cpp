@@ -62,11 +62,11 @@ std::uint16_t Cia402Drive::control_word(const DriveCommand& command, bool mode_c
 
 DriveMode Cia402Drive::mode_to_send(DriveMode wanted, Instant now) noexcept {
     if (wanted == sent_mode_) return sent_mode_;
-    if (mode_sent_at_ && now - *mode_sent_at_ < profile_->mode_change_interval) return sent_mode_;
+    if (mode_sent_at_ && now - *mode_sent_at_ < profile_->mode_rules.change_interval) return sent_mode_;
     sent_mode_ = wanted;
     mode_sent_at_ = now;
-    if (profile_->mode_indeterminate > Duration::zero())
-        mode_means_something_from_ = bus_.outputs_effective(slave_, now) + profile_->mode_indeterminate;
+    if (profile_->mode_rules.indeterminate > Duration::zero())
+        mode_means_something_from_ = bus_.outputs_effective(slave_, now) + profile_->mode_rules.indeterminate;
     return sent_mode_;
 }
 
@@ -83,7 +83,7 @@ void Cia402Drive::encode(const DriveCommand& command, Instant now) noexcept {
     feedback_.homing_setup_refused = homing_setup_.refused();
     auto word = control_word(command, mode_confirmed);
     if (!set_up) word = static_cast<std::uint16_t>(word & ~homing_start);
-    if (turns_.bit(now)) word = static_cast<std::uint16_t>(word | profile_->clear_turns_control);
+    if (turns_.bit(now)) word = static_cast<std::uint16_t>(word | profile_->encoder.clear_turns_control);
     const bool homing_runs = (word & homing_start) != 0 && command.mode == DriveMode::homing;
     if (!homing_runs) {
         homing_since_.reset();

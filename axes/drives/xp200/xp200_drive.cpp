@@ -47,8 +47,8 @@ Xp200Drive::Xp200Drive(DriveConfig config, const modbus::LineSettings& line) : c
     c.probe_edges = 0;
     c.position_bits = profile.position_bits;
     c.enable_delay = profile.enable_delay;
-    c.mode_change_delay = profile.mode_change_delay;
-    c.mode_change_at_standstill = profile.mode_change_at_standstill;
+    c.mode_change_delay = profile.mode_rules.change_delay;
+    c.mode_change_at_standstill = profile.mode_rules.change_at_standstill;
     c.velocity_limit = true;
     c.services = 1u << static_cast<unsigned>(DriveService::save_parameters);
     c.velocity_step = static_cast<double>(config_.counts_per_turn) / 60;

@@ -5,7 +5,7 @@
 
 #include "axes/port/drive_port.hpp"
 #include "axes/port/drive_profile.hpp"
-#include "axes/port/quirk_table.hpp"
+#include "axes/port/quirk.hpp"
 
 namespace taktwerk::axes {
 namespace {

@@ -2,6 +2,7 @@
 // One simulated axis on a table with switches, driven by its objects as a master with a 1 ms cycle does.
 
 #include <chrono>
+#include <memory>
 
 #include "axes/sim/cia402_axis.hpp"
 
@@ -35,7 +36,8 @@ struct Bench {
     AxisOutputs out;
     Instant now{};
 
-    explicit Bench(PlantConfig plant = table(), Personality personality = {}) : axis(plant, personality) {
+    explicit Bench(PlantConfig plant = table(), const DriveProfile& profile = {}, const SimulatedMotor& motor = {})
+        : axis(plant, std::make_shared<const DriveProfile>(profile), motor) {
         axis.power_on(now);
         axis.operational(true);
         in.mode = 8;

@@ -62,8 +62,8 @@ TEST(SimulatedAxis, AFaultFallsThroughReactionAndIsResetByTheEdgeOfBit7) {
 
 // SV33-E manual 5.1: "for faults first remove servo enable, then reset".
 TEST(SimulatedAxis, ResetWithEnableStillSetIsIgnoredWhereTheDriveWantsItDropped) {
-    Personality p;
-    p.reset_needs_disable = true;
+    DriveProfile p;
+    p.quirks = {Quirk::fault_reset_needs_disable};
     Bench b{table(), p};
     b.enable();
     b.axis.raise(0x3130);
@@ -87,9 +87,9 @@ TEST(SimulatedAxis, AFaultThatNeedsAPowerCycleStays) {
 }
 
 TEST(SimulatedAxis, AJammedLoadTripsTheFollowingErrorAlarm) {
-    Personality p;
-    p.following_error_limit = 2000;
-    Bench b{table(), p};
+    SimulatedMotor m;
+    m.following_error_limit = 2000;
+    Bench b{table(), {}, m};
     b.enable();
     b.axis.jam(true);
     for (int i = 0; i < 100; ++i) {
@@ -101,9 +101,9 @@ TEST(SimulatedAxis, AJammedLoadTripsTheFollowingErrorAlarm) {
 
 // SV33-E manual 5.4, E.424: a target that leaps several times trips; one leap does not.
 TEST(SimulatedAxis, LeapingTargetsTripAfterThreeStrikes) {
-    Personality p;
-    p.maximum_velocity = 500000;  // counts/s: 500 counts a cycle, leaps beyond 1500 count
-    Bench b{table(), p};
+    SimulatedMotor m;
+    m.maximum_velocity = 500000;  // counts/s: 500 counts a cycle, leaps beyond 1500 count
+    Bench b{table(), {}, m};
     b.enable();
     b.in.target_position += 1600;
     b.cycle();
@@ -117,8 +117,8 @@ TEST(SimulatedAxis, LeapingTargetsTripAfterThreeStrikes) {
 }
 
 TEST(SimulatedAxis, LosingTheBusWhileEnabledIsAnAlarm) {
-    Personality p;
-    p.communication_alarm = {0x0D26};  // SV33-E E.D26
+    DriveProfile p;
+    p.alarms = {{.code = 0x0D26, .kind = DriveAlarmKind::communication}};  // SV33-E E.D26
     Bench b{table(), p};
     b.enable();
     b.axis.communication_lost();
@@ -144,8 +144,8 @@ TEST(SimulatedAxis, LosingMainPowerIsUndervoltageAndCannotBeResetBeforeItReturns
 
 // SV33-E manual 3.1.4 / CiA 402: overtravel as a warning holds the position and leaves only the way back.
 TEST(SimulatedAxis, OvertravelAsWarningHoldsAndAllowsRetreat) {
-    Personality p;
-    p.limit_stop_is_warning = true;
+    DriveProfile p;
+    p.quirks = {Quirk::limit_stop_is_warning};
     auto plant = table();
     plant.start = 49000;
     Bench b{plant, p};

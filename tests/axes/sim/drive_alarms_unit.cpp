@@ -51,7 +51,7 @@ struct SixAxes {
     Cia402Device device;
     Instant now{};
 
-    SixAxes() : device(six_axes(), std::vector<Cia402Device::AxisSetup>(6, {PlantConfig{}, personality_of(six_axes(), 10000)})) {
+    SixAxes() : device(six_axes(), std::vector<Cia402Device::AxisSetup>(6, {PlantConfig{}, SimulatedMotor{}})) {
         device.power_on(dictionary, now);
         device.entered(ecat::sim::EsmState::op, now);
         cycle();

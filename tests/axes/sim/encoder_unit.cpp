@@ -8,15 +8,15 @@ namespace taktwerk::axes::sim {
 namespace {
 
 /// 10000 counts a turn, 16 bit of turns: half of them are 327'680'000 counts.
-Personality absolute() {
-    Personality p;
-    p.absolute_encoder = true;
-    p.encoder_turn_bits = 16;
-    p.reference_lost_alarm = {.code = 0x7305, .detail = 0x0917};
-    p.turn_overflow_alarm = {.code = 0x7305, .detail = 0x0919};
-    p.battery_low_alarm = {.code = 0x7305, .detail = 0x0921, .warning = true};
+DriveProfile counts_turns() {
+    DriveProfile p;
+    p.encoder.turn_bits = 16;
+    p.alarms = {{.code = 0x7305, .detail = 0x0917, .kind = DriveAlarmKind::reference_lost},
+                {.code = 0x7305, .detail = 0x0919, .kind = DriveAlarmKind::turn_overflow},
+                {.code = 0x7305, .detail = 0x0921, .warning = true, .kind = DriveAlarmKind::battery_low}};
     return p;
 }
+constexpr SimulatedMotor absolute{.absolute_encoder = true};
 
 PlantConfig at(double start) {
     auto plant = table();
@@ -56,7 +56,7 @@ TEST(AbsoluteEncoder, ItsReadingWrapsAfterAllItsTurns) {
 }
 
 TEST(EncoderPower, HomingOutlivesAPowerCycleOfAnAbsoluteEncoder) {
-    Bench b{at(-20000), absolute()};
+    Bench b{at(-20000), counts_turns(), absolute};
     home_here(b);
     restart(b);
     EXPECT_NEAR(static_cast<double>(b.out.position), 700, 1);
@@ -64,7 +64,7 @@ TEST(EncoderPower, HomingOutlivesAPowerCycleOfAnAbsoluteEncoder) {
 }
 
 TEST(EncoderPower, AnIncrementalOneCountsFromWhereItWakes) {
-    Bench b{at(-20000), Personality{}};
+    Bench b{at(-20000)};
     home_here(b);
     restart(b);
     EXPECT_EQ(b.out.position, 0);
@@ -72,7 +72,7 @@ TEST(EncoderPower, AnIncrementalOneCountsFromWhereItWakes) {
 
 // -20000 is three turns below the pulse at 1000 and 9000 on: the turns go, the 9000 stay.
 TEST(EncoderPower, AnEmptyBatteryLosesTheTurnsAndIsAFault) {
-    Bench b{at(-20000), absolute()};
+    Bench b{at(-20000), counts_turns(), absolute};
     home_here(b);
     b.axis.battery(Battery::empty);
     b.run(5);
@@ -92,7 +92,7 @@ TEST(EncoderPower, AnEmptyBatteryLosesTheTurnsAndIsAFault) {
 }
 
 TEST(EncoderPower, ALowBatteryOnlyWarns) {
-    Bench b{at(0), absolute()};
+    Bench b{at(0), counts_turns(), absolute};
     b.axis.battery(Battery::low);
     b.enable();
     EXPECT_EQ(b.state(), 0x27u);
@@ -107,7 +107,7 @@ TEST(EncoderPower, ALowBatteryOnlyWarns) {
 TEST(EncoderPower, TooManyTurnsAreAFaultUntilTheyAreCleared) {
     auto plant = at(1000 + 327'679'900.0);
     plant.positive_limit = 1e9;
-    Bench b{plant, absolute()};
+    Bench b{plant, counts_turns(), absolute};
     b.enable();
     for (int i = 0; i < 40; ++i) {
         b.in.target_position += 10;
@@ -127,7 +127,7 @@ TEST(EncoderPower, TooManyTurnsAreAFaultUntilTheyAreCleared) {
 }
 
 TEST(EncoderPower, TurnsAreNotClearedWhileTheMotorHasPower) {
-    Bench b{at(-20000), absolute()};
+    Bench b{at(-20000), counts_turns(), absolute};
     b.enable();
     const auto before = b.out.position;
     b.axis.clear_turns();

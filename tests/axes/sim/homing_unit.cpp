@@ -13,8 +13,8 @@ constexpr double fast = 40000, slow = 4000, acceleration = 400000;
 constexpr unsigned attained = 1u << 12, error = 1u << 13, warning = 1u << 7, standing = 1u << 10;
 
 /// On the table of axis_bench.hpp, in homing mode, about to start.
-Bench ready(std::int64_t method, Personality personality = {}, PlantConfig plant = table()) {
-    Bench b{plant, personality};
+Bench ready(std::int64_t method, const DriveProfile& profile = {}, PlantConfig plant = table(), const SimulatedMotor& motor = {}) {
+    Bench b{plant, profile, motor};
     b.in.homing = {.method = method, .fast = fast, .slow = slow, .acceleration = acceleration};
     b.enable();
     b.in.mode = 6;
@@ -92,8 +92,8 @@ TEST(HomingRun, TheOffsetIsHomeOrIsAddedAsIn60E6) {
 
 // SV33-E 3.4.3(9) A), 5.5: P13.49 ends the search with A.425, which is a warning: the drive stays enabled.
 TEST(HomingRun, TheTimeLimitIsAWarning) {
-    Personality p;
-    p.homing_timeout_alarm = {.code = 0x0425, .detail = 0x0425, .warning = true};
+    DriveProfile p;
+    p.alarms = {{.code = 0x0425, .detail = 0x0425, .warning = true, .kind = DriveAlarmKind::homing_timeout}};
     auto b = ready(18, p);
     b.in.homing.time_limit = 0.5;
     b.command(0x1F, 499);
@@ -117,9 +117,9 @@ TEST(HomingRun, AHardStopInsteadOfTheSwitchTripsTheFollowingError) {
     plant.start = -40000;
     plant.negative_limit = -60000;
     plant.negative_stop = -50000;
-    Personality p;
-    p.following_error_limit = 5000;
-    auto b = ready(17, p, plant);
+    SimulatedMotor m;
+    m.following_error_limit = 5000;
+    auto b = ready(17, {}, plant, m);
     b.command(0x1F, 2000);
     EXPECT_EQ(b.out.error_code, 0x8611);
     EXPECT_FALSE(b.out.status & attained);

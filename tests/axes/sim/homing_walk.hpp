@@ -115,8 +115,8 @@ struct Seen {
 };
 
 /// Homes as a careful master does and says what was seen.
-inline Seen home(const PlantConfig& plant, const Personality& personality, int method) {
-    Bench b{plant, personality};
+inline Seen home(const PlantConfig& plant, const DriveProfile& profile, int method, const SimulatedMotor& motor = {}) {
+    Bench b{plant, profile, motor};
     b.in.homing = {.method = method, .fast = fast, .slow = slow, .acceleration = acceleration};
     b.in.home_offset = home_offset;
     b.enable();

@@ -52,13 +52,13 @@ TEST(HomingAgainstTheBlock, EndsAtTheFirstPulseOnTheWayBack) {
         auto plant = walk::rail(start);
         plant.negative_limit = -1e9;
         plant.positive_limit = 1e9;
-        Personality personality;
-        personality.following_error_limit = 30000;
-        const auto reverse = walk::home(plant, personality, -1);
+        SimulatedMotor motor;
+        motor.following_error_limit = 30000;
+        const auto reverse = walk::home(plant, {}, -1, motor);
         EXPECT_EQ(reverse.way, '-');
         ASSERT_TRUE(reverse.attained);
         EXPECT_NEAR(reverse.end, -57000, 2.0);
-        const auto forward = walk::home(plant, personality, -2);
+        const auto forward = walk::home(plant, {}, -2, motor);
         EXPECT_EQ(forward.way, '+');
         ASSERT_TRUE(forward.attained);
         EXPECT_NEAR(forward.end, 53000, 2.0);
@@ -86,9 +86,8 @@ TEST(HomingMethods, ThoseThatDoNotExistAreAHomingErrorWithoutAMove) {
 TEST(HomingMethods, ThoseThatADriveDoesNotDocumentAreRefused) {
     DriveProfile profile;
     profile.homing_methods = {17, 18};
-    const auto personality = personality_of(profile, 10000);
-    EXPECT_TRUE(walk::home(walk::rail(walk::on), personality, 7).error);
-    EXPECT_TRUE(walk::home(walk::rail(walk::on), personality, 18).attained);
+    EXPECT_TRUE(walk::home(walk::rail(walk::on), profile, 7).error);
+    EXPECT_TRUE(walk::home(walk::rail(walk::on), profile, 18).attained);
 }
 
 // SV-DA200 5.3: Er25-6 "homing out of bounds", 603Fh FF00h, when a limit switch is hit.
@@ -100,7 +99,7 @@ TEST(HomingVariants, ALimitOnTheWayMayBeAFault) {
     row.code = 0xFF00;
     row.kind = DriveAlarmKind::homing_limit;
     profile.alarms = {row};
-    const auto seen = walk::home(walk::rail(walk::right), personality_of(profile, 10000), 19);
+    const auto seen = walk::home(walk::rail(walk::right), profile, 19);
     EXPECT_TRUE(seen.faulted);
     EXPECT_EQ(seen.code, 0xFF00);
 }
@@ -110,7 +109,7 @@ TEST(HomingVariants, Method19MayStartInReverse) {
     DriveProfile profile;
     profile.homing_methods = {19};
     profile.quirks = {Quirk::homing_19_starts_negative};
-    const auto seen = walk::home(walk::rail(walk::right), personality_of(profile, 10000), 19);
+    const auto seen = walk::home(walk::rail(walk::right), profile, 19);
     EXPECT_EQ(seen.way, '-');
     ASSERT_TRUE(seen.attained);
     EXPECT_NEAR(seen.end, 25000, 2.0);

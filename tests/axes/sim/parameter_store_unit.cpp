@@ -16,8 +16,8 @@ constexpr ParameterAddress storage_switch{0x2005, 0x0B}, delay{0x2005, 0x0E}, di
 /// Rows as in the SV33-E manual 7.2 and 7.3.
 DriveProfile profile(ParameterStorage storage) {
     DriveProfile p;
-    p.storage = storage;
-    if (storage == ParameterStorage::each_write) p.storage_switch = storage_switch;
+    p.storage.way = storage;
+    if (storage == ParameterStorage::each_write) p.storage.switched_by = storage_switch;
     const auto row = [&](ParameterAddress at, std::int64_t value, std::int64_t low, std::int64_t high, ParameterChange change,
                          ParameterEffect effect) {
         DriveParameter r;

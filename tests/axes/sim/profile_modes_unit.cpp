@@ -14,8 +14,8 @@ namespace {
 constexpr unsigned reached = 0x0400, limited = 0x0800, bit_12 = 0x1000;
 
 /// 20000 counts/s, 100000 counts/s2 up and down.
-Bench profile_bench(int mode, Personality personality = {}) {
-    Bench b{long_table(), personality};
+Bench profile_bench(int mode, const DriveProfile& profile = {}) {
+    Bench b{long_table(), profile};
     b.in.mode = mode;
     b.in.profile_velocity = 20000;
     b.in.profile_acceleration = b.in.profile_deceleration = 100000;
@@ -85,7 +85,7 @@ TEST(ProfilePositionMode, ABufferOfOneAcknowledgesWhenItHasRoomAgain) {
 
 // SV-DA200 3.2.7: eight levels.
 TEST(ProfilePositionMode, ABufferOfEightTakesNineSetPoints) {
-    Personality p;
+    DriveProfile p;
     p.profile_buffer = 8;
     auto b = profile_bench(1, p);
     for (int i = 1; i <= 9; ++i) {
@@ -111,8 +111,8 @@ TEST(ProfilePositionMode, ChangeImmediatelyTakesOver) {
 
 // SE-808X 3.2.4: bit 5 keeps the speed at X1 and goes on to X2.
 TEST(ProfilePositionMode, WithBlendingBitFiveTheSpeedIsKeptAtTheFirstTarget) {
-    Personality p;
-    p.pp_bit_5_blends = true;
+    DriveProfile p;
+    p.quirks = {Quirk::pp_bit_5_blends};
     auto b = profile_bench(1, p);
     set_point(b, 8000);
     b.command(0x0F, 5);
@@ -131,8 +131,8 @@ TEST(ProfilePositionMode, WithBlendingBitFiveTheSpeedIsKeptAtTheFirstTarget) {
 
 // SV-DA200 3.2.3: 6083h is both ramps. 20000 counts/s by 50000 counts/s2 takes 0.4 s and 4000 counts; 6084h would be four times as hard.
 TEST(ProfilePositionMode, WithASharedRampSixtyEightyFourIsNotUsed) {
-    Personality p;
-    p.pp_shared_ramp = true;
+    DriveProfile p;
+    p.quirks = {Quirk::pp_shared_ramp};
     auto b = profile_bench(1, p);
     b.in.profile_acceleration = 50000;
     b.in.profile_deceleration = 200000;
@@ -156,8 +156,8 @@ TEST(ProfilePositionMode, ZerosInSpeedOrRampMoveNothing) {
 // Halt with 6084h; CiA 402-2: taken back, the motion goes on. SV-DA200 3.2.7: it must be triggered again.
 TEST(ProfilePositionMode, AfterAHaltTheMotionGoesOnOrIsForgotten) {
     for (const bool forgets : {false, true}) {
-        Personality p;
-        p.pp_stop_forgets = forgets;
+        DriveProfile p;
+        if (forgets) p.quirks = {Quirk::pp_stop_forgets};
         auto b = profile_bench(1, p);
         set_point(b, 20000);
         b.command(0x0F, 400);
@@ -213,8 +213,8 @@ TEST(ProfileVelocityMode, ARampOfZeroMovesNothing) {
 }
 
 TEST(ProfileVelocityMode, WithoutTheSpeedZeroBitItStaysOff) {
-    Personality p;
-    p.pv_speed_zero_bit = false;
+    DriveProfile p;
+    p.quirks = {Quirk::pv_bits_12_13_reserved};
     auto b = profile_bench(3, p);
     EXPECT_EQ(b.out.status & bit_12, 0u);
 }
@@ -244,8 +244,8 @@ TEST(ProfileTorqueMode, TheSlopeLeadsToTheTorque) {
 // SV-DA200 3.6: 6083h and 6084h act in CSV too.
 TEST(CyclicVelocityMode, SomeDrivesRampOnTopOfTheMaster) {
     for (const bool ramps : {false, true}) {
-        Personality p;
-        p.csv_ramps = ramps;
+        DriveProfile p;
+        if (ramps) p.quirks = {Quirk::csv_ramps};
         auto b = profile_bench(9, p);
         b.in.target_velocity = 10000;
         b.run(51);
@@ -260,8 +260,8 @@ StopOption option(StopCause cause, std::vector<StopWay> ways) { return {cause, {
 
 // CiA 402-2 605Ah: the value chooses ramp and whether the drive stays in Quick Stop Active.
 TEST(StopOptions, TheValueChoosesTheRampAndWhatComesAfter) {
-    Personality p;
-    p.stops = {option(
+    DriveProfile p;
+    p.stops.options = {option(
         StopCause::quick_stop,
         {{1, {}, StopBy::ramp, StopThen::free}, {2, {}, StopBy::quick_ramp, StopThen::free}, {6, {}, StopBy::quick_ramp, StopThen::lock}})};
     struct Case {
@@ -287,9 +287,9 @@ TEST(StopOptions, TheValueChoosesTheRampAndWhatComesAfter) {
 
 // SV33-E 3.1.8: the same value means another way in another mode; rows with a mode go before those for all.
 TEST(StopOptions, AValueMayMeanSomethingElseInAnotherMode) {
-    Personality p;
-    p.stops = {option(StopCause::halt, {{1, {DriveMode::cyclic_position}, StopBy::emergency_torque, StopThen::lock},
-                                        {1, {}, StopBy::ramp, StopThen::lock}})};
+    DriveProfile p;
+    p.stops.options = {option(StopCause::halt, {{1, {DriveMode::cyclic_position}, StopBy::emergency_torque, StopThen::lock},
+                                                {1, {}, StopBy::ramp, StopThen::lock}})};
     double way[2];
     for (const int mode : {3, 8}) {
         auto b = profile_bench(mode, p);
@@ -314,8 +314,8 @@ TEST(StopOptions, AValueMayMeanSomethingElseInAnotherMode) {
 TEST(StopOptions, ShortedPhasesBrakeAMotorWithoutPower) {
     double way[2];
     for (const bool shorted : {false, true}) {
-        Personality p;
-        p.stops = {option(StopCause::off, {{0, {}, shorted ? StopBy::dynamic_brake : StopBy::coast, StopThen::free}})};
+        DriveProfile p;
+        p.stops.options = {option(StopCause::off, {{0, {}, shorted ? StopBy::dynamic_brake : StopBy::coast, StopThen::free}})};
         auto plant = long_table();
         plant.viscous_friction = 0.001;
         plant.coulomb_friction = 0;
@@ -337,10 +337,10 @@ TEST(StopOptions, ShortedPhasesBrakeAMotorWithoutPower) {
 // TSVM 5.4.1: at standstill only; "may not switch, or may raise an abnormality".
 TEST(ModeChange, InMotionItIsObeyedIgnoredOrAnAlarm) {
     for (const auto violation : {ModeViolation::obeyed, ModeViolation::ignored, ModeViolation::alarm}) {
-        Personality p;
-        p.mode_violation = violation;
-        p.mode_change_at_standstill = true;
-        p.mode_change_alarm = {0x6320};
+        DriveProfile p;
+        p.mode_rules.violation = violation;
+        p.mode_rules.change_at_standstill = true;
+        p.alarms = {{.code = 0x6320, .kind = DriveAlarmKind::mode_change}};
         auto b = profile_bench(9, p);
         b.in.target_velocity = 10000;
         b.run(100);
@@ -353,8 +353,8 @@ TEST(ModeChange, InMotionItIsObeyedIgnoredOrAnAlarm) {
 
 // SV33-E 3.4.3 (7): out of PV a ramp stop, then the other mode. 20000 counts/s by 100000 counts/s2 take 0.2 s and 2000 counts. (5): out of PP at once.
 TEST(ModeChange, OutOfAVelocityAlongTheRampFirst) {
-    Personality p;
-    p.ramp_before_mode_change = true;
+    DriveProfile p;
+    p.quirks = {Quirk::ramp_before_mode_change};
     auto b = profile_bench(3, p);
     b.in.target_velocity = 20000;
     b.run(400);
@@ -380,8 +380,8 @@ TEST(ModeChange, OutOfAVelocityAlongTheRampFirst) {
 
 // Taken back in the middle of the ramp it goes on in its mode.
 TEST(ModeChange, TakenBackInTheRampTheVelocityGoesOn) {
-    Personality p;
-    p.ramp_before_mode_change = true;
+    DriveProfile p;
+    p.quirks = {Quirk::ramp_before_mode_change};
     auto b = profile_bench(3, p);
     b.in.target_velocity = 20000;
     b.run(400);
@@ -395,10 +395,10 @@ TEST(ModeChange, TakenBackInTheRampTheVelocityGoesOn) {
 
 // TSVM 5.4.1: at least 20 ms apart; for 2 ms 6061h means nothing.
 TEST(ModeChange, TooSoonAndIndeterminate) {
-    Personality p;
-    p.mode_violation = ModeViolation::ignored;
-    p.mode_change_interval = 20ms;
-    p.mode_indeterminate = 2ms;
+    DriveProfile p;
+    p.mode_rules.violation = ModeViolation::ignored;
+    p.mode_rules.change_interval = 20ms;
+    p.mode_rules.indeterminate = 2ms;
     Bench b{long_table(), p};
     b.run(30);
     b.in.mode = 9;
@@ -416,8 +416,8 @@ TEST(ModeChange, TooSoonAndIndeterminate) {
 
 // TSVM 5.4.1 rule 6 and 7.2 alarm 43: enabled without a mode; rule 7: 0 keeps the mode there was.
 TEST(ModeChange, EnabledWithoutAMode) {
-    Personality p;
-    p.mode_not_set_alarm = {43};
+    DriveProfile p;
+    p.alarms = {{.code = 43, .kind = DriveAlarmKind::mode_not_set}};
     Bench b{long_table(), p};
     b.axis.power_on(b.now);
     b.in.mode = 0;

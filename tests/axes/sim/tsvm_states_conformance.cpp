@@ -8,22 +8,22 @@ namespace taktwerk::axes::sim {
 namespace {
 
 /// As its drive file has it; literals from the manual.
-Personality tsvm() {
-    Personality p;
-    p.alarm_sets_warning_bit = true;     // 5.3.2, bit 7
-    p.remote_bit_from_preop = true;      // 5.3.2, bit 9
-    p.quick_stop_bit_rests_high = true;  // 5.3.1, 0270h
-    p.target_reached_in_cyclic = false;  // 5.3.2, bit 10 has no meaning in csp
-    p.fault_stop = FaultStop::coast;
+DriveProfile tsvm() {
+    DriveProfile p;
+    p.quirks = {Quirk::alarm_sets_warning_bit,     // 5.3.2, bit 7
+                Quirk::remote_bit_from_preop,      // 5.3.2, bit 9
+                Quirk::quick_stop_bit_rests_high,  // 5.3.1, 0270h
+                Quirk::cyclic_bit_10_reserved};    // 5.3.2, bit 10 has no meaning in csp
+    p.stops.fault = DriveStop::coast;
     p.self_test = 20ms;
-    p.deaf_after_enable = 100ms;      // 5.3.1
-    p.torque_overload = 1.6;          // PA30
-    p.torque_overload_time = 3s;      // PA31
-    p.following_error_alarm = {4};    // 7.2
-    p.torque_overload_alarm = {29};   // 7.2
-    p.left_operational_alarm = {44};  // 7.2
-    p.undervoltage_alarm = {73, true, 0, false, true};
-    p.communication_alarm = {91, true, 0, false, true};
+    p.deaf_after_enable = 100ms;                                         // 5.3.1
+    p.torque_overload = 1.6;                                             // PA30
+    p.torque_overload_time = 3s;                                         // PA31
+    p.alarms = {{.code = 4, .kind = DriveAlarmKind::following_error},    // 7.2
+                {.code = 29, .kind = DriveAlarmKind::torque_overload},   // 7.2
+                {.code = 44, .kind = DriveAlarmKind::left_operational},  // 7.2
+                {.code = 73, .whole_drive = true, .kind = DriveAlarmKind::undervoltage},
+                {.code = 91, .whole_drive = true, .kind = DriveAlarmKind::communication}};
     return p;
 }
 
@@ -36,7 +36,7 @@ PlantConfig bed() {
 
 /// Past its self-test, in Switch On Disabled.
 struct Drive : Bench {
-    explicit Drive(const Personality& personality = tsvm()) : Bench(bed(), personality) { run(25); }
+    explicit Drive(const DriveProfile& profile = tsvm()) : Bench(bed(), profile) { run(25); }
     /// The status word right after one control word.
     std::uint16_t answer(std::uint16_t control) {
         command(control, 1);
@@ -110,7 +110,7 @@ TEST(TsvmStateTable, Transition13ShowsTheFaultByTheTableOrAsPrinted) {
     EXPECT_EQ(d.out.error_code, 12);
 
     auto printed = tsvm();
-    printed.fault_reaction_02b6 = true;
+    printed.quirks.push_back(Quirk::fault_reaction_02b6);
     Drive e{printed};
     e.to_enabled();
     e.axis.raise(AlarmCode{12});

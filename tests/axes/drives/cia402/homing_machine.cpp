@@ -104,8 +104,8 @@ TEST(HomingPerRunCapability, NeedsTheObjects) {
 TEST(ClearTurns, ByAnObject) {
     DriveRig rig;
     rig.others.push_back({0x2020, 6});
-    rig.profile.clear_turns = {0x2020, 6};
-    rig.profile.clear_turns_value = 2;
+    rig.profile.encoder.clear_turns = {0x2020, 6};
+    rig.profile.encoder.clear_turns_value = 2;
     ASSERT_TRUE(rig.build()) << rig.refusal.text();
     ASSERT_TRUE(rig.drive->capabilities().has(DriveService::clear_multi_turn));
     rig.enabled();
@@ -128,7 +128,7 @@ TEST(ClearTurns, ByAnObject) {
 // TSVM 5.3.2: bit 12 of the control word; how long is not stated: it stands 100 ms and falls.
 TEST(ClearTurns, ByTheControlWord) {
     DriveRig rig;
-    rig.profile.clear_turns_control = 0x1000;
+    rig.profile.encoder.clear_turns_control = 0x1000;
     ASSERT_TRUE(rig.build()) << rig.refusal.text();
     int cycles = 0;
     rig.puppet->on_exchange = [&] { cycles += (rig.got(0x6040) & 0x1000) != 0; };

@@ -202,8 +202,8 @@ TEST(Cia402Power, AWarningIsAnAlarmButNoFault) {
 // TSVM 5.4.1: at least 20 ms between two mode changes, 2 ms in which 6061h means nothing.
 TEST(Cia402Mode, ChangesKeepTheirDistanceAndAreNotBelievedTooEarly) {
     DriveRig rig;
-    rig.profile.mode_change_interval = 20ms;
-    rig.profile.mode_indeterminate = 2ms;
+    rig.profile.mode_rules.change_interval = 20ms;
+    rig.profile.mode_rules.indeterminate = 2ms;
     ASSERT_TRUE(rig.build()) << rig.refusal.text();
     rig.run(30);
     rig.command.mode = DriveMode::homing;

@@ -78,10 +78,10 @@ struct Machine {
         sim::PlantConfig plant;
         plant.counts_per_revolution = turn;
         plant.probe[0] = {edge * counts_per_mm, 40 * counts_per_mm};
-        sim::Personality personality;
-        personality.counts_per_revolution = turn;
-        network.add(description,
-                    std::make_unique<sim::Cia402Device>(profile, std::vector<sim::Cia402Device::AxisSetup>{{plant, personality}}), {});
+        sim::SimulatedMotor motor;
+        motor.counts_per_revolution = turn;
+        network.add(description, std::make_unique<sim::Cia402Device>(profile, std::vector<sim::Cia402Device::AxisSetup>{{plant, motor}}),
+                    {});
         master = std::make_unique<ecat::Master>(transport, bus);
         master->start();
         for (int i = 0; i < 20'000 && master->phase() != ecat::Master::Phase::operational; ++i) step();

@@ -35,7 +35,7 @@ inline std::shared_ptr<const DriveProfile> plain_profile() {
     profile->name = "xp200";
     profile->modes = {DriveMode::profile_velocity, DriveMode::profile_torque};
     profile->enable_delay = 600ms;
-    profile->mode_change_at_standstill = true;
+    profile->mode_rules.change_at_standstill = true;
     profile->input_bit_home = 5;
     for (const auto& row : rows) {
         DriveParameter p;

@@ -23,9 +23,9 @@ void run_up(Bench& b) {
 
 // SV33-E 3.1.2 and P05.13: from enabling to the first command 250 ms, else the command is lost.
 TEST(Brake, WhatIsCommandedBeforeItOpensIsLost) {
-    Personality p;
-    p.brake_release = 250ms;
-    p.brake_hold = 150ms;
+    DriveProfile p;
+    p.brake.release = 250ms;
+    p.brake.hold = 150ms;
     Bench b{long_table(), p};
     b.enable();
     ASSERT_EQ(b.state(), 0x27u);
@@ -38,9 +38,9 @@ TEST(Brake, WhatIsCommandedBeforeItOpensIsLost) {
 }
 
 TEST(Brake, AMasterThatWaitsLosesNothing) {
-    Personality p;
-    p.brake_release = 250ms;
-    p.brake_hold = 150ms;
+    DriveProfile p;
+    p.brake.release = 250ms;
+    p.brake.hold = 150ms;
     Bench b{long_table(), p};
     b.enable();
     b.run(260);
@@ -55,9 +55,9 @@ TEST(Brake, AMasterThatWaitsLosesNothing) {
 }
 
 TEST(Brake, AHomingStartBeforeItOpensIsLostToo) {
-    Personality p;
-    p.brake_release = 250ms;
-    p.brake_hold = 150ms;
+    DriveProfile p;
+    p.brake.release = 250ms;
+    p.brake.hold = 150ms;
     Bench b{table(), p};
     b.in.homing = {.method = 18, .fast = 40000, .slow = 4000, .acceleration = 400000};
     b.enable();
@@ -72,9 +72,9 @@ TEST(Brake, AHomingStartBeforeItOpensIsLostToo) {
 TEST(Brake, AVerticalAxisDoesNotSagWhenPowerGoes) {
     auto plant = long_table();
     plant.load_torque = 0.5;
-    Personality p;
-    p.brake_release = 250ms;
-    p.brake_hold = 150ms;
+    DriveProfile p;
+    p.brake.release = 250ms;
+    p.brake.hold = 150ms;
     Bench b{plant, p};
     b.enable();
     b.run(500);
@@ -100,15 +100,15 @@ TEST(Brake, WithoutOneAVerticalAxisDrops) {
 // SV33-E P04.12 = 2: zero-speed stop; 3.4.1 transition 8 without it: the motor coasts.
 TEST(Stop, PowerTakenAwayInMotionRampsOrCoasts) {
     double way[2] = {};
-    for (const auto stop : {FaultStop::ramp, FaultStop::coast}) {
-        Personality p;
-        p.off_stop = stop;
+    for (const auto stop : {DriveStop::ramp, DriveStop::coast}) {
+        DriveProfile p;
+        p.stops.off = stop;
         Bench b{long_table(), p};
         run_up(b);
         const double from = b.axis.plant().position();
         b.command(0x0006, 2000);
         EXPECT_EQ(b.state(), 0x21u);
-        way[stop == FaultStop::coast] = b.axis.plant().position() - from;
+        way[stop == DriveStop::coast] = b.axis.plant().position() - from;
     }
     EXPECT_LT(way[0] * 3, way[1]);
 }
@@ -116,15 +116,15 @@ TEST(Stop, PowerTakenAwayInMotionRampsOrCoasts) {
 // SE-808X 4.3: 605Eh = 0, current off, motor free.
 TEST(Stop, AFaultReactionRampsOrCoasts) {
     double way[2] = {};
-    for (const auto stop : {FaultStop::ramp, FaultStop::coast}) {
-        Personality p;
-        p.fault_stop = stop;
+    for (const auto stop : {DriveStop::ramp, DriveStop::coast}) {
+        DriveProfile p;
+        p.stops.fault = stop;
         Bench b{long_table(), p};
         run_up(b);
         const double from = b.axis.plant().position();
         b.axis.fail(Failure::overload);
         b.run(2000);
-        way[stop == FaultStop::coast] = b.axis.plant().position() - from;
+        way[stop == DriveStop::coast] = b.axis.plant().position() - from;
     }
     EXPECT_LT(way[0] * 3, way[1]);
 }
@@ -132,8 +132,8 @@ TEST(Stop, AFaultReactionRampsOrCoasts) {
 // SE-808X 3.2.1.1: Quick Stop Active ends by Disable Voltage or Enable Operation only; SV33-E 605Ah = 2: by itself.
 TEST(Stop, QuickStopLeavesByItselfOrStays) {
     for (const bool leaves : {true, false}) {
-        Personality p;
-        p.quick_stop_leaves = leaves;
+        DriveProfile p;
+        p.stops.quick_stop_leaves = leaves;
         Bench b{long_table(), p};
         run_up(b);
         b.command(0x0002, 1000);
@@ -145,11 +145,9 @@ TEST(Stop, QuickStopLeavesByItselfOrStays) {
 
 // SE-808X 3.2.2.2: Fault reads x0xx1111, bit 9 is not supported, bits 12 and 13 are reserved in CSP.
 TEST(StatusWord, OfTheSe808x) {
-    Personality p;
-    p.fault_pattern_f = true;
-    p.remote_bit = false;
-    p.csp_following_bits = false;
-    p.fault_stop = FaultStop::coast;
+    DriveProfile p;
+    p.quirks = {Quirk::fault_low_nibble_f, Quirk::no_remote_bit, Quirk::csp_bits_12_13_reserved};
+    p.stops.fault = DriveStop::coast;
     Bench b{long_table(), p};
     b.enable();
     b.run(10);
@@ -172,8 +170,8 @@ TEST(Failures, EachShowsTheDrivesOwnCodeAndItsOwnResetRule) {
     for (const auto& c :
          {Case{Failure::overspeed, 0x8400, true}, Case{Failure::following_error, 0x8611, true}, Case{Failure::undervoltage, 0x3220, true},
           Case{Failure::overload, 0x3230, true}, Case{Failure::encoder, 0x7305, false}, Case{Failure::communication, 0x0D26, true}}) {
-        Personality p;
-        p.communication_alarm = {0x0D26};
+        DriveProfile p;
+        p.alarms = {{.code = 0x0D26, .kind = DriveAlarmKind::communication}};
         Bench b{long_table(), p};
         b.enable();
         b.axis.fail(c.failure);
@@ -206,15 +204,15 @@ TEST(Failures, ARealOverspeedIsFound) {
     auto plant = long_table();
     plant.rated_torque = 0.1;
     plant.load_torque = -2;  // more than the motor can hold
-    Personality p;
-    p.overspeed = 500000;
-    Bench b{plant, p};
+    SimulatedMotor m;
+    m.overspeed = 500000;
+    Bench b{plant, {}, m};
     b.enable();
     b.run(3000);
     EXPECT_EQ(b.out.error_code, 0x8400);
 }
 
-TEST(PersonalityOf, TakesCodesAndResetRulesFromTheProfilesAlarms) {
+TEST(DriveAlarmCodes, AreThoseOfTheProfilesAlarmsWithTheirResetRules) {
     DriveProfile profile;
     const auto row = [&](std::uint16_t code, std::uint32_t detail, DriveAlarmKind kind, bool resettable) {
         DriveAlarmText text;
@@ -227,17 +225,11 @@ TEST(PersonalityOf, TakesCodesAndResetRulesFromTheProfilesAlarms) {
     row(0x3221, 0, DriveAlarmKind::undervoltage, true);
     row(0x7305, 0x0911, DriveAlarmKind::encoder, false);
     row(0x7305, 0x0917, DriveAlarmKind::encoder, true);
-    profile.fault_stop = DriveStop::coast;
-    profile.quick_stop_leaves = false;
-    profile.brake_release = 250ms;
-    const auto p = personality_of(profile, 10000);
-    EXPECT_EQ(p.undervoltage_alarm.code, 0x3221);
-    EXPECT_EQ(p.encoder_alarm.detail, 0x0911u) << "the first row of a kind";
-    EXPECT_FALSE(p.encoder_alarm.resettable);
-    EXPECT_EQ(p.following_error_alarm.code, 0x8611) << "what the profile does not mark keeps the usual code";
-    EXPECT_EQ(p.fault_stop, FaultStop::coast);
-    EXPECT_FALSE(p.quick_stop_leaves);
-    EXPECT_EQ(p.brake_release, 250ms);
+    const DriveAlarmCodes codes{profile};
+    EXPECT_EQ(codes[DriveAlarmKind::undervoltage].code, 0x3221);
+    EXPECT_EQ(codes[DriveAlarmKind::encoder].detail, 0x0911u) << "the first row of a kind";
+    EXPECT_FALSE(codes[DriveAlarmKind::encoder].resettable);
+    EXPECT_EQ(codes[DriveAlarmKind::following_error].code, 0x8611) << "what the profile does not mark keeps the usual code";
 }
 
 }  // namespace
