@@ -6,7 +6,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "apps/docs/drive_pages.hpp"
+#include "apps/drive_pages.hpp"
+#include "axes/drives/cia402/words.hpp"
 #include "axes/port/drive_scale.hpp"
 #include "axes/port/quirk.hpp"
 
@@ -43,21 +44,6 @@ std::string time_text(Duration time) {
 }
 /// Nothing for a time that nobody stated.
 std::string stated(Duration time) { return time > Duration::zero() ? time_text(time) : std::string{}; }
-
-/// 6060h of a mode by CiA 402.
-int mode_number(DriveMode mode) {
-    switch (mode) {
-        case DriveMode::profile_position: return 1;
-        case DriveMode::profile_velocity: return 3;
-        case DriveMode::profile_torque: return 4;
-        case DriveMode::homing: return 6;
-        case DriveMode::cyclic_position: return 8;
-        case DriveMode::cyclic_velocity: return 9;
-        case DriveMode::cyclic_torque: return 10;
-        case DriveMode::none: break;
-    }
-    return 0;
-}
 
 std::string_view words(DriveStop stop) {
     switch (stop) {
@@ -145,7 +131,7 @@ void bus_rows(Features& out, const config::LoadedDrive& drive) {
 void motion_rows(Features& out, const DriveProfile& profile, const DeviceDescription* on_bus) {
     std::vector<std::string> modes;
     for (const auto mode : profile.modes)
-        modes.push_back(on_bus ? fmt::format("{} ({})", name(mode), mode_number(mode)) : std::string(name(mode)));
+        modes.push_back(on_bus ? fmt::format("{} ({})", name(mode), int{axes::cia402::mode_code(mode)}) : std::string(name(mode)));
     out.row(on_bus ? "Modes of operation (6060h)" : "Modes of operation", joined(modes));
     std::vector<std::string> methods;
     for (const auto method : profile.homing_methods) methods.push_back(std::to_string(method));

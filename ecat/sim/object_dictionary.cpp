@@ -8,28 +8,6 @@
 
 namespace taktwerk::ecat::sim {
 
-std::uint8_t bits_of(DataType type) noexcept {
-    switch (type) {
-        case DataType::BOOL: return 1;
-        case DataType::I8:
-        case DataType::U8: return 8;
-        case DataType::I16:
-        case DataType::U16: return 16;
-        case DataType::I32:
-        case DataType::U32:
-        case DataType::REAL32: return 32;
-        case DataType::I64:
-        case DataType::U64:
-        case DataType::REAL64: return 64;
-        case DataType::STRING: return 0;
-    }
-    return 0;
-}
-
-bool type_is_signed(DataType type) noexcept {
-    return type == DataType::I8 || type == DataType::I16 || type == DataType::I32 || type == DataType::I64;
-}
-
 void Entry::set(std::int64_t value) noexcept {
     if (bits_ == 0 || bits_ >= 64) {
         value_ = bits_ == 0 ? 0 : value;
@@ -58,8 +36,8 @@ void ObjectDictionary::add(const ObjectEntry& object, EntryRole role) {
     entry.index_ = object.index;
     entry.sub_ = object.sub;
     entry.type_ = object.type;
-    entry.bits_ = bits_of(object.type);
-    entry.signed_ = type_is_signed(object.type);
+    entry.bits_ = bit_size(object.type);
+    entry.signed_ = is_signed(object.type);
     entry.access_ = object.access;
     entry.mappable_ = object.mappable;
     entry.role_ = role;

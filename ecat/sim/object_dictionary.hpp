@@ -99,8 +99,4 @@ private:
     std::vector<Entry> entries_;  // ascending by (index, sub)
 };
 
-/// Bytes of a value in a process image or an SDO.
-[[nodiscard]] std::uint8_t bits_of(DataType type) noexcept;
-[[nodiscard]] bool type_is_signed(DataType type) noexcept;
-
 }  // namespace taktwerk::ecat::sim
