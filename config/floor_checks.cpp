@@ -1,5 +1,7 @@
 #include "config/floor_checks.hpp"
 
+#include "runtime/check/machine_check.hpp"
+
 namespace taktwerk::config {
 
 std::vector<Error> check_floors(const LoadedMachine& loaded) {

@@ -16,8 +16,8 @@
 #include "config/setting_conflicts.hpp"
 #include "core/nearest_name.hpp"
 #include "ecat/sim/digital_terminal.hpp"
-#include "runtime/keeps_positions.hpp"
-#include "runtime/program_check.hpp"
+#include "runtime/check/program_check.hpp"
+#include "runtime/positions/keeps_positions.hpp"
 
 namespace taktwerk::config {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "axes/port/drive_profile.hpp"
-#include "runtime/machine.hpp"
+#include "runtime/machine/machine.hpp"
 #include "runtime/operator_command.hpp"
 #include "runtime/snapshot.hpp"
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "hmi_bridge/machine_link.hpp"
-#include "runtime/advance_watch.hpp"
+#include "runtime/run/advance_watch.hpp"
 
 namespace taktwerk::hmi {
 

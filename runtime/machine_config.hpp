@@ -184,9 +184,6 @@ struct MachineConfig {
     std::uint8_t commands_per_cycle = 4;  ///< K operator commands drained per cycle
 };
 
-/// Cross-floor problems (names that do not exist, two axes on one drive axis, cycle against drive minimum, ...), all of them.
-[[nodiscard]] std::vector<Error> check(const MachineConfig& config);
-
 /// What relaxed supervision gives slaves without a watchdog of their own: a stall of the host must not trip them.
 inline constexpr Duration relaxed_watchdog = std::chrono::milliseconds{500};
 

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "axes/drives/xp200/drive_config.hpp"
-#include "core/result.hpp"
 #include "modbus/line/line_settings.hpp"
 
 namespace taktwerk::runtime {
@@ -27,9 +26,5 @@ struct SerialLineConfig {
     modbus::LineSettings settings;
     std::vector<SerialDriveConfig> drives;
 };
-
-struct MachineConfig;
-/// Names that do not meet, stations given twice, lines without supervision, axes that cannot work over a line.
-void check_serial(const MachineConfig& config, std::vector<Error>& errors);
 
 }  // namespace taktwerk::runtime

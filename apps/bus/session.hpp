@@ -17,7 +17,7 @@
 #include "ecat/diagnosis/frame_capture.hpp"
 #include "ecat/diagnosis/survey.hpp"
 #include "ecat/transport/raw_socket.hpp"
-#include "runtime/world.hpp"
+#include "runtime/world/world.hpp"
 
 namespace taktwerk::apps {
 

@@ -2,7 +2,7 @@
 
 #include "apps/machine/stop_signal.hpp"
 #include "modbus/line/tty_line.hpp"
-#include "runtime/world.hpp"
+#include "runtime/world/world.hpp"
 
 namespace taktwerk::apps {
 

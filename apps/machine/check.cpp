@@ -17,11 +17,11 @@
 #include "apps/terminal/print_error.hpp"
 #include "axes/port/drive_scale.hpp"
 #include "axes/port/parameter_text.hpp"
-#include "runtime/borrowed_rights.hpp"
-#include "runtime/drive_hazards.hpp"
-#include "runtime/machine.hpp"
-#include "runtime/machine_remarks.hpp"
-#include "runtime/world.hpp"
+#include "runtime/check/drive_hazards.hpp"
+#include "runtime/check/machine_remarks.hpp"
+#include "runtime/machine/machine.hpp"
+#include "runtime/tasks/borrowed_rights.hpp"
+#include "runtime/world/world.hpp"
 
 namespace taktwerk::apps {
 namespace {

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <string_view>
 
-#include "runtime/code_at_work.hpp"
+#include "runtime/tasks/code_at_work.hpp"
 
 namespace taktwerk::apps {
 

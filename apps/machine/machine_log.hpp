@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/machine.hpp"
+#include "runtime/machine/machine.hpp"
 
 namespace taktwerk::apps {
 

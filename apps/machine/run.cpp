@@ -35,9 +35,9 @@
 #include "hmi_bridge/runtime_link.hpp"
 #include "modbus/line/tty_line.hpp"
 #include "runtime/alarms.hpp"
-#include "runtime/keeps_positions.hpp"
-#include "runtime/realtime_runner.hpp"
-#include "runtime/virtual_runner.hpp"
+#include "runtime/positions/keeps_positions.hpp"
+#include "runtime/run/realtime_runner.hpp"
+#include "runtime/run/virtual_runner.hpp"
 
 namespace taktwerk::apps {
 

@@ -19,7 +19,7 @@
 #include "apps/terminal/print_error.hpp"
 #include "core/clock.hpp"
 #include "ecat/transport/raw_socket.hpp"
-#include "runtime/world.hpp"
+#include "runtime/world/world.hpp"
 
 namespace taktwerk::apps {
 

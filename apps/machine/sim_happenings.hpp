@@ -9,7 +9,7 @@
 
 #include "core/result.hpp"
 #include "core/time.hpp"
-#include "runtime/world.hpp"
+#include "runtime/world/world.hpp"
 
 namespace taktwerk::apps {
 

@@ -10,7 +10,7 @@
 #include "core/result.hpp"
 #include "core/time.hpp"
 #include "modbus/line/pseudo_terminal.hpp"
-#include "runtime/world.hpp"
+#include "runtime/world/world.hpp"
 
 namespace taktwerk::apps {
 

@@ -4,7 +4,7 @@
 
 #include <atomic>
 
-#include "runtime/machine.hpp"
+#include "runtime/machine/machine.hpp"
 
 namespace taktwerk::apps {
 

@@ -9,8 +9,8 @@
 
 #include "core/result.hpp"
 #include "core/time.hpp"
+#include "runtime/recording/trace_ring.hpp"
 #include "runtime/snapshot.hpp"
-#include "runtime/trace_ring.hpp"
 
 namespace taktwerk::apps {
 

@@ -10,7 +10,7 @@
 
 #include "apps/machine/load.hpp"
 #include "core/clock.hpp"
-#include "runtime/virtual_runner.hpp"
+#include "runtime/run/virtual_runner.hpp"
 
 namespace taktwerk::apps {
 

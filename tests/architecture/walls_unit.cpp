@@ -86,7 +86,8 @@ TEST(FloorOrder, AHigherFloorIsRefusedWithFileAndLine) {
 }
 
 TEST(FloorOrder, OnlyAppsMayIncludeConfig) {
-    EXPECT_THAT(check_floor_order({{"runtime/machine.cpp", "#include \"config/load.hpp\"\n"}}), ElementsAre(HasSubstr("higher floor")));
+    EXPECT_THAT(check_floor_order({{"runtime/machine/machine.cpp", "#include \"config/load.hpp\"\n"}}),
+                ElementsAre(HasSubstr("higher floor")));
     EXPECT_THAT(check_floor_order({{"hmi_bridge/gateway.cpp", "#include \"config/load.hpp\"\n"}}), ElementsAre(HasSubstr("higher floor")));
 }
 

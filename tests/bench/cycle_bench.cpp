@@ -11,9 +11,9 @@
 
 #include "core/math.hpp"
 #include "fb_library/all_blocks.hpp"
-#include "runtime/machine.hpp"
-#include "runtime/program_library.hpp"
-#include "runtime/world.hpp"
+#include "runtime/machine/machine.hpp"
+#include "runtime/tasks/program_library.hpp"
+#include "runtime/world/world.hpp"
 #include "tests/bench/between_cycles.hpp"
 #include "tests/machines/plain_machine.hpp"
 

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/crc32.hpp"
-#include "runtime/position_store.hpp"
+#include "runtime/positions/position_store.hpp"
 #include "tests/fuzz/scratch_folder.hpp"
 
 using namespace taktwerk;

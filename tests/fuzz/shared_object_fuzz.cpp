@@ -7,7 +7,7 @@
 #include <cstring>
 #include <string>
 
-#include "runtime/shared_object_check.hpp"
+#include "runtime/tasks/shared_object_check.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     static const int file = ::memfd_create("fuzz", MFD_CLOEXEC);

@@ -10,9 +10,9 @@
 #include <gtest/gtest.h>
 
 #include "programs/api/abi.hpp"
-#include "runtime/io_image.hpp"
-#include "runtime/program_host.hpp"
-#include "runtime/program_library.hpp"
+#include "runtime/tasks/io_image.hpp"
+#include "runtime/tasks/program_host.hpp"
+#include "runtime/tasks/program_library.hpp"
 #include "tests/programs/installed_sdk.hpp"
 
 namespace taktwerk::runtime {

@@ -1,6 +1,6 @@
 // The alarm list: how an alarm goes away by its rule (core/alarm.hpp, ResetRule), and what happens when the list is full.
 
-#include "runtime/alarm_log.hpp"
+#include "runtime/machine/alarm_log.hpp"
 
 #include <gtest/gtest.h>
 

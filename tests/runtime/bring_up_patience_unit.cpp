@@ -1,4 +1,4 @@
-#include "runtime/bring_up_patience.hpp"
+#include "runtime/run/bring_up_patience.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include "core/stopwatch.hpp"
 #include "fb_library/all_blocks.hpp"
 #include "runtime/alarms.hpp"
-#include "runtime/watched_requests.hpp"
+#include "runtime/tasks/watched_requests.hpp"
 #include "tests/runtime/test_machine.hpp"
 #include "tests/runtime/test_program.hpp"
 

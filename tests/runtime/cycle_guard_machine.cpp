@@ -10,7 +10,7 @@
 #include "core/guard/allocation_guard.hpp"
 #include "core/realtime_guard.hpp"
 #include "fb_library/all_blocks.hpp"
-#include "runtime/program_library.hpp"
+#include "runtime/tasks/program_library.hpp"
 #include "tests/patience.hpp"
 #include "tests/runtime/test_machine.hpp"
 

@@ -1,6 +1,6 @@
 // A drive's alarm in words, from the profile of its drive.
 
-#include "runtime/drive_alarm_words.hpp"
+#include "runtime/machine/drive_alarm_words.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 
 #include <limits>
 
-#include "runtime/machine_config.hpp"
-#include "runtime/machine_remarks.hpp"
+#include "runtime/check/machine_check.hpp"
+#include "runtime/check/machine_remarks.hpp"
 #include "tests/machines/plain_machine.hpp"
 
 namespace taktwerk::runtime::testing {

@@ -2,7 +2,7 @@
 
 #include "fb_library/all_blocks.hpp"
 #include "programs/api/object_future.hpp"
-#include "runtime/object_requests.hpp"
+#include "runtime/tasks/object_requests.hpp"
 #include "tests/runtime/test_machine.hpp"
 #include "tests/runtime/test_program.hpp"
 

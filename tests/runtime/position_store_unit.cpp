@@ -1,6 +1,6 @@
 // The store of positions on a real directory: two slots, torn and altered files, numbers that come back as they were.
 
-#include "runtime/position_store.hpp"
+#include "runtime/positions/position_store.hpp"
 
 #include <gtest/gtest.h>
 

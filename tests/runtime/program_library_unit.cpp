@@ -1,6 +1,6 @@
 // What the loader says to a file that is no proper program: one clear error each, and never a crash.
 
-#include "runtime/program_library.hpp"
+#include "runtime/tasks/program_library.hpp"
 
 #include <elf.h>
 #include <unistd.h>
@@ -14,8 +14,8 @@
 #include <gtest/gtest.h>
 
 #include "programs/api/abi.hpp"
-#include "runtime/io_image.hpp"
-#include "runtime/program_host.hpp"
+#include "runtime/tasks/io_image.hpp"
+#include "runtime/tasks/program_host.hpp"
 
 namespace taktwerk::runtime {
 namespace {

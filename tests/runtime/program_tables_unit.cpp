@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "runtime/program_host.hpp"
+#include "runtime/tasks/program_host.hpp"
 #include "tests/runtime/test_program.hpp"
 
 namespace taktwerk::runtime::testing {

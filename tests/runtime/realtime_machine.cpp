@@ -4,7 +4,7 @@
 #include <atomic>
 
 #include "fb_library/all_blocks.hpp"
-#include "runtime/realtime_runner.hpp"
+#include "runtime/run/realtime_runner.hpp"
 #include "tests/patience.hpp"
 #include "tests/runtime/test_machine.hpp"
 #include "tests/runtime/test_program.hpp"

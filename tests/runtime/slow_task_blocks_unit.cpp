@@ -10,7 +10,7 @@
 #include "fb_library/motion/parameter_blocks.hpp"
 #include "fb_library/motion/probes.hpp"
 #include "fb_library/motion/superimposed.hpp"
-#include "runtime/latched_requests.hpp"
+#include "runtime/tasks/latched_requests.hpp"
 #include "tests/fb_library/fake_axes.hpp"
 
 namespace taktwerk::runtime {

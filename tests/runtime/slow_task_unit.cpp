@@ -1,7 +1,7 @@
 // A task at a divisor: inputs latched at release, outputs applied at the next one, whenever it finishes (docs/architecture.md).
 
-#include "runtime/object_requests.hpp"
-#include "runtime/slow_task.hpp"
+#include "runtime/tasks/object_requests.hpp"
+#include "runtime/tasks/slow_task.hpp"
 
 #include <gtest/gtest.h>
 

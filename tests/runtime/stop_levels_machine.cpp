@@ -5,10 +5,10 @@
 #include <functional>
 
 #include "fb_library/all_blocks.hpp"
-#include "runtime/advance_watch.hpp"
 #include "runtime/alarms.hpp"
-#include "runtime/end_watch.hpp"
-#include "runtime/inbox_record.hpp"
+#include "runtime/recording/inbox_record.hpp"
+#include "runtime/run/advance_watch.hpp"
+#include "runtime/run/end_watch.hpp"
 #include "tests/patience.hpp"
 #include "tests/runtime/test_machine.hpp"
 #include "tests/runtime/test_program.hpp"

@@ -5,7 +5,7 @@
 #include "core/recorder.hpp"
 #include "fb_library/all_blocks.hpp"
 #include "runtime/alarms.hpp"
-#include "runtime/inbox_record.hpp"
+#include "runtime/recording/inbox_record.hpp"
 #include "tests/runtime/test_machine.hpp"
 #include "tests/runtime/test_program.hpp"
 

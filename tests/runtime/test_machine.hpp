@@ -9,9 +9,9 @@
 
 #include <gtest/gtest.h>
 
-#include "runtime/machine.hpp"
-#include "runtime/virtual_runner.hpp"
-#include "runtime/world.hpp"
+#include "runtime/machine/machine.hpp"
+#include "runtime/run/virtual_runner.hpp"
+#include "runtime/world/world.hpp"
 #include "tests/ecat/tampered_cable.hpp"
 #include "tests/machines/plain_machine.hpp"
 #include "tests/runtime/drive_oracle.hpp"

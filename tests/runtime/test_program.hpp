@@ -3,7 +3,7 @@
 
 #include <stdexcept>
 
-#include "runtime/program_library.hpp"
+#include "runtime/tasks/program_library.hpp"
 #include "tests/machines/add_program.hpp"
 #include "tests/runtime/test_machine.hpp"
 

@@ -1,4 +1,4 @@
-#include "runtime/trace_ring.hpp"
+#include "runtime/recording/trace_ring.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "config/machine_loader.hpp"
-#include "runtime/virtual_runner.hpp"
-#include "runtime/world.hpp"
+#include "runtime/run/virtual_runner.hpp"
+#include "runtime/world/world.hpp"
 
 namespace taktwerk::testing {
 

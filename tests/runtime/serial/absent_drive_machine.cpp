@@ -6,6 +6,7 @@
 
 #include "axes/drives/xp200/registers.hpp"
 #include "runtime/alarms.hpp"
+#include "runtime/check/machine_check.hpp"
 #include "tests/runtime/serial/line_machine.hpp"
 
 namespace taktwerk::runtime::testing {

@@ -3,6 +3,7 @@
 
 #include "axes/axis/alarms.hpp"
 #include "fb_library/all_blocks.hpp"
+#include "runtime/check/machine_check.hpp"
 #include "tests/runtime/serial/line_machine.hpp"
 #include "tests/runtime/test_program.hpp"
 

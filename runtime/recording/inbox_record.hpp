@@ -1,0 +1,123 @@
+#pragma once
+// What comes from outside, as bytes of a Recorder: the one recorded inbox (docs/architecture.md). Records stand in the order in which the
+// cycle took them: a tick, the frames received in it, the commands drained in it. Little-endian, written by the cycle thread.
+//
+//   tick     i64 scheduled ns, i64 woken ns, u32 missed                                        20 bytes
+//   frame    an Ethernet frame as it came in
+//   departure  nothing but its time: when a frame left, as the transport measured it (the servo follows it)
+//   command  u8 action, u8 owner, u8 mode, u8 flag, u16 axis, u16 index, f64 value, f64 value2,
+//            u32 client, u64 sequence, i64 expires ns, u64 after                               52 bytes
+//            A level (stop_levels.hpp) is a stop, a jog with velocity 0 or a shutdown of client 0; its number stands as sequence.
+//   sample   u16 drive on a serial line, what it said (see record_sample)                      72 bytes
+//   object   u16 program, u16 place, u8 outcome, u32 abort code                                9 bytes, then the value read
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "axes/drives/xp200/drive_mailbox.hpp"
+#include "core/object_access.hpp"
+#include "core/recorder.hpp"
+#include "runtime/cycle_tick.hpp"
+#include "runtime/operator_command.hpp"
+
+namespace taktwerk::runtime {
+
+inline constexpr RecordChannel tick_channel = 1, frame_channel = 2, command_channel = 3, object_channel = 4, departure_channel = 5,
+                               sample_channel = 6;
+
+namespace inbox_record {
+template <std::size_t Size>
+class Bytes {
+public:
+    template <class T>
+    void put(T value) noexcept {
+        auto bits = static_cast<std::uint64_t>(value);
+        for (std::size_t i = 0; i < sizeof(T); ++i, bits >>= 8) bytes_[at_++] = static_cast<std::byte>(bits & 0xFF);
+    }
+    void put(double value) noexcept { put(std::bit_cast<std::uint64_t>(value)); }
+    void put(Instant value) noexcept { put(static_cast<std::int64_t>(value.time_since_epoch().count())); }
+    [[nodiscard]] std::span<const std::byte> all() const noexcept { return bytes_; }
+    [[nodiscard]] std::span<const std::byte> written() const noexcept { return std::span{bytes_}.first(at_); }
+
+private:
+    std::array<std::byte, Size> bytes_{};
+    std::size_t at_ = 0;
+};
+}  // namespace inbox_record
+
+inline void record_tick(Recorder& recorder, const CycleTick& tick) noexcept {
+    inbox_record::Bytes<20> bytes;
+    bytes.put(tick.scheduled);
+    bytes.put(tick.woken);
+    bytes.put(tick.missed);
+    recorder.append(tick_channel, tick.scheduled, bytes.all());
+}
+
+inline void record_command(Recorder& recorder, Instant at, const OperatorCommand& command) noexcept {
+    inbox_record::Bytes<52> bytes;
+    bytes.put(static_cast<std::uint8_t>(command.action));
+    bytes.put(static_cast<std::uint8_t>(command.owner));
+    bytes.put(static_cast<std::uint8_t>(command.mode));
+    bytes.put(static_cast<std::uint8_t>(command.flag));
+    bytes.put(command.axis);
+    bytes.put(command.index);
+    bytes.put(command.value);
+    bytes.put(command.value2);
+    bytes.put(command.client);
+    bytes.put(command.sequence);
+    bytes.put(command.expires);
+    bytes.put(command.after);
+    recorder.append(command_channel, at, bytes.all());
+}
+
+inline void record_object(Recorder& recorder, Instant at, std::uint16_t program, std::uint16_t place, ObjectOutcome outcome,
+                          std::uint32_t abort_code, std::span<const std::byte> value) noexcept {
+    inbox_record::Bytes<9 + object_data_limit> bytes;
+    bytes.put(program);
+    bytes.put(place);
+    bytes.put(static_cast<std::uint8_t>(outcome));
+    bytes.put(abort_code);
+    for (const std::byte b : value.first(std::min(value.size(), object_data_limit))) bytes.put(static_cast<std::uint8_t>(b));
+    recorder.append(object_channel, at, bytes.written());
+}
+
+/// u16 drive, u32 number, u16 flags (online, saving, running, torque, refused, home, negative and positive limit, released, latch armed, latched, no index), i64 heard ns,
+/// i64 sampled ns, i64 position, f64 velocity, f64 torque, u16 alarm, u16 inputs, u16 outputs, u16 epoch, u16 session, u16 latch,
+/// i64 latched at, u32 acknowledged.
+inline void record_sample(Recorder& recorder, Instant at, std::uint16_t drive, const axes::xp200::Sample& s) noexcept {
+    inbox_record::Bytes<72> bytes;
+    const unsigned flags = (s.online ? 1u : 0u) | (s.saving ? 2u : 0u) | (s.running ? 4u : 0u) | (s.torque_mode ? 8u : 0u) |
+                           (s.setup_refused ? 16u : 0u) | (s.home ? 32u : 0u) | (s.negative_limit ? 64u : 0u) |
+                           (s.positive_limit ? 128u : 0u) | (s.released ? 256u : 0u) | (s.latch_armed ? 512u : 0u) |
+                           (s.latched ? 1024u : 0u) | (s.no_index ? 2048u : 0u);
+    bytes.put(drive);
+    bytes.put(s.number);
+    bytes.put(static_cast<std::uint16_t>(flags));
+    bytes.put(s.heard);
+    bytes.put(s.sampled);
+    bytes.put(s.position);
+    bytes.put(s.velocity);
+    bytes.put(s.torque);
+    bytes.put(s.alarm);
+    bytes.put(s.inputs);
+    bytes.put(s.outputs);
+    bytes.put(s.epoch);
+    bytes.put(s.session);
+    bytes.put(s.latch);
+    bytes.put(s.latch_at);
+    bytes.put(s.acknowledged);
+    recorder.append(sample_channel, at, bytes.all());
+}
+
+/// For ecat::Master::set_tap; `context` is the Recorder. What the master sends follows from what it received; only when is news.
+inline void record_frame(void* context, std::span<const std::byte> frame, Instant at, bool outgoing) noexcept {
+    auto& recorder = *static_cast<Recorder*>(context);
+    if (outgoing) recorder.append(departure_channel, at, {});
+    else recorder.append(frame_channel, at, frame);
+}
+
+}  // namespace taktwerk::runtime

@@ -1,0 +1,153 @@
+#include "runtime/run/realtime_runner.hpp"
+
+#include <fmt/format.h>
+
+#include "core/math.hpp"
+#include "runtime/run/bring_up_patience.hpp"
+#include "runtime/tasks/code_at_work.hpp"
+
+namespace taktwerk::runtime {
+
+namespace {
+
+constexpr Duration service_period = std::chrono::milliseconds{1};
+constexpr Duration bring_up_patience = std::chrono::seconds{30};
+constexpr Duration bus_down_patience = std::chrono::seconds{5};
+constexpr Duration watch_period = std::chrono::milliseconds{20};
+
+}  // namespace
+
+RealtimeRunner::RealtimeRunner(Machine& machine, World* world) : machine_(machine), world_(world), end_watch_(machine) {
+    const auto& wanted = machine.config().realtime;
+    request_.priority = wanted.priority > 0 ? std::optional<int>{wanted.priority} : std::nullopt;
+    request_.cpus = wanted.cpus;
+    request_.lock_memory = wanted.lock_memory;
+}
+
+RealtimeRunner::~RealtimeRunner() { finish(); }
+
+void RealtimeRunner::cycle_thread() {
+    const CrashStack crash_stack;
+    report_ = prepare_cycle_thread(request_);
+    math::set_stepping_thread_float_environment();
+    ready_.store(true, std::memory_order_release);
+    CyclicConfig config;
+    config.period = machine_.config().cycle;
+    CyclicThread loop{clock_, config};
+    loop.run(
+        [this, &loop](const CycleTiming& timing) {
+            if (world_) world_->apply_events(timing.scheduled);
+            machine_.cycle({timing.scheduled, timing.woken, static_cast<std::uint32_t>(timing.missed)});
+            loop.shift_grid(machine_.bus().period_correction());
+        },
+        stop_);
+    counters_ = loop.counters();
+}
+
+void RealtimeRunner::task_thread(std::size_t index) {
+    const CrashStack crash_stack;
+    math::set_stepping_thread_float_environment();
+    // The cycle never wakes anybody (that would be a system call): a task looks for its release itself, often enough.
+    const Duration look = machine_.config().cycle / 4;
+    while (!stop_.load(std::memory_order_acquire)) {
+        if (!machine_.run_slow_task(index)) clock_.sleep_until(clock_.now() + look);
+    }
+}
+
+// Work that may wait. The last round comes after the cycle has ended: a program's stop(), the places where the axes came to rest.
+void RealtimeRunner::beside(const std::function<void(Instant)>& work) {
+    const CrashStack crash_stack;
+    bool ending = false;
+    do {
+        ending = stop_.load(std::memory_order_acquire) && !cycle_running_.load(std::memory_order_acquire);
+        work(clock_.now());
+        if (!ending) clock_.sleep_until(clock_.now() + service_period);
+    } while (!ending);
+}
+
+void RealtimeRunner::watch_thread() {
+    bool was_stuck = false, given_up = false;
+    while (!all_home_.load(std::memory_order_acquire)) {
+        const auto hopeless = end_watch_.look(clock_.now());
+        const auto& stuck = end_watch_.stuck();
+        if (stuck.has_value() != was_stuck && on_stuck) on_stuck(stuck ? &*stuck : nullptr);
+        was_stuck = stuck.has_value();
+        if (hopeless && !given_up && give_up) give_up(*hopeless);
+        given_up = given_up || hopeless;
+        clock_.sleep_until(clock_.now() + watch_period);
+    }
+}
+
+Result<RealtimeReport> RealtimeRunner::start() {
+    auto whole = prepare_process(request_, latency_);
+    cycle_running_.store(true, std::memory_order_release);
+    cycle_ = std::thread{[this] { cycle_thread(); }};
+    while (!ready_.load(std::memory_order_acquire)) std::this_thread::yield();
+    whole.items.insert(whole.items.end(), report_.items.begin(), report_.items.end());
+    if (machine_.config().realtime.required && !whole.all_granted()) {
+        finish();
+        return Error{"realtime.refused", "realtime", "the configuration requires real time, and the system refuses it:\n" + whole.text(),
+                     "give the process CAP_SYS_NICE and CAP_IPC_LOCK, or set `realtime.required: false`"};
+    }
+    for (std::size_t i = 0; i < machine_.slow_task_count(); ++i) tasks_.emplace_back([this, i] { task_thread(i); });
+    beside_.emplace_back([this] { beside([this](Instant) { machine_.service_programs(); }); });
+    beside_.emplace_back([this] { beside([this](Instant now) { machine_.service_disk(now); }); });
+    watch_ = std::thread{[this] { watch_thread(); }};
+    return whole;
+}
+
+void RealtimeRunner::service() {
+    next_service_ = std::max(next_service_ + service_period, clock_.now());
+    clock_.sleep_until(next_service_);
+    machine_.service_bus(clock_.now());
+}
+
+Result<void> RealtimeRunner::serve(const std::function<bool(Instant)>& keep_on) {
+    next_service_ = clock_.now();
+    machine_.start_bus();
+    auto up = bring_up(keep_on);
+    while (up && machine_.phase() != MachinePhase::stopped) {
+        service();
+        if (!keep_on(clock_.now())) machine_.request_shutdown();
+    }
+    // However it ended: slaves are left in INIT, not to their watchdogs.
+    machine_.stop_bus();
+    const auto down = clock_.now() + bus_down_patience;
+    while (machine_.bus().phase() != ecat::Master::Phase::stopped && clock_.now() < down) service();
+    return up;
+}
+
+Result<void> RealtimeRunner::bring_up(const std::function<bool(Instant)>& keep_on) {
+    const Duration patience = bring_up_patience + patience_with(machine_.bus().slave_count(), machine_.config().cycle);
+    const auto until = clock_.now() + patience;
+    while (!machine_.bus_operational()) {
+        service();
+        if (auto failure = machine_.bus_failure()) return *failure;
+        if (!keep_on(clock_.now())) machine_.request_shutdown();
+        if (machine_.phase() == MachinePhase::stopped)
+            return Error{std::string(ended_early), "run",
+                         fmt::format("ended: the bus was not operational yet; last: {}", machine_.bus_progress()),
+                         "nothing has moved; start it again"};
+        if (clock_.now() > until)
+            return Error{"bus.timeout", "bus",
+                         fmt::format("not operational after {:.0f} s; last: {}", to_seconds(patience), machine_.bus_progress()),
+                         "look at the slave that this line names"};
+    }
+    return machine_.arm();
+}
+
+void RealtimeRunner::finish() {
+    stop_.store(true, std::memory_order_release);
+    end_watch_.only_threads_left();
+    if (cycle_.joinable()) cycle_.join();
+    cycle_running_.store(false, std::memory_order_release);
+    for (auto* threads : {&tasks_, &beside_}) {
+        for (auto& thread : *threads)
+            if (thread.joinable()) thread.join();
+        threads->clear();
+    }
+    all_home_.store(true, std::memory_order_release);
+    if (watch_.joinable()) watch_.join();
+}
+
+}  // namespace taktwerk::runtime

@@ -1,0 +1,81 @@
+#pragma once
+// A task at a divisor of the cycle: latches its inputs at release, its outputs apply at its next release, whenever it finishes.
+// Therefore real time (a thread of its own) and virtual time (called after the cycle) agree by construction.
+//
+//   cycle thread: release(), finished()      task thread: run_if_released()
+
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+#include "core/cycle_context.hpp"
+#include "runtime/tasks/fault_text.hpp"
+#include "runtime/tasks/latched_requests.hpp"
+#include "runtime/tasks/program_host.hpp"
+
+namespace taktwerk::runtime {
+
+class SlowTask {
+public:
+    enum class State : std::uint8_t { idle, released, running, done };
+
+    SlowTask(const ProgramHost::Task& task, Program* program, std::vector<ProgramHost::Variable> variables, std::size_t axes,
+             std::size_t inputs, std::size_t outputs, std::size_t parameters, ObjectAccess& objects, axes::MotionTables& tables);
+
+    // --- cycle thread ---------------------------------------------------------------------------------------------------------
+    [[nodiscard]] bool due(std::uint64_t cycle) const noexcept { return cycle % divisor_ == 0; }
+    /// Not started, or ended: it may be released again.
+    [[nodiscard]] bool finished() const noexcept {
+        const auto state = state_.load(std::memory_order_acquire);
+        return state == State::idle || state == State::done;
+    }
+    /// Bits of each output point, known once the bus has laid out its image. Before the first release.
+    void learn_outputs(std::span<const std::uint8_t> bits) noexcept { output_bits_ = bits; }
+    /// What the last run wrote goes to the machine; only outputs and alarms that it changed.
+    void apply(axes::AxisRequests& axes, std::span<std::int64_t> outputs, std::uint64_t& program_alarms) noexcept;
+    void renew(axes::AxisRequests& axes) noexcept { requests_.renew(axes); }
+    /// Latches everything and hands the task to its thread.
+    void release(const CycleContext& now, std::span<const axes::AxisView> views, std::span<const std::int64_t> inputs,
+                 std::span<const std::int64_t> outputs, std::span<const double> parameters, std::uint64_t program_alarms) noexcept;
+    /// Values of the program's variables as the last applied run left them; for programs without a base task.
+    [[nodiscard]] std::span<const double> variables() const noexcept { return variables_applied_; }
+    /// How many runs have been applied.
+    [[nodiscard]] std::uint64_t applied() const noexcept { return applied_; }
+    [[nodiscard]] Duration last_run() const noexcept { return run_time_; }
+    /// Only while finished().
+    [[nodiscard]] bool threw() const noexcept { return threw_; }
+    [[nodiscard]] const FaultText& fault() const noexcept { return fault_; }
+    [[nodiscard]] TaskContext::Undeclared undeclared() const noexcept { return undeclared_; }
+    [[nodiscard]] std::size_t program() const noexcept { return task_.program; }
+    [[nodiscard]] const TaskConfig& config() const noexcept { return task_.config; }
+    /// The program was stopped: what its last run asked for is not carried out. Only while finished().
+    void forget() noexcept;
+    /// The program starts (again): forgets, and the next run is its first scan. Only while finished().
+    void restart() noexcept;
+
+    // --- task thread, or between cycles in virtual time -----------------------------------------------------------------------
+    /// True when there was something to do.
+    bool run_if_released() noexcept;
+
+private:
+    ProgramHost::Task task_;
+    Program* program_;
+    std::uint64_t divisor_;
+    std::vector<ProgramHost::Variable> variable_sources_;
+    std::atomic<State> state_{State::idle};
+    LatchedRequests requests_;
+    ObjectAccess& objects_;
+    axes::MotionTables& tables_;
+    std::vector<axes::AxisView> views_;
+    std::vector<std::int64_t> inputs_, outputs_, outputs_at_release_;
+    std::span<const std::uint8_t> output_bits_;
+    std::vector<double> parameters_, variable_values_, variables_applied_;
+    CycleContext context_;
+    std::uint64_t runs_ = 0, applied_ = 0, alarms_ = 0, alarms_at_release_ = 0;
+    bool threw_ = false;
+    FaultText fault_;
+    TaskContext::Undeclared undeclared_;
+    Duration run_time_{};
+};
+
+}  // namespace taktwerk::runtime

@@ -1,0 +1,216 @@
+#include "runtime/world/world.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/present_slaves.hpp"
+
+namespace taktwerk::runtime {
+
+namespace {
+
+constexpr int relaxed_factor = 100;  // as Supervision documents
+
+axes::sim::PlantConfig plant_of(const AxisBinding& binding) {
+    const auto& simulation = binding.simulation;
+    const double scale = binding.axis.gearing.counts_per_unit();
+    const auto counts = [&](double u) { return u * scale; };
+    axes::sim::PlantConfig plant;
+    plant.counts_per_revolution = binding.axis.gearing.counts_per_revolution;
+    plant.inertia = simulation.inertia;
+    plant.viscous_friction = simulation.viscous_friction;
+    plant.coulomb_friction = simulation.coulomb_friction;
+    plant.load_torque = simulation.load_torque * (scale < 0 ? -1.0 : 1.0);
+    plant.rated_torque = simulation.rated_torque;
+    plant.start = counts(simulation.start);
+    // On an inverted axis the drive's negative end is the axis' positive one.
+    const bool inverted = scale < 0;
+    const auto& low_stop = inverted ? simulation.positive_stop : simulation.negative_stop;
+    const auto& high_stop = inverted ? simulation.negative_stop : simulation.positive_stop;
+    const auto& low_limit = inverted ? simulation.positive_limit : simulation.negative_limit;
+    const auto& high_limit = inverted ? simulation.negative_limit : simulation.positive_limit;
+    if (low_stop) plant.negative_stop = counts(*low_stop);
+    if (high_stop) plant.positive_stop = counts(*high_stop);
+    if (low_limit) plant.negative_limit = counts(*low_limit);
+    if (high_limit) plant.positive_limit = counts(*high_limit);
+    if (simulation.home_from && simulation.home_to) {
+        plant.home_from = std::min(counts(*simulation.home_from), counts(*simulation.home_to));
+        plant.home_to = std::max(counts(*simulation.home_from), counts(*simulation.home_to));
+        plant.home_every = std::abs(counts(binding.axis.modulo));  // a cam on a load that turns passes once a turn
+    }
+    plant.index_pulse = counts(simulation.index_pulse);
+    plant.battery = simulation.battery;
+    if (const auto& marks = simulation.marks; marks.every > 0) {
+        const double begin = counts(marks.first), end = counts(marks.first + marks.length);
+        plant.probe[0] = {std::min(begin, end), std::max(begin, end), std::abs(counts(marks.every))};
+    }
+    return plant;
+}
+
+/// Configured slaves in cable order: fixed positions first, those by alias fill the gaps.
+std::vector<const ecat::SlaveConfig*> cable_order(const std::vector<ecat::SlaveConfig>& slaves) {
+    std::vector<const ecat::SlaveConfig*> order(slaves.size(), nullptr);
+    for (const auto& slave : slaves)
+        if (slave.position && *slave.position < order.size()) order[*slave.position] = &slave;
+    for (const auto& slave : slaves) {
+        if (slave.position && *slave.position < slaves.size()) continue;
+        for (auto& place : order)
+            if (!place) {
+                place = &slave;
+                break;
+            }
+    }
+    return order;
+}
+
+}  // namespace
+
+World::World(const MachineConfig& config, Instant start)
+    : network_(start), transport_(network_), start_(start), events_(config.simulation.events) {
+    std::stable_sort(events_.begin(), events_.end(), [](const auto& a, const auto& b) { return a.at < b.at; });
+    std::vector<axes::sim::PlantConfig> plants;
+    for (const auto& binding : config.axes) plants.push_back(plant_of(binding));
+    serial_.build(config, plants, start);
+    const auto present = present_slaves(config);
+    const auto install = [&](const ecat::SlaveConfig& slave, std::unique_ptr<ecat::sim::DeviceModel> model,
+                             ecat::sim::SlaveOptions options) {
+        const auto& wires = config.simulation.slaves;
+        const auto wire = std::find_if(wires.begin(), wires.end(), [&](const SlaveSimulation& w) { return w.slave == slave.name; });
+        if (wire != wires.end() && wire->drift_ppm) options.drift_ppm = *wire->drift_ppm;
+        // A parent that is not there (all its axes `simulated: true`) is bridged: the cable comes from the slave before.
+        auto* parent = wire != wires.end() ? find(wire->behind) : nullptr;
+        auto* before = slaves_.empty() ? nullptr : slaves_.back().slave;
+        if (parent == nullptr) parent = before;
+        const unsigned port = wire != wires.end() ? wire->port : 1;
+        const bool branch = parent != nullptr && network_.port_free(*parent, port);
+        auto& added = branch ? network_.add_behind(*parent, port, slave.device, std::move(model), options)
+                             : network_.add(slave.device, std::move(model), options);
+        if (wire != wires.end()) network_.set_cable_delay(added, ecat::sim::cable_delay(wire->cable));
+        slaves_.push_back({slave.name, &added});
+    };
+    for (const auto* slave : cable_order(present)) {
+        ecat::sim::SlaveOptions options;
+        options.name = slave->name;
+        options.alias = slave->alias.value_or(0);
+        options.device_id = slave->device_id;
+        if (!slave->device->mailbox) {
+            auto model = std::make_unique<ecat::sim::DigitalTerminal>();
+            auto* terminal = model.get();
+            install(*slave, std::move(model), options);
+            for (const auto& point : config.io)
+                if (point.slave == slave->name) points_.push_back({point, terminal, nullptr});
+            continue;
+        }
+        std::vector<axes::sim::Cia402Device::AxisSetup> setups;
+        std::vector<std::string> names;
+        const axes::DriveProfile* profile = nullptr;
+        for (const auto& binding : config.axes)
+            if (binding.slave == slave->name && binding.profile) profile = binding.profile.get();
+        static const axes::DriveProfile plain;  // a drive no axis uses still answers
+        if (!profile) profile = &plain;
+        setups.resize(profile->axes);
+        names.resize(profile->axes);
+        for (auto& setup : setups) setup.motor.counts_per_revolution = setup.plant.counts_per_revolution;
+        for (const auto& binding : config.axes) {
+            if (binding.slave != slave->name || binding.drive_axis >= profile->axes) continue;
+            auto& setup = setups[binding.drive_axis];
+            setup.plant = plant_of(binding);
+            setup.motor.counts_per_revolution = setup.plant.counts_per_revolution;
+            setup.motor.absolute_encoder = binding.axis.memory.absolute;
+            // Three motor turns of following error, and set-points within 6000 turns/min: what a drive of this class guards.
+            setup.motor.following_error_limit = 3.0 * static_cast<double>(setup.plant.counts_per_revolution);
+            setup.motor.maximum_velocity = 100.0 * static_cast<double>(setup.plant.counts_per_revolution);
+            setup.motor.overspeed = profile->overspeed_limit * setup.motor.maximum_velocity;
+            names[binding.drive_axis] = binding.axis.name;
+            options.drift_ppm = binding.simulation.clock_drift_ppm;
+        }
+        auto played = *profile;
+        // Without real time a drive that counts missed frames (TSVM 7.1.1) would count the stalls of this computer.
+        if (config.simulation.supervision == Supervision::relaxed)
+            played.missed_frames_allowed = static_cast<std::uint8_t>(std::min(255, played.missed_frames_allowed * relaxed_factor));
+        auto model = std::make_unique<axes::sim::Cia402Device>(played, setups);
+        for (std::size_t i = 0; i < names.size(); ++i)
+            if (!names[i].empty()) axes_.push_back({names[i], &model->axis(i), model.get(), i});
+        for (const auto& binding : config.axes)
+            if (binding.slave == slave->name)
+                for (const auto& setting : binding.stored) model->commission(binding.drive_axis, setting.object, setting.value);
+        for (const auto& point : config.io)
+            if (point.slave == slave->name) points_.push_back({point, nullptr, model.get()});
+        install(*slave, std::move(model), options);
+    }
+    for (const auto& point : config.io)
+        if (point.direction == IoDirection::input && point.simulated) set_input_value(point.name, *point.simulated);
+}
+
+ecat::sim::SimSlave* World::find(std::string_view slave) const noexcept {
+    for (const auto& place : slaves_)
+        if (place.name == slave) return place.slave;
+    return nullptr;
+}
+
+const World::AxisPlace* World::place(std::string_view axis) const noexcept {
+    for (const auto& place : axes_)
+        if (place.name == axis) return &place;
+    return nullptr;
+}
+
+axes::sim::Cia402Axis* World::drive(std::string_view axis) noexcept {
+    const auto* found = place(axis);
+    return found ? found->axis : nullptr;
+}
+
+bool World::is_single_bit(std::string_view input) const noexcept {
+    for (const auto& point : points_)
+        if (point.terminal && point.config.name == input && point.config.direction == IoDirection::input) return true;
+    return false;
+}
+
+void World::set_input_value(std::string_view name, std::int64_t value) {
+    for (auto& point : points_) {
+        if (point.config.name != name || point.config.direction != IoDirection::input) continue;
+        if (point.terminal) point.terminal->set_input(point.config.sub - 1u, value != 0);
+        else point.device->hold(point.config.index, point.config.sub, value);
+    }
+}
+
+bool World::output(std::string_view name) const {
+    for (const auto& point : points_)
+        if (point.terminal && point.config.name == name && point.config.direction == IoDirection::output)
+            return point.terminal->output(point.config.sub - 1u);
+    return false;
+}
+
+void World::set_slave_power(std::string_view slave, bool on) {
+    if (auto* there = find(slave)) network_.set_power(*there, on);
+}
+
+void World::set_cable(std::string_view slave, bool plugged) {
+    if (auto* there = find(slave)) network_.set_cable(*there, plugged);
+}
+
+void World::happen(const SimulationEvent& event) {
+    using Kind = SimulationEvent::Kind;
+    if (serial_.happen(event)) return;
+    switch (event.kind) {
+        case Kind::input: set_input_value(event.target, event.value); break;
+        case Kind::slave_power: set_slave_power(event.target, event.value != 0); break;
+        case Kind::drive_fault:
+            if (const auto* axis = place(event.target)) axis->device->raise(axis->index, static_cast<std::uint16_t>(event.value));
+            break;
+        case Kind::main_power:
+            if (const auto* axis = place(event.target)) axis->device->main_power(event.value != 0);
+            break;
+        case Kind::serial_line: break;
+        case Kind::jam:
+            if (auto* axis = drive(event.target)) axis->jam(event.value == 0);
+            break;
+    }
+}
+
+void World::apply_events(Instant now) {
+    while (next_event_ < events_.size() && start_ + events_[next_event_].at <= now) happen(events_[next_event_++]);
+    if (also) also(now);
+    serial_.wire([this](const std::string& point) { return output(point); });
+}
+
+}  // namespace taktwerk::runtime

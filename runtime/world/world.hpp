@@ -1,0 +1,82 @@
+#pragma once
+// The simulated machine behind the bus: slaves, drives, mechanics, and what happens to them at given times. Built from the same
+// configuration as the machine; reached by the master only through frames.
+
+#include <functional>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "axes/sim/cia402_device.hpp"
+#include "core/time.hpp"
+#include "ecat/sim/digital_terminal.hpp"
+#include "ecat/sim/sim_network.hpp"
+#include "ecat/transport/loopback.hpp"
+#include "runtime/machine_config.hpp"
+#include "runtime/world/serial_world.hpp"
+
+namespace taktwerk::runtime {
+
+class World {
+public:
+    /// `config` has passed check(). `start`: the machine time now.
+    World(const MachineConfig& config, Instant start);
+
+    [[nodiscard]] ecat::LoopbackTransport& transport() noexcept { return transport_; }
+    [[nodiscard]] ecat::sim::SimNetwork& network() noexcept { return network_; }
+    /// The serial lines; serial().lines() is for Machine::build.
+    [[nodiscard]] SerialWorld& serial() noexcept { return serial_; }
+
+    /// Lets the configured events happen that are due. Called by whoever runs the cycle, before it.
+    void apply_events(Instant now);
+    /// Called with each apply_events(), on its thread: other hands on the machine. Set before anything runs.
+    std::function<void(Instant)> also;
+    /// Lets one thing happen now; `at` does not matter. From the thread that applies the events. Unknown names: nothing happens.
+    void happen(const SimulationEvent& event);
+
+    // --- hands on the machine: tests, demos -----------------------------------------------------------------------------------
+    /// nullptr when the axis is not on a simulated drive.
+    [[nodiscard]] axes::sim::Cia402Axis* drive(std::string_view axis) noexcept;
+    /// The contact of a named input point (before its `inverted`).
+    void set_input(std::string_view point, bool value) { set_input_value(point, value ? 1 : 0); }
+    /// What the field gives a named input point, of any width: the raw value of its object. A one-bit point of a terminal takes 0 as FALSE.
+    void set_input_value(std::string_view point, std::int64_t value);
+    /// An input of a terminal: 0 or 1, and nothing else.
+    [[nodiscard]] bool is_single_bit(std::string_view input) const noexcept;
+    /// What a named output point drives at the terminal.
+    [[nodiscard]] bool output(std::string_view point) const;
+    void set_slave_power(std::string_view slave, bool on);
+    /// Pulls or plugs the cable in front of a slave.
+    void set_cable(std::string_view slave, bool plugged);
+
+private:
+    [[nodiscard]] ecat::sim::SimSlave* find(std::string_view slave) const noexcept;
+
+    struct Point {
+        IoPoint config;
+        ecat::sim::DigitalTerminal* terminal = nullptr;  // either ...
+        axes::sim::Cia402Device* device = nullptr;       // ... or
+    };
+    struct AxisPlace {
+        std::string name;
+        axes::sim::Cia402Axis* axis = nullptr;
+        axes::sim::Cia402Device* device = nullptr;
+        std::size_t index = 0;  ///< of the axis in its drive
+    };
+    [[nodiscard]] const AxisPlace* place(std::string_view axis) const noexcept;
+    SerialWorld serial_;
+    ecat::sim::SimNetwork network_;
+    ecat::LoopbackTransport transport_;
+    Instant start_;
+    struct SlavePlace {
+        std::string name;
+        ecat::sim::SimSlave* slave;
+    };
+    std::vector<SlavePlace> slaves_;  // in cable order
+    std::vector<AxisPlace> axes_;
+    std::vector<Point> points_;
+    std::vector<SimulationEvent> events_;  // by time
+    std::size_t next_event_ = 0;
+};
+
+}  // namespace taktwerk::runtime
