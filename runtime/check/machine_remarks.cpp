@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "runtime/relaxed_supervision.hpp"
+
 namespace taktwerk::runtime {
 
 namespace {
@@ -118,7 +120,7 @@ void bus_load(Remarks& remarks, const MachineConfig& config) {
 /// Frames may be lost for longer than the slaves bear it: the limit says something that does not hold.
 void watchdogs(Remarks& remarks, const MachineConfig& config) {
     const bool relaxed = config.simulation.supervision == Supervision::relaxed;
-    const std::int64_t cycles = std::int64_t{config.bus.lost_frames_limit} * (relaxed ? 100 : 1);
+    const std::int64_t cycles = supervised_limit(config, config.bus.lost_frames_limit);
     const Duration borne = cycles * config.cycle;
     std::vector<std::string> earlier;
     Duration shortest = borne;
@@ -135,8 +137,8 @@ void watchdogs(Remarks& remarks, const MachineConfig& config) {
     remarks.add(
         "watchdog_below_limit", "bus.lost_frames_limit",
         fmt::format("the machine bears {} cycles in a row without an answer{}, {:g} ms, but the watchdog of {}{} trips after {:g} ms",
-                    cycles, relaxed ? " (100 times the limit: relaxed)" : "", to_seconds(borne) * 1e3, fmt::join(earlier, ", "),
-                    more > 0 ? fmt::format(" and {} more", more) : "", to_seconds(shortest) * 1e3),
+                    cycles, relaxed ? fmt::format(" ({} times the limit: relaxed)", relaxed_factor) : "", to_seconds(borne) * 1e3,
+                    fmt::join(earlier, ", "), more > 0 ? fmt::format(" and {} more", more) : "", to_seconds(shortest) * 1e3),
         "lost frames stop these slaves, and the machine with them, before the limit is reached: give a smaller `lost_frames_limit`, or "
         "them a longer `sm_watchdog`");
 }
@@ -160,7 +162,7 @@ void startup_sizes(Remarks& remarks, const MachineConfig& config) {
 /// It is copied along with the rest of a file that ran simulated.
 void relaxed_on_a_port(Remarks& remarks, const MachineConfig& config) {
     if (config.bus.interface.empty() || config.simulation.supervision != Supervision::relaxed) return;
-    const std::int64_t cycles = std::int64_t{config.bus.lost_frames_limit} * 100;
+    const auto cycles = supervised_limit(config, config.bus.lost_frames_limit);
     remarks.add(
         "relaxed_on_a_port", "simulation.supervision",
         fmt::format("relaxed holds on '{}', too: {} cycles without an answer are borne, and behind such a gap a drive leaps to where its "

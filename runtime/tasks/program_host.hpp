@@ -50,6 +50,7 @@ public:
     [[nodiscard]] const std::vector<Task>& tasks() const noexcept { return tasks_; }
     [[nodiscard]] const std::vector<Variable>& variables() const noexcept { return variables_; }
     [[nodiscard]] std::vector<double>& parameters() noexcept { return parameters_; }
+    [[nodiscard]] const std::vector<double>& parameters() const noexcept { return parameters_; }
     /// Adds names, units and documentation of variables, parameters, programs and tasks.
     void describe(MachineLayout& layout) const;
     [[nodiscard]] const MachineLayout::ParameterInfo& parameter(std::size_t index) const { return parameter_info_[index]; }

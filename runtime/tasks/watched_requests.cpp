@@ -95,7 +95,7 @@ axes::ErrorId WatchedRequests::power(axes::AxisRef axis, bool enable, bool posit
     return error;
 }
 
-void WatchedRequests::end_of_cycle(Instant now, bool everything_ends, std::span<const ProgramState> programs) noexcept {
+void WatchedRequests::end_of_cycle(Instant now, bool everything_ends, const ProgramRecords& programs) noexcept {
     for (std::size_t i = 0; i < places_.size(); ++i) {
         auto& place = places_[i];
         const auto& view = axes_[i].view();
@@ -108,7 +108,7 @@ void WatchedRequests::end_of_cycle(Instant now, bool everything_ends, std::span<
             event.axis_error = view.state == AxisState::ErrorStop ? view.error : std::uint16_t{0};
             (void)view.status(place.active, &event.error);
             const auto program = event.given.program;
-            const bool ends_too = everything_ends || (program < programs.size() && programs[program] != ProgramState::running);
+            const bool ends_too = everything_ends || (program < programs.size() && !programs[program].running());
             if (event.given.kind != CommandKind::none && event.given.kind != CommandKind::jog && !ends_too) events_.note(event, now);
         }
         place.active = view.active_in_target ? 0 : view.active;

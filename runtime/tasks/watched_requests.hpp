@@ -9,7 +9,7 @@
 
 #include "axes/axis/direct_requests.hpp"
 #include "runtime/command_events.hpp"
-#include "runtime/snapshot.hpp"
+#include "runtime/tasks/program_record.hpp"
 
 namespace taktwerk::runtime {
 
@@ -28,7 +28,7 @@ public:
     }
     /// Once a cycle, after everybody has asked: what axes have ended by themselves. What ends with its program or with everything
     /// (an emergency stop, the end of the run) needs no word of its own.
-    void end_of_cycle(Instant now, bool everything_ends, std::span<const ProgramState> programs) noexcept;
+    void end_of_cycle(Instant now, bool everything_ends, const ProgramRecords& programs) noexcept;
 
     /// Two programs that command one axis: who took it from whom, while that is to be shown.
     struct Rivals {

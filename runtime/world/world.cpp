@@ -4,12 +4,11 @@
 #include <cmath>
 
 #include "runtime/present_slaves.hpp"
+#include "runtime/relaxed_supervision.hpp"
 
 namespace taktwerk::runtime {
 
 namespace {
-
-constexpr int relaxed_factor = 100;  // as Supervision documents
 
 axes::sim::PlantConfig plant_of(const AxisBinding& binding) {
     const auto& simulation = binding.simulation;
@@ -126,8 +125,7 @@ World::World(const MachineConfig& config, Instant start)
         }
         auto played = *profile;
         // Without real time a drive that counts missed frames (TSVM 7.1.1) would count the stalls of this computer.
-        if (config.simulation.supervision == Supervision::relaxed)
-            played.missed_frames_allowed = static_cast<std::uint8_t>(std::min(255, played.missed_frames_allowed * relaxed_factor));
+        played.missed_frames_allowed = static_cast<std::uint8_t>(std::min(255u, supervised_limit(config, played.missed_frames_allowed)));
         auto model = std::make_unique<axes::sim::Cia402Device>(played, setups);
         for (std::size_t i = 0; i < names.size(); ++i)
             if (!names[i].empty()) axes_.push_back({names[i], &model->axis(i), model.get(), i});

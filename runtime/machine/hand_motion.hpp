@@ -1,0 +1,45 @@
+#pragma once
+// What people do to an axis by hand: jog it, stop it. And which of their stops was the newest. Real-time safe.
+
+#include <cstdint>
+#include <vector>
+
+#include "axes/axis/command.hpp"
+#include "runtime/machine/machine_body.hpp"
+#include "runtime/operator_command.hpp"
+
+namespace taktwerk::runtime {
+
+/// What became of a command.
+struct Verdict {
+    Answer answer = Answer::accepted;
+    axes::ErrorId error = axes::ErrorId::none;
+};
+[[nodiscard]] Verdict verdict_of(axes::ErrorId error) noexcept;
+
+class HandMotion {
+public:
+    explicit HandMotion(MachineBody& body) : body_(body), axes_(body.config.axes.size()) {}
+
+    /// Along the ramp, whoever owns the axis.
+    Verdict stop(std::size_t axis) noexcept;
+    /// As OperatorAction::jog.
+    Verdict jog(const OperatorCommand& command, std::size_t axis) noexcept;
+    /// The mode changes: a jog that was is forgotten.
+    void forget_jog(std::size_t axis) noexcept { axes_[axis].jog = 0; }
+
+    /// A stop level of that number was taken.
+    void note_stop(std::size_t axis, std::uint64_t number) noexcept;
+    /// Its number; 0: none.
+    [[nodiscard]] std::uint64_t newest_stop(std::size_t axis) const noexcept { return axes_[axis].stopped_at; }
+
+private:
+    struct OfAxis {
+        axes::CommandId jog = 0;
+        std::uint64_t stopped_at = 0;
+    };
+    MachineBody& body_;
+    std::vector<OfAxis> axes_;
+};
+
+}  // namespace taktwerk::runtime

@@ -1,0 +1,147 @@
+// How the rooms of a machine are built, and the twelve steps of its cycle (docs/architecture.md).
+
+#include <algorithm>
+#include <array>
+
+#include "axes/axis/plan_order.hpp"
+#include "runtime/machine/machine_impl.hpp"
+#include "runtime/machine/machine_layout.hpp"
+#include "runtime/recording/inbox_record.hpp"
+
+namespace taktwerk::runtime {
+
+namespace {
+
+std::array<std::string_view, step_count - 1> measured_steps() {
+    std::array<std::string_view, step_count - 1> names{};
+    for (std::size_t i = 0; i < names.size(); ++i) names[i] = name(static_cast<Step>(i));
+    return names;
+}
+
+std::unique_ptr<PositionKeeper> kept_positions(MachineBody& body, std::vector<Error>& errors) {
+    if (body.config.retain.empty()) return nullptr;
+    auto positions = std::make_unique<PositionKeeper>(body.config.retain, body.config.axes, errors);
+    positions->restore(body.axes);
+    return positions;
+}
+
+}  // namespace
+
+Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, const std::vector<modbus::SerialLine*>& lines,
+                    std::vector<Error>& errors)
+    : body(std::move(machine), transport),
+      drives(body, lines, errors),
+      positions(kept_positions(body, errors)),
+      hands(body),
+      programs(body, hands, errors),
+      desk(body, hands, programs),
+      supervisor(body, drives, programs, desk, positions.get()),
+      snapshots(body, programs),
+      layout(layout_of(body, drives, programs.host())),
+      words(body, drives, programs, supervisor, layout),
+      steps(measured_steps()) {
+    // Now the programs have declared their tables.
+    for (auto& axis : body.axes) axis.bind({body.axes.data(), body.axes.size(), &body.tables, body.io.inputs()});
+}
+
+Result<void> Machine::Impl::arm() {
+    if (auto ok = drives.resolve(); !ok) return ok;
+    if (!outputs_laid_out.load(std::memory_order_relaxed))
+        if (auto ok = body.io.resolve(body.bus); !ok) return ok;
+    programs.learn_outputs();
+    snapshots.prepare();
+    desk.begin();
+    body.phase.store(MachinePhase::running, std::memory_order_release);
+    body.armed.store(true, std::memory_order_release);
+    return {};
+}
+
+void Machine::Impl::lay_out_outputs() {
+    using Phase = ecat::Master::Phase;
+    const auto at = body.bus.phase();
+    const bool planned = at == Phase::configuring || at == Phase::safeop || at == Phase::operational;
+    if (!planned || body.armed.load(std::memory_order_relaxed) || outputs_laid_out.load(std::memory_order_relaxed)) return;
+    // What cannot be resolved is told by arm().
+    if (body.io.resolve(body.bus)) outputs_laid_out.store(true, std::memory_order_release);
+}
+
+void Machine::Impl::cycle(const CycleTick& tick) noexcept {
+    const Stopwatch whole;
+    const bool runs = body.armed.load(std::memory_order_acquire);
+    if (body.recorder) record_tick(*body.recorder, tick);
+    if (runs) body.now = tick.scheduled;
+    const bool at_tick = body.config.send == SendMode::at_tick;
+    steps.begin();
+
+    body.bus.receive(tick.scheduled);
+    if (at_tick) body.bus.send(tick.scheduled);  // what the cycle before has computed, always at the same instant
+    done(Step::receive);
+
+    if (runs) compute(tick);
+    else wait_for_bus(tick);
+
+    if (!at_tick) body.bus.send(tick.scheduled);
+    done(Step::send);
+
+    if (runs) tell(tick);
+    done(Step::snapshot);
+    steps.end();
+    auto& statistics = body.statistics;
+    statistics.compute = Stopwatch{whole}.lap();
+    statistics.compute_max = std::max(statistics.compute_max, statistics.compute);
+    pulse_cycles.fetch_add(1, std::memory_order_relaxed);
+}
+
+void Machine::Impl::wait_for_bus(const CycleTick& tick) noexcept {
+    desk.take_levels(tick.scheduled);
+    if (desk.shutdown_taken()) body.phase.store(MachinePhase::stopped, std::memory_order_release);
+    if (outputs_laid_out.load(std::memory_order_acquire)) body.io.write(body.bus.outputs());
+}
+
+void Machine::Impl::compute(const CycleTick& tick) noexcept {
+    const auto now = body.now;
+    programs.take_answers();
+    desk.take_levels(now);
+    body.requests.speak_for(no_program, now);
+    desk.drain_inbox(now);
+    done(Step::inbox);
+
+    body.io.read(body.bus.inputs());
+    done(Step::decode);
+
+    for (auto& axis : body.axes) axis.update(now);
+    if (body.recorder) drives.serial().record();
+    done(Step::update);
+
+    supervisor.step(tick);
+    done(Step::supervise);
+
+    body.requests.speak_for(no_program, now);
+    desk.renew_power();
+    programs.run_tasks();
+    drives.serial().hold_watchdog_outputs();
+    done(Step::tasks);
+
+    axes::plan_axes(body.axes, now, body.config.cycle);
+    body.requests.end_of_cycle(now, body.emergency || body.shutting_down, programs.programs());
+    done(Step::plan);
+
+    const Instant send_time = body.config.send == SendMode::at_tick ? now + body.config.cycle : now;
+    for (auto& axis : body.axes) axis.encode(send_time);
+    body.io.write(body.bus.outputs());
+    done(Step::encode);
+}
+
+void Machine::Impl::tell(const CycleTick& tick) noexcept {
+    auto& statistics = body.statistics;
+    statistics.cycles = ++body.cycles;
+    statistics.missed_ticks += tick.missed;
+    if (tick.missed > 0) ++statistics.overruns;
+    statistics.lateness = tick.woken - tick.scheduled;
+    statistics.lateness_max = std::max(statistics.lateness_max, statistics.lateness);
+    programs.read_variables();
+    snapshots.step();
+    if (positions) positions->watch(body.axes, body.now, body.shutting_down);
+}
+
+}  // namespace taktwerk::runtime

@@ -1,0 +1,93 @@
+#include "runtime/machine/machine_drives.hpp"
+
+#include <algorithm>
+
+#include "axes/axis/alarms.hpp"
+#include "axes/sim/virtual_drive.hpp"
+#include "runtime/relaxed_supervision.hpp"
+
+namespace taktwerk::runtime {
+
+namespace {
+
+std::size_t slave_named(const ecat::Master& bus, const std::string& name) {
+    auto found = MachineDrives::no_slave;
+    for (std::size_t s = 0; s < bus.slave_count(); ++s)
+        if (!name.empty() && bus.slave(s).name == name) found = s;
+    return found;
+}
+
+std::vector<std::vector<std::size_t>> drives_of_several_axes(const std::vector<std::size_t>& axis_slave, std::size_t slaves) {
+    std::vector<std::vector<std::size_t>> out(slaves);
+    for (std::size_t axis = 0; axis < axis_slave.size(); ++axis)
+        if (axis_slave[axis] != MachineDrives::no_slave) out[axis_slave[axis]].push_back(axis);
+    std::erase_if(out, [](const auto& drive) { return drive.size() < 2; });
+    return out;
+}
+
+}  // namespace
+
+MachineDrives::MachineDrives(MachineBody& body, const std::vector<modbus::SerialLine*>& lines, std::vector<Error>& errors)
+    : body_(body), serial_(body, lines, errors) {
+    build_ports();
+    build_axes();
+    shared_ = drives_of_several_axes(slave_of_, body.bus.slave_count());
+}
+
+void MachineDrives::build_ports() {
+    auto& bus = body_.bus;
+    const auto& config = body_.config;
+    for (std::size_t i = 0; i < config.axes.size(); ++i) {
+        const auto& binding = config.axes[i];
+        const auto slave = slave_named(bus, binding.slave);
+        slave_of_.push_back(slave);
+        if (auto on_line = serial_.drive_of(i)) {
+            ports_.push_back(std::move(on_line));
+        } else if (slave == no_slave) {
+            ports_.push_back(std::make_unique<axes::sim::VirtualDrive>(config.cycle));
+        } else {
+            auto drive = std::make_unique<axes::cia402::Cia402Drive>(
+                bus, slave, binding.drive_axis, binding.profile, ecat::exchange_period(body_.bus_config, bus.slave(slave)),
+                axes::cia402::AxisWants{binding.axis.gearing.counts_per_revolution, binding.stored});
+            bus_drives_.push_back(drive.get());
+            ports_.push_back(std::move(drive));
+        }
+    }
+}
+
+void MachineDrives::build_axes() {
+    const auto& config = body_.config;
+    body_.axes.reserve(config.axes.size());
+    for (std::size_t i = 0; i < config.axes.size(); ++i) {
+        auto axis = config.axes[i].axis;
+        axis.stale_limit = static_cast<std::uint16_t>(std::min<std::uint32_t>(supervised_limit(config, axis.stale_limit), 60000));
+        body_.axes.emplace_back(axis, *ports_[i], config.cycle, static_cast<std::uint16_t>(i), &body_.views[i]);
+    }
+    body_.requests = WatchedRequests{body_.axes};
+}
+
+void MachineDrives::step(Instant now) {
+    serial_.step(now);
+    for (auto& port : ports_) port->step(now);
+}
+
+Result<void> MachineDrives::resolve() {
+    for (auto* drive : bus_drives_)
+        if (auto ok = drive->resolve(); !ok) return ok;
+    return {};
+}
+
+// TSVM 7.1: some alarms have no axis. Whichever axis shows one, the others behind the same slave must not go on; those that show it too
+// stop by themselves.
+void MachineDrives::stop_axes_of_faulted_drives() noexcept {
+    for (const auto& drive : shared_)
+        for (const auto faulted : drive) {
+            const auto alarm = ports_[faulted]->alarm();
+            if (!alarm.whole_drive || alarm.warning) continue;
+            for (const auto other : drive)
+                if (other != faulted && ports_[other]->alarm().code == 0)
+                    body_.axes[other].stop_for_error(axes::id(axes::AxisAlarm::drive_fault), true);
+        }
+}
+
+}  // namespace taktwerk::runtime

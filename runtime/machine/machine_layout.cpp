@@ -1,0 +1,42 @@
+#include "runtime/machine/machine_layout.hpp"
+
+namespace taktwerk::runtime {
+
+namespace {
+
+MachineLayout::AxisInfo axis_info(const MachineBody& body, const MachineDrives& drives, std::size_t axis) {
+    const auto& binding = body.config.axes[axis];
+    const bool on_line = !binding.drive.empty() && !binding.axis.simulated;
+    MachineLayout::AxisInfo info;
+    info.name = binding.axis.name;
+    info.unit = binding.axis.unit;
+    info.disabled = binding.axis.disabled;
+    info.simulated = !drives.on_bus(axis) && !on_line;
+    info.jog_slow = body.views[axis].manual_slow;
+    info.jog_fast = body.views[axis].manual_fast;
+    info.drive_axis = binding.drive_axis;
+    if (drives.on_bus(axis)) info.drive = binding.slave;
+    else if (on_line && drives.serial().has_lines()) info.drive = binding.drive;
+    if (!info.drive.empty() && binding.profile) info.profile = binding.profile->name;
+    return info;
+}
+
+}  // namespace
+
+MachineLayout layout_of(const MachineBody& body, const MachineDrives& drives, const ProgramHost& programs) {
+    const auto& config = body.config;
+    MachineLayout layout;
+    layout.machine = config.name;
+    layout.cycle = config.cycle;
+    for (std::size_t i = 0; i < config.axes.size(); ++i) layout.axes.push_back(axis_info(body, drives, i));
+    layout.interface = config.bus.interface;
+    for (const auto& line : config.serial)
+        if (!line.device.empty()) layout.serial_devices.push_back(line.device);
+    for (std::size_t s = 0; s < body.bus.slave_count(); ++s) layout.slaves.push_back(body.bus.slave(s).name);
+    layout.inputs = body.io.names(IoDirection::input);
+    layout.outputs = body.io.names(IoDirection::output);
+    programs.describe(layout);
+    return layout;
+}
+
+}  // namespace taktwerk::runtime

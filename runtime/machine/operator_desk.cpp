@@ -1,0 +1,130 @@
+#include "runtime/machine/operator_desk.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/recording/inbox_record.hpp"
+
+namespace taktwerk::runtime {
+
+namespace {
+
+constexpr std::size_t inbox_size = 64;
+
+OperatorAction action_of(StopLevel level) noexcept {
+    switch (level) {
+        case StopLevel::stop: return OperatorAction::stop;
+        case StopLevel::release_jog: return OperatorAction::jog;
+        case StopLevel::shutdown: break;
+    }
+    return OperatorAction::shutdown;
+}
+
+}  // namespace
+
+OperatorDesk::OperatorDesk(MachineBody& body, HandMotion& hands, ProgramRunner& programs)
+    : body_(body),
+      hands_(hands),
+      programs_(programs),
+      inbox_(inbox_size),
+      answers_(inbox_size * 2),
+      levels_(body.config.axes.size()),
+      power_held_(body.config.axes.size()),
+      outputs_by_hand_(body.io.outputs().size()) {}
+
+std::optional<CommandAnswer> OperatorDesk::next_answer() noexcept {
+    CommandAnswer answer;
+    if (!answers_.try_pop(answer)) return std::nullopt;
+    return answer;
+}
+
+StopLevels::Ticket OperatorDesk::request_shutdown() noexcept {
+    shutdown_asked_.store(true, std::memory_order_release);
+    return levels_.shutdown();
+}
+
+// One place for what comes from outside: a level is recorded as the command that it is. Nobody waits for an answer in the ring.
+void OperatorDesk::take_levels(Instant at) noexcept {
+    levels_.take([&](StopLevel what, std::uint16_t axis, std::uint64_t number) {
+        OperatorCommand command;
+        command.axis = axis;
+        command.sequence = number;
+        command.action = action_of(what);
+        if (body_.recorder) record_command(*body_.recorder, at, command);
+        if (what == StopLevel::shutdown) {
+            shutdown_taken_ = true;
+            return;
+        }
+        // Before that nothing moves; a program that starts by itself shall not then.
+        const bool moves = body_.armed.load(std::memory_order_relaxed);
+        const bool all = axis == StopLevels::all_axes;
+        for (std::size_t i = all ? 0 : axis; i < (all ? body_.axes.size() : axis + std::size_t{1}); ++i) {
+            hands_.note_stop(i, number);
+            if (!moves) continue;
+            // A program's axis was never jogged: that press was refused.
+            const bool spared = what == StopLevel::release_jog && body_.axes[i].view().owner == axes::Owner::program;
+            if (!body_.config.axes[i].axis.disabled && !spared) (void)hands_.stop(i);
+        }
+    });
+}
+
+/// Given before a stop of its axis (a program: of one of its axes), and only now at its turn: it must not start what that stop has ended.
+bool OperatorDesk::overtaken(const OperatorCommand& command) const noexcept {
+    if (command.action == OperatorAction::program_start)
+        return command.index < programs_.programs().size() && command.after < programs_.newest_stop_of(command.index);
+    const bool starts_motion = command.action == OperatorAction::home || command.action == OperatorAction::move_absolute ||
+                               (command.action == OperatorAction::jog && command.value != 0);
+    return starts_motion && command.axis < body_.axes.size() && command.after < hands_.newest_stop(command.axis);
+}
+
+void OperatorDesk::drain_inbox(Instant at) noexcept {
+    OperatorCommand command;
+    for (std::uint8_t i = 0; i < body_.config.commands_per_cycle && inbox_.try_pop(command); ++i) {
+        if (body_.recorder) record_command(*body_.recorder, at, command);
+        // A stop is never too late, and while the run ends everything stops anyway.
+        const bool stops = command.action == OperatorAction::stop || command.action == OperatorAction::shutdown;
+        if (!stops && command.expires != Instant{} && command.expires < at) answer(command, {Answer::stale});
+        else if (overtaken(command)) answer(command, {Answer::stale});
+        else if (!stops && body_.shutting_down) answer(command, {Answer::not_possible_now});
+        else answer(command, execute(command));
+    }
+}
+
+void OperatorDesk::answer(const OperatorCommand& command, Verdict verdict) noexcept {
+    CommandAnswer reply;
+    reply.client = command.client;
+    reply.sequence = command.sequence;
+    reply.answer = verdict.answer;
+    reply.error = verdict.error;
+    if (command.axis < body_.axes.size()) {
+        reply.owner = body_.axes[command.axis].view().owner;
+        reply.holder = body_.axes[command.axis].view().holder;
+        if (verdict.answer == Answer::accepted) tell_limit(command, reply);
+    }
+    if (verdict.answer != Answer::accepted) ++body_.statistics.commands_refused;
+    answers_.try_push(reply);  // a full ring means nobody reads: the client's own time-out tells it
+}
+
+// Who asked for more than the axis gives now is told so: a slow axis must not look like a granted wish.
+void OperatorDesk::tell_limit(const OperatorCommand& command, CommandAnswer& reply) const noexcept {
+    const bool moves = command.action == OperatorAction::jog || command.action == OperatorAction::move_absolute;
+    if (!moves) return;
+    const double wanted = std::abs(command.action == OperatorAction::jog ? command.value : command.value2);
+    const auto& view = body_.axes[command.axis].view();
+    const auto& limits = body_.config.axes[command.axis].axis;
+    const auto mode = body_.mode;
+    double most = limits.limits.velocity;
+    Mode by = Mode::automatic;
+    const double of_mode = mode == Mode::manual  ? view.manual_fast
+                           : mode == Mode::setup ? (limits.manual.setup_velocity > 0 ? limits.manual.setup_velocity : view.manual_slow)
+                                                 : most;
+    if (mode != Mode::automatic && of_mode < most) {
+        most = of_mode;
+        by = mode;
+    }
+    if (!(wanted > most)) return;
+    reply.limited_to = most;
+    reply.limited_in = by;
+}
+
+}  // namespace taktwerk::runtime

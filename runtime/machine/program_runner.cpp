@@ -1,0 +1,224 @@
+// Starting and stopping programs, and what ends with one: its axes, its outputs. Real-time safe except what other threads call.
+
+#include "runtime/machine/program_runner.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "runtime/tasks/code_at_work.hpp"
+
+namespace taktwerk::runtime {
+
+namespace {
+
+/// Named while it runs: what never returns from here is told by name, and so is what crashes.
+class HookAtWork {
+public:
+    HookAtWork(std::atomic<std::int32_t>& at, std::size_t program, const char* name, const char* part) : at_(at), code_(name, part) {
+        at_.store(static_cast<std::int32_t>(program), std::memory_order_relaxed);
+    }
+    ~HookAtWork() { at_.store(-1, std::memory_order_relaxed); }
+    HookAtWork(const HookAtWork&) = delete;
+    HookAtWork& operator=(const HookAtWork&) = delete;
+
+private:
+    std::atomic<std::int32_t>& at_;
+    ProgramCode code_;
+};
+
+}  // namespace
+
+ProgramRunner::ProgramRunner(MachineBody& body, HandMotion& hands, std::vector<Error>& errors)
+    : body_(body),
+      hands_(hands),
+      host_(body.config, body.io, body.tables, errors),
+      claims_(body.config.axes.size()),
+      objects_(body.config.programs.size(), body.bus.slave_count()) {
+    for (std::size_t p = 0; p < body.config.programs.size(); ++p)
+        programs_.emplace_back(body.requests, claims_, static_cast<std::uint16_t>(p));
+    build_tasks();
+    task_statistics_.resize(host_.tasks().size());
+    for (const auto& variable : host_.variables()) variable_values_.push_back(ProgramHost::read(variable));
+}
+
+void ProgramRunner::build_tasks() {
+    const auto& tasks = host_.tasks();
+    for (const auto& task : tasks)
+        if (task.config.divisor == 1) programs_[task.program].has_base_task = true;
+    for (std::size_t i = 0; i < tasks.size(); ++i) {
+        const auto& task = tasks[i];
+        if (task.config.divisor == 1) {
+            base_tasks_.push_back({i, 0});
+            continue;
+        }
+        std::vector<ProgramHost::Variable> variables;
+        if (!programs_[task.program].has_base_task)
+            for (const auto& variable : host_.variables())
+                if (variable.program == task.program) variables.push_back(variable);
+        auto& io = body_.io;
+        slow_tasks_.push_back({std::make_unique<SlowTask>(task, host_.programs()[task.program].instance.get(), std::move(variables),
+                                                          body_.axes.size(), io.inputs().size(), io.outputs().size(),
+                                                          host_.parameters().size(), objects_.of(task.program), body_.tables),
+                               i, 0});
+    }
+}
+
+void ProgramRunner::learn_outputs() noexcept {
+    for (auto& slow : slow_tasks_) slow.task->learn_outputs(body_.io.output_bits());
+}
+
+void ProgramRunner::take_answers() noexcept { objects_.take_answers(body_.recorder, body_.now); }
+
+bool ProgramRunner::start(std::size_t program, std::uint64_t after) noexcept {
+    auto& record = programs_[program];
+    record.start_after = after;
+    auto expected = Handshake::none;
+    return record.handshake.compare_exchange_strong(expected, Handshake::start_asked, std::memory_order_release) ||
+           expected == Handshake::start_asked || expected == Handshake::started;
+}
+
+void ProgramRunner::stop(std::size_t program, ProgramState state) noexcept {
+    programs_[program].state = state;
+    host_.programs()[program].alarms = 0;
+    programs_[program].handshake.store(Handshake::stop_asked, std::memory_order_release);
+    const bool others = std::any_of(programs_.begin(), programs_.end(), [](const ProgramRecord& other) { return other.running(); });
+    for (std::size_t i = 0; i < body_.axes.size(); ++i) {
+        auto& claims = claims_[i];
+        const bool powers = claims.power == program, moves = claims.motion == program;
+        if (powers) claims.power = no_program;
+        if (moves) claims.motion = no_program;
+        auto& axis = body_.axes[i];
+        if (axis.view().owner != axes::Owner::program) continue;
+        if (powers || !others) axis.shut_down();  // its power wishes end with it: the axis ramps down, then its power goes off
+        else if (moves) end_motion(i);
+    }
+    release_outputs_of(program, others);
+}
+
+void ProgramRunner::release_outputs_of(std::size_t program, bool others_run) noexcept {
+    for (const auto output : host_.outputs_of(program)) {
+        bool driven = false;
+        for (std::size_t p = 0; p < programs_.size(); ++p) driven = driven || (programs_[p].running() && host_.drives(p, output));
+        if (!driven) body_.io.make_safe(output);
+    }
+    if (!others_run) body_.io.make_safe();
+}
+
+// The program that moved the axis is gone, the one that powers it is not.
+void ProgramRunner::end_motion(std::size_t axis) noexcept {
+    (void)hands_.stop(axis);
+    if (const auto lock = body_.axes[axis].view().lock; lock != 0)
+        body_.requests.release_stop(axes::AxisRef{static_cast<std::uint16_t>(axis)}, lock, axes::Owner::program);
+}
+
+void ProgramRunner::failed(std::size_t program, const FaultText& why) noexcept {
+    programs_[program].fault = why;
+    stop(program, ProgramState::fault);
+}
+
+void ProgramRunner::stop_all() noexcept {
+    for (std::size_t p = 0; p < programs_.size(); ++p)
+        if (programs_[p].running() || programs_[p].start_pending()) stop(p, ProgramState::stopped);
+}
+
+void ProgramRunner::reset() noexcept {
+    for (auto& slow : slow_tasks_) slow.overruns = 0;
+    for (auto& program : programs_)
+        if (program.state == ProgramState::fault) program.state = ProgramState::stopped;
+}
+
+bool ProgramRunner::any_runs_or_starts() const noexcept {
+    return std::any_of(programs_.begin(), programs_.end(),
+                       [](const ProgramRecord& program) { return program.running() || program.start_pending(); });
+}
+
+std::uint64_t ProgramRunner::newest_stop_of(std::size_t program) const noexcept {
+    std::uint64_t newest = 0;
+    for (std::size_t i = 0; i < body_.axes.size(); ++i)
+        if (host_.uses(program, i)) newest = std::max(newest, hands_.newest_stop(i));
+    return newest;
+}
+
+void ProgramRunner::take_handshakes() noexcept {
+    for (std::size_t p = 0; p < programs_.size(); ++p) {
+        auto& program = programs_[p];
+        auto expected = Handshake::started;
+        // Its start() may have taken any time: what was given before a stop moves nothing behind it, a program neither.
+        if (program.handshake.load(std::memory_order_acquire) == Handshake::started && program.start_after < newest_stop_of(p)) {
+            stop(p, ProgramState::stopped);
+            body_.raise(MachineAlarm::start_withdrawn, AlarmSource::program, static_cast<std::uint16_t>(p));
+        }
+        if (program.handshake.compare_exchange_strong(expected, Handshake::none, std::memory_order_acquire)) {
+            program.state = ProgramState::running;
+            program.fault = {};
+            program.undeclared = {};
+            objects_.release_all(p);
+            for (auto& slow : slow_tasks_)
+                if (slow.task->program() == p) slow.task->restart();
+            for (auto& base : base_tasks_)
+                if (host_.tasks()[base.place].program == p) base.scans = 0;
+        }
+        expected = Handshake::failed;
+        if (program.handshake.compare_exchange_strong(expected, Handshake::none, std::memory_order_acquire))
+            program.state = ProgramState::fault;
+    }
+}
+
+bool ProgramRunner::slow_tasks_finished(std::size_t program) const noexcept {
+    return std::all_of(slow_tasks_.begin(), slow_tasks_.end(),
+                       [&](const SlowPlace& slow) { return slow.task->program() != program || slow.task->finished(); });
+}
+
+void ProgramRunner::tell_fault(std::size_t program, std::string words) {
+    const std::lock_guard lock{fault_words_};
+    host_.programs()[program].fault = std::move(words);
+}
+
+void ProgramRunner::call_hook(std::size_t p) {
+    auto& record = programs_[p];
+    auto& loaded = host_.programs()[p];
+    auto asked = record.handshake.load(std::memory_order_acquire);
+    auto next = asked;
+    try {
+        if (asked == Handshake::start_asked) {
+            tell_fault(p, {});
+            next = Handshake::started;
+            const HookAtWork hook{at_hooks_, p, loaded.config.name.c_str(), "start()"};
+            loaded.instance->start();
+        } else if (asked == Handshake::stop_asked && slow_tasks_finished(p)) {
+            // Written by the cycle before it asked; a program stopped by a person leaves it as it was.
+            if (const auto why = record.fault.text(); !why.empty()) tell_fault(p, std::string(why));
+            next = Handshake::none;
+            const HookAtWork hook{at_hooks_, p, loaded.config.name.c_str(), "stop()"};
+            loaded.instance->stop();
+        }
+    } catch (...) {
+        FaultText why;
+        why.take_current();
+        tell_fault(p, std::string(asked == Handshake::start_asked ? "start() threw: " : "stop() threw: ") + std::string(why.text()));
+        next = Handshake::failed;
+    }
+    if (next != asked) record.handshake.compare_exchange_strong(asked, next, std::memory_order_release);
+}
+
+void ProgramRunner::call_hooks() {
+    for (std::size_t p = 0; p < programs_.size(); ++p)
+        if (host_.programs()[p].instance) call_hook(p);
+}
+
+std::string ProgramRunner::at_work() const {
+    for (const auto& slow : slow_tasks_)
+        if (const auto& task = *slow.task; !task.finished())
+            return fmt::format("task '{}' of program '{}'", task.config().name, task.config().program);
+    if (const auto program = at_hooks_.load(std::memory_order_relaxed); program >= 0)
+        return fmt::format("start() or stop() of program '{}'", body_.config.programs[static_cast<std::size_t>(program)].name);
+    return {};
+}
+
+std::string ProgramRunner::fault(std::size_t program) const {
+    const std::lock_guard lock{fault_words_};
+    return host_.programs()[program].fault;
+}
+
+}  // namespace taktwerk::runtime

@@ -1,0 +1,115 @@
+#pragma once
+// The programs of a machine while it runs: how they start and stop, step 6 with their tasks, and what ends with a program: its axes, its
+// outputs. The cycle asks for start() and stop(), the service side calls them (Handshake, program_record.hpp).
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "runtime/machine/hand_motion.hpp"
+#include "runtime/machine/machine_body.hpp"
+#include "runtime/tasks/object_requests.hpp"
+#include "runtime/tasks/program_host.hpp"
+#include "runtime/tasks/program_record.hpp"
+#include "runtime/tasks/slow_task.hpp"
+
+namespace taktwerk::runtime {
+
+class ProgramRunner {
+public:
+    /// Loads the programs, lets them declare, makes their tasks ready. The axes are there.
+    ProgramRunner(MachineBody& body, HandMotion& hands, std::vector<Error>& errors);
+
+    // --- cycle: real-time safe ---------------------------------------------------------------------------------------------------
+    /// Answers of drives to the programs' object requests.
+    void take_answers() noexcept;
+    /// Step 6: base tasks run here, inline; slower ones are applied and released.
+    void run_tasks() noexcept;
+    /// Alarms that programs raise, and those about them.
+    void raise_alarms() noexcept;
+    /// What the variables are at the end of this cycle.
+    void read_variables() noexcept;
+
+    /// `after`: OperatorCommand::after; 0 where it starts by itself. False: its stop() is still to come.
+    [[nodiscard]] bool start(std::size_t program, std::uint64_t after) noexcept;
+    void stop(std::size_t program, ProgramState state) noexcept;
+    /// Those that run or are about to.
+    void stop_all() noexcept;
+    /// What stopped by a fault may start again; overruns count anew.
+    void reset() noexcept;
+    [[nodiscard]] bool any_runs_or_starts() const noexcept;
+    /// The newest stop of an axis that the program has declared; 0: none.
+    [[nodiscard]] std::uint64_t newest_stop_of(std::size_t program) const noexcept;
+
+    [[nodiscard]] ProgramRecords& programs() noexcept { return programs_; }
+    [[nodiscard]] const ProgramRecords& programs() const noexcept { return programs_; }
+    [[nodiscard]] std::vector<double>& parameters() noexcept { return host_.parameters(); }
+    [[nodiscard]] const std::vector<double>& variables() const noexcept { return variable_values_; }
+    [[nodiscard]] const std::vector<TaskStatistics>& task_statistics() const noexcept { return task_statistics_; }
+    struct LongestTask {
+        std::size_t place = 0;  ///< in the layout's tasks
+        Duration run{};
+    };
+    /// Of the last cycle.
+    [[nodiscard]] const LongestTask& longest_base_task() const noexcept { return longest_base_task_; }
+
+    // --- other threads -----------------------------------------------------------------------------------------------------------
+    /// start() and stop() that were asked for.
+    void call_hooks();
+    /// Object requests on their way to the drives. Service side.
+    void carry_requests() { objects_.step(body_.bus); }
+    [[nodiscard]] std::size_t slow_task_count() const noexcept { return slow_tasks_.size(); }
+    bool run_slow_task(std::size_t index) noexcept { return slow_tasks_[index].task->run_if_released(); }
+    /// The bus has laid out its image. Before the first cycle with tasks.
+    void learn_outputs() noexcept;
+    /// As Machine has them.
+    [[nodiscard]] std::string at_work() const;
+    [[nodiscard]] std::string fault(std::size_t program) const;
+    [[nodiscard]] std::int32_t base_task_at_work() const noexcept { return pulse_task_.load(std::memory_order_relaxed); }
+
+    [[nodiscard]] const ProgramHost& host() const noexcept { return host_; }
+
+private:
+    struct BaseTask {
+        std::size_t place = 0;    // in host_.tasks(), task_statistics_, the layout
+        std::uint64_t scans = 0;  // since its program's start
+    };
+    struct SlowPlace {
+        std::unique_ptr<SlowTask> task;
+        std::size_t place = 0;
+        std::uint16_t overruns = 0;  // in a row
+    };
+
+    // program_runner.cpp
+    void build_tasks();
+    void take_handshakes() noexcept;
+    void failed(std::size_t program, const FaultText& why) noexcept;
+    void end_motion(std::size_t axis) noexcept;
+    void release_outputs_of(std::size_t program, bool others_run) noexcept;
+    [[nodiscard]] bool slow_tasks_finished(std::size_t program) const noexcept;
+    void call_hook(std::size_t program);
+    void tell_fault(std::size_t program, std::string words);
+    // program_tasks.cpp
+    void run_base_task(BaseTask& base) noexcept;
+    void release_slow_task(SlowPlace& slow) noexcept;
+    void raise_alarms_of(std::size_t program) noexcept;
+
+    MachineBody& body_;
+    HandMotion& hands_;
+    ProgramHost host_;
+    std::vector<AxisClaims> claims_;  // per axis
+    ProgramRecords programs_;
+    ObjectRequests objects_;
+    std::vector<BaseTask> base_tasks_;
+    std::vector<SlowPlace> slow_tasks_;
+    std::vector<TaskStatistics> task_statistics_;  // as host_.tasks()
+    LongestTask longest_base_task_;
+    std::vector<double> variable_values_;       // as this cycle shows them
+    std::atomic<std::int32_t> pulse_task_{-1};  // of host_.tasks()
+    std::atomic<std::int32_t> at_hooks_{-1};    // program whose start() or stop() runs
+    mutable std::mutex fault_words_;            // of ProgramHost::Loaded::fault: written beside the service thread
+};
+
+}  // namespace taktwerk::runtime

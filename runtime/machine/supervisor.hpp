@@ -1,0 +1,52 @@
+#pragma once
+// Step 5: what holds is raised, the log decides what remains, the strongest reaction is carried out. Real-time safe.
+
+#include <vector>
+
+#include "runtime/cycle_tick.hpp"
+#include "runtime/machine/before_fault.hpp"
+#include "runtime/machine/drive_emergencies.hpp"
+#include "runtime/machine/emergency_inputs.hpp"
+#include "runtime/machine/late_cycles.hpp"
+#include "runtime/machine/machine_body.hpp"
+#include "runtime/machine/machine_drives.hpp"
+#include "runtime/machine/operator_desk.hpp"
+#include "runtime/machine/program_runner.hpp"
+#include "runtime/machine/shutdown.hpp"
+#include "runtime/positions/position_keeper.hpp"
+
+namespace taktwerk::runtime {
+
+class Supervisor {
+public:
+    /// `positions`: nullptr where none are kept.
+    Supervisor(MachineBody& body, MachineDrives& drives, ProgramRunner& programs, OperatorDesk& desk, const PositionKeeper* positions);
+
+    void step(const CycleTick& tick) noexcept;
+
+    /// Any thread.
+    [[nodiscard]] const BeforeFault& before_fault() const noexcept { return before_fault_; }
+    [[nodiscard]] Duration longest_stop() const noexcept { return shutdown_.patience(); }
+
+private:
+    void raise_bus_alarms() noexcept;
+    void raise_rivals() noexcept;
+    void raise_positions() noexcept;
+    void supervise(std::size_t axis, axes::EmergencyStop level) noexcept;
+    [[nodiscard]] bool follows_from_another(const AlarmFact& fact) noexcept;
+    void react() noexcept;
+
+    MachineBody& body_;
+    MachineDrives& drives_;
+    ProgramRunner& programs_;
+    OperatorDesk& desk_;
+    const PositionKeeper* positions_;
+    EmergencyInputs emergency_inputs_;
+    LateCycles late_cycles_;
+    DriveEmergencies drive_emergencies_;
+    BeforeFault before_fault_;
+    Shutdown shutdown_;
+    std::vector<Instant> explained_until_;  // per axis: what follows from another alarm is not listed until then
+};
+
+}  // namespace taktwerk::runtime
