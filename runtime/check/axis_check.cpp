@@ -1,0 +1,165 @@
+#include "runtime/check/axis_check.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "ecat/description/module_pdos.hpp"
+#include "runtime/stop_time.hpp"
+
+namespace taktwerk::runtime {
+
+namespace {
+
+/// How often the slave's process data is exchanged.
+Duration exchange_period_of(const MachineConfig& config, const std::string& name) {
+    auto bus = config.bus;
+    bus.cycle = config.cycle;
+    for (const auto& slave : bus.slaves)
+        if (slave.name == name) return ecat::exchange_period(bus, slave);
+    return config.cycle;
+}
+
+/// The objects in a slave's process data as far as they are known without it; empty: they are not.
+std::vector<ecat::PdoEntry> mapped(const ecat::PdoSelection& selection, const std::vector<ecat::PdoDescription>& known,
+                                   const std::vector<std::uint16_t>& assigned) {
+    std::vector<ecat::PdoEntry> out;
+    const auto add = [&](const std::vector<ecat::PdoEntry>& entries) { out.insert(out.end(), entries.begin(), entries.end()); };
+    const auto add_known = [&](std::uint16_t index) {
+        for (const auto& pdo : known)
+            if (pdo.index == index) add(pdo.entries);
+    };
+    for (const auto& pdo : selection.assigned) {
+        if (pdo.entries.empty()) add_known(pdo.index);
+        else add(pdo.entries);
+    }
+    if (selection.assigned.empty())
+        for (const auto index : assigned) add_known(index);
+    return out;
+}
+
+/// What every CiA 402 axis lives by (axes/drives/cia402/ refuses to start without).
+struct NeededObject {
+    std::uint16_t index;
+    bool output;
+    std::string_view name;
+};
+constexpr NeededObject needed_objects[] = {
+    {0x6040, true, "controlword"},
+    {0x6060, true, "modes of operation"},
+    {0x6041, false, "statusword"},
+    {0x6061, false, "modes of operation display"},
+    {0x6064, false, "position actual value"},
+};
+
+class AxisCheck {
+public:
+    AxisCheck(const MachineConfig& config, std::vector<Error>& errors) : config_(config), errors_(errors), problems_(errors) {
+        for (const auto& slave : config.bus.slaves) slaves_.push_back(slave.name);
+    }
+
+    void run() {
+        for (const auto& binding : config_.axes) {
+            const auto subject = fmt::format("axes.{}", binding.axis.name);
+            for (auto& error : axes::check(binding.axis)) errors_.push_back(std::move(error));
+            if (!binding.drive.empty()) continue;  // see check_serial
+            if (binding.slave.empty()) check_virtual(binding, subject);
+            else if (has_place(binding, subject)) check_on_drive(binding, subject);
+        }
+    }
+
+private:
+    void check_virtual(const AxisBinding& binding, const std::string& subject) {
+        if (binding.axis.encoder)
+            problems_.add("axis.encoder", subject + ".encoder", "there is nothing that measures",
+                          "name the `slave` whose position is meant, or remove `encoder`");
+        if (binding.axis.homing.kind != axes::HomingKind::none && binding.axis.homing.kind != axes::HomingKind::set_here)
+            problems_.add("axis.homing", subject + ".homing", "a virtual axis (without `slave`) has no switches", "use `kind: set_here`");
+    }
+
+    /// A slave with a profile, and an axis of it that nobody else has.
+    bool has_place(const AxisBinding& binding, const std::string& subject) {
+        if (std::find(slaves_.begin(), slaves_.end(), binding.slave) == slaves_.end()) {
+            problems_.unknown("axis.unknown_slave", subject + ".slave", "slave", binding.slave, slaves_);
+            return false;
+        }
+        if (!taken_.insert({binding.slave, binding.drive_axis}).second)
+            problems_.add("axis.drive_axis_taken", subject + ".axis",
+                          fmt::format("axis {} of slave '{}' already belongs to another axis", binding.drive_axis + 1, binding.slave),
+                          "give each axis an `axis` of its own");
+        if (!binding.profile)
+            problems_.add("axis.no_profile", subject + ".slave", fmt::format("slave '{}' has no drive profile", binding.slave),
+                          "give the slave a `profile:`; a terminal cannot carry an axis");
+        return binding.profile != nullptr;
+    }
+
+    void check_on_drive(const AxisBinding& binding, const std::string& subject) {
+        using namespace std::chrono_literals;
+        const auto& profile = *binding.profile;
+        if (binding.drive_axis >= profile.axes)
+            problems_.add("axis.drive_axis", subject + ".axis",
+                          fmt::format("{} has {} {}, there is no axis {}", profile.name, profile.axes, profile.axes == 1 ? "axis" : "axes",
+                                      binding.drive_axis + 1),
+                          profile.axes == 1 ? "remove `axis`" : fmt::format("choose 1 to {}", profile.axes));
+        for (const auto& slave : config_.bus.slaves)
+            if (slave.name == binding.slave && slave.device && binding.drive_axis < profile.axes) check_mapping(slave, binding, subject);
+        if (exchange_period_of(config_, binding.slave) < profile.minimum_cycle_csp)
+            problems_.add("axis.cycle_too_short", "cycle",
+                          fmt::format("{} (axis {}) needs at least {} us in cyclic synchronous position mode", profile.name,
+                                      binding.axis.name, profile.minimum_cycle_csp / 1us),
+                          "lengthen `cycle`");
+        if (binding.axis.homing.kind == axes::HomingKind::drive && !binding.axis.simulated) check_homing_method(binding, subject);
+        if (!config_.emergency_stop.input.empty()) check_stop_time(binding, subject);
+    }
+
+    void check_mapping(const ecat::SlaveConfig& slave, const AxisBinding& binding, const std::string& subject) {
+        const auto offered = ecat::pdos_of(*slave.device, slave.modules);
+        const auto rx = mapped(slave.rx, offered.rx, offered.rx_assigned), tx = mapped(slave.tx, offered.tx, offered.tx_assigned);
+        for (const auto& needed : needed_objects) {
+            const auto& there = needed.output ? rx : tx;
+            const auto index = static_cast<std::uint16_t>(needed.index + binding.drive_axis * binding.profile->object_offset);
+            bool is_mapped = there.empty();
+            for (const auto& entry : there) is_mapped = is_mapped || entry.index == index;
+            if (!is_mapped)
+                problems_.add("axis.not_mapped", subject + ".slave",
+                              fmt::format("object {:04X}h ({}) is not in the {} of slave '{}'", index, needed.name,
+                                          needed.output ? "RxPDO" : "TxPDO", slave.name),
+                              fmt::format("map it: choose a PDO that has it, or add it under `pdo.{}` of the slave (docs/drives.md)",
+                                          needed.output ? "rx" : "tx"));
+        }
+    }
+
+    void check_homing_method(const AxisBinding& binding, const std::string& subject) {
+        const auto& profile = *binding.profile;
+        bool documented = false;
+        std::string list;
+        for (const auto method : profile.homing_methods) {
+            documented = documented || method == binding.axis.homing.method;
+            list += fmt::format("{}{}", list.empty() ? "" : ", ", method);
+        }
+        if (!documented)
+            problems_.add("axis.homing_method", subject + ".homing.method",
+                          fmt::format("{} does not document homing method {}", profile.name, binding.axis.homing.method),
+                          list.empty() ? "use another kind of homing" : fmt::format("choose one of {}", list));
+    }
+
+    void check_stop_time(const AxisBinding& binding, const std::string& subject) {
+        const double needs = stop_seconds(binding.axis.limits), has = to_seconds(config_.emergency_stop.power_off_after);
+        if (needs > has)
+            problems_.add("machine.emergency_stop_time", subject + ".limits",
+                          fmt::format("stopping from {} {}/s takes {:.2f} s, but power goes off {:.2f} s after an emergency stop",
+                                      binding.axis.limits.velocity, binding.axis.unit, needs, has),
+                          "raise `stop_deceleration` and `stop_jerk`, or `emergency_stop.power_off_after` (as the safety relay allows)");
+    }
+
+    const MachineConfig& config_;
+    std::vector<Error>& errors_;
+    Problems problems_;
+    std::vector<std::string> slaves_;
+    std::set<std::pair<std::string, int>> taken_;
+};
+
+}  // namespace
+
+void check_axes(const MachineConfig& config, std::vector<Error>& errors) { AxisCheck{config, errors}.run(); }
+
+}  // namespace taktwerk::runtime
