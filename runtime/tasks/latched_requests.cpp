@@ -7,7 +7,18 @@
 
 namespace taktwerk::runtime {
 
-using namespace axes;
+using axes::AxisCommand;
+using axes::AxisRef;
+using axes::AxisRequests;
+using axes::AxisState;
+using axes::AxisView;
+using axes::CommandId;
+using axes::CommandKind;
+using axes::CommandStatus;
+using axes::ErrorId;
+using axes::Outcome;
+using axes::Owner;
+using axes::Submitted;
 
 bool LatchedRequests::push(const Request& request) noexcept {
     if (count_ == capacity) return false;

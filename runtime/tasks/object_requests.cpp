@@ -7,46 +7,42 @@
 
 namespace taktwerk::runtime {
 
-namespace {
-
-enum class State : std::uint8_t { free, filling, asked, working, arrived, answered, abandoned };
-
-struct Place {
-    std::atomic<State> state{State::free};
-    std::atomic<std::uint32_t> generation{0};
-    DeviceRef device;
-    std::uint16_t index = 0;
-    std::uint8_t sub = 0;
-    bool write = false;
-    std::array<std::byte, object_data_limit> data{};
-    std::size_t size = 0;
-    ObjectOutcome outcome = ObjectOutcome::pending;
-    std::uint32_t abort_code = 0;
-    ecat::SdoTicket ticket = 0;  ///< service side
-
-    bool move(State from, State to) noexcept { return state.compare_exchange_strong(from, to, std::memory_order_acq_rel); }
-};
-
-void take(Place& place, const Result<ecat::SdoResult>& result) {
-    place.abort_code = 0;
-    if (!place.write) place.size = 0;
-    if (!result) {
-        place.abort_code = ecat::abort_code(result.error());
-        place.outcome = place.abort_code != 0 ? ObjectOutcome::refused : ObjectOutcome::no_answer;
-    } else if (result->data.size() > place.data.size()) {
-        place.outcome = ObjectOutcome::too_long;
-    } else {
-        place.outcome = ObjectOutcome::done;
-        if (place.write) return;
-        std::copy(result->data.begin(), result->data.end(), place.data.begin());
-        place.size = result->data.size();
-    }
-}
-
-}  // namespace
-
 class ObjectRequests::OfProgram final : public ObjectAccess {
 public:
+    enum class State : std::uint8_t { free, filling, asked, working, arrived, answered, abandoned };
+
+    struct Place {
+        std::atomic<State> state{State::free};
+        std::atomic<std::uint32_t> generation{0};
+        DeviceRef device;
+        std::uint16_t index = 0;
+        std::uint8_t sub = 0;
+        bool write = false;
+        std::array<std::byte, object_data_limit> data{};
+        std::size_t size = 0;
+        ObjectOutcome outcome = ObjectOutcome::pending;
+        std::uint32_t abort_code = 0;
+        ecat::SdoTicket ticket = 0;  ///< service side
+
+        bool move(State from, State to) noexcept { return state.compare_exchange_strong(from, to, std::memory_order_acq_rel); }
+
+        void take(const Result<ecat::SdoResult>& result) {
+            abort_code = 0;
+            if (!write) size = 0;
+            if (!result) {
+                abort_code = ecat::abort_code(result.error());
+                outcome = abort_code != 0 ? ObjectOutcome::refused : ObjectOutcome::no_answer;
+            } else if (result->data.size() > data.size()) {
+                outcome = ObjectOutcome::too_long;
+            } else {
+                outcome = ObjectOutcome::done;
+                if (write) return;
+                std::copy(result->data.begin(), result->data.end(), data.begin());
+                size = result->data.size();
+            }
+        }
+    };
+
     explicit OfProgram(std::size_t devices) : devices_(devices) {}
 
     ObjectTicket read(DeviceRef device, std::uint16_t index, std::uint8_t sub) noexcept override {
@@ -145,8 +141,9 @@ ObjectAccess& ObjectRequests::of(std::size_t program) noexcept { return *program
 void ObjectRequests::release_all(std::size_t program) noexcept { programs_[program]->release_all(); }
 
 void ObjectRequests::take_answers(Recorder* recorder, Instant now) noexcept {
+    using State = OfProgram::State;
     for (std::size_t p = 0; p < programs_.size(); ++p)
-        programs_[p]->each([&](std::size_t i, Place& place) {
+        programs_[p]->each([&](std::size_t i, OfProgram::Place& place) {
             if (place.state.load(std::memory_order_acquire) != State::arrived) return;
             if (recorder != nullptr) {
                 const std::span<const std::byte> value = std::span{place.data}.first(place.write ? 0 : place.size);
@@ -158,13 +155,14 @@ void ObjectRequests::take_answers(Recorder* recorder, Instant now) noexcept {
 }
 
 void ObjectRequests::step(ecat::Master& bus) {
+    using State = OfProgram::State;
     for (auto& program : programs_) {
         std::size_t working = 0;
-        program->each([&](std::size_t, const Place& place) {
+        program->each([&](std::size_t, const OfProgram::Place& place) {
             const State now = place.state.load(std::memory_order_acquire);
             working += now == State::working || now == State::abandoned ? 1 : 0;
         });
-        program->each([&](std::size_t, Place& place) {
+        program->each([&](std::size_t, OfProgram::Place& place) {
             const State now = place.state.load(std::memory_order_acquire);
             if (now == State::asked && working < at_work && place.move(State::asked, State::working)) {
                 ++working;
@@ -175,7 +173,7 @@ void ObjectRequests::step(ecat::Master& bus) {
             if (place.state.load(std::memory_order_acquire) != State::working && now != State::abandoned) return;
             const auto result = bus.poll(place.ticket);
             if (!result) return;
-            take(place, *result);
+            place.take(*result);
             if (!place.move(State::working, State::arrived)) place.state.store(State::free, std::memory_order_release);
         });
     }
