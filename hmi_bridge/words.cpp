@@ -1,5 +1,7 @@
 #include "hmi_bridge/words.hpp"
 
+#include "axes/axis/command_kinds.hpp"
+
 namespace taktwerk::hmi {
 
 std::string_view word(runtime::MachinePhase value) noexcept {
@@ -59,47 +61,7 @@ std::string_view word(axes::VelocityLimiter value) noexcept {
     return "unknown";
 }
 
-std::string_view word(axes::CommandKind value) noexcept {
-    switch (value) {
-        case axes::CommandKind::none: return "";
-        case axes::CommandKind::move_absolute: return "MC_MoveAbsolute";
-        case axes::CommandKind::move_relative: return "MC_MoveRelative";
-        case axes::CommandKind::move_additive: return "MC_MoveAdditive";
-        case axes::CommandKind::halt: return "MC_Halt";
-        case axes::CommandKind::move_velocity: return "MC_MoveVelocity";
-        case axes::CommandKind::move_continuous_absolute: return "MC_MoveContinuousAbsolute";
-        case axes::CommandKind::move_continuous_relative: return "MC_MoveContinuousRelative";
-        case axes::CommandKind::move_superimposed: return "MC_MoveSuperimposed";
-        case axes::CommandKind::halt_superimposed: return "MC_HaltSuperimposed";
-        case axes::CommandKind::stop: return "MC_Stop";
-        case axes::CommandKind::home: return "MC_Home";
-        case axes::CommandKind::jog: return "MC_Jog";
-        case axes::CommandKind::gear_in: return "MC_GearIn";
-        case axes::CommandKind::gear_in_pos: return "MC_GearInPos";
-        case axes::CommandKind::cam_in: return "MC_CamIn";
-        case axes::CommandKind::combine: return "MC_CombineAxes";
-        case axes::CommandKind::gear_out: return "MC_GearOut";
-        case axes::CommandKind::cam_out: return "MC_CamOut";
-        case axes::CommandKind::phasing_absolute: return "MC_PhasingAbsolute";
-        case axes::CommandKind::phasing_relative: return "MC_PhasingRelative";
-        case axes::CommandKind::position_profile: return "MC_PositionProfile";
-        case axes::CommandKind::velocity_profile: return "MC_VelocityProfile";
-        case axes::CommandKind::acceleration_profile: return "MC_AccelerationProfile";
-        case axes::CommandKind::torque: return "MC_TorqueControl";
-        case axes::CommandKind::external: return "MC_ExtSetPointGenEnable";
-        case axes::CommandKind::homing_step: return "a homing step";
-        case axes::CommandKind::abort_passive_homing: return "MC_AbortPassiveHoming";
-        case axes::CommandKind::touch_probe: return "MC_TouchProbe";
-        case axes::CommandKind::abort_trigger: return "MC_AbortTrigger";
-        case axes::CommandKind::setting: return "a queued setting";
-        case axes::CommandKind::set_controller_mode: return "MC_SetControllerMode";
-        case axes::CommandKind::drive_move_absolute: return "Drive_MoveAbsolute";
-        case axes::CommandKind::drive_move_relative: return "Drive_MoveRelative";
-        case axes::CommandKind::drive_move_velocity: return "Drive_MoveVelocity";
-        case axes::CommandKind::drive_torque: return "Drive_Torque";
-    }
-    return "unknown";
-}
+std::string_view word(axes::CommandKind value) noexcept { return axes::name(value); }
 
 std::string_view word(AlarmSource value) noexcept {
     switch (value) {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "axes/axis/axis.hpp"
+#include "axes/axis/axis_core.hpp"
 
 namespace taktwerk::axes {
 
@@ -32,7 +32,7 @@ ErrorId check_cam(const CamDetails& cam) noexcept {
 
 // --- as a master ------------------------------------------------------------------------------------------------------------
 
-MasterTrack::Reading Axis::as_master(MC_Source source) const noexcept {
+MasterTrack::Reading AxisCore::as_master(MC_Source source) const noexcept {
     MasterTrack::Reading reading;
     reading.feed = units_.feed();
     reading.largest_velocity = config_.limits.velocity;
@@ -53,7 +53,7 @@ MasterTrack::Reading Axis::as_master(MC_Source source) const noexcept {
     return reading;
 }
 
-MasterList Axis::masters() const noexcept {
+MasterList AxisCore::masters() const noexcept {
     MasterList list;
     const auto add = [&](const MasterChoice& choice) noexcept {
         for (const auto axis : choice.axes)
@@ -68,17 +68,17 @@ MasterList Axis::masters() const noexcept {
 }
 
 /// Depth first from `master` along all couplings that run or wait. Each axis is looked at once.
-bool Axis::follows_me(const Axis& master) const noexcept {
+bool AxisCore::follows_me(const AxisCore& master) const noexcept {
     const std::uint64_t walk = (static_cast<std::uint64_t>(++walks_) << 16) | index_;
-    const Axis* at = &master;
+    const AxisCore* at = &master;
     at->walk_ = walk;
     at->walk_back_ = nullptr;
     while (at) {
         if (at == this) return true;
         const auto list = at->masters();
-        const Axis* further = nullptr;
+        const AxisCore* further = nullptr;
         for (std::size_t i = 0; i < list.count && !further; ++i) {
-            const Axis* next = scene_.axis(list.axes[i]);
+            const AxisCore* next = axis_at(list.axes[i]);
             if (next && next->walk_ != walk) further = next;
         }
         if (further) {
@@ -92,8 +92,8 @@ bool Axis::follows_me(const Axis& master) const noexcept {
 
 // --- what is accepted -------------------------------------------------------------------------------------------------------
 
-ErrorId Axis::refuse_master(AxisRef ref, MC_Source source) const noexcept {
-    const Axis* master = scene_.axis(ref);
+ErrorId AxisCore::refuse_master(AxisRef ref, MC_Source source) const noexcept {
+    const AxisCore* master = axis_at(ref);
     if (!master || master == this) return ErrorId::invalid_master;
     // What a master is commanded jumps; only what its generator makes of it can be followed.
     if (source == mcCommandedValue) return ErrorId::invalid_parameter;
@@ -101,7 +101,7 @@ ErrorId Axis::refuse_master(AxisRef ref, MC_Source source) const noexcept {
     return follows_me(*master) ? ErrorId::coupling_loop : ErrorId::none;
 }
 
-ErrorId Axis::refuse_coupling(const AxisCommand& command) const noexcept {
+ErrorId AxisCore::refuse_coupling(const AxisCommand& command) const noexcept {
     if (uncouples(command.kind)) return view_.state == AxisState::SynchronizedMotion ? ErrorId::none : ErrorId::not_coupled;
     if (!couples(command.kind)) return ErrorId::none;
     const auto ratio_error = [](const GearRatio& ratio) noexcept {
@@ -133,7 +133,7 @@ ErrorId Axis::refuse_coupling(const AxisCommand& command) const noexcept {
 }
 
 /// A cam that repeats for ever.
-bool Axis::never_ends(const AxisCommand& command) const noexcept {
+bool AxisCore::never_ends(const AxisCommand& command) const noexcept {
     const auto* cam = std::get_if<CamDetails>(&command.details);
     if (!cam || command.kind != CommandKind::cam_in || !scene_.tables) return false;
     const auto* table = scene_.tables->prepared(cam->table);
@@ -141,13 +141,13 @@ bool Axis::never_ends(const AxisCommand& command) const noexcept {
 }
 
 /// Behind it nothing gets its turn (P1-092), neither while it runs nor while it waits itself. Settings pass it.
-bool Axis::waits_for_ever() const noexcept {
+bool AxisCore::waits_for_ever() const noexcept {
     for (std::size_t i = queue_.waiting(); i > 0; --i)
         if (const auto& before = queue_.waiting_at(i - 1).command; before.kind != CommandKind::setting) return never_ends(before);
     return never_ends(queue_.active().command);
 }
 
-ErrorId Axis::select_cam(const SelectCam& wanted) noexcept {
+ErrorId AxisCore::select_cam(const SelectCam& wanted) noexcept {
     if (!scene_.tables) return ErrorId::invalid_table;
     const auto made = scene_.tables->prepare(wanted.source, wanted.periodic, wanted.master_absolute, wanted.slave_absolute);
     if (made.error == ErrorId::none) {
@@ -160,7 +160,7 @@ ErrorId Axis::select_cam(const SelectCam& wanted) noexcept {
 // --- from command to coupling -------------------------------------------------------------------------------------------------
 
 /// The active command's coupling: it begins in the next follow_masters(), or when its master comes to the place where it begins.
-ErrorId Axis::join(const AcceptedCommand& accepted) noexcept {
+ErrorId AxisCore::join(const AcceptedCommand& accepted) noexcept {
     const AxisCommand command = accepted.command;
     if (uncouples(command.kind)) {
         start_at_base();
@@ -179,7 +179,7 @@ ErrorId Axis::join(const AcceptedCommand& accepted) noexcept {
 }
 
 /// `updated`: the running coupling that goes on with `command`; relative inputs count from its start.
-void Axis::plan_link(CommandId id, const AxisCommand& command, const Link* updated) noexcept {
+void AxisCore::plan_link(CommandId id, const AxisCommand& command, const Link* updated) noexcept {
     drop(coupling_.next);
     auto& link = coupling_.next;
     coupling_.shown = true;
@@ -217,20 +217,20 @@ void Axis::plan_link(CommandId id, const AxisCommand& command, const Link* updat
     const auto* before = goal_.kind == Goal::Kind::coupled ? coupling_.follower.cam() : nullptr;
     if (!before || !before->over() || command.buffer_mode != mcBuffered || link.masters.axes != coupling_.running.masters.axes) return;
     const auto now = seen(coupling_.running, 0);
-    const double since = std::abs(way(before->end(), now.place, scene_.axis(link.masters.axes[0])->units_.feed()));
+    const double since = std::abs(way(before->end(), now.place, axis_at(link.masters.axes[0])->units_.feed()));
     link.chained = since <= 2 * std::abs(now.velocity) * to_seconds(cycle_);
     link.master_start = before->end();
     link.slave_start = before->slave_end();
 }
 
-void Axis::drop(Link& link) noexcept {
+void AxisCore::drop(Link& link) noexcept {
     if (link.cam.value != 0) scene_.tables->release(link.cam);
     if (link.waits) alarms_.clear(AxisAlarm::coupling_start_passed);
     link = {};
 }
 
 /// ContinuousUpdate of the active command: another coupling of the same kind, with the relative inputs of the first one's start.
-ErrorId Axis::update_coupling(const AxisCommand& command) noexcept {
+ErrorId AxisCore::update_coupling(const AxisCommand& command) noexcept {
     auto& active = queue_.active();
     if (const auto error = refuse_coupling(command); error != ErrorId::none) return error;
     if (queue_.waiting() > 0 && never_ends(command)) return ErrorId::buffer_mode_not_supported;
@@ -246,10 +246,10 @@ ErrorId Axis::update_coupling(const AxisCommand& command) noexcept {
 
 // --- the cycle ----------------------------------------------------------------------------------------------------------------
 
-bool Axis::read_masters(Link& link, Duration period) noexcept {
+bool AxisCore::read_masters(Link& link, Duration period) noexcept {
     for (std::size_t i = 0; i < link.masters.axes.size(); ++i) {
         if (!link.masters.axes[i].valid()) continue;
-        const Axis* master = scene_.axis(link.masters.axes[i]);
+        const AxisCore* master = axis_at(link.masters.axes[i]);
         if (!master) return false;
         auto reading = master->as_master(link.masters.sources[i]);
         // What is planned now acts at the drive a little later than what was measured: there the master will be.
@@ -260,7 +260,7 @@ bool Axis::read_masters(Link& link, Duration period) noexcept {
     return true;
 }
 
-EndlessMotion Axis::seen(const Link& link, std::size_t master) const noexcept {
+EndlessMotion AxisCore::seen(const Link& link, std::size_t master) const noexcept {
     auto motion = link.tracks[master].motion();
     if (master != 0 || link.masters.axes[0] != coupling_.phase_master) return motion;
     const auto& shift = coupling_.phase.state();
@@ -272,14 +272,14 @@ EndlessMotion Axis::seen(const Link& link, std::size_t master) const noexcept {
 }
 
 /// Whatever took the axis has ended the coupling.
-void Axis::settle_couplings() noexcept {
+void AxisCore::settle_couplings() noexcept {
     if (coupling_.next.id != 0 && coupling_.next.id != queue_.active().id) drop(coupling_.next);
     if (coupling_.running.id != 0 && goal_.kind != Goal::Kind::coupled) drop(coupling_.running);
     if (coupling_.running.id == 0 && coupling_.next.id == 0 && coupling_.phase_master.valid() && !couples(queue_.active().command.kind))
         clear_phase();
 }
 
-void Axis::follow_masters(Duration period) noexcept {
+void AxisCore::follow_masters(Duration period) noexcept {
     settle_couplings();
     if (coupling_.running.id == 0 && coupling_.next.id == 0) return;
     const auto lost = [&](Link& link) noexcept { return link.id != 0 && !read_masters(link, period); };
@@ -297,7 +297,7 @@ void Axis::follow_masters(Duration period) noexcept {
     }
 }
 
-void Axis::step_coupled(Duration period) noexcept {
+void AxisCore::step_coupled(Duration period) noexcept {
     if (endless_ && units_.far_from_anchor(setpoint_.base().position)) reanchor();
     auto& follower = coupling_.follower;
     auto limits = follower_limits(coupling_.running.command);
@@ -320,7 +320,7 @@ void Axis::step_coupled(Duration period) noexcept {
     }
 }
 
-void Axis::complete_coupled() noexcept {
+void AxisCore::complete_coupled() noexcept {
     const bool mine = coupling_.next.id == 0 && coupling_.running.id == queue_.active().id;
     queue_.set_in_target(mine && coupling_.follower.in_sync());
     // A cam that is over hands over at once (P1-092: EndOfProfile); other couplings when their Inxxx has been seen.
@@ -330,7 +330,7 @@ void Axis::complete_coupled() noexcept {
     start_waiting(0);
 }
 
-void Axis::publish_coupling() noexcept {
+void AxisCore::publish_coupling() noexcept {
     coupling_.shown = coupling_.used();  // what is over is shown once more, as gone
     const bool coupled = goal_.kind == Goal::Kind::coupled && coupling_.running.id != 0;
     const auto& link = coupled ? coupling_.running : coupling_.next;

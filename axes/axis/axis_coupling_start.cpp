@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "axes/axis/axis.hpp"
+#include "axes/axis/axis_core.hpp"
 
 namespace taktwerk::axes {
 
@@ -22,10 +22,10 @@ EndlessPlace moved(EndlessPlace place, double by) noexcept {
 }  // namespace
 
 /// Sync point and start, as places of the master: what numbers mean is settled now, whatever MC_SetPosition does later.
-void Axis::find_start(Link& link) noexcept {
+void AxisCore::find_start(Link& link) noexcept {
     const auto* point = std::get_if<GearInPosDetails>(&link.command.details);
     const auto* cam = std::get_if<CamDetails>(&link.command.details);
-    const Axis* master = scene_.axis(link.masters.axes[0]);
+    const AxisCore* master = axis_at(link.masters.axes[0]);
     if (!master || !(point || (cam && cam->master_start_distance != 0))) return;
     const double distance = point ? point->master_start_distance : cam->master_start_distance;
     const auto& units = master->units_;
@@ -60,8 +60,8 @@ void Axis::find_start(Link& link) noexcept {
 }
 
 /// Where the lowest master position of the table lies for a master at `entry`.
-EndlessPlace Axis::cam_origin(const CamDetails& cam, const PreparedCam& table, const Axis& master,
-                              const EndlessPlace& entry) const noexcept {
+EndlessPlace AxisCore::cam_origin(const CamDetails& cam, const PreparedCam& table, const AxisCore& master,
+                                  const EndlessPlace& entry) const noexcept {
     if (cam.start == mcRelative || !table.master_absolute()) return moved(entry, cam.master_offset);
     const auto& units = master.units_;
     double origin = units.to_local(cam.master_offset + cam.master_scaling * table.begin());
@@ -74,9 +74,9 @@ EndlessPlace Axis::cam_origin(const CamDetails& cam, const PreparedCam& table, c
 }
 
 /// The master has crossed the start in its sense since the last cycle, or was on it at the beginning.
-bool Axis::starts_now(Link& link) const noexcept {
+bool AxisCore::starts_now(Link& link) const noexcept {
     if (!link.waits) return true;
-    const Axis* master = scene_.axis(link.masters.axes[0]);
+    const AxisCore* master = axis_at(link.masters.axes[0]);
     const double ahead = link.sense * way(seen(link, 0).place, link.begin, master->units_.feed());
     const bool crossed = ahead <= 0 && (link.ahead > 0 || (!link.tracked && link.ahead == 0));
     link.ahead = ahead;
@@ -84,13 +84,13 @@ bool Axis::starts_now(Link& link) const noexcept {
     return crossed;
 }
 
-FollowerLimits Axis::follower_limits(const AxisCommand& command) const noexcept {
+FollowerLimits AxisCore::follower_limits(const AxisCommand& command) const noexcept {
     FollowerLimits limits{full_limits(config_.limits), dynamics_of(command, config_.limits, config_.defaults)};
     limits.axis.velocity = limits.forward = limits.backward = std::min(limits.axis.velocity, velocity_cap());
     return limits;
 }
 
-ErrorId Axis::engage(Duration period) noexcept {
+ErrorId AxisCore::engage(Duration period) noexcept {
     auto& link = coupling_.next;
     // What was superimposed on the motion before becomes part of it; an update changes nothing there.
     if (!link.started && !link.waits && queue_.beside(SideSlot::superimposed) == 0) end_superimposed(Outcome::aborted);
@@ -129,19 +129,19 @@ ErrorId Axis::engage(Duration period) noexcept {
     return ErrorId::none;
 }
 
-ErrorId Axis::begin_gear(const Link& link) noexcept {
+ErrorId AxisCore::begin_gear(const Link& link) noexcept {
     GearLine line;
-    const Axis& master = *scene_.axis(link.masters.axes[0]);
+    const AxisCore& master = *axis_at(link.masters.axes[0]);
     const auto ratio = ratio_of(std::get<GearDetails>(link.command.details).ratio);
     if (!line.set(ratio, master.units_.feed(), units_.feed(), link.master_start, link.slave_start)) return ErrorId::invalid_ratio;
     coupling_.follower.begin(line, RunDown::velocity, follower_limits(link.command));
     return ErrorId::none;
 }
 
-ErrorId Axis::begin_sum(const Link& link) noexcept {
+ErrorId AxisCore::begin_sum(const Link& link) noexcept {
     const auto& sum = std::get<CombineDetails>(link.command.details);
-    const Axis& one = *scene_.axis(link.masters.axes[0]);
-    const Axis& two = *scene_.axis(link.masters.axes[1]);
+    const AxisCore& one = *axis_at(link.masters.axes[0]);
+    const AxisCore& two = *axis_at(link.masters.axes[1]);
     auto second = ratio_of(sum.ratio2);
     if (sum.mode == mcSubAxes) second.numerator = -second.numerator;
     GearSum relation;
@@ -154,8 +154,8 @@ ErrorId Axis::begin_sum(const Link& link) noexcept {
 
 /// The polynomial from where the slave is to `end` at the sync point; sync_impossible where that lies behind the master, or the slave
 /// would exceed velocity, acceleration, deceleration, or a jerk that was given, on the way were the master to keep its velocity (P1-284).
-ErrorId Axis::approach_to(const Link& link, const EndlessMotion& master, double master_feed, const CurvePoint& end,
-                          SyncApproach& approach) const noexcept {
+ErrorId AxisCore::approach_to(const Link& link, const EndlessMotion& master, double master_feed, const CurvePoint& end,
+                              SyncApproach& approach) const noexcept {
     const double length = way(master.place, link.sync, master_feed);
     if (!(link.sense * length > 0)) return ErrorId::sync_impossible;
     const auto& slave = setpoint_.base();
@@ -173,9 +173,9 @@ ErrorId Axis::approach_to(const Link& link, const EndlessMotion& master, double 
     return possible ? ErrorId::none : ErrorId::sync_impossible;
 }
 
-ErrorId Axis::begin_gear_in_pos(const Link& link, const EndlessMotion& first) noexcept {
+ErrorId AxisCore::begin_gear_in_pos(const Link& link, const EndlessMotion& first) noexcept {
     const auto& point = std::get<GearInPosDetails>(link.command.details);
-    const double master_feed = scene_.axis(link.masters.axes[0])->units_.feed();
+    const double master_feed = axis_at(link.masters.axes[0])->units_.feed();
     const auto ratio = ratio_of(point.ratio);
     // Where the slave would come to at the mean of its velocity and the one it is to have.
     const double length = way(first.place, link.sync, master_feed);
@@ -194,11 +194,11 @@ ErrorId Axis::begin_gear_in_pos(const Link& link, const EndlessMotion& first) no
     return ErrorId::none;
 }
 
-ErrorId Axis::begin_cam(Link& link, const EndlessMotion& first) noexcept {
+ErrorId AxisCore::begin_cam(Link& link, const EndlessMotion& first) noexcept {
     const auto& cam = std::get<CamDetails>(link.command.details);
     const auto* table = scene_.tables->prepared(cam.table);
     if (!table) return ErrorId::invalid_table;
-    const Axis& master = *scene_.axis(link.masters.axes[0]);
+    const AxisCore& master = *axis_at(link.masters.axes[0]);
     const bool relative = cam.start == mcRelative;
     const bool has_sync = cam.master_start_distance != 0;
     // Where the table's value is that of the slave: with a sync point a relative slave counts from the begin of the approach.

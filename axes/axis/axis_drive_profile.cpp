@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "axes/axis/axis.hpp"
+#include "axes/axis/axis_core.hpp"
 
 namespace taktwerk::axes {
 
@@ -28,14 +28,14 @@ constexpr Duration longest_braking = 60s;
 
 // --- what is accepted ---------------------------------------------------------------------------------------------------------
 
-bool Axis::drive_makes(CommandKind kind) const noexcept {
+bool AxisCore::drive_makes(CommandKind kind) const noexcept {
     const auto& drive = port_.capabilities();
     if (drive.setpoints == SetpointClass::low_dynamics || !drive.has(profile_mode_of(kind))) return false;
     if (kind == CommandKind::drive_torque) return drive.velocity_limit;  // else nobody keeps the velocity in its limit
     return profile_mode_of(kind) != DriveMode::profile_position || drive.profile_buffer > 0;
 }
 
-ErrorId Axis::refuse_drive_profile(const AxisCommand& command, bool starts_now) const noexcept {
+ErrorId AxisCore::refuse_drive_profile(const AxisCommand& command, bool starts_now) const noexcept {
     if (!starts_now) return ErrorId::none;
     const bool goes_on = mode_phase_ == ModePhase::profile && drive_run_.mode() == profile_mode_of(command.kind);
     const bool stands = setpoint_.at_rest() && (!in_drive_profile() || drive_stands());
@@ -44,7 +44,7 @@ ErrorId Axis::refuse_drive_profile(const AxisCommand& command, bool starts_now) 
     return permitted(torque_of(command)) ? ErrorId::none : ErrorId::interlocked;
 }
 
-ErrorId Axis::refuse_drive_way(const DriveProfileRun::Way& way) const noexcept {
+ErrorId AxisCore::refuse_drive_way(const DriveProfileRun::Way& way) const noexcept {
     if (config_.modulo == 0) {
         if (const auto error = refuse_place(units_.to_program(way.target)); error != ErrorId::none) return error;
     }
@@ -54,14 +54,14 @@ ErrorId Axis::refuse_drive_way(const DriveProfileRun::Way& way) const noexcept {
 // --- into the mode --------------------------------------------------------------------------------------------------------------
 
 /// From a motion of its own the axis stops first. With the drive's profile running, the next cycle hands the set-point over.
-void Axis::begin_drive_profile(const AxisCommand& command) noexcept {
+void AxisCore::begin_drive_profile(const AxisCommand& command) noexcept {
     abandon_superimposed();
     start_at_base();
     has_commanded_target_ = false;
     aim_at_stop(command);
 }
 
-void Axis::ask_for_drive_mode() noexcept {
+void AxisCore::ask_for_drive_mode() noexcept {
     if (!drive_stands() || !setpoint_.at_rest()) return;  // the motor comes a little later than its set-point
     setpoint_.fold();
     drive_run_.enter(profile_mode_of(queue_.active().command.kind));
@@ -69,20 +69,20 @@ void Axis::ask_for_drive_mode() noexcept {
 }
 
 /// The command in control is one for the mode the drive is in.
-bool Axis::drive_profile_goes_on() const noexcept {
+bool AxisCore::drive_profile_goes_on() const noexcept {
     const auto kind = queue_.active().command.kind;
     if (!made_by_drive(kind) || profile_mode_of(kind) != drive_run_.mode()) return false;
     const bool instead = begin_pending_ && drive_run_.under_way() && drive_run_.mode() == DriveMode::profile_position;
     return !instead || port_.capabilities().profile_replaces;
 }
 
-bool Axis::step_drive_profile(bool confirmed, bool late, Duration period) noexcept {
+bool AxisCore::step_drive_profile(bool confirmed, bool late, Duration period) noexcept {
     if (mode_phase_ == ModePhase::profile_halting) return halt_drive_profile(period);
     if (!drive_profile_goes_on()) return leave_drive_profile(period);
     return mode_phase_ == ModePhase::profile ? run_drive_profile(period) : enter_drive_profile(confirmed, late, period);
 }
 
-bool Axis::enter_drive_profile(bool confirmed, bool late, Duration period) noexcept {
+bool AxisCore::enter_drive_profile(bool confirmed, bool late, Duration period) noexcept {
     follow_motor();
     if (late) {
         queue_.finish_active(Outcome::error, ErrorId::drive_mode_refused);
@@ -97,7 +97,7 @@ bool Axis::enter_drive_profile(bool confirmed, bool late, Duration period) noexc
 
 // --- in it ------------------------------------------------------------------------------------------------------------------------
 
-bool Axis::run_drive_profile(Duration period) noexcept {
+bool AxisCore::run_drive_profile(Duration period) noexcept {
     follow_motor();
     if (endless_ && drive_run_.mode() != DriveMode::profile_position && units_.far_from_anchor(setpoint_.state().position)) reanchor();
     if (const double velocity = setpoint_.state().velocity; velocity != 0) backwards_ = velocity < 0;
@@ -118,13 +118,13 @@ bool Axis::run_drive_profile(Duration period) noexcept {
 }
 
 /// Local target of a move that begins at `from`.
-double Axis::drive_target(const AxisCommand& command, const MotionState& from) const noexcept {
+double AxisCore::drive_target(const AxisCommand& command, const MotionState& from) const noexcept {
     if (command.kind == CommandKind::drive_move_relative) return from.position + command.position;
     return repetition_of(command, from, from.velocity != 0 ? from.velocity < 0 : backwards_);
 }
 
 /// What the command means in the drive's counts; `way.target` has been found.
-DriveProfileRun::Setpoint Axis::drive_setpoint(const AxisCommand& command, DriveProfileRun::Way& way) const noexcept {
+DriveProfileRun::Setpoint AxisCore::drive_setpoint(const AxisCommand& command, DriveProfileRun::Way& way) const noexcept {
     const double counts = units_.counts_per_unit();
     const auto dynamics = dynamics_of(command, config_.limits, config_.defaults);
     DriveProfileRun::Setpoint made;
@@ -152,7 +152,7 @@ DriveProfileRun::Setpoint Axis::drive_setpoint(const AxisCommand& command, Drive
     return made;
 }
 
-ErrorId Axis::hand_to_drive(const AxisCommand& command) noexcept {
+ErrorId AxisCore::hand_to_drive(const AxisCommand& command) noexcept {
     goal_ = {.kind = Goal::Kind::given, .value = 0, .limits = full_limits(config_.limits), .limiter = VelocityLimiter::none};
     goal_pending_ = false;
     const bool position = drive_run_.mode() == DriveMode::profile_position;
@@ -174,7 +174,7 @@ ErrorId Axis::hand_to_drive(const AxisCommand& command) noexcept {
 }
 
 /// PP with a buffer: what waits behind is in the drive before the move in front is over.
-void Axis::hand_ahead() noexcept {
+void AxisCore::hand_ahead() noexcept {
     const auto behind = drive_run_.ahead();
     if (queue_.waiting() <= behind || drive_run_.mode() != DriveMode::profile_position) return;
     if (!drive_run_.accepted() || drive_run_.barred() || behind >= port_.capabilities().profile_buffer) return;
@@ -188,7 +188,7 @@ void Axis::hand_ahead() noexcept {
 }
 
 /// What became of the set-points.
-void Axis::judge_drive_profile() noexcept {
+void AxisCore::judge_drive_profile() noexcept {
     if (drive_run_.refused(now_)) {
         if (drive_run_.ahead() > 0) {
             drive_run_.drop_ahead();
@@ -203,7 +203,7 @@ void Axis::judge_drive_profile() noexcept {
 }
 
 /// Only the last target shows in the drive's "target reached": those before it are over where the motor has come to them.
-void Axis::judge_drive_move() noexcept {
+void AxisCore::judge_drive_move() noexcept {
     const auto& way = drive_run_.front();
     const double missing = way.target - actual_local();
     const bool near = std::abs(missing) <= config_.windows.in_position;
@@ -219,14 +219,14 @@ void Axis::judge_drive_move() noexcept {
     start_waiting(0);
 }
 
-bool Axis::guard_drive_speed(double velocity) noexcept {
+bool AxisCore::guard_drive_speed(double velocity) noexcept {
     if (!(std::abs(velocity) > too_fast * config_.limits.velocity)) return false;
     fail(AxisAlarm::drive_too_fast, std::abs(velocity), config_.limits.velocity);
     return true;
 }
 
 /// By what the drive reports: its way is not ours to plan.
-void Axis::guard_drive_profile() noexcept {
+void AxisCore::guard_drive_profile() noexcept {
     const auto& at = setpoint_.state();
     if (guard_drive_speed(at.velocity)) return;
     auto braking = stop_limits(config_.limits);
@@ -245,12 +245,12 @@ void Axis::guard_drive_profile() noexcept {
 // --- out of it --------------------------------------------------------------------------------------------------------------------
 
 /// The motor stands by then, if the drive stops along a ramp of its own. `deceleration` u/s2; 0: unknown.
-Duration Axis::longest_ramp(double deceleration) const noexcept {
+Duration AxisCore::longest_ramp(double deceleration) const noexcept {
     const double seconds = deceleration > 0 ? braking_grace * std::abs(motor_velocity()) / deceleration : 0;
     return std::min<Duration>(from_seconds(std::min(seconds, to_seconds(longest_braking))) + 500ms, longest_braking);
 }
 
-bool Axis::leave_drive_profile(Duration period) noexcept {
+bool AxisCore::leave_drive_profile(Duration period) noexcept {
     const bool halts = port_.capabilities().mode_change_at_standstill && !drive_stands();
     drive_run_.leave(now_, longest_ramp(drive_run_.setpoint().deceleration / std::abs(units_.counts_per_unit())));
     drive_halt_ = halts;
@@ -258,7 +258,7 @@ bool Axis::leave_drive_profile(Duration period) noexcept {
     return step_mode(period);
 }
 
-bool Axis::halt_drive_profile(Duration period) noexcept {
+bool AxisCore::halt_drive_profile(Duration period) noexcept {
     follow_motor();
     if (drive_stands() || !drive_run_.may_still_turn(now_)) {
         go_mode(ModePhase::leaving);
@@ -273,7 +273,7 @@ bool Axis::halt_drive_profile(Duration period) noexcept {
 
 // --- to the drive -------------------------------------------------------------------------------------------------------------------
 
-void Axis::fill_drive_profile() noexcept {
+void AxisCore::fill_drive_profile() noexcept {
     command_.velocity = command_.torque = 0;
     if (mode_phase_ == ModePhase::profile_entering) return;
     const auto& made = drive_run_.setpoint();

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "axes/axis/axis.hpp"
+#include "axes/axis/axis_core.hpp"
 
 namespace taktwerk::axes {
 
@@ -23,7 +23,7 @@ double releasable(const MotionState& state, double most, double jerk) noexcept {
 
 }  // namespace
 
-void Axis::begin_command() noexcept {
+void AxisCore::begin_command() noexcept {
     begin_pending_ = false;
     const auto error = set_goal(queue_.active());
     if (error == ErrorId::none) return;
@@ -31,7 +31,7 @@ void Axis::begin_command() noexcept {
     start_waiting(0);
 }
 
-ErrorId Axis::set_goal(const AcceptedCommand& accepted) noexcept {
+ErrorId AxisCore::set_goal(const AcceptedCommand& accepted) noexcept {
     const auto command = accepted.command;
     switch (command.kind) {
         case CommandKind::home: return begin_homing(command);
@@ -81,19 +81,19 @@ ErrorId Axis::set_goal(const AcceptedCommand& accepted) noexcept {
 }
 
 /// The command begins here: with what was superimposed so far, near the anchor. A goal must follow.
-void Axis::start_at_base() noexcept {
+void AxisCore::start_at_base() noexcept {
     commanded_target_ += setpoint_.fold_covered();
     if (endless_) reanchor();
     origin_ = setpoint_.base().position;
     started_backwards_ = heads_backwards();
 }
 
-bool Axis::heads_backwards() const noexcept {
+bool AxisCore::heads_backwards() const noexcept {
     const double velocity = setpoint_.base().velocity;
     return velocity != 0 ? velocity < 0 : backwards_;
 }
 
-void Axis::aim(Goal::Kind kind, double value, const MotionLimits& limits, VelocityLimiter limiter) noexcept {
+void AxisCore::aim(Goal::Kind kind, double value, const MotionLimits& limits, VelocityLimiter limiter) noexcept {
     // The jerk of a slave, a table and a feed is not limited: what comes next takes over of their acceleration what it can release. (A slave alone
     // holds itself to that; with what was on top of it, it does not.)
     const bool stops = kind == Goal::Kind::stop;
@@ -111,14 +111,14 @@ void Axis::aim(Goal::Kind kind, double value, const MotionLimits& limits, Veloci
 }
 
 /// Every stop of a planned motion begins here, whoever asked for it.
-void Axis::aim_at_rest(const MotionLimits& limits) noexcept {
+void AxisCore::aim_at_rest(const MotionLimits& limits) noexcept {
     aim(Goal::Kind::stop, 0, limits, VelocityLimiter::stopping);
     folded_jerk_ = 0;  // it counts once, also where one stop is given after the other
 }
 
 /// Of what moves the axis now, base and addition together. That of a slave, a table or a fed set-point is not limited once it has moved the axis: until
 /// then it is that of the motion before.
-double Axis::jerk_of_motion() const noexcept {
+double AxisCore::jerk_of_motion() const noexcept {
     switch (goal_.kind) {
         case Goal::Kind::rest: return folded_jerk_;
         case Goal::Kind::position:
@@ -130,14 +130,14 @@ double Axis::jerk_of_motion() const noexcept {
     return goal_.former_jerk > 0 ? goal_.former_jerk : std::numeric_limits<double>::infinity();
 }
 
-void Axis::aim_at_velocity(double velocity, const MotionLimits& dynamics) noexcept {
+void AxisCore::aim_at_velocity(double velocity, const MotionLimits& dynamics) noexcept {
     const auto allowed = allowed_speed(std::abs(velocity), config_.limits.velocity, velocity_cap());
     const auto limiter = velocity == 0 ? VelocityLimiter::stopping : allowed.limiter;
     aim(Goal::Kind::velocity, std::copysign(allowed.speed, velocity), dynamics, limiter);
 }
 
 /// `target` is local.
-void Axis::aim_at_target(const AxisCommand& command, double target) noexcept {
+void AxisCore::aim_at_target(const AxisCommand& command, double target) noexcept {
     auto dynamics = dynamics_of(command, config_.limits, config_.defaults);
     const auto allowed = allowed_speed(command.velocity, config_.limits.velocity, velocity_cap());
     dynamics.velocity = allowed.speed;
@@ -152,16 +152,16 @@ void Axis::aim_at_target(const AxisCommand& command, double target) noexcept {
     has_commanded_target_ = true;
 }
 
-void Axis::aim_at_stop(const AxisCommand& command) noexcept { aim_at_rest(dynamics_of(command, config_.limits, config_.defaults)); }
+void AxisCore::aim_at_stop(const AxisCommand& command) noexcept { aim_at_rest(dynamics_of(command, config_.limits, config_.defaults)); }
 
-double Axis::signed_velocity(const AxisCommand& command, bool backwards) const noexcept {
+double AxisCore::signed_velocity(const AxisCommand& command, bool backwards) const noexcept {
     if (command.kind != CommandKind::move_velocity && command.kind != CommandKind::drive_move_velocity) return command.velocity;
     const bool negative = command.direction == mcNegativeDirection || (command.direction == mcCurrentDirection && backwards);
     return negative ? -command.velocity : command.velocity;
 }
 
 /// Local target of a motion to a position that begins at `from`.
-double Axis::target_of(const AxisCommand& command, const MotionState& from, bool backwards) const noexcept {
+double AxisCore::target_of(const AxisCommand& command, const MotionState& from, bool backwards) const noexcept {
     const bool absolute = command.kind == CommandKind::move_absolute || command.kind == CommandKind::move_continuous_absolute;
     if (!absolute) return origin_ + command.position;
     return repetition_of(command, from, backwards);
@@ -169,7 +169,7 @@ double Axis::target_of(const AxisCommand& command, const MotionState& from, bool
 
 /// Which repetition of a modulo axis' position is meant: the first from `from` in the direction; the next one after where the axis can
 /// stop, when it already moves that way with a direction it must keep (P1-095). WholeTurns come on top.
-double Axis::repetition_of(const AxisCommand& command, const MotionState& from, bool backwards) const noexcept {
+double AxisCore::repetition_of(const AxisCommand& command, const MotionState& from, bool backwards) const noexcept {
     const double modulo = units_.modulo();
     if (!(modulo > 0)) return units_.to_local(command.position);
 

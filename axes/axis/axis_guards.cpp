@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "axes/axis/axis.hpp"
+#include "axes/axis/axis_core.hpp"
 
 namespace taktwerk::axes {
 
@@ -34,7 +34,7 @@ double reach_of_stop(const MotionState& from, const MotionLimits& limits, double
 
 }  // namespace
 
-void Axis::guard(const MotionState& before, Duration period) noexcept {
+void AxisCore::guard(const MotionState& before, Duration period) noexcept {
     if (view_.state == AxisState::Homing || (goal_.kind == Goal::Kind::rest && !setpoint_.layered())) return;
     if (!guard_switches() && !guard_software_limits(before)) return;
     setpoint_.restore(before);
@@ -42,9 +42,9 @@ void Axis::guard(const MotionState& before, Duration period) noexcept {
     setpoint_.advance(period);
 }
 
-bool Axis::guard_switches() noexcept { return guard_limit_switches() || guard_permits(); }
+bool AxisCore::guard_switches() noexcept { return guard_limit_switches() || guard_permits(); }
 
-bool Axis::guard_limit_switches() noexcept {
+bool AxisCore::guard_limit_switches() noexcept {
     const double velocity = setpoint_.state().velocity;
     if (!(velocity > 0 ? positive_switch_ : velocity < 0 && negative_switch_)) return false;
     if (view_.state == AxisState::ErrorStop && goal_.kind == Goal::Kind::stop) return false;  // it brakes as hard as it can
@@ -54,7 +54,7 @@ bool Axis::guard_limit_switches() noexcept {
 }
 
 /// A command that moves on ends; one that stops goes on, as hard as the axis does by itself.
-bool Axis::guard_permits() noexcept {
+bool AxisCore::guard_permits() noexcept {
     if (!barred(setpoint_.state().velocity)) return false;
     if (goal_.kind != Goal::Kind::stop || setpoint_.layered()) {
         queue_.finish_active(Outcome::error, ErrorId::interlocked);
@@ -70,7 +70,7 @@ bool Axis::guard_permits() noexcept {
     return true;
 }
 
-bool Axis::guard_software_limits(const MotionState& before) noexcept {
+bool AxisCore::guard_software_limits(const MotionState& before) noexcept {
     const bool stops_inside = goal_.kind == Goal::Kind::stop && refuse_place(units_.to_program(setpoint_.end().position)) == ErrorId::none;
     const bool base_might_pass = watch_limits_ && goal_.kind != Goal::Kind::rest && !stops_inside;
     if (!(base_might_pass || setpoint_.layered()) || !software_limits_hold() || goal_.limiter == VelocityLimiter::software_limit)
@@ -122,7 +122,7 @@ bool Axis::guard_software_limits(const MotionState& before) noexcept {
 
 /// Both layers are on their way to rest, and whatever part of its way each has done, the sum is inside: then it may brake with both ramps
 /// at once, harder than the axis would alone.
-bool Axis::sum_stays_inside() const noexcept {
+bool AxisCore::sum_stays_inside() const noexcept {
     if (setpoint_.end().velocity != 0) return false;
     const double base = setpoint_.base().position, part = setpoint_.superimposed().position;
     const double base_way = setpoint_.end().position - base, part_way = setpoint_.superimposed_rest();
@@ -134,7 +134,7 @@ bool Axis::sum_stays_inside() const noexcept {
 }
 
 /// Ramps that would carry the axis past a software limit become as hard as the axis can.
-void Axis::brake_inside_limits(const MotionState& from, MotionLimits& limits) const noexcept {
+void AxisCore::brake_inside_limits(const MotionState& from, MotionLimits& limits) const noexcept {
     if (!software_limits_hold() || (from.velocity == 0 && from.acceleration == 0)) return;
     for (const double sense : {1.0, -1.0}) {
         const double edge = units_.to_local(sense > 0 ? config_.limits.position_max : config_.limits.position_min);
@@ -151,9 +151,9 @@ void Axis::brake_inside_limits(const MotionState& from, MotionLimits& limits) co
 
 /// Two layers brake with a ramp each (P1-155). What they would have stopped within, one motion of both does with twice the ramps: the sum of
 /// theirs is no harder. Where a new one moves on top it has its own, and the base one: no more than two.
-double Axis::layers_in_base() const noexcept { return summed_ && setpoint_.superimposed_finished() ? 2 : 1; }
+double AxisCore::layers_in_base() const noexcept { return summed_ && setpoint_.superimposed_finished() ? 2 : 1; }
 
-void Axis::brake_as_both_layers(const MotionState& from, double sense, double room, MotionLimits& limits) const noexcept {
+void AxisCore::brake_as_both_layers(const MotionState& from, double sense, double room, MotionLimits& limits) const noexcept {
     if (layers_in_base() == 1 || reach_of_stop(from, limits, sense) <= room) return;
     limits.deceleration = std::max(limits.deceleration, layers_in_base() * config_.limits.deceleration);
     limits.jerk = std::max(limits.jerk, layers_in_base() * config_.limits.jerk);
@@ -161,7 +161,7 @@ void Axis::brake_as_both_layers(const MotionState& from, double sense, double ro
 
 /// The acceleration the axis has now was built up with another jerk. Taken away with a smaller one it would carry the velocity beyond the
 /// axis' limit, also through zero to the one of the other sense: then it is taken away as fast as that needs.
-bool Axis::release_below_limit(const MotionState& from, MotionLimits& limits) const noexcept {
+bool AxisCore::release_below_limit(const MotionState& from, MotionLimits& limits) const noexcept {
     if (from.acceleration == 0) return false;
     const double sense = from.acceleration > 0 ? 1 : -1;
     const double beside = superimposed_reach(sense);
@@ -175,7 +175,7 @@ bool Axis::release_below_limit(const MotionState& from, MotionLimits& limits) co
 }
 
 /// Does it go further than both its ends and the software limits?
-bool Axis::leaves_limits(const Profile& profile) const noexcept {
+bool AxisCore::leaves_limits(const Profile& profile) const noexcept {
     if (!software_limits_hold()) return false;
     const double low = units_.to_local(config_.limits.position_min);
     const double high = units_.to_local(config_.limits.position_max);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "axes/axis/axis.hpp"
+#include "axes/axis/axis_core.hpp"
 #include "axes/homing/index_doubt.hpp"
 
 namespace taktwerk::axes {
@@ -22,7 +22,7 @@ bool pulse_is_certain(const DriveCapabilities& drive, const AxisConfig& config, 
 
 }  // namespace
 
-ErrorId Axis::refuse_home() const noexcept {
+ErrorId AxisCore::refuse_home() const noexcept {
     const auto& drive = port_.capabilities();
     switch (config_.homing.kind) {
         case HomingKind::none: return ErrorId::not_supported;
@@ -44,7 +44,7 @@ ErrorId Axis::refuse_home() const noexcept {
 }
 
 /// What the kinds that are built from one step search for.
-StepSettings Axis::home_search() const noexcept {
+StepSettings AxisCore::home_search() const noexcept {
     const auto& homing = config_.homing;
     StepSettings run{.velocity = homing.search_velocity, .time_limit = homing.timeout};
     switch (homing.kind) {
@@ -66,7 +66,7 @@ StepSettings Axis::home_search() const noexcept {
     return run;
 }
 
-ErrorId Axis::begin_homing(const AxisCommand& command) noexcept {
+ErrorId AxisCore::begin_homing(const AxisCommand& command) noexcept {
     const auto& homing = config_.homing;
     home_coordinate_ = std::isnan(command.position) ? homing.offset : command.position;
     view_.homed = false;
@@ -91,19 +91,19 @@ ErrorId Axis::begin_homing(const AxisCommand& command) noexcept {
     return ErrorId::none;
 }
 
-std::int64_t Axis::encoder_range() const noexcept {
+std::int64_t AxisCore::encoder_range() const noexcept {
     if (config_.memory.range > 0) return config_.memory.range;
     const auto bits = std::min<unsigned>(port_.capabilities().position_bits, 62);
     return std::int64_t{1} << bits;
 }
 
 /// counts; the encoder's (or the drive's) own zero. Its raw position may have wrapped: zero is the nearest multiple of the range.
-std::int64_t Axis::encoder_zero() const noexcept {
+std::int64_t AxisCore::encoder_zero() const noexcept {
     const auto range = static_cast<double>(encoder_range());
     return static_cast<std::int64_t>(std::round(static_cast<double>(actual_counts_) / range) * range);
 }
 
-void Axis::step_homing() noexcept {
+void AxisCore::step_homing() noexcept {
     watch_passive_homing();
     if (drive_homing_.busy()) {
         if (power_.follows_actual()) drive_homing_.cancel();
@@ -135,7 +135,7 @@ void Axis::step_homing() noexcept {
 }
 
 /// What the port makes sure of before it starts the drive's homing. Nothing: the start-up list has it.
-DriveHomingSetup Axis::drive_homing_setup() const noexcept {
+DriveHomingSetup AxisCore::drive_homing_setup() const noexcept {
     if (!drive_homing_.busy() || !port_.capabilities().homing_per_run) return {};
     const double scale = std::abs(units_.counts_per_unit());
     const auto& homing = config_.homing;
@@ -146,14 +146,14 @@ DriveHomingSetup Axis::drive_homing_setup() const noexcept {
 }
 
 /// What homing gave is gone, and so is what was kept of it.
-void Axis::lose_reference() noexcept {
+void AxisCore::lose_reference() noexcept {
     if (!view_.homed && !retained_.homed) return;
     view_.homed = false;
     retained_ = {};
     fail(AxisAlarm::reference_lost, feedback_.error_code);
 }
 
-void Axis::search_home_switch() noexcept {
+void AxisCore::search_home_switch() noexcept {
     const bool seeks_index = switch_homing_.phase() == SwitchHoming::Phase::finished && latch_.armed();
     if (!switch_homing_.busy() && !seeks_index) return;
     switch_homing_.step({.fresh = feedback_.fresh,
@@ -187,14 +187,14 @@ void Axis::search_home_switch() noexcept {
     aim(Goal::Kind::velocity, std::copysign(speed, switch_homing_.velocity()), homing_dynamics(), VelocityLimiter::command);
 }
 
-MotionLimits Axis::homing_dynamics() const noexcept {
+MotionLimits AxisCore::homing_dynamics() const noexcept {
     auto dynamics = full_limits(config_.limits);
     dynamics.acceleration = choose(config_.homing.acceleration, 0, dynamics.acceleration);
     dynamics.deceleration = choose(config_.homing.acceleration, 0, dynamics.deceleration);
     return dynamics;
 }
 
-void Axis::run_home_search() noexcept {
+void AxisCore::run_home_search() noexcept {
     auto dynamics = homing_dynamics();
     dynamics.velocity = std::min(config_.homing.search_velocity, dynamics.velocity);
     drive_step({.source = TriggerSource::index_pulse}, dynamics);
@@ -211,9 +211,9 @@ void Axis::run_home_search() noexcept {
 }
 
 /// The motor's place `at` is the load's `coordinate`, whatever compensation adds on the way between them.
-void Axis::set_coordinate(std::int64_t at, double coordinate) noexcept { units_.set_program(at, coordinate + compensation_.offset()); }
+void AxisCore::set_coordinate(std::int64_t at, double coordinate) noexcept { units_.set_program(at, coordinate + compensation_.offset()); }
 
-void Axis::end_homing(std::int64_t reference) noexcept {
+void AxisCore::end_homing(std::int64_t reference) noexcept {
     set_coordinate(reference, home_coordinate_);
     view_.homed = true;
     switch_homing_.cancel();
@@ -224,7 +224,7 @@ void Axis::end_homing(std::int64_t reference) noexcept {
     start_waiting(0);
 }
 
-void Axis::abort_homing() noexcept {
+void AxisCore::abort_homing() noexcept {
     if (step_run_.busy() || switch_homing_.phase() == SwitchHoming::Phase::finished) latch_.release();
     switch_homing_.cancel();
     step_run_.cancel();

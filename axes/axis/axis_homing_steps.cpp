@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "axes/axis/axis.hpp"
+#include "axes/axis/axis_core.hpp"
 
 namespace taktwerk::axes {
 
@@ -37,7 +37,7 @@ const HomingStepDetails& details_of(const AxisCommand& command) noexcept { retur
 
 }  // namespace
 
-ErrorId Axis::refuse_reference(const TriggerRef& reference) const noexcept {
+ErrorId AxisCore::refuse_reference(const TriggerRef& reference) const noexcept {
     const auto& drive = port_.capabilities();
     switch (reference.source) {
         case TriggerSource::home_switch: return drive.digital_inputs ? ErrorId::none : ErrorId::not_supported;
@@ -57,7 +57,7 @@ ErrorId Axis::refuse_reference(const TriggerRef& reference) const noexcept {
     return taken(SideSlot::probe1) || taken(SideSlot::probe2) ? ErrorId::probe_busy : ErrorId::none;
 }
 
-ErrorId Axis::refuse_step(const HomingStepDetails& step, bool starts_now) const noexcept {
+ErrorId AxisCore::refuse_step(const HomingStepDetails& step, bool starts_now) const noexcept {
     const auto& drive = port_.capabilities();
     switch (step.step) {
         case HomingStep::absolute_switch:
@@ -79,7 +79,7 @@ ErrorId Axis::refuse_step(const HomingStepDetails& step, bool starts_now) const 
     return ErrorId::none;
 }
 
-bool Axis::reference_level(const TriggerRef& reference) const noexcept {
+bool AxisCore::reference_level(const TriggerRef& reference) const noexcept {
     bool level = false;
     if (reference.source == TriggerSource::home_switch) level = feedback_.home_switch;
     else if (reference.source == TriggerSource::input && reference.point < scene_.inputs.size())
@@ -88,14 +88,14 @@ bool Axis::reference_level(const TriggerRef& reference) const noexcept {
     return level != reference.falling;
 }
 
-void Axis::arm_latch(const TriggerRef& reference, bool continuous) noexcept {
+void AxisCore::arm_latch(const TriggerRef& reference, bool continuous) noexcept {
     if (!latched_by_drive(reference)) return;
     latch_.arm(reference.source == TriggerSource::probe2 ? 1 : 0, {.continuous = continuous,
                                                                    .index_pulse = reference.source == TriggerSource::index_pulse,
                                                                    .edge = reference.falling ? ProbeEdge::falling : ProbeEdge::rising});
 }
 
-ErrorId Axis::begin_homing_step(const AxisCommand& command) noexcept {
+ErrorId AxisCore::begin_homing_step(const AxisCommand& command) noexcept {
     const auto& step = details_of(command);
     view_.homed = false;
     const auto dynamics = dynamics_of(command, config_.limits, config_.defaults);
@@ -140,7 +140,7 @@ ErrorId Axis::begin_homing_step(const AxisCommand& command) noexcept {
     return ErrorId::none;
 }
 
-SearchInput Axis::search_input(const TriggerRef& reference) noexcept {
+SearchInput AxisCore::search_input(const TriggerRef& reference) noexcept {
     const auto latch = latch_.take(feedback_);
     return {.signal = reference_level(reference),
             .negative_limit = negative_switch_,
@@ -155,7 +155,7 @@ SearchInput Axis::search_input(const TriggerRef& reference) noexcept {
 }
 
 /// Carries out what the step asks for, until it is over.
-void Axis::drive_step(const TriggerRef& reference, const MotionLimits& dynamics) noexcept {
+void AxisCore::drive_step(const TriggerRef& reference, const MotionLimits& dynamics) noexcept {
     step_run_.step(search_input(reference), feedback_.fresh, setpoint_.at_rest() && setpoint_.finished() && !goal_pending_);
     const double velocity = step_run_.velocity();
     const bool forbidden = (velocity > 0 && !permit_positive_) || (velocity < 0 && !permit_negative_);
@@ -182,7 +182,7 @@ void Axis::drive_step(const TriggerRef& reference, const MotionLimits& dynamics)
     }
 }
 
-void Axis::follow_homing_step() noexcept {
+void AxisCore::follow_homing_step() noexcept {
     const auto command = queue_.active().command;
     const auto& step = details_of(command);
     if (!searches(step.step)) {
@@ -204,7 +204,7 @@ void Axis::follow_homing_step() noexcept {
 }
 
 /// The last move runs without a search: a limit switch ahead ends it.
-void Axis::guard_finish() noexcept {
+void AxisCore::guard_finish() noexcept {
     const double velocity = setpoint_.state().velocity;
     const bool forbidden =
         (velocity > 0 && (positive_switch_ || !permit_positive_)) || (velocity < 0 && (negative_switch_ || !permit_negative_));
@@ -215,7 +215,7 @@ void Axis::guard_finish() noexcept {
     aim_at_rest(stop_limits(config_.limits));
 }
 
-void Axis::end_homing_step(ErrorId error) noexcept {
+void AxisCore::end_homing_step(ErrorId error) noexcept {
     step_run_.cancel();
     latch_.release();
     goal_ = {};
@@ -226,7 +226,7 @@ void Axis::end_homing_step(ErrorId error) noexcept {
 }
 
 /// The steps that need no search, once the axis stands. They end the procedure.
-bool Axis::complete_homing_step() noexcept {
+bool AxisCore::complete_homing_step() noexcept {
     const auto& command = queue_.active().command;
     const auto& step = details_of(command);
     if (searches(step.step) || begin_pending_) return false;

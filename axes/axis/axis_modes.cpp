@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "axes/axis/axis.hpp"
+#include "axes/axis/axis_core.hpp"
 
 namespace taktwerk::axes {
 
@@ -36,21 +36,21 @@ bool only_stops(CommandKind kind) noexcept { return kind == CommandKind::stop ||
 
 }  // namespace
 
-DriveMode Axis::mode_on_the_way() const noexcept {
+DriveMode AxisCore::mode_on_the_way() const noexcept {
     if (drive_homing_.busy()) return drive_homing_.mode();
     if (mode_waits_) return mode_phase_ == ModePhase::changing ? former_mode_ : own_mode_;
     if (in_drive_profile()) return drive_run_.mode();
     return mode_phase_ == ModePhase::entering || mode_phase_ == ModePhase::torque ? torque_mode(port_.capabilities()) : own_mode_;
 }
 
-bool Axis::torque_wanted() const noexcept {
+bool AxisCore::torque_wanted() const noexcept {
     if (queue_.active().command.kind == CommandKind::torque) return true;
     return torque_idle_ && !queue_.has_active() && view_.state == AxisState::Standstill;
 }
 
 // --- what is accepted ---------------------------------------------------------------------------------------------------------
 
-ErrorId Axis::refuse_mode(const AxisCommand& command, bool starts_now) const noexcept {
+ErrorId AxisCore::refuse_mode(const AxisCommand& command, bool starts_now) const noexcept {
     const auto& drive = port_.capabilities();
     const bool in_torque = mode_phase_ == ModePhase::entering || mode_phase_ == ModePhase::torque;
     // At the end of a move the motor is a little behind its set-point: then the change waits for it.
@@ -77,7 +77,7 @@ ErrorId Axis::refuse_mode(const AxisCommand& command, bool starts_now) const noe
     return !starts_now || stands ? ErrorId::none : ErrorId::not_at_standstill;
 }
 
-double Axis::torque_of(const AxisCommand& command) const noexcept {
+double AxisCore::torque_of(const AxisCommand& command) const noexcept {
     const double torque = std::get<TorqueDetails>(command.details).torque;
     switch (command.direction) {
         case mcNegativeDirection: return -torque;
@@ -90,7 +90,7 @@ double Axis::torque_of(const AxisCommand& command) const noexcept {
 
 // --- begin --------------------------------------------------------------------------------------------------------------------
 
-void Axis::begin_torque(const AxisCommand& command) noexcept {
+void AxisCore::begin_torque(const AxisCommand& command) noexcept {
     abandon_superimposed();  // there will be no set-point to add to
     const auto& details = std::get<TorqueDetails>(command.details);
     const auto dynamics = dynamics_of(command, config_.limits, config_.defaults);
@@ -110,7 +110,7 @@ void Axis::begin_torque(const AxisCommand& command) noexcept {
     mode_waits_ = port_.capabilities().mode_change_at_standstill;
 }
 
-void Axis::begin_mode_change(const AxisCommand& command) noexcept {
+void AxisCore::begin_mode_change(const AxisCommand& command) noexcept {
     const auto mode = static_cast<DriveMode>(static_cast<std::uint8_t>(command.position));
     goal_ = {};
     goal_pending_ = false;
@@ -126,7 +126,7 @@ void Axis::begin_mode_change(const AxisCommand& command) noexcept {
     mode_waits_ = true;
 }
 
-void Axis::go_mode(ModePhase phase) noexcept {
+void AxisCore::go_mode(ModePhase phase) noexcept {
     if (mode_phase_ == ModePhase::steady) motor_leads_ = false;
     mode_phase_ = phase;
     mode_since_ = now_;
@@ -136,7 +136,7 @@ void Axis::go_mode(ModePhase phase) noexcept {
 // --- each cycle ---------------------------------------------------------------------------------------------------------------
 
 /// The drive has shown the wanted mode for as long as it wants before commands.
-bool Axis::mode_confirmed() noexcept {
+bool AxisCore::mode_confirmed() noexcept {
     if (!feedback_.fresh) return false;
     const bool there = feedback_.mode == wanted_mode();
     if (there && !mode_seen_) mode_seen_at_ = now_;
@@ -145,7 +145,7 @@ bool Axis::mode_confirmed() noexcept {
 }
 
 /// True: this cycle's set-point is made.
-bool Axis::step_mode(Duration period) noexcept {
+bool AxisCore::step_mode(Duration period) noexcept {
     if (mode_waits_) {
         if (drive_stands()) mode_waits_ = false;
         else mode_since_ = now_;
@@ -166,7 +166,7 @@ bool Axis::step_mode(Duration period) noexcept {
     return false;
 }
 
-bool Axis::leave_mode(bool confirmed, bool late, Duration period) noexcept {
+bool AxisCore::leave_mode(bool confirmed, bool late, Duration period) noexcept {
     if (torque_wanted() && drive_run_.mode() == DriveMode::none) {  // again
         go_mode(ModePhase::entering);
         return step_mode(period);
@@ -197,7 +197,7 @@ bool Axis::leave_mode(bool confirmed, bool late, Duration period) noexcept {
     return false;
 }
 
-bool Axis::enter_torque(bool confirmed, bool late, Duration period) noexcept {
+bool AxisCore::enter_torque(bool confirmed, bool late, Duration period) noexcept {
     const bool by_command = queue_.active().command.kind == CommandKind::set_controller_mode;
     if (!torque_wanted() && !by_command) {
         go_mode(ModePhase::leaving);
@@ -223,7 +223,7 @@ bool Axis::enter_torque(bool confirmed, bool late, Duration period) noexcept {
     return false;  // meanwhile the axis goes on as it did, in its own mode
 }
 
-bool Axis::run_torque(Duration period) noexcept {
+bool AxisCore::run_torque(Duration period) noexcept {
     const auto& drive = port_.capabilities();
     if (!torque_wanted()) {
         if (!drive.mode_change_at_standstill || drive_stands()) {
@@ -253,7 +253,7 @@ bool Axis::run_torque(Duration period) noexcept {
 }
 
 /// As the guards of planned motion, but early by what leaving the mode takes.
-void Axis::guard_motor(const MotionLimits& braking) noexcept {
+void AxisCore::guard_motor(const MotionLimits& braking) noexcept {
     if (view_.state == AxisState::ErrorStop || guard_limit_switches()) return;
     const bool stops = view_.state == AxisState::Stopping || halts_alone();
     if ((!stops && guard_permits()) || !software_limits_hold()) return;
@@ -280,7 +280,7 @@ void Axis::guard_motor(const MotionLimits& braking) noexcept {
         fail(AxisAlarm::software_limit_reached, units_.to_program(setpoint_.state().position), edge);
 }
 
-bool Axis::change_mode(bool confirmed, bool late) noexcept {
+bool AxisCore::change_mode(bool confirmed, bool late) noexcept {
     if (queue_.active().command.kind != CommandKind::set_controller_mode) {  // ended by something else, which begins in the new mode
         go_mode(ModePhase::leaving);
         return true;
@@ -300,15 +300,15 @@ bool Axis::change_mode(bool confirmed, bool late) noexcept {
 }
 
 /// Out of torque with nothing to do: the motor may still turn.
-void Axis::stop_or_stand() noexcept {
+void AxisCore::stop_or_stand() noexcept {
     if (drive_stands()) setpoint_.place(setpoint_.state().position);
     else stop_on_own_account(false);
 }
 
-double Axis::motor_velocity() const noexcept { return drive_stands() ? 0 : feedback_.velocity / units_.counts_per_unit(); }
+double AxisCore::motor_velocity() const noexcept { return drive_stands() ? 0 : feedback_.velocity / units_.counts_per_unit(); }
 
 /// Where the motor will be when this cycle's set-point takes effect, once the drive has been seen in a mode that takes none.
-void Axis::follow_motor() noexcept {
+void AxisCore::follow_motor() noexcept {
     const bool takes_setpoints = feedback_.mode == own_mode_ || feedback_.mode == former_mode_;
     const bool confirmed = mode_phase_ == ModePhase::torque || mode_phase_ == ModePhase::profile;
     motor_leads_ = motor_leads_ || confirmed || (feedback_.fresh && !takes_setpoints);
@@ -323,7 +323,7 @@ void Axis::follow_motor() noexcept {
 
 // --- to the drive -------------------------------------------------------------------------------------------------------------
 
-void Axis::fill_targets() noexcept {
+void AxisCore::fill_targets() noexcept {
     const auto& set = setpoint_.state();
     const auto& control = config_.control;
     const double counts = units_.counts_per_unit();
@@ -353,7 +353,7 @@ void Axis::fill_targets() noexcept {
     command_.halt = command_.halt || drive_halt_;
 }
 
-void Axis::fill_torque() noexcept {
+void AxisCore::fill_torque() noexcept {
     if (mode_phase_ == ModePhase::entering) command_.torque = feedback_.torque;  // what the motor has when it takes the mode
     if (mode_phase_ != ModePhase::torque) return;
     const double counts = units_.counts_per_unit();

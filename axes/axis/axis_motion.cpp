@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "axes/axis/axis.hpp"
+#include "axes/axis/axis_core.hpp"
 #include "axes/axis/junction.hpp"
 #include "axes/axis/stop_ramp.hpp"
 
@@ -32,7 +32,7 @@ void hold_to_limits(Goal& goal, const AxisLimits& now) noexcept {
 
 }  // namespace
 
-void Axis::plan(Instant now, Duration period) noexcept {
+void AxisCore::plan(Instant now, Duration period) noexcept {
     now_ = now;
     if (coupling_.phasing_next.id != 0) settle_waiting_phasing();
     if (follows_motor()) {
@@ -88,12 +88,12 @@ void Axis::plan(Instant now, Duration period) noexcept {
 }
 
 /// Power would hold it with a jolt: it is asked for when the motor is slow, or not at all.
-bool Axis::turns_by_itself() const noexcept {
+bool AxisCore::turns_by_itself() const noexcept {
     // What counts as standstill is none, however slow the axis is: the velocity of a drive at rest is seldom 0.
     return !drive_homing_.busy() && !drive_stands() && std::abs(view_.actual_velocity) > turning_by_itself * config_.limits.velocity;
 }
 
-void Axis::follow_actual(Duration period) noexcept {
+void AxisCore::follow_actual(Duration period) noexcept {
     if (!online()) {
         aligned_ = false;
         return;
@@ -117,13 +117,13 @@ void Axis::follow_actual(Duration period) noexcept {
 }
 
 /// Whatever it is on its way to: the base is about to stop, or does.
-bool Axis::base_comes_to_rest() const noexcept {
+bool AxisCore::base_comes_to_rest() const noexcept {
     const bool no_speed = override_counts() && override_.velocity == 0;
     return goal_.kind == Goal::Kind::stop || (goal_.kind == Goal::Kind::velocity && (goal_.value == 0 || no_speed)) ||
            (goal_.kind == Goal::Kind::position && no_speed);
 }
 
-void Axis::run_goal(double late) noexcept {
+void AxisCore::run_goal(double late) noexcept {
     if (abandoned_addition_moves() && base_comes_to_rest()) {
         stop_as_one();
         late = 0;  // both are where they are now
@@ -177,7 +177,7 @@ void Axis::run_goal(double late) noexcept {
 }
 
 /// The rest of the way belongs to the command's own jerk.
-void Axis::end_release() noexcept {
+void AxisCore::end_release() noexcept {
     const bool planned = goal_.kind == Goal::Kind::position || goal_.kind == Goal::Kind::velocity || goal_.kind == Goal::Kind::stop;
     auto limits = with_override(goal_.limits);
     releases_ = planned && release_below_limit(setpoint_.base(), limits);
@@ -185,7 +185,7 @@ void Axis::end_release() noexcept {
 }
 
 /// `most`: u/s that also an end velocity may not pass.
-Plan Axis::plan_way(const MotionState& from, MotionLimits limits, double most) noexcept {
+Plan AxisCore::plan_way(const MotionState& from, MotionLimits limits, double most) noexcept {
     // A new target with gentle dynamics must not carry a fast axis past a software limit on its way back.
     brake_inside_limits(from, limits);
     if (override_counts()) {
@@ -210,12 +210,12 @@ Plan Axis::plan_way(const MotionState& from, MotionLimits limits, double most) n
 }
 
 /// Only while nothing is planned: every local coordinate becomes another.
-void Axis::anchor_near_actual() noexcept {
+void AxisCore::anchor_near_actual() noexcept {
     if (units_.far_from_anchor(actual_local())) units_.reanchor(actual_local());
 }
 
 /// A profile must follow.
-void Axis::reanchor() noexcept {
+void AxisCore::reanchor() noexcept {
     const double here = setpoint_.base().position;
     const double left = units_.reanchor(here);
     const double delta = left - here;
@@ -225,7 +225,7 @@ void Axis::reanchor() noexcept {
     commanded_target_ += delta;
 }
 
-void Axis::keep_close_to_anchor() noexcept {
+void AxisCore::keep_close_to_anchor() noexcept {
     if (goal_pending_ || goal_.kind != Goal::Kind::velocity || !setpoint_.finished() || !units_.far_from_anchor(setpoint_.base().position))
         return;
     reanchor();

@@ -2,12 +2,12 @@
 
 #include <cmath>
 
-#include "axes/axis/axis.hpp"
+#include "axes/axis/axis_core.hpp"
 #include "axes/axis/plannable.hpp"
 
 namespace taktwerk::axes {
 
-ErrorId Axis::set_override(const Override& factors) noexcept {
+ErrorId AxisCore::set_override(const Override& factors) noexcept {
     const auto in_range = [](double factor) noexcept { return factor >= 0 && factor <= 1; };
     if (!in_range(factors.velocity) || !in_range(factors.acceleration) || !in_range(factors.jerk)) return ErrorId::invalid_override;
     if (factors.acceleration < least_share || factors.jerk < least_share) return ErrorId::invalid_override;
@@ -25,7 +25,7 @@ ErrorId Axis::set_override(const Override& factors) noexcept {
 
 /// Not where the axis follows a master (P1-208) or a table over time (P1-211), stops, or searches its reference with velocities of its own; nor
 /// on a velocity that a released slave keeps (P1-271). While a coupling waits, the motion before goes on, and its override with it (P1-281).
-bool Axis::override_counts() const noexcept {
+bool AxisCore::override_counts() const noexcept {
     const auto kind = queue_.active().command.kind;
     if (kind == CommandKind::velocity_profile || kind == CommandKind::acceleration_profile) return false;
     const bool moves = goal_.kind == Goal::Kind::position || goal_.kind == Goal::Kind::velocity;
@@ -35,7 +35,7 @@ bool Axis::override_counts() const noexcept {
 }
 
 /// Ramps only: what a velocity means depends on the kind of motion.
-MotionLimits Axis::with_override(const MotionLimits& limits) const noexcept {
+MotionLimits AxisCore::with_override(const MotionLimits& limits) const noexcept {
     if (!override_counts()) return limits;
     return {limits.velocity, limits.acceleration * override_.acceleration, limits.deceleration * override_.acceleration,
             limits.jerk * override_.jerk};

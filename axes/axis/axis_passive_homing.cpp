@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "axes/axis/axis.hpp"
+#include "axes/axis/axis_core.hpp"
 
 namespace taktwerk::axes {
 
@@ -25,7 +25,7 @@ bool passed(MC_SwitchMode mode, const EdgeWatch& edge, double velocity) noexcept
 
 }  // namespace
 
-ErrorId Axis::refuse_passive(const AxisCommand& command) const noexcept {
+ErrorId AxisCore::refuse_passive(const AxisCommand& command) const noexcept {
     if (const auto error = check_numbers(command); error != ErrorId::none) return error;
     if (view_.state == AxisState::Disabled) return ErrorId::not_powered;
     if (view_.state == AxisState::ErrorStop) return ErrorId::in_error_stop;
@@ -34,7 +34,7 @@ ErrorId Axis::refuse_passive(const AxisCommand& command) const noexcept {
     return refuse_step(*step, true);
 }
 
-Submitted Axis::submit_passive(const AxisCommand& command, Owner owner) noexcept {
+Submitted AxisCore::submit_passive(const AxisCommand& command, Owner owner) noexcept {
     if (!may(owner)) return {0, ErrorId::owned_by_other};
     if (command.kind == CommandKind::abort_passive_homing) {
         end_passive_homing(Outcome::aborted);
@@ -51,7 +51,7 @@ Submitted Axis::submit_passive(const AxisCommand& command, Owner owner) noexcept
     return {passive_.id, ErrorId::none};
 }
 
-void Axis::end_passive_homing(Outcome outcome, ErrorId error) noexcept {
+void AxisCore::end_passive_homing(Outcome outcome, ErrorId error) noexcept {
     if (passive_.id == 0) return;
     queue_.record(passive_.id, outcome, error);
     passive_.id = 0;
@@ -59,7 +59,7 @@ void Axis::end_passive_homing(Outcome outcome, ErrorId error) noexcept {
     latch_.release();
 }
 
-void Axis::watch_passive_homing() noexcept {
+void AxisCore::watch_passive_homing() noexcept {
     if (passive_.id == 0) return;
     if (view_.state == AxisState::ErrorStop) return end_passive_homing(Outcome::error, ErrorId::aborted_by_axis_error);
     // What homes the axis actively, and what takes its power, takes this with it.

@@ -2,11 +2,11 @@
 
 #include <cmath>
 
-#include "axes/axis/axis.hpp"
+#include "axes/axis/axis_core.hpp"
 
 namespace taktwerk::axes {
 
-Submitted Axis::submit_phasing(const AxisCommand& command, Owner owner) noexcept {
+Submitted AxisCore::submit_phasing(const AxisCommand& command, Owner owner) noexcept {
     if (!may(owner)) return {0, ErrorId::owned_by_other};
     if (const auto error = refuse_phasing(command); error != ErrorId::none) return {0, error};
     const AcceptedCommand accepted{queue_.next_id(), owner, command};
@@ -22,7 +22,7 @@ Submitted Axis::submit_phasing(const AxisCommand& command, Owner owner) noexcept
     return {accepted.id, ErrorId::none};
 }
 
-ErrorId Axis::refuse_phasing(const AxisCommand& command) const noexcept {
+ErrorId AxisCore::refuse_phasing(const AxisCommand& command) const noexcept {
     for (const double value : {command.velocity, command.acceleration, command.deceleration, command.jerk})
         if (!(value >= 0) || std::isinf(value)) return value == command.velocity ? ErrorId::invalid_velocity : ErrorId::invalid_dynamics;
     if (!std::isfinite(command.position)) return ErrorId::invalid_position;
@@ -42,7 +42,7 @@ ErrorId Axis::refuse_phasing(const AxisCommand& command) const noexcept {
 }
 
 /// The coupling that a buffered phasing waits for is the last one given; an aborting one acts on the active.
-const AcceptedCommand& Axis::coupling_before_phasing(const AxisCommand& command) const noexcept {
+const AcceptedCommand& AxisCore::coupling_before_phasing(const AxisCommand& command) const noexcept {
     if (command.buffer_mode == mcBuffered)
         for (std::size_t i = queue_.waiting(); i > 0; --i)
             if (const auto& before = queue_.waiting_at(i - 1); before.command.kind != CommandKind::setting) return before;
@@ -50,14 +50,14 @@ const AcceptedCommand& Axis::coupling_before_phasing(const AxisCommand& command)
 }
 
 /// Table 4: InGear, InSync, of a cam EndOfProfile. Inxxx has been shown for a cycle.
-bool Axis::lets_phasing_begin() const noexcept {
+bool AxisCore::lets_phasing_begin() const noexcept {
     if (queue_.active().id != coupling_.phasing_behind) return false;
     if (queue_.active().command.kind != CommandKind::cam_in) return view_.active_in_target;
     const auto* cam = coupling_.running.id == coupling_.phasing_behind ? coupling_.follower.cam() : nullptr;
     return cam && cam->over();
 }
 
-void Axis::settle_waiting_phasing() noexcept {
+void AxisCore::settle_waiting_phasing() noexcept {
     auto& state = coupling_;
     bool alive = queue_.active().id == state.phasing_behind;
     for (std::size_t i = 0; !alive && i < queue_.waiting(); ++i) alive = queue_.waiting_at(i).id == state.phasing_behind;
@@ -71,12 +71,12 @@ void Axis::settle_waiting_phasing() noexcept {
 }
 
 /// Velocity and ramps are the master's units, so its limits and defaults hold; velocity 0 is its limit.
-void Axis::begin_phasing(const AcceptedCommand& accepted) noexcept {
+void AxisCore::begin_phasing(const AcceptedCommand& accepted) noexcept {
     auto& state = coupling_;
     const auto& command = accepted.command;
     const auto& link = state.running.id != 0 ? state.running : state.next;
     const auto ref = link.id != 0 ? link.masters.axes[0] : masters_of(queue_.active().command).axes[0];
-    const Axis* master = scene_.axis(ref);
+    const AxisCore* master = axis_at(ref);
     const auto& config = master ? master->config_ : config_;
     auto limits = dynamics_of(command, config.limits, config.defaults);
     limits.velocity = choose(command.velocity, 0, config.limits.velocity);
@@ -88,7 +88,7 @@ void Axis::begin_phasing(const AcceptedCommand& accepted) noexcept {
     } else queue_.record(accepted.id, Outcome::error, ErrorId::invalid_position);
 }
 
-void Axis::complete_phasing() noexcept {
+void AxisCore::complete_phasing() noexcept {
     auto& state = coupling_;
     if (state.phasing.id == 0 || state.phase.running()) return;
     queue_.record(state.phasing.id, Outcome::done, ErrorId::none);
@@ -96,13 +96,13 @@ void Axis::complete_phasing() noexcept {
 }
 
 /// The coupling it belonged to is over (U-16): so is the phasing, and its shift is gone.
-void Axis::clear_phase() noexcept {
+void AxisCore::clear_phase() noexcept {
     end_phasing(Outcome::aborted);
     coupling_.phase.clear();
     coupling_.phase_master = {};
 }
 
-void Axis::end_phasing(Outcome outcome) noexcept {
+void AxisCore::end_phasing(Outcome outcome) noexcept {
     auto& state = coupling_;
     if (state.phasing.id != 0) queue_.record(state.phasing.id, outcome, ErrorId::none);
     state.phasing = {};

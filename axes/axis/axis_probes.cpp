@@ -3,22 +3,22 @@
 // Any party may probe: it commands no motion. A probe lives until its event, MC_AbortTrigger, or until the drive's feedback is lost; errors
 // of the axis, power and other commands leave it alone.
 
-#include "axes/axis/axis.hpp"
+#include "axes/axis/axis_core.hpp"
 
 namespace taktwerk::axes {
 
-ProbeBoard::Signals Axis::probe_signals() const noexcept {
+ProbeBoard::Signals AxisCore::probe_signals() const noexcept {
     // A bus' inputs are as old as its drives' actual values; where the drive hangs on another line they are one cycle old.
     const bool same_bus = port_.capabilities().setpoints == SetpointClass::cyclic;
     return {feedback_, scene_.inputs, track_, now_ - (same_bus ? feedback_age_ : cycle_), cycle_};
 }
 
-double Axis::program_position(const FinePosition& place) const noexcept {
+double AxisCore::program_position(const FinePosition& place) const noexcept {
     const double position = units_.to_program(units_.local(place.counts) + place.rest / units_.counts_per_unit());
     return view_.modulo > 0 ? on_circle(position, view_.modulo) : position;
 }
 
-Submitted Axis::submit_probe(const AxisCommand& command) noexcept {
+Submitted AxisCore::submit_probe(const AxisCommand& command) noexcept {
     const auto* probe = std::get_if<ProbeDetails>(&command.details);
     if (!probe) return {0, ErrorId::invalid_parameter};
     const auto answer = command.kind == CommandKind::touch_probe ? arm_probe(*probe) : abort_trigger(probe->trigger);
@@ -26,7 +26,7 @@ Submitted Axis::submit_probe(const AxisCommand& command) noexcept {
     return answer;
 }
 
-Submitted Axis::arm_probe(const ProbeDetails& probe) noexcept {
+Submitted AxisCore::arm_probe(const ProbeDetails& probe) noexcept {
     if (probe.replaces != 0) end_probe(probe.replaces, Outcome::aborted, ErrorId::none);  // whatever comes of the new one
     if (const auto error = check_window(probe, view_.modulo); error != ErrorId::none) return {0, error};
     if (!online()) return {0, ErrorId::drive_not_ready};
@@ -37,7 +37,7 @@ Submitted Axis::arm_probe(const ProbeDetails& probe) noexcept {
     return error == ErrorId::none ? Submitted{id, error} : Submitted{0, error};
 }
 
-Submitted Axis::abort_trigger(const TriggerRef& trigger) noexcept {
+Submitted AxisCore::abort_trigger(const TriggerRef& trigger) noexcept {
     const auto aborted = probes_.release(trigger);
     if (aborted == 0) return {0, ErrorId::probe_idle};
     queue_.record(aborted, Outcome::aborted, ErrorId::none);
@@ -46,7 +46,7 @@ Submitted Axis::abort_trigger(const TriggerRef& trigger) noexcept {
     return {id, ErrorId::none};
 }
 
-void Axis::end_probe(CommandId id, Outcome outcome, ErrorId error) noexcept {
+void AxisCore::end_probe(CommandId id, Outcome outcome, ErrorId error) noexcept {
     for (std::size_t i = 0; i < ProbeBoard::places; ++i) {
         if (probes_.id(i) != id) continue;
         probes_.release(id);
@@ -55,7 +55,7 @@ void Axis::end_probe(CommandId id, Outcome outcome, ErrorId error) noexcept {
     }
 }
 
-void Axis::watch_probes() noexcept {
+void AxisCore::watch_probes() noexcept {
     if (feedback_.position_epoch != track_epoch_) track_.clear();  // a line through two zeros says nothing
     track_epoch_ = feedback_.position_epoch;
     if (feedback_.fresh) {
@@ -65,7 +65,7 @@ void Axis::watch_probes() noexcept {
     if (probes_.armed()) observe_probes();
 }
 
-void Axis::observe_probes() noexcept {
+void AxisCore::observe_probes() noexcept {
     probes_.observe(probe_signals());
     for (std::size_t i = 0; i < ProbeBoard::places; ++i) {
         const auto id = probes_.id(i);
@@ -85,7 +85,7 @@ void Axis::observe_probes() noexcept {
     publish_probes();
 }
 
-void Axis::publish_probes() noexcept {
+void AxisCore::publish_probes() noexcept {
     show_side(SideSlot::probe1, probes_.id(0));
     show_side(SideSlot::probe2, probes_.id(1));
 }

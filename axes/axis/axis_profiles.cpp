@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "axes/axis/axis.hpp"
+#include "axes/axis/axis_core.hpp"
 
 namespace taktwerk::axes {
 
@@ -13,18 +13,14 @@ namespace {
 
 constexpr double time_grain = 1e-9;  // s: a sum of times that ends with a cycle ends in it, whatever its last digits
 
-bool is_profile(CommandKind kind) noexcept {
-    return kind == CommandKind::position_profile || kind == CommandKind::velocity_profile || kind == CommandKind::acceleration_profile;
-}
-
 }  // namespace
 
-void Axis::GivenProfile::reserve(std::size_t rows) {
+void AxisCore::GivenProfile::reserve(std::size_t rows) {
     for (auto& curve : curves) curve.reserve(rows);
 }
 
 /// Into the spare curve: a running one is not touched by a command that is refused.
-ErrorId Axis::make_curve(const AxisCommand& command, Addition addition, double behind) noexcept {
+ErrorId AxisCore::make_curve(const AxisCommand& command, Addition addition, double behind) noexcept {
     const auto& details = std::get<TimeProfileDetails>(command.details);
     const auto* table = scene_.tables ? scene_.tables->time_table(details.table) : nullptr;
     if (!table) return ErrorId::invalid_table;
@@ -65,17 +61,17 @@ ErrorId Axis::make_curve(const AxisCommand& command, Addition addition, double b
     return fits ? ErrorId::none : ErrorId::beyond_software_limit;
 }
 
-ErrorId Axis::refuse_given(const AxisCommand& command, bool starts_now) noexcept {
+ErrorId AxisCore::refuse_given(const AxisCommand& command, bool starts_now) noexcept {
     // Nothing says when an axis that is fed would have finished.
     if (!starts_now && queue_.active().command.kind == CommandKind::external) return ErrorId::buffer_mode_not_supported;
-    if (!is_profile(command.kind)) return ErrorId::none;
+    if (!follows_table(command.kind)) return ErrorId::none;
     if (starts_now) return make_curve(command, Addition::folded);
     const auto& details = std::get<TimeProfileDetails>(command.details);
     return scene_.tables && scene_.tables->time_table(details.table) ? ErrorId::none : ErrorId::invalid_table;
 }
 
-ErrorId Axis::set_goal_given(const AxisCommand& command) noexcept {
-    if (is_profile(command.kind)) {
+ErrorId AxisCore::set_goal_given(const AxisCommand& command) noexcept {
+    if (follows_table(command.kind)) {
         if (const auto error = make_curve(command, Addition::stays); error != ErrorId::none) return error;
         profile_.take_spare();
         profile_.behind = 0;
@@ -87,7 +83,7 @@ ErrorId Axis::set_goal_given(const AxisCommand& command) noexcept {
 }
 
 /// ContinuousUpdate: the rest of the table, as it stands now, with the new scales, from where the axis is and as it moves.
-ErrorId Axis::update_curve(const AxisCommand& command) noexcept {
+ErrorId AxisCore::update_curve(const AxisCommand& command) noexcept {
     const double elapsed = profile_.late + to_seconds(profile_.elapsed);
     if (goal_.kind != Goal::Kind::given || elapsed + time_grain >= profile_.running().duration()) return ErrorId::update_not_possible;
     const double behind = profile_.behind + elapsed / std::get<TimeProfileDetails>(queue_.active().command.details).time_scale;
@@ -99,21 +95,21 @@ ErrorId Axis::update_curve(const AxisCommand& command) noexcept {
     return ErrorId::none;
 }
 
-void Axis::start_given(double late) noexcept {
+void AxisCore::start_given(double late) noexcept {
     if (queue_.active().command.kind == CommandKind::torque) setpoint_.run(Profile{setpoint_.base()}, late);
-    if (!is_profile(queue_.active().command.kind)) return;
+    if (!follows_table(queue_.active().command.kind)) return;
     profile_.elapsed = Duration{};
     profile_.late = late;
     if (late > 0) follow_curve(late);  // else it is where the table begins, and nothing of it has happened yet
 }
 
-void Axis::step_given(Duration period) noexcept {
+void AxisCore::step_given(Duration period) noexcept {
     if (queue_.active().command.kind == CommandKind::torque) {  // until the drive has taken its mode
         setpoint_.advance(period);
         return;
     }
     setpoint_.advance_superimposed(period);
-    if (is_profile(queue_.active().command.kind)) {
+    if (follows_table(queue_.active().command.kind)) {
         profile_.elapsed += period;
         follow_curve(profile_.late + to_seconds(profile_.elapsed));
         return;
@@ -121,7 +117,7 @@ void Axis::step_given(Duration period) noexcept {
     follow_feed(period);
 }
 
-void Axis::follow_curve(double t) noexcept {
+void AxisCore::follow_curve(double t) noexcept {
     auto& curve = profile_.running();
     if (t + time_grain < curve.duration()) {
         setpoint_.set(curve.at(t), curve.jerk_at(t));
@@ -138,12 +134,12 @@ void Axis::follow_curve(double t) noexcept {
 }
 
 /// Largest velocity that the base is going to have in the sense 1 or -1, u/s, as far as anybody knows.
-double Axis::base_speed(double sense) const noexcept {
-    const bool by_table = goal_.kind == Goal::Kind::given && is_profile(queue_.active().command.kind);
+double AxisCore::base_speed(double sense) const noexcept {
+    const bool by_table = goal_.kind == Goal::Kind::given && follows_table(queue_.active().command.kind);
     return by_table ? profile_.running().top_velocity(sense) : setpoint_.base_speed(sense);
 }
 
-ErrorId Axis::check_feed(const MotionState& next) const noexcept {
+ErrorId AxisCore::check_feed(const MotionState& next) const noexcept {
     const auto& from = setpoint_.base();
     const double period = to_seconds(cycle_);
     const double velocity = std::min(config_.limits.velocity, velocity_cap()) * (1 + 1e-9);
@@ -166,7 +162,7 @@ ErrorId Axis::check_feed(const MotionState& next) const noexcept {
     return ErrorId::none;
 }
 
-ErrorId Axis::feed(const SetpointFeed& fed) noexcept {
+ErrorId AxisCore::feed(const SetpointFeed& fed) noexcept {
     if (queue_.active().command.kind != CommandKind::external) return ErrorId::state_forbids;
     ErrorId error = ErrorId::none;
     const MotionState next{units_.to_local(fed.position), fed.velocity, fed.acceleration};
@@ -184,7 +180,7 @@ ErrorId Axis::feed(const SetpointFeed& fed) noexcept {
     return ErrorId::none;
 }
 
-void Axis::follow_feed(Duration period) noexcept {
+void AxisCore::follow_feed(Duration period) noexcept {
     if (feed_.fresh) {
         setpoint_.set(feed_.next);
         feed_.fresh = false;
@@ -205,7 +201,7 @@ void Axis::follow_feed(Duration period) noexcept {
     setpoint_.set({now.position + now.velocity * to_seconds(period), now.velocity, 0});
 }
 
-void Axis::end_feed(ErrorId error) noexcept {
+void AxisCore::end_feed(ErrorId error) noexcept {
     queue_.finish_active(Outcome::error, error);
     halt_on_own_account();
 }

@@ -3,19 +3,19 @@
 #include <array>
 #include <cmath>
 
-#include "axes/axis/axis.hpp"
+#include "axes/axis/axis_core.hpp"
 #include "axes/axis/junction.hpp"
 
 namespace taktwerk::axes {
 
 /// A command that has shown its Inxxx output for a cycle gives way to what waits behind it: it has no Done, so it counts as aborted.
-void Axis::hand_over() noexcept {
+void AxisCore::hand_over() noexcept {
     if (!hands_over_in_target(queue_.active().command.kind)) return;
     queue_.finish_active(Outcome::aborted);
     start_waiting(0);
 }
 
-void Axis::complete() noexcept {
+void AxisCore::complete() noexcept {
     if (goal_.kind == Goal::Kind::coupled) {
         complete_coupled();
         return;
@@ -32,7 +32,7 @@ void Axis::complete() noexcept {
         queue_.set_in_target(to_velocity && setpoint_.finished() && wants_speed_ == 0);
 }
 
-bool Axis::complete_active() noexcept {
+bool AxisCore::complete_active() noexcept {
     const auto kind = queue_.active().command.kind;
     if (port_.capabilities().setpoints == SetpointClass::low_dynamics && online()) {  // the motor follows late: it has to be there
         const bool stops = goal_.kind == Goal::Kind::stop || (goal_.kind == Goal::Kind::velocity && goal_.value == 0);
@@ -77,7 +77,7 @@ bool Axis::complete_active() noexcept {
     return queue_.has_active();
 }
 
-void Axis::start_waiting(double late) noexcept {
+void AxisCore::start_waiting(double late) noexcept {
     if (!moves() && !view_.homing_procedure) fire(AxisEvent::done);
     while (queue_.waiting() > 0) {
         const auto next = queue_.pop();
@@ -116,7 +116,7 @@ void Axis::start_waiting(double late) noexcept {
     if (!moves()) setpoint_.fold();
 }
 
-double Axis::velocity_at_junction(const MotionState& from, const MotionLimits& limits) const noexcept {
+double AxisCore::velocity_at_junction(const MotionState& from, const MotionLimits& limits) const noexcept {
     const auto& active = queue_.active().command;
     if (queue_.waiting() == 0 || !blends(queue_.waiting_at(0).command.buffer_mode) || !ends_at_position(active.kind)) return 0;
     if (goal_.limiter == VelocityLimiter::software_limit) return 0;

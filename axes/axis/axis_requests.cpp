@@ -3,36 +3,23 @@
 #include <cmath>
 #include <limits>
 
-#include "axes/axis/axis.hpp"
+#include "axes/axis/axis_core.hpp"
 #include "axes/axis/plannable.hpp"
 
 namespace taktwerk::axes {
 
 namespace {
 
-/// Lives by a set-point in each cycle, or belongs to what does.
-bool needs_each_cycle(CommandKind kind) noexcept {
-    switch (kind) {
-        case CommandKind::external:
-        case CommandKind::position_profile:
-        case CommandKind::velocity_profile:
-        case CommandKind::acceleration_profile:
-        case CommandKind::move_superimposed:
-        case CommandKind::halt_superimposed: return true;
-        default: return couples(kind) || uncouples(kind) || shifts_phase(kind);
-    }
-}
-
 bool slow_line(const DriveCapabilities& drive) noexcept { return drive.setpoints == SetpointClass::low_dynamics; }
 
 }  // namespace
 
-bool Axis::may(Owner owner) noexcept {
+bool AxisCore::may(Owner owner) noexcept {
     if (view_.owner == Owner::none) view_.owner = owner;  // nobody's axis goes to the first who asks
     return owner == view_.owner;
 }
 
-double Axis::velocity_cap() const noexcept {
+double AxisCore::velocity_cap() const noexcept {
     const auto& manual = config_.manual;
     const double slow = manual.slow > 0 ? manual.slow : 0.05 * config_.limits.velocity;
     const double fast = manual.fast > 0 ? manual.fast : 0.25 * config_.limits.velocity;
@@ -44,29 +31,29 @@ double Axis::velocity_cap() const noexcept {
     return slow;
 }
 
-bool Axis::permitted(double direction) const noexcept {
+bool AxisCore::permitted(double direction) const noexcept {
     if (direction > 0) return permit_positive_ && !positive_switch_;
     if (direction < 0) return permit_negative_ && !negative_switch_;
     return true;
 }
 
 /// MC_Power has been asked for it, and Status is still to come.
-bool Axis::powers_up() const noexcept { return view_.state == AxisState::Disabled && power_wish_ && emergency_ == EmergencyStop::none; }
+bool AxisCore::powers_up() const noexcept { return view_.state == AxisState::Disabled && power_wish_ && emergency_ == EmergencyStop::none; }
 
-bool Axis::waits(const AxisCommand& command) const noexcept {
+bool AxisCore::waits(const AxisCommand& command) const noexcept {
     if (command.buffer_mode == mcAborting) return false;
     return queue_.has_active() || queue_.waiting() > 0 || powers_up() || halts_alone() || view_.state == AxisState::Stopping;
 }
 
 /// What waits behind a homing is judged when its turn comes.
-bool Axis::homes_before() const noexcept {
+bool AxisCore::homes_before() const noexcept {
     if (view_.state == AxisState::Homing) return true;
     for (std::size_t i = 0; i < queue_.waiting(); ++i)
         if (const auto kind = queue_.waiting_at(i).command.kind; kind == CommandKind::home || kind == CommandKind::homing_step) return true;
     return false;
 }
 
-ErrorId Axis::refuse_state(const AxisCommand& command) const noexcept {
+ErrorId AxisCore::refuse_state(const AxisCommand& command) const noexcept {
     if (view_.state == AxisState::Disabled && !(powers_up() && waits(command))) return ErrorId::not_powered;
     if (view_.state == AxisState::ErrorStop) return ErrorId::in_error_stop;
     if (emergency_ != EmergencyStop::none) return ErrorId::interlocked;
@@ -87,19 +74,19 @@ ErrorId Axis::refuse_state(const AxisCommand& command) const noexcept {
 }
 
 /// `program` as a target: inside the range of a modulo axis, inside the software limits.
-ErrorId Axis::refuse_place(double program) const noexcept {
+ErrorId AxisCore::refuse_place(double program) const noexcept {
     if (config_.modulo > 0) return program >= 0 && program < config_.modulo ? ErrorId::none : ErrorId::invalid_position;
     const bool beyond = program > config_.limits.position_max || program < config_.limits.position_min;
     return software_limits_hold() && beyond ? ErrorId::beyond_software_limit : ErrorId::none;
 }
 
-ErrorId Axis::refuse_place(const AxisCommand& command) const noexcept {
+ErrorId AxisCore::refuse_place(const AxisCommand& command) const noexcept {
     if (!std::holds_alternative<WholeTurns>(command.details)) return refuse_place(command.position);
     if (!(config_.modulo > 0)) return ErrorId::not_supported;
     return command.position >= 0 ? ErrorId::none : ErrorId::invalid_position;
 }
 
-ErrorId Axis::refuse_target(const AxisCommand& command, bool starts_now) const noexcept {
+ErrorId AxisCore::refuse_target(const AxisCommand& command, bool starts_now) const noexcept {
     // Coordinates of the total: what is superimposed is part of where the axis is.
     const auto& here = setpoint_.state();
     double way = 0;
@@ -151,7 +138,7 @@ ErrorId Axis::refuse_target(const AxisCommand& command, bool starts_now) const n
     return !starts_now || permitted(way) ? ErrorId::none : ErrorId::interlocked;
 }
 
-ErrorId Axis::refuse(const AxisCommand& command) noexcept {
+ErrorId AxisCore::refuse(const AxisCommand& command) noexcept {
     if (config_.encoder) return ErrorId::not_supported;  // nothing there that moves
     if (made_by_drive(command.kind) && !drive_makes(command.kind)) return ErrorId::not_supported;
     if (const auto error = check_inputs(command, units_.counts_per_unit(), config_.limits); error != ErrorId::none) return error;
@@ -163,17 +150,17 @@ ErrorId Axis::refuse(const AxisCommand& command) noexcept {
     return refuse_given(command, !waits(command));
 }
 
-Submitted Axis::submit(const AxisCommand& command, Owner owner) noexcept {
-    if (command.kind == CommandKind::touch_probe || command.kind == CommandKind::abort_trigger) return submit_probe(command);
+Submitted AxisCore::submit(const AxisCommand& command, Owner owner) noexcept {
+    const auto slot = slot_of(command.kind);
+    if (slot == kind_table::Slot::probe) return submit_probe(command);
     // A set-point for each cycle does not get through a slow line.
     if (slow_line(port_.capabilities()) && needs_each_cycle(command.kind))
         return {0, may(owner) ? ErrorId::not_supported : ErrorId::owned_by_other};
-    if (shifts_phase(command.kind)) return submit_phasing(command, owner);
-    if (command.kind == CommandKind::setting) return submit_setting(command, owner);
+    if (slot == kind_table::Slot::phasing) return submit_phasing(command, owner);
+    if (slot == kind_table::Slot::setting) return submit_setting(command, owner);
     if (beside(command)) return submit_passive(command, owner);
     if (!may(owner)) return {0, ErrorId::owned_by_other};
-    if (command.kind == CommandKind::move_superimposed || command.kind == CommandKind::halt_superimposed)
-        return submit_superimposed(command, owner);
+    if (slot == kind_table::Slot::superimposed) return submit_superimposed(command, owner);
     // Commands of one cycle are taken one after another (P1-016): this one adds to the target of the one before.
     if (begin_pending_ && command.kind == CommandKind::move_additive) begin_command();
     if (const auto error = refuse(command); error != ErrorId::none) return {0, error};
@@ -205,7 +192,7 @@ Submitted Axis::submit(const AxisCommand& command, Owner owner) noexcept {
     return {accepted.id, ErrorId::none};
 }
 
-ErrorId Axis::power(bool enable, bool positive, bool negative, Owner owner) noexcept {
+ErrorId AxisCore::power(bool enable, bool positive, bool negative, Owner owner) noexcept {
     if (!may(owner)) return ErrorId::owned_by_other;
     if (++power_calls_ > 1) return ErrorId::power_conflict;
     if (enable && !driven_) return config_.encoder ? ErrorId::not_supported : ErrorId::drive_not_ready;
@@ -219,7 +206,7 @@ ErrorId Axis::power(bool enable, bool positive, bool negative, Owner owner) noex
     return enable && emergency_ != EmergencyStop::none ? ErrorId::interlocked : ErrorId::none;
 }
 
-ErrorId Axis::reset(Owner) noexcept {
+ErrorId AxisCore::reset(Owner) noexcept {
     acknowledge_alarms();
     if (view_.state != AxisState::ErrorStop) return ErrorId::none;
     if (emergency_ != EmergencyStop::none) return ErrorId::interlocked;
@@ -230,7 +217,7 @@ ErrorId Axis::reset(Owner) noexcept {
     return ErrorId::none;
 }
 
-ErrorId Axis::set(const AxisSetting& setting, Owner owner) noexcept {
+ErrorId AxisCore::set(const AxisSetting& setting, Owner owner) noexcept {
     if (!may(owner)) return ErrorId::owned_by_other;
     const bool each_cycle = std::holds_alternative<SetpointFeed>(setting) || std::holds_alternative<SelectCam>(setting);
     if (each_cycle && slow_line(port_.capabilities())) return ErrorId::not_supported;
@@ -243,7 +230,7 @@ ErrorId Axis::set(const AxisSetting& setting, Owner owner) noexcept {
     return ErrorId::not_supported;
 }
 
-ErrorId Axis::set_position(const SetPosition& wanted) noexcept {
+ErrorId AxisCore::set_position(const SetPosition& wanted) noexcept {
     if (!std::isfinite(wanted.position)) return ErrorId::invalid_position;
     if (!online()) return ErrorId::drive_not_ready;
     if (view_.state == AxisState::Homing) return ErrorId::state_forbids;
@@ -256,7 +243,7 @@ ErrorId Axis::set_position(const SetPosition& wanted) noexcept {
 }
 
 /// Program coordinates grow by `delta`; nothing moves, but the way to an absolute target becomes another.
-void Axis::shift_coordinates(double delta) noexcept {
+void AxisCore::shift_coordinates(double delta) noexcept {
     if (config_.modulo > 0) delta = std::remainder(delta, config_.modulo);  // the same place whichever repetition: the nearest
     units_.shift_by(delta);
     // The number commanded stays and means the shifted coordinates (P1-200).
@@ -270,7 +257,7 @@ void Axis::shift_coordinates(double delta) noexcept {
     }
 }
 
-void Axis::release_stop(CommandId id, Owner) noexcept {
+void AxisCore::release_stop(CommandId id, Owner) noexcept {
     if (id == 0 || id != view_.lock) return;
     view_.lock = 0;
     if (!queue_.has_active()) view_.holder = nullptr;
@@ -279,7 +266,7 @@ void Axis::release_stop(CommandId id, Owner) noexcept {
     publish();
 }
 
-ErrorId Axis::renew_jog(CommandId id, double velocity, Owner owner) noexcept {
+ErrorId AxisCore::renew_jog(CommandId id, double velocity, Owner owner) noexcept {
     if (!may(owner)) return ErrorId::owned_by_other;
     auto& active = queue_.active();
     if (id == 0 || id != active.id || active.command.kind != CommandKind::jog || jog_expired_) return ErrorId::state_forbids;
@@ -293,14 +280,14 @@ ErrorId Axis::renew_jog(CommandId id, double velocity, Owner owner) noexcept {
     return ErrorId::none;
 }
 
-void Axis::set_mode(OperatingMode mode) noexcept {
+void AxisCore::set_mode(OperatingMode mode) noexcept {
     if (mode == mode_) return;
     mode_ = mode;
     if (view_.state != AxisState::Disabled && view_.state != AxisState::ErrorStop && moves()) stop_on_own_account(false);
     release_control(view_.owner);
 }
 
-void Axis::take_control(Owner owner) noexcept {
+void AxisCore::take_control(Owner owner) noexcept {
     if (owner == view_.owner) return;
     view_.owner = owner;
     permit_positive_ = permit_negative_ = true;
@@ -310,7 +297,7 @@ void Axis::take_control(Owner owner) noexcept {
     publish();
 }
 
-void Axis::release_control(Owner owner) noexcept {
+void AxisCore::release_control(Owner owner) noexcept {
     if (owner != view_.owner) return;
     take_control(mode_ == OperatingMode::automatic ? Owner::program : Owner::operator_panel);
     publish();

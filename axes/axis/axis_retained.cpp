@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "axes/axis/axis.hpp"
+#include "axes/axis/axis_core.hpp"
 
 namespace taktwerk::axes {
 
@@ -26,7 +26,7 @@ double believable_way(const RetainedPosition& kept, const AxisConfig& config, do
 
 }  // namespace
 
-RetainedPosition Axis::retained() const noexcept {
+RetainedPosition AxisCore::retained() const noexcept {
     if (!seeded_) return retained_;  // what was kept stays until something better is known
     return {.homed = view_.homed && seeded_ && absolute_encoder(),
             .shift = units_.shift(),
@@ -34,7 +34,7 @@ RetainedPosition Axis::retained() const noexcept {
             .at_rest = !moves() && drive_stands()};
 }
 
-void Axis::restore(const RetainedPosition& position, const Gearing& gearing) noexcept {
+void AxisCore::restore(const RetainedPosition& position, const Gearing& gearing) noexcept {
     if (!absolute_encoder() || !position.homed || !std::isfinite(position.shift)) return;
     if (!same_coordinates(gearing, config_.gearing)) {
         fail(AxisAlarm::retained_gearing_differs);
@@ -44,7 +44,7 @@ void Axis::restore(const RetainedPosition& position, const Gearing& gearing) noe
 }
 
 /// At the first position after power-on.
-void Axis::apply_retained() noexcept {
+void AxisCore::apply_retained() noexcept {
     if (!retained_.homed) return;
     const auto there = unwrapped_near(retained_.counts, actual_counts_, encoder_range());
     const double way = static_cast<double>(there - retained_.counts) / units_.counts_per_unit();

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "axes/axis/axis.hpp"
+#include "axes/axis/axis_core.hpp"
 
 namespace taktwerk::axes {
 
@@ -23,7 +23,7 @@ constexpr std::int32_t drive_outputs = 32;  // bits of 60FEh
 // --- in their turn ----------------------------------------------------------------------------------------------------------
 
 /// With nothing before it its turn is now. It waits behind motion in any state, moves nothing and changes no state.
-Submitted Axis::submit_setting(const AxisCommand& command, Owner owner) noexcept {
+Submitted AxisCore::submit_setting(const AxisCommand& command, Owner owner) noexcept {
     if (!may(owner)) return {0, ErrorId::owned_by_other};
     const auto* setting = std::get_if<AxisSetting>(&command.details);
     if (!setting || command.buffer_mode > mcBuffered) return {0, ErrorId::invalid_parameter};
@@ -40,20 +40,20 @@ Submitted Axis::submit_setting(const AxisCommand& command, Owner owner) noexcept
     return {accepted.id, ErrorId::none};
 }
 
-void Axis::carry_out(const AcceptedCommand& setting) noexcept {
+void AxisCore::carry_out(const AcceptedCommand& setting) noexcept {
     const auto error = set(std::get<AxisSetting>(setting.command.details), setting.owner);
     queue_.record(setting.id, error == ErrorId::none ? Outcome::done : Outcome::error, error);
 }
 
 /// A motion without end lets pass what waits behind it once it is at its velocity, and goes on.
-void Axis::carry_out_due_settings() noexcept {
+void AxisCore::carry_out_due_settings() noexcept {
     while (queue_.waiting() > 0 && queue_.front().command.kind == CommandKind::setting && view_.active_in_target) carry_out(queue_.pop());
 }
 
 // --- parameters -------------------------------------------------------------------------------------------------------------
 
 /// From the configuration, once.
-void Axis::store_parameters() noexcept {
+void AxisCore::store_parameters() noexcept {
     auto& p = view_.parameters;
     const auto& limits = config_.limits;
     p[software_limit_positive] = limits.position_max;
@@ -81,7 +81,7 @@ void Axis::store_parameters() noexcept {
 }
 
 /// The stored values become those that hold.
-void Axis::use_parameters() noexcept {
+void AxisCore::use_parameters() noexcept {
     const auto& p = view_.parameters;
     auto& limits = config_.limits;
     // Lowered limits are for commands: stops for errors stay as hard as configured.
@@ -106,7 +106,7 @@ void Axis::use_parameters() noexcept {
 }
 
 /// The axis could not stop before `edge`, or is on its way to a place behind it.
-bool Axis::beyond_reach(double edge, bool positive) const noexcept {
+bool AxisCore::beyond_reach(double edge, bool positive) const noexcept {
     if (!software_limits_hold() || setpoint_.at_rest()) return false;
     const auto& state = setpoint_.state();
     const double here = units_.to_program(state.position);
@@ -121,7 +121,7 @@ bool Axis::beyond_reach(double edge, bool positive) const noexcept {
 }
 
 /// What only the axis knows: whether the change would leave a moving axis without its way to stop.
-ErrorId Axis::refuse_now(const WriteParameter& wanted) const noexcept {
+ErrorId AxisCore::refuse_now(const WriteParameter& wanted) const noexcept {
     const auto& p = view_.parameters;
     switch (wanted.number) {
         case software_limit_positive:
@@ -138,7 +138,7 @@ ErrorId Axis::refuse_now(const WriteParameter& wanted) const noexcept {
     }
 }
 
-ErrorId Axis::write_parameter(const WriteParameter& wanted) noexcept {
+ErrorId AxisCore::write_parameter(const WriteParameter& wanted) noexcept {
     if (const auto error = check_write(view_, wanted); error != ErrorId::none) return error;
     if (const auto error = refuse_now(wanted); error != ErrorId::none) return error;
     view_.parameters[place_of(static_cast<Parameter>(wanted.number))] = wanted.value;
@@ -148,7 +148,7 @@ ErrorId Axis::write_parameter(const WriteParameter& wanted) noexcept {
 
 // --- outputs of the drive -----------------------------------------------------------------------------------------------------
 
-ErrorId Axis::write_output(const WriteOutput& wanted) noexcept {
+ErrorId AxisCore::write_output(const WriteOutput& wanted) noexcept {
     if (!port_.capabilities().digital_outputs) return ErrorId::not_supported;
     if (wanted.number < 0 || wanted.number >= drive_outputs) return ErrorId::invalid_output;
     const auto bit = 1u << static_cast<unsigned>(wanted.number);

@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-#include "axes/axis/axis.hpp"
+#include "axes/axis/axis_core.hpp"
 
 namespace taktwerk::axes {
 
@@ -14,7 +14,7 @@ constexpr Duration reset_patience = 2s;  // a drive that still reports its fault
 
 }  // namespace
 
-bool Axis::fire(AxisEvent event) noexcept {
+bool AxisCore::fire(AxisEvent event) noexcept {
     const auto to = next_state(view_.state, event);
     if (to) view_.state = *to;
     show_power();
@@ -28,14 +28,14 @@ bool Axis::fire(AxisEvent event) noexcept {
     return to.has_value();
 }
 
-void Axis::fail(AxisAlarm alarm, double a, double b) noexcept {
+void AxisCore::fail(AxisAlarm alarm, double a, double b) noexcept {
     if (!alarms_.raise(alarm, a, b)) return;
     const auto how = reaction(alarm);
     if (how < Reaction::stop_axis) return;
     enter_error_stop(id(alarm), how == Reaction::power_off);
 }
 
-void Axis::stop_for_error(AlarmId reason, bool then_power_off) noexcept {
+void AxisCore::stop_for_error(AlarmId reason, bool then_power_off) noexcept {
     const bool stays_off = view_.state == AxisState::Disabled && !power_wish_;
     if (!stays_off && alarms_.raise(AxisAlarm::stopped_by_machine, reason, 0)) {
         enter_error_stop(id(AxisAlarm::stopped_by_machine), then_power_off);
@@ -45,7 +45,7 @@ void Axis::stop_for_error(AlarmId reason, bool then_power_off) noexcept {
     }
 }
 
-void Axis::enter_error_stop(AlarmId reason, bool then_power_off) noexcept {
+void AxisCore::enter_error_stop(AlarmId reason, bool then_power_off) noexcept {
     off_after_error_ = off_after_error_ || then_power_off;
     if (view_.state == AxisState::ErrorStop) return;  // it stops already; the first error is the one shown
     view_.error = reason;
@@ -60,7 +60,7 @@ void Axis::enter_error_stop(AlarmId reason, bool then_power_off) noexcept {
     aim_at_rest(stop_limits(config_.limits));
 }
 
-void Axis::stop_on_own_account(bool then_power_off) noexcept {
+void AxisCore::stop_on_own_account(bool then_power_off) noexcept {
     queue_.finish_active(Outcome::aborted);
     queue_.finish_waiting(Outcome::aborted);
     end_superimposed(Outcome::aborted);
@@ -74,7 +74,7 @@ void Axis::stop_on_own_account(bool then_power_off) noexcept {
 
 /// A command could not go on, which is an error of its instance and none of the axis: it comes to rest as by MC_Halt, and may be moved again at
 /// once. Stopping is for MC_Stop (figure 2), for power that goes, and for a change of hands.
-void Axis::halt_on_own_account() noexcept {
+void AxisCore::halt_on_own_account() noexcept {
     if (!next_state(view_.state, AxisEvent::discrete)) return stop_on_own_account(false);
     queue_.finish_active(Outcome::aborted);
     queue_.finish_waiting(Outcome::aborted);
@@ -84,7 +84,7 @@ void Axis::halt_on_own_account() noexcept {
     aim_at_rest(full_limits(config_.limits));
 }
 
-void Axis::switch_off() noexcept {
+void AxisCore::switch_off() noexcept {
     queue_.finish_active(Outcome::aborted);
     queue_.finish_waiting(Outcome::aborted);
     end_superimposed(Outcome::aborted);
@@ -97,7 +97,7 @@ void Axis::switch_off() noexcept {
     fire(AxisEvent::power_off);
 }
 
-void Axis::shut_down() noexcept {
+void AxisCore::shut_down() noexcept {
     power_wish_ = false;
     if (view_.state == AxisState::Disabled) queue_.finish_waiting(Outcome::aborted);        // what waited for power
     if (view_.state == AxisState::Disabled || view_.state == AxisState::ErrorStop) return;  // power_wanted() sees the wish
@@ -106,7 +106,7 @@ void Axis::shut_down() noexcept {
     publish();
 }
 
-void Axis::leave_stopping() noexcept {
+void AxisCore::leave_stopping() noexcept {
     if (off_when_stopped_) {
         switch_off();
         return;
@@ -117,7 +117,7 @@ void Axis::leave_stopping() noexcept {
     if (queue_.waiting() > 0) start_waiting(0);
 }
 
-void Axis::supervise(Instant now) noexcept {
+void AxisCore::supervise(Instant now) noexcept {
     now_ = now;
     const bool jogs = queue_.active().command.kind == CommandKind::jog;
     if (emergency_ == EmergencyStop::none && !jogs) return;
@@ -130,7 +130,7 @@ void Axis::supervise(Instant now) noexcept {
     publish();
 }
 
-void Axis::watch_jog_lease() noexcept {
+void AxisCore::watch_jog_lease() noexcept {
     const auto& active = queue_.active();
     if (active.command.kind != CommandKind::jog || jog_expired_ || now_ - jog_renewed_ < config_.jog_lease) return;
     jog_expired_ = true;
@@ -139,7 +139,7 @@ void Axis::watch_jog_lease() noexcept {
     aim_at_velocity(0, dynamics_of(active.command, config_.limits, config_.defaults));
 }
 
-void Axis::run_reset() noexcept {
+void AxisCore::run_reset() noexcept {
     if (view_.state != AxisState::ErrorStop) {
         view_.resetting = false;
         return;
@@ -166,7 +166,7 @@ void Axis::run_reset() noexcept {
     }
 }
 
-void Axis::end_reset(AxisEvent event) noexcept {
+void AxisCore::end_reset(AxisEvent event) noexcept {
     view_.resetting = false;
     view_.reset_error = ErrorId::none;
     view_.error = 0;

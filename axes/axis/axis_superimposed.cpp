@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "axes/axis/axis.hpp"
+#include "axes/axis/axis_core.hpp"
 #include "axes/axis/plannable.hpp"
 #include "axes/axis/stop_ramp.hpp"
 
@@ -22,7 +22,7 @@ constexpr double notably = 9.0 / 8;   // times the room of the present plan: wor
 
 }  // namespace
 
-ErrorId Axis::refuse_superimposed(const AxisCommand& command) const noexcept {
+ErrorId AxisCore::refuse_superimposed(const AxisCommand& command) const noexcept {
     if (const auto error = check_inputs(command, units_.counts_per_unit(), config_.limits); error != ErrorId::none) return error;
     if (view_.state == AxisState::Disabled) return ErrorId::not_powered;
     if (view_.state == AxisState::ErrorStop) return ErrorId::in_error_stop;
@@ -40,7 +40,7 @@ ErrorId Axis::refuse_superimposed(const AxisCommand& command) const noexcept {
     return refuse_place(units_.to_program(base_end + setpoint_.superimposed().position + command.position));
 }
 
-Submitted Axis::submit_superimposed(const AxisCommand& command, Owner owner) noexcept {
+Submitted AxisCore::submit_superimposed(const AxisCommand& command, Owner owner) noexcept {
     if (const auto error = refuse_superimposed(command); error != ErrorId::none) return {0, error};
     const AcceptedCommand accepted{queue_.next_id(), owner, command};
     const bool running = queue_.beside(SideSlot::superimposed) != 0;
@@ -60,7 +60,7 @@ Submitted Axis::submit_superimposed(const AxisCommand& command, Owner owner) noe
 }
 
 /// Two layers in motion became one, and its ramps are or are going to be as hard as both together: a third on top would be one too many.
-bool Axis::ramps_of_two() const noexcept {
+bool AxisCore::ramps_of_two() const noexcept {
     if (!summed_) return false;
     constexpr double rounding = 1 + 1e-9;
     const auto& limits = config_.limits;
@@ -71,21 +71,21 @@ bool Axis::ramps_of_two() const noexcept {
 /// u/s that the axis' limit leaves in `sense` beside the base, as far as anybody knows, and beside what the base waits to become. For what has not
 /// begun nothing while the base is faster than the limit (lowered since, or out of a mode of the drive): what slows it down on its way would make
 /// it faster again at its end.
-double Axis::room_beside_base(double sense) const noexcept {
+double AxisCore::room_beside_base(double sense) const noexcept {
     constexpr double beyond = 1 + room_grain;
     if (std::abs(setpoint_.base().velocity) > config_.limits.velocity * beyond && setpoint_.superimposed_finished()) return 0;
     return config_.limits.velocity - std::max({0.0, base_speed(sense), sense * wants_speed_});
 }
 
 /// u/s, were there room.
-double Axis::superimposed_wish() const noexcept {
+double AxisCore::superimposed_wish() const noexcept {
     const double commanded = superimposed_.accepted.command.velocity;
     const double speed = std::min(commanded > 0 ? commanded : config_.limits.velocity, velocity_cap());
     return view_.state == AxisState::SynchronizedMotion ? speed : speed * override_.velocity;
 }
 
 /// u/s in `sense` that the superimposed motion cannot help having from here on: what its acceleration still brings while it runs out.
-double Axis::superimposed_reach(double sense) const noexcept {
+double AxisCore::superimposed_reach(double sense) const noexcept {
     const auto part = setpoint_.superimposed();
     double reach = sense * part.velocity;
     const auto own = dynamics_of(superimposed_.accepted.command, config_.limits, config_.defaults);
@@ -94,7 +94,7 @@ double Axis::superimposed_reach(double sense) const noexcept {
     return std::max(0.0, reach);
 }
 
-void Axis::run_superimposed() noexcept {
+void AxisCore::run_superimposed() noexcept {
     auto& own = superimposed_;
     if (!own.begun && setpoint_.superimposed_finished() && ramps_of_two()) return;  // stays pending: a few cycles
     own.pending = false;
@@ -132,7 +132,7 @@ void Axis::run_superimposed() noexcept {
 
 /// The rest of the way, with what there is room for in each sense: a way that became shorter is overshot, and the way back may be the base's own
 /// sense. Where there is no room in the sense in which it has to go it comes to rest and waits.
-Plan Axis::plan_addition(const MotionState& part, const MotionLimits& limits) noexcept {
+Plan AxisCore::plan_addition(const MotionState& part, const MotionLimits& limits) noexcept {
     auto& own = superimposed_;
     const double limit = config_.limits.velocity;
     const double rest = own.distance - own.covered;
@@ -153,7 +153,7 @@ Plan Axis::plan_addition(const MotionState& part, const MotionLimits& limits) no
 
 /// Worth a new plan: it may begin, or go notably faster on a way that it goes as fast as it may; or all there is, where the base changes no more.
 /// Its room grows from plan to plan, which bounds their number.
-bool Axis::room_has_grown() const noexcept {
+bool AxisCore::room_has_grown() const noexcept {
     const auto& own = superimposed_;
     const double limit = config_.limits.velocity;
     const double room = std::min(superimposed_wish(), room_beside_base(own.sense));
@@ -164,7 +164,7 @@ bool Axis::room_has_grown() const noexcept {
 }
 
 /// `plan` of the base would add up to more than the limit with what still moves on top of it: as fast as there is room, for now.
-void Axis::wait_for_room(const MotionState& from, MotionLimits limits, Plan& plan) noexcept {
+void AxisCore::wait_for_room(const MotionState& from, MotionLimits limits, Plan& plan) noexcept {
     if (goal_.kind == Goal::Kind::stop || held_ || plan.error != PlanError::none) return;
     const double limit = config_.limits.velocity;
     double sense = 0, room = 0, wanted = 0;
@@ -191,7 +191,7 @@ void Axis::wait_for_room(const MotionState& from, MotionLimits limits, Plan& pla
     }
 }
 
-void Axis::complete_superimposed() noexcept {
+void AxisCore::complete_superimposed() noexcept {
     auto& own = superimposed_;
     const double limit = config_.limits.velocity;
     if (wants_speed_ != 0) {
@@ -210,7 +210,7 @@ void Axis::complete_superimposed() noexcept {
 
 /// Another command takes the axis, but the base goes on for now: a coupling may wait for its master. What moves on top of it comes to rest along
 /// its own ramps, and its way so far stays (P1-281: the former motion goes on).
-void Axis::abandon_superimposed() noexcept {
+void AxisCore::abandon_superimposed() noexcept {
     queue_.finish_beside(SideSlot::superimposed, Outcome::aborted);
     superimposed_.accepted.command.kind = CommandKind::halt_superimposed;
     superimposed_.pending = !setpoint_.superimposed_finished();
@@ -219,20 +219,20 @@ void Axis::abandon_superimposed() noexcept {
 }
 
 /// Nobody commands it any more, and it has not come to rest yet.
-bool Axis::abandoned_addition_moves() const noexcept {
+bool AxisCore::abandoned_addition_moves() const noexcept {
     return setpoint_.layered() && queue_.beside(SideSlot::superimposed) == 0 && !setpoint_.superimposed_finished();
 }
 
 /// The base stops and so does what was given up on top of it, each with its own ramp: between them they would turn the axis round. One motion does
 /// not. It may go on later (an override): what was covered on top is part of where it goes.
-void Axis::stop_as_one() noexcept {
+void AxisCore::stop_as_one() noexcept {
     if (goal_.kind == Goal::Kind::stop) goal_.former_jerk += superimposed_.jerk;
     if (goal_.kind == Goal::Kind::position) goal_.value += setpoint_.superimposed().position;
     end_superimposed(Outcome::aborted);
 }
 
 /// From here on there is one motion again. A goal must follow where it moves.
-void Axis::end_superimposed(Outcome outcome, ErrorId error) noexcept {
+void AxisCore::end_superimposed(Outcome outcome, ErrorId error) noexcept {
     queue_.finish_beside(SideSlot::superimposed, outcome, error);
     superimposed_.pending = superimposed_.waiting = false;
     if (!setpoint_.layered()) return;

@@ -3,13 +3,13 @@
 
 #include <cmath>
 
-#include "axes/axis/axis.hpp"
+#include "axes/axis/axis_core.hpp"
 #include "axes/axis/junction.hpp"
 #include "axes/axis/plannable.hpp"
 
 namespace taktwerk::axes {
 
-ErrorId Axis::update(CommandId id, const AxisCommand& command, Owner owner) noexcept {
+ErrorId AxisCore::update(CommandId id, const AxisCommand& command, Owner owner) noexcept {
     if (!may(owner)) return ErrorId::owned_by_other;
     if (id == 0) return ErrorId::none;
     auto& active = queue_.active();
@@ -22,7 +22,7 @@ ErrorId Axis::update(CommandId id, const AxisCommand& command, Owner owner) noex
     return ErrorId::none;  // it is over
 }
 
-ErrorId Axis::update_waiting(AcceptedCommand& waiting, const AxisCommand& command) noexcept {
+ErrorId AxisCore::update_waiting(AcceptedCommand& waiting, const AxisCommand& command) noexcept {
     if (command.kind != waiting.command.kind || command.buffer_mode == mcAborting) return ErrorId::update_not_possible;
     if (const auto error = check_inputs(command, units_.counts_per_unit(), config_.limits); error != ErrorId::none) return error;
     if (const auto error = refuse_target(command, false); error != ErrorId::none) return error;
@@ -35,7 +35,7 @@ ErrorId Axis::update_waiting(AcceptedCommand& waiting, const AxisCommand& comman
 }
 
 /// BufferMode of a running command has done its work: it is kept, and ignored (P1-109).
-ErrorId Axis::update_active(const AxisCommand& command) noexcept {
+ErrorId AxisCore::update_active(const AxisCommand& command) noexcept {
     auto& active = queue_.active();
     if (command.kind != active.command.kind) return ErrorId::update_not_possible;
     if (const auto error = check_inputs(command, units_.counts_per_unit(), config_.limits); error != ErrorId::none) return error;
@@ -45,6 +45,7 @@ ErrorId Axis::update_active(const AxisCommand& command) noexcept {
         active.command = command;
         return ErrorId::none;
     }
+    if (!can_be_updated(command.kind)) return ErrorId::not_supported;
     ErrorId error = ErrorId::none;
     switch (command.kind) {
         case CommandKind::move_absolute:
@@ -74,7 +75,7 @@ ErrorId Axis::update_active(const AxisCommand& command) noexcept {
     return error;
 }
 
-ErrorId Axis::update_target(const AxisCommand& command) noexcept {
+ErrorId AxisCore::update_target(const AxisCommand& command) noexcept {
     const auto& before = queue_.active().command;
     const bool absolute = command.kind == CommandKind::move_absolute || command.kind == CommandKind::move_continuous_absolute;
     const bool same_target = command.position == before.position && (!absolute || command.direction == before.direction);
@@ -99,7 +100,7 @@ ErrorId Axis::update_target(const AxisCommand& command) noexcept {
     return ErrorId::none;
 }
 
-ErrorId Axis::update_superimposed(const AxisCommand& command) noexcept {
+ErrorId AxisCore::update_superimposed(const AxisCommand& command) noexcept {
     if (command.kind != superimposed_.accepted.command.kind) return ErrorId::update_not_possible;
     if (const auto error = refuse_superimposed(command); error != ErrorId::none) return error;
     superimposed_.accepted.command = command;

@@ -10,87 +10,11 @@
 #include "axes/axis/axis_config.hpp"
 #include "axes/axis/axis_view.hpp"
 #include "axes/axis/command.hpp"
+#include "axes/axis/command_kinds.hpp"
 #include "axes/axis/homing_step_check.hpp"
-#include "axes/axis/state_machine.hpp"
 #include "axes/planner/motion.hpp"
 
 namespace taktwerk::axes {
-
-[[nodiscard]] constexpr AxisEvent event_of(CommandKind kind) noexcept {
-    switch (kind) {
-        case CommandKind::move_velocity:
-        case CommandKind::move_continuous_absolute:
-        case CommandKind::move_continuous_relative:
-        case CommandKind::velocity_profile:
-        case CommandKind::acceleration_profile:
-        case CommandKind::torque:
-        case CommandKind::external:
-        case CommandKind::drive_move_velocity:
-        case CommandKind::drive_torque: return AxisEvent::continuous;
-        case CommandKind::gear_in:
-        case CommandKind::gear_in_pos:
-        case CommandKind::cam_in:
-        case CommandKind::combine: return AxisEvent::synchronized;
-        case CommandKind::gear_out:
-        case CommandKind::cam_out: return AxisEvent::decoupled;
-        case CommandKind::stop: return AxisEvent::stop;
-        case CommandKind::home: return AxisEvent::home;
-        case CommandKind::homing_step: return AxisEvent::homing_step;
-        case CommandKind::move_superimposed: return AxisEvent::superimposed;
-        default: return AxisEvent::discrete;  // a jog ends by itself in Standstill, like a Halt
-    }
-}
-
-/// A motion to a position that ends there.
-[[nodiscard]] constexpr bool ends_at_position(CommandKind kind) noexcept {
-    return kind == CommandKind::move_absolute || kind == CommandKind::move_relative || kind == CommandKind::move_additive;
-}
-[[nodiscard]] constexpr bool moves_continuously(CommandKind kind) noexcept {
-    return kind == CommandKind::move_continuous_absolute || kind == CommandKind::move_continuous_relative;
-}
-
-/// PLCopen table 4, second column. A jog lives by its lease and waits for nobody.
-[[nodiscard]] constexpr bool can_be_buffered(CommandKind kind) noexcept {
-    switch (kind) {
-        case CommandKind::stop:
-        case CommandKind::jog:
-        case CommandKind::move_superimposed:
-        case CommandKind::halt_superimposed:
-        case CommandKind::gear_out:
-        case CommandKind::cam_out: return false;
-        default: return true;
-    }
-}
-
-/// PLCopen table 4, last column: commands without Done, which hand over to a waiting one by an Inxxx output. It is shown for a cycle first.
-[[nodiscard]] constexpr bool hands_over_in_target(CommandKind kind) noexcept {
-    switch (kind) {
-        case CommandKind::move_velocity:
-        case CommandKind::move_continuous_absolute:
-        case CommandKind::move_continuous_relative:
-        case CommandKind::torque:
-        case CommandKind::velocity_profile:
-        case CommandKind::acceleration_profile:
-        case CommandKind::gear_in:
-        case CommandKind::gear_in_pos:
-        case CommandKind::combine:
-        case CommandKind::drive_move_velocity:
-        case CommandKind::drive_torque: return true;
-        default: return false;
-    }
-}
-
-/// The mode in which the drive makes the profile of such a command; none: the profile is made here.
-[[nodiscard]] constexpr DriveMode profile_mode_of(CommandKind kind) noexcept {
-    switch (kind) {
-        case CommandKind::drive_move_absolute:
-        case CommandKind::drive_move_relative: return DriveMode::profile_position;
-        case CommandKind::drive_move_velocity: return DriveMode::profile_velocity;
-        case CommandKind::drive_torque: return DriveMode::profile_torque;
-        default: return DriveMode::none;
-    }
-}
-[[nodiscard]] constexpr bool made_by_drive(CommandKind kind) noexcept { return profile_mode_of(kind) != DriveMode::none; }
 
 /// Details of profiles over time, torque, controller mode.
 [[nodiscard]] inline ErrorId check_details(const AxisCommand& command) noexcept {

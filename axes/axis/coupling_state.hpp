@@ -34,15 +34,6 @@ struct MasterChoice {
     return place == 0 && (begin > 0 || begin + table.length() < 0) ? begin : place;
 }
 
-/// Kinds of a slave: SynchronizedMotion.
-[[nodiscard]] constexpr bool couples(CommandKind kind) noexcept {
-    return kind == CommandKind::gear_in || kind == CommandKind::gear_in_pos || kind == CommandKind::cam_in || kind == CommandKind::combine;
-}
-[[nodiscard]] constexpr bool uncouples(CommandKind kind) noexcept { return kind == CommandKind::gear_out || kind == CommandKind::cam_out; }
-[[nodiscard]] constexpr bool shifts_phase(CommandKind kind) noexcept {
-    return kind == CommandKind::phasing_absolute || kind == CommandKind::phasing_relative;
-}
-
 /// One coupling: its command, and its masters as they are followed.
 struct Link {
     CommandId id = 0;  ///< 0: none

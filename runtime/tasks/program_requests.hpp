@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 
+#include "axes/axis/command_kinds.hpp"
 #include "axes/axis/homing_step_check.hpp"
 #include "axes/axis/motion_context.hpp"
 #include "runtime/command_events.hpp"
@@ -55,9 +56,9 @@ public:
 private:
     /// Probes and settings take no axis from the program that moves it.
     [[nodiscard]] static bool moves(const axes::AxisCommand& command) noexcept {
-        using axes::CommandKind;
-        return command.kind != CommandKind::touch_probe && command.kind != CommandKind::abort_trigger &&
-               command.kind != CommandKind::setting && !axes::beside(command);
+        using axes::kind_table::Slot;
+        const auto slot = axes::slot_of(command.kind);
+        return slot != Slot::probe && slot != Slot::setting && !axes::beside(command);
     }
 
     axes::AxisRequests& axes_;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "axes/axis/plan_order.hpp"
+#include "axes/planner/motion.hpp"
 #include "tests/axes/axis/axis_rig.hpp"
 
 namespace taktwerk::axes::test {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "axes/axis/command_check.hpp"
+#include "axes/planner/plan.hpp"
 #include "tests/axes/axis/coupling_rig.hpp"
 #include "tests/axes/axis/gear_oracle.hpp"
 #include "tests/axes/axis/walk_axes.hpp"

@@ -1,6 +1,7 @@
 // Modulo axes: positions that repeat, directions, turns without end. PLCopen Part 1 v2.0, section 3.5.
 
 #include "axes/axis/rational.hpp"
+#include "axes/axis/units.hpp"
 #include "tests/axes/axis/axis_rig.hpp"
 
 namespace taktwerk::axes::test {

@@ -1,6 +1,7 @@
 // Touch probes on one axis: latches of the drive, probes in software, windows, and what ends them. 1 u is 1000 counts, a cycle 1 ms.
 #include <gtest/gtest.h>
 
+#include "axes/axis/probe_window.hpp"
 #include "tests/axes/axis/axis_rig.hpp"
 
 namespace taktwerk::axes::test {

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "axes/axis/time_curve.hpp"
 #include "tests/axes/axis/axis_rig.hpp"
 
 namespace taktwerk::axes::test {

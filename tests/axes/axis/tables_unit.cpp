@@ -4,6 +4,7 @@
 #include <array>
 #include <set>
 
+#include "axes/axis/alarm_board.hpp"
 #include "axes/axis/alarms.hpp"
 #include "axes/axis/error_table.hpp"
 #include "tests/axes/axis/axis_rig.hpp"

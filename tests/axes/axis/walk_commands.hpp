@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "axes/axis/parameters.hpp"
 #include "tests/axes/axis/walk_axes.hpp"
 
 namespace taktwerk::axes::test {

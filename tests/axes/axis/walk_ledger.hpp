@@ -3,6 +3,9 @@
 
 #include <map>
 
+#include "axes/axis/command_kinds.hpp"
+#include "axes/axis/homing_step_check.hpp"
+#include "axes/axis/parameters.hpp"
 #include "tests/axes/axis/walk_commands.hpp"
 
 namespace taktwerk::axes::test {
