@@ -1,3 +1,5 @@
+// The order of a cycle, and what the machine wants. What others ask for: axis_requests.cpp.
+
 #include "axes/axis/axis.hpp"
 
 #include <utility>
@@ -6,45 +8,197 @@
 
 namespace taktwerk::axes {
 
+namespace {
+
+/// In a mode of the drive. True: this cycle's set-point is made.
+bool step_in_mode(AxisCore& axis, Duration period) noexcept {
+    for (;;) {
+        const auto step = axis.drive.switching.step(period);
+        if (step == ModeStep::next || step == ModeStep::next_again) axis.succession.start_waiting(0);
+        if (step == ModeStep::made) return true;
+        if (step == ModeStep::free || step == ModeStep::next) return false;
+    }
+}
+
+void step_homing(AxisCore& axis) noexcept {
+    axis.homing.passive.watch();
+    axis.homing.home.step();
+    axis.writer.passive_homing();
+    if (axis.homing.home.over() || axis.homing.steps.over()) axis.succession.start_waiting(0);
+}
+
+/// The base, what lies on top of it, and what it is coupled to: one period on.
+void advance(AxisCore& axis, Duration period) noexcept {
+    auto& motion = axis.motion.now;
+    auto& addition = axis.motion.addition;
+    if (motion.releases) axis.motion.base.end_release();
+    if (motion.goal_pending) axis.conduct.run_goal(0);
+    if (addition.pending() && !addition.run()) {
+        axis.conduct.fail(AxisAlarm::planner_refused, axis.body.units.to_program(motion.setpoint.state().position),
+                          motion.setpoint.superimposed().velocity);
+        if (motion.goal_pending) axis.conduct.run_goal(0);
+    }
+    if (motion.goal.kind == Goal::Kind::given) {
+        if (!axis.motion.given.step(period)) axis.conduct.end_with(ErrorId::setpoint_missing);
+    } else if (motion.goal.kind == Goal::Kind::coupled) {
+        motion.setpoint.advance_superimposed(period);
+        axis.coupling.slave.step(period);
+    } else motion.setpoint.advance(period);
+    if (motion.goal_pending) {  // what was given has ended badly: the axis brakes from where it is
+        axis.conduct.run_goal(0);
+        motion.setpoint.advance(period);
+    }
+}
+
+/// What the new set-point has brought to an end.
+void complete(AxisCore& axis) noexcept {
+    auto& body = axis.body;
+    auto& motion = axis.motion.now;
+    // A drive that was told to stop holds no place of ours: where it comes to rest is where the axis is.
+    if (body.slow_line && motion.goal.kind == Goal::Kind::stop && !motion.goal_pending && motion.setpoint.finished() &&
+        axis.measured.online() && axis.measured.stands() && axis.measured.feedback.commands_acknowledged)
+        motion.setpoint.place(axis.measured.local());
+    if (Succession::may_complete(body, motion)) axis.succession.complete();
+    if (motion.goal.kind == Goal::Kind::given || motion.goal.kind == Goal::Kind::coupled)
+        motion.goal.former_jerk = 0;  // it has moved the axis itself
+    if (axis.coupling.links.state.shown) axis.coupling.phasing.complete();
+    if (body.queue.beside(SideSlot::superimposed) != 0 || motion.wants_speed != 0) {
+        const bool done = axis.motion.addition.complete();
+        if (done && body.state == AxisState::DiscreteMotion && !body.queue.has_active() && !axis.conduct.moves())
+            axis.succession.start_waiting(0);
+    }
+    if (const double velocity = motion.setpoint.state().velocity; velocity != 0) motion.backwards = velocity < 0;
+    else if (motion.summed) motion.summed = !motion.setpoint.at_rest();
+}
+
+/// The end of a call: what it may have changed. A setting that was carried out in it is shown with all that it changes.
+void show(AxisCore& axis) noexcept {
+    if (axis.settings.changed()) axis.writer.publish();
+    else axis.writer.states();
+}
+
+}  // namespace
+
 Axis::Axis(AxisConfig config, DrivePort& port, Duration cycle, std::uint16_t index, AxisView* view)
-    : core_(std::make_unique<AxisCore>(std::move(config), port, cycle, index, view)), view_(&core_->view()) {}
+    : core_(std::make_unique<AxisCore>(std::move(config), port, cycle, index, view)), view_(&core_->body.shown) {}
 Axis::Axis(Axis&&) noexcept = default;
 Axis& Axis::operator=(Axis&&) noexcept = default;
 Axis::~Axis() = default;
 
-void Axis::bind(const MotionScene& scene) { core_->bind(scene); }
-const AxisConfig& Axis::config() const noexcept { return core_->config(); }
-const DriveCommand& Axis::drive_command() const noexcept { return core_->drive_command(); }
-
-void Axis::update(Instant now) noexcept { core_->update(now); }
-void Axis::supervise(Instant now) noexcept { core_->supervise(now); }
-void Axis::plan(Instant now, Duration period) noexcept { core_->plan(now, period); }
-void Axis::encode(Instant now) noexcept { core_->encode(now); }
-
-bool Axis::fetch_alarm(AlarmFact& fact) noexcept { return core_->fetch_alarm(fact); }
-std::span<const AlarmFact> Axis::active_alarms() const noexcept { return core_->active_alarms(); }
-void Axis::acknowledge_alarms() noexcept { core_->acknowledge_alarms(); }
-void Axis::stop_for_error(AlarmId reason, bool then_power_off) noexcept { core_->stop_for_error(reason, then_power_off); }
-void Axis::demand_emergency_stop(EmergencyStop level) noexcept { core_->demand_emergency_stop(level); }
-void Axis::shut_down() noexcept { core_->shut_down(); }
-void Axis::set_mode(OperatingMode mode) noexcept { core_->set_mode(mode); }
-void Axis::take_control(Owner owner) noexcept { core_->take_control(owner); }
-void Axis::release_control(Owner owner) noexcept { core_->release_control(owner); }
-RetainedPosition Axis::retained() const noexcept { return core_->retained(); }
-void Axis::restore(const RetainedPosition& position, const Gearing& gearing) noexcept { core_->restore(position, gearing); }
-
-MasterTrack::Reading Axis::as_master(MC_Source source) const noexcept { return core_->as_master(source); }
-MasterList Axis::masters() const noexcept { return core_->masters(); }
-bool Axis::may_follow() const noexcept { return core_->may_follow(); }
-
-Submitted Axis::submit(const AxisCommand& command, Owner owner) noexcept { return core_->submit(command, owner); }
-ErrorId Axis::power(bool enable, bool positive, bool negative, Owner owner) noexcept {
-    return core_->power(enable, positive, negative, owner);
+void Axis::bind(const MotionScene& scene) {
+    core_->body.scene = scene;
+    if (scene.tables) core_->motion.given.reserve(scene.tables->most_time_rows());
 }
-ErrorId Axis::reset(Owner owner) noexcept { return core_->reset(owner); }
-ErrorId Axis::set(const AxisSetting& setting, Owner owner) noexcept { return core_->set(setting, owner); }
-ErrorId Axis::update(CommandId id, const AxisCommand& command, Owner owner) noexcept { return core_->update(id, command, owner); }
-void Axis::release_stop(CommandId id, Owner owner) noexcept { core_->release_stop(id, owner); }
-ErrorId Axis::renew_jog(CommandId id, double velocity, Owner owner) noexcept { return core_->renew_jog(id, velocity, owner); }
+const AxisConfig& Axis::config() const noexcept { return core_->body.config; }
+const DriveCommand& Axis::drive_command() const noexcept { return core_->output.command(); }
+
+// --- the cycle ------------------------------------------------------------------------------------------------------------------
+
+void Axis::update(Instant now) noexcept {
+    auto& axis = *core_;
+    axis.body.now = now;
+    axis.supply.begin_cycle();
+    const bool placed = axis.intake.read();
+    if (placed) axis.writer.setpoint();
+    if (!FeedbackIntake::as_wanted(axis.body, axis.measured, axis.runs, axis.modes)) {
+        if (axis.body.driven) axis.intake.watch_drive();
+        if (axis.supply.run()) axis.succession.start_waiting(0);
+    }
+    const double actual = axis.measured.local();
+    if (axis.runs.motor_leads() || axis.modes.phase != ModePhase::steady) {
+        axis.following.rest();  // in torque the set-point follows the motor
+    } else if (axis.following.watch(axis.measured, axis.motion.now, actual, axis.runs.step.presses()) &&
+               axis.body.state != AxisState::ErrorStop) {
+        axis.conduct.fail(AxisAlarm::following_error, axis.following.error(), axis.body.config.following.window);
+    }
+    if (axis.probes.watch()) axis.writer.probes();
+    if (axis.reset.resetting()) {
+        axis.reset.run();
+        axis.writer.resets();
+    }
+    show(axis);
+    axis.writer.feedback(actual);
+}
+
+void Axis::supervise(Instant now) noexcept {
+    auto& axis = *core_;
+    axis.body.now = now;
+    const bool demanded = axis.body.emergency != EmergencyStop::none;
+    if (!demanded && axis.body.queue.active().command.kind != CommandKind::jog) return;
+    if (demanded) axis.conduct.obey_emergency();
+    axis.jog.watch();
+    axis.writer.publish();
+}
+
+void Axis::plan(Instant now, Duration period) noexcept {
+    auto& axis = *core_;
+    auto& body = axis.body;
+    body.now = now;
+    if (axis.coupling.links.state.phasing_next.id != 0) axis.coupling.phasing.settle_waiting();
+    if (axis.runs.motor_leads()) {
+        axis.supply.follow_actual(period);
+        axis.coupling.slave.settle();
+        step_homing(axis);
+        axis.writer.publish();
+        return;
+    }
+    const bool may_be_homed = body.state == AxisState::Homing || axis.homing.passive.id() != 0;
+    const double coordinates = body.units.shift();
+    if (axis.homing.passive.id() != 0 || axis.runs.search() || axis.runs.latch.armed()) step_homing(axis);
+    if (body.shown.active_in_target && body.queue.waiting() > 0) axis.settings.carry_out_due();
+    if (body.shown.active_in_target && body.queue.waiting() > 0) axis.succession.hand_over();
+    if (axis.modes.phase != ModePhase::steady && step_in_mode(axis, period)) {
+        show(axis);
+        axis.writer.setpoint();
+        if (axis.modes.phase == ModePhase::profile && axis.modes.run.mode() == DriveMode::profile_position)
+            axis.writer.target(axis.modes.run.front().target);
+        return;
+    }
+    if (body.begin_pending) axis.succession.begin_command();
+    if (body.endless) axis.motion.aim.keep_close_to_anchor();
+    if (axis.coupling.links.state.shown) axis.coupling.slave.follow(period);
+
+    const MotionState before = axis.motion.now.setpoint.state();
+    advance(axis, period);
+    if (LimitGuard::may_meet_limit(axis.body, axis.measured, axis.motion.now)) axis.guard.watch(before, period);
+    complete(axis);
+    show(axis);
+    axis.writer.setpoint();
+    if (may_be_homed || body.units.shift() != coordinates) axis.writer.feedback(axis.measured.local());  // in other coordinates
+}
+
+void Axis::encode(Instant now) noexcept { core_->output.encode(now); }
+
+// --- the machine's hand ---------------------------------------------------------------------------------------------------------
+
+bool Axis::fetch_alarm(AlarmFact& fact) noexcept { return core_->body.alarms.fetch(fact); }
+std::span<const AlarmFact> Axis::active_alarms() const noexcept { return core_->body.alarms.active(); }
+void Axis::acknowledge_alarms() noexcept {
+    for (const auto alarm : {AxisAlarm::jog_lease_expired, AxisAlarm::moved_while_off, AxisAlarm::retained_gearing_differs})
+        core_->body.alarms.clear(alarm);
+}
+
+void Axis::stop_for_error(AlarmId reason, bool then_power_off) noexcept {
+    if (core_->conduct.stop_for_error(reason, then_power_off)) core_->writer.publish();
+}
+
+void Axis::demand_emergency_stop(EmergencyStop level) noexcept { core_->body.emergency = level; }
+
+void Axis::shut_down() noexcept {
+    core_->conduct.shut_down();
+    core_->writer.publish();
+}
+
+RetainedPosition Axis::retained() const noexcept { return core_->retained.now(!core_->conduct.moves()); }
+void Axis::restore(const RetainedPosition& position, const Gearing& gearing) noexcept {
+    core_->retained.restore(position, gearing);
+    core_->writer.states();
+}
+
+// --- couplings ------------------------------------------------------------------------------------------------------------------
+
+MasterTrack::Reading Axis::as_master(MC_Source source) const noexcept { return core_->coupling.as_master.reading(source); }
+MasterList Axis::masters() const noexcept { return core_->coupling.as_master.masters(); }
+bool Axis::may_follow() const noexcept { return core_->coupling.as_master.may_follow(); }
 
 }  // namespace taktwerk::axes

@@ -1,20 +1,24 @@
-// MC_Home: which sequence runs, and how its result becomes the axis' coordinates.
+#include "axes/axis/axis_homing.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "axes/axis/axis_core.hpp"
+#include "axes/axis/aim.hpp"
+#include "axes/axis/command_check.hpp"
+#include "axes/axis/conduct.hpp"
+#include "axes/axis/homing_reference.hpp"
+#include "axes/axis/homing_steps.hpp"
+#include "axes/axis/limit_guard.hpp"
+#include "axes/axis/search_motion.hpp"
 #include "axes/homing/index_doubt.hpp"
 
 namespace taktwerk::axes {
 
 namespace {
 
-bool slow_line(const DriveCapabilities& drive) noexcept { return drive.setpoints == SetpointClass::low_dynamics; }
-
 /// `way`: counts from the switch's edge, as it was seen, to the first pulse behind it. A switch that is polled has to leave room on both sides.
 bool pulse_is_certain(const DriveCapabilities& drive, const AxisConfig& config, std::int64_t way) noexcept {
-    if (!slow_line(drive) || config.homing.kind != HomingKind::reference_pulse) return true;
+    if (drive.setpoints != SetpointClass::low_dynamics || config.homing.kind != HomingKind::reference_pulse) return true;
     const auto turn = config.gearing.counts_per_revolution, room = turn / 8;
     const auto far = way < 0 ? -way : way;
     return far >= room && far <= turn - room;
@@ -22,20 +26,20 @@ bool pulse_is_certain(const DriveCapabilities& drive, const AxisConfig& config, 
 
 }  // namespace
 
-ErrorId AxisCore::refuse_home() const noexcept {
-    const auto& drive = port_.capabilities();
-    switch (config_.homing.kind) {
+ErrorId AxisHoming::refuse() const noexcept {
+    const auto& drive = body_.port.capabilities();
+    switch (body_.config.homing.kind) {
         case HomingKind::none: return ErrorId::not_supported;
         case HomingKind::drive: {
             if (!drive.drive_homing) return ErrorId::not_supported;
             // The drive has its speeds from the start-up: limits that a program has lowered since bind it all the same.
-            const auto& homing = config_.homing;
-            const bool faster = std::max(homing.search_velocity, homing.latch_velocity) > config_.limits.velocity;
+            const auto& homing = body_.config.homing;
+            const bool faster = std::max(homing.search_velocity, homing.latch_velocity) > body_.config.limits.velocity;
             return faster && !drive.homing_per_run ? ErrorId::invalid_velocity : ErrorId::none;
         }
         case HomingKind::limit_switch: return drive.digital_inputs ? ErrorId::none : ErrorId::not_supported;
-        case HomingKind::reference_pulse: return refuse_reference({.source = TriggerSource::index_pulse});
-        case HomingKind::absolute: return absolute_encoder() ? ErrorId::none : ErrorId::not_supported;
+        case HomingKind::reference_pulse: return reference_.refuse({.source = TriggerSource::index_pulse});
+        case HomingKind::absolute: return measured_.absolute_encoder() ? ErrorId::none : ErrorId::not_supported;
         case HomingKind::home_switch:
         case HomingKind::set_here:
         case HomingKind::block: break;
@@ -44,8 +48,8 @@ ErrorId AxisCore::refuse_home() const noexcept {
 }
 
 /// What the kinds that are built from one step search for.
-StepSettings AxisCore::home_search() const noexcept {
-    const auto& homing = config_.homing;
+StepSettings AxisHoming::home_search() const noexcept {
+    const auto& homing = body_.config.homing;
     StepSettings run{.velocity = homing.search_velocity, .time_limit = homing.timeout};
     switch (homing.kind) {
         case HomingKind::limit_switch:
@@ -66,170 +70,142 @@ StepSettings AxisCore::home_search() const noexcept {
     return run;
 }
 
-ErrorId AxisCore::begin_homing(const AxisCommand& command) noexcept {
-    const auto& homing = config_.homing;
+ErrorId AxisHoming::begin(const AxisCommand& command) noexcept {
+    const auto& homing = body_.config.homing;
     home_coordinate_ = std::isnan(command.position) ? homing.offset : command.position;
-    view_.homed = false;
-    goal_ = {};
-    goal_pending_ = false;
+    body_.homed = false;
+    motion_.goal = {};
+    motion_.goal_pending = false;
     switch (homing.kind) {
         case HomingKind::none: return ErrorId::not_supported;
-        case HomingKind::set_here: end_homing(actual_counts_); break;
-        case HomingKind::absolute: end_homing(encoder_zero()); break;
-        case HomingKind::drive: drive_homing_.start(now_, homing.timeout, port_.capabilities().mode_change_delay, own_mode_); break;
+        case HomingKind::set_here: end(measured_.counts); break;
+        case HomingKind::absolute: end(measured_.encoder_zero()); break;
+        case HomingKind::drive:
+            runs_.drive.start(body_.now, homing.timeout, body_.port.capabilities().mode_change_delay, modes_.own);
+            break;
         case HomingKind::home_switch:
         case HomingKind::reference_pulse:
-            switch_homing_.start({.search_velocity = homing.search_velocity,
-                                  .latch_velocity = homing.latch_velocity,
-                                  .negative = homing.negative,
-                                  .timeout = homing.timeout},
-                                 now_);
+            runs_.by_switch.start({.search_velocity = homing.search_velocity,
+                                   .latch_velocity = homing.latch_velocity,
+                                   .negative = homing.negative,
+                                   .timeout = homing.timeout},
+                                  body_.now);
             break;
-        case HomingKind::block: block_torque_ = homing.torque; [[fallthrough]];
-        case HomingKind::limit_switch: step_run_.start(home_search(), now_, actual_counts_); break;
+        case HomingKind::block: runs_.block_torque = homing.torque; [[fallthrough]];
+        case HomingKind::limit_switch: runs_.step.start(home_search(), body_.now, measured_.counts); break;
     }
     return ErrorId::none;
 }
 
-std::int64_t AxisCore::encoder_range() const noexcept {
-    if (config_.memory.range > 0) return config_.memory.range;
-    const auto bits = std::min<unsigned>(port_.capabilities().position_bits, 62);
-    return std::int64_t{1} << bits;
-}
-
-/// counts; the encoder's (or the drive's) own zero. Its raw position may have wrapped: zero is the nearest multiple of the range.
-std::int64_t AxisCore::encoder_zero() const noexcept {
-    const auto range = static_cast<double>(encoder_range());
-    return static_cast<std::int64_t>(std::round(static_cast<double>(actual_counts_) / range) * range);
-}
-
-void AxisCore::step_homing() noexcept {
-    watch_passive_homing();
-    if (drive_homing_.busy()) {
-        if (power_.follows_actual()) drive_homing_.cancel();
-        if (feedback_.homing_setup_refused && view_.state == AxisState::Homing)
-            fail(AxisAlarm::drive_homing_refused, config_.homing.method);
-        guard_drive_speed(feedback_.velocity / units_.counts_per_unit());
-        switch (drive_homing_.step(feedback_, drive_stands(), now_)) {
+void AxisHoming::step() noexcept {
+    if (runs_.drive.busy()) {
+        if (body_.power.follows_actual()) runs_.drive.cancel();
+        if (measured_.feedback.homing_setup_refused && body_.state == AxisState::Homing)
+            conduct_.fail(AxisAlarm::drive_homing_refused, body_.config.homing.method);
+        (void)guard_.drive_speed(measured_.feedback.velocity / body_.units.counts_per_unit());
+        switch (runs_.drive.step(measured_.feedback, measured_.stands(), body_.now)) {
             case DriveHoming::Result::attained: {
                 // The drive's own zero is the reference. Its raw position may have wrapped on the way: zero is the nearest multiple.
-                const double span = std::ldexp(1.0, port_.capabilities().position_bits);
-                if (view_.state == AxisState::Homing)
-                    end_homing(static_cast<std::int64_t>(std::round(static_cast<double>(actual_counts_) / span) * span));
+                const double span = std::ldexp(1.0, body_.port.capabilities().position_bits);
+                if (body_.state == AxisState::Homing)
+                    end(static_cast<std::int64_t>(std::round(static_cast<double>(measured_.counts) / span) * span));
                 break;
             }
             case DriveHoming::Result::failed:
-                if (!feedback_.homing_setup_refused) fail(AxisAlarm::drive_homing_failed, config_.homing.method, feedback_.error_code);
+                if (!measured_.feedback.homing_setup_refused)
+                    conduct_.fail(AxisAlarm::drive_homing_failed, body_.config.homing.method, measured_.feedback.error_code);
                 break;
             case DriveHoming::Result::timed_out:
-                fail(AxisAlarm::drive_homing_timeout, config_.homing.method, to_seconds(config_.homing.timeout));
+                conduct_.fail(AxisAlarm::drive_homing_timeout, body_.config.homing.method, to_seconds(body_.config.homing.timeout));
                 break;
             case DriveHoming::Result::aborted:
             case DriveHoming::Result::none: break;
         }
         return;
     }
-    if (queue_.active().command.kind == CommandKind::homing_step) follow_homing_step();
-    else if (step_run_.busy()) run_home_search();
+    if (body_.queue.active().command.kind == CommandKind::homing_step) steps_.follow();
+    else if (runs_.step.busy()) run_home_search();
     else search_home_switch();
 }
 
-/// What the port makes sure of before it starts the drive's homing. Nothing: the start-up list has it.
-DriveHomingSetup AxisCore::drive_homing_setup() const noexcept {
-    if (!drive_homing_.busy() || !port_.capabilities().homing_per_run) return {};
-    const double scale = std::abs(units_.counts_per_unit());
-    const auto& homing = config_.homing;
-    const auto& limits = config_.limits;
-    return {homing.method, std::min(homing.search_velocity, limits.velocity) * scale,
-            std::min(homing.latch_velocity, limits.velocity) * scale,
-            std::min({homing.acceleration, limits.acceleration, limits.deceleration}) * scale};
-}
-
-/// What homing gave is gone, and so is what was kept of it.
-void AxisCore::lose_reference() noexcept {
-    if (!view_.homed && !retained_.homed) return;
-    view_.homed = false;
-    retained_ = {};
-    fail(AxisAlarm::reference_lost, feedback_.error_code);
-}
-
-void AxisCore::search_home_switch() noexcept {
-    const bool seeks_index = switch_homing_.phase() == SwitchHoming::Phase::finished && latch_.armed();
-    if (!switch_homing_.busy() && !seeks_index) return;
-    switch_homing_.step({.fresh = feedback_.fresh,
-                         .home_switch = feedback_.home_switch,
-                         .negative_limit = negative_switch_,
-                         .positive_limit = positive_switch_,
-                         .position = feedback_.position,
-                         .standing = setpoint_.at_rest() && !goal_pending_,
-                         .now = now_});
-    switch (switch_homing_.phase()) {
+void AxisHoming::search_home_switch() noexcept {
+    const bool seeks_index = runs_.by_switch.phase() == SwitchHoming::Phase::finished && runs_.latch.armed();
+    if (!runs_.by_switch.busy() && !seeks_index) return;
+    runs_.by_switch.step({.fresh = measured_.feedback.fresh,
+                          .home_switch = measured_.feedback.home_switch,
+                          .negative_limit = measured_.negative_switch,
+                          .positive_limit = measured_.positive_switch,
+                          .position = measured_.feedback.position,
+                          .standing = motion_.setpoint.at_rest() && !motion_.goal_pending,
+                          .now = body_.now});
+    switch (runs_.by_switch.phase()) {
         case SwitchHoming::Phase::finished:
-            if (config_.homing.kind == HomingKind::reference_pulse) {
-                if (!seeks_index) arm_latch({.source = TriggerSource::index_pulse}, false);
+            if (body_.config.homing.kind == HomingKind::reference_pulse) {
+                if (!seeks_index) reference_.arm({.source = TriggerSource::index_pulse}, false);
                 // Over a slow line the drive finds out where its index is while the motor rests.
-                if (slow_line(port_.capabilities())) {
-                    if (feedback_.homing_error) fail(AxisAlarm::homing_failed, index_unknown.number, 0);
-                    if (feedback_.homing_error || !feedback_.probes[latch_.probe()].armed) return;
+                if (body_.slow_line) {
+                    if (measured_.feedback.homing_error) conduct_.fail(AxisAlarm::homing_failed, index_unknown.number, 0);
+                    if (measured_.feedback.homing_error || !measured_.feedback.probes[runs_.latch.probe()].armed) return;
                 }
-                switch_homing_.cancel();
-                step_run_.start(home_search(), now_, actual_counts_);
-            } else end_homing(switch_homing_.reference());
+                runs_.by_switch.cancel();
+                runs_.step.start(home_search(), body_.now, measured_.counts);
+            } else end(runs_.by_switch.reference());
             return;
-        case SwitchHoming::Phase::failed: fail(AxisAlarm::homing_failed, static_cast<double>(switch_homing_.failed_in()), 0); return;
-        case SwitchHoming::Phase::timed_out: fail(AxisAlarm::homing_timeout, to_seconds(config_.homing.timeout)); return;
+        case SwitchHoming::Phase::failed:
+            conduct_.fail(AxisAlarm::homing_failed, static_cast<double>(runs_.by_switch.failed_in()), 0);
+            return;
+        case SwitchHoming::Phase::timed_out: conduct_.fail(AxisAlarm::homing_timeout, to_seconds(body_.config.homing.timeout)); return;
         default: break;
     }
-    const bool on_course = goal_.kind == Goal::Kind::velocity && goal_.value == switch_homing_.velocity();
+    const bool on_course = motion_.goal.kind == Goal::Kind::velocity && motion_.goal.value == runs_.by_switch.velocity();
     if (on_course) return;
     // Homing has velocities of its own; only the axis' limit holds them down.
-    const double speed = std::min(std::abs(switch_homing_.velocity()), config_.limits.velocity);
-    aim(Goal::Kind::velocity, std::copysign(speed, switch_homing_.velocity()), homing_dynamics(), VelocityLimiter::command);
+    const double speed = std::min(std::abs(runs_.by_switch.velocity()), body_.config.limits.velocity);
+    aim_.at(Goal::Kind::velocity, std::copysign(speed, runs_.by_switch.velocity()), dynamics(), VelocityLimiter::command);
 }
 
-MotionLimits AxisCore::homing_dynamics() const noexcept {
-    auto dynamics = full_limits(config_.limits);
-    dynamics.acceleration = choose(config_.homing.acceleration, 0, dynamics.acceleration);
-    dynamics.deceleration = choose(config_.homing.acceleration, 0, dynamics.deceleration);
+MotionLimits AxisHoming::dynamics() const noexcept {
+    auto dynamics = full_limits(body_.config.limits);
+    dynamics.acceleration = choose(body_.config.homing.acceleration, 0, dynamics.acceleration);
+    dynamics.deceleration = choose(body_.config.homing.acceleration, 0, dynamics.deceleration);
     return dynamics;
 }
 
-void AxisCore::run_home_search() noexcept {
-    auto dynamics = homing_dynamics();
-    dynamics.velocity = std::min(config_.homing.search_velocity, dynamics.velocity);
-    drive_step({.source = TriggerSource::index_pulse}, dynamics);
-    switch (step_run_.result()) {
+void AxisHoming::run_home_search() noexcept {
+    auto run = dynamics();
+    run.velocity = std::min(body_.config.homing.search_velocity, run.velocity);
+    search_.drive({.source = TriggerSource::index_pulse}, run);
+    switch (runs_.step.result()) {
         case StepRun::End::none: return;
         case StepRun::End::found:
-            if (pulse_is_certain(port_.capabilities(), config_, step_run_.place() - switch_homing_.reference()))
-                end_homing(step_run_.place());
-            else fail(AxisAlarm::homing_failed, index_near_edge.number, 0);
+            if (pulse_is_certain(body_.port.capabilities(), body_.config, runs_.step.place() - runs_.by_switch.reference()))
+                end(runs_.step.place());
+            else conduct_.fail(AxisAlarm::homing_failed, index_near_edge.number, 0);
             return;
-        case StepRun::End::time_limit: fail(AxisAlarm::homing_timeout, to_seconds(config_.homing.timeout)); break;
-        default: fail(AxisAlarm::homing_failed, static_cast<double>(step_run_.result()), 0); break;
+        case StepRun::End::time_limit: conduct_.fail(AxisAlarm::homing_timeout, to_seconds(body_.config.homing.timeout)); break;
+        default: conduct_.fail(AxisAlarm::homing_failed, static_cast<double>(runs_.step.result()), 0); break;
     }
 }
 
-/// The motor's place `at` is the load's `coordinate`, whatever compensation adds on the way between them.
-void AxisCore::set_coordinate(std::int64_t at, double coordinate) noexcept { units_.set_program(at, coordinate + compensation_.offset()); }
-
-void AxisCore::end_homing(std::int64_t reference) noexcept {
-    set_coordinate(reference, home_coordinate_);
-    view_.homed = true;
-    switch_homing_.cancel();
-    step_run_.cancel();
-    latch_.release();
-    goal_ = {};
-    queue_.finish_active(Outcome::done);
-    start_waiting(0);
+void AxisHoming::end(std::int64_t reference) noexcept {
+    reference_.set_coordinate(reference, home_coordinate_);
+    body_.homed = true;
+    runs_.by_switch.cancel();
+    runs_.step.cancel();
+    runs_.latch.release();
+    motion_.goal = {};
+    body_.queue.finish_active(Outcome::done);
+    over_ = true;
 }
 
-void AxisCore::abort_homing() noexcept {
-    if (step_run_.busy() || switch_homing_.phase() == SwitchHoming::Phase::finished) latch_.release();
-    switch_homing_.cancel();
-    step_run_.cancel();
-    if (power_.follows_actual()) drive_homing_.cancel();
-    else drive_homing_.abort(now_);
+DriveHomingSetup AxisHoming::drive_setup() const noexcept {
+    if (!runs_.drive.busy() || !body_.port.capabilities().homing_per_run) return {};
+    const double scale = std::abs(body_.units.counts_per_unit());
+    const auto& homing = body_.config.homing;
+    const auto& limits = body_.config.limits;
+    return {homing.method, std::min(homing.search_velocity, limits.velocity) * scale,
+            std::min(homing.latch_velocity, limits.velocity) * scale,
+            std::min({homing.acceleration, limits.acceleration, limits.deceleration}) * scale};
 }
 
 }  // namespace taktwerk::axes

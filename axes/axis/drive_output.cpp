@@ -1,0 +1,109 @@
+#include "axes/axis/drive_output.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "axes/axis/axis_homing.hpp"
+#include "axes/axis/axis_parameters.hpp"
+#include "axes/axis/axis_probes.hpp"
+#include "axes/axis/axis_reset.hpp"
+#include "axes/axis/command_check.hpp"
+#include "axes/axis/parameters.hpp"
+
+namespace taktwerk::axes {
+
+namespace {
+
+/// The history is as long as the dead time of a bus. For a slow line it keeps one set-point in several cycles.
+bool remembers(const DriveCapabilities& drive, Instant now, Duration cycle) {
+    if (drive.setpoints == SetpointClass::cyclic) return true;
+    constexpr int kept = 12;  // set-points for a worst latency, of SetpointHistory::depth
+    const Duration spacing = std::max<Duration>((drive.command_latency + drive.feedback_period) / kept, cycle);
+    const auto at = now.time_since_epoch();
+    return at / spacing != (at - cycle) / spacing;
+}
+
+}  // namespace
+
+void DriveOutput::encode(Instant now) noexcept {
+    command_ = {};
+    command_.power = body_.power.request();
+    command_.reset_fault = reset_.resetting() && (measured_.faulted() || measured_.feedback.setup_refused);
+    command_.start_homing = runs_.drive.start_level();
+    if (runs_.drive.busy()) command_.homing = homing_.drive_setup();
+    const auto& set = motion_.setpoint.state();
+    if (!measured_.compensation.none())
+        measured_.compensation.step(body_.units.machine(set.position), set.velocity, body_.homed, body_.cycle);
+    fill_targets();
+    probes_.command(command_.probes);
+    if (runs_.latch.armed()) command_.probes[runs_.latch.probe()] = runs_.latch.command();
+    command_.digital_outputs = body_.shown.digital_outputs;
+    command_.digital_output_mask = parameters_.output_mask();
+    if (runs_.step.presses() && body_.port.capabilities().torque_limits)
+        command_.torque_limit_positive = command_.torque_limit_negative = runs_.block_torque;
+    body_.port.encode(command_, now);
+
+    if (runs_.motor_leads() || modes_.phase != ModePhase::steady) following_.forget();
+    else if (remembers(body_.port.capabilities(), now, body_.cycle))
+        following_.record(body_.port.setpoint_effective(now), command_.position);
+}
+
+void DriveOutput::fill_targets() noexcept {
+    const auto& set = motion_.setpoint.state();
+    const auto& control = body_.config.control;
+    const double counts = body_.units.counts_per_unit();
+    command_.mode = modes_.wanted();
+    command_.position = measured_.seeded ? body_.units.counts(set.position + measured_.compensation.offset()) : measured_.feedback.position;
+    command_.velocity = control.feed_forward * set.velocity * counts;
+    command_.torque = torque_per_acceleration_ * set.acceleration;
+    if (body_.slow_line) {
+        // Told to stop, the drive ramps by itself: one word on the line ends the motion, whatever becomes of the line then.
+        const bool ends_torque = modes_.phase == ModePhase::leaving || (modes_.phase == ModePhase::torque && !modes_.torque_wanted());
+        command_.halt = motion_.goal.kind == Goal::Kind::stop || ends_torque;
+        const double deceleration = command_.halt ? motion_.goal.limits.deceleration : body_.config.limits.deceleration;
+        command_.acceleration = body_.config.limits.acceleration * std::abs(counts);
+        command_.deceleration = deceleration * std::abs(counts);
+    }
+    if (modes_.own == DriveMode::cyclic_velocity || modes_.own == DriveMode::profile_velocity) {
+        const bool closed = modes_.phase == ModePhase::steady && measured_.online() && !body_.power.follows_actual();
+        const double limit = control.output_limit > 0 ? control.output_limit : 1.2 * body_.shown.parameters[place_of(velocity_of_system)];
+        const double velocity = modes_.phase == ModePhase::leaving
+                                    ? set.velocity
+                                    : control.feed_forward * set.velocity + (closed ? control.kv * following_.error() : 0);
+        command_.velocity = std::clamp(velocity, -limit, limit) * counts;
+    }
+    if (modes_.phase == ModePhase::steady) return;
+    if (modes_.in_profile()) fill_drive_profile();
+    else fill_torque();
+    command_.halt = command_.halt || modes_.halt;
+}
+
+void DriveOutput::fill_torque() noexcept {
+    if (modes_.phase == ModePhase::entering) command_.torque = measured_.feedback.torque;  // what the motor has when it takes the mode
+    if (modes_.phase != ModePhase::torque) return;
+    const double counts = body_.units.counts_per_unit();
+    command_.torque = (body_.config.gearing.inverted ? -1 : 1) * modes_.torque.torque();
+    command_.velocity_limit = modes_.torque_velocity * std::abs(counts);
+}
+
+void DriveOutput::fill_drive_profile() noexcept {
+    command_.velocity = command_.torque = 0;
+    if (modes_.phase == ModePhase::profile_entering) return;
+    const auto& made = modes_.run.setpoint();
+    command_.profile = modes_.run.announced();
+    if (modes_.run.mode() == DriveMode::profile_position) command_.position = made.position;
+    command_.velocity = made.velocity;
+    command_.torque = made.torque;
+    command_.acceleration = made.acceleration;
+    command_.deceleration = made.deceleration;
+    command_.torque_slope = made.torque_slope;
+    command_.velocity_limit = made.velocity_limit;
+    if (!modes_.halt) return;
+    command_.torque = 0;  // what the halt does is the drive's affair; at least nothing drives on
+    const auto& stopping = body_.queue.active().command;
+    const bool error = body_.state == AxisState::ErrorStop;
+    const auto braking = error ? stop_limits(body_.config.limits) : dynamics_of(stopping, body_.config.limits, body_.config.defaults);
+    command_.deceleration = braking.deceleration * std::abs(body_.units.counts_per_unit());
+}
+
+}  // namespace taktwerk::axes

@@ -1,0 +1,60 @@
+#pragma once
+// What goes to the drive, at the end of a cycle.
+
+#include "axes/axis/axis_body.hpp"
+#include "axes/axis/axis_motion.hpp"
+#include "axes/axis/following_watch.hpp"
+#include "axes/axis/homing_runs.hpp"
+#include "axes/axis/measured.hpp"
+#include "axes/axis/mode_state.hpp"
+
+namespace taktwerk::axes {
+
+class AxisHoming;
+class AxisParameters;
+class AxisProbes;
+class AxisReset;
+
+class DriveOutput {
+public:
+    DriveOutput(const AxisBody& body, Measured& measured, const AxisMotion& motion, ModeState& modes, const HomingRuns& runs,
+                const AxisHoming& homing, const AxisReset& reset, AxisProbes& probes, const AxisParameters& parameters,
+                FollowingWatch& following) noexcept
+        : body_(body),
+          measured_(measured),
+          motion_(motion),
+          modes_(modes),
+          runs_(runs),
+          homing_(homing),
+          reset_(reset),
+          probes_(probes),
+          parameters_(parameters),
+          following_(following) {}
+
+    void encode(Instant now) noexcept;
+
+    /// The newest one.
+    [[nodiscard]] const DriveCommand& command() const noexcept { return command_; }
+
+private:
+    void fill_targets() noexcept;
+    void fill_torque() noexcept;
+    void fill_drive_profile() noexcept;
+
+    const AxisBody& body_;
+    Measured& measured_;
+    const AxisMotion& motion_;
+    ModeState& modes_;
+    const HomingRuns& runs_;
+    const AxisHoming& homing_;
+    const AxisReset& reset_;
+    AxisProbes& probes_;
+    const AxisParameters& parameters_;
+    FollowingWatch& following_;
+
+    DriveCommand command_;
+    double torque_per_acceleration_ =  // fraction of rated torque for 1 u/s2, fed forward
+        (body_.config.gearing.inverted ? -1.0 : 1.0) * body_.config.control.torque_feed_forward * body_.config.control.inertia();
+};
+
+}  // namespace taktwerk::axes
