@@ -20,7 +20,7 @@ using testing::ExampleMachine;
 struct Saw {
     explicit Saw(ExampleMachine& machine) : m(machine) {
         for (const auto& binding : m.config().axes)
-            oracles.emplace_back(binding.axis, m.config().cycle, binding.profile->mode_change_delay);
+            oracles.emplace_back(binding.axis, m.config().cycle, binding.profile->mode_rules.change_delay);
         m.each_cycle = [this] { look(); };
     }
     void look() {
