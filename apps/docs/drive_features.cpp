@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "apps/drive_pages.hpp"
+#include "apps/docs/drive_pages.hpp"
 #include "axes/drives/cia402/words.hpp"
 #include "axes/port/drive_scale.hpp"
 #include "axes/port/quirk.hpp"
