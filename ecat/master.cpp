@@ -314,7 +314,8 @@ std::string Master::detail(const AlarmFact& fact) const {
                                    is_back(*impl_->bus, slave)
                                        ? std::string{"back in OP"}
                                        : fmt::format("in {}", name(static_cast<AlState>(static_cast<std::uint8_t>(fact.a)))));
-            if (fact.id == id(BusAlarm::slave_left_op)) return is_back(*impl_->bus, slave) ? "it is back in OP" : "its reason is being read";
+            if (fact.id == id(BusAlarm::slave_left_op))
+                return is_back(*impl_->bus, slave) ? "it is back in OP" : "its reason is being read";
             return with_outcome(connection_text(*impl_->bus, slave), is_back(*impl_->bus, slave) ? "it is back in OP" : "");
         case BusAlarm::slave_lost:
             return with_outcome(connection_text(*impl_->bus, slave), is_back(*impl_->bus, slave) ? "it is back in OP" : "");

@@ -107,7 +107,8 @@ void FaultFinder::look_at_slaves(const BusCondition& bus) noexcept {
     const bool unasked = bus.lost_in_a_row > 0 || bus.gap >= bus.reference_times_missing;
     if (bus.reference_times_missing >= reference_times_limit && !reference_gone && !unasked)
         raise(BusAlarm::reference_clock_lost, AlarmSource::bus, 0, bus.reference_times_missing);
-    if (bus.dc_difference_ns > sync_limit_ns) raise(BusAlarm::dc_out_of_sync, AlarmSource::bus, 0, static_cast<double>(bus.dc_difference_ns));
+    if (bus.dc_difference_ns > sync_limit_ns)
+        raise(BusAlarm::dc_out_of_sync, AlarmSource::bus, 0, static_cast<double>(bus.dc_difference_ns));
 }
 
 // The broadcast says that somebody is out of OP before the watch has asked who: a slave that is not exchanged then is the one.
@@ -251,7 +252,7 @@ void FaultFinder::raise_groups() noexcept {
         if (first.group == 0) continue;
         const bool branch = first.largest_group > 1;
         const BusAlarm alarm = branch ? (first.group_stops_machine ? BusAlarm::cable_broken : BusAlarm::branch_dropped_out)
-                                  : (first.group_stops_machine ? BusAlarm::slave_lost : BusAlarm::slave_dropped_out);
+                                      : (first.group_stops_machine ? BusAlarm::slave_lost : BusAlarm::slave_dropped_out);
         const auto [most, away] = std::pair{static_cast<double>(first.largest_group), static_cast<double>(first.group)};
         raise(alarm, AlarmSource::slave, slaves_[i].index, branch ? most : 0, branch ? away : 0);
     }
@@ -286,7 +287,8 @@ void FaultFinder::raise_slave(std::size_t at, bool counted_out) noexcept {
     } else if (seen.presence == Presence::silent) {
         // Only who exchanges in this very cycle has power and cable, and lost nothing but its address.
         if (seen.age == 0) raise(BusAlarm::station_address_lost, AlarmSource::slave, slave.index);
-        else if (stale(state) && !naming_) raise(tolerated ? BusAlarm::slave_dropped_out : BusAlarm::slave_lost, AlarmSource::slave, slave.index);
+        else if (stale(state) && !naming_)
+            raise(tolerated ? BusAlarm::slave_dropped_out : BusAlarm::slave_lost, AlarmSource::slave, slave.index);
     } else if (seen.presence == Presence::answers && state.fall.restarted) {
         raise(tolerated ? BusAlarm::slave_dropped_out : BusAlarm::slave_lost, AlarmSource::slave, slave.index);  // until it is back in OP
     } else if (seen.presence == Presence::answers && state.fall.now()) {

@@ -156,7 +156,8 @@ private:
         return true;
     }
     bool an_announced_alarm_stands() {
-        return std::any_of(standing_.begin(), standing_.end(), [](AlarmId id) { return id != ecat::id(ecat::BusAlarm::reference_clock_lost); });
+        return std::any_of(standing_.begin(), standing_.end(),
+                           [](AlarmId id) { return id != ecat::id(ecat::BusAlarm::reference_clock_lost); });
     }
 
     void judge_operation() {

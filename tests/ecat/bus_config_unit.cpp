@@ -295,7 +295,8 @@ TEST(BusAlarms, HaveUniqueIdsInTheirRangeAndAllTexts) {
 }
 
 TEST(BusAlarms, LosingProcessDataStopsTheMachine) {
-    for (const AlarmId id : {id(BusAlarm::frames_lost), id(BusAlarm::working_counter_wrong), id(BusAlarm::slave_lost), id(BusAlarm::slave_left_op), id(BusAlarm::link_down)})
+    for (const AlarmId id : {id(BusAlarm::frames_lost), id(BusAlarm::working_counter_wrong), id(BusAlarm::slave_lost),
+                             id(BusAlarm::slave_left_op), id(BusAlarm::link_down)})
         EXPECT_EQ(find_alarm(bus_alarms, id)->reaction, Reaction::stop_machine);
 }
 

@@ -215,7 +215,8 @@ TEST_F(Health, ASlaveThatRefusesToReturnIsTriedEverMoreSeldomAndSaidSo) {
     bus->run_for(50ms);
     bus->network.set_power(1, true);
     bus->run_for(6s);
-    EXPECT_THAT(faults(), ElementsAre(id(BusAlarm::slave_does_not_return), id(BusAlarm::slave_left_op))) << "it answers: no cable, no supply";
+    EXPECT_THAT(faults(), ElementsAre(id(BusAlarm::slave_does_not_return), id(BusAlarm::slave_left_op)))
+        << "it answers: no cable, no supply";
     for (const auto& fact : facts())
         if (fact.id == id(BusAlarm::slave_does_not_return)) {
             EXPECT_THAT(bus->master->detail(fact), HasSubstr("refused SAFEOP: 001Dh"));

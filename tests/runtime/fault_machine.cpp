@@ -143,7 +143,8 @@ TEST_F(Fault, ADeadLineStopsTheAxes) {
     m().world.set_cable("x_drive", false);
     EXPECT_TRUE(m().until([&] { return m().axis(0).state == AxisState::ErrorStop && m().axis(1).state == AxisState::ErrorStop; }, 200ms))
         << m().alarms();
-    EXPECT_TRUE(m().has_alarm(ecat::id(ecat::BusAlarm::frames_lost)) || m().has_alarm(ecat::id(ecat::BusAlarm::slave_lost))) << m().alarms();
+    EXPECT_TRUE(m().has_alarm(ecat::id(ecat::BusAlarm::frames_lost)) || m().has_alarm(ecat::id(ecat::BusAlarm::slave_lost)))
+        << m().alarms();
     m().run(500ms);
     m().world.set_cable("x_drive", true);
     EXPECT_TRUE(m().until([&] { return m().axis(0).online && m().axis(1).online; }, 20s))

@@ -78,7 +78,8 @@ TEST(FaultFinder, ASlaveThatFallsRightAfterOurOwnStallIsNotBlamed) {
         const bool starved = code != 0x001D && code != 0;
         EXPECT_THAT(f.look(), ElementsAre(starved ? id(BusAlarm::starved_slave_left_op) : id(BusAlarm::slave_left_op))) << code;
         f.bus.stall = {};
-        EXPECT_THAT(f.look(), ElementsAre(starved ? id(BusAlarm::starved_slave_left_op) : id(BusAlarm::slave_left_op))) << "as long as it stands";
+        EXPECT_THAT(f.look(), ElementsAre(starved ? id(BusAlarm::starved_slave_left_op) : id(BusAlarm::slave_left_op)))
+            << "as long as it stands";
         if (starved) {
             EXPECT_EQ(f.finder.facts()[0].source, AlarmSource::bus) << "no slave is accused";
             EXPECT_EQ(f.finder.facts()[0].a, 20.0) << "ms";
@@ -155,7 +156,8 @@ TEST(FaultFinder, WithoutAnErrorOfItsOwnSomebodyElseSentIt) {
     EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::foreign_master), id(BusAlarm::foreign_command)))
         << "a single frame is enough then, and it stands first";
     f.finder.condition(1) = {.al_state = AlState::safeop, .al_error = true, .al_status_code = 0x1B, .age = 40};
-    EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::foreign_master), id(BusAlarm::foreign_command))) << "errors of the way back change nothing";
+    EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::foreign_master), id(BusAlarm::foreign_command)))
+        << "errors of the way back change nothing";
 
     Finder own{{-1, 0}};
     own.bus.states = 0x1C;  // one in SAFEOP, error
@@ -280,7 +282,8 @@ TEST(FaultFinder, TroubleOnTheWayBackIsSaidAlsoOfAGroup) {
     f.finder.condition(2).al_state = AlState::preop;
     EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::cable_broken), id(BusAlarm::other_device))) << "the second is still on its way";
     f.finder.condition(2).attempts = 3;
-    EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::other_device), id(BusAlarm::slave_does_not_return), id(BusAlarm::slave_left_op))) << "the cable is whole";
+    EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::other_device), id(BusAlarm::slave_does_not_return), id(BusAlarm::slave_left_op)))
+        << "the cable is whole";
     f.finder.condition(2).al_state = AlState::op;
     f.finder.condition(2).age = 0;
     f.finder.condition(2).trouble = ReturnTrouble::none;
@@ -336,8 +339,9 @@ TEST(FaultFinder, AWatchdogShorterThanTheLimitIsNoFaultOfTheSlave) {
         std::uint16_t code;
         AlarmId said;
     };
-    for (const auto& c : {Case{150, 0x1B, id(BusAlarm::frames_lost)}, Case{50, 0x1B, id(BusAlarm::slave_left_op)}, Case{4, 0x1A, id(BusAlarm::frames_lost)},
-                          Case{0, 0x1A, id(BusAlarm::slave_left_op)}, Case{150, 0x1D, id(BusAlarm::slave_left_op)}}) {
+    for (const auto& c :
+         {Case{150, 0x1B, id(BusAlarm::frames_lost)}, Case{50, 0x1B, id(BusAlarm::slave_left_op)}, Case{4, 0x1A, id(BusAlarm::frames_lost)},
+          Case{0, 0x1A, id(BusAlarm::slave_left_op)}, Case{150, 0x1D, id(BusAlarm::slave_left_op)}}) {
         FaultFinder finder{{{.index = 0, .watchdog_cycles = 99}}, 1, 300};
         finder.condition(0) = {.al_state = AlState::safeop, .al_error = true, .al_status_code = c.code, .age = c.gap};
         finder.look({.slaves_answering = 1, .gap = c.gap, .states = 0x14});
@@ -360,9 +364,10 @@ TEST(FaultFinder, AStallThatIsShorterThanTheWatchdogExplainsNoWatchdog) {
         AlarmId said;
     };
     using std::chrono::milliseconds;
-    for (const auto& c :
-         {Case{milliseconds{7}, 520, 0x1B, id(BusAlarm::frames_lost)}, Case{milliseconds{510}, 2, 0x1B, id(BusAlarm::starved_slave_left_op)},
-          Case{milliseconds{7}, 0, 0x1B, id(BusAlarm::slave_left_op)}, Case{milliseconds{7}, 0, 0x1A, id(BusAlarm::starved_slave_left_op)}}) {
+    for (const auto& c : {Case{milliseconds{7}, 520, 0x1B, id(BusAlarm::frames_lost)},
+                          Case{milliseconds{510}, 2, 0x1B, id(BusAlarm::starved_slave_left_op)},
+                          Case{milliseconds{7}, 0, 0x1B, id(BusAlarm::slave_left_op)},
+                          Case{milliseconds{7}, 0, 0x1A, id(BusAlarm::starved_slave_left_op)}}) {
         FaultFinder finder{{{.index = 0, .watchdog_cycles = 499, .watchdog = milliseconds{499}}}, 1, 300};
         const BusCondition bus{.slaves_answering = 1, .stall = c.stall, .gap = c.gap, .states = 0x14};
         finder.condition(0) = {.al_state = AlState::unknown, .age = 520};  // not read yet
