@@ -133,7 +133,7 @@ TEST(Sv33E, WhatItMeansToAnAxis) {
                              {DriveMode::cyclic_position, DriveMode::cyclic_velocity, DriveMode::cyclic_torque, DriveMode::homing}));
     EXPECT_EQ(p.torque_rated_raw, 1000);                   // 7.3: 0.1 %
     EXPECT_EQ(p.enable_delay, 250ms);                      // 3.1.2, P05.13
-    EXPECT_EQ(p.mode_rules.change_delay, 1ms);                   // 3.4.3(2)
+    EXPECT_EQ(p.mode_rules.change_delay, 1ms);             // 3.4.3(2)
     EXPECT_TRUE(p.has(Quirk::fault_reset_needs_disable));  // 5.6
     EXPECT_TRUE(p.has(Quirk::limit_stop_is_warning));      // 5.5, A.220
     EXPECT_FALSE(p.has(Quirk::fault_low_nibble_f));

@@ -69,7 +69,7 @@ TEST(Se808x, WhatItMeansToAnAxis) {
     EXPECT_TRUE(d.profile->has(Quirk::no_remote_bit));
     EXPECT_TRUE(d.profile->has(Quirk::no_internal_limit_bit));
     EXPECT_TRUE(d.profile->has(Quirk::csp_bits_12_13_reserved));
-    EXPECT_FALSE(d.profile->encoder.present);         // 4.4: 2000h:11 = 2, open loop
+    EXPECT_FALSE(d.profile->encoder.present);           // 4.4: 2000h:11 = 2, open loop
     EXPECT_EQ(d.profile->input_bit_negative_limit, 0);  // 4.3, 60FDh
     EXPECT_EQ(d.profile->input_bit_positive_limit, 1);
     EXPECT_EQ(d.profile->input_bit_home, 2);
@@ -214,9 +214,9 @@ TEST(Se808x, AlarmsAreTheNineOfTheManual) {
 TEST(Se808x, StopsAndStorageAreThoseOfTheManual) {
     const auto d = drive("se-808x");
     EXPECT_EQ(d.profile->storage.way, axes::ParameterStorage::on_request);  // 4.2, 6: 1010h:01
-    EXPECT_EQ(d.profile->stops.off, axes::DriveStop::coast);             // 3.2.1.1, transitions 6, 8, 9: windings off
-    EXPECT_EQ(d.profile->stops.fault, axes::DriveStop::coast);           // 4.3: 605Eh = 0
-    EXPECT_FALSE(d.profile->stops.quick_stop_leaves);                         // 3.2.1.1: 12 and 16 only
+    EXPECT_EQ(d.profile->stops.off, axes::DriveStop::coast);                // 3.2.1.1, transitions 6, 8, 9: windings off
+    EXPECT_EQ(d.profile->stops.fault, axes::DriveStop::coast);              // 4.3: 605Eh = 0
+    EXPECT_FALSE(d.profile->stops.quick_stop_leaves);                       // 3.2.1.1: 12 and 16 only
     EXPECT_EQ(d.profile->hazards.size(), 9u);
     EXPECT_EQ(d.profile->questions.size(), 13u);
 }

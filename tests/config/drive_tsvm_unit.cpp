@@ -115,9 +115,9 @@ TEST(Tsvm, WhatItMeansToAnAxis) {
     EXPECT_THAT(p.modes, ElementsAre(DriveMode::cyclic_position, DriveMode::cyclic_velocity, DriveMode::cyclic_torque));  // 5.4.1
     EXPECT_TRUE(p.homing_methods.empty());                                                                                // 5.4.1
     EXPECT_EQ(p.enable_delay, 100ms);                                                                                     // 5.3.1
-    EXPECT_TRUE(p.mode_rules.change_at_standstill);                                                                             // 5.4.1
-    EXPECT_EQ(p.mode_rules.change_interval, 20ms);                                                                              // 5.4.1
-    EXPECT_EQ(p.mode_rules.indeterminate, 2ms);                                                                                 // 5.4.1
+    EXPECT_TRUE(p.mode_rules.change_at_standstill);                                                                       // 5.4.1
+    EXPECT_EQ(p.mode_rules.change_interval, 20ms);                                                                        // 5.4.1
+    EXPECT_EQ(p.mode_rules.indeterminate, 2ms);                                                                           // 5.4.1
     EXPECT_EQ(p.enable_status_bits, 1u << 4);                                                                             // 5.3.1, 5.3.2
     EXPECT_EQ(p.torque_rated_raw, 1000);                                                                                  // 5.4.2: 0.1 %
     EXPECT_EQ(p.brake.release, 20ms);                                                                                     // 6.1, PA50
@@ -128,8 +128,8 @@ TEST(Tsvm, WhatItMeansToAnAxis) {
     EXPECT_DOUBLE_EQ(p.torque_overload, 1.6);                                                                             // 6.1, PA30
     EXPECT_EQ(p.torque_overload_time, 3s);                                                                                // 4.3.2, PA31
     EXPECT_DOUBLE_EQ(p.overspeed_limit, 1.0);                                                                             // 6.1, PA23
-    EXPECT_TRUE(p.stops.quick_stop_leaves);                                                                                     // 5.3.1
-    EXPECT_EQ(p.storage.way, axes::ParameterStorage::never);                                                                  // 3.3.5, 4.3.6
+    EXPECT_TRUE(p.stops.quick_stop_leaves);                                                                               // 5.3.1
+    EXPECT_EQ(p.storage.way, axes::ParameterStorage::never);                                                              // 3.3.5, 4.3.6
     EXPECT_FALSE(p.has(Quirk::fault_reaction_02b6)) << "02B6h fits no row of the table in 5.3.2: taken for a misprint";
     EXPECT_TRUE(tsvm().device->dc.required);  // 5.2.6
     EXPECT_GE(p.questions.size(), 15u);
