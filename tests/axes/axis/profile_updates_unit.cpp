@@ -6,8 +6,8 @@
 namespace taktwerk::axes::test {
 namespace {
 
-struct UpdateRig {
-    UpdateRig(CommandKind of, std::vector<TimePoint> rows) : kind(of) {
+struct ProfileUpdateRig {
+    ProfileUpdateRig(CommandKind of, std::vector<TimePoint> rows) : kind(of) {
         table = tables.add_time_table(rows, 16);
         rig.axis.bind({&rig.axis, 1, &tables, {}});
         rig.power_on();
@@ -30,7 +30,7 @@ struct UpdateRig {
 
 // From 0 to 10 u/s in 1 s, then kept. At 0.5 s it has 5 u/s: with twice the time the other half takes a second more.
 TEST(VelocityProfileUpdate, AnotherTimeScaleStretchesWhatIsLeft) {
-    UpdateRig p(CommandKind::velocity_profile, {{1s, 10.0}});
+    ProfileUpdateRig p(CommandKind::velocity_profile, {{1s, 10.0}});
     p.rig.run(500);
     ASSERT_NEAR(p.view().set_velocity, 5, 1e-9);
     EXPECT_EQ(p.update(2, 1), ErrorId::none);
@@ -47,7 +47,7 @@ TEST(VelocityProfileUpdate, AnotherTimeScaleStretchesWhatIsLeft) {
 
 // 5 u/s at 0.5 s; scaled by 0.3 the row at 1 s asks for 3 u/s, with an offset of 1 for 4 u/s.
 TEST(VelocityProfileUpdate, OtherValuesAreReachedByTheNextRow) {
-    UpdateRig p(CommandKind::velocity_profile, {{1s, 10.0}, {1s, 20.0}});
+    ProfileUpdateRig p(CommandKind::velocity_profile, {{1s, 10.0}, {1s, 20.0}});
     p.rig.run(500);
     EXPECT_EQ(p.update(1, 0.3, 1), ErrorId::none);
     p.rig.run(250);
@@ -61,7 +61,7 @@ TEST(VelocityProfileUpdate, OtherValuesAreReachedByTheNextRow) {
 
 // A table that runs keeps what it was checked for when it began; its rest, looked at again, is refused as a new table would be.
 TEST(VelocityProfileUpdate, ALimitLoweredMeanwhileHoldsForTheNextTableOnly) {
-    UpdateRig p(CommandKind::velocity_profile, {{1s, 60.0}, {1s, 60.0}, {1s, 20.0}});
+    ProfileUpdateRig p(CommandKind::velocity_profile, {{1s, 60.0}, {1s, 60.0}, {1s, 20.0}});
     p.rig.run(500);
     ASSERT_EQ(p.rig.axis.set(WriteParameter{velocity_of_application, 40}, Owner::program), ErrorId::none);
     p.rig.run(1000);
@@ -75,7 +75,7 @@ TEST(VelocityProfileUpdate, ALimitLoweredMeanwhileHoldsForTheNextTableOnly) {
 
 // 10 u/s2 for 1 s of the 2 s, then 20 u/s2 for the second that is left: 10 + 20 u/s.
 TEST(AccelerationProfileUpdate, TheRestOfARowHasTheNewValue) {
-    UpdateRig p(CommandKind::acceleration_profile, {{2s, 10.0}});
+    ProfileUpdateRig p(CommandKind::acceleration_profile, {{2s, 10.0}});
     p.rig.run(1000);
     EXPECT_EQ(p.update(1, 2), ErrorId::none);
     p.rig.run(1000);
@@ -86,7 +86,7 @@ TEST(AccelerationProfileUpdate, TheRestOfARowHasTheNewValue) {
 
 // At 10 u, at 1 s, the last row lies 1 s and 10 u ahead: at twice the time and 1.5 times the place it is at 30 u at 3 s.
 TEST(PositionProfileUpdate, TheRowsAheadAreReachedAtTheirNewTimesAndPlaces) {
-    UpdateRig p(CommandKind::position_profile, {{1s, 10.0}, {1s, 20.0}});
+    ProfileUpdateRig p(CommandKind::position_profile, {{1s, 10.0}, {1s, 20.0}});
     p.rig.run(1000);
     ASSERT_NEAR(p.view().set_position, 10, 1e-9);
     const double velocity = p.view().set_velocity;
@@ -105,7 +105,7 @@ TEST(PositionProfileUpdate, TheRowsAheadAreReachedAtTheirNewTimesAndPlaces) {
 
 // 1 ms before a row an offset of 5 u would be a jump: refused, and the profile goes on as it was.
 TEST(PositionProfileUpdate, AJumpIsRefusedAndTheProfileGoesOn) {
-    UpdateRig p(CommandKind::position_profile, {{1s, 10.0}, {1s, 20.0}});
+    ProfileUpdateRig p(CommandKind::position_profile, {{1s, 10.0}, {1s, 20.0}});
     p.rig.run(999);
     EXPECT_EQ(p.update(1, 1, 5), ErrorId::invalid_velocity);
     EXPECT_EQ(p.update(0, 1), ErrorId::invalid_parameter);
@@ -115,7 +115,7 @@ TEST(PositionProfileUpdate, AJumpIsRefusedAndTheProfileGoesOn) {
 }
 
 TEST(VelocityProfileUpdate, BehindTheLastRowNothingIsLeftToUpdate) {
-    UpdateRig p(CommandKind::velocity_profile, {{1s, 10.0}});
+    ProfileUpdateRig p(CommandKind::velocity_profile, {{1s, 10.0}});
     p.rig.run(1000);
     ASSERT_EQ(p.rig.status(p.id), CommandStatus::in_target);
     EXPECT_EQ(p.update(1, 2), ErrorId::update_not_possible);
@@ -126,7 +126,7 @@ TEST(VelocityProfileUpdate, BehindTheLastRowNothingIsLeftToUpdate) {
 // A table waits for nothing: what is superimposed takes what the fastest row that is to come leaves of the axis' 100 u/s, from its first cycle
 // on, and other scales that would not leave it that are refused until it is done.
 TEST(VelocityProfileUpdate, LeavesWhatIsSuperimposedItsVelocity) {
-    UpdateRig p(CommandKind::velocity_profile, {{500ms, 30.0}, {1s, 60.0}});
+    ProfileUpdateRig p(CommandKind::velocity_profile, {{500ms, 30.0}, {1s, 60.0}});
     const auto beside = p.rig.accept({.kind = CommandKind::move_superimposed, .position = 60, .velocity = 80});
     p.rig.run(500);
     EXPECT_NEAR(p.view().set_velocity, 30 + 40, 1e-6);
