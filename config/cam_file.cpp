@@ -2,12 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include <fmt/format.h>
 
@@ -214,27 +209,11 @@ private:
 CamFile parse_cam_file(const std::string& file, std::string_view text, const CamUnits& units) { return CamReading(file, units).read(text); }
 
 CamFile read_cam_file(const std::string& path, const CamUnits& units) {
-    const auto fail = [&](std::string code, std::string what, std::string remedy) {
-        CamFile out;
-        out.errors.push_back({std::move(code), path, std::move(what), std::move(remedy)});
-        return out;
-    };
-    std::error_code error;
-    const auto status = std::filesystem::status(path, error);
-    if (!std::filesystem::exists(status))
-        return fail("config.no_file", "there is no such file", "check the path; it is looked up from the machine file's folder");
-    if (!std::filesystem::is_regular_file(status))
-        return fail("config.not_a_file", "this is not a regular file", "give the path of a CSV file");
-    const auto size = std::filesystem::file_size(path, error);
-    if (!error && size > max_file_bytes)
-        return fail("config.too_large", fmt::format("the file has {} bytes, more than {}", size, max_file_bytes),
-                    "is this the right file?");
-    std::ifstream stream(path, std::ios::binary);
-    if (!stream)
-        return fail("config.unreadable", fmt::format("the file cannot be opened: {}", std::strerror(errno)), "check its permissions");
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
-    if (stream.bad()) return fail("config.unreadable", "the file cannot be read", "check the disk and its permissions");
-    return parse_cam_file(path, text, units);
+    auto text = read_text(path, "CSV", "; it is looked up from the machine file's folder");
+    if (text) return parse_cam_file(path, *text, units);
+    CamFile out;
+    out.errors.push_back(text.error());
+    return out;
 }
 
 std::string unit_of_cam_derivative(int order, const CamUnits& units) {

@@ -220,18 +220,15 @@ Document parse_document(std::string file, std::string_view text) {
     return document;
 }
 
-Document read_document(const std::string& path) {
-    Document document;
-    document.file = path;
+Result<std::string> read_text(const std::string& path, std::string_view kind, std::string_view where) {
     const auto fail = [&](std::string code, std::string what, std::string remedy) {
-        document.errors.push_back({std::move(code), path, std::move(what), std::move(remedy)});
-        return document;
+        return Error{std::move(code), path, std::move(what), std::move(remedy)};
     };
     std::error_code error;
     const auto status = std::filesystem::status(path, error);
-    if (!std::filesystem::exists(status)) return fail("config.no_file", "there is no such file", "check the path");
+    if (!std::filesystem::exists(status)) return fail("config.no_file", "there is no such file", fmt::format("check the path{}", where));
     if (!std::filesystem::is_regular_file(status))
-        return fail("config.not_a_file", "this is not a regular file", "give the path of a YAML file");
+        return fail("config.not_a_file", "this is not a regular file", fmt::format("give the path of a {} file", kind));
     const auto size = std::filesystem::file_size(path, error);
     if (!error && size > max_file_bytes)
         return fail("config.too_large", fmt::format("the file has {} bytes, more than {}", size, max_file_bytes),
@@ -239,9 +236,18 @@ Document read_document(const std::string& path) {
     std::ifstream stream(path, std::ios::binary);
     if (!stream)
         return fail("config.unreadable", fmt::format("the file cannot be opened: {}", std::strerror(errno)), "check its permissions");
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    std::string text{std::istreambuf_iterator<char>(stream), {}};
     if (stream.bad()) return fail("config.unreadable", "the file cannot be read", "check the disk and its permissions");
-    return parse_document(path, text);
+    return text;
+}
+
+Document read_document(const std::string& path) {
+    auto text = read_text(path, "YAML");
+    if (text) return parse_document(path, *text);
+    Document document;
+    document.file = path;
+    document.errors.push_back(text.error());
+    return document;
 }
 
 }  // namespace taktwerk::config

@@ -98,13 +98,25 @@ void print_summary(Machine& machine, const RunOptions& options, double machine_s
     put(std::move(lines));
 }
 
-/// The frames of the bus go into a file, if that was asked for. `capture` outlives the machine's cycle.
-Result<void> capture_frames(Machine& machine, const RunOptions& options, Duration epoch, std::unique_ptr<ecat::FrameCapture>& capture) {
-    if (options.pcap.empty()) return {};
-    auto created = ecat::FrameCapture::create(options.pcap, epoch);
-    if (!created) return created.error();
-    capture = std::move(*created);
-    machine.bus().set_tap(&ecat::FrameCapture::tap, capture.get());
+/// What is written while the machine runs. Shared with the threads that write: one that the disk holds outlives everything.
+struct Files {
+    std::shared_ptr<ecat::FrameCapture> capture;
+    std::shared_ptr<TraceCsv> trace;
+};
+
+/// Frames of the bus and rows of the trace go into files, where that was asked for. `files` outlive the machine's cycle.
+Result<void> open_files(Machine& machine, const RunOptions& options, Duration epoch, Files& files) {
+    if (!options.pcap.empty()) {
+        auto created = ecat::FrameCapture::create(options.pcap, epoch);
+        if (!created) return created.error();
+        files.capture = std::move(*created);
+        machine.bus().set_tap(&ecat::FrameCapture::tap, files.capture.get());
+    }
+    if (!options.trace.empty()) {
+        auto created = TraceCsv::create(options.trace, machine.enable_trace(trace_rows), machine.layout());
+        if (!created) return created.error();
+        files.trace = std::move(*created);
+    }
     return {};
 }
 
@@ -135,21 +147,12 @@ int run_virtual(LoadedFile loaded, const RunOptions& options) {
     math::set_stepping_thread_float_environment();
     VirtualClock clock{Instant{}};
     World world{loaded.machine, clock.now()};
-    std::unique_ptr<ecat::FrameCapture> capture;
+    Files files;
     auto machine = build(std::move(loaded.machine), world.transport(), world.serial().lines());
     if (!machine) return exit_bad_file;
-    if (auto ok = capture_frames(*machine, options, Duration{}, capture); !ok) {
+    if (auto ok = open_files(*machine, options, Duration{}, files); !ok) {
         print_error(ok.error());
         return exit_bad_file;
-    }
-    std::unique_ptr<TraceCsv> trace;
-    if (!options.trace.empty()) {
-        auto created = TraceCsv::create(options.trace, machine->enable_trace(trace_rows), machine->layout());
-        if (!created) {
-            print_error(created.error());
-            return exit_bad_file;
-        }
-        trace = std::move(*created);
     }
     watch_stop_signals();
     SystemClock wall;
@@ -158,8 +161,8 @@ int run_virtual(LoadedFile loaded, const RunOptions& options) {
     VirtualRunner runner{*machine, world, clock};
     int code = exit_ok;
     runner.after_cycle = [&](Instant now) {
-        if (trace) (void)trace->drain().ok();  // an error comes again from finish()
-        if (capture) (void)capture->drain().ok();
+        if (files.trace) (void)files.trace->drain().ok();  // an error comes again from finish()
+        if (files.capture) (void)files.capture->drain().ok();
         const auto* snapshot = machine->latest();
         judge(snapshot, code);
         if (!options.quiet) log.step(now, snapshot);
@@ -175,28 +178,22 @@ int run_virtual(LoadedFile loaded, const RunOptions& options) {
                                options.duration_s),
                    "nothing has moved; give --duration more than the bus needs"};
     if (!up) {
-        finish(capture.get(), options);
+        finish(files.capture.get(), options);
         print_error(up.error());
         return stop_requested() ? exit_ok : exit_bus;
     }
     const auto duration = options.duration_s > 0 ? from_seconds(options.duration_s) : Duration::max() / 4;
     runner.run_for(std::max(duration - (clock.now() - Instant{}), Duration{}));
     runner.shut_down();
-    finish(capture.get(), options);
+    finish(files.capture.get(), options);
     print_summary(*machine, options, to_seconds(clock.now() - Instant{}), to_seconds(wall.now() - wall_start), &MachineLog::print);
-    if (trace)
-        if (auto ok = trace->finish(); !ok) {
+    if (files.trace)
+        if (auto ok = files.trace->finish(); !ok) {
             print_error(ok.error());
             return exit_bad_file;
         }
     return code;
 }
-
-/// What is written while the machine runs. Shared with the threads that write: one that the disk holds outlives everything.
-struct Files {
-    std::shared_ptr<ecat::FrameCapture> capture;
-    std::shared_ptr<TraceCsv> trace;
-};
 
 constexpr Duration file_patience = std::chrono::seconds{3};
 constexpr Duration last_lines_patience = std::chrono::seconds{1};
@@ -377,7 +374,7 @@ int run_real(LoadedFile loaded, const RunOptions& options) {
             for (const auto& refused : nic->report().refused) fmt::print("{}: {}\n", nic->interface(), refused);
     }
     ecat::Transport& transport = world ? static_cast<ecat::Transport&>(world->transport()) : *nic;
-    std::unique_ptr<ecat::FrameCapture> capture;
+    Files files;
     auto lines = world ? world->serial().lines() : std::vector<modbus::SerialLine*>(loaded.machine.serial.size());
     std::vector<std::unique_ptr<modbus::TtyLine>> ports;
     for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -393,20 +390,11 @@ int run_real(LoadedFile loaded, const RunOptions& options) {
     }
     auto machine = build(std::move(loaded.machine), transport, std::move(lines));
     if (!machine) return exit_bad_file;
-    if (auto ok = capture_frames(*machine, options, calendar_minus_machine_time(), capture); !ok) {
+    if (auto ok = open_files(*machine, options, calendar_minus_machine_time(), files); !ok) {
         print_error(ok.error());
         return exit_bad_file;
     }
-    std::unique_ptr<TraceCsv> trace;
-    if (!options.trace.empty()) {
-        auto created = TraceCsv::create(options.trace, machine->enable_trace(trace_rows), machine->layout());
-        if (!created) {
-            print_error(created.error());
-            return exit_bad_file;
-        }
-        trace = std::move(*created);
-    }
-    return serve_real(*machine, world.get(), nic.get(), {std::move(capture), std::move(trace)}, loaded.hmi, options);
+    return serve_real(*machine, world.get(), nic.get(), std::move(files), loaded.hmi, options);
 }
 
 }  // namespace
