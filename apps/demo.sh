@@ -86,7 +86,7 @@ runtime=$!
 until "$taktwerk" monitor --once -s demo >/dev/null 2>&1; do
     kill -0 "$runtime" 2>/dev/null || fail "the runtime did not start"
     (($(now_ms) - begin < 15000)) || fail "the machine was not up within 15 s"
-    sleep 0.05
+    sleep 0.25
 done
 heard
 

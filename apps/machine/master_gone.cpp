@@ -126,7 +126,7 @@ std::vector<std::string> line_gone(const runtime::MachineConfig& config, const r
         for (const auto& entry : line.drives) {
             if (entry.drive.name != axis.drive) continue;
             if (entry.watchdog_output.empty()) {
-                out.push_back("nothing stops it here: `unsupervised_line: accepted` says that something else does");
+                out.emplace_back("nothing stops it here: `unsupervised_line: accepted` says that something else does");
                 continue;
             }
             Duration watchdog{};
