@@ -20,7 +20,7 @@
 
 namespace taktwerk::config {
 
-/// A cam is prepared in one cycle: its points are counted.
+/// A cam is prepared in one cycle, so its points are limited. The number is our choice: what that many cost a cycle was not measured.
 inline constexpr std::size_t max_cam_points = 4096;
 
 /// The units that positions are in, those of the two axes.
