@@ -102,7 +102,10 @@ void Axis::update(Instant now) noexcept {
     if (placed) axis.writer.setpoint();
     if (!FeedbackIntake::as_wanted(axis.body, axis.measured, axis.runs, axis.modes)) {
         if (axis.body.driven) axis.intake.watch_drive();
-        if (axis.supply.run()) axis.succession.start_waiting(0);
+        if (axis.supply.run()) {
+            axis.succession.start_waiting(0);
+            axis.writer.setpoint();  // a homing may have begun, and be over
+        }
     }
     const double actual = axis.measured.local();
     if (axis.runs.motor_leads() || axis.modes.phase != ModePhase::steady) {
@@ -152,6 +155,7 @@ void Axis::plan(Instant now, Duration period) noexcept {
         axis.writer.setpoint();
         if (axis.modes.phase == ModePhase::profile && axis.modes.run.mode() == DriveMode::profile_position)
             axis.writer.target(axis.modes.run.front().target);
+        if (body.units.shift() != coordinates) axis.writer.feedback(axis.measured.local());  // homed in passing
         return;
     }
     if (body.begin_pending) axis.succession.begin_command();

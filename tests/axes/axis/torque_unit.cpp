@@ -278,5 +278,26 @@ TEST(TorqueAxis, AnUpdateChangesTheTorqueOnItsWay) {
     EXPECT_EQ(rig.status(id), CommandStatus::in_target);
 }
 
+// In torque the set-point follows the motor: both are told in the same coordinates, also in the cycle in which homing in passing gives them.
+TEST(TorqueAxis, HomedInPassingItShowsBothPlacesInTheNewCoordinates) {
+    TorqueRig rig(torque_axis(), [](FakeDrive& drive) {
+        drive.switches = true;
+        drive.home_low = 3000;
+        drive.home_high = 9000;
+    });
+    HomingStepDetails step{.step = HomingStep::flying_switch, .switch_mode = MC_SwitchMode::mcRisingEdge, .set_position = 100};
+    step.reference.source = TriggerSource::home_switch;
+    const auto passing = rig.accept({.kind = CommandKind::homing_step, .details = step});
+    rig.accept(torque(0.3, 0, 40));
+    ASSERT_TRUE(rig.run_until(
+        [&] {
+            EXPECT_LT(std::abs(rig.view().set_position - rig.view().actual_position), 0.5);
+            return rig.status(passing) == CommandStatus::done;
+        },
+        2000));
+    EXPECT_GT(rig.view().actual_position, 90);
+    EXPECT_LT(std::abs(rig.view().set_position - rig.view().actual_position), 0.5);  // 40 u/s for some cycles
+}
+
 }  // namespace
 }  // namespace taktwerk::axes::test

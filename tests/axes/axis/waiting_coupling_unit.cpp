@@ -396,5 +396,27 @@ TEST(BufferedBehindPower, AnAbsoluteMoveBehindMcHomeNeedsNoReferenceBefore) {
     EXPECT_EQ(rig.view().set_position, 5);
 }
 
+// The scan that sees its Done sees the axis where it made it be.
+TEST(BufferedBehindPower, AHomingThatIsDoneWithStatusShowsItsCoordinatesAtOnce) {
+    auto config = plain_axis();
+    config.homing.kind = HomingKind::set_here;
+    Rig rig(config, [](FakeDrive& drive) { drive.position = 7000; });
+    rig.enable = true;
+    rig.step();
+    auto first = home(2);
+    first.buffer_mode = mcBuffered;
+    const auto homing = rig.accept(first);
+    bool seen = false;
+    rig.program = [&] {
+        if (seen || rig.status(homing) != CommandStatus::done) return;
+        seen = true;
+        EXPECT_TRUE(rig.view().homed);
+        EXPECT_NEAR(rig.view().actual_position, 2, 1e-9);
+        EXPECT_NEAR(rig.view().set_position, 2, 1e-9);
+    };
+    rig.run(500);
+    EXPECT_TRUE(seen);
+}
+
 }  // namespace
 }  // namespace taktwerk::axes::test
