@@ -65,8 +65,18 @@ Refusal Client::ask(const Request& request, Instant now) {
     tries_left_ = may_repeat(request.function) ? std::max<std::uint8_t>(config_.tries, 1) : std::uint8_t{1};
     asked_at_ = now;
     ++statistics_.asked;
-    send(now);
+    unanswered_ = false;
+    if (may_get_the_answer_to_another(request, now)) {
+        state_ = State::resting;
+        quiet_until_ = owed_until_;
+    } else send(now);
     return Refusal::none;
+}
+
+bool Client::may_get_the_answer_to_another(const Request& request, Instant now) const noexcept {
+    const bool reads = request.function == Function::read_parameters || request.function == Function::read_status;  // others are echoed
+    return reads && now < owed_until_ && request.station == owed_.station && request.function == owed_.function &&
+           request.count == owed_.count && request.address != owed_.address;
 }
 
 void Client::send(Instant now) {
@@ -107,6 +117,7 @@ std::optional<Answer> Client::step(Instant now) {
 
 std::optional<Answer> Client::again_or_end(Outcome outcome, Instant now) {
     if (outcome == Outcome::silent) ++statistics_.timeouts;
+    unanswered_ = unanswered_ || outcome == Outcome::silent;
     if (outcome == Outcome::damaged) ++statistics_.damaged;
     if (tries_left_ == 0) return end(outcome, now);
     ++statistics_.retries;
@@ -118,6 +129,10 @@ std::optional<Answer> Client::again_or_end(Outcome outcome, Instant now) {
 Answer Client::end(Outcome outcome, Instant now) {
     state_ = State::idle;
     quiet_until_ = now + line_.settings().frame_gap();
+    if (unanswered_) {
+        owed_ = request_;
+        owed_until_ = sent_at_ + 2 * config_.answer_timeout;  // it was patient for as long already
+    }
     Answer answer;
     answer.outcome = outcome;
     answer.request = request_;

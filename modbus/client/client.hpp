@@ -4,6 +4,8 @@
 //   idle --ask()--> waiting --answer--> idle
 //                   waiting --nothing, or damaged--> resting --> waiting        `tries` times in all
 //
+// An answer names no address: one that comes after its question was given up, or asked again, would pass for that of the next one like it. Such a
+// question waits until none can come any more.
 // Between frames the line rests for 3.5 characters (manual 9.3). After a save (41h) that station is not asked for 5 s (manual 9.6.6);
 // others on the line are.
 
@@ -79,6 +81,7 @@ public:
 private:
     enum class State : std::uint8_t { idle, resting, waiting };
     void send(Instant now);
+    [[nodiscard]] bool may_get_the_answer_to_another(const Request& request, Instant now) const noexcept;
     std::optional<Answer> again_or_end(Outcome outcome, Instant now);
     Answer end(Outcome outcome, Instant now);
 
@@ -89,6 +92,9 @@ private:
     Frame heard_;
     Instant asked_at_{}, sent_at_{}, last_byte_{}, quiet_until_{};
     std::uint8_t tries_left_ = 0;
+    bool unanswered_ = false;  // a try of this transaction
+    Request owed_;             // its answer may still come ...
+    Instant owed_until_{};     // ... until then
     bool port_there_ = false;
     std::array<Instant, 256> saving_{};
     ClientStatistics statistics_;

@@ -173,6 +173,51 @@ TEST(ModbusClient, WhatNobodyAskedForIsThrownAway) {
     EXPECT_EQ(rig.line.receive(into, rig.now), 0u);
 }
 
+/// Answers every request with its address, each so late that the client has asked again; both answers come.
+class LateLine final : public SerialLine {
+public:
+    static constexpr Duration late = 60ms;
+    [[nodiscard]] const LineSettings& settings() const noexcept override { return settings_; }
+    bool send(std::span<const std::byte> frame, Instant now) override {
+        const auto heard = parse_request(frame).request;
+        std::array<std::uint16_t, words_in_frame> words{};
+        words.fill(heard.address);
+        coming_.push_back({now + late, encode_response(heard, std::span{words}.first(heard.count))});
+        return true;
+    }
+    std::size_t receive(std::span<std::byte> into, Instant now) override {
+        if (coming_.empty() || coming_.front().first > now) return 0;
+        const auto frame = coming_.front().second;
+        coming_.erase(coming_.begin());
+        std::copy_n(frame.bytes.begin(), frame.size, into.begin());
+        return frame.size;
+    }
+    void discard(Instant now) override {
+        std::erase_if(coming_, [&](const auto& each) { return each.first <= now; });
+    }
+    [[nodiscard]] bool present() const noexcept override { return true; }
+
+private:
+    LineSettings settings_;
+    std::vector<std::pair<Instant, Frame>> coming_;
+};
+
+// Manual 9.6.1: the answer to a reading is count and words, no address. Those that come twice because the first was late, 10 ms behind the 50 ms
+// of patience, must not become the next block's.
+TEST(ModbusClient, ALateAnswerIsNotTheNextReadings) {
+    LateLine line;
+    Client client{line, {.answer_timeout = 50ms, .tries = 2}};
+    Instant now{};
+    for (const std::uint16_t first : std::array<std::uint16_t, 4>{60, 75, 79, 100}) {
+        for (Patience patience; patience.lasts(client.ask(read_parameters(1, first, 4), now) != Refusal::none);)
+            (void)client.step(now += 1ms);
+        std::optional<Answer> answer;
+        for (Patience patience; patience.lasts(!answer);) answer = client.step(now += 1ms);
+        EXPECT_EQ(answer->outcome, Outcome::answered);
+        EXPECT_EQ(answer->response.words[0], first);
+    }
+}
+
 TEST(ModbusClient, AnExceptionIsAnAnswer) {
     class Refusing final : public Station {
     public:
