@@ -82,7 +82,8 @@ int wait_for(const Order& order, hmi::Client& client, bool (*reached)(const Json
                                       fmt::format("not finished within {:g} s", patience), "See `taktwerk monitor` what it waits for."});
 }
 
-bool is_powered(const Json& axis) { return axis.at("powered").get<bool>(); }
+/// One that still stops has its power yet: it may be about to lose it (switched off before, another mode), and takes no motion.
+bool is_powered(const Json& axis) { return axis.at("powered").get<bool>() && axis.at("state") != "Stopping"; }
 bool is_off(const Json& axis) { return axis.at("state") == "Disabled"; }
 bool is_homed(const Json& axis) { return axis.at("homed").get<bool>() && axis.at("state") != "Homing" && !axis.at("has_job").get<bool>(); }
 bool gave_up_homing(const Json& axis) {

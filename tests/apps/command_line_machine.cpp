@@ -207,6 +207,23 @@ TEST_F(CommandLine, ARunningMachineIsOperatedAndEndsAlongItsRamp) {
     EXPECT_NEAR(fastest, 50, 0.5);
 }
 
+// Switched off in motion it stops first, for half a second here, and keeps its power so long.
+TEST_F(CommandLine, WhoWaitsUntilAnAxisIsEnabledMayMoveIt) {
+    auto text = text_of(private_machine()) + "simulation: { supervision: relaxed }\n";
+    const std::string steep = "2000 mm/s2";
+    text.replace(text.find(steep), steep.size(), "100 mm/s2");
+    Child runtime({taktwerk, "run", file("machines/gentle.yaml", text)});
+    ASSERT_TRUE(runtime.says("running, manual mode", 20s)) << runtime.text();
+    ASSERT_EQ(to_machine({"enable", "x", "--wait"}).code, exit_ok);
+    ASSERT_EQ(to_machine({"home", "x", "--wait"}).code, exit_ok);
+    ASSERT_EQ(to_machine({"move", "x", "1000", "--velocity", "50"}).code, exit_ok);
+    ::poll(nullptr, 0, 600);
+    ASSERT_EQ(to_machine({"disable", "x"}).code, exit_ok);
+    ASSERT_EQ(to_machine({"enable", "x", "--wait"}).code, exit_ok);
+    const auto jogged = to_machine({"jog", "x", "--velocity", "5", "--for", "100ms"});
+    EXPECT_EQ(jogged.code, exit_ok) << jogged.text;
+}
+
 TEST_F(CommandLine, ShutDownOnCommandIsAGoodEnd) {
     Child runtime({taktwerk, "run", private_machine()});
     ASSERT_TRUE(runtime.says("running, manual mode", 20s)) << runtime.text();
