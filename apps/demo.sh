@@ -54,15 +54,22 @@ operate() {
     note "  $said"
 }
 
-# `present PATTERN...`: the monitor's picture, in which every pattern must occur.
+# `present PATTERN...`: the monitor's picture, in which every pattern must occur. The runtime began a little after this script, and may have been
+# held up: what is to come may take a while.
 present() {
-    local picture pattern line
-    picture=$("$taktwerk" monitor --once -s demo 2>&1) || fail "the monitor failed: $picture"
+    local picture pattern line missing patience=$(($(now_ms) + 5000))
+    while :; do
+        picture=$("$taktwerk" monitor --once -s demo 2>&1) || fail "the monitor failed: $picture"
+        missing=
+        for pattern in "$@"; do
+            grep -qE -- "$pattern" <<<"$picture" || missing=$pattern
+        done
+        [[ -n $missing ]] && (($(now_ms) < patience)) || break
+        sleep 0.1
+    done
     printf '   $ taktwerk monitor --once\n'
     while IFS= read -r line; do note "$line"; done <<<"$picture"
-    for pattern in "$@"; do
-        grep -qE -- "$pattern" <<<"$picture" || fail "expected to see '$pattern'"
-    done
+    [[ -z $missing ]] || fail "expected to see '$missing'"
 }
 
 # Sleeps until $1 milliseconds after the start.
@@ -116,6 +123,7 @@ heard
 present 'EMERGENCY STOP' 'x +ErrorStop'
 note "14 s: the button is released; nothing moves before somebody resets"
 at 14300
+present 'estop_ok=1' >/dev/null
 operate reset --wait
 heard
 
