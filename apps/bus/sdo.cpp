@@ -5,7 +5,7 @@
 #include "apps/bus/bus.hpp"
 #include "apps/terminal/count_text.hpp"
 #include "apps/terminal/exit_code.hpp"
-#include "config/quantity.hpp"
+#include "config/reading/quantity.hpp"
 #include "ecat/diagnosis/mailbox_access.hpp"
 #include "ecat/diagnosis/object_value.hpp"
 

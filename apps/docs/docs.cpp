@@ -16,8 +16,8 @@
 #include "apps/taktwerk.hpp"
 #include "apps/terminal/exit_code.hpp"
 #include "apps/terminal/print_error.hpp"
-#include "config/drive_library.hpp"
-#include "config/reference.hpp"
+#include "config/drive_file/drive_library.hpp"
+#include "config/reference/reference.hpp"
 #include "fb_library/block_reference.hpp"
 
 namespace taktwerk::apps {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "config/drive_loader.hpp"
+#include "config/drive_file/drive_loader.hpp"
 #include "core/result.hpp"
 
 namespace taktwerk::apps {

@@ -7,7 +7,7 @@
 
 #include "apps/drive/access.hpp"
 #include "axes/port/find_alarm.hpp"
-#include "config/parameter_set.hpp"
+#include "config/drive_file/parameter_set.hpp"
 
 namespace taktwerk::apps {
 

@@ -4,7 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "apps/machine/load.hpp"
-#include "config/drive_library.hpp"
+#include "config/drive_file/drive_library.hpp"
 #include "core/nearest_name.hpp"
 #include "ecat/bringup/slave_match.hpp"
 

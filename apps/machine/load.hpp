@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "config/machine_loader.hpp"
+#include "config/machine_file/machine_loader.hpp"
 
 namespace taktwerk::apps {
 

@@ -14,7 +14,7 @@
 #include "apps/taktwerk.hpp"
 #include "apps/terminal/duration_option.hpp"
 #include "apps/terminal/exit_code.hpp"
-#include "config/unit_text.hpp"
+#include "config/reading/unit_text.hpp"
 #include "core/clock.hpp"
 
 namespace taktwerk::apps {

@@ -8,7 +8,7 @@
 #include "apps/terminal/exit_code.hpp"
 #include "apps/terminal/json_text.hpp"
 #include "apps/terminal/print_error.hpp"
-#include "config/unit_text.hpp"
+#include "config/reading/unit_text.hpp"
 
 namespace taktwerk::apps {
 namespace {

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "config/quantity.hpp"
+#include "config/reading/quantity.hpp"
 #include "core/nearest_name.hpp"
 
 namespace taktwerk::apps {

@@ -12,7 +12,7 @@
 #include "apps/bus/session.hpp"
 #include "apps/terminal/exit_code.hpp"
 #include "axes/sim/xp200/station.hpp"
-#include "config/drive_loader.hpp"
+#include "config/drive_file/drive_loader.hpp"
 #include "core/clock.hpp"
 #include "modbus/line/pseudo_terminal.hpp"
 #include "tests/apps/in_process.hpp"

@@ -10,7 +10,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "config/drive_library.hpp"
+#include "config/drive_file/drive_library.hpp"
 #include "tests/apps/machine_files.hpp"
 
 namespace taktwerk::apps {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "apps/machine/master_gone.hpp"
-#include "config/machine_loader.hpp"
+#include "config/machine_file/machine_loader.hpp"
 
 namespace taktwerk::apps {
 namespace {

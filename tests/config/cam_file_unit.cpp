@@ -1,6 +1,6 @@
 // Cams from CSV files: what is read, and what is said, where, of what cannot be.
 
-#include "config/cam_file.hpp"
+#include "config/machine_file/cam_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "config/machine_loader.hpp"
+#include "config/machine_file/machine_loader.hpp"
 
 namespace taktwerk::config {
 namespace {

@@ -9,7 +9,7 @@
 #include <set>
 #include <string>
 
-#include "config/drive_loader.hpp"
+#include "config/drive_file/drive_loader.hpp"
 
 namespace taktwerk::config {
 namespace {

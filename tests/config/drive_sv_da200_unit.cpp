@@ -1,6 +1,6 @@
 // The drive file of the SV-DA200 against its guide (EtherCAT 技术指南). Literals are typed from the guide, section beside each.
 
-#include "config/drive_loader.hpp"
+#include "config/drive_file/drive_loader.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -8,7 +8,7 @@
 #include <set>
 #include <string>
 
-#include "config/drive_loader.hpp"
+#include "config/drive_file/drive_loader.hpp"
 #include "ecat/description/module_pdos.hpp"
 
 namespace taktwerk::config {

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "config/drive_loader.hpp"
+#include "config/drive_file/drive_loader.hpp"
 
 namespace taktwerk::config {
 namespace {

@@ -1,6 +1,6 @@
 // Whole machine files: what must load, and as what; what must be refused, with which words and where.
 
-#include "config/machine_loader.hpp"
+#include "config/machine_file/machine_loader.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "config/drive_loader.hpp"
+#include "config/drive_file/drive_loader.hpp"
 
 namespace taktwerk::config {
 namespace {

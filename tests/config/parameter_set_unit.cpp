@@ -1,6 +1,6 @@
 // Parameter sets of a drive: written and read back, and what a set must not hold.
 
-#include "config/parameter_set.hpp"
+#include "config/drive_file/parameter_set.hpp"
 
 #include <gtest/gtest.h>
 

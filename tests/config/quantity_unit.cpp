@@ -1,6 +1,6 @@
 // Numbers with units as people write them.
 
-#include "config/quantity.hpp"
+#include "config/reading/quantity.hpp"
 
 #include <gtest/gtest.h>
 

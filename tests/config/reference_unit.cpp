@@ -1,6 +1,6 @@
 // The committed schemas and the reference page are what the field tables give. TAKTWERK_REGENERATE=1 writes them.
 
-#include "config/reference.hpp"
+#include "config/reference/reference.hpp"
 
 #include <gtest/gtest.h>
 

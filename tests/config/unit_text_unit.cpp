@@ -1,6 +1,6 @@
 // Numbers with units where only somebody else knows the unit that is wanted.
 
-#include "config/unit_text.hpp"
+#include "config/reading/unit_text.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "config/machine_loader.hpp"
+#include "config/machine_file/machine_loader.hpp"
 #include "tests/runtime/test_program.hpp"
 
 namespace taktwerk::runtime::testing {

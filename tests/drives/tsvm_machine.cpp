@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "config/machine_loader.hpp"
+#include "config/machine_file/machine_loader.hpp"
 #include "fb_library/all_blocks.hpp"
 #include "programs/api/entry.hpp"
 #include "tests/machines/add_program.hpp"

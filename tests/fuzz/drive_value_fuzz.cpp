@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "axes/port/parameter_text.hpp"
-#include "config/drive_loader.hpp"
-#include "config/quantity.hpp"
+#include "config/drive_file/drive_loader.hpp"
+#include "config/reading/quantity.hpp"
 #include "ecat/diagnosis/object_value.hpp"
 
 using namespace taktwerk;

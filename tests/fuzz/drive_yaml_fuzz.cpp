@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "config/drive_loader.hpp"
+#include "config/drive_file/drive_loader.hpp"
 #include "tests/fuzz/scratch_folder.hpp"
 
 using namespace taktwerk;

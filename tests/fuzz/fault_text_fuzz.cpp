@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "apps/machine/sim_happenings.hpp"
-#include "config/machine_loader.hpp"
+#include "config/machine_file/machine_loader.hpp"
 #include "ecat/sim/faults.hpp"
 
 using namespace taktwerk;

@@ -2,7 +2,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "config/machine_loader.hpp"
+#include "config/machine_file/machine_loader.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace taktwerk;

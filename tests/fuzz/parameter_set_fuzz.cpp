@@ -3,8 +3,8 @@
 #include <string_view>
 
 #include "axes/port/parameter_text.hpp"
-#include "config/drive_loader.hpp"
-#include "config/parameter_set.hpp"
+#include "config/drive_file/drive_loader.hpp"
+#include "config/drive_file/parameter_set.hpp"
 
 using namespace taktwerk;
 using namespace taktwerk::config;

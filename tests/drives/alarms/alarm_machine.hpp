@@ -15,7 +15,7 @@
 #include "apps/machine/machine_log.hpp"
 #include "apps/machine/monitor_screen.hpp"
 #include "axes/axis/alarms.hpp"
-#include "config/machine_loader.hpp"
+#include "config/machine_file/machine_loader.hpp"
 #include "hmi_bridge/json_state.hpp"
 #include "hmi_bridge/memory_bus.hpp"
 #include "hmi_bridge/publisher.hpp"

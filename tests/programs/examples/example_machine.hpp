@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "config/machine_loader.hpp"
+#include "config/machine_file/machine_loader.hpp"
 #include "runtime/run/virtual_runner.hpp"
 #include "runtime/world/world.hpp"
 

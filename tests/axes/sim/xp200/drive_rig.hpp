@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "axes/sim/xp200/station.hpp"
-#include "config/drive_loader.hpp"
+#include "config/drive_file/drive_loader.hpp"
 #include "modbus/client/client.hpp"
 #include "modbus/line/virtual_line.hpp"
 #include "tests/patience.hpp"

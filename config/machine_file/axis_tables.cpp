@@ -1,0 +1,371 @@
+#include "config/machine_file/axis_tables.hpp"
+
+#include <fmt/format.h>
+
+#include "config/reading/codecs.hpp"
+
+namespace taktwerk::config {
+
+namespace {
+
+using axes::AxisConfig;
+using runtime::AxisBinding;
+using runtime::AxisSimulation;
+using Interval = std::pair<double, double>;
+
+Table<axes::Gearing> gearing_table() {
+    using G = axes::Gearing;
+    return {
+        "gearing",
+        "How the drive's counts become the axis' unit: counts = position / feed * gear * counts_per_revolution.",
+        {
+            required(field("counts_per_revolution", &G::counts_per_revolution, integer<std::int64_t>(1, 1LL << 31),
+                           "position counts of the drive per motor revolution (encoder resolution, or microsteps)")),
+            field_via<G>(
+                "gear", fraction(), [](G& g, const Fraction& f) { g.motor_revolutions = f.numerator, g.load_revolutions = f.denominator; },
+                "motor revolutions per load revolutions: 5/1 is a gear box that divides by five", "1/1"),
+            required(
+                field("feed", &G::feed, quantity(Dimension::position), "way per load revolution: pitch of the screw, 360 deg of a table")),
+            field("inverted", &G::inverted, boolean(), "true: positive is against the motor's positive sense"),
+        },
+        {},
+        {}};
+}
+
+Table<axes::AxisLimits> limits_table() {
+    using L = axes::AxisLimits;
+    Table<L> table{
+        "limits",
+        "What no motion of the axis ever exceeds.",
+        {
+            required(field("velocity", &L::velocity, quantity(Dimension::velocity), "highest velocity")),
+            required(field("acceleration", &L::acceleration, quantity(Dimension::acceleration), "highest acceleration")),
+            with_default(field("deceleration", &L::deceleration, quantity(Dimension::acceleration), "highest deceleration"),
+                         "= acceleration"),
+            required(field("jerk", &L::jerk, quantity_or_none(Dimension::jerk), "highest jerk; `none` for ramps with corners")),
+            with_default(
+                field("stop_deceleration", &L::stop_deceleration, quantity(Dimension::acceleration), "for errors and emergency stop"),
+                "= deceleration"),
+            with_default(field("stop_jerk", &L::stop_jerk, quantity_or_none(Dimension::jerk), "for errors and emergency stop"), "= jerk"),
+            field_via<L>(
+                "position", interval(Dimension::position),
+                [](L& l, const Interval& v) { l.position_min = v.first, l.position_max = v.second; },
+                "software limits, active once the axis is homed", "none"),
+        },
+        {},
+        {}};
+    table.after = [](Reader&, const Node& node, L& l) {
+        if (!node.find("deceleration")) l.deceleration = l.acceleration;
+    };
+    return table;
+}
+
+Table<AxisConfig> following_table() {
+    return {
+        "following_error",
+        "When the axis is too far from where it should be.",
+        {
+            required(field_at<AxisConfig>(
+                "window", [](AxisConfig& a) -> double& { return a.following.window; }, quantity_or_none(Dimension::position),
+                "largest difference between set-point and actual position, dead time taken into account")),
+            field_at<AxisConfig>(
+                "time", [](AxisConfig& a) -> Duration& { return a.following.time; }, duration(), "beyond the window for this long: alarm"),
+        },
+        {},
+        {}};
+}
+
+Table<axes::PositionWindows> in_position_table() {
+    using W = axes::PositionWindows;
+    return {"in_position",
+            "When a motion counts as finished on the axis itself.",
+            {
+                field("window", &W::in_position, quantity(Dimension::position), "largest distance from the target"),
+                field("time", &W::in_position_time, duration(), "inside the window for this long"),
+                field("standstill_velocity", &W::standstill_velocity, quantity(Dimension::velocity), "slower than this counts as standing"),
+            },
+            {},
+            {}};
+}
+
+Table<axes::CodedMarks> marks_table() {
+    using M = axes::CodedMarks;
+    return {
+        "marks",
+        "A scale with distance-coded reference marks, in counts of the drive.",
+        {
+            required(field("spacing", &M::spacing, integer<std::int64_t>(4, 1LL << 31), "between two fixed marks")),
+            required(field("step", &M::step, integer<std::int64_t>(1, 1LL << 31), "by which one gap between marks differs from the next")),
+        },
+        {},
+        {}};
+}
+
+Table<axes::PositionMemory> memory_table() {
+    using E = axes::PositionMemory;
+    return {"position_memory",
+            "What the encoder knows after power was off.",
+            {
+                field("absolute", &E::absolute, boolean(),
+                      "it keeps its position: the axis loses its reference neither with the bus nor, with `retain`, with power"),
+                with_default(field("range", &E::range, integer<std::int64_t>(1, std::int64_t{1} << 53),
+                                   "counts after which its position begins anew: turns it can count times counts per turn"),
+                             "that of the drive's position, 2^32 mostly"),
+                field("moved_while_off", &E::moved_while_off, quantity(Dimension::position, 0),
+                      "moved further than this without power, the axis must be homed again"),
+            },
+            {},
+            {}};
+}
+
+Table<axes::HomingConfig> homing_table() {
+    using H = axes::HomingConfig;
+    using Kind = axes::HomingKind;
+    Table<H> table{
+        "homing",
+        "How the axis finds its reference.",
+        {
+            required(field(
+                "kind", &H::kind,
+                choice<Kind>({{"none", Kind::none},
+                              {"drive", Kind::drive},
+                              {"home_switch", Kind::home_switch},
+                              {"limit_switch", Kind::limit_switch},
+                              {"block", Kind::block},
+                              {"reference_pulse", Kind::reference_pulse},
+                              {"absolute", Kind::absolute},
+                              {"set_here", Kind::set_here}}),
+                "drive: the drive's own method · by the runtime: home_switch · limit_switch, back to its edge · block: against a fixed "
+                "stop · reference_pulse: home switch, then on to the encoder's index · absolute: the encoder's zero, no motion · "
+                "set_here: where it stands · none: MC_Home is refused")),
+            with_default(field("method", &H::method, integer<std::int8_t>(-128, 127), "kind drive: number of the method (6098h)"), ""),
+            field("search_velocity", &H::search_velocity, quantity(Dimension::velocity, 0), "to the switch"),
+            field("latch_velocity", &H::latch_velocity, quantity(Dimension::velocity, 0), "to its edge, slowly"),
+            field("acceleration", &H::acceleration, quantity(Dimension::acceleration, 0), "while homing"),
+            field("offset", &H::offset, quantity(Dimension::position), "coordinate of the reference where MC_Home gives none"),
+            field("direction", &H::negative, choice<bool>({{"negative", true}, {"positive", false}}),
+                  "by the runtime: where the search starts"),
+            field("timeout", &H::timeout, duration(std::chrono::milliseconds{1}), "homing that takes longer has failed"),
+            with_default(field("torque", &H::torque, number(0, 10), "kind block: torque at the stop, as a fraction of the rated one"), ""),
+            field("block_velocity", &H::block_velocity, quantity(Dimension::velocity, 0), "kind block: slower than this it is at the stop"),
+            field("block_time", &H::block_time, duration(), "kind block: torque and standstill last so long"),
+            field("marks", &H::marks, section(marks_table()), "for MC_StepDistanceCoded"),
+        },
+        {},
+        {}};
+    table.after = [](Reader& reader, const Node& node, H& h) {
+        if (h.kind == Kind::drive && !node.find("method"))
+            reader.problem(node.at, "config.missing_key", fmt::format("`{}` lacks its key `method`: the drive has several", reader.path()),
+                           "add `method:` with the number from the drive's manual, such as `method: 17`");
+    };
+    return table;
+}
+
+Table<axes::ManualSpeeds> manual_table() {
+    using M = axes::ManualSpeeds;
+    return {"manual",
+            "Speeds under the operator's hand.",
+            {
+                with_default(field("slow", &M::slow, quantity(Dimension::velocity, 0), "jogging, slow"), "5 % of the limit"),
+                with_default(field("fast", &M::fast, quantity(Dimension::velocity, 0), "jogging, fast"), "25 % of the limit"),
+                with_default(
+                    field("setup_velocity", &M::setup_velocity, quantity(Dimension::velocity, 0), "no motion is faster in set-up mode"),
+                    "= slow"),
+            },
+            {},
+            {}};
+}
+
+Table<axes::AxisDefaults> defaults_table() {
+    using D = axes::AxisDefaults;
+    return {"defaults",
+            "What a motion block uses where its pin is 0.",
+            {
+                with_default(field("acceleration", &D::acceleration, quantity(Dimension::acceleration, 0), "acceleration"), "the limit"),
+                with_default(field("deceleration", &D::deceleration, quantity(Dimension::acceleration, 0), "deceleration"), "the limit"),
+                with_default(field("jerk", &D::jerk, quantity(Dimension::jerk, 0), "jerk"), "the limit"),
+            },
+            {},
+            {}};
+}
+
+Table<runtime::PrintedMarks> printed_marks_table() {
+    using M = runtime::PrintedMarks;
+    Table<M> table{"marks",
+                   "Marks along the axis, such as print on a web, seen by a sensor that is wired to probe 1 of the simulated drive.",
+                   {
+                       required(field("every", &M::every, quantity(Dimension::position, 0), "from one mark to the next")),
+                       required(field("length", &M::length, quantity(Dimension::position, 0), "of a mark")),
+                       field("first", &M::first, quantity(Dimension::position), "where a mark begins"),
+                   },
+                   {},
+                   {}};
+    table.after = [](Reader& reader, const Node& node, M& m) {
+        if (m.length > 0 && m.length < m.every) return;
+        reader.problem(node.at, "config.out_of_range",
+                       fmt::format("`{}`: a mark must be longer than 0 and shorter than `every`", reader.path()),
+                       "give `length` the length of one mark, such as 3 mm, and `every` the distance from one beginning to the next");
+    };
+    return table;
+}
+
+Table<AxisSimulation> axis_simulation_table() {
+    using S = AxisSimulation;
+    return {"simulation",
+            "The mechanics of the simulated axis. Positions are machine coordinates: 0 is where the homed axis will say 0.",
+            {
+                field("inertia", &S::inertia, quantity(Dimension::inertia, 0), "motor and load, at the motor shaft"),
+                field("viscous_friction", &S::viscous_friction, quantity(Dimension::friction, 0), "friction that grows with speed"),
+                field("coulomb_friction", &S::coulomb_friction, quantity(Dimension::torque, 0), "friction that does not"),
+                field("load_torque", &S::load_torque, quantity(Dimension::torque),
+                      "constant load, such as weight; positive pushes to negative"),
+                field("rated_torque", &S::rated_torque, quantity(Dimension::torque, 0), "of the motor"),
+                field("start", &S::start, quantity(Dimension::position), "where the axis stands at power-on"),
+                field_via<S>(
+                    "stops", interval(Dimension::position),
+                    [](S& s, const Interval& v) { s.negative_stop = v.first, s.positive_stop = v.second; }, "hard stops", "none"),
+                field_via<S>(
+                    "limit_switches", interval(Dimension::position),
+                    [](S& s, const Interval& v) { s.negative_limit = v.first, s.positive_limit = v.second; },
+                    "active below the first, above the second", "none"),
+                field_via<S>(
+                    "home_switch", interval(Dimension::position),
+                    [](S& s, const Interval& v) { s.home_from = v.first, s.home_to = v.second; }, "active in between", "none"),
+                field("index_pulse", &S::index_pulse, quantity(Dimension::position),
+                      "where one of the encoder's index pulses stands; there is one each motor turn"),
+                field("battery", &S::battery,
+                      choice<axes::sim::Battery>(
+                          {{"good", axes::sim::Battery::good}, {"low", axes::sim::Battery::low}, {"empty", axes::sim::Battery::empty}}),
+                      "of an absolute encoder; with an empty one the drive has lost its turns at power-on"),
+                field("marks", &S::marks, section(printed_marks_table()), "marks along the axis, seen by a sensor at probe 1 of the drive"),
+                field("clock_drift", &S::clock_drift_ppm, quantity(Dimension::ratio_ppm), "how wrong the drive's clock runs"),
+            },
+            {},
+            {}};
+}
+
+Table<axes::ControlConfig> control_table() {
+    using C = axes::ControlConfig;
+    using Mode = axes::ControlMode;
+    return {
+        "control",
+        "How set-points become the drive's targets.",
+        {
+            field("mode", &C::mode, choice<Mode>({{"position", Mode::position}, {"velocity", Mode::velocity}}),
+                  "where the position loop is closed. position: in the drive (CSP) · velocity: here, the drive runs in CSV"),
+            with_default(field("kv", &C::kv, number(0), "mode velocity: position gain in 1/s (u/s for each u of following error)"), ""),
+            field("feed_forward", &C::feed_forward, number(0, 2),
+                  "part of the set velocity given to the drive: as its target in mode velocity, as 60B1h (where mapped) in mode position"),
+            field("torque_feed_forward", &C::torque_feed_forward, number(0, 2),
+                  "part of the torque that the set acceleration needs, as 60B2h (where mapped)"),
+            with_default(
+                field("rated_acceleration", &C::rated_acceleration, quantity(Dimension::acceleration, 0),
+                      "what rated torque gives the axis, friction apart: for torque feed-forward and the limits of torque control"),
+                "unknown"),
+            with_default(field("output_limit", &C::output_limit, quantity(Dimension::velocity, 0),
+                               "mode velocity: highest velocity given to the drive"),
+                         "1.2 times the limit"),
+        },
+        {},
+        {}};
+}
+
+Table<axes::PitchPoint> pitch_table() {
+    using P = axes::PitchPoint;
+    return {"pitch",
+            "One point of the table of pitch errors.",
+            {
+                required(field("at", &P::position, quantity(Dimension::position), "position of the load, as homed")),
+                required(field("add", &P::correction, quantity(Dimension::position), "what the motor needs more to get it there")),
+            },
+            {},
+            {}};
+}
+
+Table<axes::CompensationConfig> compensation_table() {
+    using C = axes::CompensationConfig;
+    return {"compensation",
+            "What the mechanics lack between motor and load. Programs do not see it.",
+            {
+                field("backlash", &C::backlash, quantity(Dimension::position, 0),
+                      "the motor's way from one flank to the other, added at a reversal"),
+                field("velocity", &C::velocity, quantity(Dimension::velocity, 0), "how fast a correction comes in"),
+                with_default(field("pitch", &C::pitch, list(section(pitch_table())),
+                                   "errors of the pitch by position, linear in between, constant beyond; active once homed"),
+                             ""),
+            },
+            {},
+            {}};
+}
+
+/// The axis' own unit, which all its quantities are read in.
+Codec<std::string> axis_unit() {
+    Codec<std::string> c;
+    c.shape.kind = Shape::Kind::choice;
+    c.shape.choices = axis_units();
+    c.read = [](Reader& reader, const Node& node, std::string& out) {
+        const auto index = read_choice(reader, node, axis_units());
+        if (!index) return false;
+        out = reader.axis_unit = axis_units()[*index];
+        return true;
+    };
+    c.show = [](const std::string& v) { return v; };
+    return c;
+}
+
+}  // namespace
+
+Table<AxisBinding> axis_table() {
+    using A = AxisConfig;
+    const auto axis = [](AxisBinding& b) -> A& { return b.axis; };
+    Table<AxisBinding> table{
+        "axes.<name>", "One axis, by the name that programs use. All its quantities are in its own unit u.", {}, {}, {}};
+    auto& f = table.fields;
+    f.push_back(required(field_at<AxisBinding>(
+        "unit", [](AxisBinding& b) -> std::string& { return b.axis.unit; }, axis_unit(), "the unit u of the axis")));
+    f.push_back(with_default(field("slave", &AxisBinding::slave, name(), "slave that drives it; without one the axis is virtual"), ""));
+    f.push_back(with_default(field("drive", &AxisBinding::drive, name(), "drive on a serial line that moves it, instead of a slave"), ""));
+    f.push_back(field_via<AxisBinding>(
+        "axis", integer<std::uint8_t>(1, 64),
+        [](AxisBinding& b, const std::uint8_t& n) { b.drive_axis = static_cast<std::uint8_t>(n - 1); },
+        "which axis of a drive that has several, from 1 as its manual counts", "1 where the drive has one"));
+    std::vector<Field<A>> own{
+        required(field("gearing", &A::gearing, section(gearing_table()), "counts and unit")),
+        with_default(
+            field("modulo", &A::modulo, quantity(Dimension::position, 0),
+                  "positions repeat after it (a rotary axis: 360 deg); whole or a simple part of gearing.feed; without software limits"),
+            "none: a linear axis"),
+        required(field("limits", &A::limits, section(limits_table()), "velocity, acceleration, jerk, travel")),
+        field("defaults", &A::defaults, section(defaults_table()), "dynamics where a block says 0"),
+        field_at<A>(
+            "following_error", [](A& a) -> A& { return a; }, section(following_table()),
+            "supervision; without it the following error is not watched"),
+        field("in_position", &A::windows, section(in_position_table()), "when a motion is finished"),
+        field("homing", &A::homing, section(homing_table()), "how the axis finds its reference"),
+        field("position_memory", &A::memory, section(memory_table()), "what its encoder knows after power was off"),
+        field("manual", &A::manual, section(manual_table()), "jogging speeds"),
+        field("control", &A::control, section(control_table()), "position loop and feed-forward"),
+        field("compensation", &A::compensation, section(compensation_table()), "backlash and pitch errors"),
+        field("require_homed", &A::require_homed, boolean(), "absolute moves need a homed axis"),
+        field("disabled", &A::disabled, boolean(), "left out while commissioning: its drive is never enabled"),
+        field("encoder", &A::encoder, boolean(),
+              "it only measures (`limits.velocity`: its fastest): never powered, takes no motion, may be the master of other axes"),
+        field("simulated", &A::simulated, boolean(), "its drive is simulated although the bus is real"),
+        field("queue_depth", &A::queue_depth, integer<std::uint8_t>(1, 8), "buffered motions"),
+        field("stale_limit", &A::stale_limit, integer<std::uint16_t>(1, 1000),
+              "cycles without fresh feedback until the axis stops in error"),
+        field("feed_patience", &A::feed_patience, integer<std::uint16_t>(0, 1000),
+              "set-points from outside that may miss in a row while the axis moves; then it brakes"),
+        field("jog_lease", &A::jog_lease, duration(std::chrono::milliseconds{100}, std::chrono::seconds{5}),
+              "a jogging client must repeat its command within this time (ours repeat each 50 ms)"),
+        field("enable_timeout", &A::enable_timeout, duration(std::chrono::milliseconds{1}, std::chrono::seconds{60}),
+              "a drive that takes longer to enable is an alarm"),
+    };
+    include_fields(f, axis, Table<A>{{}, {}, std::move(own), {}, {}});
+    f.push_back(field("simulation", &AxisBinding::simulation, section(axis_simulation_table()), "mechanics of the simulated axis"));
+    table.before = [](Reader& reader, const Node&, AxisBinding& b) { reader.axis_unit = b.axis.unit; };
+    table.after = [](Reader& reader, const Node&, AxisBinding& b) { reader.units_of_axes[b.axis.name] = b.axis.unit; };
+    return table;
+}
+
+}  // namespace taktwerk::config

@@ -1,0 +1,481 @@
+#include "config/machine_file/machine_loader.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <set>
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include "config/drive_file/drive_library.hpp"
+#include "config/drive_file/pdo_selection.hpp"
+#include "config/drive_file/setting_conflicts.hpp"
+#include "config/machine_file/floor_checks.hpp"
+#include "config/machine_file/machine_tables.hpp"
+#include "core/nearest_name.hpp"
+#include "ecat/sim/digital_terminal.hpp"
+#include "runtime/check/program_check.hpp"
+#include "runtime/positions/keeps_positions.hpp"
+
+namespace taktwerk::config {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string names_or_none(const std::vector<std::string>& words) {
+    std::string out;
+    for (const auto& word : words) out += (out.empty() ? "" : ", ") + word;
+    return out.empty() ? "none" : out;
+}
+
+/// Puts names, profiles and terminals together.
+class Assembly {
+public:
+    Assembly(Reader& reader, const std::string& path, const LoadOptions& options, MachineFile file)
+        : reader_(reader), path_(path), options_(options), file_(std::move(file)), drives_(drive_folders(path, options)) {}
+
+    LoadedMachine assemble() {
+        LoadedMachine out{std::move(file_.machine), std::move(file_.hmi), {}};
+        if (options_.simulate) out.machine.bus.interface.clear();
+        // Simulated drives forget where they were, and what a real machine keeps is none of theirs.
+        auto& retain = out.machine.retain;
+        if (out.machine.bus.interface.empty()) retain.clear();
+        else if (!retain.empty() && fs::path(retain).is_relative())
+            retain = (fs::path(path_).parent_path() / retain).lexically_normal().string();
+        out.machine.bus.cycle = out.machine.cycle;
+        for (std::size_t i = 0; i < file_.slaves.size(); ++i) {
+            add_slave(out, file_.slaves[i], i);
+            if (file_.slaves[i].broken) forgive(file_.slaves[i].slave.name, out.machine.axes);
+            for (std::size_t k = 0; k < i; ++k)
+                if (file_.slaves[k].slave.name == file_.slaves[i].slave.name && !file_.slaves[i].slave.name.empty()) {
+                    problem(fmt::format("bus.slaves.{}.name", i), "config.duplicate_name", fmt::format("slave {} has this name too", k),
+                            "choose different names");
+                    forgive(file_.slaves[i].slave.name, out.machine.axes);
+                }
+        }
+        for (auto& binding : out.machine.axes)
+            for (const auto& [name, profile] : profiles_)
+                if (name == binding.slave) binding.profile = profile;
+        add_stored(out);
+        for (const auto& binding : out.machine.axes) check_axis_is_named(binding);
+        for (const auto& entry : file_.serial) add_line(out, entry);
+        for (const auto& entry : file_.inputs) add_point(out, entry, runtime::IoDirection::input);
+        for (const auto& entry : file_.outputs) add_point(out, entry, runtime::IoDirection::output);
+        for (const auto& entry : file_.programs) add_program(out, entry);
+        for (auto& entry : file_.cams) {
+            out.machine.cams.push_back(std::move(entry.cam));
+            out.warnings.insert(out.warnings.end(), entry.remarks.begin(), entry.remarks.end());
+        }
+        check_wiring(out.machine);
+        check_events(out.machine);
+        add_warnings(out);
+        reader_.errors().insert(reader_.errors().end(), drives_.errors().begin(), drives_.errors().end());
+        return out;
+    }
+
+private:
+    void add_slave(LoadedMachine& out, const SlaveEntry& entry, std::size_t place) {
+        ecat::SlaveConfig slave = entry.slave;
+        if (!slave.position && !slave.alias && !slave.device_id) slave.position = static_cast<std::uint16_t>(place);
+        const auto here = fmt::format("bus.slaves.{}", place);
+        if (!entry.profile.empty()) add_drive(slave, entry, here, out.machine.axes);
+        else if (entry.terminal)
+            slave.device = std::make_shared<const ecat::DeviceDescription>(
+                ecat::sim::digital_input_output_terminal(entry.terminal->inputs, entry.terminal->outputs));
+        if (slave.device) {
+            slave.dc = entry.dc.value_or(slave.device->dc.supported);
+            add_startup(slave, entry);
+        }
+        out.machine.bus.slaves.push_back(std::move(slave));
+    }
+
+    /// Of a drive with several axes each axis of the machine says which one it is.
+    void check_axis_is_named(const runtime::AxisBinding& binding) {
+        const auto here = "axes." + binding.axis.name;
+        if (!binding.profile || binding.profile->axes == 1 || reader_.has(here + ".axis")) return;
+        problem(
+            here, "axis.drive_axis_missing",
+            fmt::format("slave '{}' ({}) has {} axes: which one is meant?", binding.slave, binding.profile->name, binding.profile->axes),
+            fmt::format("add `axis:`, 1 to {}", binding.profile->axes));
+        reader_.mark_bad(here + ".axis");
+    }
+
+    void add_line(LoadedMachine& out, const SerialLineEntry& entry) {
+        auto line = entry.line;
+        if (options_.simulate) line.device.clear();
+        for (const auto& listed : entry.drives) {
+            const auto here = fmt::format("serial.{}.drives.{}", line.name, listed.drive.drive.name);
+            auto drive = listed.drive;
+            if (const auto* type = drives_.find(listed.profile)) drive.drive.profile = type->profile;
+            else if (!drives_.exists(listed.profile)) no_such_drive(here, listed.profile);
+            if (!drive.drive.profile) reader_.mark_bad(here + ".profile");
+            for (const auto& parameter : listed.parameters) {
+                int number = -1;
+                const auto* begin = parameter.name.data() + 2;
+                const auto* end = parameter.name.data() + parameter.name.size();
+                if (parameter.name.size() == 5 && parameter.name.rfind("Pr", 0) == 0 && std::from_chars(begin, end, number).ptr == end)
+                    drive.drive.parameters.push_back({static_cast<std::uint16_t>(number), parameter.value});
+                else
+                    problem(here + ".parameters." + parameter.name, "config.parameter_name",
+                            fmt::format("`{}` is no parameter's name", parameter.name), "write it as the manual does, such as Pr097");
+            }
+            for (auto& binding : out.machine.axes)
+                if (binding.drive == drive.drive.name) binding.profile = drive.drive.profile;
+            line.drives.push_back(std::move(drive));
+        }
+        out.machine.serial.push_back(std::move(line));
+    }
+
+    /// What others will say about this slave follows from what was said already.
+    void forgive(const std::string& slave, const std::vector<runtime::AxisBinding>& axes) {
+        reader_.mark_bad(fmt::format("slave '{}'", slave));
+        for (const auto& axis : axes)
+            if (axis.slave == slave) reader_.mark_bad(fmt::format("axes.{}.slave", axis.axis.name));
+    }
+
+    void no_such_drive(const std::string& here, const std::string& profile) {
+        const auto names = drives_.names();
+        const auto near = nearest_name(profile, names);
+        problem(here + ".profile", "config.unknown_profile",
+                fmt::format("there is no drive type '{}' in {} (there is: {})", profile, names_or_none(drives_.folders()),
+                            names_or_none(names)),
+                near.empty() ? "correct the name, or add its file" : fmt::format("did you mean `{}`?", near));
+    }
+
+    void add_drive(ecat::SlaveConfig& slave, const SlaveEntry& entry, const std::string& here,
+                   const std::vector<runtime::AxisBinding>& axes) {
+        const auto* drive = drives_.find(entry.profile);
+        if (!drive) {
+            forgive(entry.slave.name, axes);
+            if (!drives_.exists(entry.profile)) no_such_drive(here, entry.profile);
+            return;
+        }
+        if (!drive->device) {
+            forgive(entry.slave.name, axes);
+            problem(here + ".profile", "config.not_on_the_bus",
+                    fmt::format("{} is a drive on a serial line, not on EtherCAT", entry.profile),
+                    "declare it under `serial.<line>.drives`");
+            return;
+        }
+        slave.device = drive->device;
+        // The drive's own choice stands in the slots that the machine says nothing about.
+        for (const auto& standard : drive->modules)
+            if (std::none_of(slave.modules.begin(), slave.modules.end(), [&](const auto& m) { return m.slot == standard.slot; }))
+                slave.modules.push_back(standard);
+        slave.rx = selection(*drive, slave.modules, PdoWay::rx, entry, here + ".pdo.rx");
+        slave.tx = selection(*drive, slave.modules, PdoWay::tx, entry, here + ".pdo.tx");
+        slave.startup = drive->startup;
+        profiles_.emplace_back(entry.slave.name, drive->profile);
+    }
+
+    ecat::PdoSelection selection(const LoadedDrive& drive, const std::vector<ecat::ModuleSelection>& modules, PdoWay way,
+                                 const SlaveEntry& entry, const std::string& here) {
+        const auto& wanted = way == PdoWay::rx ? entry.rx : entry.tx;
+        if (wanted.empty()) return way == PdoWay::rx ? drive.rx : drive.tx;
+        auto chosen = select_pdos(*drive.device, modules, way, wanted);
+        if (chosen) return std::move(*chosen);
+        problem(here, chosen.error().code, chosen.error().what, chosen.error().remedy);
+        return way == PdoWay::rx ? drive.rx : drive.tx;  // so that nothing is said of what would be missing
+    }
+
+    /// The machine's entries replace those of the drive's file for the same object.
+    void add_startup(ecat::SlaveConfig& slave, const SlaveEntry& entry) {
+        for (auto& sdo : resolve_startup(reader_, path_, entry.startup, *slave.device)) {
+            std::erase_if(slave.startup, [&](const ecat::StartupSdo& other) {
+                return other.index == sdo.index && other.sub == sdo.sub && other.at == sdo.at && other.origin.rfind(path_, 0) != 0;
+            });
+            slave.startup.push_back(std::move(sdo));
+        }
+    }
+
+    /// Objects that a drive looks at when it is switched on only.
+    void add_stored(LoadedMachine& out) {
+        for (const auto& entry : file_.slaves) {
+            const auto known = std::find_if(profiles_.begin(), profiles_.end(), [&](const auto& p) { return p.first == entry.slave.name; });
+            refuse_startup_commands(reader_, entry.slave.name, entry.startup, known == profiles_.end() ? nullptr : known->second.get());
+            if (known == profiles_.end()) {
+                if (!entry.stored.empty() && !entry.broken)
+                    reader_.problem(entry.stored.front().where, "config.stored_no_drive",
+                                    fmt::format("'{}' is no drive: it keeps nothing", entry.slave.name), "remove `stored`");
+                continue;
+            }
+            refuse_late_startup(reader_, entry.slave.name, entry.startup, *known->second);
+            const auto& slaves = out.machine.bus.slaves;
+            const auto slave = std::find_if(slaves.begin(), slaves.end(), [&](const auto& s) { return s.name == entry.slave.name; });
+            if (slave == slaves.end()) continue;
+            for (auto& stored : resolve_stored(reader_, entry.slave.name, entry.stored, slave->startup, *known->second))
+                for (auto& binding : out.machine.axes)
+                    if (binding.slave == entry.slave.name && binding.drive_axis == stored.axis) binding.stored.push_back(stored.setting);
+            for (const auto& binding : out.machine.axes)
+                if (binding.slave == entry.slave.name)
+                    refuse_contradictions(
+                        reader_, entry.slave.name, entry.stored, entry.startup, *known->second,
+                        {binding.axis.name, binding.drive_axis, binding.axis.gearing.counts_per_revolution, out.machine.cycle, slave->dc});
+        }
+    }
+
+    void add_point(LoadedMachine& out, const IoEntry& entry, runtime::IoDirection direction) {
+        const bool input = direction == runtime::IoDirection::input;
+        auto point = entry.point;
+        point.direction = direction;
+        point.index = entry.object ? entry.object->index : input ? 0x6000 : 0x7000;
+        point.sub = entry.object ? entry.object->sub : entry.channel.value_or(0);
+        const auto here = fmt::format("io.{}.{}", input ? "inputs" : "outputs", point.name);
+        for (std::size_t i = 0; i < file_.slaves.size(); ++i) {
+            if (file_.slaves[i].slave.name != point.slave || !entry.channel || file_.slaves[i].broken) continue;
+            const auto& terminal = file_.slaves[i].terminal;
+            const int count = !terminal ? 0 : input ? terminal->inputs : terminal->outputs;
+            if (!terminal)
+                problem(here + ".channel", "config.no_channel", fmt::format("slave '{}' is no terminal: it has no channels", point.slave),
+                        "use `object:`, such as `object: 60FDh`");
+            else if (*entry.channel > count)
+                problem(here + ".channel", "config.no_channel",
+                        fmt::format("terminal '{}' has {} {}, there is no channel {}", point.slave, count, input ? "inputs" : "outputs",
+                                    *entry.channel),
+                        count > 0 ? fmt::format("choose 1 to {}", count) : "choose another terminal");
+        }
+        for (const auto& other : out.machine.io)
+            if (other.direction == direction && other.slave == point.slave && other.index == point.index && other.sub == point.sub &&
+                !entry.object)
+                problem(here + ".channel", "config.channel_taken",
+                        fmt::format("channel {} of '{}' is already '{}'", point.sub, point.slave, other.name),
+                        "give each point its own channel");
+        out.machine.io.push_back(std::move(point));
+    }
+
+    void add_program(LoadedMachine& out, const ProgramFile& entry) {
+        auto program = entry.program;
+        if (options_.resolve_programs && !program.library.empty()) resolve_library(program);
+        for (const auto& t : entry.tasks) {
+            auto task = t.task;
+            task.program = program.name;
+            task.divisor = static_cast<std::uint16_t>(t.every.time.count() > 0 ? t.every.time / out.machine.cycle
+                                                                               : static_cast<std::int64_t>(t.every.cycles));
+            out.machine.tasks.push_back(std::move(task));
+        }
+        if (entry.tasks.empty()) {
+            runtime::TaskConfig task;
+            task.name = "main";
+            task.program = program.name;
+            out.machine.tasks.push_back(std::move(task));
+        }
+        out.machine.programs.push_back(std::move(program));
+    }
+
+    void resolve_library(runtime::ProgramConfig& program) {
+        std::vector<std::string> searched;
+        const auto try_path = [&](const fs::path& path) {
+            std::error_code error;
+            searched.push_back(path.lexically_normal().string());
+            if (!fs::is_regular_file(path, error)) return false;
+            program.library = searched.back();
+            return true;
+        };
+        const fs::path written(program.library);
+        if (written.is_absolute()) {
+            if (try_path(written)) return;
+        } else {
+            if (try_path(fs::path(path_).parent_path() / written)) return;
+            for (const auto& folder : options_.program_path)
+                if (try_path(fs::path(folder) / written)) return;
+        }
+        problem(fmt::format("programs.{}.library", program.name), "config.no_library",
+                fmt::format("there is no program library {}", names_or_none(searched)), "build the program, or correct the path");
+    }
+
+    /// Every simulated slave hangs behind one that stands before it on the cable, each socket has one cable.
+    void check_wiring(const runtime::MachineConfig& machine) {
+        std::vector<std::string> names;
+        for (const auto& slave : machine.bus.slaves) names.push_back(slave.name);
+        std::set<std::pair<std::string, unsigned>> taken;
+        for (const auto& wire : machine.simulation.slaves) {
+            const auto here = "simulation.slaves." + wire.slave;
+            const auto self = std::find(names.begin(), names.end(), wire.slave);
+            const auto report = [&](const std::string& name) {
+                const auto near = nearest_name(name, names);
+                problem(here, "simulation.unknown_slave", fmt::format("there is no slave '{}' (there is: {})", name, names_or_none(names)),
+                        near.empty() ? "correct the name" : fmt::format("did you mean `{}`?", near));
+            };
+            if (self == names.end()) {
+                report(wire.slave);
+                continue;
+            }
+            if (wire.behind.empty()) continue;
+            const auto parent = std::find(names.begin(), names.end(), wire.behind);
+            if (parent == names.end()) {
+                report(wire.behind);
+            } else if (parent >= self) {
+                problem(here, "simulation.order", fmt::format("'{}' stands behind '{}' in `bus.slaves`", wire.behind, wire.slave),
+                        "list slaves in the order in which a frame reaches them");
+            } else if (!taken.emplace(wire.behind, wire.port).second) {
+                problem(here, "simulation.port_taken", fmt::format("port {} of '{}' has a cable already", wire.port, wire.behind),
+                        "choose another port (1, 2, 3) or another slave");
+            }
+        }
+    }
+
+    /// runtime::check knows the targets too, but not which event it is.
+    void check_events(const runtime::MachineConfig& machine) {
+        using Kind = runtime::SimulationEvent::Kind;
+        std::vector<std::string> inputs, slaves, axes, lines;
+        for (const auto& line : machine.serial) lines.push_back(line.name);
+        for (const auto& point : machine.io)
+            if (point.direction == runtime::IoDirection::input) inputs.push_back(point.name);
+        for (const auto& slave : machine.bus.slaves) slaves.push_back(slave.name);
+        for (const auto& binding : machine.axes) axes.push_back(binding.axis.name);
+        for (std::size_t i = 0; i < machine.simulation.events.size(); ++i) {
+            const auto& event = machine.simulation.events[i];
+            const auto& known = event.kind == Kind::input         ? inputs
+                                : event.kind == Kind::slave_power ? slaves
+                                : event.kind == Kind::serial_line ? lines
+                                                                  : axes;
+            if (event.target.empty() || std::find(known.begin(), known.end(), event.target) != known.end()) continue;
+            const auto near = nearest_name(event.target, known);
+            problem(fmt::format("simulation.events.{}", i), "simulation.unknown_target",
+                    fmt::format("there is no {} '{}' (there is: {})",
+                                event.kind == Kind::input         ? "input"
+                                : event.kind == Kind::slave_power ? "slave"
+                                : event.kind == Kind::serial_line ? "serial line"
+                                                                  : "axis",
+                                event.target, names_or_none(known)),
+                    near.empty() ? "correct the name" : fmt::format("did you mean `{}`?", near));
+        }
+    }
+
+    void add_warnings(LoadedMachine& out) {
+        const auto warn = [&](const std::string& path, std::string code, std::string what, std::string remedy) {
+            out.warnings.push_back({std::move(code), located(path_, reader_.find(path)), std::move(what), std::move(remedy)});
+        };
+        for (const auto& binding : out.machine.axes) {
+            const auto& axis = binding.axis;
+            const auto here = "axes." + axis.name;
+            if (axis.disabled)
+                warn(here + ".disabled", "config.axis_disabled", fmt::format("axis {} is left out", axis.name),
+                     "remove `disabled` when it is commissioned");
+            if (axis.simulated && !out.machine.bus.interface.empty())
+                warn(here + ".simulated", "config.axis_simulated", fmt::format("axis {} is simulated on a real bus", axis.name),
+                     "remove `simulated` when its drive is there");
+            if (std::isinf(axis.following.window) && !(binding.slave.empty() && binding.drive.empty()))
+                warn(here, "config.no_following_error", fmt::format("the following error of axis {} is not watched", axis.name),
+                     "add `following_error: {window: ...}`");
+        }
+        if (out.hmi.lcm_commands == hmi::LcmCommands::local)
+            warn("hmi.lcm.commands", "hmi.anybody_commands",
+                 "every process of every user of this computer may move this machine: LCM knows no users and no passwords",
+                 "set `commands: disabled` and use the local socket, whose group may command (`hmi.socket_group`)");
+        if (!out.machine.retain.empty() && !runtime::keeps_positions(out.machine))
+            warn("retain", "config.nothing_to_retain", "no axis has an absolute encoder: nothing will be kept",
+                 "add `position_memory: {absolute: true}` to the axes that have one, or remove `retain`");
+    }
+
+    void problem(const std::string& path, std::string code, std::string what, std::string remedy) {
+        reader_.problem_in(path, std::move(code), std::move(what), std::move(remedy));
+    }
+
+    Reader& reader_;
+    const std::string& path_;
+    const LoadOptions& options_;
+    MachineFile file_;
+    DriveLibrary drives_;
+    std::vector<std::pair<std::string, std::shared_ptr<const axes::DriveProfile>>> profiles_;
+};
+
+/// The floors name members of their structs; the file has friendlier keys in a few places.
+std::string file_path_of(std::string subject) {
+    if (subject == "lcm.rate") return "hmi.rate";
+    if (subject == "socket" || subject.rfind("lcm.", 0) == 0) return "hmi." + subject;
+    static constexpr std::pair<std::string_view, std::string_view> names[] = {
+        {".following.", ".following_error."},
+        {".windows.in_position_time", ".in_position.time"},
+        {".windows.in_position", ".in_position.window"},
+        {".windows.", ".in_position."},
+        {".limits.position_min", ".limits.position"},
+        {".limits.position_max", ".limits.position"},
+        {".gearing.motor_revolutions", ".gearing.gear"},
+        {".gearing.load_revolutions", ".gearing.gear"},
+    };
+    for (const auto& [member, key] : names)
+        if (const auto at = subject.find(member); at != std::string::npos) return subject.replace(at, member.size(), key);
+    return subject;
+}
+
+void add_floor_errors(Reader& reader, const LoadedMachine& loaded) {
+    for (auto& error : check_floors(loaded)) {
+        if (error.subject.rfind(reader.file() + ":", 0) != 0) {  // else a start-up entry, which knows its place
+            const auto path = file_path_of(error.subject);
+            if (reader.already_bad(path)) continue;
+            if (!error.subject.empty()) error.what = fmt::format("{}: {}", path, error.what);
+            error.subject = located(reader.file(), reader.find(path));
+        }
+        reader.errors().push_back(std::move(error));
+    }
+}
+
+/// What the programs have wrong is told in the same breath: nobody wants to mend a file twice. Names are compared with sections that were read
+/// whole only.
+void add_program_errors(Reader& reader, runtime::MachineConfig machine) {
+    std::erase_if(machine.programs, [&](const auto& program) { return reader.already_bad("programs." + program.name); });
+    for (auto& error : runtime::check_programs(machine)) {
+        const std::string_view section = error.code == "program.unknown_axis"                                              ? "axes"
+                                         : error.code == "program.unknown_device"                                          ? "bus"
+                                         : error.code == "program.unknown_cam"                                             ? "cams"
+                                         : error.code == "program.unknown_input" || error.code == "program.unknown_output" ? "io"
+                                                                                                                           : "";
+        if (section.empty() || !reader.already_bad(section)) reader.errors().push_back(std::move(error));
+    }
+}
+
+/// By file, line and column; the machine's own file first.
+void sort_errors(std::vector<Error>& errors, const std::string& first_file) {
+    const auto key = [&](const Error& error) {
+        std::string file = error.subject;
+        int numbers[2] = {0, 0};
+        for (int n = 1; n >= 0; --n) {
+            const auto colon = file.find_last_of(':');
+            if (colon == std::string::npos || colon + 1 == file.size() ||
+                file.find_first_not_of("0123456789", colon + 1) != std::string::npos || file.size() - colon > 9)
+                break;
+            numbers[n] = std::stoi(file.substr(colon + 1));
+            file.resize(colon);
+        }
+        return std::tuple{file != first_file, file, numbers[0], numbers[1]};
+    };
+    std::stable_sort(errors.begin(), errors.end(), [&](const Error& a, const Error& b) { return key(a) < key(b); });
+}
+
+LoadResult load(const std::string& path, Document document, const LoadOptions& options) {
+    if (document.root.kind == Node::Kind::null) return std::move(document.errors);
+    Reader reader(path);
+    reader.errors() = std::move(document.errors);
+    MachineFile file;
+    read_table(reader, document.root, machine_table(), file);
+    auto loaded = Assembly(reader, path, options, std::move(file)).assemble();
+    add_floor_errors(reader, loaded);
+    if (reader.errors().empty()) return loaded;
+    sort_errors(reader.errors(), path);
+    if (options.resolve_programs) add_program_errors(reader, std::move(loaded.machine));
+    return std::move(reader.errors());
+}
+
+}  // namespace
+
+std::vector<std::string> drive_folders(const std::string& machine_file, const LoadOptions& options) {
+    auto folders = options.drive_dirs;
+    folders.push_back((fs::path(machine_file).parent_path() / ".." / "drives").lexically_normal().string());
+    for (const auto& data : options.data_dirs) folders.push_back((fs::path(data) / "drives").lexically_normal().string());
+#ifdef TAKTWERK_DATA_DIR
+    folders.push_back((fs::path(TAKTWERK_DATA_DIR) / "drives").string());
+#endif
+    return folders;
+}
+
+LoadResult load_machine(const std::string& path, const LoadOptions& options) { return load(path, read_document(path), options); }
+
+LoadResult load_machine_text(const std::string& path, std::string_view text, const LoadOptions& options) {
+    return load(path, parse_document(path, text), options);
+}
+
+}  // namespace taktwerk::config

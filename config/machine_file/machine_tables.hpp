@@ -1,0 +1,67 @@
+#pragma once
+// The keys of a machine file, and what is read from one before names are resolved.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "config/machine_file/bus_tables.hpp"
+#include "config/machine_file/cam_tables.hpp"
+#include "hmi_bridge/hmi_config.hpp"
+#include "runtime/machine_config.hpp"
+
+namespace taktwerk::config {
+
+struct IoEntry {
+    runtime::IoPoint point;
+    std::optional<std::uint8_t> channel;
+    std::optional<ObjectAddress> object;
+};
+
+/// `4 cycles` or `4 ms`.
+struct TaskPeriod {
+    double cycles = 1;
+    Duration time{};  ///< 0 = in cycles
+};
+
+struct TaskEntry {
+    runtime::TaskConfig task;
+    TaskPeriod every;
+};
+
+struct ProgramFile {
+    runtime::ProgramConfig program;
+    std::vector<TaskEntry> tasks;
+};
+
+/// `Pr097: 30`.
+struct NamedParameter {
+    std::string name;
+    std::int64_t value = 0;
+};
+
+struct SerialDriveEntry {
+    runtime::SerialDriveConfig drive;  ///< without profile and parameters
+    std::string profile;
+    std::vector<NamedParameter> parameters;
+};
+
+struct SerialLineEntry {
+    runtime::SerialLineConfig line;  ///< without drives
+    std::vector<SerialDriveEntry> drives;
+};
+
+struct MachineFile {
+    std::int64_t version = 0;
+    runtime::MachineConfig machine;  ///< without slaves, points, tasks and programs
+    hmi::HmiConfig hmi;
+    std::vector<SlaveEntry> slaves;
+    std::vector<SerialLineEntry> serial;
+    std::vector<IoEntry> inputs, outputs;
+    std::vector<CamEntry> cams;
+    std::vector<ProgramFile> programs;
+};
+
+[[nodiscard]] Table<MachineFile> machine_table();
+
+}  // namespace taktwerk::config

@@ -1,0 +1,263 @@
+#pragma once
+// One table per config struct says everything about its keys: name, member, type, unit, range, documentation. From the table
+// come the loader, suggestions for misspelt keys, the JSON Schema and the reference page (config/reference/reference.hpp).
+//
+//   Table<axes::ManualSpeeds> manual_table() {
+//       using M = axes::ManualSpeeds;
+//       return {"manual", "speeds for jogging", {
+//           field("slow", &M::slow, quantity(Dimension::velocity), "jogging speed; 0 = 5 % of the limit"),
+//       }};
+//   }
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "config/reading/document.hpp"
+#include "config/reading/quantity.hpp"
+#include "config/reading/reader.hpp"
+
+namespace taktwerk::config {
+
+enum class Presence : std::uint8_t { optional, required };
+
+struct SectionInfo;
+
+/// What a value looks like, without its C++ type: for schema and reference.
+struct Shape {
+    enum class Kind : std::uint8_t { text, integer, number, boolean, quantity, choice, object, fraction, list, pair, map, section, either };
+    Kind kind = Kind::text;
+    Dimension dimension = Dimension::time;   ///< quantity, pair
+    bool none_allowed = false;               ///< quantity: `none` = infinite
+    std::optional<double> minimum, maximum;  ///< integer, number
+    std::vector<std::string> choices;
+    std::shared_ptr<const Shape> element;  ///< list, map
+    std::shared_ptr<const SectionInfo> section;
+    std::vector<std::shared_ptr<const Shape>> alternatives;  ///< either
+};
+
+struct FieldInfo {
+    std::string key;
+    Presence presence = Presence::optional;
+    Shape shape;
+    std::string default_text;  ///< empty: nothing to say
+    std::string doc;
+};
+
+struct SectionInfo {
+    std::string title, doc;
+    std::vector<FieldInfo> fields;
+};
+
+/// How one C++ type is read from a node and shown.
+template <class M>
+struct Codec {
+    Shape shape;
+    std::function<bool(Reader&, const Node&, M&)> read;  ///< false: a problem was reported
+    std::function<std::string(const M&)> show;
+};
+
+template <class T>
+struct Field {
+    FieldInfo info;
+    std::function<bool(Reader&, const Node&, T&)> read;
+};
+
+template <class T>
+struct Table {
+    std::string title, doc;
+    std::vector<Field<T>> fields;
+    std::function<void(Reader&, const Node&, T&)> before, after;  ///< rules over several keys
+
+    [[nodiscard]] std::shared_ptr<const SectionInfo> info() const {
+        auto out = std::make_shared<SectionInfo>(SectionInfo{title, doc, {}});
+        for (const auto& f : fields) out->fields.push_back(f.info);
+        return out;
+    }
+};
+
+// --- fields -------------------------------------------------------------------------------------------------------------
+
+/// `get(T&)` gives the member as a reference.
+template <class T, class Get, class M>
+Field<T> field_at(std::string key, Get get, Codec<M> codec, std::string doc) {
+    Field<T> f;
+    T defaults{};
+    f.info = {std::move(key), Presence::optional, codec.shape, codec.show ? codec.show(get(defaults)) : std::string{}, std::move(doc)};
+    f.read = [get, read = std::move(codec.read)](Reader& reader, const Node& node, T& object) { return read(reader, node, get(object)); };
+    return f;
+}
+
+template <class T, class M>
+Field<T> field(std::string key, M T::*member, Codec<M> codec, std::string doc) {
+    return field_at<T>(
+        std::move(key), [member](T& object) -> M& { return object.*member; }, std::move(codec), std::move(doc));
+}
+
+/// A value that goes to several members, or is kept in another form: `set(T&, const M&)`.
+template <class T, class M, class Set>
+Field<T> field_via(std::string key, Codec<M> codec, Set set, std::string doc, std::string default_text = {}) {
+    Field<T> f;
+    f.info = {std::move(key), Presence::optional, codec.shape, std::move(default_text), std::move(doc)};
+    f.read = [set, read = std::move(codec.read)](Reader& reader, const Node& node, T& object) {
+        M value{};
+        if (!read(reader, node, value)) return false;
+        set(object, value);
+        return true;
+    };
+    return f;
+}
+
+template <class T>
+Field<T> required(Field<T> f) {
+    f.info.presence = Presence::required;
+    f.info.default_text.clear();
+    return f;
+}
+
+template <class T>
+Field<T> with_default(Field<T> f, std::string default_text) {
+    f.info.default_text = std::move(default_text);
+    return f;
+}
+
+/// The fields of a member's table as if they stood in T itself.
+template <class T, class Get, class M>
+void include_fields(std::vector<Field<T>>& into, Get get, const Table<M>& table) {
+    for (const auto& inner : table.fields)
+        into.push_back({inner.info,
+                        [get, read = inner.read](Reader& reader, const Node& node, T& object) { return read(reader, node, get(object)); }});
+}
+
+// --- reading ------------------------------------------------------------------------------------------------------------
+
+/// Reports an unknown key with the nearest known one.
+void report_unknown_key(Reader& reader, const Entry& entry, const std::vector<std::string>& known);
+void report_missing_key(Reader& reader, const Node& section, std::string_view key, const FieldInfo& info);
+void report_wrong_type(Reader& reader, const Node& node, std::string_view wanted, std::string_view example);
+/// What a value of this shape is called in messages, and an example of it.
+[[nodiscard]] std::string wanted_text(const Shape& shape, std::string_view axis_unit);
+
+template <class T>
+bool read_table(Reader& reader, const Node& node, const Table<T>& table, T& object) {
+    if (node.kind != Node::Kind::map) {
+        report_wrong_type(reader, node, "a section of `key: value` lines", {});
+        return false;
+    }
+    const auto errors_before = reader.errors().size();
+    if (table.before) table.before(reader, node, object);
+    std::vector<std::string> known;
+    for (const auto& f : table.fields) known.push_back(f.info.key);
+    for (const auto& entry : node.entries) {
+        bool found = false;
+        for (const auto& key : known) found = found || key == entry.key;
+        if (!found) report_unknown_key(reader, entry, known);
+    }
+    for (const auto& f : table.fields) {
+        const Entry* found = nullptr;
+        for (const auto& entry : node.entries)
+            if (entry.key == f.info.key) found = &entry;
+        if (found) {
+            const Reader::Scope scope(reader, f.info.key, found->at);
+            f.read(reader, found->value, object);
+        } else if (f.info.presence == Presence::required) {
+            report_missing_key(reader, node, f.info.key, f.info);
+        }
+    }
+    if (table.after) table.after(reader, node, object);
+    return reader.errors().size() == errors_before;
+}
+
+// --- codecs of sections and collections -----------------------------------------------------------------------------------
+
+template <class T>
+Codec<T> section(Table<T> table) {
+    Codec<T> c;
+    c.shape.kind = Shape::Kind::section;
+    c.shape.section = table.info();
+    c.read = [table = std::make_shared<const Table<T>>(std::move(table))](Reader& reader, const Node& node, T& object) {
+        return read_table(reader, node, *table, object);
+    };
+    return c;
+}
+
+template <class M>
+Codec<std::vector<M>> list(Codec<M> element) {
+    Codec<std::vector<M>> c;
+    c.shape.kind = Shape::Kind::list;
+    c.shape.element = std::make_shared<const Shape>(element.shape);
+    c.read = [element](Reader& reader, const Node& node, std::vector<M>& out) {
+        if (node.kind != Node::Kind::list) {
+            report_wrong_type(reader, node, "a list", "[a, b]");
+            return false;
+        }
+        out.clear();
+        bool good = true;
+        for (std::size_t i = 0; i < node.items.size(); ++i) {
+            const Reader::Scope scope(reader, std::to_string(i), node.items[i].at);
+            M value{};
+            good = element.read(reader, node.items[i], value) && good;
+            out.push_back(std::move(value));  // also when bad: other parts may name it
+        }
+        return good;
+    };
+    if (element.show)
+        c.show = [show = element.show](const std::vector<M>& values) {
+            std::string text;
+            for (const auto& v : values) text += (text.empty() ? "[" : ", ") + show(v);
+            return text.empty() ? std::string("[]") : text + "]";
+        };
+    return c;
+}
+
+/// A mapping name -> section; `name(M&)` is where the name goes.
+template <class M, class Name>
+Codec<std::vector<M>> by_name(Codec<M> element, Name name) {
+    Codec<std::vector<M>> c;
+    c.shape.kind = Shape::Kind::map;
+    c.shape.element = std::make_shared<const Shape>(element.shape);
+    c.read = [element, name](Reader& reader, const Node& node, std::vector<M>& out) {
+        if (node.kind == Node::Kind::null) return true;
+        if (node.kind != Node::Kind::map) {
+            report_wrong_type(reader, node, "a section of `name: ...` lines", {});
+            return false;
+        }
+        bool good = true;
+        for (const auto& entry : node.entries) {
+            const Reader::Scope scope(reader, entry.key, entry.at);
+            M value{};
+            name(value) = entry.key;
+            good = element.read(reader, entry.value, value) && good;
+            out.push_back(std::move(value));  // also when bad: other parts name it
+        }
+        return good;
+    };
+    return c;
+}
+
+template <class M>
+Codec<std::optional<M>> maybe(Codec<M> inner) {
+    Codec<std::optional<M>> c;
+    c.shape = inner.shape;
+    c.read = [inner](Reader& reader, const Node& node, std::optional<M>& out) {
+        M value{};
+        if (!inner.read(reader, node, value)) return false;
+        out = std::move(value);
+        return true;
+    };
+    return c;
+}
+
+/// A sub-section whose keys go to the same object.
+template <class T>
+Field<T> group(std::string key, std::string doc, std::vector<Field<T>> fields) {
+    Table<T> table{key, doc, std::move(fields), {}, {}};
+    return field_at<T>(
+        key, [](T& object) -> T& { return object; }, section(std::move(table)), std::move(doc));
+}
+
+}  // namespace taktwerk::config
