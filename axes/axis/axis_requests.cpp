@@ -109,8 +109,9 @@ void Axis::release_stop(CommandId id, Owner) noexcept {
     if (id == 0 || id != axis.body.lock) return;
     axis.body.lock = 0;
     if (!axis.body.queue.has_active()) axis.writer.no_holder();
-    const bool stands = !axis.conduct.moves() && !axis.body.begin_pending && !axis.motion.now.goal_pending;
-    if (axis.body.state == AxisState::Stopping && stands && axis.conduct.leave_stopping()) axis.succession.start_waiting(0);
+    // One that is not done yet ends by itself: the motor may come to rest after the set-point.
+    const bool done = !axis.body.queue.has_active() && !axis.conduct.moves() && !axis.motion.now.goal_pending;
+    if (axis.body.state == AxisState::Stopping && done && axis.conduct.leave_stopping()) axis.succession.start_waiting(0);
     axis.writer.publish();
 }
 

@@ -269,6 +269,23 @@ TEST(AxisFault, AResetOfAnAlarmThatNeedsAPowerCycleFailsAtOnce) {
     EXPECT_EQ(rig.view().state, AxisState::ErrorStop);
 }
 
+// AxisView::resetting: it waits for standstill. 100 u/s at 20 u/s2 are 5 s, longer than a drive has for its fault.
+TEST(AxisFault, AResetGivenInALongRampWaitsForItsEnd) {
+    auto config = plain_axis();
+    config.limits.deceleration = config.limits.stop_deceleration = 20;
+    Rig rig(config);
+    rig.power_on();
+    rig.accept(at_velocity(100));
+    rig.run(500);
+    rig.axis.stop_for_error(AlarmId{4711}, false);
+    EXPECT_EQ(rig.axis.reset(Owner::program), ErrorId::none);
+    rig.run(3000);
+    EXPECT_TRUE(rig.view().resetting);
+    ASSERT_TRUE(rig.run_until([&] { return !rig.view().resetting; }, 3000));
+    EXPECT_EQ(rig.view().reset_error, ErrorId::none);
+    EXPECT_EQ(rig.view().state, AxisState::Standstill);
+}
+
 // A drive that was away may count from another zero. Its axis has no power, so the set-point goes there at once: enabling does not wait.
 TEST(AxisFault, ADriveThatComesBackWithAnotherZeroTakesTheSetPointAlong) {
     Rig rig;

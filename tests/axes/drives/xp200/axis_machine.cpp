@@ -71,6 +71,27 @@ TEST(Xp200Axis, StopSelectsRestFirstAndTheDriveRamps) {
     EXPECT_EQ(rig.axis.view().state, AxisState::Stopping) << "Execute is still held";
 }
 
+// P1-127, P1-128: Done when the axis stands, which its motor does after its set-point. An Execute that falls between the two takes no Done away,
+// and what waits begins behind it.
+TEST(Xp200Axis, AStopThatIsReleasedBeforeTheMotorStandsIsDoneAllTheSame) {
+    AxisRig rig;
+    rig.go();
+    ASSERT_EQ(rig.submit(CommandKind::move_velocity, 0, 80).error, ErrorId::none);
+    rig.run(2s);
+    const auto stop = rig.submit(CommandKind::stop, 0, 0);
+    ASSERT_EQ(stop.error, ErrorId::none);
+    ASSERT_TRUE(rig.until([&] { return rig.axis.view().set_velocity == 0; }, 1s));
+    ASSERT_EQ(rig.axis.view().status(stop.id), CommandStatus::active) << "the motor still turns";
+    AxisCommand next{.kind = CommandKind::move_relative, .buffer_mode = mcBuffered, .position = 5, .velocity = 20};
+    const auto waiting = rig.axis.submit(next, Owner::program);
+    ASSERT_EQ(waiting.error, ErrorId::none);
+    rig.axis.release_stop(stop.id, Owner::program);
+    EXPECT_EQ(rig.axis.view().state, AxisState::Stopping);
+    ASSERT_TRUE(rig.until([&] { return rig.axis.view().status(stop.id) == CommandStatus::done; }, 1s));
+    EXPECT_NEAR(rig.rpm(), 0, 1);
+    EXPECT_TRUE(rig.until([&] { return rig.axis.view().status(waiting.id) == CommandStatus::done; }, 3s));
+}
+
 TEST(Xp200Axis, JogForwardAndBackEndsByItsLease) {
     AxisRig rig;
     rig.go();
@@ -274,6 +295,22 @@ TEST(Xp200Axis, ADriveThatKeepsItsPowerFailsTheReset) {
     EXPECT_EQ(rig.axis.reset(Owner::program), ErrorId::none);
     ASSERT_TRUE(rig.until([&] { return !rig.axis.view().resetting; }, 5s));
     EXPECT_EQ(rig.axis.view().reset_error, ErrorId::none);
+}
+
+// A drive that was told to stop comes to rest behind its set-point, and holds no place of ours. A reset that came while it still turned must not
+// let the position loop pull it back to where the set-point ended: nothing moves without a command.
+TEST(Xp200Axis, AResetInTheRampMovesNothing) {
+    AxisRig rig;
+    rig.go();
+    ASSERT_EQ(rig.submit(CommandKind::move_velocity, 0, 80).error, ErrorId::none);
+    rig.run(2s);
+    rig.axis.stop_for_error(AlarmId{4711}, false);
+    EXPECT_EQ(rig.axis.reset(Owner::program), ErrorId::none);
+    ASSERT_TRUE(rig.until([&] { return rig.axis.view().state == AxisState::Standstill; }, 3s)) << "it still has its power";
+    EXPECT_NEAR(rig.rpm(), 0, 1);
+    const double at = rig.millimetres();
+    rig.run(3s);
+    EXPECT_NEAR(rig.millimetres(), at, 0.06);
 }
 
 // --- settings with which it must not be enabled --------------------------------------------------------------------------------------
