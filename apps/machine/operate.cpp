@@ -45,9 +45,9 @@ int send(const Order& order, hmi::Client& client, const nlohmann::json& request,
 
 constexpr double ordinary_patience_s = 30;
 
-/// Until `reached` holds for every axis asked for; an axis that falls into ErrorStop on the way ends it, and one for which `given_up` holds.
+/// Until `reached` holds for every axis asked for; an axis that has `failed` on the way ends it, and one for which `given_up` holds.
 /// `given_up`: the axis itself decides how long it takes; then only a --timeout ends it earlier.
-int wait_for(const Order& order, hmi::Client& client, bool (*reached)(const Json&), const std::string& done, bool error_ends,
+int wait_for(const Order& order, hmi::Client& client, bool (*reached)(const Json&), const std::string& done, bool (*failed)(const Json&),
              bool (*given_up)(const Json&) = nullptr) {
     SystemClock clock;
     const double patience = order.patience_s > 0 ? order.patience_s : ordinary_patience_s;
@@ -60,7 +60,7 @@ int wait_for(const Order& order, hmi::Client& client, bool (*reached)(const Json
         for (const auto& axis : state->at("axes")) {
             const auto name = axis.at("name").get<std::string>();
             if ((order.target != "all" && !order.target.empty() && name != order.target) || axis.at("disabled").get<bool>()) continue;
-            if (error_ends && axis.at("state") == "ErrorStop") {
+            if (failed && failed(axis)) {
                 for (const auto& alarm : state->at("alarms"))
                     if (alarm.at("source") == "axis " + name)
                         return report(order.remote, Error{"axis.error_stop", "axis " + name, alarm.at("english").get<std::string>(),
@@ -82,6 +82,9 @@ int wait_for(const Order& order, hmi::Client& client, bool (*reached)(const Json
                                       fmt::format("not finished within {:g} s", patience), "See `taktwerk monitor` what it waits for."});
 }
 
+bool in_error(const Json& axis) { return axis.at("state") == "ErrorStop"; }
+/// It has been tried: the cause is still there, or no reset clears it.
+bool reset_in_vain(const Json& axis) { return in_error(axis) && !axis.at("resetting").get<bool>(); }
 /// One that still stops has its power yet: it may be about to lose it (switched off before, another mode), and takes no motion.
 bool is_powered(const Json& axis) { return axis.at("powered").get<bool>() && axis.at("state") != "Stopping"; }
 bool is_off(const Json& axis) { return axis.at("state") == "Disabled"; }
@@ -94,14 +97,14 @@ bool is_reset(const Json& axis) { return axis.at("state") != "ErrorStop" && !axi
 int enable(const Order& order, hmi::Client& client) {
     if (const auto answer = client.request({{"cmd", "enable"}, {"axis", order.target}}); !answer)
         return report(order.remote, answer.error());
-    if (order.wait) return wait_for(order, client, is_powered, order.target + ": enabled", true);
+    if (order.wait) return wait_for(order, client, is_powered, order.target + ": enabled", in_error);
     return report(order.remote, order.target + ": enabling");
 }
 
 int disable(const Order& order, hmi::Client& client) {
     if (const auto answer = client.request({{"cmd", "disable"}, {"axis", order.target}}); !answer)
         return report(order.remote, answer.error());
-    if (order.wait) return wait_for(order, client, is_off, order.target + ": disabled", false);
+    if (order.wait) return wait_for(order, client, is_off, order.target + ": disabled", nullptr);
     return report(order.remote, order.target + ": stops, then power goes off");
 }
 
@@ -120,7 +123,7 @@ int home(const Order& order, hmi::Client& client) {
     // The snapshot that still shows the axis as it was before must not count.
     std::this_thread::sleep_for(100ms);
     // How long it may take says homing.timeout in the machine file: the axis ends it by itself.
-    return wait_for(order, client, is_homed, order.target + ": homed", true, gave_up_homing);
+    return wait_for(order, client, is_homed, order.target + ": homed", in_error, gave_up_homing);
 }
 
 int reset(const Order& order, hmi::Client& client) {
@@ -130,7 +133,7 @@ int reset(const Order& order, hmi::Client& client) {
     if (const auto answer = client.request({{"cmd", "reset"}, {"axis", target}}); !answer) return report(order.remote, answer.error());
     if (!order.wait) return report(order.remote, target + ": resetting");
     std::this_thread::sleep_for(100ms);
-    return wait_for(order, client, is_reset, target + ": reset", false);
+    return wait_for(order, client, is_reset, target + ": reset", reset_in_vain);
 }
 
 int stop(const Order& order, hmi::Client& client) {

@@ -224,6 +224,19 @@ TEST_F(CommandLine, WhoWaitsUntilAnAxisIsEnabledMayMoveIt) {
     EXPECT_EQ(jogged.code, exit_ok) << jogged.text;
 }
 
+// E.017 of the SV33-E (manual 5.4) needs a power cycle, which the axis knows at once: nobody waits for half a minute to hear less.
+TEST_F(CommandLine, AResetThatIsInVainSaysWhyAtOnce) {
+    Child runtime({taktwerk, "run", file("machines/relaxed.yaml", text_of(private_machine()) + "simulation: { supervision: relaxed }\n"),
+                   "--simulate"});
+    ASSERT_TRUE(runtime.says("running, manual mode", 20s)) << runtime.text();
+    ASSERT_EQ(to_machine({"enable", "x", "--wait"}).code, exit_ok);
+    ASSERT_EQ(to_machine({"simulate", "drive-fault", "x", "0x5530"}).code, exit_ok);
+    ::poll(nullptr, 0, 300);
+    const auto answer = to_machine({"reset", "x", "--wait", "--timeout", "20s"});
+    EXPECT_NE(answer.code, exit_ok);
+    EXPECT_THAT(answer.text, AllOf(HasSubstr("E.017"), HasSubstr("switch off and on")));
+}
+
 TEST_F(CommandLine, ShutDownOnCommandIsAGoodEnd) {
     Child runtime({taktwerk, "run", private_machine()});
     ASSERT_TRUE(runtime.says("running, manual mode", 20s)) << runtime.text();
