@@ -353,7 +353,7 @@ Table<AxisBinding> axis_table() {
         field("simulated", &A::simulated, boolean(), "its drive is simulated although the bus is real"),
         field("queue_depth", &A::queue_depth, integer<std::uint8_t>(1, 8), "buffered motions"),
         field("stale_limit", &A::stale_limit, integer<std::uint16_t>(1, 1000),
-              "cycles without fresh feedback until the axis stops in error"),
+              "cycles (on a serial line: rounds of questions) without fresh feedback until the axis stops in error"),
         field("feed_patience", &A::feed_patience, integer<std::uint16_t>(0, 1000),
               "set-points from outside that may miss in a row while the axis moves; then it brakes"),
         field("jog_lease", &A::jog_lease, duration(std::chrono::milliseconds{100}, std::chrono::seconds{5}),
