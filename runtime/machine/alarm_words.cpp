@@ -189,6 +189,16 @@ void AlarmWords::tell_more_of_axis(AlarmText& out, const AlarmFact& fact) const 
         out.english = "The drive is not in operation on its bus any more";
         out.chinese = "驱动器已退出总线运行状态";
     }
+    // There is no slave: whoever searches the bus searches in vain.
+    if (const auto line = drives_.serial().line_of(fact.index); fact.id == axes::id(axes::AxisAlarm::axis_feedback_lost) && !line.empty()) {
+        out.english = "No answer any more, or too seldom, from the drive" + line;
+        out.chinese = "驱动器不再应答,或应答过于稀少" + line;
+        out.cause =
+            "The cable of the line is cut, off or disturbed; the drive has no mains, from which its port lives too; or its answers come "
+            "late";
+        out.remedy =
+            "Check line, supply and panel of the drive; when it answers again, reset, then home. Where it answers late: `stale_limit`";
+    }
     if (fact.id == axes::id(axes::AxisAlarm::homing_failed))
         if (const auto* doubt = axes::find_index_doubt(fact.a)) {
             out.english = doubt->english;

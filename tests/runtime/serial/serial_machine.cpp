@@ -1,6 +1,8 @@
 // A machine with a drive on a serial line: blocks move it through the line, and when the line falls silent the output that watches over it
 // drops at the terminal and stops the motor.
 
+#include <gmock/gmock.h>
+
 #include "axes/axis/alarms.hpp"
 #include "fb_library/all_blocks.hpp"
 #include "runtime/check/machine_check.hpp"
@@ -12,6 +14,9 @@ namespace {
 
 using namespace fb;
 using axes::AxisState;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 axes::sim::xp200::Servo& servo(TestMachine& m) { return m.world.serial().drive("u")->servo(); }
 
@@ -119,6 +124,7 @@ TEST(SerialMachine, ASilentLineDropsTheOutputAndTheMotorStops) {
     ASSERT_TRUE(m.until([&] { return std::abs(servo(m).speed()) < 1; }, 500ms));
     ASSERT_TRUE(m.until([&] { return m.axis(u).state == AxisState::ErrorStop; }, 500ms)) << m.alarms();
     EXPECT_TRUE(m.has_alarm(id(axes::AxisAlarm::axis_feedback_lost)));
+    EXPECT_THAT(m.alarms(), AllOf(HasSubstr("axis u: No answer"), HasSubstr("line 'rs485'"), Not(HasSubstr("slave"))));
 
     // Back again: the output rises only when the drive has been stopped and disabled; nothing moves by itself.
     m.world.serial().line("rs485")->cut(false);
