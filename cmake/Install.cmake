@@ -18,7 +18,7 @@ set(programs_folder lib/taktwerk/programs)  # not LIBDIR: bin/taktwerk finds it 
 if(TARGET taktwerk)
   install(TARGETS taktwerk RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT runtime)
 endif()
-foreach(folder drives machines)
+foreach(folder drives devices machines)
   install(DIRECTORY "${PROJECT_SOURCE_DIR}/config/${folder}" DESTINATION "${CMAKE_INSTALL_DATADIR}/taktwerk" COMPONENT runtime
     FILES_MATCHING PATTERN "*.yaml")
 endforeach()

@@ -118,9 +118,19 @@ Json event_array(const runtime::Snapshot& s, const runtime::MachineLayout& layou
     return out;
 }
 
-Json points(const std::vector<std::string>& names, const std::vector<std::int64_t>& values) {
+/// A point with a unit in it, another as the number that the terminal carries.
+Json points(const std::vector<std::string>& names, const std::vector<std::string>& units, const std::vector<std::int64_t>& words,
+            const auto& value_of) {
     auto out = Json::object();
-    for (std::size_t i = 0; i < names.size() && i < values.size(); ++i) out[names[i]] = values[i];
+    for (std::size_t i = 0; i < names.size() && i < words.size() && i < units.size(); ++i)
+        out[names[i]] = units[i].empty() ? Json(words[i]) : Json(value_of(i));
+    return out;
+}
+
+Json units_of(const std::vector<std::string>& names, const std::vector<std::string>& units) {
+    auto out = Json::object();
+    for (std::size_t i = 0; i < names.size() && i < units.size(); ++i)
+        if (!units[i].empty()) out[names[i]] = units[i];
     return out;
 }
 
@@ -182,8 +192,13 @@ std::string state_json(const runtime::Snapshot& s, const MachineLink& machine) {
                              {"overruns", s.tasks[i].overruns},
                              {"run_ns", count(s.tasks[i].run)},
                              {"run_max_ns", count(s.tasks[i].run_max)}});
-    out["inputs"] = points(layout.inputs, s.inputs);
-    out["outputs"] = points(layout.outputs, s.outputs);
+    out["inputs"] = points(layout.inputs, layout.input_units, s.inputs, [&](std::size_t i) { return s.input_values[i].value; });
+    out["outputs"] = points(layout.outputs, layout.output_units, s.outputs, [&](std::size_t i) { return s.output_values[i]; });
+    out["input_units"] = units_of(layout.inputs, layout.input_units);
+    out["output_units"] = units_of(layout.outputs, layout.output_units);
+    auto& doubtful = out["doubtful_inputs"] = Json::array();
+    for (std::size_t i = 0; i < s.input_values.size() && i < layout.inputs.size(); ++i)
+        if (!s.input_values[i].good) doubtful.push_back(layout.inputs[i]);
     auto& variables = out["variables"] = Json::array();
     for (std::size_t i = 0; i < s.variables.size() && i < layout.variables.size(); ++i)
         variables.push_back(Json{{"program", layout.variables[i].program},
@@ -218,6 +233,8 @@ std::string layout_json(const runtime::MachineLayout& layout) {
     out["slaves"] = layout.slaves;
     out["inputs"] = layout.inputs;
     out["outputs"] = layout.outputs;
+    out["input_units"] = units_of(layout.inputs, layout.input_units);
+    out["output_units"] = units_of(layout.outputs, layout.output_units);
     out["programs"] = layout.programs;
     out["tasks"] = layout.tasks;
     auto& variables = out["variables"] = Json::array();

@@ -26,13 +26,18 @@ enum class MachineAlarm : AlarmId {
     start_withdrawn = 0x6013,
     drive_silent = 0x6014,
     drive_not_ready_on_line = 0x6015,
+    input_faulty = 0x6016,
+    input_out_of_limits = 0x6017,
+    output_no_number = 0x6018,
 };
+/// First number of input_faulty: what its terminal says.
+inline constexpr double input_error = 0, input_underrange = 1, input_overrange = 2;
 /// First number of emergency_stop: nobody pressed it, the slave with its input is not exchanged.
 inline constexpr double emergency_stop_unread = 1;
 
 [[nodiscard]] constexpr AlarmId id(MachineAlarm alarm) noexcept { return static_cast<AlarmId>(alarm); }
 
-inline constexpr std::array<AlarmInfo, 17> machine_alarms{{
+inline constexpr std::array<AlarmInfo, 20> machine_alarms{{
     {id(MachineAlarm::emergency_stop), "emergency_stop", "Emergency stop: the axes stop along their ramps, then power goes off",
      "急停:各轴沿减速斜坡停止,随后断开动力", "The emergency stop button is pressed, or its circuit is open",
      "Release the button, `taktwerk reset`, then enable again or `taktwerk start`", ResetRule::acknowledge, Reaction::power_off,
@@ -170,6 +175,33 @@ inline constexpr std::array<AlarmInfo, 17> machine_alarms{{
      "It refuses to be stopped or disabled over the line, most of its answers are lost or damaged, or the line has too many drives for its "
      "baud rate",
      "Check cable, shield and termination of the line, raise `baud` (and Pr182), and see whether two drives have the same station",
+     ResetRule::self_clearing,
+     Reaction::warn,
+     {}},
+    {id(MachineAlarm::input_faulty),
+     "input_faulty",
+     "The terminal reports an error of this input: its value cannot be believed",
+     "端子报告该输入出错:其数值不可信",
+     "A broken or shorted wire, a sensor without supply, or a signal beyond what the terminal measures",
+     "Look at the sensor and its wires at the terminal; the alarm goes when the terminal takes it back",
+     ResetRule::self_clearing,
+     Reaction::warn,
+     {}},
+    {id(MachineAlarm::input_out_of_limits),
+     "input_out_of_limits",
+     "The input is at {a}, beyond its limit of {b}",
+     "输入值为 {a},超出限值 {b}",
+     "The process is outside of `limits`, or the sensor or its `scale` is wrong",
+     "Look at the process and at the sensor, or widen `limits` of the input",
+     ResetRule::self_clearing,
+     Reaction::warn,
+     {}},
+    {id(MachineAlarm::output_no_number),
+     "output_no_number",
+     "The program wrote a value to an output that is no number (NaN or infinite): the output kept its value",
+     "程序向输出写入了非数值(NaN 或无穷大):输出保持原值",
+     "A calculation in the program divided by zero, or used an input that is not good",
+     "Mend the program; it can ask ctx.good(input) before it computes",
      ResetRule::self_clearing,
      Reaction::warn,
      {}},

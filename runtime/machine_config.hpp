@@ -11,6 +11,7 @@
 #include "axes/port/drive_profile.hpp"
 #include "axes/sim/plant_config.hpp"
 #include "axes/tables/cam_table.hpp"
+#include "core/point_line.hpp"
 #include "core/result.hpp"
 #include "core/time.hpp"
 #include "ecat/bus_config.hpp"
@@ -56,6 +57,18 @@ struct AxisBinding {
 
 enum class IoDirection : std::uint8_t { input, output };
 
+/// What a terminal says of one of its inputs beside the value: an object of the same process data that is not 0.
+struct PointStatus {
+    enum class Kind : std::uint8_t { error, underrange, overrange } kind = Kind::error;
+    std::uint16_t index = 0;
+    std::uint8_t sub = 0;
+};
+
+/// Between which values an input is right, in its unit; outside it raises an alarm.
+struct PointLimits {
+    double low = 0, high = 0;
+};
+
 /// A named point that programs, commands and the HMI use.
 struct IoPoint {
     std::string name;
@@ -63,11 +76,16 @@ struct IoPoint {
     std::string slave;
     std::uint16_t index = 0;  ///< mapped object
     std::uint8_t sub = 0;
-    bool inverted = false;  ///< 1-bit points: TRUE when the terminal says 0
+    bool inverted = false;                ///< 1-bit points: TRUE when the terminal says 0
+    std::string unit{};                   ///< of its value; empty: the number itself
+    PointLine line{};                     ///< from the number of the object to that unit; what its bits hold is found out on the bus
+    std::optional<PointLimits> limits{};  ///< inputs
+    Duration filter{};                    ///< inputs: time constant of a first-order filter on the value; 0 = none
+    std::vector<PointStatus> status{};    ///< inputs
     /// Outputs: from the bus' first frames on, while no program drives it, and at the end. Not when the master is gone or the
     /// cable is cut: then the terminal's own watchdog sets its outputs to zero, whatever stands here.
     std::int64_t safe_value = 0;
-    std::optional<std::int64_t> simulated;  ///< inputs: value the simulated terminal starts with
+    std::optional<std::int64_t> simulated{};  ///< inputs: value the simulated terminal starts with
 };
 
 /// What happens when a slower task has not finished at its next release.
@@ -140,11 +158,12 @@ enum class Supervision : std::uint8_t {
 
 /// Something that happens to the simulated machine at a given machine time: for demos, rehearsals and tests.
 struct SimulationEvent {
-    enum class Kind : std::uint8_t { input, drive_fault, main_power, slave_power, jam, serial_line };
+    enum class Kind : std::uint8_t { input, input_fault, drive_fault, main_power, slave_power, jam, serial_line };
     Duration at{};  ///< since start of the run
     Kind kind = Kind::input;
-    std::string target;      ///< input point (input), axis (drive_fault, main_power, jam), slave (slave_power), line (serial_line)
-    std::int64_t value = 0;  ///< input value; 603Fh code; 1 = power on / free / plugged, 0 = power off / jammed / cut
+    std::string target;  ///< input point (input, input_fault), axis (drive_fault, main_power, jam), slave (slave_power), line (serial_line)
+    std::int64_t value =
+        0;  ///< input value, raw; 1 = the terminal reports an error of it; 603Fh code; 1 = power on / free / plugged, 0 = power off / jammed / cut
 };
 
 /// Where a simulated slave hangs, and how good its clock is. Without one a slave hangs behind port 1 of the slave before it.

@@ -61,7 +61,9 @@ struct Snapshot {
     CycleStatistics statistics;
     std::vector<ecat::SlaveHealth> slaves;
     std::vector<axes::AxisView> axes;
-    std::vector<std::int64_t> inputs, outputs;  ///< one per I/O point, in configuration order of that direction
+    std::vector<std::int64_t> inputs, outputs;  ///< one per I/O point, in configuration order of that direction: raw words
+    std::vector<PointValue> input_values;       ///< the same in their units
+    std::vector<double> output_values;
     std::vector<double> parameters;
     std::vector<double> variables;  ///< monitored variables of all programs
     std::vector<ProgramState> programs;
@@ -111,6 +113,7 @@ struct MachineLayout {
     std::vector<AxisInfo> axes;
     std::vector<Block> blocks;
     std::vector<std::string> slaves, inputs, outputs, programs, tasks;
+    std::vector<std::string> input_units, output_units;  ///< one per point; empty: the number itself
     std::vector<Variable> variables;
     std::vector<ParameterInfo> parameters;
 };

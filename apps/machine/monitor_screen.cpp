@@ -213,11 +213,24 @@ private:
         Lines out;
         for (const auto& [key, title] : {std::pair{"inputs", " inputs "}, std::pair{"outputs", " outputs"}}) {
             std::vector<std::string> words;
+            const bool inputs = std::string_view(key) == "inputs";
+            const auto units = state_.value(inputs ? "input_units" : "output_units", Json::object());
             for (const auto& [name, value] : state_.at(key).items())
-                words.push_back(fmt::format("{}={}", name, value.template get<std::int64_t>()));
+                words.push_back(point(name, value, units) + (inputs && is_doubtful(name) ? "?" : ""));
             if (!words.empty()) wrap(out, title, words);
         }
         return out;
+    }
+
+    static std::string point(const std::string& name, const Json& value, const Json& units) {
+        const auto unit = units.find(name);
+        if (unit == units.end()) return fmt::format("{}={}", name, value.get<std::int64_t>());
+        return fmt::format("{}={:.5g} {}", name, hmi::number_of(value), unit->get<std::string>());
+    }
+    /// Its slave is not exchanged, its terminal reports an error, or it is beyond its limits.
+    bool is_doubtful(const std::string& input) const {
+        const auto names = state_.value("doubtful_inputs", Json::array());
+        return std::find(names.begin(), names.end(), Json(input)) != names.end();
     }
 
     static std::string value(const char* before, const Json& variable) {

@@ -179,14 +179,17 @@ int set(const Order& order, hmi::Client& client) {
 }
 /// It is safe again when its client goes: so this one stays.
 int output(const Order& order, hmi::Client& client) {
-    const auto value = config::value_in(order.value, "");
+    const auto state = state_of(client);
+    const auto unit = state ? state->value("output_units", nlohmann::ordered_json::object()).value(order.target, "") : std::string{};
+    const auto value = config::value_in(order.value, unit);
     if (!value) return report(order.remote, value.error());
     const auto answer = client.request({{"cmd", "set_output"}, {"output", order.target}, {"value", *value}});
     if (!answer) return report(order.remote, answer.error());
     watch_stop_signals();
     SystemClock clock;
     const auto start = clock.now();
-    if (order.hold_s <= 0 && !order.remote.json) fmt::print("output {} = {:g} until Ctrl-C\n", order.target, *value);
+    if (order.hold_s <= 0 && !order.remote.json)
+        fmt::print("output {} = {:g}{}{} until Ctrl-C\n", order.target, *value, unit.empty() ? "" : " ", unit);
     std::fflush(stdout);
     while (!stop_requested() && (order.hold_s <= 0 || clock.now() - start < from_seconds(order.hold_s))) {
         if (const auto alive = client.request({{"cmd", "hello"}}); !alive) return report(order.remote, alive.error());

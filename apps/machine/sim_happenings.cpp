@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "config/reading/quantity.hpp"
+#include "config/reading/unit_text.hpp"
 #include "core/nearest_name.hpp"
 
 namespace taktwerk::apps {
@@ -17,13 +18,15 @@ namespace {
 using runtime::SimulationEvent;
 using Kind = SimulationEvent::Kind;
 
-constexpr std::array<HappeningWord, 8> all_happenings{{
+constexpr std::array<HappeningWord, 10> all_happenings{{
     {"drive-fault", "AXIS CODE", "the drive raises this alarm (603Fh, or the number of an XP200)", Kind::drive_fault, 0},
     {"main-power-off", "AXIS", "the drive loses its main power", Kind::main_power, 0},
     {"main-power-on", "AXIS", "and gets it back", Kind::main_power, 1},
     {"jam", "AXIS", "the mechanics do not move any more", Kind::jam, 0},
     {"free", "AXIS", "and move again", Kind::jam, 1},
-    {"input", "NAME VALUE", "an input takes this value: 0 or 1, an analog one its raw number", Kind::input, 0},
+    {"input", "NAME VALUE", "an input takes this value: 0 or 1, one with a unit such as 7.5bar, else the raw number", Kind::input, 0},
+    {"input-fault", "NAME", "the terminal reports an error of this input, such as a broken wire", Kind::input_fault, 1},
+    {"input-whole", "NAME", "and takes it back", Kind::input_fault, 0},
     {"line-cut", "LINE", "a serial line carries nothing any more", Kind::serial_line, 0},
     {"line-plugged", "LINE", "and carries again", Kind::serial_line, 1},
 }};
@@ -32,14 +35,25 @@ std::vector<std::string> targets(const runtime::MachineConfig& machine, Kind kin
     std::vector<std::string> out;
     if (kind == Kind::serial_line)
         for (const auto& line : machine.serial) out.push_back(line.name);
-    else if (kind == Kind::input)
+    else if (kind == Kind::input || kind == Kind::input_fault)
         for (const auto& point : machine.io) {
-            if (point.direction == runtime::IoDirection::input) out.push_back(point.name);
+            const bool fits = kind == Kind::input || !point.status.empty();
+            if (point.direction == runtime::IoDirection::input && fits) out.push_back(point.name);
         }
     else
         for (const auto& binding : machine.axes)
             if (!binding.slave.empty() || !binding.drive.empty()) out.push_back(binding.axis.name);
     return out;
+}
+
+/// What a person writes for an input, as its raw word: with a unit where it has one.
+std::optional<std::int64_t> raw_input(const runtime::MachineConfig& machine, std::string_view name, std::string_view text) {
+    const auto point =
+        std::ranges::find_if(machine.io, [&](const auto& p) { return p.name == name && p.direction == runtime::IoDirection::input; });
+    if (point == machine.io.end() || point->unit.empty()) return config::parse_integer(text);
+    const auto value = config::value_in(text, point->unit);
+    if (!value) return std::nullopt;
+    return point->line.raw_of(*value);
 }
 
 Error bad(std::string_view line, const HappeningWord& word) {
@@ -72,7 +86,7 @@ Result<SimulationEvent> parse_happening(std::string_view line, const runtime::Ma
     event.target = parts[1];
     event.value = word->value;
     if (with_number) {
-        const auto number = config::parse_integer(parts[2]);
+        const auto number = word->kind == Kind::input ? raw_input(machine, parts[1], parts[2]) : config::parse_integer(parts[2]);
         if (!number || (word->kind == Kind::drive_fault && (*number < 1 || *number > 0xFFFF))) return bad(line, *word);
         event.value = *number;
     }

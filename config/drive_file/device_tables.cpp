@@ -1,5 +1,6 @@
 #include "config/drive_file/device_tables.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "config/drive_file/startup_entry.hpp"
@@ -72,13 +73,16 @@ Table<ecat::SyncManagerDescription> sync_manager_table() {
                                               {"outputs", SmUse::outputs},
                                               {"inputs", SmUse::inputs}}),
                                "what goes through it")),
-                required(field("start", &S::start, integer<std::uint16_t>(0x1000, u16), "address in the controller's memory")),
+                required(field("start", &S::start, integer<std::uint16_t>(0x0900, u16),
+                               "address in the controller's memory, or of the registers that it fills: 0F00h")),
                 with_default(field("size", &S::size, integer<std::uint16_t>(1, u16), "bytes of a mailbox"), "from the PDOs"),
                 required(field("control", &S::control, integer<std::uint8_t>(0, u8), "control byte: usually 26h, 22h, 64h, 20h")),
             },
             {},
             {}};
 }
+
+}  // namespace
 
 Table<ecat::PdoDescription> pdo_table() {
     using P = ecat::PdoDescription;
@@ -96,6 +100,8 @@ Table<ecat::PdoDescription> pdo_table() {
             {},
             {}};
 }
+
+namespace {
 
 struct PdoDirection {
     ecat::PdoRules rules;
@@ -350,22 +356,29 @@ Codec<ecat::RevisionRule> revision_rule() {
     return choice<R>({{"any", R::any}, {"at_least", R::at_least}, {"exact", R::exact}});
 }
 
-std::vector<Field<DeviceDescription>> device_fields() {
+std::vector<Field<DeviceDescription>> controller_fields() {
     return {
         required(field_at<DeviceDescription>(
             "identity", [](DeviceDescription& d) -> DeviceDescription& { return d; }, section(identity_table()), "who it says it is")),
         field("mailbox", &DeviceDescription::mailbox, maybe(section(mailbox_table())), "acyclic services"),
-        required(field("sync_managers", &DeviceDescription::sync_managers, list(section(sync_manager_table())),
-                       "in the order of the controller")),
+        field("sync_managers", &DeviceDescription::sync_managers, list(section(sync_manager_table())), "in the order of the controller"),
         field("fmmus", &DeviceDescription::fmmus, integer<std::uint8_t>(1, 16), "of the controller"),
         field("sync_manager_count", &DeviceDescription::sync_manager_count, integer<std::uint8_t>(1, 16), "of the controller"),
         field("process_ram", &DeviceDescription::process_ram, integer<std::uint16_t>(1, u16), "bytes from 1000h"),
-        required(field_at<DeviceDescription>(
-            "pdo", [](DeviceDescription& d) -> DeviceDescription& { return d; }, section(pdo_section_table()),
-            "process data as the drive offers it")),
         field("slots", &DeviceDescription::slots, section(slot_table()), "of a modular slave"),
         field("dc", &DeviceDescription::dc, section(dc_table()), "distributed clocks"),
     };
+}
+
+std::vector<Field<DeviceDescription>> device_fields() {
+    auto fields = controller_fields();
+    const auto sync_managers = std::find_if(fields.begin(), fields.end(), [](const auto& f) { return f.info.key == "sync_managers"; });
+    *sync_managers = required(std::move(*sync_managers));
+    const auto slots = std::find_if(fields.begin(), fields.end(), [](const auto& f) { return f.info.key == "slots"; });
+    fields.insert(slots, required(field_at<DeviceDescription>(
+                             "pdo", [](DeviceDescription& d) -> DeviceDescription& { return d; }, section(pdo_section_table()),
+                             "process data as the drive offers it")));
+    return fields;
 }
 
 }  // namespace taktwerk::config

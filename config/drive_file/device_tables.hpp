@@ -11,6 +11,10 @@
 namespace taktwerk::config {
 
 [[nodiscard]] std::vector<Field<ecat::DeviceDescription>> device_fields();
+/// Those that say nothing of process data, none of them required but `identity`: a coupler has no sync manager.
+[[nodiscard]] std::vector<Field<ecat::DeviceDescription>> controller_fields();
+/// One PDO of a slave.
+[[nodiscard]] Table<ecat::PdoDescription> pdo_table();
 
 /// One row of `objects`: what bus and simulator need of it, and what people do.
 struct ObjectRow {

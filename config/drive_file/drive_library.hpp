@@ -1,31 +1,18 @@
 #pragma once
-// Finds drive files by name in some folders; each is read once.
+// Drive files by name: `profile: sv33-e`.
 
-#include <map>
 #include <string>
-#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "config/drive_file/drive_loader.hpp"
+#include "config/reading/file_library.hpp"
 
 namespace taktwerk::config {
 
-class DriveLibrary {
+class DriveLibrary : public FileLibrary<LoadedDrive> {
 public:
-    explicit DriveLibrary(std::vector<std::string> folders) : folders_(std::move(folders)) {}
-
-    /// nullptr when there is no such file or it has errors (then errors() grew).
-    const LoadedDrive* find(const std::string& name);
-    [[nodiscard]] bool exists(const std::string& name) const;
-    [[nodiscard]] std::vector<std::string> names() const;  ///< all drive types in the folders
-    [[nodiscard]] const std::vector<std::string>& folders() const noexcept { return folders_; }
-    [[nodiscard]] const std::vector<Error>& errors() const noexcept { return errors_; }
-
-private:
-    [[nodiscard]] std::string path_of(const std::string& name) const;
-    std::vector<std::string> folders_;
-    std::map<std::string, std::variant<LoadedDrive, std::vector<Error>>, std::less<>> drives_;
-    std::vector<Error> errors_;
+    explicit DriveLibrary(std::vector<std::string> folders) : FileLibrary(std::move(folders), load_drive) {}
 };
 
 }  // namespace taktwerk::config

@@ -71,11 +71,12 @@ Table<SlaveEntry> slave_table() {
     using C = ecat::SlaveConfig;
     Table<S> table{
         "bus.slaves",
-        "One slave on the cable: a drive (with `profile`) or a terminal (with `terminal`).",
+        "One slave on the cable: a drive (with `profile`), another device (with `device`) or a plain digital terminal (with `terminal`).",
         {
             required(of_bus("name", &C::name, config::name(), "by which axes and I/O points refer to it")),
             with_default(field("profile", &S::profile, config::name(), "drive type: a file in config/drives/"), ""),
-            field("terminal", &S::terminal, maybe(section(terminal_table())), "a digital terminal instead of a drive"),
+            with_default(field("device", &S::device, config::name(), "device type that is no drive: a file in config/devices/"), ""),
+            field("terminal", &S::terminal, maybe(section(terminal_table())), "or a digital terminal of no particular make"),
             with_default(of_bus("position", &C::position, maybe(integer<std::uint16_t>(0, 65535)), "place on the cable, from 0"),
                          "its place in this list"),
             of_bus("alias", &C::alias, maybe(integer<std::uint16_t>(1, 65535)), "station alias instead of the position"),
@@ -114,12 +115,16 @@ Table<SlaveEntry> slave_table() {
             f.info.default_text.clear();
     table.after = [](Reader& reader, const Node& node, S& s) {
         reader.also_known_as(fmt::format("slave '{}'", s.slave.name), node.at);  // as the bus calls it
-        if (s.profile.empty() == !s.terminal.has_value() && !node.find("profile") && !node.find("terminal"))
-            reader.problem(node.at, "config.missing_key", fmt::format("slave '{}' has neither `profile` nor `terminal`", s.slave.name),
-                           "add `profile:` with a drive type or `terminal:` with its inputs and outputs");
-        if (node.find("profile") && node.find("terminal"))
-            reader.problem(node.at, "config.conflict", fmt::format("slave '{}' has both `profile` and `terminal`", s.slave.name),
-                           "keep one of them");
+        std::string kinds;
+        int count = 0;
+        for (const auto* kind : {"profile", "device", "terminal"})
+            if (node.find(kind) != nullptr) kinds += fmt::format("{}`{}`", count++ == 0 ? "" : " and ", kind);
+        if (count == 0)
+            reader.problem(node.at, "config.missing_key",
+                           fmt::format("slave '{}' has neither `profile` nor `device` nor `terminal`", s.slave.name),
+                           "add `profile:` with a drive type, `device:` with another device type, or `terminal:` with its inputs and outputs");
+        if (count > 1)
+            reader.problem(node.at, "config.conflict", fmt::format("slave '{}' has both {}", s.slave.name, kinds), "keep one of them");
         if (s.slave.position.has_value() + s.slave.alias.has_value() + s.slave.device_id.has_value() > 1)
             reader.problem(node.at, "config.conflict",
                            fmt::format("slave '{}' has more than one of `position`, `alias` and `device_id`", s.slave.name),

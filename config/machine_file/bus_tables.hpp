@@ -19,8 +19,8 @@ struct Terminal {
 
 /// One of `slaves`: what the bus is told as it is written, and beside it what the loader has to look up first.
 struct SlaveEntry {
-    ecat::SlaveConfig slave;  ///< without device, process data, start-up SDOs; `dc` follows from the one below
-    std::string profile;
+    ecat::SlaveConfig slave;  ///< without description, process data, start-up SDOs; `dc` follows from the one below
+    std::string profile, device;
     std::optional<Terminal> terminal;
     std::optional<bool> dc;
     std::vector<ObjectAddress> rx, tx;

@@ -4,18 +4,20 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <tuple>
 
 #include <fmt/format.h>
 
+#include "config/device_file/device_loader.hpp"
 #include "config/drive_file/drive_library.hpp"
 #include "config/drive_file/pdo_selection.hpp"
 #include "config/drive_file/setting_conflicts.hpp"
 #include "config/machine_file/floor_checks.hpp"
+#include "config/machine_file/io_points.hpp"
 #include "config/machine_file/machine_tables.hpp"
 #include "core/nearest_name.hpp"
-#include "ecat/sim/digital_terminal.hpp"
 #include "runtime/check/program_check.hpp"
 #include "runtime/positions/keeps_positions.hpp"
 
@@ -35,7 +37,12 @@ std::string names_or_none(const std::vector<std::string>& words) {
 class Assembly {
 public:
     Assembly(Reader& reader, const std::string& path, const LoadOptions& options, MachineFile file)
-        : reader_(reader), path_(path), options_(options), file_(std::move(file)), drives_(drive_folders(path, options)) {}
+        : reader_(reader),
+          path_(path),
+          options_(options),
+          file_(std::move(file)),
+          drives_(drive_folders(path, options)),
+          devices_(device_folders(path, options)) {}
 
     LoadedMachine assemble() {
         LoadedMachine out{std::move(file_.machine), std::move(file_.hmi), {}};
@@ -73,6 +80,7 @@ public:
         check_events(out.machine);
         add_warnings(out);
         reader_.errors().insert(reader_.errors().end(), drives_.errors().begin(), drives_.errors().end());
+        reader_.errors().insert(reader_.errors().end(), devices_.errors().begin(), devices_.errors().end());
         return out;
     }
 
@@ -82,9 +90,8 @@ private:
         if (!slave.position && !slave.alias && !slave.device_id) slave.position = static_cast<std::uint16_t>(place);
         const auto here = fmt::format("bus.slaves.{}", place);
         if (!entry.profile.empty()) add_drive(slave, entry, here, out.machine.axes);
-        else if (entry.terminal)
-            slave.device = std::make_shared<const ecat::DeviceDescription>(
-                ecat::sim::digital_input_output_terminal(entry.terminal->inputs, entry.terminal->outputs));
+        else if (entry.terminal) add_device(slave, digital_terminal(entry.terminal->inputs, entry.terminal->outputs));
+        else if (!entry.device.empty()) add_known_device(slave, entry, here, out.machine.axes);
         if (slave.device) {
             slave.dc = entry.dc.value_or(slave.device->dc.supported);
             add_startup(slave, entry);
@@ -171,6 +178,45 @@ private:
         profiles_.emplace_back(entry.slave.name, drive->profile);
     }
 
+    void add_device(ecat::SlaveConfig& slave, const LoadedDevice& device) {
+        slave.device = device.device;
+        slave.startup = device.startup;
+        devices_of_.emplace(slave.name, device);
+    }
+
+    void add_known_device(ecat::SlaveConfig& slave, const SlaveEntry& entry, const std::string& here,
+                          const std::vector<runtime::AxisBinding>& axes) {
+        const auto* device = devices_.find(entry.device);
+        if (!device) {
+            forgive(entry.slave.name, axes);
+            if (!devices_.exists(entry.device)) no_such_device(here, entry.device);
+            return;
+        }
+        add_device(slave, *device);
+        if (!entry.rx.empty()) slave.rx = selected(*device, slave.modules, PdoWay::rx, entry.rx, here + ".pdo.rx");
+        if (!entry.tx.empty()) slave.tx = selected(*device, slave.modules, PdoWay::tx, entry.tx, here + ".pdo.tx");
+    }
+
+    ecat::PdoSelection selected(const LoadedDevice& device, const std::vector<ecat::ModuleSelection>& modules, PdoWay way,
+                                const std::vector<ObjectAddress>& wanted, const std::string& here) {
+        auto chosen = select_pdos(*device.device, modules, way, wanted);
+        if (chosen) return std::move(*chosen);
+        problem(here, chosen.error().code, chosen.error().what, chosen.error().remedy);
+        return {};
+    }
+
+    void no_such_device(const std::string& here, const std::string& device) {
+        const auto names = devices_.names();
+        const auto near = nearest_name(device, names);
+        const bool is_drive = drives_.exists(device);
+        problem(here + ".device", "config.unknown_device",
+                is_drive ? fmt::format("'{}' is a drive", device)
+                         : fmt::format("there is no device type '{}' in {}", device, names_or_none(devices_.folders())),
+                is_drive       ? fmt::format("write `profile: {}`", device)
+                : near.empty() ? "correct the name, or add its file (`taktwerk docs devices` lists those there are)"
+                               : fmt::format("did you mean `{}`?", near));
+    }
+
     ecat::PdoSelection selection(const LoadedDrive& drive, const std::vector<ecat::ModuleSelection>& modules, PdoWay way,
                                  const SlaveEntry& entry, const std::string& here) {
         const auto& wanted = way == PdoWay::rx ? entry.rx : entry.tx;
@@ -218,32 +264,17 @@ private:
     }
 
     void add_point(LoadedMachine& out, const IoEntry& entry, runtime::IoDirection direction) {
-        const bool input = direction == runtime::IoDirection::input;
-        auto point = entry.point;
-        point.direction = direction;
-        point.index = entry.object ? entry.object->index : input ? 0x6000 : 0x7000;
-        point.sub = entry.object ? entry.object->sub : entry.channel.value_or(0);
-        const auto here = fmt::format("io.{}.{}", input ? "inputs" : "outputs", point.name);
-        for (std::size_t i = 0; i < file_.slaves.size(); ++i) {
-            if (file_.slaves[i].slave.name != point.slave || !entry.channel || file_.slaves[i].broken) continue;
-            const auto& terminal = file_.slaves[i].terminal;
-            const int count = !terminal ? 0 : input ? terminal->inputs : terminal->outputs;
-            if (!terminal)
-                problem(here + ".channel", "config.no_channel", fmt::format("slave '{}' is no terminal: it has no channels", point.slave),
-                        "use `object:`, such as `object: 60FDh`");
-            else if (*entry.channel > count)
-                problem(here + ".channel", "config.no_channel",
-                        fmt::format("terminal '{}' has {} {}, there is no channel {}", point.slave, count, input ? "inputs" : "outputs",
-                                    *entry.channel),
-                        count > 0 ? fmt::format("choose 1 to {}", count) : "choose another terminal");
+        const auto slave = std::ranges::find(file_.slaves, entry.point.slave, [](const SlaveEntry& s) { return s.slave.name; });
+        PointPlace place;
+        if (slave != file_.slaves.end()) {
+            place.known = !slave->broken;
+            const auto device = devices_of_.find(slave->slave.name);
+            if (device != devices_of_.end()) place.device = &device->second;
+            place.is_terminal = slave->terminal.has_value();
+            const auto configured = std::ranges::find(out.machine.bus.slaves, slave->slave.name, &ecat::SlaveConfig::name);
+            if (configured != out.machine.bus.slaves.end()) place.description = configured->device.get();
         }
-        for (const auto& other : out.machine.io)
-            if (other.direction == direction && other.slave == point.slave && other.index == point.index && other.sub == point.sub &&
-                !entry.object)
-                problem(here + ".channel", "config.channel_taken",
-                        fmt::format("channel {} of '{}' is already '{}'", point.sub, point.slave, other.name),
-                        "give each point its own channel");
-        out.machine.io.push_back(std::move(point));
+        out.machine.io.push_back(make_point(reader_, entry, direction, place, out.machine.io));
     }
 
     void add_program(LoadedMachine& out, const ProgramFile& entry) {
@@ -328,18 +359,18 @@ private:
         for (const auto& binding : machine.axes) axes.push_back(binding.axis.name);
         for (std::size_t i = 0; i < machine.simulation.events.size(); ++i) {
             const auto& event = machine.simulation.events[i];
-            const auto& known = event.kind == Kind::input         ? inputs
-                                : event.kind == Kind::slave_power ? slaves
-                                : event.kind == Kind::serial_line ? lines
-                                                                  : axes;
+            const auto& known = event.kind == Kind::input || event.kind == Kind::input_fault ? inputs
+                                : event.kind == Kind::slave_power                            ? slaves
+                                : event.kind == Kind::serial_line                            ? lines
+                                                                                             : axes;
             if (event.target.empty() || std::find(known.begin(), known.end(), event.target) != known.end()) continue;
             const auto near = nearest_name(event.target, known);
             problem(fmt::format("simulation.events.{}", i), "simulation.unknown_target",
                     fmt::format("there is no {} '{}' (there is: {})",
-                                event.kind == Kind::input         ? "input"
-                                : event.kind == Kind::slave_power ? "slave"
-                                : event.kind == Kind::serial_line ? "serial line"
-                                                                  : "axis",
+                                event.kind == Kind::input || event.kind == Kind::input_fault ? "input"
+                                : event.kind == Kind::slave_power                            ? "slave"
+                                : event.kind == Kind::serial_line                            ? "serial line"
+                                                                                             : "axis",
                                 event.target, names_or_none(known)),
                     near.empty() ? "correct the name" : fmt::format("did you mean `{}`?", near));
         }
@@ -380,6 +411,8 @@ private:
     const LoadOptions& options_;
     MachineFile file_;
     DriveLibrary drives_;
+    DeviceLibrary devices_;
+    std::map<std::string, LoadedDevice, std::less<>> devices_of_;  // by slave
     std::vector<std::pair<std::string, std::shared_ptr<const axes::DriveProfile>>> profiles_;
 };
 
@@ -462,14 +495,27 @@ LoadResult load(const std::string& path, Document document, const LoadOptions& o
 
 }  // namespace
 
-std::vector<std::string> drive_folders(const std::string& machine_file, const LoadOptions& options) {
-    auto folders = options.drive_dirs;
-    folders.push_back((fs::path(machine_file).parent_path() / ".." / "drives").lexically_normal().string());
-    for (const auto& data : options.data_dirs) folders.push_back((fs::path(data) / "drives").lexically_normal().string());
+namespace {
+
+std::vector<std::string> data_folders(const char* kind, std::vector<std::string> first, const std::string& machine_file,
+                                      const LoadOptions& options) {
+    auto folders = std::move(first);
+    folders.push_back((fs::path(machine_file).parent_path() / ".." / kind).lexically_normal().string());
+    for (const auto& data : options.data_dirs) folders.push_back((fs::path(data) / kind).lexically_normal().string());
 #ifdef TAKTWERK_DATA_DIR
-    folders.push_back((fs::path(TAKTWERK_DATA_DIR) / "drives").string());
+    folders.push_back((fs::path(TAKTWERK_DATA_DIR) / kind).string());
 #endif
     return folders;
+}
+
+}  // namespace
+
+std::vector<std::string> drive_folders(const std::string& machine_file, const LoadOptions& options) {
+    return data_folders("drives", options.drive_dirs, machine_file, options);
+}
+
+std::vector<std::string> device_folders(const std::string& machine_file, const LoadOptions& options) {
+    return data_folders("devices", options.device_dirs, machine_file, options);
 }
 
 LoadResult load_machine(const std::string& path, const LoadOptions& options) { return load(path, read_document(path), options); }

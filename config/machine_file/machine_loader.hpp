@@ -21,9 +21,11 @@ namespace taktwerk::config {
 struct LoadOptions {
     bool simulate = false;                  ///< the bus is simulated whatever the file says
     std::vector<std::string> drive_dirs;    ///< looked up before the folder `drives` beside the machine's folder and the installed one
+    std::vector<std::string> device_dirs;   ///< the same for `devices`
     std::vector<std::string> program_path;  ///< looked up after the machine file's folder
-    std::vector<std::string> data_dirs;     ///< installed data, with `drives` inside; looked up last but for the configured install prefix
-    bool resolve_programs = true;           ///< false: leave `library` as written (a file is checked where no program is built)
+    std::vector<std::string>
+        data_dirs;  ///< installed data, with `drives` and `devices` inside; looked up last but for the configured install prefix
+    bool resolve_programs = true;  ///< false: leave `library` as written (a file is checked where no program is built)
 };
 
 struct LoadedMachine {
@@ -37,6 +39,8 @@ using LoadResult = std::variant<LoadedMachine, std::vector<Error>>;
 [[nodiscard]] LoadResult load_machine(const std::string& path, const LoadOptions& options = {});
 /// Where the drive files of a machine are looked up, in this order.
 [[nodiscard]] std::vector<std::string> drive_folders(const std::string& machine_file, const LoadOptions& options);
+/// Where its device files are looked up.
+[[nodiscard]] std::vector<std::string> device_folders(const std::string& machine_file, const LoadOptions& options);
 /// The same for a text that stands, or could stand, at `path`.
 [[nodiscard]] LoadResult load_machine_text(const std::string& path, std::string_view text, const LoadOptions& options = {});
 

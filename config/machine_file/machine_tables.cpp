@@ -21,23 +21,51 @@ using runtime::SimulationEvent;
 
 // --- inputs and outputs ---------------------------------------------------------------------------------------------------
 
+/// `1`, or `ai1`.
+Codec<std::string> channel_name() {
+    auto c = text();
+    c.read = [](Reader& reader, const Node& node, std::string& out) {
+        if (node.kind == Node::Kind::scalar && !node.text.empty() && !(parse_integer(node.text) && *parse_integer(node.text) < 1)) {
+            out = node.text;
+            return true;
+        }
+        report_wrong_type(reader, node, "the name or the number of a channel, from 1", "1");
+        return false;
+    };
+    return c;
+}
+
+Table<PointScale> scale_table() {
+    using S = PointScale;
+    return {"scale",
+            "What the terminal measures, and what that means: `from: [4 mA, 20 mA], to: [0 bar, 16 bar]`.",
+            {
+                required(field("from", &S::from, measure_pair(), "two values of the channel in its unit, or two raw numbers without one")),
+                required(field("to", &S::to, measure_pair(), "what these are")),
+            },
+            {},
+            {}};
+}
+
 std::vector<Field<IoEntry>> io_fields() {
     using E = IoEntry;
     return {
         required(field_at<E>(
             "slave", [](E & e) -> auto& { return e.point.slave; }, name(), "slave that has it")),
-        field("channel", &E::channel, maybe(integer<std::uint8_t>(1, 128)), "of a terminal, from 1"),
-        field("object", &E::object, maybe(object_address()), "or an object in the process data of a drive, such as 60FDh"),
+        field("channel", &E::channel, channel_name(),
+              "of a terminal: its name in the device file, or its number among those of the direction, from 1"),
+        field("object", &E::object, maybe(object_address()), "or an object in the process data, such as 60FDh"),
         field_at<E>(
             "inverted", [](E & e) -> auto& { return e.point.inverted; }, boolean(), "TRUE while the terminal says 0"),
+        field("scale", &E::scale, maybe(section(scale_table())), "what its number means, where that is not what the device file says"),
     };
 }
 
 void check_io(Reader& reader, const Node& node, IoEntry& e) {
-    if (e.channel.has_value() == e.object.has_value() && node.find("channel") == nullptr && node.find("object") == nullptr)
+    if (node.find("channel") == nullptr && node.find("object") == nullptr)
         reader.problem(node.at, "config.missing_key", fmt::format("`{}` has neither `channel` nor `object`", reader.path()),
-                       "add `channel:` with its number on the terminal, from 1");
-    if (e.channel && e.object)
+                       "add `channel:` with its name or its number on the terminal, from 1");
+    if (!e.channel.empty() && e.object)
         reader.problem(node.at, "config.conflict", fmt::format("`{}` has both `channel` and `object`", reader.path()), "keep one of them");
 }
 
@@ -45,18 +73,25 @@ constexpr auto least = std::numeric_limits<std::int32_t>::min();
 constexpr auto most = std::numeric_limits<std::int32_t>::max();
 
 Table<IoEntry> input_table() {
-    Table<IoEntry> table{"io.inputs.<name>", "An input by the name that programs use.", io_fields(), {}, check_io};
-    table.fields.push_back(field_at<IoEntry>(
-        "simulated", [](IoEntry & e) -> auto& { return e.point.simulated; }, maybe(integer<std::int64_t>(least, most)),
-        "what the field says at first in a simulation: 0 or 1, before `inverted`; of an analog point its raw number"));
+    using E = IoEntry;
+    Table<E> table{"io.inputs.<name>", "An input by the name that programs use.", io_fields(), {}, check_io};
+    table.fields.push_back(with_default(field("limits", &E::limits, maybe(measure_pair()),
+                                              "between which values it is right; outside an alarm warns, and ctx.good() is false"),
+                                        "none"));
+    table.fields.push_back(field_at<E>(
+        "filter", [](E & e) -> auto& { return e.point.filter; }, duration(), "time constant of a first-order filter on its value"));
+    table.fields.push_back(
+        field("simulated", &E::simulated, maybe(measure()),
+              "what the field says at first in a simulation: 0 or 1, before `inverted`; `7.5 bar`; else the raw number"));
     return table;
 }
 
 Table<IoEntry> output_table() {
-    Table<IoEntry> table{"io.outputs.<name>", "An output by the name that programs use.", io_fields(), {}, check_io};
-    table.fields.push_back(field_at<IoEntry>(
-        "safe", [](IoEntry & e) -> auto& { return e.point.safe_value; }, integer<std::int64_t>(least, most),
-        "from the bus' first frames on and while no program drives it"));
+    using E = IoEntry;
+    Table<E> table{"io.outputs.<name>", "An output by the name that programs use.", io_fields(), {}, check_io};
+    table.fields.push_back(with_default(
+        field("safe", &E::safe, maybe(measure()), "from the bus' first frames on and while no program drives it; `0 V`, or the raw number"),
+        "0"));
     return table;
 }
 
@@ -257,6 +292,8 @@ struct EventWord {
 using EventKind = SimulationEvent::Kind;
 constexpr EventWord event_words[] = {
     {"input", EventKind::input, 0, "an input takes `value`: 0 or 1, an analog one its raw number"},
+    {"input_fault", EventKind::input_fault, 1, "the terminal reports an error of this input, such as a broken wire"},
+    {"input_whole", EventKind::input_fault, 0, "and takes it back"},
     {"drive_fault", EventKind::drive_fault, 0, "the drive of this axis raises the alarm `code`"},
     {"main_power_off", EventKind::main_power, 0, "the drive of this axis loses its main power"},
     {"main_power_on", EventKind::main_power, 1, "and gets it back"},
@@ -288,7 +325,8 @@ Table<SimulationEvent> event_table() {
         for (const auto& word : event_words) events += node.find(word.key) ? 1 : 0;
         if (events != 1)
             reader.problem(node.at, "config.event", events == 0 ? "the event says when, but not what" : "one event holds several",
-                           "give exactly one of input, drive_fault, main_power_off, main_power_on, slave_power_off, slave_power_on, "
+                           "give exactly one of input, input_fault, input_whole, drive_fault, main_power_off, main_power_on, "
+                           "slave_power_off, slave_power_on, "
                            "line_cut, line_plugged, jam, free");
         const auto pair = [&](const char* key, const char* value) {
             if ((node.find(key) != nullptr) != (node.find(value) != nullptr))

@@ -7,15 +7,25 @@
 
 #include "config/machine_file/bus_tables.hpp"
 #include "config/machine_file/cam_tables.hpp"
+#include "config/reading/measure.hpp"
 #include "hmi_bridge/hmi_config.hpp"
 #include "runtime/machine_config.hpp"
 
 namespace taktwerk::config {
 
+/// A straight line between two pairs of values.
+struct PointScale {
+    MeasurePair from, to;
+};
+
+/// A point as it is written; what depends on its channel is put together by io_points.hpp.
 struct IoEntry {
-    runtime::IoPoint point;
-    std::optional<std::uint8_t> channel;
+    runtime::IoPoint point;  ///< name, slave, inverted, filter
+    std::string channel;     ///< name or number; empty: by `object`
     std::optional<ObjectAddress> object;
+    std::optional<PointScale> scale;
+    std::optional<MeasurePair> limits;
+    std::optional<Measure> safe, simulated;
 };
 
 /// `4 cycles` or `4 ms`.

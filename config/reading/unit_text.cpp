@@ -52,6 +52,19 @@ std::vector<UnitValue> in_every_unit(std::string_view text) {
     return out;
 }
 
+std::optional<UnitValue> number_and_unit(std::string_view text) {
+    std::size_t end = 0;  // the longest beginning that is a number: `1e3 bar`, and `5 eV` is not 5e
+    std::optional<double> number;
+    for (std::size_t length = 1; length < text.size(); ++length)
+        if (const auto read = parse_number(text.substr(0, length))) number = read, end = length;
+    if (!number) return std::nullopt;
+    auto unit = text.substr(end);
+    while (!unit.empty() && unit.front() == ' ') unit.remove_prefix(1);
+    while (!unit.empty() && unit.back() == ' ') unit.remove_suffix(1);
+    if (unit.empty()) return std::nullopt;
+    return UnitValue{std::string(unit), *number};
+}
+
 Result<double> value_in(std::string_view text, std::string_view unit) {
     if (const auto number = parse_number(text)) return *number;
     const auto shown = unit.empty() ? std::string("5") : fmt::format("5 {}", unit);

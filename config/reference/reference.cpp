@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "config/device_file/device_file_tables.hpp"
 #include "config/drive_file/drive_tables.hpp"
 #include "config/machine_file/machine_tables.hpp"
 #include "config/reading/codecs.hpp"
@@ -172,6 +173,8 @@ private:
 std::string machine_schema() { return schema(*machine_table().info(), "Taktwerk machine"); }
 std::string drive_schema() { return schema(*drive_table().info(), "Taktwerk drive type"); }
 
+std::string device_schema() { return schema(*device_file_table().info(), "Taktwerk device type"); }
+
 std::string reference_page() {
     Page page;
     page.text_ =
@@ -191,6 +194,7 @@ std::string reference_page() {
     page.section(*drive_table().info(), "", 2);
     page.section(*serial_drive_table().info(), "", 2);
     page.section(*alarm_table().info(), "", 2);
+    page.section(*device_file_table().info(), "", 2);
     while (page.text_.size() > 1 && page.text_[page.text_.size() - 2] == '\n') page.text_.pop_back();
     return page.text_;
 }

@@ -8,6 +8,7 @@ namespace taktwerk::config {
 
 [[nodiscard]] std::string machine_schema();  ///< config/schema/machine.schema.json
 [[nodiscard]] std::string drive_schema();    ///< config/schema/drive.schema.json
+[[nodiscard]] std::string device_schema();   ///< config/schema/device.schema.json
 [[nodiscard]] std::string reference_page();  ///< docs/configuration.md
 
 }  // namespace taktwerk::config

@@ -141,7 +141,8 @@ struct DeviceDescription {
     DcDescription dc;
     SlotDescription slots;
     std::uint8_t fmmus = 8, sync_manager_count = 8;
-    std::uint16_t process_ram = 0x1000;  ///< bytes from 1000h
+    std::uint16_t process_ram = 0x1000;          ///< bytes from 1000h
+    std::optional<std::int16_t> ebus_current{};  ///< mA that it takes from the E-bus; negative: it supplies so much; none: not known
 };
 
 }  // namespace taktwerk::ecat

@@ -201,7 +201,8 @@ bool AlStateMachine::process_sm_fits(unsigned n, std::uint16_t bytes, std::uint1
     // Three buffers lie one after the other; only slaves with an application use all of them.
     const unsigned buffers = description_.mailbox ? 3 : 1;
     const auto area_end = [&](const SyncManager& m, unsigned copies) { return std::uint32_t{m.start} + std::uint32_t{m.length} * copies; };
-    if (sm.start < reg::process_ram || area_end(sm, buffers) > std::uint32_t{reg::process_ram} + description_.process_ram) return false;
+    if (!holds_process_data(sm.start, sm.length) || area_end(sm, buffers) > std::uint32_t{reg::process_ram} + description_.process_ram)
+        return false;
     for (unsigned other = 0; other < controller_.settings().sync_managers; ++other) {
         const SyncManager& m = controller_.sync_manager(other);
         if (other == n || !m.enabled() || m.length == 0) continue;

@@ -71,6 +71,7 @@ std::vector<std::byte> sii_image(const DeviceDescription& description, std::uint
     general.order = sii.add_string(description.name);
     general.name = sii.add_string(description.device_name.empty() ? description.name : description.device_name);
     general.physical_ports = 0x0011;
+    general.ebus_current = description.ebus_current.value_or(0);
     general.flags = general_flags;
     if (description.mailbox && description.mailbox->coe) {
         sii.mailbox_protocols = sii_protocol::coe;

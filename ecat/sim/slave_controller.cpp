@@ -15,13 +15,18 @@ SlaveController::SlaveController(const ControllerSettings& settings, EepromInter
 std::uint16_t SlaveController::read16(std::uint16_t address) const noexcept { return load_le<std::uint16_t>(memory_, address); }
 void SlaveController::write16(std::uint16_t address, std::uint16_t value) noexcept { store_le<std::uint16_t>(memory_, address, value); }
 
+bool holds_process_data(std::uint32_t address, std::size_t size) noexcept {
+    constexpr std::uint32_t outputs_end = reg::digital_outputs + 4u;
+    return address >= reg::process_ram || (address >= reg::digital_outputs && address + size <= outputs_end);
+}
+
 bool SlaveController::read(std::uint32_t address, std::span<std::byte> out, Instant at) noexcept {
-    return address < reg::process_ram ? read_registers(address, out, at) : read_memory(address, out);
+    return holds_process_data(address, out.size()) ? read_memory(address, out) : read_registers(address, out, at);
 }
 
 bool SlaveController::write(std::uint32_t address, std::span<const std::byte> in, Instant at) noexcept {
     if (!write_allowed(address)) return false;
-    return address < reg::process_ram ? write_registers(address, in, at) : write_memory(address, in, at);
+    return holds_process_data(address, in.size()) ? write_memory(address, in, at) : write_registers(address, in, at);
 }
 
 void SlaveController::add_to_counter(MutableDatagram& datagram, unsigned increment) noexcept {

@@ -56,6 +56,9 @@ inline constexpr std::uint16_t dc_latch = 1u << 0, dl_status = 1u << 2, al_statu
 inline constexpr unsigned sync_manager_0 = 4;  ///< bit of SM0; SM1..SM7 follow
 }  // namespace ecat_event
 
+/// Whether a sync manager may lie there: in the RAM, or on the output pins of a terminal without a processor (0F00h to 0F03h).
+[[nodiscard]] bool holds_process_data(std::uint32_t address, std::size_t size) noexcept;
+
 class SlaveController {
 public:
     SlaveController(const ControllerSettings& settings, EepromInterface eeprom);

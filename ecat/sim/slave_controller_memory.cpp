@@ -141,7 +141,7 @@ void SlaveController::write_sync_manager_registers(std::uint32_t address, std::s
             std::span<const std::byte>{memory_}.subspan(reg::sync_manager_at(static_cast<unsigned>(n))).first<SyncManager::size>());
         unit.sm.pdi_control = pdi;
         // A manager that reaches beyond the RAM governs only what exists.
-        if (std::size_t{unit.sm.start} + unit.sm.length > memory_.size() || unit.sm.start < reg::process_ram) {
+        if (std::size_t{unit.sm.start} + unit.sm.length > memory_.size() || !holds_process_data(unit.sm.start, unit.sm.length)) {
             unit.sm.start = reg::process_ram;
             unit.sm.length = 0;
         }

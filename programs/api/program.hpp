@@ -27,6 +27,7 @@
 //
 // What a builder learns step by step stands in docs/programming.md.
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -34,6 +35,7 @@
 
 #include "axes/axis/motion_context.hpp"
 #include "core/alarm.hpp"
+#include "core/point_line.hpp"
 #include "core/process_image.hpp"
 
 namespace taktwerk {
@@ -42,7 +44,7 @@ using axes::AxisRef;
 
 /// Named points of the machine, resolved when the program is loaded. Read and written through the TaskContext, so that a
 /// slower task sees its latched values. `bool`: FALSE is 0, everything else TRUE; `std::int64_t`: the value as the terminal
-/// gives it (sign-extended where the object is signed), without scaling.
+/// gives it (sign-extended where the object is signed), without scaling; `double`: in the unit that the machine file gives the point.
 ///
 /// A handle that was never declared, or whose name the machine lacks, is unresolved (0xFFFF): reads give 0 and FALSE, writes do
 /// nothing. A program with an unresolved name is not started; the use of a handle that was forgotten in declare() is told while the
@@ -88,10 +90,28 @@ public:
     /// What was last written to it, by whomever.
     [[nodiscard]] bool get(Output<bool> point) const noexcept { return value_at(outputs, point.index) != 0; }
     [[nodiscard]] std::int64_t get(Output<std::int64_t> point) const noexcept { return value_at(outputs, point.index); }
+    /// In the unit of the point, filtered where the machine file says so.
+    [[nodiscard]] double get(Input<double> point) const noexcept { return value_at(input_values, point.index).value; }
+    [[nodiscard]] double get(Output<double> point) const noexcept {
+        const auto raw = value_at(outputs, point.index);
+        return point.index < output_lines.size() ? output_lines[point.index].value_of(raw) : 0;
+    }
+    /// Whether an input can be believed: its slave was exchanged, its terminal reports no error (wire break, out of range), it lies within
+    /// the limits that the machine file gives it.
+    template <class T>
+    [[nodiscard]] bool good(Input<T> point) const noexcept {
+        return value_at(input_values, point.index).good;
+    }
     /// An output keeps its value until it is written again; while no program runs it has its safe value.
     void set(Output<bool> point, bool value) noexcept { write(point.index, value ? 1 : 0); }
     /// The low bits that the terminal has are sent; the rest is cut off.
     void set(Output<std::int64_t> point, std::int64_t value) noexcept { write(point.index, value); }
+    /// In the unit of the point; what its terminal cannot hold becomes the nearest that it can. What is no number (NaN, infinity) is not
+    /// written: the output keeps its value, and the alarm output_no_number says so.
+    void set(Output<double> point, double value) noexcept {
+        if (!std::isfinite(value)) undeclared = {Undeclared::What::not_a_number, 0};
+        else write(point.index, point.index < output_lines.size() ? output_lines[point.index].raw_of(value) : 0);
+    }
     [[nodiscard]] double get(Parameter parameter) const noexcept { return value_at(parameters, parameter.index); }
 
     /// Raises the program's alarm `number` (0..63) for as long as `active` holds; texts come from Declaration::alarm. Any other number
@@ -107,11 +127,13 @@ public:
 
     // Filled by the runtime, indexed by the handles.
     std::span<const double> parameters;
+    std::span<const PointValue> input_values;
+    std::span<const PointLine> output_lines;
     std::uint64_t alarms = 0;
     bool first_scan = false;  ///< first call after start
     /// Something that was used and never declared: read by the runtime after the scan.
     struct Undeclared {
-        enum class What : std::uint8_t { nothing, point, alarm } what = What::nothing;
+        enum class What : std::uint8_t { nothing, point, alarm, not_a_number } what = What::nothing;
         std::uint8_t number = 0;  ///< of the alarm
     };
     mutable Undeclared undeclared;
@@ -145,6 +167,9 @@ public:
     virtual Output<bool> output(std::string_view name) = 0;
     virtual Input<std::int64_t> input_word(std::string_view name) = 0;
     virtual Output<std::int64_t> output_word(std::string_view name) = 0;
+    /// In the unit of the point: 7.5 for 7.5 bar.
+    Input<double> input_real(std::string_view name) { return {input_word(name).index}; }
+    Output<double> output_real(std::string_view name) { return {output_word(name).index}; }
     virtual Parameter parameter(std::string_view name, const ParameterSpec& spec) = 0;
 
     // Tables that blocks and axes follow. The name is for messages. `room`: the most points it will ever have, when the program edits it

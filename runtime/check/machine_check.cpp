@@ -104,10 +104,10 @@ private:
         for (const auto& line : config_.serial) lines.push_back(line.name);
         for (const auto& event : config_.simulation.events) {
             using Kind = SimulationEvent::Kind;
-            const auto& known = event.kind == Kind::input         ? inputs_
-                                : event.kind == Kind::slave_power ? slaves_
-                                : event.kind == Kind::serial_line ? lines
-                                                                  : axes_;
+            const auto& known = event.kind == Kind::input || event.kind == Kind::input_fault ? inputs_
+                                : event.kind == Kind::slave_power                            ? slaves_
+                                : event.kind == Kind::serial_line                            ? lines
+                                                                                             : axes_;
             if (!has(known, event.target))
                 problems_.unknown("simulation.unknown_target", "simulation.events", "target", event.target, known);
         }

@@ -7,7 +7,7 @@ namespace taktwerk::runtime {
 std::vector<Error> check_programs(const MachineConfig& config) {
     std::vector<Error> errors;
     axes::MotionTables tables;
-    const ProgramHost host{config, IoImage{config.io}, tables, errors};
+    const ProgramHost host{config, IoImage{config.io, config.cycle}, tables, errors};
     return errors;
 }
 

@@ -80,8 +80,8 @@ std::string AlarmWords::source(const AlarmFact& fact) const {
         case AlarmSource::program: return named(layout_.programs, "program");
         case AlarmSource::task: return named(layout_.tasks, "task");
         case AlarmSource::bus: return "bus";
+        case AlarmSource::io: return named(layout_.inputs, "input");
         case AlarmSource::machine:
-        case AlarmSource::io:
         case AlarmSource::hmi: break;
     }
     return "machine";
@@ -127,6 +127,7 @@ AlarmText AlarmWords::describe(const AlarmFact& fact) const {
     tell_row(out, fact, *row);
     tell_more_of_bus(out, fact);
     tell_more_of_machine(out, fact);
+    tell_more_of_input(out, fact);
     tell_more_of_programs(out, fact);
     tell_more_of_axis(out, fact);
     tell_more_of_drive(out, fact);
@@ -135,6 +136,25 @@ AlarmText AlarmWords::describe(const AlarmFact& fact) const {
 
 void AlarmWords::tell_more_of_bus(AlarmText& out, const AlarmFact& fact) const {
     if (const auto more = body_.bus.detail(fact); alarm_range::bus.has(fact.id) && !more.empty()) add(out, more);
+}
+
+void AlarmWords::tell_more_of_input(AlarmText& out, const AlarmFact& fact) const {
+    if (fact.source != AlarmSource::io || fact.index >= layout_.inputs.size()) return;
+    const auto& point = body_.io.point(IoDirection::input, fact.index);
+    if (fact.id == id(MachineAlarm::input_faulty) && fact.a != input_error) {
+        const bool under = fact.a == input_underrange;
+        out.english = fmt::format("The signal of this input is {} what its terminal measures: its value cannot be believed",
+                                  under ? "below" : "above");
+        out.chinese = fmt::format("该输入信号{}端子测量范围:其数值不可信", under ? "低于" : "高于");
+        out.cause = under ? "A broken wire, a sensor without supply, or a signal beyond the range"
+                          : "A short circuit, or a signal beyond the range";
+    }
+    if (fact.id == id(MachineAlarm::input_out_of_limits) && !point.unit.empty()) {
+        out.english = fmt::format("The input is at {} {}, beyond its limit of {} {}", number_text(fact.a), point.unit, number_text(fact.b),
+                                  point.unit);
+        out.chinese = fmt::format("输入值为 {} {},超出限值 {} {}", number_text(fact.a), point.unit, number_text(fact.b), point.unit);
+    }
+    out.remedy += fmt::format(" (slave '{}', {:04X}h:{:02X})", point.slave, point.index, point.sub);
 }
 
 void AlarmWords::tell_more_of_machine(AlarmText& out, const AlarmFact& fact) const {

@@ -28,6 +28,7 @@ private:
     bool tell_declared(AlarmText& out, const AlarmFact& fact) const;
     /// What goes beyond the row, by whose alarm it is.
     void tell_more_of_bus(AlarmText& out, const AlarmFact& fact) const;
+    void tell_more_of_input(AlarmText& out, const AlarmFact& fact) const;
     void tell_more_of_machine(AlarmText& out, const AlarmFact& fact) const;
     void tell_more_of_programs(AlarmText& out, const AlarmFact& fact) const;
     void tell_more_of_axis(AlarmText& out, const AlarmFact& fact) const;

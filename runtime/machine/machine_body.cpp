@@ -39,7 +39,7 @@ MachineBody::MachineBody(MachineConfig machine, ecat::Transport& transport)
     : config(std::move(machine)),
       bus_config(bus_of(config)),
       bus(transport, bus_config),
-      io(config.io),
+      io(config.io, config.cycle),
       views(config.axes.size()),
       mode(config.start_mode) {}
 

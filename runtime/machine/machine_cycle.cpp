@@ -106,7 +106,7 @@ void Machine::Impl::compute(const CycleTick& tick) noexcept {
     desk.drain_inbox(now);
     done(Step::inbox);
 
-    body.io.read(body.bus.inputs());
+    body.io.read(body.bus.inputs(), body.bus);
     done(Step::decode);
 
     for (auto& axis : body.axes) axis.update(now);

@@ -35,6 +35,8 @@ MachineLayout layout_of(const MachineBody& body, const MachineDrives& drives, co
     for (std::size_t s = 0; s < body.bus.slave_count(); ++s) layout.slaves.push_back(body.bus.slave(s).name);
     layout.inputs = body.io.names(IoDirection::input);
     layout.outputs = body.io.names(IoDirection::output);
+    for (std::size_t i = 0; i < layout.inputs.size(); ++i) layout.input_units.push_back(body.io.point(IoDirection::input, i).unit);
+    for (std::size_t i = 0; i < layout.outputs.size(); ++i) layout.output_units.push_back(body.io.point(IoDirection::output, i).unit);
     programs.describe(layout);
     return layout;
 }

@@ -104,7 +104,7 @@ Verdict OperatorDesk::set_output(const OperatorCommand& command) noexcept {
     if (body_.mode == Mode::automatic) return {Answer::wrong_mode};
     if (body_.emergency) return {Answer::not_possible_now, ErrorId::interlocked};
     if (programs_.any_runs_or_starts()) return {Answer::not_possible_now};
-    io.outputs()[command.index] = static_cast<std::int64_t>(command.value);
+    io.set_output(command.index, command.value);
     outputs_by_hand_[command.index] = {true, command.client};
     return {};
 }

@@ -65,7 +65,7 @@ void ProgramRunner::build_tasks() {
 }
 
 void ProgramRunner::learn_outputs() noexcept {
-    for (auto& slow : slow_tasks_) slow.task->learn_outputs(body_.io.output_bits());
+    for (auto& slow : slow_tasks_) slow.task->learn_outputs(body_.io.output_bits(), body_.io.output_lines());
 }
 
 void ProgramRunner::take_answers() noexcept { objects_.take_answers(body_.recorder, body_.now); }

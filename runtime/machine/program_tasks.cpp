@@ -25,6 +25,8 @@ void ProgramRunner::run_base_task(BaseTask& base) noexcept {
     context.owner = axes::Owner::program;
     context.tables = &body_.tables;
     context.inputs = body_.io.inputs();
+    context.input_values = body_.io.input_values();
+    context.output_lines = body_.io.output_lines();
     context.outputs = body_.io.outputs();
     context.output_bits = body_.io.output_bits();
     context.parameters = host_.parameters();
@@ -78,7 +80,7 @@ void ProgramRunner::release_slow_task(SlowPlace& slow) noexcept {
     CycleContext context;
     context.now = body_.now;
     context.period = body_.config.cycle;
-    task.release(context, body_.views, io.inputs(), io.outputs(), host_.parameters(), alarms);
+    task.release(context, body_.views, {io.inputs(), io.input_values()}, io.outputs(), host_.parameters(), alarms);
 }
 
 void ProgramRunner::run_tasks() noexcept {
@@ -115,7 +117,9 @@ void ProgramRunner::raise_alarms_of(std::size_t p) noexcept {
         body_.log.raise({alarm_range::programs.id(n), AlarmSource::program, index, 0, 0}, text.reaction, ResetRule::self_clearing,
                         body_.now);
     }
-    if (undeclared.what != Undeclared::What::nothing && record.running())
+    if (undeclared.what == Undeclared::What::not_a_number && record.running())
+        body_.raise(MachineAlarm::output_no_number, AlarmSource::program, index);
+    else if (undeclared.what != Undeclared::What::nothing && record.running())
         body_.raise(MachineAlarm::undeclared_use, AlarmSource::program, index, undeclared.number,
                     undeclared.what == Undeclared::What::alarm ? 1 : 0);
 }

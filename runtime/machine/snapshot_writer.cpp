@@ -52,6 +52,8 @@ void SnapshotWriter::prepare() {
     prototype.axes.resize(body_.axes.size());
     prototype.inputs.resize(body_.io.inputs().size());
     prototype.outputs.resize(body_.io.outputs().size());
+    prototype.input_values.resize(prototype.inputs.size());
+    prototype.output_values.resize(prototype.outputs.size());
     prototype.parameters.resize(programs_.host().parameters().size());
     prototype.variables.resize(programs_.variables().size());
     prototype.programs.resize(programs_.programs().size());
@@ -95,6 +97,8 @@ void SnapshotWriter::take_snapshot() noexcept {
     for (std::size_t i = 0; i < s.axes.size(); ++i) s.axes[i] = body_.axes[i].view();
     std::ranges::copy(body_.io.inputs(), s.inputs.begin());
     std::ranges::copy(body_.io.outputs(), s.outputs.begin());
+    std::ranges::copy(body_.io.input_values(), s.input_values.begin());
+    for (std::size_t i = 0; i < s.output_values.size(); ++i) s.output_values[i] = body_.io.output_value(i);
     std::ranges::copy(programs_.host().parameters(), s.parameters.begin());
     std::ranges::copy(programs_.variables(), s.variables.begin());
     std::ranges::transform(programs_.programs(), s.programs.begin(), &ProgramRecord::state);
@@ -126,8 +130,8 @@ void SnapshotWriter::take_row() noexcept {
     put(static_cast<double>(body_.log.alarms().size()));
     for (const auto& axis : body_.axes)
         for (const auto& column : axis_columns) put(column.value(axis.view()));
-    for (const auto value : body_.io.inputs()) put(static_cast<double>(value));
-    for (const auto value : body_.io.outputs()) put(static_cast<double>(value));
+    for (const auto& input : body_.io.input_values()) put(input.value);
+    for (std::size_t i = 0; i < body_.io.outputs().size(); ++i) put(body_.io.output_value(i));
     for (const auto value : programs_.variables()) put(value);
     trace_->commit();
 }

@@ -40,6 +40,7 @@ void Supervisor::step(const CycleTick& tick) noexcept {
     drives_.serial().watch();
     raise_rivals();
     raise_positions();
+    raise_inputs();
 
     const auto level = emergency_inputs_.level();
     for (std::size_t i = 0; i < body_.axes.size(); ++i) supervise(i, level);
@@ -71,6 +72,26 @@ void Supervisor::raise_positions() noexcept {
     if (positions_->lost()) body_.raise(MachineAlarm::positions_lost, AlarmSource::machine, 0);
     if (positions_->outdated()) body_.raise(MachineAlarm::positions_outdated, AlarmSource::machine, 0);
     else if (positions_->failing() || positions_->hangs(body_.now)) body_.raise(MachineAlarm::positions_not_kept, AlarmSource::machine, 0);
+}
+
+void Supervisor::raise_inputs() noexcept {
+    using Trouble = IoImage::Trouble;
+    const auto& io = body_.io;
+    for (std::size_t i = 0; i < io.input_values().size(); ++i) {
+        const auto trouble = io.trouble(i);
+        if (trouble == Trouble::none) continue;
+        const auto index = static_cast<std::uint16_t>(i);
+        if (trouble == Trouble::below_limit || trouble == Trouble::above_limit) {
+            const auto& limits = *io.point(IoDirection::input, i).limits;
+            body_.raise(MachineAlarm::input_out_of_limits, AlarmSource::io, index, io.input_values()[i].value,
+                        trouble == Trouble::below_limit ? limits.low : limits.high);
+        } else {
+            body_.raise(MachineAlarm::input_faulty, AlarmSource::io, index,
+                        trouble == Trouble::underrange  ? input_underrange
+                        : trouble == Trouble::overrange ? input_overrange
+                                                        : input_error);
+        }
+    }
 }
 
 void Supervisor::supervise(std::size_t index, axes::EmergencyStop level) noexcept {

@@ -32,6 +32,7 @@ private:
     void raise_bus_alarms() noexcept;
     void raise_rivals() noexcept;
     void raise_positions() noexcept;
+    void raise_inputs() noexcept;
     void supervise(std::size_t axis, axes::EmergencyStop level) noexcept;
     [[nodiscard]] bool follows_from_another(const AlarmFact& fact) noexcept;
     void react() noexcept;

@@ -21,53 +21,113 @@ std::int64_t carried(std::int64_t value, const Signal& signal) noexcept {
     return static_cast<std::int64_t>(signal.is_signed && (low & sign) != 0 ? low | ~mask : low);
 }
 
+/// What the bits of an object hold.
+PointLine line_of(const IoPoint& point, const Signal& signal) noexcept {
+    PointLine line = point.line;
+    if (signal.bits == 0 || signal.bits >= 64) return line;
+    const double span = std::ldexp(1.0, signal.bits);
+    line.least = signal.is_signed ? -span / 2 : 0;
+    line.most = (signal.is_signed ? span / 2 : span) - 1;
+    return line;
+}
+
+/// An alarm at a limit ends a little inside of it, so that noise at the limit is one alarm.
+constexpr double limit_hysteresis = 0.01;  // of the width between the limits
+
+IoImage::Trouble beyond(const PointLimits& limits, double value, IoImage::Trouble before) noexcept {
+    using Trouble = IoImage::Trouble;
+    const double inside = limit_hysteresis * (limits.high - limits.low);
+    if (!(value >= limits.low + (before == Trouble::below_limit ? inside : 0))) return Trouble::below_limit;  // NaN, too
+    if (value > limits.high - (before == Trouble::above_limit ? inside : 0)) return Trouble::above_limit;
+    return Trouble::none;
+}
+
+IoImage::Trouble trouble_of(PointStatus::Kind kind) noexcept {
+    switch (kind) {
+        case PointStatus::Kind::underrange: return IoImage::Trouble::underrange;
+        case PointStatus::Kind::overrange: return IoImage::Trouble::overrange;
+        case PointStatus::Kind::error: break;
+    }
+    return IoImage::Trouble::error;
+}
+
 }  // namespace
 
-IoImage::IoImage(const std::vector<IoPoint>& points) {
+IoImage::IoImage(const std::vector<IoPoint>& points, Duration cycle) : cycle_s_(to_seconds(cycle)) {
     for (const auto& point : points) {
         if (point.direction == IoDirection::input) {
-            input_points_.push_back({point, {}});
+            input_points_.push_back({point, {}, 0, {}, false});
             inputs_.push_back(0);
         } else {
-            output_points_.push_back({point, {}});
+            output_points_.push_back({point, {}, 0, {}, false});
             outputs_.push_back(point.safe_value);
+            output_lines_.push_back(point.line);
         }
     }
+    input_values_.resize(inputs_.size());
+    troubles_.resize(inputs_.size());
+}
+
+Result<Signal> IoImage::signal_of(const ecat::Master& bus, const Point& point, std::uint16_t index, std::uint8_t sub) const {
+    auto signal = point.config.direction == IoDirection::input ? bus.input(point.slave, index, sub) : bus.output(point.slave, index, sub);
+    if (signal) return signal;
+    auto error = signal.error();
+    error.subject = fmt::format("io point '{}'", point.config.name);
+    return error;
 }
 
 Result<void> IoImage::resolve(const ecat::Master& bus) {
-    const auto slave_of = [&](const std::string& name) -> std::size_t {
-        for (std::size_t i = 0; i < bus.slave_count(); ++i)
-            if (bus.slave(i).name == name) return i;
-        return bus.slave_count();
-    };
     for (auto* points : {&input_points_, &output_points_}) {
         for (auto& point : *points) {
-            const auto slave = slave_of(point.config.slave);
-            if (slave == bus.slave_count())
+            point.slave = 0;
+            while (point.slave < bus.slave_count() && bus.slave(point.slave).name != point.config.slave) ++point.slave;
+            if (point.slave == bus.slave_count())
                 return Error{"io.unknown_slave", fmt::format("io point '{}'", point.config.name),
                              fmt::format("there is no slave '{}' on the bus", point.config.slave), "correct `slave:` of the point"};
-            auto signal = points == &input_points_ ? bus.input(slave, point.config.index, point.config.sub)
-                                                   : bus.output(slave, point.config.index, point.config.sub);
-            if (!signal) {
-                auto error = signal.error();
-                error.subject = fmt::format("io point '{}'", point.config.name);
-                return error;
-            }
+            const auto signal = signal_of(bus, point, point.config.index, point.config.sub);
+            if (!signal) return signal.error();
             point.signal = *signal;
+            point.config.line = line_of(point.config, point.signal);
+            point.status.clear();
+            for (const auto& status : point.config.status) {
+                const auto bit = signal_of(bus, point, status.index, status.sub);
+                if (!bit) return bit.error();
+                point.status.push_back({status.kind, *bit});
+            }
         }
     }
     output_bits_.clear();
-    for (const auto& point : output_points_)
+    output_lines_.clear();
+    for (const auto& point : output_points_) {
         output_bits_.push_back(static_cast<std::uint8_t>(std::min(64, static_cast<int>(point.signal.bits))));
+        output_lines_.push_back(point.config.line);
+    }
     return {};
 }
 
-void IoImage::read(std::span<const std::byte> image) noexcept {
+void IoImage::read(std::span<const std::byte> image, const ecat::Master& bus) noexcept {
     for (std::size_t i = 0; i < input_points_.size(); ++i) {
         const auto& p = input_points_[i];
         inputs_[i] = logical(read_signal(image, p.signal), p.config, p.signal);
+        if (p.slave < bus.slave_count()) judge(i, image, bus.health(p.slave));
     }
+}
+
+void IoImage::judge(std::size_t input, std::span<const std::byte> image, const ecat::SlaveHealth& slave) noexcept {
+    auto& p = input_points_[input];
+    auto& shown = input_values_[input];
+    const double value = p.config.line.value_of(inputs_[input]);
+    const bool filtered = p.config.filter > Duration::zero() && p.seen && std::isfinite(shown.value);
+    shown.value = filtered ? shown.value + (value - shown.value) * cycle_s_ / (cycle_s_ + to_seconds(p.config.filter)) : value;
+    if (slave.fresh) {
+        p.seen = true;
+        auto trouble = Trouble::none;
+        for (const auto& status : p.status)
+            if (trouble != Trouble::error && read_signal(image, status.signal) != 0) trouble = trouble_of(status.kind);
+        if (trouble == Trouble::none && p.config.limits) trouble = beyond(*p.config.limits, shown.value, troubles_[input]);
+        troubles_[input] = trouble;
+    }
+    shown.good = p.seen && slave.age == 0 && troubles_[input] == Trouble::none;  // between the turns of a slower sync unit it stays so
 }
 
 void IoImage::write(std::span<std::byte> image) noexcept {
@@ -83,11 +143,9 @@ void IoImage::make_safe() noexcept {
 }
 
 bool IoImage::fits(std::size_t output, double value) const noexcept {
-    const auto& signal = output_points_[output].signal;
-    if (!std::isfinite(value) || value != std::floor(value)) return false;
-    const double span = std::ldexp(1.0, signal.bits);
-    const double low = signal.is_signed ? -span / 2 : 0, beyond = signal.is_signed ? span / 2 : span;
-    return value >= low && value < beyond && value < 0x1p63;  // int64 carries it
+    const auto& point = output_points_[output].config;
+    const bool whole = !point.unit.empty() || !point.line.is_plain() || value == std::floor(value);
+    return whole && output_lines_[output].holds(value);
 }
 
 int IoImage::find(IoDirection direction, std::string_view name) const noexcept {

@@ -1,10 +1,11 @@
 #pragma once
-// The machine's named points: signals resolved once, values read and written once per cycle as plain integers.
+// The machine's named points: signals resolved once, raw words read and written once per cycle, and what they mean in units.
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "core/point_line.hpp"
 #include "core/process_image.hpp"
 #include "core/result.hpp"
 #include "ecat/master.hpp"
@@ -14,13 +15,13 @@ namespace taktwerk::runtime {
 
 class IoImage {
 public:
-    explicit IoImage(const std::vector<IoPoint>& points);
+    IoImage(const std::vector<IoPoint>& points, Duration cycle);
 
     /// Once the bus has laid out its process image.
     [[nodiscard]] Result<void> resolve(const ecat::Master& bus);
 
     /// Process image -> input values (step 3). Points of a slave that was not exchanged keep their values. Real-time safe.
-    void read(std::span<const std::byte> image) noexcept;
+    void read(std::span<const std::byte> image, const ecat::Master& bus) noexcept;
     /// Output values -> process image (step 8). Real-time safe.
     /// An output keeps no more than its terminal has: what traces and programs read of it is what the wire carries.
     void write(std::span<std::byte> image) noexcept;
@@ -30,11 +31,22 @@ public:
 
     [[nodiscard]] std::vector<std::int64_t>& inputs() noexcept { return inputs_; }
     [[nodiscard]] std::vector<std::int64_t>& outputs() noexcept { return outputs_; }
+    /// Each input in its unit, and whether it can be believed.
+    [[nodiscard]] const std::vector<PointValue>& input_values() const noexcept { return input_values_; }
+    /// From the raw words of the outputs to their units.
+    [[nodiscard]] const std::vector<PointLine>& output_lines() const noexcept { return output_lines_; }
+    [[nodiscard]] double output_value(std::size_t output) const noexcept { return output_lines_[output].value_of(outputs_[output]); }
+
+    /// What is wrong with an input in this cycle.
+    enum class Trouble : std::uint8_t { none, error, underrange, overrange, below_limit, above_limit };
+    [[nodiscard]] Trouble trouble(std::size_t input) const noexcept { return troubles_[input]; }
     /// Bits of each output point.
     [[nodiscard]] const std::vector<std::uint8_t>& output_bits() const noexcept { return output_bits_; }
 
-    /// Whether an output point can take the value: whole, and within the bits of the terminal. Real-time safe.
+    /// Whether an output point can take the value: within the bits of the terminal and, where it has no unit, whole. Real-time safe.
     [[nodiscard]] bool fits(std::size_t output, double value) const noexcept;
+    /// An output by its value; it fits(). Real-time safe.
+    void set_output(std::size_t output, double value) noexcept { outputs_[output] = output_lines_[output].raw_of(value); }
 
     /// Index among the points of that direction, in configuration order; -1 when there is none.
     [[nodiscard]] int find(IoDirection direction, std::string_view name) const noexcept;
@@ -42,12 +54,26 @@ public:
     [[nodiscard]] std::vector<std::string> names(IoDirection direction) const;
 
 private:
+    struct Status {
+        PointStatus::Kind kind;
+        Signal signal;
+    };
     struct Point {
         IoPoint config;
         Signal signal;
+        std::size_t slave = 0;
+        std::vector<Status> status;
+        bool seen = false;  ///< the filter has begun
     };
+    [[nodiscard]] Result<Signal> signal_of(const ecat::Master& bus, const Point& point, std::uint16_t index, std::uint8_t sub) const;
+    void judge(std::size_t input, std::span<const std::byte> image, const ecat::SlaveHealth& slave) noexcept;
+
+    double cycle_s_;
     std::vector<Point> input_points_, output_points_;
     std::vector<std::int64_t> inputs_, outputs_;
+    std::vector<PointValue> input_values_;
+    std::vector<Trouble> troubles_;
+    std::vector<PointLine> output_lines_;
     std::vector<std::uint8_t> output_bits_;
 };
 

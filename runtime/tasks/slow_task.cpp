@@ -20,6 +20,7 @@ SlowTask::SlowTask(const ProgramHost::Task& task, Program* program, std::vector<
       inputs_(inputs),
       outputs_(outputs),
       outputs_at_release_(outputs),
+      input_values_(inputs),
       parameters_(parameters),
       variable_values_(variable_sources_.size()),
       variables_applied_(variable_sources_.size()) {
@@ -38,10 +39,11 @@ void SlowTask::apply(axes::AxisRequests& axes, std::span<std::int64_t> outputs, 
     state_.store(State::idle, std::memory_order_relaxed);
 }
 
-void SlowTask::release(const CycleContext& now, std::span<const axes::AxisView> views, std::span<const std::int64_t> inputs,
+void SlowTask::release(const CycleContext& now, std::span<const axes::AxisView> views, const Inputs& inputs,
                        std::span<const std::int64_t> outputs, std::span<const double> parameters, std::uint64_t program_alarms) noexcept {
     requests_.latch(views, views_);
-    std::copy(inputs.begin(), inputs.end(), inputs_.begin());
+    std::ranges::copy(inputs.words, inputs_.begin());
+    std::ranges::copy(inputs.values, input_values_.begin());
     std::copy(outputs.begin(), outputs.end(), outputs_.begin());
     std::copy(outputs.begin(), outputs.end(), outputs_at_release_.begin());
     std::copy(parameters.begin(), parameters.end(), parameters_.begin());
@@ -64,7 +66,9 @@ bool SlowTask::run_if_released() noexcept {
     context.tables = &tables_;
     context.inputs = inputs_;
     context.outputs = outputs_;
+    context.input_values = input_values_;
     context.output_bits = output_bits_;
+    context.output_lines = output_lines_;
     context.parameters = parameters_;
     context.alarms = alarms_;
     context.first_scan = context_.cycle == 0;

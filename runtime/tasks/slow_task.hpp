@@ -29,13 +29,21 @@ public:
         const auto state = state_.load(std::memory_order_acquire);
         return state == State::idle || state == State::done;
     }
-    /// Bits of each output point, known once the bus has laid out its image. Before the first release.
-    void learn_outputs(std::span<const std::uint8_t> bits) noexcept { output_bits_ = bits; }
+    /// Bits of each output point and what they mean, known once the bus has laid out its image. Before the first release.
+    void learn_outputs(std::span<const std::uint8_t> bits, std::span<const PointLine> lines) noexcept {
+        output_bits_ = bits;
+        output_lines_ = lines;
+    }
+    /// The input points of a cycle: raw words, and what they mean.
+    struct Inputs {
+        std::span<const std::int64_t> words;
+        std::span<const PointValue> values;
+    };
     /// What the last run wrote goes to the machine; only outputs and alarms that it changed.
     void apply(axes::AxisRequests& axes, std::span<std::int64_t> outputs, std::uint64_t& program_alarms) noexcept;
     void renew(axes::AxisRequests& axes) noexcept { requests_.renew(axes); }
     /// Latches everything and hands the task to its thread.
-    void release(const CycleContext& now, std::span<const axes::AxisView> views, std::span<const std::int64_t> inputs,
+    void release(const CycleContext& now, std::span<const axes::AxisView> views, const Inputs& inputs,
                  std::span<const std::int64_t> outputs, std::span<const double> parameters, std::uint64_t program_alarms) noexcept;
     /// Values of the program's variables as the last applied run left them; for programs without a base task.
     [[nodiscard]] std::span<const double> variables() const noexcept { return variables_applied_; }
@@ -68,7 +76,9 @@ private:
     axes::MotionTables& tables_;
     std::vector<axes::AxisView> views_;
     std::vector<std::int64_t> inputs_, outputs_, outputs_at_release_;
+    std::vector<PointValue> input_values_;
     std::span<const std::uint8_t> output_bits_;
+    std::span<const PointLine> output_lines_;
     std::vector<double> parameters_, variable_values_, variables_applied_;
     CycleContext context_;
     std::uint64_t runs_ = 0, applied_ = 0, alarms_ = 0, alarms_at_release_ = 0;

@@ -62,6 +62,21 @@ std::vector<const ecat::SlaveConfig*> cable_order(const std::vector<ecat::SlaveC
     return order;
 }
 
+/// Whoever has a statusword is played as a drive.
+bool is_drive(const ecat::DeviceDescription& device) {
+    return std::ranges::any_of(device.objects, [](const auto& object) { return object.index == 0x6041; });
+}
+
+bool is_bit(const ecat::DeviceDescription& device, const IoPoint& point) {
+    const auto has = [&](const std::vector<ecat::PdoDescription>& pdos) {
+        for (const auto& pdo : pdos)
+            for (const auto& entry : pdo.entries)
+                if (entry.index == point.index && entry.sub == point.sub) return entry.bits == 1;
+        return false;
+    };
+    return has(device.tx_pdos) || has(device.rx_pdos);
+}
+
 }  // namespace
 
 World::World(const MachineConfig& config, Instant start)
@@ -92,12 +107,12 @@ World::World(const MachineConfig& config, Instant start)
         options.name = slave->name;
         options.alias = slave->alias.value_or(0);
         options.device_id = slave->device_id;
-        if (!slave->device->mailbox) {
-            auto model = std::make_unique<ecat::sim::DigitalTerminal>();
-            auto* terminal = model.get();
+        if (!is_drive(*slave->device)) {
+            auto model = std::make_unique<ecat::sim::PlainDevice>(*slave->device);
+            auto* device = model.get();
             install(*slave, std::move(model), options);
             for (const auto& point : config.io)
-                if (point.slave == slave->name) points_.push_back({point, terminal, nullptr});
+                if (point.slave == slave->name) points_.push_back({point, device, nullptr, is_bit(*slave->device, point)});
             continue;
         }
         std::vector<axes::sim::Cia402Device::AxisSetup> setups;
@@ -133,7 +148,7 @@ World::World(const MachineConfig& config, Instant start)
             if (binding.slave == slave->name)
                 for (const auto& setting : binding.stored) model->commission(binding.drive_axis, setting.object, setting.value);
         for (const auto& point : config.io)
-            if (point.slave == slave->name) points_.push_back({point, nullptr, model.get()});
+            if (point.slave == slave->name) points_.push_back({point, nullptr, model.get(), false});
         install(*slave, std::move(model), options);
     }
     for (const auto& point : config.io)
@@ -159,23 +174,33 @@ axes::sim::Cia402Axis* World::drive(std::string_view axis) noexcept {
 
 bool World::is_single_bit(std::string_view input) const noexcept {
     for (const auto& point : points_)
-        if (point.terminal && point.config.name == input && point.config.direction == IoDirection::input) return true;
+        if (point.config.name == input && point.config.direction == IoDirection::input) return point.single_bit;
     return false;
 }
 
 void World::set_input_value(std::string_view name, std::int64_t value) {
     for (auto& point : points_) {
         if (point.config.name != name || point.config.direction != IoDirection::input) continue;
-        if (point.terminal) point.terminal->set_input(point.config.sub - 1u, value != 0);
-        else point.device->hold(point.config.index, point.config.sub, value);
+        if (point.device) point.device->set(point.config.index, point.config.sub, point.single_bit ? value != 0 : value);
+        else point.drive->hold(point.config.index, point.config.sub, value);
     }
 }
 
-bool World::output(std::string_view name) const {
+void World::set_input_fault(std::string_view name, bool holds) {
+    for (auto& point : points_) {
+        const auto& status = point.config.status;
+        if (point.config.name != name || point.config.direction != IoDirection::input || !point.device || status.empty()) continue;
+        const auto error = std::ranges::find(status, PointStatus::Kind::error, &PointStatus::kind);
+        const auto& chosen = error != status.end() ? *error : status.front();
+        point.device->set(chosen.index, chosen.sub, holds ? 1 : 0);
+    }
+}
+
+std::int64_t World::output_value(std::string_view name) const {
     for (const auto& point : points_)
-        if (point.terminal && point.config.name == name && point.config.direction == IoDirection::output)
-            return point.terminal->output(point.config.sub - 1u);
-    return false;
+        if (point.device && point.config.name == name && point.config.direction == IoDirection::output)
+            return point.device->get(point.config.index, point.config.sub);
+    return 0;
 }
 
 void World::set_slave_power(std::string_view slave, bool on) {
@@ -191,6 +216,7 @@ void World::happen(const SimulationEvent& event) {
     if (serial_.happen(event)) return;
     switch (event.kind) {
         case Kind::input: set_input_value(event.target, event.value); break;
+        case Kind::input_fault: set_input_fault(event.target, event.value != 0); break;
         case Kind::slave_power: set_slave_power(event.target, event.value != 0); break;
         case Kind::drive_fault:
             if (const auto* axis = place(event.target)) axis->device->raise(axis->index, static_cast<std::uint16_t>(event.value));

@@ -9,7 +9,7 @@
 
 #include "axes/sim/cia402_device.hpp"
 #include "core/time.hpp"
-#include "ecat/sim/digital_terminal.hpp"
+#include "ecat/sim/plain_device.hpp"
 #include "ecat/sim/sim_network.hpp"
 #include "ecat/transport/loopback.hpp"
 #include "runtime/machine_config.hpp"
@@ -39,12 +39,17 @@ public:
     [[nodiscard]] axes::sim::Cia402Axis* drive(std::string_view axis) noexcept;
     /// The contact of a named input point (before its `inverted`).
     void set_input(std::string_view point, bool value) { set_input_value(point, value ? 1 : 0); }
-    /// What the field gives a named input point, of any width: the raw value of its object. A one-bit point of a terminal takes 0 as FALSE.
+    /// What the field gives a named input point, of any width: the raw word of its object. A one-bit point takes 0 as FALSE.
     void set_input_value(std::string_view point, std::int64_t value);
+    /// The terminal reports what it can of this input (its error bit, else the first of its states), or takes it back. A terminal that
+    /// reports nothing: nothing happens.
+    void set_input_fault(std::string_view point, bool holds);
     /// An input of a terminal: 0 or 1, and nothing else.
     [[nodiscard]] bool is_single_bit(std::string_view input) const noexcept;
     /// What a named output point drives at the terminal.
-    [[nodiscard]] bool output(std::string_view point) const;
+    [[nodiscard]] bool output(std::string_view point) const { return output_value(point) != 0; }
+    /// The same as a raw word.
+    [[nodiscard]] std::int64_t output_value(std::string_view point) const;
     void set_slave_power(std::string_view slave, bool on);
     /// Pulls or plugs the cable in front of a slave.
     void set_cable(std::string_view slave, bool plugged);
@@ -54,8 +59,9 @@ private:
 
     struct Point {
         IoPoint config;
-        ecat::sim::DigitalTerminal* terminal = nullptr;  // either ...
-        axes::sim::Cia402Device* device = nullptr;       // ... or
+        ecat::sim::PlainDevice* device = nullptr;  // either ...
+        axes::sim::Cia402Device* drive = nullptr;  // ... or
+        bool single_bit = false;
     };
     struct AxisPlace {
         std::string name;

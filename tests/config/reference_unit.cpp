@@ -21,6 +21,7 @@ void expect_committed(const std::string& file, const std::string& generated) {
 
 TEST(Reference, TheMachineSchemaIsTheCommittedOne) { expect_committed("config/schema/machine.schema.json", machine_schema()); }
 TEST(Reference, TheDriveSchemaIsTheCommittedOne) { expect_committed("config/schema/drive.schema.json", drive_schema()); }
+TEST(Reference, TheDeviceSchemaIsTheCommittedOne) { expect_committed("config/schema/device.schema.json", device_schema()); }
 TEST(Reference, TheReferencePageIsTheCommittedOne) { expect_committed("docs/configuration.md", reference_page()); }
 
 }  // namespace

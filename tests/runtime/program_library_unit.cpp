@@ -143,7 +143,7 @@ TEST_F(ProgramFile, EachBadOneOfAMachineIsOneErrorThatNamesTheProgram) {
         config.programs.push_back(program);
     }
     std::vector<Error> errors;
-    const IoImage io{{}};
+    const IoImage io{{}, {}};
 
     axes::MotionTables tables;
     const ProgramHost host{config, io, tables, errors};

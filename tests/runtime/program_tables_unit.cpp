@@ -27,7 +27,7 @@ struct Declared {
         self = static_cast<P*>(host->programs().at(0).instance.get());
     }
     MachineConfig config;
-    IoImage io{{}};
+    IoImage io{{}, {}};
     axes::MotionTables tables;
     std::vector<Error> errors;
     std::optional<ProgramHost> host;

@@ -1,0 +1,118 @@
+#include "config/device_file/device_file_tables.hpp"
+
+#include <fmt/format.h>
+
+#include "config/drive_file/drive_tables.hpp"
+#include "config/reading/codecs.hpp"
+
+namespace taktwerk::config {
+
+namespace {
+
+Table<DevicePdo> device_pdo_table() {
+    using P = DevicePdo;
+    Table<P> table{"pdo", "One PDO of the device.", {}, {}, {}};
+    include_fields(
+        table.fields, [](P& p) -> ecat::PdoDescription& { return p.pdo; }, pdo_table());
+    table.fields.push_back(field("assigned", &P::assigned, boolean(), "it is exchanged as the device comes from the factory"));
+    return table;
+}
+
+Table<DeviceFile> device_pdo_section() {
+    using F = DeviceFile;
+    return {"pdo",
+            "Process data as the device offers it; of a device without a mailbox as its EEPROM says.",
+            {
+                with_default(field("rx", &F::rx, list(section(device_pdo_table())), "to the device"), "none"),
+                with_default(field("tx", &F::tx, list(section(device_pdo_table())), "from the device"), "none"),
+            },
+            {},
+            {}};
+}
+
+Table<ChannelRow> channel_table() {
+    using C = ChannelRow;
+    Table<C> table{
+        "channels.<name>",
+        "A value of the process data under a name. `counts` and `value` say what its number means.",
+        {
+            field("input", &C::input, maybe(object_address()), "the object that the device sends"),
+            field("output", &C::output, maybe(object_address()), "or the one that it is sent"),
+            with_default(field("type", &C::type, maybe(data_type()), "of the object, where `objects` does not list it"),
+                         "BOOL or unsigned, by its bits"),
+            field("counts", &C::counts, maybe(measure_pair()), "two numbers of the object, such as [0, 32767]"),
+            field("value", &C::value, maybe(measure_pair()), "what these are, such as [0 V, 10 V]"),
+            field("error", &C::error, maybe(object_address()), "not 0 while the device cannot measure it: wire break, short circuit"),
+            field("underrange", &C::underrange, maybe(object_address()), "not 0 while the signal is below what it measures"),
+            field("overrange", &C::overrange, maybe(object_address()), "not 0 while the signal is above what it measures"),
+            field("doc", &C::doc, text(), "for people"),
+        },
+        {},
+        {}};
+    table.after = [](Reader& reader, const Node& node, C& c) {
+        if (reader.already_bad(reader.path())) return;
+        if (c.input.has_value() == c.output.has_value())
+            reader.problem(node.at, "config.channel", fmt::format("`{}` needs either `input` or `output`", reader.path()),
+                           "give the object in the process data, such as `input: 6000h:11`");
+        if (c.counts.has_value() != c.value.has_value())
+            reader.problem(node.at, "config.channel", "`counts` and `value` belong together",
+                           "write both: `counts: [0, 32767], value: [0 V, 10 V]`");
+        if (c.counts && !c.counts->unit.empty())
+            reader.problem(node.at, "config.channel", "`counts` are numbers of the object, without a unit",
+                           "write for instance `counts: [0, 32767]`");
+        if (c.value && c.value->unit.empty())
+            reader.problem(node.at, "config.unit_missing", "`value` has no unit", "write it with one, such as `value: [0 V, 10 V]`");
+        if (c.output && (c.error || c.underrange || c.overrange))
+            reader.problem(node.at, "config.channel", "an output has no `error`, `underrange` or `overrange`",
+                           "make them channels of their own");
+    };
+    return table;
+}
+
+}  // namespace
+
+Table<DeviceFile> device_file_table() {
+    using F = DeviceFile;
+    Table<F> table{
+        "device file", "What one device type is that is no drive: a coupler, a terminal, an encoder, a valve island.", {}, {}, {}};
+    auto& f = table.fields;
+    f.push_back(version_field(&F::version));
+    f.push_back(required(field("name", &F::name, name(), "as machines name it: `device: el3102`")));
+    f.push_back(required(field("vendor", &F::vendor, text(), "for people")));
+    f.push_back(required(field("title", &F::title, text(), "for people")));
+    f.push_back(required(field("source", &F::source, text(), "where these facts come from")));
+    f.push_back(required(field(
+        "checked", &F::checked,
+        [] {
+            auto c = text();
+            c.shape.kind = Shape::Kind::choice;
+            c.shape.choices = {"unit", "vendor_file", "project", "inferred"};
+            c.read = [words = c.shape.choices](Reader& reader, const Node& node, std::string& out) {
+                const auto index = read_choice(reader, node, words);
+                if (index) out = words[*index];
+                return index.has_value();
+            };
+            return c;
+        }(),
+        "against what: read from a real unit · the vendor's ESI · what one project configured · inferred, see `source`")));
+    include_fields(
+        f, [](F& d) -> ecat::DeviceDescription& { return d.device; }, Table<ecat::DeviceDescription>{{}, {}, controller_fields(), {}, {}});
+    f.push_back(with_default(field_at<F>(
+                                 "ebus", [](F & d) -> auto& { return d.device.ebus_current; }, maybe(milliampere()),
+                                 "what it takes from the E-bus, `130 mA`; negative: what it supplies, `-2000 mA`"),
+                             "not known"));
+    f.push_back(field_at<F>(
+        "pdo", [](F& d) -> F& { return d; }, section(device_pdo_section()), "process data as the device offers it"));
+    f.push_back(field("objects", &F::objects, list(section(object_table())), "of the dictionary; those of PDOs need not be listed"));
+    f.push_back(
+        field("startup", &F::startup, list(section(startup_table())), "SDOs written on every bring-up, before those of the machine"));
+    f.push_back(with_default(
+        field("channels", &F::channels, by_name(section(channel_table()), [](ChannelRow& c) -> std::string& { return c.name; }),
+              "its values by name; a machine names them in `io`"),
+        "none"));
+    for (auto& one : f)
+        if (one.info.key == "objects" || one.info.key == "startup") one.info.default_text.clear();
+    return table;
+}
+
+}  // namespace taktwerk::config

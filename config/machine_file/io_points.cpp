@@ -1,0 +1,182 @@
+#include "config/machine_file/io_points.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/nearest_name.hpp"
+
+namespace taktwerk::config {
+
+namespace {
+
+using runtime::IoDirection;
+
+class PointBuilder {
+public:
+    PointBuilder(Reader& reader, const IoEntry& entry, IoDirection direction, const PointPlace& place)
+        : reader_(reader),
+          entry_(entry),
+          input_(direction == IoDirection::input),
+          place_(place),
+          here_(fmt::format("io.{}.{}", input_ ? "inputs" : "outputs", entry.point.name)),
+          point_(entry.point) {
+        point_.direction = direction;
+    }
+
+    runtime::IoPoint build(const std::vector<runtime::IoPoint>& others) {
+        find();
+        if (channel_) expect_free(others);
+        scale();
+        limit();
+        if (entry_.safe) point_.safe_value = word(*entry_.safe, "safe").value_or(0);
+        if (entry_.simulated) point_.simulated = word(*entry_.simulated, "simulated");
+        return std::move(point_);
+    }
+
+private:
+    void problem(const char* key, const char* code, std::string what, std::string remedy) {
+        const auto path = fmt::format("{}.{}", here_, key);
+        reader_.problem(reader_.find(path), code, std::move(what), std::move(remedy));
+        reader_.mark_bad(path);
+        good_ = false;
+    }
+
+    void find() {
+        if (entry_.object) {
+            point_.index = entry_.object->index, point_.sub = entry_.object->sub;
+            adopt_number();
+            return;
+        }
+        if (entry_.channel.empty() || !place_.known) return;
+        if (!place_.device) {
+            problem("channel", "config.no_channel", fmt::format("slave '{}' is no terminal: it has no channels", point_.slave),
+                    "use `object:`, such as `object: 60FDh`");
+            return;
+        }
+        channel_ = find_channel(*place_.device, point_.direction, entry_.channel);
+        if (!channel_) return no_channel();
+        point_.index = channel_->index, point_.sub = channel_->sub;
+        point_.line = channel_->line;
+        point_.unit = channel_->unit;
+        point_.status = channel_->status;
+    }
+
+    /// Of an object that no channel names: a real number is one all the same.
+    void adopt_number() {
+        if (!place_.description) return;
+        const auto* object = find_object(*place_.description, point_.index, point_.sub);
+        if (object == nullptr) return;
+        if (object->type == ecat::DataType::REAL32) point_.line.number = PointLine::Number::real32;
+        if (object->type == ecat::DataType::REAL64) point_.line.number = PointLine::Number::real64;
+    }
+
+    void no_channel() {
+        const auto names = channel_names(*place_.device, point_.direction);
+        const auto kind = input_ ? "inputs" : "outputs";
+        if (place_.is_terminal || parse_integer(entry_.channel)) {
+            problem("channel", "config.no_channel",
+                    fmt::format("{} '{}' has {} {}, there is no channel {}", place_.is_terminal ? "terminal" : "slave", point_.slave,
+                                names.size(), kind, entry_.channel),
+                    !names.empty() ? fmt::format("choose 1 to {}", names.size()) : "choose another terminal");
+            return;
+        }
+        std::string list;
+        for (const auto& name : names) list += (list.empty() ? "" : ", ") + name;
+        const auto near = nearest_name(entry_.channel, names);
+        problem("channel", "config.no_channel",
+                fmt::format("slave '{}' ({}) has no {} channel '{}' (there is: {})", point_.slave, place_.device->device->name,
+                            input_ ? "input" : "output", entry_.channel, list.empty() ? "none" : list),
+                near.empty() ? "correct the name" : fmt::format("did you mean `{}`?", near));
+    }
+
+    void expect_free(const std::vector<runtime::IoPoint>& others) {
+        for (const auto& other : others)
+            if (other.direction == point_.direction && other.slave == point_.slave && other.index == point_.index &&
+                other.sub == point_.sub)
+                problem("channel", "config.channel_taken",
+                        fmt::format("channel {} of '{}' is already '{}'", entry_.channel, point_.slave, other.name),
+                        "give each point its own channel");
+    }
+
+    /// The line of the channel, and behind it that of the point.
+    void scale() {
+        if (!entry_.scale || !good_) return;
+        const auto& [from, to] = *entry_.scale;
+        const bool raw = from.unit.empty();
+        if (!raw && from.unit != point_.unit) {
+            problem(
+                "scale", "config.scale",
+                point_.unit.empty() ? fmt::format("the channel has no unit of its own, and `from` is in {}", from.unit)
+                                    : fmt::format("the channel is in {}, and `from` in {}", point_.unit, from.unit),
+                point_.unit.empty() ? "give `from` as two raw numbers, without a unit" : fmt::format("write `from` in {}", point_.unit));
+            return;
+        }
+        if (to.unit.empty()) {
+            problem("scale", "config.unit_missing", "`to` has no unit", "write it with one, such as `to: [0 bar, 16 bar]`");
+            return;
+        }
+        const double factor = (to.second - to.first) / (from.second - from.first);
+        const double offset = to.first - from.first * factor;
+        const auto before = raw ? PointLine{1, 0, point_.line.number} : point_.line;
+        point_.line = before;
+        point_.line.factor = before.factor * factor;
+        point_.line.offset = before.offset * factor + offset;
+        point_.unit = to.unit;
+        if (!std::isfinite(point_.line.factor) || point_.line.factor == 0 || !std::isfinite(point_.line.offset))
+            problem("scale", "config.scale", "the scale is no finite line", "give two different values in `from` and in `to`");
+    }
+
+    bool in_our_unit(const std::string& unit, const char* key) {
+        if (unit == point_.unit) return true;
+        if (good_)
+            problem(key, "config.unit_wrong",
+                    point_.unit.empty() ? fmt::format("`{}` is in {}, and the point has no unit", key, unit)
+                    : unit.empty()      ? fmt::format("`{}` has no unit, and the point is in {}", key, point_.unit)
+                                        : fmt::format("`{}` is in {}, and the point in {}", key, unit, point_.unit),
+                    point_.unit.empty() ? "write it as the raw number, or give the point a `scale`"
+                                        : fmt::format("write it in {}", point_.unit));
+        return false;
+    }
+
+    void limit() {
+        if (!entry_.limits || !in_our_unit(entry_.limits->unit, "limits")) return;
+        if (!(entry_.limits->first < entry_.limits->second)) {
+            problem("limits", "config.out_of_range", "the lower limit is not below the upper one", "write `limits: [low, high]`");
+            return;
+        }
+        point_.limits = runtime::PointLimits{entry_.limits->first, entry_.limits->second};
+    }
+
+    /// A value with a unit through the line; a bare number is the raw word, as a terminal carries it.
+    std::optional<std::int64_t> word(const Measure& written, const char* key) {
+        const bool plain = written.unit.empty();
+        if (!plain && !in_our_unit(written.unit, key)) return std::nullopt;
+        if (!plain && good_) return point_.line.raw_of(written.value);
+        constexpr double widest = 0x1p32;
+        if (plain && written.value == std::floor(written.value) && std::abs(written.value) <= widest)
+            return static_cast<std::int64_t>(written.value);
+        if (good_)
+            problem(key, "config.wrong_type", fmt::format("{:g} for `{}` is no whole number", written.value, key),
+                    point_.unit.empty() ? "write the raw number, such as 1"
+                                        : fmt::format("write it with its unit, such as `1 {}`", point_.unit));
+        return std::nullopt;
+    }
+
+    Reader& reader_;
+    const IoEntry& entry_;
+    bool input_, good_ = true;
+    const PointPlace& place_;
+    std::string here_;
+    runtime::IoPoint point_;
+    const DeviceChannel* channel_ = nullptr;
+};
+
+}  // namespace
+
+runtime::IoPoint make_point(Reader& reader, const IoEntry& entry, IoDirection direction, const PointPlace& place,
+                            const std::vector<runtime::IoPoint>& others) {
+    return PointBuilder(reader, entry, direction, place).build(others);
+}
+
+}  // namespace taktwerk::config

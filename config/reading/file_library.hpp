@@ -1,0 +1,49 @@
+#pragma once
+// Finds files by name in some folders; each is read once.
+
+#include <map>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "core/result.hpp"
+
+namespace taktwerk::config {
+
+/// NAME.yaml in the first folder that has it; empty: nowhere.
+[[nodiscard]] std::string find_file(const std::vector<std::string>& folders, const std::string& name);
+/// The names of all of them, sorted. What has a second dot (`sv33-e.alarms.yaml`) belongs to another file.
+[[nodiscard]] std::vector<std::string> file_names(const std::vector<std::string>& folders);
+
+template <class Loaded>
+class FileLibrary {
+public:
+    using Answer = std::variant<Loaded, std::vector<Error>>;
+    FileLibrary(std::vector<std::string> folders, Answer (*load)(const std::string& path)) : folders_(std::move(folders)), load_(load) {}
+
+    /// nullptr when there is no such file or it has errors (then errors() grew).
+    const Loaded* find(const std::string& name) {
+        auto found = files_.find(name);
+        if (found == files_.end()) {
+            const auto path = find_file(folders_, name);
+            if (path.empty()) return nullptr;
+            found = files_.emplace(name, load_(path)).first;
+            if (const auto* errors = std::get_if<std::vector<Error>>(&found->second))
+                errors_.insert(errors_.end(), errors->begin(), errors->end());
+        }
+        return std::get_if<Loaded>(&found->second);
+    }
+    [[nodiscard]] bool exists(const std::string& name) const { return !find_file(folders_, name).empty(); }
+    [[nodiscard]] std::vector<std::string> names() const { return file_names(folders_); }
+    [[nodiscard]] const std::vector<std::string>& folders() const noexcept { return folders_; }
+    [[nodiscard]] const std::vector<Error>& errors() const noexcept { return errors_; }
+
+private:
+    std::vector<std::string> folders_;
+    Answer (*load_)(const std::string& path);
+    std::map<std::string, Answer, std::less<>> files_;
+    std::vector<Error> errors_;
+};
+
+}  // namespace taktwerk::config
