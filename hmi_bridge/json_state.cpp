@@ -119,11 +119,10 @@ Json event_array(const runtime::Snapshot& s, const runtime::MachineLayout& layou
 }
 
 /// A point with a unit in it, another as the number that the terminal carries.
-Json points(const std::vector<std::string>& names, const std::vector<std::string>& units, const std::vector<std::int64_t>& words,
-            const auto& value_of) {
+Json points(const std::vector<std::string>& names, const Json& units, const std::vector<std::int64_t>& words, const auto& value_of) {
     auto out = Json::object();
-    for (std::size_t i = 0; i < names.size() && i < words.size() && i < units.size(); ++i)
-        out[names[i]] = units[i].empty() ? Json(words[i]) : Json(value_of(i));
+    for (std::size_t i = 0; i < names.size() && i < words.size(); ++i)
+        out[names[i]] = units.contains(names[i]) ? Json(value_of(i)) : Json(words[i]);
     return out;
 }
 
@@ -192,10 +191,10 @@ std::string state_json(const runtime::Snapshot& s, const MachineLink& machine) {
                              {"overruns", s.tasks[i].overruns},
                              {"run_ns", count(s.tasks[i].run)},
                              {"run_max_ns", count(s.tasks[i].run_max)}});
-    out["inputs"] = points(layout.inputs, layout.input_units, s.inputs, [&](std::size_t i) { return s.input_values[i].value; });
-    out["outputs"] = points(layout.outputs, layout.output_units, s.outputs, [&](std::size_t i) { return s.output_values[i]; });
     out["input_units"] = units_of(layout.inputs, layout.input_units);
     out["output_units"] = units_of(layout.outputs, layout.output_units);
+    out["inputs"] = points(layout.inputs, out["input_units"], s.inputs, [&](std::size_t i) { return s.input_values[i].value; });
+    out["outputs"] = points(layout.outputs, out["output_units"], s.outputs, [&](std::size_t i) { return s.output_values[i]; });
     auto& doubtful = out["doubtful_inputs"] = Json::array();
     for (std::size_t i = 0; i < s.input_values.size() && i < layout.inputs.size(); ++i)
         if (!s.input_values[i].good) doubtful.push_back(layout.inputs[i]);

@@ -197,7 +197,7 @@ TEST(PointsOfDevices, AnUnknownDeviceIsSaidWithTheNearest) {
         return found ? one_line_each(*found) : std::string{};
     };
     EXPECT_EQ(errors("el3064"), "");
-    EXPECT_THAT(errors("el3046"), HasSubstr("did you mean `el3064`?"));
+    EXPECT_THAT(errors("el3064x"), HasSubstr("did you mean `el3064`?"));
     EXPECT_THAT(errors("sv33-e"), HasSubstr("write `profile: sv33-e`"));
 }
 

@@ -76,7 +76,7 @@ TEST_F(Sdk, ProgramIsLoadedAndItsNamesAreResolved) {
     config.programs.push_back(program);
 
     std::vector<Error> errors;
-    const IoImage io{config.io};
+    const IoImage io{config.io, config.cycle};
     axes::MotionTables tables;
     ProgramHost host{config, io, tables, errors};
 

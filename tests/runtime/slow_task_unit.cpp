@@ -43,12 +43,13 @@ struct Slow : testing::Test {
         CycleContext now;
         now.now = axes.context.now;
         now.period = std::chrono::milliseconds{1};
-        task.release(now, axes.context.axes, inputs, outputs, parameters, alarms);
+        task.release(now, axes.context.axes, {inputs, input_values}, outputs, parameters, alarms);
     }
 
     fb::FakeAxes axes{1};
     Body body;
     std::vector<std::int64_t> inputs{0}, outputs{0, 0};
+    std::vector<PointValue> input_values{{}};
     std::vector<double> parameters{0};
     std::uint64_t alarms = 0;
     ObjectRequests objects{1, 0};
