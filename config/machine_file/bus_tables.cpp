@@ -120,9 +120,9 @@ Table<SlaveEntry> slave_table() {
         for (const auto* kind : {"profile", "device", "terminal"})
             if (node.find(kind) != nullptr) kinds += fmt::format("{}`{}`", count++ == 0 ? "" : " and ", kind);
         if (count == 0)
-            reader.problem(node.at, "config.missing_key",
-                           fmt::format("slave '{}' has neither `profile` nor `device` nor `terminal`", s.slave.name),
-                           "add `profile:` with a drive type, `device:` with another device type, or `terminal:` with its inputs and outputs");
+            reader.problem(
+                node.at, "config.missing_key", fmt::format("slave '{}' has neither `profile` nor `device` nor `terminal`", s.slave.name),
+                "add `profile:` with a drive type, `device:` with another device type, or `terminal:` with its inputs and outputs");
         if (count > 1)
             reader.problem(node.at, "config.conflict", fmt::format("slave '{}' has both {}", s.slave.name, kinds), "keep one of them");
         if (s.slave.position.has_value() + s.slave.alias.has_value() + s.slave.device_id.has_value() > 1)

@@ -47,7 +47,8 @@ TEST(Installation, HoldsTheCommandItsDataTheTypesTheSchemasAndTheDocumentation) 
 
     EXPECT_GT(compared(source / "config/drives", share / "drives", ".yaml"), 0);
     EXPECT_GT(compared(source / "config/machines", share / "machines", ".yaml"), 0);
-    EXPECT_EQ(compared(source / "config/schema", share / "schema", ".json"), 2) << "of a machine and of a drive";
+    EXPECT_GT(compared(source / "config/devices", share / "devices", ".yaml"), 100);
+    EXPECT_EQ(compared(source / "config/schema", share / "schema", ".json"), 3) << "of a machine, a drive and a device";
     EXPECT_GE(compared(source / "hmi_bridge/lcm", share / "lcm", ".lcm"), 12) << "hmi_bridge/README.md names twelve types";
     EXPECT_GT(compared(source / "docs", doc / "docs"), 0);
     for (const char* page : {"README.md", "LICENSE", "hmi_bridge/README.md"})
