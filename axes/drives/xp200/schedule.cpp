@@ -64,7 +64,7 @@ std::optional<modbus::Request> Schedule::next(const Wish& wish, Instant now) {
     if (phase_ != Phase::running) return open(now);
     follow_latch(wish, now);
     auto request = command(wish, now);
-    if (!request && (sample_.released || !problems().empty())) sample_.acknowledged = wish.sequence;
+    if (!request && (sample_.released || !problems().empty())) obeyed_ = wish.sequence;
     if (request && (urgent(wish) || ++commands_in_a_row_ <= 2)) return request;
     commands_in_a_row_ = 0;
     if (!services_.empty() && ++turn_ % 4 == 0) {

@@ -87,6 +87,7 @@ private:
     Settings settings_;
 
     Sample sample_;
+    std::uint32_t obeyed_ = 0;          // of the wish: nothing of it is left to be sent
     std::optional<std::uint32_t> raw_;  // position as read last
     bool doubtful_ = false;             // the last position leapt
     IndexPulse index_;

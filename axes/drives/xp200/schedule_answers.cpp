@@ -109,7 +109,8 @@ void Schedule::take_position(const modbus::Answer& answer, Instant now) {
     sample_.sampled = answer.sampled;
     sample_.torque = static_cast<double>(static_cast<std::int16_t>(words[4])) / 100;
     sample_.torque_mode = drives_torque() || settings_.knows(pr::force_4, force::mode + force::emergency);
-    sample_.online = turn_ > 3;  // terminals and alarm have been read once
+    sample_.online = turn_ > 3;      // terminals and alarm have been read once
+    sample_.acknowledged = obeyed_;  // with what the motor does since: one that stood before may turn now
     ++sample_.number;
 }
 
