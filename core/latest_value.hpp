@@ -21,7 +21,9 @@ public:
     [[nodiscard]] T& back() noexcept { return buffers_[back_]; }
 
     /// Writer only: makes back() the newest value. The reference from back() is void from here on.
-    void publish() noexcept { back_ = middle_.exchange(static_cast<std::uint8_t>(back_ | fresh_), std::memory_order_acq_rel) & index_; }
+    void publish() noexcept {
+        back_ = middle_.exchange(static_cast<std::uint8_t>(back_ | fresh_bit), std::memory_order_acq_rel) & index_bits;
+    }
 
     struct Reading {
         const T* value;  ///< never null; before the first publish() the prototype. Valid until the reader's next read().
@@ -30,14 +32,14 @@ public:
 
     /// Reader only: the newest published value.
     [[nodiscard]] Reading read() noexcept {
-        if ((middle_.load(std::memory_order_relaxed) & fresh_) == 0) return {&buffers_[front_], false};
-        front_ = middle_.exchange(front_, std::memory_order_acq_rel) & index_;
+        if ((middle_.load(std::memory_order_relaxed) & fresh_bit) == 0) return {&buffers_[front_], false};
+        front_ = middle_.exchange(front_, std::memory_order_acq_rel) & index_bits;
         return {&buffers_[front_], true};
     }
 
 private:
-    static constexpr std::uint8_t index_ = 0b011;
-    static constexpr std::uint8_t fresh_ = 0b100;
+    static constexpr std::uint8_t index_bits = 0b011;
+    static constexpr std::uint8_t fresh_bit = 0b100;
 
     std::array<T, 3> buffers_{};
     alignas(64) std::uint8_t back_ = 0;

@@ -55,7 +55,7 @@ int read_counters(BusSession& session, const CounterOptions& options) {
     show_counters(session, *found, *options.bus);
     if (!options.watch) return exit_ok;
     const double seconds = options.duration_s > 0 ? options.duration_s : session.simulated() ? simulated_watch_s : 0;
-    const auto rounds = static_cast<std::uint64_t>(seconds / to_seconds(watch_period) + 0.5);
+    const auto rounds = static_cast<std::uint64_t>(std::llround(seconds / to_seconds(watch_period)));
     for (std::uint64_t round = 0; rounds == 0 || round < rounds; ++round) {
         if (!session.probe().run_for(watch_period)) return exit_ok;  // Ctrl-C
         const Survey before = *found;

@@ -94,7 +94,7 @@ int find_out_why(BusSession& session, const BusOptions& options) {
         return fail(options, found.error());
     }
     if (auto up = session.bring_up(*found); !up) {
-        const Error failure = up.error();
+        const Error& failure = up.error();
         if (failure.code == "bus.not_confirmed" || failure.code == "bus.foreign_master" || failure.code == "bus.interrupted")
             return fail(options, failure);
         return explain_failure(session, failure, options);

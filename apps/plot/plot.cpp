@@ -19,7 +19,7 @@
 #include "apps/terminal/exit_code.hpp"
 #include "apps/terminal/print_error.hpp"
 
-extern char** environ;
+extern char** environ;  // NOLINT(readability-redundant-declaration): POSIX leaves it to the program
 
 namespace taktwerk::apps {
 namespace {

@@ -124,14 +124,15 @@ ErrorId TimeCurve::make_position(const MotionState& from, std::span<const TimePo
 
     // Elimination downwards, then upwards.
     for (std::size_t k = 1; k < m; ++k) {
-        double lower = h(k - 1), upper = h(k), diagonal = 2 * (lower + upper);
+        double lower = h(k - 1);
+        const double upper = h(k);
+        double diagonal = 2 * (lower + upper);
         double right = 6 * ((q(k + 1) - q(k)) / upper - (q(k) - q(k - 1)) / lower);
         if (k == 1) {
             diagonal += head + head * head / upper;
             right -= head * from.acceleration;
         }
         if (k == 2) lower -= head * head / lower;
-        if (k + 2 == m) upper -= tail * tail / upper;
         if (k + 1 == m) diagonal += tail + tail * tail / h(k - 1);
         if (k > 1) {
             const double above = h(k - 1) - (k + 1 == m ? tail * tail / h(k - 1) : 0);  // what the row above holds right of its diagonal

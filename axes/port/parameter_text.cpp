@@ -197,7 +197,7 @@ Result<void> check_homing_method(const DriveProfile& profile, const ParameterAdd
     const auto& known = profile.homing_methods;
     if (object.index != homing_method || raw == 0 || known.empty() || std::find(known.begin(), known.end(), raw) != known.end()) return {};
     std::string all;
-    for (const int method : known) all += (all.empty() ? "" : ", ") + std::to_string(method);
+    for (const std::int8_t method : known) all += (all.empty() ? "" : ", ") + std::to_string(static_cast<int>(method));
     return Error{"drive.out_of_range", object_text(object), fmt::format("{} does not document homing method {}", profile.name, raw),
                  "choose one of " + all};
 }

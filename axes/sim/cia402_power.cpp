@@ -44,10 +44,9 @@ void Cia402Axis::end_self_test() noexcept {
 
 void Cia402Axis::enter(State state) noexcept {
     const bool powered = state_ == State::enabled || state_ == State::quick_stop;
-    if (state == State::enabled) winding_down_ = false;
-    else if (powered && state != State::quick_stop && state != State::fault_reaction && state != State::not_ready)
+    if (state == State::enabled || state == State::not_ready || state == State::fault_reaction) winding_down_ = false;
+    else if (powered && state != State::quick_stop)
         wind_down(state == State::ready ? StopCause::shutdown : state == State::switched_on ? StopCause::disable : StopCause::off);
-    else if (state == State::not_ready || state == State::fault_reaction) winding_down_ = false;
     if (state == State::enabled && state_ != State::enabled) {
         brake_opens_ = now_ + profile_->brake.release;
         commands_from_ = now_ + std::max(profile_->brake.release, profile_->deaf_after_enable);

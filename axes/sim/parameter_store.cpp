@@ -29,7 +29,7 @@ ParameterStore::ParameterStore(const DriveProfile& profile, std::span<const Para
             cell.effect = row.effect;
             cell.change = row.change;
             cell.transient = row.action || std::find(transient.begin(), transient.end(), row.address) != transient.end();
-            cells_.push_back(std::move(cell));
+            cells_.push_back(cell);
         }
     const auto before = [](const Cell& a, const Cell& b) { return key(a.address) < key(b.address); };
     std::stable_sort(cells_.begin(), cells_.end(), before);

@@ -145,15 +145,15 @@ std::string value_text(const Shape& shape) {
 class Page {
 public:
     void section(const SectionInfo& info, const std::string& path, int level) {
-        text_ += fmt::format("{} {}\n\n{}\n\n| key | value | default | meaning |\n|---|---|---|---|\n",
-                             std::string(static_cast<std::size_t>(level), '#'), path.empty() ? info.title : "`" + path + "`", info.doc);
+        text += fmt::format("{} {}\n\n{}\n\n| key | value | default | meaning |\n|---|---|---|---|\n",
+                            std::string(static_cast<std::size_t>(level), '#'), path.empty() ? info.title : "`" + path + "`", info.doc);
         for (const auto& field : info.fields)
-            text_ += fmt::format("| `{}` | {} | {} | {} |\n", field.key, cell(value_text(field.shape)),
-                                 field.presence == Presence::required ? "**required**" : cell(field.default_text), cell(field.doc));
-        text_ += "\n";
+            text += fmt::format("| `{}` | {} | {} | {} |\n", field.key, cell(value_text(field.shape)),
+                                field.presence == Presence::required ? "**required**" : cell(field.default_text), cell(field.doc));
+        text += "\n";
         for (const auto& field : info.fields) inner(field.shape, path.empty() ? field.key : path + "." + field.key);
     }
-    std::string text_;
+    std::string text;
 
 private:
     static std::string cell(const std::string& text) {
@@ -177,7 +177,7 @@ std::string device_schema() { return schema(*device_file_table().info(), "Taktwe
 
 std::string reference_page() {
     Page page;
-    page.text_ =
+    page.text =
         "# Configuration\n\n"
         "Made from the field tables in `config/`; do not edit. `taktwerk check FILE` reports all problems of a file at once, each as\n"
         "`file:line:col: what. what to do`. Editors complete keys with `config/schema/*.schema.json`. Start from "
@@ -195,8 +195,8 @@ std::string reference_page() {
     page.section(*serial_drive_table().info(), "", 2);
     page.section(*alarm_table().info(), "", 2);
     page.section(*device_file_table().info(), "", 2);
-    while (page.text_.size() > 1 && page.text_[page.text_.size() - 2] == '\n') page.text_.pop_back();
-    return page.text_;
+    while (page.text.size() > 1 && page.text[page.text.size() - 2] == '\n') page.text.pop_back();
+    return page.text;
 }
 
 }  // namespace taktwerk::config

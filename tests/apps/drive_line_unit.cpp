@@ -50,7 +50,7 @@ protected:
         const fs::path source = std::string(TAKTWERK_SOURCE_DIR) + "/config";
         fs::create_directories(path("machines"));
         if (!fs::exists(path("drives"))) fs::create_directory_symlink(source / "drives", path("drives"));
-        const auto file = path("machines/x.yaml");
+        auto file = path("machines/x.yaml");
         std::ofstream(file) << text_of(source / "machines/serial-axis.yaml")
                             << "\nsimulation: { events: [ { at: 1 ms, drive_fault: u, code: " << code << " } ] }\n";
         return file;

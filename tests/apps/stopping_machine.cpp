@@ -75,7 +75,7 @@ protected:
     std::string machine(const std::string& more = "") {
         std::ostringstream text;
         text << std::ifstream(source / "config/machines/minimal.yaml").rdbuf();
-        const auto file = (folder / "machines/stopping.yaml").string();
+        auto file = (folder / "machines/stopping.yaml").string();
         std::ofstream(file) << text.str() << "hmi: { socket: '" << socket
                             << "', lcm: { enabled: false } }\nsimulation: { supervision: relaxed }\n"
                             << more;
@@ -83,7 +83,7 @@ protected:
     }
     /// With an absolute encoder.
     std::string absolute() {
-        const auto file = machine();
+        auto file = machine();
         std::ostringstream text;
         text << std::ifstream(file).rdbuf();
         auto changed = text.str();

@@ -19,11 +19,11 @@ class QuietModel final : public sim::DeviceModel {
 public:
     void power_on(sim::ObjectDictionary&, Instant) override {}
     void exchange(Instant) override {}
-    void raw_outputs(std::span<const std::byte> outputs) override { outputs_.assign(outputs.begin(), outputs.end()); }
+    void raw_outputs(std::span<const std::byte> outputs) override { got.assign(outputs.begin(), outputs.end()); }
     void raw_inputs(std::span<std::byte> inputs) override {
         for (auto& byte : inputs) byte = std::byte{0xA5};
     }
-    std::vector<std::byte> outputs_;
+    std::vector<std::byte> got;
 };
 
 /// One slave: `played` is what the simulator is, `told` what the master believes.
@@ -165,7 +165,7 @@ TEST(ProcessData, OddBitsAndGapsStandWhereTheMappingPutsThem) {
 
     write_signal(bus.master->outputs(), bus.master->output(0, 0x7000, 2).value(), 0xABC);
     bus.run_for(10ms);
-    const auto& got = dynamic_cast<QuietModel&>(bus.network.slave(0).model()).outputs_;
+    const auto& got = dynamic_cast<QuietModel&>(bus.network.slave(0).model()).got;
     ASSERT_EQ(got.size(), 3u);
     const auto word = static_cast<unsigned>(got[0]) | (static_cast<unsigned>(got[1]) << 8) | (static_cast<unsigned>(got[2]) << 16);
     EXPECT_EQ((word >> 5) & 0xFFFu, 0xABCu);

@@ -50,7 +50,7 @@ TEST_P(PlannerExample, StandsInTheTutorialAndPrintsWhatStandsThere) {
     const auto main = code.find("int main()");
     ASSERT_NE(main, std::string::npos);
     const auto expected = "\n\n```cpp\n" + code.substr(main) + "```\n\nprints\n\n```\n" + printed_by(GetParam()) + "```\n";
-    const auto link_end = page.find(")", at) + 1;
+    const auto link_end = page.find(')', at) + 1;
     EXPECT_EQ(page.substr(link_end, expected.size()), expected);
 }
 

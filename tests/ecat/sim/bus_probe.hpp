@@ -35,7 +35,7 @@ Bytes le(T value) {
 /// What the model was told, in order; tests that care about objects read the dictionary.
 class RecordingModel : public DeviceModel {
 public:
-    void power_on(ObjectDictionary& dictionary, Instant) override { dictionary_ = &dictionary; }
+    void power_on(ObjectDictionary& dictionary, Instant) override { powered_with = &dictionary; }
     void power_off(Instant) override { ++power_offs; }
     std::uint16_t refuse(EsmState, EsmState to, const SyncSettings& settings) override {
         last_settings = settings;
@@ -50,7 +50,7 @@ public:
     }
     void written(std::uint16_t index, std::uint8_t sub, Instant) override { writes.push_back((std::uint32_t{index} << 8) | sub); }
 
-    ObjectDictionary* dictionary_ = nullptr;
+    ObjectDictionary* powered_with = nullptr;
     std::vector<EsmState> states;
     std::vector<Instant> exchanges, lost;
     std::vector<std::uint32_t> writes;

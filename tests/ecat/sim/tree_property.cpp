@@ -100,7 +100,7 @@ TEST(RandomTrees, ReceiveTimesAddUpAlongEveryCable) {
         const auto tree = build_topology(read_dl_status(bus));
         ASSERT_TRUE(tree);
         std::vector<std::array<std::uint32_t, 4>> times(grown.size());
-        for (std::uint16_t i = 0; i < grown.size(); ++i)
+        for (std::uint16_t i = 0; i < static_cast<std::uint16_t>(grown.size()); ++i)
             for (std::uint16_t p = 0; p < 4; ++p)
                 times[i][p] = bus.value<std::uint32_t>(i, static_cast<std::uint16_t>(reg::dc_receive_times + 4 * p));
 

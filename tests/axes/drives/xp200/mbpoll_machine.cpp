@@ -21,7 +21,7 @@
 #include "modbus/line/pseudo_terminal.hpp"
 #include "tests/axes/drives/xp200/plain_profile.hpp"
 
-extern char** environ;
+extern char** environ;  // NOLINT(readability-redundant-declaration): POSIX leaves it to the program
 
 namespace taktwerk::axes::sim::xp200 {
 namespace {
