@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "apps/docs/device_page.hpp"
 #include "apps/docs/drive_pages.hpp"
 #include "apps/docs/reference_pages.hpp"
 #include "apps/machine/load.hpp"
@@ -27,10 +28,12 @@ struct Page {
     const char* name;
     std::string (*text)();
 };
-constexpr std::array<Page, 5> pages{{
+std::string devices_page() { return device_reference_markdown(device_folders({})); }
+constexpr std::array<Page, 6> pages{{
     {"blocks", fb::block_reference_markdown},
     {"configuration", config::reference_page},
     {"alarms", alarm_reference_markdown},
+    {"devices", devices_page},
     {"errors", error_reference_markdown},
     {"parameters", parameter_reference_markdown},
 }};

@@ -47,6 +47,9 @@ config::LoadOptions options_for(bool simulate) {
 config::LoadResult read_machine(const std::string& file, bool simulate) { return config::load_machine(file, options_for(simulate)); }
 
 std::vector<std::string> drive_folders(const std::string& machine_file) { return config::drive_folders(machine_file, options_for(false)); }
+std::vector<std::string> device_folders(const std::string& machine_file) {
+    return config::device_folders(machine_file, options_for(false));
+}
 
 config::LoadResult read_machine_without_programs(const std::string& file, bool simulate) {
     auto options = options_for(simulate);

@@ -22,6 +22,8 @@ using LoadedFile = config::LoadedMachine;
 
 /// Where drive files are looked up for this machine file, or without one (empty).
 [[nodiscard]] std::vector<std::string> drive_folders(const std::string& machine_file);
+/// The same for device files.
+[[nodiscard]] std::vector<std::string> device_folders(const std::string& machine_file);
 
 /// Prints warnings, or every problem (then nothing is returned).
 [[nodiscard]] std::optional<LoadedFile> load(const std::string& file, bool simulate);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "runtime/check/ebus_remarks.hpp"
 #include "runtime/relaxed_supervision.hpp"
 
 namespace taktwerk::runtime {
@@ -226,6 +227,7 @@ std::vector<Error> remarks(const MachineConfig& config, const MachineLayout& lay
             out.add("cpu", "realtime.cpus", fmt::format("this computer has the CPUs 0 to {}; there is no {}", cpus - 1, cpu),
                     "choose one that is there, best an isolated one");
     if (!config.bus.slaves.empty()) bus_load(out, config);
+    for (auto& remark : ebus_remarks(config)) out.found.push_back(std::move(remark));
     watchdogs(out, config);
     relaxed_on_a_port(out, config);
     startup_sizes(out, config);

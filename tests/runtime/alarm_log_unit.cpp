@@ -15,7 +15,7 @@ using namespace std::chrono_literals;
 
 constexpr AlarmFact fact(AlarmId id, std::uint16_t index = 0) { return {id, AlarmSource::axis, index, 1, 2}; }
 
-struct Log : testing::Test {
+struct Log : ::testing::Test {
     AlarmLog log;
     Instant now{};
 

@@ -16,7 +16,7 @@
 namespace taktwerk::runtime {
 namespace {
 
-struct SlowTaskBlocks : testing::Test {
+struct SlowTaskBlocks : ::testing::Test {
     SlowTaskBlocks() {
         requests.bind(views);
         release();

@@ -26,7 +26,7 @@ struct Body final : Program {
     }
 };
 
-struct Slow : testing::Test {
+struct Slow : ::testing::Test {
     Slow() : task{host_task(), &body, {{VariableType::real, &body.shown, 0}}, 1, 1, 2, 1, objects.of(0), tables} {}
 
     static ProgramHost::Task host_task() {
