@@ -8,16 +8,16 @@ namespace taktwerk::axes {
 
 AxisBody::AxisBody(AxisConfig as_configured, DrivePort& drive, Duration period, std::uint16_t place, const AxisView& view)
     : config(std::move(as_configured)),
+      alarms(place),
       port(drive),
+      shown(view),
       cycle(period),
+      units(config.gearing, config.modulo),
+      power(drive.capabilities().enable_delay, config.enable_timeout),
       index(place),
       driven(!config.disabled && !config.encoder),
       endless(std::isinf(config.limits.position_min) && std::isinf(config.limits.position_max)),
-      slow_line(drive.capabilities().setpoints == SetpointClass::low_dynamics),
-      units(config.gearing, config.modulo),
-      shown(view),
-      alarms(place),
-      power(drive.capabilities().enable_delay, config.enable_timeout) {}
+      slow_line(drive.capabilities().setpoints == SetpointClass::low_dynamics) {}
 
 double AxisBody::velocity_cap() const noexcept {
     const auto& manual = config.manual;

@@ -18,28 +18,29 @@ struct AxisBody {
     AxisBody(AxisConfig as_configured, DrivePort& drive, Duration period, std::uint16_t place, const AxisView& view);
 
     AxisConfig config;  ///< its limits, windows and speeds as they hold now: parameters change them, never above what was configured
-    DrivePort& port;
-    Duration cycle;
-    std::uint16_t index;
-    bool driven;     ///< has a drive that may be enabled
-    bool endless;    ///< has no software limits
-    bool slow_line;  ///< its drive takes no set-point in each cycle, and makes its own ramps
     MotionScene scene;
+    CommandQueue queue;
+    AlarmBoard alarms;
+
+    // What every cycle reads lies side by side from here on, and Measured behind it.
+    DrivePort& port;
+    const AxisView& shown;  ///< what everybody saw last: some of what comes next waits until it was seen
+    Duration cycle;
     Instant now{};
     AxisUnits units;
-    const AxisView& shown;  ///< what everybody saw last: some of what comes next waits until it was seen
-
-    CommandQueue queue;
-    bool begin_pending = false;  ///< the active command has not been turned into a goal yet
-    AlarmBoard alarms;
     PowerSequence power;
-
+    CommandId lock = 0;  ///< the MC_Stop that holds the axis in Stopping; 0: none
+    std::uint16_t index;
+    std::uint16_t error = 0;       ///< alarm that holds the axis in ErrorStop; 0: none
+    std::uint8_t power_calls = 0;  ///< of MC_Power in this cycle: its holder speaks once in it
+    bool driven;                   ///< has a drive that may be enabled
+    bool endless;                  ///< has no software limits
+    bool slow_line;                ///< its drive takes no set-point in each cycle, and makes its own ramps
     AxisState state = AxisState::Disabled;
     Owner owner = Owner::program;
-    std::uint16_t error = 0;  ///< alarm that holds the axis in ErrorStop; 0: none
-    CommandId lock = 0;       ///< the MC_Stop that holds the axis in Stopping; 0: none
     bool homed = false;
     bool homing_procedure = false;  ///< between the first step of Part 5 and MC_FinishHoming
+    bool begin_pending = false;     ///< the active command has not been turned into a goal yet
 
     // what is wanted of it
     OperatingMode mode = OperatingMode::automatic;

@@ -131,10 +131,10 @@ struct AxisConfig {
     AxisDefaults defaults;
     FollowingErrorWatch following;
     PositionWindows windows;
+    ControlConfig control;  // it, the two above, and the limits are read in each cycle
     HomingConfig homing;
     PositionMemory memory;
     ManualSpeeds manual;
-    ControlConfig control;
     CompensationConfig compensation;
     bool require_homed = true;      ///< absolute moves need a homed axis
     bool disabled = false;          ///< left out while commissioning: its drive is never enabled

@@ -25,16 +25,16 @@ struct AxisMotion {
     explicit AxisMotion(const AxisBody& of_axis) : body(of_axis) {}
 
     const AxisBody& body;
-    SetpointGenerator setpoint;
     Goal goal;
-    bool goal_pending = false;  ///< the goal has no profile yet
-    bool held = false;          ///< override 0: the axis waits on its way to a position
-    bool releases = false;      ///< the plan has another jerk than the command, until the acceleration it found is gone
-    bool summed = false;        ///< two layers in motion became one: until it rests, its ramps may be as hard as both together were
-    double folded_jerk = 0;     ///< u/s3 of an addition that ended in motion, until the goal after it has its profile
-    double wants_speed = 0;     ///< u/s, signed, that the base will have once what is superimposed has made room; 0: it waits for nothing
-    bool watch_limits = true;   ///< the base might pass a software limit
-    bool backwards = false;     ///< sense of the last motion
+    bool goal_pending = false;   ///< the goal has no profile yet
+    bool held = false;           ///< override 0: the axis waits on its way to a position
+    bool releases = false;       ///< the plan has another jerk than the command, until the acceleration it found is gone
+    bool summed = false;         ///< two layers in motion became one: until it rests, its ramps may be as hard as both together were
+    bool watch_limits = true;    ///< the base might pass a software limit
+    bool backwards = false;      ///< sense of the last motion
+    double wants_speed = 0;      ///< u/s, signed, that the base will have once what is superimposed has made room; 0: it waits for nothing
+    SetpointGenerator setpoint;  ///< what is read in every cycle stands at its beginning
+    double folded_jerk = 0;      ///< u/s3 of an addition that ended in motion, until the goal after it has its profile
     Override factors;
     // The running command's start, for its relative inputs; and the last target of a motion to a position, for MC_MoveAdditive.
     double origin = 0;               ///< local

@@ -24,7 +24,7 @@ public:
     [[nodiscard]] bool run() noexcept;
     void follow_actual(Duration period) noexcept;
     ErrorId request(bool enable, bool positive, bool negative) noexcept {
-        if (++calls_ > 1) return ErrorId::power_conflict;
+        if (++body_.power_calls > 1) return ErrorId::power_conflict;
         if (enable && !body_.driven) return body_.config.encoder ? ErrorId::not_supported : ErrorId::drive_not_ready;
         body_.permit_positive = positive;
         body_.permit_negative = negative;
@@ -37,7 +37,7 @@ public:
     }
 
     /// A cycle begins: whoever holds MC_Power speaks once in it.
-    void begin_cycle() noexcept { calls_ = 0; }
+    void begin_cycle() noexcept { body_.power_calls = 0; }
 
 private:
     void give_up() noexcept;
@@ -53,8 +53,7 @@ private:
     Conduct& conduct_;
     /// Of the axis' velocity: a motor that turns faster without power is not held by switching it on.
     static constexpr double turning_by_itself = 0.1;
-    bool aligned_ = false;    // the set-point is where the motor is
-    std::uint8_t calls_ = 0;  // in this cycle
+    bool aligned_ = false;  // the set-point is where the motor is
 };
 
 }  // namespace taktwerk::axes

@@ -37,14 +37,14 @@ private:
     void end(CommandId id, Outcome outcome, ErrorId error) noexcept;
     void observe() noexcept;
 
+    PositionTrack track_;
+    Duration feedback_age_{};
+    std::uint16_t track_epoch_ = 0;
     AxisBody& body_;
     const Measured& measured_;
     const HomingRuns& runs_;
 
     ProbeBoard board_;
-    PositionTrack track_;
-    std::uint16_t track_epoch_ = 0;
-    Duration feedback_age_{};
     std::array<double, 2> positions_{};
     std::array<CommandId, 2> latched_{};
 };

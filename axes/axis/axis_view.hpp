@@ -30,12 +30,16 @@ struct AxisView {
     bool resetting = false;               ///< a reset waits for the drive or for standstill
     ErrorId reset_error = ErrorId::none;  ///< what the last reset came to, once it is over
 
+    CommandKind active_kind = CommandKind::none;
+    bool active_in_target = false;
+    VelocityLimiter limiter = VelocityLimiter::none;
+    CommandId active = 0;  ///< the command that controls the axis; those beside and behind it: below
+
     // u, u/s, u/s2, u/s3, fraction of rated torque
     double set_position = 0, set_velocity = 0, set_acceleration = 0, set_jerk = 0;
     double actual_position = 0, actual_velocity = 0, actual_torque = 0;
     double following_error = 0;  ///< set-point in effect at the latch, minus actual
     double target_position = 0;
-    VelocityLimiter limiter = VelocityLimiter::none;
     double manual_slow = 0, manual_fast = 0;  ///< u/s, > 0: the jogging speeds (ManualSpeeds, resolved; parameters 1020, 1021)
 
     PowerState drive_state = PowerState::unknown;
@@ -67,13 +71,10 @@ struct AxisView {
     bool homing_procedure = false;              ///< between the first step of Part 5 and MC_FinishHoming
 
     // commands
-    CommandKind active_kind = CommandKind::none;
     const void* holder = nullptr;                   ///< the block that moves or locks the axis, to be named to people; never followed
     CommandId lock = 0;                             ///< the MC_Stop that holds the axis in Stopping; 0 = none
     std::array<CommandId, side_slot_count> side{};  ///< running beside the active one, by SideSlot
     CommandId phasing_queued = 0;                   ///< waits for the signal of its coupling, apart from `queued`
-    CommandId active = 0;
-    bool active_in_target = false;
     std::uint8_t queued_count = 0;
     std::array<CommandId, 8> queued{};
     struct Finished {

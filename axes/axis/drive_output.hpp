@@ -41,7 +41,10 @@ private:
     void fill_torque() noexcept;
     void fill_drive_profile() noexcept;
 
+    DriveCommand command_;
     const AxisBody& body_;
+    double torque_per_acceleration_ =  // fraction of rated torque for 1 u/s2, fed forward
+        (body_.config.gearing.inverted ? -1.0 : 1.0) * body_.config.control.torque_feed_forward * body_.config.control.inertia();
     Measured& measured_;
     const AxisMotion& motion_;
     ModeState& modes_;
@@ -51,10 +54,6 @@ private:
     AxisProbes& probes_;
     const AxisParameters& parameters_;
     FollowingWatch& following_;
-
-    DriveCommand command_;
-    double torque_per_acceleration_ =  // fraction of rated torque for 1 u/s2, fed forward
-        (body_.config.gearing.inverted ? -1.0 : 1.0) * body_.config.control.torque_feed_forward * body_.config.control.inertia();
 };
 
 }  // namespace taktwerk::axes

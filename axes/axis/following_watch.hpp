@@ -28,12 +28,12 @@ public:
     void forget() noexcept { history_.clear(); }
 
 private:
-    SetpointHistory history_;
     FollowingErrorTimer timer_;
     double error_ = 0;
     Instant in_window_since_{};
     bool in_window_ = false;
     bool lag_forgiven_ = false;  // the set-point was ahead of an axis that could not follow
+    SetpointHistory history_;
 };
 
 }  // namespace taktwerk::axes

@@ -162,37 +162,37 @@ struct ProbeFeedback {
 
 /// What the drive says. All of one latch instant.
 struct DriveFeedback {
-    bool fresh = false;     ///< new in this cycle
-    bool online = false;    ///< exchanged at all (bus in OP, line answering); false: everything below is old
-    std::uint32_t age = 0;  ///< bus cycles since it was fresh
-    Instant latched{};      ///< when the actual values were taken
+    // What is new in every cycle of a motor that turns: first, and side by side.
+    Instant latched{};          ///< when the actual values were taken
+    std::int64_t position = 0;  ///< counts, unwrapped
+    double velocity = 0;        ///< counts/s; from the drive, else differentiated
+    double torque = 0;          ///< fraction of rated
+    std::uint32_t age = 0;      ///< bus cycles since it was fresh
 
+    // How it is with the drive: mostly as in the cycle before.
+    std::uint32_t digital_inputs = 0;    ///< raw
+    std::uint32_t profile_accepted = 0;  ///< sequence of the last profile set-point the drive has taken
+    std::uint16_t status_word = 0;       ///< raw, for people
+    std::uint16_t error_code = 0;        ///< 603Fh or the vendor's number; 0 = none
+    /// Counts each time the position's zero may have become another: the drive was away and came back, homed, or lost its turns.
+    std::uint16_t position_epoch = 0;
+    /// Counts each time the drive lost what homing gave it: its turns were cleared, or an alarm says so. The axis is unreferenced then.
+    std::uint16_t reference_epoch = 0;
+    bool fresh = false;   ///< new in this cycle
+    bool online = false;  ///< exchanged at all (bus in OP, line answering); false: everything else is old
     PowerState power = PowerState::unknown;
     DriveMode mode = DriveMode::none;  ///< active mode (6061h), or the commanded one where the drive cannot say
     bool fault = false, warning = false;
     bool main_power = true;  ///< statusword bit 4 where it means that
     bool target_reached = false, internal_limit = false;
-    std::uint16_t status_word = 0;  ///< raw, for people
-    std::uint16_t error_code = 0;   ///< 603Fh or the vendor's number; 0 = none
-
-    std::int64_t position = 0;  ///< counts, unwrapped
-    double velocity = 0;        ///< counts/s; from the drive, else differentiated
-    double torque = 0;          ///< fraction of rated
     bool homing_attained = false, homing_error = false;
-    bool follows_target = true;  ///< statusword bit 12 in cyclic modes, where it means that
-    /// Counts each time the position's zero may have become another: the drive was away and came back, homed, or lost its turns.
-    std::uint16_t position_epoch = 0;
-    /// Counts each time the drive lost what homing gave it: its turns were cleared, or an alarm says so. The axis is unreferenced then.
-    std::uint16_t reference_epoch = 0;
+    bool follows_target = true;         ///< statusword bit 12 in cyclic modes, where it means that
     bool homing_setup_refused = false;  ///< DriveCommand::homing could not be written: no start is sent until it is taken back
     /// The drive has acknowledged all that encode() asked that changes its state; false: still under way (polled drives).
     bool commands_acknowledged = true;
-    std::uint32_t profile_accepted = 0;  ///< sequence of the last profile set-point the drive has taken
-    bool setup_refused = false;          ///< the drive's settings forbid enabling it; setup_problems() says which
-
+    bool setup_refused = false;  ///< the drive's settings forbid enabling it; setup_problems() says which
     bool has_inputs = false;
     bool negative_limit = false, positive_limit = false, home_switch = false;
-    std::uint32_t digital_inputs = 0;  ///< raw
     std::array<ProbeFeedback, 2> probes{};
 };
 
