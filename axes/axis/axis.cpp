@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "axes/axis/axis_core.hpp"
+#include "axes/axis/plain_cycle_steps.hpp"
 
 namespace taktwerk::axes {
 
@@ -77,43 +78,49 @@ void show(AxisCore& axis) noexcept {
     else axis.writer.states();
 }
 
-}  // namespace
-
-Axis::Axis(AxisConfig config, DrivePort& port, Duration cycle, std::uint16_t index, AxisView* view)
-    : core_(std::make_unique<AxisCore>(std::move(config), port, cycle, index, view)), view_(&core_->body.shown) {}
-Axis::Axis(Axis&&) noexcept = default;
-Axis& Axis::operator=(Axis&&) noexcept = default;
-Axis::~Axis() = default;
-
-void Axis::bind(const MotionScene& scene) {
-    core_->body.scene = scene;
-    if (scene.tables) core_->motion.given.reserve(scene.tables->most_time_rows());
+/// What the drive says of itself, and what it means for power.
+void take_feedback(AxisCore& axis, const DriveFeedback& from_drive) noexcept {
+    if (axis.intake.read(from_drive)) axis.writer.setpoint();
+    if (FeedbackIntake::as_wanted(axis.body, axis.measured, axis.runs, axis.modes)) return;
+    if (axis.body.driven) axis.intake.watch_drive();
+    if (!axis.supply.run()) return;
+    axis.succession.start_waiting(0);
+    axis.writer.setpoint();  // a homing may have begun, and be over
 }
-const AxisConfig& Axis::config() const noexcept { return core_->body.config; }
-const DriveCommand& Axis::drive_command() const noexcept { return core_->output.command(); }
 
-// --- the cycle ------------------------------------------------------------------------------------------------------------------
-
-void Axis::update(Instant now) noexcept {
-    auto& axis = *core_;
-    axis.body.now = now;
-    axis.supply.begin_cycle();
-    const bool placed = axis.intake.read();
-    if (placed) axis.writer.setpoint();
-    if (!FeedbackIntake::as_wanted(axis.body, axis.measured, axis.runs, axis.modes)) {
-        if (axis.body.driven) axis.intake.watch_drive();
-        if (axis.supply.run()) {
-            axis.succession.start_waiting(0);
-            axis.writer.setpoint();  // a homing may have begun, and be over
-        }
-    }
-    const double actual = axis.measured.local();
+/// How far the motor is behind. `actual`: u, local.
+void watch_following(AxisCore& axis, double actual) noexcept {
     if (axis.runs.motor_leads() || axis.modes.phase != ModePhase::steady) {
         axis.following.rest();  // in torque the set-point follows the motor
     } else if (axis.following.watch(axis.measured, axis.motion.now, actual, axis.runs.step.presses()) &&
                axis.body.state != AxisState::ErrorStop) {
         axis.conduct.fail(AxisAlarm::following_error, axis.following.error(), axis.body.config.following.window);
     }
+}
+
+/// From the new set-point to what everybody sees of it. `coordinates`: those in which the cycle began.
+void conclude(AxisCore& axis, bool may_be_homed, double coordinates) noexcept {
+    complete(axis);
+    show(axis);
+    axis.writer.setpoint();
+    if (may_be_homed || axis.body.units.shift() != coordinates) axis.writer.feedback(axis.measured.local());  // in other coordinates
+    axis.plain.look(axis);
+}
+
+/// The set-point one period on, inside the limits, and what comes of it.
+void make_setpoint(AxisCore& axis, Duration period, bool may_be_homed, double coordinates) noexcept {
+    const MotionState before = axis.motion.now.setpoint.state();
+    advance(axis, period);
+    if (LimitGuard::may_meet_limit(axis.body, axis.measured, axis.motion.now)) axis.guard.watch(before, period);
+    conclude(axis, may_be_homed, coordinates);
+}
+
+// The whole way apart from the straight one: a cycle that needs none of it does not save registers for it.
+
+[[gnu::noinline]] void update_whole(AxisCore& axis, const DriveFeedback& from_drive) noexcept {
+    take_feedback(axis, from_drive);
+    const double actual = axis.measured.local();
+    watch_following(axis, actual);
     if (axis.probes.watch()) axis.writer.probes();
     if (axis.reset.resetting()) {
         axis.reset.run();
@@ -123,22 +130,11 @@ void Axis::update(Instant now) noexcept {
     axis.writer.feedback(actual);
 }
 
-void Axis::supervise(Instant now) noexcept {
-    auto& axis = *core_;
-    axis.body.now = now;
-    const bool demanded = axis.body.emergency != EmergencyStop::none;
-    if (!demanded && axis.body.queue.active().command.kind != CommandKind::jog) return;
-    if (demanded) axis.conduct.obey_emergency();
-    axis.jog.watch();
-    axis.writer.publish();
-}
-
-void Axis::plan(Instant now, Duration period) noexcept {
-    auto& axis = *core_;
+[[gnu::noinline]] void plan_whole(AxisCore& axis, Duration period) noexcept {
     auto& body = axis.body;
-    body.now = now;
     if (axis.coupling.links.state.phasing_next.id != 0) axis.coupling.phasing.settle_waiting();
     if (axis.runs.motor_leads()) {
+        axis.plain.disturb();
         axis.supply.follow_actual(period);
         axis.coupling.slave.settle();
         step_homing(axis);
@@ -151,6 +147,7 @@ void Axis::plan(Instant now, Duration period) noexcept {
     if (body.shown.active_in_target && body.queue.waiting() > 0) axis.settings.carry_out_due();
     if (body.shown.active_in_target && body.queue.waiting() > 0) axis.succession.hand_over();
     if (axis.modes.phase != ModePhase::steady && step_in_mode(axis, period)) {
+        axis.plain.disturb();
         show(axis);
         axis.writer.setpoint();
         if (axis.modes.phase == ModePhase::profile && axis.modes.run.mode() == DriveMode::profile_position)
@@ -161,40 +158,105 @@ void Axis::plan(Instant now, Duration period) noexcept {
     if (body.begin_pending) axis.succession.begin_command();
     if (body.endless) axis.motion.aim.keep_close_to_anchor();
     if (axis.coupling.links.state.shown) axis.coupling.slave.follow(period);
-
-    const MotionState before = axis.motion.now.setpoint.state();
-    advance(axis, period);
-    if (LimitGuard::may_meet_limit(axis.body, axis.measured, axis.motion.now)) axis.guard.watch(before, period);
-    complete(axis);
-    show(axis);
-    axis.writer.setpoint();
-    if (may_be_homed || body.units.shift() != coordinates) axis.writer.feedback(axis.measured.local());  // in other coordinates
+    make_setpoint(axis, period, may_be_homed, coordinates);
 }
 
-void Axis::encode(Instant now) noexcept { core_->output.encode(now); }
+/// What the straight way leaves of a plan.
+[[gnu::noinline]] void plan_rest(AxisCore& axis, PlainCycle::Planned planned, Duration period) noexcept {
+    if (planned == PlainCycle::Planned::nothing) plan_whole(axis, period);
+    else if (planned == PlainCycle::Planned::masters) make_setpoint(axis, period, false, axis.body.units.shift());
+    else conclude(axis, false, axis.body.units.shift());
+}
+
+[[gnu::always_inline]] inline void plan_one(AxisCore& axis, Instant now, Duration period) noexcept {
+    axis.body.now = now;
+    const auto planned = axis.plain.plan(axis, period);
+    if (planned != PlainCycle::Planned::all) plan_rest(axis, planned, period);
+}
+
+}  // namespace
+
+Axis::Axis(AxisConfig config, DrivePort& port, Duration cycle, std::uint16_t index, AxisView* view)
+    : core_(std::make_unique<AxisCore>(std::move(config), port, cycle, index, view)), view_(&core_->body.shown) {}
+Axis::Axis(Axis&&) noexcept = default;
+Axis& Axis::operator=(Axis&&) noexcept = default;
+Axis::~Axis() = default;
+
+void Axis::bind(const MotionScene& scene) {
+    core_->plain.disturb();
+    core_->body.scene = scene;
+    if (scene.tables) core_->motion.given.reserve(scene.tables->most_time_rows());
+}
+const AxisConfig& Axis::config() const noexcept { return core_->body.config; }
+const DriveCommand& Axis::drive_command() const noexcept { return core_->output.command(); }
+
+// --- the cycle ------------------------------------------------------------------------------------------------------------------
+
+void Axis::update(Instant now) noexcept {
+    auto& axis = *core_;
+    axis.body.now = now;
+    axis.supply.begin_cycle();
+    const auto& from_drive = axis.body.port.decode(now);
+    if (axis.plain.calm() && axis.plain.update(axis, from_drive)) return;
+    update_whole(axis, from_drive);
+}
+
+void Axis::supervise(Instant now) noexcept {
+    auto& axis = *core_;
+    axis.body.now = now;
+    if (axis.plain.calm()) return;
+    const bool demanded = axis.body.emergency != EmergencyStop::none;
+    if (!demanded && axis.body.queue.active().command.kind != CommandKind::jog) return;
+    if (demanded) axis.conduct.obey_emergency();
+    axis.jog.watch();
+    axis.writer.publish();
+}
+
+void Axis::plan(Instant now, Duration period) noexcept { plan_one(*core_, now, period); }
+
+bool Axis::plan_unless_following(Instant now, Duration period) noexcept {
+    if (may_follow()) return false;
+    plan_one(*core_, now, period);
+    return true;
+}
+
+void Axis::encode(Instant now) noexcept {
+    auto& axis = *core_;
+    if (axis.plain.told()) return axis.output.encode_setpoint(now);
+    axis.output.encode(now);
+    axis.plain.tell();
+}
 
 // --- the machine's hand ---------------------------------------------------------------------------------------------------------
 
 bool Axis::fetch_alarm(AlarmFact& fact) noexcept { return core_->body.alarms.fetch(fact); }
 std::span<const AlarmFact> Axis::active_alarms() const noexcept { return core_->body.alarms.active(); }
 void Axis::acknowledge_alarms() noexcept {
+    core_->plain.disturb();
     for (const auto alarm : {AxisAlarm::jog_lease_expired, AxisAlarm::moved_while_off, AxisAlarm::retained_gearing_differs})
         core_->body.alarms.clear(alarm);
 }
 
 void Axis::stop_for_error(AlarmId reason, bool then_power_off) noexcept {
+    core_->plain.disturb();
     if (core_->conduct.stop_for_error(reason, then_power_off)) core_->writer.publish();
 }
 
-void Axis::demand_emergency_stop(EmergencyStop level) noexcept { core_->body.emergency = level; }
+void Axis::demand_emergency_stop(EmergencyStop level) noexcept {
+    if (level == core_->body.emergency) return;
+    core_->plain.disturb();
+    core_->body.emergency = level;
+}
 
 void Axis::shut_down() noexcept {
+    core_->plain.disturb();
     core_->conduct.shut_down();
     core_->writer.publish();
 }
 
 RetainedPosition Axis::retained() const noexcept { return core_->retained.now(!core_->conduct.moves()); }
 void Axis::restore(const RetainedPosition& position, const Gearing& gearing) noexcept {
+    core_->plain.disturb();
     core_->retained.restore(position, gearing);
     core_->writer.states();
 }
@@ -202,7 +264,10 @@ void Axis::restore(const RetainedPosition& position, const Gearing& gearing) noe
 // --- couplings ------------------------------------------------------------------------------------------------------------------
 
 MasterTrack::Reading Axis::as_master(MC_Source source) const noexcept { return core_->coupling.as_master.reading(source); }
-MasterList Axis::masters() const noexcept { return core_->coupling.as_master.masters(); }
-bool Axis::may_follow() const noexcept { return core_->coupling.as_master.may_follow(); }
+MasterList Axis::masters() const noexcept {
+    const auto& side = core_->coupling.as_master;
+    return core_->plain.coupled() ? side.running_masters() : side.masters();
+}
+bool Axis::may_follow() const noexcept { return !core_->plain.follows_nobody() && core_->coupling.as_master.may_follow(); }
 
 }  // namespace taktwerk::axes

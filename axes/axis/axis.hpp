@@ -95,6 +95,8 @@ public:
     [[nodiscard]] MasterList masters() const noexcept;
     /// False: masters() is empty. Cheap.
     [[nodiscard]] bool may_follow() const noexcept;
+    /// plan() where masters() is empty. False: it may not be, and nothing has been done.
+    [[nodiscard]] bool plan_unless_following(Instant now, Duration period) noexcept;
     [[nodiscard]] PlanMark& plan_mark() noexcept { return plan_mark_; }
 
     // --- requests (AxisRequests of motion_context.hpp, for one axis) -----------------------------------------------------

@@ -8,6 +8,7 @@ AxisCore::AxisCore(AxisConfig config, DrivePort& port, Duration cycle, std::uint
     : own_view(view ? nullptr : std::make_unique<AxisView>()),
       body(std::move(config), port, cycle, index, view ? *view : *own_view),
       measured(body),
+      plain(view ? *view : *own_view),
       runs(body),
       modes(body, runs),
       motion(body, measured),

@@ -39,6 +39,7 @@
 #include "axes/axis/motor_lead.hpp"
 #include "axes/axis/passive_homing.hpp"
 #include "axes/axis/phasing.hpp"
+#include "axes/axis/plain_cycle.hpp"
 #include "axes/axis/retained_coordinates.hpp"
 #include "axes/axis/search_motion.hpp"
 #include "axes/axis/software_limits.hpp"
@@ -123,10 +124,13 @@ public:
     AxisCore& operator=(const AxisCore&) = delete;
 
     [[nodiscard]] static const MasterSide& side_of(const Axis& axis) noexcept { return axis.core_->coupling.as_master; }
+    /// For tests: whether the next cycle may go straight, and how to keep it from that.
+    [[nodiscard]] static PlainCycle& plain_cycle_of(Axis& axis) noexcept { return axis.core_->plain; }
 
     std::unique_ptr<AxisView> own_view;
     AxisBody body;
     Measured measured;
+    PlainCycle plain;
     HomingRuns runs;
     ModeState modes;
     MotionParts motion;

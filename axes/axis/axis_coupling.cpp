@@ -191,8 +191,6 @@ void AxisCoupling::follow(Duration period) noexcept {
 }
 
 void AxisCoupling::step(Duration period) noexcept {
-    if (body_.endless && body_.units.far_from_anchor(motion_.setpoint.base().position)) aim_.reanchor();
-    auto& follower = links_.state.follower;
     auto limits = start_.follower_limits(links_.state.running.command);
     // The axis' velocity holds for the sum: what is superimposed has its part in its sense, and the slave falls behind with the rest.
     // Also what it is about to have: it may speed up faster than the slave slows down.
@@ -201,7 +199,13 @@ void AxisCoupling::step(Duration period) noexcept {
     };
     limits.forward = std::clamp(body_.config.limits.velocity - beside(1), 0.0, limits.forward);
     limits.backward = std::clamp(body_.config.limits.velocity - beside(-1), 0.0, limits.backward);
-    follower.set_limits(limits);
+    links_.state.follower.set_limits(limits);
+    step_on(period);
+}
+
+void AxisCoupling::step_on(Duration period) noexcept {
+    if (body_.endless && body_.units.far_from_anchor(motion_.setpoint.base().position)) aim_.reanchor();
+    auto& follower = links_.state.follower;
     const bool two = links_.state.running.masters.axes[1].valid();
     const auto first = links_.seen(links_.state.running, 0);
     const auto next = follower.step(first, two ? links_.seen(links_.state.running, 1) : EndlessMotion{}, motion_.setpoint.base(),

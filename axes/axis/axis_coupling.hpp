@@ -35,6 +35,8 @@ public:
     void settle() noexcept;
     void follow(Duration period) noexcept;
     void step(Duration period) noexcept;
+    /// The same while the axis' limits, the command and what is on top of the base are as in the cycle before.
+    void step_on(Duration period) noexcept;
     /// True: a cam that is over hands over at once (P1-092: EndOfProfile); other couplings when their Inxxx has been seen.
     [[nodiscard]] bool complete() noexcept;
 

@@ -53,10 +53,7 @@ void AxisProbes::end(CommandId id, Outcome outcome, ErrorId error) noexcept {
 bool AxisProbes::watch() noexcept {
     if (measured_.feedback.position_epoch != track_epoch_) track_.clear();  // a line through two zeros says nothing
     track_epoch_ = measured_.feedback.position_epoch;
-    if (measured_.feedback.fresh) {
-        track_.add(measured_.feedback.latched, measured_.feedback.position);
-        feedback_age_ = body_.now - measured_.feedback.latched;
-    }
+    if (measured_.feedback.fresh) track();
     const bool armed = board_.armed();
     if (armed) observe();
     return armed;

@@ -22,6 +22,14 @@ public:
     /// True: what is shown of probes may have changed.
     [[nodiscard]] bool watch() noexcept;
 
+    /// What watch() does in every cycle, after a feedback of the same counting.
+    void track() noexcept {
+        track_.add(measured_.feedback.latched, measured_.feedback.position);
+        feedback_age_ = body_.now - measured_.feedback.latched;
+    }
+    /// One waits, or the drive has not been told yet that none does.
+    [[nodiscard]] bool in_use() const noexcept { return board_.in_use(); }
+
     [[nodiscard]] bool any() const noexcept { return board_.id(0) != 0 || board_.id(1) != 0; }
     [[nodiscard]] CommandId id(std::size_t slot) const noexcept { return board_.id(slot); }
     /// u, of the last latch of each slot, and the command it ended; 0: none so far.

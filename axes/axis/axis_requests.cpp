@@ -65,9 +65,21 @@ void show_owner(AxisCore& axis) noexcept {
     if (axis.body.shown.owner != axis.body.owner) axis.writer.states();
 }
 
+/// Apart, so that the wish renewed in each cycle saves no registers for it.
+[[gnu::noinline]] ErrorId wish_for_power(AxisCore& axis, bool enable, bool positive, bool negative, Owner owner) noexcept {
+    axis.plain.disturb();
+    if (!axis.body.may(owner)) return ErrorId::owned_by_other;
+    const bool ends = !enable && axis.body.power_wish;
+    const auto error = axis.supply.request(enable, positive, negative);
+    if (ends) axis.writer.publish();
+    else show_owner(axis);
+    return error;
+}
+
 }  // namespace
 
 Submitted Axis::submit(const AxisCommand& command, Owner owner) noexcept {
+    core_->plain.disturb();
     const auto given = answer(*core_, command, owner);
     // A probe that is refused may have ended the one that it was to replace.
     if (given.id != 0 || slot_of(command.kind) == kind_table::Slot::probe) show_all(*core_);
@@ -76,15 +88,14 @@ Submitted Axis::submit(const AxisCommand& command, Owner owner) noexcept {
 }
 
 ErrorId Axis::power(bool enable, bool positive, bool negative, Owner owner) noexcept {
-    if (!core_->body.may(owner)) return ErrorId::owned_by_other;
-    const bool ends = !enable && core_->body.power_wish;
-    const auto error = core_->supply.request(enable, positive, negative);
-    if (ends) core_->writer.publish();
-    else show_owner(*core_);
-    return error;
+    auto& body = core_->body;
+    const bool as_before = enable && positive == body.permit_positive && negative == body.permit_negative && owner == body.owner;
+    if (!as_before || !core_->plain.calm()) return wish_for_power(*core_, enable, positive, negative, owner);
+    return ++body.power_calls > 1 ? ErrorId::power_conflict : ErrorId::none;
 }
 
 ErrorId Axis::reset(Owner) noexcept {
+    core_->plain.disturb();
     acknowledge_alarms();
     const auto error = core_->reset.request();
     if (core_->reset.resetting()) core_->writer.publish();
@@ -92,6 +103,7 @@ ErrorId Axis::reset(Owner) noexcept {
 }
 
 ErrorId Axis::set(const AxisSetting& setting, Owner owner) noexcept {
+    core_->plain.disturb();
     const auto error = core_->settings.apply(setting, owner);
     if (core_->settings.changed()) core_->writer.publish();
     else show_owner(*core_);
@@ -99,6 +111,7 @@ ErrorId Axis::set(const AxisSetting& setting, Owner owner) noexcept {
 }
 
 ErrorId Axis::update(CommandId id, const AxisCommand& command, Owner owner) noexcept {
+    core_->plain.disturb();
     const bool may = core_->body.may(owner);
     show_owner(*core_);
     return may ? core_->updates.update(id, command) : ErrorId::owned_by_other;
@@ -107,6 +120,7 @@ ErrorId Axis::update(CommandId id, const AxisCommand& command, Owner owner) noex
 void Axis::release_stop(CommandId id, Owner) noexcept {
     auto& axis = *core_;
     if (id == 0 || id != axis.body.lock) return;
+    axis.plain.disturb();
     axis.body.lock = 0;
     if (!axis.body.queue.has_active()) axis.writer.no_holder();
     // One that is not done yet ends by itself: the motor may come to rest after the set-point.
@@ -116,6 +130,7 @@ void Axis::release_stop(CommandId id, Owner) noexcept {
 }
 
 ErrorId Axis::renew_jog(CommandId id, double velocity, Owner owner) noexcept {
+    core_->plain.disturb();
     const bool may = core_->body.may(owner);
     show_owner(*core_);
     return may ? core_->jog.renew(id, velocity) : ErrorId::owned_by_other;
@@ -124,6 +139,7 @@ ErrorId Axis::renew_jog(CommandId id, double velocity, Owner owner) noexcept {
 void Axis::set_mode(OperatingMode mode) noexcept {
     auto& axis = *core_;
     if (mode == axis.body.mode) return;
+    axis.plain.disturb();
     axis.body.mode = mode;
     if (axis.body.state != AxisState::Disabled && axis.body.state != AxisState::ErrorStop && axis.conduct.moves())
         axis.conduct.stop_on_own_account(false);
@@ -132,6 +148,7 @@ void Axis::set_mode(OperatingMode mode) noexcept {
 
 void Axis::take_control(Owner owner) noexcept {
     if (owner == core_->body.owner) return;
+    core_->plain.disturb();
     core_->conduct.change_hands(owner);
     core_->writer.publish();
 }

@@ -48,6 +48,15 @@ void DriveOutput::encode(Instant now) noexcept {
         following_.record(body_.port.setpoint_effective(now), command_.position);
 }
 
+void DriveOutput::encode_setpoint(Instant now) noexcept {
+    const auto& set = motion_.setpoint.state();
+    command_.position = body_.units.counts(set.position);
+    command_.velocity = body_.config.control.feed_forward * set.velocity * body_.units.counts_per_unit();
+    command_.torque = torque_per_acceleration_ * set.acceleration;
+    body_.port.encode(command_, now);
+    following_.record(body_.port.setpoint_effective(now), command_.position);
+}
+
 void DriveOutput::fill_targets() noexcept {
     const auto& set = motion_.setpoint.state();
     const auto& control = body_.config.control;

@@ -32,6 +32,8 @@ public:
           following_(following) {}
 
     void encode(Instant now) noexcept;
+    /// The same for a position, where nothing but the set-point can have changed since encode().
+    void encode_setpoint(Instant now) noexcept;
 
     /// The newest one.
     [[nodiscard]] const DriveCommand& command() const noexcept { return command_; }

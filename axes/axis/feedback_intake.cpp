@@ -6,9 +6,9 @@
 
 namespace taktwerk::axes {
 
-bool FeedbackIntake::read() noexcept {
+bool FeedbackIntake::read(const DriveFeedback& from_drive) noexcept {
     bool placed = false;
-    measured_.feedback = body_.port.decode(body_.now);
+    measured_.feedback = from_drive;
     if (!measured_.feedback.online && !measured_.absolute_encoder()) body_.homed = false;  // it may come back with another zero
     if (measured_.feedback.reference_epoch != measured_.reference_epoch) retained_.lose_reference();
     measured_.reference_epoch = measured_.feedback.reference_epoch;

@@ -27,7 +27,7 @@ public:
           conduct_(conduct) {}
 
     /// True: the set-point has been placed anew.
-    [[nodiscard]] bool read() noexcept;
+    [[nodiscard]] bool read(const DriveFeedback& from_drive) noexcept;
     void watch_drive() noexcept;
     /// Nothing for watch_drive() and run_power(): power is on and stays on, and the drive says nothing to the contrary.
     [[nodiscard]] static bool as_wanted(const AxisBody& body, const Measured& measured, const HomingRuns& runs,

@@ -15,26 +15,29 @@ class SetpointHistory {
 public:
     static constexpr std::size_t depth = 32;  ///< cycles of dead time that can be matched
 
-    void clear() noexcept { count_ = 0; }
+    void clear() noexcept {
+        count_ = 0;
+        newest_at_ = Instant::max();
+    }
 
     /// Instants must not fall; one that is not later replaces the newest.
     void record(Instant effective, std::int64_t counts) noexcept {
-        if (count_ == 0 || effective > entries_[newest_].effective) {
+        if (count_ == 0 || effective > newest_at_) {
             newest_ = (newest_ + 1) % depth;
             if (count_ < depth) ++count_;
-            entries_[newest_].effective = effective;
+            entries_[newest_].effective = newest_at_ = effective;
         }
-        entries_[newest_].counts = counts;
+        entries_[newest_].counts = newest_counts_ = counts;
     }
 
     /// Set-point in effect at `latched`, interpolated, minus `actual`. counts. 0 while nothing is known.
     [[nodiscard]] double error_at(Instant latched, std::int64_t actual) const noexcept {
+        if (newest_at_ <= latched) return static_cast<double>(newest_counts_ - actual);
         if (count_ == 0) return 0;
-        std::size_t later = 0;  // how many are
+        std::size_t later = 1;  // how many are
         while (later < count_ && back(later).effective > latched) ++later;
         if (later == count_) return static_cast<double>(back(count_ - 1).counts - actual);
         const auto& before = back(later);
-        if (later == 0) return static_cast<double>(before.counts - actual);
         const auto& after = back(later - 1);
         const double part =
             static_cast<double>((latched - before.effective).count()) / static_cast<double>((after.effective - before.effective).count());
@@ -49,6 +52,8 @@ private:
     /// `i` before the newest.
     [[nodiscard]] const Entry& back(std::size_t i) const noexcept { return entries_[(newest_ - i) % depth]; }
 
+    Instant newest_at_ = Instant::max();  // until there is one
+    std::int64_t newest_counts_ = 0;
     std::size_t newest_ = 0, count_ = 0;
     std::array<Entry, depth> entries_{};
 };

@@ -20,12 +20,13 @@ constexpr double too_fast = 1.2;   // times the velocity limit: more than a loop
 
 }  // namespace
 
-void LimitGuard::watch(const MotionState& before, Duration period) noexcept {
-    if (body_.state == AxisState::Homing || (motion_.goal.kind == Goal::Kind::rest && !motion_.setpoint.layered())) return;
-    if (!switches() && !guard_software_limits(before)) return;
+bool LimitGuard::watch(const MotionState& before, Duration period) noexcept {
+    if (body_.state == AxisState::Homing || (motion_.goal.kind == Goal::Kind::rest && !motion_.setpoint.layered())) return false;
+    if (!switches() && !guard_software_limits(before)) return false;
     motion_.setpoint.restore(before);
     conduct_.run_goal(0);
     motion_.setpoint.advance(period);
+    return true;
 }
 
 bool LimitGuard::switches() noexcept { return limit_switches() || guard_permits(); }

@@ -28,7 +28,8 @@ public:
           targets_(targets),
           conduct_(conduct) {}
 
-    void watch(const MotionState& before, Duration period) noexcept;
+    /// True: the set-point is another one.
+    bool watch(const MotionState& before, Duration period) noexcept;
     [[nodiscard]] bool switches() noexcept;
     [[nodiscard]] bool limit_switches() noexcept;
     /// As the guards of planned motion, but early by what leaving the mode takes.

@@ -26,6 +26,13 @@ MasterTrack::Reading MasterSide::reading(MC_Source source) const noexcept {
     return reading;
 }
 
+MasterList MasterSide::running_masters() const noexcept {
+    MasterList list;
+    for (const auto axis : links_.state.running.masters.axes)
+        if (axis.valid()) list.axes[list.count++] = axis;
+    return list;
+}
+
 MasterList MasterSide::masters() const noexcept {
     MasterList list;
     const auto add = [&](const MasterChoice& choice) noexcept {

@@ -22,6 +22,8 @@ public:
 
     [[nodiscard]] MasterTrack::Reading reading(MC_Source source) const noexcept;
     [[nodiscard]] MasterList masters() const noexcept;
+    /// Those of the coupling that runs.
+    [[nodiscard]] MasterList running_masters() const noexcept;
     /// Depth first from `master` along all couplings that run or wait. Each axis is looked at once.
     [[nodiscard]] bool is_followed_by(const MasterSide& master) const noexcept;
 

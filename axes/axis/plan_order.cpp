@@ -5,10 +5,9 @@ namespace taktwerk::axes {
 void plan_axes(std::span<Axis> axes, Instant now, Duration period) noexcept {
     bool followers = false;
     for (auto& axis : axes) {
-        const bool follows = axis.may_follow();
-        axis.plan_mark() = {.begun = !follows, .planned = !follows};
-        if (!follows) axis.plan(now, period);
-        followers = followers || follows;
+        const bool planned = axis.plan_unless_following(now, period);
+        axis.plan_mark() = {.begun = planned, .planned = planned};
+        followers = followers || !planned;
     }
     if (!followers) return;
     for (auto& root : axes) {

@@ -53,8 +53,10 @@ public:
 
     /// Arms the drive's latches. Once per cycle.
     void command(std::array<ProbeCommand, 2>& latches) noexcept {
-        if (armed() || sent_[0] || sent_[1]) arm_latches(latches);
+        if (in_use()) arm_latches(latches);
     }
+    /// Some probe waits, or the drive has not been told yet that none does.
+    [[nodiscard]] bool in_use() const noexcept { return armed() || sent_[0] || sent_[1]; }
 
 private:
     static constexpr std::uint8_t software = 0xFF;

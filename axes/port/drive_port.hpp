@@ -9,7 +9,9 @@
 // counts/s2, torques fractions of rated torque (1.0 = rated). User units exist only above, in the axis.
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <optional>
 #include <string>
@@ -167,9 +169,9 @@ struct DriveFeedback {
     std::int64_t position = 0;  ///< counts, unwrapped
     double velocity = 0;        ///< counts/s; from the drive, else differentiated
     double torque = 0;          ///< fraction of rated
-    std::uint32_t age = 0;      ///< bus cycles since it was fresh
 
     // How it is with the drive: mostly as in the cycle before.
+    std::uint32_t age = 0;               ///< bus cycles since it was fresh
     std::uint32_t digital_inputs = 0;    ///< raw
     std::uint32_t profile_accepted = 0;  ///< sequence of the last profile set-point the drive has taken
     std::uint16_t status_word = 0;       ///< raw, for people
@@ -194,7 +196,31 @@ struct DriveFeedback {
     bool has_inputs = false;
     bool negative_limit = false, positive_limit = false, home_switch = false;
     std::array<ProbeFeedback, 2> probes{};
+
+    /// `other` says the same of the drive: at most the actual values and their time are others. (Or it does and this is not seen, by padding.)
+    [[nodiscard]] bool differs_in_motion_only(const DriveFeedback& other) const noexcept;
+    void take_motion(const DriveFeedback& from) noexcept {
+        latched = from.latched;
+        position = from.position;
+        velocity = from.velocity;
+        torque = from.torque;
+    }
 };
+
+inline bool DriveFeedback::differs_in_motion_only(const DriveFeedback& other) const noexcept {
+    using TwoWords [[gnu::vector_size(16)]] = std::uint64_t;
+    constexpr std::size_t first = offsetof(DriveFeedback, age), last = sizeof(DriveFeedback) - sizeof(TwoWords);
+    static_assert(first == offsetof(DriveFeedback, torque) + sizeof(torque), "the actual values come first");
+    static_assert(last - first == 56, "compared below, the last two words with an overlap");
+    const auto difference = [&](std::size_t at) noexcept {
+        TwoWords mine, others;
+        std::memcpy(&mine, reinterpret_cast<const std::byte*>(this) + at, sizeof mine);
+        std::memcpy(&others, reinterpret_cast<const std::byte*>(&other) + at, sizeof others);
+        return mine ^ others;
+    };
+    const auto any = difference(first) | difference(first + 16) | difference(first + 32) | difference(first + 48) | difference(last);
+    return (any[0] | any[1]) == 0;
+}
 
 /// A drive alarm with what the profile knows about it; texts are looked up outside the cycle by `entry`.
 struct DriveAlarm {

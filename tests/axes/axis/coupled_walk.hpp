@@ -38,6 +38,7 @@ public:
     }
     [[nodiscard]] long cycles() const { return cycle_; }
     [[nodiscard]] const CouplingRig& rig() const { return rig_; }
+    [[nodiscard]] CouplingRig& rig() { return rig_; }
     [[nodiscard]] const std::string& log() const { return log_; }
     bool logs = false;
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "axes/axis/axis_core.hpp"
 #include "axes/axis/plan_order.hpp"
 #include "axes/planner/motion.hpp"
 #include "tests/axes/axis/axis_rig.hpp"
@@ -62,13 +63,17 @@ struct CouplingRig {
 
     void step() {
         now += cycle;
+        if (!straight) disturb();
         for (auto& axis : axes) axis.update(now);
         for (auto& axis : axes) axis.supervise(now);
         fetch_alarms();
         for (std::size_t i = 0; i < axes.size(); ++i)
             if (!axes[i].config().encoder) axes[i].power(enabled[i], (permits[i] & 1) != 0, (permits[i] & 2) != 0, view(i).owner);
         if (program) program();
+        if (!straight) disturb();
+        count_straight();
         plan_axes(axes, now, cycle);
+        if (!straight) disturb();
         for (auto& axis : axes) axis.encode(now);
         fetch_alarms();
         for (std::size_t i = 0; i < axes.size(); ++i) {
@@ -150,8 +155,20 @@ struct CouplingRig {
     std::vector<AlarmFact> alarms;
     std::function<void()> program;
     Instant now{};
+    bool straight = true;              ///< false: every step of every axis goes the whole way (axes/axis/plain_cycle.hpp)
+    long calm = 0, planned_plain = 0;  ///< axes and cycles in which the straight way was open: at all, and for the plan
 
 private:
+    void disturb() {
+        for (auto& axis : axes) AxisCore::plain_cycle_of(axis).disturb();
+    }
+    void count_straight() {
+        for (auto& axis : axes) {
+            const auto& plain = AxisCore::plain_cycle_of(axis);
+            calm += plain.calm() ? 1 : 0;
+            planned_plain += plain.plans() ? 1 : 0;
+        }
+    }
     void fetch_alarms() {
         AlarmFact fact;
         for (auto& axis : axes)

@@ -1,0 +1,87 @@
+// The straight way through a cycle (axes/axis/plain_cycle.hpp) is the whole way, to the last bit: the same walk of coupled axes twice, once with
+// every step forced to look at everything, gives the same views and the same words to the drives in every cycle.
+
+#include "tests/axes/axis/coupled_walk.hpp"
+
+namespace taktwerk::axes::test {
+namespace {
+
+constexpr unsigned walks_compared = 40;
+constexpr int cycles_compared = 1500;
+
+struct Walked {
+    std::uint64_t digest = 0;
+    long cycles = 0, calm = 0, planned_plain = 0;
+};
+
+Walked walk_again(unsigned seed, bool straight) {
+    WalkCounts counts;
+    CoupledWalk walk(seed, counts);
+    walk.rig().digest.ask();
+    walk.rig().straight = straight;
+    EXPECT_EQ(walk.run(cycles_compared), "") << "seed " << seed;
+    return {walk.rig().digest.value(), walk.cycles() * static_cast<long>(walk.rig().axes.size()), walk.rig().calm,
+            walk.rig().planned_plain};
+}
+
+TEST(PlainCycle, IsTheWholeCycleInEveryWalk) {
+    long cycles = 0, calm = 0, planned_plain = 0;
+    for (unsigned seed = 1; seed <= property_cases(walks_compared); ++seed) {
+        const auto straight = walk_again(seed, true), whole = walk_again(seed, false);
+        EXPECT_EQ(straight.digest, whole.digest) << "seed " << seed;
+        EXPECT_EQ(whole.calm + whole.planned_plain, 0) << "seed " << seed;
+        cycles += straight.cycles;
+        calm += straight.calm;
+        planned_plain += straight.planned_plain;
+    }
+    // Walks in which hardly anything goes straight would show nothing.
+    EXPECT_GT(calm, cycles / 10);
+    EXPECT_GT(planned_plain, cycles / 20);
+}
+
+/// To and fro and behind one another, undisturbed: what a machine does all day.
+Walked run_a_day(bool straight, const AxisConfig& config) {
+    CouplingRig rig({config, config, config, config});
+    rig.digest.ask();
+    rig.straight = straight;
+    const std::array<CamPoint, 3> points{CamPoint{0, 0, 0, 0, CamSegment::quintic}, CamPoint{20, 5, 0, 0, CamSegment::quintic},
+                                         CamPoint{40, 0, 0, 0, CamSegment::quintic}};
+    const auto cam = rig.tables.add_cam(points);
+    rig.start();
+    rig.accept(0, at_velocity(30));
+    rig.accept(1, {.kind = CommandKind::gear_in, .details = GearDetails{CouplingRig::ref(0), {1, 2}, mcSetValue}});
+    const auto table = rig.tables.prepare(cam, true, false, false).id;
+    rig.accept(2, {.kind = CommandKind::cam_in, .details = CamDetails{.master = CouplingRig::ref(0), .table = table, .start = mcRelative}});
+    double target = 20;
+    CommandId move = 0;
+    long cycle = 0;
+    rig.program = [&] {
+        ++cycle;
+        if (move == 0 || rig.status(3, move) == CommandStatus::done) {
+            target = -target;
+            move = rig.accept(3, absolute(target, 80));
+        }
+        if (cycle == 4000) rig.accept(0, at_velocity(-45));
+    };
+    rig.run(8000);
+    rig.program = nullptr;
+    return {rig.digest.value(), cycle * 4, rig.calm, rig.planned_plain};
+}
+
+TEST(PlainCycle, IsTheWholeCycleOfAMachineAtWork) {
+    auto round = plain_slave();
+    round.modulo = 360;
+    auto inverted = plain_axis();
+    inverted.gearing.inverted = true;
+    inverted.following.window = 1;
+    for (const auto& config : {plain_slave(), round, inverted}) {
+        const auto straight = run_a_day(true, config), whole = run_a_day(false, config);
+        EXPECT_EQ(straight.digest, whole.digest);
+        EXPECT_EQ(whole.calm, 0);
+        EXPECT_GT(straight.calm, straight.cycles * 9 / 10);
+        EXPECT_GT(straight.planned_plain, straight.cycles * 8 / 10);
+    }
+}
+
+}  // namespace
+}  // namespace taktwerk::axes::test
