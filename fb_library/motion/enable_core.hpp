@@ -39,7 +39,12 @@ public:
     }
     /// Whether this call has something to read.
     [[nodiscard]] constexpr bool working() const noexcept { return enable_ && last_.kind != Reading::Kind::final_error; }
-    constexpr void took(Reading reading) noexcept { last_ = reading; }
+    /// True: it is another one than before.
+    constexpr bool took(Reading reading) noexcept {
+        const bool other = reading.kind != last_.kind || reading.error != last_.error;
+        last_ = reading;
+        return other;
+    }
     [[nodiscard]] constexpr bool valid() const noexcept { return enable_ && last_.kind == Reading::Kind::valid; }
 
     /// Sets whichever of the standard's outputs the block has.
@@ -67,13 +72,13 @@ struct EnableBlock {
     /// Real-time safe.
     void operator()(const MotionContext& ctx) noexcept {
         Block& block = static_cast<Block&>(*this);
-        core_.begin(block.Enable);
+        bool news = core_.begin(block.Enable) != EnableCore::Edge::none;
         if (core_.working()) {
-            if constexpr (requires { block.read(ctx); }) core_.took(block.read(ctx));
-            else core_.took(read_axis(block, ctx));
+            if constexpr (requires { block.read(ctx); }) news |= core_.took(block.read(ctx));
+            else news |= core_.took(read_axis(block, ctx));
         }
         if (!core_.valid()) block.clear();
-        core_.publish(block);
+        if (news) core_.publish(block);
     }
 
     void warm_start(Instant) noexcept {}

@@ -31,7 +31,7 @@ struct ExecuteBlock {
         if constexpr (requires { block.released(ctx); })
             if (edge == ExecuteCore::Edge::falling) block.released(ctx);
         if (core_.running()) block.follow(ctx);
-        core_.publish(block);
+        core_.publish(block, edge);
         if constexpr (requires { block.show(ctx); }) block.show(ctx);
     }
 

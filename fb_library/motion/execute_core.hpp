@@ -76,6 +76,10 @@ public:
         if (!running()) return;
         const axes::AxisView* view = ctx.view(axis_);
         if (view == nullptr) return refuse(axes::ErrorId::invalid_axis);
+        if (command_ != 0 && command_ == view->active && !view->active_in_target) {  // on its way, in nearly every cycle
+            phase_ = Phase::active;
+            return;
+        }
         using Status = axes::CommandStatus;
         axes::ErrorId error = axes::ErrorId::none;
         switch (view->status(command_, &error)) {
@@ -123,9 +127,14 @@ public:
     [[nodiscard]] constexpr axes::AxisRef axis() const noexcept { return axis_; }
     [[nodiscard]] constexpr axes::CommandId command() const noexcept { return command_; }
 
-    /// Sets whichever of the standard's outputs the block has.
+    /// Sets whichever of the standard's outputs the block has, where they are others than it has shown.
     template <class Block>
-    constexpr void publish(Block& block) const noexcept {
+    constexpr void publish(Block& block, Edge edge) noexcept {
+        if (edge != Edge::none || phase_ != shown_) publish(block);
+    }
+    template <class Block>
+    constexpr void publish(Block& block) noexcept {
+        shown_ = phase_;
         if constexpr (requires { block.Done; }) block.Done = phase_ == Phase::done;
         if constexpr (requires { Block::in_target_pin; }) block.*Block::in_target_pin = phase_ == Phase::in_target;
         if constexpr (requires { block.Busy; }) block.Busy = running();
@@ -143,6 +152,7 @@ private:
     axes::AxisRef axis_{};
     axes::ErrorId error_ = axes::ErrorId::none;
     Phase phase_ = Phase::idle;
+    Phase shown_ = Phase::idle;
     bool execute_ = false;
     Updates updates_ = Updates::never;
 };

@@ -53,7 +53,12 @@ struct MC_Power {
         if (view == nullptr) {
             if (Enable) core.took(Reading::unless(ErrorId::invalid_axis));
         } else if (Enable) {
-            core.took(Reading::unless(ctx.requests->power(axis, true, EnablePositive, EnableNegative, ctx.owner)));
+            const auto error = ctx.requests->power(axis, true, EnablePositive, EnableNegative, ctx.owner);
+            if (error == ErrorId::none && core.valid()) {  // as in the call before
+                Status = view->powered;
+                return;
+            }
+            core.took(Reading::unless(error));
         } else if (edge == EnableCore::Edge::falling) {
             ctx.requests->power(axis, false, false, false, ctx.owner);
         }

@@ -31,7 +31,7 @@ struct MC_ReadStatus : EnableBlock<MC_ReadStatus> {
 private:
     friend EnableBlock<MC_ReadStatus>;
     Reading read(const axes::AxisView& view) noexcept {
-        show(view.state);
+        if (!core_.valid() || view.state != shown_) show(view.state);
         return Reading::valid();
     }
     void clear() noexcept {
@@ -46,7 +46,10 @@ private:
         DiscreteMotion = state == axes::AxisState::DiscreteMotion;
         ContinuousMotion = state == axes::AxisState::ContinuousMotion;
         SynchronizedMotion = state == axes::AxisState::SynchronizedMotion;
+        shown_ = state;
     }
+
+    axes::AxisState shown_ = axes::AxisState::Disabled;
 };
 
 /// Error with drive_not_ready while the drive's feedback is missing or too old; Valid comes back with it.
