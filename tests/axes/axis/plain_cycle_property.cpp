@@ -58,7 +58,7 @@ Walked run_a_day(bool straight, const AxisConfig& config) {
     rig.program = [&] {
         ++cycle;
         if (move == 0 || rig.status(3, move) == CommandStatus::done) {
-            target = -target;
+            target = target == 20 ? 60 : 20;
             move = rig.accept(3, absolute(target, 80));
         }
         if (cycle == 4000) rig.accept(0, at_velocity(-45));
