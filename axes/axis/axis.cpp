@@ -57,8 +57,10 @@ void complete(AxisCore& axis) noexcept {
     auto& motion = axis.motion.now;
     // A drive that was told to stop holds no place of ours: where it comes to rest is where the axis is.
     if (body.slow_line && motion.goal.kind == Goal::Kind::stop && !motion.goal_pending && motion.setpoint.finished() &&
-        axis.measured.online() && axis.measured.stands() && axis.measured.feedback.commands_acknowledged)
+        axis.measured.online() && axis.measured.stands() && axis.measured.feedback.commands_acknowledged) {
         motion.setpoint.place(axis.measured.local());
+        axis.following.begin_anew();
+    }
     if (Succession::may_complete(body, motion)) axis.succession.complete();
     if (motion.goal.kind == Goal::Kind::given || motion.goal.kind == Goal::Kind::coupled)
         motion.goal.former_jerk = 0;  // it has moved the axis itself
@@ -124,6 +126,7 @@ void make_setpoint(AxisCore& axis, Duration period, bool may_be_homed, double co
     if (axis.probes.watch()) axis.writer.probes();
     if (axis.reset.resetting()) {
         axis.reset.run();
+        if (axis.body.slow_line && !axis.reset.resetting()) axis.following.begin_anew();
         axis.writer.resets();
     }
     show(axis);

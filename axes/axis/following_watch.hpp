@@ -26,6 +26,12 @@ public:
     }
     void record(Instant effective, std::int64_t counts) noexcept { history_.record(effective, counts); }
     void forget() noexcept { history_.clear(); }
+    /// The set-point was put where the motor came to rest: it is not behind those of before, and the position loop does not drive it there.
+    void begin_anew() noexcept {
+        error_ = 0;
+        timer_.clear();
+        history_.clear();
+    }
 
 private:
     FollowingErrorTimer timer_;

@@ -112,6 +112,20 @@ TEST(Xp200Axis, AHaltBelievesNoPositionFromBeforeIt) {
     }
 }
 
+// It comes to rest behind its last set-point. That is where it is from then on: what the set-point was while the line still told of it drives nothing.
+TEST(Xp200Axis, AHaltedMotorIsNotDrivenToWhereTheSetPointWas) {
+    AxisRig rig;
+    rig.go();
+    ASSERT_EQ(rig.submit(CommandKind::move_velocity, 0, 90).error, ErrorId::none);
+    rig.run(2s);
+    ASSERT_EQ(rig.submit(CommandKind::halt, 0, 0).error, ErrorId::none);
+    ASSERT_TRUE(rig.until([&] { return rig.axis.view().state == AxisState::Standstill; }, 2s));
+    const double at = rig.millimetres();
+    double furthest = 0;
+    (void)rig.until([&] { return furthest = std::max(furthest, std::abs(rig.millimetres() - at)), false; }, 500ms);
+    EXPECT_LE(furthest, 0.03) << "a turn per minute or two for the window of a count";
+}
+
 TEST(Xp200Axis, JogForwardAndBackEndsByItsLease) {
     AxisRig rig;
     rig.go();
