@@ -83,5 +83,44 @@ TEST(PlainCycle, IsTheWholeCycleOfAMachineAtWork) {
     }
 }
 
+/// Homed axes that run into what lies ahead of a plain cycle: a software limit, in its own motion and behind a master; a direction that is
+/// no longer permitted; a motor that stays behind.
+Walked run_into_limits(bool straight) {
+    auto config = plain_slave();
+    config.homing.kind = HomingKind::set_here;
+    config.limits.position_min = -30;
+    config.limits.position_max = 30;
+    config.following.window = 1;
+    CouplingRig rig({config, config, config, config});
+    rig.digest.ask();
+    rig.straight = straight;
+    rig.start();
+    for (std::size_t i = 0; i < 4; ++i) rig.accept(i, home(0));
+    rig.run(50);
+    rig.accept(0, at_velocity(10));
+    rig.accept(1, {.kind = CommandKind::gear_in, .details = GearDetails{CouplingRig::ref(0), {2, 1}, mcSetValue}});
+    rig.accept(2, at_velocity(10));
+    rig.accept(3, at_velocity(10));
+    long cycle = 0;
+    rig.program = [&] {
+        if (++cycle == 1000) rig.permits[2] = 2;
+        if (cycle == 1500) rig.drives[3]->blocked = true;
+    };
+    rig.run(5000);
+    rig.program = nullptr;
+    EXPECT_TRUE(rig.raised(0, AxisAlarm::software_limit_reached));
+    EXPECT_TRUE(rig.raised(1, AxisAlarm::software_limit_reached));
+    EXPECT_TRUE(rig.raised(3, AxisAlarm::following_error));
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_LE(rig.view(i).set_position, 30 + 1e-6) << "axis " << i;
+    EXPECT_EQ(rig.view(2).set_velocity, 0);
+    return {rig.digest.value(), cycle * 4, rig.calm, rig.planned_plain};
+}
+
+TEST(PlainCycle, SeesWhatLiesAhead) {
+    const auto straight = run_into_limits(true), whole = run_into_limits(false);
+    EXPECT_EQ(straight.digest, whole.digest);
+    EXPECT_GT(straight.planned_plain, straight.cycles / 10);
+}
+
 }  // namespace
 }  // namespace taktwerk::axes::test
