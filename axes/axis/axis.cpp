@@ -96,7 +96,7 @@ void watch_following(AxisCore& axis, double actual) noexcept {
         axis.following.rest();  // in torque the set-point follows the motor
     } else if (axis.following.watch(axis.measured, axis.motion.now, actual, axis.runs.step.presses()) &&
                axis.body.state != AxisState::ErrorStop) {
-        axis.conduct.fail(AxisAlarm::following_error, axis.following.error(), axis.body.config.following.window);
+        axis.conduct.fail(AxisAlarm::following_error, axis.following.error(), axis.following.window());
     }
 }
 

@@ -116,6 +116,18 @@ void check_control(Problems& problems, const ControlConfig& control) {
     problems.not_negative("control.output_limit", control.output_limit, "1.2 times the velocity limit");
 }
 
+void check_following(Problems& problems, const FollowingErrorWatch& following) {
+    if (!(following.window > 0)) problems.add("following.window", "must be above 0", "Give the largest permitted following error in u");
+    if (following.time < Duration::zero()) problems.add("following.time", "must not be negative", "Give a time such as 10 ms");
+    if (following.per_velocity < Duration::zero() || following.per_velocity > FollowingErrorWatch::most_per_velocity)
+        problems.add(
+            "following.per_velocity", "must be from 0 to 10 s",
+            "Give the time that the motor is behind at a steady velocity, and a half more, such as 15 ms; leave it out for a fixed window");
+    else if (following.per_velocity > Duration::zero() && std::isinf(following.window))
+        problems.add("following.per_velocity", "widens a window that is none",
+                     "Give following.window a distance, or leave per_velocity out");
+}
+
 void check_compensation(Problems& problems, const CompensationConfig& compensation) {
     if (!(compensation.backlash >= 0) || std::isinf(compensation.backlash))
         problems.add("compensation.backlash", "must be a finite distance, not negative", "Give the motor's way between the flanks in u");
@@ -154,9 +166,7 @@ std::vector<Error> check(const AxisConfig& config) {
     problems.not_negative("defaults.acceleration", config.defaults.acceleration, "the limit");
     problems.not_negative("defaults.deceleration", config.defaults.deceleration, "the limit");
     problems.not_negative("defaults.jerk", config.defaults.jerk, "the limit");
-    if (!(config.following.window > 0))
-        problems.add("following.window", "must be above 0", "Give the largest permitted following error in u");
-    if (config.following.time < Duration::zero()) problems.add("following.time", "must not be negative", "Give a time such as 10 ms");
+    check_following(problems, config.following);
     if (!(config.windows.in_position > 0)) problems.add("windows.in_position", "must be above 0", "Give the window in u");
     problems.not_negative("windows.standstill_velocity", config.windows.standstill_velocity, "exact standstill");
     if (config.memory.range < 0)

@@ -45,6 +45,9 @@ struct AxisDefaults {
 struct FollowingErrorWatch {
     double window = std::numeric_limits<double>::infinity();  ///< u
     Duration time = std::chrono::milliseconds{10};            ///< beyond the window for this long: alarm
+    Duration per_velocity{};                                  ///< the window is wider by the set velocity times this
+
+    static constexpr Duration most_per_velocity = std::chrono::seconds{10};
 };
 
 struct PositionWindows {

@@ -37,6 +37,7 @@ void AxisParameters::store() noexcept {
     p[place_of(in_position_time)] = to_seconds(body_.config.windows.in_position_time);
     p[place_of(standstill_velocity)] = body_.config.windows.standstill_velocity;
     p[place_of(lag_time)] = to_seconds(body_.config.following.time);
+    p[place_of(lag_per_velocity)] = to_seconds(body_.config.following.per_velocity);
     p[place_of(default_acceleration)] = body_.config.defaults.acceleration;
     p[place_of(default_deceleration)] = body_.config.defaults.deceleration;
     p[place_of(default_jerk)] = body_.config.defaults.jerk;
@@ -61,6 +62,8 @@ void AxisParameters::use() noexcept {
     limits.position_min = p[enable_limit_negative] != 0 ? p[software_limit_negative] : -unlimited;
     body_.config.following.window = p[enable_lag_monitoring] != 0 ? p[maximum_lag] : unlimited;
     body_.config.following.time = seconds(p[place_of(lag_time)]);
+    body_.config.following.per_velocity = seconds(p[place_of(lag_per_velocity)]);
+    view_.following_window = body_.config.following.window;
     body_.config.windows.in_position = p[place_of(in_position_window)];
     body_.config.windows.in_position_time = seconds(p[place_of(in_position_time)]);
     body_.config.windows.standstill_velocity = p[place_of(standstill_velocity)];

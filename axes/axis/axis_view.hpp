@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 
 #include "axes/axis/command.hpp"
@@ -38,7 +39,8 @@ struct AxisView {
     // u, u/s, u/s2, u/s3, fraction of rated torque
     double set_position = 0, set_velocity = 0, set_acceleration = 0, set_jerk = 0;
     double actual_position = 0, actual_velocity = 0, actual_torque = 0;
-    double following_error = 0;  ///< set-point in effect at the latch, minus actual
+    double following_error = 0;   ///< set-point in effect at the latch, minus actual
+    double following_window = 0;  ///< u: what it may be, at the set velocity of the same instant; infinity = not watched
     double target_position = 0;
     double manual_slow = 0, manual_fast = 0;  ///< u/s, > 0: the jogging speeds (ManualSpeeds, resolved; parameters 1020, 1021)
 
@@ -54,7 +56,7 @@ struct AxisView {
     Override override_factors;
     /// The parameters that are stored: 2..9 and 12..17 by number, then those of the vendor (axes/axis/parameters.hpp reads them and all
     /// others from this view).
-    std::array<double, 32> parameters{};
+    std::array<double, 36> parameters{};
     std::uint32_t digital_inputs = 0;   ///< of the drive, raw (60FDh)
     std::uint32_t digital_outputs = 0;  ///< of the drive, as written (60FEh); bits never written are 0
 

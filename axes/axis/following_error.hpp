@@ -2,6 +2,7 @@
 // Following error with dead time taken into account: the actual value is compared with the set-point that was in effect in the drive
 // when the actual value was taken, not with the newest one.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -44,11 +45,25 @@ public:
         return static_cast<double>(before.counts - actual) + part * static_cast<double>(after.counts - before.counts);
     }
 
+    /// How fast the set-point moves that is in effect at `latched`, counts/s. 0 while that is not known.
+    [[nodiscard]] double velocity_at(Instant latched) const noexcept {
+        if (count_ < 2) return 0;
+        const std::size_t later = std::clamp<std::size_t>(later_than(latched), 1, count_ - 1);
+        const auto &before = back(later), &after = back(later - 1);
+        return static_cast<double>(after.counts - before.counts) / to_seconds(after.effective - before.effective);
+    }
+
 private:
     struct Entry {
         Instant effective{};
         std::int64_t counts = 0;
     };
+    /// How many take effect after `latched`.
+    [[nodiscard]] std::size_t later_than(Instant latched) const noexcept {
+        std::size_t later = 0;
+        while (later < count_ && back(later).effective > latched) ++later;
+        return later;
+    }
     /// `i` before the newest.
     [[nodiscard]] const Entry& back(std::size_t i) const noexcept { return entries_[(newest_ - i) % depth]; }
 

@@ -2,6 +2,7 @@
 // How far the motor is behind its set-points, for how long it may be, and whether it has arrived.
 
 #include <cmath>
+#include <limits>
 
 #include "axes/axis/axis_motion.hpp"
 #include "axes/axis/following_error.hpp"
@@ -13,6 +14,8 @@ class FollowingWatch {
 public:
     /// u: set-point in effect at the latch, minus actual.
     [[nodiscard]] double error() const noexcept { return error_; }
+    /// u: what error() may be at the set velocity of that instant.
+    [[nodiscard]] double window() const noexcept { return window_; }
     [[nodiscard]] bool in_position(const AxisBody& body) const noexcept {
         return in_window_ && body.now - in_window_since_ >= body.config.windows.in_position_time;
     }
@@ -36,6 +39,7 @@ public:
 private:
     FollowingErrorTimer timer_;
     double error_ = 0;
+    double window_ = std::numeric_limits<double>::infinity();  // nothing is watched yet
     Instant in_window_since_{};
     bool in_window_ = false;
     bool lag_forgiven_ = false;  // the set-point was ahead of an axis that could not follow
@@ -49,11 +53,16 @@ private:
     if (!feedback.fresh) return false;
     error_ = history_.error_at(feedback.latched, feedback.position) / body.units.counts_per_unit();
     // Pressed against a block the set-point runs ahead; that is no error until the axis has caught up.
-    const bool beyond = std::abs(error_) > body.config.following.window;
+    const auto& allowed = body.config.following;
+    window_ = allowed.window;
+    // The velocity of the same instant as the error: an axis that has just stopped is still behind.
+    if (allowed.per_velocity > Duration::zero())
+        window_ += to_seconds(allowed.per_velocity) * std::abs(history_.velocity_at(feedback.latched) / body.units.counts_per_unit());
+    const bool beyond = std::abs(error_) > window_;
     lag_forgiven_ = pressed || (lag_forgiven_ && beyond);
     bool too_long = false;
     if (!beyond || lag_forgiven_) timer_.clear();
-    else too_long = timer_.lasts(feedback.latched, body.config.following.time);
+    else too_long = timer_.lasts(feedback.latched, allowed.time);
 
     const auto& setpoint = motion.setpoint;
     const bool inside = setpoint.at_rest() && std::abs(setpoint.state().position - actual) <= body.config.windows.in_position;

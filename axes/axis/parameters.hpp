@@ -37,6 +37,7 @@ enum Parameter : std::int32_t {
     default_acceleration = 1014,
     default_deceleration = 1015,
     default_jerk = 1016,
+    lag_per_velocity = 1017,
     jog_velocity_slow = 1020,
     jog_velocity_fast = 1021,
     setup_velocity = 1022,
@@ -61,6 +62,7 @@ struct ParameterInfo {
 [[nodiscard]] constexpr std::size_t place_of(Parameter parameter) noexcept {
     if (parameter < in_position_window) return static_cast<std::size_t>(parameter);
     if (parameter <= default_jerk) return static_cast<std::size_t>(18 + parameter - in_position_window);
+    if (parameter == lag_per_velocity) return 28;
     return static_cast<std::size_t>(25 + parameter - jog_velocity_slow);
 }
 static_assert(place_of(setup_velocity) < std::tuple_size_v<decltype(AxisView::parameters)>);
@@ -131,6 +133,8 @@ inline constexpr std::array parameter_table{
      [](const AxisView& view) noexcept { return view.override_factors.acceleration; }, "override; written by MC_SetOverride"},
     ParameterInfo{1008, "JerkFactor", "", ParameterType::real, ParameterRange::read_only,
      [](const AxisView& view) noexcept { return view.override_factors.jerk; }, "override; written by MC_SetOverride"},
+    ParameterInfo{1009, "FollowingWindow", "u", ParameterType::real, ParameterRange::read_only, detail::live<&AxisView::following_window>,
+     "what the following error may be now: 7 MaxPositionLag, and 1017 LagPerVelocity times the set velocity"},
     ParameterInfo{1010, "InPositionWindow", "u", ParameterType::real, ParameterRange::not_negative, detail::stored<in_position_window>,
      "actual position this near to the target counts as in position"},
     ParameterInfo{1011, "InPositionTime", "s", ParameterType::real, ParameterRange::not_negative, detail::stored<in_position_time>,
@@ -145,6 +149,8 @@ inline constexpr std::array parameter_table{
      "of commands that say 0; 0 = 15 MaxDecelerationAppl", deceleration_of_system},
     ParameterInfo{1016, "DefaultJerk", "u/s3", ParameterType::real, ParameterRange::not_negative, detail::stored<default_jerk>,
      "of commands that say 0; 0 = 17 MaxJerkAppl", jerk_of_system},
+    ParameterInfo{1017, "LagPerVelocity", "s", ParameterType::real, ParameterRange::not_negative, detail::stored<lag_per_velocity>,
+     "by so much for each u/s of set velocity the following error may be more than 7 MaxPositionLag"},
     ParameterInfo{1020, "JogVelocitySlow", "u/s", ParameterType::real, ParameterRange::positive, detail::stored<jog_velocity_slow>,
      "of jogging", velocity_of_system},
     ParameterInfo{1021, "JogVelocityFast", "u/s", ParameterType::real, ParameterRange::positive, detail::stored<jog_velocity_fast>,

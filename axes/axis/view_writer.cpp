@@ -73,6 +73,7 @@ void ViewWriter::feedback(double actual) noexcept {
     view_.online = measured.online();
     view_.in_position = axis_.following.in_position(axis_.body);
     view_.following_error = axis_.following.error();
+    if (axis_.body.config.following.per_velocity > Duration::zero()) view_.following_window = axis_.following.window();
     view_.warning = from_drive.warning;
     view_.drive_error = from_drive.error_code;
 

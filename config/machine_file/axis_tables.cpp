@@ -70,6 +70,10 @@ Table<AxisConfig> following_table() {
                 "largest difference between set-point and actual position, dead time taken into account")),
             field_at<AxisConfig>(
                 "time", [](AxisConfig& a) -> Duration& { return a.following.time; }, duration(), "beyond the window for this long: alarm"),
+            field_at<AxisConfig>(
+                "per_velocity", [](AxisConfig& a) -> Duration& { return a.following.per_velocity; },
+                duration(Duration::zero(), axes::FollowingErrorWatch::most_per_velocity),
+                "the window is wider by the set velocity times this: what the motor is behind at a steady velocity"),
         },
         {},
         {}};

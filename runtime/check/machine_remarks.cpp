@@ -54,9 +54,10 @@ void limits(Remarks& remarks, const AxisBinding& binding, const std::string& her
                     fmt::format("each motion waits {:g} s in its window", to_seconds(axis.windows.in_position_time)), "was ms meant?");
     const double stroke = axis.limits.position_max - axis.limits.position_min;
     const double widest = std::min(stroke, axis.limits.velocity * following_of_velocity_s);
-    if (std::isfinite(axis.following.window) && axis.following.window > widest)
+    const double window = axis.following.window + axis.limits.velocity * to_seconds(axis.following.per_velocity);
+    if (std::isfinite(window) && window > widest)
         remarks.add("following_error", here + ".following_error.window",
-                    fmt::format("an error of {:g} {} is hardly ever reached: the axis is not watched", axis.following.window, u),
+                    fmt::format("an error of {:g} {} is hardly ever reached: the axis is not watched", window, u),
                     "give what the axis lags at full speed, and a half more");
     for (const auto& [key, speed] : {std::pair{"slow", axis.manual.slow}, std::pair{"fast", axis.manual.fast},
                                      std::pair{"setup_velocity", axis.manual.setup_velocity}})

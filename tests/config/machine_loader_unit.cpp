@@ -248,6 +248,7 @@ TEST(MachineLoader, AnAxisHasItsPositionLoopCompensationAndMemory) {
     EXPECT_EQ(loop.control.torque_feed_forward, 0.5);
     EXPECT_EQ(loop.control.rated_acceleration, 2000);
     EXPECT_DOUBLE_EQ(loop.control.output_limit, 150);
+    EXPECT_EQ(loop.following.per_velocity, 15ms);
     EXPECT_DOUBLE_EQ(loop.compensation.backlash, 0.02);
     EXPECT_EQ(loop.compensation.velocity, 2);
     ASSERT_EQ(loop.compensation.pitch.size(), 2u);
@@ -265,6 +266,7 @@ TEST(MachineLoader, AnAxisHasItsPositionLoopCompensationAndMemory) {
     EXPECT_TRUE(plain.compensation.pitch.empty());
     EXPECT_EQ(plain.feed_patience, 3);
     EXPECT_FALSE(plain.memory.absolute);
+    EXPECT_EQ(plain.following.per_velocity, 0ms);
     EXPECT_EQ(plain.modulo, 0);
     EXPECT_FALSE(plain.encoder);
     EXPECT_EQ(machine.axes[1].axis.modulo, 360);

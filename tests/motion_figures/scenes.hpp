@@ -15,6 +15,7 @@ namespace taktwerk::figures {
 [[nodiscard]] std::vector<Figure> couplings();
 [[nodiscard]] std::vector<Figure> time_profiles();
 [[nodiscard]] std::vector<Figure> torque();
+[[nodiscard]] std::vector<Figure> following();
 [[nodiscard]] std::vector<Figure> homing();
 [[nodiscard]] std::vector<Figure> probes_and_cams();
 [[nodiscard]] std::vector<Figure> modulo();

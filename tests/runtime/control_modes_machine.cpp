@@ -181,5 +181,31 @@ TEST(TorqueDrive, RampsHoldsItsVelocityLimitAndGoesOnIntoAMove) {
     EXPECT_EQ(m.alarms(), "");
 }
 
+// 100 mm/s at a gain of 50 /s are 2 mm of lag: inside 0.5 mm and 30 ms for each mm/s, beyond 0.5 mm alone.
+TEST(VelocityDrive, ALagThatGrowsWithTheVelocityIsInsideAWindowThatDoes) {
+    for (const Duration per_velocity : {30ms, 0ms}) {
+        auto config = versatile(&entry_of<VelocityThenMove>);
+        auto& axis = config.axes[0].axis;
+        axis.control = {.mode = axes::ControlMode::velocity, .kv = 50, .feed_forward = 0};
+        axis.limits.stop_deceleration = 5000;
+        axis.limits.acceleration = axis.limits.deceleration = 500;  // braking adds 500 / 50^2 = 0.2 mm
+        axis.following = {.window = 0.5, .time = 10ms, .per_velocity = per_velocity};
+        TestMachine m{std::move(config)};
+        ASSERT_TRUE(m.up());
+        const bool runs = m.until([&] { return variable(m, "in_target") != 0; }, 2s);
+        EXPECT_EQ(runs, per_velocity > 0ms);
+        EXPECT_EQ(m.has_alarm(axes::id(axes::AxisAlarm::following_error)), !runs);
+        if (!runs) continue;
+        m.run(500ms);
+        EXPECT_NEAR(m.axis(0).following_error, 2, 0.03);
+        EXPECT_NEAR(m.axis(0).following_window, 3.5, 0.05);
+        m.world.set_input("button", true);
+        ASSERT_TRUE(m.until([&] { return variable(m, "done") != 0; }, 10s)) << m.alarms();
+        m.run(500ms);
+        EXPECT_EQ(m.axis(0).following_window, 0.5);
+        EXPECT_EQ(m.alarms(), "");
+    }
+}
+
 }  // namespace
 }  // namespace taktwerk::runtime::testing
