@@ -101,6 +101,28 @@ enum class ControlMode : std::uint8_t {
     velocity,  ///< here: the drive runs in CSV
 };
 
+/// The I part of a position loop that is closed here. It ends what a standing error the P part leaves, such as an offset of the drive.
+struct PositionIntegral {
+    Duration time{};       ///< in which it adds to a standing error what the P part makes of it; 0 = there is none
+    double limit = 0;      ///< u/s, the most that it adds; 0 = a tenth of the velocity limit
+    double dead_band = 0;  ///< u: a smaller error changes nothing of it
+
+    static constexpr Duration least_time = std::chrono::milliseconds{1};
+    [[nodiscard]] bool used() const noexcept { return time > Duration::zero(); }
+};
+
+/// What the load takes of the motor beside its inertia, in rated torques: fed forward as 60B2h.
+struct LoadTorque {
+    double gravity = 0;           ///< that holds the load; positive where its weight pulls to negative
+    double coulomb_friction = 0;  ///< against any motion
+    double viscous_friction = 0;  ///< for each u/s
+    double friction_velocity =
+        0;  ///< u/s: there 70 % of the Coulomb friction count, at standstill none; 0 = a hundredth of the velocity limit
+
+    static constexpr double most = 3;  ///< rated torques: no drive gives more for long
+    [[nodiscard]] bool used() const noexcept { return gravity != 0 || coulomb_friction != 0 || viscous_friction != 0; }
+};
+
 struct ControlConfig {
     ControlMode mode = ControlMode::position;
     double kv = 0;                   ///< 1/s, mode velocity: u/s for each u of following error, > 0
@@ -108,6 +130,8 @@ struct ControlConfig {
     double torque_feed_forward = 0;  ///< part of the torque that the set acceleration needs, as 60B2h; needs rated_acceleration
     double rated_acceleration = 0;   ///< u/s2 that rated torque gives the axis, friction apart; 0 = unknown
     double output_limit = 0;         ///< u/s, of the velocity given in mode velocity; 0 = 1.2 times the velocity limit
+    PositionIntegral integral{};     ///< mode velocity
+    LoadTorque load{};
 
     /// Rated torques per u/s2; 0 = unknown.
     [[nodiscard]] double inertia() const noexcept { return rated_acceleration > 0 ? 1 / rated_acceleration : 0; }

@@ -65,6 +65,10 @@ void DriveOutput::fill_targets() noexcept {
     command_.position = measured_.seeded ? body_.units.counts(set.position + measured_.compensation.offset()) : measured_.feedback.position;
     command_.velocity = control.feed_forward * set.velocity * counts;
     command_.torque = torque_per_acceleration_ * set.acceleration;
+    if (load_.used()) {
+        const bool held = modes_.phase == ModePhase::steady && !body_.power.follows_actual();
+        command_.torque += (body_.config.gearing.inverted ? -1 : 1) * load_.step(set.velocity, held, to_seconds(body_.cycle));
+    }
     if (body_.slow_line) {
         // Told to stop, the drive ramps by itself: one word on the line ends the motion, whatever becomes of the line then.
         const bool ends_torque = modes_.phase == ModePhase::leaving || (modes_.phase == ModePhase::torque && !modes_.torque_wanted());
@@ -76,15 +80,27 @@ void DriveOutput::fill_targets() noexcept {
     if (modes_.own == DriveMode::cyclic_velocity || modes_.own == DriveMode::profile_velocity) {
         const bool closed = modes_.phase == ModePhase::steady && measured_.online() && !body_.power.follows_actual();
         const double limit = control.output_limit > 0 ? control.output_limit : 1.2 * body_.shown.parameters[place_of(velocity_of_system)];
-        const double velocity = modes_.phase == ModePhase::leaving
-                                    ? set.velocity
-                                    : control.feed_forward * set.velocity + (closed ? control.kv * following_.error() : 0);
+        double velocity = modes_.phase == ModePhase::leaving
+                              ? set.velocity
+                              : control.feed_forward * set.velocity + (closed ? control.kv * following_.error() : 0);
+        if (integral_.used()) velocity += integral_part(velocity, limit, closed);
         command_.velocity = std::clamp(velocity, -limit, limit) * counts;
     }
     if (modes_.phase == ModePhase::steady) return;
     if (modes_.in_profile()) fill_drive_profile();
     else fill_torque();
     command_.halt = command_.halt || modes_.halt;
+}
+
+/// Pressed against a block, and where the axis stops for good, an error is no reason to push on.
+double DriveOutput::integral_part(double given, double most, bool closed) noexcept {
+    if (!closed) {
+        integral_.clear();
+        return 0;
+    }
+    const double dt = to_seconds(body_.cycle);
+    const bool gives_up = body_.state == AxisState::Stopping || body_.state == AxisState::ErrorStop || runs_.step.presses();
+    return gives_up ? integral_.run_out(dt) : integral_.step(following_.error(), given, most, dt);
 }
 
 void DriveOutput::fill_torque() noexcept {

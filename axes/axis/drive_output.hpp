@@ -5,8 +5,10 @@
 #include "axes/axis/axis_motion.hpp"
 #include "axes/axis/following_watch.hpp"
 #include "axes/axis/homing_runs.hpp"
+#include "axes/axis/load_feed_forward.hpp"
 #include "axes/axis/measured.hpp"
 #include "axes/axis/mode_state.hpp"
+#include "axes/axis/position_integral.hpp"
 
 namespace taktwerk::axes {
 
@@ -35,11 +37,14 @@ public:
     /// The same for a position, where nothing but the set-point can have changed since encode().
     void encode_setpoint(Instant now) noexcept;
 
+    /// Weight or friction are fed forward: the torque is another one than the acceleration's.
+    [[nodiscard]] bool feeds_load() const noexcept { return load_.used(); }
     /// The newest one.
     [[nodiscard]] const DriveCommand& command() const noexcept { return command_; }
 
 private:
     void fill_targets() noexcept;
+    [[nodiscard]] double integral_part(double given, double most, bool closed) noexcept;
     void fill_torque() noexcept;
     void fill_drive_profile() noexcept;
 
@@ -56,6 +61,8 @@ private:
     AxisProbes& probes_;
     const AxisParameters& parameters_;
     FollowingWatch& following_;
+    IntegralPart integral_{body_.config.control.integral, body_.config.control.kv, body_.config.limits.velocity};
+    LoadFeedForward load_{body_.config.control.load, body_.config.limits.velocity};
 };
 
 }  // namespace taktwerk::axes

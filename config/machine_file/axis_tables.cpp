@@ -248,6 +248,40 @@ Table<AxisSimulation> axis_simulation_table() {
             {}};
 }
 
+Table<axes::PositionIntegral> integral_table() {
+    using I = axes::PositionIntegral;
+    return {"integral",
+            "The I part of the position loop that is closed here. It runs out in Stopping and ErrorStop, and is gone without power.",
+            {
+                required(field("time", &I::time, duration(I::least_time, std::chrono::hours{1}),
+                               "in which it adds to a standing error what the P part makes of it; begin with ten times 1 / kv")),
+                with_default(field("limit", &I::limit, quantity(Dimension::velocity, 0), "the most that it adds"), "a tenth of the limit"),
+                field("dead_band", &I::dead_band, quantity(Dimension::position, 0),
+                      "a smaller following error changes nothing of it; against hunting with friction, some counts of the encoder"),
+            },
+            {},
+            {}};
+}
+
+Table<axes::LoadTorque> load_table() {
+    using L = axes::LoadTorque;
+    return {
+        "load",
+        "What the load takes of the motor beside its inertia, given to the drive as torque offset (60B2h, which must be mapped). In rated "
+        "torques: 0.05 is 5 % of what the motor's plate says; the torque at a steady velocity in each sense shows both friction and "
+        "gravity.",
+        {
+            field("gravity", &L::gravity, number(-L::most, L::most), "that holds the load: positive where its weight pulls to negative"),
+            field("coulomb_friction", &L::coulomb_friction, number(0, L::most), "against any motion, smooth through standstill"),
+            field("viscous_friction", &L::viscous_friction, number(0), "for each u/s of set velocity"),
+            with_default(field("friction_velocity", &L::friction_velocity, quantity(Dimension::velocity, 0),
+                               "at this velocity 70 % of the Coulomb friction count, at standstill none"),
+                         "a hundredth of the limit"),
+        },
+        {},
+        {}};
+}
+
 Table<axes::ControlConfig> control_table() {
     using C = axes::ControlConfig;
     using Mode = axes::ControlMode;
@@ -269,6 +303,9 @@ Table<axes::ControlConfig> control_table() {
             with_default(field("output_limit", &C::output_limit, quantity(Dimension::velocity, 0),
                                "mode velocity: highest velocity given to the drive"),
                          "1.2 times the limit"),
+            field("integral", &C::integral, section(integral_table()),
+                  "mode velocity: an I part of the position loop; without it there is none"),
+            field("load", &C::load, section(load_table()), "torque feed-forward of weight and friction"),
         },
         {},
         {}};

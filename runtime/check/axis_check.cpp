@@ -114,6 +114,15 @@ private:
     void check_mapping(const ecat::SlaveConfig& slave, const AxisBinding& binding, const std::string& subject) {
         const auto offered = ecat::pdos_of(*slave.device, slave.modules);
         const auto rx = mapped(slave.rx, offered.rx, offered.rx_assigned), tx = mapped(slave.tx, offered.tx, offered.tx_assigned);
+        const auto carried = [&](std::uint16_t base) {  // as far as it is known
+            const auto index = static_cast<std::uint16_t>(base + binding.drive_axis * binding.profile->object_offset);
+            return rx.empty() || std::any_of(rx.begin(), rx.end(), [&](const auto& entry) { return entry.index == index; });
+        };
+        if (binding.axis.control.load.used() && !carried(0x60B2))
+            problems_.add(
+                "axis.not_mapped", subject + ".control.load",
+                fmt::format("no torque offset (60B2h) is in the RxPDO of slave '{}': the drive would never hear of it", slave.name),
+                "choose a PDO that has it, or add it under `pdo.rx` of the slave (docs/drives.md); or remove `load`");
         for (const auto& needed : needed_objects) {
             const auto& there = needed.output ? rx : tx;
             const auto index = static_cast<std::uint16_t>(needed.index + binding.drive_axis * binding.profile->object_offset);

@@ -248,6 +248,13 @@ TEST(MachineLoader, AnAxisHasItsPositionLoopCompensationAndMemory) {
     EXPECT_EQ(loop.control.torque_feed_forward, 0.5);
     EXPECT_EQ(loop.control.rated_acceleration, 2000);
     EXPECT_DOUBLE_EQ(loop.control.output_limit, 150);
+    EXPECT_EQ(loop.control.integral.time, 400ms);
+    EXPECT_DOUBLE_EQ(loop.control.integral.limit, 10);
+    EXPECT_DOUBLE_EQ(loop.control.integral.dead_band, 0.005);
+    EXPECT_EQ(loop.control.load.gravity, -0.2);
+    EXPECT_EQ(loop.control.load.coulomb_friction, 0.05);
+    EXPECT_EQ(loop.control.load.viscous_friction, 0.0004);
+    EXPECT_EQ(loop.control.load.friction_velocity, 1);
     EXPECT_EQ(loop.following.per_velocity, 15ms);
     EXPECT_DOUBLE_EQ(loop.compensation.backlash, 0.02);
     EXPECT_EQ(loop.compensation.velocity, 2);
@@ -266,6 +273,8 @@ TEST(MachineLoader, AnAxisHasItsPositionLoopCompensationAndMemory) {
     EXPECT_TRUE(plain.compensation.pitch.empty());
     EXPECT_EQ(plain.feed_patience, 3);
     EXPECT_FALSE(plain.memory.absolute);
+    EXPECT_FALSE(plain.control.integral.used());
+    EXPECT_FALSE(plain.control.load.used());
     EXPECT_EQ(plain.following.per_velocity, 0ms);
     EXPECT_EQ(plain.modulo, 0);
     EXPECT_FALSE(plain.encoder);

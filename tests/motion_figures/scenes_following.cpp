@@ -35,8 +35,34 @@ Figure following_window() {
     return stage.figure("following-window");
 }
 
+/// A weight of 0.2 and friction, up and down; the acceleration takes its part.
+Figure load_feed_forward() {
+    auto config = Stage::linear();
+    config.limits.jerk = 10000;
+    config.control.torque_feed_forward = 1;
+    config.control.rated_acceleration = 5000;
+    config.control.load = {.gravity = 0.2, .coulomb_friction = 0.08, .viscous_friction = 0.0006, .friction_velocity = 3};
+    Stage stage{{config}};
+    MC_MoveAbsolute up, down;
+    up.Axis = down.Axis = Stage::ref();
+    up.Position = 40, up.Velocity = 120;
+    down.Position = 0, down.Velocity = 120;
+    stage.block("up", up);
+    stage.block("down", down);
+    stage.show("velocity", "mm/s", 80, {{0, Quantity::velocity}});
+    stage.show("torque offset", "of rated", 110, {{0, Quantity::given_torque}});
+    stage.run(100ms);
+    up.Execute = true;
+    stage.run_until([&] { return up.Done; });
+    stage.run(150ms);
+    down.Execute = true;
+    stage.run_until([&] { return down.Done; });
+    stage.run(150ms);
+    return stage.figure("load-feed-forward");
+}
+
 }  // namespace
 
-std::vector<Figure> following() { return {following_window()}; }
+std::vector<Figure> following() { return {following_window(), load_feed_forward()}; }
 
 }  // namespace taktwerk::figures

@@ -77,6 +77,19 @@ class TorqueThenMove final : public Moves {
     }
 };
 
+/// Up by the button, and down again as soon as it is there.
+class UpAndDown final : public Moves {
+    MC_MoveAbsolute down;
+    void first(TaskContext& ctx) override {
+        down.Axis = x;
+        down.Position = 100;
+        down.Velocity = 100;
+        down.Execute = move.Done || down.Busy;
+        down(ctx);
+        in_target = in_target || down.Done;
+    }
+};
+
 /// A servo that also takes velocities and torques (60FFh, 6071h mapped). 10 mm a turn; mechanics of the simulation's defaults:
 /// 1.27 N m on 2e-4 kg m2 are 6350 rad/s2 or 10106 mm/s2 at rated torque.
 MachineConfig versatile(const ProgramEntry* (*program)()) {
@@ -181,6 +194,18 @@ TEST(TorqueDrive, RampsHoldsItsVelocityLimitAndGoesOnIntoAMove) {
     EXPECT_EQ(m.alarms(), "");
 }
 
+/// The drive has one object more; mapped, or to be written by SDO.
+void has_object(MachineConfig& config, std::uint16_t index, ecat::DataType type, std::int64_t value, bool mapped) {
+    auto device = std::make_shared<ecat::DeviceDescription>(*config.bus.slaves[0].device);
+    auto object = *std::find_if(device->objects.begin(), device->objects.end(), [](const auto& o) { return o.index == 0x607A; });
+    object.index = index;
+    object.type = type;
+    object.value = value;
+    device->objects.push_back(object);
+    if (mapped) device->rx_pdos[0].entries.push_back({index, 0, 16});
+    config.bus.slaves[0].device = device;
+}
+
 // 100 mm/s at a gain of 50 /s are 2 mm of lag: inside 0.5 mm and 30 ms for each mm/s, beyond 0.5 mm alone.
 TEST(VelocityDrive, ALagThatGrowsWithTheVelocityIsInsideAWindowThatDoes) {
     for (const Duration per_velocity : {30ms, 0ms}) {
@@ -205,6 +230,73 @@ TEST(VelocityDrive, ALagThatGrowsWithTheVelocityIsInsideAWindowThatDoes) {
         EXPECT_EQ(m.axis(0).following_window, 0.5);
         EXPECT_EQ(m.alarms(), "");
     }
+}
+
+// A tenth of the velocity is not fed forward: 100 / 50 / 10 = 0.2 mm stay, and the I part takes them away.
+TEST(VelocityDrive, TheIPartEndsAStandingLag) {
+    for (const bool integrates : {false, true}) {
+        auto config = versatile(&entry_of<VelocityThenMove>);
+        auto& control = config.axes[0].axis.control;
+        control = {.mode = axes::ControlMode::velocity, .kv = 50, .feed_forward = 0.9};
+        if (integrates) control.integral = {.time = 200ms, .limit = 20};
+        TestMachine m{std::move(config)};
+        ASSERT_TRUE(m.up());
+        ASSERT_TRUE(m.until([&] { return variable(m, "in_target") != 0; }, 5s)) << m.alarms();
+        m.run(2s);
+        EXPECT_NEAR(m.axis(0).following_error, integrates ? 0 : 0.2, 0.03);
+        m.world.set_input("button", true);
+        ASSERT_TRUE(m.until([&] { return variable(m, "done") != 0; }, 10s)) << m.alarms();
+        m.run(2s);
+        EXPECT_NEAR(m.axis(0).actual_position, 600, 0.02);
+        EXPECT_EQ(m.alarms(), "");
+    }
+}
+
+// Friction of 0.2 N m, which is 0.157 of 1.27 N m, and 0.001 N m s/rad, which are 0.000495 of it for each mm/s, told to the drive by 60B2h: its loop need not
+// find them at the start, at the reversal and at the end. The acceleration is fed forward in both runs.
+TEST(LoadedDrive, FollowsCloserWithItsFrictionFedForward) {
+    double lag[2] = {};
+    for (const int fed : {0, 1}) {
+        auto config = versatile(&entry_of<UpAndDown>);
+        has_object(config, 0x60B2, ecat::DataType::I16, 0, true);
+        config.axes[0].simulation.coulomb_friction = 0.2;
+        auto& control = config.axes[0].axis.control;
+        control.torque_feed_forward = 1;
+        if (fed == 1) control.load = {.coulomb_friction = 0.157, .viscous_friction = 0.000495, .friction_velocity = 0.5};
+        TestMachine m{std::move(config)};
+        ASSERT_TRUE(m.up());
+        ASSERT_TRUE(m.until([&] { return variable(m, "ready") != 0; }, 5s)) << m.alarms();
+        m.on_cycle = [&] { lag[fed] = std::max(lag[fed], std::abs(m.axis(0).following_error)); };
+        m.world.set_input("button", true);
+        ASSERT_TRUE(m.until([&] { return variable(m, "in_target") != 0; }, 20s)) << m.alarms();
+        EXPECT_EQ(m.alarms(), "");
+        m.expect_no_jump();
+    }
+    EXPECT_LT(lag[1], lag[0] / 2) << lag[0] << " mm without";
+}
+
+// A weight of 0.4 N m, 0.315 of the rated torque, hangs on the axis and stands on its lower end until there is power. Fed forward it needs no error.
+TEST(LoadedDrive, HoldsAWeightThatIsFedForward) {
+    double lag[2] = {};
+    for (const int fed : {0, 1}) {
+        auto config = versatile(&entry_of<UpAndDown>);
+        has_object(config, 0x60B2, ecat::DataType::I16, 0, true);
+        auto& binding = config.axes[0];
+        binding.simulation.load_torque = 0.4;
+        binding.simulation.start = 50;
+        binding.simulation.negative_stop = 50;
+        binding.axis.control.torque_feed_forward = 1;
+        if (fed == 1) binding.axis.control.load.gravity = 0.315;
+        TestMachine m{std::move(config)};
+        ASSERT_TRUE(m.up());
+        ASSERT_TRUE(m.until([&] { return variable(m, "ready") != 0; }, 5s)) << m.alarms();
+        m.run(300ms);
+        m.on_cycle = [&] { lag[fed] = std::max(lag[fed], std::abs(m.axis(0).following_error)); };
+        m.world.set_input("button", true);
+        m.run(30ms);  // it lifts off
+        EXPECT_EQ(m.alarms(), "");
+    }
+    EXPECT_LT(lag[1], lag[0] / 2) << lag[0] << " mm without";
 }
 
 }  // namespace

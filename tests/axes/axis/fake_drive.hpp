@@ -39,6 +39,7 @@ public:
     bool warning = false;
     bool blocked = false;  ///< the motor does not move
     std::int64_t lag = 0;  ///< counts the motor stays behind
+    double drift = 0;      ///< counts/s that it turns more than it is told, in cyclic velocity
     double coasting = 0;   ///< counts per cycle while without power
     bool switches = false;
     std::int64_t home_low = 0, home_high = 0;  ///< home switch on between
@@ -178,7 +179,7 @@ private:
             if (profiled()) (void)profile.step(mode_, last, position, to_seconds(cycle));
             step_torque(now);
         } else if (profiled()) position = profile.step(mode_, last, position, to_seconds(cycle));
-        else if (mode_ == DriveMode::cyclic_velocity) position += at(now - latch_age * cycle).velocity * to_seconds(cycle);
+        else if (mode_ == DriveMode::cyclic_velocity) position += (at(now - latch_age * cycle).velocity + drift) * to_seconds(cycle);
         else if (!blocked) {
             const auto target = target_at(now - latch_age * cycle) - lag;
             const auto held = std::clamp(target, negative_stop, positive_stop);

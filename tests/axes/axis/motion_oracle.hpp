@@ -198,9 +198,12 @@ private:
         const double limit = (control.output_limit > 0 ? control.output_limit : 1.2 * config_.limits.velocity) * std::abs(counts_);
         const double open = control.feed_forward * view.set_velocity * counts_;
         const double closed = std::clamp(open + control.kv * view.following_error * counts_, -limit, limit);
+        // An I part adds no more than its limit.
+        const auto& integral = control.integral;
+        const double added = integral.used() ? (integral.limit > 0 ? integral.limit : config_.limits.velocity / 10) * std::abs(counts_) : 0;
         // The loop is open without feedback, and from the command on that takes the axis into another mode.
         const bool may_be_open = !view.online || changes_mode(view.active_kind) || changes_mode(last_.kind) || last_.state != view.state;
-        if (std::abs(command.velocity - closed) > grain && !(may_be_open && std::abs(command.velocity - open) <= grain))
+        if (std::abs(command.velocity - closed) > grain + added && !(may_be_open && std::abs(command.velocity - open) <= grain))
             breach("tells the drive {} counts/s; feed-forward and loop make {}", command.velocity, closed);
     }
 
