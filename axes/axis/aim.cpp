@@ -29,7 +29,7 @@ void Aim::at(Goal::Kind kind, double value, const MotionLimits& limits, Velocity
     const bool unlimited = !std::isfinite(former_jerk);
     if (unlimited && (motion_.goal.kind == Goal::Kind::given || ((stops || motion_.summed) && motion_.goal.kind == Goal::Kind::coupled))) {
         auto base = motion_.setpoint.base();
-        base.acceleration = releasable(base, stops ? 0 : body_.config.limits.velocity, limits.jerk);
+        base.acceleration = releasable(base, stops ? 0 : body_.config.limits.velocity_towards(base.velocity), limits.jerk);
         motion_.setpoint.set(base);
     }
     motion_.goal = {kind, value, limits, limiter};
@@ -44,18 +44,20 @@ void Aim::at_rest(const MotionLimits& limits) noexcept {
 }
 
 void Aim::at_velocity(double velocity, const MotionLimits& dynamics) noexcept {
-    const auto allowed = allowed_speed(std::abs(velocity), body_.config.limits.velocity, body_.velocity_cap());
+    const auto allowed = allowed_speed(std::abs(velocity), body_.config.limits.velocity_towards(velocity), body_.velocity_cap());
     const auto limiter = velocity == 0 ? VelocityLimiter::stopping : allowed.limiter;
     at(Goal::Kind::velocity, std::copysign(allowed.speed, velocity), dynamics, limiter);
 }
 
 void Aim::at_target(const AxisCommand& command, double target) noexcept {
+    const double way = target - motion_.setpoint.base().position;
     auto dynamics = dynamics_of(command, body_.config.limits, body_.config.defaults);
-    const auto allowed = allowed_speed(command.velocity, body_.config.limits.velocity, body_.velocity_cap());
+    const auto allowed = allowed_speed(command.velocity, body_.config.limits.velocity_towards(way), body_.velocity_cap());
     dynamics.velocity = allowed.speed;
     at(Goal::Kind::position, target, dynamics, allowed.limiter);
     if (moves_continuously(command.kind)) {
-        const auto end = allowed_speed(std::abs(command.end_velocity), body_.config.limits.velocity, body_.velocity_cap());
+        const auto end =
+            allowed_speed(std::abs(command.end_velocity), body_.config.limits.velocity_towards(command.end_velocity), body_.velocity_cap());
         motion_.goal.goes_on = true;
         motion_.goal.end_velocity = std::copysign(end.speed, command.end_velocity);
         return;

@@ -124,6 +124,7 @@ void make_setpoint(AxisCore& axis, Duration period, bool may_be_homed, double co
     const double actual = axis.measured.local();
     watch_following(axis, actual);
     if (axis.probes.watch()) axis.writer.probes();
+    if (axis.bounds.watch(axis.measured.feedback)) axis.writer.publish();
     if (axis.reset.resetting()) {
         axis.reset.run();
         if (axis.body.slow_line && !axis.reset.resetting()) axis.following.begin_anew();

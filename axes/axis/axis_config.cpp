@@ -3,6 +3,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "axes/axis/command_details.hpp"
+#include "axes/axis/direction_limits.hpp"
 #include "axes/axis/rational.hpp"
 
 namespace taktwerk::axes {
@@ -42,6 +44,19 @@ void check_gearing(Problems& problems, const Gearing& gearing) {
                      "Give the way per load revolution; use `inverted` to change the sense");
 }
 
+void check_direction(Problems& problems, const std::string& here, const DirectionLimits& own, const AxisLimits& both) {
+    const auto at_most = [&](const char* what, double value, double most) {
+        if (!(value >= 0) || (most > 0 && value > most))  // one that is none is said elsewhere
+            problems.add(here + what, "must be above 0 and no more than limits." + std::string(what),
+                         "Give less than holds in both directions, or leave it out; what is more in one direction belongs into limits." +
+                             std::string(what));
+    };
+    at_most("velocity", own.velocity, both.velocity);
+    at_most("acceleration", own.acceleration, both.acceleration);
+    at_most("deceleration", own.deceleration, both.deceleration);
+    at_most("torque", own.torque, both.torque);
+}
+
 void check_limits(Problems& problems, const AxisLimits& limits) {
     problems.positive("limits.velocity", limits.velocity, "u/s");
     problems.positive("limits.acceleration", limits.acceleration, "u/s2");
@@ -50,6 +65,11 @@ void check_limits(Problems& problems, const AxisLimits& limits) {
     problems.not_negative("limits.stop_deceleration", limits.stop_deceleration, "the same as deceleration");
     problems.not_negative("limits.stop_jerk", limits.stop_jerk, "the same as jerk");
     if (std::isinf(limits.stop_deceleration)) problems.add("limits.stop_deceleration", "must be finite", "Give a value in u/s2");
+    check_direction(problems, "limits.positive.", limits.positive, limits);
+    check_direction(problems, "limits.negative.", limits.negative, limits);
+    if (!(limits.torque >= TorqueLimitDetails::least))
+        problems.add("limits.torque", "must be 0.001 or more",
+                     "Give a fraction of the rated torque, such as 1.5, or leave it out for what the drive has");
     if (!(limits.position_min < limits.position_max))
         problems.add("limits.position_min", "must be below limits.position_max", "Exchange the two, or leave both out");
 }
@@ -72,9 +92,12 @@ void check_homing_speeds(Problems& problems, const HomingConfig& homing, const A
     const char* const remedy =
         "Homing may not be faster than the axis: give a smaller value, or raise the limit where the mechanics bear it";
     const auto above = [](double value, double limit) { return limit > 0 && value > limit; };  // a limit that is none is said elsewhere
-    if (above(homing.search_velocity, limits.velocity)) problems.add("homing.search_velocity", "is above limits.velocity", remedy);
-    if (above(homing.latch_velocity, limits.velocity)) problems.add("homing.latch_velocity", "is above limits.velocity", remedy);
-    if (above(homing.acceleration, std::min(limits.acceleration, limits.deceleration)))
+    // It searches both ways.
+    const double velocity = slowest(limits);
+    const auto ramps = gentlest({velocity, limits.acceleration, limits.deceleration, limits.jerk}, limits);
+    if (above(homing.search_velocity, velocity)) problems.add("homing.search_velocity", "is above limits.velocity", remedy);
+    if (above(homing.latch_velocity, velocity)) problems.add("homing.latch_velocity", "is above limits.velocity", remedy);
+    if (above(homing.acceleration, std::min(ramps.acceleration, ramps.deceleration)))
         problems.add("homing.acceleration", "is above limits.acceleration or limits.deceleration", remedy);
 }
 

@@ -26,6 +26,14 @@ struct Gearing {
     }
 };
 
+/// What holds in one direction only, as where a weight helps or hinders; 0 = as in both.
+struct DirectionLimits {
+    double velocity = 0;      ///< u/s
+    double acceleration = 0;  ///< u/s2, while the axis gets faster in this direction
+    double deceleration = 0;  ///< u/s2, while it gets slower in it
+    double torque = 0;        ///< rated torques, of this sign
+};
+
 struct AxisLimits {
     double velocity = 100;                                           ///< u/s, > 0
     double acceleration = 1000;                                      ///< u/s2
@@ -35,6 +43,22 @@ struct AxisLimits {
     double stop_jerk = 0;                                            ///< u/s3; 0 = jerk
     double position_min = -std::numeric_limits<double>::infinity();  ///< software limits, active once homed
     double position_max = std::numeric_limits<double>::infinity();
+    double torque = std::numeric_limits<double>::infinity();  ///< rated torques, > 0; infinity = what the drive has
+    DirectionLimits positive{}, negative{};                   ///< at most what holds in both
+
+    [[nodiscard]] double velocity_towards(double sense) const noexcept { return lesser(towards(sense).velocity, velocity); }
+    [[nodiscard]] double acceleration_towards(double sense) const noexcept { return lesser(towards(sense).acceleration, acceleration); }
+    [[nodiscard]] double deceleration_towards(double sense) const noexcept { return lesser(towards(sense).deceleration, deceleration); }
+    [[nodiscard]] double torque_towards(double sense) const noexcept { return lesser(towards(sense).torque, torque); }
+    /// Motion is not bounded alike in both directions.
+    [[nodiscard]] bool differ() const noexcept {
+        const auto any = [](const DirectionLimits& l) { return l.velocity > 0 || l.acceleration > 0 || l.deceleration > 0; };
+        return any(positive) || any(negative);
+    }
+
+private:
+    [[nodiscard]] const DirectionLimits& towards(double sense) const noexcept { return sense < 0 ? negative : positive; }
+    [[nodiscard]] static double lesser(double own, double both) noexcept { return own > 0 && own < both ? own : both; }
 };
 
 /// How a move gets its dynamics when the block says 0.

@@ -46,6 +46,7 @@
 #include "axes/axis/succession.hpp"
 #include "axes/axis/superimposed_motion.hpp"
 #include "axes/axis/targets.hpp"
+#include "axes/axis/torque_bounds.hpp"
 #include "axes/axis/view_writer.hpp"
 
 namespace taktwerk::axes {
@@ -145,6 +146,7 @@ public:
     AxisProbes probes;
     HomingParts homing;
     AxisParameters parameters;
+    TorqueBounds bounds;
     DriveOutput output;
     ModeParts drive;
     CouplingParts coupling;

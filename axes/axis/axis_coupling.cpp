@@ -197,8 +197,8 @@ void AxisCoupling::step(Duration period) noexcept {
     const auto beside = [&](double sense) noexcept {
         return std::max(sense * motion_.setpoint.superimposed().velocity, motion_.setpoint.superimposed_top(sense));
     };
-    limits.forward = std::clamp(body_.config.limits.velocity - beside(1), 0.0, limits.forward);
-    limits.backward = std::clamp(body_.config.limits.velocity - beside(-1), 0.0, limits.backward);
+    limits.forward = std::clamp(body_.config.limits.velocity_towards(1) - beside(1), 0.0, limits.forward);
+    limits.backward = std::clamp(body_.config.limits.velocity_towards(-1) - beside(-1), 0.0, limits.backward);
     links_.state.follower.set_limits(limits);
     step_on(period);
 }

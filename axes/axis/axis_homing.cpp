@@ -6,6 +6,7 @@
 #include "axes/axis/aim.hpp"
 #include "axes/axis/command_check.hpp"
 #include "axes/axis/conduct.hpp"
+#include "axes/axis/direction_limits.hpp"
 #include "axes/axis/homing_reference.hpp"
 #include "axes/axis/homing_steps.hpp"
 #include "axes/axis/limit_guard.hpp"
@@ -34,7 +35,7 @@ ErrorId AxisHoming::refuse() const noexcept {
             if (!drive.drive_homing) return ErrorId::not_supported;
             // The drive has its speeds from the start-up: limits that a program has lowered since bind it all the same.
             const auto& homing = body_.config.homing;
-            const bool faster = std::max(homing.search_velocity, homing.latch_velocity) > body_.config.limits.velocity;
+            const bool faster = std::max(homing.search_velocity, homing.latch_velocity) > slowest(body_.config.limits);
             return faster && !drive.homing_per_run ? ErrorId::invalid_velocity : ErrorId::none;
         }
         case HomingKind::limit_switch: return drive.digital_inputs ? ErrorId::none : ErrorId::not_supported;
@@ -160,8 +161,9 @@ void AxisHoming::search_home_switch() noexcept {
     const bool on_course = motion_.goal.kind == Goal::Kind::velocity && motion_.goal.value == runs_.by_switch.velocity();
     if (on_course) return;
     // Homing has velocities of its own; only the axis' limit holds them down.
-    const double speed = std::min(std::abs(runs_.by_switch.velocity()), body_.config.limits.velocity);
-    aim_.at(Goal::Kind::velocity, std::copysign(speed, runs_.by_switch.velocity()), dynamics(), VelocityLimiter::command);
+    const double wanted = runs_.by_switch.velocity();
+    const double speed = std::min(std::abs(wanted), body_.config.limits.velocity_towards(wanted));
+    aim_.at(Goal::Kind::velocity, std::copysign(speed, wanted), dynamics(), VelocityLimiter::command);
 }
 
 MotionLimits AxisHoming::dynamics() const noexcept {
@@ -202,9 +204,9 @@ DriveHomingSetup AxisHoming::drive_setup() const noexcept {
     if (!runs_.drive.busy() || !body_.port.capabilities().homing_per_run) return {};
     const double scale = std::abs(body_.units.counts_per_unit());
     const auto& homing = body_.config.homing;
-    const auto& limits = body_.config.limits;
-    return {homing.method, std::min(homing.search_velocity, limits.velocity) * scale,
-            std::min(homing.latch_velocity, limits.velocity) * scale,
+    const auto limits = gentlest(full_limits(body_.config.limits), body_.config.limits);  // which way it searches is the drive's affair
+    const double fastest = slowest(body_.config.limits);
+    return {homing.method, std::min(homing.search_velocity, fastest) * scale, std::min(homing.latch_velocity, fastest) * scale,
             std::min({homing.acceleration, limits.acceleration, limits.deceleration}) * scale};
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "axes/axis/command_check.hpp"
+#include "axes/axis/direction_limits.hpp"
 
 namespace taktwerk::axes {
 
@@ -69,6 +70,13 @@ void AxisParameters::use() noexcept {
     body_.config.windows.standstill_velocity = p[place_of(standstill_velocity)];
     body_.config.defaults = {p[place_of(default_acceleration)], p[place_of(default_deceleration)], p[place_of(default_jerk)]};
     body_.config.manual = {p[place_of(jog_velocity_slow)], p[place_of(jog_velocity_fast)], p[place_of(setup_velocity)]};
+    auto& shown = view_.parameters;
+    shown[place_of(velocity_positive)] = limits.velocity_towards(1);
+    shown[place_of(velocity_negative)] = limits.velocity_towards(-1);
+    shown[place_of(acceleration_positive)] = limits.acceleration_towards(1);
+    shown[place_of(acceleration_negative)] = limits.acceleration_towards(-1);
+    shown[place_of(deceleration_positive)] = limits.deceleration_towards(1);
+    shown[place_of(deceleration_negative)] = limits.deceleration_towards(-1);
     motion_.watch_limits = true;
     view_.manual_slow = body_.config.manual.slow;
     view_.manual_fast = body_.config.manual.fast;
@@ -79,7 +87,7 @@ bool AxisParameters::beyond_reach(double edge, bool positive) const noexcept {
     if (!body_.software_limits_hold() || motion_.setpoint.at_rest()) return false;
     const auto& state = motion_.setpoint.state();
     const double here = body_.units.to_program(state.position);
-    const double stop = here + stopping_distance(state, full_limits(body_.config.limits));
+    const double stop = here + stopping_distance(state, in_each_direction(full_limits(body_.config.limits), body_.config.limits));
     double target = motion_.goal.kind == Goal::Kind::position ? body_.units.to_program(motion_.goal.value) : here, next = target;
     if (modes_.phase == ModePhase::profile && modes_.run.mode() == DriveMode::profile_position && modes_.run.under_way()) {
         // The drive goes to its targets, whatever the axis thinks of them later.

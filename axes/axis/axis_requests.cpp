@@ -46,6 +46,7 @@ Submitted answer(AxisCore& axis, const AxisCommand& command, Owner owner) noexce
     const auto slot = slot_of(command.kind);
     if (slot == probe) return axis.probes.submit(command);  // moves nothing: any party may
     if (!axis.body.may(owner)) return {0, ErrorId::owned_by_other};
+    if (slot == torque_limit) return axis.bounds.submit(command);
     // A set-point for each cycle does not get through a slow line.
     if (axis.body.slow_line && needs_each_cycle(command.kind)) return {0, ErrorId::not_supported};
     if (slot == phasing) return axis.coupling.phasing.submit(command, owner);

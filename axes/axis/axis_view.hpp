@@ -41,6 +41,8 @@ struct AxisView {
     double actual_position = 0, actual_velocity = 0, actual_torque = 0;
     double following_error = 0;   ///< set-point in effect at the latch, minus actual
     double following_window = 0;  ///< u: what it may be, at the set velocity of the same instant; infinity = not watched
+    double torque_limit_positive = std::numeric_limits<double>::infinity();  ///< fraction of rated torque; infinity = what the drive has
+    double torque_limit_negative = std::numeric_limits<double>::infinity();
     double target_position = 0;
     double manual_slow = 0, manual_fast = 0;  ///< u/s, > 0: the jogging speeds (ManualSpeeds, resolved; parameters 1020, 1021)
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "axes/axis/command_check.hpp"
+#include "axes/axis/direction_limits.hpp"
 #include "axes/axis/given_motion.hpp"
 #include "axes/axis/junction.hpp"
 #include "axes/axis/software_limits.hpp"
@@ -18,15 +19,16 @@ namespace {
 
 /// Limits lowered since the command came hold from here on. A stop, and the way to a software limit, are as hard as they have to be.
 template <class Goal>
-void hold_to_limits(Goal& goal, const AxisLimits& now) noexcept {
+void hold_to_limits(Goal& goal, const AxisLimits& now, double from) noexcept {
     const bool velocity = goal.kind == Goal::Kind::velocity;
     if ((!velocity && goal.kind != Goal::Kind::position) || goal.limiter == VelocityLimiter::software_limit) return;
     auto& limits = goal.limits;
     const double wanted = velocity ? std::abs(goal.value) : limits.velocity;
     limits = {std::min(limits.velocity, now.velocity), std::min(limits.acceleration, now.acceleration),
               std::min(limits.deceleration, now.deceleration), std::min(limits.jerk, now.jerk)};
-    if (wanted <= now.velocity) return;
-    if (velocity) goal.value = std::copysign(now.velocity, goal.value);
+    const double most = now.velocity_towards(velocity ? goal.value : goal.value - from);
+    if (wanted <= most) return;
+    if (velocity) goal.value = std::copysign(most, goal.value);
     goal.limiter = VelocityLimiter::axis_limit;
 }
 
@@ -39,8 +41,8 @@ bool BaseMotion::plan_goal(double late) noexcept {
     }
     motion_.goal_pending = motion_.held = false;
     motion_.wants_speed = motion_.folded_jerk = 0;
-    hold_to_limits(motion_.goal, body_.config.limits);
     auto from = motion_.setpoint.base();
+    hold_to_limits(motion_.goal, body_.config.limits, from.position);
     auto limits = motion_.with_override(motion_.goal.limits);
     if (motion_.goal.kind == Goal::Kind::stop && from.velocity * from.acceleration > 0) {
         // What speeds up loses its acceleration with the jerk it was built up with, at once where none limited that: with less the axis would get
@@ -58,19 +60,19 @@ bool BaseMotion::plan_goal(double late) noexcept {
         case Goal::Kind::rest:
         case Goal::Kind::coupled: return true;
         case Goal::Kind::given: given_.start(late); return true;
-        case Goal::Kind::position: plan = plan_way(from, limits, body_.config.limits.velocity); break;
+        case Goal::Kind::position: plan = plan_way(from, limits, body_.config.limits.velocity_towards(motion_.goal.end_velocity)); break;
         case Goal::Kind::velocity: {
             const double velocity = motion_.override_counts() ? motion_.goal.value * motion_.factors.velocity : motion_.goal.value;
             if (velocity == 0) limits = never_reversing(from, limits, to_seconds(body_.cycle));
             limits_.brake_inside_limits(from, limits);
-            plan = plan_to_velocity(from, velocity, limits);
+            plan = plan_to_velocity(from, velocity, in_each_direction(limits, body_.config.limits));
             motion_.watch_limits = true;
             break;
         }
         case Goal::Kind::stop:
             limits = never_reversing(from, limits, to_seconds(body_.cycle));
             limits_.brake_inside_limits(from, limits);
-            plan = plan_stop(from, limits);
+            plan = plan_stop(from, in_each_direction(limits, body_.config.limits));
             motion_.watch_limits = false;
             break;
     }
@@ -91,15 +93,15 @@ Plan BaseMotion::plan_way(const MotionState& from, MotionLimits limits, double m
     Plan plan;
     if (motion_.held) {
         limits.velocity = body_.config.limits.velocity;
-        plan = plan_stop(from, never_reversing(from, limits, to_seconds(body_.cycle)));
+        plan = plan_stop(from, in_each_direction(never_reversing(from, limits, to_seconds(body_.cycle)), body_.config.limits));
     } else if (motion_.goal.goes_on) {
         const double factor = motion_.override_counts() ? motion_.factors.velocity : 1;
         const double end = std::clamp(motion_.goal.end_velocity * factor, -most, most);
-        plan = plan_through(from, {motion_.goal.value, end, 0}, limits);
+        plan = plan_through(from, {motion_.goal.value, end, 0}, in_each_direction(limits, body_.config.limits));
     } else if (const double through = velocity_at_junction(from, limits); through != 0) {
-        plan = plan_through(from, {motion_.goal.value, through, 0}, limits);
+        plan = plan_through(from, {motion_.goal.value, through, 0}, in_each_direction(limits, body_.config.limits));
     } else {
-        plan = plan_to_position(from, motion_.goal.value, limits);
+        plan = plan_to_position(from, motion_.goal.value, in_each_direction(limits, body_.config.limits));
     }
     motion_.watch_limits = limits_.leaves_limits(plan.profile);
     return plan;
@@ -113,7 +115,7 @@ void BaseMotion::wait_for_room(const MotionState& from, MotionLimits limits, Pla
     for (const double way : {1.0, -1.0}) {
         const double reach = addition_.reach(way);
         if (reach == 0) continue;
-        const double left = std::max({0.0, limit - reach, way * from.velocity});
+        const double left = std::max({0.0, body_.config.limits.velocity_towards(way) - reach, way * from.velocity});
         const double top = plan.profile.top_velocity(way);
         if (top <= left + SuperimposedMotion::room_grain * limit || top - left <= wanted - room) continue;
         sense = way;
@@ -124,9 +126,10 @@ void BaseMotion::wait_for_room(const MotionState& from, MotionLimits limits, Pla
     motion_.wants_speed = sense * wanted;
     if (!(room > SuperimposedMotion::least_speed * limit)) {
         motion_.held = true;
-        plan = plan_stop(from, limits);
+        plan = plan_stop(from, in_each_direction(limits, body_.config.limits));
     } else if (motion_.goal.kind == Goal::Kind::velocity) {
-        plan = plan_to_velocity(from, sense * std::min(sense * plan.profile.end().velocity, room), limits);
+        plan = plan_to_velocity(from, sense * std::min(sense * plan.profile.end().velocity, room),
+                                in_each_direction(limits, body_.config.limits));
     } else {
         limits.velocity = std::min(limits.velocity, motion_.override_counts() ? room / motion_.factors.velocity : room);
         plan = plan_way(from, limits, room);
@@ -151,7 +154,8 @@ void BaseMotion::stop_as_one() noexcept {
 
 void BaseMotion::stop_instead(double late) noexcept {
     const auto& from = motion_.setpoint.base();
-    const auto plan = plan_stop(from, never_reversing(from, stop_limits(body_.config.limits), to_seconds(body_.cycle)));
+    const auto plan = plan_stop(
+        from, in_each_direction(never_reversing(from, stop_limits(body_.config.limits), to_seconds(body_.cycle)), body_.config.limits));
     motion_.goal_pending = false;
     run_profile(plan, late);
 }
@@ -170,7 +174,9 @@ double BaseMotion::velocity_at_junction(const MotionState& from, const MotionLim
     const double factor = motion_.override_counts() ? motion_.factors.velocity : 1;
     const double superimposed = motion_.setpoint.superimposed().position + motion_.setpoint.superimposed_rest();
     std::array<ChainMove, CommandQueue::capacity + 1> chain{};
-    chain[0] = {.way = motion_.goal.value - from.position, .speed = limits.velocity, .limits = limits};
+    const auto& axis = body_.config.limits;
+    const auto first = towards(limits, axis, motion_.goal.value - from.position);
+    chain[0] = {.way = motion_.goal.value - from.position, .speed = first.velocity, .limits = first};
     std::size_t length = 1;
     MotionState place{motion_.goal.value, 0, 0};
     for (std::size_t i = 0; i < body_.queue.waiting(); ++i) {
@@ -180,8 +186,7 @@ double BaseMotion::velocity_at_junction(const MotionState& from, const MotionLim
 
         ChainMove move;
         move.mode = command.buffer_mode;
-        move.limits = motion_.with_override(dynamics_of(command, body_.config.limits, body_.config.defaults));
-        move.speed = factor * allowed_speed(std::abs(command.velocity), body_.config.limits.velocity, body_.velocity_cap()).speed;
+        move.limits = motion_.with_override(dynamics_of(command, axis, body_.config.defaults));
         const bool backwards = before.way < 0;
         if (command.kind == CommandKind::move_velocity) {
             move.end = ChainMove::End::none;
@@ -199,14 +204,17 @@ double BaseMotion::velocity_at_junction(const MotionState& from, const MotionLim
             place.position = target;
             if (moves_continuously(command.kind)) {
                 move.end = ChainMove::End::velocity;
-                const auto end = allowed_speed(std::abs(command.end_velocity), body_.config.limits.velocity, body_.velocity_cap());
+                const auto end =
+                    allowed_speed(std::abs(command.end_velocity), axis.velocity_towards(command.end_velocity), body_.velocity_cap());
                 move.end_velocity = factor * std::copysign(end.speed, command.end_velocity);
             }
         } else break;
+        move.speed = factor * allowed_speed(std::abs(command.velocity), axis.velocity_towards(move.way), body_.velocity_cap()).speed;
+        move.limits = move.way * move.end_velocity < 0 ? gentlest(move.limits, axis) : towards(move.limits, axis, move.way);
         chain[length++] = move;
     }
     const double wanted = junction_velocity({chain.data(), length});
-    return nearest_reachable(wanted, from, motion_.goal.value, limits);
+    return nearest_reachable(wanted, from, motion_.goal.value, in_each_direction(limits, axis));
 }
 
 }  // namespace taktwerk::axes

@@ -54,6 +54,8 @@ enum class CommandKind : std::uint8_t {
     drive_move_relative,  ///< position = distance, from the actual position at the start; behind another of them from its target
     drive_move_velocity,  ///< velocity signed, times direction
     drive_torque,         ///< TorqueDetails; velocity = the drive's speed limit, 0 = the axis' limit
+    // beside whatever the axis does, in any state
+    set_torque_limit,  ///< TorqueLimitDetails
 };
 
 /// Units: u, u/s, u/s2, u/s3. Acceleration, deceleration, jerk 0 = the axis' default.
@@ -91,7 +93,7 @@ enum class CommandStatus : std::uint8_t {
 };
 
 /// Commands that run beside the axis' own motion, one of each at a time.
-enum class SideSlot : std::uint8_t { superimposed, phasing, probe1, probe2, passive_homing };
-inline constexpr std::size_t side_slot_count = 5;
+enum class SideSlot : std::uint8_t { superimposed, phasing, probe1, probe2, passive_homing, torque_limit };
+inline constexpr std::size_t side_slot_count = 6;
 
 }  // namespace taktwerk::axes

@@ -33,6 +33,11 @@ namespace taktwerk::axes {
             if (!torque || !std::isfinite(torque->torque) || !(torque->ramp >= 0)) return ErrorId::invalid_parameter;
             return command.velocity >= 0 && std::isfinite(command.velocity) ? ErrorId::none : ErrorId::invalid_velocity;  // P1-181
         }
+        case CommandKind::set_torque_limit: {
+            const auto* limit = std::get_if<TorqueLimitDetails>(&command.details);
+            const auto usable = [](double value) { return value == 0 || (value >= TorqueLimitDetails::least && std::isfinite(value)); };
+            return limit && usable(limit->positive) && usable(limit->negative) ? ErrorId::none : ErrorId::invalid_torque_limit;
+        }
         case CommandKind::set_controller_mode: {
             const bool whole = command.position >= 0 && command.position <= 255 && command.position == std::floor(command.position);
             return whole ? ErrorId::none : ErrorId::invalid_parameter;
@@ -79,6 +84,7 @@ namespace taktwerk::axes {
         case CommandKind::torque:
         case CommandKind::drive_torque:
         case CommandKind::set_controller_mode:
+        case CommandKind::set_torque_limit:
             if (const auto error = check_details(command); error != ErrorId::none) return error;
             break;
         case CommandKind::homing_step:

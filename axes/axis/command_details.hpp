@@ -71,6 +71,13 @@ struct TorqueDetails {
     friend bool operator==(const TorqueDetails&, const TorqueDetails&) = default;
 };
 
+/// MC_SetTorqueLimit. Magnitudes, fractions of rated torque, in the axis' sense; 0 = as configured.
+struct TorqueLimitDetails {
+    static constexpr double least = 0.001;  ///< what drives count in: less would be none at all
+    double positive = 0, negative = 0;
+    friend bool operator==(const TorqueLimitDetails&, const TorqueLimitDetails&) = default;
+};
+
 /// MC_PositionProfile, MC_VelocityProfile, MC_AccelerationProfile: value(t) = value_scale * table(t / time_scale) + offset.
 struct TimeProfileDetails {
     TimeTableRef table;
@@ -158,6 +165,6 @@ struct SelectCam {
 using AxisSetting = std::variant<SetPosition, WriteParameter, WriteOutput, Override, SetpointFeed, SelectCam>;
 
 using CommandDetails = std::variant<std::monostate, GearDetails, GearInPosDetails, CamDetails, CombineDetails, TorqueDetails,
-                                    TimeProfileDetails, ProbeDetails, HomingStepDetails, AxisSetting, WholeTurns>;
+                                    TimeProfileDetails, ProbeDetails, HomingStepDetails, AxisSetting, WholeTurns, TorqueLimitDetails>;
 
 }  // namespace taktwerk::axes

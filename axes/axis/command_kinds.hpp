@@ -15,7 +15,7 @@ namespace taktwerk::axes {
 namespace kind_table {
 
 /// Where a command has its place: the axis' queue, or beside it.
-enum class Slot : std::uint8_t { queue, superimposed, phasing, probe, passive_homing, setting };
+enum class Slot : std::uint8_t { queue, superimposed, phasing, probe, passive_homing, setting, torque_limit };
 
 using Traits = std::uint16_t;
 inline constexpr Traits ends_there = 1 << 0;  ///< a motion to a position that ends there
@@ -79,13 +79,14 @@ inline constexpr std::array rows{
     Row{drive_move_relative,      "Drive_MoveRelative",         discrete,     buffered, Slot::queue, DriveMode::profile_position},
     Row{drive_move_velocity,      "Drive_MoveVelocity",         continuous,   buffered | hands_over, Slot::queue, DriveMode::profile_velocity},
     Row{drive_torque,             "Drive_Torque",               continuous,   buffered | hands_over, Slot::queue, DriveMode::profile_torque},
+    Row{set_torque_limit,         "MC_SetTorqueLimit",          discrete,     0, Slot::torque_limit},
 };
 // clang-format on
 
 consteval bool sound() {
     for (std::size_t i = 0; i < rows.size(); ++i)
         if (static_cast<std::size_t>(rows[i].kind) != i) return false;
-    return rows.size() == static_cast<std::size_t>(drive_torque) + 1;
+    return rows.size() == static_cast<std::size_t>(set_torque_limit) + 1;
 }
 static_assert(sound(), "each kind has its row, in the order of CommandKind");
 

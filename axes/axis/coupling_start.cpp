@@ -7,6 +7,7 @@
 #include "axes/axis/command_check.hpp"
 #include "axes/axis/conduct.hpp"
 #include "axes/axis/coupling_links.hpp"
+#include "axes/axis/direction_limits.hpp"
 #include "axes/axis/master_side.hpp"
 #include "axes/axis/superimposed_motion.hpp"
 
@@ -85,8 +86,11 @@ bool CouplingStart::starts_now(Link& link) const noexcept {
 }
 
 FollowerLimits CouplingStart::follower_limits(const AxisCommand& command) const noexcept {
-    FollowerLimits limits{full_limits(body_.config.limits), dynamics_of(command, body_.config.limits, body_.config.defaults)};
-    limits.axis.velocity = limits.forward = limits.backward = std::min(limits.axis.velocity, body_.velocity_cap());
+    const auto& axis = body_.config.limits;
+    FollowerLimits limits{gentlest(full_limits(axis), axis), gentlest(dynamics_of(command, axis, body_.config.defaults), axis)};
+    limits.axis.velocity = std::min(limits.axis.velocity, body_.velocity_cap());
+    limits.forward = std::min(axis.velocity_towards(1), body_.velocity_cap());
+    limits.backward = std::min(axis.velocity_towards(-1), body_.velocity_cap());
     return limits;
 }
 

@@ -5,6 +5,7 @@
 
 #include "axes/axis/aim.hpp"
 #include "axes/axis/conduct.hpp"
+#include "axes/axis/direction_limits.hpp"
 #include "axes/axis/drive_output.hpp"
 #include "axes/axis/drive_profiles.hpp"
 #include "axes/axis/limit_guard.hpp"
@@ -58,9 +59,10 @@ ErrorId DriveModes::refuse(const AxisCommand& command, bool starts_now) const no
 void DriveModes::begin_torque(const AxisCommand& command) noexcept {
     addition_.abandon();  // there will be no set-point to add to
     const auto& details = std::get<TorqueDetails>(command.details);
-    const auto dynamics = dynamics_of(command, body_.config.limits, body_.config.defaults);
-    const double wanted = command.velocity == 0 ? body_.config.limits.velocity : command.velocity;
-    const auto allowed = allowed_speed(wanted, body_.config.limits.velocity, body_.velocity_cap());
+    // A load may turn the motor either way.
+    const auto dynamics = gentlest(dynamics_of(command, body_.config.limits, body_.config.defaults), body_.config.limits);
+    const double fastest = slowest(body_.config.limits);
+    const auto allowed = allowed_speed(command.velocity == 0 ? fastest : command.velocity, fastest, body_.velocity_cap());
     modes_.torque_velocity = allowed.speed;
     const double torque = targets_.torque_of(command);
     // A negative torque in a given direction brakes motion in it and does not turn it round (P1-184, P1-187).
@@ -80,9 +82,9 @@ void DriveModes::begin_mode_change(const AxisCommand& command) noexcept {
     motion_.goal = {};
     motion_.goal_pending = false;
     if (mode == DriveMode::cyclic_torque) {
-        modes_.torque.command(0, 0, {body_.config.limits.velocity, body_.config.limits.acceleration, body_.config.limits.deceleration},
-                              TorqueSense::both);
-        modes_.torque_velocity = body_.config.limits.velocity;
+        const auto limits = gentlest(full_limits(body_.config.limits), body_.config.limits);
+        modes_.torque_velocity = slowest(body_.config.limits);
+        modes_.torque.command(0, 0, {modes_.torque_velocity, limits.acceleration, limits.deceleration}, TorqueSense::both);
     } else {
         modes_.former = modes_.own;
         modes_.own = mode;

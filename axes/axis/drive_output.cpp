@@ -9,6 +9,7 @@
 #include "axes/axis/axis_reset.hpp"
 #include "axes/axis/command_check.hpp"
 #include "axes/axis/parameters.hpp"
+#include "axes/axis/torque_bounds.hpp"
 
 namespace taktwerk::axes {
 
@@ -39,8 +40,11 @@ void DriveOutput::encode(Instant now) noexcept {
     if (runs_.latch.armed()) command_.probes[runs_.latch.probe()] = runs_.latch.command();
     command_.digital_outputs = body_.shown.digital_outputs;
     command_.digital_output_mask = parameters_.output_mask();
-    if (runs_.step.presses() && body_.port.capabilities().torque_limits)
-        command_.torque_limit_positive = command_.torque_limit_negative = runs_.block_torque;
+    if (bounds_.used()) fill_torque_limits();
+    if (runs_.step.presses() && body_.port.capabilities().torque_limits) {
+        command_.torque_limit_positive = std::min(command_.torque_limit_positive, runs_.block_torque);
+        command_.torque_limit_negative = std::min(command_.torque_limit_negative, runs_.block_torque);
+    }
     body_.port.encode(command_, now);
 
     if (runs_.motor_leads() || modes_.phase != ModePhase::steady) following_.forget();
@@ -73,8 +77,10 @@ void DriveOutput::fill_targets() noexcept {
         // Told to stop, the drive ramps by itself: one word on the line ends the motion, whatever becomes of the line then.
         const bool ends_torque = modes_.phase == ModePhase::leaving || (modes_.phase == ModePhase::torque && !modes_.torque_wanted());
         command_.halt = motion_.goal.kind == Goal::Kind::stop || ends_torque;
-        const double deceleration = command_.halt ? motion_.goal.limits.deceleration : body_.config.limits.deceleration;
-        command_.acceleration = body_.config.limits.acceleration * std::abs(counts);
+        const auto& limits = body_.config.limits;
+        const double braking = limits.deceleration_towards(set.velocity);
+        const double deceleration = command_.halt ? motion_.goal.limits.deceleration : braking;
+        command_.acceleration = limits.acceleration_towards(set.velocity) * std::abs(counts);
         command_.deceleration = deceleration * std::abs(counts);
     }
     if (modes_.own == DriveMode::cyclic_velocity || modes_.own == DriveMode::profile_velocity) {
@@ -109,6 +115,14 @@ void DriveOutput::fill_torque() noexcept {
     const double counts = body_.units.counts_per_unit();
     command_.torque = (body_.config.gearing.inverted ? -1 : 1) * modes_.torque.torque();
     command_.velocity_limit = modes_.torque_velocity * std::abs(counts);
+}
+
+/// The motor's positive sense may be the axis' negative one.
+void DriveOutput::fill_torque_limits() noexcept {
+    const auto& range = bounds_.range();
+    command_.torque_limit_positive = body_.config.gearing.inverted ? range.negative : range.positive;
+    command_.torque_limit_negative = body_.config.gearing.inverted ? range.positive : range.negative;
+    bounds_.tell();
 }
 
 void DriveOutput::fill_drive_profile() noexcept {

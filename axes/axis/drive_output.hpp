@@ -16,12 +16,13 @@ class AxisHoming;
 class AxisParameters;
 class AxisProbes;
 class AxisReset;
+class TorqueBounds;
 
 class DriveOutput {
 public:
     DriveOutput(const AxisBody& body, Measured& measured, const AxisMotion& motion, ModeState& modes, const HomingRuns& runs,
                 const AxisHoming& homing, const AxisReset& reset, AxisProbes& probes, const AxisParameters& parameters,
-                FollowingWatch& following) noexcept
+                TorqueBounds& bounds, FollowingWatch& following) noexcept
         : body_(body),
           measured_(measured),
           motion_(motion),
@@ -31,6 +32,7 @@ public:
           reset_(reset),
           probes_(probes),
           parameters_(parameters),
+          bounds_(bounds),
           following_(following) {}
 
     void encode(Instant now) noexcept;
@@ -47,6 +49,7 @@ private:
     [[nodiscard]] double integral_part(double given, double most, bool closed) noexcept;
     void fill_torque() noexcept;
     void fill_drive_profile() noexcept;
+    void fill_torque_limits() noexcept;
 
     DriveCommand command_;
     const AxisBody& body_;
@@ -60,6 +63,7 @@ private:
     const AxisReset& reset_;
     AxisProbes& probes_;
     const AxisParameters& parameters_;
+    TorqueBounds& bounds_;
     FollowingWatch& following_;
     IntegralPart integral_{body_.config.control.integral, body_.config.control.kv, body_.config.limits.velocity};
     LoadFeedForward load_{body_.config.control.load, body_.config.limits.velocity};

@@ -6,6 +6,7 @@
 
 #include "axes/axis/aim.hpp"
 #include "axes/axis/conduct.hpp"
+#include "axes/axis/direction_limits.hpp"
 #include "axes/axis/limit_guard.hpp"
 #include "axes/axis/motor_lead.hpp"
 #include "axes/axis/superimposed_motion.hpp"
@@ -105,18 +106,20 @@ ModeStep DriveProfiles::run() noexcept {
 /// What the command means in the drive's counts; `way.target` has been found.
 DriveProfileRun::Setpoint DriveProfiles::drive_setpoint(const AxisCommand& command, DriveProfileRun::Way& way) const noexcept {
     const double counts = body_.units.counts_per_unit();
-    const auto dynamics = dynamics_of(command, body_.config.limits, body_.config.defaults);
+    const auto& axis = body_.config.limits;
+    const auto mode = modes_.run.mode();
+    const double sense = mode == DriveMode::profile_velocity ? targets_.signed_velocity(command, motion_.backwards) : way.target - way.from;
+    auto dynamics = dynamics_of(command, axis, body_.config.defaults);
+    dynamics = mode == DriveMode::profile_torque ? gentlest(dynamics, axis) : towards(dynamics, axis, sense);
+    const double fastest = mode == DriveMode::profile_torque ? slowest(axis) : axis.velocity_towards(sense);
     DriveProfileRun::Setpoint made;
     made.acceleration = dynamics.acceleration * std::abs(counts);
     made.deceleration = dynamics.deceleration * std::abs(counts);
-    const double wanted =
-        command.kind == CommandKind::drive_torque && command.velocity == 0 ? body_.config.limits.velocity : command.velocity;
-    const auto allowed = allowed_speed(std::abs(wanted), body_.config.limits.velocity, body_.velocity_cap());
+    const double wanted = command.kind == CommandKind::drive_torque && command.velocity == 0 ? fastest : command.velocity;
+    const auto allowed = allowed_speed(std::abs(wanted), fastest, body_.velocity_cap());
     way.limiter = allowed.limiter;
-    switch (modes_.run.mode()) {
-        case DriveMode::profile_velocity:
-            made.velocity = std::copysign(allowed.speed, targets_.signed_velocity(command, motion_.backwards)) * counts;
-            break;
+    switch (mode) {
+        case DriveMode::profile_velocity: made.velocity = std::copysign(allowed.speed, sense) * counts; break;
         case DriveMode::profile_torque: {
             const double ramp = std::get<TorqueDetails>(command.details).ramp;
             made.torque = (body_.config.gearing.inverted ? -1 : 1) * targets_.torque_of(command);

@@ -253,6 +253,18 @@ inline constexpr std::array<ErrorText, error_id_count> error_texts{{
      {"The drive did not take a set-point of its own profile", "It did not acknowledge the set-point (statusword bit 12), or refused the speed or a ramp written before it",
       "Check the alarms of the drive, its profile objects (6081h, 6083h, 6084h, 6087h) and that its mode is the profile's"},
      {"驱动器未接受其自身轨迹的设定值", "驱动器未应答设定值（状态字第 12 位），或拒绝了此前写入的速度或斜坡", "检查驱动器报警、轨迹对象（6081h、6083h、6084h、6087h）以及当前模式"}},
+    {ErrorId::no_torque_limit, "no_torque_limit",
+     {"The drive of this axis takes no torque limits", "Neither 6072h nor 60E0h and 60E1h is mapped or in the drive's description, or the axis has no drive on the bus",
+      "Choose a PDO that has them (docs/drives.md), or set the limit at the drive itself"},
+     {"该轴的驱动器不支持转矩限制", "对象 6072h 以及 60E0h、60E1h 既未映射也不在驱动器描述中，或该轴没有总线驱动器", "选择包含这些对象的 PDO（docs/drives.md），或直接在驱动器上设置限制"}},
+    {ErrorId::invalid_torque_limit, "invalid_torque_limit",
+     {"The torque limit cannot be used", "It is negative, not finite or below 0.001, or PositiveLimit and NegativeLimit differ although the drive has one limit for both (6072h)",
+      "Give fractions of the rated torque without sign, or 0 for what is configured; equal ones where the drive has but one"},
+     {"转矩限制值不可用", "数值为负、不是有限数字或小于 0.001，或驱动器正反向只有一个限制（6072h）而 PositiveLimit 与 NegativeLimit 不相等", "给定不带符号的额定转矩比例，填 0 则使用配置值；驱动器只有一个限制时两者取相同值"}},
+    {ErrorId::torque_limit_refused, "torque_limit_refused",
+     {"The drive did not take the torque limit", "It refused the write of 60E0h, 60E1h or 6072h, or did not answer; the limits before hold on",
+      "Check the value against the drive's own range, and its alarms; map the object to send it with each cycle"},
+     {"驱动器未接受转矩限制", "驱动器拒绝写入 60E0h、60E1h 或 6072h，或未应答；之前的限制继续有效", "核对该值是否在驱动器允许范围内并检查其报警；也可将该对象映射为周期发送"}},
 }};
 // clang-format on
 

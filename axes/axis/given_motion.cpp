@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "axes/axis/direction_limits.hpp"
+
 namespace taktwerk::axes {
 
 namespace {
@@ -35,12 +37,16 @@ ErrorId GivenMotion::make_curve(const AxisCommand& command, Addition addition, d
     }
     if (error != ErrorId::none) return error;
 
-    CurveLimits limits{full_limits(body_.config.limits), -std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-    limits.motion.velocity = limits.forward = limits.backward = std::min(limits.motion.velocity, body_.velocity_cap());
+    const auto& axis = body_.config.limits;
+    CurveLimits limits{gentlest(full_limits(axis), axis), -std::numeric_limits<double>::infinity(),
+                       std::numeric_limits<double>::infinity()};
+    limits.motion.velocity = std::min(limits.motion.velocity, body_.velocity_cap());
+    limits.forward = std::min(axis.velocity_towards(1), body_.velocity_cap());
+    limits.backward = std::min(axis.velocity_towards(-1), body_.velocity_cap());
     if (addition == Addition::stays) {
         // A table waits for nothing: it is taken where it leaves what moves on top of it its velocity.
-        limits.forward = std::min(limits.forward, body_.config.limits.velocity - motion_.setpoint.superimposed_top(1));
-        limits.backward = std::min(limits.backward, body_.config.limits.velocity - motion_.setpoint.superimposed_top(-1));
+        limits.forward = std::min(limits.forward, axis.velocity_towards(1) - motion_.setpoint.superimposed_top(1));
+        limits.backward = std::min(limits.backward, axis.velocity_towards(-1) - motion_.setpoint.superimposed_top(-1));
     }
     if (body_.software_limits_hold()) {
         limits.position_min = body_.units.to_local(body_.config.limits.position_min);
@@ -49,7 +55,8 @@ ErrorId GivenMotion::make_curve(const AxisCommand& command, Addition addition, d
     if (const auto beyond = curve.check(limits); beyond != ErrorId::none) return beyond;
     // A velocity that stays must leave room to stop.
     const auto& end = curve.end();
-    const double rest = end.velocity == 0 ? end.position : end.position + stopping_distance(end, full_limits(body_.config.limits));
+    const double rest =
+        end.velocity == 0 ? end.position : end.position + stopping_distance(end, in_each_direction(full_limits(axis), axis));
     const bool fits = end.velocity == 0 || (rest <= limits.position_max && rest >= limits.position_min);
     return fits ? ErrorId::none : ErrorId::beyond_software_limit;
 }
@@ -133,21 +140,23 @@ double GivenMotion::base_speed(double sense) const noexcept {
 ErrorId GivenMotion::check_feed(const MotionState& next) const noexcept {
     const auto& from = motion_.setpoint.base();
     const double period = to_seconds(body_.cycle);
-    const double velocity = std::min(body_.config.limits.velocity, body_.velocity_cap()) * (1 + 1e-9);
-    const double change = std::max(body_.config.limits.acceleration, body_.config.limits.deceleration) * period * (1 + 1e-9);
+    const auto& limits = body_.config.limits;
+    const auto most = [&](double sense) { return std::min(limits.velocity_towards(sense), body_.velocity_cap()) * (1 + 1e-9); };
+    const auto ramps = gentlest(full_limits(limits), limits);
+    const double change = std::max(ramps.acceleration, ramps.deceleration) * period * (1 + 1e-9);
     const double mean = (next.position - from.position) / period;
     // The last digits of large positions are no motion.
     const double grain = 4 * std::numeric_limits<double>::epsilon() * std::abs(next.position) / period;
-    if (std::abs(mean) > velocity + grain || std::abs(next.velocity) > velocity) return ErrorId::invalid_velocity;
+    if (std::abs(mean) > most(mean) + grain || std::abs(next.velocity) > most(next.velocity)) return ErrorId::invalid_velocity;
     // Nor may it with what is superimposed.
     const double sense = next.velocity < 0 ? -1 : 1;
     const double beside = std::max(0.0, motion_.setpoint.superimposed_top(sense));
-    if (std::abs(next.velocity) + beside > body_.config.limits.velocity * (1 + 1e-9)) return ErrorId::invalid_velocity;
+    if (std::abs(next.velocity) + beside > limits.velocity_towards(sense) * (1 + 1e-9)) return ErrorId::invalid_velocity;
     if (std::abs(next.velocity - from.velocity) > change || std::abs(next.acceleration) * period > change) return ErrorId::invalid_dynamics;
     // Position and velocity must tell of one motion: the axis would brake from the one with the other.
     if (std::abs(mean - (next.velocity + from.velocity) / 2) > change + grain) return ErrorId::invalid_dynamics;
     if (body_.software_limits_hold()) {
-        const double end = body_.units.to_program(next.position + stopping_distance(next, full_limits(body_.config.limits)));
+        const double end = body_.units.to_program(next.position + stopping_distance(next, in_each_direction(full_limits(limits), limits)));
         if (end > body_.config.limits.position_max || end < body_.config.limits.position_min) return ErrorId::beyond_software_limit;
     }
     return ErrorId::none;

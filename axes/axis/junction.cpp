@@ -19,6 +19,11 @@ constexpr double surely = 1 - 1e-10;
     return limits;
 }
 
+[[nodiscard]] SignedLimits with_velocity(SignedLimits limits, double velocity) noexcept {
+    limits.positive.velocity = limits.negative.velocity = velocity;
+    return limits;
+}
+
 /// The highest speed with which `move` can begin so that it ends with `exit` (signed).
 double highest_entry(const ChainMove& move, double exit, double rule) noexcept {
     if (move.end == ChainMove::End::none) return std::numeric_limits<double>::infinity();
@@ -64,13 +69,14 @@ double junction_velocity(std::span<const ChainMove> chain) noexcept {
     return exit;
 }
 
-double nearest_reachable(double wanted, const MotionState& from, double position, const MotionLimits& limits) noexcept {
+double nearest_reachable(double wanted, const MotionState& from, double position, const SignedLimits& limits) noexcept {
     const double sense = wanted < 0 ? -1 : 1;
     const double way = sense * (position - from.position);
     if (wanted == 0 || !(way > 0)) return 0;
     const MotionState here{0, sense * from.velocity, sense * from.acceleration};
     const double speed = sense * wanted;
-    const SignedLimits free{with_velocity(limits, std::max({limits.velocity, speed, std::abs(from.velocity)}) * 2)};
+    const double fastest = std::max({limits.positive.velocity, limits.negative.velocity, speed, std::abs(from.velocity)});
+    const auto free = with_velocity(sense < 0 ? SignedLimits{limits.negative, limits.positive} : limits, fastest * 2);
     const auto travel = [&](double velocity) noexcept { return plan_to_velocity(here, velocity, free).profile.end().position; };
     if (travel(speed) <= way) return wanted;
 
@@ -86,13 +92,18 @@ double nearest_reachable(double wanted, const MotionState& from, double position
     return sense * high;
 }
 
-Plan plan_through(const MotionState& from, const MotionState& target, const MotionLimits& limits) noexcept {
+Plan plan_through(const MotionState& from, const MotionState& target, const SignedLimits& limits) noexcept {
     const double arrival = std::abs(target.velocity);
-    if (arrival <= limits.velocity) return plan_to_state(from, target, limits);
+    const bool back = target.velocity < 0;
+    const double along = (back ? limits.negative : limits.positive).velocity;
+    if (arrival <= along) return plan_to_state(from, target, limits);
 
     // The last part: from the move's own velocity up to the one it has to arrive with, counted back from the target.
-    const auto fast = with_velocity(limits, arrival);
-    const double own = std::copysign(limits.velocity, target.velocity);
+    auto fast = limits;
+    const double against = (back ? limits.positive : limits.negative).velocity;
+    if (against == along) fast = with_velocity(limits, arrival);
+    else (back ? fast.negative : fast.positive).velocity = arrival;
+    const double own = std::copysign(along, target.velocity);
     const Profile ramp = plan_to_velocity({0, own, 0}, target.velocity, fast).profile;
     const MotionState middle{target.position - ramp.end().position, own, 0};
     const double sense = target.velocity < 0 ? -1 : 1;

@@ -41,10 +41,17 @@ struct ChainMove {
 
 /// The velocity nearest to `wanted` (which points to `position`) that a motion from `from` can have at `position` without passing it
 /// before; 0 where it has to turn.
-[[nodiscard]] double nearest_reachable(double wanted, const MotionState& from, double position, const MotionLimits& limits) noexcept;
+[[nodiscard]] double nearest_reachable(double wanted, const MotionState& from, double position, const SignedLimits& limits) noexcept;
+[[nodiscard]] inline double nearest_reachable(double wanted, const MotionState& from, double position,
+                                              const MotionLimits& limits) noexcept {
+    return nearest_reachable(wanted, from, position, SignedLimits{limits});
+}
 
-/// To `target` at limits.velocity, also where the target's velocity is higher: the ramp up to it is then the last part of the way, and
-/// where the way is too short for that, limits.velocity is exceeded earlier.
-[[nodiscard]] Plan plan_through(const MotionState& from, const MotionState& target, const MotionLimits& limits) noexcept;
+/// To `target` at the limit of velocity, also where the target's velocity is higher: the ramp up to it is then the last part of the way, and
+/// where the way is too short for that, the limit is exceeded earlier.
+[[nodiscard]] Plan plan_through(const MotionState& from, const MotionState& target, const SignedLimits& limits) noexcept;
+[[nodiscard]] inline Plan plan_through(const MotionState& from, const MotionState& target, const MotionLimits& limits) noexcept {
+    return plan_through(from, target, SignedLimits{limits});
+}
 
 }  // namespace taktwerk::axes

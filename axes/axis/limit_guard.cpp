@@ -6,6 +6,7 @@
 #include "axes/axis/aim.hpp"
 #include "axes/axis/command_check.hpp"
 #include "axes/axis/conduct.hpp"
+#include "axes/axis/direction_limits.hpp"
 #include "axes/axis/software_limits.hpp"
 #include "axes/axis/stop_reach.hpp"
 #include "axes/axis/superimposed_motion.hpp"
@@ -77,7 +78,7 @@ bool LimitGuard::guard_software_limits(const MotionState& before) noexcept {
         const double local = body_.units.to_local(limit);
         const double room = way * (local - next.position);
         if (room > stops_within(next, body_.config.limits)) continue;
-        const double reach = reach_of_stop(next, limits, way);
+        const double reach = reach_of_stop(next, in_each_direction(limits, body_.config.limits), way);
         if (reach <= 0 || reach * surely <= room) continue;
         sense = way;
         edge = limit;
@@ -101,7 +102,8 @@ bool LimitGuard::guard_software_limits(const MotionState& before) noexcept {
     limits_.brake_as_both_layers(before, sense, room, limits);
     // Coordinates were moved and the limit with them (MC_SetPosition, homing in motion): no stop turns round to run back to it.
     constexpr double rounding = 1e-6;
-    if (const double reach = reach_of_stop(before, limits, sense); reach * (1 - rounding) > room && reach > 0) {
+    if (const double reach = reach_of_stop(before, in_each_direction(limits, body_.config.limits), sense);
+        reach * (1 - rounding) > room && reach > 0) {
         aim_.at_rest(stop_limits(body_.config.limits));
         return true;
     }
@@ -131,15 +133,16 @@ void LimitGuard::motor(const MotionLimits& braking) noexcept {
     const double gain = std::clamp(push * delay, 0.0, std::max(most - speed, 0.0));
     reach.position += (reach.velocity + sense * gain / 2) * delay;
     reach.velocity += sense * gain;
-    const double end = body_.units.to_program(reach.position + stopping_distance(reach, braking));
+    const double end = body_.units.to_program(reach.position + stopping_distance(reach, in_each_direction(braking, body_.config.limits)));
     const double edge = reach.velocity > 0 ? body_.config.limits.position_max : body_.config.limits.position_min;
     if (reach.velocity > 0 ? end > edge : end < edge)
         conduct_.fail(AxisAlarm::software_limit_reached, body_.units.to_program(motion_.setpoint.state().position), edge);
 }
 
 bool LimitGuard::drive_speed(double velocity) noexcept {
-    if (!(std::abs(velocity) > too_fast * body_.config.limits.velocity)) return false;
-    conduct_.fail(AxisAlarm::drive_too_fast, std::abs(velocity), body_.config.limits.velocity);
+    const double most = body_.config.limits.velocity_towards(velocity);
+    if (!(std::abs(velocity) > too_fast * most)) return false;
+    conduct_.fail(AxisAlarm::drive_too_fast, std::abs(velocity), most);
     return true;
 }
 

@@ -41,6 +41,12 @@ enum Parameter : std::int32_t {
     jog_velocity_slow = 1020,
     jog_velocity_fast = 1021,
     setup_velocity = 1022,
+    velocity_positive = 1023,
+    velocity_negative = 1024,
+    acceleration_positive = 1025,
+    acceleration_negative = 1026,
+    deceleration_positive = 1027,
+    deceleration_negative = 1028,
 };
 
 enum class ParameterType : std::uint8_t { real, boolean };
@@ -63,9 +69,10 @@ struct ParameterInfo {
     if (parameter < in_position_window) return static_cast<std::size_t>(parameter);
     if (parameter <= default_jerk) return static_cast<std::size_t>(18 + parameter - in_position_window);
     if (parameter == lag_per_velocity) return 28;
+    if (parameter >= velocity_positive) return static_cast<std::size_t>(29 + parameter - velocity_positive);
     return static_cast<std::size_t>(25 + parameter - jog_velocity_slow);
 }
-static_assert(place_of(setup_velocity) < std::tuple_size_v<decltype(AxisView::parameters)>);
+static_assert(place_of(deceleration_negative) < std::tuple_size_v<decltype(AxisView::parameters)>);
 
 namespace detail {
 template <Parameter P>
@@ -157,6 +164,18 @@ inline constexpr std::array parameter_table{
      "of jogging, and the greatest velocity in manual mode", velocity_of_system},
     ParameterInfo{1022, "SetupVelocity", "u/s", ParameterType::real, ParameterRange::positive, detail::stored<setup_velocity>,
      "greatest velocity in set-up mode", velocity_of_system},
+    ParameterInfo{1023, "MaxVelocityPos", "u/s", ParameterType::real, ParameterRange::read_only, detail::stored<velocity_positive>,
+     "greatest velocity of commands in positive direction: 9 MaxVelocityAppl, or less as configured"},
+    ParameterInfo{1024, "MaxVelocityNeg", "u/s", ParameterType::real, ParameterRange::read_only, detail::stored<velocity_negative>,
+     "the same in negative direction"},
+    ParameterInfo{1025, "MaxAccelerationPos", "u/s2", ParameterType::real, ParameterRange::read_only, detail::stored<acceleration_positive>,
+     "greatest acceleration while the axis gets faster in positive direction: 13 MaxAccelerationAppl, or less as configured"},
+    ParameterInfo{1026, "MaxAccelerationNeg", "u/s2", ParameterType::real, ParameterRange::read_only, detail::stored<acceleration_negative>,
+     "the same in negative direction"},
+    ParameterInfo{1027, "MaxDecelerationPos", "u/s2", ParameterType::real, ParameterRange::read_only, detail::stored<deceleration_positive>,
+     "greatest deceleration while the axis gets slower in positive direction: 15 MaxDecelerationAppl, or less as configured"},
+    ParameterInfo{1028, "MaxDecelerationNeg", "u/s2", ParameterType::real, ParameterRange::read_only, detail::stored<deceleration_negative>,
+     "the same in negative direction"},
     ParameterInfo{1030, "Modulo", "u", ParameterType::real, ParameterRange::read_only, detail::live<&AxisView::modulo>, "0 = a linear axis"},
     ParameterInfo{1031, "Turns", "", ParameterType::real, ParameterRange::read_only, detail::live<&AxisView::turns>,
      "whole moduli of the set position since zero"},
@@ -169,6 +188,10 @@ inline constexpr std::array parameter_table{
      "of the drive (60FDh), raw"},
     ParameterInfo{1044, "DigitalOutputs", "", ParameterType::real, ParameterRange::read_only, detail::live<&AxisView::digital_outputs>,
      "of the drive (60FEh), as written"},
+    ParameterInfo{1045, "TorqueLimitPos", "", ParameterType::real, ParameterRange::read_only, detail::live<&AxisView::torque_limit_positive>,
+     "fraction of rated torque that the drive may give in positive direction; infinite = what it has; set by MC_SetTorqueLimit"},
+    ParameterInfo{1046, "TorqueLimitNeg", "", ParameterType::real, ParameterRange::read_only, detail::live<&AxisView::torque_limit_negative>,
+     "the same in negative direction"},
     ParameterInfo{1050, "Homed", "", ParameterType::boolean, ParameterRange::read_only, detail::live<&AxisView::homed>, ""},
     ParameterInfo{1051, "InPosition", "", ParameterType::boolean, ParameterRange::read_only, detail::live<&AxisView::in_position>, ""},
     ParameterInfo{1052, "Online", "", ParameterType::boolean, ParameterRange::read_only, detail::live<&AxisView::online>,

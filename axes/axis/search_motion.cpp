@@ -35,8 +35,8 @@ void SearchMotion::drive(const TriggerRef& reference, const MotionLimits& dynami
             break;
         case StepRun::Demand::velocity: {
             // Homing has velocities of its own; only the axis' limit holds them down.
-            const double speed = std::min(std::abs(runs_.step.velocity()), body_.config.limits.velocity);
-            const double wanted = std::copysign(speed, runs_.step.velocity());
+            const double speed = std::min(std::abs(velocity), body_.config.limits.velocity_towards(velocity));
+            const double wanted = std::copysign(speed, velocity);
             if (motion_.goal.kind != Goal::Kind::velocity || motion_.goal.value != wanted)
                 aim_.at(Goal::Kind::velocity, wanted, dynamics, VelocityLimiter::command);
             break;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "axes/axis/direction_limits.hpp"
 #include "axes/axis/stop_reach.hpp"
 #include "axes/axis/superimposed_motion.hpp"
 
@@ -11,7 +12,7 @@ namespace taktwerk::axes {
 double SoftwareLimits::layers_in_base() const noexcept { return motion_.summed && motion_.setpoint.superimposed_finished() ? 2 : 1; }
 
 void SoftwareLimits::brake_as_both_layers(const MotionState& from, double sense, double room, MotionLimits& limits) const noexcept {
-    if (layers_in_base() == 1 || reach_of_stop(from, limits, sense) <= room) return;
+    if (layers_in_base() == 1 || reach_of_stop(from, in_each_direction(limits, body_.config.limits), sense) <= room) return;
     limits.deceleration = std::max(limits.deceleration, layers_in_base() * body_.config.limits.deceleration);
     limits.jerk = std::max(limits.jerk, layers_in_base() * body_.config.limits.jerk);
 }
@@ -21,10 +22,14 @@ void SoftwareLimits::brake_inside_limits(const MotionState& from, MotionLimits& 
     for (const double sense : {1.0, -1.0}) {
         const double edge = body_.units.to_local(sense > 0 ? body_.config.limits.position_max : body_.config.limits.position_min);
         const double room = sense * (edge - from.position);
-        if (room > stops_within(from, {.deceleration = limits.deceleration, .jerk = limits.jerk})) continue;
+        const auto& axis = body_.config.limits;
+        if (room >
+            stops_within(from,
+                         {.deceleration = limits.deceleration, .jerk = limits.jerk, .positive = axis.positive, .negative = axis.negative}))
+            continue;
         // What turns back in front of the limit was within it by that only: the next command could not rely on it.
-        const double reach = reach_of_stop(from, limits, sense);
-        if (reach <= 0 || (reach <= room && !turns_back(from, limits, sense))) continue;
+        const double reach = reach_of_stop(from, in_each_direction(limits, axis), sense);
+        if (reach <= 0 || (reach <= room && !turns_back(from, limits.jerk, sense))) continue;
         limits.deceleration = std::max(limits.deceleration, body_.config.limits.deceleration);
         limits.jerk = std::max(limits.jerk, body_.config.limits.jerk);
         brake_as_both_layers(from, sense, room, limits);
@@ -35,7 +40,7 @@ bool SoftwareLimits::release_below_limit(const MotionState& from, MotionLimits& 
     if (from.acceleration == 0) return false;
     const double sense = from.acceleration > 0 ? 1 : -1;
     const double beside = addition_.reach(sense);
-    const double room = body_.config.limits.velocity - beside - sense * from.velocity;
+    const double room = body_.config.limits.velocity_towards(sense) - beside - sense * from.velocity;
     const double needed = from.acceleration * from.acceleration / 2;
     if (needed <= limits.jerk * room) return false;
     constexpr double surely = 1 + 1e-9;

@@ -14,22 +14,24 @@ namespace taktwerk::axes {
     const double ease = 1 / limits.jerk;
     const double a = std::abs(state.acceleration);
     const double speed = std::abs(state.velocity) + a * a * ease / 2;
-    return speed * (a * ease + (speed / limits.deceleration + std::max(limits.deceleration, a) * ease));
+    const double softest = std::min(limits.deceleration_towards(1), limits.deceleration_towards(-1));
+    return speed * (a * ease + (speed / softest + std::max(limits.deceleration, a) * ease));
 }
 
 /// The acceleration that brakes a motion in `sense` turns it round while it runs out.
-[[nodiscard]] inline bool turns_back(const MotionState& from, const MotionLimits& limits, double sense) noexcept {
+[[nodiscard]] inline bool turns_back(const MotionState& from, double jerk, double sense) noexcept {
     const double speed = sense * from.velocity, braking = -sense * from.acceleration;
-    return speed > 0 && braking > 0 && braking * braking > 2 * limits.jerk * speed;
+    return speed > 0 && braking > 0 && braking * braking > 2 * jerk * speed;
 }
 
 /// How far a stop gets in `sense`, u. Where the acceleration drives the axis back, the stop ends on this side of that.
-[[nodiscard]] inline double reach_of_stop(const MotionState& from, const MotionLimits& limits, double sense) noexcept {
-    if (!turns_back(from, limits, sense)) return sense * stopping_distance(from, limits);
+[[nodiscard]] inline double reach_of_stop(const MotionState& from, const SignedLimits& limits, double sense) noexcept {
+    const double jerk = limits.positive.jerk;  // of both signs
+    if (!turns_back(from, jerk, sense)) return sense * stopping_distance(from, limits);
     const double speed = sense * from.velocity, braking = -sense * from.acceleration;
-    const double turns = braking * braking - 2 * limits.jerk * speed;
+    const double turns = braking * braking - 2 * jerk * speed;
     const double time = 2 * speed / (braking + std::sqrt(turns));  // until it turns, the acceleration running out
-    return time * (speed + time * (limits.jerk * time / 6 - braking / 2));
+    return time * (speed + time * (jerk * time / 6 - braking / 2));
 }
 
 }  // namespace taktwerk::axes

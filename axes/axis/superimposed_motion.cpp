@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "axes/axis/command_check.hpp"
+#include "axes/axis/direction_limits.hpp"
 #include "axes/axis/given_motion.hpp"
 #include "axes/axis/stop_ramp.hpp"
 
@@ -30,9 +31,10 @@ bool SuperimposedMotion::ramps_of_two() const noexcept {
 /// it faster again at its end.
 double SuperimposedMotion::room_beside_base(double sense) const noexcept {
     constexpr double beyond = 1 + room_grain;
-    if (std::abs(motion_.setpoint.base().velocity) > body_.config.limits.velocity * beyond && motion_.setpoint.superimposed_finished())
-        return 0;
-    return body_.config.limits.velocity - std::max({0.0, given_.base_speed(sense), sense * motion_.wants_speed});
+    const auto& limits = body_.config.limits;
+    const double base = motion_.setpoint.base().velocity;
+    if (std::abs(base) > limits.velocity_towards(base) * beyond && motion_.setpoint.superimposed_finished()) return 0;
+    return limits.velocity_towards(sense) - std::max({0.0, given_.base_speed(sense), sense * motion_.wants_speed});
 }
 
 /// u/s, were there room.
@@ -93,7 +95,7 @@ bool SuperimposedMotion::run() noexcept {
     own.waiting = false;
     const auto& command = own.accepted.command;
     const auto part = motion_.setpoint.superimposed();
-    auto limits = dynamics_of(command, body_.config.limits, body_.config.defaults);
+    auto limits = gentlest(dynamics_of(command, body_.config.limits, body_.config.defaults), body_.config.limits);
     if (body_.state != AxisState::SynchronizedMotion) {
         limits.acceleration *= motion_.factors.acceleration;
         limits.deceleration *= motion_.factors.acceleration;
@@ -121,7 +123,7 @@ bool SuperimposedMotion::complete() noexcept {
     auto& own = superimposed_;
     const double limit = body_.config.limits.velocity;
     if (motion_.wants_speed != 0) {
-        const double left = std::max(0.0, limit - std::abs(motion_.wants_speed));
+        const double left = std::max(0.0, body_.config.limits.velocity_towards(motion_.wants_speed) - std::abs(motion_.wants_speed));
         if (reach(motion_.wants_speed < 0 ? -1 : 1) <= left + room_grain * limit) motion_.goal_pending = true;
     }
     if (!own.begun || body_.queue.beside(SideSlot::superimposed) == 0) return false;

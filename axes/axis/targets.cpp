@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "axes/axis/direction_limits.hpp"
+
 namespace taktwerk::axes {
 
 ErrorId Targets::refuse_place(double program) const noexcept {
@@ -46,7 +48,7 @@ double Targets::repetition_of(const AxisCommand& command, const MotionState& fro
     if (direction != mcShortestWay && from.velocity * (back ? -1 : 1) > 0) {
         auto limits = motion_.with_override(dynamics_of(command, body_.config.limits, body_.config.defaults));
         limits.velocity = body_.config.limits.velocity;
-        const double stop = std::abs(stopping_distance(from, limits)) * (1 - 1e-9);
+        const double stop = std::abs(stopping_distance(from, in_each_direction(limits, body_.config.limits))) * (1 - 1e-9);
         const double missing = stop - std::abs(way);
         if (missing > 0) way += (back ? -modulo : modulo) * std::ceil(missing / modulo);
     }

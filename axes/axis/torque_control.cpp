@@ -66,16 +66,16 @@ double TorqueControl::step(double velocity, Duration period) noexcept {
     if (inertia_ > 0) observe(velocity, dt);
     const double way = wanted_ - ramped_;
     ramped_ = ramp_ > 0 && std::abs(way) > ramp_ * dt * (1 + 1e-9) ? ramped_ + std::copysign(ramp_ * dt, way) : wanted_;
-    torque_ = ramped_;
-    limited_ = false;
+    const double bounded = std::clamp(ramped_, least_, most_);
+    torque_ = bounded;
     if (inertia_ > 0) {
         const double top = braking_ || sense_ == TorqueSense::only_negative ? 0 : limits_.velocity;
         const double bottom = braking_ || sense_ == TorqueSense::only_positive ? 0 : limits_.velocity;
         const double highest = observed_load_ + bound(high_, velocity, top, dt);
         const double lowest = observed_load_ - bound(low_, -velocity, bottom, dt);
-        torque_ = std::clamp(ramped_, std::min(lowest, highest), std::max(lowest, highest));
-        limited_ = torque_ != ramped_;
+        torque_ = std::clamp(std::clamp(bounded, std::min(lowest, highest), std::max(lowest, highest)), least_, most_);
     }
+    limited_ = torque_ != ramped_;
     in_torque_ = !limited_ && !braking_ && torque_ == wanted_;
     return torque_;
 }

@@ -7,6 +7,8 @@
 // would drive the motor away faster than the reference, the controller takes over (P1-180). Load and friction are known to both from an
 // observer: the torque that the motor's acceleration does not account for.
 
+#include <limits>
+
 #include "core/time.hpp"
 
 namespace taktwerk::axes {
@@ -37,13 +39,19 @@ public:
     /// Ends the motion with the deceleration instead: both bounds close in on standstill. Without an inertia: torque 0.
     void brake(double deceleration) noexcept;
 
+    /// Whatever is commanded, no more than this in each direction: magnitudes, infinity = no bound.
+    void keep_within(double positive, double negative) noexcept {
+        most_ = positive;
+        least_ = -negative;
+    }
+
     /// One period with the velocity as measured; the torque to set.
     [[nodiscard]] double step(double velocity, Duration period) noexcept;
 
     [[nodiscard]] double torque() const noexcept { return torque_; }
     /// The set torque is the commanded one (InTorque, P1-179).
     [[nodiscard]] bool in_torque() const noexcept { return in_torque_; }
-    /// The velocity holds it back.
+    /// The velocity, or a torque limit, holds it back.
     [[nodiscard]] bool limited() const noexcept { return limited_; }
 
 private:
@@ -54,6 +62,7 @@ private:
     double ramped_ = 0;  // the command on its ramp
     double torque_ = 0;
     double wanted_ = 0, ramp_ = 0;
+    double most_ = std::numeric_limits<double>::infinity(), least_ = -std::numeric_limits<double>::infinity();
     TorqueLimits limits_;
     TorqueSense sense_ = TorqueSense::both;
     bool braking_ = false;

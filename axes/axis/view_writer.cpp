@@ -20,6 +20,9 @@ void ViewWriter::publish() noexcept {
     setpoint();
     probes();
     passive_homing();
+    side(SideSlot::torque_limit, axis_.bounds.id());
+    view_.torque_limit_positive = axis_.bounds.range().positive;
+    view_.torque_limit_negative = axis_.bounds.range().negative;
     view_.override_factors = axis_.motion.now.factors;
     view_.selected_cam = axis_.coupling.links.selected;
     view_.selected_as = axis_.coupling.links.selected_as;

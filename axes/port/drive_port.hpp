@@ -70,7 +70,7 @@ struct DriveCapabilities {
     SetpointClass setpoints = SetpointClass::cyclic;
     bool velocity_feed_forward = false;  ///< 60B1h mapped
     bool torque_feed_forward = false;    ///< 60B2h mapped
-    bool torque_limits = false;          ///< 6072h or 60E0h/60E1h mapped
+    bool torque_limits = false;          ///< 6072h or 60E0h/60E1h mapped: they hold from the next exchange on
     bool digital_inputs = false;         ///< limits and home are reported (60FDh)
     bool digital_outputs = false;        ///< 60FEh mapped
     std::uint8_t probes = 0;             ///< touch probes with hardware latch
@@ -93,8 +93,10 @@ struct DriveCapabilities {
         0;                         ///< set-points the drive takes ahead in profile position mode (SV33-E 1, SV-DA200 8); 0: mode not served
     bool profile_replaces = true;  ///< ProfileSetpoint::immediately abandons the running set-point (SE-808X goes on after it, sheet 4.1)
     std::uint8_t services = 0;     ///< bit per DriveService
-    double velocity_step = 0;      ///< counts/s between two velocity set-points the drive can tell apart (XP200: 1 r/min); 0 = none
-    Duration command_latency{};    ///< worst time from encode() to effect beyond setpoint_effective() (a slow line); 0 = none
+    bool torque_limits_written = false;       ///< they are not mapped, but the drive has them: DriveFeedback says when it has taken them
+    bool torque_limit_per_direction = false;  ///< 60E0h and 60E1h; false: 6072h alone, one limit for both directions
+    double velocity_step = 0;    ///< counts/s between two velocity set-points the drive can tell apart (XP200: 1 r/min); 0 = none
+    Duration command_latency{};  ///< worst time from encode() to effect beyond setpoint_effective() (a slow line); 0 = none
 
     [[nodiscard]] constexpr bool has(DriveMode mode) const noexcept { return (modes >> static_cast<unsigned>(mode)) & 1u; }
     [[nodiscard]] constexpr bool has(DriveService service) const noexcept { return (services >> static_cast<unsigned>(service)) & 1u; }
@@ -162,6 +164,9 @@ struct ProbeFeedback {
     std::int64_t position = 0;  ///< counts at the edge
 };
 
+/// What became of torque limits that are not mapped.
+enum class TorqueLimitAnswer : std::uint8_t { taken, pending, refused };
+
 /// What the drive says. All of one latch instant.
 struct DriveFeedback {
     // What is new in every cycle of a motor that turns: first, and side by side.
@@ -192,7 +197,8 @@ struct DriveFeedback {
     bool homing_setup_refused = false;  ///< DriveCommand::homing could not be written: no start is sent until it is taken back
     /// The drive has acknowledged all that encode() asked that changes its state; false: still under way (polled drives).
     bool commands_acknowledged = true;
-    bool setup_refused = false;  ///< the drive's settings forbid enabling it; setup_problems() says which
+    TorqueLimitAnswer torque_limits = TorqueLimitAnswer::taken;  ///< to those of the last command, where they are written acyclically
+    bool setup_refused = false;                                  ///< the drive's settings forbid enabling it; setup_problems() says which
     bool has_inputs = false;
     bool negative_limit = false, positive_limit = false, home_switch = false;
     std::array<ProbeFeedback, 2> probes{};

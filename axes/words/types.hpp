@@ -116,7 +116,11 @@ enum class ErrorId : std::uint16_t {
     // Set-points from outside.
     setpoint_missing = 0x0032,        ///< an axis that is fed from outside moved, and no set-point came any more
     drive_setpoint_refused = 0x0033,  ///< the drive did not take a set-point of its own profile in time
+    // Torque limits.
+    no_torque_limit = 0x0034,       ///< the drive takes none
+    invalid_torque_limit = 0x0035,  ///< negative, not finite, less than 0.001; or two limits for a drive that has one for both directions
+    torque_limit_refused = 0x0036,  ///< the drive did not take it
 };
-inline constexpr std::size_t error_id_count = 0x0034;
+inline constexpr std::size_t error_id_count = 0x0037;
 
 }  // namespace taktwerk::axes

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "axes/axis/command_details.hpp"
 #include "config/reading/codecs.hpp"
 
 namespace taktwerk::config {
@@ -32,6 +33,26 @@ Table<axes::Gearing> gearing_table() {
         {}};
 }
 
+Table<axes::DirectionLimits> direction_table(std::string title, std::string_view torque) {
+    using D = axes::DirectionLimits;
+    constexpr std::string_view as_both = "as in both";
+    return {std::move(title),
+            "What holds in this direction only, as where a weight helps or hinders. Nothing here may be more than what holds in both.",
+            {
+                with_default(field("velocity", &D::velocity, quantity(Dimension::velocity, 0), "highest velocity"), std::string{as_both}),
+                with_default(field("acceleration", &D::acceleration, quantity(Dimension::acceleration, 0),
+                                   "highest acceleration, while the axis gets faster in this direction"),
+                             std::string{as_both}),
+                with_default(field("deceleration", &D::deceleration, quantity(Dimension::acceleration, 0),
+                                   "highest deceleration, while it gets slower in it"),
+                             std::string{as_both}),
+                with_default(field("torque", &D::torque, number(axes::TorqueLimitDetails::least, 10), std::string{torque}),
+                             std::string{as_both}),
+            },
+            {},
+            {}};
+}
+
 Table<axes::AxisLimits> limits_table() {
     using L = axes::AxisLimits;
     Table<L> table{
@@ -51,6 +72,14 @@ Table<axes::AxisLimits> limits_table() {
                 "position", interval(Dimension::position),
                 [](L& l, const Interval& v) { l.position_min = v.first, l.position_max = v.second; },
                 "software limits, active once the axis is homed", "none"),
+            with_default(field("torque", &L::torque, number(axes::TorqueLimitDetails::least, 10),
+                               "highest torque of the drive, as a fraction of the rated one (6072h, or 60E0h and 60E1h); MC_SetTorqueLimit "
+                               "stays below it"),
+                         "what the drive has"),
+            field("positive", &L::positive, section(direction_table("positive", "highest torque in positive direction")),
+                  "tighter limits in positive direction"),
+            field("negative", &L::negative, section(direction_table("negative", "highest torque in negative direction, without sign")),
+                  "tighter limits in negative direction"),
         },
         {},
         {}};

@@ -1,6 +1,7 @@
 #include "runtime/check/axis_check.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "ecat/description/module_pdos.hpp"
@@ -69,6 +70,9 @@ public:
 
 private:
     void check_virtual(const AxisBinding& binding, const std::string& subject) {
+        if (std::isfinite(binding.axis.limits.torque_towards(1)) || std::isfinite(binding.axis.limits.torque_towards(-1)))
+            problems_.add("axis.no_torque_limit", subject + ".limits", "a virtual axis (without `slave`) has no torque",
+                          "remove `torque` from its limits");
         if (binding.axis.encoder)
             problems_.add("axis.encoder", subject + ".encoder", "there is nothing that measures",
                           "name the `slave` whose position is meant, or remove `encoder`");
@@ -123,6 +127,7 @@ private:
                 "axis.not_mapped", subject + ".control.load",
                 fmt::format("no torque offset (60B2h) is in the RxPDO of slave '{}': the drive would never hear of it", slave.name),
                 "choose a PDO that has it, or add it under `pdo.rx` of the slave (docs/drives.md); or remove `load`");
+        check_torque_limits(slave, binding, subject, carried);
         for (const auto& needed : needed_objects) {
             const auto& there = needed.output ? rx : tx;
             const auto index = static_cast<std::uint16_t>(needed.index + binding.drive_axis * binding.profile->object_offset);
@@ -135,6 +140,30 @@ private:
                               fmt::format("map it: choose a PDO that has it, or add it under `pdo.{}` of the slave (docs/drives.md)",
                                           needed.output ? "rx" : "tx"));
         }
+    }
+
+    /// Limits of torque need an object that takes them: mapped, or else in the dictionary.
+    template <class Carried>
+    void check_torque_limits(const ecat::SlaveConfig& slave, const AxisBinding& binding, const std::string& subject,
+                             const Carried& carried) {
+        const auto& limits = binding.axis.limits;
+        const double up = limits.torque_towards(1), down = limits.torque_towards(-1);
+        if (std::isinf(up) && std::isinf(down)) return;
+        const auto has = [&](std::uint16_t base) {
+            const auto index = static_cast<std::uint16_t>(base + binding.drive_axis * binding.profile->object_offset);
+            const auto& objects = slave.device->objects;
+            return carried(base) || std::any_of(objects.begin(), objects.end(), [&](const auto& entry) { return entry.index == index; });
+        };
+        const bool each = has(0x60E0) && has(0x60E1);
+        if (each || (up == down && has(0x6072))) return;
+        const std::string field = limits.positive.torque > 0   ? ".limits.positive.torque"
+                                  : limits.negative.torque > 0 ? ".limits.negative.torque"
+                                                               : ".limits.torque";
+        problems_.add("axis.no_torque_limit", subject + field,
+                      has(0x6072)
+                          ? fmt::format("slave '{}' has one torque limit for both directions (6072h), no 60E0h and 60E1h", slave.name)
+                          : fmt::format("slave '{}' has no object for a torque limit: neither 6072h nor 60E0h and 60E1h", slave.name),
+                      has(0x6072) ? "give the same limit for both as `limits.torque`" : "remove it, and set the limit at the drive itself");
     }
 
     void check_homing_method(const AxisBinding& binding, const std::string& subject) {

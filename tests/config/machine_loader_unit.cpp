@@ -256,6 +256,12 @@ TEST(MachineLoader, AnAxisHasItsPositionLoopCompensationAndMemory) {
     EXPECT_EQ(loop.control.load.viscous_friction, 0.0004);
     EXPECT_EQ(loop.control.load.friction_velocity, 1);
     EXPECT_EQ(loop.following.per_velocity, 15ms);
+    EXPECT_EQ(loop.limits.torque, 2);
+    EXPECT_DOUBLE_EQ(loop.limits.positive.velocity, 50);
+    EXPECT_EQ(loop.limits.positive.acceleration, 0) << "as in both";
+    EXPECT_DOUBLE_EQ(loop.limits.positive.deceleration, 500);
+    EXPECT_EQ(loop.limits.positive.torque, 1.5);
+    EXPECT_EQ(loop.limits.negative.acceleration, 800);
     EXPECT_DOUBLE_EQ(loop.compensation.backlash, 0.02);
     EXPECT_EQ(loop.compensation.velocity, 2);
     ASSERT_EQ(loop.compensation.pitch.size(), 2u);
@@ -276,6 +282,8 @@ TEST(MachineLoader, AnAxisHasItsPositionLoopCompensationAndMemory) {
     EXPECT_FALSE(plain.control.integral.used());
     EXPECT_FALSE(plain.control.load.used());
     EXPECT_EQ(plain.following.per_velocity, 0ms);
+    EXPECT_FALSE(plain.limits.differ());
+    EXPECT_TRUE(std::isinf(plain.limits.torque));
     EXPECT_EQ(plain.modulo, 0);
     EXPECT_FALSE(plain.encoder);
     EXPECT_EQ(machine.axes[1].axis.modulo, 360);

@@ -83,6 +83,8 @@ const std::map<std::string, std::string>& other_documents() {
         {"MC_ExtSetPointGenDisable", "Axis | Execute Deceleration Jerk | Done Busy Active CommandAborted Error ErrorID"},
         // RTmotion
         {"MC_SetControllerMode", "Axis | Execute Mode | Done Busy Active CommandAborted Error ErrorID"},
+        // of vendors under this name; 60E0h and 60E1h, or 6072h, of CiA 402
+        {"MC_SetTorqueLimit", "Axis | Execute PositiveLimit NegativeLimit | Done Busy Active CommandAborted Error ErrorID"},
         // our own, in the form of MC_MoveAbsolute, MC_MoveRelative, MC_MoveVelocity and MC_TorqueControl, with what a drive's profile has of them
         {"Drive_MoveAbsolute",
          "Axis | Execute Position Velocity Acceleration Deceleration Direction BufferMode | "

@@ -61,8 +61,32 @@ Figure load_feed_forward() {
     return stage.figure("load-feed-forward");
 }
 
+/// Other limits downwards: the same move to and fro.
+Figure direction_limits() {
+    auto config = Stage::linear();
+    config.limits.negative = {.velocity = 60, .acceleration = 300, .deceleration = 500};
+    Stage stage{{config}};
+    MC_MoveAbsolute up, down;
+    up.Axis = down.Axis = Stage::ref();
+    up.Position = 60, up.Velocity = 200;
+    down.Position = 0, down.Velocity = 200;
+    stage.block("up", up);
+    stage.block("down", down);
+    stage.show("position", "mm", 80, {{0, Quantity::position}});
+    stage.show("velocity", "mm/s", 90, {{0, Quantity::velocity}});
+    stage.show("acceleration", "mm/s2", 90, {{0, Quantity::acceleration}});
+    stage.run(100ms);
+    up.Execute = true;
+    stage.run_until([&] { return up.Done; });
+    stage.run(100ms);
+    down.Execute = true;
+    stage.run_until([&] { return down.Done; });
+    stage.run(100ms);
+    return stage.figure("direction-limits");
+}
+
 }  // namespace
 
-std::vector<Figure> following() { return {following_window(), load_feed_forward()}; }
+std::vector<Figure> following() { return {following_window(), load_feed_forward(), direction_limits()}; }
 
 }  // namespace taktwerk::figures

@@ -1,6 +1,7 @@
 // The motor is held by friction, then let go: torque, velocity limit, and a move that takes over.
 #include "fb_library/motion/moves.hpp"
 #include "fb_library/motion/torque_control.hpp"
+#include "fb_library/motion/torque_limit.hpp"
 #include "tests/motion_figures/scenes.hpp"
 #include "tests/motion_figures/stage.hpp"
 
@@ -37,8 +38,41 @@ Figure torque_control() {
     return stage.figure("torque-control");
 }
 
+/// A target behind a stop at 20 mm: the motor stands there, the torque rises to the limit, and with another limit to that.
+Figure torque_limit() {
+    Stage stage;
+    stage.drive().caps.torque_limits = stage.drive().caps.torque_limit_per_direction = true;
+    stage.drive().obeys_torque_limits = true;
+    stage.drive().positive_stop = 20 * mm;
+    stage.drive().stiffness = 2.0 / (5.0 * mm);
+    MC_SetTorqueLimit gentle, firm;
+    MC_MoveAbsolute close, open;
+    gentle.Axis = firm.Axis = close.Axis = open.Axis = Stage::ref();
+    gentle.PositiveLimit = 0.3, firm.PositiveLimit = 0.8;
+    close.Position = 23, close.Velocity = 50;
+    open.Position = 0, open.Velocity = 100;
+    stage.beside("gentle", gentle);
+    stage.block("close", close);
+    stage.beside("firm", firm);
+    stage.block("open", open);
+    stage.show("torque", "of rated", 80, {{0, Quantity::actual_torque}});
+    stage.show("position", "mm", 90, {{0, Quantity::actual_position, Ink::actual, "motor"}, {0, Quantity::position}});
+    stage.run(100ms);
+    gentle.Execute = true;
+    stage.run(50ms);
+    close.Execute = true;
+    stage.run_until([&] { return close.Done; });
+    stage.run(300ms);
+    firm.Execute = true;
+    stage.run(300ms);
+    open.Execute = true;
+    stage.run_until([&] { return open.Done; });
+    stage.run(100ms);
+    return stage.figure("torque-limit");
+}
+
 }  // namespace
 
-std::vector<Figure> torque() { return {torque_control()}; }
+std::vector<Figure> torque() { return {torque_control(), torque_limit()}; }
 
 }  // namespace taktwerk::figures

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "fb_library/all_blocks.hpp"
+#include "runtime/check/machine_check.hpp"
 #include "tests/runtime/test_machine.hpp"
 #include "tests/runtime/test_program.hpp"
 
@@ -74,6 +76,19 @@ class TorqueThenMove final : public Moves {
         push(ctx);
         in_target = push.InTorque;
         aborted = push.CommandAborted;
+    }
+};
+
+class LimitThenMove final : public Moves {
+    MC_SetTorqueLimit limit;
+    void first(TaskContext& ctx) override {
+        limit.Axis = x;
+        limit.PositiveLimit = 0.2;
+        limit.NegativeLimit = 0.3;
+        limit.Execute = ready;
+        limit(ctx);
+        in_target = limit.Done;
+        aborted = limit.Error;
     }
 };
 
@@ -297,6 +312,79 @@ TEST(LoadedDrive, HoldsAWeightThatIsFedForward) {
         EXPECT_EQ(m.alarms(), "");
     }
     EXPECT_LT(lag[1], lag[0] / 2) << lag[0] << " mm without";
+}
+
+// Against a jammed axis the drive gives 0.2 of its rated torque and no more, whether the limits go with each frame or by SDO. P1 has no such block.
+TEST(TorqueLimitedDrive, PressesNoHarderThanItsLimit) {
+    for (const bool mapped : {true, false}) {
+        auto config = versatile(&entry_of<LimitThenMove>);
+        has_object(config, 0x60E0, ecat::DataType::U16, 3000, mapped);
+        has_object(config, 0x60E1, ecat::DataType::U16, 3000, mapped);
+        config.axes[0].axis.following.window = std::numeric_limits<double>::infinity();
+        TestMachine m{std::move(config)};
+        ASSERT_TRUE(m.up());
+        ASSERT_TRUE(m.until([&] { return variable(m, "in_target") != 0; }, 5s)) << m.alarms();
+        EXPECT_EQ(m.axis(0).torque_limit_positive, 0.2);
+        auto& drive = *m.world.drive("x");
+        drive.jam(true);
+        double most = 0, least = 0;
+        m.on_cycle = [&] {
+            most = std::max(most, m.axis(0).actual_torque);
+            least = std::min(least, m.axis(0).actual_torque);
+        };
+        m.world.set_input("button", true);
+        m.run(200ms);  // 20 mm behind: the drive itself gives up at 30
+        EXPECT_NEAR(m.axis(0).actual_torque, 0.2, 0.0006) << mapped;
+        EXPECT_LE(most, 0.2006);
+        EXPECT_GE(least, -0.3006);
+        EXPECT_EQ(variable(m, "aborted"), 0);
+        EXPECT_EQ(m.alarms(), "");
+    }
+}
+
+// A drive with neither object: the block says so at once, and what is configured is refused before anything runs.
+TEST(TorqueLimitedDrive, IsNamedWhereItHasNone) {
+    auto config = versatile(&entry_of<LimitThenMove>);
+    TestMachine m{config};
+    ASSERT_TRUE(m.up());
+    ASSERT_TRUE(m.until([&] { return variable(m, "ready") != 0; }, 5s)) << m.alarms();
+    m.run(10ms);
+    EXPECT_NE(variable(m, "aborted"), 0) << "Error";
+    EXPECT_EQ(variable(m, "in_target"), 0);
+
+    const auto code = [](const MachineConfig& machine) {
+        const auto errors = check(machine);
+        return errors.size() == 1 ? errors[0].code + " " + errors[0].subject : std::to_string(errors.size()) + " errors";
+    };
+    config.axes[0].axis.limits.torque = 1.5;
+    EXPECT_EQ(code(config), "axis.no_torque_limit axes.x.limits.torque");
+    has_object(config, 0x6072, ecat::DataType::U16, 3000, false);
+    EXPECT_EQ(code(config), "0 errors");
+    config.axes[0].axis.limits.negative.torque = 0.5;
+    EXPECT_EQ(code(config), "axis.no_torque_limit axes.x.limits.negative.torque") << "6072h is one for both";
+    config.axes[0].axis.limits = versatile(&entry_of<LimitThenMove>).axes[0].axis.limits;
+    config.axes[0].axis.control.load.gravity = 0.1;
+    EXPECT_EQ(code(config), "axis.not_mapped axes.x.control.load") << "no 60B2h";
+}
+
+// Down at most at 50 mm/s: the drive's own target, cycle by cycle.
+TEST(TwoWaySpeeds, TheDriveIsToldNoFasterWayDownThanAllowed) {
+    auto config = versatile(&entry_of<UpAndDown>);
+    config.axes[0].axis.limits.negative = {.velocity = 50, .acceleration = 1000};
+    TestMachine m{std::move(config)};
+    ASSERT_TRUE(m.up());
+    ASSERT_TRUE(m.until([&] { return variable(m, "ready") != 0; }, 5s)) << m.alarms();
+    double up = 0, down = 0;
+    m.on_cycle = [&] {
+        up = std::max(up, m.axis(0).set_velocity);
+        down = std::min(down, m.axis(0).set_velocity);
+    };
+    m.world.set_input("button", true);
+    ASSERT_TRUE(m.until([&] { return variable(m, "in_target") != 0; }, 30s)) << m.alarms();
+    EXPECT_EQ(up, 100);
+    EXPECT_EQ(down, -50);
+    m.expect_no_jump();
+    EXPECT_EQ(m.alarms(), "");
 }
 
 }  // namespace

@@ -99,10 +99,7 @@ Result<void> Cia402Drive::resolve() {
     (void)find_output(out_.target_torque, 0x6071, 0, true);
     capabilities_.velocity_feed_forward = find_output(out_.velocity_offset, 0x60B1, 0, true);
     capabilities_.torque_feed_forward = find_output(out_.torque_offset, 0x60B2, 0, true);
-    const bool both_ways = find_output(out_.torque_max, 0x6072, 0, false);
-    const bool positive = find_output(out_.torque_positive, 0x60E0, 0, false);
-    const bool negative = find_output(out_.torque_negative, 0x60E1, 0, false);
-    capabilities_.torque_limits = both_ways || (positive && negative);
+    find_torque_limits();
     capabilities_.velocity_limit = find_output(out_.velocity_limit, 0x607F, 0, false);
     capabilities_.digital_outputs = find_output(out_.digital, 0x60FE, 1, false);
     (void)find_output(out_.profile_velocity, 0x6081, 0, false);
@@ -181,6 +178,39 @@ void Cia402Drive::find_ramps() {
     use(RampWriter::torque_slope, out_.torque_slope, 0x6087);
 }
 
+/// Mapped ones go with each frame. Else those that the drive has are written when they change: one for each direction where it has them.
+void Cia402Drive::find_torque_limits() {
+    const bool both_ways = find_output(out_.torque_max, 0x6072, 0, false);
+    const bool positive = find_output(out_.torque_positive, 0x60E0, 0, false);
+    const bool negative = find_output(out_.torque_negative, 0x60E1, 0, false);
+    capabilities_.torque_limit_per_direction = positive && negative;
+    capabilities_.torque_limits = both_ways || (positive && negative);
+    const auto& slave = bus_.slave(slave_);
+    if (positive || negative || both_ways || !slave.device) return;
+    const auto writable = [&](std::uint16_t base) -> std::optional<TorqueLimitWriter::Object> {
+        for (const auto& entry : slave.device->objects) {
+            if (entry.index != object(base) || entry.sub != 0 || entry.access == ecat::Access::ro) continue;
+            const std::size_t bytes = std::min<std::size_t>(ecat::bit_size(entry.type) / 8u, 4);
+            TorqueLimitWriter::Object limit{entry.index, bytes, (std::int64_t{1} << (8 * bytes)) - 1};
+            if (entry.maximum) limit.high = std::min(limit.high, *entry.maximum);
+            if (entry.value > 0) limit.at_start = entry.value;
+            for (const auto& sdo : slave.startup)
+                if (sdo.index == entry.index && sdo.sub == 0) limit.at_start = sdo.value;
+            return limit;
+        }
+        return std::nullopt;
+    };
+    const auto up = writable(0x60E0), down = writable(0x60E1), either = writable(0x6072);
+    capabilities_.torque_limit_per_direction = up && down;
+    if (up && down) {
+        torque_limits_.use(0, *up);
+        torque_limits_.use(1, *down);
+    } else if (either) {
+        torque_limits_.use(0, *either);
+    }
+    capabilities_.torque_limits_written = torque_limits_.used();
+}
+
 void Cia402Drive::drop_modes_without_target() noexcept {
     const auto needs = [&](DriveMode mode, const MappedOutput& target) {
         if (!target.mapped()) capabilities_.modes = static_cast<std::uint16_t>(capabilities_.modes & ~(1u << static_cast<unsigned>(mode)));
@@ -213,6 +243,7 @@ DriveAlarm Cia402Drive::alarm() const noexcept { return alarm_.alarm(); }
 void Cia402Drive::step(Instant) {
     alarm_.step(bus_, slave_);
     ramps_.step(bus_, slave_);
+    if (torque_limits_.used()) torque_limits_.step(bus_, slave_);
     if (capabilities_.homing_per_run) homing_setup_.step(bus_, slave_);
     settings_.step(bus_, slave_);
 }

@@ -19,6 +19,7 @@
 #include "axes/drives/cia402/profile_handshake.hpp"
 #include "axes/drives/cia402/ramp_writer.hpp"
 #include "axes/drives/cia402/settings_check.hpp"
+#include "axes/drives/cia402/torque_limit_writer.hpp"
 #include "axes/drives/cia402/turn_clearing.hpp"
 #include "axes/port/drive_port.hpp"
 #include "axes/port/drive_profile.hpp"
@@ -72,6 +73,7 @@ private:
     void drop_modes_without_target() noexcept;
     void collect_starting_values();
     void find_ramps();
+    void find_torque_limits();
     void decode_motion() noexcept;
     void decode_homing(std::uint16_t status, Instant now) noexcept;
     void decode_probes() noexcept;
@@ -82,6 +84,7 @@ private:
     void hold_profile_target(DriveCommand& command, bool follows, bool prepared) noexcept;
     void write_targets(std::span<std::byte> image, const DriveCommand& command, bool follows) const noexcept;
     void write_limits(std::span<std::byte> image, const DriveCommand& command) const noexcept;
+    void ask_torque_limits(const DriveCommand& command) noexcept;
     void write_probes(std::span<std::byte> image, const DriveCommand& command) noexcept;
 
     ecat::Master& bus_;
@@ -114,6 +117,7 @@ private:
     TurnClearing turns_;
     ProfileHandshake handshake_;
     RampWriter ramps_;
+    TorqueLimitWriter torque_limits_;
     double held_velocity_ = 0, held_torque_ = 0;  // target of PV and PT while ramps for the next are being written
     AlarmReader alarm_;
     SettingsCheck settings_;

@@ -115,6 +115,7 @@ void Cia402Drive::encode(const DriveCommand& command, Instant now) noexcept {
         write_targets(image, command, follows);
         write_limits(image, command);
     }
+    if (torque_limits_.used()) ask_torque_limits(command);
     write_signal(image, out_.control.signal, word);
     if (out_.digital.mapped()) {
         const auto before = static_cast<std::uint32_t>(read_signal(image, out_.digital.signal));
@@ -180,7 +181,8 @@ void Cia402Drive::write_limits(std::span<std::byte> image, const DriveCommand& c
     const double negative = command.torque_limit_negative * profile_->torque_rated_raw;
     out_.torque_positive.write(image, positive);
     out_.torque_negative.write(image, negative);
-    out_.torque_max.write(image, std::min(positive, negative));
+    // Where each direction has its own, the one for both must not cut off the larger.
+    out_.torque_max.write(image, capabilities_.torque_limit_per_direction ? std::max(positive, negative) : std::min(positive, negative));
     // The rest stays as the start-up list or the last command left it while nothing is asked for: zero would mean "never move".
     if (std::isfinite(command.velocity_limit))
         out_.velocity_limit.write(image, command.velocity_limit * settings_.velocity_counts_per_unit());
@@ -191,6 +193,18 @@ void Cia402Drive::write_limits(std::span<std::byte> image, const DriveCommand& c
     if (command.torque_slope > 0) out_.torque_slope.write(image, command.torque_slope * profile_->torque_rated_raw);
     if (command.mode == DriveMode::profile_position && command.velocity != 0)
         out_.profile_velocity.write(image, std::abs(command.velocity) * settings_.velocity_counts_per_unit());
+}
+
+void Cia402Drive::ask_torque_limits(const DriveCommand& command) noexcept {
+    const auto raw = [&](double limit) {
+        constexpr double most = 1e9;
+        return std::isfinite(limit) ? static_cast<std::int64_t>(std::min(limit * profile_->torque_rated_raw, most) + 0.5)
+                                    : TorqueLimitWriter::no_limit;
+    };
+    TorqueLimitWriter::Values wanted{raw(command.torque_limit_positive), raw(command.torque_limit_negative)};
+    if (!capabilities_.torque_limit_per_direction)
+        wanted = {raw(std::min(command.torque_limit_positive, command.torque_limit_negative)), TorqueLimitWriter::no_limit};
+    feedback_.torque_limits = torque_limits_.ask(wanted, feedback_.online);
 }
 
 void Cia402Drive::write_probes(std::span<std::byte> image, const DriveCommand& command) noexcept {

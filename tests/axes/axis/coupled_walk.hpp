@@ -8,12 +8,15 @@
 
 namespace taktwerk::axes::test {
 
+/// Whether the axes of a walk have other limits in one direction than in the other.
+enum class Directions : std::uint8_t { alike, differ };
+
 class CoupledWalk {
 public:
-    CoupledWalk(unsigned seed, WalkCounts& counts)
+    CoupledWalk(unsigned seed, WalkCounts& counts, Directions directions = Directions::alike)
         : counts_(counts),
           dice_(seed),
-          rig_(any_axes(dice_)),
+          rig_(any_axes(dice_, directions)),
           ledger_(rig_.axes.size()),
           any_(
               dice_, rig_.axes.size(), [this](std::size_t i) -> const AxisView& { return rig_.view(i); }, tables_),
@@ -43,13 +46,20 @@ public:
     bool logs = false;
 
 private:
-    [[nodiscard]] static std::vector<AxisConfig> any_axes(Dice& dice) {
+    [[nodiscard]] static std::vector<AxisConfig> any_axes(Dice& dice, Directions directions) {
         std::vector<AxisConfig> configs;
         for (auto i = 1 + dice.below(4); i > 0; --i) {
             configs.push_back(any_axis(dice));
+            if (directions == Directions::differ) slower_one_way(dice, configs.back().limits);
             for (const auto& error : check(configs.back())) ADD_FAILURE() << error.text();
         }
         return configs;
+    }
+    static void slower_one_way(Dice& dice, AxisLimits& limits) {
+        auto& slower = dice.once_in(2) ? limits.negative : limits.positive;
+        slower.velocity = 45;  // homing is a little slower
+        if (dice.once_in(2)) slower.acceleration = 550;
+        if (dice.once_in(2)) slower.deceleration = 700;
     }
     void note(std::size_t axis, const std::string& what) {
         if (logs) log_ += fmt::format("{:6} axis {}: {}\n", cycle_, axis, what);

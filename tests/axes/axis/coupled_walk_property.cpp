@@ -58,5 +58,20 @@ TEST(CoupledWalks, KeepEveryRule) {
     expect_all_seen(counts, walked.walks);
 }
 
+// The same with axes that are slower in one direction, and have other ramps there: the oracle holds each velocity and each ramp against its own.
+TEST(CoupledWalks, KeepTheLimitsOfEachDirection) {
+    WalkCounts counts;
+    long cycles = 0, compared = 0;
+    const auto walked = taktwerk::test::walk_seeds(
+        usual / 2, length, [&](unsigned seed) { return CoupledWalk(seed, counts, Directions::differ); },
+        [&](CoupledWalk& walk) {
+            cycles += walk.cycles() * static_cast<long>(walk.rig().axes.size());
+            for (const auto& oracle : walk.rig().oracles) compared += oracle.compared();
+        });
+    if (walked.one_alone || HasFailure()) return;
+    EXPECT_GT(compared, cycles / 2);
+    EXPECT_GT(cycles, 50'000);
+}
+
 }  // namespace
 }  // namespace taktwerk::axes::test

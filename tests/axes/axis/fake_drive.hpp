@@ -70,6 +70,9 @@ public:
     DriveAlarmKind alarm_kind = DriveAlarmKind::other;
     FakeProfile profile;
     bool refuses_profile_modes = false;
+    bool obeys_torque_limits = false;  ///< while a stop holds it back
+    int limit_delay = 0;               ///< cycles until torque limits are written, where caps.torque_limits_written says that they are
+    bool refuses_torque_limits = false;
 
     // what a test reads
     double position = 0;  ///< of the motor, counts; what homing sets to zero is `zero`
@@ -98,6 +101,9 @@ public:
         if (obeys) largest_step = std::max<std::int64_t>(largest_step, std::abs(target - from));
         obeyed_ = obeys;
         last_target_ = target;
+        const bool other_limits =
+            command.torque_limit_positive != last.torque_limit_positive || command.torque_limit_negative != last.torque_limit_negative;
+        limits_age_ = other_limits ? 0 : limits_age_ + 1;
         sent_.push_back({setpoint_effective(now), target, command.velocity, command.torque});
         if (sent_.size() > 64) sent_.pop_front();
         last = command;
@@ -124,6 +130,10 @@ public:
         feedback_.position_epoch = epoch;
         feedback_.reference_epoch = reference_epoch;
         feedback_.homing_setup_refused = refuses_homing_setup && last.homing.method != 0;
+        feedback_.torque_limits = !caps.torque_limits_written ? TorqueLimitAnswer::taken
+                                  : limits_age_ < limit_delay ? TorqueLimitAnswer::pending
+                                  : refuses_torque_limits     ? TorqueLimitAnswer::refused
+                                                              : TorqueLimitAnswer::taken;
         feedback_.position = std::llround(position) - zero;
         feedback_.velocity = velocity_;
         feedback_.torque = by_torque() ? torque_ : load + held_back_;
@@ -188,6 +198,7 @@ private:
             freed_ = freed_ && std::abs(missing) > catching_up;
             position += freed_ ? std::copysign(catching_up, missing) : missing;
             held_back_ = std::clamp(stiffness * static_cast<double>(target - held), -3.0, 3.0);  // no more than a drive has
+            if (obeys_torque_limits) held_back_ = std::clamp(held_back_, -last.torque_limit_negative, last.torque_limit_positive);
         }
         freed_ = freed_ || blocked;
         for (std::size_t i = 0; i < 2; ++i) step_probe(i, std::llround(before), std::llround(position));
@@ -286,6 +297,7 @@ private:
     DriveFeedback feedback_;
     DriveMode mode_ = DriveMode::cyclic_position;
     int ticks_ = 0, mode_ticks_ = 0;
+    int limits_age_ = 0;  // cycles since the torque limits changed
     std::array<int, 2> armed_for_{};
     bool attained_ = false, homing_error_ = false, obeyed_ = false;
     bool freed_ = false;  // was blocked, and still makes up what it missed

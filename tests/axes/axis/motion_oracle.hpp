@@ -119,7 +119,8 @@ private:
             check_motion(view, next, now);
         } else {
             summed_ = false;
-            most_ = now.velocity;
+            most_ = now.velocity_towards(1);
+            most_backwards_ = now.velocity_towards(-1);
             unseen_ = 0;
             loose_ = true;
         }
@@ -225,8 +226,11 @@ private:
         const double least = 1e-9 * system.velocity;
         const bool either_way = layered || a.velocity * b.velocity <= 0 || std::abs(a.velocity) <= least || std::abs(b.velocity) <= least;
         const double most_acceleration = std::max(system.acceleration, most_slowing) * (layered ? 2 : 1);
+        // Limits of one direction hold for one motion, but for a stop that is harder than the axis itself.
+        const double speeding = system.acceleration_towards(b.velocity);
+        const double slowing = most_slowing > system.deceleration ? most_slowing : system.deceleration_towards(b.velocity);
         const auto most_of = [&](bool faster) {
-            return std::max(either_way ? most_acceleration : faster ? system.acceleration : most_slowing, std::abs(a.acceleration));
+            return std::max(either_way ? most_acceleration : faster ? speeding : slowing, std::abs(a.acceleration));
         };
         most_jerk *= layered ? 2 : 1;
         constexpr double rounding = 1 + 1e-6;
@@ -275,9 +279,10 @@ private:
             breach("velocity {} after {} u/s does not agree with accelerations {} and {}", b.velocity, a.velocity, a.acceleration,
                    b.acceleration);
         // Also of base and addition together, whatever either is about to do.
-        most_ = std::max(most_, now.velocity);
-        if (std::abs(b.velocity) > std::max(most_, std::abs(a.velocity)) * (1 + 1e-8))
-            breach("runs at {} u/s; {} is the most", b.velocity, most_);
+        double& most = b.velocity < 0 ? most_backwards_ : most_;
+        most = std::max(most, now.velocity_towards(b.velocity));
+        const double before = a.velocity * b.velocity >= 0 ? std::abs(a.velocity) : 0;
+        if (std::abs(b.velocity) > std::max(most, before) * (1 + 1e-8)) breach("runs at {} u/s; {} is the most", b.velocity, most);
 
         // Place with velocity: at the drive, and in the view as long as its coordinates are the same.
         const double mean = (a.velocity + b.velocity) / 2 * T;
@@ -334,7 +339,8 @@ private:
         loose_ = false;
         if (rests && next.layer == 0) {
             summed_ = false;
-            most_ = now.velocity;
+            most_ = now.velocity_towards(1);
+            most_backwards_ = now.velocity_towards(-1);
         }
     }
 
@@ -380,7 +386,7 @@ private:
     bool seen_ = false, told_ = true, tells_velocity_ = true, continues_ = false;
     bool loose_ = true;  // the drive has just begun to take set-points
     bool summed_ = false, excused_ = true;
-    double most_ = 0;  // u/s, the greatest velocity limit since the axis rested
+    double most_ = 0, most_backwards_ = 0;  // u/s, the greatest velocity limit of each direction since the axis rested
     double low_ = 0, high_ = 0, lowest_ = 0, highest_ = 0;
     double unseen_ = 0;  // u that the axis was told since its actual position changed last
     long steady_ = 0;

@@ -98,7 +98,8 @@ private:
         if (kind == move_absolute) return on_long_way;
         // Only where the base takes nearly the whole velocity there is no room; at the end of such a way it has just become less.
         if (kind == move_superimposed)
-            return std::abs(view.set_velocity) > 0.9 * view.parameters[place_of(velocity_of_application)] ||
+            return std::abs(view.set_velocity) >
+                       0.9 * view.parameters[place_of(view.set_velocity < 0 ? velocity_negative : velocity_positive)] ||
                    (on_long_way && view.active_kind == move_absolute);
         switch (kind) {
             case move_velocity:

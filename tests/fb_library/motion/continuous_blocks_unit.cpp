@@ -176,6 +176,20 @@ TEST_F(ExternalDisable, LeavesAnyOtherMotionAlone) {
     EXPECT_TRUE(axes.calls.empty());
 }
 
+using TorqueLimitBlock = OneBlock<MC_SetTorqueLimit>;
+TEST_F(TorqueLimitBlock, GivesBothLimitsAsTheyStand) {
+    block.Axis = {0};
+    block.PositiveLimit = 0.5;
+    block.NegativeLimit = 0.3;
+    block.Execute = true;
+    scan();
+    EXPECT_EQ(last().command.kind, CommandKind::set_torque_limit);
+    const auto* limits = std::get_if<axes::TorqueLimitDetails>(&last().command.details);
+    ASSERT_NE(limits, nullptr);
+    EXPECT_EQ(*limits, (axes::TorqueLimitDetails{0.5, 0.3}));
+    EXPECT_TRUE(block.Busy);
+}
+
 using ControllerMode = OneBlock<MC_SetControllerMode>;
 TEST_F(ControllerMode, NamesTheDrivesMode) {
     block.Axis = {0};

@@ -104,7 +104,94 @@ TEST(Cia402Mapping, NoTorqueLimitIsTheMostTheObjectTakes) {
     rig.run(6);
     EXPECT_EQ(rig.got(0x60E0), 800);  // 0.1 % of rated
     EXPECT_EQ(rig.got(0x60E1), 300);
-    EXPECT_EQ(rig.got(0x6072), 300) << "one object for both directions takes the smaller";
+    EXPECT_EQ(rig.got(0x6072), 800)
+        << "it holds for both directions: the smaller would cut off the larger (SV33-E 3.4.3 (8): the least of both counts)";
+    EXPECT_TRUE(rig.drive->capabilities().torque_limit_per_direction);
+}
+
+TEST(Cia402Mapping, OneTorqueLimitForBothDirectionsTakesTheSmaller) {
+    DriveRig rig;
+    rig.rx.push_back({0x6072, 0});
+    ASSERT_TRUE(rig.build()) << rig.refusal.text();
+    EXPECT_TRUE(rig.drive->capabilities().torque_limits);
+    EXPECT_FALSE(rig.drive->capabilities().torque_limit_per_direction);
+    rig.command.torque_limit_positive = 0.8;
+    rig.command.torque_limit_negative = 0.3;
+    rig.run(6);
+    EXPECT_EQ(rig.got(0x6072), 300);
+}
+
+// Not mapped, but in the dictionary: by SDO when they change, and only then. Nothing is written before somebody asks; without a limit again the drive
+// gets back what it began with.
+TEST(Cia402TorqueLimits, AreWrittenWhenTheyChange) {
+    DriveRig rig;
+    rig.others.insert(rig.others.end(), {{0x60E0, 0}, {0x60E1, 0}, {0x6072, 0}});
+    ASSERT_TRUE(rig.build()) << rig.refusal.text();
+    const auto& can = rig.drive->capabilities();
+    EXPECT_FALSE(can.torque_limits);
+    EXPECT_TRUE(can.torque_limits_written);
+    EXPECT_TRUE(can.torque_limit_per_direction);
+    rig.put(0x60E0, 4321);
+    rig.run(200);
+    EXPECT_EQ(rig.got(0x60E0), 4321) << "as somebody left it";
+    EXPECT_NE(rig.feedback().torque_limits, TorqueLimitAnswer::pending);
+
+    rig.command.torque_limit_positive = 0.8;
+    rig.command.torque_limit_negative = 0.3;
+    rig.run(2);
+    EXPECT_EQ(rig.feedback().torque_limits, TorqueLimitAnswer::pending);
+    rig.run(200);
+    EXPECT_NE(rig.feedback().torque_limits, TorqueLimitAnswer::pending);
+    EXPECT_NE(rig.feedback().torque_limits, TorqueLimitAnswer::refused);
+    EXPECT_EQ(rig.got(0x60E0), 800);
+    EXPECT_EQ(rig.got(0x60E1), 300);
+    EXPECT_EQ(rig.got(0x6072), 5000) << "each direction has its own";
+
+    rig.put(0x60E0, 1234);
+    rig.run(200);
+    EXPECT_EQ(rig.got(0x60E0), 1234) << "the same limits are not written again";
+    rig.command.torque_limit_positive = rig.command.torque_limit_negative = std::numeric_limits<double>::infinity();
+    rig.run(200);
+    EXPECT_EQ(rig.got(0x60E0), 5000) << "the dictionary's value";
+    EXPECT_EQ(rig.got(0x60E1), 5000);
+}
+
+// 6072h alone; the start-up list says what it goes back to.
+TEST(Cia402TorqueLimits, OneForBothDirectionsIsWrittenToo) {
+    DriveRig rig;
+    rig.others.push_back({0x6072, 0});
+    ecat::StartupSdo most;
+    most.index = 0x6072;
+    most.type = ecat::DataType::U16;
+    most.value = 2500;
+    rig.startup = {most};
+    ASSERT_TRUE(rig.build()) << rig.refusal.text();
+    EXPECT_TRUE(rig.drive->capabilities().torque_limits_written);
+    EXPECT_FALSE(rig.drive->capabilities().torque_limit_per_direction);
+    rig.command.torque_limit_positive = rig.command.torque_limit_negative = 0.4;
+    rig.run(200);
+    EXPECT_EQ(rig.got(0x6072), 400);
+    rig.command.torque_limit_positive = rig.command.torque_limit_negative = std::numeric_limits<double>::infinity();
+    rig.run(200);
+    EXPECT_EQ(rig.got(0x6072), 2500);
+}
+
+// What a drive does not take is said, and not tried again.
+TEST(Cia402TorqueLimits, ARefusedOneIsSaid) {
+    DriveRig rig;
+    rig.others.push_back({0x6072, 0});
+    ASSERT_TRUE(rig.build()) << rig.refusal.text();
+    rig.puppet->refuse_downloads = true;
+    rig.command.torque_limit_positive = rig.command.torque_limit_negative = 0.4;
+    rig.run(200);
+    EXPECT_NE(rig.feedback().torque_limits, TorqueLimitAnswer::pending);
+    EXPECT_EQ(rig.feedback().torque_limits, TorqueLimitAnswer::refused);
+    EXPECT_EQ(rig.got(0x6072), 5000);
+    rig.puppet->refuse_downloads = false;
+    rig.command.torque_limit_positive = rig.command.torque_limit_negative = 0.5;
+    rig.run(200);
+    EXPECT_NE(rig.feedback().torque_limits, TorqueLimitAnswer::refused);
+    EXPECT_EQ(rig.got(0x6072), 500);
 }
 
 TEST(Cia402Mapping, FeedForwardIsSentInUnitsOfTheDriveAndOnlyWhileItFollows) {

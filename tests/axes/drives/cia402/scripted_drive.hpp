@@ -56,8 +56,10 @@ public:
     void exchange(Instant) override {
         if (on_exchange) on_exchange();
     }
+    std::uint32_t refuse_write(std::uint16_t, std::uint8_t, std::int64_t) override { return refuse_downloads ? 0x08000022u : 0; }
     ecat::sim::ObjectDictionary* objects = nullptr;
     std::function<void()> on_exchange;
+    bool refuse_downloads = false;  ///< "because of the present device state"
 };
 
 class DriveRig {
