@@ -36,7 +36,7 @@ Duration age_of(const CommandRequest& request, Instant now) {
 }
 
 /// Bit by bit, so that a repeated NaN is the same NaN.
-bool same(double a, double b) noexcept { return std::memcmp(&a, &b, sizeof a) == 0; }
+bool same(double a, double b) noexcept { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
 
 std::optional<Error> check_jog_velocity(const runtime::MachineLayout::AxisInfo& axis, double velocity) {
     if (axis.jog_fast > 0 && std::abs(velocity) > axis.jog_fast)

@@ -51,7 +51,7 @@ void Gateway::note(ClientId id, const Client& client, const CommandRequest& requ
     if (word == nullptr) return;
     const auto& layout = machine_.layout();
     const auto axis = one_axis(layout, *word, request.target);
-    for (std::uint16_t i = 0; i < layout.axes.size(); ++i) {
+    for (std::uint16_t i = 0; i < static_cast<std::uint16_t>(layout.axes.size()); ++i) {
         if (axis ? *axis != i : word->target != TargetKind::axis_or_all) continue;
         switch (request.kind) {
             case CommandKind::take_control:

@@ -491,7 +491,7 @@ void Publisher::Impl::send_alarms(const runtime::Snapshot& s) {
         entry.remedy = words.remedy;
         entry.reset = words.reset;
         m.alarm_count = size32(m.alarm.size());
-        const auto with_it = static_cast<std::size_t>(m.getEncodedSize() + entry._getEncodedSizeNoHash());
+        const auto with_it = static_cast<std::size_t>(m.getEncodedSize()) + static_cast<std::size_t>(entry._getEncodedSizeNoHash());
         if (!m.alarm.empty() && with_it > message_size_aim) publish(i);
         m.alarm.push_back(std::move(entry));
     }

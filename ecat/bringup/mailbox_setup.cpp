@@ -83,8 +83,8 @@ Script<Result<void>> compare_identity(Bus& bus, BusSlave& slave) {
     if (!slave.has_coe()) co_return Result<void>{};
     const std::array<std::uint32_t, 3> eeprom{slave.found.identity.vendor, slave.found.identity.product, slave.found.identity.revision};
     const std::array<const char*, 3> what{"vendor", "product", "revision"};
-    for (std::uint8_t i = 0; i < eeprom.size(); ++i) {
-        const std::uint8_t sub = static_cast<std::uint8_t>(i + 1);
+    for (std::size_t i = 0; i < eeprom.size(); ++i) {
+        const auto sub = static_cast<std::uint8_t>(i + 1);
         const Result<std::uint32_t> value = co_await read_number(bus, slave, 0x1018, sub);
         if (!value && is_absent(value.error())) co_return Result<void>{};
         if (!value) co_return value.error();

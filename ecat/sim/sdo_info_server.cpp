@@ -103,8 +103,8 @@ std::size_t SdoInfoServer::list(std::span<const std::byte> question) noexcept {
     for (std::size_t first = 0; first < dictionary_.entries().size();) {
         const auto object = dictionary_.object(dictionary_.entries()[first].index());
         first += object.size();
-        for (std::uint16_t n = 1; n <= lengths.size(); ++n)
-            if (belongs(object, static_cast<ObjectList>(n))) ++lengths[n - 1u];
+        for (std::size_t n = 1; n <= lengths.size(); ++n)
+            if (belongs(object, static_cast<ObjectList>(n))) ++lengths[n - 1];
         if (wanted == counts || !belongs(object, static_cast<ObjectList>(wanted))) continue;
         store_le<std::uint16_t>(data_, at, object.front().index());
         at += 2;

@@ -125,7 +125,7 @@ private:
                             const axes::xp200::ParameterSetting& wanted, const std::string& here) {
         namespace pr = axes::xp200::pr;
         const auto& settings = line.settings;
-        std::int64_t needed = wanted.value;
+        std::int64_t needed = 0;
         std::string key, meant;
         switch (wanted.number) {
             case pr::station:

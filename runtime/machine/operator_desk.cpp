@@ -83,8 +83,8 @@ void OperatorDesk::drain_inbox(Instant at) noexcept {
         if (body_.recorder) record_command(*body_.recorder, at, command);
         // A stop is never too late, and while the run ends everything stops anyway.
         const bool stops = command.action == OperatorAction::stop || command.action == OperatorAction::shutdown;
-        if (!stops && command.expires != Instant{} && command.expires < at) answer(command, {Answer::stale});
-        else if (overtaken(command)) answer(command, {Answer::stale});
+        const bool expired = !stops && command.expires != Instant{} && command.expires < at;
+        if (expired || overtaken(command)) answer(command, {Answer::stale});
         else if (!stops && body_.shutting_down) answer(command, {Answer::not_possible_now});
         else answer(command, execute(command));
     }

@@ -26,8 +26,8 @@ public:
         axes::Owner owner = axes::Owner::none;
     };
 
-    explicit FakeAxes(std::size_t count = 2) : now_axes(count), seen(count) {
-        for (auto& axis : now_axes) {
+    explicit FakeAxes(std::size_t count = 2) : now_axes_(count), seen_(count) {
+        for (auto& axis : now_axes_) {
             axis.state = axes::AxisState::Standstill;
             axis.powered = axis.online = true;
             axis.manual_slow = 5;
@@ -36,13 +36,13 @@ public:
         next_scan();
     }
 
-    axes::AxisView& axis(std::size_t i = 0) { return now_axes[i]; }
+    axes::AxisView& axis(std::size_t i = 0) { return now_axes_[i]; }
 
     /// The command submitted last ends: the one that runs beside the axis' motion when it was of that sort, otherwise the active one,
     /// and a waiting one takes over.
     void finish(axes::Outcome outcome, axes::ErrorId error = axes::ErrorId::none, std::size_t i = 0) {
         if (last_slot) return finish_beside(*last_slot, outcome, error, i);
-        auto& a = now_axes[i];
+        auto& a = now_axes_[i];
         if (a.active != 0) end(a, a.active, outcome, error);
         a.active = 0;
         a.active_in_target = false;
@@ -53,14 +53,14 @@ public:
         }
     }
     void finish_beside(axes::SideSlot slot, axes::Outcome outcome, axes::ErrorId error = axes::ErrorId::none, std::size_t i = 0) {
-        auto& running = now_axes[i].side[static_cast<std::size_t>(slot)];
-        if (running != 0) end(now_axes[i], running, outcome, error);
+        auto& running = now_axes_[i].side[static_cast<std::size_t>(slot)];
+        if (running != 0) end(now_axes_[i], running, outcome, error);
         running = 0;
     }
     /// Some other block's command takes the axis, or the place beside its motion that was taken last.
     void take_over(std::size_t i = 0) {
-        if (last_slot) begin_beside(now_axes[i], *last_slot);
-        else begin(now_axes[i], false);
+        if (last_slot) begin_beside(now_axes_[i], *last_slot);
+        else begin(now_axes_[i], false);
     }
 
     /// Time goes on by one period; the views are taken anew.
@@ -68,8 +68,8 @@ public:
         context.now += period;
         context.period = period;
         ++context.cycle;
-        seen = now_axes;
-        context.axes = seen;
+        seen_ = now_axes_;
+        context.axes = seen_;
         context.requests = this;
     }
 
@@ -77,7 +77,7 @@ public:
     axes::Submitted submit(axes::AxisRef ref, const axes::AxisCommand& command, axes::Owner owner) noexcept override {
         axes::Submitted answer{0, refuse_with};
         if (refuse_with == axes::ErrorId::none) {
-            auto& a = now_axes[ref.index];
+            auto& a = now_axes_[ref.index];
             last_slot = command.buffer_mode == axes::mcAborting ? slot_of(command) : std::nullopt;
             answer.id = last_slot ? begin_beside(a, *last_slot) : begin(a, command.buffer_mode != axes::mcAborting);
             a.active_kind = last_slot ? a.active_kind : command.kind;
@@ -95,7 +95,7 @@ public:
     }
     axes::Submitted set(axes::AxisRef ref, const axes::AxisSetting& setting, axes::Owner owner) noexcept override {
         calls.push_back({.what = "set", .axis = ref, .setting = setting, .owner = owner});
-        if (refuse_with == axes::ErrorId::none) take(now_axes[ref.index], setting);
+        if (refuse_with == axes::ErrorId::none) take(now_axes_[ref.index], setting);
         return {0, refuse_with};
     }
     axes::ErrorId update(axes::AxisRef ref, axes::CommandId id, const axes::AxisCommand& command, axes::Owner owner) noexcept override {
@@ -134,7 +134,7 @@ private:
         if (const auto* factors = std::get_if<axes::Override>(&setting)) a.override_factors = *factors;
         if (const auto* select = std::get_if<axes::SelectCam>(&setting)) {
             a.selected_as = *select;
-            a.selected_cam = {++last_cam};
+            a.selected_cam = {++last_cam_};
         }
     }
     static void end(axes::AxisView& a, axes::CommandId id, axes::Outcome outcome, axes::ErrorId error) {
@@ -180,8 +180,8 @@ private:
         return id;
     }
 
-    std::vector<axes::AxisView> now_axes, seen;
-    std::uint32_t last_cam = 0;
+    std::vector<axes::AxisView> now_axes_, seen_;
+    std::uint32_t last_cam_ = 0;
 };
 
 }  // namespace taktwerk::fb

@@ -45,7 +45,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     for (const auto& command : machine.submitted) {
         const bool moves = command.action == runtime::OperatorAction::jog || command.action == runtime::OperatorAction::move_absolute;
-        if (moves && (!std::isfinite(command.value) || command.axis >= machine.layout_.axes.size())) std::abort();
+        if (moves && (!std::isfinite(command.value) || command.axis >= machine.its_layout.axes.size())) std::abort();
         if (command.owner != axes::Owner::operator_panel || command.mode > runtime::Mode::automatic || command.expires < now) std::abort();
     }
     return 0;

@@ -32,7 +32,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         if (machine.submitted.size() > before) {
             const auto& command = machine.submitted.back();
             if (!std::isfinite(command.value) || !std::isfinite(command.value2)) std::abort();
-            if (command.axis != 0xFFFF && command.axis >= machine.layout_.axes.size()) std::abort();
+            if (command.axis != 0xFFFF && command.axis >= machine.its_layout.axes.size()) std::abort();
             if (command.expires <= now - std::chrono::nanoseconds{1}) std::abort();
             machine.answer(runtime::Answer::accepted);
         }

@@ -49,7 +49,7 @@ public:
     std::optional<Result<axes::ServiceAnswer>> service_answer(axes::ServiceTicket ticket) override {
         if (silent) return std::nullopt;
         if (refuses) return Result<axes::ServiceAnswer>{Error{"sdo.abort", "x_drive", "0x06090030 value range exceeded", ""}};
-        return Result<axes::ServiceAnswer>{answers.at(ticket)};
+        return Result<axes::ServiceAnswer>{answers_.at(ticket)};
     }
     static std::uint32_t key(ParameterAddress address) { return static_cast<std::uint32_t>(address.index) << 8 | address.sub; }
 
@@ -62,10 +62,10 @@ public:
 
 private:
     axes::ServiceTicket open(axes::ServiceAnswer answer) {
-        answers[++last_] = std::move(answer);
+        answers_[++last_] = std::move(answer);
         return last_;
     }
-    std::map<axes::ServiceTicket, axes::ServiceAnswer> answers;
+    std::map<axes::ServiceTicket, axes::ServiceAnswer> answers_;
     axes::ServiceTicket last_ = 0;
     axes::DriveFeedback feedback_;
 };
@@ -84,7 +84,7 @@ protected:
         add({0x2014, 0x06}, "P20.05", "clear turns").action = true;
         add({0x603F, 0x00}, "", "error code").change = axes::ParameterChange::never;
         machine.drives = {{&port, &profile}, {&second, &profile}};
-        machine.layout_.axes[0].drive = machine.layout_.axes[1].drive = "x_drive";  // a drive of two axes
+        machine.its_layout.axes[0].drive = machine.its_layout.axes[1].drive = "x_drive";  // a drive of two axes
         machine.snapshot.mode = runtime::Mode::manual;
         for (auto& axis : machine.snapshot.axes) axis.owner = axes::Owner::operator_panel, axis.drive_state = axes::PowerState::disabled;
         port.words[FakePort::key({0x2005, 0x0E})] = 250;

@@ -24,10 +24,10 @@ struct EventTextTest : ::testing::Test {
     std::array<std::byte, 64> pick{}, hold{};
     CommandEvent event;
     void SetUp() override {
-        machine.layout_.blocks = {{"cell.pick", pick.data(), pick.size()}, {"cell.hold", hold.data(), hold.size()}};
+        machine.its_layout.blocks = {{"cell.pick", pick.data(), pick.size()}, {"cell.hold", hold.data(), hold.size()}};
         event.given = {CommandKind::move_absolute, Owner::program, 0, &pick[8]};
     }
-    EventText text() const { return describe(event, machine.layout_); }
+    EventText text() const { return describe(event, machine.its_layout); }
 };
 
 TEST_F(EventTextTest, WhoHoldsAnAxisWithAStopIsNamedAndHowToEndIt) {

@@ -11,20 +11,20 @@ namespace taktwerk::hmi::test {
 class FakeMachine final : public MachineLink {
 public:
     FakeMachine() {
-        layout_.machine = "demo";
-        layout_.cycle = std::chrono::milliseconds{1};
-        layout_.axes = {{"x", "mm", false, true, 10, 50, "x_drive", "sv33-e", 0},
-                        {"y", "mm", false, true, 10, 50, "y_drive", "sv33-e", 0},
-                        {"turret", "deg", true, true, 5, 20, "", "", 0}};
-        layout_.slaves = {"x_drive", "y_drive"};
-        layout_.inputs = {"start_button", "estop_ok"};
-        layout_.outputs = {"lamp_run"};
-        layout_.programs = {"cell", "feeder"};
-        layout_.tasks = {"cell.main"};
-        layout_.variables = {{"cell", "step", "", "step of the sequence", VariableType::int32}};
-        layout_.parameters = {{"cell", "speed", "mm/s", "transfer speed", 10, 500, 200},
-                              {"cell", "pause", "s", "", 0, 5, 1},
-                              {"feeder", "pause", "s", "", 0, 9, 2}};
+        its_layout.machine = "demo";
+        its_layout.cycle = std::chrono::milliseconds{1};
+        its_layout.axes = {{"x", "mm", false, true, 10, 50, "x_drive", "sv33-e", 0},
+                           {"y", "mm", false, true, 10, 50, "y_drive", "sv33-e", 0},
+                           {"turret", "deg", true, true, 5, 20, "", "", 0}};
+        its_layout.slaves = {"x_drive", "y_drive"};
+        its_layout.inputs = {"start_button", "estop_ok"};
+        its_layout.outputs = {"lamp_run"};
+        its_layout.programs = {"cell", "feeder"};
+        its_layout.tasks = {"cell.main"};
+        its_layout.variables = {{"cell", "step", "", "step of the sequence", VariableType::int32}};
+        its_layout.parameters = {{"cell", "speed", "mm/s", "transfer speed", 10, 500, 200},
+                                 {"cell", "pause", "s", "", 0, 5, 1},
+                                 {"feeder", "pause", "s", "", 0, 9, 2}};
         snapshot.cycle = 1000;
         snapshot.at = Instant{std::chrono::seconds{1}};
         snapshot.phase = runtime::MachinePhase::running;
@@ -52,7 +52,7 @@ public:
         return answer;
     }
     const runtime::Snapshot* latest() override { return cycling ? &snapshot : nullptr; }
-    [[nodiscard]] const runtime::MachineLayout& layout() const override { return layout_; }
+    [[nodiscard]] const runtime::MachineLayout& layout() const override { return its_layout; }
     [[nodiscard]] runtime::AlarmText describe(const AlarmFact&) const override {
         return {"axis x", "following_error", "The axis lags behind", "跟随误差过大", "It is blocked", "Free it", "the axis stops", "reset"};
     }
@@ -82,7 +82,7 @@ public:
     std::vector<runtime::OperatorCommand> submitted;
     std::deque<runtime::CommandAnswer> answers;
     runtime::Snapshot snapshot;
-    runtime::MachineLayout layout_;
+    runtime::MachineLayout its_layout;
     std::vector<Drive> drives;  ///< by axis; those behind have none
     std::size_t inbox_size = 1000;
     bool cycling = true;

@@ -266,7 +266,7 @@ TEST_F(GatewayTest, RefusalsOfTheMachineComeBackInWords) {
     EXPECT_THAT(owned.error.remedy, HasSubstr("manual mode"));
 
     const std::byte pick{};
-    machine.layout_.blocks = {{"cell.pick", &pick, 1}};
+    machine.its_layout.blocks = {{"cell.pick", &pick, 1}};
     holder = &pick;
     const auto moved = outcome(request(CommandKind::home, "x"), Answer::no_control, axes::ErrorId::owned_by_other, axes::Owner::program);
     EXPECT_THAT(moved.error.what, HasSubstr("'cell.pick' moves or holds the axis")) << "who blocks";

@@ -165,8 +165,8 @@ TEST_F(LcmTest, AnAxisCarriesTheValuesOfAnOnlinePage) {
 }
 
 TEST_F(LcmTest, LongListsComeInSeveralMessages) {
-    machine.layout_.inputs.clear();
-    for (int i = 0; i < 70; ++i) machine.layout_.inputs.push_back("in_" + std::to_string(i));
+    machine.its_layout.inputs.clear();
+    for (int i = 0; i < 70; ++i) machine.its_layout.inputs.push_back("in_" + std::to_string(i));
     machine.snapshot.inputs.assign(70, 0);
     machine.snapshot.inputs[69] = 5;
     machine.snapshot.alarms.resize(30);
@@ -209,7 +209,7 @@ TEST_F(LcmTest, WhoHoldsAnAxisIsPublishedAtEachChange) {
     ASSERT_EQ(of_x().size(), 1u);
     EXPECT_EQ(of_x()[0].held_by_stop, 0);
     std::array<std::byte, 8> hold{};
-    machine.layout_.blocks = {{"cell.hold", hold.data(), hold.size()}};
+    machine.its_layout.blocks = {{"cell.hold", hold.data(), hold.size()}};
     machine.snapshot.axes[0].owner = axes::Owner::program;
     machine.snapshot.axes[0].holder = hold.data();
     machine.snapshot.axes[0].lock = 9;

@@ -145,7 +145,7 @@ TEST_F(RequestsTest, AResetWithAnEmptyNameResetsNothing) {
 }
 
 TEST_F(RequestsTest, AParameterThatCountsTakesWholeNumbersOnly) {
-    machine.layout_.parameters[0].whole = true;
+    machine.its_layout.parameters[0].whole = true;
     EXPECT_EQ(code_for(R"({"id":1,"cmd":"set_parameter","parameter":"speed","value":20.5})"), "command.bad_value");
     EXPECT_TRUE(machine.submitted.empty());
     EXPECT_EQ(ask(R"({"id":2,"cmd":"set_parameter","parameter":"speed","value":20})")["ok"], true);
@@ -188,7 +188,7 @@ TEST_F(RequestsTest, StateCarriesNamesUnitsAndAlarmTexts) {
     machine.snapshot.axes[0].active_kind = axes::CommandKind::gear_in_pos;
     machine.snapshot.axes[1].lock = 7;
     std::array<std::byte, 64> pick{};  // a block: what of it submits lies somewhere inside
-    machine.layout_.blocks = {{"cell.pick", pick.data(), pick.size()}};
+    machine.its_layout.blocks = {{"cell.pick", pick.data(), pick.size()}};
     machine.snapshot.axes[0].holder = &pick[40];
     machine.snapshot.axes[1].holder = pick.data() + pick.size();
     machine.snapshot.alarms.resize(4);
@@ -242,7 +242,7 @@ TEST_F(RequestsTest, BeforeTheFirstCycleStateSaysHowTheStartGetsOn) {
 TEST_F(RequestsTest, ValuesThatAreNoNumbersDoNotBreakTheAnswer) {
     machine.snapshot.axes[0].actual_position = std::numeric_limits<double>::quiet_NaN();
     machine.snapshot.variables[0] = std::numeric_limits<double>::infinity();
-    machine.layout_.machine = "bro\xffken";
+    machine.its_layout.machine = "bro\xffken";
     const auto state = ask(R"({"id":1,"cmd":"state"})")["state"];
     EXPECT_EQ(state["axes"][0]["actual_position"], "NaN");
     EXPECT_EQ(state["variables"][0]["value"], "Infinity");

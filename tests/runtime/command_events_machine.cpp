@@ -357,7 +357,7 @@ TEST(ProgramDeclarations, WhatAProgramHasWrongIsToldBesideWhatTheFileHasWrong) {
     EXPECT_EQ(codes[1], "program.duplicate_name");
 }
 
-class Counting final : public Idle {
+struct Counting final : Idle {
     void declare(Declaration& d) override {
         Idle::declare(d);
         parts = d.parameter("parts", {.value = 3, .minimum = 0, .maximum = 10, .unit = "", .doc = "", .kind = ParameterKind::whole});

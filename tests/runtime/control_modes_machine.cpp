@@ -53,7 +53,7 @@ protected:
     bool pressed = false, aborted = false, in_target = false;
 };
 
-class VelocityThenMove final : public Moves {
+struct VelocityThenMove final : Moves {
     MC_MoveVelocity run;
     void first(TaskContext& ctx) override {
         run.Axis = x;
@@ -65,7 +65,7 @@ class VelocityThenMove final : public Moves {
     }
 };
 
-class TorqueThenMove final : public Moves {
+struct TorqueThenMove final : Moves {
     MC_TorqueControl push;
     void first(TaskContext& ctx) override {
         push.Axis = x;

@@ -13,7 +13,6 @@ using walk::fails;
 struct WalkCase {
     walk::Row row;
     double start;
-    // NOLINTNEXTLINE(readability-identifier-naming): GoogleTest looks for this name
     friend void PrintTo(const WalkCase& c, std::ostream* out) { *out << "method " << c.row.method << " from " << c.start; }
 };
 

@@ -96,9 +96,9 @@ static_assert(hash_of<moved::Tank> != reference && hash_of<renamed::Tank> != ref
 static_assert(hash_of<added::Tank> != reference && hash_of<turned::Tank> != reference && hash_of<hidden_state::Tank> != reference);
 
 TEST(AbiHash, IsAConstantOfTheTreeAndMoreThanTheBlocks) {
-    static_assert(abi_hash() == abi_hash());
-    EXPECT_NE(abi_hash(), fb::block_abi_hash);
-    EXPECT_NE(abi_hash(), 0u);
+    constexpr auto constant = abi_hash();  // of the tree
+    EXPECT_NE(constant, fb::block_abi_hash);
+    EXPECT_NE(constant, 0u);
 }
 
 TEST(AbiHash, DependsOnTheOrderOfBlocks) {
