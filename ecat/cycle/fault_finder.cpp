@@ -282,7 +282,7 @@ void FaultFinder::raise_slave(std::size_t at, bool counted_out) noexcept {
 
     // Probably one of those who are just being named.
     const bool waits = naming_ || (counted_out && seen.age < limit_ + naming_cycles);
-    if (stuck(seen)) {  // NOLINT(bugprone-branch-clone): the order decides, not the answers
+    if (stuck(seen)) {
         raise_left_op(at);
     } else if (seen.presence == Presence::silent) {
         // Only who exchanges in this very cycle has power and cable, and lost nothing but its address.

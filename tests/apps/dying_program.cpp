@@ -51,7 +51,7 @@ public:
 private:
     volatile int zero_ = 0, quotient_ = 0;
     int deeper(int depth) {  // NOLINT: this is the point
-        volatile char used[4096];
+        volatile char used[4096] = {};
         used[depth % 4096] = 1;
         return depth < 0 ? depth : deeper(depth + 1) + used[0];
     }

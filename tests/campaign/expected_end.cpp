@@ -16,7 +16,7 @@ constexpr bool in_bring_up(Phase phase) noexcept { return phase <= Phase::safeop
 /// The bring-up. A register access is repeated three times within some 60 ms; from SAFEOP on the SM watchdogs of 10 ms run, and
 /// a slave that falls back while OP is asked for ends the bring-up. Who loses its power or its address after the scan is missed.
 ExpectedEnd of_bring_up(FaultKind kind, Phase phase) {
-    const ExpectedEnd survives{};
+    ExpectedEnd survives{};
     ExpectedEnd either;
     either.failed = true;
     ExpectedEnd fails_for_good;  // or it was found out only in OP

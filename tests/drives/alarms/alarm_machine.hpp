@@ -93,7 +93,8 @@ public:
     /// The cause of this alarm begins; one of the whole drive concerns all of its axes.
     void provoke(const axes::DriveAlarmText& row) {
         if (auto* serial = serial_drive()) return serial->servo().provoke(row.code);
-        for (std::uint16_t i = 0; i < (row.whole_drive ? axis_count() : 1); ++i) EXPECT_TRUE(simulated(i)->provoke(row.panel));
+        const std::uint16_t concerned = row.whole_drive ? axis_count() : std::uint16_t{1};
+        for (std::uint16_t i = 0; i < concerned; ++i) EXPECT_TRUE(simulated(i)->provoke(row.panel));
     }
     void release(const axes::DriveAlarmText& row) {
         if (auto* serial = serial_drive()) return serial->servo().release();

@@ -150,6 +150,7 @@ TEST(SerialBlocks, WhatCannotWorkSaysNotSupported) {
         {"MC_CombineAxes", ErrorId::not_supported},
         // what the drive has not
         {"MC_SetControllerMode", ErrorId::not_supported},
+        {"MC_SetTorqueLimit", ErrorId::no_torque_limit},
         {"MC_WriteDigitalOutput", ErrorId::not_supported},
         {"MC_HomeAbsolute", ErrorId::not_supported},
         {"MC_StepDistanceCoded", ErrorId::not_supported},
