@@ -54,6 +54,9 @@ std::vector<Compilation> compilations() {
 TEST(UnitsOfCompilation, TheHeaviestStayBelowTheirBound) {
     auto all = compilations();
     if (all.empty()) GTEST_SKIP() << "not built by Ninja: what a file includes is not known";
+#ifdef __clang__
+    GTEST_SKIP() << "the bound is of builds by g++, whose headers are precompiled and not counted with each unit";
+#endif
     std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.lines > b.lines; });
     all.resize(std::min<std::size_t>(all.size(), 10));
     for (const auto& unit : all) std::printf("%8ld lines: %s\n", unit.lines, unit.object.c_str());
