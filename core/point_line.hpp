@@ -52,7 +52,7 @@ private:
 /// What a point says in this cycle.
 struct PointValue {
     double value = 0;   ///< in its unit, filtered where it has a filter
-    bool good = false;  ///< its slave was exchanged, its terminal reports no error, it lies within its limits
+    bool good = false;  ///< its slave was exchanged, its terminal reports no error, it is a finite number within its limits
 };
 
 }  // namespace taktwerk

@@ -108,6 +108,11 @@ private:
                                 : event.kind == Kind::slave_power                            ? slaves_
                                 : event.kind == Kind::serial_line                            ? lines
                                                                                              : axes_;
+            const auto point = std::ranges::find(config_.io, event.target, &IoPoint::name);
+            if (event.kind == Kind::input_fault && point != config_.io.end() && point->status.empty())
+                problems_.add("simulation.no_status", "simulation.events",
+                              fmt::format("the terminal of '{}' reports no errors of it: nothing would happen", event.target),
+                              "let the slave lose its power (`slave_power_off`), or set the value itself (`input`)");
             if (!has(known, event.target))
                 problems_.unknown("simulation.unknown_target", "simulation.events", "target", event.target, known);
         }

@@ -127,7 +127,8 @@ void IoImage::judge(std::size_t input, std::span<const std::byte> image, const e
         if (trouble == Trouble::none && p.config.limits) trouble = beyond(*p.config.limits, shown.value, troubles_[input]);
         troubles_[input] = trouble;
     }
-    shown.good = p.seen && slave.age == 0 && troubles_[input] == Trouble::none;  // between the turns of a slower sync unit it stays so
+    // A real number that is none (NaN, infinite) is no value. Between the turns of a slower sync unit it stays so.
+    shown.good = p.seen && slave.age == 0 && troubles_[input] == Trouble::none && std::isfinite(value);
 }
 
 void IoImage::write(std::span<std::byte> image) noexcept {

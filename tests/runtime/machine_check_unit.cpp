@@ -129,6 +129,17 @@ TEST(MachineCheck, AnIoPointOnAnUnknownSlave) {
     EXPECT_EQ(problem([](MachineConfig& m) { m.io[1].slave = "oi"; }).code, "io.unknown_slave");
 }
 
+TEST(MachineCheck, AFaultOfAnInputWhoseTerminalReportsNone) {
+    auto config = machine_config(1);
+    using Kind = SimulationEvent::Kind;
+    config.simulation.events = {{std::chrono::seconds{1}, Kind::input_fault, "button", 1}};
+    const auto errors = check(config);
+    ASSERT_EQ(errors.size(), 1u);
+    EXPECT_EQ(errors[0].code, "simulation.no_status");
+    std::ranges::find(config.io, "button", &IoPoint::name)->status = {{PointStatus::Kind::error, 0x6000, 7}};
+    EXPECT_TRUE(check(config).empty());
+}
+
 TEST(MachineCheck, NamesAreUsedOnceAndNotEmpty) {
     EXPECT_EQ(problem([](MachineConfig& m) { m.axes[1].axis.name = "x"; }).code, "config.duplicate_name");
     EXPECT_EQ(problem([](MachineConfig& m) { m.io[1].name = "estop_ok"; }).code, "config.duplicate_name");

@@ -87,6 +87,14 @@ TEST(Points, AnInputIsShownInItsUnit) {
     m.run(5ms);
     EXPECT_DOUBLE_EQ(input(m, "pressure").value, -0.001) << "signed 16 bits";
     EXPECT_DOUBLE_EQ(input(m, "mass").value, -12.5);
+    EXPECT_TRUE(input(m, "mass").good);
+    m.world.set_input_value("mass", std::bit_cast<std::int32_t>(std::numeric_limits<float>::quiet_NaN()));
+    m.run(5ms);
+    EXPECT_FALSE(input(m, "mass").good) << "no number, and no limits that would catch it";
+    m.world.set_input_value("mass", std::bit_cast<std::int32_t>(3.0f));
+    m.run(5ms);
+    EXPECT_DOUBLE_EQ(input(m, "mass").value, 3);
+    EXPECT_TRUE(input(m, "mass").good);
 }
 
 TEST(Points, AnOutputTakesItsUnitRoundsAndRefusesWhatTheTerminalCannotHold) {
