@@ -18,7 +18,7 @@ namespace {
 using runtime::IoDirection;
 using testing::HasSubstr;
 
-const std::string source = TAKTWERK_SOURCE_DIR;
+const std::string tree = TAKTWERK_SOURCE_DIR;
 
 std::string one_line_each(const std::vector<Error>& errors) {
     std::string out;
@@ -27,14 +27,14 @@ std::string one_line_each(const std::vector<Error>& errors) {
 }
 
 std::vector<std::string> shipped() {
-    auto names = file_names({source + "/config/devices"});
+    auto names = file_names({tree + "/config/devices"});
     for (auto& name : names) std::ranges::replace(name, '-', '_');  // what GoogleTest takes for a name
     return names;
 }
 
 std::string path_of(std::string name) {
-    if (!std::filesystem::exists(source + "/config/devices/" + name + ".yaml")) std::ranges::replace(name, '_', '-');
-    return source + "/config/devices/" + name + ".yaml";
+    if (!std::filesystem::exists(tree + "/config/devices/" + name + ".yaml")) std::ranges::replace(name, '_', '-');
+    return tree + "/config/devices/" + name + ".yaml";
 }
 
 LoadedDevice load_or_fail(const std::string& path) {
@@ -71,7 +71,7 @@ TEST_P(ShippedDevice, LoadsAndEveryChannelLiesInItsProcessData) {
 INSTANTIATE_TEST_SUITE_P(All, ShippedDevice, testing::ValuesIn(shipped()), [](const auto& info) { return info.param; });
 
 TEST(Devices, AChannelKnowsWhereItLiesAndWhatItsNumberMeans) {
-    const auto device = load_or_fail(source + "/config/devices/el3064.yaml");
+    const auto device = load_or_fail(tree + "/config/devices/el3064.yaml");
     const auto* second = find_channel(device, IoDirection::input, "2");
     ASSERT_NE(second, nullptr);
     EXPECT_EQ(second, find_channel(device, IoDirection::input, "ai2"));
@@ -118,8 +118,8 @@ TEST(Devices, WhatIsWrongInAFileIsSaidWithItsPlace) {
 /// The points of a machine with el3064 as `ai` and el4034 as `ao`.
 LoadResult machine_with(const std::string& io) {
     LoadOptions options;
-    options.device_dirs = {source + "/config/devices"};
-    options.drive_dirs = {source + "/config/drives"};
+    options.device_dirs = {tree + "/config/devices"};
+    options.drive_dirs = {tree + "/config/drives"};
     return load_machine_text("probe.yaml",
                              "version: 1\nname: probe\ncycle: 1 ms\nbus:\n  interface: simulated\n  slaves:\n"
                              "    - { name: ai, device: el3064 }\n    - { name: ao, device: el4034 }\nio:\n" +
@@ -186,8 +186,8 @@ TEST(PointsOfDevices, WhatDoesNotFitIsRefusedWithItsPlace) {
 
 TEST(PointsOfDevices, AnUnknownDeviceIsSaidWithTheNearest) {
     LoadOptions options;
-    options.device_dirs = {source + "/config/devices"};
-    options.drive_dirs = {source + "/config/drives"};
+    options.device_dirs = {tree + "/config/devices"};
+    options.drive_dirs = {tree + "/config/drives"};
     const auto errors = [&](const std::string& device) {
         auto loaded = load_machine_text(
             "probe.yaml",

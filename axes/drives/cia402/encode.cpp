@@ -198,8 +198,7 @@ void Cia402Drive::write_limits(std::span<std::byte> image, const DriveCommand& c
 void Cia402Drive::ask_torque_limits(const DriveCommand& command) noexcept {
     const auto raw = [&](double limit) {
         constexpr double most = 1e9;
-        return std::isfinite(limit) ? static_cast<std::int64_t>(std::min(limit * profile_->torque_rated_raw, most) + 0.5)
-                                    : TorqueLimitWriter::no_limit;
+        return std::isfinite(limit) ? std::lround(std::min(limit * profile_->torque_rated_raw, most)) : TorqueLimitWriter::no_limit;
     };
     TorqueLimitWriter::Values wanted{raw(command.torque_limit_positive), raw(command.torque_limit_negative)};
     if (!capabilities_.torque_limit_per_direction)

@@ -6,7 +6,7 @@
 namespace taktwerk::axes::test {
 namespace {
 
-AxisCommand torque(double value) { return {.kind = CommandKind::torque, .details = TorqueDetails{value, 0}}; }
+AxisCommand torque_of(double value) { return {.kind = CommandKind::torque, .details = TorqueDetails{value, 0}}; }
 
 /// Several axes with a jerk limit: 100 u/s, 1000 u/s2, 20000 u/s3.
 std::vector<AxisConfig> jerked(std::size_t count) { return std::vector<AxisConfig>(count, plain_axis()); }
@@ -39,7 +39,7 @@ TEST(Seams, NothingIsSuperimposedOnATorque) {
     rig.power_on();
     rig.accept(at_velocity(20));
     rig.run(200);
-    rig.accept(torque(0.1));
+    rig.accept(torque_of(0.1));
     rig.step();
     ASSERT_NE(rig.view().drive_mode, DriveMode::cyclic_torque);
     EXPECT_EQ(rig.refuse(on_top(5, 10)), ErrorId::state_forbids);
@@ -56,7 +56,7 @@ TEST(Seams, AnAdditionHaltsBeforeATorque) {
     rig.accept(absolute(20, 50));
     rig.run(200);
     const auto addition = rig.accept(on_top(60, 20));
-    auto command = torque(0.1);
+    auto command = torque_of(0.1);
     command.buffer_mode = mcBuffered;
     const auto push = rig.accept(command);
     ASSERT_TRUE(rig.run_until([&] { return rig.status(push) == CommandStatus::active; }, 1000));
