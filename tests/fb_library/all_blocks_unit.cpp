@@ -73,6 +73,8 @@ const std::map<std::string, std::string>& other_documents() {
         {"MC_MoveModulo",
          "Axis | Execute Position Velocity Acceleration Deceleration Jerk Direction BufferMode | "
          "Done Busy Active CommandAborted Error ErrorID"},
+        // our own, in the form of Part 1's MC_HaltSuperimposed
+        {"MC_HaltPhasing", "Slave | Execute Deceleration Jerk | Done Busy CommandAborted Error ErrorID"},
         // our own, in the form of Part 1's MC_ReadActualPosition
         {"MC_ReadCommandPosition", "Axis | Enable | Valid Busy Error ErrorID Position"},
         {"MC_ReadCommandVelocity", "Axis | Enable | Valid Busy Error ErrorID Velocity"},

@@ -148,7 +148,8 @@ private:
             case CommandKind::move_superimposed:
             case CommandKind::halt_superimposed: return SideSlot::superimposed;
             case CommandKind::phasing_absolute:
-            case CommandKind::phasing_relative: return SideSlot::phasing;
+            case CommandKind::phasing_relative:
+            case CommandKind::halt_phasing: return SideSlot::phasing;
             case CommandKind::touch_probe: {
                 const auto source = std::get<axes::ProbeDetails>(command.details).trigger.source;
                 return source == axes::TriggerSource::probe2 ? SideSlot::probe2 : SideSlot::probe1;

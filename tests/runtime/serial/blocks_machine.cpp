@@ -147,6 +147,7 @@ TEST(SerialBlocks, WhatCannotWorkSaysNotSupported) {
         {"MC_GearInPos", ErrorId::not_supported},
         {"MC_PhasingAbsolute", ErrorId::not_supported},
         {"MC_PhasingRelative", ErrorId::not_supported},
+        {"MC_HaltPhasing", ErrorId::not_supported},
         {"MC_CombineAxes", ErrorId::not_supported},
         // what the drive has not
         {"MC_SetControllerMode", ErrorId::not_supported},
