@@ -15,6 +15,7 @@
 #include "apps/terminal/count_text.hpp"
 #include "apps/terminal/exit_code.hpp"
 #include "apps/terminal/print_error.hpp"
+#include "axes/axis/error_reaction.hpp"
 #include "axes/port/drive_scale.hpp"
 #include "axes/port/parameter_text.hpp"
 #include "runtime/check/drive_hazards.hpp"
@@ -109,6 +110,18 @@ std::vector<std::string> scale_sentences(const runtime::AxisBinding& binding) {
     return out;
 }
 
+/// What the file chose otherwise than the alarm tables.
+std::vector<std::string> reaction_sentences(const axes::AxisConfig& axis) {
+    std::vector<std::string> out;
+    for (const auto& row : axes::reaction_bounds::rows) {
+        const auto chosen = axis.reactions.chosen(row.alarm);
+        if (chosen == axes::ErrorReaction::by_table) continue;
+        out.push_back(fmt::format("on {}: {} (without `reactions`: {})", find_alarm(axes::axis_alarms, axes::id(row.alarm))->name,
+                                  axes::word_of(chosen).text, axes::word_of(axes::reaction_by_table(row.alarm)).text));
+    }
+    return out;
+}
+
 void print_axis(const MachineConfig& config, const runtime::AxisBinding& binding) {
     const auto& axis = binding.axis;
     const auto& u = axis.unit;
@@ -129,6 +142,7 @@ void print_axis(const MachineConfig& config, const runtime::AxisBinding& binding
                homing_text(axis.homing), axis.manual.slow > 0 ? axis.manual.slow : axis.limits.velocity * 0.05,
                axis.manual.fast > 0 ? axis.manual.fast : axis.limits.velocity * 0.25, u, u, axis.gearing.counts_per_unit());
     for (const auto& sentence : scale_sentences(binding)) fmt::print("           {}\n", sentence);
+    for (const auto& sentence : reaction_sentences(axis)) fmt::print("           {}\n", sentence);
     fmt::print("           if the master is gone:\n");
     for (const auto& sentence : master_gone(config, binding)) fmt::print("             {}\n", sentence);
 }
@@ -217,6 +231,7 @@ Json summary_json(const MachineConfig& config, const runtime::MachineLayout& lay
                             {"motor_rpm", runtime::motor_rpm(axis, axis.limits.velocity)},
                             {"homing", homing_text(axis.homing)},
                             {"scale", scale_sentences(binding)},
+                            {"reactions", reaction_sentences(axis)},
                             {"master_gone", master_gone(config, binding)},
                             {"assumed", binding.profile ? binding.profile->assumed : std::vector<std::string>{}}});
     }

@@ -94,9 +94,11 @@ void take_feedback(AxisCore& axis, const DriveFeedback& from_drive) noexcept {
 void watch_following(AxisCore& axis, double actual) noexcept {
     if (axis.runs.motor_leads() || axis.modes.phase != ModePhase::steady) {
         axis.following.rest();  // in torque the set-point follows the motor
-    } else if (axis.following.watch(axis.measured, axis.motion.now, actual, axis.runs.step.presses()) &&
-               axis.body.state != AxisState::ErrorStop) {
-        axis.conduct.fail(AxisAlarm::following_error, axis.following.error(), axis.body.config.following.window);
+    } else if (axis.following.watch(axis.measured, axis.motion.now, actual, axis.runs.step.presses())) {
+        if (axis.body.state != AxisState::ErrorStop)
+            axis.conduct.fail(AxisAlarm::following_error, axis.following.error(), axis.body.config.following.window);
+    } else if (!axis.body.alarms.active().empty() && axis.measured.feedback.fresh) {
+        axis.conduct.warning_is_over(AxisAlarm::following_error);
     }
 }
 

@@ -140,6 +140,28 @@ void check_compensation(Problems& problems, const CompensationConfig& compensati
     }
 }
 
+void check_reactions(Problems& problems, const ErrorReactions& reactions) {
+    for (const auto& info : axis_alarms) {
+        const auto alarm = static_cast<AxisAlarm>(info.id);
+        const auto chosen = reactions.chosen(alarm);
+        if (chosen == ErrorReaction::by_table) continue;
+        const auto field = "reactions." + std::string(info.name);
+        const auto* bound = bound_of(alarm);
+        if (!bound) {
+            problems.add(field, "is not chosen at an axis: it is the whole machine's, or comes before the axis does anything", "Remove it");
+        } else if (chosen < bound->mildest) {
+            std::string permitted;
+            for (const auto& word : reaction_words)
+                if (word.reaction >= bound->mildest) permitted += (permitted.empty() ? "`" : ", `") + std::string(word.name) + "`";
+            problems.add(
+                field,
+                "may not be answered by `" + std::string(word_of(chosen).name) + "`: " + std::string(bound->because) +
+                    " (something harder than the table's is always permitted, something milder is not)",
+                "Choose one of " + permitted + ", or leave it out for `" + std::string(word_of(reaction_by_table(alarm)).name) + "`");
+        }
+    }
+}
+
 }  // namespace
 
 std::vector<Error> check(const AxisConfig& config) {
@@ -151,6 +173,7 @@ std::vector<Error> check(const AxisConfig& config) {
     check_homing(problems, config.homing, config.limits);
     check_control(problems, config.control);
     check_compensation(problems, config.compensation);
+    check_reactions(problems, config.reactions);
     problems.not_negative("defaults.acceleration", config.defaults.acceleration, "the limit");
     problems.not_negative("defaults.deceleration", config.defaults.deceleration, "the limit");
     problems.not_negative("defaults.jerk", config.defaults.jerk, "the limit");

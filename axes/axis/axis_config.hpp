@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "axes/axis/error_reaction.hpp"
 #include "axes/homing/coded_marks.hpp"
 #include "core/result.hpp"
 #include "core/time.hpp"
@@ -136,6 +137,7 @@ struct AxisConfig {
     PositionMemory memory;
     ManualSpeeds manual;
     CompensationConfig compensation;
+    ErrorReactions reactions;       ///< to its alarms, where others are chosen than those of the alarm table
     bool require_homed = true;      ///< absolute moves need a homed axis
     bool disabled = false;          ///< left out while commissioning: its drive is never enabled
     bool encoder = false;           ///< only measures: no drive to enable, takes no motion, may be a master (limits.velocity: its fastest)

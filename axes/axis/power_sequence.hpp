@@ -23,6 +23,8 @@ public:
         bool aligned = false;  ///< set-point equals the actual position: needed before power is asked for
         bool online = false;
         bool mode_confirmed = false;
+        bool drive_stops = false;  ///< by itself, before its power goes
+        bool stands = false;
         PowerState drive = PowerState::unknown;
         Instant now{};
     };
@@ -31,6 +33,7 @@ public:
 
     Event step(const Input& in) noexcept {
         const bool enabled = in.online && in.drive == PowerState::enabled;
+        quick_ = in.drive_stops && (in.drive == PowerState::enabled || (in.drive == PowerState::quick_stop && !in.stands));
         switch (phase_) {
             case Phase::off:
                 // A bus that is not up yet is not the drive's delay: time runs from when the drive can be asked.
@@ -69,9 +72,12 @@ public:
 
     [[nodiscard]] Phase phase() const noexcept { return phase_; }
     [[nodiscard]] bool on() const noexcept { return phase_ == Phase::on; }
+    /// The drive is in, or on its way into, a quick stop that was asked for: its power must not go before it stands.
+    [[nodiscard]] bool quick_stops() const noexcept { return quick_; }
     /// The drive takes no set-point, so the set-point follows the actual position.
     [[nodiscard]] bool follows_actual() const noexcept { return phase_ == Phase::off || phase_ == Phase::enabling; }
     [[nodiscard]] PowerRequest request() const noexcept {
+        if (quick_) return PowerRequest::quick_stop;
         return phase_ == Phase::off || phase_ == Phase::switching_off ? PowerRequest::off : PowerRequest::on;
     }
 
@@ -89,6 +95,7 @@ private:
     Duration dwell_, timeout_;
     Phase phase_ = Phase::off;
     bool waiting_ = false;
+    bool quick_ = false;
     Instant since_{};
 };
 

@@ -298,6 +298,29 @@ Table<axes::CompensationConfig> compensation_table() {
             {}};
 }
 
+/// A key for each alarm whose reaction may be chosen; how far, `check` of the axis says with the reason.
+Table<axes::ErrorReactions> reactions_table() {
+    using R = axes::ErrorReactions;
+    Table<R> table{
+        "reactions",
+        "What the axis does about its own alarms, by their names in docs/reference/alarms.md. Something harder than usual is always "
+        "permitted, something milder only where that page says so.",
+        {},
+        {},
+        {}};
+    std::vector<std::pair<std::string, axes::ErrorReaction>> words;
+    for (const auto& word : axes::reaction_words) words.emplace_back(word.name, word.reaction);
+    for (const auto& info : axes::axis_alarms) {
+        const auto alarm = static_cast<axes::AxisAlarm>(info.id);
+        if (axes::bound_of(alarm) == nullptr) continue;
+        table.fields.push_back(field_via<R>(
+            std::string(info.name), choice<axes::ErrorReaction>(words),
+            [alarm](R& r, const axes::ErrorReaction& chosen) { r.choose(alarm, chosen); }, "reaction to this alarm",
+            std::string(axes::word_of(axes::reaction_by_table(alarm)).name)));
+    }
+    return table;
+}
+
 /// The axis' own unit, which all its quantities are read in.
 Codec<std::string> axis_unit() {
     Codec<std::string> c;
@@ -346,6 +369,7 @@ Table<AxisBinding> axis_table() {
         field("manual", &A::manual, section(manual_table()), "jogging speeds"),
         field("control", &A::control, section(control_table()), "position loop and feed-forward"),
         field("compensation", &A::compensation, section(compensation_table()), "backlash and pitch errors"),
+        field("reactions", &A::reactions, section(reactions_table()), "to its own alarms, where others than usual are wanted"),
         field("require_homed", &A::require_homed, boolean(), "absolute moves need a homed axis"),
         field("disabled", &A::disabled, boolean(), "left out while commissioning: its drive is never enabled"),
         field("encoder", &A::encoder, boolean(),

@@ -61,6 +61,7 @@ public:
         for (const auto& binding : config_.axes) {
             const auto subject = fmt::format("axes.{}", binding.axis.name);
             for (auto& error : axes::check(binding.axis)) errors_.push_back(std::move(error));
+            check_reactions(binding, subject);
             if (!binding.drive.empty()) continue;  // see check_serial
             if (binding.slave.empty()) check_virtual(binding, subject);
             else if (has_place(binding, subject)) check_on_drive(binding, subject);
@@ -74,6 +75,22 @@ private:
                           "name the `slave` whose position is meant, or remove `encoder`");
         if (binding.axis.homing.kind != axes::HomingKind::none && binding.axis.homing.kind != axes::HomingKind::set_here)
             problems_.add("axis.homing", subject + ".homing", "a virtual axis (without `slave`) has no switches", "use `kind: set_here`");
+    }
+
+    /// What nobody would carry out: there is no drive, or one on a serial line, which always ramps first.
+    void check_reactions(const AxisBinding& binding, const std::string& subject) {
+        const bool on_line = !binding.drive.empty(), is_virtual = !on_line && binding.slave.empty();
+        if (!on_line && !is_virtual) return;
+        for (const auto& row : axes::reaction_bounds::rows) {
+            const auto chosen = binding.axis.reactions.chosen(row.alarm);
+            const bool quick = chosen == axes::ErrorReaction::quick_stop, off = chosen == axes::ErrorReaction::power_off;
+            if (!quick && !(off && on_line)) continue;
+            problems_.add("axis.reaction",
+                          fmt::format("{}.reactions.{}", subject, find_alarm(axes::axis_alarms, axes::id(row.alarm))->name),
+                          is_virtual ? "a virtual axis (without `slave`) has no drive that could stop it"
+                                     : "a drive on a serial line has no quick stop of its own, and ramps before its power goes",
+                          "choose `ramp_then_off`");
+        }
     }
 
     /// A slave with a profile, and an axis of it that nobody else has.

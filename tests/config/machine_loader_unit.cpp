@@ -271,6 +271,18 @@ TEST(MachineLoader, AnAxisHasItsPositionLoopCompensationAndMemory) {
     EXPECT_TRUE(machine.axes[2].axis.encoder);
 }
 
+TEST(MachineLoader, AnAxisHasItsReactions) {
+    using axes::AxisAlarm;
+    using axes::ErrorReaction;
+    const auto machine = must_load(source + "/tests/config/good/axes.yaml").machine;
+    const auto& chosen = machine.axes.at(0).axis.reactions;
+    EXPECT_EQ(chosen.chosen(AxisAlarm::following_error), ErrorReaction::quick_stop);
+    EXPECT_EQ(chosen.chosen(AxisAlarm::drive_warning), ErrorReaction::ramp_stop);
+    EXPECT_EQ(chosen.chosen(AxisAlarm::master_lost), ErrorReaction::stop_machine);
+    EXPECT_EQ(chosen.chosen(AxisAlarm::drive_fault), ErrorReaction::by_table);
+    EXPECT_EQ(machine.axes.at(1).axis.reactions.chosen(AxisAlarm::following_error), ErrorReaction::by_table);
+}
+
 TEST(MachineLoader, EachKindOfHomingHasItsValues) {
     const auto machine = must_load(source + "/tests/config/good/axes.yaml").machine;
     ASSERT_EQ(machine.axes.size(), 4u);

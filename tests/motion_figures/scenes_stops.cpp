@@ -69,8 +69,45 @@ Figure stop() {
     return stage.figure("stop");
 }
 
+/// The same drive warning at the same speed, answered in three ways.
+Figure reactions() {
+    using axes::ErrorReaction;
+    std::vector<axes::AxisConfig> configs;
+    for (const auto reaction : {ErrorReaction::ramp_then_off, ErrorReaction::quick_stop, ErrorReaction::power_off}) {
+        configs.push_back(Stage::linear(std::string(axes::word_of(reaction).name)));
+        configs.back().limits.stop_deceleration = 200;
+        configs.back().reactions.choose(axes::AxisAlarm::drive_warning, reaction);
+    }
+    Stage stage{configs};
+    MC_MoveVelocity run[3];
+    for (std::uint16_t i = 0; i < 3; ++i) {
+        run[i].Axis = Stage::ref(i);
+        run[i].Velocity = 80, run[i].Acceleration = 400;
+        run[i].Execute = true;
+        stage.drive(i).quick_stop_deceleration = 800 * mm;
+    }
+    double coasts = 0;  // mm/s: friction alone slows the motor without power
+    stage.before = [&](const MotionContext& ctx) {
+        for (auto& block : run) block(ctx);
+        const auto& off = stage.view(2);
+        if (off.drive_state == axes::PowerState::enabled) coasts = off.actual_velocity;
+        else coasts = std::max(0.0, coasts - 60 * 1e-3);
+        stage.drive(2).coasting = off.drive_state == axes::PowerState::enabled ? 0 : coasts * mm * 1e-3;
+    };
+    for (std::uint16_t i = 0; i < 3; ++i)
+        stage.signal("power: " + configs[i].name, [&stage, i] { return stage.view(i).drive_state == axes::PowerState::enabled; });
+    stage.show("actual velocity", "mm/s", 140,
+               {{0, Quantity::actual_velocity, Ink::owner, configs[0].name},
+                {1, Quantity::actual_velocity, Ink::master, configs[1].name},
+                {2, Quantity::actual_velocity, Ink::actual, configs[2].name}});
+    stage.run(400ms);
+    for (std::uint16_t i = 0; i < 3; ++i) stage.drive(i).warning = true;
+    stage.run(1600ms);
+    return stage.figure("reactions");
+}
+
 }  // namespace
 
-std::vector<Figure> stops() { return {halt(), stop()}; }
+std::vector<Figure> stops() { return {halt(), stop(), reactions()}; }
 
 }  // namespace taktwerk::figures

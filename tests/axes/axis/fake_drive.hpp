@@ -37,9 +37,11 @@ public:
     bool resettable = true;
     std::uint16_t epoch = 0;
     bool warning = false;
-    bool blocked = false;  ///< the motor does not move
-    std::int64_t lag = 0;  ///< counts the motor stays behind
-    double coasting = 0;   ///< counts per cycle while without power
+    bool blocked = false;                  ///< the motor does not move
+    std::int64_t lag = 0;                  ///< counts the motor stays behind
+    double coasting = 0;                   ///< counts per cycle while without power
+    double quick_stop_deceleration = 5e6;  ///< counts/s2 (6085h); then it is without power (605Ah = 2), ...
+    bool quick_stop_stays = false;         ///< ... or holds (605Ah = 6)
     bool switches = false;
     std::int64_t home_low = 0, home_high = 0;  ///< home switch on between
     std::int64_t negative_end = std::numeric_limits<std::int64_t>::min(), positive_end = std::numeric_limits<std::int64_t>::max();
@@ -143,6 +145,8 @@ private:
         if (fault_code != 0) power = PowerState::fault;
         else if (power == PowerState::fault) {
             if (last.reset_fault) power = PowerState::disabled;
+        } else if (last.power == PowerRequest::quick_stop && (power == PowerState::enabled || power == PowerState::quick_stop)) {
+            power = power == PowerState::quick_stop && velocity_ == 0 && !quick_stop_stays ? PowerState::disabled : PowerState::quick_stop;
         } else if (last.power == PowerRequest::off || refuses_power) {
             power = PowerState::disabled;
             ticks_ = 0;
@@ -172,7 +176,10 @@ private:
     [[nodiscard]] bool by_torque() const { return mode_ == DriveMode::cyclic_torque || mode_ == DriveMode::profile_torque; }
     void step_motor(Instant now) {
         const double before = position;
-        if (power != PowerState::enabled) position += coasting;
+        if (power == PowerState::quick_stop) {
+            velocity_ -= std::copysign(std::min(std::abs(velocity_), quick_stop_deceleration * to_seconds(cycle)), velocity_);
+            position += velocity_ * to_seconds(cycle);
+        } else if (power != PowerState::enabled) position += coasting;
         else if (mode_ == DriveMode::homing) step_homing();
         else if (by_torque()) {
             if (profiled()) (void)profile.step(mode_, last, position, to_seconds(cycle));
