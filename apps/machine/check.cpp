@@ -110,6 +110,16 @@ std::vector<std::string> scale_sentences(const runtime::AxisBinding& binding) {
     return out;
 }
 
+/// Who works the holding brake, where it is not the drive.
+std::string brake_sentence(const runtime::AxisBinding& binding) {
+    const auto& brake = binding.axis.brake;
+    if (brake.by == axes::BrakeBy::drive) return {};
+    return fmt::format("brake by the controller, {}: motion waits {:g} ms until it is open, power {:g} ms until it holds{}",
+                       brake.by == axes::BrakeBy::object ? "through 60FEh of the drive" : "output " + binding.brake_output,
+                       to_seconds(brake.release) * 1e3, to_seconds(brake.engage) * 1e3,
+                       brake.release_without_power ? "; MC_SetBrake may open it without power" : "");
+}
+
 /// What the file chose otherwise than the alarm tables.
 std::vector<std::string> reaction_sentences(const axes::AxisConfig& axis) {
     std::vector<std::string> out;
@@ -143,6 +153,7 @@ void print_axis(const MachineConfig& config, const runtime::AxisBinding& binding
                axis.manual.fast > 0 ? axis.manual.fast : axis.limits.velocity * 0.25, u, u, axis.gearing.counts_per_unit());
     for (const auto& sentence : scale_sentences(binding)) fmt::print("           {}\n", sentence);
     for (const auto& sentence : reaction_sentences(axis)) fmt::print("           {}\n", sentence);
+    if (const auto brake = brake_sentence(binding); !brake.empty()) fmt::print("           {}\n", brake);
     fmt::print("           if the master is gone:\n");
     for (const auto& sentence : master_gone(config, binding)) fmt::print("             {}\n", sentence);
 }
@@ -232,6 +243,7 @@ Json summary_json(const MachineConfig& config, const runtime::MachineLayout& lay
                             {"homing", homing_text(axis.homing)},
                             {"scale", scale_sentences(binding)},
                             {"reactions", reaction_sentences(axis)},
+                            {"brake", brake_sentence(binding)},
                             {"master_gone", master_gone(config, binding)},
                             {"assumed", binding.profile ? binding.profile->assumed : std::vector<std::string>{}}});
     }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include "axes/axis/rational.hpp"
 
@@ -140,6 +141,17 @@ void check_compensation(Problems& problems, const CompensationConfig& compensati
     }
 }
 
+void check_brake(Problems& problems, const BrakeConfig& brake) {
+    using namespace std::chrono_literals;
+    constexpr Duration longest = 5s;  // whoever needs more has another trouble
+    for (const auto& [field, time] : {std::pair{"brake.release", brake.release}, std::pair{"brake.engage", brake.engage}})
+        if (time < Duration::zero() || time > longest)
+            problems.add(field, "must be from 0 to 5 s", "Give the time from the brake's data sheet");
+    if (brake.by == BrakeBy::drive && (brake.release > Duration::zero() || brake.engage > Duration::zero() || brake.release_without_power))
+        problems.add("brake.by", "is `drive`: the drive works the brake with times of its own",
+                     "Choose `object` or `output` where the controller works it; else set the times in the drive and remove this section");
+}
+
 void check_reactions(Problems& problems, const ErrorReactions& reactions) {
     for (const auto& info : axis_alarms) {
         const auto alarm = static_cast<AxisAlarm>(info.id);
@@ -173,6 +185,7 @@ std::vector<Error> check(const AxisConfig& config) {
     check_homing(problems, config.homing, config.limits);
     check_control(problems, config.control);
     check_compensation(problems, config.compensation);
+    check_brake(problems, config.brake);
     check_reactions(problems, config.reactions);
     problems.not_negative("defaults.acceleration", config.defaults.acceleration, "the limit");
     problems.not_negative("defaults.deceleration", config.defaults.deceleration, "the limit");

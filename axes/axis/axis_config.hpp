@@ -123,6 +123,20 @@ struct CompensationConfig {
     std::vector<PitchPoint> pitch;  ///< positions rise; corrected positions too. Active once homed
 };
 
+/// Who works the holding brake.
+enum class BrakeBy : std::uint8_t {
+    drive,   ///< the drive by itself, or there is none
+    object,  ///< the controller, through an object of the drive (60FEh)
+    output,  ///< the controller, through an output of the machine
+};
+
+struct BrakeConfig {
+    BrakeBy by = BrakeBy::drive;
+    Duration release{};                  ///< from the word to open it until it is open: motion waits for it
+    Duration engage{};                   ///< from the word to close it until it holds: power waits for it
+    bool release_without_power = false;  ///< MC_SetBrake may open it while nothing else holds the load
+};
+
 struct AxisConfig {
     std::string name;
     std::string unit = "mm";
@@ -137,6 +151,7 @@ struct AxisConfig {
     PositionMemory memory;
     ManualSpeeds manual;
     CompensationConfig compensation;
+    BrakeConfig brake;
     ErrorReactions reactions;       ///< to its alarms, where others are chosen than those of the alarm table
     bool require_homed = true;      ///< absolute moves need a homed axis
     bool disabled = false;          ///< left out while commissioning: its drive is never enabled

@@ -36,6 +36,7 @@ bool AxisPower::run() noexcept {
                                          .mode_confirmed = measured_.feedback.mode == modes_.wanted() || runs_.drive.busy(),
                                          .drive_stops = conduct_.drive_stops() && body_.emergency != EmergencyStop::power_off_now,
                                          .stands = measured_.stands(),
+                                         .at_once = body_.emergency == EmergencyStop::power_off_now || conduct_.off_at_once(),
                                          .drive = measured_.feedback.power,
                                          .now = body_.now});
     if (body_.power.phase() == PowerSequence::Phase::off) conduct_.power_is_off();

@@ -25,6 +25,7 @@ struct AxisView {
     bool online = false;       ///< feedback is fresh enough
     bool in_position = false;  ///< actual inside the in-position window of the set-point, standstill
     bool warning = false;
+    BrakeState brake = BrakeState::not_controlled;
     std::uint16_t error = 0;              ///< alarm id while in ErrorStop (or ErrorId of the last error); 0 = none
     std::uint16_t drive_error = 0;        ///< drive's own number (603Fh); 0 = none
     bool resetting = false;               ///< a reset waits for the drive or for standstill

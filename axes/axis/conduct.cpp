@@ -142,6 +142,7 @@ void Conduct::give_way(const AxisCommand& command) noexcept {
 
 void Conduct::change_hands(Owner owner) noexcept {
     body_.owner = owner;
+    body_.brake.let_go();
     body_.permit_positive = body_.permit_negative = true;
     if (body_.state == AxisState::Disabled) body_.queue.finish_waiting(Outcome::aborted);  // for power that another party wanted
     const bool commanded = body_.queue.has_active() || body_.queue.waiting() > 0 || body_.lock != 0 || moves();

@@ -253,6 +253,14 @@ inline constexpr std::array<ErrorText, error_id_count> error_texts{{
      {"The drive did not take a set-point of its own profile", "It did not acknowledge the set-point (statusword bit 12), or refused the speed or a ramp written before it",
       "Check the alarms of the drive, its profile objects (6081h, 6083h, 6084h, 6087h) and that its mode is the profile's"},
      {"驱动器未接受其自身轨迹的设定值", "驱动器未应答设定值（状态字第 12 位），或拒绝了此前写入的速度或斜坡", "检查驱动器报警、轨迹对象（6081h、6083h、6084h、6087h）以及当前模式"}},
+    {ErrorId::brake_not_controlled, "brake_not_controlled",
+     {"The controller does not work the brake of this axis", "The drive works its holding brake by itself with its power, or the axis has none; the machine file says no `brake: {by: ...}`",
+      "Use MC_Power; where the drive has an object for it, or the brake is wired to an output of the machine, say so under `brake` of the axis"},
+     {"控制器不控制该轴的抱闸", "驱动器随功率级自行控制抱闸，或该轴没有抱闸；机器配置中未设置 `brake: {by: ...}`", "使用 MC_Power；若驱动器提供相应对象，或抱闸接在机器的输出上，请在该轴的 `brake` 中说明"}},
+    {ErrorId::brake_closed, "brake_closed",
+     {"The holding brake is closed", "MC_SetBrake closed it under power, or it has not been opened again",
+      "Open it with MC_SetBrake (Release TRUE) and wait for Done, then give the command again"},
+     {"抱闸处于闭合状态", "MC_SetBrake 在使能状态下闭合了抱闸，尚未重新释放", "用 MC_SetBrake（Release 为 TRUE）释放抱闸并等待 Done，然后重新发出命令"}},
 }};
 // clang-format on
 

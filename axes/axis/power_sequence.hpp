@@ -14,6 +14,7 @@ public:
         enabling,       ///< asked for, drive not there yet; set-point still follows
         settling,       ///< drive enabled: set-point held through the dwell (brake, servo-on)
         on,             ///< motion is accepted
+        engaging,       ///< asked off, the brake closes: drive stays enabled, set-point held
         switching_off,  ///< asked off, drive still enabled: set-point held
     };
     enum class Event : std::uint8_t { none, ready, timeout, lost, off };
@@ -25,11 +26,13 @@ public:
         bool mode_confirmed = false;
         bool drive_stops = false;  ///< by itself, before its power goes
         bool stands = false;
+        bool at_once = false;  ///< its power goes without waiting for the brake
         PowerState drive = PowerState::unknown;
         Instant now{};
     };
 
-    PowerSequence(Duration dwell, Duration timeout) noexcept : dwell_(dwell), timeout_(timeout) {}
+    /// `engage`: what a brake needs to close before the power goes; 0 = there is none that the controller works.
+    PowerSequence(Duration dwell, Duration timeout, Duration engage = {}) noexcept : dwell_(dwell), timeout_(timeout), engage_(engage) {}
 
     Event step(const Input& in) noexcept {
         const bool enabled = in.online && in.drive == PowerState::enabled;
@@ -61,8 +64,12 @@ public:
                 return Event::ready;
             case Phase::on:
                 if (in.online && !enabled) return leave(Phase::off, Event::lost);
-                if (!in.wanted) return leave(Phase::switching_off, Event::none);
-                return Event::none;
+                if (in.wanted) return Event::none;
+                since_ = in.now;
+                return leave(engage_ > Duration::zero() && !in.at_once ? Phase::engaging : Phase::switching_off, Event::none);
+            case Phase::engaging:
+                if (in.online && !enabled) return leave(Phase::off, Event::off);
+                return in.at_once || in.now - since_ >= engage_ ? leave(Phase::switching_off, Event::none) : Event::none;
             case Phase::switching_off:
                 if (enabled || !in.online) return Event::none;  // a silent drive may still be enabled: hold its set-point
                 return leave(Phase::off, Event::off);
@@ -92,7 +99,7 @@ private:
         return leave(Phase::off, Event::timeout);
     }
 
-    Duration dwell_, timeout_;
+    Duration dwell_, timeout_, engage_;
     Phase phase_ = Phase::off;
     bool waiting_ = false;
     bool quick_ = false;

@@ -10,6 +10,7 @@ ViewWriter::ViewWriter(AxisCore& axis, AxisView& view) : axis_(axis), view_(view
     view_.modulo = axis.body.config.modulo;
     axis.parameters.store();
     axis.parameters.use();
+    brake();
     publish();
 }
 
@@ -52,6 +53,8 @@ void ViewWriter::probes() noexcept {
 }
 
 void ViewWriter::passive_homing() noexcept { side(SideSlot::passive_homing, axis_.homing.passive.id()); }
+
+void ViewWriter::brake() noexcept { view_.brake = axis_.body.brake.state(); }
 
 void ViewWriter::couplings() noexcept {
     auto& state = axis_.coupling.links.state;

@@ -17,6 +17,7 @@ public:
     void resets() noexcept;
     void probes() noexcept;
     void passive_homing() noexcept;
+    void brake() noexcept;
     void feedback(double actual) noexcept;
     void setpoint() noexcept;
     /// Local: of a drive that makes the profile.

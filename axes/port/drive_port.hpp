@@ -93,6 +93,7 @@ struct DriveCapabilities {
         0;                         ///< set-points the drive takes ahead in profile position mode (SV33-E 1, SV-DA200 8); 0: mode not served
     bool profile_replaces = true;  ///< ProfileSetpoint::immediately abandons the running set-point (SE-808X goes on after it, sheet 4.1)
     std::uint8_t services = 0;     ///< bit per DriveService
+    bool brake = false;            ///< its holding brake is worked by DriveCommand::brake (60FEh)
     double velocity_step = 0;      ///< counts/s between two velocity set-points the drive can tell apart (XP200: 1 r/min); 0 = none
     Duration command_latency{};    ///< worst time from encode() to effect beyond setpoint_effective() (a slow line); 0 = none
 
@@ -105,6 +106,9 @@ enum class PowerRequest : std::uint8_t {
     on,          ///< reach `enabled`, with the target aligned to the actual position
     quick_stop,  ///< the drive stops by itself (605Ah)
 };
+
+/// What a holding brake is told that the controller works through the drive.
+enum class BrakeRequest : std::uint8_t { none, close, open };
 
 enum class ProbeEdge : std::uint8_t { rising, falling };
 
@@ -153,6 +157,7 @@ struct DriveCommand {
     double torque_slope = 0;                                          ///< rated torques/s in profile torque mode; 0 = leave
     DriveHomingSetup homing{};
     ProfileSetpoint profile{};
+    BrakeRequest brake = BrakeRequest::none;
 };
 
 struct ProbeFeedback {

@@ -52,6 +52,9 @@ using CommandId = std::uint32_t;
 enum class Owner : std::uint8_t { none, program, operator_panel, commissioning };
 [[nodiscard]] std::string_view name(Owner owner) noexcept;
 
+/// The holding brake, as far as anybody knows: by the time since it was told.
+enum class BrakeState : std::uint8_t { not_controlled, closed, opening, open, closing };
+
 /// Stable error numbers of blocks and axes (docs/reference/errors.md); texts in axes/axis/error_texts.hpp.
 /// 0x0001..: command errors (the axis is untouched). 0x3xxx: axis errors (the alarm ids of axes/axis/alarms.hpp).
 enum class ErrorId : std::uint16_t {
@@ -116,7 +119,10 @@ enum class ErrorId : std::uint16_t {
     // Set-points from outside.
     setpoint_missing = 0x0032,        ///< an axis that is fed from outside moved, and no set-point came any more
     drive_setpoint_refused = 0x0033,  ///< the drive did not take a set-point of its own profile in time
+    // The holding brake.
+    brake_not_controlled = 0x0034,  ///< the drive works its brake by itself, or the axis has none
+    brake_closed = 0x0035,          ///< MC_SetBrake has closed it under power
 };
-inline constexpr std::size_t error_id_count = 0x0034;
+inline constexpr std::size_t error_id_count = 0x0036;
 
 }  // namespace taktwerk::axes

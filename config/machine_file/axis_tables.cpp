@@ -298,6 +298,38 @@ Table<axes::CompensationConfig> compensation_table() {
             {}};
 }
 
+/// Keys of the axis, and the name of an output, which is the machine's.
+Table<AxisBinding> brake_table() {
+    using B = axes::BrakeBy;
+    Table<AxisBinding> table{
+        "brake",
+        "The holding brake, where the controller works it: it opens with the power, and power waits until it has closed again. A drive "
+        "that works its own brake needs none of this.",
+        {},
+        {},
+        {}};
+    auto& f = table.fields;
+    f.push_back(required(field_at<AxisBinding>(
+        "by", [](AxisBinding& b) -> B& { return b.axis.brake.by; },
+        choice<B>({{"drive", B::drive}, {"object", B::object}, {"output", B::output}}),
+        "drive: the drive, by itself · object: the controller, through 60FEh of the drive · output: the controller, through an output of "
+        "the "
+        "machine")));
+    f.push_back(
+        with_default(field("output", &AxisBinding::brake_output, name(), "by output: the one that opens it; closed without current"), ""));
+    f.push_back(field_at<AxisBinding>(
+        "release", [](AxisBinding& b) -> Duration& { return b.axis.brake.release; }, duration(),
+        "from the word to open it until it is open: motion waits for it; at most 5 s"));
+    f.push_back(field_at<AxisBinding>(
+        "engage", [](AxisBinding& b) -> Duration& { return b.axis.brake.engage; }, duration(),
+        "from the word to close it until it holds: power waits for it; at most 5 s"));
+    f.push_back(field_at<AxisBinding>(
+        "release_without_power", [](AxisBinding& b) -> bool& { return b.axis.brake.release_without_power; },
+        choice<bool>({{"forbidden", false}, {"permitted", true}}),
+        "MC_SetBrake may open it while the axis has no power: only where no load can sink"));
+    return table;
+}
+
 /// A key for each alarm whose reaction may be chosen; how far, `check` of the axis says with the reason.
 Table<axes::ErrorReactions> reactions_table() {
     using R = axes::ErrorReactions;
@@ -386,6 +418,8 @@ Table<AxisBinding> axis_table() {
               "a drive that takes longer to enable is an alarm"),
     };
     include_fields(f, axis, Table<A>{{}, {}, std::move(own), {}, {}});
+    f.push_back(field_at<AxisBinding>(
+        "brake", [](AxisBinding& b) -> AxisBinding& { return b; }, section(brake_table()), "holding brake, where the controller works it"));
     f.push_back(field("simulation", &AxisBinding::simulation, section(axis_simulation_table()), "mechanics of the simulated axis"));
     table.before = [](Reader& reader, const Node&, AxisBinding& b) { reader.axis_unit = b.axis.unit; };
     table.after = [](Reader& reader, const Node&, AxisBinding& b) { reader.units_of_axes[b.axis.name] = b.axis.unit; };

@@ -61,9 +61,19 @@ void MachineDrives::build_axes() {
     for (std::size_t i = 0; i < config.axes.size(); ++i) {
         auto axis = config.axes[i].axis;
         axis.stale_limit = static_cast<std::uint16_t>(std::min<std::uint32_t>(supervised_limit(config, axis.stale_limit), 60000));
+        if (axis.brake.by == axes::BrakeBy::output)
+            if (const int output = body_.io.find(IoDirection::output, config.axes[i].brake_output); output >= 0)
+                brakes_.push_back({i, static_cast<std::size_t>(output)});
         body_.axes.emplace_back(axis, *ports_[i], config.cycle, static_cast<std::uint16_t>(i), &body_.views[i]);
     }
     body_.requests = WatchedRequests{body_.axes};
+}
+
+void MachineDrives::hold_brake_outputs() noexcept {
+    for (const auto& brake : brakes_) {
+        const auto state = body_.views[brake.axis].brake;
+        body_.io.outputs()[brake.output] = state == axes::BrakeState::open || state == axes::BrakeState::opening ? 1 : 0;
+    }
 }
 
 void MachineDrives::step(Instant now) {

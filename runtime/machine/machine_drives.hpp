@@ -34,6 +34,8 @@ public:
     [[nodiscard]] Result<void> resolve();
     /// Cycle: an alarm of a whole drive stops all of its axes. Real-time safe.
     void stop_axes_of_faulted_drives() noexcept;
+    /// Cycle: the outputs that open holding brakes are the axes', whatever a program wrote there. Real-time safe.
+    void hold_brake_outputs() noexcept;
 
 private:
     void build_ports();
@@ -44,7 +46,11 @@ private:
     std::vector<std::unique_ptr<axes::DrivePort>> ports_;  // per axis
     std::vector<axes::cia402::Cia402Drive*> bus_drives_;   // those of `ports_` that are on the bus
     std::vector<std::size_t> slave_of_;                    // per axis
-    std::vector<std::vector<std::size_t>> shared_;         // the axes of each slave that carries more than one
+    struct BrakeOutput {
+        std::size_t axis, output;
+    };
+    std::vector<BrakeOutput> brakes_;
+    std::vector<std::vector<std::size_t>> shared_;  // the axes of each slave that carries more than one
 };
 
 }  // namespace taktwerk::runtime

@@ -283,6 +283,19 @@ TEST(MachineLoader, AnAxisHasItsReactions) {
     EXPECT_EQ(machine.axes.at(1).axis.reactions.chosen(AxisAlarm::following_error), ErrorReaction::by_table);
 }
 
+TEST(MachineLoader, ABrakeIsTheDrivesOrOnAnOutput) {
+    const auto machine = must_load(source + "/tests/config/good/brake.yaml").machine;
+    const auto& z = machine.axes.at(0);
+    EXPECT_EQ(z.axis.brake.by, axes::BrakeBy::output);
+    EXPECT_EQ(z.brake_output, "z_brake");
+    EXPECT_EQ(z.axis.brake.release, 80ms);
+    EXPECT_EQ(z.axis.brake.engage, 120ms);
+    EXPECT_TRUE(z.axis.brake.release_without_power);
+    const auto plain = must_load(source + "/tests/config/good/axes.yaml").machine;
+    EXPECT_EQ(plain.axes.at(0).axis.brake.by, axes::BrakeBy::drive);
+    EXPECT_FALSE(plain.axes.at(0).axis.brake.release_without_power);
+}
+
 TEST(MachineLoader, EachKindOfHomingHasItsValues) {
     const auto machine = must_load(source + "/tests/config/good/axes.yaml").machine;
     ASSERT_EQ(machine.axes.size(), 4u);

@@ -83,6 +83,8 @@ const std::map<std::string, std::string>& other_documents() {
         {"MC_ExtSetPointGenEnable", "Axis | Execute | Enabled Busy Active CommandAborted Error ErrorID"},
         {"MC_ExtSetPointGenFeed", "Axis | Enable Position Velocity Acceleration | Valid Busy Error ErrorID"},
         {"MC_ExtSetPointGenDisable", "Axis | Execute Deceleration Jerk | Done Busy Active CommandAborted Error ErrorID"},
+        // our own; a brake is no motion, so nobody takes over
+        {"MC_SetBrake", "Axis | Execute Release | Done Busy Error ErrorID Released"},
         // RTmotion
         {"MC_SetControllerMode", "Axis | Execute Mode | Done Busy Active CommandAborted Error ErrorID"},
         // our own, in the form of MC_MoveAbsolute, MC_MoveRelative, MC_MoveVelocity and MC_TorqueControl, with what a drive's profile has of them

@@ -132,6 +132,8 @@ private:
     /// Settings that blocks read back.
     void take(axes::AxisView& a, const axes::AxisSetting& setting) {
         if (const auto* factors = std::get_if<axes::Override>(&setting)) a.override_factors = *factors;
+        if (const auto* brake = std::get_if<axes::SetBrake>(&setting))
+            a.brake = brake->release ? axes::BrakeState::open : axes::BrakeState::closed;
         if (const auto* select = std::get_if<axes::SelectCam>(&setting)) {
             a.selected_as = *select;
             a.selected_cam = {++last_cam};

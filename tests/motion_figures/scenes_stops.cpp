@@ -1,4 +1,6 @@
+#include "fb_library/motion/brake.hpp"
 #include "fb_library/motion/endless_moves.hpp"
+#include "fb_library/motion/moves.hpp"
 #include "fb_library/motion/stops.hpp"
 #include "tests/motion_figures/scenes.hpp"
 #include "tests/motion_figures/stage.hpp"
@@ -106,8 +108,44 @@ Figure reactions() {
     return stage.figure("reactions");
 }
 
+/// A brake that the controller works: MC_Power, a pause with the brake closed, and off again.
+Figure brake() {
+    auto config = Stage::linear("z");
+    config.brake = {.by = axes::BrakeBy::object, .release = 150ms, .engage = 250ms};
+    Stage stage{{config}};
+    stage.drive().caps.brake = true;
+    MC_MoveRelative move, refused;
+    MC_SetBrake set;
+    move.Axis = refused.Axis = set.Axis = Stage::ref();
+    move.Distance = refused.Distance = 20, move.Velocity = refused.Velocity = 80, move.Acceleration = move.Deceleration = 400;
+    stage.block("move", move);
+    stage.block("brake", set);
+    stage.block("another", refused);
+    stage.signal("drive enabled", [&] { return stage.drive().power == axes::PowerState::enabled; });
+    stage.signal("told to open", [&] { return stage.drive().last.brake == axes::BrakeRequest::open; });
+    stage.run(100ms);
+    move.Execute = true;
+    stage.run_until([&] { return move.Done; });
+    stage.run(100ms);
+    move.Execute = false;
+    set.Execute = true;
+    stage.run_until([&] { return set.Done; });
+    stage.run(100ms);
+    refused.Execute = true;
+    stage.run(200ms);
+    refused.Execute = set.Execute = false;
+    stage.run(50ms);
+    set.Release = set.Execute = true;
+    stage.run_until([&] { return set.Done; });
+    stage.run(50ms);
+    move.Execute = true;
+    stage.run_until([&] { return move.Done; });
+    stage.run(200ms);
+    return stage.figure("brake");
+}
+
 }  // namespace
 
-std::vector<Figure> stops() { return {halt(), stop(), reactions()}; }
+std::vector<Figure> stops() { return {halt(), stop(), reactions(), brake()}; }
 
 }  // namespace taktwerk::figures

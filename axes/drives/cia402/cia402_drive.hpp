@@ -56,8 +56,8 @@ public:
 private:
     struct Outputs {
         MappedOutput control, mode, target_position, target_velocity, target_torque, velocity_offset, torque_offset, torque_max,
-            torque_positive, torque_negative, digital, probe_function, profile_velocity, profile_acceleration, profile_deceleration,
-            velocity_limit, torque_slope;
+            torque_positive, torque_negative, digital, digital_mask, probe_function, profile_velocity, profile_acceleration,
+            profile_deceleration, velocity_limit, torque_slope;
     };
     struct Inputs {
         Signal status, mode, position, velocity, torque, error, digital, probe_status;
@@ -82,6 +82,7 @@ private:
     void hold_profile_target(DriveCommand& command, bool follows, bool prepared) noexcept;
     void write_targets(std::span<std::byte> image, const DriveCommand& command, bool follows) const noexcept;
     void write_limits(std::span<std::byte> image, const DriveCommand& command) const noexcept;
+    void write_brake(std::span<std::byte> image, bool open) const noexcept;
     void write_probes(std::span<std::byte> image, const DriveCommand& command) noexcept;
 
     ecat::Master& bus_;

@@ -151,6 +151,7 @@ TEST(SerialBlocks, WhatCannotWorkSaysNotSupported) {
         {"MC_CombineAxes", ErrorId::not_supported},
         // what the drive has not
         {"MC_SetControllerMode", ErrorId::not_supported},
+        {"MC_SetBrake", ErrorId::brake_not_controlled},
         {"MC_WriteDigitalOutput", ErrorId::not_supported},
         {"MC_HomeAbsolute", ErrorId::not_supported},
         {"MC_StepDistanceCoded", ErrorId::not_supported},
