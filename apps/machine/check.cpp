@@ -110,6 +110,15 @@ std::vector<std::string> scale_sentences(const runtime::AxisBinding& binding) {
     return out;
 }
 
+/// The other side of a portal.
+std::string gantry_sentence(const runtime::AxisBinding& binding) {
+    const auto& gantry = binding.axis.gantry;
+    if (!gantry.on) return {};
+    return fmt::format("gantry: leader {}, follower {}{}; stops at a skew of {:g} {}{}", binding.slave, binding.follower.slave,
+                       binding.follower.mirrored ? " (mirrored)" : "", gantry.error, binding.axis.unit,
+                       gantry.warning > 0 ? fmt::format(", warns from {:g} {}", gantry.warning, binding.axis.unit) : "");
+}
+
 /// Who works the holding brake, where it is not the drive.
 std::string brake_sentence(const runtime::AxisBinding& binding) {
     const auto& brake = binding.axis.brake;
@@ -153,6 +162,7 @@ void print_axis(const MachineConfig& config, const runtime::AxisBinding& binding
                axis.manual.fast > 0 ? axis.manual.fast : axis.limits.velocity * 0.25, u, u, axis.gearing.counts_per_unit());
     for (const auto& sentence : scale_sentences(binding)) fmt::print("           {}\n", sentence);
     for (const auto& sentence : reaction_sentences(axis)) fmt::print("           {}\n", sentence);
+    if (const auto gantry = gantry_sentence(binding); !gantry.empty()) fmt::print("           {}\n", gantry);
     if (const auto brake = brake_sentence(binding); !brake.empty()) fmt::print("           {}\n", brake);
     fmt::print("           if the master is gone:\n");
     for (const auto& sentence : master_gone(config, binding)) fmt::print("             {}\n", sentence);
@@ -244,6 +254,7 @@ Json summary_json(const MachineConfig& config, const runtime::MachineLayout& lay
                             {"scale", scale_sentences(binding)},
                             {"reactions", reaction_sentences(axis)},
                             {"brake", brake_sentence(binding)},
+                            {"gantry", gantry_sentence(binding)},
                             {"master_gone", master_gone(config, binding)},
                             {"assumed", binding.profile ? binding.profile->assumed : std::vector<std::string>{}}});
     }

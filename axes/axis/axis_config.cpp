@@ -141,6 +141,28 @@ void check_compensation(Problems& problems, const CompensationConfig& compensati
     }
 }
 
+void check_gantry(Problems& problems, const AxisConfig& config) {
+    const auto& gantry = config.gantry;
+    if (!gantry.on) return;
+    problems.positive("gantry.max_skew.error", gantry.error, "u: what the portal bears without harm");
+    if (!(gantry.warning >= 0) || gantry.warning >= gantry.error)
+        problems.add("gantry.max_skew.warning", "must be below the error, and not negative",
+                     "Give for instance half of it, or leave it out");
+    const auto kind = config.homing.kind;
+    if (kind == HomingKind::drive || kind == HomingKind::reference_pulse)
+        problems.add(
+            "homing.kind", "of a gantry may not be one that a single drive carries out or latches",
+            "Choose `set_here`, `home_switch`, `limit_switch` or `absolute`: both sides move together, and the leader's switch counts");
+    if (config.control.mode != ControlMode::position)
+        problems.add("control.mode", "of a gantry must be `position`: each drive closes its own position loop", "Leave it out");
+    if (config.encoder) problems.add("encoder", "excludes `gantry`: there is nothing that moves", "Remove one of the two");
+    for (const auto alarm : one_sided_alarms)
+        if (config.reactions.of(alarm) < ErrorReaction::ramp_then_off)
+            problems.add("reactions." + std::string(find_alarm(axis_alarms, id(alarm))->name),
+                         "of a gantry must end without power: one side may not hold the portal alone",
+                         "Choose `ramp_then_off`, `quick_stop` or `power_off`, or leave it out for `ramp_then_off`");
+}
+
 void check_brake(Problems& problems, const BrakeConfig& brake) {
     using namespace std::chrono_literals;
     constexpr Duration longest = 5s;  // whoever needs more has another trouble
@@ -176,6 +198,11 @@ void check_reactions(Problems& problems, const ErrorReactions& reactions) {
 
 }  // namespace
 
+void choose_for_gantry(ErrorReactions& reactions) noexcept {
+    for (const auto alarm : one_sided_alarms)
+        if (reactions.chosen(alarm) == ErrorReaction::by_table) reactions.choose(alarm, ErrorReaction::ramp_then_off);
+}
+
 std::vector<Error> check(const AxisConfig& config) {
     Problems problems(config.name);
     if (config.name.empty()) problems.add("name", "is empty", "Give the axis a name");
@@ -186,6 +213,7 @@ std::vector<Error> check(const AxisConfig& config) {
     check_control(problems, config.control);
     check_compensation(problems, config.compensation);
     check_brake(problems, config.brake);
+    check_gantry(problems, config);
     check_reactions(problems, config.reactions);
     problems.not_negative("defaults.acceleration", config.defaults.acceleration, "the limit");
     problems.not_negative("defaults.deceleration", config.defaults.deceleration, "the limit");

@@ -1,6 +1,7 @@
 #pragma once
 // One axis as configured. Unit u is the axis' own (mm, deg, ...). Plain data, checked by check(AxisConfig); config/ fills it.
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -137,6 +138,13 @@ struct BrakeConfig {
     bool release_without_power = false;  ///< MC_SetBrake may open it while nothing else holds the load
 };
 
+/// Two drives that move one portal: how far they may be apart.
+struct GantryConfig {
+    bool on = false;
+    double warning = 0;  ///< u of skew: shown; 0 = never
+    double error = 0;    ///< u of skew, > 0: the axis stops
+};
+
 struct AxisConfig {
     std::string name;
     std::string unit = "mm";
@@ -152,6 +160,7 @@ struct AxisConfig {
     ManualSpeeds manual;
     CompensationConfig compensation;
     BrakeConfig brake;
+    GantryConfig gantry;
     ErrorReactions reactions;       ///< to its alarms, where others are chosen than those of the alarm table
     bool require_homed = true;      ///< absolute moves need a homed axis
     bool disabled = false;          ///< left out while commissioning: its drive is never enabled
@@ -163,6 +172,11 @@ struct AxisConfig {
     Duration jog_lease = std::chrono::milliseconds{200};
     Duration enable_timeout = std::chrono::seconds{3};
 };
+
+/// Alarms after which one side of a gantry stands alone: nobody holds the portal with it for long.
+inline constexpr std::array one_sided_alarms{AxisAlarm::drive_fault, AxisAlarm::drive_power_lost, AxisAlarm::gantry_side_lost};
+/// What a gantry does about them where nothing is chosen: both ramp, then both lose their power.
+void choose_for_gantry(ErrorReactions& reactions) noexcept;
 
 /// Every problem, without a bus or drive. Subjects name the field ("axes.x.limits.velocity").
 [[nodiscard]] std::vector<Error> check(const AxisConfig& config);

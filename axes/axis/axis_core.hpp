@@ -27,6 +27,7 @@
 #include "axes/axis/drive_profiles.hpp"
 #include "axes/axis/feedback_intake.hpp"
 #include "axes/axis/following_watch.hpp"
+#include "axes/axis/gantry_watch.hpp"
 #include "axes/axis/given_motion.hpp"
 #include "axes/axis/homing_reference.hpp"
 #include "axes/axis/homing_runs.hpp"
@@ -136,6 +137,7 @@ public:
     MotionParts motion;
     FollowingWatch following;
     Conduct conduct;
+    GantryWatch gantry;
     LimitGuard guard;
     RetainedCoordinates retained;
     FeedbackIntake intake;

@@ -73,6 +73,9 @@ inline constexpr std::array rows{
     ReactionBound{drive_setup_refused, ramp_stop, "the drive is not enabled"},
     ReactionBound{drive_too_fast, ramp_stop, "the axis is beyond its limit"},
     ReactionBound{both_limit_switches, warn, ""},
+    ReactionBound{gantry_skew_warning, warn, ""},
+    ReactionBound{gantry_skew, ramp_stop, "the portal would be racked further"},
+    ReactionBound{gantry_side_lost, ramp_stop, "one side has no power: the axis cannot go on"},
     ReactionBound{motor_turns, ramp_stop, "the drive has no power: the axis cannot go on"},
 };
 }  // namespace reaction_bounds

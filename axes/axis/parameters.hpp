@@ -165,6 +165,8 @@ inline constexpr std::array parameter_table{
      "of the drive (60FEh), as written"},
     ParameterInfo{1045, "Brake", "", ParameterType::real, ParameterRange::read_only, detail::live<&AxisView::brake>,
      "that the controller works: 1 closed, 2 opening, 3 open, 4 closing; 0 = the drive works it"},
+    ParameterInfo{1046, "Skew", "u", ParameterType::real, ParameterRange::read_only, detail::live<&AxisView::skew>,
+     "of a gantry: how far its follower is ahead of its leader, since both have power"},
     ParameterInfo{1050, "Homed", "", ParameterType::boolean, ParameterRange::read_only, detail::live<&AxisView::homed>, ""},
     ParameterInfo{1051, "InPosition", "", ParameterType::boolean, ParameterRange::read_only, detail::live<&AxisView::in_position>, ""},
     ParameterInfo{1052, "Online", "", ParameterType::boolean, ParameterRange::read_only, detail::live<&AxisView::online>,

@@ -56,6 +56,8 @@ void ViewWriter::passive_homing() noexcept { side(SideSlot::passive_homing, axis
 
 void ViewWriter::brake() noexcept { view_.brake = axis_.body.brake.state(); }
 
+void ViewWriter::skew() noexcept { view_.skew = axis_.gantry.skew(); }
+
 void ViewWriter::couplings() noexcept {
     auto& state = axis_.coupling.links.state;
     state.shown = state.used();  // what is over is shown once more, as gone

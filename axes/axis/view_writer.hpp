@@ -18,6 +18,7 @@ public:
     void probes() noexcept;
     void passive_homing() noexcept;
     void brake() noexcept;
+    void skew() noexcept;
     void feedback(double actual) noexcept;
     void setpoint() noexcept;
     /// Local: of a drive that makes the profile.

@@ -265,6 +265,12 @@ public:
     [[nodiscard]] virtual Instant setpoint_effective(Instant send_time) const noexcept = 0;
     [[nodiscard]] virtual DriveAlarm alarm() const noexcept = 0;
 
+    // Of two drives on one portal (axes/drives/gantry). Real-time safe.
+    /// Counts that the follower is ahead of the leader, while both have power.
+    [[nodiscard]] virtual double skew() const noexcept { return 0; }
+    /// One of the two has lost its power; DriveFeedback::power is the other's.
+    [[nodiscard]] virtual bool side_lost() const noexcept { return false; }
+
     // --- service side; not real-time ------------------------------------------------------------------------------------
     /// Acyclic work of this drive: reading the detail of an alarm, parameters. Resumable, called often.
     virtual void step(Instant now) { (void)now; }

@@ -298,6 +298,44 @@ Table<axes::CompensationConfig> compensation_table() {
             {}};
 }
 
+Table<axes::GantryConfig> skew_table() {
+    using G = axes::GantryConfig;
+    return {"max_skew",
+            "How far the sides may be apart, from where they were when they got their power.",
+            {
+                with_default(field("warning", &G::warning, quantity(Dimension::position, 0), "from here on it is shown"), "never"),
+                required(field("error", &G::error, quantity(Dimension::position, 0),
+                               "beyond it the axis stops: what the portal bears unharmed")),
+            },
+            {},
+            {}};
+}
+
+Table<AxisBinding> gantry_table() {
+    Table<AxisBinding> table{
+        "gantry",
+        "Two drives that move one portal, as one axis: `slave` is the leader, and the axis' position is its. Both get the same "
+        "set-point, are powered together and stop together.",
+        {},
+        {},
+        {}};
+    auto& f = table.fields;
+    f.push_back(required(field_at<AxisBinding>(
+        "follower", [](AxisBinding& b) -> std::string& { return b.follower.slave; }, name(),
+        "slave of the other side: the same type of drive")));
+    f.push_back(field_via<AxisBinding>(
+        "axis", integer<std::uint8_t>(1, 64),
+        [](AxisBinding& b, const std::uint8_t& n) { b.follower.drive_axis = static_cast<std::uint8_t>(n - 1); },
+        "which axis of a drive that has several", "1"));
+    f.push_back(field_at<AxisBinding>(
+        "mirrored", [](AxisBinding& b) -> bool& { return b.follower.mirrored; }, boolean(), "its motor turns the other way round"));
+    f.push_back(required(field_at<AxisBinding>(
+        "max_skew", [](AxisBinding& b) -> axes::GantryConfig& { return b.axis.gantry; }, section(skew_table()),
+        "how far they may be apart")));
+    table.before = [](Reader&, const Node&, AxisBinding& b) { b.axis.gantry.on = true; };
+    return table;
+}
+
 /// Keys of the axis, and the name of an output, which is the machine's.
 Table<AxisBinding> brake_table() {
     using B = axes::BrakeBy;
@@ -419,10 +457,16 @@ Table<AxisBinding> axis_table() {
     };
     include_fields(f, axis, Table<A>{{}, {}, std::move(own), {}, {}});
     f.push_back(field_at<AxisBinding>(
+        "gantry", [](AxisBinding& b) -> AxisBinding& { return b; }, section(gantry_table()),
+        "a second drive for the other side of a portal"));
+    f.push_back(field_at<AxisBinding>(
         "brake", [](AxisBinding& b) -> AxisBinding& { return b; }, section(brake_table()), "holding brake, where the controller works it"));
     f.push_back(field("simulation", &AxisBinding::simulation, section(axis_simulation_table()), "mechanics of the simulated axis"));
     table.before = [](Reader& reader, const Node&, AxisBinding& b) { reader.axis_unit = b.axis.unit; };
-    table.after = [](Reader& reader, const Node&, AxisBinding& b) { reader.units_of_axes[b.axis.name] = b.axis.unit; };
+    table.after = [](Reader& reader, const Node&, AxisBinding& b) {
+        reader.units_of_axes[b.axis.name] = b.axis.unit;
+        if (b.axis.gantry.on) axes::choose_for_gantry(b.axis.reactions);
+    };
     return table;
 }
 

@@ -65,17 +65,48 @@ public:
             check_brake(binding, subject);
             if (!binding.drive.empty()) continue;  // see check_serial
             if (binding.slave.empty()) check_virtual(binding, subject);
-            else if (has_place(binding, subject)) check_on_drive(binding, subject);
+            else if (has_place(binding, subject)) {
+                check_on_drive(binding, subject);
+                if (binding.axis.gantry.on) check_follower(binding, subject);
+            }
         }
     }
 
 private:
     void check_virtual(const AxisBinding& binding, const std::string& subject) {
+        if (binding.axis.gantry.on)
+            problems_.add("axis.gantry", subject + ".gantry", "a virtual axis (without `slave`) has no sides", "name the leader's `slave`");
         if (binding.axis.encoder)
             problems_.add("axis.encoder", subject + ".encoder", "there is nothing that measures",
                           "name the `slave` whose position is meant, or remove `encoder`");
         if (binding.axis.homing.kind != axes::HomingKind::none && binding.axis.homing.kind != axes::HomingKind::set_here)
             problems_.add("axis.homing", subject + ".homing", "a virtual axis (without `slave`) has no switches", "use `kind: set_here`");
+    }
+
+    /// The other side of a gantry: a drive of its own, of the same type, exchanged as often.
+    void check_follower(const AxisBinding& binding, const std::string& subject) {
+        const auto here = subject + ".gantry.follower";
+        const auto& follower = binding.follower;
+        if (std::find(slaves_.begin(), slaves_.end(), follower.slave) == slaves_.end())
+            return problems_.unknown("axis.gantry", here, "slave", follower.slave, slaves_);
+        if (!taken_.insert({follower.slave, follower.drive_axis}).second)
+            problems_.add("axis.gantry", here,
+                          fmt::format("axis {} of slave '{}' already belongs to another axis", follower.drive_axis + 1, follower.slave),
+                          "name the drive of the other side");
+        if (follower.profile != binding.profile)
+            problems_.add("axis.gantry", here, fmt::format("slave '{}' is another type of drive than '{}'", follower.slave, binding.slave),
+                          "two types follow differently and rack the portal: use two of the same type");
+        else if (follower.drive_axis >= binding.profile->axes)
+            problems_.add("axis.gantry", subject + ".gantry.axis",
+                          fmt::format("{} has no axis {}", binding.profile->name, follower.drive_axis + 1),
+                          fmt::format("choose 1 to {}", binding.profile->axes));
+        if (exchange_period_of(config_, binding.slave) != exchange_period_of(config_, follower.slave))
+            problems_.add("axis.gantry", here, "the two sides are exchanged at different rates",
+                          "give both slaves the same `sync_unit`: set-points must reach both drives alike");
+        auto side = sides_of({binding}).back();
+        for (const auto& slave : config_.bus.slaves)
+            if (slave.name == follower.slave && slave.device && side.profile && side.drive_axis < side.profile->axes)
+                check_mapping(slave, side, here);
     }
 
     void check_brake(const AxisBinding& binding, const std::string& subject) {

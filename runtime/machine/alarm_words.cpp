@@ -259,6 +259,7 @@ void AlarmWords::tell_more_of_drive(AlarmText& out, const AlarmFact& fact) const
                            fault ? axes::ShownAlarm::As::fault : axes::ShownAlarm::As::warning};
     if (fact.b != 0) shown.detail = static_cast<std::uint32_t>(fact.b);  // 0: not read yet, or none
     tell_drive_alarm(out, binding, shown);
+    if (binding.axis.gantry.on) add(out, drives_.gantry_side(fact.index));
     if (!fault || !binding.profile || !of_missing_frames(*binding.profile, shown)) return;
     const auto& before = supervisor_.before_fault();
     if (const auto stall = before.stall(fact.index); stall > 0) {
