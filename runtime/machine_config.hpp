@@ -60,6 +60,7 @@ struct AxisBinding {
     std::string drive;            ///< name of a drive on a serial line, instead of a slave
     std::uint8_t drive_axis = 0;  ///< 0-based axis of a multi-axis drive
     std::shared_ptr<const axes::DriveProfile> profile;
+    std::string load_input;                   ///< input point that counts at the load (AxisConfig::load_encoder)
     std::string brake_output;                 ///< output point that opens its holding brake (BrakeBy::output)
     std::vector<axes::StoredSetting> stored;  ///< in the drive's EEPROM once it was commissioned
     AxisSimulation simulation;

@@ -110,6 +110,15 @@ std::vector<std::string> scale_sentences(const runtime::AxisBinding& binding) {
     return out;
 }
 
+/// The second encoder.
+std::string load_sentence(const runtime::AxisBinding& binding) {
+    const auto& load = binding.axis.load_encoder;
+    if (!load.on) return {};
+    return fmt::format("load encoder: input {}, {:g} counts per {}; motor and load may be {:g} {} apart{}", binding.load_input,
+                       load.counts_per_unit, binding.axis.unit, load.tolerance, binding.axis.unit,
+                       load.shown ? "; the actual position is the load's" : "");
+}
+
 /// The other side of a portal.
 std::string gantry_sentence(const runtime::AxisBinding& binding) {
     const auto& gantry = binding.axis.gantry;
@@ -162,6 +171,7 @@ void print_axis(const MachineConfig& config, const runtime::AxisBinding& binding
                axis.manual.fast > 0 ? axis.manual.fast : axis.limits.velocity * 0.25, u, u, axis.gearing.counts_per_unit());
     for (const auto& sentence : scale_sentences(binding)) fmt::print("           {}\n", sentence);
     for (const auto& sentence : reaction_sentences(axis)) fmt::print("           {}\n", sentence);
+    if (const auto load = load_sentence(binding); !load.empty()) fmt::print("           {}\n", load);
     if (const auto gantry = gantry_sentence(binding); !gantry.empty()) fmt::print("           {}\n", gantry);
     if (const auto brake = brake_sentence(binding); !brake.empty()) fmt::print("           {}\n", brake);
     fmt::print("           if the master is gone:\n");
@@ -255,6 +265,7 @@ Json summary_json(const MachineConfig& config, const runtime::MachineLayout& lay
                             {"reactions", reaction_sentences(axis)},
                             {"brake", brake_sentence(binding)},
                             {"gantry", gantry_sentence(binding)},
+                            {"load_encoder", load_sentence(binding)},
                             {"master_gone", master_gone(config, binding)},
                             {"assumed", binding.profile ? binding.profile->assumed : std::vector<std::string>{}}});
     }

@@ -42,8 +42,9 @@ enum class AxisAlarm : AlarmId {
     gantry_skew_warning = 0x301E,
     gantry_skew = 0x301F,
     gantry_side_lost = 0x3020,
+    load_deviation = 0x3021,
 };
-inline constexpr std::size_t axis_alarm_count = 32;
+inline constexpr std::size_t axis_alarm_count = 33;
 
 [[nodiscard]] constexpr AlarmId id(AxisAlarm alarm) noexcept { return static_cast<AlarmId>(alarm); }
 
@@ -209,6 +210,11 @@ inline constexpr std::array<AlarmInfo, axis_alarm_count> axis_alarms{{
      "Main power or the safety input (STO) of one drive went off, or somebody disabled it from its panel",
      "Restore main power and the safety circuit of both drives, then reset and enable again",
      ResetRule::reset, Reaction::stop_axis, "Each drive's communication watchdog stops its side, alike only where both are set alike"},
+    {id(AxisAlarm::load_deviation), "load_deviation",
+     "Motor and load are {a} u apart, more than {b} u", "电机与负载位置相差 {a} u，超过 {b} u",
+     "The coupling, belt or gear between them slipped or broke, the load encoder or its cable is defective, or its counts per unit are wrong",
+     "Look at coupling and load encoder, compare load_encoder.counts_per_unit with its data sheet; then reset, and home the axis again",
+     ResetRule::reset, Reaction::stop_axis, "The drive's communication watchdog stops it; nobody compares motor and load"},
 }};
 // clang-format on
 

@@ -135,6 +135,10 @@ void make_setpoint(AxisCore& axis, Duration period, bool may_be_homed, double co
 [[gnu::noinline]] void update_whole(AxisCore& axis, const DriveFeedback& from_drive) noexcept {
     take_feedback(axis, from_drive);
     if (axis.body.brake.controlled()) step_brake(axis);
+    if (axis.body.config.load_encoder.on) {
+        axis.load.watch();
+        axis.writer.load();
+    }
     if (axis.body.config.gantry.on) {
         axis.gantry.watch();
         axis.writer.skew();

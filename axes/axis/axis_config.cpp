@@ -163,6 +163,15 @@ void check_gantry(Problems& problems, const AxisConfig& config) {
                          "Choose `ramp_then_off`, `quick_stop` or `power_off`, or leave it out for `ramp_then_off`");
 }
 
+void check_load_encoder(Problems& problems, const LoadEncoderConfig& load) {
+    if (!load.on) return;
+    problems.positive("load_encoder.counts_per_unit", load.counts_per_unit, "counts per u, above 0 either way; the sense is `inverted`");
+    problems.positive("load_encoder.tolerance", load.tolerance,
+                      "u: what coupling and backlash leave between motor and load, and the way of some cycles");
+    if (load.bits < 8 || load.bits > 64) problems.add("load_encoder.bits", "must be from 8 to 64", "Leave it out for 32");
+    if (load.time < Duration::zero()) problems.add("load_encoder.time", "must not be negative", "Leave it out for 10 ms");
+}
+
 void check_brake(Problems& problems, const BrakeConfig& brake) {
     using namespace std::chrono_literals;
     constexpr Duration longest = 5s;  // whoever needs more has another trouble
@@ -214,6 +223,7 @@ std::vector<Error> check(const AxisConfig& config) {
     check_compensation(problems, config.compensation);
     check_brake(problems, config.brake);
     check_gantry(problems, config);
+    check_load_encoder(problems, config.load_encoder);
     check_reactions(problems, config.reactions);
     problems.not_negative("defaults.acceleration", config.defaults.acceleration, "the limit");
     problems.not_negative("defaults.deceleration", config.defaults.deceleration, "the limit");

@@ -145,6 +145,18 @@ struct GantryConfig {
     double error = 0;    ///< u of skew, > 0: the axis stops
 };
 
+/// A second encoder, at the load: an input of the machine says its counts.
+struct LoadEncoderConfig {
+    bool on = false;
+    std::uint16_t input = 0xFFFF;                   ///< index of the input point; the machine puts it in
+    double counts_per_unit = 0;                     ///< > 0
+    bool inverted = false;                          ///< it counts against the axis' sense
+    std::uint8_t bits = 32;                         ///< of its counter, which begins anew beyond them; 8 to 64
+    double tolerance = 0;                           ///< u, > 0: motor and load may differ by it
+    Duration time = std::chrono::milliseconds{10};  ///< longer than this: alarm
+    bool shown = false;                             ///< the axis' actual position is the load's
+};
+
 struct AxisConfig {
     std::string name;
     std::string unit = "mm";
@@ -161,6 +173,7 @@ struct AxisConfig {
     CompensationConfig compensation;
     BrakeConfig brake;
     GantryConfig gantry;
+    LoadEncoderConfig load_encoder;
     ErrorReactions reactions;       ///< to its alarms, where others are chosen than those of the alarm table
     bool require_homed = true;      ///< absolute moves need a homed axis
     bool disabled = false;          ///< left out while commissioning: its drive is never enabled

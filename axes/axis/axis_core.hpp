@@ -34,6 +34,7 @@
 #include "axes/axis/homing_steps.hpp"
 #include "axes/axis/jog_lease.hpp"
 #include "axes/axis/limit_guard.hpp"
+#include "axes/axis/load_encoder.hpp"
 #include "axes/axis/master_side.hpp"
 #include "axes/axis/measured.hpp"
 #include "axes/axis/mode_state.hpp"
@@ -138,6 +139,7 @@ public:
     FollowingWatch following;
     Conduct conduct;
     GantryWatch gantry;
+    LoadEncoder load;
     LimitGuard guard;
     RetainedCoordinates retained;
     FeedbackIntake intake;

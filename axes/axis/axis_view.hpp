@@ -41,6 +41,7 @@ struct AxisView {
     double actual_position = 0, actual_velocity = 0, actual_torque = 0;
     double following_error = 0;  ///< set-point in effect at the latch, minus actual
     double skew = 0;             ///< of a gantry: the follower is ahead by it
+    double load_difference = 0;  ///< of a load encoder: the load is ahead of the motor by it
     double target_position = 0;
     double manual_slow = 0, manual_fast = 0;  ///< u/s, > 0: the jogging speeds (ManualSpeeds, resolved; parameters 1020, 1021)
 

@@ -76,6 +76,7 @@ inline constexpr std::array rows{
     ReactionBound{gantry_skew_warning, warn, ""},
     ReactionBound{gantry_skew, ramp_stop, "the portal would be racked further"},
     ReactionBound{gantry_side_lost, ramp_stop, "one side has no power: the axis cannot go on"},
+    ReactionBound{load_deviation, warn, ""},
     ReactionBound{motor_turns, ramp_stop, "the drive has no power: the axis cannot go on"},
 };
 }  // namespace reaction_bounds
@@ -105,7 +106,7 @@ consteval bool sound() {
         const auto usual = reaction_by_table(row.alarm);
         if (row.mildest > usual) return false;
         // A milder one than the table's is for supervision that somebody may as well leave out.
-        if (row.mildest < usual && row.alarm != following_error) return false;
+        if (row.mildest < usual && row.alarm != following_error && row.alarm != load_deviation) return false;
         if ((row.mildest > warn) == row.because.empty()) return false;
     }
     if (axis_alarms.back().id - axis_alarms.front().id + 1u != axis_alarm_count) return false;  // places are numbers without gaps

@@ -7,6 +7,8 @@
 //   by hand        closed under power at standstill: nothing moves until it is open again. Opened without power, where that is permitted, until
 //                  power comes, somebody else takes the axis, an emergency stop, or its drive is not there any more
 
+#include <chrono>
+
 #include "axes/axis/axis_config.hpp"
 #include "axes/port/drive_port.hpp"
 #include "axes/words/types.hpp"
@@ -58,7 +60,7 @@ private:
     Duration release_, engage_;
     Hand hand_ = Hand::none;
     bool powered_ = false, open_ = false;
-    Instant since_{}, now_{};
+    Instant since_ = Instant{} - std::chrono::seconds{10}, now_{};  // closed for long
 };
 
 }  // namespace taktwerk::axes

@@ -167,6 +167,8 @@ inline constexpr std::array parameter_table{
      "that the controller works: 1 closed, 2 opening, 3 open, 4 closing; 0 = the drive works it"},
     ParameterInfo{1046, "Skew", "u", ParameterType::real, ParameterRange::read_only, detail::live<&AxisView::skew>,
      "of a gantry: how far its follower is ahead of its leader, since both have power"},
+    ParameterInfo{1047, "LoadDifference", "u", ParameterType::real, ParameterRange::read_only, detail::live<&AxisView::load_difference>,
+     "how far the load is ahead of the motor, by its own encoder"},
     ParameterInfo{1050, "Homed", "", ParameterType::boolean, ParameterRange::read_only, detail::live<&AxisView::homed>, ""},
     ParameterInfo{1051, "InPosition", "", ParameterType::boolean, ParameterRange::read_only, detail::live<&AxisView::in_position>, ""},
     ParameterInfo{1052, "Online", "", ParameterType::boolean, ParameterRange::read_only, detail::live<&AxisView::online>,

@@ -11,7 +11,7 @@ namespace {
 /// What the drive, power and everything beside motion would need a look for.
 bool nothing_unusual(const AxisCore& axis) noexcept {
     const auto& body = axis.body;
-    if (body.brake.controlled() || body.config.gantry.on) return false;
+    if (body.brake.controlled() || body.config.gantry.on || body.config.load_encoder.on) return false;
     const bool commanded = body.power_wish && body.emergency == EmergencyStop::none && body.state != AxisState::Homing &&
                            body.queue.active().command.kind != CommandKind::jog;
     if (!commanded || body.slow_line || axis.modes.own != DriveMode::cyclic_position) return false;

@@ -58,6 +58,8 @@ void ViewWriter::brake() noexcept { view_.brake = axis_.body.brake.state(); }
 
 void ViewWriter::skew() noexcept { view_.skew = axis_.gantry.skew(); }
 
+void ViewWriter::load() noexcept { view_.load_difference = axis_.load.difference(); }
+
 void ViewWriter::couplings() noexcept {
     auto& state = axis_.coupling.links.state;
     state.shown = state.used();  // what is over is shown once more, as gone
@@ -81,7 +83,7 @@ void ViewWriter::feedback(double actual) noexcept {
     view_.warning = from_drive.warning;
     view_.drive_error = from_drive.error_code;
 
-    view_.actual_position = axis_.body.units.to_program(actual);
+    view_.actual_position = axis_.body.units.to_program(axis_.body.config.load_encoder.shown ? actual + axis_.load.difference() : actual);
     view_.actual_velocity = measured.velocity();
     view_.actual_torque = measured.torque();
 

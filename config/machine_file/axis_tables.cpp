@@ -298,6 +298,33 @@ Table<axes::CompensationConfig> compensation_table() {
             {}};
 }
 
+Table<AxisBinding> load_encoder_table() {
+    using L = axes::LoadEncoderConfig;
+    Table<AxisBinding> table{
+        "load_encoder",
+        "A second encoder at the load, read from an input of the machine: an object of the drive (60E4h), the position of another "
+        "slave, or a value of a terminal. It is compared with the motor; the position loop stays the drive's.",
+        {},
+        {},
+        {}};
+    auto& f = table.fields;
+    f.push_back(required(field("input", &AxisBinding::load_input, name(), "one of `io.inputs`: its counts")));
+    std::vector<Field<L>> own{
+        required(field("counts_per_unit", &L::counts_per_unit, number(0), "counts per u of the load")),
+        field("inverted", &L::inverted, boolean(), "true: it counts against the axis' sense"),
+        field("bits", &L::bits, integer<std::uint8_t>(8, 64), "of its counter, which begins anew beyond them"),
+        required(field("tolerance", &L::tolerance, quantity(Dimension::position, 0),
+                       "how far motor and load may be apart: coupling, backlash, and the way of some cycles at full speed")),
+        field("time", &L::time, duration(), "beyond it for this long: alarm load_deviation"),
+        field("position", &L::shown, choice<bool>({{"monitor", false}, {"actual", true}}),
+              "monitor: only compared · actual: the axis' actual position is the load's"),
+    };
+    include_fields(
+        f, [](AxisBinding& b) -> L& { return b.axis.load_encoder; }, Table<L>{{}, {}, std::move(own), {}, {}});
+    table.before = [](Reader&, const Node&, AxisBinding& b) { b.axis.load_encoder.on = true; };
+    return table;
+}
+
 Table<axes::GantryConfig> skew_table() {
     using G = axes::GantryConfig;
     return {"max_skew",
@@ -456,6 +483,8 @@ Table<AxisBinding> axis_table() {
               "a drive that takes longer to enable is an alarm"),
     };
     include_fields(f, axis, Table<A>{{}, {}, std::move(own), {}, {}});
+    f.push_back(field_at<AxisBinding>(
+        "load_encoder", [](AxisBinding& b) -> AxisBinding& { return b; }, section(load_encoder_table()), "a second encoder, at the load"));
     f.push_back(field_at<AxisBinding>(
         "gantry", [](AxisBinding& b) -> AxisBinding& { return b; }, section(gantry_table()),
         "a second drive for the other side of a portal"));

@@ -63,6 +63,7 @@ public:
             for (auto& error : axes::check(binding.axis)) errors_.push_back(std::move(error));
             check_reactions(binding, subject);
             check_brake(binding, subject);
+            if (binding.axis.load_encoder.on) check_load_encoder(binding, subject);
             if (!binding.drive.empty()) continue;  // see check_serial
             if (binding.slave.empty()) check_virtual(binding, subject);
             else if (has_place(binding, subject)) {
@@ -81,6 +82,17 @@ private:
                           "name the `slave` whose position is meant, or remove `encoder`");
         if (binding.axis.homing.kind != axes::HomingKind::none && binding.axis.homing.kind != axes::HomingKind::set_here)
             problems_.add("axis.homing", subject + ".homing", "a virtual axis (without `slave`) has no switches", "use `kind: set_here`");
+    }
+
+    void check_load_encoder(const AxisBinding& binding, const std::string& subject) {
+        std::vector<std::string> inputs;
+        for (const auto& point : config_.io)
+            if (point.direction == IoDirection::input) inputs.push_back(point.name);
+        if (std::find(inputs.begin(), inputs.end(), binding.load_input) == inputs.end())
+            problems_.unknown("axis.load_encoder", subject + ".load_encoder.input", "input", binding.load_input, inputs);
+        if (binding.axis.encoder)
+            problems_.add("axis.load_encoder", subject + ".load_encoder", "an axis that only measures has no motor to compare with",
+                          "remove one of the two");
     }
 
     /// The other side of a gantry: a drive of its own, of the same type, exchanged as often.

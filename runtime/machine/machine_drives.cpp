@@ -73,6 +73,8 @@ void MachineDrives::build_axes() {
     for (std::size_t i = 0; i < config.axes.size(); ++i) {
         auto axis = config.axes[i].axis;
         axis.stale_limit = static_cast<std::uint16_t>(std::min<std::uint32_t>(supervised_limit(config, axis.stale_limit), 60000));
+        if (axis.load_encoder.on)
+            axis.load_encoder.input = static_cast<std::uint16_t>(body_.io.find(IoDirection::input, config.axes[i].load_input));
         if (axis.brake.by == axes::BrakeBy::output)
             if (const int output = body_.io.find(IoDirection::output, config.axes[i].brake_output); output >= 0)
                 brakes_.push_back({i, static_cast<std::size_t>(output)});

@@ -152,6 +152,11 @@ World::World(const MachineConfig& config, Instant start)
             if (point.slave == slave->name) points_.push_back({point, nullptr, model.get(), false});
         install(*slave, std::move(model), options);
     }
+    for (const auto& binding : config.axes)
+        if (const auto& load = binding.axis.load_encoder; load.on) {
+            const double counts = load.inverted ? -load.counts_per_unit : load.counts_per_unit;
+            loads_.push_back({binding.axis.name, binding.load_input, counts / binding.axis.gearing.counts_per_unit(), counts, 0});
+        }
     for (const auto& point : config.io)
         if (point.direction == IoDirection::input && point.simulated) set_input_value(point.name, *point.simulated);
 }
@@ -232,7 +237,15 @@ void World::happen(const SimulationEvent& event) {
     }
 }
 
+void World::slip(std::string_view axis, double u) {
+    for (auto& load : loads_)
+        if (load.axis == axis) load.slipped += u * load.counts_per_unit;
+}
+
 void World::apply_events(Instant now) {
+    for (const auto& load : loads_)
+        if (auto* motor = drive(load.axis))
+            set_input_value(load.input, std::llround(motor->plant().position() * load.counts_per_count + load.slipped));
     while (next_event_ < events_.size() && start_ + events_[next_event_].at <= now) happen(events_[next_event_++]);
     if (also) also(now);
     serial_.wire([this](const std::string& point) { return output(point); });
