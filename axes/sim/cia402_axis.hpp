@@ -110,7 +110,7 @@ public:
     /// Set-points and homing starts that came before the brake was open and were lost. A careful master causes none.
     [[nodiscard]] std::uint32_t early_commands() const noexcept { return early_commands_; }
     [[nodiscard]] bool brake_closed() const noexcept { return brake_closed_; }
-    /// The master works the brake; until it says so the drive does.
+    /// The master works the brake, through an object or past the drive; until it says so the drive does.
     void brake_by_bus(bool open) noexcept { bus_opens_brake_ = open; }
     [[nodiscard]] bool stands() const noexcept;
     /// What the drive's input for this probe sees, and whether the encoder stands on its index pulse.

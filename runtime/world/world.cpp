@@ -153,6 +153,8 @@ World::World(const MachineConfig& config, Instant start)
         install(*slave, std::move(model), options);
     }
     for (const auto& binding : config.axes)
+        if (binding.axis.brake.by == axes::BrakeBy::output) brakes_.push_back({binding.axis.name, binding.brake_output});
+    for (const auto& binding : config.axes)
         if (const auto& load = binding.axis.load_encoder; load.on) {
             const double counts = load.inverted ? -load.counts_per_unit : load.counts_per_unit;
             loads_.push_back({binding.axis.name, binding.load_input, counts / binding.axis.gearing.counts_per_unit(), counts, 0});
@@ -243,6 +245,8 @@ void World::slip(std::string_view axis, double u) {
 }
 
 void World::apply_events(Instant now) {
+    for (const auto& brake : brakes_)
+        if (auto* motor = drive(brake.axis)) motor->brake_by_bus(output(brake.output));
     for (const auto& load : loads_)
         if (auto* motor = drive(load.axis))
             set_input_value(load.input, std::llround(motor->plant().position() * load.counts_per_count + load.slipped));

@@ -88,6 +88,11 @@ private:
         double counts_per_count = 0, counts_per_unit = 0, slipped = 0;
     };
     std::vector<LoadPlace> loads_;
+    /// A holding brake on an output of the machine.
+    struct BrakePlace {
+        std::string axis, output;
+    };
+    std::vector<BrakePlace> brakes_;
     std::vector<Point> points_;
     std::vector<SimulationEvent> events_;  // by time
     std::size_t next_event_ = 0;

@@ -94,14 +94,14 @@ Figure reactions() {
         const auto& off = stage.view(2);
         if (off.drive_state == axes::PowerState::enabled) coasts = off.actual_velocity;
         else coasts = std::max(0.0, coasts - 60 * 1e-3);
-        stage.drive(2).coasting = off.drive_state == axes::PowerState::enabled ? 0 : coasts * mm * 1e-3;
+        stage.drive(2).coasting = coasts * mm * 1e-3;
     };
     for (std::uint16_t i = 0; i < 3; ++i)
         stage.signal("power: " + configs[i].name, [&stage, i] { return stage.view(i).drive_state == axes::PowerState::enabled; });
     stage.show("actual velocity", "mm/s", 140,
-               {{0, Quantity::actual_velocity, Ink::owner, configs[0].name},
-                {1, Quantity::actual_velocity, Ink::master, configs[1].name},
-                {2, Quantity::actual_velocity, Ink::actual, configs[2].name}});
+               {{0, Quantity::actual_velocity, Ink::owner, "ramp"},
+                {1, Quantity::actual_velocity, Ink::master, "quick"},
+                {2, Quantity::actual_velocity, Ink::actual, "coasts"}});
     stage.run(400ms);
     for (std::uint16_t i = 0; i < 3; ++i) stage.drive(i).warning = true;
     stage.run(1600ms);

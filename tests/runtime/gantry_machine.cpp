@@ -84,7 +84,7 @@ TEST_F(Portal, AFaultOfTheFollowerStopsBothAndNamesItsSlave) {
         5s))
         << m.alarms();
     m.enable(0);
-    EXPECT_EQ(m.command(OperatorAction::move_relative, 0, false, 50, 50).answer, Answer::accepted);
+    EXPECT_EQ(m.command(OperatorAction::move_absolute, 0, false, 300, 150).answer, Answer::accepted);
     ASSERT_TRUE(m.until([&] { return m.axis(0).state == AxisState::Standstill; }, 5s)) << m.alarms();
 }
 

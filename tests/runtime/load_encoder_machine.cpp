@@ -30,6 +30,7 @@ MachineConfig with_scale() {
     config.io.push_back(point);
     config.axes[0].axis.load_encoder = {.on = true, .counts_per_unit = 200, .tolerance = 1, .shown = true};
     config.axes[0].load_input = "scale";
+    config.axes[0].axis.homing.kind = axes::HomingKind::set_here;
     return config;
 }
 

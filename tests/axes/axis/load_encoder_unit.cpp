@@ -18,14 +18,12 @@ AxisConfig with_load(bool shown = false, double counts_per_unit = 500, std::uint
 struct Coupled : Rig {
     explicit Coupled(const AxisConfig& config = with_load()) : Rig(config) {
         axis.bind({.inputs = inputs});
-        const auto& load = config.load_encoder;
         program = [this, &load = axis.config().load_encoder] {
             const auto raw = std::llround(-(drive.position / 1000 + slipped) * load.counts_per_unit);
             const unsigned unused = 64u - load.bits;
             inputs[0] =
                 static_cast<std::int64_t>(static_cast<std::uint64_t>(raw) << unused >> unused);  // as a terminal gives it: without a sign
         };
-        (void)load;
         power_on();
     }
     std::array<std::int64_t, 1> inputs{};
