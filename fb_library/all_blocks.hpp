@@ -12,6 +12,7 @@
 #include "fb_library/motion/administration.hpp"
 #include "fb_library/motion/axis_condition.hpp"
 #include "fb_library/motion/axis_values.hpp"
+#include "fb_library/motion/brake.hpp"
 #include "fb_library/motion/camming.hpp"
 #include "fb_library/motion/combine_axes.hpp"
 #include "fb_library/motion/controller_mode.hpp"
@@ -70,8 +71,8 @@ using CouplingBlocks = BlockList<MC_CamTableSelect, MC_CamIn, MC_CamOut, MC_Gear
                                  MC_PhasingRelative, MC_CombineAxes>;
 /// Of vendors, under their names.
 using VendorBlocks =
-    BlockList<MC_Jog, MC_MoveModulo, MC_ReadCommandPosition, MC_ReadCommandVelocity, MC_ReadCommandAcceleration, MC_SetControllerMode,
-              MC_SetTorqueLimit, MC_ExtSetPointGenEnable, MC_ExtSetPointGenFeed, MC_ExtSetPointGenDisable>;
+    BlockList<MC_Jog, MC_MoveModulo, MC_HaltPhasing, MC_ReadCommandPosition, MC_ReadCommandVelocity, MC_ReadCommandAcceleration,
+              MC_SetControllerMode, MC_SetTorqueLimit, MC_SetBrake, MC_ExtSetPointGenEnable, MC_ExtSetPointGenFeed, MC_ExtSetPointGenDisable>;
 /// Profiles that the drive makes by itself.
 using DriveBlocks = BlockList<Drive_MoveAbsolute, Drive_MoveRelative, Drive_MoveVelocity, Drive_Torque>;
 

@@ -45,15 +45,30 @@ struct AxisSimulation {
     double clock_drift_ppm = 0;
 };
 
+/// The other side of a portal on two drives (AxisConfig::gantry). Its counts are those of the axis' gearing.
+struct GantryFollower {
+    std::string slave;            ///< name in BusConfig
+    std::uint8_t drive_axis = 0;  ///< 0-based
+    bool mirrored = false;        ///< mounted the other way round
+    std::shared_ptr<const axes::DriveProfile> profile;
+    std::vector<axes::StoredSetting> stored;
+};
+
 struct AxisBinding {
     axes::AxisConfig axis;
     std::string slave;            ///< name in BusConfig; empty: a purely virtual axis
     std::string drive;            ///< name of a drive on a serial line, instead of a slave
     std::uint8_t drive_axis = 0;  ///< 0-based axis of a multi-axis drive
     std::shared_ptr<const axes::DriveProfile> profile;
+    std::string load_input;                   ///< input point that counts at the load (AxisConfig::load_encoder)
+    std::string brake_output;                 ///< output point that opens its holding brake (BrakeBy::output)
     std::vector<axes::StoredSetting> stored;  ///< in the drive's EEPROM once it was commissioned
     AxisSimulation simulation;
+    GantryFollower follower;
 };
+
+/// Each drive on the bus as a binding of its own: those of the axes, then the followers of gantries as "<axis>.follower".
+[[nodiscard]] std::vector<AxisBinding> sides_of(const std::vector<AxisBinding>& axes);
 
 enum class IoDirection : std::uint8_t { input, output };
 

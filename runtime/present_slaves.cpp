@@ -6,7 +6,7 @@ std::vector<ecat::SlaveConfig> present_slaves(const MachineConfig& config) {
     const auto is_absent = [&](const ecat::SlaveConfig& slave) {
         bool bound = false, all_simulated = true;
         for (const auto& binding : config.axes) {
-            if (binding.slave != slave.name) continue;
+            if (binding.slave != slave.name && binding.follower.slave != slave.name) continue;
             bound = true;
             all_simulated = all_simulated && binding.axis.simulated;
         }

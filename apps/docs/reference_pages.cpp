@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "axes/axis/alarms.hpp"
+#include "axes/axis/error_reaction.hpp"
 #include "axes/axis/error_table.hpp"
 #include "axes/axis/parameters.hpp"
 #include "ecat/alarms.hpp"
@@ -48,6 +49,17 @@ std::string range_of(const axes::ParameterInfo& parameter) {
     return "";
 }
 
+/// How far the machine file may choose the reaction to an alarm of an axis.
+void append_choice(std::string& page, const AlarmInfo& alarm) {
+    const auto* bound = axes::bound_of(static_cast<axes::AxisAlarm>(alarm.id));
+    if (bound == nullptr) return;
+    std::string words;
+    for (const auto& word : axes::reaction_words)
+        if (word.reaction >= bound->mildest) words += fmt::format("{}`{}`", words.empty() ? "" : ", ", word.name);
+    fmt::format_to(std::back_inserter(page), "* `reactions: {{ {}: ... }}` of the axis: {}{}\n", alarm.name, words,
+                   bound->because.empty() ? "" : fmt::format("; nothing milder, for {}", bound->because));
+}
+
 void append_table(std::string& page, std::string_view title, std::string_view numbers, std::span<const AlarmInfo> table) {
     auto out = std::back_inserter(page);
     fmt::format_to(out, "\n## {}\n\n{}\n", title, numbers);
@@ -57,6 +69,7 @@ void append_table(std::string& page, std::string_view title, std::string_view nu
         fmt::format_to(out, "* Cause: {}\n* Remedy: {}\n* Reset: {}\n* Reaction, master alive: {}\n", alarm.cause, alarm.remedy,
                        words(alarm.reset), words(alarm.reaction));
         if (!alarm.master_gone.empty()) fmt::format_to(out, "* Reaction, master gone: {}\n", alarm.master_gone);
+        append_choice(page, alarm);
     }
 }
 
@@ -75,7 +88,10 @@ std::string alarm_reference_markdown() {
         "Generated from the alarm tables (`taktwerk docs alarms`). {a} and {b} stand for the numbers of the occasion ({a:ns}: a time). A "
         "drive's own\n"
         "alarms come with its profile and are shown with `drive_fault` and `drive_warning`; a program's alarms are declared by the "
-        "program.\n";
+        "program. What an axis does about its own alarms may be chosen in the machine file (`reactions`), from mild to hard: `warn`,\n"
+        "`ramp_stop` (to ErrorStop, power stays), `stop_machine` (every other axis with it), `ramp_then_off`, `quick_stop` (by the drive, "
+        "605Ah,\n"
+        "then power off), `power_off` (at once: the motor coasts, or its brake holds it).\n";
     append_table(page, "Bus", "EtherCAT, 1xxxh.", ecat::bus_alarms);
     append_table(page, "Axes", "3xxxh; also the error of an axis in ErrorStop (MC_ReadAxisError).", axes::axis_alarms);
     append_table(page, "Machine", "6xxxh.", runtime::machine_alarms);

@@ -15,6 +15,7 @@
 #include "apps/terminal/count_text.hpp"
 #include "apps/terminal/exit_code.hpp"
 #include "apps/terminal/print_error.hpp"
+#include "axes/axis/error_reaction.hpp"
 #include "axes/port/drive_scale.hpp"
 #include "axes/port/parameter_text.hpp"
 #include "runtime/check/drive_hazards.hpp"
@@ -109,6 +110,46 @@ std::vector<std::string> scale_sentences(const runtime::AxisBinding& binding) {
     return out;
 }
 
+/// The second encoder.
+std::string load_sentence(const runtime::AxisBinding& binding) {
+    const auto& load = binding.axis.load_encoder;
+    if (!load.on) return {};
+    return fmt::format("load encoder: input {}, {:g} counts per {}; motor and load may be {:g} {} apart{}", binding.load_input,
+                       load.counts_per_unit, binding.axis.unit, load.tolerance, binding.axis.unit,
+                       load.shown ? "; the actual position is the load's" : "");
+}
+
+/// The other side of a portal.
+std::string gantry_sentence(const runtime::AxisBinding& binding) {
+    const auto& gantry = binding.axis.gantry;
+    if (!gantry.on) return {};
+    return fmt::format("gantry: leader {}, follower {}{}; stops at a skew of {:g} {}{}", binding.slave, binding.follower.slave,
+                       binding.follower.mirrored ? " (mirrored)" : "", gantry.error, binding.axis.unit,
+                       gantry.warning > 0 ? fmt::format(", warns from {:g} {}", gantry.warning, binding.axis.unit) : "");
+}
+
+/// Who works the holding brake, where it is not the drive.
+std::string brake_sentence(const runtime::AxisBinding& binding) {
+    const auto& brake = binding.axis.brake;
+    if (brake.by == axes::BrakeBy::drive) return {};
+    return fmt::format("brake by the controller, {}: motion waits {:g} ms until it is open, power {:g} ms until it holds{}",
+                       brake.by == axes::BrakeBy::object ? "through 60FEh of the drive" : "output " + binding.brake_output,
+                       to_seconds(brake.release) * 1e3, to_seconds(brake.engage) * 1e3,
+                       brake.release_without_power ? "; MC_SetBrake may open it without power" : "");
+}
+
+/// What the file chose otherwise than the alarm tables.
+std::vector<std::string> reaction_sentences(const axes::AxisConfig& axis) {
+    std::vector<std::string> out;
+    for (const auto& row : axes::reaction_bounds::rows) {
+        const auto chosen = axis.reactions.chosen(row.alarm);
+        if (chosen == axes::ErrorReaction::by_table) continue;
+        out.push_back(fmt::format("on {}: {} (without `reactions`: {})", find_alarm(axes::axis_alarms, axes::id(row.alarm))->name,
+                                  axes::word_of(chosen).text, axes::word_of(axes::reaction_by_table(row.alarm)).text));
+    }
+    return out;
+}
+
 void print_axis(const MachineConfig& config, const runtime::AxisBinding& binding) {
     const auto& axis = binding.axis;
     const auto& u = axis.unit;
@@ -129,6 +170,10 @@ void print_axis(const MachineConfig& config, const runtime::AxisBinding& binding
                homing_text(axis.homing), axis.manual.slow > 0 ? axis.manual.slow : axis.limits.velocity * 0.05,
                axis.manual.fast > 0 ? axis.manual.fast : axis.limits.velocity * 0.25, u, u, axis.gearing.counts_per_unit());
     for (const auto& sentence : scale_sentences(binding)) fmt::print("           {}\n", sentence);
+    for (const auto& sentence : reaction_sentences(axis)) fmt::print("           {}\n", sentence);
+    if (const auto load = load_sentence(binding); !load.empty()) fmt::print("           {}\n", load);
+    if (const auto gantry = gantry_sentence(binding); !gantry.empty()) fmt::print("           {}\n", gantry);
+    if (const auto brake = brake_sentence(binding); !brake.empty()) fmt::print("           {}\n", brake);
     fmt::print("           if the master is gone:\n");
     for (const auto& sentence : master_gone(config, binding)) fmt::print("             {}\n", sentence);
 }
@@ -217,6 +262,10 @@ Json summary_json(const MachineConfig& config, const runtime::MachineLayout& lay
                             {"motor_rpm", runtime::motor_rpm(axis, axis.limits.velocity)},
                             {"homing", homing_text(axis.homing)},
                             {"scale", scale_sentences(binding)},
+                            {"reactions", reaction_sentences(axis)},
+                            {"brake", brake_sentence(binding)},
+                            {"gantry", gantry_sentence(binding)},
+                            {"load_encoder", load_sentence(binding)},
                             {"master_gone", master_gone(config, binding)},
                             {"assumed", binding.profile ? binding.profile->assumed : std::vector<std::string>{}}});
     }

@@ -37,6 +37,7 @@ ErrorId Admission::refuse_state(const AxisCommand& command) const noexcept {
     if (body_.state == AxisState::Disabled && !(powers_up() && waits(command))) return ErrorId::not_powered;
     if (body_.state == AxisState::ErrorStop) return ErrorId::in_error_stop;
     if (body_.emergency != EmergencyStop::none) return ErrorId::interlocked;
+    if (body_.brake.holds()) return ErrorId::brake_closed;
     const bool stopping = body_.state == AxisState::Stopping;
     if (waits(command)) {
         const bool behind_stop = body_.queue.active().command.kind == CommandKind::stop || body_.lock != 0;
@@ -124,6 +125,7 @@ ErrorId Admission::refuse_superimposed(const AxisCommand& command) const noexcep
     if (body_.state == AxisState::Disabled) return ErrorId::not_powered;
     if (body_.state == AxisState::ErrorStop) return ErrorId::in_error_stop;
     if (body_.emergency != EmergencyStop::none) return ErrorId::interlocked;
+    if (body_.brake.holds()) return ErrorId::brake_closed;
     if (!next_state(body_.state, AxisEvent::superimposed)) return ErrorId::state_forbids;
     if (command.kind == CommandKind::halt_superimposed) return ErrorId::none;
     // Where the drive takes no set-point there is nothing to add to.

@@ -28,6 +28,17 @@ void step_homing(AxisCore& axis) noexcept {
     if (axis.homing.home.over() || axis.homing.steps.over()) axis.succession.start_waiting(0);
 }
 
+/// A drive that brakes by itself, in a quick stop or a fault, has power as long as it does: a holding brake is no brake for motion.
+void step_brake(AxisCore& axis) noexcept {
+    using Phase = PowerSequence::Phase;
+    auto& body = axis.body;
+    const auto phase = body.power.phase();
+    const bool brakes = axis.measured.feedback.power == PowerState::fault_reaction && !axis.measured.stands();
+    const bool powered = phase == Phase::settling || phase == Phase::on || body.power.quick_stops() || brakes;
+    body.brake.step(powered, axis.measured.online() && body.emergency == EmergencyStop::none, body.now);
+    axis.writer.brake();
+}
+
 /// The base, what lies on top of it, and what it is coupled to: one period on.
 void advance(AxisCore& axis, Duration period) noexcept {
     auto& motion = axis.motion.now;
@@ -94,9 +105,11 @@ void take_feedback(AxisCore& axis, const DriveFeedback& from_drive) noexcept {
 void watch_following(AxisCore& axis, double actual) noexcept {
     if (axis.runs.motor_leads() || axis.modes.phase != ModePhase::steady) {
         axis.following.rest();  // in torque the set-point follows the motor
-    } else if (axis.following.watch(axis.measured, axis.motion.now, actual, axis.runs.step.presses()) &&
-               axis.body.state != AxisState::ErrorStop) {
-        axis.conduct.fail(AxisAlarm::following_error, axis.following.error(), axis.following.window());
+    } else if (axis.following.watch(axis.measured, axis.motion.now, actual, axis.runs.step.presses())) {
+        if (axis.body.state != AxisState::ErrorStop)
+            axis.conduct.fail(AxisAlarm::following_error, axis.following.error(), axis.following.window());
+    } else if (!axis.body.alarms.active().empty() && axis.measured.feedback.fresh) {
+        axis.conduct.warning_is_over(AxisAlarm::following_error);
     }
 }
 
@@ -121,6 +134,15 @@ void make_setpoint(AxisCore& axis, Duration period, bool may_be_homed, double co
 
 [[gnu::noinline]] void update_whole(AxisCore& axis, const DriveFeedback& from_drive) noexcept {
     take_feedback(axis, from_drive);
+    if (axis.body.brake.controlled()) step_brake(axis);
+    if (axis.body.config.load_encoder.on) {
+        axis.load.watch();
+        axis.writer.load();
+    }
+    if (axis.body.config.gantry.on) {
+        axis.gantry.watch();
+        axis.writer.skew();
+    }
     const double actual = axis.measured.local();
     watch_following(axis, actual);
     if (axis.probes.watch()) axis.writer.probes();

@@ -1,5 +1,6 @@
 #include "axes/axis/axis_body.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -9,11 +10,12 @@ namespace taktwerk::axes {
 AxisBody::AxisBody(AxisConfig as_configured, DrivePort& drive, Duration period, std::uint16_t place, const AxisView& view)
     : config(std::move(as_configured)),
       alarms(place),
+      brake(config.brake),
       port(drive),
       shown(view),
       cycle(period),
       units(config.gearing, config.modulo),
-      power(drive.capabilities().enable_delay, config.enable_timeout),
+      power(std::max(drive.capabilities().enable_delay, config.brake.release), config.enable_timeout, config.brake.engage),
       index(place),
       driven(!config.disabled && !config.encoder),
       endless(std::isinf(config.limits.position_min) && std::isinf(config.limits.position_max)),

@@ -6,6 +6,7 @@
 #include "axes/axis/alarm_board.hpp"
 #include "axes/axis/axis_config.hpp"
 #include "axes/axis/command_queue.hpp"
+#include "axes/axis/holding_brake.hpp"
 #include "axes/axis/motion_scene.hpp"
 #include "axes/axis/operating_mode.hpp"
 #include "axes/axis/power_sequence.hpp"
@@ -21,6 +22,7 @@ struct AxisBody {
     MotionScene scene;
     CommandQueue queue;
     AlarmBoard alarms;
+    HoldingBrake brake;
 
     // What every cycle reads lies side by side from here on, and Measured behind it.
     DrivePort& port;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include "axes/axis/command_details.hpp"
 #include "axes/axis/direction_limits.hpp"
@@ -202,7 +203,76 @@ void check_compensation(Problems& problems, const CompensationConfig& compensati
     }
 }
 
+void check_gantry(Problems& problems, const AxisConfig& config) {
+    const auto& gantry = config.gantry;
+    if (!gantry.on) return;
+    problems.positive("gantry.max_skew.error", gantry.error, "u: what the portal bears without harm");
+    if (!(gantry.warning >= 0) || gantry.warning >= gantry.error)
+        problems.add("gantry.max_skew.warning", "must be below the error, and not negative",
+                     "Give for instance half of it, or leave it out");
+    const auto kind = config.homing.kind;
+    if (kind == HomingKind::drive || kind == HomingKind::reference_pulse)
+        problems.add(
+            "homing.kind", "of a gantry may not be one that a single drive carries out or latches",
+            "Choose `set_here`, `home_switch`, `limit_switch` or `absolute`: both sides move together, and the leader's switch counts");
+    if (config.control.mode != ControlMode::position)
+        problems.add("control.mode", "of a gantry must be `position`: each drive closes its own position loop", "Leave it out");
+    if (config.encoder) problems.add("encoder", "excludes `gantry`: there is nothing that moves", "Remove one of the two");
+    for (const auto alarm : one_sided_alarms)
+        if (config.reactions.of(alarm) < ErrorReaction::ramp_then_off)
+            problems.add("reactions." + std::string(find_alarm(axis_alarms, id(alarm))->name),
+                         "of a gantry must end without power: one side may not hold the portal alone",
+                         "Choose `ramp_then_off`, `quick_stop` or `power_off`, or leave it out for `ramp_then_off`");
+}
+
+void check_load_encoder(Problems& problems, const LoadEncoderConfig& load) {
+    if (!load.on) return;
+    problems.positive("load_encoder.counts_per_unit", load.counts_per_unit, "counts per u, above 0 either way; the sense is `inverted`");
+    problems.positive("load_encoder.tolerance", load.tolerance,
+                      "u: what coupling and backlash leave between motor and load, and the way of some cycles");
+    if (load.bits < 8 || load.bits > 64) problems.add("load_encoder.bits", "must be from 8 to 64", "Leave it out for 32");
+    if (load.time < Duration::zero()) problems.add("load_encoder.time", "must not be negative", "Leave it out for 10 ms");
+}
+
+void check_brake(Problems& problems, const BrakeConfig& brake) {
+    using namespace std::chrono_literals;
+    constexpr Duration longest = 5s;  // whoever needs more has another trouble
+    for (const auto& [field, time] : {std::pair{"brake.release", brake.release}, std::pair{"brake.engage", brake.engage}})
+        if (time < Duration::zero() || time > longest)
+            problems.add(field, "must be from 0 to 5 s", "Give the time from the brake's data sheet");
+    if (brake.by == BrakeBy::drive && (brake.release > Duration::zero() || brake.engage > Duration::zero() || brake.release_without_power))
+        problems.add("brake.by", "is `drive`: the drive works the brake with times of its own",
+                     "Choose `object` or `output` where the controller works it; else set the times in the drive and remove this section");
+}
+
+void check_reactions(Problems& problems, const ErrorReactions& reactions) {
+    for (const auto& info : axis_alarms) {
+        const auto alarm = static_cast<AxisAlarm>(info.id);
+        const auto chosen = reactions.chosen(alarm);
+        if (chosen == ErrorReaction::by_table) continue;
+        const auto field = "reactions." + std::string(info.name);
+        const auto* bound = bound_of(alarm);
+        if (!bound) {
+            problems.add(field, "is not chosen at an axis: it is the whole machine's, or comes before the axis does anything", "Remove it");
+        } else if (chosen < bound->mildest) {
+            std::string permitted;
+            for (const auto& word : reaction_words)
+                if (word.reaction >= bound->mildest) permitted += (permitted.empty() ? "`" : ", `") + std::string(word.name) + "`";
+            problems.add(
+                field,
+                "may not be answered by `" + std::string(word_of(chosen).name) + "`: " + std::string(bound->because) +
+                    " (something harder than the table's is always permitted, something milder is not)",
+                "Choose one of " + permitted + ", or leave it out for `" + std::string(word_of(reaction_by_table(alarm)).name) + "`");
+        }
+    }
+}
+
 }  // namespace
+
+void choose_for_gantry(ErrorReactions& reactions) noexcept {
+    for (const auto alarm : one_sided_alarms)
+        if (reactions.chosen(alarm) == ErrorReaction::by_table) reactions.choose(alarm, ErrorReaction::ramp_then_off);
+}
 
 std::vector<Error> check(const AxisConfig& config) {
     Problems problems(config.name);
@@ -215,6 +285,10 @@ std::vector<Error> check(const AxisConfig& config) {
     check_integral(problems, config.control, config.limits);
     check_load(problems, config.control.load, config.limits);
     check_compensation(problems, config.compensation);
+    check_brake(problems, config.brake);
+    check_gantry(problems, config);
+    check_load_encoder(problems, config.load_encoder);
+    check_reactions(problems, config.reactions);
     problems.not_negative("defaults.acceleration", config.defaults.acceleration, "the limit");
     problems.not_negative("defaults.deceleration", config.defaults.deceleration, "the limit");
     problems.not_negative("defaults.jerk", config.defaults.jerk, "the limit");

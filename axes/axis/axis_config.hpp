@@ -1,11 +1,13 @@
 #pragma once
 // One axis as configured. Unit u is the axis' own (mm, deg, ...). Plain data, checked by check(AxisConfig); config/ fills it.
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <string>
 #include <vector>
 
+#include "axes/axis/error_reaction.hpp"
 #include "axes/homing/coded_marks.hpp"
 #include "core/result.hpp"
 #include "core/time.hpp"
@@ -173,6 +175,39 @@ struct CompensationConfig {
     std::vector<PitchPoint> pitch;  ///< positions rise; corrected positions too. Active once homed
 };
 
+/// Who works the holding brake.
+enum class BrakeBy : std::uint8_t {
+    drive,   ///< the drive by itself, or there is none
+    object,  ///< the controller, through an object of the drive (60FEh)
+    output,  ///< the controller, through an output of the machine
+};
+
+struct BrakeConfig {
+    BrakeBy by = BrakeBy::drive;
+    Duration release{};                  ///< from the word to open it until it is open: motion waits for it
+    Duration engage{};                   ///< from the word to close it until it holds: power waits for it
+    bool release_without_power = false;  ///< MC_SetBrake may open it while nothing else holds the load
+};
+
+/// Two drives that move one portal: how far they may be apart.
+struct GantryConfig {
+    bool on = false;
+    double warning = 0;  ///< u of skew: shown; 0 = never
+    double error = 0;    ///< u of skew, > 0: the axis stops
+};
+
+/// A second encoder, at the load: an input of the machine says its counts.
+struct LoadEncoderConfig {
+    bool on = false;
+    std::uint16_t input = 0xFFFF;                   ///< index of the input point; the machine puts it in
+    double counts_per_unit = 0;                     ///< > 0
+    bool inverted = false;                          ///< it counts against the axis' sense
+    std::uint8_t bits = 32;                         ///< of its counter, which begins anew beyond them; 8 to 64
+    double tolerance = 0;                           ///< u, > 0: motor and load may differ by it
+    Duration time = std::chrono::milliseconds{10};  ///< longer than this: alarm
+    bool shown = false;                             ///< the axis' actual position is the load's
+};
+
 struct AxisConfig {
     std::string name;
     std::string unit = "mm";
@@ -187,6 +222,10 @@ struct AxisConfig {
     PositionMemory memory;
     ManualSpeeds manual;
     CompensationConfig compensation;
+    BrakeConfig brake;
+    GantryConfig gantry;
+    LoadEncoderConfig load_encoder;
+    ErrorReactions reactions;       ///< to its alarms, where others are chosen than those of the alarm table
     bool require_homed = true;      ///< absolute moves need a homed axis
     bool disabled = false;          ///< left out while commissioning: its drive is never enabled
     bool encoder = false;           ///< only measures: no drive to enable, takes no motion, may be a master (limits.velocity: its fastest)
@@ -197,6 +236,11 @@ struct AxisConfig {
     Duration jog_lease = std::chrono::milliseconds{200};
     Duration enable_timeout = std::chrono::seconds{3};
 };
+
+/// Alarms after which one side of a gantry stands alone: nobody holds the portal with it for long.
+inline constexpr std::array one_sided_alarms{AxisAlarm::drive_fault, AxisAlarm::drive_power_lost, AxisAlarm::gantry_side_lost};
+/// What a gantry does about them where nothing is chosen: both ramp, then both lose their power.
+void choose_for_gantry(ErrorReactions& reactions) noexcept;
 
 /// Every problem, without a bus or drive. Subjects name the field ("axes.x.limits.velocity").
 [[nodiscard]] std::vector<Error> check(const AxisConfig& config);

@@ -13,6 +13,8 @@ AxisCore::AxisCore(AxisConfig config, DrivePort& port, Duration cycle, std::uint
       modes(body, runs),
       motion(body, measured),
       conduct(body, motion.now, motion.addition, motion.aim, motion.base, runs),
+      gantry(body, measured, conduct),
+      load(body, measured, conduct),
       guard(body, measured, motion.now, modes, motion.addition, motion.aim, motion.limits, motion.targets, conduct),
       retained(body, measured, conduct),
       intake(body, measured, motion.now, motion.aim, runs, modes, retained, conduct),

@@ -27,12 +27,14 @@
 #include "axes/axis/drive_profiles.hpp"
 #include "axes/axis/feedback_intake.hpp"
 #include "axes/axis/following_watch.hpp"
+#include "axes/axis/gantry_watch.hpp"
 #include "axes/axis/given_motion.hpp"
 #include "axes/axis/homing_reference.hpp"
 #include "axes/axis/homing_runs.hpp"
 #include "axes/axis/homing_steps.hpp"
 #include "axes/axis/jog_lease.hpp"
 #include "axes/axis/limit_guard.hpp"
+#include "axes/axis/load_encoder.hpp"
 #include "axes/axis/master_side.hpp"
 #include "axes/axis/measured.hpp"
 #include "axes/axis/mode_state.hpp"
@@ -137,6 +139,8 @@ public:
     MotionParts motion;
     FollowingWatch following;
     Conduct conduct;
+    GantryWatch gantry;
+    LoadEncoder load;
     LimitGuard guard;
     RetainedCoordinates retained;
     FeedbackIntake intake;

@@ -126,6 +126,7 @@ ErrorId AxisParameters::write(const WriteParameter& wanted) noexcept {
 ErrorId AxisParameters::write_output(const WriteOutput& wanted) noexcept {
     if (!body_.port.capabilities().digital_outputs) return ErrorId::not_supported;
     if (wanted.number < 0 || wanted.number >= drive_outputs) return ErrorId::invalid_output;
+    if (wanted.number == 0 && body_.config.brake.by == BrakeBy::object) return ErrorId::invalid_output;  // the brake's: MC_SetBrake
     const auto bit = 1u << static_cast<unsigned>(wanted.number);
     output_mask_ |= bit;
     view_.digital_outputs = wanted.value ? view_.digital_outputs | bit : view_.digital_outputs & ~bit;

@@ -25,7 +25,7 @@ bool AxisPower::wanted() const noexcept {
     const bool drive_on = body_.power.phase() == Phase::on || body_.power.phase() == Phase::settling;
     // A slow line stops the motor later than the set-point.
     const bool still_slows_down = body_.slow_line && measured_.online() && !measured_.stands();
-    return drive_on && body_.emergency != EmergencyStop::power_off_now &&
+    return drive_on && body_.emergency != EmergencyStop::power_off_now && !conduct_.off_at_once() &&
            (conduct_.moves() || still_slows_down || (body_.power_wish && !conduct_.off_after_error()));
 }
 
@@ -34,6 +34,9 @@ bool AxisPower::run() noexcept {
                                          .aligned = aligned_,
                                          .online = measured_.online(),
                                          .mode_confirmed = measured_.feedback.mode == modes_.wanted() || runs_.drive.busy(),
+                                         .drive_stops = conduct_.drive_stops() && body_.emergency != EmergencyStop::power_off_now,
+                                         .stands = measured_.stands(),
+                                         .at_once = body_.emergency == EmergencyStop::power_off_now || conduct_.off_at_once(),
                                          .drive = measured_.feedback.power,
                                          .now = body_.now});
     if (body_.power.phase() == PowerSequence::Phase::off) conduct_.power_is_off();

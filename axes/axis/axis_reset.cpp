@@ -30,9 +30,9 @@ void AxisReset::run() noexcept {
     }
     // A polled drive that was away still carries out what comes first, mostly being disabled: the fault it may have is not known before.
     const bool under_way = measured_.online() && !measured_.feedback.commands_acknowledged;
-    if (under_way || conduct_.moves()) since_ = body_.now;  // a ramp is no cause, however long it is
+    if (under_way || conduct_.moves() || body_.power.quick_stops()) since_ = body_.now;  // a ramp is no cause, however long it is
     const bool cause_present = !measured_.online() || under_way || measured_.faulted() || measured_.feedback.setup_refused ||
-                               body_.emergency != EmergencyStop::none;
+                               body_.power.quick_stops() || body_.emergency != EmergencyStop::none;
     const bool still_turns = body_.slow_line && body_.power.on() && !measured_.stands();  // it stops later than the set-point
     if (!conduct_.moves() && !cause_present && !still_turns) {
         if (body_.power.on() && body_.power_wish && !conduct_.off_after_error()) {
@@ -56,7 +56,7 @@ void AxisReset::end(AxisEvent event) noexcept {
     resetting_ = false;
     conduct_.reset_error(ErrorId::none);
     body_.error = 0;
-    conduct_.off_after_error(false);
+    conduct_.error_is_over();
     motion_.goal = {};
     if (body_.slow_line) motion_.setpoint.place(measured_.local());  // where it was stopped: it holds no place of ours
     body_.alarms.clear_all_but(AxisAlarm::drive_warning);

@@ -60,11 +60,30 @@ ErrorId AxisSettings::apply(const AxisSetting& setting, Owner owner) noexcept {
     if (const auto* output = std::get_if<WriteOutput>(&setting)) return parameters_.write_output(*output);
     if (const auto* fed = std::get_if<SetpointFeed>(&setting)) return feed_in(*fed);
     if (const auto* factors = std::get_if<Override>(&setting)) return set_override(*factors);
+    if (const auto* brake = std::get_if<SetBrake>(&setting)) return set_brake(*brake);
     if (const auto* cam = std::get_if<SelectCam>(&setting)) {
         changed_ = true;
         return coupling_.select_cam(*cam);
     }
     return ErrorId::not_supported;
+}
+
+/// Open it is where the axis holds its load itself, or where the machine file says that nothing sinks. Closed it is where nothing moves.
+ErrorId AxisSettings::set_brake(const SetBrake& wanted) noexcept {
+    if (!body_.brake.controlled()) return ErrorId::brake_not_controlled;
+    if (body_.config.brake.by == BrakeBy::object && !body_.port.capabilities().brake) return ErrorId::not_supported;
+    const auto phase = body_.power.phase();
+    if (wanted.release) {
+        if (body_.emergency != EmergencyStop::none) return ErrorId::interlocked;
+        if (phase == PowerSequence::Phase::off && !body_.config.brake.release_without_power) return ErrorId::not_powered;
+        if (phase == PowerSequence::Phase::off && !measured_.online()) return ErrorId::drive_not_ready;
+        if (phase == PowerSequence::Phase::off && body_.power_wish && body_.state == AxisState::Disabled) return ErrorId::state_forbids;
+    }
+    const bool rests = body_.state == AxisState::Standstill && !conduct_.moves() && !body_.queue.has_active() && !body_.begin_pending &&
+                       body_.queue.waiting() == 0;
+    if (phase == PowerSequence::Phase::on ? !wanted.release && !rests : phase != PowerSequence::Phase::off) return ErrorId::state_forbids;
+    body_.brake.by_hand(wanted.release);
+    return ErrorId::none;
 }
 
 /// One that cannot be followed ends the command that is fed.

@@ -44,6 +44,7 @@ private:
     ErrorId set_position(const SetPosition& wanted) noexcept;
     ErrorId feed_in(const SetpointFeed& fed) noexcept;
     ErrorId set_override(const Override& factors) noexcept;
+    ErrorId set_brake(const SetBrake& wanted) noexcept;
 
     AxisBody& body_;
     const Measured& measured_;

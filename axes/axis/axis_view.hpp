@@ -26,6 +26,7 @@ struct AxisView {
     bool online = false;       ///< feedback is fresh enough
     bool in_position = false;  ///< actual inside the in-position window of the set-point, standstill
     bool warning = false;
+    BrakeState brake = BrakeState::not_controlled;
     std::uint16_t error = 0;              ///< alarm id while in ErrorStop (or ErrorId of the last error); 0 = none
     std::uint16_t drive_error = 0;        ///< drive's own number (603Fh); 0 = none
     bool resetting = false;               ///< a reset waits for the drive or for standstill
@@ -43,6 +44,8 @@ struct AxisView {
     double following_window = 0;  ///< u: what it may be, at the set velocity of the same instant; infinity = not watched
     double torque_limit_positive = std::numeric_limits<double>::infinity();  ///< fraction of rated torque; infinity = what the drive has
     double torque_limit_negative = std::numeric_limits<double>::infinity();
+    double skew = 0;             ///< of a gantry: the follower is ahead by it
+    double load_difference = 0;  ///< of a load encoder: the load is ahead of the motor by it
     double target_position = 0;
     double manual_slow = 0, manual_fast = 0;  ///< u/s, > 0: the jogging speeds (ManualSpeeds, resolved; parameters 1020, 1021)
 

@@ -35,6 +35,7 @@ enum class CommandKind : std::uint8_t {
     cam_out,
     phasing_absolute,  ///< position = shift of the master's position; a slot of its own
     phasing_relative,
+    halt_phasing,          ///< ends it where it is; the shift so far stays
     position_profile,      ///< TimeProfileDetails
     velocity_profile,      ///< TimeProfileDetails
     acceleration_profile,  ///< TimeProfileDetails

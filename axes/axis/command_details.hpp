@@ -162,7 +162,12 @@ struct SelectCam {
     bool periodic = false, master_absolute = true, slave_absolute = true;
     friend bool operator==(const SelectCam&, const SelectCam&) = default;
 };
-using AxisSetting = std::variant<SetPosition, WriteParameter, WriteOutput, Override, SetpointFeed, SelectCam>;
+/// MC_SetBrake.
+struct SetBrake {
+    bool release = false;
+    friend bool operator==(const SetBrake&, const SetBrake&) = default;
+};
+using AxisSetting = std::variant<SetPosition, WriteParameter, WriteOutput, Override, SetpointFeed, SelectCam, SetBrake>;
 
 using CommandDetails = std::variant<std::monostate, GearDetails, GearInPosDetails, CamDetails, CombineDetails, TorqueDetails,
                                     TimeProfileDetails, ProbeDetails, HomingStepDetails, AxisSetting, WholeTurns, TorqueLimitDetails>;

@@ -64,6 +64,7 @@ inline constexpr std::array rows{
     Row{cam_out,                  "MC_CamOut",                  decoupled,    uncouples | each_cycle},
     Row{phasing_absolute,         "MC_PhasingAbsolute",         discrete,     buffered | each_cycle, Slot::phasing},
     Row{phasing_relative,         "MC_PhasingRelative",         discrete,     buffered | each_cycle, Slot::phasing},
+    Row{halt_phasing,             "MC_HaltPhasing",             discrete,     each_cycle, Slot::phasing},
     Row{position_profile,         "MC_PositionProfile",         discrete,     over_time | buffered | each_cycle | updated},
     Row{velocity_profile,         "MC_VelocityProfile",         continuous,   over_time | buffered | hands_over | each_cycle | updated},
     Row{acceleration_profile,     "MC_AccelerationProfile",     continuous,   over_time | buffered | hands_over | each_cycle | updated},

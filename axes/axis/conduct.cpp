@@ -1,5 +1,7 @@
 #include "axes/axis/conduct.hpp"
 
+#include <algorithm>
+
 #include "axes/axis/aim.hpp"
 #include "axes/axis/base_motion.hpp"
 #include "axes/axis/command_check.hpp"
@@ -25,13 +27,13 @@ void Conduct::fire(AxisEvent event) noexcept {
 
 void Conduct::fail(AxisAlarm alarm, double a, double b) noexcept {
     if (!body_.alarms.raise(alarm, a, b)) return;
-    const auto how = reaction(alarm);
-    if (how < Reaction::stop_axis) return;
-    enter_error_stop(id(alarm), how == Reaction::power_off);
+    const auto how = body_.config.reactions.of(alarm);
+    if (how >= ErrorReaction::ramp_stop) enter_error_stop(id(alarm), how);
 }
 
-void Conduct::enter_error_stop(AlarmId reason, bool then_power_off) noexcept {
-    off_after_error_ = off_after_error_ || then_power_off;
+void Conduct::enter_error_stop(AlarmId reason, ErrorReaction how) noexcept {
+    off_after_error_ = off_after_error_ || how >= ErrorReaction::ramp_then_off;
+    hardest_ = std::max(hardest_, how);
     if (body_.state == AxisState::ErrorStop) return;  // it stops already; the first error is the one shown
     body_.error = reason;
     reset_error_ = ErrorId::none;
@@ -48,7 +50,7 @@ void Conduct::enter_error_stop(AlarmId reason, bool then_power_off) noexcept {
 bool Conduct::stop_for_error(AlarmId reason, bool then_power_off) noexcept {
     const bool stays_off = body_.state == AxisState::Disabled && !body_.power_wish;
     if (!stays_off && body_.alarms.raise(AxisAlarm::stopped_by_machine, reason, 0)) {
-        enter_error_stop(id(AxisAlarm::stopped_by_machine), then_power_off);
+        enter_error_stop(id(AxisAlarm::stopped_by_machine), then_power_off ? ErrorReaction::ramp_then_off : ErrorReaction::ramp_stop);
         return true;
     }
     if (then_power_off && body_.state == AxisState::ErrorStop) off_after_error_ = true;
@@ -140,6 +142,7 @@ void Conduct::give_way(const AxisCommand& command) noexcept {
 
 void Conduct::change_hands(Owner owner) noexcept {
     body_.owner = owner;
+    body_.brake.let_go();
     body_.permit_positive = body_.permit_negative = true;
     if (body_.state == AxisState::Disabled) body_.queue.finish_waiting(Outcome::aborted);  // for power that another party wanted
     const bool commanded = body_.queue.has_active() || body_.queue.waiting() > 0 || body_.lock != 0 || moves();

@@ -21,6 +21,10 @@ public:
     [[nodiscard]] bool moves() const noexcept;
     void fire(AxisEvent event) noexcept;
     void fail(AxisAlarm alarm, double a = 0, double b = 0) noexcept;
+    /// One that is only shown, where a milder reaction is chosen, goes with its cause.
+    void warning_is_over(AxisAlarm alarm) noexcept {
+        if (body_.config.reactions.chosen(alarm) == ErrorReaction::warn) body_.alarms.clear(alarm);
+    }
     /// True: it stops now.
     [[nodiscard]] bool stop_for_error(AlarmId reason, bool then_power_off) noexcept;
     void stop_on_own_account(bool then_power_off) noexcept;
@@ -43,13 +47,20 @@ public:
     [[nodiscard]] ErrorId reset_error() const noexcept { return reset_error_; }
     void reset_error(ErrorId error) noexcept { reset_error_ = error; }
     [[nodiscard]] bool off_after_error() const noexcept { return off_after_error_; }
-    void off_after_error(bool off) noexcept { off_after_error_ = off; }
+    /// Its errors since it was reset took the power at once, ...
+    [[nodiscard]] bool off_at_once() const noexcept { return hardest_ == ErrorReaction::power_off; }
+    /// ... or made the drive stop it.
+    [[nodiscard]] bool drive_stops() const noexcept { return hardest_ == ErrorReaction::quick_stop; }
+    void error_is_over() noexcept {
+        off_after_error_ = false;
+        hardest_ = ErrorReaction::by_table;
+    }
     [[nodiscard]] bool off_when_stopped() const noexcept { return off_when_stopped_; }
     [[nodiscard]] bool power_dropping() const noexcept { return power_dropping_; }
     void power_is_off() noexcept { power_dropping_ = false; }
 
 private:
-    void enter_error_stop(AlarmId reason, bool then_power_off) noexcept;
+    void enter_error_stop(AlarmId reason, ErrorReaction how) noexcept;
     void switch_off() noexcept;
 
     AxisBody& body_;
@@ -59,10 +70,11 @@ private:
     BaseMotion& base_;
     HomingRuns& runs_;
 
-    bool off_when_stopped_ = false;        // Stopping on the way to Disabled
-    bool power_dropping_ = false;          // Disabled, but the drive has not let go yet
-    bool off_after_error_ = false;         // ErrorStop whose reaction is power off
-    ErrorId reset_error_ = ErrorId::none;  // what the last reset came to
+    bool off_when_stopped_ = false;                    // Stopping on the way to Disabled
+    bool power_dropping_ = false;                      // Disabled, but the drive has not let go yet
+    bool off_after_error_ = false;                     // ErrorStop whose reaction is power off
+    ErrorReaction hardest_ = ErrorReaction::by_table;  // of the errors since the last reset
+    ErrorId reset_error_ = ErrorId::none;              // what the last reset came to
 };
 
 }  // namespace taktwerk::axes

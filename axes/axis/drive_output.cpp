@@ -40,6 +40,7 @@ void DriveOutput::encode(Instant now) noexcept {
     if (runs_.latch.armed()) command_.probes[runs_.latch.probe()] = runs_.latch.command();
     command_.digital_outputs = body_.shown.digital_outputs;
     command_.digital_output_mask = parameters_.output_mask();
+    command_.brake = body_.brake.request();
     if (bounds_.used()) fill_torque_limits();
     if (runs_.step.presses() && body_.port.capabilities().torque_limits) {
         command_.torque_limit_positive = std::min(command_.torque_limit_positive, runs_.block_torque);

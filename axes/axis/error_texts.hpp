@@ -265,6 +265,14 @@ inline constexpr std::array<ErrorText, error_id_count> error_texts{{
      {"The drive did not take the torque limit", "It refused the write of 60E0h, 60E1h or 6072h, or did not answer; the limits before hold on",
       "Check the value against the drive's own range, and its alarms; map the object to send it with each cycle"},
      {"驱动器未接受转矩限制", "驱动器拒绝写入 60E0h、60E1h 或 6072h，或未应答；之前的限制继续有效", "核对该值是否在驱动器允许范围内并检查其报警；也可将该对象映射为周期发送"}},
+    {ErrorId::brake_not_controlled, "brake_not_controlled",
+     {"The controller does not work the brake of this axis", "The drive works its holding brake by itself with its power, or the axis has none; the machine file says no `brake: {by: ...}`",
+      "Use MC_Power; where the drive has an object for it, or the brake is wired to an output of the machine, say so under `brake` of the axis"},
+     {"控制器不控制该轴的抱闸", "驱动器随功率级自行控制抱闸，或该轴没有抱闸；机器配置中未设置 `brake: {by: ...}`", "使用 MC_Power；若驱动器提供相应对象，或抱闸接在机器的输出上，请在该轴的 `brake` 中说明"}},
+    {ErrorId::brake_closed, "brake_closed",
+     {"The holding brake is closed", "MC_SetBrake closed it under power, or it has not been opened again",
+      "Open it with MC_SetBrake (Release TRUE) and wait for Done, then give the command again"},
+     {"抱闸处于闭合状态", "MC_SetBrake 在使能状态下闭合了抱闸，尚未重新释放", "用 MC_SetBrake（Release 为 TRUE）释放抱闸并等待 Done，然后重新发出命令"}},
 }};
 // clang-format on
 

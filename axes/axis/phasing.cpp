@@ -1,15 +1,18 @@
 #include "axes/axis/phasing.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "axes/axis/axis_coupling.hpp"
 #include "axes/axis/command_check.hpp"
 #include "axes/axis/coupling_links.hpp"
 #include "axes/axis/master_side.hpp"
+#include "axes/axis/stop_ramp.hpp"
 
 namespace taktwerk::axes {
 
 Submitted Phasing::submit(const AxisCommand& command, Owner owner) noexcept {
+    if (command.kind == CommandKind::halt_phasing) return submit_halt(command, owner);
     if (const auto error = refuse(command); error != ErrorId::none) return {0, error};
     const AcceptedCommand accepted{body_.queue.next_id(), owner, command};
     if (command.buffer_mode == mcBuffered) {
@@ -23,6 +26,27 @@ Submitted Phasing::submit(const AxisCommand& command, Owner owner) noexcept {
     return {accepted.id, ErrorId::none};
 }
 
+/// As MC_Halt it ends what waits, too. Where nothing runs there is nothing to halt.
+Submitted Phasing::submit_halt(const AxisCommand& command, Owner owner) noexcept {
+    for (const double value : {command.deceleration, command.jerk})
+        if (!(value >= 0) || std::isinf(value)) return {0, ErrorId::invalid_dynamics};
+    if (!coupled() && links_.state.phasing_next.id == 0) return {0, ErrorId::not_coupled};
+    auto& state = links_.state;
+    const AcceptedCommand accepted{body_.queue.next_id(), owner, command};
+    state.shown = true;
+    if (state.phasing_next.id != 0) body_.queue.record(state.phasing_next.id, Outcome::aborted, ErrorId::none);
+    state.phasing_next = {};
+    links_.end_phasing(Outcome::aborted);
+    if (state.phase.running()) halt(accepted);
+    else body_.queue.record(accepted.id, Outcome::done, ErrorId::none);
+    return {accepted.id, ErrorId::none};
+}
+
+bool Phasing::coupled() const noexcept {
+    const auto& link = links_.state.running.id != 0 ? links_.state.running : links_.state.next;
+    return body_.state == AxisState::SynchronizedMotion && (link.id != 0 || couples(body_.queue.active().command.kind));
+}
+
 ErrorId Phasing::refuse(const AxisCommand& command) const noexcept {
     for (const double value : {command.velocity, command.acceleration, command.deceleration, command.jerk})
         if (!(value >= 0) || std::isinf(value)) return value == command.velocity ? ErrorId::invalid_velocity : ErrorId::invalid_dynamics;
@@ -32,8 +56,7 @@ ErrorId Phasing::refuse(const AxisCommand& command) const noexcept {
     const bool buffered = command.buffer_mode == mcBuffered;
     const auto& coupling = coupling_before_phasing(command);
     const auto& link = links_.state.running.id != 0 ? links_.state.running : links_.state.next;
-    const bool coupled = body_.state == AxisState::SynchronizedMotion && (link.id != 0 || couples(body_.queue.active().command.kind));
-    if (buffered ? !couples(coupling.command.kind) : !coupled) return ErrorId::not_coupled;
+    if (buffered ? !couples(coupling.command.kind) : !coupled()) return ErrorId::not_coupled;
     const auto master = !buffered && link.id != 0 ? link.masters.axes[0] : masters_of(coupling.command).axes[0];
     if (const auto named = masters_of(command).axes[0]; named.valid() && named != master) return ErrorId::invalid_master;
     if (!buffered) return ErrorId::none;
@@ -88,6 +111,19 @@ void Phasing::begin(const AcceptedCommand& accepted) noexcept {
         state.phasing = accepted;
         state.phase_master = ref;
     } else body_.queue.record(accepted.id, Outcome::error, ErrorId::invalid_position);
+}
+
+/// With the master's ramps, as the phasing. As every stop: what speeds up loses its acceleration with the jerk it was built up with, and nothing
+/// turns round.
+void Phasing::halt(const AcceptedCommand& accepted) noexcept {
+    auto& state = links_.state;
+    const auto from = state.phase.state();
+    const MasterSide* master = links_.axis(state.phase_master);
+    const auto& config = master ? master->config() : body_.config;
+    auto limits = dynamics_of(accepted.command, config.limits, config.defaults);
+    if (from.velocity * from.acceleration > 0) limits.jerk = std::max(limits.jerk, state.phase.jerk());
+    if (state.phase.stop(never_reversing(from, limits, to_seconds(body_.cycle)))) state.phasing = accepted;
+    else body_.queue.record(accepted.id, Outcome::error, ErrorId::invalid_dynamics);
 }
 
 void Phasing::complete() noexcept {

@@ -1,5 +1,5 @@
 #pragma once
-// MC_PhasingAbsolute, MC_PhasingRelative: a motion of its own, of the master's position as this slave sees it, beside the coupling.
+// MC_PhasingAbsolute, MC_PhasingRelative, MC_HaltPhasing: a motion of its own, of the master's position as this slave sees it, beside the coupling.
 
 #include "axes/axis/axis_body.hpp"
 
@@ -18,10 +18,14 @@ public:
     void complete() noexcept;
 
 private:
+    Submitted submit_halt(const AxisCommand& command, Owner owner) noexcept;
+    /// A coupling runs, or is about to.
+    [[nodiscard]] bool coupled() const noexcept;
     [[nodiscard]] ErrorId refuse(const AxisCommand& command) const noexcept;
     [[nodiscard]] const AcceptedCommand& coupling_before_phasing(const AxisCommand& command) const noexcept;
     [[nodiscard]] bool lets_phasing_begin() const noexcept;
     void begin(const AcceptedCommand& accepted) noexcept;
+    void halt(const AcceptedCommand& accepted) noexcept;
 
     AxisBody& body_;
     CouplingLinks& links_;

@@ -11,12 +11,14 @@ namespace {
 /// What the drive, power and everything beside motion would need a look for.
 bool nothing_unusual(const AxisCore& axis) noexcept {
     const auto& body = axis.body;
+    if (body.brake.controlled() || body.config.gantry.on || body.config.load_encoder.on) return false;
     const bool commanded = body.power_wish && body.emergency == EmergencyStop::none && body.state != AxisState::Homing &&
                            body.queue.active().command.kind != CommandKind::jog;
     if (!commanded || body.slow_line || axis.modes.own != DriveMode::cyclic_position) return false;
     if (!FeedbackIntake::as_wanted(body, axis.measured, axis.runs, axis.modes)) return false;
     // A window that grows with the velocity, weight and friction fed forward, a torque limit on its way: each has something to do in each cycle.
     if (body.config.following.per_velocity > Duration::zero() || axis.output.feeds_load() || axis.bounds.id() != 0) return false;
+    if (!body.alarms.active().empty()) return false;  // one that only warns is taken back by whoever raised it
     const bool probed = axis.probes.in_use() || axis.homing.passive.id() != 0 || axis.runs.latch.armed();
     return !probed && !axis.runs.search() && !axis.reset.resetting() && !axis.measured.negative_switch && !axis.measured.positive_switch &&
            axis.measured.stale == 0 && axis.measured.compensation.none();

@@ -14,6 +14,7 @@ public:
         enabling,       ///< asked for, drive not there yet; set-point still follows
         settling,       ///< drive enabled: set-point held through the dwell (brake, servo-on)
         on,             ///< motion is accepted
+        engaging,       ///< asked off, the brake closes: drive stays enabled, set-point held
         switching_off,  ///< asked off, drive still enabled: set-point held
     };
     enum class Event : std::uint8_t { none, ready, timeout, lost, off };
@@ -23,14 +24,19 @@ public:
         bool aligned = false;  ///< set-point equals the actual position: needed before power is asked for
         bool online = false;
         bool mode_confirmed = false;
+        bool drive_stops = false;  ///< by itself, before its power goes
+        bool stands = false;
+        bool at_once = false;  ///< its power goes without waiting for the brake
         PowerState drive = PowerState::unknown;
         Instant now{};
     };
 
-    PowerSequence(Duration dwell, Duration timeout) noexcept : dwell_(dwell), timeout_(timeout) {}
+    /// `engage`: what a brake needs to close before the power goes; 0 = there is none that the controller works.
+    PowerSequence(Duration dwell, Duration timeout, Duration engage = {}) noexcept : dwell_(dwell), timeout_(timeout), engage_(engage) {}
 
     Event step(const Input& in) noexcept {
         const bool enabled = in.online && in.drive == PowerState::enabled;
+        quick_ = in.drive_stops && (in.drive == PowerState::enabled || (in.drive == PowerState::quick_stop && !in.stands));
         switch (phase_) {
             case Phase::off:
                 // A bus that is not up yet is not the drive's delay: time runs from when the drive can be asked.
@@ -58,8 +64,12 @@ public:
                 return Event::ready;
             case Phase::on:
                 if (in.online && !enabled) return leave(Phase::off, Event::lost);
-                if (!in.wanted) return leave(Phase::switching_off, Event::none);
-                return Event::none;
+                if (in.wanted) return Event::none;
+                since_ = in.now;
+                return leave(engage_ > Duration::zero() && !in.at_once ? Phase::engaging : Phase::switching_off, Event::none);
+            case Phase::engaging:
+                if (in.online && !enabled) return leave(Phase::off, Event::off);
+                return in.at_once || in.now - since_ >= engage_ ? leave(Phase::switching_off, Event::none) : Event::none;
             case Phase::switching_off:
                 if (enabled || !in.online) return Event::none;  // a silent drive may still be enabled: hold its set-point
                 return leave(Phase::off, Event::off);
@@ -69,9 +79,12 @@ public:
 
     [[nodiscard]] Phase phase() const noexcept { return phase_; }
     [[nodiscard]] bool on() const noexcept { return phase_ == Phase::on; }
+    /// The drive is in, or on its way into, a quick stop that was asked for: its power must not go before it stands.
+    [[nodiscard]] bool quick_stops() const noexcept { return quick_; }
     /// The drive takes no set-point, so the set-point follows the actual position.
     [[nodiscard]] bool follows_actual() const noexcept { return phase_ == Phase::off || phase_ == Phase::enabling; }
     [[nodiscard]] PowerRequest request() const noexcept {
+        if (quick_) return PowerRequest::quick_stop;
         return phase_ == Phase::off || phase_ == Phase::switching_off ? PowerRequest::off : PowerRequest::on;
     }
 
@@ -86,9 +99,10 @@ private:
         return leave(Phase::off, Event::timeout);
     }
 
-    Duration dwell_, timeout_;
+    Duration dwell_, timeout_, engage_;
     Phase phase_ = Phase::off;
     bool waiting_ = false;
+    bool quick_ = false;
     Instant since_{};
 };
 

@@ -10,6 +10,7 @@ ViewWriter::ViewWriter(AxisCore& axis, AxisView& view) : axis_(axis), view_(view
     view_.modulo = axis.body.config.modulo;
     axis.parameters.store();
     axis.parameters.use();
+    brake();
     publish();
 }
 
@@ -56,6 +57,12 @@ void ViewWriter::probes() noexcept {
 
 void ViewWriter::passive_homing() noexcept { side(SideSlot::passive_homing, axis_.homing.passive.id()); }
 
+void ViewWriter::brake() noexcept { view_.brake = axis_.body.brake.state(); }
+
+void ViewWriter::skew() noexcept { view_.skew = axis_.gantry.skew(); }
+
+void ViewWriter::load() noexcept { view_.load_difference = axis_.load.difference(); }
+
 void ViewWriter::couplings() noexcept {
     auto& state = axis_.coupling.links.state;
     state.shown = state.used();  // what is over is shown once more, as gone
@@ -80,7 +87,7 @@ void ViewWriter::feedback(double actual) noexcept {
     view_.warning = from_drive.warning;
     view_.drive_error = from_drive.error_code;
 
-    view_.actual_position = axis_.body.units.to_program(actual);
+    view_.actual_position = axis_.body.units.to_program(axis_.body.config.load_encoder.shown ? actual + axis_.load.difference() : actual);
     view_.actual_velocity = measured.velocity();
     view_.actual_torque = measured.torque();
 

@@ -17,6 +17,9 @@ public:
     void resets() noexcept;
     void probes() noexcept;
     void passive_homing() noexcept;
+    void brake() noexcept;
+    void skew() noexcept;
+    void load() noexcept;
     void feedback(double actual) noexcept;
     void setpoint() noexcept;
     /// Local: of a drive that makes the profile.

@@ -11,13 +11,12 @@ public:
     /// From the present shift, wherever it is on its way, to `target` [u of the master]. False when nothing can be planned.
     [[nodiscard]] bool begin(double target, const MotionLimits& limits) noexcept {
         const auto plan = plan_to_position(state_, target, limits);
-        if (plan.error != PlanError::none) return false;
-        profile_ = plan.profile;
-        elapsed_ = {};
+        if (!run(plan, limits)) return false;
         from_ = state_.position;
-        running_ = true;
         return true;
     }
+    /// Ends the motion where its ramp ends; the shift so far stays. False when nothing can be planned.
+    [[nodiscard]] bool stop(const MotionLimits& limits) noexcept { return run(plan_stop(state_, limits), limits); }
     void clear() noexcept { *this = {}; }
     void advance(Duration period) noexcept {
         if (!running_) return;
@@ -30,12 +29,23 @@ public:
     [[nodiscard]] bool running() const noexcept { return running_; }
     /// Since the last begin(), u.
     [[nodiscard]] double covered() const noexcept { return state_.position - from_; }
+    /// Which the present motion was planned with.
+    [[nodiscard]] double jerk() const noexcept { return jerk_; }
 
 private:
+    bool run(const Plan& plan, const MotionLimits& limits) noexcept {
+        if (plan.error != PlanError::none) return false;
+        profile_ = plan.profile;
+        jerk_ = limits.jerk;
+        elapsed_ = {};
+        running_ = true;
+        return true;
+    }
+
     Profile profile_;
     MotionState state_;
     Duration elapsed_{};
-    double from_ = 0;
+    double from_ = 0, jerk_ = 0;
     bool running_ = false;
 };
 

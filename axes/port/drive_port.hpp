@@ -95,6 +95,7 @@ struct DriveCapabilities {
     std::uint8_t services = 0;     ///< bit per DriveService
     bool torque_limits_written = false;       ///< they are not mapped, but the drive has them: DriveFeedback says when it has taken them
     bool torque_limit_per_direction = false;  ///< 60E0h and 60E1h; false: 6072h alone, one limit for both directions
+    bool brake = false;  ///< its holding brake is worked by DriveCommand::brake (60FEh)
     double velocity_step = 0;    ///< counts/s between two velocity set-points the drive can tell apart (XP200: 1 r/min); 0 = none
     Duration command_latency{};  ///< worst time from encode() to effect beyond setpoint_effective() (a slow line); 0 = none
 
@@ -107,6 +108,9 @@ enum class PowerRequest : std::uint8_t {
     on,          ///< reach `enabled`, with the target aligned to the actual position
     quick_stop,  ///< the drive stops by itself (605Ah)
 };
+
+/// What a holding brake is told that the controller works through the drive.
+enum class BrakeRequest : std::uint8_t { none, close, open };
 
 enum class ProbeEdge : std::uint8_t { rising, falling };
 
@@ -155,6 +159,7 @@ struct DriveCommand {
     double torque_slope = 0;                                          ///< rated torques/s in profile torque mode; 0 = leave
     DriveHomingSetup homing{};
     ProfileSetpoint profile{};
+    BrakeRequest brake = BrakeRequest::none;
 };
 
 struct ProbeFeedback {
@@ -265,6 +270,12 @@ public:
     /// When the command encoded now takes effect in the drive, if sent at `send_time`.
     [[nodiscard]] virtual Instant setpoint_effective(Instant send_time) const noexcept = 0;
     [[nodiscard]] virtual DriveAlarm alarm() const noexcept = 0;
+
+    // Of two drives on one portal (axes/drives/gantry). Real-time safe.
+    /// Counts that the follower is ahead of the leader, while both have power.
+    [[nodiscard]] virtual double skew() const noexcept { return 0; }
+    /// One of the two has lost its power; DriveFeedback::power is the other's.
+    [[nodiscard]] virtual bool side_lost() const noexcept { return false; }
 
     // --- service side; not real-time ------------------------------------------------------------------------------------
     /// Acyclic work of this drive: reading the detail of an alarm, parameters. Resumable, called often.

@@ -63,12 +63,20 @@ enum class ParameterStorage : std::uint8_t {
     never,       ///< writes are lost at power off: the maker's own tool stores (TSVM)
 };
 
+/// How the controller may work the holding brake.
+enum class BrakeObject : std::uint8_t {
+    none,        ///< not at all: the drive works it, or has no output for it
+    output_bit,  ///< 60FEh:01 bit 0 closes it (CiA 402-2), where the mask 60FEh:02 lets it
+    mask_opens,  ///< 60FEh:02 bit 0 opens it (SV-DA200 4.7), once BehaviourObjects::output_control says so
+};
+
 /// The holding brake, as the drive works it.
 struct DriveBrake {
     Duration release{};       ///< after enabling the brake still holds: earlier commands are lost (SV33-E P05.13)
     Duration hold{};          ///< after disabling at standstill the motor holds until the brake does (SV33-E P05.14)
     Duration moving_wait{};   ///< power gone in motion: the brake closes after this at the latest (TSVM PA48)
     double moving_speed = 0;  ///< rpm: it closes as soon as the motor is slower (TSVM PA49); 0: at standstill
+    BrakeObject object = BrakeObject::none;
 };
 
 /// When and how a drive takes another mode of operation.

@@ -48,7 +48,8 @@ Behaviour::Behaviour(const DriveProfile& profile)
       inputs_count_(profile, profile.behaviour.virtual_inputs.enable),
       input_levels_(profile, profile.behaviour.virtual_inputs.levels),
       probe_input_{BehaviourValue(profile, profile.behaviour.probe_input[0]), BehaviourValue(profile, profile.behaviour.probe_input[1])},
-      units_(profile) {
+      units_(profile),
+      brake_object_(profile.brake.object) {
     for (const auto& function : profile.behaviour.virtual_inputs.functions) input_functions_.emplace_back(profile, function);
     for (const auto& output : profile.behaviour.analogue_outputs)
         analogue_.push_back({{profile, output.value}, {profile, output.selection}, {profile, output.gain}, output.monitor});
@@ -69,6 +70,7 @@ void Behaviour::power_on(ecat::sim::ObjectDictionary& dictionary, Instant now) {
     }
     units_.power_on(dictionary);
     outputs_ = dictionary.find(0x60FE, 1);
+    output_mask_ = dictionary.find(0x60FE, 2);
     following_ = operational_ = sync0_ = fresh_ = false;
     sync_watch_.restart({});
     data_at_ = sync_at_ = now;
@@ -102,7 +104,17 @@ void Behaviour::obey(AxisInputs& in, Cia402Axis& axis) noexcept {
     if (torque_offset_not_in_torque_ && mode::of_torque(in.mode)) in.torque_offset = 0;
     if (limit_masks_.present() && (limit_masks_.get() & velocity_offset_used) == 0) in.velocity_offset = 0;
     if (limit_stop_is_fault_) stop_at_limits(in, axis);
+    if (brake_object_ != BrakeObject::none) obey_brake(axis);
     watch_enable(in, axis);
+}
+
+/// CiA 402-2, 60FEh bit 0; SV-DA200 4.7, where P4.28 = 1 lets it.
+void Behaviour::obey_brake(Cia402Axis& axis) noexcept {
+    constexpr std::int64_t brake = 1;
+    if (output_control_.present() && output_control_.get() != 1) return;
+    const bool masked = output_mask_ != nullptr && (output_mask_->get() & brake) != 0;
+    if (brake_object_ == BrakeObject::mask_opens) axis.brake_by_bus(masked);
+    else if (outputs_ != nullptr && (output_mask_ == nullptr || masked)) axis.brake_by_bus((outputs_->get() & brake) == 0);
 }
 
 /// Targets that come as increments, and those that do not come.

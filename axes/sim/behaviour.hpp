@@ -48,6 +48,7 @@ public:
 
 private:
     void obey_position(AxisInputs& in, const Cia402Axis& axis) noexcept;
+    void obey_brake(Cia402Axis& axis) noexcept;
     void obey_limits(AxisInputs& in) const noexcept;
     void obey_probes(AxisInputs& in) const noexcept;
     void stop_at_limits(const AxisInputs& in, Cia402Axis& axis) noexcept;
@@ -77,7 +78,8 @@ private:
     std::vector<BehaviourValue> input_functions_;
     std::vector<Analogue> analogue_;
     UnitChoice units_;
-    const ecat::sim::Entry* outputs_ = nullptr;
+    const ecat::sim::Entry *outputs_ = nullptr, *output_mask_ = nullptr;
+    BrakeObject brake_object_;
     // What happens.
     LostData targets_;
     SyncWatch sync_watch_;

@@ -110,6 +110,8 @@ public:
     /// Set-points and homing starts that came before the brake was open and were lost. A careful master causes none.
     [[nodiscard]] std::uint32_t early_commands() const noexcept { return early_commands_; }
     [[nodiscard]] bool brake_closed() const noexcept { return brake_closed_; }
+    /// The master works the brake, through an object or past the drive; until it says so the drive does.
+    void brake_by_bus(bool open) noexcept { bus_opens_brake_ = open; }
     [[nodiscard]] bool stands() const noexcept;
     /// What the drive's input for this probe sees, and whether the encoder stands on its index pulse.
     [[nodiscard]] bool probe_input(std::size_t probe) const noexcept;
@@ -300,6 +302,7 @@ private:
     Instant power_went_{};      ///< last time that the motor had power
     Duration brake_closing_{};  ///< since the brake was told to
     bool brake_closed_ = false, encoder_failed_ = false;
+    std::optional<bool> bus_opens_brake_;
     std::int64_t frozen_position_ = 0;
     std::uint32_t early_commands_ = 0;
     std::vector<bool> causes_;  ///< of each alarm of the profile

@@ -190,6 +190,7 @@ void Cia402Axis::step_brake() noexcept {
 /// The drive's output for the brake. At standstill it says so before it lets go, as long as the machine's brake needs (TSVM PA47, SV33-E
 /// P05.14); a brake that is never late closes as the motor lets go. In motion it waits until the motor is slow (TSVM PA48, PA49).
 bool Cia402Axis::brake_told_to_close() const noexcept {
+    if (bus_opens_brake_) return !*bus_opens_brake_;
     if (!has_brake()) return false;
     const bool told_before = brake_closing_ > Duration::zero();
     if (state_ == State::enabled) return now_ < brake_opens_ && (stands() || told_before);

@@ -52,6 +52,9 @@ using CommandId = std::uint32_t;
 enum class Owner : std::uint8_t { none, program, operator_panel, commissioning };
 [[nodiscard]] std::string_view name(Owner owner) noexcept;
 
+/// The holding brake, as far as anybody knows: by the time since it was told.
+enum class BrakeState : std::uint8_t { not_controlled, closed, opening, open, closing };
+
 /// Stable error numbers of blocks and axes (docs/reference/errors.md); texts in axes/axis/error_texts.hpp.
 /// 0x0001..: command errors (the axis is untouched). 0x3xxx: axis errors (the alarm ids of axes/axis/alarms.hpp).
 enum class ErrorId : std::uint16_t {
@@ -120,7 +123,10 @@ enum class ErrorId : std::uint16_t {
     no_torque_limit = 0x0034,       ///< the drive takes none
     invalid_torque_limit = 0x0035,  ///< negative, not finite, less than 0.001; or two limits for a drive that has one for both directions
     torque_limit_refused = 0x0036,  ///< the drive did not take it
+    // The holding brake.
+    brake_not_controlled = 0x0037,  ///< the drive works its brake by itself, or the axis has none
+    brake_closed = 0x0038,          ///< MC_SetBrake has closed it under power
 };
-inline constexpr std::size_t error_id_count = 0x0037;
+inline constexpr std::size_t error_id_count = 0x0039;
 
 }  // namespace taktwerk::axes

@@ -155,6 +155,13 @@ Table<DriveProfile> motion_table() {
             in_room("brake_moving_wait", &P::brake, &axes::DriveBrake::moving_wait, duration(),
                     "power gone in motion: the brake closes after this at the latest"),
             in_room("brake_moving_speed", &P::brake, &axes::DriveBrake::moving_speed, number(), "rpm below which it closes at once"),
+            in_room(
+                "brake_object", &P::brake, &axes::DriveBrake::object,
+                choice<axes::BrakeObject>({{"none", axes::BrakeObject::none},
+                                           {"output_bit", axes::BrakeObject::output_bit},
+                                           {"mask_opens", axes::BrakeObject::mask_opens}}),
+                "how the controller may work the brake. none: not at all · output_bit: 60FEh:01 bit 0 closes it (CiA 402) · mask_opens: "
+                "60FEh:02 bit 0 opens it"),
             field("self_test", &P::self_test, duration(), "Not Ready To Switch On lasts this long after power-on"),
             field("deaf_after_enable", &P::deaf_after_enable, duration(), "set-points are not obeyed this long after enabling"),
             field("missed_frames_allowed", &P::missed_frames_allowed, integer<std::uint8_t>(0, 255),

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "axes/axis/command_details.hpp"
+#include "config/machine_file/axis_mechanics_tables.hpp"
 #include "config/reading/codecs.hpp"
 
 namespace taktwerk::config {
@@ -368,6 +369,29 @@ Table<axes::CompensationConfig> compensation_table() {
             {}};
 }
 
+/// A key for each alarm whose reaction may be chosen; how far, `check` of the axis says with the reason.
+Table<axes::ErrorReactions> reactions_table() {
+    using R = axes::ErrorReactions;
+    Table<R> table{
+        "reactions",
+        "What the axis does about its own alarms, by their names in docs/reference/alarms.md. Something harder than usual is always "
+        "permitted, something milder only where that page says so.",
+        {},
+        {},
+        {}};
+    std::vector<std::pair<std::string, axes::ErrorReaction>> words;
+    for (const auto& word : axes::reaction_words) words.emplace_back(word.name, word.reaction);
+    for (const auto& info : axes::axis_alarms) {
+        const auto alarm = static_cast<axes::AxisAlarm>(info.id);
+        if (axes::bound_of(alarm) == nullptr) continue;
+        table.fields.push_back(field_via<R>(
+            std::string(info.name), choice<axes::ErrorReaction>(words),
+            [alarm](R& r, const axes::ErrorReaction& chosen) { r.choose(alarm, chosen); }, "reaction to this alarm",
+            std::string(axes::word_of(axes::reaction_by_table(alarm)).name)));
+    }
+    return table;
+}
+
 /// The axis' own unit, which all its quantities are read in.
 Codec<std::string> axis_unit() {
     Codec<std::string> c;
@@ -416,6 +440,7 @@ Table<AxisBinding> axis_table() {
         field("manual", &A::manual, section(manual_table()), "jogging speeds"),
         field("control", &A::control, section(control_table()), "position loop and feed-forward"),
         field("compensation", &A::compensation, section(compensation_table()), "backlash and pitch errors"),
+        field("reactions", &A::reactions, section(reactions_table()), "to its own alarms, where others than usual are wanted"),
         field("require_homed", &A::require_homed, boolean(), "absolute moves need a homed axis"),
         field("disabled", &A::disabled, boolean(), "left out while commissioning: its drive is never enabled"),
         field("encoder", &A::encoder, boolean(),
@@ -432,9 +457,19 @@ Table<AxisBinding> axis_table() {
               "a drive that takes longer to enable is an alarm"),
     };
     include_fields(f, axis, Table<A>{{}, {}, std::move(own), {}, {}});
+    f.push_back(field_at<AxisBinding>(
+        "load_encoder", [](AxisBinding& b) -> AxisBinding& { return b; }, section(load_encoder_table()), "a second encoder, at the load"));
+    f.push_back(field_at<AxisBinding>(
+        "gantry", [](AxisBinding& b) -> AxisBinding& { return b; }, section(gantry_table()),
+        "a second drive for the other side of a portal"));
+    f.push_back(field_at<AxisBinding>(
+        "brake", [](AxisBinding& b) -> AxisBinding& { return b; }, section(brake_table()), "holding brake, where the controller works it"));
     f.push_back(field("simulation", &AxisBinding::simulation, section(axis_simulation_table()), "mechanics of the simulated axis"));
     table.before = [](Reader& reader, const Node&, AxisBinding& b) { reader.axis_unit = b.axis.unit; };
-    table.after = [](Reader& reader, const Node&, AxisBinding& b) { reader.units_of_axes[b.axis.name] = b.axis.unit; };
+    table.after = [](Reader& reader, const Node&, AxisBinding& b) {
+        reader.units_of_axes[b.axis.name] = b.axis.unit;
+        if (b.axis.gantry.on) axes::choose_for_gantry(b.axis.reactions);
+    };
     return table;
 }
 

@@ -64,8 +64,10 @@ public:
                 }
         }
         for (auto& binding : out.machine.axes)
-            for (const auto& [name, profile] : profiles_)
+            for (const auto& [name, profile] : profiles_) {
                 if (name == binding.slave) binding.profile = profile;
+                if (name == binding.follower.slave) binding.follower.profile = profile;
+            }
         add_stored(out);
         for (const auto& binding : out.machine.axes) check_axis_is_named(binding);
         for (const auto& entry : file_.serial) add_line(out, entry);
@@ -253,8 +255,11 @@ private:
             const auto slave = std::find_if(slaves.begin(), slaves.end(), [&](const auto& s) { return s.name == entry.slave.name; });
             if (slave == slaves.end()) continue;
             for (auto& stored : resolve_stored(reader_, entry.slave.name, entry.stored, slave->startup, *known->second))
-                for (auto& binding : out.machine.axes)
+                for (auto& binding : out.machine.axes) {
                     if (binding.slave == entry.slave.name && binding.drive_axis == stored.axis) binding.stored.push_back(stored.setting);
+                    auto& follower = binding.follower;
+                    if (follower.slave == entry.slave.name && follower.drive_axis == stored.axis) follower.stored.push_back(stored.setting);
+                }
             for (const auto& binding : out.machine.axes)
                 if (binding.slave == entry.slave.name)
                     refuse_contradictions(

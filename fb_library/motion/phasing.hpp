@@ -1,5 +1,6 @@
 #pragma once
-// MC_PhasingAbsolute, MC_PhasingRelative: PLCopen Part 1 v2.0, 4.8, 4.9. Real-time safe.
+// MC_PhasingAbsolute, MC_PhasingRelative: PLCopen Part 1 v2.0, 4.8, 4.9. MC_HaltPhasing, which the standard has not, in the form of its
+// MC_HaltSuperimposed. Real-time safe.
 //
 // They shift the master's position as the slave sees it and run beside the coupling: its block stays Active.
 
@@ -76,6 +77,23 @@ struct MC_PhasingRelative : CommandBlock<MC_PhasingRelative> {
 
     void show(const MotionContext& ctx) noexcept {
         CoveredPhaseShift = detail::phase_output(ctx, core_, CoveredPhaseShift, &axes::AxisView::phase_covered);
+    }
+};
+
+struct MC_HaltPhasing : CommandBlock<MC_HaltPhasing> {
+    AxisRef Slave{};
+    bool Execute = false;
+    double Deceleration = 0, Jerk = 0;
+
+    bool Done = false, Busy = false, CommandAborted = false, Error = false;
+    ErrorId ErrorID{};
+
+    static constexpr auto kind = axes::CommandKind::halt_phasing;
+    static constexpr std::string_view summary = "Ends the phasing under way; the shift that is reached stays, and the coupling goes on.";
+    static consteval auto pins() {
+        return pin_table(shared<&Self::Slave, &Self::Execute>(), in<&Self::Deceleration>("u/s2 of master", "0 = the axis' default"),
+                         in<&Self::Jerk>("u/s3 of master", "0 = the axis' default"), out<&Self::Done>("", "the shift changes no more"),
+                         outcome<Self>());
     }
 };
 

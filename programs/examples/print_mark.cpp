@@ -1,6 +1,7 @@
 // A rotary cutter that cuts a printed web at its marks. The cutter is geared to the web, one turn per nominal length; print is never
 // exactly as long as it should be, so a sensor in front of the cutter latches the web's position at each mark, and the cutter's phase
 // is corrected before that mark is under the knife. A mark counts only where one is expected; print that looks like one does not.
+// While there are no marks to go by, a person at the machine trims the register with two buttons: the knife moves against the web as long as one is held.
 
 #include <algorithm>
 #include <cmath>
@@ -15,10 +16,11 @@ using namespace taktwerk::fb;
 
 constexpr double turn = 360;              // deg
 constexpr std::int64_t lost_at_most = 3;  // marks in a row
+constexpr double trim_speed = 20;         // mm/s
 
 class PrintMark final : public Program {
     AxisRef web_, cutter_;
-    Input<bool> run_;
+    Input<bool> run_, ahead_, back_;
     Output<bool> in_register_;
     Parameter length_, speed_, sensor_, window_, step_, good_;
 
@@ -28,7 +30,8 @@ class PrintMark final : public Program {
     MC_Halt halt_;
     MC_GearIn gear_;
     MC_TouchProbe probe_;
-    MC_PhasingRelative correct_;
+    MC_PhasingRelative correct_, trim_;
+    MC_HaltPhasing trimmed_;
 
     bool armed_ = false;    ///< a probe waits, or will from this scan on
     bool locked_ = false;   ///< the next mark is expected at next_mark_
@@ -42,6 +45,8 @@ public:
         web_ = d.axis("web");
         cutter_ = d.axis("cutter");
         run_ = d.input("run");
+        ahead_ = d.input("trim_ahead");
+        back_ = d.input("trim_back");
         in_register_ = d.output("in_register");
         length_ = d.parameter(
             "length", {.value = 297, .minimum = 100, .maximum = 1000, .unit = "mm", .doc = "nominal, from mark to mark; in 0.01 mm"});
@@ -94,6 +99,7 @@ public:
         halt_(ctx);
 
         watch_marks(ctx, run);
+        trim_by_hand(ctx, run && !locked_);
 
         ctx.alarm(0, lost_ >= lost_at_most);
         ctx.alarm(1, ready && (gear_.Error || correct_.Error));
@@ -149,6 +155,20 @@ private:
         correct_.Jerk = 60000;
         correct_(ctx);
         if (!correct_.Busy) correct_.Execute = false;
+    }
+
+    /// As long as a button is held; the way that it has made by then stays.
+    void trim_by_hand(TaskContext& ctx, bool permitted) {
+        const bool ahead = permitted && ctx.get(ahead_), back = permitted && ctx.get(back_);
+        trim_.Master = web_;
+        trim_.Slave = trimmed_.Slave = cutter_;
+        trim_.PhaseShift = (ahead ? 1 : -1) * ctx.get(length_);  // further than anybody wants: letting go ends it
+        trim_.Velocity = trim_speed;
+        trim_.Acceleration = trim_.Deceleration = trimmed_.Deceleration = 200;
+        trim_.Execute = ahead != back;
+        trim_(ctx);
+        trimmed_.Execute = ahead == back && trim_.Busy;
+        trimmed_(ctx);
     }
 
     void on_mark(TaskContext& ctx, double mark, double length) {

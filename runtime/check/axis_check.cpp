@@ -62,9 +62,15 @@ public:
         for (const auto& binding : config_.axes) {
             const auto subject = fmt::format("axes.{}", binding.axis.name);
             for (auto& error : axes::check(binding.axis)) errors_.push_back(std::move(error));
+            check_reactions(binding, subject);
+            check_brake(binding, subject);
+            if (binding.axis.load_encoder.on) check_load_encoder(binding, subject);
             if (!binding.drive.empty()) continue;  // see check_serial
             if (binding.slave.empty()) check_virtual(binding, subject);
-            else if (has_place(binding, subject)) check_on_drive(binding, subject);
+            else if (has_place(binding, subject)) {
+                check_on_drive(binding, subject);
+                if (binding.axis.gantry.on) check_follower(binding, subject);
+            }
         }
     }
 
@@ -73,11 +79,129 @@ private:
         if (std::isfinite(binding.axis.limits.torque_towards(1)) || std::isfinite(binding.axis.limits.torque_towards(-1)))
             problems_.add("axis.no_torque_limit", subject + ".limits", "a virtual axis (without `slave`) has no torque",
                           "remove `torque` from its limits");
+        if (binding.axis.gantry.on)
+            problems_.add("axis.gantry", subject + ".gantry", "a virtual axis (without `slave`) has no sides", "name the leader's `slave`");
         if (binding.axis.encoder)
             problems_.add("axis.encoder", subject + ".encoder", "there is nothing that measures",
                           "name the `slave` whose position is meant, or remove `encoder`");
         if (binding.axis.homing.kind != axes::HomingKind::none && binding.axis.homing.kind != axes::HomingKind::set_here)
             problems_.add("axis.homing", subject + ".homing", "a virtual axis (without `slave`) has no switches", "use `kind: set_here`");
+    }
+
+    void check_load_encoder(const AxisBinding& binding, const std::string& subject) {
+        std::vector<std::string> inputs;
+        for (const auto& point : config_.io)
+            if (point.direction == IoDirection::input) inputs.push_back(point.name);
+        if (std::find(inputs.begin(), inputs.end(), binding.load_input) == inputs.end())
+            problems_.unknown("axis.load_encoder", subject + ".load_encoder.input", "input", binding.load_input, inputs);
+        if (binding.axis.encoder)
+            problems_.add("axis.load_encoder", subject + ".load_encoder", "an axis that only measures has no motor to compare with",
+                          "remove one of the two");
+    }
+
+    /// The other side of a gantry: a drive of its own, of the same type, exchanged as often.
+    void check_follower(const AxisBinding& binding, const std::string& subject) {
+        const auto here = subject + ".gantry.follower";
+        const auto& follower = binding.follower;
+        if (std::find(slaves_.begin(), slaves_.end(), follower.slave) == slaves_.end())
+            return problems_.unknown("axis.gantry", here, "slave", follower.slave, slaves_);
+        if (!taken_.insert({follower.slave, follower.drive_axis}).second)
+            problems_.add("axis.gantry", here,
+                          fmt::format("axis {} of slave '{}' already belongs to another axis", follower.drive_axis + 1, follower.slave),
+                          "name the drive of the other side");
+        if (follower.profile != binding.profile)
+            problems_.add("axis.gantry", here, fmt::format("slave '{}' is another type of drive than '{}'", follower.slave, binding.slave),
+                          "two types follow differently and rack the portal: use two of the same type");
+        else if (follower.drive_axis >= binding.profile->axes)
+            problems_.add("axis.gantry", subject + ".gantry.axis",
+                          fmt::format("{} has no axis {}", binding.profile->name, follower.drive_axis + 1),
+                          fmt::format("choose 1 to {}", binding.profile->axes));
+        if (exchange_period_of(config_, binding.slave) != exchange_period_of(config_, follower.slave))
+            problems_.add("axis.gantry", here, "the two sides are exchanged at different rates",
+                          "give both slaves the same `sync_unit`: set-points must reach both drives alike");
+        auto side = sides_of({binding}).back();
+        for (const auto& slave : config_.bus.slaves)
+            if (slave.name == follower.slave && slave.device && side.profile && side.drive_axis < side.profile->axes)
+                check_mapping(slave, side, here);
+    }
+
+    void check_brake(const AxisBinding& binding, const std::string& subject) {
+        const auto& brake = binding.axis.brake;
+        if (brake.by == axes::BrakeBy::output) return check_brake_output(binding, subject);
+        if (!binding.brake_output.empty())
+            problems_.add("axis.brake", subject + ".brake.output", "counts only where `by` is `output`",
+                          "write `by: output`, or remove it");
+        if (brake.by != axes::BrakeBy::object) return;
+        if (!binding.profile || binding.slave.empty() || binding.profile->brake.object == axes::BrakeObject::none) {
+            problems_.add(
+                "axis.brake", subject + ".brake.by",
+                binding.profile
+                    ? fmt::format("{} has no object that works a brake: it works its own, or has no output for one", binding.profile->name)
+                    : std::string("the axis has no drive"),
+                "leave `brake` out where the drive works the brake; wire it to an output of the machine and write `by: output` where not");
+            return;
+        }
+        const auto& needed = binding.profile->behaviour.output_control;
+        const bool stored = needed.index == 0 || std::any_of(binding.stored.begin(), binding.stored.end(),
+                                                             [&](const auto& one) { return one.object == needed && one.value == 1; });
+        if (!stored)
+            problems_.add(
+                "axis.brake", subject + ".brake.by",
+                fmt::format("{} obeys 60FEh only where {:04X}h is 1, which counts after a restart", binding.profile->name, needed.index),
+                fmt::format("store it in the drive (`taktwerk drive set ... --store`, restart) and write it under `stored` of the slave: "
+                            "{{ object: {:04X}h, value: 1 }}; then it is compared before the axis is enabled",
+                            needed.index));
+        for (const auto& slave : config_.bus.slaves)
+            if (slave.name == binding.slave && slave.device) check_brake_mapping(slave, binding, subject);
+    }
+
+    void check_brake_output(const AxisBinding& binding, const std::string& subject) {
+        std::vector<std::string> outputs;
+        for (const auto& point : config_.io)
+            if (point.direction == IoDirection::output) outputs.push_back(point.name);
+        const auto& name = binding.brake_output;
+        if (std::find(outputs.begin(), outputs.end(), name) == outputs.end()) {
+            if (name.empty())
+                problems_.add("axis.brake", subject + ".brake.output", "nothing says which output opens the brake",
+                              "name one of `io.outputs`");
+            else problems_.unknown("axis.brake", subject + ".brake.output", "output", name, outputs);
+            return;
+        }
+        if (!brakes_.insert(name).second)
+            problems_.add("axis.brake", subject + ".brake.output", "this output already opens another brake", "give each axis its own");
+        for (const auto& point : config_.io)
+            if (point.direction == IoDirection::output && point.name == name && (point.safe_value != 0 || point.inverted))
+                problems_.add("axis.brake", fmt::format("io.outputs.{}", name),
+                              "an output that opens a brake must be off where nobody drives it, and off must mean closed",
+                              "leave `safe` at 0 and `inverted` at false, and wire a brake that closes without current");
+    }
+
+    void check_brake_mapping(const ecat::SlaveConfig& slave, const AxisBinding& binding, const std::string& subject) {
+        const std::uint8_t sub = binding.profile->brake.object == axes::BrakeObject::mask_opens ? 2 : 1;
+        const auto index = static_cast<std::uint16_t>(0x60FE + binding.drive_axis * binding.profile->object_offset);
+        const auto offered = ecat::pdos_of(*slave.device, slave.modules);
+        const auto rx = mapped(slave.rx, offered.rx, offered.rx_assigned);
+        const bool there = std::any_of(rx.begin(), rx.end(), [&](const auto& e) { return e.index == index && e.sub == sub; });
+        if (!there && !rx.empty())
+            problems_.add("axis.brake", subject + ".brake.by",
+                          fmt::format("object {:04X}h:{:02} is not in the RxPDO of slave '{}'", index, sub, slave.name),
+                          "add it under `pdo.rx` of the slave (docs/drives.md)");
+    }
+
+    /// What nobody would carry out: there is no drive, or one on a serial line, which always ramps first.
+    void check_reactions(const AxisBinding& binding, const std::string& subject) {
+        const bool on_line = !binding.drive.empty(), is_virtual = !on_line && binding.slave.empty();
+        if (!on_line && !is_virtual) return;
+        for (const auto& row : axes::reaction_bounds::rows) {
+            const auto chosen = binding.axis.reactions.chosen(row.alarm);
+            const bool quick = chosen == axes::ErrorReaction::quick_stop, off = chosen == axes::ErrorReaction::power_off;
+            if (!quick && !(off && on_line)) continue;
+            problems_.add("axis.reaction",
+                          fmt::format("{}.reactions.{}", subject, find_alarm(axes::axis_alarms, axes::id(row.alarm))->name),
+                          is_virtual ? "a virtual axis (without `slave`) has no drive that could stop it"
+                                     : "a drive on a serial line has no quick stop of its own, and ramps before its power goes",
+                          "choose `ramp_then_off`");
+        }
     }
 
     /// A slave with a profile, and an axis of it that nobody else has.
@@ -194,6 +318,7 @@ private:
     Problems problems_;
     std::vector<std::string> slaves_;
     std::set<std::pair<std::string, int>> taken_;
+    std::set<std::string> brakes_;
 };
 
 }  // namespace

@@ -227,12 +227,27 @@ void AlarmWords::tell_more_of_axis(AlarmText& out, const AlarmFact& fact) const 
             out.remedy = doubt->remedy;
         }
     if (fact.index >= body_.config.axes.size()) return;
+    if (fact.source == AlarmSource::axis) tell_chosen_reaction(out, fact);
     if (fact.id == axes::id(axes::AxisAlarm::drive_setup_refused))
         for (const auto& problem : drives_.port(fact.index).setup_problems()) add(out, problem);
     // The set-point went on without its drive: with relaxed supervision for longer than any drive follows.
     if (fact.id == axes::id(axes::AxisAlarm::following_error))
         if (const auto gap = supervisor_.before_fault().gap(fact.index); gap >= body_.config.bus.lost_frames_limit)
             tell_gap(out, gap, "; else: ");
+}
+
+// The machine file may have chosen another than the table's. One that stops needs a reset, whatever the alarm by itself would.
+void AlarmWords::tell_chosen_reaction(AlarmText& out, const AlarmFact& fact) const {
+    const auto alarm = static_cast<axes::AxisAlarm>(fact.id);
+    if (axes::bound_of(alarm) == nullptr) return;
+    const auto& reactions = body_.config.axes[fact.index].axis.reactions;
+    const auto chosen = reactions.chosen(alarm);
+    if (chosen == axes::ErrorReaction::by_table) return;
+    const bool with_all = reactions.of_machine(alarm) == Reaction::power_off;
+    out.reaction =
+        fmt::format("{}{}, as `reactions` of the axis says", axes::word_of(chosen).text, with_all ? "; all axes stop, power goes off" : "");
+    if (chosen >= axes::ErrorReaction::ramp_stop) out.reset = text_of(ResetRule::reset);
+    else if (axes::reaction_by_table(alarm) != chosen) out.reset = text_of(ResetRule::self_clearing);
 }
 
 // A drive's own alarm has its words in the profile.
@@ -244,6 +259,7 @@ void AlarmWords::tell_more_of_drive(AlarmText& out, const AlarmFact& fact) const
                            fault ? axes::ShownAlarm::As::fault : axes::ShownAlarm::As::warning};
     if (fact.b != 0) shown.detail = static_cast<std::uint32_t>(fact.b);  // 0: not read yet, or none
     tell_drive_alarm(out, binding, shown);
+    if (binding.axis.gantry.on) add(out, drives_.gantry_side(fact.index));
     if (!fault || !binding.profile || !of_missing_frames(*binding.profile, shown)) return;
     const auto& before = supervisor_.before_fault();
     if (const auto stall = before.stall(fact.index); stall > 0) {

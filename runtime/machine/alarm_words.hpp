@@ -32,6 +32,7 @@ private:
     void tell_more_of_machine(AlarmText& out, const AlarmFact& fact) const;
     void tell_more_of_programs(AlarmText& out, const AlarmFact& fact) const;
     void tell_more_of_axis(AlarmText& out, const AlarmFact& fact) const;
+    void tell_chosen_reaction(AlarmText& out, const AlarmFact& fact) const;
     void tell_more_of_drive(AlarmText& out, const AlarmFact& fact) const;
 
     const MachineBody& body_;

@@ -120,6 +120,7 @@ void Machine::Impl::compute(const CycleTick& tick) noexcept {
     desk.renew_power();
     programs.run_tasks();
     drives.serial().hold_watchdog_outputs();
+    drives.hold_brake_outputs();
     done(Step::tasks);
 
     axes::plan_axes(body.axes, now, body.config.cycle);

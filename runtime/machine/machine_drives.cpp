@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "axes/axis/alarms.hpp"
 #include "axes/sim/virtual_drive.hpp"
 #include "runtime/relaxed_supervision.hpp"
@@ -45,14 +47,24 @@ void MachineDrives::build_ports() {
             ports_.push_back(std::move(on_line));
         } else if (slave == no_slave) {
             ports_.push_back(std::make_unique<axes::sim::VirtualDrive>(config.cycle));
+        } else if (binding.axis.gantry.on) {
+            const auto sides = sides_of({binding});
+            auto both = std::make_unique<axes::gantry::GantryPort>(
+                on_bus_drive(slave, sides[0]), on_bus_drive(slave_named(bus, sides[1].slave), sides[1]), binding.follower.mirrored);
+            gantries_.push_back(both.get());
+            ports_.push_back(std::move(both));
         } else {
-            auto drive = std::make_unique<axes::cia402::Cia402Drive>(
-                bus, slave, binding.drive_axis, binding.profile, ecat::exchange_period(body_.bus_config, bus.slave(slave)),
-                axes::cia402::AxisWants{binding.axis.gearing.counts_per_revolution, binding.stored});
-            bus_drives_.push_back(drive.get());
-            ports_.push_back(std::move(drive));
+            ports_.push_back(on_bus_drive(slave, binding));
         }
     }
+}
+
+std::unique_ptr<axes::DrivePort> MachineDrives::on_bus_drive(std::size_t slave, const AxisBinding& side) {
+    auto drive = std::make_unique<axes::cia402::Cia402Drive>(body_.bus, slave, side.drive_axis, side.profile,
+                                                             ecat::exchange_period(body_.bus_config, body_.bus.slave(slave)),
+                                                             axes::cia402::AxisWants{side.axis.gearing.counts_per_revolution, side.stored});
+    bus_drives_.push_back(drive.get());
+    return drive;
 }
 
 void MachineDrives::build_axes() {
@@ -61,9 +73,29 @@ void MachineDrives::build_axes() {
     for (std::size_t i = 0; i < config.axes.size(); ++i) {
         auto axis = config.axes[i].axis;
         axis.stale_limit = static_cast<std::uint16_t>(std::min<std::uint32_t>(supervised_limit(config, axis.stale_limit), 60000));
+        if (axis.load_encoder.on)
+            axis.load_encoder.input = static_cast<std::uint16_t>(body_.io.find(IoDirection::input, config.axes[i].load_input));
+        if (axis.brake.by == axes::BrakeBy::output)
+            if (const int output = body_.io.find(IoDirection::output, config.axes[i].brake_output); output >= 0)
+                brakes_.push_back({i, static_cast<std::size_t>(output)});
         body_.axes.emplace_back(axis, *ports_[i], config.cycle, static_cast<std::uint16_t>(i), &body_.views[i]);
     }
     body_.requests = WatchedRequests{body_.axes};
+}
+
+void MachineDrives::hold_brake_outputs() noexcept {
+    for (const auto& brake : brakes_) {
+        const auto state = body_.views[brake.axis].brake;
+        body_.io.outputs()[brake.output] = state == axes::BrakeState::open || state == axes::BrakeState::opening ? 1 : 0;
+    }
+}
+
+std::string MachineDrives::gantry_side(std::size_t axis) const {
+    const auto& binding = body_.config.axes[axis];
+    for (const auto* gantry : gantries_)
+        if (gantry == ports_[axis].get())
+            return fmt::format("slave '{}'", gantry->of_the_follower() ? binding.follower.slave : binding.slave);
+    return {};
 }
 
 void MachineDrives::step(Instant now) {
@@ -74,6 +106,7 @@ void MachineDrives::step(Instant now) {
 Result<void> MachineDrives::resolve() {
     for (auto* drive : bus_drives_)
         if (auto ok = drive->resolve(); !ok) return ok;
+    for (auto* gantry : gantries_) gantry->join_capabilities();
     return {};
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "axes/drives/cia402/cia402_drive.hpp"
+#include "axes/drives/gantry/gantry_port.hpp"
 #include "axes/port/drive_port.hpp"
 #include "runtime/machine/machine_body.hpp"
 #include "runtime/machine/serial_drives.hpp"
@@ -28,23 +29,34 @@ public:
     [[nodiscard]] SerialDrives& serial() noexcept { return serial_; }
     [[nodiscard]] const SerialDrives& serial() const noexcept { return serial_; }
 
+    /// Of a gantry: the slave whose drive shows an alarm.
+    [[nodiscard]] std::string gantry_side(std::size_t axis) const;
+
     /// Service side: their services, and the lines'.
     void step(Instant now);
     /// Service side, once the bus is operational.
     [[nodiscard]] Result<void> resolve();
     /// Cycle: an alarm of a whole drive stops all of its axes. Real-time safe.
     void stop_axes_of_faulted_drives() noexcept;
+    /// Cycle: the outputs that open holding brakes are the axes', whatever a program wrote there. Real-time safe.
+    void hold_brake_outputs() noexcept;
 
 private:
     void build_ports();
+    [[nodiscard]] std::unique_ptr<axes::DrivePort> on_bus_drive(std::size_t slave, const AxisBinding& side);
     void build_axes();
 
     MachineBody& body_;
     SerialDrives serial_;
     std::vector<std::unique_ptr<axes::DrivePort>> ports_;  // per axis
     std::vector<axes::cia402::Cia402Drive*> bus_drives_;   // those of `ports_` that are on the bus
+    std::vector<axes::gantry::GantryPort*> gantries_;      // those of `ports_` that are two drives
     std::vector<std::size_t> slave_of_;                    // per axis
-    std::vector<std::vector<std::size_t>> shared_;         // the axes of each slave that carries more than one
+    struct BrakeOutput {
+        std::size_t axis, output;
+    };
+    std::vector<BrakeOutput> brakes_;
+    std::vector<std::vector<std::size_t>> shared_;  // the axes of each slave that carries more than one
 };
 
 }  // namespace taktwerk::runtime

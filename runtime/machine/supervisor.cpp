@@ -102,7 +102,8 @@ void Supervisor::supervise(std::size_t index, axes::EmergencyStop level) noexcep
     // An axis keeps its alarms until they are reset there: what it does not show any more is gone.
     for (const auto& fact : axis.active_alarms())
         if (const auto* info = find_alarm(axes::axis_alarms, fact.id); info != nullptr && !follows_from_another(fact))
-            body_.log.raise(fact, info->reaction, ResetRule::self_clearing, body_.now);
+            body_.log.raise(fact, axis.config().reactions.of_machine(static_cast<axes::AxisAlarm>(fact.id)), ResetRule::self_clearing,
+                            body_.now);
     before_fault_.note(index);
     AlarmFact fetched;
     while (axis.fetch_alarm(fetched)) {}

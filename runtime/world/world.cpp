@@ -82,6 +82,7 @@ bool is_bit(const ecat::DeviceDescription& device, const IoPoint& point) {
 World::World(const MachineConfig& config, Instant start)
     : network_(start), transport_(network_), start_(start), events_(config.simulation.events) {
     std::stable_sort(events_.begin(), events_.end(), [](const auto& a, const auto& b) { return a.at < b.at; });
+    const auto sides = sides_of(config.axes);
     std::vector<axes::sim::PlantConfig> plants;
     for (const auto& binding : config.axes) plants.push_back(plant_of(binding));
     serial_.build(config, plants, start);
@@ -118,14 +119,14 @@ World::World(const MachineConfig& config, Instant start)
         std::vector<axes::sim::Cia402Device::AxisSetup> setups;
         std::vector<std::string> names;
         const axes::DriveProfile* profile = nullptr;
-        for (const auto& binding : config.axes)
+        for (const auto& binding : sides)
             if (binding.slave == slave->name && binding.profile) profile = binding.profile.get();
         static const axes::DriveProfile plain;  // a drive no axis uses still answers
         if (!profile) profile = &plain;
         setups.resize(profile->axes);
         names.resize(profile->axes);
         for (auto& setup : setups) setup.motor.counts_per_revolution = setup.plant.counts_per_revolution;
-        for (const auto& binding : config.axes) {
+        for (const auto& binding : sides) {
             if (binding.slave != slave->name || binding.drive_axis >= profile->axes) continue;
             auto& setup = setups[binding.drive_axis];
             setup.plant = plant_of(binding);
@@ -144,13 +145,20 @@ World::World(const MachineConfig& config, Instant start)
         auto model = std::make_unique<axes::sim::Cia402Device>(played, setups);
         for (std::size_t i = 0; i < names.size(); ++i)
             if (!names[i].empty()) axes_.push_back({names[i], &model->axis(i), model.get(), i});
-        for (const auto& binding : config.axes)
+        for (const auto& binding : sides)
             if (binding.slave == slave->name)
                 for (const auto& setting : binding.stored) model->commission(binding.drive_axis, setting.object, setting.value);
         for (const auto& point : config.io)
             if (point.slave == slave->name) points_.push_back({point, nullptr, model.get(), false});
         install(*slave, std::move(model), options);
     }
+    for (const auto& binding : config.axes)
+        if (binding.axis.brake.by == axes::BrakeBy::output) brakes_.push_back({binding.axis.name, binding.brake_output});
+    for (const auto& binding : config.axes)
+        if (const auto& load = binding.axis.load_encoder; load.on) {
+            const double counts = load.inverted ? -load.counts_per_unit : load.counts_per_unit;
+            loads_.push_back({binding.axis.name, binding.load_input, counts / binding.axis.gearing.counts_per_unit(), counts, 0});
+        }
     for (const auto& point : config.io)
         if (point.direction == IoDirection::input && point.simulated) set_input_value(point.name, *point.simulated);
 }
@@ -231,7 +239,17 @@ void World::happen(const SimulationEvent& event) {
     }
 }
 
+void World::slip(std::string_view axis, double u) {
+    for (auto& load : loads_)
+        if (load.axis == axis) load.slipped += u * load.counts_per_unit;
+}
+
 void World::apply_events(Instant now) {
+    for (const auto& brake : brakes_)
+        if (auto* motor = drive(brake.axis)) motor->brake_by_bus(output(brake.output));
+    for (const auto& load : loads_)
+        if (auto* motor = drive(load.axis))
+            set_input_value(load.input, std::llround(motor->plant().position() * load.counts_per_count + load.slipped));
     while (next_event_ < events_.size() && start_ + events_[next_event_].at <= now) happen(events_[next_event_++]);
     if (also) also(now);
     serial_.wire([this](const std::string& point) { return output(point); });

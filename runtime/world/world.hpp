@@ -50,6 +50,8 @@ public:
     [[nodiscard]] bool output(std::string_view point) const { return output_value(point) != 0; }
     /// The same as a raw word.
     [[nodiscard]] std::int64_t output_value(std::string_view point) const;
+    /// The coupling between motor and load slips by so many u: what a load encoder shows from here on.
+    void slip(std::string_view axis, double u);
     void set_slave_power(std::string_view slave, bool on);
     /// Pulls or plugs the cable in front of a slave.
     void set_cable(std::string_view slave, bool plugged);
@@ -80,6 +82,17 @@ private:
     };
     std::vector<SlavePlace> slaves_;  // in cable order
     std::vector<AxisPlace> axes_;
+    /// A load encoder: what its input counts for each count of the motor.
+    struct LoadPlace {
+        std::string axis, input;
+        double counts_per_count = 0, counts_per_unit = 0, slipped = 0;
+    };
+    std::vector<LoadPlace> loads_;
+    /// A holding brake on an output of the machine.
+    struct BrakePlace {
+        std::string axis, output;
+    };
+    std::vector<BrakePlace> brakes_;
     std::vector<Point> points_;
     std::vector<SimulationEvent> events_;  // by time
     std::size_t next_event_ = 0;

@@ -290,6 +290,56 @@ TEST(MachineLoader, AnAxisHasItsPositionLoopCompensationAndMemory) {
     EXPECT_TRUE(machine.axes[2].axis.encoder);
 }
 
+TEST(MachineLoader, AnAxisHasItsReactions) {
+    using axes::AxisAlarm;
+    using axes::ErrorReaction;
+    const auto machine = must_load(source + "/tests/config/good/axes.yaml").machine;
+    const auto& chosen = machine.axes.at(0).axis.reactions;
+    EXPECT_EQ(chosen.chosen(AxisAlarm::following_error), ErrorReaction::quick_stop);
+    EXPECT_EQ(chosen.chosen(AxisAlarm::drive_warning), ErrorReaction::ramp_stop);
+    EXPECT_EQ(chosen.chosen(AxisAlarm::master_lost), ErrorReaction::stop_machine);
+    EXPECT_EQ(chosen.chosen(AxisAlarm::drive_fault), ErrorReaction::by_table);
+    EXPECT_EQ(machine.axes.at(1).axis.reactions.chosen(AxisAlarm::following_error), ErrorReaction::by_table);
+}
+
+TEST(MachineLoader, ABrakeIsTheDrivesOrOnAnOutput) {
+    const auto machine = must_load(source + "/tests/config/good/brake.yaml").machine;
+    const auto& z = machine.axes.at(0);
+    EXPECT_EQ(z.axis.brake.by, axes::BrakeBy::output);
+    EXPECT_EQ(z.brake_output, "z_brake");
+    EXPECT_EQ(z.axis.brake.release, 80ms);
+    EXPECT_EQ(z.axis.brake.engage, 120ms);
+    EXPECT_TRUE(z.axis.brake.release_without_power);
+    const auto plain = must_load(source + "/tests/config/good/axes.yaml").machine;
+    EXPECT_EQ(plain.axes.at(0).axis.brake.by, axes::BrakeBy::drive);
+    EXPECT_FALSE(plain.axes.at(0).axis.brake.release_without_power);
+}
+
+TEST(MachineLoader, AGantryHasTwoSidesAndALoadItsEncoder) {
+    const auto machine = must_load(source + "/tests/config/good/gantry.yaml").machine;
+    const auto& y = machine.axes.at(0);
+    EXPECT_TRUE(y.axis.gantry.on);
+    EXPECT_EQ(y.axis.gantry.warning, 0.3);
+    EXPECT_EQ(y.axis.gantry.error, 1);
+    EXPECT_EQ(y.follower.slave, "right");
+    EXPECT_TRUE(y.follower.mirrored);
+    EXPECT_EQ(y.follower.profile, y.profile);
+    EXPECT_EQ(y.axis.reactions.chosen(axes::AxisAlarm::drive_fault), axes::ErrorReaction::ramp_then_off);
+    const auto sides = sides_of(machine.axes);
+    ASSERT_EQ(sides.size(), 2u);
+    EXPECT_EQ(sides[1].axis.name, "y.follower");
+    EXPECT_TRUE(sides[1].axis.gearing.inverted);
+    EXPECT_FALSE(sides[1].axis.gantry.on);
+    const auto& load = y.axis.load_encoder;
+    EXPECT_EQ(y.load_input, "scale");
+    EXPECT_EQ(load.counts_per_unit, 200);
+    EXPECT_TRUE(load.inverted);
+    EXPECT_EQ(load.bits, 24);
+    EXPECT_EQ(load.tolerance, 0.5);
+    EXPECT_EQ(load.time, 20ms);
+    EXPECT_TRUE(load.shown);
+}
+
 TEST(MachineLoader, EachKindOfHomingHasItsValues) {
     const auto machine = must_load(source + "/tests/config/good/axes.yaml").machine;
     ASSERT_EQ(machine.axes.size(), 4u);

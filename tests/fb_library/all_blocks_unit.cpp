@@ -73,6 +73,8 @@ const std::map<std::string, std::string>& other_documents() {
         {"MC_MoveModulo",
          "Axis | Execute Position Velocity Acceleration Deceleration Jerk Direction BufferMode | "
          "Done Busy Active CommandAborted Error ErrorID"},
+        // our own, in the form of Part 1's MC_HaltSuperimposed
+        {"MC_HaltPhasing", "Slave | Execute Deceleration Jerk | Done Busy CommandAborted Error ErrorID"},
         // our own, in the form of Part 1's MC_ReadActualPosition
         {"MC_ReadCommandPosition", "Axis | Enable | Valid Busy Error ErrorID Position"},
         {"MC_ReadCommandVelocity", "Axis | Enable | Valid Busy Error ErrorID Velocity"},
@@ -81,6 +83,8 @@ const std::map<std::string, std::string>& other_documents() {
         {"MC_ExtSetPointGenEnable", "Axis | Execute | Enabled Busy Active CommandAborted Error ErrorID"},
         {"MC_ExtSetPointGenFeed", "Axis | Enable Position Velocity Acceleration | Valid Busy Error ErrorID"},
         {"MC_ExtSetPointGenDisable", "Axis | Execute Deceleration Jerk | Done Busy Active CommandAborted Error ErrorID"},
+        // our own; a brake is no motion, so nobody takes over
+        {"MC_SetBrake", "Axis | Execute Release | Done Busy Error ErrorID Released"},
         // RTmotion
         {"MC_SetControllerMode", "Axis | Execute Mode | Done Busy Active CommandAborted Error ErrorID"},
         // of vendors under this name; 60E0h and 60E1h, or 6072h, of CiA 402

@@ -132,6 +132,8 @@ private:
     /// Settings that blocks read back.
     void take(axes::AxisView& a, const axes::AxisSetting& setting) {
         if (const auto* factors = std::get_if<axes::Override>(&setting)) a.override_factors = *factors;
+        if (const auto* brake = std::get_if<axes::SetBrake>(&setting))
+            a.brake = brake->release ? axes::BrakeState::open : axes::BrakeState::closed;
         if (const auto* select = std::get_if<axes::SelectCam>(&setting)) {
             a.selected_as = *select;
             a.selected_cam = {++last_cam_};
@@ -148,7 +150,8 @@ private:
             case CommandKind::move_superimposed:
             case CommandKind::halt_superimposed: return SideSlot::superimposed;
             case CommandKind::phasing_absolute:
-            case CommandKind::phasing_relative: return SideSlot::phasing;
+            case CommandKind::phasing_relative:
+            case CommandKind::halt_phasing: return SideSlot::phasing;
             case CommandKind::touch_probe: {
                 const auto source = std::get<axes::ProbeDetails>(command.details).trigger.source;
                 return source == axes::TriggerSource::probe2 ? SideSlot::probe2 : SideSlot::probe1;

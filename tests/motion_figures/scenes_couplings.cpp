@@ -179,6 +179,33 @@ Figure phasing() {
     return stage.figure("phasing");
 }
 
+Figure halt_phasing() {
+    Stage stage{{Stage::linear("slave"), Stage::linear("master")}};
+    Line line{stage, 40};
+    MC_GearIn gear;
+    MC_PhasingRelative phase;
+    MC_HaltPhasing halt;
+    gear.Master = phase.Master = master;
+    gear.Slave = phase.Slave = halt.Slave = slave;
+    gear.Acceleration = gear.Deceleration = 200;
+    phase.PhaseShift = 60, phase.Velocity = 20, phase.Acceleration = phase.Deceleration = 100;
+    halt.Deceleration = 50;
+    stage.block("gear", gear);
+    stage.block("phase", phase);
+    stage.block("halt", halt);
+    show_both(stage);
+    stage.run(200ms);
+    gear.Execute = true;
+    stage.run_until([&] { return gear.InGear; });
+    stage.run(400ms);
+    phase.Execute = true;
+    stage.run(700ms);
+    halt.Execute = true;
+    stage.run_until([&] { return halt.Done; });
+    stage.run(400ms);
+    return stage.figure("halt-phasing");
+}
+
 Figure combine_axes() {
     Stage stage{{Stage::linear("slave"), Stage::linear("master"), Stage::linear("second")}};
     Line line{stage, 30};
@@ -208,6 +235,6 @@ Figure combine_axes() {
 
 }  // namespace
 
-std::vector<Figure> couplings() { return {gear_in(), gear_in_pos(), cam_in(), flying_saw(), phasing(), combine_axes()}; }
+std::vector<Figure> couplings() { return {gear_in(), gear_in_pos(), cam_in(), flying_saw(), phasing(), halt_phasing(), combine_axes()}; }
 
 }  // namespace taktwerk::figures

@@ -102,6 +102,9 @@ Result<void> Cia402Drive::resolve() {
     find_torque_limits();
     capabilities_.velocity_limit = find_output(out_.velocity_limit, 0x607F, 0, false);
     capabilities_.digital_outputs = find_output(out_.digital, 0x60FE, 1, false);
+    const bool mask = find_output(out_.digital_mask, 0x60FE, 2, false);
+    capabilities_.brake = (profile_->brake.object == BrakeObject::output_bit && capabilities_.digital_outputs) ||
+                          (profile_->brake.object == BrakeObject::mask_opens && mask);
     (void)find_output(out_.profile_velocity, 0x6081, 0, false);
     (void)find_output(out_.profile_acceleration, 0x6083, 0, false);
     (void)find_output(out_.profile_deceleration, 0x6084, 0, false);

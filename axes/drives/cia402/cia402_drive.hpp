@@ -57,8 +57,8 @@ public:
 private:
     struct Outputs {
         MappedOutput control, mode, target_position, target_velocity, target_torque, velocity_offset, torque_offset, torque_max,
-            torque_positive, torque_negative, digital, probe_function, profile_velocity, profile_acceleration, profile_deceleration,
-            velocity_limit, torque_slope;
+            torque_positive, torque_negative, digital, digital_mask, probe_function, profile_velocity, profile_acceleration,
+            profile_deceleration, velocity_limit, torque_slope;
     };
     struct Inputs {
         Signal status, mode, position, velocity, torque, error, digital, probe_status;
@@ -85,6 +85,7 @@ private:
     void write_targets(std::span<std::byte> image, const DriveCommand& command, bool follows) const noexcept;
     void write_limits(std::span<std::byte> image, const DriveCommand& command) const noexcept;
     void ask_torque_limits(const DriveCommand& command) noexcept;
+    void write_brake(std::span<std::byte> image, bool open) const noexcept;
     void write_probes(std::span<std::byte> image, const DriveCommand& command) noexcept;
 
     ecat::Master& bus_;

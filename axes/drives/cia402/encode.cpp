@@ -16,6 +16,8 @@ constexpr std::uint32_t reset_low_cycles = 4;
 constexpr std::uint32_t reset_high_cycles = 4;
 constexpr std::uint32_t reset_wait_cycles = 100;
 
+constexpr std::uint32_t brake_bit = 1;  // of 60FEh
+
 bool position_mode(DriveMode mode) noexcept { return mode == DriveMode::cyclic_position || mode == DriveMode::profile_position; }
 bool profile_mode(DriveMode mode) noexcept {
     return mode == DriveMode::profile_position || mode == DriveMode::profile_velocity || mode == DriveMode::profile_torque;
@@ -122,6 +124,7 @@ void Cia402Drive::encode(const DriveCommand& command, Instant now) noexcept {
         write_signal(image, out_.digital.signal,
                      (before & ~command.digital_output_mask) | (command.digital_outputs & command.digital_output_mask));
     }
+    if (capabilities_.brake && command.brake != BrakeRequest::none) write_brake(image, command.brake == BrakeRequest::open);
     if (out_.probe_function.mapped()) write_probes(image, command);
 }
 
@@ -204,6 +207,17 @@ void Cia402Drive::ask_torque_limits(const DriveCommand& command) noexcept {
     if (!capabilities_.torque_limit_per_direction)
         wanted = {raw(std::min(command.torque_limit_positive, command.torque_limit_negative)), TorqueLimitWriter::no_limit};
     feedback_.torque_limits = torque_limits_.ask(wanted, feedback_.online);
+}
+
+void Cia402Drive::write_brake(std::span<std::byte> image, bool open) const noexcept {
+    const auto set_bit = [&](const MappedOutput& output, bool on) {
+        if (!output.mapped()) return;
+        const auto before = static_cast<std::uint32_t>(read_signal(image, output.signal));
+        write_signal(image, output.signal, on ? before | brake_bit : before & ~brake_bit);
+    };
+    const bool by_output = profile_->brake.object == BrakeObject::output_bit;
+    if (by_output) set_bit(out_.digital, !open);
+    set_bit(out_.digital_mask, by_output || open);
 }
 
 void Cia402Drive::write_probes(std::span<std::byte> image, const DriveCommand& command) noexcept {

@@ -41,6 +41,8 @@ public:
     std::int64_t lag = 0;  ///< counts the motor stays behind
     double drift = 0;      ///< counts/s that it turns more than it is told, in cyclic velocity
     double coasting = 0;   ///< counts per cycle while without power
+    double quick_stop_deceleration = 5e6;  ///< counts/s2 (6085h); then it is without power (605Ah = 2), ...
+    bool quick_stop_stays = false;         ///< ... or holds (605Ah = 6)
     bool switches = false;
     std::int64_t home_low = 0, home_high = 0;  ///< home switch on between
     std::int64_t negative_end = std::numeric_limits<std::int64_t>::min(), positive_end = std::numeric_limits<std::int64_t>::max();
@@ -154,6 +156,8 @@ private:
         if (fault_code != 0) power = PowerState::fault;
         else if (power == PowerState::fault) {
             if (last.reset_fault) power = PowerState::disabled;
+        } else if (last.power == PowerRequest::quick_stop && (power == PowerState::enabled || power == PowerState::quick_stop)) {
+            power = power == PowerState::quick_stop && velocity_ == 0 && !quick_stop_stays ? PowerState::disabled : PowerState::quick_stop;
         } else if (last.power == PowerRequest::off || refuses_power) {
             power = PowerState::disabled;
             ticks_ = 0;
@@ -183,7 +187,10 @@ private:
     [[nodiscard]] bool by_torque() const { return mode_ == DriveMode::cyclic_torque || mode_ == DriveMode::profile_torque; }
     void step_motor(Instant now) {
         const double before = position;
-        if (power != PowerState::enabled) position += coasting;
+        if (power == PowerState::quick_stop) {
+            velocity_ -= std::copysign(std::min(std::abs(velocity_), quick_stop_deceleration * to_seconds(cycle)), velocity_);
+            position += velocity_ * to_seconds(cycle);
+        } else if (power != PowerState::enabled) position += coasting;
         else if (mode_ == DriveMode::homing) step_homing();
         else if (by_torque()) {
             if (profiled()) (void)profile.step(mode_, last, position, to_seconds(cycle));

@@ -254,5 +254,123 @@ TEST(Phasing, ASlaveHeldAtItsLimitsIsShiftedByWhatWasAskedAllTheSame) {
     }
 }
 
+AxisCommand halt_phasing(double deceleration = 0, double jerk = 0) {
+    return {.kind = CommandKind::halt_phasing, .deceleration = deceleration, .jerk = jerk};
+}
+
+// 25 u/s after 62.5 ms with 400 u/s2; after 150 ms 0.78125 + 25 * 0.0875 = 2.96875 u are shifted. The halt with 250 u/s2 takes 100 ms and adds
+// 25^2 / 500 = 1.25 u.
+TEST(HaltPhasing, EndsItAndKeepsTheShiftThatIsReached) {
+    for (const auto kind : {absolutely, relatively}) {
+        PhasedRig rig;
+        auto command = phasing(kind, 10, 25);
+        command.acceleration = command.deceleration = 400;
+        const auto phase = rig.accept(1, command);
+        rig.run(150);
+        ASSERT_NEAR(rig.view(1).phase_shift, 2.96875, 1e-9);
+        const auto halt = rig.accept(1, halt_phasing(250));
+        EXPECT_EQ(rig.status(1, phase), CommandStatus::aborted);
+        int cycles = 0;
+        for (; rig.status(1, halt) == CommandStatus::active && cycles < 1000; ++cycles) {
+            rig.step();
+            ASSERT_NEAR(rig.shift(), rig.view(1).phase_shift, 1e-9);
+            ASSERT_EQ(rig.status(1, rig.gear), CommandStatus::in_target);
+        }
+        EXPECT_EQ(rig.status(1, halt), CommandStatus::done);
+        EXPECT_NEAR(cycles, 100, 1);
+        rig.run(500);
+        EXPECT_NEAR(rig.shift(), 4.21875, 1e-9);
+        EXPECT_NEAR(rig.view(1).phase_covered, 4.21875, 1e-9);
+        EXPECT_EQ(rig.view(1).state, AxisState::SynchronizedMotion);
+        rig.accept(1, phasing(relatively, 1, 25));  // from there on
+        rig.run(500);
+        EXPECT_NEAR(rig.shift(), 5.21875, 1e-9);
+        rig.expect_no_jump();
+    }
+}
+
+// As every stop: with however little jerk, the shift neither turns round nor becomes faster than its acceleration makes it without the halt.
+TEST(HaltPhasing, NeverTurnsRoundAndAddsNoSpeed) {
+    for (const bool speeds_up : {true, false})
+        for (const double jerk : {20'000.0, 5'000.0, 500.0}) {
+            CouplingRig rig({plain_axis(), plain_axis()});
+            rig.start();
+            const auto gear = rig.accept(1, gear_in(0));
+            ASSERT_TRUE(rig.run_to_sync(1, gear));
+            rig.accept(1, phasing(relatively, 10, 25));
+            double place = 0, v = 0, a = 0;
+            const auto step = [&] {
+                rig.step();
+                const double velocity = (rig.view(1).phase_shift - place) * 1000;
+                a = (velocity - v) * 1000;
+                v = velocity;
+                place = rig.view(1).phase_shift;
+            };
+            for (int i = 0; i < 5000 && !(speeds_up ? v > 8 && a > 500 : v > 0 && v < 8 && a < -500); ++i) step();
+            ASSERT_GT(std::abs(a), 500);
+            ASSERT_LT(v, 13);
+            const double most = speeds_up ? v + a * a / (2 * 20'000) + 1 : v;
+            const auto halt = rig.accept(1, halt_phasing(0, jerk));
+            for (int i = 0; i < 2000; ++i) {
+                step();
+                ASSERT_GE(v, -1e-9) << i << " with " << jerk;
+                ASSERT_LE(v, most + 1e-9) << i << " with " << jerk;
+            }
+            EXPECT_EQ(rig.status(1, halt), CommandStatus::done);
+            EXPECT_EQ(v, 0);
+        }
+}
+
+TEST(HaltPhasing, WhatItMeets) {
+    PhasedRig rig;
+    const auto nothing = rig.accept(1, halt_phasing());
+    EXPECT_EQ(rig.status(1, nothing), CommandStatus::done) << "there is nothing to halt";
+    EXPECT_EQ(rig.refuse(1, halt_phasing(-1)), ErrorId::invalid_dynamics);
+    EXPECT_EQ(rig.refuse(0, halt_phasing()), ErrorId::not_coupled);
+
+    auto gentle = phasing(relatively, 10, 20);
+    gentle.acceleration = gentle.deceleration = 400;
+    rig.accept(1, gentle);
+    rig.run(100);
+    const auto first = rig.accept(1, halt_phasing(100));
+    rig.run(10);
+    const auto harder = rig.accept(1, halt_phasing(400));
+    EXPECT_EQ(rig.status(1, first), CommandStatus::aborted);
+    rig.run(10);
+    const auto on = rig.accept(1, gentle);
+    EXPECT_EQ(rig.status(1, harder), CommandStatus::aborted);
+    const double there = rig.view(1).phase_shift;
+    ASSERT_TRUE(rig.run_until([&] { return rig.status(1, on) == CommandStatus::done; }));
+    EXPECT_NEAR(rig.shift(), there + 10, 1e-9);
+
+    rig.accept(1, gentle);
+    rig.run(100);
+    const auto late = rig.accept(1, halt_phasing(100));
+    rig.run(10);
+    rig.accept(1, halt());
+    rig.run(2);
+    EXPECT_EQ(rig.status(1, late), CommandStatus::aborted) << "the coupling is over, and the shift with it";
+    EXPECT_EQ(rig.view(1).phase_shift, 0);
+    rig.expect_no_jump();
+}
+
+// As MC_Halt it ends what waits, too: a phasing behind a coupling that is not in sync yet does not begin afterwards.
+TEST(HaltPhasing, EndsOneThatWaits) {
+    CouplingRig rig(2);
+    rig.start();
+    rig.accept(0, at_velocity(50));
+    rig.run(100);
+    const auto gear = rig.accept(1, gear_in(0));
+    const auto waits = rig.accept(1, phasing(relatively, 5, 20, mcBuffered));
+    rig.run(5);
+    ASSERT_EQ(rig.status(1, waits), CommandStatus::queued);
+    const auto halt = rig.accept(1, halt_phasing());
+    EXPECT_EQ(rig.status(1, halt), CommandStatus::done);
+    EXPECT_EQ(rig.status(1, waits), CommandStatus::aborted);
+    ASSERT_TRUE(rig.run_to_sync(1, gear));
+    rig.run(500);
+    EXPECT_EQ(rig.view(1).phase_shift, 0);
+}
+
 }  // namespace
 }  // namespace taktwerk::axes::test

@@ -183,6 +183,13 @@ inline const std::array swept_motions{
                     if (i == 1) it.accept(0, at_velocity(40));
                     if (i == 90) it.give(phasing(CommandKind::phasing_relative, 6, 40));
                 }},
+    SweptMotion{"GearIn and a phasing that is halted", SweptMotion::Made::followed, 25,
+                [](SweptAxis& it, int i) {
+                    if (i == 0) it.give(gear_in(0));
+                    if (i == 1) it.accept(0, at_velocity(40));
+                    if (i == 90) it.give(phasing(CommandKind::phasing_relative, -6, 40));
+                    if (i == 120) it.give({.kind = CommandKind::halt_phasing, .deceleration = 400});
+                }},
     SweptMotion{"GearInPos", SweptMotion::Made::followed, 5,
                 [](SweptAxis& it, int i) {
                     if (i == 0) it.accept(0, at_velocity(40));

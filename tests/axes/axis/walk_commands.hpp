@@ -38,7 +38,8 @@ inline constexpr std::array walk_kinds{
     WalkKind{CommandKind::gear_out, "gear_out", 3},
     WalkKind{CommandKind::cam_out, "cam_out", 2},
     WalkKind{CommandKind::phasing_absolute, "phasing_absolute", 6},
-    WalkKind{CommandKind::phasing_relative, "phasing_relative", 6},
+    WalkKind{CommandKind::phasing_relative, "phasing_relative", 4},
+    WalkKind{CommandKind::halt_phasing, "halt_phasing", 2},
     WalkKind{CommandKind::position_profile, "position_profile", 4},
     WalkKind{CommandKind::velocity_profile, "velocity_profile", 3},
     WalkKind{CommandKind::acceleration_profile, "acceleration_profile", 3},
@@ -158,6 +159,7 @@ private:
                 command.buffer_mode = mcAborting;
                 break;
             case halt_superimposed:
+            case halt_phasing:
             case stop:
             case gear_out:
             case cam_out: command.buffer_mode = mcAborting; break;

@@ -278,6 +278,25 @@ TEST_F(PhasingRelative, ShowsWhatItHasCoveredNotWhatAnotherOneDoes) {  // P1-295
     EXPECT_EQ(block.CoveredPhaseShift, 6);
 }
 
+using HaltPhasing = OneBlock<MC_HaltPhasing>;
+TEST_F(HaltPhasing, EndsThePhasingOfTheSlave) {
+    MC_PhasingRelative running;
+    running.Slave = block.Slave = {2};
+    running.Execute = true;
+    running(axes.context);
+    block.Deceleration = 5, block.Jerk = 6;
+    begin();
+    running(axes.context);
+    EXPECT_TRUE(running.CommandAborted);
+    EXPECT_EQ(last().axis.index, 2);
+    EXPECT_EQ(last().command.kind, CommandKind::halt_phasing);
+    EXPECT_EQ(last().command.deceleration, 5);
+    EXPECT_EQ(last().command.jerk, 6);
+    axes.finish(Outcome::done, ErrorId::none, 2);
+    scan();
+    EXPECT_TRUE(block.Done);
+}
+
 using CombineAxes = OneBlock<MC_CombineAxes>;
 TEST_F(CombineAxes, CommandsTheSlaveWhatThePinsSay) {
     block.Master1 = {0}, block.Master2 = {1}, block.Slave = {2};

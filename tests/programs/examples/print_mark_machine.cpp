@@ -115,5 +115,34 @@ TEST(PrintMark, MissingMarksAreAnAlarmAndAreSearchedForAnew) {
     EXPECT_LT(cuts.largest(again + 3), 0.02);
 }
 
+// Without marks a person trims: 20 mm/s with 200 mm/s2, so after 0.5 s 20 * 0.5 - 1 = 9 mm when the button is let go, and 1 mm more on the ramp of the
+// halt. Then the register stays where it was put, 10 mm of web, but for the few cycles of inputs and tasks.
+TEST(PrintMark, AButtonTrimsAsLongAsItIsHeldAndItsWayStays) {
+    ExampleMachine m{"print_mark"};
+    ASSERT_TRUE(m.up());
+    m.world().drive("web")->blank(true);
+    ASSERT_TRUE(m.until([&] { return m.axis("web").set_velocity > 399.9; }, 10s)) << m.alarms();
+    m.run(200ms);
+    const auto ahead = [&] { return m.axis("cutter").phase_shift; };
+    ASSERT_EQ(ahead(), 0);
+
+    m.world().set_input("trim_ahead", true);
+    m.run(500ms);
+    EXPECT_NEAR(ahead(), 9, 20 * 0.004);
+    m.world().set_input("trim_ahead", false);
+    m.run(300ms);
+    const double trimmed = ahead();
+    EXPECT_NEAR(trimmed, 10, 20 * 0.004);
+    m.run(2s);
+    EXPECT_EQ(ahead(), trimmed);
+
+    m.world().set_input("trim_back", true);
+    m.run(500ms);
+    m.world().set_input("trim_back", false);
+    m.run(300ms);
+    EXPECT_NEAR(ahead(), 0, 20 * 0.004);
+    EXPECT_EQ(m.axis("cutter").state, axes::AxisState::SynchronizedMotion);
+}
+
 }  // namespace
 }  // namespace taktwerk::print_mark_example

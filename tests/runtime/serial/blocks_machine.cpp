@@ -147,10 +147,12 @@ TEST(SerialBlocks, WhatCannotWorkSaysNotSupported) {
         {"MC_GearInPos", ErrorId::not_supported},
         {"MC_PhasingAbsolute", ErrorId::not_supported},
         {"MC_PhasingRelative", ErrorId::not_supported},
+        {"MC_HaltPhasing", ErrorId::not_supported},
         {"MC_CombineAxes", ErrorId::not_supported},
         // what the drive has not
         {"MC_SetControllerMode", ErrorId::not_supported},
         {"MC_SetTorqueLimit", ErrorId::no_torque_limit},
+        {"MC_SetBrake", ErrorId::brake_not_controlled},
         {"MC_WriteDigitalOutput", ErrorId::not_supported},
         {"MC_HomeAbsolute", ErrorId::not_supported},
         {"MC_StepDistanceCoded", ErrorId::not_supported},

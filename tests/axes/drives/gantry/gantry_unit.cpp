@@ -1,0 +1,218 @@
+// A portal on two drives: one axis above, two fake drives below.
+
+#include "axes/drives/gantry/gantry_port.hpp"
+#include "tests/axes/axis/axis_rig.hpp"
+
+namespace taktwerk::axes::test {
+namespace {
+
+AxisConfig portal(double warning = 0.2, double error = 0.5) {
+    auto config = plain_axis();
+    config.limits.jerk = infinity;
+    config.gantry = {.on = true, .warning = warning, .error = error};
+    choose_for_gantry(config.reactions);
+    return config;
+}
+
+struct Portal {
+    static constexpr Duration cycle = 1ms;
+
+    explicit Portal(bool mirrored = false, const AxisConfig& config = portal())
+        : Portal(std::make_unique<FakeDrive>(cycle), std::make_unique<FakeDrive>(cycle), mirrored, config) {}
+    Portal(std::unique_ptr<FakeDrive> one, std::unique_ptr<FakeDrive> other, bool mirrored, const AxisConfig& config)
+        : left(one.get()), right(other.get()), port(std::move(one), std::move(other), mirrored), axis(config, port, cycle) {
+        right->position = 5000;  // its encoder counts from somewhere else
+    }
+    void step() {
+        now += cycle;
+        axis.update(now);
+        axis.supervise(now);
+        AlarmFact fact;
+        while (axis.fetch_alarm(fact)) alarms.push_back(fact.id);
+        axis.power(enable, true, true, Owner::program);
+        axis.plan(now, cycle);
+        axis.encode(now);
+    }
+    void run(int cycles) {
+        for (int i = 0; i < cycles; ++i) step();
+    }
+    bool run_until(const std::function<bool()>& condition, int most = 20000) {
+        for (int i = 0; i < most && !condition(); ++i) step();
+        return condition();
+    }
+    void power_on() {
+        enable = true;
+        ASSERT_TRUE(run_until([&] { return view().state == AxisState::Standstill; }, 1000));
+    }
+    void move_at(double velocity) { EXPECT_EQ(axis.submit(at_velocity(velocity), Owner::program).error, ErrorId::none); }
+    [[nodiscard]] const AxisView& view() const { return axis.view(); }
+    [[nodiscard]] bool raised(AxisAlarm alarm) const { return std::find(alarms.begin(), alarms.end(), id(alarm)) != alarms.end(); }
+    /// Both stop along the same ramp, and power goes when they stand.
+    void expect_ramp_then_off() {
+        bool off_in_motion = false;
+        ASSERT_TRUE(run_until([&] {
+            const bool moves = view().set_velocity != 0;
+            off_in_motion = off_in_motion || (moves && left->last.power != PowerRequest::on);
+            return left->power != PowerState::enabled && right->power != PowerState::enabled;
+        }));
+        EXPECT_FALSE(off_in_motion);
+        EXPECT_EQ(view().state, AxisState::ErrorStop);
+    }
+
+    FakeDrive *left, *right;
+    gantry::GantryPort port;
+    Axis axis;
+    Instant now{};
+    bool enable = false;
+    std::vector<AlarmId> alarms;
+};
+
+TEST(Gantry, BothSidesMoveAlikeFromWhereTheyAre) {
+    for (const bool mirrored : {false, true}) {
+        Portal rig(mirrored);
+        rig.power_on();
+        EXPECT_EQ(rig.left->largest_step, 0);
+        EXPECT_EQ(rig.right->largest_step, 0) << "it starts where it is";
+        EXPECT_EQ(rig.axis.submit(absolute(20), Owner::program).error, ErrorId::none);
+        ASSERT_TRUE(rig.run_until([&] { return rig.view().state == AxisState::Standstill; }));
+        rig.run(10);
+        EXPECT_EQ(std::llround(rig.left->position), 20000);
+        EXPECT_EQ(std::llround(rig.right->position), 5000 + (mirrored ? -20000 : 20000));
+        EXPECT_EQ(rig.view().skew, 0);
+        EXPECT_EQ(rig.left->last.velocity, (mirrored ? -1 : 1) * rig.right->last.velocity);
+        EXPECT_TRUE(rig.alarms.empty());
+    }
+}
+
+TEST(Gantry, IsPoweredWhenBothSidesAre) {
+    Portal rig;
+    rig.right->power_delay = 30;
+    rig.enable = true;
+    ASSERT_TRUE(rig.run_until([&] { return rig.left->power == PowerState::enabled; }, 100));
+    rig.run(20);
+    EXPECT_EQ(rig.view().state, AxisState::Disabled);
+    ASSERT_TRUE(rig.run_until([&] { return rig.view().state == AxisState::Standstill; }, 200));
+    EXPECT_EQ(rig.right->power, PowerState::enabled);
+    EXPECT_TRUE(rig.alarms.empty()) << "one that comes later is not lost";
+    rig.enable = false;
+    rig.run(10);
+    EXPECT_EQ(rig.left->power, PowerState::disabled);
+    EXPECT_EQ(rig.right->power, PowerState::disabled);
+    EXPECT_TRUE(rig.alarms.empty());
+}
+
+TEST(Gantry, SkewIsShownThenWarnedOfThenStops) {
+    Portal rig;
+    rig.power_on();
+    rig.move_at(20);
+    rig.run(200);
+    rig.right->lag = 150;
+    rig.run(5);
+    EXPECT_NEAR(rig.view().skew, -0.15, 1e-9);
+    EXPECT_TRUE(rig.alarms.empty());
+    rig.right->lag = 300;
+    rig.run(5);
+    EXPECT_TRUE(rig.raised(AxisAlarm::gantry_skew_warning));
+    EXPECT_EQ(rig.view().state, AxisState::ContinuousMotion);
+    rig.right->lag = 100;
+    rig.run(5);
+    EXPECT_TRUE(rig.axis.active_alarms().empty());
+    rig.left->lag = 700;
+    rig.run(3);
+    EXPECT_TRUE(rig.raised(AxisAlarm::gantry_skew));
+    EXPECT_NEAR(rig.view().skew, 0.6, 1e-9);
+    EXPECT_EQ(rig.view().state, AxisState::ErrorStop);
+    rig.run(100);
+    EXPECT_EQ(rig.view().set_velocity, 0);
+    EXPECT_EQ(rig.left->last.position, rig.right->last.position - 5000) << "along the same ramp";
+    EXPECT_EQ(rig.right->power, PowerState::enabled);
+    // What lies between them when power comes again counts as square.
+    rig.enable = false;
+    rig.run(20);
+    rig.left->lag = rig.right->lag = 0;
+    rig.axis.reset(Owner::program);
+    rig.run(20);
+    rig.power_on();
+    rig.run(20);
+    EXPECT_EQ(rig.view().skew, 0);
+}
+
+TEST(Gantry, AFaultOfEitherSideStopsBothAlongTheRampAndTakesBothTheirPower) {
+    for (const bool leads : {false, true}) {
+        Portal rig;
+        rig.power_on();
+        rig.move_at(50);
+        rig.run(200);
+        auto& faulty = leads ? *rig.left : *rig.right;
+        auto& sound = leads ? *rig.right : *rig.left;
+        faulty.fault_code = 0x7500;
+        rig.run(3);
+        EXPECT_TRUE(rig.raised(AxisAlarm::drive_fault));
+        EXPECT_FALSE(rig.raised(AxisAlarm::gantry_side_lost)) << "one cause is one alarm";
+        EXPECT_EQ(sound.power, PowerState::enabled);
+        EXPECT_EQ(sound.last.power, PowerRequest::on);
+        const double before = sound.position;
+        rig.run(10);
+        EXPECT_GT(sound.position, before + 300) << "it ramps down, it is not let go";
+        rig.expect_ramp_then_off();
+        EXPECT_LE(sound.largest_step, 51);
+        faulty.fault_code = 0;
+        rig.axis.reset(Owner::program);
+        ASSERT_TRUE(rig.run_until([&] { return rig.view().state == AxisState::Standstill; }, 500));
+        EXPECT_EQ(rig.left->power, PowerState::enabled);
+        EXPECT_EQ(rig.right->power, PowerState::enabled);
+        EXPECT_EQ(rig.view().skew, 0);
+    }
+}
+
+TEST(Gantry, ASideThatLosesItsPowerTakesTheOtherWithIt) {
+    for (const bool leads : {false, true}) {
+        Portal rig;
+        rig.power_on();
+        rig.move_at(50);
+        rig.run(200);
+        (leads ? rig.left : rig.right)->refuses_power = true;
+        rig.run(3);
+        EXPECT_TRUE(rig.raised(AxisAlarm::gantry_side_lost));
+        EXPECT_EQ(rig.view().state, AxisState::ErrorStop);
+        rig.expect_ramp_then_off();
+    }
+}
+
+TEST(Gantry, ASilentSideIsAnAxisWithoutFeedback) {
+    Portal rig;
+    rig.power_on();
+    rig.move_at(50);
+    rig.run(200);
+    rig.right->silent = true;
+    rig.run(5);
+    EXPECT_TRUE(rig.raised(AxisAlarm::axis_feedback_lost));
+    EXPECT_EQ(rig.view().state, AxisState::ErrorStop);
+}
+
+TEST(Gantry, CanOnlyWhatBothCanDoAlike) {
+    Portal rig;
+    const auto& caps = rig.port.capabilities();
+    EXPECT_TRUE(caps.has(DriveMode::cyclic_position));
+    EXPECT_FALSE(caps.has(DriveMode::profile_position));
+    EXPECT_FALSE(caps.drive_homing);
+}
+
+TEST(Gantry, BoundsOfItsKeys) {
+    const auto problem_of = [](const std::function<void(AxisConfig&)>& change) {
+        auto config = portal();
+        change(config);
+        const auto problems = check(config);
+        return problems.empty() ? std::string{} : problems[0].subject;
+    };
+    EXPECT_EQ(problem_of([](AxisConfig&) {}), "");
+    EXPECT_EQ(problem_of([](AxisConfig& c) { c.gantry.error = 0; }), "axes.x.gantry.max_skew.error");
+    EXPECT_EQ(problem_of([](AxisConfig& c) { c.gantry.warning = 0.5; }), "axes.x.gantry.max_skew.warning");
+    EXPECT_EQ(problem_of([](AxisConfig& c) { c.homing.kind = HomingKind::drive; }), "axes.x.homing.kind");
+    EXPECT_EQ(problem_of([](AxisConfig& c) { c.reactions.choose(AxisAlarm::drive_fault, ErrorReaction::ramp_stop); }),
+              "axes.x.reactions.drive_fault");
+    EXPECT_EQ(problem_of([](AxisConfig& c) { c.reactions.choose(AxisAlarm::gantry_skew, ErrorReaction::power_off); }), "");
+}
+
+}  // namespace
+}  // namespace taktwerk::axes::test
