@@ -130,7 +130,7 @@ private:
         // One that did not come: the next is a length further, or, after some, anywhere.
         if (probe_.Busy && web > next_mark_ + window) {
             ++lost_;
-            locked_ = lost_ < lost_at_most;
+            locked_ = locked_ && lost_ < lost_at_most;
             next_mark_ += length;
             armed_ = false;
         }
