@@ -59,6 +59,7 @@ int run(int argc, char** argv) {
     add_plot(app, action);
     add_sim(app, action);
     add_simulate(app, action);
+    add_esi(app, action);
     add_docs(app, action);
     if (const auto wrong = misplaced(app, argc, argv)) {
         print_error(*wrong);

@@ -20,6 +20,7 @@ void add_sim(CLI::App& app, Action& action);
 void add_simulate(CLI::App& app, Action& action);
 void add_bus(CLI::App& app, Action& action);    ///< scan, state, pdo, sdo, dc, counters, why
 void add_drive(CLI::App& app, Action& action);  ///< identify, params, get, set, save, restore, diff, alarms, reset
+void add_esi(CLI::App& app, Action& action);    ///< list, show, import
 void add_plot(CLI::App& app, Action& action);
 void add_monitor(CLI::App& app, Action& action);
 void add_operate(CLI::App& app, Action& action);  ///< jog, home, enable, reset, start, stop, set, mode, ...

@@ -3,6 +3,7 @@ find_package(Threads REQUIRED)
 find_package(fmt REQUIRED)
 find_package(Eigen3 REQUIRED)
 find_package(yaml-cpp REQUIRED)       # 0.7: the target is `yaml-cpp`, without a namespace
+find_package(pugixml REQUIRED)        # vendors' ESI files, in ecat/esi
 find_package(CLI11 REQUIRED)
 find_package(nlohmann_json REQUIRED)
 if(TAKTWERK_TESTS)

@@ -1,0 +1,44 @@
+// taktwerk esi: what vendors' XML files say of their slaves, and device files made of it.
+
+#include "apps/esi/esi.hpp"
+
+#include "ecat/esi/choose_device.hpp"
+#include "ecat/esi/esi_number.hpp"
+
+namespace taktwerk::apps {
+
+std::shared_ptr<EsiOptions> add_esi_file(CLI::App& sub) {
+    auto options = std::make_shared<EsiOptions>();
+    sub.add_option("file", options->file, "the vendor's ESI file (XML)")->required()->type_name("FILE");
+    return options;
+}
+
+void add_esi_device(CLI::App& sub, EsiOptions& options) {
+    sub.add_option("--device", options.device,
+                   "type of the device, such as EL3104, or its number in the list; needed where there are several")
+        ->type_name("D");
+    sub.add_option("--revision", options.revision, "another revision than the newest, such as 0x00140000")->type_name("R");
+}
+
+Result<ecat::esi::EsiReading> read_chosen(const EsiOptions& options, const ecat::esi::EsiFile& file) {
+    std::optional<std::uint32_t> revision;
+    if (!options.revision.empty()) {
+        const auto number = ecat::esi::parse_number(options.revision);
+        if (!number || *number < 0 || *number > ecat::esi::u32)
+            return Error{"usage.number", "--revision", "'" + options.revision + "' is no revision",
+                         "write it like 0x00140000, as `esi list` shows it"};
+        revision = static_cast<std::uint32_t>(*number);
+    }
+    const auto chosen = ecat::esi::choose_device(file, options.device, revision);
+    if (!chosen) return chosen.error();
+    return file.read(*chosen);
+}
+
+void add_esi(CLI::App& app, Action& action) {
+    auto* esi = app.add_subcommand("esi", "vendors' ESI files (XML): what is in them, and device files made of them");
+    esi->require_subcommand(1);
+    add_esi_list(*esi, action);
+    add_esi_show(*esi, action);
+}
+
+}  // namespace taktwerk::apps

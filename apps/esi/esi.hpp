@@ -1,0 +1,37 @@
+#pragma once
+// The sub-commands of `taktwerk esi`, one file each. Their texts are made by pure functions, so that tests read them.
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/taktwerk.hpp"
+#include "apps/terminal/text_table.hpp"
+#include "ecat/esi/esi_file.hpp"
+
+namespace taktwerk::apps {
+
+using EsiJson = nlohmann::ordered_json;
+
+struct EsiOptions {
+    std::string file, device, revision, output;
+    bool all = false, json = false;
+};
+
+void add_esi_list(CLI::App& esi, Action& action);
+void add_esi_show(CLI::App& esi, Action& action);
+
+/// FILE, and --device and --revision for what is about one device.
+[[nodiscard]] std::shared_ptr<EsiOptions> add_esi_file(CLI::App& sub);
+void add_esi_device(CLI::App& sub, EsiOptions& options);
+/// The device that the options mean. Errors of EsiFile::open() and choose_device(), and usage.number for a revision that is none.
+[[nodiscard]] Result<ecat::esi::EsiReading> read_chosen(const EsiOptions& options, const ecat::esi::EsiFile& file);
+
+[[nodiscard]] std::string esi_list_text(const ecat::esi::EsiFile& file, bool all, Colours colours);
+[[nodiscard]] EsiJson esi_list_json(const ecat::esi::EsiFile& file);
+[[nodiscard]] std::string esi_show_text(const std::string& vendor, const ecat::esi::EsiReading& reading, Colours colours);
+[[nodiscard]] EsiJson esi_show_json(const std::string& vendor, const ecat::esi::EsiReading& reading);
+
+}  // namespace taktwerk::apps
