@@ -37,7 +37,8 @@ ErrorId Admission::refuse_state(const AxisCommand& command) const noexcept {
     if (body_.state == AxisState::Disabled && !(powers_up() && waits(command))) return ErrorId::not_powered;
     if (body_.state == AxisState::ErrorStop) return ErrorId::in_error_stop;
     if (body_.emergency != EmergencyStop::none) return ErrorId::interlocked;
-    if (body_.brake.holds()) return ErrorId::brake_closed;
+    // Behind MC_Power a command may wait for the brake as for the drive.
+    if (body_.brake.holds() && body_.state != AxisState::Disabled) return ErrorId::brake_closed;
     const bool stopping = body_.state == AxisState::Stopping;
     if (waits(command)) {
         const bool behind_stop = body_.queue.active().command.kind == CommandKind::stop || body_.lock != 0;

@@ -28,14 +28,16 @@ void step_homing(AxisCore& axis) noexcept {
     if (axis.homing.home.over() || axis.homing.steps.over()) axis.succession.start_waiting(0);
 }
 
-/// A drive that brakes by itself, in a quick stop or a fault, has power as long as it does: a holding brake is no brake for motion.
+/// A drive that brakes by itself, in a quick stop or a fault, has power as long as it does: a holding brake is no brake for motion. One that is not
+/// heard any more has none: its own watchdog has seen to that.
 void step_brake(AxisCore& axis) noexcept {
     using Phase = PowerSequence::Phase;
     auto& body = axis.body;
     const auto phase = body.power.phase();
     const bool brakes = axis.measured.feedback.power == PowerState::fault_reaction && !axis.measured.stands();
-    const bool powered = phase == Phase::settling || phase == Phase::on || body.power.quick_stops() || brakes;
-    body.brake.step(powered, axis.measured.online() && body.emergency == EmergencyStop::none, body.now);
+    const bool online = axis.measured.online();
+    const bool powered = online && (phase == Phase::settling || phase == Phase::on || body.power.quick_stops() || brakes);
+    body.brake.step(powered, online && body.emergency == EmergencyStop::none, body.now);
     axis.writer.brake();
 }
 

@@ -39,8 +39,8 @@ public:
         if (hand_ == Hand::open) hand_ = Hand::none;
     }
 
-    /// Closed under power: nothing may move.
-    [[nodiscard]] bool holds() const noexcept { return hand_ == Hand::closed; }
+    /// Closed under power, or on its way to open: nothing may move.
+    [[nodiscard]] bool holds() const noexcept { return powered_ && (!open_ || now_ - since_ < release_); }
     /// Of all that was asked for, this was the last; the word has gone, or goes in this cycle.
     [[nodiscard]] BrakeRequest request() const noexcept {
         if (!controlled_) return BrakeRequest::none;

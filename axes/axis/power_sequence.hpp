@@ -58,15 +58,14 @@ public:
                 return timed_out(in.now);
             case Phase::settling:
                 if (!enabled) return leave(Phase::off, Event::lost);
-                if (!in.wanted) return leave(Phase::switching_off, Event::none);
+                if (!in.wanted) return let_go(in);  // the brake may be open already
                 if (in.now - since_ < dwell_) return Event::none;
                 phase_ = Phase::on;
                 return Event::ready;
             case Phase::on:
                 if (in.online && !enabled) return leave(Phase::off, Event::lost);
                 if (in.wanted) return Event::none;
-                since_ = in.now;
-                return leave(engage_ > Duration::zero() && !in.at_once ? Phase::engaging : Phase::switching_off, Event::none);
+                return let_go(in);
             case Phase::engaging:
                 if (in.online && !enabled) return leave(Phase::off, Event::off);
                 return in.at_once || in.now - since_ >= engage_ ? leave(Phase::switching_off, Event::none) : Event::none;
@@ -93,6 +92,10 @@ private:
         phase_ = to;
         waiting_ = false;
         return event;
+    }
+    Event let_go(const Input& in) noexcept {
+        since_ = in.now;
+        return leave(engage_ > Duration::zero() && !in.at_once ? Phase::engaging : Phase::switching_off, Event::none);
     }
     Event timed_out(Instant now) noexcept {
         if (!waiting_ || now - since_ < timeout_) return Event::none;

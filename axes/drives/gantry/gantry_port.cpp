@@ -72,6 +72,7 @@ const DriveFeedback& GantryPort::decode(Instant now) noexcept {
     both.negative_limit = one.negative_limit || (mirrored_ ? other.positive_limit : other.negative_limit);
     both.positive_limit = one.positive_limit || (mirrored_ ? other.negative_limit : other.positive_limit);
     follower_at_ = other.position;
+    leader_power_ = one.power;
     follower_power_ = other.power;
     skew_ = static_cast<double>(turned(other.position) - one.position - shift_);
     join_power(one, other);
@@ -80,9 +81,14 @@ const DriveFeedback& GantryPort::decode(Instant now) noexcept {
 
 void GantryPort::join_power(const DriveFeedback& one, const DriveFeedback& other) noexcept {
     const bool first = one.power == PowerState::enabled, second = other.power == PowerState::enabled;
-    if (asked_ == PowerRequest::off) both_had_power_ = false;
-    else both_had_power_ = both_had_power_ || (first && second);
-    side_lost_ = both_had_power_ && asked_ == PowerRequest::on && first != second;
+    if (asked_ == PowerRequest::off) {
+        both_had_power_ = false;
+        fallen_ = Fallen::none;
+    }
+    both_had_power_ = both_had_power_ || (asked_ != PowerRequest::off && first && second);
+    if (both_had_power_ && asked_ == PowerRequest::on && first != second && fallen_ == Fallen::none)
+        fallen_ = first ? Fallen::follower : Fallen::leader;
+    side_lost_ = asked_ == PowerRequest::on && ((fallen_ == Fallen::follower && first) || (fallen_ == Fallen::leader && second));
     if (side_lost_) feedback_.power = PowerState::enabled;  // the one that has power is to ramp down with it
     else if (faulted(one) || faulted(other)) feedback_.power = faulted(one) ? one.power : other.power;
     else if (asked_ == PowerRequest::quick_stop) feedback_.power = progress(one.power) >= progress(other.power) ? one.power : other.power;
@@ -94,9 +100,16 @@ void GantryPort::join_power(const DriveFeedback& one, const DriveFeedback& other
 
 void GantryPort::encode(const DriveCommand& command, Instant now) noexcept {
     asked_ = command.power;
-    leader_->encode(command, now);
+    const bool on = asked_ == PowerRequest::on;
+    auto one = command;
+    if (on && fallen_ == Fallen::leader) one.power = request_of_fallen();
+    const bool alone = on && leader_power_ == PowerState::enabled && follower_power_ != PowerState::enabled && !both_had_power_;
+    if (alone) one.position = held_;  // the axis' set-point still follows the motor: that would give way to any load
+    else held_ = command.position;
+    leader_->encode(one, now);
 
     auto other = command;
+    if (on && fallen_ == Fallen::follower) other.power = request_of_fallen();
     // Until it has power it is where it is: with its power it gets this as its target.
     if (follower_power_ != PowerState::enabled && follower_power_ != PowerState::quick_stop && !side_lost_)
         shift_ = turned(follower_at_) - command.position;
@@ -109,6 +122,12 @@ void GantryPort::encode(const DriveCommand& command, Instant now) noexcept {
     other.probes = {};
     other.start_homing = false;
     follower_->encode(other, now);
+}
+
+/// Its set-point has gone on without it: with power it would jump there. A quick stop of its own it may finish.
+PowerRequest GantryPort::request_of_fallen() const noexcept {
+    const auto power = fallen_ == Fallen::leader ? leader_power_ : follower_power_;
+    return power == PowerState::quick_stop ? PowerRequest::quick_stop : PowerRequest::off;
 }
 
 DriveAlarm GantryPort::alarm() const noexcept {

@@ -3,8 +3,9 @@
 //
 //   set-point    the same for both, in each cycle; the follower's is shifted by what lay between the two when it got its power, so nothing jumps
 //   power        both are asked for it together; the axis sees the lesser of the two states
+//                one that has it before the other holds its place
 //   a side falls fault, or power lost while the other has it: the axis is told (fault, side_lost) and sees the other as enabled, so that this one ramps
-//                down with the set-point instead of being let go
+//                down with the set-point instead of being let go; the fallen one stays without until power was given back for both
 //   skew         how far the follower is ahead of the leader, beyond what lay between them when power came
 //
 // Only cyclic position: what a drive plans by itself, two drives plan differently. Real-time safe where DrivePort is.
@@ -47,6 +48,8 @@ public:
 private:
     [[nodiscard]] std::int64_t turned(std::int64_t counts) const noexcept { return mirrored_ ? -counts : counts; }
     void join_power(const DriveFeedback& one, const DriveFeedback& other) noexcept;
+    /// What a side that fell is asked for while the other one ramps down.
+    [[nodiscard]] PowerRequest request_of_fallen() const noexcept;
 
     std::unique_ptr<DrivePort> leader_, follower_;
     bool mirrored_;
@@ -56,7 +59,9 @@ private:
     bool side_lost_ = false;
     std::int64_t shift_ = 0;  // follower's counts, turned, minus the leader's, when it got its power
     std::int64_t follower_at_ = 0;
-    PowerState follower_power_ = PowerState::unknown;
+    std::int64_t held_ = 0;  // what the leader was told last before it got its power
+    PowerState leader_power_ = PowerState::unknown, follower_power_ = PowerState::unknown;
+    enum class Fallen : std::uint8_t { none, leader, follower } fallen_ = Fallen::none;
     bool both_had_power_ = false;  // since it was asked for
     PowerRequest asked_ = PowerRequest::off;
 };

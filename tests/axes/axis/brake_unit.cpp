@@ -104,6 +104,42 @@ TEST(Brake, StaysOpenWhileTheDriveStopsTheMotor) {
     EXPECT_FALSE(rig.told_open());
 }
 
+// Given up while it opens: it may be open already, so the drive holds on until it has closed again.
+TEST(Brake, GivenUpWhileItOpensTheDriveHoldsOnUntilItHasClosed) {
+    for (const bool emergency : {false, true}) {
+        Braked rig;
+        rig.enable = true;
+        ASSERT_TRUE(rig.run_until([&] { return rig.told_open(); }, 100));
+        rig.run(90);  // of 100
+        ASSERT_EQ(rig.view().state, AxisState::Disabled);
+        if (emergency) rig.axis.demand_emergency_stop(EmergencyStop::stop_and_power_off);
+        else rig.enable = false;
+        ASSERT_TRUE(rig.run_until([&] { return !rig.told_open(); }, 5));
+        EXPECT_EQ(rig.drive.last.power, PowerRequest::on);
+        const auto closed = rig.now;
+        ASSERT_TRUE(rig.run_until([&] { return rig.drive.last.power == PowerRequest::off; }, 500));
+        EXPECT_EQ(rig.now - closed, 150ms);
+        rig.run(10);
+        EXPECT_NE(rig.view().state, AxisState::Standstill);
+        EXPECT_EQ(rig.drive.power, PowerState::disabled);
+    }
+}
+
+// A drive that nobody hears holds nothing that anybody knows of: its own watchdog has taken its power by now.
+TEST(Brake, ClosesWhereTheDriveIsLost) {
+    for (const bool moves : {false, true}) {
+        Braked rig;
+        rig.power_on();
+        rig.run(5);
+        if (moves) rig.accept(at_velocity(50));
+        rig.run(200);
+        rig.drive.offline = true;
+        ASSERT_TRUE(rig.run_to(AxisState::ErrorStop, 10));
+        rig.run(500);
+        EXPECT_FALSE(rig.told_open());
+    }
+}
+
 TEST(SetBrake, ClosesUnderPowerAndNothingMovesUntilItIsOpen) {
     Braked rig;
     rig.power_on();
@@ -121,7 +157,10 @@ TEST(SetBrake, ClosesUnderPowerAndNothingMovesUntilItIsOpen) {
     EXPECT_EQ(rig.view().brake, BrakeState::closed);
     EXPECT_EQ(rig.view().state, AxisState::Standstill);
     ASSERT_EQ(rig.set_brake(true), ErrorId::none);
-    rig.run(101);
+    EXPECT_EQ(rig.refuse(absolute(5)), ErrorId::brake_closed) << "it has just been told";
+    rig.run(99);
+    EXPECT_EQ(rig.refuse(absolute(5)), ErrorId::brake_closed) << "it opens yet";
+    rig.run(2);
     EXPECT_EQ(rig.view().brake, BrakeState::open);
     rig.accept(absolute(5));
     ASSERT_TRUE(rig.run_to(AxisState::Standstill));

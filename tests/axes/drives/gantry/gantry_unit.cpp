@@ -52,7 +52,8 @@ struct Portal {
         bool off_in_motion = false;
         ASSERT_TRUE(run_until([&] {
             const bool moves = view().set_velocity != 0;
-            off_in_motion = off_in_motion || (moves && left->last.power != PowerRequest::on);
+            for (const auto* side : {left, right})  // of those that have it
+                off_in_motion = off_in_motion || (moves && side->power == PowerState::enabled && side->last.power != PowerRequest::on);
             return left->power != PowerState::enabled && right->power != PowerState::enabled;
         }));
         EXPECT_FALSE(off_in_motion);
@@ -176,6 +177,55 @@ TEST(Gantry, ASideThatLosesItsPowerTakesTheOtherWithIt) {
         EXPECT_TRUE(rig.raised(AxisAlarm::gantry_side_lost));
         EXPECT_EQ(rig.view().state, AxisState::ErrorStop);
         rig.expect_ramp_then_off();
+    }
+}
+
+// A side that fell and could come back in the midst of the ramp: its set-point is where it would be, not where it is. It waits without power.
+TEST(Gantry, ASideThatFellIsNotPoweredAgainUntilBothAre) {
+    for (const bool leads : {false, true}) {
+        for (const bool fault : {false, true}) {
+            Portal rig;
+            rig.power_on();
+            rig.move_at(100);
+            rig.run(300);
+            auto& fallen = leads ? *rig.left : *rig.right;
+            if (fault) fallen.fault_code = 0x7500;
+            else fallen.refuses_power = true;
+            rig.run(5);
+            ASSERT_EQ(rig.view().state, AxisState::ErrorStop);
+            fallen.fault_code = 0;
+            fallen.refuses_power = false;
+            rig.axis.reset(Owner::program);  // somebody's finger is quick
+            fallen.power_delay = 1;
+            rig.run_until(
+                [&] {
+                    EXPECT_FALSE(fallen.power == PowerState::enabled && rig.view().set_velocity != 0)
+                        << "leads " << leads << " fault " << fault;
+                    return rig.left->power != PowerState::enabled && rig.right->power != PowerState::enabled;
+                },
+                400);
+            EXPECT_TRUE(rig.run_until([&] { return rig.view().state == AxisState::Standstill; }, 1000));
+            EXPECT_LE(rig.left->largest_step, 101);
+            EXPECT_LE(rig.right->largest_step, 101);
+            EXPECT_EQ(rig.view().skew, 0);
+        }
+    }
+}
+
+// One side has power and its brake is open, the other has none and holds: the first one holds its place too, whatever pulls.
+TEST(Gantry, TheSideThatIsPoweredFirstHoldsItsPlace) {
+    for (const bool leads : {false, true}) {
+        Portal rig;
+        auto& early = leads ? *rig.left : *rig.right;
+        auto& late = leads ? *rig.right : *rig.left;
+        late.power_delay = 100;
+        early.lag = 3;  // a load pulls: it gives way by so much
+        rig.enable = true;
+        ASSERT_TRUE(rig.run_until([&] { return early.power == PowerState::enabled; }, 100));
+        const double before = early.position;
+        rig.run(200);
+        ASSERT_NE(late.power, PowerState::enabled);
+        EXPECT_NEAR(early.position, before, 10) << "leads " << leads;
     }
 }
 
