@@ -63,6 +63,18 @@ void SimNetwork::set_cable(const SimSlave& slave, bool plugged) {
     wiring_.update();
 }
 
+FrameSink& SimNetwork::close_ring(const SimSlave& last, unsigned port) {
+    assert(port_free(last, port));
+    wiring_.close_ring(*wiring_.find(last), port, timing_.cable);
+    wiring_.update();
+    return second_end_;
+}
+
+void SimNetwork::set_ring_cable(bool plugged) {
+    wiring_.plug_ring(plugged);
+    wiring_.update();
+}
+
 void SimNetwork::set_cable_delay(const SimSlave& slave, Duration one_way) {
     wiring_.find(slave)->cable = one_way;
     wiring_.update();
@@ -78,11 +90,12 @@ void SimNetwork::disturb(const SimSlave& slave, std::uint32_t frames) noexcept {
     damage_ = frames;
 }
 
-void SimNetwork::count_damage(const Place& where) noexcept {
-    const Duration since = where.arrival[where.entry_port];
+void SimNetwork::count_damage(const Place& where, CableEnd from) noexcept {
+    const Duration since = where.passage[number(from)].arrival[where.entry_port];
     for (const Place* place : wiring_.places()) {
+        const auto& passage = place->passage[number(from)];
         for (unsigned p = 0; p < ports_per_slave; ++p) {
-            if ((place->arrives & (1u << p)) == 0 || place->arrival[p] < since) continue;
+            if ((passage.arrives & (1u << p)) == 0 || passage.arrival[p] < since) continue;
             if (place == &where && p == where.entry_port) place->slave->controller().count_receive_error(p);
             else place->slave->controller().count_forwarded_error(p);
         }
@@ -127,22 +140,24 @@ std::optional<std::size_t> SimNetwork::take_apart(std::span<std::byte> frame) no
     return n;
 }
 
-std::optional<Duration> SimNetwork::process(std::span<std::byte> frame, Instant now) noexcept {
+std::optional<Duration> SimNetwork::process(std::span<std::byte> frame, Instant now, CableEnd from) noexcept {
     fire_until(now);
+    last_left_elsewhere_ = false;
+    const Route& route = wiring_.route(from);
     if (lose_ > 0) {
         --lose_;
         return std::nullopt;
     }
-    if (wiring_.route().empty() || frame.size() < ethernet_header_size) return std::nullopt;
+    if (!route.enters || frame.size() < ethernet_header_size) return std::nullopt;
 
     // A frame with a defect passes: the controllers count it and execute only what is sound as a whole.
     const auto sound = take_apart(frame);
     const std::span<MutableDatagram> datagrams{datagrams_.data(), sound.value_or(0)};
     // A damaged frame does nothing from the place of the damage on.
-    const bool damaged = damage_ > 0 && damaged_->arrives != 0;
-    const Duration good_until = damaged ? damaged_->arrival[damaged_->entry_port] : Duration::max();
+    const bool damaged = damage_ > 0 && damaged_->passage[number(from)].arrives != 0;
+    const Duration good_until = damaged ? damaged_->passage[number(from)].arrival[damaged_->entry_port] : Duration::max();
     bool loops_changed = false, destroyed = damaged;
-    for (const Visit& visit : wiring_.route()) {
+    for (const Visit& visit : route.visits) {
         if (visit.at >= good_until) break;
         if (visit.port_0_shut) {
             // The second time a frame finds port 0 shut it would go round for ever.
@@ -157,14 +172,18 @@ std::optional<Duration> SimNetwork::process(std::span<std::byte> frame, Instant 
         slave.process(datagrams, now + visit.at);
         loops_changed |= slave.controller().take_loop_change();
     }
-    for (const Visit& visit : wiring_.route()) visit.place->slave->frame_passed(now, visit.place->arrival, visit.place->arrives);
+    for (const Visit& visit : route.visits) {
+        const auto& passage = visit.place->passage[number(from)];
+        visit.place->slave->frame_passed(now, passage.arrival, passage.arrives);
+    }
     if (damaged) {
         --damage_;
-        count_damage(*damaged_);
+        count_damage(*damaged_, from);
     }
     // Every processing unit marks what it forwards: locally administered source address.
-    frame[6] |= std::byte{0x02};
-    const auto flight = destroyed ? std::nullopt : wiring_.flight();
+    if (!route.visits.empty()) frame[6] |= std::byte{0x02};
+    const auto flight = destroyed ? std::nullopt : route.flight;
+    last_left_elsewhere_ = route.leaves != from;
     if (loops_changed) wiring_.update();
     schedule();
     return flight;

@@ -26,6 +26,8 @@ struct LineTiming {
 class SimNetwork final : public FrameSink {
 public:
     explicit SimNetwork(Instant start = Instant{}, LineTiming timing = {}) : timing_(timing), now_(start) {}
+    SimNetwork(const SimNetwork&) = delete;
+    SimNetwork& operator=(const SimNetwork&) = delete;
 
     /// Appends a slave to the line, behind port 1 of the one added last (behind its port 0 where that one was entered through
     /// port 1), and powers it on. The reference stays valid; positions change when a slave is added before others.
@@ -49,6 +51,11 @@ public:
     /// comes back then.
     void set_cable(const SimSlave& slave, bool plugged);
     void set_cable(std::size_t position, bool plugged) { set_cable(slave(position), plugged); }
+    /// A ring: the master's second interface is plugged into `port` of `last`. Returns what its transport sends to; frames come out where
+    /// came_out_elsewhere() says. Call once, when all slaves are there.
+    [[nodiscard]] FrameSink& close_ring(const SimSlave& last, unsigned port = 1);
+    /// The cable of the second interface.
+    void set_ring_cable(bool plugged);
     /// One way through the cable that leads to the slave.
     void set_cable_delay(const SimSlave& slave, Duration one_way);
     void set_delays(const SimSlave& slave, const SlaveDelays& delays);
@@ -58,18 +65,31 @@ public:
     /// errors (0300h, 0308h), and the master's network card throws them away.
     void disturb(const SimSlave& slave, std::uint32_t frames) noexcept;
     /// Slaves that a frame reaches now.
-    [[nodiscard]] std::size_t reachable() const noexcept { return wiring_.route().size(); }
+    [[nodiscard]] std::size_t reachable() const noexcept { return wiring_.route(CableEnd::first).visits.size(); }
 
     void advance(Instant now) noexcept override;
-    std::optional<Duration> process(std::span<std::byte> frame, Instant now) noexcept override;
+    std::optional<Duration> process(std::span<std::byte> frame, Instant now) noexcept override {
+        return process(frame, now, CableEnd::first);
+    }
+    [[nodiscard]] bool came_out_elsewhere() const noexcept override { return last_left_elsewhere_; }
     /// When something is due next without a frame; Instant::max(): never.
     [[nodiscard]] Instant next_event() const noexcept { return next_event_; }
 
 private:
+    struct SecondEnd final : FrameSink {
+        explicit SecondEnd(SimNetwork& its_network) : network(its_network) {}
+        void advance(Instant now) noexcept override { network.advance(now); }
+        std::optional<Duration> process(std::span<std::byte> frame, Instant now) noexcept override {
+            return network.process(frame, now, CableEnd::second);
+        }
+        [[nodiscard]] bool came_out_elsewhere() const noexcept override { return network.last_left_elsewhere_; }
+        SimNetwork& network;
+    };
+    [[nodiscard]] std::optional<Duration> process(std::span<std::byte> frame, Instant now, CableEnd from) noexcept;
     SimSlave& install(Place* parent, unsigned port, std::unique_ptr<SimSlave> slave, unsigned entry_port);
     void fire_until(Instant now) noexcept;
     void schedule() noexcept;
-    void count_damage(const Place& where) noexcept;
+    void count_damage(const Place& where, CableEnd from) noexcept;
     [[nodiscard]] std::optional<std::size_t> take_apart(std::span<std::byte> frame) noexcept;
 
     // 12 bytes is the shortest datagram: more than this do not fit into a frame.
@@ -81,6 +101,8 @@ private:
     std::array<MutableDatagram, max_datagrams> datagrams_{};
     Instant now_;
     Instant next_event_ = never;
+    SecondEnd second_end_{*this};
+    bool last_left_elsewhere_ = false;  // the frame processed last left at the end where it did not start
     std::uint32_t lose_ = 0;
     std::uint32_t damage_ = 0;        // so many frames more
     const Place* damaged_ = nullptr;  // on the cable to this one

@@ -5,6 +5,10 @@
 // Inside a slave the ports form a ring: 0 -> processing unit -> 3 -> 1 -> 2 -> 0. A frame that enters anywhere goes on to the next
 // open port, around the branch behind it, and so on until it leaves where it came in. It is processed where it passes from port 0
 // to port 3: at once when it entered at port 0, else on its way round.
+//
+// A ring: the master has two ends. Where all cables are in, a frame that enters at one end leaves at the other: from the first end
+// processed by all, from the second by none, since it passes every slave from port 1 to port 0. At a break the ports to both sides of it
+// close, so each end has a line of its own; the slaves of the second end's process a frame on its way back, nearest to the break first.
 
 #include <array>
 #include <cstdint>
@@ -41,10 +45,17 @@ struct Place {
     Duration cable{};
     SlaveDelays delays{};
 
-    // Of a frame that follows the route: when it arrives at each port, counted from its start at the master.
-    std::array<Duration, ports_per_slave> arrival{};
-    std::uint8_t arrives = 0;  ///< bit p: it does
+    /// Of a frame that follows a route: when it arrives at each port, counted from its start at the master.
+    struct Passage {
+        std::array<Duration, ports_per_slave> arrival{};
+        std::uint8_t arrives = 0;  ///< bit p: it does
+    };
+    std::array<Passage, 2> passage{};  ///< by the end at which it started
 };
+
+/// An end of the master's cabling: its network interface, or the second one of a ring.
+enum class CableEnd : std::uint8_t { first, second };
+[[nodiscard]] constexpr std::size_t number(CableEnd end) noexcept { return static_cast<std::size_t>(end); }
 
 /// The frame at the processing unit of one slave.
 struct Visit {
@@ -53,11 +64,23 @@ struct Visit {
     bool port_0_shut = false;  ///< port 0 closed itself: the frame gets its circulating bit, or dies of it
 };
 
+/// What becomes of a frame that starts at one end.
+struct Route {
+    bool enters = false;  ///< there is a link at that end
+    std::vector<Visit> visits;
+    std::optional<Duration> flight;  ///< until it is at an end again; nothing: it is lost on the way
+    CableEnd leaves = CableEnd::first;
+};
+
 class Wiring {
 public:
     /// `parent`: nullptr for the slave at the master's cable. The port must be free. Allocates all that a route can need.
     Place& add(std::unique_ptr<SimSlave> slave, Place* parent, unsigned port, unsigned entry_port, const SlaveDelays& delays,
                Duration cable);
+    /// The master's second end goes into `port` of `last`: a ring. The port must be free.
+    void close_ring(Place& last, unsigned port, Duration cable);
+    /// The cable of the second end; no ring: nothing happens.
+    void plug_ring(bool plugged) noexcept { ring_plugged_ = plugged; }
     /// In processing order with every cable plugged in and every slave on.
     [[nodiscard]] std::span<Place* const> places() const noexcept { return order_; }
     [[nodiscard]] Place* find(const SimSlave& slave) const noexcept;
@@ -66,18 +89,25 @@ public:
     /// a loop changed. Allocation-free.
     void update() noexcept;
 
-    [[nodiscard]] std::span<const Visit> route() const noexcept { return route_; }
-    /// Master to master; nothing when the frame does not come back.
-    [[nodiscard]] std::optional<Duration> flight() const noexcept { return flight_; }
+    [[nodiscard]] const Route& route(CableEnd from) const noexcept { return routes_[number(from)]; }
 
 private:
-    [[nodiscard]] std::optional<Duration> walk(Place& place, Duration at) noexcept;
-    void number(Place& place);
+    struct Port {
+        Place* place = nullptr;
+        unsigned number = 0;
+    };
+    [[nodiscard]] bool ring_linked() const noexcept;
+    [[nodiscard]] std::uint8_t links_of(const Place& place) const noexcept;
+    void follow(CableEnd from) noexcept;
+    [[nodiscard]] static unsigned pass(Place& place, unsigned port, Duration& at, Route& route) noexcept;
+    void count(Place& place);
 
     std::vector<std::unique_ptr<Place>> places_;  // as they were added
     std::vector<Place*> order_;
-    std::vector<Visit> route_;
-    std::optional<Duration> flight_;
+    std::array<Route, 2> routes_;  // by the end where they start
+    Port ring_;                    // what the second end is plugged into; no place: no ring
+    Duration ring_cable_{};
+    bool ring_plugged_ = true;
 };
 
 }  // namespace taktwerk::ecat::sim

@@ -41,6 +41,7 @@ bool LoopbackTransport::send(std::span<const std::byte> frame, Instant now) noex
     const auto bytes = std::span{slot->bytes}.first(frame.size());
     const auto flight = sink_->process(bytes, now);
     if (!flight || strikes(faults.drop_answers)) return true;
+    const bool elsewhere = other_end_ != nullptr && sink_->came_out_elsewhere();
 
     slot->size = frame.size();
     slot->arrival = now + *flight;
@@ -62,9 +63,25 @@ bool LoopbackTransport::send(std::span<const std::byte> frame, Instant now) noex
         if (Slot* copy = free_slot(); copy != nullptr) {
             *copy = *slot;
             copy->order = order_++;
+            if (elsewhere) other_end_->take_over(*copy);
         }
     }
+    if (elsewhere) other_end_->take_over(*slot);
     return true;
+}
+
+/// A frame that comes out here and not where it was sent.
+void LoopbackTransport::take_over(Slot& sent) noexcept {
+    if (Slot* slot = free_slot(); slot != nullptr) {
+        *slot = sent;
+        slot->order = order_++;
+    }
+    sent.size = 0;
+}
+
+void LoopbackTransport::lose_under_way(Instant now) noexcept {
+    for (auto& slot : slots_)
+        if (slot.arrival > now) slot.size = 0;
 }
 
 void LoopbackTransport::inject(std::span<const std::byte> frame, Instant arrival) noexcept {

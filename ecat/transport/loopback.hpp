@@ -23,6 +23,8 @@ public:
     /// The frame leaves the master at `now` and runs through all slaves, which change it in place; its length stays.
     /// Returns the time until it is back at the master; nothing when it is lost on the way. Allocation-free.
     virtual std::optional<Duration> process(std::span<std::byte> frame, Instant now) noexcept = 0;
+    /// The frame that was processed last comes out at the other end of a ring, not where it went in.
+    [[nodiscard]] virtual bool came_out_elsewhere() const noexcept { return false; }
 };
 
 /// Disturbances a test switches on. Each counter counts down with the frames it hits; 0 = off.
@@ -50,6 +52,10 @@ public:
 
     /// From now on frames go to `sink` (which outlives the transport): a test puts something between cable and slaves.
     void plug_into(FrameSink& sink) noexcept { sink_ = &sink; }
+    /// Where frames arrive that come out at the other end of a ring; outlives the transport. Once, for each of the two.
+    void set_other_end(LoopbackTransport& other) noexcept { other_end_ = &other; }
+    /// A cable breaks at `now`: what is on its way to here is lost.
+    void lose_under_way(Instant now) noexcept;
     /// A frame that this master did not send arrives: somebody else is on the cable. Dropped when all slots are waiting.
     void inject(std::span<const std::byte> frame, Instant arrival) noexcept;
     /// When the next frame will arrive; nothing is on its way: nullopt. For tests that step to the event.
@@ -68,7 +74,10 @@ private:
     [[nodiscard]] Slot* free_slot() noexcept;
     [[nodiscard]] Slot* earliest() noexcept;
 
+    void take_over(Slot& sent) noexcept;
+
     FrameSink* sink_;
+    LoopbackTransport* other_end_ = nullptr;
     std::vector<Slot> slots_;
     MacAddress mac_;
     std::uint64_t order_ = 0;

@@ -16,6 +16,8 @@ struct ReceivedFrame {
     Instant at{};          ///< when it arrived (kernel stamp where there is one)
 };
 
+class RingTransport;
+
 class Transport {
 public:
     virtual ~Transport() = default;
@@ -29,6 +31,8 @@ public:
     [[nodiscard]] virtual MacAddress mac() const noexcept = 0;
     /// False: no carrier. Cheap, real-time safe.
     [[nodiscard]] virtual bool link_up() const noexcept = 0;
+    /// Itself where two interfaces are one ring (ecat/ring/), for whoever has to know; nullptr otherwise.
+    [[nodiscard]] virtual RingTransport* ring() noexcept { return nullptr; }
 };
 
 }  // namespace taktwerk::ecat

@@ -30,6 +30,7 @@ public:
     Duration reorder_by{};
 
     void advance(Instant now) noexcept override { slaves_.advance(now); }
+    [[nodiscard]] bool came_out_elsewhere() const noexcept override { return slaves_.came_out_elsewhere(); }
     std::optional<Duration> process(std::span<std::byte> frame, Instant now) noexcept override {
         if (flip_requests > 0) {
             --flip_requests;

@@ -1,0 +1,36 @@
+#pragma once
+// What the master knows of its ring: plain numbers.
+
+#include <cstdint>
+
+namespace taktwerk::ecat {
+
+enum class RingShape : std::uint8_t {
+    none,           ///< one interface, no ring
+    unknown,        ///< no frame has come back yet
+    closed,         ///< frames that leave at one interface come back at the other
+    open,           ///< each interface gets its own frames back: the cable is broken between two slaves
+    first_silent,   ///< nothing comes back of what the first interface sends
+    second_silent,  ///< nothing comes back of what the second interface sends, and the first gets its own
+};
+
+struct RingState {
+    RingShape shape = RingShape::none;
+    std::uint16_t before_break = 0;  ///< slaves that the first interface reaches; meaningless while closed
+    std::uint16_t behind_break = 0;  ///< slaves that the second interface reaches
+    std::uint64_t opened = 0;        ///< how often it went from closed to something else
+    friend bool operator==(const RingState&, const RingState&) = default;
+
+    [[nodiscard]] bool broken() const noexcept {
+        return shape == RingShape::open || shape == RingShape::first_silent || shape == RingShape::second_silent;
+    }
+};
+
+/// How the half behind the break gets its time: see RingTransport::hand_time_on().
+struct RingClocks {
+    bool hand_on = false;    ///< the slaves behind the break get the time that the master expects the reference to have
+    std::int64_t ahead = 0;  ///< ns: added to what the first interface's frame carries
+    friend bool operator==(const RingClocks&, const RingClocks&) = default;
+};
+
+}  // namespace taktwerk::ecat
