@@ -74,6 +74,7 @@ public:
         if (config_.acyclic_per_cycle == 0)
             add("bus.acyclic_per_cycle", "bus", "with 0 acyclic datagrams no SDO and no recovery gets through in OP",
                 "choose 4 if in doubt");
+        check_ring();
         check_shift("bus", config_.sync0_shift);
         check_places(config_, errors_);
         for (const auto& slave : config_.slaves) check_slave(slave);
@@ -86,6 +87,16 @@ private:
         errors_.push_back({std::move(code), std::move(subject), std::move(what), std::move(remedy)});
     }
     static std::string subject_of(const SlaveConfig& slave) { return fmt::format("slave '{}'", slave.name); }
+
+    void check_ring() {
+        if (!config_.ring) return;
+        const auto& other = config_.ring->interface2;
+        if (config_.interface.empty() != other.empty())
+            add("bus.ring", "bus", "one interface of the ring is simulated and the other is not",
+                "write `simulated` for both, or two network interfaces");
+        else if (!other.empty() && other == config_.interface)
+            add("bus.ring", "bus", fmt::format("both ends of the ring are {}", other), "a ring needs two network interfaces");
+    }
 
     void check_shift(const std::string& subject, Duration shift) {
         if (shift < Duration{} || shift >= config_.cycle)

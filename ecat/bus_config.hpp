@@ -81,8 +81,21 @@ struct StateTimeouts {
 /// What to do about a slave on the cable that the configuration does not name.
 enum class ExtraSlaves : std::uint8_t { refuse, ignore };
 
+/// What becomes of slaves with clocks that a broken ring cuts off from the reference clock.
+enum class BehindBreak : std::uint8_t {
+    hand_time_on,  ///< the master hands the reference's time on to them, and they run on
+    ramp_down,     ///< they count as unsynchronised: their axes stop
+};
+
+/// A second interface behind the last slave: no single cable takes a slave away.
+struct RingConfig {
+    std::string interface2;  ///< NIC; empty: simulated, as the first one is
+    BehindBreak behind_break = BehindBreak::hand_time_on;
+};
+
 struct BusConfig {
     std::string interface;  ///< NIC; empty: simulated
+    std::optional<RingConfig> ring;
     Duration cycle = std::chrono::milliseconds{1};
     Duration sync0_shift{};           ///< default shift; 0 = half a cycle
     std::vector<SlaveConfig> slaves;  ///< in any order
@@ -93,6 +106,10 @@ struct BusConfig {
     bool lock_required = true;            ///< OP only with the cycle locked to the reference clock; false: no real time, no alarm either
     std::uint8_t acyclic_per_cycle = 4;   ///< datagrams per cycle for SDO, recovery, diagnosis
 };
+
+/// How long the first copy of a frame that is back waits for the other one of a ring: well below what lies between the sending of a cycle and
+/// its answers being fetched.
+[[nodiscard]] inline Duration ring_patience(const BusConfig& config) noexcept { return config.cycle / 4; }
 
 /// How often the process data of a slave is exchanged: the bus cycle times the divisor of its sync unit.
 [[nodiscard]] inline Duration exchange_period(const BusConfig& config, const SlaveConfig& slave) noexcept {

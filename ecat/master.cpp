@@ -282,6 +282,11 @@ std::string furthest_clock(const Bus& bus) {
     return fmt::format("most of all {} from {}, the reference", furthest->subject, bus.slaves[*bus.reference]->subject);
 }
 
+std::string ring_text(const Bus& bus) {
+    const RingState ring = bus.link.ring.load();
+    return ring.broken() ? break_text(bus, ring) : "it is closed again";
+}
+
 std::string with_outcome(std::string text, const std::string& outcome) { return outcome.empty() ? text : text + "; " + outcome; }
 
 }  // namespace
@@ -302,6 +307,7 @@ std::string Master::detail(const AlarmFact& fact) const {
                                              outcome(*impl_->bus, nullptr))
                               : std::string{};
         case BusAlarm::dc_out_of_sync: return furthest_clock(*impl_->bus);
+        case BusAlarm::ring_broken: return ring_text(*impl_->bus);
         default: break;
     }
     if (fact.source != AlarmSource::slave || fact.index >= slaves.size()) return {};

@@ -7,6 +7,7 @@
 #include "ecat/bringup/al_control.hpp"
 #include "ecat/bringup/clocks.hpp"
 #include "ecat/bringup/recovery.hpp"
+#include "ecat/bringup/ring_line.hpp"
 #include "ecat/bringup/scan.hpp"
 #include "ecat/bringup/slave_setup.hpp"
 #include "ecat/dc/sync0_budget.hpp"
@@ -113,6 +114,7 @@ Script<Result<void>> climb(Bus& bus) {
     if (!plan) co_return plan.error();
     bus.plan = std::move(*plan);
     done = co_await setup_clocks(bus);
+    co_await make_ring(bus);
     if (!done) co_return done;
     done = co_await for_each_slave(bus, &program_process_data);
     if (!done) co_return done;

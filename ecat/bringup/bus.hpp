@@ -76,6 +76,7 @@ struct Bus {
     std::vector<std::unique_ptr<BusSlave>> slaves;  ///< configuration order
     std::vector<FoundSlave> found;                  ///< all on the cable, by position; also those that nobody configured
     Topology topology;                              ///< of `found`
+    std::optional<RingEnd> ring_end;                ///< of a ring; known from the scan on
     ProcessDataPlan plan;
     std::optional<std::size_t> reference;  ///< the slave whose clock is the bus' clock
     std::optional<std::int64_t> dc_phase;  ///< system time of a cycle start, modulo the cycle; fixed at the first SYNC0

@@ -1,6 +1,9 @@
 #include "ecat/bringup/hand_over.hpp"
 
 #include <algorithm>
+#include <optional>
+
+#include "ecat/dc/sync0_budget.hpp"
 
 namespace taktwerk::ecat {
 
@@ -18,7 +21,7 @@ std::vector<FaultSlave> fault_slaves(const Bus& bus) {
         const Duration watchdog = sm_watchdog(bus.config, *slave->config) - bus.config.cycle;  // a frame had just come when the gap began
         const auto cycles = static_cast<std::uint32_t>(std::max<std::int64_t>(2, watchdog / bus.config.cycle));
         slaves.push_back({slave->index, FaultSlave::none, slave->config->on_loss, bus.reference == slave->index,
-                          exchanged_alone(bus, slave->index), cycles, watchdog});
+                          slave->config->dc && slave->dc, slave->found.position, exchanged_alone(bus, slave->index), cycles, watchdog});
     }
     const auto position = [&](const FaultSlave& s) { return std::size_t{bus.slaves[s.index]->found.position}; };
     std::sort(slaves.begin(), slaves.end(), [&](const FaultSlave& a, const FaultSlave& b) { return position(a) < position(b); });
@@ -35,6 +38,25 @@ std::vector<FaultSlave> fault_slaves(const Bus& bus) {
     return slaves;
 }
 
+/// By position. A slave without a clock stands as far behind the one before it as that one's neighbour with a clock says, or where it is.
+std::vector<std::int64_t> delays_by_position(const Bus& bus) {
+    std::vector<std::optional<std::int64_t>> known(bus.found.size());
+    for (const auto& slave : bus.slaves)
+        if (slave->dc && slave->found.position < known.size()) known[slave->found.position] = slave->dc_delay;
+    std::vector<std::int64_t> delays(known.size(), 0);
+    std::size_t before = 0;
+    for (std::size_t p = 0; p < known.size(); ++p) {
+        if (!known[p]) continue;
+        for (std::size_t between = before + 1; known[before] && between < p; ++between)
+            delays[between] = *known[before] + (*known[p] - *known[before]) * static_cast<std::int64_t>(between - before) /
+                                                   static_cast<std::int64_t>(p - before);
+        delays[p] = *known[p];
+        before = p;
+    }
+    for (std::size_t p = before + 1; p < delays.size(); ++p) delays[p] = delays[p - 1] + usual_hop.count();
+    return delays;
+}
+
 }  // namespace
 
 std::unique_ptr<CyclePlan> cycle_plan(const Bus& bus) {
@@ -45,7 +67,11 @@ std::unique_ptr<CyclePlan> cycle_plan(const Bus& bus) {
     auto plan =
         std::make_unique<CyclePlan>(bus.plan, std::move(slaves), FaultFinder{fault_slaves(bus), on_cable, bus.config.lost_frames_limit});
     plan->state_wkc = on_cable;
-    if (bus.reference) plan->reference = bus.slaves[*bus.reference]->found.station;
+    if (bus.reference) {
+        plan->reference = bus.slaves[*bus.reference]->found.station;
+        plan->reference_position = bus.slaves[*bus.reference]->found.position;
+    }
+    if (bus.config.ring) plan->ring_delays = delays_by_position(bus);
     return plan;
 }
 

@@ -15,12 +15,36 @@ Script<void> read_ports(Bus& bus, std::uint16_t position, std::optional<std::uin
     if (reply.ok()) dl_status = reply.u16();
 }
 
+Result<Topology> topology_now(const Bus& bus, const std::vector<std::uint16_t>& dl_status) {
+    if (!bus.config.ring) return build_topology(dl_status);
+    return build_ring_topology(dl_status, reached_from_first(bus.link.ring.load(), dl_status.size()));
+}
+
 }  // namespace
+
+std::size_t reached_from_first(const RingState& ring, std::size_t slaves) noexcept {
+    switch (ring.shape) {
+        case RingShape::open: return ring.before_break;
+        case RingShape::first_silent: return 0;
+        default: return slaves;
+    }
+}
 
 std::vector<std::optional<std::size_t>> places_now(const Topology& known, const Topology& now) {
     std::vector<std::optional<std::size_t>> places(known.slaves.size());
     if (known.slaves.empty() || now.slaves.empty()) return places;
-    places[0] = 0;
+    // Of a broken ring the slaves behind the break are found from its other end.
+    if (now.behind_break < now.slaves.size()) places[0] = 0;
+    if (known.ring_end && now.ring_end) {
+        std::optional<std::size_t> was = known.ring_end->slave, is = now.ring_end->slave;
+        while (was && is && !places[*was]) {
+            places[*was] = *is;
+            const bool same_way =
+                known.slaves[*was].parent && now.slaves[*is].parent && known.slaves[*was].parent_port == now.slaves[*is].parent_port;
+            was = same_way ? known.slaves[*was].parent : std::nullopt;
+            is = same_way ? now.slaves[*is].parent : std::nullopt;
+        }
+    }
     for (std::size_t position = 0; position < known.slaves.size(); ++position) {  // parents come before their children
         if (!places[position]) continue;
         const SlavePlace& before = known.slaves[position];
@@ -47,7 +71,7 @@ Script<void> take_census(Bus& bus) {
         if (!answer) co_return;  // somebody left meanwhile
         dl_status.push_back(*answer);
     }
-    const Result<Topology> now = build_topology(dl_status);
+    const Result<Topology> now = topology_now(bus, dl_status);
     if (!now) co_return;
     const auto places = places_now(bus.topology, *now);
     for (auto& slave : bus.slaves) {
@@ -63,6 +87,37 @@ std::string sender_text(const CycleLink& link) {
     std::string text = "its network address is ";
     for (int shift = 40; shift >= 0; shift -= 8) text += fmt::format("{:02x}{}", (source >> shift) & 0xFFu, shift > 0 ? ":" : "");
     return text + " (the slaves set 02h in its first byte)";
+}
+
+namespace {
+
+std::string subject_at(const Bus& bus, std::size_t position) {
+    for (const auto& slave : bus.slaves)
+        if (slave->found.position == position) return slave->subject;
+    return fmt::format("slave {}", position);
+}
+
+}  // namespace
+
+std::string break_text(const Bus& bus, const RingState& ring) {
+    const auto& places = bus.topology.slaves;
+    if (places.empty()) return {};
+    const std::size_t all = places.size();
+    if (ring.shape == RingShape::first_silent)
+        return fmt::format("between the first interface and {} port {}", subject_at(bus, 0), places[0].entry_port);
+    if (ring.shape == RingShape::second_silent) {
+        const RingEnd end = bus.topology.ring_end.value_or(RingEnd{all - 1, 1});
+        return fmt::format("between {} port {} and the second interface", subject_at(bus, end.slave), end.port);
+    }
+    const std::size_t answering = std::size_t{ring.before_break} + ring.behind_break;
+    const std::size_t behind = all - std::min<std::size_t>(ring.behind_break, all);  // counted from the far end: somebody may be missing
+    if (ring.before_break == 0 || behind >= all) return {};
+    if (answering < all)
+        return fmt::format("between {} and {}: who stands between them does not answer", subject_at(bus, ring.before_break - 1u),
+                           subject_at(bus, behind));
+    const SlavePlace& place = places[behind];
+    return fmt::format("between {} port {} and {} port {}", place.parent ? subject_at(bus, *place.parent) : subject_at(bus, behind - 1),
+                       place.parent_port, subject_at(bus, behind), place.entry_port);
 }
 
 std::string connection_text(const Bus& bus, const BusSlave& slave) {

@@ -16,12 +16,18 @@ namespace taktwerk::ecat {
 /// Slaves behind ports that `known` does not use are nobody's. Pure.
 [[nodiscard]] std::vector<std::optional<std::size_t>> places_now(const Topology& known, const Topology& now);
 
+/// How many of the slaves that answer the first interface reaches: all of them as long as the ring is closed.
+[[nodiscard]] std::size_t reached_from_first(const RingState& ring, std::size_t slaves) noexcept;
+
 /// Counts the slaves, reads their ports and sets BusSlave::position_now. When the bus changes meanwhile, or no frame comes back,
 /// nobody has a place, and bus.census_wanted stays set.
 [[nodiscard]] Script<void> take_census(Bus& bus);
 
 /// Who the other master is: "its network address is 02:11:22:33:44:55 (...)".
 [[nodiscard]] std::string sender_text(const CycleLink& link);
+
+/// Where a ring is broken, by both ends: "between slave 3 'y' (sv33-e) port 1 and slave 4 'z' (sv33-e) port 0".
+[[nodiscard]] std::string break_text(const Bus& bus, const RingState& ring);
 
 /// The cable that leads to a slave: "between slave 3 'y' (sv33-e) port 1 and slave 4 'z' (sv33-e)".
 [[nodiscard]] std::string connection_text(const Bus& bus, const BusSlave& slave);

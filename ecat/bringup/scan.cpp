@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "ecat/bringup/presence.hpp"
+#include "ecat/bringup/ring_line.hpp"
 #include "ecat/bringup/sii_reader.hpp"
 #include "ecat/topology/topology.hpp"
 #include "ecat/wire/sii.hpp"
@@ -204,6 +205,8 @@ Script<Result<void>> scan(Bus& bus) {
     bus.progress = "counting slaves";
     const Result<std::uint16_t> count = co_await reset_all(bus);
     if (!count) co_return count.error();
+    const Result<void> line = co_await make_line(bus, *count);
+    if (!line) co_return line;
     bus.progress = fmt::format("reading the EEPROM of {} slaves", *count);
     bus.found.assign(*count, {});
     const bool wants_id =

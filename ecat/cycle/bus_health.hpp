@@ -5,6 +5,7 @@
 
 #include "core/time.hpp"
 #include "ecat/dc/cycle_servo.hpp"
+#include "ecat/ring/ring_state.hpp"
 #include "ecat/wire/al_status.hpp"
 
 namespace taktwerk::ecat {
@@ -39,6 +40,7 @@ struct BusStatistics {
     /// least of all slaves, in the last cycle and since OP. Below 0: too late. 0 while no slave runs SYNC0.
     std::int64_t sync0_margin_ns = 0, sync0_margin_least_ns = 0;
     DcLock dc_lock = DcLock::none;  ///< of the master's cycle to the reference clock
+    RingState ring;                 ///< of the two interfaces; RingShape::none where there is one
     std::uint64_t dc_rejected = 0;  ///< reference times that were missing or implausible
 };
 

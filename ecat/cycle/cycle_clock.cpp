@@ -14,7 +14,7 @@ constexpr std::int64_t phase_smoothing = 16;
 /// as it was sent (the reference has lost its station address: the others wrote, the working counter is as ever) is told from
 /// one with the reference's time in it. A slave that takes it all the same sees it in one frame only, and too far off to learn
 /// from it; a real clock moves by a fraction of a tick then.
-constexpr std::int64_t mark_ns = 10'000;
+constexpr std::int64_t mark_ns = CycleClock::mark.count();
 
 /// `value` in -period/2 .. period/2.
 std::int64_t centred(std::int64_t value, std::int64_t period) noexcept {

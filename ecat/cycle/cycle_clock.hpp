@@ -24,6 +24,8 @@ namespace taktwerk::ecat {
 
 class CycleClock {
 public:
+    /// What a FRMW carries towards the reference is its time as the master knows it, less this (cycle_clock.cpp says why).
+    static constexpr Duration mark = std::chrono::microseconds{10};
     explicit CycleClock(Duration cycle) noexcept : cycle_(cycle), servo_(cycle) {}
 
     /// Once a cycle, by send(): the phase of sending, then the correction of the next period.

@@ -12,6 +12,7 @@
 #include "ecat/alarms.hpp"
 #include "ecat/dc/cycle_servo.hpp"
 #include "ecat/layout/process_data_plan.hpp"
+#include "ecat/ring/ring_state.hpp"
 
 namespace taktwerk::ecat {
 
@@ -48,6 +49,24 @@ private:
     std::atomic<std::uint64_t> bits_{0};
 };
 
+/// The ring as it was seen last. One word, so that shape and numbers are of one frame.
+class SeenRing {
+public:
+    void store(const RingState& ring) noexcept {
+        word_.store(
+            static_cast<std::uint64_t>(ring.shape) | std::uint64_t{ring.before_break} << 16 | std::uint64_t{ring.behind_break} << 32,
+            std::memory_order_relaxed);
+    }
+    /// Without the count of openings.
+    [[nodiscard]] RingState load() const noexcept {
+        const std::uint64_t word = word_.load(std::memory_order_relaxed);
+        return {static_cast<RingShape>(word & 0xFF), static_cast<std::uint16_t>(word >> 16), static_cast<std::uint16_t>(word >> 32), 0};
+    }
+
+private:
+    std::atomic<std::uint64_t> word_{0};
+};
+
 /// Numbers between the cycle and the scripts.
 struct CycleLink {
     // Written by the cycle.
@@ -72,6 +91,7 @@ struct CycleLink {
     std::atomic<std::int64_t> stall_ended_ns{0};     ///< and when it sent again; 0: it never was
     std::atomic<std::uint32_t> gap_cycles{0};        ///< so many cycles in a row were not answered when two or more last were
     std::atomic<std::int64_t> gap_ended_ns{0};       ///< and when the last of them was missed; 0: never
+    SeenRing ring;
     // Written by the scripts.
     std::atomic<bool> supervise{false};             ///< slaves are in SAFEOP or above: wrong working counters count
     std::atomic<std::int64_t> dc_difference_ns{0};  ///< worst 092Ch

@@ -32,6 +32,8 @@ struct CyclePlan {
     ProcessDataPlan plan;
     std::vector<CycleSlave> slaves;          ///< as in the configuration
     std::optional<std::uint16_t> reference;  ///< station of the reference clock
+    std::vector<std::int64_t> ring_delays;   ///< of a ring: ns from the reference clock, by position, guessed where a slave has no clock
+    std::uint16_t reference_position = 0;    ///< meaningful with `reference`
     std::uint16_t state_wkc = 0;             ///< slaves that answer to a broadcast when all is well
 
     /// Where a datagram is under way.

@@ -17,6 +17,8 @@ constexpr std::uint32_t reference_times_limit = 50;
 /// So many cycles the watch has to name who is missing before each slave speaks for itself.
 constexpr std::uint32_t naming_cycles = 200;
 constexpr std::uint32_t attempts_limit = 3;
+/// A frame that got lost on one side of a ring is no break.
+constexpr std::uint32_t broken_cycles = 2;
 constexpr std::size_t facts_of_bus = 16, facts_of_slave = 6;  ///< room for more than can hold at once
 
 /// AL status codes by which a slave says that frames or SYNC0 and frames did not come as they should (ETG.1000.6 table 11).
@@ -67,11 +69,31 @@ std::span<const AlarmFact> FaultFinder::facts_before_op(BusPhase phase) noexcept
 void FaultFinder::look(const BusCondition& bus) noexcept {
     facts_.clear();
     look_at_slaves(bus);
+    look_at_ring(bus);
     for (std::size_t s = 0; s < order_.size(); ++s) raise_emergency(s);
     const bool frames = std::none_of(facts_.begin(), facts_.end(), [](const AlarmFact& fact) {
         return fact.id == id(BusAlarm::link_down) || fact.id == id(BusAlarm::frames_lost);
     });
     if (frames && bus.out_of_lock) raise(BusAlarm::dc_not_locked, AlarmSource::bus, 0, static_cast<double>(bus.dc_phase_error_ns));
+}
+
+void FaultFinder::look_at_ring(const BusCondition& bus) noexcept {
+    if (!bus.ring.broken()) {
+        broken_for_ = 0;
+        return;
+    }
+    broken_for_ = std::min(broken_for_ + 1, broken_cycles);
+    if (broken_for_ < broken_cycles) return;
+    const auto& ring = bus.ring;
+    const bool first = ring.shape == RingShape::first_silent, second = ring.shape == RingShape::second_silent;
+    const std::uint16_t before = first ? std::uint16_t{0} : ring.before_break, behind = second ? std::uint16_t{0} : ring.behind_break;
+    raise(BusAlarm::ring_broken, AlarmSource::bus, 0, before, behind);
+    const auto reference = std::find_if(slaves_.begin(), slaves_.end(), [](const FaultSlave& slave) { return slave.reference; });
+    if (!bus.ramp_down || reference == slaves_.end()) return;
+    const bool at_home = reference->position < before;
+    for (const auto& slave : slaves_)
+        if (slave.synchronised && (slave.position < before) != at_home)
+            raise(BusAlarm::cut_off_from_reference, AlarmSource::slave, slave.index);
 }
 
 void FaultFinder::raise_emergency(std::size_t index) noexcept {

@@ -14,6 +14,9 @@
 // In this order suspicion falls: on this computer, on another master, on the cable, and only then on the slave. The broadcast says at
 // once that somebody left OP and whether an error is why; who it was and the code of the error the watch reads some milliseconds later.
 //
+// Two interfaces are a ring: a break takes nobody away, is named by its two ends, and is said when a second frame has seen it. Where the
+// clocks behind it count as unsynchronised each slave that runs SYNC0 there has a condition that stops its axes.
+//
 // Slaves whose loss stops only their own axes (LossPolicy::stop_own_axes) have conditions of their own with another reaction.
 
 #include <array>
@@ -28,6 +31,7 @@
 #include "ecat/bus_config.hpp"
 #include "ecat/cycle/bus_phase.hpp"
 #include "ecat/cycle/cycle_link.hpp"
+#include "ecat/ring/ring_state.hpp"
 #include "ecat/wire/al_status.hpp"
 
 namespace taktwerk::ecat {
@@ -61,6 +65,8 @@ struct BusCondition {
     std::uint16_t states = 0;    ///< OR of the AL states of all slaves, with the error bit; 0: not all of them answered
     bool out_of_lock = false;    ///< some slave runs SYNC0, and the cycle is not locked to the reference clock
     std::int64_t dc_phase_error_ns = 0;
+    RingState ring{};
+    bool ramp_down = false;  ///< slaves that a broken ring cuts off from the reference count as unsynchronised
 };
 
 /// A slave as it was configured and found. In the order of positions, so that parents come before their children.
@@ -70,6 +76,8 @@ struct FaultSlave {
     std::size_t parent = none;  ///< in this order: the next configured slave towards the master
     LossPolicy on_loss = LossPolicy::stop_machine;
     bool reference = false;             ///< its clock is the bus' clock
+    bool synchronised = false;          ///< it runs SYNC0
+    std::uint16_t position = 0;         ///< on the cable
     bool alone = true;                  ///< no other slave's process data is valid or not together with its own
     std::uint32_t watchdog_cycles = 2;  ///< without a frame until its watchdog of process data trips
     Duration watchdog{};                ///< the same as a time
@@ -118,6 +126,7 @@ private:
     /// Frames, cables, slaves and the reference clock.
     void look_at_slaves(const BusCondition& bus) noexcept;
     void raise_emergency(std::size_t index) noexcept;
+    void look_at_ring(const BusCondition& bus) noexcept;
     /// Returns how many slaves are missing that cannot be named yet. As long as there are some nobody new is named: whoever of them is found
     /// first is seldom the one that took the others along.
     std::size_t find_lost(std::uint16_t answering) noexcept;
@@ -151,6 +160,7 @@ private:
     BusAlarm silence_;  ///< link_down or frames_lost, which was last
     std::uint32_t silence_cycles_ = 0, linked_cycles_ = 0;
     bool was_silent_ = false;
+    std::uint32_t broken_for_ = 0;  ///< cycles in which the ring was seen broken, in a row
     std::size_t missing_ = 0;       ///< at the last look
     std::uint32_t naming_for_ = 0;  ///< cycles since that number changed
     bool naming_ = false;           ///< somebody is missing, and not all who are are known

@@ -4,6 +4,7 @@
 
 #include "core/bytes.hpp"
 #include "ecat/dc/sync0_budget.hpp"
+#include "ecat/ring/ring_transport.hpp"
 
 namespace taktwerk::ecat {
 
@@ -19,7 +20,7 @@ constexpr Duration foreign_remembered = std::chrono::seconds{1};
 }  // namespace
 
 ProcessDataCycle::ProcessDataCycle(Transport& transport, const BusConfig& config)
-    : transport_(transport), config_(config), exchange_(transport), channel_(exchange_), clock_(config.cycle) {}
+    : transport_(transport), ring_(transport.ring()), config_(config), exchange_(transport), channel_(exchange_), clock_(config.cycle) {}
 
 void ProcessDataCycle::adopt(std::unique_ptr<CyclePlan> plan) {
     plans_.push_back(std::move(plan));
@@ -42,7 +43,9 @@ void ProcessDataCycle::copy_statistics() noexcept {
     statistics_.dc_lock = clock_.lock();
     statistics_.dc_phase_error_ns = clock_.phase_error();
     statistics_.dc_correction = clock_.correction();
+    if (ring_ != nullptr) statistics_.ring = ring_->state();
     if (auto* link = link_.load(std::memory_order_acquire)) {
+        if (ring_ != nullptr) link->ring.store(statistics_.ring);
         std::uint64_t source = 0;
         for (const std::uint8_t byte : s.foreign_source) source = source << 8 | byte;
         link->foreign_source.store(source, std::memory_order_relaxed);
@@ -119,6 +122,8 @@ void ProcessDataCycle::find_faults(CyclePlan& cycle, Instant now) noexcept {
         .dc_difference_ns = statistics_.dc_difference_ns,
         .foreign_heard = foreign_at_ && now - *foreign_at_ <= foreign_remembered,
         .dc_phase_error_ns = statistics_.dc_phase_error_ns,
+        .ring = statistics_.ring,
+        .ramp_down = config_.ring && config_.ring->behind_break == BehindBreak::ramp_down,
     };
     if (const auto* link = link_.load(std::memory_order_acquire)) {
         bus.seen = link->seen.load();
@@ -275,6 +280,7 @@ void ProcessDataCycle::send(Instant now) noexcept {
     clock_.steer(now, link);
     auto* cycle = running_.load(std::memory_order_acquire);
     if (cycle != nullptr) {
+        if (ring_ != nullptr) steer_ring(*cycle);
         send_frames(*cycle, now);
         // The cycle may be due in time and still come to its send() late: what counts is when the frames left.
         const Instant left = std::max(now, exchange_.departed_at(cycle->frames[0]));
@@ -290,6 +296,21 @@ void ProcessDataCycle::send(Instant now) noexcept {
     }
     if (operational_.load(std::memory_order_relaxed)) channel_.pack(now, config_.acyclic_per_cycle);
     else pack_bring_up(now);
+}
+
+/// What the half without the reference shall take for its time. The second interface's frame passes the slaves behind the break on its way
+/// back, first the one next to it: at D(last) - D(that one) after the last slave, where D counts from the reference. As long as both of the
+/// master's own cables are as long, every slave j there sees the reference's time less D(j), which it adds itself.
+void ProcessDataCycle::steer_ring(const CyclePlan& cycle) noexcept {
+    const RingState& ring = statistics_.ring;
+    const auto& delays = cycle.ring_delays;
+    RingClocks clocks;
+    const bool cut_off = ring.shape == RingShape::open && cycle.reference_position < ring.before_break && ring.before_break < delays.size();
+    if (cut_off && config_.ring && config_.ring->behind_break == BehindBreak::hand_time_on) {
+        clocks.hand_on = true;
+        clocks.ahead = CycleClock::mark.count() + delays.back() - 2 * delays[ring.before_break];
+    }
+    ring_->set_clocks(clocks);
 }
 
 void ProcessDataCycle::pack_bring_up(Instant now) noexcept {

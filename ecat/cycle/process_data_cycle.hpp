@@ -63,11 +63,13 @@ private:
     void find_faults(CyclePlan& cycle, Instant now) noexcept;
     void note_stall(Instant now) noexcept;
     void note_gap(Instant now) noexcept;
+    void steer_ring(const CyclePlan& cycle) noexcept;
     /// SYNC0 of the slave, as machine time follows from it; 0: does not run, or the reference is not known yet.
     [[nodiscard]] std::int64_t sync0_of(const CyclePlan& cycle, std::size_t slave) const noexcept;
     void copy_statistics() noexcept;
 
     Transport& transport_;
+    RingTransport* ring_;  ///< nullptr: one interface
     const BusConfig& config_;
     Exchange exchange_;
     AcyclicChannel channel_;

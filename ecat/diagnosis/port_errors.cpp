@@ -26,6 +26,7 @@ std::string neighbour(const Survey& survey, std::size_t position, unsigned port)
     if (!survey.topology || position >= survey.topology->slaves.size()) return {};
     const auto& place = survey.topology->slaves[position];
     if (port == place.entry_port) return place.parent ? survey.subject(*place.parent) : std::string{"the master"};
+    if (survey.topology->ring_end == RingEnd{position, port}) return "the second interface";
     return place.child[port] ? survey.subject(*place.child[port]) : std::string{};
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "ecat/bringup/presence.hpp"
 #include "ecat/bringup/scan.hpp"
 #include "ecat/bringup/sii_reader.hpp"
 #include "ecat/wire/registers.hpp"
@@ -120,6 +121,19 @@ std::string Survey::subject(std::size_t position) const {
     return name.empty() ? fmt::format("slave {}", position) : fmt::format("slave {} '{}'", position, name);
 }
 
+std::optional<Error> ring_remark(const Survey& survey) {
+    const RingState& ring = survey.ring;
+    if (!ring.broken() || survey.slaves.empty()) return std::nullopt;
+    const std::size_t last = survey.slaves.size() - 1;
+    const std::size_t behind = std::min<std::size_t>(ring.before_break, last);
+    const std::string where = ring.shape == RingShape::first_silent    ? "between the first interface and " + survey.subject(0)
+                              : ring.shape == RingShape::second_silent ? "between " + survey.subject(last) + " and the second interface"
+                              : behind == 0                            ? "in front of " + survey.subject(0)
+                                            : fmt::format("between {} and {}", survey.subject(behind - 1), survey.subject(behind));
+    return Error{"bus.ring_broken", "bus", "the ring is broken " + where,
+                 "mend the cable there: a second break would take slaves away, and the machine does not start with a broken ring"};
+}
+
 Script<bool> read_counters(DatagramPort& port, SurveyedSlave& slave) {
     const Reply reply = co_await port.fprd(slave.found.station, reg::rx_errors, counter_bytes);
     const Reply watchdog = co_await port.fprd(slave.found.station, reg::sm_watchdog_count, 1);
@@ -137,7 +151,7 @@ Script<bool> read_counters(DatagramPort& port, SurveyedSlave& slave) {
     co_return true;
 }
 
-Script<Result<Survey>> survey(DatagramPort& port, SurveyMay may) {
+Script<Result<Survey>> survey(DatagramPort& port, SurveyMay may, const SeenRing* ring) {
     Survey result;
     const Reply count = co_await port.brd(reg::type, 1);
     if (count.lost) co_return unanswered("bus", "the count of slaves", count);
@@ -165,12 +179,14 @@ Script<Result<Survey>> survey(DatagramPort& port, SurveyMay may) {
     for (auto& slave : result.slaves) questions.push_back(question(port, slave));
     co_await all(std::move(questions), DatagramPort::slaves_at_once);
 
+    if (ring != nullptr) result.ring = ring->load();
     std::vector<std::uint16_t> links;
     for (const auto& slave : result.slaves) links.push_back(slave.found.dl_status);
     const bool all_read =
         std::none_of(result.slaves.begin(), result.slaves.end(), [](const SurveyedSlave& s) { return s.found.error.has_value(); });
     if (all_read) {
-        Result<Topology> tree = build_topology(links);
+        Result<Topology> tree =
+            ring != nullptr ? build_ring_topology(links, reached_from_first(result.ring, links.size())) : build_topology(links);
         if (tree) result.topology = std::move(*tree);
         else result.remarks.push_back(tree.error());
     }

@@ -65,6 +65,7 @@ struct SurveyedSlave {
 struct Survey {
     std::vector<SurveyedSlave> slaves;  ///< by position
     std::optional<Topology> topology;
+    RingState ring;                         ///< of two interfaces
     std::vector<Error> remarks;             ///< what is wrong with the bus as a whole: cables, a foreign master, configured slaves missing
     AlState highest_state = AlState::init;  ///< over all slaves
 
@@ -76,13 +77,17 @@ struct Survey {
 enum class SurveyMay : std::uint8_t { give_addresses, only_look };
 
 /// Errors: bus.no_frame, bus.empty. What is wrong with single slaves stands in their FoundSlave::error.
-[[nodiscard]] Script<Result<Survey>> survey(DatagramPort& port, SurveyMay may = SurveyMay::give_addresses);
+/// `ring`: of a bus with two interfaces, as the frames of the survey themselves show it.
+[[nodiscard]] Script<Result<Survey>> survey(DatagramPort& port, SurveyMay may = SurveyMay::give_addresses, const SeenRing* ring = nullptr);
 
 /// The explicit device ids, for configurations that address by them. Asks through AL control, which slaves take in any state.
 [[nodiscard]] Script<Result<void>> read_device_ids(DatagramPort& port, Survey& survey);
 
 /// Gives the slaves their configured names and notes who is missing, not expected, or another device. Pure.
 void compare_with(const BusConfig& config, Survey& survey);
+
+/// Of a bus with two interfaces: nothing while the ring is closed, else where it is broken, by both ends. Pure.
+[[nodiscard]] std::optional<Error> ring_remark(const Survey& survey);
 
 /// Error counters and links of one slave; false: it did not answer.
 [[nodiscard]] Script<bool> read_counters(DatagramPort& port, SurveyedSlave& slave);

@@ -2,6 +2,7 @@
 // What the master knows of its ring: plain numbers.
 
 #include <cstdint>
+#include <string_view>
 
 namespace taktwerk::ecat {
 
@@ -13,6 +14,18 @@ enum class RingShape : std::uint8_t {
     first_silent,   ///< nothing comes back of what the first interface sends
     second_silent,  ///< nothing comes back of what the second interface sends, and the first gets its own
 };
+
+[[nodiscard]] constexpr std::string_view name(RingShape shape) noexcept {
+    switch (shape) {
+        case RingShape::none: return "none";
+        case RingShape::unknown: return "unknown";
+        case RingShape::closed: return "closed";
+        case RingShape::open: return "open";
+        case RingShape::first_silent: return "first_silent";
+        case RingShape::second_silent: return "second_silent";
+    }
+    return "?";
+}
 
 struct RingState {
     RingShape shape = RingShape::none;

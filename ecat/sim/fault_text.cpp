@@ -24,7 +24,8 @@ using K = FaultKind;
 constexpr std::uint32_t largest_bit = max_frame_size * 8 - 1;
 
 constexpr std::array commands{
-    FaultCommand{K::unplug, "unplug", "SLAVE", "pulls the cable that leads to SLAVE; `unplug master`: the one at the master"},
+    FaultCommand{K::unplug, "unplug", "SLAVE",
+                 "pulls the cable that leads to SLAVE; `unplug master`: the one at the master, `unplug ring`: at its second interface"},
     FaultCommand{K::plug, "plug", "SLAVE", "plugs it in again"},
     FaultCommand{K::power_off, "power-off", "SLAVE", "no power: silent, and what is behind it is gone"},
     FaultCommand{K::power_on, "power-on", "SLAVE", "power again: everything at its reset values"},

@@ -10,6 +10,7 @@ namespace taktwerk::ecat::sim {
 
 namespace {
 constexpr std::string_view master_end = "master";  // where a slave's name stands: the cable at the master's own port
+constexpr std::string_view ring_end = "ring";      // that at its second one
 }  // namespace
 
 Result<SimSlave*> FaultInjector::find(const std::string& name) {
@@ -28,7 +29,7 @@ Result<SimSlave*> FaultInjector::find(const std::string& name) {
 Result<void> FaultInjector::apply(const Fault& fault, Instant now) {
     if (fault.after <= Duration::zero()) return happen(fault, now);
     // A name that does not exist is told at once, not in an hour.
-    if (!fault.slave.empty() && fault.slave != master_end)
+    if (!fault.slave.empty() && fault.slave != master_end && fault.slave != ring_end)
         if (const auto slave = find(fault.slave); !slave) return slave.error();
     waiting_.push_back({fault, now + fault.after});
     waiting_.back().fault.after = Duration::zero();
@@ -54,6 +55,10 @@ Result<void> FaultInjector::happen(const Fault& fault, Instant now) {
             if (fault.slave == master_end) {
                 cable_.link_down = fault.kind == FaultKind::unplug;
                 if (network_.size() > 0) network_.set_cable(0, !cable_.link_down);
+                return {};
+            }
+            if (fault.slave == ring_end) {
+                network_.set_ring_cable(fault.kind == FaultKind::plug);
                 return {};
             }
             break;

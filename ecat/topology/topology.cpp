@@ -35,35 +35,89 @@ std::vector<std::size_t> Topology::behind(std::size_t position) const {
     return result;
 }
 
-Result<Topology> build_topology(std::span<const std::uint16_t> dl_status) {
-    Topology topology;
-    struct Branch {
-        std::size_t slave;
-        unsigned port;
-    };
-    std::vector<Branch> waiting;  // exits that still need a slave; the next to be taken is last
-    for (std::size_t position = 0; position < dl_status.size(); ++position) {
+namespace {
+
+/// Lays slaves out in the order in which they process a frame.
+class TreeBuilder {
+public:
+    /// `root`: nothing stands between it and an interface.
+    std::optional<Error> add(std::uint16_t dl_status, bool root) {
+        const std::size_t position = topology_.slaves.size();
         SlavePlace place;
-        for (unsigned port = 0; port < ports_per_slave; ++port) place.open[port] = dl_port_open(dl_status[position], port);
+        for (unsigned port = 0; port < ports_per_slave; ++port) place.open[port] = dl_port_open(dl_status, port);
         const auto entry = std::find_if(port_order.begin(), port_order.end(), [&](unsigned port) { return place.open[port]; });
-        if (entry == port_order.end())
-            return broken(position, fmt::format("answers, but no port is open (DL status {:04X}h)", dl_status[position]));
+        if (entry == port_order.end()) return broken(position, fmt::format("answers, but no port is open (DL status {:04X}h)", dl_status));
         place.entry_port = *entry;
-        if (position > 0) {
-            if (waiting.empty()) return broken(position, "answers, but no open port of a slave before it leads to it");
-            const Branch branch = waiting.back();
-            waiting.pop_back();
+        if (!root) {
+            if (waiting_.empty()) return broken(position, "answers, but no open port of a slave before it leads to it");
+            const RingEnd branch = waiting_.back();
+            waiting_.pop_back();
             place.parent = branch.slave;
             place.parent_port = branch.port;
-            place.depth = topology.slaves[branch.slave].depth + 1;
-            topology.slaves[branch.slave].child[branch.port] = position;
+            place.depth = topology_.slaves[branch.slave].depth + 1;
+            topology_.slaves[branch.slave].child[branch.port] = position;
         }
         const std::vector<unsigned> exits = place.exits();
-        for (auto port = exits.rbegin(); port != exits.rend(); ++port) waiting.push_back({position, *port});
-        topology.slaves.push_back(place);
+        for (auto port = exits.rbegin(); port != exits.rend(); ++port) waiting_.push_back({position, *port});
+        topology_.slaves.push_back(place);
+        return std::nullopt;
     }
-    if (!waiting.empty())
-        return broken(waiting.back().slave, fmt::format("port {} is open, but no slave behind it answers", waiting.back().port));
+    /// The slave next to a break: what was its entry is closed, and all its open ports lead on.
+    std::optional<Error> add_behind_break(std::uint16_t dl_status) {
+        SlavePlace place;
+        for (unsigned port = 0; port < ports_per_slave; ++port) place.open[port] = dl_port_open(dl_status, port);
+        const std::vector<unsigned> exits = place.exits();
+        if (exits.empty())
+            return broken(topology_.slaves.size(), fmt::format("answers, but no port is open (DL status {:04X}h)", dl_status));
+        for (auto port = exits.rbegin(); port != exits.rend(); ++port) waiting_.push_back({topology_.slaves.size(), *port});
+        topology_.slaves.push_back(place);
+        return std::nullopt;
+    }
+    /// Every open port leads to a slave.
+    [[nodiscard]] std::optional<Error> complete() const {
+        if (waiting_.empty()) return std::nullopt;
+        return broken(waiting_.back().slave, fmt::format("port {} is open, but no slave behind it answers", waiting_.back().port));
+    }
+    /// All but one, which leads to the second interface.
+    [[nodiscard]] std::optional<Error> end_ring() {
+        if (waiting_.empty())
+            return broken(topology_.slaves.empty() ? 0 : topology_.slaves.size() - 1, "no open port leads to the second interface");
+        topology_.ring_end = waiting_.front();
+        waiting_.erase(waiting_.begin());
+        return complete();
+    }
+    Topology take() { return std::move(topology_); }
+
+private:
+    Topology topology_;
+    std::vector<RingEnd> waiting_;  // exits that still need a slave; the next to be taken is last
+};
+
+}  // namespace
+
+Result<Topology> build_topology(std::span<const std::uint16_t> dl_status) {
+    TreeBuilder tree;
+    for (std::size_t position = 0; position < dl_status.size(); ++position)
+        if (auto error = tree.add(dl_status[position], position == 0)) return *error;
+    if (auto error = tree.complete()) return *error;
+    return tree.take();
+}
+
+Result<Topology> build_ring_topology(std::span<const std::uint16_t> dl_status, std::size_t before_break) {
+    TreeBuilder tree;
+    const bool closed = before_break >= dl_status.size();
+    for (std::size_t position = 0; position < dl_status.size(); ++position) {
+        if (position == before_break && position > 0)
+            if (auto error = tree.complete()) return *error;
+        auto error = position == before_break ? tree.add_behind_break(dl_status[position]) : tree.add(dl_status[position], position == 0);
+        if (error) return *error;
+    }
+    // Without carrier on the cable of the second interface its port is closed, and the ring is a line.
+    const bool line = closed && !tree.complete();
+    if (line) return tree.take();
+    if (auto error = tree.end_ring()) return *error;
+    Topology topology = tree.take();
+    topology.behind_break = closed ? 0 : dl_status.size() - before_break;
     return topology;
 }
 

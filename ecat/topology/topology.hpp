@@ -45,8 +45,17 @@ struct SlavePlace {
     [[nodiscard]] std::vector<unsigned> exits() const;
 };
 
+/// The port that the second interface of a ring is plugged into.
+struct RingEnd {
+    std::size_t slave = 0;
+    unsigned port = 1;
+    friend bool operator==(const RingEnd&, const RingEnd&) = default;
+};
+
 struct Topology {
-    std::vector<SlavePlace> slaves;  ///< by position
+    std::vector<SlavePlace> slaves;   ///< by position
+    std::optional<RingEnd> ring_end;  ///< of a ring whose second cable is in
+    std::size_t behind_break = 0;     ///< the last so many are reached from the second interface only
     /// `position` and everything behind it: what is gone when its cable is pulled. Ascending.
     [[nodiscard]] std::vector<std::size_t> behind(std::size_t position) const;
 };
@@ -57,5 +66,10 @@ struct Topology {
 /// Errors: bus.topology (a slave has no open port, more slaves than open ports, or open ports without a slave behind them: the
 /// bus changed while it was read, or a cable is half plugged). Names the position.
 [[nodiscard]] Result<Topology> build_topology(std::span<const std::uint16_t> dl_status);
+
+/// Of a ring: one open port leads to the second interface. `before_break`: slaves that the first interface reaches; all of them while the
+/// ring is closed. Those behind a break are a tree of their own: the one next to the break has no parent.
+/// Errors as above; bus.topology as well when no port leads to the second interface while slaves are reached from there.
+[[nodiscard]] Result<Topology> build_ring_topology(std::span<const std::uint16_t> dl_status, std::size_t before_break);
 
 }  // namespace taktwerk::ecat

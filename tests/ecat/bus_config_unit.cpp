@@ -36,6 +36,20 @@ TEST(BusConfig, ASlowerSyncUnitGivesADriveTheCycleItNeeds) {
     EXPECT_THAT(check(config), IsEmpty());
 }
 
+TEST(BusConfig, ARingHasTwoInterfacesOfOneKind) {
+    auto config = good();
+    config.ring.emplace();
+    EXPECT_THAT(check(config), IsEmpty()) << "both simulated";
+    config.interface = "eth1";
+    EXPECT_THAT(check(config), with_code("bus.ring"));
+    config.ring->interface2 = "eth1";
+    EXPECT_THAT(check(config), with_code("bus.ring"));
+    config.ring->interface2 = "eth2";
+    EXPECT_THAT(check(config), IsEmpty());
+    config.interface.clear();
+    EXPECT_THAT(check(config), with_code("bus.ring"));
+}
+
 TEST(BusConfig, AGoodOneHasNoProblems) { EXPECT_THAT(check(good()), IsEmpty()); }
 
 struct Case {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ecat/master.hpp"
+#include "ecat/ring/ring_transport.hpp"
 #include "ecat/sim/device_model.hpp"
 #include "ecat/sim/object_dictionary.hpp"
 #include "ecat/sim/sim_network.hpp"
@@ -128,8 +129,24 @@ public:
     EchoServo& servo(std::size_t position) { return dynamic_cast<EchoServo&>(network.slave(position).model()); }
     sim::EsmState state(std::size_t position) { return network.slave(position).state(); }
 
+    /// Before start(): a second interface behind the last slave.
+    void make_ring(BehindBreak behind_break = BehindBreak::hand_time_on) {
+        config.ring = RingConfig{"", behind_break};
+        second = std::make_unique<LoopbackTransport>(network.close_ring(network.slave(network.size() - 1)));
+        transport.set_other_end(*second);
+        second->set_other_end(transport);
+        ring = std::make_unique<RingTransport>(transport, *second, config.cycle / 4);
+    }
+    /// The cable in front of slave `place`; behind the last one: that of the second interface. What is under way is lost.
+    void set_ring_cable(std::size_t place, bool plugged) {
+        if (place < network.size()) network.set_cable(place, plugged);
+        else network.set_ring_cable(plugged);
+        if (plugged) return;
+        transport.lose_under_way(now);
+        second->lose_under_way(now);
+    }
     void start() {
-        if (!master) master = std::make_unique<Master>(transport, config);
+        if (!master) master = std::make_unique<Master>(ring ? static_cast<Transport&>(*ring) : transport, config);
         master->start();
     }
     /// One cycle as the runtime runs it.
@@ -173,6 +190,8 @@ public:
     sim::SimNetwork network;
     TamperedCable cable;
     LoopbackTransport transport;
+    std::unique_ptr<LoopbackTransport> second;
+    std::unique_ptr<RingTransport> ring;
     std::unique_ptr<Master> master;
     std::function<void()> on_cycle;
     bool locks = true;  ///< the caller's cycle follows the reference clock, as the runtime's does

@@ -42,5 +42,31 @@ TEST(PlacesNow, ASlaveAtAPortThatWasFreeIsNobody) {
     EXPECT_THAT(places_now(known, now), ElementsAre(Optional(0u), Optional(2u)));
 }
 
+// A ring of four; the known tree is that of the line as which it was measured, with its way out.
+Topology ring_of_four() {
+    Topology known = tree({open_ports({0, 1}), open_ports({0, 1}), open_ports({0, 1}), open_ports({0})});
+    known.ring_end = RingEnd{3, 1};
+    return known;
+}
+
+TEST(PlacesNow, BehindABreakSlavesAreFoundFromTheOtherEnd) {
+    const auto broken = build_ring_topology(std::vector{open_ports({0, 1}), open_ports({0}), open_ports({1}), open_ports({0, 1})}, 2);
+    ASSERT_TRUE(broken);
+    EXPECT_THAT(places_now(ring_of_four(), *broken), ElementsAre(Optional(0u), Optional(1u), Optional(2u), Optional(3u)));
+    const auto at_the_first =
+        build_ring_topology(std::vector{open_ports({1}), open_ports({0, 1}), open_ports({0, 1}), open_ports({0, 1})}, 0);
+    ASSERT_TRUE(at_the_first);
+    EXPECT_THAT(places_now(ring_of_four(), *at_the_first), ElementsAre(Optional(0u), Optional(1u), Optional(2u), Optional(3u)));
+}
+
+TEST(PlacesNow, OneMissingInARingMovesOnlyThoseBehindIt) {
+    const auto without_second = build_ring_topology(std::vector{open_ports({0}), open_ports({1}), open_ports({0, 1})}, 1);
+    ASSERT_TRUE(without_second);
+    EXPECT_THAT(places_now(ring_of_four(), *without_second), ElementsAre(Optional(0u), Eq(std::nullopt), Optional(1u), Optional(2u)));
+    const auto without_first = build_ring_topology(std::vector{open_ports({1}), open_ports({0, 1}), open_ports({0, 1})}, 0);
+    ASSERT_TRUE(without_first);
+    EXPECT_THAT(places_now(ring_of_four(), *without_first), ElementsAre(Eq(std::nullopt), Optional(0u), Optional(1u), Optional(2u)));
+}
+
 }  // namespace
 }  // namespace taktwerk::ecat

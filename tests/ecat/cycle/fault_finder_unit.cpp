@@ -406,5 +406,53 @@ TEST(FaultFinder, AClockIsNotToBlameForFramesThatDoNotComeBack) {
     EXPECT_EQ(finder.facts()[0].id, id(BusAlarm::reference_clock_lost));
 }
 
+// --- a ring ---------------------------------------------------------------------------------------------------------------------
+
+TEST(FaultFinder, ABrokenRingIsSaidWhenASecondFrameHasSeenIt) {
+    Finder f{{-1, 0, 1}};
+    f.bus.ring = {RingShape::closed, 3, 0, 0};
+    EXPECT_THAT(f.look(), IsEmpty());
+    f.bus.ring = {RingShape::first_silent, 3, 1, 1};
+    EXPECT_THAT(f.look(), IsEmpty()) << "one frame may have got lost";
+    f.bus.ring = {RingShape::open, 2, 1, 1};
+    ASSERT_THAT(f.look(), ElementsAre(id(BusAlarm::ring_broken)));
+    EXPECT_EQ(f.finder.facts()[0].source, AlarmSource::bus) << "no slave is accused";
+    EXPECT_EQ(f.finder.facts()[0].a, 2);
+    EXPECT_EQ(f.finder.facts()[0].b, 1);
+    f.bus.ring = {RingShape::closed, 3, 0, 1};
+    EXPECT_THAT(f.look(), IsEmpty());
+}
+
+TEST(FaultFinder, WhoIsCutOffFromTheReferenceIsSaidWhereItIsToRampDown) {
+    // Slave 1 has the reference; 0 and 3 run no SYNC0.
+    std::vector<FaultSlave> slaves(5);
+    for (std::size_t i = 0; i < slaves.size(); ++i) {
+        slaves[i].index = i;
+        slaves[i].position = static_cast<std::uint16_t>(i);
+        slaves[i].synchronised = i != 0 && i != 3;
+        slaves[i].reference = i == 1;
+    }
+    const auto cut_off = [&](const RingState& ring, bool ramp_down) {
+        FaultFinder finder{slaves, 5, limit};
+        for (std::size_t i = 0; i < slaves.size(); ++i) finder.condition(i).al_state = AlState::op;
+        BusCondition bus;
+        bus.slaves_answering = 5;
+        bus.ring = ring;
+        bus.ramp_down = ramp_down;
+        finder.look(bus);
+        finder.look(bus);
+        std::vector<int> who;
+        for (const auto& fact : finder.facts())
+            if (fact.id == id(BusAlarm::cut_off_from_reference)) who.push_back(fact.index);
+        return who;
+    };
+    EXPECT_THAT(cut_off({RingShape::open, 2, 3, 1}, true), ElementsAre(2, 4));
+    EXPECT_THAT(cut_off({RingShape::open, 3, 2, 1}, true), ElementsAre(4));
+    EXPECT_THAT(cut_off({RingShape::open, 1, 4, 1}, true), IsEmpty()) << "all who run SYNC0 are with the reference";
+    EXPECT_THAT(cut_off({RingShape::first_silent, 5, 5, 1}, true), IsEmpty());
+    EXPECT_THAT(cut_off({RingShape::second_silent, 5, 0, 1}, true), IsEmpty());
+    EXPECT_THAT(cut_off({RingShape::open, 2, 3, 1}, false), IsEmpty());
+}
+
 }  // namespace
 }  // namespace taktwerk::ecat

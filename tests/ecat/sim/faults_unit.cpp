@@ -98,6 +98,15 @@ TEST_F(Faulty, CablesAndPowerByName) {
     EXPECT_EQ(count(), 2);
 }
 
+TEST_F(Faulty, TheCableOfTheSecondInterfaceIsCalledRing) {
+    (void)bus.network.close_ring(*y);
+    EXPECT_TRUE(y->controller().ports().link(1));
+    fault("unplug ring");
+    EXPECT_FALSE(y->controller().ports().link(1));
+    fault("plug ring");
+    EXPECT_TRUE(y->controller().ports().link(1));
+}
+
 TEST_F(Faulty, APowerCycleBringsTheSlaveBackAfterItsTime) {
     bus.write(1, 0x0010, le<std::uint16_t>(0x1002));
     fault("power-cycle y 100ms");

@@ -97,6 +97,51 @@ TEST(Topology, SlaveWithoutParentIsNamed) {
     EXPECT_THAT(tree.error().text(), HasSubstr("slave 1"));
 }
 
+// first interface -- A -- B -- C -- second interface; C's port 1 has no slave behind it.
+TEST(RingTopology, TheOneOpenPortWithoutASlaveLeadsToTheSecondInterface) {
+    const std::vector status{ports({0, 1}), ports({0, 1}), ports({0, 1})};
+    EXPECT_FALSE(build_topology(status)) << "on a line that is a port without a slave";
+    const auto tree = build_ring_topology(status, 3);
+    ASSERT_TRUE(tree);
+    EXPECT_EQ(tree->ring_end, (RingEnd{2, 1}));
+    EXPECT_EQ(tree->behind_break, 0u);
+    EXPECT_EQ(tree->slaves[2].parent, 1u);
+}
+
+// A with a terminal behind its port 3; the frame goes there before it goes on.
+TEST(RingTopology, ABranchIsNoWayOut) {
+    const auto tree = build_ring_topology(std::vector{ports({0, 3, 1}), ports({0}), ports({0, 1})}, 3);
+    ASSERT_TRUE(tree);
+    EXPECT_EQ(tree->ring_end, (RingEnd{2, 1}));
+    EXPECT_EQ(tree->slaves[1].parent_port, 3u);
+}
+
+// A -x- B -- C: B's port 0 is closed, and B is the first to process what the second interface sends.
+TEST(RingTopology, BehindABreakIsATreeOfItsOwn) {
+    const auto tree = build_ring_topology(std::vector{ports({0}), ports({1}), ports({0, 1})}, 1);
+    ASSERT_TRUE(tree);
+    EXPECT_EQ(tree->behind_break, 2u);
+    EXPECT_FALSE(tree->slaves[1].parent);
+    EXPECT_EQ(tree->slaves[2].parent, 1u);
+    EXPECT_EQ(tree->ring_end, (RingEnd{2, 1}));
+}
+
+TEST(RingTopology, BrokenAtEitherInterface) {
+    const auto first = build_ring_topology(std::vector{ports({1}), ports({0, 1})}, 0);
+    ASSERT_TRUE(first);
+    EXPECT_EQ(first->behind_break, 2u);
+    const auto second = build_ring_topology(std::vector{ports({0, 1}), ports({0})}, 2);
+    ASSERT_TRUE(second);
+    EXPECT_FALSE(second->ring_end);
+    EXPECT_EQ(second->behind_break, 0u);
+}
+
+TEST(RingTopology, WhatFitsNoRingIsRefused) {
+    EXPECT_FALSE(build_ring_topology(std::vector{ports({0, 1, 3}), ports({0, 1}), ports({0, 1})}, 3)) << "two ways out";
+    EXPECT_FALSE(build_ring_topology(std::vector{ports({0, 1}), ports({1})}, 1)) << "the slave before the break has a way on";
+    EXPECT_FALSE(build_ring_topology(std::vector{ports({0}), ports({})}, 1)) << "no way to the second interface";
+}
+
 TEST(Topology, SlaveWithoutOpenPort) { EXPECT_FALSE(build_topology(std::vector{ports({})})); }
 TEST(Topology, NothingIsATree) { EXPECT_TRUE(build_topology({})); }
 

@@ -1,0 +1,65 @@
+#include "ecat/bringup/ring_line.hpp"
+
+#include <fmt/format.h>
+
+namespace taktwerk::ecat {
+
+namespace {
+
+/// Two bits a port in 0101h.
+constexpr unsigned closed = 3;
+
+Script<void> read_ports_at(Bus& bus, std::uint16_t position, std::optional<std::uint16_t>& dl_status) {
+    const Reply reply = co_await bus.port.aprd(position, reg::dl_status, 2);
+    if (reply.ok()) dl_status = reply.u16();
+}
+
+Error ring_broken(const RingState& ring) {
+    const std::string where = ring.shape == RingShape::first_silent ? "in front of the first slave"
+                              : ring.shape == RingShape::second_silent
+                                  ? "behind the last slave"
+                                  : fmt::format("between slave {} and slave {}", ring.before_break - 1, ring.before_break);
+    return Error{
+        "bus.ring_broken", "bus", "the ring is broken " + where,
+        "mend the cable: the bring-up measures the whole ring. To start on the line that is left, remove `ring` and plug the cables "
+        "so that one interface reaches all slaves"};
+}
+
+}  // namespace
+
+Script<Result<void>> make_line(Bus& bus, std::uint16_t slaves) {
+    if (!bus.config.ring) co_return Result<void>{};
+    bus.progress = "measuring the ring";
+    const RingState ring = bus.link.ring.load();
+    if (ring.shape != RingShape::closed) co_return ring_broken(ring);
+    std::vector<std::optional<std::uint16_t>> answers(slaves);
+    std::vector<Script<void>> scripts;
+    for (std::uint16_t position = 0; position < slaves; ++position) scripts.push_back(read_ports_at(bus, position, answers[position]));
+    co_await all(std::move(scripts), DatagramPort::slaves_at_once);
+    std::vector<std::uint16_t> dl_status;
+    for (std::uint16_t position = 0; position < slaves; ++position) {
+        if (!answers[position])
+            co_return Error{"bus.no_slave", fmt::format("slave {}", position), "did not answer when its ports were asked for",
+                            "the bus changed while it was read: start again"};
+        dl_status.push_back(*answers[position]);
+    }
+    const Result<Topology> tree = build_ring_topology(dl_status, slaves);
+    if (!tree) co_return tree.error();
+    bus.ring_end = tree->ring_end;
+    if (!bus.ring_end) co_return ring_broken({RingShape::second_silent, slaves, 0, 0});
+    const auto position = static_cast<std::uint16_t>(bus.ring_end->slave);
+    const Reply shut =
+        co_await bus.port.apwr(position, reg::dl_control_loops, static_cast<std::uint8_t>(closed << (2 * bus.ring_end->port)));
+    if (!shut.ok())
+        co_return Error{"bus.no_slave", fmt::format("slave {}", position), "did not close its port to the second interface (0101h)",
+                        "start again; should it stay so, its controller does not let ports be closed"};
+    co_return Result<void>{};
+}
+
+Script<void> make_ring(Bus& bus) {
+    if (!bus.ring_end) co_return;
+    bus.topology.ring_end = bus.ring_end;
+    co_await bus.port.apwr(static_cast<std::uint16_t>(bus.ring_end->slave), reg::dl_control_loops, std::uint8_t{0});
+}
+
+}  // namespace taktwerk::ecat
