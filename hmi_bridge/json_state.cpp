@@ -170,6 +170,10 @@ std::string state_json(const runtime::Snapshot& s, const MachineLink& machine) {
         {"dc_offset_ns", s.bus.dc_offset_ns},
         {"dc_drift_ppb", s.bus.dc_drift_ppb},
         {"dc_rejected", s.bus.dc_rejected},
+        {"ring", ecat::name(s.bus.ring.shape)},
+        {"ring_before_break", s.bus.ring.before_break},
+        {"ring_behind_break", s.bus.ring.behind_break},
+        {"ring_opened", s.bus.ring.opened},
         {"sync0_margin_ns", s.bus.sync0_margin_ns},
         {"sync0_margin_least_ns", s.bus.sync0_margin_least_ns},
     };

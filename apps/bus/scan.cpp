@@ -84,7 +84,11 @@ Json port_json(const Survey& survey, std::size_t position, unsigned p) {
 }  // namespace
 
 std::string scan_text(const std::string& where, const Survey& survey, Colours colours) {
-    std::string out = toned(where, Tone::strong, colours) + ": " + count_text(survey.slaves.size(), "slave") + "\n\n";
+    std::string out = toned(where, Tone::strong, colours) + ": " + count_text(survey.slaves.size(), "slave") +
+                      (survey.ring.shape == ecat::RingShape::closed ? ", a closed ring"
+                       : survey.ring.broken()                       ? ", a broken ring"
+                                                                    : "") +
+                      "\n\n";
     const auto levels = branch_levels(survey);
     for (std::size_t i = 0; i < survey.slaves.size(); ++i) {
         const auto& slave = survey.slaves[i];
@@ -164,7 +168,7 @@ Json scan_json(const Survey& survey) {
     }
     Json remarks = Json::array();
     for (const auto& remark : survey.remarks) remarks.push_back(error_json(remark));
-    return Json{{"slaves", std::move(slaves)}, {"remarks", std::move(remarks)}};
+    return Json{{"slaves", std::move(slaves)}, {"ring", ecat::name(survey.ring.shape)}, {"remarks", std::move(remarks)}};
 }
 
 void add_bus_scan(CLI::App& bus, Action& action) {

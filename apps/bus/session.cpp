@@ -81,7 +81,11 @@ private:
         } else {
             s.where_ = nic;
             s.clock_ = std::make_unique<SystemClock>();
-            auto opened = ecat::RawSocketTransport::open(nic);
+            // With --nic alone the bus is looked at as a line, from that interface.
+            const bool as_ring = options.nic.empty() && s.configured_.ring;
+            if (as_ring) s.where_ += " and " + s.configured_.ring->interface2;
+            auto opened =
+                ecat::BusInterfaces::open(nic, as_ring ? s.configured_.ring->interface2 : std::string{}, ring_patience(s.configured_));
             if (!opened) return fail(options, in_other_words(opened.error(), nic));
             s.nic_ = std::move(*opened);
         }
@@ -128,8 +132,7 @@ private:
 
 void BusSession::new_probe(ecat::BusConfig config) {
     probe_.reset();  // its scripts go before the transport gets another master
-    ecat::Transport& transport = world_ ? static_cast<ecat::Transport&>(world_->transport()) : *nic_;
-    probe_ = std::make_unique<ecat::BusProbe>(transport, std::move(config), [this](Duration period) { return next_round(period); });
+    probe_ = std::make_unique<ecat::BusProbe>(transport(), std::move(config), [this](Duration period) { return next_round(period); });
     if (capture_) probe_->master().set_tap(&ecat::FrameCapture::tap, capture_.get());
 }
 
@@ -153,7 +156,7 @@ std::optional<Instant> BusSession::next_round(Duration period) {
 Result<ecat::Survey> BusSession::look() {
     if (nic_) {
         nic_->refresh();
-        if (!nic_->link_up())
+        if (!nic_->bus().link_up())
             return Error{"bus.no_link", where_, "the network port has no link",
                          "check the cable and that the first slave has power; its IN port shows a light when it has"};
         if (!up_) {
@@ -164,18 +167,22 @@ Result<ecat::Survey> BusSession::look() {
         }
     }
     Result<ecat::Survey> found =
-        probe_->run(ecat::survey(probe_->port(), foreign_frames_ > 0 ? ecat::SurveyMay::only_look : ecat::SurveyMay::give_addresses));
+        probe_->run(ecat::survey(probe_->port(), foreign_frames_ > 0 ? ecat::SurveyMay::only_look : ecat::SurveyMay::give_addresses,
+                                 transport().ring() != nullptr ? &probe_->bus().link.ring : nullptr));
     if (!found) {
         Error error = found.error();
         if (error.code == "bus.no_frame")
-            error = Error{"bus.no_frame", where_, "no frame came back: there is a link, but no EtherCAT slave at its other end",
-                          "check that the cable goes to the IN port of the first slave, and that it is an EtherCAT device with power"};
+            error = Error{
+                "bus.no_frame", where_, "no frame came back: there is a link, but no EtherCAT slave at its other end",
+                "check that the cable goes to the IN port of the first slave, and that it is an EtherCAT device with power; where the last "
+                "slave's cable comes back to this computer, say --machine with a file that has `ring`"};
         return error;
     }
     const auto& slaves = configured_.slaves;
     if (std::any_of(slaves.begin(), slaves.end(), [](const ecat::SlaveConfig& slave) { return slave.device_id.has_value(); }))
         if (auto asked = probe_->run(ecat::read_device_ids(probe_->port(), *found)); !asked) return asked.error();
     ecat::compare_with(configured_, *found);
+    if (auto broken = ecat::ring_remark(*found)) found->remarks.push_back(std::move(*broken));
     if (foreign_frames_ > 0)
         found->remarks.push_back(Error{"bus.foreign_master", where_,
                                        fmt::format("another master is sending on this cable ({} frames in {} ms): {}", foreign_frames_,

@@ -16,7 +16,7 @@
 #include "ecat/diagnosis/bus_probe.hpp"
 #include "ecat/diagnosis/frame_capture.hpp"
 #include "ecat/diagnosis/survey.hpp"
-#include "ecat/transport/raw_socket.hpp"
+#include "ecat/ring/bus_interfaces.hpp"
 #include "runtime/world/world.hpp"
 
 namespace taktwerk::apps {
@@ -66,13 +66,14 @@ private:
     explicit BusSession(BusOptions options);
     [[nodiscard]] std::optional<Instant> next_round(Duration period);
     void new_probe(ecat::BusConfig config);
+    [[nodiscard]] ecat::Transport& transport() noexcept { return world_ ? world_->bus() : nic_->bus(); }
 
     BusOptions options_;
     std::string where_;
     ecat::BusConfig configured_;
     std::unique_ptr<Clock> clock_;
     std::unique_ptr<runtime::World> world_;
-    std::unique_ptr<ecat::RawSocketTransport> nic_;
+    std::unique_ptr<ecat::BusInterfaces> nic_;
     std::unique_ptr<ecat::FrameCapture> capture_;
     std::unique_ptr<ecat::BusProbe> probe_;
     Instant deadline_{};

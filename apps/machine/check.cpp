@@ -66,7 +66,13 @@ std::string range_text(const axes::AxisLimits& limits, const std::string& unit) 
 }
 
 void print_slaves(const MachineConfig& config) {
-    fmt::print("\nBus: {}\n", config.bus.interface.empty() ? std::string("simulated") : "EtherCAT on " + config.bus.interface);
+    std::string interfaces = config.bus.interface.empty() ? std::string("simulated") : "EtherCAT on " + config.bus.interface;
+    if (const auto& ring = config.bus.ring) {
+        interfaces += ring->interface2.empty() ? ", a ring" : " and " + ring->interface2 + ", a ring";
+        interfaces += ring->behind_break == ecat::BehindBreak::ramp_down ? "; axes cut off from the reference clock by a break stop"
+                                                                         : "; behind a break clocks are handed the reference's time";
+    }
+    fmt::print("\nBus: {}\n", interfaces);
     for (const auto& slave : config.bus.slaves) {
         const auto where = slave.position ? fmt::format("position {}", *slave.position) : fmt::format("alias {}", slave.alias.value_or(0));
         fmt::print("  {:<14} {:<22} {:<12} {}{}\n", slave.name, slave.device ? slave.device->name : "?", where,
@@ -294,7 +300,7 @@ int check(const CheckOptions& options) {
     // Building the machine loads the programs and compares what they declare; nothing is started, and what a running machine keeps stays its.
     loaded.machine.retain.clear();
     runtime::World world{config, Instant{}};
-    auto built = runtime::Machine::build(std::move(loaded.machine), world.transport(), world.serial().lines());
+    auto built = runtime::Machine::build(std::move(loaded.machine), world.bus(), world.serial().lines());
     if (const auto* errors = std::get_if<std::vector<Error>>(&built)) return fail(options, *errors);
     const auto& layout = std::get<0>(built)->layout();
     const auto remarks = runtime::remarks(config, layout, std::thread::hardware_concurrency());

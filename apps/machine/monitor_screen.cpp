@@ -88,12 +88,20 @@ private:
                                       layout_.at("cycle_ns").get<double>() / 1e6, us(s.at("lateness_ns")), us(s.at("lateness_max_ns")),
                                       us(s.at("compute_ns")), us(s.at("compute_max_ns")), s.at("missed_ticks").get<std::uint64_t>());
         out.push_back(cut(line, size_.columns));
-        out.push_back(cut(fmt::format(" bus {}   {} slaves, {} not fresh   frames lost {}, late {}   working counter errors {}",
-                                      bus.at("phase").get<std::string>(), state_.at("slaves").size(), stale_slaves(),
+        out.push_back(cut(fmt::format(" bus {}{}   {} slaves, {} not fresh   frames lost {}, late {}   working counter errors {}",
+                                      bus.at("phase").get<std::string>(), ring_text(bus), state_.at("slaves").size(), stale_slaves(),
                                       bus.at("frames_lost").get<std::uint64_t>(), bus.at("frames_late").get<std::uint64_t>(),
                                       bus.at("working_counter_errors").get<std::uint64_t>()),
                           size_.columns));
         return out;
+    }
+
+    /// Where there are two interfaces: ", ring closed", or how many slaves each of them reaches.
+    static std::string ring_text(const Json& bus) {
+        const auto shape = bus.value("ring", std::string("none"));
+        if (shape == "none" || shape == "unknown") return {};
+        if (shape == "closed") return ", ring closed";
+        return fmt::format(", ring broken ({} + {})", bus.value("ring_before_break", 0), bus.value("ring_behind_break", 0));
     }
 
     int stale_slaves() const {

@@ -30,7 +30,7 @@
 #include "core/math.hpp"
 #include "core/realtime.hpp"
 #include "ecat/diagnosis/frame_capture.hpp"
-#include "ecat/transport/raw_socket.hpp"
+#include "ecat/ring/bus_interfaces.hpp"
 #include "hmi_bridge/hmi_bridge.hpp"
 #include "hmi_bridge/runtime_link.hpp"
 #include "modbus/line/tty_line.hpp"
@@ -148,7 +148,7 @@ int run_virtual(LoadedFile loaded, const RunOptions& options) {
     VirtualClock clock{Instant{}};
     World world{loaded.machine, clock.now()};
     Files files;
-    auto machine = build(std::move(loaded.machine), world.transport(), world.serial().lines());
+    auto machine = build(std::move(loaded.machine), world.bus(), world.serial().lines());
     if (!machine) return exit_bad_file;
     if (auto ok = open_files(*machine, options, Duration{}, files); !ok) {
         print_error(ok.error());
@@ -233,7 +233,7 @@ private:
 };
 
 /// From here on nothing that may wait happens on a thread that somebody else waits for (docs/stopping.md).
-int serve_real(Machine& machine, World* world, ecat::RawSocketTransport* nic, Files files, const hmi::HmiConfig& hmi_config,
+int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, Files files, const hmi::HmiConfig& hmi_config,
                const RunOptions& options) {
     SystemClock clock;
     const auto start = clock.now();
@@ -360,20 +360,22 @@ int serve_real(Machine& machine, World* world, ecat::RawSocketTransport* nic, Fi
 int run_real(LoadedFile loaded, const RunOptions& options) {
     SystemClock clock;
     std::unique_ptr<World> world;
-    std::unique_ptr<ecat::RawSocketTransport> nic;
+    std::unique_ptr<ecat::BusInterfaces> nic;
     if (loaded.machine.bus.interface.empty()) {
         world = std::make_unique<World>(loaded.machine, clock.now());
     } else {
-        auto opened = ecat::RawSocketTransport::open(loaded.machine.bus.interface, {.clock = &clock});
+        const auto& bus = loaded.machine.bus;
+        auto opened = ecat::BusInterfaces::open(bus.interface, bus.ring ? bus.ring->interface2 : std::string{}, ecat::ring_patience(bus),
+                                                {.clock = &clock});
         if (!opened) {
             print_error(opened.error());
             return exit_bus;
         }
         nic = std::move(*opened);
         if (!options.quiet && !options.json)
-            for (const auto& refused : nic->report().refused) fmt::print("{}: {}\n", nic->interface(), refused);
+            for (const auto& refused : nic->refused()) fmt::print("{}\n", refused);
     }
-    ecat::Transport& transport = world ? static_cast<ecat::Transport&>(world->transport()) : *nic;
+    ecat::Transport& transport = world ? world->bus() : nic->bus();
     Files files;
     auto lines = world ? world->serial().lines() : std::vector<modbus::SerialLine*>(loaded.machine.serial.size());
     std::vector<std::unique_ptr<modbus::TtyLine>> ports;

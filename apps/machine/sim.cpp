@@ -26,7 +26,7 @@ namespace taktwerk::apps {
 namespace {
 
 struct SimOptions {
-    std::string file, nic;
+    std::string file, nic, nic2;
     bool strict = false;
     double duration_s = 0;
     std::vector<std::string> faults, serial;
@@ -152,21 +152,42 @@ std::uint64_t return_answers(ecat::LoopbackTransport& cable, ecat::RawSocketTran
     return sent;
 }
 
+/// Where a cable from the master ends: an interface, and the simulated cable behind it.
+struct CableEnd {
+    std::unique_ptr<ecat::RawSocketTransport> nic;
+    ecat::LoopbackTransport* cable = nullptr;
+};
+
+/// One, or two of a ring; nothing: it has been said why.
+std::vector<CableEnd> open_ends(const SimOptions& options, runtime::World& world) {
+    std::vector<CableEnd> ends;
+    const auto open = [&](const std::string& name, ecat::LoopbackTransport* cable) {
+        auto opened = ecat::RawSocketTransport::open(name);
+        if (opened) ends.push_back({std::move(*opened), cable});
+        else print_error(opened.error());
+        return opened.ok();
+    };
+    if (!open(options.nic, &world.transport())) return {};
+    if (options.nic2.empty()) world.set_ring_cable(false);
+    else if (!open(options.nic2, world.second_transport())) return {};
+    return ends;
+}
+
 int play(const SimOptions& options) {
     auto loaded = load_without_programs(options.file, true);
     if (!loaded) return exit_bad_file;
-    auto opened = ecat::RawSocketTransport::open(options.nic);
-    if (!opened) {
-        print_error(opened.error());
-        return exit_bus;
+    if (!options.nic2.empty() && !loaded->machine.bus.ring) {
+        print_error(Error{"usage", options.nic2, "a second interface, and the machine file has no ring",
+                          "add `ring` to its bus, or leave out --nic2"});
+        return exit_usage;
     }
-    auto& nic = **opened;
     watch_stop_signals();
     SystemClock clock;
     const Instant start = clock.now();
     runtime::World world{loaded->machine, start};
     auto& network = world.network();
-    auto& cable = world.transport();
+    const auto ends = open_ends(options, world);
+    if (ends.empty()) return exit_bus;
     for (std::size_t i = 0; i < network.size(); ++i)
         network.slave(i).require_sync0(options.strict ? ecat::sim::SyncRequirement::as_described : ecat::sim::SyncRequirement::waived);
     StateLog log{network, world, loaded->machine};
@@ -183,7 +204,8 @@ int play(const SimOptions& options) {
         }
     LineInput input{STDIN_FILENO};
     for (const auto& line : (*lines)->lines()) fmt::print("serial line '{}' is {}\n", line.name, line.path);
-    fmt::print("{} slaves of '{}' on {}; `help` lists what can go wrong; Ctrl-C ends\n", network.size(), loaded->machine.name, options.nic);
+    fmt::print("{} slaves of '{}' on {}; `help` lists what can go wrong; Ctrl-C ends\n", network.size(), loaded->machine.name,
+               options.nic + (options.nic2.empty() ? "" : " and " + options.nic2));
     std::fflush(stdout);
 
     std::array<std::byte, ecat::max_frame_size> frame{};
@@ -192,9 +214,11 @@ int play(const SimOptions& options) {
     while (wanted && !stop_requested()) {
         Instant now = clock.now();
         if (options.duration_s > 0 && to_seconds(now - start) > options.duration_s) break;
-        const Instant next = std::min({network.next_event(), commands.next_event(), cable.next_arrival().value_or(Instant::max())});
+        Instant next = std::min(network.next_event(), commands.next_event());
+        for (const auto& end : ends) next = std::min(next, end.cable->next_arrival().value_or(Instant::max()));
         const Duration wait = std::clamp(next - now, Duration{}, Duration{std::chrono::milliseconds{10}});
-        std::vector<pollfd> ready{{nic.descriptor(), POLLIN, 0}, {input.descriptor(), POLLIN, 0}};
+        std::vector<pollfd> ready{{input.descriptor(), POLLIN, 0}};
+        for (const auto& end : ends) ready.push_back({end.nic->descriptor(), POLLIN, 0});
         (*lines)->add_to(ready);
         timespec timeout{0, static_cast<long>(wait.count())};
         ::ppoll(ready.data(), ready.size(), &timeout, nullptr);
@@ -202,13 +226,17 @@ int play(const SimOptions& options) {
         world.apply_events(now);
         commands.step(now);
         network.advance(now);
-        while (auto received = nic.receive(frame, now)) {
-            cable.send(std::span{frame}.first(received->size), now);
-            ++frames;
-            answers += return_answers(cable, nic, clock);
-            now = clock.now();
-        }
-        answers += return_answers(cable, nic, clock);
+        const auto return_all = [&] {
+            for (const auto& end : ends) answers += return_answers(*end.cable, *end.nic, clock);
+        };
+        for (const auto& end : ends)
+            while (auto received = end.nic->receive(frame, now)) {
+                end.cable->send(std::span{frame}.first(received->size), now);
+                ++frames;
+                return_all();
+                now = clock.now();
+            }
+        return_all();
         (*lines)->step(clock.now());
         while (const auto line = input.next()) wanted = wanted && commands.obey(*line, clock.now());
         log.step();
@@ -227,6 +255,7 @@ void add_sim(CLI::App& app, Action& action) {
     auto options = std::make_shared<SimOptions>();
     sub->add_option("FILE", options->file, "machine file")->required();
     sub->add_option("--nic", options->nic, "network interface, e.g. eth1")->required();
+    sub->add_option("--nic2", options->nic2, "where the ring of the file comes back, e.g. eth2");
     sub->add_flag("--strict", options->strict, "slaves that need SYNC0 refuse SAFEOP without it, as real ones do");
     sub->add_option("--fault", options->faults, "what goes wrong: a command as on standard input; may be given several times")
         ->expected(1)

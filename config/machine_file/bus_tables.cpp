@@ -152,6 +152,27 @@ Codec<std::string> interface_name() {
     return c;
 }
 
+Codec<ecat::BehindBreak> behind_break() {
+    using B = ecat::BehindBreak;
+    return choice<B>({{"hand_time_on", B::hand_time_on}, {"ramp_down", B::ramp_down}});
+}
+
+Table<ecat::RingConfig> ring_table() {
+    using R = ecat::RingConfig;
+    return {
+        "bus.ring",
+        "A second interface behind the last slave: no single cable takes a slave away.",
+        {
+            required(field("interface2", &R::interface2, interface_name(),
+                           "`simulated` where `interface` is, or the network interface that the cable from the last slave goes to")),
+            field("behind_break", &R::behind_break, behind_break(),
+                  "slaves with SYNC0 that a break cuts off from the reference clock: this computer hands its time on to them and they run "
+                  "on, or they count as unsynchronised and their axes stop"),
+        },
+        {},
+        {}};
+}
+
 Table<ecat::SyncUnitConfig> sync_unit_table() {
     using U = ecat::SyncUnitConfig;
     return {"bus.sync_units",
@@ -174,6 +195,10 @@ Field<MachineFile> bus_field() {
             required(field_at<F>(
                 "interface", [](F & f) -> auto& { return f.machine.bus.interface; }, interface_name(),
                 "`simulated`, or the name of the network interface (`ip link`)")),
+            with_default(field_at<F>(
+                             "ring", [](F & f) -> auto& { return f.machine.bus.ring; }, maybe(section(ring_table())),
+                             "two interfaces, with the slaves in line between them"),
+                         "one interface"),
             with_default(field_at<F>(
                              "sync0_shift", [](F & f) -> auto& { return f.machine.bus.sync0_shift; }, duration(),
                              "SYNC0 after the start of the bus cycle"),

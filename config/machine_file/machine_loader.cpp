@@ -46,7 +46,10 @@ public:
 
     LoadedMachine assemble() {
         LoadedMachine out{std::move(file_.machine), std::move(file_.hmi), {}};
-        if (options_.simulate) out.machine.bus.interface.clear();
+        if (options_.simulate) {
+            out.machine.bus.interface.clear();
+            if (out.machine.bus.ring) out.machine.bus.ring->interface2.clear();
+        }
         // Simulated drives forget where they were, and what a real machine keeps is none of theirs.
         auto& retain = out.machine.retain;
         if (out.machine.bus.interface.empty()) retain.clear();

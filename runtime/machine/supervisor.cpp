@@ -127,6 +127,15 @@ bool Supervisor::follows_from_another(const AlarmFact& fact) noexcept {
     return body_.now < explained_until_[fact.index];
 }
 
+void Supervisor::stop_axes_of_slaves() noexcept {
+    for (const auto& alarm : body_.log.alarms()) {
+        if (alarm.reaction != Reaction::stop_axis || alarm.fact.source != AlarmSource::slave || !alarm_range::bus.has(alarm.fact.id))
+            continue;
+        for (std::size_t i = 0; i < body_.axes.size(); ++i)
+            if (drives_.on_bus(i) && drives_.slave_of(i) == alarm.fact.index) body_.axes[i].stop_for_error(alarm.fact.id, false);
+    }
+}
+
 void Supervisor::react() noexcept {
     if (body_.emergency) return;  // the axes' own business: a level that each of them holds
     const ActiveAlarm* cause = nullptr;
@@ -135,6 +144,7 @@ void Supervisor::react() noexcept {
         if (alarm.fact.id == id(MachineAlarm::stopped_by_signal) || alarm.fact.id == id(MachineAlarm::emergency_stop)) continue;
         if (alarm.reaction >= Reaction::stop_machine && (!cause || alarm.reaction > cause->reaction)) cause = &alarm;
     }
+    stop_axes_of_slaves();
     if (!cause) return;
     for (auto& axis : body_.axes) axis.stop_for_error(cause->fact.id, cause->reaction == Reaction::power_off);
 }

@@ -36,6 +36,8 @@ private:
     void supervise(std::size_t axis, axes::EmergencyStop level) noexcept;
     [[nodiscard]] bool follows_from_another(const AlarmFact& fact) noexcept;
     void react() noexcept;
+    /// What the bus says of one slave stops the axes on it, and no others.
+    void stop_axes_of_slaves() noexcept;
 
     MachineBody& body_;
     MachineDrives& drives_;

@@ -159,8 +159,28 @@ World::World(const MachineConfig& config, Instant start)
             const double counts = load.inverted ? -load.counts_per_unit : load.counts_per_unit;
             loads_.push_back({binding.axis.name, binding.load_input, counts / binding.axis.gearing.counts_per_unit(), counts, 0});
         }
+    close_ring(config);
     for (const auto& point : config.io)
         if (point.direction == IoDirection::input && point.simulated) set_input_value(point.name, *point.simulated);
+}
+
+/// The second interface's cable goes into port 1 of the last slave in the line, whatever hangs beside it.
+void World::close_ring(const MachineConfig& config) {
+    if (!config.bus.ring || slaves_.empty()) return;
+    const auto last =
+        std::find_if(slaves_.rbegin(), slaves_.rend(), [this](const SlavePlace& place) { return network_.port_free(*place.slave, 1); });
+    if (last == slaves_.rend()) return;
+    second_ = std::make_unique<ecat::LoopbackTransport>(network_.close_ring(*last->slave));
+    transport_.set_other_end(*second_);
+    second_->set_other_end(transport_);
+    ring_ = std::make_unique<ecat::RingTransport>(transport_, *second_, ecat::ring_patience(config.bus));
+}
+
+/// What a cable that breaks is carrying, and what has passed it already: none of it comes home.
+void World::lose_under_way() {
+    if (!ring_) return;
+    transport_.lose_under_way(network_.now());
+    second_->lose_under_way(network_.now());
 }
 
 ecat::sim::SimSlave* World::find(std::string_view slave) const noexcept {
@@ -217,6 +237,12 @@ void World::set_slave_power(std::string_view slave, bool on) {
 
 void World::set_cable(std::string_view slave, bool plugged) {
     if (auto* there = find(slave)) network_.set_cable(*there, plugged);
+    if (!plugged) lose_under_way();
+}
+
+void World::set_ring_cable(bool plugged) {
+    network_.set_ring_cable(plugged);
+    if (!plugged) lose_under_way();
 }
 
 void World::happen(const SimulationEvent& event) {

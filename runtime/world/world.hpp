@@ -9,6 +9,7 @@
 
 #include "axes/sim/cia402_device.hpp"
 #include "core/time.hpp"
+#include "ecat/ring/ring_transport.hpp"
 #include "ecat/sim/plain_device.hpp"
 #include "ecat/sim/sim_network.hpp"
 #include "ecat/transport/loopback.hpp"
@@ -22,7 +23,12 @@ public:
     /// `config` has passed check(). `start`: the machine time now.
     World(const MachineConfig& config, Instant start);
 
+    /// What a master is connected to: one cable, or two where the bus is a ring.
+    [[nodiscard]] ecat::Transport& bus() noexcept { return ring_ ? static_cast<ecat::Transport&>(*ring_) : transport_; }
+    /// The first cable by itself, with its faults.
     [[nodiscard]] ecat::LoopbackTransport& transport() noexcept { return transport_; }
+    /// The second one; nullptr where the bus is no ring.
+    [[nodiscard]] ecat::LoopbackTransport* second_transport() noexcept { return second_.get(); }
     [[nodiscard]] ecat::sim::SimNetwork& network() noexcept { return network_; }
     /// The serial lines; serial().lines() is for Machine::build.
     [[nodiscard]] SerialWorld& serial() noexcept { return serial_; }
@@ -55,9 +61,13 @@ public:
     void set_slave_power(std::string_view slave, bool on);
     /// Pulls or plugs the cable in front of a slave.
     void set_cable(std::string_view slave, bool plugged);
+    /// That of a ring's second interface.
+    void set_ring_cable(bool plugged);
 
 private:
     [[nodiscard]] ecat::sim::SimSlave* find(std::string_view slave) const noexcept;
+    void close_ring(const MachineConfig& config);
+    void lose_under_way();
 
     struct Point {
         IoPoint config;
@@ -75,6 +85,8 @@ private:
     SerialWorld serial_;
     ecat::sim::SimNetwork network_;
     ecat::LoopbackTransport transport_;
+    std::unique_ptr<ecat::LoopbackTransport> second_;  // of a ring
+    std::unique_ptr<ecat::RingTransport> ring_;
     Instant start_;
     struct SlavePlace {
         std::string name;

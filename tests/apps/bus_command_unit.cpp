@@ -233,6 +233,26 @@ TEST(BusText, ScanDrawsBranchesAndTheEbusBudget) {
     EXPECT_THAT(text, HasSubstr("port 0 from the master, 1 to slave 3, 3 to slave 1"));
 }
 
+// first interface - A - B - second interface; then the cable between them is out.
+TEST(BusText, ScanShowsARingAndWhereItIsBroken) {
+    ecat::Survey survey;
+    survey.slaves.resize(2);
+    for (std::size_t i = 0; i < 2; ++i) {
+        survey.slaves[i].found.position = static_cast<std::uint16_t>(i);
+        survey.slaves[i].ports[0] = survey.slaves[i].ports[1] = {.kind = ecat::PortKind::mii, .link = true, .open = true, .counters = {}};
+    }
+    constexpr std::uint16_t both_open = 0x5A30;
+    survey.topology = ecat::build_ring_topology(std::vector{both_open, both_open}, 2).value();
+    survey.ring = {ecat::RingShape::closed, 2, 0, 0};
+    EXPECT_THAT(scan_text("eth1 and eth2", survey, Colours::off), HasSubstr("2 slaves, a closed ring"));
+    EXPECT_THAT(scan_text("eth1 and eth2", survey, Colours::off), HasSubstr("1 MII to the second interface"));
+    EXPECT_FALSE(ecat::ring_remark(survey));
+    survey.ring = {ecat::RingShape::open, 1, 1, 1};
+    ASSERT_TRUE(ecat::ring_remark(survey));
+    EXPECT_THAT(ecat::ring_remark(survey)->what, HasSubstr("between slave 0 and slave 1"));
+    EXPECT_THAT(scan_text("eth1 and eth2", survey, Colours::off), HasSubstr("a broken ring"));
+}
+
 TEST(BusText, ScanKeepsThePositionApartFromTheNameHoweverLongTheBusIs) {
     ecat::Survey survey;
     survey.slaves.resize(101);

@@ -123,6 +123,18 @@ TEST(MonitorScreen, WhatDoesNotFitGivesWayToAxesAndAlarms) {
     EXPECT_THAT(lines, Contains(HasSubstr("alarms more")));
 }
 
+TEST(MonitorScreen, OfARingItSaysWhetherItIsClosed) {
+    auto ring = state(1, 0);
+    ring["bus"]["ring"] = "closed";
+    EXPECT_THAT(monitor_screen(ring, layout, {100, 24, false}), Contains(HasSubstr("bus operational, ring closed ")));
+    ring["bus"]["ring"] = "open";
+    ring["bus"]["ring_before_break"] = 4;
+    ring["bus"]["ring_behind_break"] = 2;
+    EXPECT_THAT(monitor_screen(ring, layout, {100, 24, false}), Contains(HasSubstr("ring broken (4 + 2)")));
+    ring["bus"]["ring"] = "none";
+    EXPECT_THAT(monitor_screen(ring, layout, {100, 24, false}), Contains(HasSubstr("bus operational  ")));
+}
+
 TEST(MonitorScreen, EmergencyStopIsInTheFirstLine) {
     auto stopped = state(1, 0);
     stopped["emergency_stop"] = true;

@@ -33,7 +33,7 @@ class TestMachine {
 public:
     explicit TestMachine(MachineConfig config) : clock(Instant{} + 1s), world(config, clock.now()), cable(world.network()) {
         world.transport().plug_into(cable);
-        auto built = Machine::build(std::move(config), world.transport(), world.serial().lines());
+        auto built = Machine::build(std::move(config), world.bus(), world.serial().lines());
         if (auto* errors = std::get_if<1>(&built)) {
             for (const auto& error : *errors) ADD_FAILURE() << error.text();
             return;
