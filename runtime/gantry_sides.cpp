@@ -11,6 +11,7 @@ std::vector<AxisBinding> sides_of(const std::vector<AxisBinding>& axes) {
         side.axis.gearing.inverted = axis.axis.gearing.inverted != axis.follower.mirrored;
         side.axis.gantry = {};
         side.slave = axis.follower.slave;
+        side.simulation.start += axis.simulation.racked;
         side.drive_axis = axis.follower.drive_axis;
         side.profile = axis.follower.profile;
         side.stored = axis.follower.stored;

@@ -36,9 +36,10 @@ struct AxisSimulation {
     double inertia = 2e-4, viscous_friction = 1e-3, coulomb_friction = 0.05, load_torque = 0;  ///< SI at the motor shaft
     double rated_torque = 1.27;                                                                ///< N m
     double start = 0;                                                                          ///< u: where the axis stands at power-on
-    std::optional<double> negative_stop, positive_stop;                                        ///< u: hard stops
-    std::optional<double> negative_limit, positive_limit;                                      ///< u: limit switches
-    std::optional<double> home_from, home_to;                                                  ///< u: home switch active in between
+    double racked = 0;                                     ///< u: how far the follower of a gantry is ahead of its leader then
+    std::optional<double> negative_stop, positive_stop;    ///< u: hard stops
+    std::optional<double> negative_limit, positive_limit;  ///< u: limit switches
+    std::optional<double> home_from, home_to;              ///< u: home switch active in between
     double index_pulse = 0;  ///< u: where one of the encoder's index pulses stands; there is one each motor turn
     axes::sim::Battery battery = axes::sim::Battery::good;  ///< of an absolute encoder
     PrintedMarks marks;

@@ -215,6 +215,12 @@ void check_gantry(Problems& problems, const AxisConfig& config) {
         problems.add(
             "homing.kind", "of a gantry may not be one that a single drive carries out or latches",
             "Choose `set_here`, `home_switch`, `limit_switch` or `absolute`: both sides move together, and the leader's switch counts");
+    if (!(gantry.square_velocity >= 0) || std::isinf(gantry.square_velocity))
+        problems.add("gantry.square.velocity", "must be above 0",
+                     "Give the velocity at which one side may be led alone, for instance 2 u/s");
+    if (gantry.square_velocity > 0 && kind != HomingKind::home_switch)
+        problems.add("gantry.square", "needs homing by `home_switch`: each side's own switch tells where it is",
+                     "Choose `homing.kind: home_switch`, or remove `square`");
     if (config.control.mode != ControlMode::position)
         problems.add("control.mode", "of a gantry must be `position`: each drive closes its own position loop", "Leave it out");
     if (config.encoder) problems.add("encoder", "excludes `gantry`: there is nothing that moves", "Remove one of the two");

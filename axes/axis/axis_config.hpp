@@ -192,8 +192,10 @@ struct BrakeConfig {
 /// Two drives that move one portal: how far they may be apart.
 struct GantryConfig {
     bool on = false;
-    double warning = 0;  ///< u of skew: shown; 0 = never
-    double error = 0;    ///< u of skew, > 0: the axis stops
+    double warning = 0;          ///< u of skew: shown; 0 = never
+    double error = 0;            ///< u of skew, > 0: the axis stops
+    double square_velocity = 0;  ///< u/s at which homing squares the portal by the sides' switches; 0 = it does not
+    double square_offset = 0;    ///< u that the follower's switch lies further than the leader's where the portal is square
 };
 
 /// A second encoder, at the load: an input of the machine says its counts.

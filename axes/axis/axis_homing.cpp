@@ -89,6 +89,7 @@ ErrorId AxisHoming::begin(const AxisCommand& command) noexcept {
             runs_.by_switch.start({.search_velocity = homing.search_velocity,
                                    .latch_velocity = homing.latch_velocity,
                                    .negative = homing.negative,
+                                   .two_sides = body_.config.gantry.square_velocity > 0,
                                    .timeout = homing.timeout},
                                   body_.now);
             break;
@@ -131,9 +132,16 @@ void AxisHoming::step() noexcept {
 
 void AxisHoming::search_home_switch() noexcept {
     const bool seeks_index = runs_.by_switch.phase() == SwitchHoming::Phase::finished && runs_.latch.armed();
-    if (!runs_.by_switch.busy() && !seeks_index) return;
+    if (!runs_.by_switch.busy() && !seeks_index && !runs_.squares) return;
+    if (runs_.squares) {
+        runs_.squares = body_.port.squaring();
+        if (!runs_.squares) end(runs_.by_switch.reference());
+        return;
+    }
     runs_.by_switch.step({.fresh = measured_.feedback.fresh,
                           .home_switch = measured_.feedback.home_switch,
+                          .follower_switch = body_.port.follower_home_switch(),
+                          .follower_ahead = std::llround(body_.port.skew()),
                           .negative_limit = measured_.negative_switch,
                           .positive_limit = measured_.positive_switch,
                           .position = measured_.feedback.position,
@@ -150,7 +158,7 @@ void AxisHoming::search_home_switch() noexcept {
                 }
                 runs_.by_switch.cancel();
                 runs_.step.start(home_search(), body_.now, measured_.counts);
-            } else end(runs_.by_switch.reference());
+            } else take_edge();
             return;
         case SwitchHoming::Phase::failed:
             conduct_.fail(AxisAlarm::homing_failed, static_cast<double>(runs_.by_switch.failed_in()), 0);
@@ -164,6 +172,20 @@ void AxisHoming::search_home_switch() noexcept {
     const double wanted = runs_.by_switch.velocity();
     const double speed = std::min(std::abs(wanted), body_.config.limits.velocity_towards(wanted));
     aim_.at(Goal::Kind::velocity, std::copysign(speed, wanted), dynamics(), VelocityLimiter::command);
+}
+
+/// The edge is the reference; of a portal that is to be squared the other side is led to where its own says.
+void AxisHoming::take_edge() noexcept {
+    const auto& gantry = body_.config.gantry;
+    if (gantry.square_velocity <= 0) return end(runs_.by_switch.reference());
+    const double scale = std::abs(body_.units.counts_per_unit());
+    const double offset = gantry.square_offset * body_.units.counts_per_unit();
+    const auto further = static_cast<std::int64_t>(std::llround(static_cast<double>(runs_.by_switch.follower_behind()) - offset));
+    const double skew = -static_cast<double>(further) / body_.units.counts_per_unit();
+    if (std::abs(skew) > gantry.error) return conduct_.fail(AxisAlarm::gantry_skew, skew, gantry.error);
+    constexpr double ramp = 0.1;  // s
+    body_.port.square(further - std::llround(body_.port.skew()), {gantry.square_velocity * scale, gantry.square_velocity * scale / ramp});
+    runs_.squares = true;
 }
 
 MotionLimits AxisHoming::dynamics() const noexcept {

@@ -46,6 +46,7 @@ public:
 private:
     [[nodiscard]] StepSettings home_search() const noexcept;
     void search_home_switch() noexcept;
+    void take_edge() noexcept;
     [[nodiscard]] MotionLimits dynamics() const noexcept;
     void run_home_search() noexcept;
     void end(std::int64_t reference) noexcept;

@@ -10,6 +10,19 @@ void SwitchHoming::start(const SwitchHomingSettings& settings, Instant now) noex
     phase_ = Phase::search;
 }
 
+void SwitchHoming::Edge::see(bool on, std::int64_t at) noexcept {
+    if (on) was_on = true;
+    if (taken || !was_on || on) return;
+    taken = true;
+    place = at;
+}
+
+void SwitchHoming::take_edges(const SwitchHomingInput& in) noexcept {
+    edges_[0].see(in.home_switch, in.position);
+    if (settings_.two_sides) edges_[1].see(in.follower_switch, in.position + in.follower_ahead);
+    else edges_[1] = edges_[0];
+}
+
 void SwitchHoming::begin(Phase phase) noexcept {
     phase_ = phase;
     stopping_ = false;
@@ -18,7 +31,7 @@ void SwitchHoming::begin(Phase phase) noexcept {
         case Phase::search: velocity_ = sense * settings_.search_velocity; break;
         case Phase::back_off:
             velocity_ = -sense * settings_.latch_velocity;
-            was_on_ = false;
+            edges_ = {};
             break;
         case Phase::leave:
         case Phase::pass_on:
@@ -41,16 +54,18 @@ void SwitchHoming::step(const SwitchHomingInput& in) noexcept {
         return;
     }
     if (!in.fresh) return;
+    const bool any_on = in.home_switch || (settings_.two_sides && in.follower_switch);
+    const bool all_on = in.home_switch && (!settings_.two_sides || in.follower_switch);
     if (!begun_) {
         begun_ = true;
-        begin(in.home_switch ? Phase::leave : Phase::search);
+        begin(any_on ? Phase::leave : Phase::search);
         return;
     }
     const bool forward_limit = settings_.negative ? in.negative_limit : in.positive_limit;
     const bool backward_limit = settings_.negative ? in.positive_limit : in.negative_limit;
     switch (phase_) {
         case Phase::search:
-            if (in.home_switch) stop_then(Phase::back_off);
+            if (all_on) stop_then(Phase::back_off);
             else if (forward_limit) {
                 if (reversed_) fail(Phase::failed);
                 else {
@@ -60,22 +75,20 @@ void SwitchHoming::step(const SwitchHomingInput& in) noexcept {
             }
             break;
         case Phase::back_off:
-            if (in.home_switch) was_on_ = true;
-            if (was_on_ && !in.home_switch) {
-                reference_ = in.position;
-                stop_then(Phase::finished);
-            } else if (backward_limit) fail(Phase::failed);
+            take_edges(in);
+            if (edges_[0].taken && edges_[1].taken) stop_then(Phase::finished);
+            else if (backward_limit) fail(Phase::failed);
             break;
         case Phase::leave:
-            if (!in.home_switch) stop_then(Phase::search);
+            if (!any_on) stop_then(Phase::search);
             else if (backward_limit) fail(Phase::failed);
             break;
         case Phase::pass_on:
-            if (in.home_switch) phase_ = Phase::pass_off;
+            if (any_on) phase_ = Phase::pass_off;
             else if (backward_limit) fail(Phase::failed);
             break;
         case Phase::pass_off:
-            if (!in.home_switch) stop_then(Phase::search);
+            if (!any_on) stop_then(Phase::search);
             else if (backward_limit) fail(Phase::failed);
             break;
         case Phase::idle:

@@ -8,7 +8,11 @@
 //   leave     first of all, when it starts on the switch: the other way until it is off, then search
 //   pass      when a limit switch comes first: the other way over the whole switch, then search again; once only
 // Between two directions the axis stands.
+//
+// Of two sides that move together (a portal) each has a switch: what ends a way is the later of the two on the way on, and on the way off; both edges
+// are taken on the same way back.
 
+#include <array>
 #include <cstdint>
 
 #include "core/time.hpp"
@@ -18,12 +22,15 @@ namespace taktwerk::axes {
 struct SwitchHomingSettings {
     double search_velocity = 0, latch_velocity = 0;  ///< u/s, > 0
     bool negative = true;                            ///< direction of the search
+    bool two_sides = false;                          ///< the follower's switch counts as well
     Duration timeout{};
 };
 
 struct SwitchHomingInput {
     bool fresh = false;  ///< the three switches and the position are new
     bool home_switch = false;
+    bool follower_switch = false;     ///< where there are two sides
+    std::int64_t follower_ahead = 0;  ///< counts, of the same instant
     bool negative_limit = false, positive_limit = false;
     std::int64_t position = 0;  ///< counts, of the same instant as the switches
     bool standing = false;      ///< the set-point is at rest
@@ -46,7 +53,9 @@ public:
     /// The phase in which it failed or ran out of time.
     [[nodiscard]] Phase failed_in() const noexcept { return failed_in_; }
     /// counts at the edge; only when finished.
-    [[nodiscard]] std::int64_t reference() const noexcept { return reference_; }
+    [[nodiscard]] std::int64_t reference() const noexcept { return edges_[0].place; }
+    /// counts that the follower has to go from where it was beside the leader until both edges are side by side; only when finished.
+    [[nodiscard]] std::int64_t follower_behind() const noexcept { return edges_[1].place - edges_[0].place; }
 
 private:
     void stop_then(Phase next) noexcept {
@@ -55,6 +64,7 @@ private:
         stopping_ = true;
     }
     void begin(Phase phase) noexcept;
+    void take_edges(const SwitchHomingInput& in) noexcept;
     void fail(Phase how) noexcept {
         failed_in_ = phase_;
         stop_then(how);
@@ -62,9 +72,14 @@ private:
 
     SwitchHomingSettings settings_;
     Phase phase_ = Phase::idle, next_ = Phase::idle, failed_in_ = Phase::idle;
-    bool stopping_ = false, begun_ = false, reversed_ = false, was_on_ = false;
+    bool stopping_ = false, begun_ = false, reversed_ = false;
     double velocity_ = 0;
-    std::int64_t reference_ = 0;
+    struct Edge {
+        bool was_on = false, taken = false;
+        std::int64_t place = 0;
+        void see(bool on, std::int64_t at) noexcept;
+    };
+    std::array<Edge, 2> edges_{};
     Instant start_{};
 };
 

@@ -95,7 +95,7 @@ struct DriveCapabilities {
     std::uint8_t services = 0;     ///< bit per DriveService
     bool torque_limits_written = false;       ///< they are not mapped, but the drive has them: DriveFeedback says when it has taken them
     bool torque_limit_per_direction = false;  ///< 60E0h and 60E1h; false: 6072h alone, one limit for both directions
-    bool brake = false;  ///< its holding brake is worked by DriveCommand::brake (60FEh)
+    bool brake = false;                       ///< its holding brake is worked by DriveCommand::brake (60FEh)
     double velocity_step = 0;    ///< counts/s between two velocity set-points the drive can tell apart (XP200: 1 r/min); 0 = none
     Duration command_latency{};  ///< worst time from encode() to effect beyond setpoint_effective() (a slow line); 0 = none
 
@@ -111,6 +111,12 @@ enum class PowerRequest : std::uint8_t {
 
 /// What a holding brake is told that the controller works through the drive.
 enum class BrakeRequest : std::uint8_t { none, close, open };
+
+/// How one side of a portal is led to where it is square.
+struct SquaringPace {
+    double velocity = 0;      ///< counts/s, > 0
+    double acceleration = 0;  ///< counts/s2, > 0
+};
 
 enum class ProbeEdge : std::uint8_t { rising, falling };
 
@@ -272,10 +278,18 @@ public:
     [[nodiscard]] virtual DriveAlarm alarm() const noexcept = 0;
 
     // Of two drives on one portal (axes/drives/gantry). Real-time safe.
-    /// Counts that the follower is ahead of the leader, while both have power.
+    /// Counts that the follower is ahead of the leader: of where it was when both got their power, or of square once that is known.
     [[nodiscard]] virtual double skew() const noexcept { return 0; }
     /// One of the two has lost its power; DriveFeedback::power is the other's.
     [[nodiscard]] virtual bool side_lost() const noexcept { return false; }
+    /// The follower's home switch; the leader's is DriveFeedback::home_switch.
+    [[nodiscard]] virtual bool follower_home_switch() const noexcept { return false; }
+    /// The portal is square when the follower is `further` counts on from where it is beside the leader now: skew() counts from there, and
+    /// the follower is led there while both have power.
+    virtual void square(std::int64_t further, const SquaringPace& pace) noexcept { (void)further, (void)pace; }
+    /// It brakes and stays where it is then.
+    virtual void stop_squaring() noexcept {}
+    [[nodiscard]] virtual bool squaring() const noexcept { return false; }
 
     // --- service side; not real-time ------------------------------------------------------------------------------------
     /// Acyclic work of this drive: reading the detail of an alarm, parameters. Resumable, called often.

@@ -21,6 +21,20 @@ Table<axes::GantryConfig> skew_table() {
             {}};
 }
 
+Table<axes::GantryConfig> square_table() {
+    using G = axes::GantryConfig;
+    return {
+        "square",
+        "MC_Home squares the portal: each side has a home switch on its own drive, and the follower is led until both are at their edges.",
+        {
+            required(field("velocity", &G::square_velocity, quantity(Dimension::velocity, 0), "at which the follower is led alone")),
+            field("offset", &G::square_offset, quantity(Dimension::position),
+                  "how much further the follower's switch lies than the leader's where the portal is square"),
+        },
+        {},
+        {}};
+}
+
 }  // namespace
 
 Table<AxisBinding> load_encoder_table() {
@@ -71,6 +85,9 @@ Table<AxisBinding> gantry_table() {
     f.push_back(required(field_at<AxisBinding>(
         "max_skew", [](AxisBinding& b) -> axes::GantryConfig& { return b.axis.gantry; }, section(skew_table()),
         "how far they may be apart")));
+    f.push_back(field_at<AxisBinding>(
+        "square", [](AxisBinding& b) -> axes::GantryConfig& { return b.axis.gantry; }, section(square_table()),
+        "homing squares the portal by the home switches of both sides"));
     table.before = [](Reader&, const Node&, AxisBinding& b) { b.axis.gantry.on = true; };
     return table;
 }

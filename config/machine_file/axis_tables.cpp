@@ -255,6 +255,7 @@ Table<AxisSimulation> axis_simulation_table() {
                       "constant load, such as weight; positive pushes to negative"),
                 field("rated_torque", &S::rated_torque, quantity(Dimension::torque, 0), "of the motor"),
                 field("start", &S::start, quantity(Dimension::position), "where the axis stands at power-on"),
+                field("racked", &S::racked, quantity(Dimension::position), "how far the follower of a gantry is ahead of its leader then"),
                 field_via<S>(
                     "stops", interval(Dimension::position),
                     [](S& s, const Interval& v) { s.negative_stop = v.first, s.positive_stop = v.second; }, "hard stops", "none"),

@@ -73,8 +73,10 @@ const DriveFeedback& GantryPort::decode(Instant now) noexcept {
     both.positive_limit = one.positive_limit || (mirrored_ ? other.negative_limit : other.positive_limit);
     follower_at_ = other.position;
     leader_power_ = one.power;
+    follower_home_switch_ = other.home_switch;
+    if (both.position_epoch != square_epoch_) square_known_ = false;  // its counts mean something else now
     follower_power_ = other.power;
-    skew_ = static_cast<double>(turned(other.position) - one.position - shift_);
+    skew_ = static_cast<double>(turned(other.position) - one.position - (square_known_ ? square_ : shift_));
     join_power(one, other);
     return both;
 }
@@ -98,6 +100,26 @@ void GantryPort::join_power(const DriveFeedback& one, const DriveFeedback& other
     if (!supervised && !side_lost_) skew_ = 0;
 }
 
+void GantryPort::square(std::int64_t further, const SquaringPace& pace) noexcept {
+    const auto between = turned(follower_at_) - feedback_.position;
+    square_ = between + further;
+    square_known_ = true;
+    square_epoch_ = feedback_.position_epoch;
+    pace_ = pace;
+    squaring_.begin(shift_, square_, pace);
+}
+
+/// What has no power is where it is. With power it is led to square, if that is known.
+void GantryPort::lead_to_square(Instant now) noexcept {
+    const bool powered = follower_power_ == PowerState::enabled && feedback_.power == PowerState::enabled && !side_lost_;
+    if (powered && !has_had_power_ && square_known_ && square_ != shift_) squaring_.begin(shift_, square_, pace_);
+    if (!powered && !side_lost_) squaring_.forget();
+    if (side_lost_ || asked_ != PowerRequest::on) squaring_.stop();
+    has_had_power_ = powered;
+    if (squaring_.under_way() && encoded_ != Instant{}) shift_ = squaring_.step(now - encoded_);
+    encoded_ = now;
+}
+
 void GantryPort::encode(const DriveCommand& command, Instant now) noexcept {
     asked_ = command.power;
     const bool on = asked_ == PowerRequest::on;
@@ -113,6 +135,7 @@ void GantryPort::encode(const DriveCommand& command, Instant now) noexcept {
     // Until it has power it is where it is: with its power it gets this as its target.
     if (follower_power_ != PowerState::enabled && follower_power_ != PowerState::quick_stop && !side_lost_)
         shift_ = turned(follower_at_) - command.position;
+    lead_to_square(now);
     other.position = turned(command.position + shift_);
     if (mirrored_) {
         other.velocity = -command.velocity;

@@ -6,12 +6,15 @@
 //                one that has it before the other holds its place
 //   a side falls fault, or power lost while the other has it: the axis is told (fault, side_lost) and sees the other as enabled, so that this one ramps
 //                down with the set-point instead of being let go; the fallen one stays without until power was given back for both
-//   skew         how far the follower is ahead of the leader, beyond what lay between them when power came
+//   skew         how far the follower is ahead of the leader, beyond what lay between them when power came, or, once homing has found it, beyond what lies
+//                between them where the portal is square
+//   square       known until a drive was away; the follower is led there when it is found, and whenever power comes
 //
 // Only cyclic position: what a drive plans by itself, two drives plan differently. Real-time safe where DrivePort is.
 
 #include <memory>
 
+#include "axes/drives/gantry/squaring.hpp"
 #include "axes/port/drive_port.hpp"
 
 namespace taktwerk::axes::gantry {
@@ -29,6 +32,10 @@ public:
     [[nodiscard]] DriveAlarm alarm() const noexcept override;
     [[nodiscard]] double skew() const noexcept override { return skew_; }
     [[nodiscard]] bool side_lost() const noexcept override { return side_lost_; }
+    [[nodiscard]] bool follower_home_switch() const noexcept override { return follower_home_switch_; }
+    void square(std::int64_t further, const SquaringPace& pace) noexcept override;
+    void stop_squaring() noexcept override { squaring_.stop(); }
+    [[nodiscard]] bool squaring() const noexcept override { return squaring_.under_way(); }
 
     void step(Instant now) override;
     [[nodiscard]] ServiceTicket read_parameter(ParameterAddress address) override { return leader_->read_parameter(address); }
@@ -47,6 +54,7 @@ public:
 
 private:
     [[nodiscard]] std::int64_t turned(std::int64_t counts) const noexcept { return mirrored_ ? -counts : counts; }
+    void lead_to_square(Instant now) noexcept;
     void join_power(const DriveFeedback& one, const DriveFeedback& other) noexcept;
     /// What a side that fell is asked for while the other one ramps down.
     [[nodiscard]] PowerRequest request_of_fallen() const noexcept;
@@ -57,7 +65,14 @@ private:
     DriveFeedback feedback_;
     double skew_ = 0;
     bool side_lost_ = false;
-    std::int64_t shift_ = 0;  // follower's counts, turned, minus the leader's, when it got its power
+    std::int64_t shift_ = 0;   // follower's counts, turned, minus the leader's: when it got its power, and as far as it has been led since
+    std::int64_t square_ = 0;  // the same where the portal is square
+    bool square_known_ = false, has_had_power_ = false;
+    std::uint16_t square_epoch_ = 0;  // of the positions from which it is known
+    SquaringPace pace_;
+    Squaring squaring_;
+    Instant encoded_{};
+    bool follower_home_switch_ = false;
     std::int64_t follower_at_ = 0;
     std::int64_t held_ = 0;  // what the leader was told last before it got its power
     PowerState leader_power_ = PowerState::unknown, follower_power_ = PowerState::unknown;
