@@ -308,9 +308,9 @@ std::vector<Error> check(const AxisConfig& config) {
     problems.not_negative("manual.fast", config.manual.fast, "25 % of the velocity limit");
     problems.not_negative("manual.setup_velocity", config.manual.setup_velocity, "manual.slow");
     if (config.queue_depth < 1 || config.queue_depth > 8) problems.add("queue_depth", "must be from 1 to 8", "Leave it out for 4");
-    if (config.stale_limit < 1) problems.add("stale_limit", "must be at least 1 cycle", "Leave it out for 3");
-    if (config.jog_lease <= Duration::zero()) problems.add("jog_lease", "must be above 0", "Leave it out for 200 ms");
-    if (config.enable_timeout <= Duration::zero()) problems.add("enable_timeout", "must be above 0", "Leave it out for 3 s");
+    if (config.patience.feedback < 1) problems.add("stale_limit", "must be at least 1 cycle", "Leave it out for 3");
+    if (config.patience.jog_lease <= Duration::zero()) problems.add("jog_lease", "must be above 0", "Leave it out for 200 ms");
+    if (config.patience.enable <= Duration::zero()) problems.add("enable_timeout", "must be above 0", "Leave it out for 3 s");
     return std::move(problems.found);
 }
 

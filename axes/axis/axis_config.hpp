@@ -210,6 +210,14 @@ struct LoadEncoderConfig {
     bool shown = false;                             ///< the axis' actual position is the load's
 };
 
+/// How long an axis waits for what it needs.
+struct AxisPatience {
+    std::uint16_t feedback = 3;  ///< cycles without fresh feedback until the axis stops in error
+    std::uint16_t feed = 3;      ///< cycles without a fed set-point that a moving axis bridges at its velocity; then it brakes
+    Duration jog_lease = std::chrono::milliseconds{200};
+    Duration enable = std::chrono::seconds{3};  ///< for its power stage
+};
+
 struct AxisConfig {
     std::string name;
     std::string unit = "mm";
@@ -227,16 +235,13 @@ struct AxisConfig {
     BrakeConfig brake;
     GantryConfig gantry;
     LoadEncoderConfig load_encoder;
-    ErrorReactions reactions;       ///< to its alarms, where others are chosen than those of the alarm table
-    bool require_homed = true;      ///< absolute moves need a homed axis
-    bool disabled = false;          ///< left out while commissioning: its drive is never enabled
-    bool encoder = false;           ///< only measures: no drive to enable, takes no motion, may be a master (limits.velocity: its fastest)
-    bool simulated = false;         ///< its drive is simulated although the bus is real
-    std::uint8_t queue_depth = 4;   ///< buffered commands, 1..8
-    std::uint16_t stale_limit = 3;  ///< cycles without fresh feedback until the axis stops in error
-    std::uint16_t feed_patience = 3;  ///< cycles without a fed set-point that a moving axis bridges at its velocity; then it brakes
-    Duration jog_lease = std::chrono::milliseconds{200};
-    Duration enable_timeout = std::chrono::seconds{3};
+    ErrorReactions reactions;      ///< to its alarms, where others are chosen than those of the alarm table
+    bool require_homed = true;     ///< absolute moves need a homed axis
+    bool disabled = false;         ///< left out while commissioning: its drive is never enabled
+    bool encoder = false;          ///< only measures: no drive to enable, takes no motion, may be a master (limits.velocity: its fastest)
+    bool simulated = false;        ///< its drive is simulated although the bus is real
+    std::uint8_t queue_depth = 4;  ///< buffered commands, 1..8
+    AxisPatience patience;
 };
 
 /// Alarms after which one side of a gantry stands alone: nobody holds the portal with it for long.

@@ -48,7 +48,7 @@ bool AxisPower::run() noexcept {
             if (turns_by_itself())
                 conduct_.fail(AxisAlarm::motor_turns, body_.shown.actual_velocity, turning_by_itself * body_.config.limits.velocity);
             else
-                conduct_.fail(AxisAlarm::enable_timeout, to_seconds(body_.config.enable_timeout),
+                conduct_.fail(AxisAlarm::enable_timeout, to_seconds(body_.config.patience.enable),
                               static_cast<double>(measured_.feedback.power));
             break;
         case PowerSequence::Event::lost:

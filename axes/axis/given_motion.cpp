@@ -191,7 +191,7 @@ bool GivenMotion::follow_feed(Duration period) noexcept {
         motion_.setpoint.set({now.position, 0, 0});
         return true;
     }
-    if (++feed_.missing > body_.config.feed_patience) return false;
+    if (++feed_.missing > body_.config.patience.feed) return false;
     motion_.setpoint.set({now.position + now.velocity * to_seconds(period), now.velocity, 0});
     return true;
 }

@@ -11,9 +11,9 @@ namespace taktwerk::axes {
 
 void JogLease::watch() noexcept {
     const auto& active = body_.queue.active();
-    if (active.command.kind != CommandKind::jog || expired_ || body_.now - renewed_ < body_.config.jog_lease) return;
+    if (active.command.kind != CommandKind::jog || expired_ || body_.now - renewed_ < body_.config.patience.jog_lease) return;
     expired_ = true;
-    conduct_.fail(AxisAlarm::jog_lease_expired, to_seconds(body_.config.jog_lease));
+    conduct_.fail(AxisAlarm::jog_lease_expired, to_seconds(body_.config.patience.jog_lease));
     if (body_.state == AxisState::ErrorStop) return;  // where a harder reaction is chosen
     body_.begin_pending = false;
     aim_.at_velocity(0, dynamics_of(active.command, body_.config.limits, body_.config.defaults));

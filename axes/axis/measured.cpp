@@ -8,7 +8,7 @@ namespace {
 
 std::uint32_t stale_cycles(const AxisConfig& config, const DriveCapabilities& drive, Duration cycle) {
     const auto polls = cycle > Duration::zero() ? std::max<std::int64_t>(1, drive.feedback_period / cycle) : 1;
-    return static_cast<std::uint32_t>(config.stale_limit * polls);
+    return static_cast<std::uint32_t>(config.patience.feedback * polls);
 }
 
 }  // namespace

@@ -448,14 +448,19 @@ Table<AxisBinding> axis_table() {
               "it only measures (`limits.velocity`: its fastest): never powered, takes no motion, may be the master of other axes"),
         field("simulated", &A::simulated, boolean(), "its drive is simulated although the bus is real"),
         field("queue_depth", &A::queue_depth, integer<std::uint8_t>(1, 8), "buffered motions"),
-        field("stale_limit", &A::stale_limit, integer<std::uint16_t>(1, 1000),
-              "cycles (on a serial line: rounds of questions) without fresh feedback until the axis stops in error"),
-        field("feed_patience", &A::feed_patience, integer<std::uint16_t>(0, 1000),
-              "set-points from outside that may miss in a row while the axis moves; then it brakes"),
-        field("jog_lease", &A::jog_lease, duration(std::chrono::milliseconds{100}, std::chrono::seconds{5}),
-              "a jogging client must repeat its command within this time (ours repeat each 50 ms)"),
-        field("enable_timeout", &A::enable_timeout, duration(std::chrono::milliseconds{1}, std::chrono::seconds{60}),
-              "a drive that takes longer to enable is an alarm"),
+        field_at<A>(
+            "stale_limit", [](A& a) -> std::uint16_t& { return a.patience.feedback; }, integer<std::uint16_t>(1, 1000),
+            "cycles (on a serial line: rounds of questions) without fresh feedback until the axis stops in error"),
+        field_at<A>(
+            "feed_patience", [](A& a) -> std::uint16_t& { return a.patience.feed; }, integer<std::uint16_t>(0, 1000),
+            "set-points from outside that may miss in a row while the axis moves; then it brakes"),
+        field_at<A>(
+            "jog_lease", [](A& a) -> Duration& { return a.patience.jog_lease; },
+            duration(std::chrono::milliseconds{100}, std::chrono::seconds{5}),
+            "a jogging client must repeat its command within this time (ours repeat each 50 ms)"),
+        field_at<A>(
+            "enable_timeout", [](A& a) -> Duration& { return a.patience.enable; },
+            duration(std::chrono::milliseconds{1}, std::chrono::seconds{60}), "a drive that takes longer to enable is an alarm"),
     };
     include_fields(f, axis, Table<A>{{}, {}, std::move(own), {}, {}});
     f.push_back(field_at<AxisBinding>(

@@ -3,7 +3,7 @@
 //
 //   * Level based: the axis moves while an input is TRUE. Forward wins when both become TRUE in one call. While it moves or still
 //     brakes the other input, or the same one pressed again, has no effect; pressed still at standstill, it starts then.
-//   * Each call renews the axis' jog lease; a program that is no longer called stops the axis after it (AxisConfig::jog_lease).
+//   * Each call renews the axis' jog lease; a program that is no longer called stops the axis after it (AxisPatience::jog_lease).
 //   * Releasing halts with Deceleration and Jerk, then Done for one call.
 //   * After Error or CommandAborted both inputs must be released before it moves again.
 //   * Slow and fast take the axis' configured manual velocities and default dynamics; continuous takes the block's, and follows Velocity.

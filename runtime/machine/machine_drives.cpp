@@ -72,7 +72,8 @@ void MachineDrives::build_axes() {
     body_.axes.reserve(config.axes.size());
     for (std::size_t i = 0; i < config.axes.size(); ++i) {
         auto axis = config.axes[i].axis;
-        axis.stale_limit = static_cast<std::uint16_t>(std::min<std::uint32_t>(supervised_limit(config, axis.stale_limit), 60000));
+        axis.patience.feedback =
+            static_cast<std::uint16_t>(std::min<std::uint32_t>(supervised_limit(config, axis.patience.feedback), 60000));
         if (axis.load_encoder.on)
             axis.load_encoder.input = static_cast<std::uint16_t>(body_.io.find(IoDirection::input, config.axes[i].load_input));
         if (axis.brake.by == axes::BrakeBy::output)

@@ -268,7 +268,7 @@ TEST(MachineLoader, AnAxisHasItsPositionLoopCompensationAndMemory) {
     EXPECT_EQ(loop.compensation.pitch[0].position, -10);
     EXPECT_EQ(loop.compensation.pitch[1].position, 100);
     EXPECT_DOUBLE_EQ(loop.compensation.pitch[1].correction, -0.015);
-    EXPECT_EQ(loop.feed_patience, 0);
+    EXPECT_EQ(loop.patience.feed, 0);
     EXPECT_TRUE(loop.memory.absolute);
     EXPECT_EQ(loop.memory.range, 1 << 24);
     EXPECT_EQ(loop.memory.moved_while_off, 5);
@@ -277,7 +277,7 @@ TEST(MachineLoader, AnAxisHasItsPositionLoopCompensationAndMemory) {
     EXPECT_EQ(plain.control.mode, axes::ControlMode::position);
     EXPECT_EQ(plain.control.feed_forward, 1);
     EXPECT_TRUE(plain.compensation.pitch.empty());
-    EXPECT_EQ(plain.feed_patience, 3);
+    EXPECT_EQ(plain.patience.feed, 3);
     EXPECT_FALSE(plain.memory.absolute);
     EXPECT_FALSE(plain.control.integral.used());
     EXPECT_FALSE(plain.control.load.used());
@@ -321,6 +321,8 @@ TEST(MachineLoader, AGantryHasTwoSidesAndALoadItsEncoder) {
     EXPECT_TRUE(y.axis.gantry.on);
     EXPECT_EQ(y.axis.gantry.warning, 0.3);
     EXPECT_EQ(y.axis.gantry.error, 1);
+    EXPECT_EQ(y.axis.gantry.square_velocity, 2);
+    EXPECT_EQ(y.axis.gantry.square_offset, -0.05);
     EXPECT_EQ(y.follower.slave, "right");
     EXPECT_TRUE(y.follower.mirrored);
     EXPECT_EQ(y.follower.profile, y.profile);
@@ -328,6 +330,7 @@ TEST(MachineLoader, AGantryHasTwoSidesAndALoadItsEncoder) {
     const auto sides = sides_of(machine.axes);
     ASSERT_EQ(sides.size(), 2u);
     EXPECT_EQ(sides[1].axis.name, "y.follower");
+    EXPECT_EQ(sides[1].simulation.start, 0.5);
     EXPECT_TRUE(sides[1].axis.gearing.inverted);
     EXPECT_FALSE(sides[1].axis.gantry.on);
     const auto& load = y.axis.load_encoder;

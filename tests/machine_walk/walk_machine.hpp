@@ -66,7 +66,7 @@ inline MachineConfig walk_machine(axes::test::Dice& dice, const ProgramEntry* (*
         axis.control.feed_forward = dice.once_in(3) ? 0 : 1;
         axis.control.rated_acceleration = 10106;  // tests/runtime/control_modes_machine.cpp
         axis.gearing.inverted = axis.homing.kind == axes::HomingKind::set_here && dice.once_in(3);
-        axis.jog_lease = 200ms;
+        axis.patience.jog_lease = 200ms;
         simulation.start = 50;
         simulation.negative_limit = -2000;
         simulation.positive_limit = 2000;

@@ -171,7 +171,7 @@ TEST(ControllerMode, ADriveThatDoesNotTakeItIsAnErrorAfterATime) {
 TEST(ControllerMode, AChangeTakenBackBeforeTheDriveShowedItMovesNothing) {
     auto config = plain_axis();
     config.control.kv = 20;
-    config.stale_limit = 10;
+    config.patience.feedback = 10;
     for (const auto mode : {DriveMode::cyclic_position, DriveMode::cyclic_velocity}) {
         Rig rig(config);
         rig.drive.lag = 30;
@@ -200,7 +200,7 @@ TEST(ControllerMode, AChangeTakenBackBeforeTheDriveShowedItMovesNothing) {
 TEST(ControllerMode, ATorqueGivenUpBeforeTheDriveShowedItLetsTheMotionGoOn) {
     auto config = plain_axis();
     config.control.rated_acceleration = 2000;
-    config.stale_limit = 10;
+    config.patience.feedback = 10;
     Rig rig(config);
     rig.drive.lag = 30;
     rig.power_on();

@@ -259,7 +259,7 @@ TEST(JogAndAddition, StayBetweenTheSoftwareLimits) {
         config.limits.position_min = -10;
         config.limits.position_max = 10;
         config.homing.kind = HomingKind::set_here;
-        config.jog_lease = 50ms;
+        config.patience.jog_lease = 50ms;
         Rig rig(config);
         rig.power_on();
         rig.accept(home(0));

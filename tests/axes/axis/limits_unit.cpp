@@ -131,7 +131,7 @@ TEST(SoftwareLimits, MovedWithTheCoordinatesOfAMovingAxisTheyStopItAndItDoesNotR
                 for (const bool by_jog : {false, true}) {
                     auto config = fenced();
                     config.limits.jerk = jerk;
-                    config.jog_lease = 10s;
+                    config.patience.jog_lease = 10s;
                     FencedRig rig(config);
                     const double sense = velocity > 0 ? 1 : -1;
                     const auto id = rig.accept(by_jog ? jog(velocity) : at_velocity(velocity));

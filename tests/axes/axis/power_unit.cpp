@@ -67,7 +67,7 @@ TEST(AxisPower, IsNotAskedForBeforeTheSetpointHasComeBack) {
 // Turned by hand, further than the axis would go in the time that the drive has to switch on.
 TEST(AxisPower, IsNotRefusedForAWayThatSomebodyTurnedTheMotor) {
     auto config = plain_axis();
-    config.enable_timeout = 2s;
+    config.patience.enable = 2s;
     Rig rig(config);
     rig.power_on();
     rig.enable = false;
@@ -85,7 +85,7 @@ TEST(AxisPower, IsNotRefusedForAWayThatSomebodyTurnedTheMotor) {
 // P1-022: a bus that comes up late is no enable timeout (the time runs from when the drive can be asked), and no Standstill without feedback.
 TEST(AxisPower, WaitsForALateBusWithoutAnError) {
     auto config = plain_axis();
-    config.enable_timeout = 100ms;
+    config.patience.enable = 100ms;
     Rig rig(config, [](FakeDrive& drive) { drive.offline = true; });
     rig.enable = true;
     rig.run(1000);
@@ -101,7 +101,7 @@ TEST(AxisPower, IsNotAskedForWhileTheMotorTurnsFast) {
     for (const double velocity : {11.0, 50.0, 99.0, 101.0, 150.0, -60.0}) {  // u/s; the axis' limit is 100
         SCOPED_TRACE(velocity);
         auto config = plain_axis();
-        config.enable_timeout = 500ms;
+        config.patience.enable = 500ms;
         Rig rig(config);
         rig.drive.coasting = velocity;  // 1000 counts a unit, 1 ms a cycle
         rig.run(100);
@@ -149,7 +149,7 @@ TEST(AxisPower, ComesWhenTheMotorHasCoastedOut) {
 // P1-117 asks that a drive that never enables hangs nothing; we make it an axis error after enable_timeout.
 TEST(AxisPower, DriveThatNeverEnablesIsAnErrorAfterTheTimeout) {
     auto config = plain_axis();
-    config.enable_timeout = 500ms;
+    config.patience.enable = 500ms;
     Rig rig(config, [](FakeDrive& drive) { drive.refuses_power = true; });
     rig.run(1);
     rig.enable = true;

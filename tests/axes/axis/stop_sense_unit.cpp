@@ -195,7 +195,7 @@ TEST(StopSense, OfAnAdditionAlone) {
 // the addition knows nothing of it.
 TEST(StopSense, OfABaseThatTurnsRoundBesideAnAddition) {
     auto config = plain_axis();
-    config.jog_lease = 10ms;
+    config.patience.jog_lease = 10ms;
     int turning = 0;
     for (int renewals = 20; renewals < 60; ++renewals) {
         SCOPED_TRACE(renewals);

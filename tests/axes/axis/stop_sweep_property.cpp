@@ -22,7 +22,7 @@ constexpr std::array configurations{"jerk-limited", "trapezoidal", "small decele
 AxisConfig configured(std::size_t which) {
     auto config = plain_axis();
     config.control.rated_acceleration = 2000;
-    config.jog_lease = 100ms;
+    config.patience.jog_lease = 100ms;
     config.homing = {.kind = HomingKind::home_switch, .search_velocity = 60, .latch_velocity = 5, .acceleration = 800};
     if (which == 1) config.limits.jerk = std::numeric_limits<double>::infinity();
     if (which == 2) {

@@ -54,7 +54,7 @@ inline AxisConfig any_axis(Dice& dice) {
     if (dice.once_in(3)) config.following.window = 3;
     config.require_homed = dice.once_in(6);
     config.queue_depth = static_cast<std::uint8_t>(1 + dice.below(8));
-    config.jog_lease = 50ms;
+    config.patience.jog_lease = 50ms;
     return config;
 }
 

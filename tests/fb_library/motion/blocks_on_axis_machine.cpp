@@ -13,7 +13,7 @@ axes::AxisConfig gentle_axis() {
     auto config = Plc::roomy_axis();
     config.limits = {.velocity = 100, .acceleration = 1000, .deceleration = 1000, .jerk = 20000};
     config.manual = {.slow = 5, .fast = 25};
-    config.jog_lease = 200ms;
+    config.patience.jog_lease = 200ms;
     return config;
 }
 
@@ -58,7 +58,7 @@ TEST_F(JogOnAxis, StopsWhenTheProgramIsNoLongerCalled) {
     plc.run_for(300ms);
     ASSERT_NEAR(plc.velocity(), 5, 1e-9);
     plc.calls_blocks = false;
-    plc.run_for(gentle_axis().jog_lease + 100ms);
+    plc.run_for(gentle_axis().patience.jog_lease + 100ms);
     EXPECT_EQ(plc.velocity(), 0);
 
     plc.calls_blocks = true;
