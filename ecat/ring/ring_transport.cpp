@@ -33,26 +33,31 @@ bool auto_increments(std::byte command) noexcept {
 
 }  // namespace
 
+/// What is looked through in each cycle lies close together; the frames themselves elsewhere.
 struct RingTransport::Flight {
+    using Buffer = std::array<std::byte, max_frame_size>;
     struct Copy {
-        std::array<std::byte, max_frame_size> sent, came;
+        Buffer sent, came;
+    };
+    struct Fate {
         bool left = false;       ///< its interface took it
         bool back = false;       ///< it has arrived ...
+        bool touched = false;    ///< (some slave may have changed it)
         std::size_t at = first;  ///< ... at this interface
-        bool touched = false;    ///< and some slave may have changed it
         Instant arrival{};
     };
-    std::array<Copy, copies> copy;
     std::size_t size = 0;   ///< 0: free
     std::size_t clock = 0;  ///< offset of the datagram with the reference time; 0: none
+    std::byte index{};      ///< of the first datagram
     Instant sent_at{};
+    std::array<Fate, copies> fate{};
+    std::unique_ptr<std::array<Copy, copies>> copy = std::make_unique<std::array<Copy, copies>>();
 
     [[nodiscard]] FrameCopy half(std::size_t n) const noexcept {
-        const auto sent = std::span<const std::byte>{copy[n].sent}.first(size);
-        return {sent, copy[n].back && copy[n].touched ? std::span<const std::byte>{copy[n].came}.first(size) : sent};
+        const auto sent = std::span<const std::byte>{(*copy)[n].sent}.first(size);
+        return {sent, fate[n].back && fate[n].touched ? std::span<const std::byte>{(*copy)[n].came}.first(size) : sent};
     }
-    [[nodiscard]] bool went_round(std::size_t n) const noexcept { return copy[n].back && copy[n].at != n; }
-    [[nodiscard]] std::byte index() const noexcept { return copy[first].sent[index_at]; }
+    [[nodiscard]] bool went_round(std::size_t n) const noexcept { return fate[n].back && fate[n].at != n; }
 };
 
 RingTransport::RingTransport(Transport& one, Transport& other, Duration patience)
@@ -80,19 +85,18 @@ RingTransport::Flight& RingTransport::free_flight() noexcept {
 bool RingTransport::send(std::span<const std::byte> frame, Instant now) noexcept {
     if (frame.size() <= index_at || frame.size() > max_frame_size) return false;
     for (auto& flight : *flights_)  // an index that is used again: nobody waits for the frame before
-        if (flight.size != 0 && flight.index() == frame[index_at]) flight.size = 0;
+        if (flight.size != 0 && flight.index == frame[index_at]) flight.size = 0;
     Flight& flight = free_flight();
     prepare(flight, frame);
     flight.sent_at = now;
     bool left = false;
     for (std::size_t n = 0; n < copies; ++n) {
-        auto& copy = flight.copy[n];
-        copy.back = copy.touched = false;
-        copy.left = ends_[n]->send(std::span<const std::byte>{copy.sent}.first(frame.size()), now);
-        left = left || copy.left;
-        statistics_.unsent += copy.left ? 0 : 1;
+        auto& fate = flight.fate[n] = {};
+        fate.left = ends_[n]->send(std::span<const std::byte>{(*flight.copy)[n].sent}.first(frame.size()), now);
+        left = left || fate.left;
+        statistics_.unsent += fate.left ? 0 : 1;
     }
-    first_took_ = flight.copy[first].left;
+    first_took_ = flight.fate[first].left;
     if (!left) flight.size = 0;
     return left;
 }
@@ -100,7 +104,8 @@ bool RingTransport::send(std::span<const std::byte> frame, Instant now) noexcept
 void RingTransport::prepare(Flight& flight, std::span<const std::byte> frame) noexcept {
     flight.size = frame.size();
     flight.clock = 0;
-    auto& [one, other] = flight.copy;
+    flight.index = frame[index_at];
+    auto& [one, other] = *flight.copy;
     copy(frame, one.sent);
     copy(frame, other.sent);
     for (std::size_t i = 0; i < sources_[second].size(); ++i)
@@ -121,7 +126,7 @@ void RingTransport::prepare(Flight& flight, std::span<const std::byte> frame) no
 void RingTransport::set_clock(Flight& flight, std::size_t at) noexcept {
     flight.clock = at;
     const std::size_t away = home_of_reference_ == first ? second : first;
-    auto& sent = flight.copy[away].sent;
+    auto& sent = (*flight.copy)[away].sent;
     if (away == first || !clocks_.hand_on) {
         sent[at] = static_cast<std::byte>(Command::FPRD);
         return;
@@ -141,11 +146,11 @@ std::optional<ReceivedFrame> RingTransport::receive(std::span<std::byte> buffer,
         Flight* complete = take(std::span<const std::byte>{buffer}.first(received->size), asked_, received->at, ours);
         if (!ours) return received;  // whoever matches answers says what it is
         if (complete == nullptr) continue;
-        const Instant arrival = std::max(complete->copy[first].arrival, complete->copy[second].arrival);
+        const Instant arrival = std::max(complete->fate[first].arrival, complete->fate[second].arrival);
         return ReceivedFrame{give_back(*complete, buffer), arrival};
     }
     if (Flight* single = overdue(now)) {
-        const Instant arrival = single->copy[single->copy[first].back ? first : second].arrival;
+        const Instant arrival = single->fate[single->fate[first].back ? first : second].arrival;
         return ReceivedFrame{give_back(*single, buffer), arrival};
     }
     asked_ = first;
@@ -157,33 +162,32 @@ RingTransport::Flight* RingTransport::take(std::span<const std::byte> frame, std
     if (!is_twin && !comes_from(frame, sources_[first])) return nullptr;
     const std::size_t n = is_twin ? second : first;
     const auto found =
-        std::find_if(flights_->begin(), flights_->end(), [&](const Flight& f) { return f.size != 0 && f.index() == frame[index_at]; });
+        std::find_if(flights_->begin(), flights_->end(), [&](const Flight& f) { return f.size != 0 && f.index == frame[index_at]; });
     ours = true;
-    if (found == flights_->end() || found->copy[n].back) {
+    if (found == flights_->end() || found->fate[n].back) {
         ++statistics_.late_copies;
         return nullptr;
     }
-    auto& copy = found->copy[n];
-    if (!same_datagrams({std::span<const std::byte>{copy.sent}.first(found->size), frame})) {
+    auto& [sent, came] = (*found->copy)[n];
+    if (!same_datagrams({std::span<const std::byte>{sent}.first(found->size), frame})) {
         ++statistics_.mangled;
         ours = is_twin;  // one that says that it is the frame sent is rejected by name
         return nullptr;
     }
-    copy.back = true;
-    copy.at = end;
-    copy.arrival = at;
     // Past every processing unit: nothing in it. Where the address has the mark itself, only a look at all bytes would tell.
-    const bool marked = (static_cast<std::uint8_t>(copy.sent[frame_field::source]) & frame_field::passed_a_slave) != 0;
-    copy.touched = marked || (static_cast<std::uint8_t>(frame[frame_field::source]) & frame_field::passed_a_slave) != 0;
-    if (copy.touched) ecat::copy(frame.first(found->size), copy.came);
-    const bool complete = found->went_round(first) || (found->copy[first].back && found->copy[second].back);
+    const auto marked = [](std::span<const std::byte> f) {
+        return (static_cast<unsigned>(f[frame_field::source]) & frame_field::passed_a_slave) != 0;
+    };
+    found->fate[n] = {.left = true, .back = true, .touched = marked(sent) || marked(frame), .at = end, .arrival = at};
+    if (found->fate[n].touched) copy(frame.first(found->size), came);
+    const bool complete = found->went_round(first) || (found->fate[first].back && found->fate[second].back);
     return complete ? &*found : nullptr;
 }
 
 RingTransport::Flight* RingTransport::overdue(Instant now) noexcept {
     for (auto& flight : *flights_) {
-        if (flight.size == 0 || (!flight.copy[first].back && !flight.copy[second].back)) continue;
-        const auto& missing = flight.copy[flight.copy[first].back ? second : first];
+        if (flight.size == 0 || (!flight.fate[first].back && !flight.fate[second].back)) continue;
+        const auto& missing = flight.fate[flight.fate[first].back ? second : first];
         if (!missing.left || now - flight.sent_at >= patience_) return &flight;
     }
     return nullptr;
@@ -203,7 +207,7 @@ std::size_t RingTransport::give_back(Flight& flight, std::span<std::byte> buffer
 }
 
 void RingTransport::learn(const Flight& flight) noexcept {
-    const auto& [one, other] = flight.copy;
+    const auto& [one, other] = flight.fate;
     if (!one.back && flight.went_round(second)) return;  // the frame itself got lost: that says nothing
     const RingShape before = state_.shape;
     if (flight.went_round(first)) {

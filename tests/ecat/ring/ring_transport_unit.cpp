@@ -189,6 +189,28 @@ TEST(RingTransport, AMangledCopyIsNotMerged) {
     EXPECT_EQ(bus.ring.statistics().mangled, 1u);
 }
 
+// At the moment of mending one copy may go all the way round while its twin comes back from a half that is no more.
+TEST(RingTransport, WhatWentRoundHasMetEverybodyAndItsTwinDoesNotCount) {
+    RingProbe bus{slaves};
+    ASSERT_TRUE(bus.count());
+    bus.cable(4, false);
+    bus.first.faults.drop_answers = 1;
+    bus.send(Command::BRD, Address::physical(0, reg::type), Bytes(1));  // its twin has met two slaves
+    std::array<std::byte, min_frame_size> round{};
+    MacAddress source = bus.ring.mac();
+    source[0] |= 0x02;
+    FrameBuilder builder{round, source};
+    builder.add(Command::BRD, bus.index, Address::physical(slaves, reg::type), 1);
+    (void)builder.finish();
+    store_le(std::span{round}, 16 + 10 + 1, static_cast<std::uint16_t>(slaves));  // the working counter, behind one byte of data
+    bus.second.inject(round, bus.now + 10us);
+    bus.now += 1ms;
+    const auto answer = bus.receive();
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->wkc, slaves);
+    EXPECT_EQ(answer->adp, slaves);
+}
+
 TEST(RingTransport, FramesOfOthersPassAsTheyAre) {
     RingProbe bus{slaves};
     std::array<std::byte, min_frame_size> buffer{};
