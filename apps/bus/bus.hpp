@@ -13,6 +13,7 @@
 #include "ecat/diagnosis/port_errors.hpp"
 #include "ecat/diagnosis/survey.hpp"
 #include "ecat/diagnosis/why_not_op.hpp"
+#include "ecat/esi/esi_folder.hpp"
 
 namespace taktwerk::apps {
 
@@ -23,14 +24,17 @@ void add_bus_sdo(CLI::App& bus, Action& action);
 void add_bus_clocks(CLI::App& bus, Action& action);
 void add_bus_counters(CLI::App& bus, Action& action);
 void add_bus_why(CLI::App& bus, Action& action);
+void add_bus_init(CLI::App& bus, Action& action);
 
 /// The options that every sub-command has.
 [[nodiscard]] std::shared_ptr<BusOptions> add_bus_options(CLI::App& sub);
 /// --operational, --yes: for what is worth looking at in OP, too.
 void add_operational(CLI::App& sub, BusOptions& options);
 
-[[nodiscard]] std::string scan_text(const std::string& where, const ecat::Survey& survey, Colours colours);
-[[nodiscard]] Json scan_json(const ecat::Survey& survey);
+/// `vendors`: files that say who a slave is; nullptr: none.
+[[nodiscard]] std::string scan_text(const std::string& where, const ecat::Survey& survey, Colours colours,
+                                    const ecat::esi::EsiFolder* vendors = nullptr);
+[[nodiscard]] Json scan_json(const ecat::Survey& survey, const ecat::esi::EsiFolder* vendors = nullptr);
 [[nodiscard]] std::string state_text(const std::string& where, const ecat::Survey& survey, Colours colours);
 [[nodiscard]] std::string pdo_text(const ecat::PdoReport& report, Colours colours);
 [[nodiscard]] Json pdo_json(const ecat::PdoReport& report);

@@ -1,12 +1,15 @@
 // taktwerk bus scan: the tree of slaves, each with what it says of itself.
 
 #include <cstdio>
+#include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "apps/bus/bus.hpp"
 #include "apps/terminal/count_text.hpp"
 #include "apps/terminal/exit_code.hpp"
+#include "apps/terminal/print_error.hpp"
 #include "apps/terminal/terminal_text.hpp"
 
 namespace taktwerk::apps {
@@ -63,6 +66,14 @@ std::string abilities(const SurveyedSlave& slave) {
     return text;
 }
 
+/// What the vendor calls it, from which file, and whether that is of the slave's own revision.
+std::string vendor_text(const ecat::esi::EsiKnown& known, std::uint32_t revision) {
+    const auto& heading = known.heading;
+    auto text = fmt::format("{}{}{} ({})", heading.type, heading.name.empty() ? "" : ": ", heading.name, known.file);
+    if (heading.identity.revision != revision) text += fmt::format(", described for revision {:08X}h", heading.identity.revision);
+    return text;
+}
+
 Json port_json(const Survey& survey, std::size_t position, unsigned p) {
     const auto& port = survey.slaves[position].ports[p];
     Json json{{"port", p},
@@ -83,7 +94,7 @@ Json port_json(const Survey& survey, std::size_t position, unsigned p) {
 
 }  // namespace
 
-std::string scan_text(const std::string& where, const Survey& survey, Colours colours) {
+std::string scan_text(const std::string& where, const Survey& survey, Colours colours, const ecat::esi::EsiFolder* vendors) {
     std::string out = toned(where, Tone::strong, colours) + ": " + count_text(survey.slaves.size(), "slave") +
                       (survey.ring.shape == ecat::RingShape::closed ? ", a closed ring"
                        : survey.ring.broken()                       ? ", a broken ring"
@@ -116,6 +127,9 @@ std::string scan_text(const std::string& where, const Survey& survey, Colours co
         if (!slave.found.error)
             out += line + fmt::format("vendor {:08X}h product {:08X}h revision {:08X}h serial {}\n", id.vendor, id.product, id.revision,
                                       id.serial);
+        if (const auto* known = vendors != nullptr && !slave.found.error ? vendors->find(id) : nullptr)
+            out += line + cut(vendor_text(*known, id.revision), 80 - columns(line)) + "\n";
+        else if (vendors != nullptr && !slave.found.error) out += line + "no file describes it\n";
         if (const auto ports = ports_text(survey, i); !ports.empty()) out += line + "port " + ports + "\n";
         if (slave.ebus_left)
             out += line +
@@ -132,7 +146,7 @@ std::string scan_text(const std::string& where, const Survey& survey, Colours co
     return out + remarks_text(survey, colours);
 }
 
-Json scan_json(const Survey& survey) {
+Json scan_json(const Survey& survey, const ecat::esi::EsiFolder* vendors) {
     Json slaves = Json::array();
     for (std::size_t i = 0; i < survey.slaves.size(); ++i) {
         const auto& slave = survey.slaves[i];
@@ -160,6 +174,12 @@ Json scan_json(const Survey& survey) {
         if (survey.topology && survey.topology->slaves[i].parent) json["parent"] = *survey.topology->slaves[i].parent;
         json["ports"] = Json::array();
         for (unsigned p = 0; p < ecat::ports_per_slave; ++p) json["ports"].push_back(port_json(survey, i, p));
+        if (const auto* known = vendors != nullptr ? vendors->find(id) : nullptr)
+            json["esi"] = {{"type", known->heading.type},
+                           {"name", known->heading.name},
+                           {"vendor", known->vendor},
+                           {"revision", known->heading.identity.revision},
+                           {"file", known->file}};
         if (!slave.name.empty()) json["name"] = slave.name;
         if (!slave.expected.empty()) json["expected"] = slave.expected;
         if (slave.mismatch) json["mismatch"] = error_json(*slave.mismatch);
@@ -171,12 +191,33 @@ Json scan_json(const Survey& survey) {
     return Json{{"slaves", std::move(slaves)}, {"ring", ecat::name(survey.ring.shape)}, {"remarks", std::move(remarks)}};
 }
 
+namespace {
+
+/// --esi DIR. Nothing and ok: it was not asked for.
+Result<std::optional<ecat::esi::EsiFolder>> vendors_in(const std::string& folder) {
+    if (folder.empty()) return std::optional<ecat::esi::EsiFolder>{};
+    auto found = ecat::esi::EsiFolder::open(folder);
+    if (!found) return found.error();
+    for (const auto& damaged : found->damaged()) print_warning(damaged);
+    return std::optional<ecat::esi::EsiFolder>(std::move(*found));
+}
+
+}  // namespace
+
 void add_bus_scan(CLI::App& bus, Action& action) {
     auto* sub = bus.add_subcommand("scan", "the tree of slaves: identity, name, state, ports, abilities; changes nothing on a running bus");
     auto options = add_bus_options(*sub);
+    auto folder = std::make_shared<std::string>();
     add_operational(*sub, *options);
-    sub->callback([&action, options] {
-        action = [options] {
+    sub->add_option("--esi", *folder, "a folder of vendors' ESI files (XML), which say who foreign slaves are")->type_name("DIR");
+    sub->callback([&action, options, folder] {
+        action = [options, folder]() -> int {
+            const auto vendors = vendors_in(*folder);
+            if (!vendors) {
+                fail(*options, vendors.error());
+                return exit_bad_file;
+            }
+            const auto* known = *vendors ? &**vendors : nullptr;
             return with_bus(*options, [&](BusSession& session) {
                 Result<ecat::Survey> found = session.look();
                 if (found && options->operational) {
@@ -184,8 +225,8 @@ void add_bus_scan(CLI::App& bus, Action& action) {
                     found = session.look();
                 }
                 if (!found) return fail(*options, found.error());
-                if (options->json) print_json(scan_json(*found));
-                else fmt::print("{}", scan_text(session.where(), *found, colours_of_output()));
+                if (options->json) print_json(scan_json(*found, known));
+                else fmt::print("{}", scan_text(session.where(), *found, colours_of_output(), known));
                 return static_cast<int>(has_problems(*found) ? exit_bus : exit_ok);
             });
         };

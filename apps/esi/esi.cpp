@@ -39,6 +39,7 @@ void add_esi(CLI::App& app, Action& action) {
     esi->require_subcommand(1);
     add_esi_list(*esi, action);
     add_esi_show(*esi, action);
+    add_esi_import(*esi, action);
 }
 
 }  // namespace taktwerk::apps

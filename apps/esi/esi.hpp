@@ -9,6 +9,7 @@
 
 #include "apps/taktwerk.hpp"
 #include "apps/terminal/text_table.hpp"
+#include "config/esi_import/esi_import.hpp"
 #include "ecat/esi/esi_file.hpp"
 
 namespace taktwerk::apps {
@@ -17,11 +18,12 @@ using EsiJson = nlohmann::ordered_json;
 
 struct EsiOptions {
     std::string file, device, revision, output;
-    bool all = false, json = false;
+    bool all = false, json = false, replace = false;
 };
 
 void add_esi_list(CLI::App& esi, Action& action);
 void add_esi_show(CLI::App& esi, Action& action);
+void add_esi_import(CLI::App& esi, Action& action);
 
 /// FILE, and --device and --revision for what is about one device.
 [[nodiscard]] std::shared_ptr<EsiOptions> add_esi_file(CLI::App& sub);
@@ -33,5 +35,7 @@ void add_esi_device(CLI::App& sub, EsiOptions& options);
 [[nodiscard]] EsiJson esi_list_json(const ecat::esi::EsiFile& file);
 [[nodiscard]] std::string esi_show_text(const std::string& vendor, const ecat::esi::EsiReading& reading, Colours colours);
 [[nodiscard]] EsiJson esi_show_json(const std::string& vendor, const ecat::esi::EsiReading& reading);
+/// What was taken, and everything that was not.
+[[nodiscard]] std::string esi_import_text(const config::EsiImport& import, const std::string& written_to, Colours colours);
 
 }  // namespace taktwerk::apps

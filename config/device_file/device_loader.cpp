@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -33,6 +35,7 @@ public:
             if (row.is_object()) device.objects.push_back(row.object);
         add_direction(file_.rx, device.rx_pdos, device.rx_assigned, device.rx_rules, true);
         add_direction(file_.tx, device.tx_pdos, device.tx_assigned, device.tx_rules, false);
+        add_objects_of_modules();
         LoadedDevice out;
         for (const auto& row : file_.channels) add_channel(out, row);
         out.title = file_.title, out.vendor = file_.vendor, out.source = file_.source, out.checked = file_.checked;
@@ -93,6 +96,43 @@ private:
         object.access = rx ? ecat::Access::rw : ecat::Access::ro;
         object.mappable = mappable;
         objects.push_back(std::move(object));
+    }
+
+    /// What modules carry, in every slot: `objects` of slot 0 say the type. Modules that use the same number share one object, as wide as the
+    /// widest of them.
+    void add_objects_of_modules() {
+        auto& objects = file_.device.objects;
+        const auto& slots = file_.device.slots;
+        std::map<std::pair<std::uint16_t, std::uint8_t>, std::size_t> places;
+        for (std::size_t n = 0; n < objects.size(); ++n) places.emplace(std::pair{objects[n].index, objects[n].sub}, n);
+        const auto add = [&](const ecat::ModuleDescription& module, const ecat::PdoEntry& entry, std::uint8_t slot, bool rx) {
+            if (entry.index == 0 || entry.bits == 0) return;
+            const auto like = places.find({entry.index, entry.sub});
+            auto type = like == places.end() ? unsigned_of(entry.bits) : objects[like->second].type;
+            if (ecat::bit_size(type) < entry.bits) type = unsigned_of(entry.bits);
+            const auto mappable = rx ? ecat::Mappable::rx : ecat::Mappable::tx;
+            const auto index = static_cast<std::uint16_t>(entry.index + slot * slots.index_increment);
+            const auto [place, is_new] = places.emplace(std::pair{index, entry.sub}, objects.size());
+            if (is_new) {
+                ecat::ObjectEntry object;
+                object.index = index, object.sub = entry.sub;
+                object.name = module.name;
+                object.type = type;
+                object.access = rx ? ecat::Access::rw : ecat::Access::ro;
+                object.mappable = mappable;
+                objects.push_back(std::move(object));
+                return;
+            }
+            auto& known = objects[place->second];
+            if (ecat::bit_size(known.type) < entry.bits) known.type = type;
+            if (known.mappable == ecat::Mappable::no) known.mappable = mappable;
+            else if (known.mappable != mappable) known.mappable = ecat::Mappable::both;
+        };
+        for (unsigned slot = 0; slot < slots.count; ++slot)
+            for (const auto& module : slots.modules)
+                for (const bool rx : {true, false})
+                    for (const auto& pdo : rx ? module.rx_pdos : module.tx_pdos)
+                        for (const auto& entry : pdo.entries) add(module, entry, static_cast<std::uint8_t>(slot), rx);
     }
 
     [[nodiscard]] std::string name_of(const ecat::PdoEntry& entry) const {
@@ -159,8 +199,9 @@ private:
 
 }  // namespace
 
-std::variant<LoadedDevice, std::vector<Error>> load_device(const std::string& path) {
-    auto document = read_document(path);
+namespace {
+
+std::variant<LoadedDevice, std::vector<Error>> load(const std::string& path, Document document) {
     Reader reader(path);
     reader.errors() = std::move(document.errors);
     DeviceFile file;
@@ -172,6 +213,14 @@ std::variant<LoadedDevice, std::vector<Error>> load_device(const std::string& pa
                           "call both the same: machines name the file");
     if (!reader.errors().empty()) return std::move(reader.errors());
     return device;
+}
+
+}  // namespace
+
+std::variant<LoadedDevice, std::vector<Error>> load_device(const std::string& path) { return load(path, read_document(path)); }
+
+std::variant<LoadedDevice, std::vector<Error>> load_device_text(const std::string& path, std::string_view text) {
+    return load(path, parse_document(path, text));
 }
 
 LoadedDevice digital_terminal(std::uint8_t inputs, std::uint8_t outputs) {

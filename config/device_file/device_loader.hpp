@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -35,6 +36,8 @@ struct LoadedDevice {
 
 /// All problems at once, each with file, line and column.
 [[nodiscard]] std::variant<LoadedDevice, std::vector<Error>> load_device(const std::string& path);
+/// The same of a text that is, or will be, the file at `path`.
+[[nodiscard]] std::variant<LoadedDevice, std::vector<Error>> load_device_text(const std::string& path, std::string_view text);
 
 /// A plain digital terminal without mailbox: channels in1.. and out1.. .
 [[nodiscard]] LoadedDevice digital_terminal(std::uint8_t inputs, std::uint8_t outputs);

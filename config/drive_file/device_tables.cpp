@@ -319,6 +319,7 @@ Table<ecat::SlotDescription> slot_table() {
             required(field("count", &S::count, integer<std::uint8_t>(1, 255), "slots")),
             field("index_increment", &S::index_increment, integer<std::uint16_t>(0, u16), "between the objects of two slots, such as 800h"),
             field("pdo_increment", &S::pdo_increment, integer<std::uint16_t>(0, u16), "between the PDOs of two slots, such as 40h"),
+            field("may_be_empty", &S::may_be_empty, boolean(), "a slot may hold no module"),
             required(field("modules", &S::modules,
                            by_name(section(module_table()), [](ecat::ModuleDescription& m) -> std::string& { return m.name; }),
                            "what a slot can hold")),

@@ -1,7 +1,7 @@
 #pragma once
 // What a slave type is: identity, mailbox, sync managers, PDOs, dictionary, DC. One description serves the master (what it
-// expects and configures) and the simulator (what it plays). Filled from a drive YAML by config/, later also from SII and
-// ESI. Plain data; not real-time.
+// expects and configures) and the simulator (what it plays). Filled from drive and device files by config/, which makes
+// them of vendors' ESI, too. Plain data; not real-time.
 
 #include <cstdint>
 #include <optional>
@@ -117,6 +117,7 @@ struct SlotDescription {
     std::uint8_t count = 0;             ///< 0: not modular
     std::uint16_t index_increment = 0;  ///< 800h: object 6040h of slot 2 is 7040h
     std::uint16_t pdo_increment = 0;    ///< 40h: 1600h of slot 2 is 1680h
+    bool may_be_empty = false;          ///< a slot may hold no module: input and output boxes. Not so: each axis of TSVM-D6 wants one
     std::vector<ModuleDescription> modules;
 };
 

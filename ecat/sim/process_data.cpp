@@ -27,6 +27,7 @@ std::uint16_t ProcessData::resolve() {
 // TSVM 5.2.5: each axis, a slot, has to have one valid module. What refuses it otherwise is not stated.
 bool ProcessData::every_slot_holds_a_module(SmUse use) const {
     const auto& slots = description_.slots;
+    if (slots.may_be_empty) return true;
     std::vector<PdoDescription> of_modules;
     for (const auto& module : slots.modules)
         for (const auto& pdo : use == SmUse::outputs ? module.rx_pdos : module.tx_pdos) of_modules.push_back(pdo);

@@ -3,7 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include "apps/terminal/exit_code.hpp"
 #include "tests/apps/in_process.hpp"
@@ -98,6 +103,141 @@ TEST(EsiCommand, WhatIsNotThereIsRefused) {
     EXPECT_THAT(no_file.err, HasSubstr("/nowhere/a.xml: the file cannot be read"));
     EXPECT_THAT(no_file.out, IsEmpty());
     EXPECT_EQ(esi({"list", demo}).code, exit_bad_file) << "a machine file is no ESI file";
+}
+
+class EsiImportCommand : public testing::Test {
+protected:
+    void SetUp() override {
+        std::string pattern = testing::TempDir() + "esi-XXXXXX";
+        ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
+        folder = pattern;
+        std::filesystem::create_directories(folder / "devices");
+        std::filesystem::create_directories(folder / "machines");
+        std::filesystem::copy(source / "config/devices/ek1100.yaml", folder / "devices");
+    }
+    void TearDown() override { std::filesystem::remove_all(folder); }
+
+    [[nodiscard]] std::string device(const std::string& name) const { return (folder / "devices" / (name + ".yaml")).string(); }
+    /// A machine file around these slaves and points.
+    [[nodiscard]] std::string machine(const std::string& slaves_and_io) const {
+        const auto path = (folder / "machines" / "m.yaml").string();
+        std::ofstream(path) << "version: 1\nname: m\ncycle: 1 ms\nbus:\n  interface: simulated\n  slaves:\n" << slaves_and_io;
+        return path;
+    }
+    static std::string text_of(const std::string& path) {
+        std::ifstream file(path);
+        return {std::istreambuf_iterator<char>(file), {}};
+    }
+    std::filesystem::path folder;
+};
+
+// The whole way of a machine builder: his vendor's file, a device file, a machine file that `check` accepts and that runs on the simulated bus.
+TEST_F(EsiImportCommand, WhatItWritesIsTakenByCheckAndComesUpOnTheSimulatedBus) {
+    for (const char* type : {"DI2", "AI1", "BOX", "SERVO"}) {
+        std::string name = type;
+        std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+        const auto import = esi({"import", works, "--device", type, "-o", device(name)});
+        ASSERT_EQ(import.code, exit_ok) << import.err;
+        EXPECT_THAT(import.out, AllOf(HasSubstr("In the vendor's file, and not in this one"), HasSubstr("is written")));
+    }
+    const auto file = machine(
+        "    - { name: box, device: box, modules: [{ slot: 0, module: DI4 }, { slot: 2, module: AO1 }] }\n"
+        "    - { name: servo, device: servo, dc: true }\n"
+        "    - { name: coupler, device: ek1100 }\n"
+        "    - { name: di, device: di2 }\n"
+        "    - { name: ai, device: ai1 }\n"
+        "io:\n  inputs:\n    start: { slave: di, channel: channel_2_input }\n    level: { slave: ai, channel: value, scale: { from: [0, "
+        "32767], to: [4 mA, 20 mA] } }\n"
+        "    gate: { slave: box, object: 6000h:01 }\n    at: { slave: servo, channel: position_actual_value }\n");
+    const auto check = in_process({"check", file});
+    EXPECT_EQ(check.code, exit_ok) << check.out << check.err;
+    const auto up = in_process({"bus", "state", "op", "--machine", file, "--simulate", "--for", "20ms", "--json"});
+    ASSERT_EQ(up.code, exit_ok) << up.out << up.err;
+    for (const auto& slave : up.json()["slaves"]) EXPECT_EQ(slave["state"], "OP") << slave;
+}
+
+// A slave that the machine file does not know is named by its vendor's file.
+TEST_F(EsiImportCommand, AFolderOfFilesNamesSlavesOnTheBus) {
+    std::filesystem::create_directories(folder / "vendors");
+    std::filesystem::copy(works, folder / "vendors");
+    ASSERT_EQ(esi({"import", works, "--device", "DI2", "--revision", "0x10000", "-o", device("di2")}).code, exit_ok);
+    const auto file = machine("    - { name: coupler, device: ek1100 }\n    - { name: di, device: di2 }\n");
+    const auto vendors = (folder / "vendors").string();
+    const auto scan = in_process({"bus", "scan", "--machine", file, "--simulate", "--esi", vendors});
+    EXPECT_EQ(scan.code, exit_ok) << scan.err;
+    EXPECT_THAT(scan.out, AllOf(HasSubstr("DI2: 2 digital inputs, first edition (works.xml)\n"), HasSubstr("no file describes it")));
+    const auto json = in_process({"bus", "scan", "--machine", file, "--simulate", "--esi", vendors, "--json"}).json();
+    EXPECT_FALSE(json["slaves"][0].contains("esi"));
+    EXPECT_EQ(json["slaves"][1]["esi"]["type"], "DI2");
+    EXPECT_EQ(json["slaves"][1]["esi"]["revision"], 0x10000);
+    const auto nowhere = in_process({"bus", "scan", "--machine", file, "--simulate", "--esi", vendors + "/none"});
+    EXPECT_EQ(nowhere.code, exit_bad_file);
+    EXPECT_THAT(nowhere.err, HasSubstr("the folder cannot be read"));
+}
+
+// From a bus to a machine file that `check` takes: a known coupler and drive, a slave that only its vendor's file knows, one that nobody knows.
+TEST_F(EsiImportCommand, InitWritesAMachineFileOfTheBus) {
+    std::filesystem::copy(source / "config/drives", folder / "drives");
+    ASSERT_EQ(esi({"import", works, "--device", "AI1", "-o", device("ai1")}).code, exit_ok);
+    ASSERT_EQ(esi({"import", works, "--device", "BOX", "-o", device("box")}).code, exit_ok);
+    const auto bus = machine(
+        "    - { name: x, profile: sv33-e }\n    - { name: coupler, device: ek1100 }\n    - { name: ai, device: ai1 }\n    - { name: box, "
+        "device: box, modules: [{ slot: 0, module: DI4 }] }\n");
+    // The new cell knows neither of the vendor's devices; his file does, once it is in the folder.
+    const auto cell = folder / "cell";
+    std::filesystem::create_directories(cell / "devices");
+    std::filesystem::copy(source / "config/devices/ek1100.yaml", cell / "devices");
+    std::filesystem::copy(source / "config/drives", cell / "drives");
+    const auto file = (cell / "machines" / "first.yaml").string();
+    const auto blind = in_process({"bus", "init", "--machine", bus, "--simulate", "-o", file});
+    ASSERT_EQ(blind.code, exit_ok) << blind.err;
+    EXPECT_THAT(blind.out, HasSubstr("4 slaves, 2 of them unknown"));
+    EXPECT_THAT(text_of(file),
+                AllOf(HasSubstr("extra_slaves: ignore"), HasSubstr("- { name: sv33_e_0, profile: sv33-e, position: 0 }"),
+                      HasSubstr("# position 2: vendor 0000270Fh product 00000A12h revision 00030000h: no file describes it")));
+    EXPECT_EQ(in_process({"check", file}).code, exit_ok) << in_process({"check", file}).err;
+
+    std::filesystem::create_directories(folder / "vendors");
+    std::filesystem::copy(works, folder / "vendors");
+    const auto second = (cell / "machines" / "second.yaml").string();
+    const auto seeing = in_process({"bus", "init", "--machine", bus, "--simulate", "--esi", (folder / "vendors").string(), "-o", second});
+    ASSERT_EQ(seeing.code, exit_ok) << seeing.err;
+    EXPECT_TRUE(std::filesystem::exists(cell / "devices" / "ai1.yaml"));
+    const auto text = text_of(second);
+    EXPECT_THAT(text, AllOf(HasSubstr("- { name: ai1_2, device: ai1 }"), HasSubstr("- { name: box_3, device: box }"),
+                            HasSubstr("ai1_2_value: { slave: ai1_2, channel: value }"), HasSubstr("axis1:\n    slave: sv33_e_0\n"),
+                            HasSubstr("FILL IN"), Not(HasSubstr("extra_slaves"))));
+    const auto check = in_process({"check", second});
+    EXPECT_EQ(check.code, exit_ok) << check.out << check.err;
+    const auto again = in_process({"bus", "init", "--machine", bus, "--simulate", "-o", second});
+    EXPECT_EQ(again.code, exit_bad_file) << "never over what somebody filled in";
+    EXPECT_THAT(again.err, HasSubstr("there is such a file already"));
+}
+
+TEST_F(EsiImportCommand, WithoutAFileTheTextGoesOutAndTheReportBesideIt) {
+    const auto import = esi({"import", works, "--device", "DI2"});
+    EXPECT_EQ(import.code, exit_ok);
+    EXPECT_THAT(import.out,
+                AllOf(HasSubstr("name: di2\n"), HasSubstr("channel_1_input: { input: 6000h:01"), Not(HasSubstr("not in this one"))));
+    EXPECT_THAT(import.err, HasSubstr("contents of its EEPROM: it brings its own"));
+}
+
+TEST_F(EsiImportCommand, AFileThatIsThereIsNotWrittenOver) {
+    ASSERT_EQ(esi({"import", works, "--device", "DI2", "-o", device("di2")}).code, exit_ok);
+    const auto again = esi({"import", works, "--device", "DI2", "-o", device("di2")});
+    EXPECT_EQ(again.code, exit_bad_file);
+    EXPECT_THAT(again.err, HasSubstr("there is such a file already"));
+    EXPECT_EQ(esi({"import", works, "--device", "DI2", "-o", device("di2"), "--replace"}).code, exit_ok);
+}
+
+TEST_F(EsiImportCommand, WhatCannotBeUsedWritesNothing) {
+    const auto torn = esi({"import", works, "--device", "TORN", "-o", device("torn")});
+    EXPECT_EQ(torn.code, exit_bad_file);
+    EXPECT_THAT(torn.err, HasSubstr("works.xml:104:12 (Device 'TORN'/TxPdo/Entry): it has no BitLen"));
+    const auto named = esi({"import", works, "--device", "DI2", "-o", (folder / "2 inputs.yaml").string()});
+    EXPECT_EQ(named.code, exit_usage);
+    EXPECT_THAT(named.err, HasSubstr("call the file di2.yaml"));
+    EXPECT_FALSE(std::filesystem::exists(device("torn")));
 }
 
 }  // namespace

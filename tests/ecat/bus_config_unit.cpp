@@ -240,7 +240,8 @@ std::shared_ptr<DeviceDescription> modular() {
     auto d = servo_description();
     d->rx_pdos.clear(), d->tx_pdos.clear(), d->rx_assigned.clear(), d->tx_assigned.clear();
     d->rx_rules.max_assigned = d->tx_rules.max_assigned = 6;
-    d->slots = {2, 0x800, 0x40, {{"csp", 0x11, {{0x1600, true, {{0x6040, 0, 16}, {0x607A, 0, 32}}}}, {{0x1A00, true, {{0x6041, 0, 16}}}}}}};
+    d->slots = {
+        2, 0x800, 0x40, false, {{"csp", 0x11, {{0x1600, true, {{0x6040, 0, 16}, {0x607A, 0, 32}}}}, {{0x1A00, true, {{0x6041, 0, 16}}}}}}};
     return d;
 }
 
