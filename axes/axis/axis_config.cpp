@@ -207,7 +207,7 @@ void check_gantry(Problems& problems, const AxisConfig& config) {
     const auto& gantry = config.gantry;
     if (!gantry.on) return;
     problems.positive("gantry.max_skew.error", gantry.error, "u: what the portal bears without harm");
-    if (!(gantry.warning >= 0) || gantry.warning >= gantry.error)
+    if (!(gantry.warning >= 0) || (gantry.warning > 0 && gantry.warning >= gantry.error))
         problems.add("gantry.max_skew.warning", "must be below the error, and not negative",
                      "Give for instance half of it, or leave it out");
     const auto kind = config.homing.kind;

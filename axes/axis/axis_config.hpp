@@ -245,7 +245,8 @@ struct AxisConfig {
 };
 
 /// Alarms after which one side of a gantry stands alone: nobody holds the portal with it for long.
-inline constexpr std::array one_sided_alarms{AxisAlarm::drive_fault, AxisAlarm::drive_power_lost, AxisAlarm::gantry_side_lost};
+inline constexpr std::array one_sided_alarms{AxisAlarm::drive_fault, AxisAlarm::drive_power_lost, AxisAlarm::axis_feedback_lost,
+                                             AxisAlarm::gantry_side_lost};
 /// What a gantry does about them where nothing is chosen: both ramp, then both lose their power.
 void choose_for_gantry(ErrorReactions& reactions) noexcept;
 

@@ -37,21 +37,32 @@ Table<axes::Gearing> gearing_table() {
 Table<axes::DirectionLimits> direction_table(std::string title, std::string_view torque) {
     using D = axes::DirectionLimits;
     constexpr std::string_view as_both = "as in both";
-    return {std::move(title),
-            "What holds in this direction only, as where a weight helps or hinders. Nothing here may be more than what holds in both.",
-            {
-                with_default(field("velocity", &D::velocity, quantity(Dimension::velocity, 0), "highest velocity"), std::string{as_both}),
-                with_default(field("acceleration", &D::acceleration, quantity(Dimension::acceleration, 0),
-                                   "highest acceleration, while the axis gets faster in this direction"),
-                             std::string{as_both}),
-                with_default(field("deceleration", &D::deceleration, quantity(Dimension::acceleration, 0),
-                                   "highest deceleration, while it gets slower in it"),
-                             std::string{as_both}),
-                with_default(field("torque", &D::torque, number(axes::TorqueLimitDetails::least, 10), std::string{torque}),
-                             std::string{as_both}),
-            },
-            {},
-            {}};
+    Table<D> table{
+        std::move(title),
+        "What holds in this direction only, as where a weight helps or hinders. Nothing here may be more than what holds in both.",
+        {
+            with_default(field("velocity", &D::velocity, quantity(Dimension::velocity, 0), "highest velocity"), std::string{as_both}),
+            with_default(field("acceleration", &D::acceleration, quantity(Dimension::acceleration, 0),
+                               "highest acceleration, while the axis gets faster in this direction"),
+                         std::string{as_both}),
+            with_default(field("deceleration", &D::deceleration, quantity(Dimension::acceleration, 0),
+                               "highest deceleration, while it gets slower in it"),
+                         std::string{as_both}),
+            with_default(field("torque", &D::torque, number(axes::TorqueLimitDetails::least, 10), std::string{torque}),
+                         std::string{as_both}),
+        },
+        {},
+        {}};
+    // In the plain data 0 stands for "as in both": written, it is meant to forbid a direction.
+    table.after = [](Reader& reader, const Node& node, D& d) {
+        for (const auto& [key, value] :
+             {std::pair{"velocity", d.velocity}, std::pair{"acceleration", d.acceleration}, std::pair{"deceleration", d.deceleration}})
+            if (const auto* found = node.find(key);
+                found != nullptr && value == 0 && !reader.already_bad(fmt::format("{}.{}", reader.path(), key)))
+                reader.problem(found->at, "config.out_of_range", fmt::format("`0` for `{}.{}` is out of range", reader.path(), key),
+                               "give more than 0; a direction is forbidden by MC_Power (EnablePositive, EnableNegative)");
+    };
+    return table;
 }
 
 Table<axes::AxisLimits> limits_table() {

@@ -86,6 +86,9 @@ private:
                           "name the `slave` whose position is meant, or remove `encoder`");
         if (binding.axis.homing.kind != axes::HomingKind::none && binding.axis.homing.kind != axes::HomingKind::set_here)
             problems_.add("axis.homing", subject + ".homing", "a virtual axis (without `slave`) has no switches", "use `kind: set_here`");
+        if (binding.axis.load_encoder.on)
+            problems_.add("axis.load_encoder", subject + ".load_encoder", "a virtual axis (without `slave`) has no motor to compare with",
+                          "remove it, or name the `slave` that moves the load");
     }
 
     void check_load_encoder(const AxisBinding& binding, const std::string& subject) {
@@ -94,9 +97,33 @@ private:
             if (point.direction == IoDirection::input) inputs.push_back(point.name);
         if (std::find(inputs.begin(), inputs.end(), binding.load_input) == inputs.end())
             problems_.unknown("axis.load_encoder", subject + ".load_encoder.input", "input", binding.load_input, inputs);
+        const auto bits = bits_of(binding.load_input, IoDirection::input);
+        if (bits == 1)
+            problems_.add("axis.load_encoder", subject + ".load_encoder.input", fmt::format("input '{}' is one bit", binding.load_input),
+                          "name one that counts");
+        else if (bits != 0 && bits < binding.axis.load_encoder.bits)
+            problems_.add("axis.load_encoder", subject + ".load_encoder.bits",
+                          fmt::format("input '{}' has {} bits: beyond them its counter begins anew", binding.load_input, bits),
+                          fmt::format("write `bits: {}`, or fewer where the encoder counts in fewer", bits));
         if (binding.axis.encoder)
             problems_.add("axis.load_encoder", subject + ".load_encoder", "an axis that only measures has no motor to compare with",
                           "remove one of the two");
+    }
+
+    /// Of an input or output by its name, as far as its slave is known without the bus; 0: it is not.
+    unsigned bits_of(std::string_view name, IoDirection direction) const {
+        for (const auto& point : config_.io) {
+            if (point.name != name || point.direction != direction) continue;
+            for (const auto& slave : config_.bus.slaves) {
+                if (slave.name != point.slave || !slave.device) continue;
+                const auto offered = ecat::pdos_of(*slave.device, slave.modules);
+                const auto entries = direction == IoDirection::input ? mapped(slave.tx, offered.tx, offered.tx_assigned)
+                                                                     : mapped(slave.rx, offered.rx, offered.rx_assigned);
+                for (const auto& entry : entries)
+                    if (entry.index == point.index && entry.sub == point.sub) return entry.bits;
+            }
+        }
+        return 0;
     }
 
     /// The other side of a gantry: a drive of its own, of the same type, exchanged as often.
@@ -127,6 +154,12 @@ private:
 
     void check_brake(const AxisBinding& binding, const std::string& subject) {
         const auto& brake = binding.axis.brake;
+        const bool no_drive = binding.slave.empty() && binding.drive.empty();
+        if (brake.by != axes::BrakeBy::drive && (no_drive || binding.axis.encoder))
+            problems_.add("axis.brake", subject + ".brake",
+                          no_drive ? "a virtual axis (without `slave`) has no motor that holds a load once the brake is open"
+                                   : "an axis that only measures has no power to hold a load once the brake is open",
+                          "give the brake to the axis whose drive holds the load");
         if (brake.by == axes::BrakeBy::output) return check_brake_output(binding, subject);
         if (!binding.brake_output.empty())
             problems_.add("axis.brake", subject + ".brake.output", "counts only where `by` is `output`",
@@ -167,6 +200,9 @@ private:
             else problems_.unknown("axis.brake", subject + ".brake.output", "output", name, outputs);
             return;
         }
+        if (const auto bits = bits_of(name, IoDirection::output); bits > 1)
+            problems_.add("axis.brake", subject + ".brake.output",
+                          fmt::format("output '{}' has {} bits: a brake is opened by one", name, bits), "name a digital output");
         if (!brakes_.insert(name).second)
             problems_.add("axis.brake", subject + ".brake.output", "this output already opens another brake", "give each axis its own");
         for (const auto& point : config_.io)

@@ -175,6 +175,11 @@ TEST(Gantry, ASilentSideIsAnAxisWithoutFeedback) {
     rig.run(5);
     EXPECT_TRUE(rig.raised(AxisAlarm::axis_feedback_lost));
     EXPECT_EQ(rig.view().state, AxisState::ErrorStop);
+    // Its watchdog takes its power, and nobody hears of it: the other one does not hold the portal alone.
+    rig.right->refuses_power = true;
+    ASSERT_TRUE(rig.run_until([&] { return rig.view().set_velocity == 0; }, 200));
+    rig.run(5);
+    EXPECT_EQ(rig.left->power, PowerState::disabled);
 }
 
 TEST(Gantry, CanOnlyWhatBothCanDoAlike) {
