@@ -70,9 +70,9 @@ using AdministrativeBlocks =
 using CouplingBlocks = BlockList<MC_CamTableSelect, MC_CamIn, MC_CamOut, MC_GearIn, MC_GearOut, MC_GearInPos, MC_PhasingAbsolute,
                                  MC_PhasingRelative, MC_CombineAxes>;
 /// Of vendors, under their names.
-using VendorBlocks =
-    BlockList<MC_Jog, MC_MoveModulo, MC_HaltPhasing, MC_ReadCommandPosition, MC_ReadCommandVelocity, MC_ReadCommandAcceleration,
-              MC_SetControllerMode, MC_SetTorqueLimit, MC_SetBrake, MC_ExtSetPointGenEnable, MC_ExtSetPointGenFeed, MC_ExtSetPointGenDisable>;
+using VendorBlocks = BlockList<MC_Jog, MC_MoveModulo, MC_HaltPhasing, MC_ReadCommandPosition, MC_ReadCommandVelocity,
+                               MC_ReadCommandAcceleration, MC_SetControllerMode, MC_SetTorqueLimit, MC_SetBrake, MC_ExtSetPointGenEnable,
+                               MC_ExtSetPointGenFeed, MC_ExtSetPointGenDisable>;
 /// Profiles that the drive makes by itself.
 using DriveBlocks = BlockList<Drive_MoveAbsolute, Drive_MoveRelative, Drive_MoveVelocity, Drive_Torque>;
 

@@ -109,8 +109,7 @@ consteval bool sound() {
         if (row.mildest < usual && row.alarm != following_error && row.alarm != load_deviation) return false;
         if ((row.mildest > warn) == row.because.empty()) return false;
     }
-    if (axis_alarms.back().id - axis_alarms.front().id + 1u != axis_alarm_count) return false;  // places are numbers without gaps
-    return true;
+    return axis_alarms.back().id - axis_alarms.front().id + 1u == axis_alarm_count;  // places are numbers without gaps
 }
 static_assert(sound());
 }  // namespace reaction_bounds

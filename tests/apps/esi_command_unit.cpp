@@ -120,7 +120,7 @@ protected:
     [[nodiscard]] std::string device(const std::string& name) const { return (folder / "devices" / (name + ".yaml")).string(); }
     /// A machine file around these slaves and points.
     [[nodiscard]] std::string machine(const std::string& slaves_and_io) const {
-        const auto path = (folder / "machines" / "m.yaml").string();
+        auto path = (folder / "machines" / "m.yaml").string();
         std::ofstream(path) << "version: 1\nname: m\ncycle: 1 ms\nbus:\n  interface: simulated\n  slaves:\n" << slaves_and_io;
         return path;
     }

@@ -37,10 +37,10 @@ public:
     bool resettable = true;
     std::uint16_t epoch = 0;
     bool warning = false;
-    bool blocked = false;  ///< the motor does not move
-    std::int64_t lag = 0;  ///< counts the motor stays behind
-    double drift = 0;      ///< counts/s that it turns more than it is told, in cyclic velocity
-    double coasting = 0;   ///< counts per cycle while without power
+    bool blocked = false;                  ///< the motor does not move
+    std::int64_t lag = 0;                  ///< counts the motor stays behind
+    double drift = 0;                      ///< counts/s that it turns more than it is told, in cyclic velocity
+    double coasting = 0;                   ///< counts per cycle while without power
     double quick_stop_deceleration = 5e6;  ///< counts/s2 (6085h); then it is without power (605Ah = 2), ...
     bool quick_stop_stays = false;         ///< ... or holds (605Ah = 6)
     bool switches = false;
