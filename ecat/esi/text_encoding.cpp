@@ -43,7 +43,7 @@ std::size_t utf8_length(std::string_view text, std::size_t at) noexcept {
 /// The value of `encoding` in the declaration, in capitals; empty: there is none.
 std::string declared_encoding(std::string_view text) {
     const auto start = text.find("<?xml");
-    if (start == std::string_view::npos || start > 64) return {};
+    if (start > 64) return {};  // npos too
     const auto end = text.find("?>", start);
     const auto head = text.substr(start, std::min<std::size_t>(end == std::string_view::npos ? 256 : end - start, 256));
     auto at = head.find("encoding");

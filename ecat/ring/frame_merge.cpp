@@ -55,7 +55,7 @@ std::optional<std::size_t> DatagramWalk::next() noexcept {
 }
 
 bool same_datagrams(const FrameCopy& copy) noexcept {
-    const auto& [sent, came] = copy;
+    const auto &sent = copy.sent, &came = copy.came;  // clang 14 lets no lambda see a structured binding
     if (came.size() < sent.size() ||
         !std::equal(sent.begin() + ethernet_header_size, sent.begin() + first_datagram, came.begin() + ethernet_header_size))
         return false;

@@ -93,7 +93,7 @@ private:
         if (dice.once_in(4)) config.following.window = 3;
         if (dice.once_in(3)) config.following.per_velocity = 10ms;
         if (!std::isfinite(config.following.window)) config.following.per_velocity = {};
-        if (dice.once_in(4) == false) config.gantry = {.on = true, .warning = dice.once_in(2) ? 0.2 : 0, .error = 0.5};
+        if (!dice.once_in(4)) config.gantry = {.on = true, .warning = dice.once_in(2) ? 0.2 : 0, .error = 0.5};
         config.brake.by = BrakeBy::output;
         config.brake.release = std::chrono::milliseconds{dice.below(60)};
         config.brake.engage = std::chrono::milliseconds{dice.below(60)};
