@@ -8,20 +8,6 @@ namespace taktwerk::ecat {
 
 namespace {
 
-/// Slaves increment ADP of these as the datagram passes.
-bool counts_slaves(Command command) noexcept {
-    switch (command) {
-        case Command::APRD:
-        case Command::APWR:
-        case Command::APRW:
-        case Command::ARMW:
-        case Command::BRD:
-        case Command::BWR:
-        case Command::BRW: return true;
-        default: return false;
-    }
-}
-
 std::uint8_t first_index(std::uint32_t generation) noexcept { return static_cast<std::uint8_t>(generation & 0xFFu); }
 
 std::uint8_t index_of(std::uint32_t generation, std::size_t datagram) noexcept {

@@ -13,18 +13,7 @@ namespace {
 constexpr std::size_t first_datagram = ethernet_header_size + ecat_header_size;
 constexpr std::uint16_t length_mask = 0x07FF, more_bit = 0x8000;
 
-bool counts_slaves(std::byte command) noexcept {
-    switch (static_cast<Command>(command)) {
-        case Command::APRD:
-        case Command::APWR:
-        case Command::APRW:
-        case Command::ARMW:
-        case Command::BRD:
-        case Command::BWR:
-        case Command::BRW: return true;
-        default: return false;
-    }
-}
+bool counts_slaves(std::byte command) noexcept { return ecat::counts_slaves(static_cast<Command>(command)); }
 
 std::uint64_t word_at(std::span<const std::byte> bytes, std::size_t at) noexcept {
     std::uint64_t word = 0;

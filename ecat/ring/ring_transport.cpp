@@ -26,11 +26,6 @@ bool comes_from(std::span<const std::byte> frame, const MacAddress& source) noex
     return true;
 }
 
-bool auto_increments(std::byte command) noexcept {
-    const auto c = static_cast<Command>(command);
-    return c == Command::APRD || c == Command::APWR || c == Command::APRW || c == Command::ARMW;
-}
-
 }  // namespace
 
 /// What is looked through in each cycle lies close together; the frames themselves elsewhere.
@@ -112,7 +107,7 @@ void RingTransport::prepare(Flight& flight, std::span<const std::byte> frame) no
         other.sent[frame_field::source + i] = static_cast<std::byte>(sources_[second][i]);
     DatagramWalk walk{frame};
     while (const auto at = walk.next()) {
-        if (auto_increments(frame[*at])) {
+        if (goes_by_position(static_cast<Command>(frame[*at]))) {
             const auto adp = load_le<std::uint16_t>(frame, *at + frame_field::adp);
             store_le(std::span{other.sent}, *at + frame_field::adp, static_cast<std::uint16_t>(adp + state_.before_break));
         }

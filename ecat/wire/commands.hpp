@@ -26,6 +26,15 @@ enum class Command : std::uint8_t {
 };
 [[nodiscard]] std::string_view name(Command command) noexcept;
 
+/// ADP says which slave along the line: the one that sees 0 answers.
+[[nodiscard]] constexpr bool goes_by_position(Command command) noexcept {
+    return command == Command::APRD || command == Command::APWR || command == Command::APRW || command == Command::ARMW;
+}
+/// Slaves increment ADP of these as the datagram passes.
+[[nodiscard]] constexpr bool counts_slaves(Command command) noexcept {
+    return goes_by_position(command) || command == Command::BRD || command == Command::BWR || command == Command::BRW;
+}
+
 inline constexpr std::uint16_t ethertype = 0x88A4;
 inline constexpr std::size_t ethernet_header_size = 14;
 inline constexpr std::size_t ecat_header_size = 2;
