@@ -79,7 +79,7 @@ struct TorqueThenMove final : Moves {
     }
 };
 
-class LimitThenMove final : public Moves {
+struct LimitThenMove final : Moves {
     MC_SetTorqueLimit limit;
     void first(TaskContext& ctx) override {
         limit.Axis = x;
@@ -93,7 +93,7 @@ class LimitThenMove final : public Moves {
 };
 
 /// Up by the button, and down again as soon as it is there.
-class UpAndDown final : public Moves {
+struct UpAndDown final : Moves {
     MC_MoveAbsolute down;
     void first(TaskContext& ctx) override {
         down.Axis = x;
