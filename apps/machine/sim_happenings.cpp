@@ -18,6 +18,8 @@ namespace {
 using runtime::SimulationEvent;
 using Kind = SimulationEvent::Kind;
 
+constexpr double longest_wait_s = 1e6;
+
 constexpr std::array<HappeningWord, 10> all_happenings{{
     {"drive-fault", "AXIS CODE", "the drive raises this alarm (603Fh, or the number of an XP200)", Kind::drive_fault, 0},
     {"main-power-off", "AXIS", "the drive loses its main power", Kind::main_power, 0},
@@ -72,8 +74,9 @@ Result<SimulationEvent> parse_happening(std::string_view line, const runtime::Ma
     SimulationEvent event;
     if (parts.size() >= 2 && parts[0] == "after") {
         const auto delay = config::parse_quantity(parts[1], config::Dimension::time, "");
-        if (delay.problem != config::QuantityProblem::none || delay.value < 0)
-            return Error{"fault.arguments", std::string(line), fmt::format("'{}' is no time", parts[1]), "write it as 500ms or 2s"};
+        if (delay.problem != config::QuantityProblem::none || !(delay.value >= 0 && delay.value <= longest_wait_s))
+            return Error{"fault.arguments", std::string(line), fmt::format("'{}' is no time that will come", parts[1]),
+                         "write it as 500ms or 2s; at most 1000000 s"};
         event.at = from_seconds(delay.value);
         parts.erase(parts.begin(), parts.begin() + 2);
     }

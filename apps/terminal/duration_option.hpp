@@ -15,8 +15,11 @@ inline CLI::Option* add_duration(CLI::App& app, const std::string& name, double&
         ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"ms", 1e-3}, {"s", 1.0}, {"min", 60.0}, {"h", 3600.0}}))
         ->check(CLI::Validator(
             [](const std::string& value) {
-                return std::strtod(value.c_str(), nullptr) > 0 ? std::string{}
-                                                               : "a time above 0 is wanted, not " + value + "; leave it out for no end";
+                constexpr double longest = 1e8;  // three years, and what a clock counts
+                const double seconds = std::strtod(value.c_str(), nullptr);
+                return seconds > 0 && seconds <= longest
+                           ? std::string{}
+                           : "a time above 0 and up to 1e8 s is wanted, not " + value + "; leave it out for no end";
             },
             ""))
         ->type_name("TIME");

@@ -70,6 +70,12 @@ TEST_F(SimHandsTest, AButtonIsPressedOrNotAndNothingElse) {
     EXPECT_EQ(code("after 1s input button 2"), "fault.arguments") << "not in a second, when nobody hears it";
 }
 
+TEST_F(SimHandsTest, WhatComesInAgesIsRefused) {
+    EXPECT_EQ(code("after 1000000s jam x"), "");
+    for (const std::string wait : {"8888888888888882s", "1e300s", "1000001s", "-1s", "nan"})
+        EXPECT_EQ(code("after " + wait + " jam x"), "fault.arguments") << wait;
+}
+
 TEST_F(SimHandsTest, EveryWordOfTheListIsUnderstood) {
     for (const auto& word : sim_words()) {
         if (word.word == "after") continue;
