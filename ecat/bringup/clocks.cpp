@@ -16,8 +16,9 @@ constexpr Duration settle_time = std::chrono::seconds{10};
 constexpr Duration lock_patience = std::chrono::seconds{5};
 constexpr std::int64_t tolerable_phase = 8;  ///< an eighth of the cycle: the way a frame has to go before SYNC0 is longer
 constexpr Duration least_margin = std::chrono::milliseconds{100};
-constexpr std::int64_t margin_cycles = 50;  ///< six register accesses, each of two or three cycles, and reserve
-constexpr unsigned frames_per_round = 8;    ///< reference times sent between two looks at 092Ch, while no cycle runs
+constexpr std::uint64_t end_of_time = std::uint64_t{1} << 62;  ///< ns since 2000: in the year 2146
+constexpr std::int64_t margin_cycles = 50;                     ///< six register accesses, each of two or three cycles, and reserve
+constexpr unsigned frames_per_round = 8;                       ///< reference times sent between two looks at 092Ch, while no cycle runs
 
 std::int64_t nanoseconds(Instant t) noexcept { return t.time_since_epoch().count(); }
 
@@ -280,6 +281,7 @@ Script<Result<void>> start_sync0(Bus& bus, BusSlave& slave) {
     const Duration sync0_period = exchange_period(bus.config, *slave.config);
     const std::uint16_t station = slave.found.station;
     Duration margin = std::max(least_margin, margin_cycles * bus.config.cycle);
+    bool believable = true;
     for (unsigned attempt = 0; attempt < 3; ++attempt, margin *= 2) {
         const Reply off = co_await bus.port.fpwr(station, reg::dc_activation, std::uint8_t{0});
         if (!off.ok()) co_return unanswered(slave.subject, "SYNC0 activation (0981h)", off);
@@ -287,6 +289,8 @@ Script<Result<void>> start_sync0(Bus& bus, BusSlave& slave) {
         fix_phase(bus);
         const Reply now = co_await bus.port.fprd(station, reg::dc_system_time, 8);
         if (!now.ok()) co_return unanswered(slave.subject, "its system time (0910h)", now);
+        believable = now.u64() < end_of_time;
+        if (!believable) continue;
         const std::uint64_t start =
             sync0_start(now.u64(), margin, sync0_period, unit_phase(bus, slave, *bus.dc_phase), sync0_shift(bus.config, *slave.config));
         const Reply first = co_await bus.port.fpwr(station, reg::dc_start_time, start);
@@ -299,13 +303,19 @@ Script<Result<void>> start_sync0(Bus& bus, BusSlave& slave) {
             co_return unanswered(slave.subject, "SYNC0 (0990h, 09A0h, 0981h)", on.ok() ? first : on);
         const Reply after = co_await bus.port.fprd(station, reg::dc_system_time, 8);
         if (!after.ok()) co_return unanswered(slave.subject, "its system time (0910h)", after);
-        if (after.u64() < start) {
+        // Start and wait come of two readings of one clock: a damaged one must not make the bus wait for years.
+        believable = after.u64() >= now.u64();
+        if (believable && after.u64() < start) {
             slave.link.sync0_start.store(static_cast<std::int64_t>(start));
             // The drive must have seen SYNC0 when SAFEOP is asked for.
             co_await pause(Duration{static_cast<std::int64_t>(start - after.u64())} + 2 * sync0_period);
             co_return Result<void>{};
         }
     }
+    if (!believable)
+        co_return Error{"bus.clock_not_believable", slave.subject,
+                        "its system time (0910h) jumped while SYNC0 was being started, three times",
+                        "power-cycle it; if that does not help, its controller or its cable is defective"};
     co_return Error{"bus.sync0_late", slave.subject, "the start of SYNC0 had passed before it was activated, three times",
                     "the service thread stalls for hundreds of milliseconds: give it more CPU time"};
 }
