@@ -64,7 +64,8 @@ present() {
         for pattern in "$@"; do
             grep -qE -- "$pattern" <<<"$picture" || missing=$pattern
         done
-        [[ -n $missing ]] && (($(now_ms) < patience)) || break
+        [[ -n $missing ]] || break
+        (($(now_ms) < patience)) || break
         sleep 0.1
     done
     printf '   $ taktwerk monitor --once\n'
