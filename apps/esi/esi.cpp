@@ -2,10 +2,31 @@
 
 #include "apps/esi/esi.hpp"
 
+#include "apps/terminal/exit_code.hpp"
+#include "apps/terminal/print_error.hpp"
 #include "ecat/esi/choose_device.hpp"
 #include "ecat/esi/esi_number.hpp"
 
 namespace taktwerk::apps {
+
+namespace {
+
+/// Errors of choose_device(), and usage.number for a revision that is none.
+Result<ecat::esi::EsiReading> read_chosen(const EsiOptions& options, const ecat::esi::EsiFile& file) {
+    std::optional<std::uint32_t> revision;
+    if (!options.revision.empty()) {
+        const auto number = ecat::esi::parse_number(options.revision);
+        if (!number || *number < 0 || *number > ecat::esi::u32)
+            return Error{"usage.number", "--revision", "'" + options.revision + "' is no revision",
+                         "write it like 0x00140000, as `esi list` shows it"};
+        revision = static_cast<std::uint32_t>(*number);
+    }
+    const auto chosen = ecat::esi::choose_device(file, options.device, revision);
+    if (!chosen) return chosen.error();
+    return file.read(*chosen);
+}
+
+}  // namespace
 
 std::shared_ptr<EsiOptions> add_esi_file(CLI::App& sub) {
     auto options = std::make_shared<EsiOptions>();
@@ -20,18 +41,20 @@ void add_esi_device(CLI::App& sub, EsiOptions& options) {
     sub.add_option("--revision", options.revision, "another revision than the newest, such as 0x00140000")->type_name("R");
 }
 
-Result<ecat::esi::EsiReading> read_chosen(const EsiOptions& options, const ecat::esi::EsiFile& file) {
-    std::optional<std::uint32_t> revision;
-    if (!options.revision.empty()) {
-        const auto number = ecat::esi::parse_number(options.revision);
-        if (!number || *number < 0 || *number > ecat::esi::u32)
-            return Error{"usage.number", "--revision", "'" + options.revision + "' is no revision",
-                         "write it like 0x00140000, as `esi list` shows it"};
-        revision = static_cast<std::uint32_t>(*number);
-    }
-    const auto chosen = ecat::esi::choose_device(file, options.device, revision);
-    if (!chosen) return chosen.error();
-    return file.read(*chosen);
+int with_esi_file(const EsiOptions& options, const std::function<int(const ecat::esi::EsiFile&)>& work) {
+    const auto file = ecat::esi::EsiFile::open(options.file);
+    if (file) return work(*file);
+    print_error(file.error());
+    return exit_bad_file;
+}
+
+int with_esi_device(const EsiOptions& options, const std::function<int(const ecat::esi::EsiFile&, const ecat::esi::EsiReading&)>& work) {
+    return with_esi_file(options, [&](const ecat::esi::EsiFile& file) {
+        const auto reading = read_chosen(options, file);
+        if (reading) return work(file, *reading);
+        print_error(reading.error());
+        return static_cast<int>(exit_usage);
+    });
 }
 
 void add_esi(CLI::App& app, Action& action) {

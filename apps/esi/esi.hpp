@@ -1,6 +1,7 @@
 #pragma once
 // The sub-commands of `taktwerk esi`, one file each. Their texts are made by pure functions, so that tests read them.
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -28,8 +29,11 @@ void add_esi_import(CLI::App& esi, Action& action);
 /// FILE, and --device and --revision for what is about one device.
 [[nodiscard]] std::shared_ptr<EsiOptions> add_esi_file(CLI::App& sub);
 void add_esi_device(CLI::App& sub, EsiOptions& options);
-/// The device that the options mean. Errors of EsiFile::open() and choose_device(), and usage.number for a revision that is none.
-[[nodiscard]] Result<ecat::esi::EsiReading> read_chosen(const EsiOptions& options, const ecat::esi::EsiFile& file);
+/// What `work` comes to with the file, or the exit code of a file that cannot be read, which has been said.
+[[nodiscard]] int with_esi_file(const EsiOptions& options, const std::function<int(const ecat::esi::EsiFile&)>& work);
+/// The same with one device of it.
+[[nodiscard]] int with_esi_device(const EsiOptions& options,
+                                  const std::function<int(const ecat::esi::EsiFile&, const ecat::esi::EsiReading&)>& work);
 
 [[nodiscard]] std::string esi_list_text(const ecat::esi::EsiFile& file, bool all, Colours colours);
 [[nodiscard]] EsiJson esi_list_json(const ecat::esi::EsiFile& file);

@@ -40,19 +40,9 @@ std::string heading_of(const EsiImport& import) {
     return fmt::format("{}: made of the vendor's ESI file by `taktwerk esi import`, which said what is not in here.", import.file.title);
 }
 
-int import_file(const EsiOptions& options) {
-    const auto file = EsiFile::open(options.file);
-    if (!file) {
-        print_error(file.error());
-        return exit_bad_file;
-    }
-    const auto reading = read_chosen(options, *file);
-    if (!reading) {
-        print_error(reading.error());
-        return exit_usage;
-    }
+int import_device(const EsiOptions& options, const EsiFile& file, const ecat::esi::EsiReading& reading) {
     const auto name = options.output.empty() ? std::string{} : fs::path(options.output).stem().string();
-    const auto import = config::import_device(*reading, file->vendor_name(), fs::path(options.file).filename().string(), name);
+    const auto import = config::import_device(reading, file.vendor_name(), fs::path(options.file).filename().string(), name);
     if (!import) {
         print_error(import.error());
         return import.error().code == "esi.name" ? exit_usage : exit_bad_file;
@@ -110,7 +100,12 @@ void add_esi_import(CLI::App& esi, Action& action) {
     sub->add_option("-o,--output", options->output, "the file to write, such as devices/el3104.yaml; without it: to standard output")
         ->type_name("FILE");
     sub->add_flag("--replace", options->replace, "write over a file that is there");
-    sub->callback([&action, options] { action = [options] { return import_file(*options); }; });
+    sub->callback([&action, options] {
+        action = [options] {
+            return with_esi_device(*options,
+                                   [&](const EsiFile& file, const auto& reading) { return import_device(*options, file, reading); });
+        };
+    });
 }
 
 }  // namespace taktwerk::apps

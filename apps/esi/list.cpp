@@ -69,18 +69,15 @@ void add_esi_list(CLI::App& esi, Action& action) {
     sub->add_flag("--all", options->all, "also revisions that newer ones of the file replace, and what the vendor hides");
     sub->add_flag("--json", options->json, "the answer as one JSON object");
     sub->callback([&action, options] {
-        action = [options]() -> int {
-            const auto file = EsiFile::open(options->file);
-            if (!file) {
-                print_error(file.error());
-                return exit_bad_file;
-            }
-            if (options->json) fmt::print("{}\n", esi_list_json(*file).dump(-1, ' ', false, EsiJson::error_handler_t::replace));
-            else fmt::print("{}", esi_list_text(*file, options->all, colours_of_output()));
-            std::fflush(stdout);
-            if (!options->json)
-                for (const auto& remark : file->remarks()) print_warning(remark);
-            return exit_ok;
+        action = [options] {
+            return with_esi_file(*options, [&](const EsiFile& file) {
+                if (options->json) fmt::print("{}\n", esi_list_json(file).dump(-1, ' ', false, EsiJson::error_handler_t::replace));
+                else fmt::print("{}", esi_list_text(file, options->all, colours_of_output()));
+                std::fflush(stdout);
+                if (!options->json)
+                    for (const auto& remark : file.remarks()) print_warning(remark);
+                return static_cast<int>(exit_ok);
+            });
         };
     });
 }

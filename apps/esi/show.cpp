@@ -222,21 +222,13 @@ void add_esi_show(CLI::App& esi, Action& action) {
     add_esi_device(*sub, *options);
     sub->add_flag("--json", options->json, "the answer as one JSON object");
     sub->callback([&action, options] {
-        action = [options]() -> int {
-            const auto file = EsiFile::open(options->file);
-            if (!file) {
-                print_error(file.error());
-                return exit_bad_file;
-            }
-            const auto reading = read_chosen(*options, *file);
-            if (!reading) {
-                print_error(reading.error());
-                return exit_usage;
-            }
-            if (options->json)
-                fmt::print("{}\n", esi_show_json(file->vendor_name(), *reading).dump(-1, ' ', false, EsiJson::error_handler_t::replace));
-            else fmt::print("{}", esi_show_text(file->vendor_name(), *reading, colours_of_output()));
-            return reading->problems.empty() ? exit_ok : exit_bad_file;
+        action = [options] {
+            return with_esi_device(*options, [&](const EsiFile& file, const EsiReading& reading) {
+                if (options->json)
+                    fmt::print("{}\n", esi_show_json(file.vendor_name(), reading).dump(-1, ' ', false, EsiJson::error_handler_t::replace));
+                else fmt::print("{}", esi_show_text(file.vendor_name(), reading, colours_of_output()));
+                return static_cast<int>(reading.problems.empty() ? exit_ok : exit_bad_file);
+            });
         };
     });
 }

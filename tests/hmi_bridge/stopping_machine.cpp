@@ -5,8 +5,6 @@
 // docs/stopping.md carries the figures; TAKTWERK_REGENERATE=1 writes them.
 
 #include <gmock/gmock.h>
-#include <sys/socket.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -20,7 +18,7 @@
 #include "fb_library/all_blocks.hpp"
 #include "hmi_bridge/hmi_bridge.hpp"
 #include "hmi_bridge/runtime_link.hpp"
-#include "tests/patience.hpp"
+#include "tests/hmi_bridge/caller.hpp"
 #include "tests/runtime/test_machine.hpp"
 #include "tests/runtime/test_program.hpp"
 
@@ -28,60 +26,17 @@ namespace taktwerk::hmi {
 namespace {
 
 using namespace std::chrono_literals;
+using runtime::testing::RunsX;
 using runtime::testing::TestMachine;
-
-class Caller {
-public:
-    explicit Caller(const std::string& path) : socket_(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)) {
-        sockaddr_un address{};
-        address.sun_family = AF_UNIX;
-        path.copy(address.sun_path, sizeof address.sun_path - 1);
-        (void)::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address);
-    }
-    ~Caller() { hang_up(); }
-    Caller(Caller&& other) noexcept : socket_(std::exchange(other.socket_, -1)) {}
-    Caller(const Caller&) = delete;
-    Caller& operator=(const Caller&) = delete;
-    Caller& operator=(Caller&&) = delete;
-    void hang_up() {
-        if (socket_ >= 0) ::close(socket_);
-        socket_ = -1;
-    }
-    bool say(std::string_view text) const {
-        return ::send(socket_, text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT) == static_cast<ssize_t>(text.size());
-    }
-    void flood(std::string_view text) const {
-        for (Patience patience{1'000'000}; patience.lasts(say(text));) {}
-    }
-    [[nodiscard]] std::string hear() const {
-        std::string all(1 << 20, '\0');
-        const auto got = ::recv(socket_, all.data(), all.size(), MSG_DONTWAIT);
-        all.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
-        return all;
-    }
-
-private:
-    int socket_;
-};
+using test::Caller;
 
 /// A program that moves x, with a slower task that nobody runs when the test says so.
-class Mover final : public Program {
+class Mover final : public RunsX {
 public:
-    AxisRef x;
-    fb::MC_Power power;
-    fb::MC_MoveVelocity move;
+    Mover() { velocity = 100; }
     void declare(Declaration& d) override {
-        x = d.axis("x");
-        d.task<&Mover::scan>("main");
+        RunsX::declare(d);
         d.task<&Mover::plan>("plan");
-    }
-    void scan(TaskContext& ctx) {
-        power.Axis = move.Axis = x;
-        power.Enable = true;
-        power(ctx);
-        move.Velocity = 100;
-        move.Execute = power.Status;
-        move(ctx);
     }
     void plan(TaskContext&) {}
 };

@@ -97,13 +97,20 @@ axes::CamRef sine_cam(Stage& stage) {
     return stage.cam(points);
 }
 
+/// The slave is on a cam once `select` and `in` are told to.
 struct Cam {
-    explicit Cam(axes::CamRef table) {
+    Cam(Stage& stage, Line& line, axes::CamRef table) {
         select.Master = in.Master = master;
         select.Slave = in.Slave = slave;
         select.CamTable = table;
         select.Periodic = true, select.SlaveAbsolute = true, select.MasterAbsolute = false;
         in.StartMode = mcAbsolute;
+        stage.before = [this, &line](const MotionContext& ctx) {
+            line.run(ctx);
+            select(ctx);
+            in.CamTableID = select.CamTableID;
+        };
+        stage.block("cam", in);
     }
     MC_CamTableSelect select;
     MC_CamIn in;
@@ -112,15 +119,9 @@ struct Cam {
 Figure cam_in() {
     Stage stage{{Stage::linear("slave"), Stage::linear("master")}};
     Line line{stage, 50};
-    Cam cam{sine_cam(stage)};
+    Cam cam{stage, line, sine_cam(stage)};
     MC_CamOut out;
     out.Slave = slave;
-    stage.before = [&](const MotionContext& ctx) {
-        line.run(ctx);
-        cam.select(ctx);
-        cam.in.CamTableID = cam.select.CamTableID;
-    };
-    stage.block("cam", cam.in);
     stage.block("out", out);
     show_both(stage);
     cam.select.Execute = true;
@@ -137,17 +138,12 @@ Figure flying_saw() {
     Stage stage{{Stage::linear("saw"), Stage::linear("material")}};
     Line line{stage, 50};
     using axes::CamSegment;
-    Cam cam{stage.cam({{.master = 0, .slave = 0, .segment = CamSegment::inclined_sine},
+    Cam cam{stage, line,
+            stage.cam({{.master = 0, .slave = 0, .segment = CamSegment::inclined_sine},
                        {.master = 15, .slave = 7.5, .velocity = 1, .segment = CamSegment::linear},
                        {.master = 45, .slave = 37.5, .velocity = 1, .segment = CamSegment::inclined_sine},
                        {.master = 60, .slave = 45, .segment = CamSegment::modified_sine},
                        {.master = 100, .slave = 0}})};
-    stage.before = [&](const MotionContext& ctx) {
-        line.run(ctx);
-        cam.select(ctx);
-        cam.in.CamTableID = cam.select.CamTableID;
-    };
-    stage.block("cam", cam.in);
     stage.signal("in step", [&] { return stage.view(0).set_velocity > 0 && stage.view(0).set_velocity == stage.view(1).set_velocity; });
     show_both(stage);
     cam.select.Execute = true;
@@ -157,24 +153,34 @@ Figure flying_saw() {
     return stage.figure("flying-saw");
 }
 
+/// A gear, and on it a shift of phase.
+struct Phased {
+    Phased(Stage& stage, double shift) {
+        gear.Master = phase.Master = master;
+        gear.Slave = phase.Slave = slave;
+        gear.Acceleration = gear.Deceleration = 200;
+        phase.PhaseShift = shift, phase.Velocity = 20, phase.Acceleration = phase.Deceleration = 100;
+        stage.block("gear", gear);
+        stage.block("phase", phase);
+    }
+    void begin(Stage& stage) {
+        stage.run(200ms);
+        gear.Execute = true;
+        stage.run_until([&] { return gear.InGear; });
+        stage.run(400ms);
+        phase.Execute = true;
+    }
+    MC_GearIn gear;
+    MC_PhasingRelative phase;
+};
+
 Figure phasing() {
     Stage stage{{Stage::linear("slave"), Stage::linear("master")}};
     Line line{stage, 40};
-    MC_GearIn gear;
-    MC_PhasingRelative phase;
-    gear.Master = phase.Master = master;
-    gear.Slave = phase.Slave = slave;
-    gear.Acceleration = gear.Deceleration = 200;
-    phase.PhaseShift = 15, phase.Velocity = 20, phase.Acceleration = phase.Deceleration = 100;
-    stage.block("gear", gear);
-    stage.block("phase", phase);
+    Phased phased{stage, 15};
     show_both(stage);
-    stage.run(200ms);
-    gear.Execute = true;
-    stage.run_until([&] { return gear.InGear; });
-    stage.run(400ms);
-    phase.Execute = true;
-    stage.run_until([&] { return phase.Done; });
+    phased.begin(stage);
+    stage.run_until([&] { return phased.phase.Done; });
     stage.run(400ms);
     return stage.figure("phasing");
 }
@@ -182,23 +188,13 @@ Figure phasing() {
 Figure halt_phasing() {
     Stage stage{{Stage::linear("slave"), Stage::linear("master")}};
     Line line{stage, 40};
-    MC_GearIn gear;
-    MC_PhasingRelative phase;
+    Phased phased{stage, 60};
     MC_HaltPhasing halt;
-    gear.Master = phase.Master = master;
-    gear.Slave = phase.Slave = halt.Slave = slave;
-    gear.Acceleration = gear.Deceleration = 200;
-    phase.PhaseShift = 60, phase.Velocity = 20, phase.Acceleration = phase.Deceleration = 100;
+    halt.Slave = slave;
     halt.Deceleration = 50;
-    stage.block("gear", gear);
-    stage.block("phase", phase);
     stage.block("halt", halt);
     show_both(stage);
-    stage.run(200ms);
-    gear.Execute = true;
-    stage.run_until([&] { return gear.InGear; });
-    stage.run(400ms);
-    phase.Execute = true;
+    phased.begin(stage);
     stage.run(700ms);
     halt.Execute = true;
     stage.run_until([&] { return halt.Done; });

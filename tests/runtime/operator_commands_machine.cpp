@@ -45,6 +45,16 @@ struct Commands : ::testing::Test {
         return m().command(c);
     }
     Answer program(OperatorAction action, std::uint16_t index = 0) { return m().command(action, index).answer; }
+    /// The program's start has been asked for, and has not been carried out.
+    bool start_under_way() {
+        start(with_program(1, &entry_of<Idle>));
+        program(program_stop);
+        m().run(3ms);
+        OperatorCommand c;
+        c.index = 0;
+        c.action = program_start;
+        return m().machine->submit(c);
+    }
     bool stands(std::uint16_t axis = 0) {
         return m().until([&] { return m().axis(axis).state == AxisState::Standstill && m().axis(axis).set_velocity == 0; }, 3s);
     }
@@ -357,26 +367,14 @@ TEST_F(Commands, AStartBeforeTheLastStopIsThroughIsRefusedNotLost) {
 }
 
 TEST_F(Commands, AStopTakesBackAStartThatIsUnderWay) {
-    start(with_program(1, &entry_of<Idle>));
-    program(program_stop);
-    m().run(3ms);
-    OperatorCommand c;
-    c.index = 0;
-    c.action = program_start;
-    ASSERT_TRUE(m().machine->submit(c));
+    ASSERT_TRUE(start_under_way());
     EXPECT_EQ(program(program_stop), Answer::accepted);
     m().run(10ms);
     EXPECT_EQ(m().state().programs[0], ProgramState::stopped);
 }
 
 TEST_F(Commands, LeavingAutomaticModeTakesBackAStartThatIsUnderWay) {
-    start(with_program(1, &entry_of<Idle>));
-    program(program_stop);
-    m().run(3ms);
-    OperatorCommand c;
-    c.index = 0;
-    c.action = program_start;
-    ASSERT_TRUE(m().machine->submit(c));
+    ASSERT_TRUE(start_under_way());
     EXPECT_EQ(m().mode(Mode::manual).answer, Answer::accepted);
     m().run(10ms);
     EXPECT_EQ(m().state().programs[0], ProgramState::stopped) << "no program runs in manual mode";

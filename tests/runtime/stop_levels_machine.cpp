@@ -137,27 +137,8 @@ TEST(LevelsRecorded, EachIsOneCommandOfNobodyInTheOrderInWhichTheCycleTookThem) 
 
 // --- a program's axis ------------------------------------------------------------------------------------------------------------------
 
-class StoppedMover : public Idle {
-public:
-    AxisRef x;
-    fb::MC_Power power;
-    fb::MC_MoveVelocity move;
-    void declare(Declaration& d) override {
-        x = d.axis("x");
-        d.task<&StoppedMover::run>("main");
-    }
-    void run(TaskContext& ctx) {
-        power.Axis = move.Axis = x;
-        power.Enable = true;
-        power(ctx);
-        move.Velocity = 50;
-        move.Execute = power.Status;
-        move(ctx);
-    }
-};
-
 TEST(LevelsOfPrograms, AProgramsAxisIsSparedByAJogLetGoAndStoppedByAStop) {
-    TestMachine m{with_program(1, &entry_of<StoppedMover>)};
+    TestMachine m{with_program(1, &entry_of<RunsX>)};
     ASSERT_TRUE(m.up());
     ASSERT_TRUE(m.until([&] { return m.axis(0).set_velocity == 50.0; }, 5s));
     m.machine->release_jog(0);
@@ -168,13 +149,12 @@ TEST(LevelsOfPrograms, AProgramsAxisIsSparedByAJogLetGoAndStoppedByAStop) {
 }
 
 /// Its start() takes long: what happens meanwhile happens in there.
-class SlowStarter final : public StoppedMover {
+class SlowStarter final : public RunsX {
 public:
     inline static std::function<void()> meanwhile;
     inline static int ended = 0;
     void start() override {
-        power = {};
-        move = {};
+        RunsX::start();
         if (meanwhile) meanwhile();
     }
     void stop() override { ++ended; }

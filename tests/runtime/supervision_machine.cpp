@@ -229,7 +229,7 @@ TEST_F(Supervised, SendAtTickMovesTheAxisToTheSamePlaceWithoutAlarms) {
 
 struct LateTask : Supervised {
     void begin(OverrunReaction reaction) {
-        auto config = with_program(1, &entry_of<Moves>, 4);
+        auto config = with_program(1, &entry_of<RunsX>, 4);
         config.tasks[0].overrun = reaction;
         config.tasks[0].overruns_allowed = 3;
         config.axes[0].axis.homing.kind = axes::HomingKind::set_here;
@@ -240,26 +240,6 @@ struct LateTask : Supervised {
     void starve(int releases) {
         for (int i = 0; i < 4 * releases; ++i) cycle(0ms);
     }
-    /// Powers x and runs it at 50 mm/s.
-    class Moves final : public Program {
-    public:
-        AxisRef x;
-        fb::MC_Power power;
-        fb::MC_MoveVelocity move;
-        void declare(Declaration& d) override {
-            x = d.axis("x");
-            d.task<&Moves::scan>("main");
-        }
-        void start() override { move = {}; }
-        void scan(TaskContext& ctx) {
-            power.Axis = move.Axis = x;
-            power.Enable = true;
-            power(ctx);
-            move.Execute = power.Status;
-            move.Velocity = 50;
-            move(ctx);
-        }
-    };
 };
 
 TEST_F(LateTask, IsCountedAndGoesOnAtTheNextRelease) {

@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 
+#include "fb_library/all_blocks.hpp"
 #include "runtime/tasks/program_library.hpp"
 #include "tests/machines/add_program.hpp"
 #include "tests/runtime/test_machine.hpp"
@@ -52,6 +53,31 @@ public:
     void scan(TaskContext& ctx) {
         ++scans;
         if (ctx.first_scan) ++first_scans;
+    }
+};
+
+/// Powers x and runs it.
+class RunsX : public Program {
+public:
+    AxisRef x;
+    fb::MC_Power power;
+    fb::MC_MoveVelocity move;
+    double velocity = 50;  ///< u/s
+    void declare(Declaration& d) override {
+        x = d.axis("x");
+        d.task<&RunsX::scan>("main");
+    }
+    void start() override {
+        power = {};
+        move = {};
+    }
+    void scan(TaskContext& ctx) {
+        power.Axis = move.Axis = x;
+        power.Enable = true;
+        power(ctx);
+        move.Velocity = velocity;
+        move.Execute = power.Status;
+        move(ctx);
     }
 };
 

@@ -7,6 +7,7 @@
 
 #include "fb_library/motion/digital_cam_switch.hpp"
 #include "tests/fb_library/fake_axes.hpp"
+#include "tests/fb_library/motion/cam_switch_example.hpp"
 
 namespace taktwerk::fb {
 namespace {
@@ -17,15 +18,8 @@ using axes::CamSwitchDirection;
 using axes::CamSwitchMode;
 using axes::TrackOptions;
 
-constexpr double turn = 5000;
-
-// The example of the standard (p. 82): modulo 5000.
-const std::vector<CamSwitch> example{
-    {.track = 1, .first = 2000, .last = 3000, .direction = CamSwitchDirection::positive},
-    {.track = 1, .first = 2500, .last = 3000, .direction = CamSwitchDirection::negative},
-    {.track = 1, .first = 4000, .last = 1000},
-    {.track = 2, .first = 3000, .mode = CamSwitchMode::time, .duration = 1350ms},
-};
+constexpr double turn = test::cam_switch_turn;
+const auto example = test::cam_switch_example();
 
 /// Tracks along a motion at constant velocity, one sample per millisecond.
 struct Shaft {

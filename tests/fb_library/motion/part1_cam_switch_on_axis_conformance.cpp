@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fb_library/all_blocks.hpp"
+#include "tests/fb_library/motion/cam_switch_example.hpp"
 #include "tests/fb_library/motion/coupled_plc.hpp"
 #include "tests/fb_library/motion/plc.hpp"
 
@@ -17,15 +18,8 @@ using axes::CamSwitch;
 using axes::CamSwitchDirection;
 using axes::CamSwitchMode;
 
-constexpr double turn = 5000;
-
-// The example of the standard (p. 82): modulo 5000.
-const std::vector<CamSwitch> example{
-    {.track = 1, .first = 2000, .last = 3000, .direction = CamSwitchDirection::positive},
-    {.track = 1, .first = 2500, .last = 3000, .direction = CamSwitchDirection::negative},
-    {.track = 1, .first = 4000, .last = 1000},
-    {.track = 2, .first = 3000, .mode = CamSwitchMode::time, .duration = 1350ms},
-};
+constexpr double turn = test::cam_switch_turn;
+const auto example = test::cam_switch_example();
 
 struct CamShaft : testing::Test {
     static axes::AxisConfig shaft() {

@@ -10,6 +10,7 @@
 #include "ecat/master.hpp"
 #include "ecat/sim/sim_network.hpp"
 #include "ecat/transport/loopback.hpp"
+#include "tests/axes/drives/cia402/puppet_device.hpp"
 
 namespace taktwerk::axes::cia402 {
 namespace {
@@ -20,45 +21,10 @@ constexpr std::int64_t turn = 1 << 17;
 constexpr double counts_per_mm = turn / 10.0;  // 10 mm a turn
 constexpr double edge = 34.5678;               // mm: where the probe's signal begins, between two counts
 
-ecat::ObjectEntry object(std::uint16_t index, ecat::DataType type) {
-    ecat::ObjectEntry entry;
-    entry.index = index;
-    entry.name = "object";
-    entry.type = type;
-    entry.mappable = ecat::Mappable::both;
-    return entry;
-}
-
-std::shared_ptr<const ecat::DeviceDescription> sv33() {
-    using ecat::DataType;
-    auto d = std::make_shared<ecat::DeviceDescription>();
-    d->name = "SV33-E";
-    d->identity = {1, 2, 3, 0};
-    d->mailbox = ecat::MailboxDescription{};
-    d->sync_managers = {{ecat::SmUse::mailbox_out, 0x1000, 0x80, 0x26},
-                        {ecat::SmUse::mailbox_in, 0x1080, 0x80, 0x22},
-                        {ecat::SmUse::outputs, 0x1100, 0, 0x64},
-                        {ecat::SmUse::inputs, 0x1400, 0, 0x20}};
-    d->rx_rules.max_entries = d->tx_rules.max_entries = 20;
-    d->rx_pdos = {{0x1600, false, {}}};
-    d->tx_pdos = {{0x1A00, false, {}}};
-    d->dc = {true, false, true, 125us, Duration{}};
-    const std::pair<std::uint16_t, DataType> rx[]{{0x6040, DataType::U16}, {0x607A, DataType::I32}, {0x60FF, DataType::I32},
-                                                  {0x6071, DataType::I16}, {0x6060, DataType::I8},  {0x60B8, DataType::U16}};
-    const std::pair<std::uint16_t, DataType> tx[]{
-        {0x6041, DataType::U16}, {0x6064, DataType::I32}, {0x606C, DataType::I32}, {0x6077, DataType::I16}, {0x6061, DataType::I8},
-        {0x603F, DataType::U16}, {0x60FD, DataType::U32}, {0x60B9, DataType::U16}, {0x60BA, DataType::I32}, {0x60BB, DataType::I32}};
-    const auto map = [&d](const auto& list, ecat::PdoDescription& pdo) {
-        for (const auto& [index, type] : list) {
-            d->objects.push_back(object(index, type));
-            pdo.entries.push_back({index, 0, ecat::bit_size(type)});
-        }
-    };
-    map(rx, d->rx_pdos[0]);
-    map(tx, d->tx_pdos[0]);
-    d->rx_assigned = {0x1600};
-    d->tx_assigned = {0x1A00};
-    return d;
+std::shared_ptr<ecat::DeviceDescription> sv33() {
+    return test::device(
+        "SV33-E", {{0x6040, 0}, {0x607A, 0}, {0x60FF, 0}, {0x6071, 0}, {0x6060, 0}, {0x60B8, 0}},
+        {{0x6041, 0}, {0x6064, 0}, {0x606C, 0}, {0x6077, 0}, {0x6061, 0}, {0x603F, 0}, {0x60FD, 0}, {0x60B9, 0}, {0x60BA, 0}, {0x60BB, 0}});
 }
 
 /// One axis of 10 mm a turn on the bus, in virtual time, 1 ms a cycle. Signal of probe 1 from 34.5678 mm to 40 mm.
