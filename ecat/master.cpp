@@ -8,6 +8,7 @@
 
 #include "ecat/alarms.hpp"
 #include "ecat/bringup/bring_up.hpp"
+#include "ecat/bringup/cable_watch.hpp"
 #include "ecat/bringup/hand_over.hpp"
 #include "ecat/bringup/presence.hpp"
 #include "ecat/bringup/watch.hpp"
@@ -325,6 +326,8 @@ std::string Master::detail(const AlarmFact& fact) const {
             return with_outcome(connection_text(*impl_->bus, slave), is_back(*impl_->bus, slave) ? "it is back in OP" : "");
         case BusAlarm::slave_lost:
             return with_outcome(connection_text(*impl_->bus, slave), is_back(*impl_->bus, slave) ? "it is back in OP" : "");
+        case BusAlarm::cable_errors:
+        case BusAlarm::cable_loses_link: return cable_text(*impl_->bus, slave, static_cast<unsigned>(fact.b));
         case BusAlarm::cable_broken:
         case BusAlarm::branch_dropped_out: return with_outcome(connection_text(*impl_->bus, slave), outcome(*impl_->bus, &slave));
         case BusAlarm::other_device:

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "ecat/bringup/al_control.hpp"
+#include "ecat/bringup/cable_watch.hpp"
 #include "ecat/bringup/presence.hpp"
 #include "ecat/bringup/recovery.hpp"
 #include "ecat/bringup/reference_role.hpp"
@@ -271,6 +272,7 @@ Script<void> keep_alive(Bus& bus) {
     scripts.push_back(watch_places(bus));
     scripts.push_back(watch_mailboxes(bus));
     scripts.push_back(watch_senders(bus));
+    scripts.push_back(watch_cables(bus));
     co_await all(std::move(scripts));
 }
 

@@ -129,6 +129,13 @@ enum class Presence : std::uint8_t {
 /// Why a slave that is on the cable does not come back to OP.
 enum class ReturnTrouble : std::uint8_t { none, refused, other_device };
 
+/// What a slave counted at one of its ports within the last minute; nothing of it: all zero.
+struct CableErrors {
+    std::uint8_t port = 0, lost_links = 0;
+    std::uint16_t errors = 0;
+    [[nodiscard]] bool any() const noexcept { return lost_links != 0 || errors != 0; }
+};
+
 /// Numbers between the cycle and the scripts of one slave, in a cache line of their own.
 struct alignas(64) SlaveLink {
     std::atomic<std::uint32_t> age{0};  ///< written by the cycle: cycles since its process data was exchanged
@@ -137,6 +144,7 @@ struct alignas(64) SlaveLink {
     std::atomic<ReturnTrouble> trouble{ReturnTrouble::none};
     std::atomic<std::uint32_t> attempts{0};  ///< to get it back, in a row
     SeenAlarms seen;
+    std::atomic<CableErrors> cable{};          ///< of the port that counted most
     std::atomic<bool> taken_down{false};       ///< to set it up again; until it is back in OP
     std::atomic<std::uint32_t> al{0};          ///< AL status in the low word, status code in the high word
     std::atomic<std::int64_t> sync0_start{0};  ///< an instant of SYNC0 in system time; 0: does not run

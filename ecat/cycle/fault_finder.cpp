@@ -302,6 +302,10 @@ void FaultFinder::raise_slave(std::size_t at, bool counted_out) noexcept {
     if (fallen_with(at) != nullptr) return;           // said with what took it down
     if (seen.seen.has<BusAlarm::mailbox_silent>()) raise(BusAlarm::mailbox_silent, AlarmSource::slave, slave.index);
 
+    if (const auto& cable = seen.cable; cable.lost_links > 0)
+        raise(BusAlarm::cable_loses_link, AlarmSource::slave, slave.index, cable.lost_links, cable.port);
+    else if (cable.errors > 0) raise(BusAlarm::cable_errors, AlarmSource::slave, slave.index, cable.errors, cable.port);
+
     // Probably one of those who are just being named.
     const bool waits = naming_ || (counted_out && seen.age < limit_ + naming_cycles);
     if (stuck(seen)) {

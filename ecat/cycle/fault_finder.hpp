@@ -45,8 +45,9 @@ struct SlaveCondition {
     Presence presence = Presence::answers;
     ReturnTrouble trouble = ReturnTrouble::none;
     std::uint32_t attempts = 0;
-    bool taken_down = false;           ///< by this master itself, to set it up again
-    BusAlarmSet seen{};                ///< what the scripts see of it
+    bool taken_down = false;  ///< by this master itself, to set it up again
+    BusAlarmSet seen{};       ///< what the scripts see of it
+    CableErrors cable{};
     std::uint16_t emergency_code = 0;  ///< 0: none
     std::uint8_t error_register = 0;
 };

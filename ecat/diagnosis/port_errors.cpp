@@ -42,7 +42,7 @@ std::vector<PortFinding> port_findings(const Survey& survey) {
             if (counters.invalid_frames != 0) add(list, plural(counters.invalid_frames, "invalid frame"));
             if (counters.forwarded_errors != 0) add(list, plural(counters.forwarded_errors, "forwarded error"));
             const std::string other = neighbour(survey, position, port);
-            const bool own = counters.lost_links != 0 || counters.rx_errors != 0 || counters.invalid_frames > counters.forwarded_errors;
+            const bool own = counters.lost_links != 0 || counters.own_errors() != 0;
             std::string cause;
             if (!own) cause = "they came from further up the cable; look at the slaves before";
             else if (other.empty()) cause = "the plug at this port, or what was plugged in there";

@@ -14,8 +14,6 @@ namespace taktwerk::ecat {
 
 namespace {
 
-constexpr std::size_t counter_bytes = reg::lost_links + 4 - reg::rx_errors;
-
 std::uint8_t byte_at(const Reply& reply, std::size_t offset) noexcept {
     return offset < reply.data.size() ? static_cast<std::uint8_t>(reply.data[offset]) : std::uint8_t{0};
 }
@@ -135,19 +133,13 @@ std::optional<Error> ring_remark(const Survey& survey) {
 }
 
 Script<bool> read_counters(DatagramPort& port, SurveyedSlave& slave) {
-    const Reply reply = co_await port.fprd(slave.found.station, reg::rx_errors, counter_bytes);
+    const auto counters = co_await read_port_counters(port, slave.found.station);
     const Reply watchdog = co_await port.fprd(slave.found.station, reg::sm_watchdog_count, 1);
     if (watchdog.ok()) slave.sm_watchdogs = byte_at(watchdog, 0);
-    if (!reply.ok()) co_return false;
-    for (unsigned p = 0; p < ports_per_slave; ++p) {
-        auto& counters = slave.ports[p].counters;
-        counters.invalid_frames = byte_at(reply, 2 * p);
-        counters.rx_errors = byte_at(reply, 2 * p + 1);
-        counters.forwarded_errors = byte_at(reply, reg::forwarded_rx_errors - reg::rx_errors + p);
-        counters.lost_links = byte_at(reply, reg::lost_links - reg::rx_errors + p);
-    }
-    slave.processing_unit_errors = byte_at(reply, reg::processing_unit_errors - reg::rx_errors);
-    slave.pdi_errors = byte_at(reply, reg::pdi_errors - reg::rx_errors);
+    if (!counters) co_return false;
+    for (unsigned p = 0; p < ports_per_slave; ++p) slave.ports[p].counters = counters->ports[p];
+    slave.processing_unit_errors = counters->processing_unit_errors;
+    slave.pdi_errors = counters->pdi_errors;
     co_return true;
 }
 

@@ -11,6 +11,7 @@
 
 #include "core/result.hpp"
 #include "ecat/bringup/bus.hpp"
+#include "ecat/bringup/port_counters.hpp"
 #include "ecat/bus_config.hpp"
 #include "ecat/topology/topology.hpp"
 
@@ -19,16 +20,6 @@ namespace taktwerk::ecat {
 /// What 0007h says about a port.
 enum class PortKind : std::uint8_t { none = 0, not_configured = 1, ebus = 2, mii = 3 };
 [[nodiscard]] std::string_view name(PortKind kind) noexcept;
-
-/// Error counters of one port (0300h..0313h); each stops at 255.
-struct PortCounters {
-    std::uint8_t invalid_frames = 0;    ///< wrong checksum, seen here
-    std::uint8_t rx_errors = 0;         ///< symbol errors on the wire
-    std::uint8_t forwarded_errors = 0;  ///< frames that an earlier slave had marked as wrong
-    std::uint8_t lost_links = 0;
-    [[nodiscard]] bool clean() const noexcept { return (invalid_frames | rx_errors | forwarded_errors | lost_links) == 0; }
-    friend bool operator==(const PortCounters&, const PortCounters&) = default;
-};
 
 struct SurveyedPort {
     PortKind kind = PortKind::none;
