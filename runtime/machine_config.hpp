@@ -197,6 +197,13 @@ struct SimulationConfig {
     std::vector<SimulationEvent> events;
 };
 
+/// What was on the bus around each alarm that stops something, for Wireshark.
+struct EvidenceConfig {
+    std::string directory;         ///< empty: none is kept
+    std::uint16_t files = 20;      ///< so many are kept, the newest; 0: all
+    std::uint16_t megabytes = 16;  ///< of memory for the last frames, taken twice
+};
+
 struct MachineConfig {
     std::string name = "machine";
     Duration cycle = std::chrono::milliseconds{1};
@@ -216,6 +223,7 @@ struct MachineConfig {
     /// Directory in which the positions of axes with absolute encoders are kept; empty: they are not. Simulated drives forget theirs with
     /// the process, so a run on a simulated bus wants none or one of its own.
     std::string retain;
+    EvidenceConfig evidence;
     std::uint8_t commands_per_cycle = 4;  ///< K operator commands drained per cycle
 };
 

@@ -69,6 +69,7 @@ void add_bus(CLI::App& app, Action& action) {
     add_bus_clocks(*bus, action);
     add_bus_counters(*bus, action);
     add_bus_why(*bus, action);
+    add_bus_capture(*bus, action);
     add_bus_init(*bus, action);
 }
 

@@ -14,6 +14,7 @@
 #include "ecat/diagnosis/survey.hpp"
 #include "ecat/diagnosis/why_not_op.hpp"
 #include "ecat/esi/esi_folder.hpp"
+#include "ecat/recording/bus_traffic.hpp"
 
 namespace taktwerk::apps {
 
@@ -24,6 +25,7 @@ void add_bus_sdo(CLI::App& bus, Action& action);
 void add_bus_clocks(CLI::App& bus, Action& action);
 void add_bus_counters(CLI::App& bus, Action& action);
 void add_bus_why(CLI::App& bus, Action& action);
+void add_bus_capture(CLI::App& bus, Action& action);
 void add_bus_init(CLI::App& bus, Action& action);
 
 /// The options that every sub-command has.
@@ -43,6 +45,9 @@ void add_operational(CLI::App& sub, BusOptions& options);
 [[nodiscard]] std::string dictionary_text(const ecat::Dictionary& dictionary, Colours colours);
 [[nodiscard]] std::string why_text(const std::string& where, const ecat::WhyReport& report, Colours colours);
 [[nodiscard]] Json why_json(const ecat::WhyReport& report);
+
+[[nodiscard]] std::string traffic_text(const std::string& where, const ecat::BusTraffic& traffic, std::uint64_t missed, Colours colours);
+[[nodiscard]] Json traffic_json(const ecat::BusTraffic& traffic, std::uint64_t missed);
 
 /// The state as it is shown everywhere: green in OP, red with an error.
 [[nodiscard]] Cell state_cell(ecat::AlState state, bool error);

@@ -90,7 +90,8 @@ private:
             s.nic_ = std::move(*opened);
         }
         if (!options.pcap.empty()) {
-            auto capture = ecat::FrameCapture::create(options.pcap, s.simulated() ? Duration{} : calendar_minus_machine_time());
+            auto capture =
+                ecat::FrameCapture::create(options.pcap, {options.nic, {}, s.simulated() ? Duration{} : calendar_minus_machine_time()});
             if (!capture) return fail(options, capture.error());
             s.capture_ = std::move(*capture);
         }

@@ -14,8 +14,8 @@
 #include "core/clock.hpp"
 #include "core/result.hpp"
 #include "ecat/diagnosis/bus_probe.hpp"
-#include "ecat/diagnosis/frame_capture.hpp"
 #include "ecat/diagnosis/survey.hpp"
+#include "ecat/recording/frame_capture.hpp"
 #include "ecat/ring/bus_interfaces.hpp"
 #include "runtime/world/world.hpp"
 

@@ -17,9 +17,9 @@
 #include "apps/machine/file_thread.hpp"
 #include "apps/machine/load.hpp"
 #include "apps/machine/machine_log.hpp"
+#include "apps/machine/run_files.hpp"
 #include "apps/machine/sim_hands.hpp"
 #include "apps/machine/stop_signal.hpp"
-#include "apps/machine/trace_csv.hpp"
 #include "apps/taktwerk.hpp"
 #include "apps/terminal/duration_option.hpp"
 #include "apps/terminal/exit_code.hpp"
@@ -29,7 +29,6 @@
 #include "core/calendar_distance.hpp"
 #include "core/math.hpp"
 #include "core/realtime.hpp"
-#include "ecat/diagnosis/frame_capture.hpp"
 #include "ecat/ring/bus_interfaces.hpp"
 #include "hmi_bridge/hmi_bridge.hpp"
 #include "hmi_bridge/runtime_link.hpp"
@@ -46,12 +45,10 @@ namespace {
 using namespace runtime;
 
 struct RunOptions {
-    std::string file, trace, pcap, retain;
+    std::string file, trace, pcap, retain, evidence;
     bool simulate = false, virtual_time = false, json = false, quiet = false;
     double duration_s = 0;
 };
-
-constexpr std::size_t trace_rows = 8192;
 
 /// A run that ends with something machine-wide still standing did not end well. What stands while the machine goes down does not
 /// count: then the bus is meant to be silent.
@@ -98,40 +95,15 @@ void print_summary(Machine& machine, const RunOptions& options, double machine_s
     put(std::move(lines));
 }
 
-/// What is written while the machine runs. Shared with the threads that write: one that the disk holds outlives everything.
-struct Files {
-    std::shared_ptr<ecat::FrameCapture> capture;
-    std::shared_ptr<TraceCsv> trace;
-};
-
-/// Frames of the bus and rows of the trace go into files, where that was asked for. `files` outlive the machine's cycle.
-Result<void> open_files(Machine& machine, const RunOptions& options, Duration epoch, Files& files) {
-    if (!options.pcap.empty()) {
-        auto created = ecat::FrameCapture::create(options.pcap, epoch);
-        if (!created) return created.error();
-        files.capture = std::move(*created);
-        machine.bus().set_tap(&ecat::FrameCapture::tap, files.capture.get());
-    }
-    if (!options.trace.empty()) {
-        auto created = TraceCsv::create(options.trace, machine.enable_trace(trace_rows), machine.layout());
-        if (!created) return created.error();
-        files.trace = std::move(*created);
-    }
-    return {};
+void finish(const RunFiles& files, const RunOptions& options) {
+    files.finish_capture();
+    files.say_frames(options.quiet || options.json, &MachineLog::print);
 }
 
-/// After the cycle has ended. Says what is missing.
-void say_frames(const ecat::FrameCapture* capture, const RunOptions& options, const MachineLog::Sink& put) {
-    if (capture == nullptr) return;
-    if (capture->dropped() > 0)
-        print_warning(Error{"capture.dropped", options.pcap, fmt::format("{} frames did not fit and are missing", capture->dropped()), ""});
-    if (!options.quiet && !options.json) put(fmt::format("{} frames in {}\n", capture->frames(), options.pcap));
-}
-
-void finish(ecat::FrameCapture* capture, const RunOptions& options) {
-    if (capture == nullptr) return;
-    if (auto ok = capture->finish(); !ok) print_error(ok.error());
-    say_frames(capture, options, &MachineLog::print);
+/// A file that could not be written is told; the next one is tried all the same.
+void say_evidence(const MachineLog& log, Instant now, const Result<Evidence::File>& file) {
+    if (!file) log.say(now, "evidence", file.error().text());
+    else if (const auto text = evidence_text(*file); !text.empty()) log.say(now, "evidence", text);
 }
 
 std::unique_ptr<Machine> build(MachineConfig config, ecat::Transport& transport, std::vector<modbus::SerialLine*> lines) {
@@ -147,10 +119,10 @@ int run_virtual(LoadedFile loaded, const RunOptions& options) {
     math::set_stepping_thread_float_environment();
     VirtualClock clock{Instant{}};
     World world{loaded.machine, clock.now()};
-    Files files;
+    RunFiles files{options.pcap, options.trace, {}, {}, {}};
     auto machine = build(std::move(loaded.machine), world.bus(), world.serial().lines());
     if (!machine) return exit_bad_file;
-    if (auto ok = open_files(*machine, options, Duration{}, files); !ok) {
+    if (auto ok = files.open(*machine, Duration{}); !ok) {
         print_error(ok.error());
         return exit_bad_file;
     }
@@ -163,6 +135,10 @@ int run_virtual(LoadedFile loaded, const RunOptions& options) {
     runner.after_cycle = [&](Instant now) {
         if (files.trace) (void)files.trace->drain().ok();  // an error comes again from finish()
         if (files.capture) (void)files.capture->drain().ok();
+        if (files.evidence && machine->latest() != nullptr) {
+            files.evidence->look(*machine->latest());
+            say_evidence(log, now, files.evidence->write_due(now));
+        }
         const auto* snapshot = machine->latest();
         judge(snapshot, code);
         if (!options.quiet) log.step(now, snapshot);
@@ -178,14 +154,15 @@ int run_virtual(LoadedFile loaded, const RunOptions& options) {
                                options.duration_s),
                    "nothing has moved; give --duration more than the bus needs"};
     if (!up) {
-        finish(files.capture.get(), options);
+        finish(files, options);
         print_error(up.error());
         return stop_requested() ? exit_ok : exit_bus;
     }
     const auto duration = options.duration_s > 0 ? from_seconds(options.duration_s) : Duration::max() / 4;
     runner.run_for(std::max(duration - (clock.now() - Instant{}), Duration{}));
     runner.shut_down();
-    finish(files.capture.get(), options);
+    if (files.evidence) say_evidence(log, clock.now(), files.evidence->finish());
+    finish(files, options);
     print_summary(*machine, options, to_seconds(clock.now() - Instant{}), to_seconds(wall.now() - wall_start), &MachineLog::print);
     if (files.trace)
         if (auto ok = files.trace->finish(); !ok) {
@@ -233,7 +210,7 @@ private:
 };
 
 /// From here on nothing that may wait happens on a thread that somebody else waits for (docs/stopping.md).
-int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, Files files, const hmi::HmiConfig& hmi_config,
+int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFiles& files, const hmi::HmiConfig& hmi_config,
                const RunOptions& options) {
     SystemClock clock;
     const auto start = clock.now();
@@ -278,6 +255,17 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, Files f
     if (files.trace) files.trace->count_from(start);
     write_beside("trace", files.trace);
     write_beside("pcap", files.capture);
+    if (files.evidence)
+        writers.push_back(std::make_unique<FileThread>(
+            [&log, &clock, evidence = files.evidence] {
+                say_evidence(log, clock.now(), evidence->write_due(clock.now()));
+                return Result<void>{};
+            },
+            [&log, &clock, evidence = files.evidence] {
+                say_evidence(log, clock.now(), evidence->finish());
+                return Result<void>{};
+            },
+            [](const Error&) {}));
     const auto files_written = [&] {
         auto worst = FileThread::End::complete;
         for (auto& writer : writers) worst = std::max(worst, writer->finish(file_patience));
@@ -322,6 +310,7 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, Files f
         (*bridge)->step(now);
         judge((*bridge)->snapshot(), code);
         if (!options.quiet) log.step(now, (*bridge)->snapshot());
+        if (const auto* snapshot = (*bridge)->snapshot(); files.evidence && snapshot != nullptr) files.evidence->look(*snapshot);
         time_up = options.duration_s > 0 && to_seconds(now - start) >= options.duration_s;
         if (stop_requested() && !said_stop) {
             said_stop = true;
@@ -339,7 +328,7 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, Files f
                       "Look at that disk; the file is not complete."});
         std::_Exit(exit_bad_file);
     }
-    say_frames(files.capture.get(), options, put);
+    files.say_frames(options.quiet || options.json, put);
     if (served) print_summary(machine, options, to_seconds(clock.now() - start), to_seconds(clock.now() - start), put);
     out.finish(last_lines_patience);
     if (!served) {
@@ -376,7 +365,7 @@ int run_real(LoadedFile loaded, const RunOptions& options) {
             for (const auto& refused : nic->refused()) fmt::print("{}\n", refused);
     }
     ecat::Transport& transport = world ? world->bus() : nic->bus();
-    Files files;
+    RunFiles files{options.pcap, options.trace, {}, {}, {}};
     auto lines = world ? world->serial().lines() : std::vector<modbus::SerialLine*>(loaded.machine.serial.size());
     std::vector<std::unique_ptr<modbus::TtyLine>> ports;
     for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -392,11 +381,11 @@ int run_real(LoadedFile loaded, const RunOptions& options) {
     }
     auto machine = build(std::move(loaded.machine), transport, std::move(lines));
     if (!machine) return exit_bad_file;
-    if (auto ok = open_files(*machine, options, calendar_minus_machine_time(), files); !ok) {
+    if (auto ok = files.open(*machine, calendar_minus_machine_time()); !ok) {
         print_error(ok.error());
         return exit_bad_file;
     }
-    return serve_real(*machine, world.get(), nic.get(), std::move(files), loaded.hmi, options);
+    return serve_real(*machine, world.get(), nic.get(), files, loaded.hmi, options);
 }
 
 }  // namespace
@@ -412,6 +401,8 @@ void add_run(CLI::App& app, Action& action) {
                     "keep the positions of axes with absolute encoders in this directory, also on a simulated bus");
     sub->add_option("--trace", options->trace, "write every cycle to this CSV file (see `taktwerk plot`)");
     sub->add_option("--pcap", options->pcap, "write every frame of the bus to this file, for Wireshark and tshark");
+    sub->add_option("--evidence", options->evidence,
+                    "write what was on the bus around each alarm that stops something into this directory, also on a simulated bus");
     sub->add_flag("--json", options->json, "events as one JSON object a line");
     sub->add_flag("--quiet", options->quiet, "say only errors and what clients change");
     sub->callback([&action, options] {
@@ -419,6 +410,7 @@ void add_run(CLI::App& app, Action& action) {
             auto loaded = load(options->file, options->simulate || options->virtual_time);
             if (!loaded) return static_cast<int>(exit_bad_file);
             if (!options->retain.empty()) loaded->machine.retain = options->retain;
+            if (!options->evidence.empty()) loaded->machine.evidence.directory = options->evidence;
             if (!options->retain.empty() && !runtime::keeps_positions(loaded->machine))
                 print_warning(Error{"config.nothing_to_retain", "--retain " + options->retain,
                                     "no axis has an absolute encoder: nothing will be kept",

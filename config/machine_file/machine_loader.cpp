@@ -51,10 +51,11 @@ public:
             if (out.machine.bus.ring) out.machine.bus.ring->interface2.clear();
         }
         // Simulated drives forget where they were, and what a real machine keeps is none of theirs.
-        auto& retain = out.machine.retain;
-        if (out.machine.bus.interface.empty()) retain.clear();
-        else if (!retain.empty() && fs::path(retain).is_relative())
-            retain = (fs::path(path_).parent_path() / retain).lexically_normal().string();
+        for (auto* kept : {&out.machine.retain, &out.machine.evidence.directory}) {
+            if (out.machine.bus.interface.empty()) kept->clear();
+            else if (!kept->empty() && fs::path(*kept).is_relative())
+                *kept = (fs::path(path_).parent_path() / *kept).lexically_normal().string();
+        }
         out.machine.bus.cycle = out.machine.cycle;
         for (std::size_t i = 0; i < file_.slaves.size(); ++i) {
             add_slave(out, file_.slaves[i], i);

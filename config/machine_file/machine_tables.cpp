@@ -393,6 +393,22 @@ Table<runtime::EmergencyStop> emergency_stop_table() {
         {}};
 }
 
+Table<runtime::EvidenceConfig> evidence_table() {
+    using E = runtime::EvidenceConfig;
+    return {
+        "evidence",
+        "What was on the bus from some seconds before until a second after each alarm that stops something: a pcapng file each, with the "
+        "alarm at its frame.",
+        {
+            required(field("directory", &E::directory, text(), "folder for the files; relative to this file")),
+            field("files", &E::files, integer<std::uint16_t>(0, 10000), "so many are kept, the newest; 0: all"),
+            field("megabytes", &E::megabytes, integer<std::uint16_t>(1, 1024),
+                  "of memory for the last frames, taken twice: one frame of 200 bytes a millisecond fills 16 in half a minute"),
+        },
+        {},
+        {}};
+}
+
 Table<runtime::CycleWatch> watch_table() {
     using W = runtime::CycleWatch;
     return {"watch",
@@ -504,6 +520,10 @@ Table<MachineFile> machine_table() {
                                  "directory in which the positions of axes with absolute encoders are kept over a time without power; "
                                  "relative to this file"),
                              "none: they are homed after each start"));
+    f.push_back(with_default(field_at<F>(
+                                 "evidence", [](F & m) -> auto& { return m.machine.evidence; }, section(evidence_table()),
+                                 "what was on the bus around each alarm that stops something, as a file for Wireshark"),
+                             "none"));
     f.push_back(field_at<F>(
         "commands_per_cycle", [](F & m) -> auto& { return m.machine.commands_per_cycle; }, integer<std::uint8_t>(1, 64),
         "operator commands taken per cycle"));

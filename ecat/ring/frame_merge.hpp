@@ -12,14 +12,9 @@
 #include <optional>
 #include <span>
 
-namespace taktwerk::ecat {
+#include "ecat/wire/frame_fields.hpp"
 
-/// Where things stand: in an Ethernet frame, and from the header of a datagram on. ETG.1000.4.
-namespace frame_field {
-inline constexpr std::size_t source = 6;  ///< Ethernet address of the sender
-inline constexpr std::size_t adp = 2, ado = 4, length = 6, irq = 8;
-inline constexpr std::uint8_t passed_a_slave = 0x02;  ///< in the first byte of the source: every processing unit sets it
-}  // namespace frame_field
+namespace taktwerk::ecat {
 
 /// One copy, as it left and as it came back: whole frames.
 struct FrameCopy {

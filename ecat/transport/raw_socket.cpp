@@ -3,10 +3,7 @@
 #include <fmt/format.h>
 #include <linux/errqueue.h>
 #include <linux/if_packet.h>
-#include <net/if.h>
-#include <net/if_arp.h>
 #include <netinet/in.h>
-#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/uio.h>
@@ -24,57 +21,12 @@
 #include <utility>
 
 #include "core/calendar_distance.hpp"
+#include "ecat/transport/descriptor.hpp"
+#include "ecat/transport/network_interface.hpp"
 
 namespace taktwerk::ecat {
 
 namespace {
-
-class Descriptor {
-public:
-    explicit Descriptor(int number) noexcept : number_(number) {}
-    ~Descriptor() {
-        if (number_ >= 0) ::close(number_);
-    }
-    Descriptor(Descriptor&& other) noexcept : number_(other.release()) {}
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
-    Descriptor& operator=(Descriptor&& other) noexcept {
-        std::swap(number_, other.number_);
-        return *this;
-    }
-    [[nodiscard]] int get() const noexcept { return number_; }
-    int release() noexcept { return std::exchange(number_, -1); }
-
-private:
-    int number_;
-};
-
-Error error(std::string_view code, std::string_view interface, std::string what, std::string remedy) {
-    return Error{std::string{code}, fmt::format("network interface {}", interface), std::move(what), std::move(remedy)};
-}
-
-Error socket_error(std::string_view interface, std::string_view call) {
-    return error("transport.socket", interface, fmt::format("{} failed: {}", call, std::strerror(errno)), "");
-}
-
-std::string other_interfaces() {
-    std::string names;
-    auto* list = ::if_nameindex();
-    if (list == nullptr) return names;
-    for (auto* entry = list; entry->if_index != 0; ++entry) {
-        if (std::string_view{entry->if_name} == "lo") continue;
-        if (!names.empty()) names += ", ";
-        names += entry->if_name;
-    }
-    ::if_freenameindex(list);
-    return names;
-}
-
-ifreq request(std::string_view interface) noexcept {
-    ifreq ifr{};
-    std::copy_n(interface.begin(), std::min<std::size_t>(interface.size(), IFNAMSIZ - 1), ifr.ifr_name);
-    return ifr;
-}
 
 std::int64_t nanoseconds(Instant t) noexcept { return t.time_since_epoch().count(); }
 
@@ -144,64 +96,40 @@ Result<int> lock_interface(std::string_view interface, unsigned index, int socke
                                              known ? fmt::format("process {} of user {}", holder.pid, holder.uid) : "a process", name));
         return -1;
     }
-    return error("transport.in_use", interface,
-                 known ? fmt::format("another Taktwerk is the master on it (process {})", holder.pid)
-                       : std::string{"another Taktwerk is the master on it (its process id is not visible from here)"},
-                 "end that process, or use another interface");
+    return interface_error("transport.in_use", interface,
+                           known ? fmt::format("another Taktwerk is the master on it (process {})", holder.pid)
+                                 : std::string{"another Taktwerk is the master on it (its process id is not visible from here)"},
+                           "end that process, or use another interface");
 }
 
 }  // namespace
 
 Result<std::unique_ptr<RawSocketTransport>> RawSocketTransport::open(std::string_view interface, const RawSocketOptions& options) {
-    const auto index = interface.empty() || interface.size() >= IFNAMSIZ ? 0u : ::if_nametoindex(std::string{interface}.c_str());
-    if (index == 0) {
-        const auto others = other_interfaces();
-        return error(
-            "transport.no_such_interface", interface, "there is no network interface of this name",
-            others.empty() ? std::string{"no other interface exists in this network namespace"} : fmt::format("use one of: {}", others));
-    }
-
     // Flags and hardware address can be asked without privilege: their errors come first.
-    const Descriptor control{::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)};
-    auto ifr = request(interface);
-    if (::ioctl(control.get(), SIOCGIFHWADDR, &ifr) != 0) return socket_error(interface, "reading the hardware address");
-    if (ifr.ifr_hwaddr.sa_family != ARPHRD_ETHER)
-        return error("transport.not_ethernet", interface, "it is not an Ethernet interface", "use a wired Ethernet port");
-    MacAddress mac{};
-    std::memcpy(mac.data(), ifr.ifr_hwaddr.sa_data, mac.size());
-    ifr = request(interface);
-    if (::ioctl(control.get(), SIOCGIFFLAGS, &ifr) != 0) return socket_error(interface, "reading the flags");
-    if ((ifr.ifr_flags & IFF_UP) == 0)
-        return error("transport.interface_down", interface, "it is switched off",
-                     fmt::format("switch it on: ip link set {} up", interface));
-
-    // Protocol 0: nothing is received until it is bound to this interface.
-    Descriptor socket{::socket(AF_PACKET, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)};
-    if (socket.get() < 0) {
-        if (errno == EPERM || errno == EACCES)
-            return error("transport.no_privilege", interface, "raw Ethernet frames need the privilege CAP_NET_RAW",
-                         "run it as a service with AmbientCapabilities=CAP_NET_RAW (docs/bus.md), or as root");
-        return socket_error(interface, "opening a packet socket");
-    }
+    const auto found = find_interface(interface);
+    if (!found) return found.error();
+    auto opened = open_packet_socket(interface);
+    if (!opened) return std::move(opened).error();
+    Descriptor socket{std::move(opened).value()};
 
     RawSocketReport report = apply(options, socket.get(), interface);
 
     sockaddr_ll address{};
     address.sll_family = AF_PACKET;
     address.sll_protocol = htons(ethertype);
-    address.sll_ifindex = static_cast<int>(index);
+    address.sll_ifindex = static_cast<int>(found->index);
     if (::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
         return socket_error(interface, "binding the packet socket");
 
     Descriptor lock{-1};
     if (options.exclusive) {
-        auto taken = lock_interface(interface, index, socket.get(), report);
+        auto taken = lock_interface(interface, found->index, socket.get(), report);
         if (!taken) return std::move(taken).error();
         lock = Descriptor{*taken};
     }
 
     std::unique_ptr<RawSocketTransport> transport{
-        new RawSocketTransport{std::string{interface}, socket.release(), lock.release(), mac, std::move(report)}};
+        new RawSocketTransport{std::string{interface}, socket.release(), lock.release(), found->mac, std::move(report)}};
     transport->clock_ = options.clock;
     transport->refresh();
     return transport;
@@ -259,12 +187,7 @@ void RawSocketTransport::refresh() noexcept {
     if (report_.stamps_sending) read_send_stamps();
 }
 
-void RawSocketTransport::read_carrier() noexcept {
-    auto ifr = request(interface_);
-    const bool answered = ::ioctl(socket_, SIOCGIFFLAGS, &ifr) == 0;
-    constexpr short both = IFF_UP | IFF_RUNNING;
-    link_up_.store(answered && (ifr.ifr_flags & both) == both, std::memory_order_relaxed);
-}
+void RawSocketTransport::read_carrier() noexcept { link_up_.store(has_carrier(socket_, interface_), std::memory_order_relaxed); }
 
 void RawSocketTransport::read_drops() noexcept {
     tpacket_stats counted{};  // since the last call

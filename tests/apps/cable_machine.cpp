@@ -12,10 +12,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "apps/terminal/exit_code.hpp"
 #include "tests/apps/cable.hpp"
 #include "tests/apps/machine_files.hpp"
+#include "tests/ecat/wire/captures.hpp"
 
 namespace taktwerk::apps {
 namespace {
@@ -36,21 +38,36 @@ std::string replaced(std::string text, const std::string& from, const std::strin
     return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
+/// The example `minimal` with its bus on a cable, in a folder of its own.
+struct MinimalOnACable {
+    std::filesystem::path folder;
+    std::string socket, file;
+
+    MinimalOnACable() {
+        auto pattern = (std::filesystem::temp_directory_path() / "taktwerk-test-XXXXXX").string();
+        folder = ::mkdtemp(pattern.data());
+        std::filesystem::create_directories(folder / "machines");
+        std::filesystem::create_directory_symlink(source / "config/drives", folder / "drives");
+        socket = (folder / "socket").string();
+        file = (folder / "machines/cable.yaml").string();
+        auto text = text_of(source / "config/machines/minimal.yaml");
+        text = replaced(replaced(text, "interface: simulated", "interface: twk0"), "cycle: 1 ms", "cycle: 4 ms");
+        text += "hmi: { socket: '" + socket + "', lcm: { enabled: false } }\nsimulation: { supervision: relaxed }\n";
+        std::ofstream(file) << text;
+    }
+    ~MinimalOnACable() { std::filesystem::remove_all(folder); }
+    MinimalOnACable(const MinimalOnACable&) = delete;
+    MinimalOnACable& operator=(const MinimalOnACable&) = delete;
+};
+
 TEST(CommandLineCable, RunMovesTheAxesOfSim) {
     if (::geteuid() != 0) GTEST_SKIP() << "network namespaces need root";
     const Cable cable;
     if (!cable.laid()) GTEST_SKIP() << "this system lets nobody make network namespaces or veth pairs";
 
-    auto pattern = (std::filesystem::temp_directory_path() / "taktwerk-test-XXXXXX").string();
-    const std::filesystem::path folder = ::mkdtemp(pattern.data());
-    std::filesystem::create_directories(folder / "machines");
-    std::filesystem::create_directory_symlink(source / "config/drives", folder / "drives");
-    const auto socket = (folder / "socket").string(), file = (folder / "machines/cable.yaml").string(),
-               capture = (folder / "cable.pcap").string();
-    auto text = text_of(source / "config/machines/minimal.yaml");
-    text = replaced(replaced(text, "interface: simulated", "interface: twk0"), "cycle: 1 ms", "cycle: 4 ms");
-    text += "hmi: { socket: '" + socket + "', lcm: { enabled: false } }\nsimulation: { supervision: relaxed }\n";
-    std::ofstream(file) << text;
+    const MinimalOnACable machine;
+    const auto &socket = machine.socket, &file = machine.file;
+    const auto capture = (machine.folder / "cable.pcap").string();
     const auto operate = [&](std::vector<std::string> words) {
         words.insert(words.begin(), taktwerk);
         words.insert(words.end(), {"-s", socket});
@@ -67,7 +84,7 @@ TEST(CommandLineCable, RunMovesTheAxesOfSim) {
         EXPECT_TRUE(listener.says("Capturing", 10s)) << listener.text();
     }
     Child slaves(cable.at_slaves({taktwerk, "sim", file, "--nic", "twk1"}));
-    ASSERT_TRUE(slaves.says("slaves of 'minimal'", 10s)) << slaves.text();
+    ASSERT_TRUE(slaves.says("slave of 'minimal'", 10s)) << slaves.text();
     Child master(cable.at_master({taktwerk, "run", file}));
     ASSERT_TRUE(master.says("running, manual mode", 30s)) << master.text() << slaves.text();
 
@@ -98,7 +115,49 @@ TEST(CommandLineCable, RunMovesTheAxesOfSim) {
         EXPECT_EQ(run({"tshark", "-r", capture, "-Y", "ecat.cmd == 12", "-T", "fields", "-e", "frame.number"}, &exchanges), 0);
         EXPECT_GT(std::count(exchanges.begin(), exchanges.end(), '\n'), 200) << exchanges;
     }
-    std::filesystem::remove_all(folder);
+}
+
+TEST(CommandLineCable, ACaptureDisturbsNobodyAndEvidenceStaysWhenTheSlavesAreGone) {
+    if (::geteuid() != 0) GTEST_SKIP() << "network namespaces need root";
+    const Cable cable;
+    if (!cable.laid()) GTEST_SKIP() << "this system lets nobody make network namespaces or veth pairs";
+    const MinimalOnACable machine;
+    const auto captured = (machine.folder / "cable.pcapng").string(), evidence = (machine.folder / "evidence").string();
+    const auto listen = [&](std::vector<std::string> words) {
+        words.insert(words.begin(), {taktwerk, "bus", "capture", "--nic", "twk0", "--duration", "1s"});
+        std::string said;
+        const int code = run(cable.at_master(std::move(words)), &said);
+        return std::pair{code, said};
+    };
+    EXPECT_THAT(listen({}).second, HasSubstr("no EtherCAT frame was heard"));
+
+    Child slaves(cable.at_slaves({taktwerk, "sim", machine.file, "--nic", "twk1"}));
+    ASSERT_TRUE(slaves.says("slave of 'minimal'", 10s)) << slaves.text();
+    Child master(cable.at_master({taktwerk, "run", machine.file, "--evidence", evidence}));
+    ASSERT_TRUE(master.says("running, manual mode", 30s)) << master.text() << slaves.text();
+
+    const auto [code, said] = listen({"--json", "-o", captured});
+    ASSERT_EQ(code, exit_ok) << said;
+    const auto heard = nlohmann::json::parse(said);
+    ASSERT_EQ(heard["masters"].size(), 1u) << said;
+    const auto& ours = heard["masters"][0];
+    EXPECT_NEAR(ours["cycle_ms"].get<double>(), 4, 0.8) << said;
+    EXPECT_GT(ours["back"].get<double>(), 100) << said;
+    EXPECT_EQ(ours["sent"], 0) << "a frame that bypasses the kernel's queue passes listeners by";
+    EXPECT_EQ(ours["damaged"], 0);
+    EXPECT_EQ(ecat::test::read_pcapng(captured).size(), heard["frames"].get<std::size_t>());
+    EXPECT_EQ(listen({"-o", captured}).first, exit_bad_file) << "it is not written over";
+    EXPECT_THAT(master.text(), Not(HasSubstr("ALARM"))) << "nobody was disturbed";
+
+    slaves.signal(SIGKILL);
+    ASSERT_TRUE(master.says(" s around ", 20s)) << master.text();
+    master.signal(SIGTERM);
+    master.wait(20s);
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(evidence)) files.push_back(entry.path());
+    ASSERT_EQ(files.size(), 1u) << master.text();
+    EXPECT_GT(ecat::test::read_pcapng(files[0]).size(), 400u) << "a second before at the least";
+    EXPECT_THAT(text_of(files[0]), HasSubstr("ALARM "));
 }
 
 }  // namespace

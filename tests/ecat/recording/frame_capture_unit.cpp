@@ -1,7 +1,7 @@
-// The pcap file as bytes, and what another make of EtherCAT decoder finds in our frames: from power-on to OP, with segmented
+// The file as bytes, and what another make of EtherCAT decoder finds in our frames: from power-on to OP, with segmented
 // SDOs, SDO information and cycles, not one malformed packet.
 
-#include "ecat/diagnosis/frame_capture.hpp"
+#include "ecat/recording/frame_capture.hpp"
 
 #include <gmock/gmock.h>
 
@@ -28,7 +28,7 @@ protected:
         folder_ = ::mkdtemp(pattern.data());
     }
     ~FrameCaptureFile() override { std::filesystem::remove_all(folder_); }
-    [[nodiscard]] std::string path() const { return folder_ + "/bus.pcap"; }
+    [[nodiscard]] std::string path() const { return folder_ + "/bus.pcapng"; }
 
     /// What tshark makes of the file: a line a packet, the fields with tabs between them. Empty where a packet has none.
     [[nodiscard]] std::vector<std::vector<std::string>> tshark(const std::vector<std::string>& fields) const {
@@ -54,27 +54,70 @@ protected:
     std::string folder_;
 };
 
-// pcap-savefile(5): 24 bytes of head, then 16 bytes before each packet.
+// draft-ietf-opsawg-pcapng: section header, interface description, enhanced packet, each with its length at both ends.
 TEST_F(FrameCaptureFile, HasTheHeadAndTheFramesAsTheyWere) {
-    auto capture = FrameCapture::create(path(), 1000s);
+    auto capture = FrameCapture::create(path(), {.interface = "eth1", .comment = {}, .epoch = 1000s});
     ASSERT_TRUE(capture) << capture.error().text();
-    const std::vector<std::byte> frame(60, std::byte{0xA5});
+    const std::vector<std::byte> frame(61, std::byte{0xA5});
 
     FrameCapture::tap(capture->get(), frame, Instant{1'500'000'001ns}, true);
+    FrameCapture::tap(capture->get(), frame, Instant{1'500'000'301ns}, false);
     ASSERT_TRUE((*capture)->finish());
 
     const auto file = test::read_file(path());
-    ASSERT_EQ(file.size(), 24u + 16u + 60u);
-    EXPECT_EQ(load_le<std::uint32_t>(file, 0), 0xA1B23C4Du);
-    EXPECT_EQ(load_le<std::uint16_t>(file, 4), 2);
-    EXPECT_EQ(load_le<std::uint16_t>(file, 6), 4);
-    EXPECT_EQ(load_le<std::uint32_t>(file, 20), 1u) << "Ethernet";
-    EXPECT_EQ(load_le<std::uint32_t>(file, 24), 1001u) << "seconds: 1000 + 1.5";
-    EXPECT_EQ(load_le<std::uint32_t>(file, 28), 500'000'001u) << "nanoseconds";
-    EXPECT_EQ(load_le<std::uint32_t>(file, 32), 60u);
-    EXPECT_EQ(load_le<std::uint32_t>(file, 36), 60u);
-    EXPECT_EQ(file.back(), std::byte{0xA5});
-    EXPECT_EQ((*capture)->frames(), 1u);
+    const auto u32 = [&](std::size_t at) { return load_le<std::uint32_t>(file, at); };
+    const auto u16 = [&](std::size_t at) { return load_le<std::uint16_t>(file, at); };
+    const auto next = [&](std::size_t at) {
+        EXPECT_EQ(u32(at + 4) % 4, 0u);
+        EXPECT_EQ(u32(at + u32(at + 4) - 4), u32(at + 4)) << "its length stands at its end, too";
+        return at + u32(at + 4);
+    };
+    EXPECT_EQ(u32(0), 0x0A0D0D0Au);
+    EXPECT_EQ(u32(8), 0x1A2B3C4Du) << "little endian";
+    EXPECT_EQ(u16(12), 1) << "version 1.0";
+    EXPECT_EQ(u16(14), 0);
+    EXPECT_EQ(load_le<std::uint64_t>(file, 16), ~std::uint64_t{0}) << "as long as it is";
+
+    const auto interface = next(0);
+    EXPECT_EQ(u32(interface), 1u);
+    EXPECT_EQ(u16(interface + 8), 1) << "Ethernet";
+    EXPECT_EQ(u32(interface + 12), 0u) << "no frame is cut";
+    EXPECT_EQ(u16(interface + 16), 2) << "if_name";
+    EXPECT_EQ(u16(interface + 18), 4);
+    EXPECT_EQ(static_cast<char>(file[interface + 20]), 'e');
+    EXPECT_EQ(u16(interface + 24), 9) << "if_tsresol";
+    EXPECT_EQ(u16(interface + 26), 1);
+    EXPECT_EQ(file[interface + 28], std::byte{9}) << "10^-9 s";
+
+    const auto sent = next(interface);
+    EXPECT_EQ(u32(sent), 6u);
+    EXPECT_EQ((std::uint64_t{u32(sent + 12)} << 32) | u32(sent + 16), 1'001'500'000'001u) << "1000 s + 1.5 s";
+    EXPECT_EQ(u32(sent + 20), 61u);
+    EXPECT_EQ(u32(sent + 24), 61u);
+    EXPECT_EQ(file[sent + 28 + 60], std::byte{0xA5});
+    EXPECT_EQ(file[sent + 28 + 61], std::byte{0}) << "filled up to 32 bits";
+    EXPECT_EQ(u16(sent + 28 + 64), 2) << "epb_flags";
+    EXPECT_EQ(u32(sent + 28 + 68), 2u) << "outbound";
+    const auto received = next(sent);
+    EXPECT_EQ(u32(received + 28 + 68), 1u) << "inbound";
+    EXPECT_EQ(next(received), file.size());
+    EXPECT_EQ((*capture)->frames(), 2u);
+}
+
+TEST_F(FrameCaptureFile, ADiskThatTakesNothingIsToldOnceAndAtTheEnd) {
+    auto capture = FrameCapture::create("/dev/full");
+    if (!capture) GTEST_SKIP() << "no /dev/full here";
+    const std::vector<std::byte> frame(1500);
+    int told = 0;
+    for (int i = 0; i < 100; ++i) {
+        FrameCapture::tap(capture->get(), frame, Instant{}, true);
+        told += (*capture)->drain() ? 0 : 1;
+    }
+    EXPECT_EQ(told, 1);
+    const auto end = (*capture)->finish();
+    ASSERT_FALSE(end);
+    EXPECT_EQ(end.error().code, "capture.write");
+    EXPECT_THAT(end.error().text(), HasSubstr("/dev/full"));
 }
 
 TEST_F(FrameCaptureFile, APlaceThatCannotBeWrittenIsNamed) {

@@ -1,0 +1,63 @@
+#include "apps/machine/run_files.hpp"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "apps/terminal/count_text.hpp"
+#include "apps/terminal/print_error.hpp"
+
+namespace taktwerk::apps {
+
+namespace {
+
+constexpr std::size_t trace_rows = 8192;
+
+/// The bus has one tap. Real-time safe.
+void tap(void* context, std::span<const std::byte> frame, Instant at, bool outgoing) noexcept {
+    const auto& files = *static_cast<const RunFiles*>(context);
+    if (files.capture) ecat::FrameCapture::tap(files.capture.get(), frame, at, outgoing);
+    if (files.evidence) ecat::FrameMemory::tap(&files.evidence->frames(), frame, at, outgoing);
+}
+
+}  // namespace
+
+Result<void> RunFiles::open(runtime::Machine& machine, Duration epoch) {
+    if (!pcap.empty()) {
+        auto created = ecat::FrameCapture::create(pcap, {machine.layout().interface, {}, epoch});
+        if (!created) return created.error();
+        capture = std::move(*created);
+    }
+    if (!machine.config().evidence.directory.empty()) {
+        auto opened = runtime::Evidence::open(machine, epoch);
+        if (!opened) return opened.error();
+        evidence = std::move(*opened);
+    }
+    if (capture || evidence) machine.bus().set_tap(&tap, this);
+    if (!trace_csv.empty()) {
+        auto created = TraceCsv::create(trace_csv, machine.enable_trace(trace_rows), machine.layout());
+        if (!created) return created.error();
+        trace = std::move(*created);
+    }
+    return {};
+}
+
+void RunFiles::finish_capture() const {
+    if (!capture) return;
+    if (auto ok = capture->finish(); !ok) print_error(ok.error());
+}
+
+void RunFiles::say_frames(bool quiet, const MachineLog::Sink& put) const {
+    if (!capture) return;
+    if (capture->dropped() > 0)
+        print_warning(Error{"capture.dropped", pcap, fmt::format("{} frames did not fit and are missing", capture->dropped()), ""});
+    if (!quiet) put(fmt::format("{} frames in {}\n", capture->frames(), pcap));
+}
+
+std::string evidence_text(const runtime::Evidence::File& file) {
+    if (file.path.empty()) return {};
+    return fmt::format("{} of {:.1f} s around {} in {}", count_text(file.frames, "frame"), to_seconds(file.covered),
+                       count_text(file.alarms, "alarm"), file.path);
+}
+
+}  // namespace taktwerk::apps

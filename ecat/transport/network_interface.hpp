@@ -1,0 +1,34 @@
+#pragma once
+// A network interface by its name, and a packet socket for it, each with errors that say what to do. Linux only; not real-time.
+
+#include <string>
+#include <string_view>
+
+#include "core/result.hpp"
+#include "ecat/transport/descriptor.hpp"
+#include "ecat/wire/frame.hpp"
+
+namespace taktwerk::ecat {
+
+struct NetworkInterface {
+    std::string name;
+    unsigned index = 0;
+    MacAddress mac{};
+};
+
+/// An Ethernet interface that is switched on. Needs no privilege. Errors: transport.no_such_interface, transport.not_ethernet,
+/// transport.interface_down, transport.socket.
+[[nodiscard]] Result<NetworkInterface> find_interface(std::string_view name);
+
+/// Whole frames; receives nothing until it is bound. Errors: transport.no_privilege, transport.socket.
+[[nodiscard]] Result<Descriptor> open_packet_socket(std::string_view interface);
+
+/// Switched on, with a partner at the other end. `socket`: any. One system call.
+[[nodiscard]] bool has_carrier(int socket, std::string_view interface) noexcept;
+
+/// "network interface eth1: ..."
+[[nodiscard]] Error interface_error(std::string_view code, std::string_view interface, std::string what, std::string remedy);
+/// transport.socket: what the kernel says to `call`, from errno.
+[[nodiscard]] Error socket_error(std::string_view interface, std::string_view call);
+
+}  // namespace taktwerk::ecat
