@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/terminal/count_text.hpp"
 #include "apps/terminal/terminal_text.hpp"
 #include "hmi_bridge/json_number.hpp"
 
@@ -88,10 +89,10 @@ private:
                                       layout_.at("cycle_ns").get<double>() / 1e6, us(s.at("lateness_ns")), us(s.at("lateness_max_ns")),
                                       us(s.at("compute_ns")), us(s.at("compute_max_ns")), s.at("missed_ticks").get<std::uint64_t>());
         out.push_back(cut(line, size_.columns));
-        out.push_back(cut(fmt::format(" bus {}{}   {} slaves, {} not fresh   frames lost {}, late {}   working counter errors {}",
-                                      bus.at("phase").get<std::string>(), ring_text(bus), state_.at("slaves").size(), stale_slaves(),
-                                      bus.at("frames_lost").get<std::uint64_t>(), bus.at("frames_late").get<std::uint64_t>(),
-                                      bus.at("working_counter_errors").get<std::uint64_t>()),
+        out.push_back(cut(fmt::format(" bus {}{}   {}, {} not fresh   frames lost {}, late {}   working counter errors {}",
+                                      bus.at("phase").get<std::string>(), ring_text(bus), count_text(state_.at("slaves").size(), "slave"),
+                                      stale_slaves(), bus.at("frames_lost").get<std::uint64_t>(),
+                                      bus.at("frames_late").get<std::uint64_t>(), bus.at("working_counter_errors").get<std::uint64_t>()),
                           size_.columns));
         return out;
     }

@@ -13,6 +13,7 @@
 #include "apps/machine/sim_lines.hpp"
 #include "apps/machine/stop_signal.hpp"
 #include "apps/taktwerk.hpp"
+#include "apps/terminal/count_text.hpp"
 #include "apps/terminal/duration_option.hpp"
 #include "apps/terminal/exit_code.hpp"
 #include "apps/terminal/line_input.hpp"
@@ -204,7 +205,7 @@ int play(const SimOptions& options) {
         }
     LineInput input{STDIN_FILENO};
     for (const auto& line : (*lines)->lines()) fmt::print("serial line '{}' is {}\n", line.name, line.path);
-    fmt::print("{} slaves of '{}' on {}; `help` lists what can go wrong; Ctrl-C ends\n", network.size(), loaded->machine.name,
+    fmt::print("{} of '{}' on {}; `help` lists what can go wrong; Ctrl-C ends\n", count_text(network.size(), "slave"), loaded->machine.name,
                options.nic + (options.nic2.empty() ? "" : " and " + options.nic2));
     std::fflush(stdout);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -48,14 +49,22 @@ std::vector<std::string> targets(const runtime::MachineConfig& machine, Kind kin
     return out;
 }
 
+auto input_named(const runtime::MachineConfig& machine, std::string_view name) {
+    return std::ranges::find_if(machine.io, [&](const auto& p) { return p.name == name && p.direction == runtime::IoDirection::input; });
+}
+
 /// What a person writes for an input, as its raw word: with a unit where it has one.
-std::optional<std::int64_t> raw_input(const runtime::MachineConfig& machine, std::string_view name, std::string_view text) {
-    const auto point =
-        std::ranges::find_if(machine.io, [&](const auto& p) { return p.name == name && p.direction == runtime::IoDirection::input; });
-    if (point == machine.io.end() || point->unit.empty()) return config::parse_integer(text);
-    const auto value = config::value_in(text, point->unit);
-    if (!value) return std::nullopt;
-    return point->line.raw_of(*value);
+Result<std::int64_t> raw_input(const runtime::IoPoint& point, const std::string& text) {
+    if (point.unit.empty()) {
+        if (const auto number = config::parse_integer(text)) return *number;
+        return Error{"fault.arguments", point.name, fmt::format("'{}' is no whole number, and this input has no unit", text),
+                     "write 0, 1, or the raw number of its terminal"};
+    }
+    const auto value = config::value_in(text, point.unit);
+    if (!value) return Error{"fault.arguments", fmt::format("{} {}", point.name, text), value.error().what, value.error().remedy};
+    if (std::isfinite(*value)) return point.line.raw_of(*value);
+    return Error{"fault.arguments", fmt::format("{} {}", point.name, text), "no input has such a value",
+                 fmt::format("write a number, as in 7.5{}", point.unit)};
 }
 
 Error bad(std::string_view line, const HappeningWord& word) {
@@ -84,22 +93,33 @@ Result<SimulationEvent> parse_happening(std::string_view line, const runtime::Ma
         std::find_if(all_happenings.begin(), all_happenings.end(), [&](const auto& w) { return !parts.empty() && w.word == parts[0]; });
     if (word == all_happenings.end()) return Error{"fault.unknown", std::string(line), "is no happening", "`help` lists them"};
     const bool with_number = word->kind == Kind::drive_fault || word->kind == Kind::input;
+    // `7.5 bar` is one value.
+    if (word->kind == Kind::input && parts.size() == 4) {
+        parts[2] += parts[3];
+        parts.pop_back();
+    }
     if (parts.size() != (with_number ? 3u : 2u)) return bad(line, *word);
     event.kind = word->kind;
     event.target = parts[1];
     event.value = word->value;
-    if (with_number) {
-        const auto number = word->kind == Kind::input ? raw_input(machine, parts[1], parts[2]) : config::parse_integer(parts[2]);
-        if (!number || (word->kind == Kind::drive_fault && (*number < 1 || *number > 0xFFFF))) return bad(line, *word);
-        event.value = *number;
-    }
     const auto known = targets(machine, event.kind);
-    if (std::find(known.begin(), known.end(), event.target) != known.end()) return event;
-    const auto near = nearest_name(event.target, known);
-    return Error{"fault.no_target", event.target, "this machine has no such name",
-                 !near.empty()   ? fmt::format("did you mean '{}'?", near)
-                 : known.empty() ? "it has none of this kind"
-                                 : fmt::format("choose one of {}", fmt::join(known, ", "))};
+    if (std::find(known.begin(), known.end(), event.target) == known.end()) {
+        const auto near = nearest_name(event.target, known);
+        return Error{"fault.no_target", event.target, "this machine has no such name",
+                     !near.empty()   ? fmt::format("did you mean '{}'?", near)
+                     : known.empty() ? "it has none of this kind"
+                                     : fmt::format("choose one of {}", fmt::join(known, ", "))};
+    }
+    if (word->kind == Kind::input) {
+        const auto raw = raw_input(*input_named(machine, event.target), parts[2]);
+        if (!raw) return raw.error();
+        event.value = *raw;
+    } else if (with_number) {
+        const auto code = config::parse_integer(parts[2]);
+        if (!code || *code < 1 || *code > 0xFFFF) return bad(line, *word);
+        event.value = *code;
+    }
+    return event;
 }
 
 void Happenings::take(SimulationEvent event, Instant now) {

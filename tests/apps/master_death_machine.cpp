@@ -51,7 +51,7 @@ TEST_P(MasterDeath, EndsInTheSlavesWatchdogAndTheDriveStopsByItself) {
     std::ofstream(file) << yaml;
 
     Child slaves(cable.at_slaves({taktwerk, "sim", file, "--nic", "twk1"}));
-    ASSERT_TRUE(slaves.says("slaves of", 10s)) << slaves.text();
+    ASSERT_TRUE(slaves.says(" of '", 10s)) << slaves.text();
     Child master(cable.at_master({taktwerk, "run", file}));
     ASSERT_TRUE(slaves.says("-> operation enabled", 30s)) << master.text() << slaves.text();
     if (GetParam().signal != 0) master.signal(GetParam().signal);

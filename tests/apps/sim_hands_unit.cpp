@@ -76,6 +76,24 @@ TEST_F(SimHandsTest, WhatComesInAgesIsRefused) {
         EXPECT_EQ(code("after " + wait + " jam x"), "fault.arguments") << wait;
 }
 
+TEST_F(SimHandsTest, AnInputWithAUnitTakesItWrittenAsPeopleWriteIt) {
+    for (auto& point : config.io)
+        if (point.name == "button") point.unit = "bar", point.line.factor = 0.5;
+    const auto value = [&](const std::string& line) {
+        const auto event = parse_happening(line, config);
+        return event ? event->value : -1;
+    };
+    EXPECT_EQ(value("input button 4bar"), 8);
+    EXPECT_EQ(value("input button 4 bar"), 8);
+    EXPECT_EQ(value("input button 4"), 8);
+    for (const std::string wrong : {"input button 4 mm", "input button bar", "input button nan", "input button 4 bar 5"})
+        EXPECT_EQ(parse_happening(wrong, config).error().code, "fault.arguments") << wrong;
+    const auto asked = parse_happening("input button 4mm", config);
+    ASSERT_FALSE(asked);
+    EXPECT_NE(asked.error().text().find("bar"), std::string::npos) << "in which unit it is: " << asked.error().text();
+    EXPECT_NE(asked.error().text().find("4mm"), std::string::npos);
+}
+
 TEST_F(SimHandsTest, EveryWordOfTheListIsUnderstood) {
     for (const auto& word : sim_words()) {
         if (word.word == "after") continue;
