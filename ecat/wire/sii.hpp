@@ -2,6 +2,7 @@
 // The slave information image (SII) in a slave's EEPROM: parsing whatever is there, and building one for simulated slaves.
 // Not for the cycle (allocates). Source: ETG.1000.6 / ETG.2010, reference/ethercat-masters.md section 5.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -17,8 +18,9 @@ namespace taktwerk::ecat {
 /// Word addresses of the fixed part.
 namespace sii_word {
 inline constexpr std::uint16_t pdi_control = 0x00, pdi_configuration = 0x01, sync_pulse_length = 0x02, pdi_configuration_extended = 0x03;
-inline constexpr std::uint16_t alias = 0x04, checksum = 0x07;
+inline constexpr std::uint16_t alias = 0x04, pdi_configuration_more = 0x05, checksum = 0x07;
 inline constexpr std::uint16_t vendor = 0x08, product = 0x0A, revision = 0x0C, serial = 0x0E;
+inline constexpr std::uint16_t execution_delay = 0x10, port0_delay = 0x11, port1_delay = 0x12;
 inline constexpr std::uint16_t boot_mailbox_out = 0x14, boot_mailbox_in = 0x16;  ///< start, then size in the next word
 inline constexpr std::uint16_t mailbox_out = 0x18, mailbox_in = 0x1A;            ///< start, then size in the next word
 inline constexpr std::uint16_t mailbox_protocols = 0x1C;
@@ -59,6 +61,13 @@ inline constexpr std::uint8_t sdo = 1u << 0, sdo_info = 1u << 1, pdo_assign = 1u
     }
 }
 
+/// Bits of SiiGeneral::flags (ETG.2010, category 30).
+namespace sii_flag {
+inline constexpr std::uint8_t enable_safeop = 1u << 0, no_lrw = 1u << 1, mailbox_data_link_layer = 1u << 2;
+inline constexpr std::uint8_t id_in_al_status = 1u << 3;  ///< explicit device identification through AL control bit 5 (ETG.1020)
+inline constexpr std::uint8_t id_in_memory = 1u << 4;     ///< it stands at SiiGeneral::id_address
+}  // namespace sii_flag
+
 struct SiiMailbox {
     std::uint16_t start = 0, size = 0;
     friend bool operator==(const SiiMailbox&, const SiiMailbox&) = default;
@@ -68,9 +77,11 @@ struct SiiMailbox {
 struct SiiGeneral {
     std::uint8_t group = 0, image = 0, order = 0, name = 0;
     std::uint8_t coe_details = 0, foe_details = 0, eoe_details = 0;
-    std::uint8_t flags = 0;            ///< b0 SAFEOP refused in start-up, b1 LRW not supported
+    std::uint8_t soe_channels = 0, ds402_channels = 0, sysman_class = 0;
+    std::uint8_t flags = 0;            ///< sii_flag
     std::int16_t ebus_current = 0;     ///< mA; negative: supplies
     std::uint16_t physical_ports = 0;  ///< 4 bits a port: 1 MII, 3 EBUS
+    std::uint16_t id_address = 0;      ///< of the register or memory that holds the device's id; sii_flag::id_in_memory
     friend bool operator==(const SiiGeneral&, const SiiGeneral&) = default;
 };
 
@@ -123,6 +134,13 @@ struct SiiDcMode {
     friend bool operator==(const SiiDcMode&, const SiiDcMode&) = default;
 };
 
+/// A category that is not decoded here: data types, sync units, vendors' own.
+struct SiiOtherCategory {
+    std::uint16_t type = 0;
+    std::vector<std::byte> data;
+    friend bool operator==(const SiiOtherCategory&, const SiiOtherCategory&) = default;
+};
+
 /// What is wrong with an image. None of it keeps the rest from being read.
 enum class SiiDefect : std::uint8_t {
     empty,               ///< all words are 0000h or FFFFh
@@ -143,7 +161,9 @@ enum class SiiDefect : std::uint8_t {
 struct Sii {
     std::uint16_t pdi_control = 0, pdi_configuration = 0, sync_pulse_length = 0, pdi_configuration_extended = 0;
     std::uint16_t alias = 0;
+    std::array<std::uint16_t, 2> pdi_configuration_more{};  ///< words 5 and 6, which newer controllers load, too
     Identity identity;
+    std::array<std::uint16_t, 3> delays{};  ///< execution, port 0, port 1: words 10h to 12h
     SiiMailbox boot_mailbox_out, boot_mailbox_in;
     SiiMailbox mailbox_out, mailbox_in;  ///< out: master to slave
     std::uint16_t mailbox_protocols = 0;
@@ -156,8 +176,9 @@ struct Sii {
     std::vector<SiiPdo> tx_pdos, rx_pdos;  ///< tx: slave to master
     std::vector<SiiFmmuExtension> fmmu_extensions;
     std::vector<SiiDcMode> dc_modes;
-    std::vector<std::uint16_t> skipped;  ///< types of the categories that are not decoded here
-    std::vector<SiiDefect> defects;      ///< of a parsed image
+    std::vector<SiiOtherCategory> others;  ///< those that are not decoded here; read_whole_sii() leaves their bytes 0
+    std::vector<SiiDefect> defects;        ///< of a parsed image
+    friend bool operator==(const Sii&, const Sii&) = default;
 
     [[nodiscard]] bool has(SiiDefect defect) const noexcept;
     /// String `number` (1-based); empty for 0 and for numbers beyond the table.
@@ -172,8 +193,18 @@ struct Sii {
 /// Reads any bytes: broken, truncated and empty images give what is there, and `defects`.
 [[nodiscard]] Sii parse_sii(std::span<const std::byte> image);
 
+/// A category as it lies in an image.
+struct SiiCategoryPlace {
+    std::uint16_t type = 0;
+    std::size_t word = 0;   ///< of its content, behind type and length
+    std::size_t words = 0;  ///< of content that is there
+    friend bool operator==(const SiiCategoryPlace&, const SiiCategoryPlace&) = default;
+};
+/// All of them in the order of the image, without the end marker. Any bytes.
+[[nodiscard]] std::vector<SiiCategoryPlace> sii_categories(std::span<const std::byte> image);
+
 /// The image of `sii`, padded with FFh to `sii.size_code` (at least to its content). Strings are cut at 255 bytes.
-/// parse_sii() of it gives the same fields.
+/// parse_sii() of it gives the same fields; categories stand in an order of ours, those in `others` last.
 [[nodiscard]] std::vector<std::byte> build_sii(const Sii& sii);
 
 }  // namespace taktwerk::ecat

@@ -44,9 +44,13 @@ std::vector<std::byte> general_of(const SiiGeneral& general) {
     data[5] = static_cast<std::byte>(general.coe_details);
     data[6] = static_cast<std::byte>(general.foe_details);
     data[7] = static_cast<std::byte>(general.eoe_details);
+    data[8] = static_cast<std::byte>(general.soe_channels);
+    data[9] = static_cast<std::byte>(general.ds402_channels);
+    data[10] = static_cast<std::byte>(general.sysman_class);
     data[11] = static_cast<std::byte>(general.flags);
     store_le<std::int16_t>(data, 12, general.ebus_current);
     store_le<std::uint16_t>(data, 16, general.physical_ports);
+    store_le<std::uint16_t>(data, 18, general.id_address);
     return data;
 }
 
@@ -136,11 +140,14 @@ std::vector<std::byte> build_sii(const Sii& sii) {
     set(sii_word::sync_pulse_length, sii.sync_pulse_length);
     set(sii_word::pdi_configuration_extended, sii.pdi_configuration_extended);
     set(sii_word::alias, sii.alias);
+    for (std::size_t i = 0; i < sii.pdi_configuration_more.size(); ++i)
+        set(sii_word::pdi_configuration_more + i, sii.pdi_configuration_more[i]);
     set(sii_word::checksum, sii_checksum(image));
     store_le<std::uint32_t>(image, 2 * sii_word::vendor, sii.identity.vendor);
     store_le<std::uint32_t>(image, 2 * sii_word::product, sii.identity.product);
     store_le<std::uint32_t>(image, 2 * sii_word::revision, sii.identity.revision);
     store_le<std::uint32_t>(image, 2 * sii_word::serial, sii.identity.serial);
+    for (std::size_t i = 0; i < sii.delays.size(); ++i) set(sii_word::execution_delay + i, sii.delays[i]);
     set_mailbox(sii_word::boot_mailbox_out, sii.boot_mailbox_out);
     set_mailbox(sii_word::boot_mailbox_in, sii.boot_mailbox_in);
     set_mailbox(sii_word::mailbox_out, sii.mailbox_out);
@@ -161,6 +168,7 @@ std::vector<std::byte> build_sii(const Sii& sii) {
     if (!sii.tx_pdos.empty()) put_category(image, sii_category::tx_pdo, pdos_of(sii.tx_pdos));
     if (!sii.rx_pdos.empty()) put_category(image, sii_category::rx_pdo, pdos_of(sii.rx_pdos));
     if (!sii.dc_modes.empty()) put_category(image, sii_category::dc, dc_modes_of(sii.dc_modes));
+    for (const auto& other : sii.others) put_category(image, other.type, other.data);
     put16(image, sii_category::end);
 
     constexpr std::size_t bytes_per_kbit = 128;

@@ -55,9 +55,13 @@ void take_general(Sii& sii, std::span<const std::byte> data) {
     general.coe_details = byte_at(data, 5);
     general.foe_details = byte_at(data, 6);
     general.eoe_details = byte_at(data, 7);
+    general.soe_channels = byte_at(data, 8);
+    general.ds402_channels = byte_at(data, 9);
+    general.sysman_class = byte_at(data, 10);
     general.flags = byte_at(data, 11);
     general.ebus_current = static_cast<std::int16_t>(byte_at(data, 12) | (byte_at(data, 13) << 8));
     general.physical_ports = static_cast<std::uint16_t>(byte_at(data, 16) | (byte_at(data, 17) << 8));
+    general.id_address = static_cast<std::uint16_t>(byte_at(data, 18) | (byte_at(data, 19) << 8));
     sii.general = general;
 }
 
@@ -138,7 +142,38 @@ void take_category(Sii& sii, std::uint16_t type, std::span<const std::byte> data
         case sii_category::dc: take_dc_modes(sii, data); break;
         case sii_category::tx_pdo: take_pdos(sii, sii.tx_pdos, data); break;
         case sii_category::rx_pdo: take_pdos(sii, sii.rx_pdos, data); break;
-        default: sii.skipped.push_back(type); break;
+        default: sii.others.push_back({type, {data.begin(), data.end()}}); break;
+    }
+}
+
+/// Where the chain of categories leads, and what is wrong with its end.
+struct Chain {
+    std::vector<SiiCategoryPlace> categories;
+    std::optional<SiiDefect> defect;
+};
+
+Chain categories_of(std::span<const std::byte> image) {
+    Chain chain;
+    for (std::size_t at = sii_header_bytes;;) {
+        if (at + 2 > image.size()) {
+            chain.defect = SiiDefect::no_end;
+            return chain;
+        }
+        const auto type = load_le<std::uint16_t>(image, at);
+        if (type == sii_category::end) return chain;
+        if (at + 4 > image.size()) {
+            chain.defect = SiiDefect::truncated_category;
+            return chain;
+        }
+        const std::size_t bytes = 2 * static_cast<std::size_t>(load_le<std::uint16_t>(image, at + 2));
+        at += 4;
+        const std::size_t there = std::min(bytes, image.size() - at);
+        chain.categories.push_back({type, at / 2, there / 2});
+        if (there < bytes) {
+            chain.defect = SiiDefect::truncated_category;
+            return chain;
+        }
+        at += bytes;
     }
 }
 
@@ -187,6 +222,8 @@ std::uint8_t sii_checksum(std::span<const std::byte> image) noexcept {
     return crc;
 }
 
+std::vector<SiiCategoryPlace> sii_categories(std::span<const std::byte> image) { return categories_of(image).categories; }
+
 Sii parse_sii(std::span<const std::byte> image) {
     Sii sii;
     if (is_blank(image)) {  // also no bytes at all
@@ -200,6 +237,9 @@ Sii parse_sii(std::span<const std::byte> image) {
     sii.sync_pulse_length = word(image, sii_word::sync_pulse_length);
     sii.pdi_configuration_extended = word(image, sii_word::pdi_configuration_extended);
     sii.alias = word(image, sii_word::alias);
+    for (std::size_t i = 0; i < sii.pdi_configuration_more.size(); ++i)
+        sii.pdi_configuration_more[i] = word(image, sii_word::pdi_configuration_more + i);
+    for (std::size_t i = 0; i < sii.delays.size(); ++i) sii.delays[i] = word(image, sii_word::execution_delay + i);
     sii.identity.vendor = dword(image, sii_word::vendor);
     sii.identity.product = dword(image, sii_word::product);
     sii.identity.revision = dword(image, sii_word::revision);
@@ -214,27 +254,9 @@ Sii parse_sii(std::span<const std::byte> image) {
     if (image.size() >= 16 && sii_checksum(image) != static_cast<std::uint8_t>(word(image, sii_word::checksum) & 0xFFu))
         note(sii, SiiDefect::bad_checksum);
 
-    for (std::size_t at = sii_header_bytes;;) {
-        if (at + 2 > image.size()) {
-            note(sii, SiiDefect::no_end);
-            break;
-        }
-        const auto type = load_le<std::uint16_t>(image, at);
-        if (type == sii_category::end) break;
-        if (at + 4 > image.size()) {
-            note(sii, SiiDefect::truncated_category);
-            break;
-        }
-        const std::size_t bytes = 2 * static_cast<std::size_t>(load_le<std::uint16_t>(image, at + 2));
-        at += 4;
-        const std::size_t there = std::min(bytes, image.size() - at);
-        take_category(sii, type, image.subspan(at, there));
-        if (there < bytes) {
-            note(sii, SiiDefect::truncated_category);
-            break;
-        }
-        at += bytes;
-    }
+    const Chain chain = categories_of(image);
+    for (const auto& category : chain.categories) take_category(sii, category.type, image.subspan(2 * category.word, 2 * category.words));
+    if (chain.defect) note(sii, *chain.defect);
     return sii;
 }
 

@@ -11,8 +11,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (sii.strings.size() > 255 || sii.has(SiiDefect::empty)) return 0;  // several string tables add up; one cannot hold more
     sii.size_code &= 0x000F;
     const auto again = parse_sii(build_sii(sii));
-    if (again.identity != sii.identity || again.strings != sii.strings || again.general != sii.general ||
-        again.sync_managers != sii.sync_managers || again.tx_pdos != sii.tx_pdos || again.rx_pdos != sii.rx_pdos)
-        std::abort();
+    sii.defects.clear();  // a building mends them
+    if (again != sii) std::abort();
     return 0;
 }
