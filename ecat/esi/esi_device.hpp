@@ -9,6 +9,7 @@
 
 #include "core/time.hpp"
 #include "ecat/description/device_description.hpp"
+#include "ecat/wire/sii.hpp"
 
 namespace taktwerk::ecat::esi {
 
@@ -67,6 +68,7 @@ struct EsiCoe {
 };
 
 struct EsiMailbox {
+    bool data_link_layer = false;  ///< mailboxes repeat what was lost
     std::optional<EsiCoe> coe;
     std::vector<std::string> other_protocols;  ///< "EoE", "FoE", "SoE", "AoE", "VoE"
     std::vector<EsiInitCommand> init_commands;
@@ -113,6 +115,8 @@ struct EsiController {
 struct EsiEeprom {
     unsigned size = 0;                         ///< bytes
     std::vector<std::byte> config, bootstrap;  ///< words 0..6, words 14h..17h
+    std::vector<SiiOtherCategory> categories;  ///< the vendor's own
+    std::vector<std::byte> data;               ///< the whole of it; then nothing else is said
 };
 
 struct EsiStateTimeouts {
@@ -138,6 +142,8 @@ struct EsiDevice {
     std::string physics;  ///< of the ports: "YY", "KK"
     std::vector<unsigned> profiles;
     std::optional<std::int32_t> ebus_current;  ///< mA; negative: it supplies
+    bool id_in_al_status = false;              ///< explicit device identification: asked through AL control
+    std::optional<std::uint16_t> id_address;   ///< or read there
     std::vector<EsiSyncManager> sync_managers;
     std::vector<std::string> fmmus;
     std::vector<EsiPdo> rx, tx;

@@ -37,6 +37,8 @@ void read_info(const Element& info, EsiDevice& out) {
             out.mailbox->response_timeout = milliseconds_of(timeout, "ResponseTimeout");
         }
     }
+    out.id_in_al_status = parse_flag(info.text_of("IdentificationReg134")).value_or(false);
+    if (const auto address = info.number_of("IdentificationAdo", 0, u16)) out.id_address = static_cast<std::uint16_t>(*address);
     if (const auto controller = info.child("EtherCATController")) {
         controller.knows({"DpramSize", "SmCount", "FmmuCount"});
         const auto count = [&](const char* name) {
@@ -47,12 +49,48 @@ void read_info(const Element& info, EsiDevice& out) {
     }
 }
 
+/// Numbers least byte first; a text as it stands, as categories have it.
+std::vector<std::byte> category_bytes(const Element& category) {
+    std::vector<std::byte> out;
+    for (const auto& part : category.children("Data"))
+        for (const auto byte : parse_bytes(part.text()).value_or(std::vector<std::byte>{})) out.push_back(byte);
+    for (const auto& part : category.children("DataString"))
+        for (const char c : part.text()) out.push_back(static_cast<std::byte>(c));
+    const auto add_numbers = [&](const char* name, std::int64_t largest, unsigned bytes) {
+        for (const auto& part : category.children(name)) {
+            const auto number = static_cast<std::uint64_t>(part.number(0, largest).value_or(0));
+            for (unsigned n = 0; n < bytes; ++n) out.push_back(static_cast<std::byte>((number >> (8 * n)) & 0xFFu));
+        }
+    };
+    add_numbers("DataUINT", u16, 2);
+    add_numbers("DataUDINT", u32, 4);
+    if (out.size() % 2 != 0) out.push_back(std::byte{0});  // categories have words
+    return out;
+}
+
+std::vector<SiiOtherCategory> read_categories(const Element& eeprom) {
+    std::vector<SiiOtherCategory> out;
+    for (const auto& category : eeprom.children("Category")) {
+        category.knows({"CatNo", "Data", "DataString", "DataUINT", "DataUDINT"}, {"PreserveOnlineData"});
+        const auto number = category.required_number_of("CatNo", 0, u16);
+        unsigned kinds = 0;
+        for (const char* kind : {"Data", "DataString", "DataUINT", "DataUDINT"}) kinds += category.child(kind) ? 1 : 0;
+        if (kinds > 1)
+            category.problem("esi.category", "data of several kinds stand in one category",
+                             "their order is not kept: compare the image that is made of it");
+        if (number) out.push_back({static_cast<std::uint16_t>(*number), category_bytes(category)});
+    }
+    return out;
+}
+
 EsiEeprom read_eeprom(const Element& eeprom) {
-    eeprom.knows({"ByteSize", "ConfigData", "BootStrap", "Data"});
+    eeprom.knows({"ByteSize", "ConfigData", "BootStrap", "Category", "Data"});
     EsiEeprom out;
     out.size = static_cast<unsigned>(eeprom.number_of("ByteSize", 0, u32).value_or(0));
     out.config = parse_bytes(eeprom.text_of("ConfigData")).value_or(std::vector<std::byte>{});
     out.bootstrap = parse_bytes(eeprom.text_of("BootStrap")).value_or(std::vector<std::byte>{});
+    out.categories = read_categories(eeprom);
+    out.data = parse_bytes(eeprom.text_of("Data")).value_or(std::vector<std::byte>{});
     return out;
 }
 

@@ -33,6 +33,7 @@ EsiInitCommand read_init_command(const Element& command) {
 EsiMailbox read_mailbox(const Element& mailbox) {
     mailbox.knows({"CoE", "EoE", "FoE", "SoE", "AoE", "VoE"}, {"DataLinkLayer"});
     EsiMailbox out;
+    out.data_link_layer = mailbox.flag("DataLinkLayer");
     for (const char* protocol : {"EoE", "FoE", "SoE", "AoE", "VoE"})
         if (mailbox.child(protocol)) out.other_protocols.emplace_back(protocol);
     const auto soe = mailbox.child("SoE");
