@@ -35,8 +35,9 @@ struct FoundSlave {
     std::uint8_t fmmus = 0, sync_managers = 0;
     std::array<std::uint16_t, 4> mailbox{};  ///< SII: out start, out size, in start, in size
     Sii sii;                                 ///< everything its EEPROM says
-    std::optional<std::uint16_t> device_id;  ///< read only where a configuration addresses by it
-    std::optional<Error> error;              ///< could not be read
+    std::optional<std::uint16_t>
+        device_id;               ///< read where a configuration addresses by it, and by a survey of slaves that say they have one
+    std::optional<Error> error;  ///< could not be read
 };
 
 struct BusSlave {

@@ -120,7 +120,7 @@ Script<void> find_one(Bus& bus, std::uint16_t position, bool wants_id, FoundSlav
     found.sii = std::move(*sii);
     found.identity = found.sii.identity;
     found.mailbox = {found.sii.mailbox_out.start, found.sii.mailbox_out.size, found.sii.mailbox_in.start, found.sii.mailbox_in.size};
-    if (wants_id) found.device_id = co_await read_device_id(bus.port, found.station);
+    if (wants_id) found.device_id = co_await read_device_id(bus.port, found.station, id_register(found.sii));
 }
 
 /// What a technician wants to know of an EEPROM that was read all the same.
@@ -177,8 +177,17 @@ Script<FoundSlave> read_slave(DatagramPort& port, std::uint16_t position, std::s
     co_return found;
 }
 
-Script<std::optional<std::uint16_t>> read_device_id(DatagramPort& port, std::uint16_t station) {
+std::uint16_t id_register(const Sii& sii) noexcept {
+    return sii.general && (sii.general->flags & sii_flag::id_in_memory) != 0 ? sii.general->id_address : std::uint16_t{0};
+}
+
+Script<std::optional<std::uint16_t>> read_device_id(DatagramPort& port, std::uint16_t station, std::uint16_t address) {
     std::optional<std::uint16_t> id;
+    if (address != 0) {
+        const Reply there = co_await port.fprd(station, address, 2);
+        if (there.ok() && there.u16() != 0) id = there.u16();
+        co_return id;
+    }
     const Reply state = co_await port.fprd(station, reg::al_status, 2);
     if (!state.ok()) co_return id;
     const auto present = static_cast<std::uint16_t>(state.u16() & al_state_mask);

@@ -24,7 +24,11 @@ inline constexpr Duration device_id_timeout = std::chrono::milliseconds{300};
 /// is. Problems stand in `error`. `sii` is left as it is: read_whole_sii() takes its time.
 [[nodiscard]] Script<FoundSlave> read_slave(DatagramPort& port, std::uint16_t position, std::string subject);
 
-/// Explicit device identification (ETG.1020): AL control bit 5, the id comes in 0134h. Nothing where the slave has none.
-[[nodiscard]] Script<std::optional<std::uint16_t>> read_device_id(DatagramPort& port, std::uint16_t station);
+/// Where a slave says that its explicit device id stands; 0: it does not say so.
+[[nodiscard]] std::uint16_t id_register(const Sii& sii) noexcept;
+
+/// Explicit device identification (ETG.1020): from `address` (id_register()), or, where that is 0, by AL control bit 5, when the id comes
+/// in 0134h. Nothing where the slave has none.
+[[nodiscard]] Script<std::optional<std::uint16_t>> read_device_id(DatagramPort& port, std::uint16_t station, std::uint16_t address);
 
 }  // namespace taktwerk::ecat

@@ -240,4 +240,16 @@ Script<Result<Sii>> read_whole_sii(DatagramPort& port, std::uint16_t station, st
     co_return sii;
 }
 
+Script<Result<std::vector<std::byte>>> read_eeprom(DatagramPort& port, std::uint16_t station, std::string subject,
+                                                   std::optional<std::size_t> words) {
+    Fetcher eeprom{port, station, std::move(subject)};
+    const Result<void> size = co_await eeprom.fetch(sii_word::size - 2u, 4);  // with the two before: a whole access of 8 bytes
+    if (!size) co_return size.error();
+    const std::size_t count = words ? *words : device_words(eeprom.word(sii_word::size));
+    const Result<void> all_of_it = co_await eeprom.fetch(0, count);
+    if (!all_of_it) co_return all_of_it.error();
+    eeprom.cut(count);
+    co_return eeprom.image();
+}
+
 }  // namespace taktwerk::ecat

@@ -6,7 +6,9 @@
 // Budget: a word may stay busy for sii_busy_limit; a command that the controller refuses (no acknowledge from the EEPROM) is
 // repeated sii_retries times. Errors: bus.sii names slave and word; bus.no_frame, bus.no_slave.
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,5 +27,9 @@ inline constexpr unsigned sii_retries = 20;
 /// What an EEPROM holds. Only a header that cannot be read is an error; what breaks off behind it is a defect of the image
 /// (SiiDefect::unreadable), and what came before stands in it.
 [[nodiscard]] Script<Result<Sii>> read_whole_sii(DatagramPort& port, std::uint16_t station, std::string subject);
+
+/// Every byte of the memory, whatever it means: as many as its word 3Eh says, 2 KiB where that says nothing sensible; or `words` words.
+[[nodiscard]] Script<Result<std::vector<std::byte>>> read_eeprom(DatagramPort& port, std::uint16_t station, std::string subject,
+                                                                 std::optional<std::size_t> words = {});
 
 }  // namespace taktwerk::ecat

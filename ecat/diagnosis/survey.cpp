@@ -31,6 +31,8 @@ Script<void> greet(DatagramPort& port, std::uint16_t position, SurveyedSlave& sl
     slave.state = al_state(al.u16());
     slave.al_error = (al.u16() & al_status_error) != 0;
     slave.al_code = al.u16(4);
+    const Reply owner = co_await port.aprd(position, reg::eeprom_configuration, 1);
+    slave.eeprom_with_pdi = owner.ok() && (byte_at(owner, 0) & 1u) != 0;
 }
 
 /// Everything else, by station address.
@@ -65,7 +67,18 @@ Script<void> question(DatagramPort& port, SurveyedSlave& slave) {
 }
 
 Script<void> ask_device_id(DatagramPort& port, SurveyedSlave& slave) {
-    slave.found.device_id = co_await read_device_id(port, slave.found.station);
+    slave.found.device_id = co_await read_device_id(port, slave.found.station, id_register(slave.found.sii));
+}
+
+/// Those that say that they have one. Through AL control only while no master needs it.
+Script<void> ask_device_ids(DatagramPort& port, Survey& survey, bool through_al_control) {
+    std::vector<Script<void>> scripts;
+    for (auto& slave : survey.slaves) {
+        const auto& sii = slave.found.sii;
+        const bool says = through_al_control && sii.general && (sii.general->flags & sii_flag::id_in_al_status) != 0;
+        if (!slave.found.error && (says || id_register(sii) != 0)) scripts.push_back(ask_device_id(port, slave));
+    }
+    co_await all(std::move(scripts), DatagramPort::slaves_at_once);
 }
 
 /// E-bus: each coupler starts a budget, each terminal takes from it. Slaves stand in the order of the cable.
@@ -170,6 +183,7 @@ Script<Result<Survey>> survey(DatagramPort& port, SurveyMay may, const SeenRing*
     std::vector<Script<void>> questions;
     for (auto& slave : result.slaves) questions.push_back(question(port, slave));
     co_await all(std::move(questions), DatagramPort::slaves_at_once);
+    co_await ask_device_ids(port, result, may == SurveyMay::give_addresses && result.highest_state < AlState::safeop);
 
     if (ring != nullptr) result.ring = ring->load();
     std::vector<std::uint16_t> links;

@@ -1,7 +1,8 @@
 #pragma once
 // Who is on the cable: every slave with address, identity, name, state, ports and error counters, and the tree they form.
-// Reads only, with two exceptions, both only while no slave is in SAFEOP or OP: slaves without an address of their own get
-// one, and an EEPROM that an application holds is taken back. AL states, sync managers and counters stay as they are.
+// Reads only, with three exceptions, all only while no slave is in SAFEOP or OP: slaves without an address of their own get
+// one, an EEPROM that an application holds is taken back, and slaves that say they have an explicit device id are asked for it
+// (AL control bit 5). AL states, sync managers and counters stay as they are.
 
 #include <array>
 #include <cstdint>
@@ -34,6 +35,7 @@ struct SurveyedSlave {
     AlState state = AlState::unknown;
     bool al_error = false;
     std::uint16_t al_code = 0;
+    bool eeprom_with_pdi = false;  ///< its processor had the EEPROM (0500h) before the survey took it
     std::array<SurveyedPort, ports_per_slave> ports;
     std::uint8_t processing_unit_errors = 0, pdi_errors = 0;
     std::uint8_t sm_watchdogs = 0;    ///< 0442h: how often outputs stayed away

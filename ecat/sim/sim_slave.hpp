@@ -32,6 +32,7 @@ struct SlaveOptions {
     Duration response_delay = std::chrono::microseconds{200};   ///< mailbox request taken -> answer ready
     Duration eeprom_read_time = std::chrono::microseconds{100};
     Duration eeprom_write_time = std::chrono::milliseconds{2};
+    bool eeprom_reads_8_bytes = true;  ///< a read command delivers 8 bytes; else 4
 };
 
 class SimSlave {
