@@ -48,6 +48,7 @@ public:
     }
 
     [[nodiscard]] LoopMode mode(unsigned p) const noexcept { return static_cast<LoopMode>((modes_ >> (2 * p)) & 3u); }
+    [[nodiscard]] std::uint8_t links() const noexcept { return links_; }
     [[nodiscard]] bool link(unsigned p) const noexcept { return ((links_ >> p) & 1u) != 0; }
     [[nodiscard]] bool open(unsigned p) const noexcept { return ((closed_ >> p) & 1u) == 0; }
     /// Closed because there is no link, not because the master said so.

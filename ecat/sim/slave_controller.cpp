@@ -104,6 +104,7 @@ void SlaveController::exchange_physical(MutableDatagram& datagram, bool addresse
 Instant SlaveController::next_event() const noexcept {
     Instant next = std::min({watchdog_deadline_, pdi_watchdog_deadline_, sync0_due_, sync1_due_, loops_revert_});
     if (eeprom_.busy()) next = std::min(next, eeprom_.due());
+    if (mii_.busy()) next = std::min(next, mii_.due());
     return next;
 }
 
@@ -111,6 +112,10 @@ void SlaveController::fire(Instant now) noexcept {
     if (eeprom_.busy() && eeprom_.due() <= now) {
         if (eeprom_.complete()) load_configuration_words();
         show_eeprom();
+    }
+    if (mii_.busy() && mii_.due() <= now) {
+        mii_.complete(ports_.links());
+        show_mii();
     }
     if (watchdog_deadline_ <= now) {
         watchdog_deadline_ = never;

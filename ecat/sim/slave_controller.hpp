@@ -14,7 +14,9 @@
 
 #include "core/time.hpp"
 #include "ecat/sim/dc_clock.hpp"
+#include "ecat/sim/ecat_event.hpp"
 #include "ecat/sim/eeprom_interface.hpp"
+#include "ecat/sim/mii_interface.hpp"
 #include "ecat/sim/ports.hpp"
 #include "ecat/sim/sync_signals.hpp"
 #include "ecat/wire/frame.hpp"
@@ -49,12 +51,6 @@ inline constexpr unsigned sync1 = 1u << 8;
 inline constexpr unsigned sync_manager_switched = 1u << 9;  ///< a sync manager was turned on or off
 inline constexpr unsigned reset = 1u << 10;                 ///< 'R', 'E', 'S' at 0040h: everything starts anew
 }  // namespace event
-
-/// Bits of the event request to the master (0210h).
-namespace ecat_event {
-inline constexpr std::uint16_t dc_latch = 1u << 0, dl_status = 1u << 2, al_status = 1u << 3;
-inline constexpr unsigned sync_manager_0 = 4;  ///< bit of SM0; SM1..SM7 follow
-}  // namespace ecat_event
 
 /// Whether a sync manager may lie there: in the RAM, or on the output pins of a terminal without a processor (0F00h to 0F03h).
 [[nodiscard]] bool holds_process_data(std::uint32_t address, std::size_t size) noexcept;
@@ -145,6 +141,7 @@ public:
 
     [[nodiscard]] DcClock& clock() noexcept { return clock_; }
     [[nodiscard]] EepromInterface& eeprom() noexcept { return eeprom_; }
+    [[nodiscard]] MiiInterface& phys() noexcept { return mii_; }
     [[nodiscard]] const ControllerSettings& settings() const noexcept { return settings_; }
     [[nodiscard]] std::uint16_t station_address() const noexcept { return read16(reg::station_address); }
 
@@ -213,6 +210,8 @@ private:
     bool write_registers(std::uint32_t address, std::span<const std::byte> in, Instant at) noexcept;
     void write_eeprom(std::uint32_t address, std::span<const std::byte> in, Instant at) noexcept;
     void show_eeprom() noexcept;
+    void write_mii(std::uint32_t address, std::span<const std::byte> in, Instant at) noexcept;
+    void show_mii() noexcept;
     void load_configuration_words() noexcept;
     void set_event_request(std::uint16_t bits, bool on) noexcept;
 
@@ -221,6 +220,7 @@ private:
 
     ControllerSettings settings_;
     EepromInterface eeprom_;
+    MiiInterface mii_;
     std::vector<std::byte> memory_;       // registers and process RAM as the bus sees them
     std::vector<std::byte> application_;  // buffered outputs as the application sees them, same addresses
     std::array<Unit, 16> units_{};

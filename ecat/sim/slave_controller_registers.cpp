@@ -76,6 +76,8 @@ void SlaveController::power_on(Instant now, std::int64_t local, std::int32_t dri
     eeprom_.power_on();
     if (eeprom_.checksum_ok()) load_configuration_words();
     show_eeprom();
+    mii_.power_on(settings_.sockets);
+    show_mii();
 }
 
 void SlaveController::load_configuration_words() noexcept {
@@ -155,9 +157,11 @@ bool SlaveController::write_registers(std::uint32_t address, std::span<const std
     if (hits(reg::eeprom_configuration, 1)) {
         const auto configuration = static_cast<unsigned>(in[reg::eeprom_configuration - address]);
         memory_[reg::eeprom_configuration] = static_cast<std::byte>(configuration & pdi_takes);
-        if ((configuration & force_release) != 0) memory_[reg::eeprom_pdi_access] = std::byte{0};
+        if ((configuration & force_release) != 0)
+            memory_[reg::eeprom_pdi_access] = eeprom_.faults().held_by_application ? std::byte{1} : std::byte{0};
     }
     if (hits(reg::eeprom_control, 14)) write_eeprom(address, in, at);
+    if (hits(reg::mii_control, 6)) write_mii(address, in, at);
     for (std::uint32_t n = 0; n < settings_.fmmus; ++n) {
         const std::uint32_t base = reg::fmmu_at(n);
         if (!hits(base, Fmmu::size)) continue;
@@ -198,6 +202,27 @@ void SlaveController::show_eeprom() noexcept {
     write16(reg::eeprom_control, eeprom_.status());
     const auto data = eeprom_.data();
     std::copy(data.begin(), data.end(), memory_.begin() + reg::eeprom_data);
+}
+
+void SlaveController::write_mii(std::uint32_t address, std::span<const std::byte> in, Instant at) noexcept {
+    if (mii_.busy()) return;
+    for (std::uint32_t a = std::max<std::uint32_t>(address, reg::mii_phy_address);
+         a < std::min<std::size_t>(address + in.size(), reg::mii_phy_data + 2u); ++a)
+        memory_[a] = in[a - address];
+    if (!overlaps(address, in.size(), reg::mii_control, 2)) return;
+    const auto byte = [&](std::uint32_t a) {
+        return a >= address && a < address + in.size() ? static_cast<unsigned>(in[a - address]) : 0u;
+    };
+    constexpr std::byte numbers{0x1F};
+    mii_.control_written(static_cast<std::uint16_t>(byte(reg::mii_control) | (byte(reg::mii_control + 1u) << 8)),
+                         static_cast<std::uint8_t>(memory_[reg::mii_phy_address] & numbers),
+                         static_cast<std::uint8_t>(memory_[reg::mii_phy_register] & numbers), read16(reg::mii_phy_data), at);
+    show_mii();
+}
+
+void SlaveController::show_mii() noexcept {
+    write16(reg::mii_control, mii_.control());
+    if (!mii_.busy()) write16(reg::mii_phy_data, mii_.data());
 }
 
 bool SlaveController::take_eeprom(bool take) noexcept {

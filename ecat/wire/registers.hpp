@@ -85,11 +85,12 @@ inline constexpr std::uint16_t eeprom_address = 0x0504;        ///< 4: word addr
 inline constexpr std::uint16_t eeprom_data = 0x0508;           ///< 8: 4 or 8 bytes a read (eeprom::reads_8_bytes)
 
 // MII management
-inline constexpr std::uint16_t mii_control = 0x0510;       ///< 2
+inline constexpr std::uint16_t mii_control = 0x0510;       ///< 2: see `mii` (phy.hpp)
 inline constexpr std::uint16_t mii_phy_address = 0x0512;   ///< 1
 inline constexpr std::uint16_t mii_phy_register = 0x0513;  ///< 1
 inline constexpr std::uint16_t mii_phy_data = 0x0514;      ///< 2
-inline constexpr std::uint16_t mii_ecat_access = 0x0516;   ///< 1
+inline constexpr std::uint16_t mii_ecat_access = 0x0516;   ///< 1: b0 the master alone
+inline constexpr std::uint16_t mii_pdi_access = 0x0517;    ///< 1: b0 the application has it, b1 the master takes it away
 inline constexpr std::uint16_t mii_port_status = 0x0518;   ///< 4: one a port
 
 // Tables: unit n at base + n * size
