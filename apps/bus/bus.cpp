@@ -71,6 +71,8 @@ void add_bus(CLI::App& app, Action& action) {
     add_bus_why(*bus, action);
     add_bus_capture(*bus, action);
     add_bus_init(*bus, action);
+    add_bus_eeprom(*bus, action);
+    add_bus_mii(*bus, action);
 }
 
 }  // namespace taktwerk::apps

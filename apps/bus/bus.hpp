@@ -10,6 +10,7 @@
 #include "ecat/diagnosis/clock_report.hpp"
 #include "ecat/diagnosis/dictionary.hpp"
 #include "ecat/diagnosis/pdo_report.hpp"
+#include "ecat/diagnosis/phy_report.hpp"
 #include "ecat/diagnosis/port_errors.hpp"
 #include "ecat/diagnosis/survey.hpp"
 #include "ecat/diagnosis/why_not_op.hpp"
@@ -27,6 +28,8 @@ void add_bus_counters(CLI::App& bus, Action& action);
 void add_bus_why(CLI::App& bus, Action& action);
 void add_bus_capture(CLI::App& bus, Action& action);
 void add_bus_init(CLI::App& bus, Action& action);
+void add_bus_eeprom(CLI::App& bus, Action& action);
+void add_bus_mii(CLI::App& bus, Action& action);
 
 /// The options that every sub-command has.
 [[nodiscard]] std::shared_ptr<BusOptions> add_bus_options(CLI::App& sub);
@@ -42,6 +45,7 @@ void add_operational(CLI::App& sub, BusOptions& options);
 [[nodiscard]] Json pdo_json(const ecat::PdoReport& report);
 [[nodiscard]] std::string clocks_text(const ecat::Survey& survey, const std::vector<ecat::ClockReport>& clocks, Colours colours);
 [[nodiscard]] std::string counters_text(const ecat::Survey& survey, Colours colours);
+[[nodiscard]] std::string mii_text(const std::string& subject, const std::vector<ecat::PhyReport>& reports, Colours colours);
 [[nodiscard]] std::string dictionary_text(const ecat::Dictionary& dictionary, Colours colours);
 [[nodiscard]] std::string why_text(const std::string& where, const ecat::WhyReport& report, Colours colours);
 [[nodiscard]] Json why_json(const ecat::WhyReport& report);

@@ -127,6 +127,7 @@ std::string scan_text(const std::string& where, const Survey& survey, Colours co
         if (!slave.found.error)
             out += line + fmt::format("vendor {:08X}h product {:08X}h revision {:08X}h serial {}\n", id.vendor, id.product, id.revision,
                                       id.serial);
+        if (slave.found.device_id) out += line + fmt::format("explicit device id {}\n", *slave.found.device_id);
         if (const auto* known = vendors != nullptr && !slave.found.error ? vendors->find(id) : nullptr)
             out += line + cut(vendor_text(*known, id.revision), 80 - columns(line)) + "\n";
         else if (vendors != nullptr && !slave.found.error) out += line + "no file describes it\n";
@@ -169,6 +170,7 @@ Json scan_json(const Survey& survey, const ecat::esi::EsiFolder* vendors) {
                   {"mailbox_in", slave.found.mailbox[3]},
                   {"protocols", slave.protocols()},
                   {"sm_watchdogs", slave.sm_watchdogs}};
+        if (slave.found.device_id) json["device_id"] = *slave.found.device_id;
         if (slave.ebus_current) json["ebus_current_ma"] = *slave.ebus_current;
         if (slave.ebus_left) json["ebus_left_ma"] = *slave.ebus_left;
         if (survey.topology && survey.topology->slaves[i].parent) json["parent"] = *survey.topology->slaves[i].parent;

@@ -206,6 +206,14 @@ Result<void> BusSession::may_write(const ecat::Survey& survey, std::string_view 
     return {};
 }
 
+Result<void> BusSession::must_be_alone(std::string_view doing) const {
+    if (foreign_frames_ == 0) return {};
+    return Error{"bus.foreign_master", where_,
+                 fmt::format("another master is sending on this cable, and beside it nobody begins {}, with --force neither: {}", doing,
+                             foreign_sender_),
+                 "end that master first; the slaves were left as they are"};
+}
+
 void BusSession::adopt(const ecat::Survey& survey) {
     if (up_) return;
     new_probe(ecat::derived_config(survey, configured_));
@@ -266,7 +274,12 @@ int exit_code_for(const Error& error) {
     if (error.code.rfind("drive.", 0) == 0) return exit_usage;
     if (error.code == "bus.no_such_slave" || error.code == "sdo.value" || error.code == "bus.not_confirmed") return exit_usage;
     if (error.code == "sdo.abort" || error.code == "bus.refused_state") return exit_refused;
-    if (error.code == "capture.write") return exit_bad_file;
+    for (const char* usage : {"usage.number", "bus.no_such_port", "eeprom.no_device", "esi.no_device", "esi.which_device"})
+        if (error.code == usage) return exit_usage;
+    for (const char* of_file : {"capture.write", "eeprom.file", "eeprom.exists"})
+        if (error.code == of_file) return exit_bad_file;
+    if (error.code.rfind("esi.", 0) == 0) return exit_bad_file;
+    if (error.code.rfind("eeprom.", 0) == 0) return exit_refused;
     return exit_bus;
 }
 

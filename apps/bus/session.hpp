@@ -50,6 +50,8 @@ public:
     [[nodiscard]] Result<ecat::Survey> look();
     /// An error when another master uses this bus, a warning (printed) when slaves are in OP without anybody being heard.
     [[nodiscard]] Result<void> may_write(const ecat::Survey& survey, std::string_view doing);
+    /// An error when another master is heard, whatever --force says: for what no two may do.
+    [[nodiscard]] Result<void> must_be_alone(std::string_view doing) const;
     /// From now on bus().slaves are the surveyed ones, one for each that could be read, in the order of the cable.
     void adopt(const ecat::Survey& survey);
     /// To OP as the machine would, or with what the slaves say of themselves when no machine is given; asks before.
