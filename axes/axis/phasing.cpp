@@ -95,14 +95,18 @@ void Phasing::settle_waiting() noexcept {
     } else body_.queue.record(next.id, Outcome::aborted, ErrorId::none);
 }
 
+const AxisConfig& Phasing::config_of(AxisRef axis) const noexcept {
+    const MasterSide* master = links_.axis(axis);
+    return master ? master->config() : body_.config;
+}
+
 /// Velocity and ramps are the master's units, so its limits and defaults hold; velocity 0 is its limit.
 void Phasing::begin(const AcceptedCommand& accepted) noexcept {
     auto& state = links_.state;
     const auto& command = accepted.command;
     const auto& link = state.running.id != 0 ? state.running : state.next;
     const auto ref = link.id != 0 ? link.masters.axes[0] : masters_of(body_.queue.active().command).axes[0];
-    const MasterSide* master = links_.axis(ref);
-    const auto& config = master ? master->config() : body_.config;
+    const auto& config = config_of(ref);
     auto limits = dynamics_of(command, config.limits, config.defaults);
     limits.velocity = choose(command.velocity, 0, config.limits.velocity);
     const double from = command.kind == CommandKind::phasing_relative ? state.phase.state().position : 0.0;
@@ -118,8 +122,7 @@ void Phasing::begin(const AcceptedCommand& accepted) noexcept {
 void Phasing::halt(const AcceptedCommand& accepted) noexcept {
     auto& state = links_.state;
     const auto from = state.phase.state();
-    const MasterSide* master = links_.axis(state.phase_master);
-    const auto& config = master ? master->config() : body_.config;
+    const auto& config = config_of(state.phase_master);
     auto limits = dynamics_of(accepted.command, config.limits, config.defaults);
     if (from.velocity * from.acceleration > 0) limits.jerk = std::max(limits.jerk, state.phase.jerk());
     if (state.phase.stop(never_reversing(from, limits, to_seconds(body_.cycle)))) state.phasing = accepted;

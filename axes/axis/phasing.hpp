@@ -24,6 +24,8 @@ private:
     [[nodiscard]] ErrorId refuse(const AxisCommand& command) const noexcept;
     [[nodiscard]] const AcceptedCommand& coupling_before_phasing(const AxisCommand& command) const noexcept;
     [[nodiscard]] bool lets_phasing_begin() const noexcept;
+    /// Of the master; of the slave itself where nobody is.
+    [[nodiscard]] const AxisConfig& config_of(AxisRef axis) const noexcept;
     void begin(const AcceptedCommand& accepted) noexcept;
     void halt(const AcceptedCommand& accepted) noexcept;
 
