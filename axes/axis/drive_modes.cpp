@@ -33,7 +33,9 @@ ErrorId DriveModes::refuse(const AxisCommand& command, bool starts_now) const no
     const auto& drive = body_.port.capabilities();
     const bool in_torque = modes_.phase == ModePhase::entering || modes_.phase == ModePhase::torque;
     // At the end of a move the motor is a little behind its set-point: then the change waits for it.
-    const bool stands = motion_.setpoint.at_rest() && (!in_torque || measured_.stands());
+    // What was just handed to the drive has not moved the motor yet, and will.
+    const bool handed = modes_.run.under_way() && !(modes_.run.in_target() && measured_.stands());
+    const bool stands = motion_.setpoint.at_rest() && !handed && (!in_torque || measured_.stands());
     // Out of torque in motion this drive can only be braked first.
     if (starts_now && in_torque && drive.mode_change_at_standstill && !stands && command.kind != CommandKind::torque &&
         !only_stops(command.kind))

@@ -382,6 +382,41 @@ TEST(DriveProfile, ARefusedSetPointAheadIsTriedAgainAtItsTurn) {
 
 // --- velocity and torque ----------------------------------------------------------------------------------------------------------
 
+// A drive that changes its mode at standstill only takes no torque over a move that was just handed to it, whether the motor turns already or not:
+// else the axis would wait for a standstill, on and on at the velocity at which it left the move.
+TEST(DriveProfile, NoTorqueOverAMoveThatIsInTheDrivesHands) {
+    int refused = 0, taken = 0;
+    for (int later = 0; later < 40; ++later) {
+        auto config = plain_axis();
+        config.control.rated_acceleration = 2000;
+        ProfileRig rig([](FakeDrive& drive) { drive.caps.mode_change_at_standstill = true, drive.mode_delay = 20; }, config);
+        const auto move = rig.accept(drive_to(20, 30));
+        rig.run(later);
+        const auto answer =
+            rig.axis.submit({.kind = CommandKind::torque, .velocity = 40, .details = TorqueDetails{0.1, 0}}, Owner::program);
+        if (answer.error == ErrorId::none) {
+            ++taken;
+            bool moved = false;
+            ASSERT_TRUE(rig.run_until(
+                [&] {
+                    moved = moved || rig.speed() != 0;
+                    return rig.view().drive_mode == DriveMode::cyclic_torque;
+                },
+                1500))
+                << later;
+            EXPECT_FALSE(moved) << "the move began all the same, " << later << " cycles after it was asked for";
+            continue;
+        }
+        ++refused;
+        EXPECT_EQ(answer.error, ErrorId::not_at_standstill) << later;
+        ASSERT_TRUE(rig.run_to(AxisState::Standstill, 5000)) << later;
+        EXPECT_EQ(rig.status(move), CommandStatus::done) << later;
+        EXPECT_EQ(rig.at(), 20) << later;
+    }
+    EXPECT_GT(refused, 10);
+    EXPECT_GT(taken, 10) << "before the drive has anything";
+}
+
 // PV: the drive ramps; InVelocity is its "target reached", and not that of the velocity before.
 TEST(DriveVelocity, InVelocityIsTheDrivesWord) {
     ProfileRig rig;
