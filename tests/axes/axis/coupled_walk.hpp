@@ -350,7 +350,8 @@ private:
                     out += fmt::format("axis {}: {}", i, text);
             return out;
         };
-        constexpr int longest = 20'000;  // cycles: 60 u at 8 u/s with the ramps, some in a row, and their searches
+        constexpr int longest =
+            60'000;  // cycles: 250 u (coordinates are shifted) at 8 u/s with the ramps, some in a row, and their searches
         for (int i = 0; i < longest && wrong_.empty() && !(i % 16 == 0 && unfinished(WalkLedger::Patience::left).empty()); ++i)
             quiet_step();
         if (wrong_.empty()) wrong_ = unfinished(WalkLedger::Patience::over);

@@ -58,6 +58,16 @@ TEST(CoupledWalks, KeepEveryRule) {
     expect_all_seen(counts, walked.walks);
 }
 
+// Seeds beyond those of the usual run that found a fault. 978: a torque over a move just handed to the drive, which never came. 1360: a reset while
+// the drive left its torque kept the velocity of the motor in a set-point that stood.
+TEST(CoupledWalks, SeedsThatHaveFoundSomething) {
+    WalkCounts counts;
+    for (const unsigned seed : {978u, 1360u}) {
+        CoupledWalk walk(seed, counts);
+        EXPECT_EQ(walk.run(length), "") << "seed " << seed;
+    }
+}
+
 // The same with axes that are slower in one direction, and have other ramps there: the oracle holds each velocity and each ramp against its own.
 TEST(CoupledWalks, KeepTheLimitsOfEachDirection) {
     WalkCounts counts;

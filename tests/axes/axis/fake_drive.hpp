@@ -170,7 +170,8 @@ private:
     }
     void step_mode() {
         if (last.mode == mode_) mode_ticks_ = 0;
-        else if (++mode_ticks_ >= mode_delay && takes(last.mode)) {
+        else if (++mode_ticks_ >= std::max(mode_delay, dead_cycles + latch_age + 1) &&
+                 takes(last.mode)) {  // with the set-point of the same frame
             mode_ = last.mode;
             profile.enter();
         }
