@@ -83,6 +83,8 @@ void DriveModes::begin_mode_change(const AxisCommand& command) noexcept {
     const auto mode = static_cast<DriveMode>(static_cast<std::uint8_t>(command.position));
     motion_.goal = {};
     motion_.goal_pending = false;
+    // It stands, but for what it took over of a motor that a drive without torque lets go.
+    if (motion_.setpoint.state().velocity != 0) motion_.setpoint.place(motion_.setpoint.state().position);
     if (mode == DriveMode::cyclic_torque) {
         const auto limits = gentlest(full_limits(body_.config.limits), body_.config.limits);
         modes_.torque_velocity = slowest(body_.config.limits);

@@ -59,10 +59,10 @@ TEST(CoupledWalks, KeepEveryRule) {
 }
 
 // Seeds beyond those of the usual run that found a fault. 978: a torque over a move just handed to the drive, which never came. 1360: a reset while
-// the drive left its torque kept the velocity of the motor in a set-point that stood.
+// the drive left its torque kept the velocity of the motor in a set-point that stood. 2427: so did another mode for the controller.
 TEST(CoupledWalks, SeedsThatHaveFoundSomething) {
     WalkCounts counts;
-    for (const unsigned seed : {978u, 1360u}) {
+    for (const unsigned seed : {978u, 1360u, 2427u}) {
         CoupledWalk walk(seed, counts);
         EXPECT_EQ(walk.run(length), "") << "seed " << seed;
     }
