@@ -39,9 +39,17 @@ Error not_written(const fs::path& path) {
     return {"init.output", path.string(), "the file cannot be written", "check the folder, and that you may write there"};
 }
 
+bool is_there(const fs::path& path) {
+    std::error_code ignored;  // a place where nobody may look cannot be written to either
+    return fs::exists(path, ignored);
+}
+
+Error there_already(const fs::path& path) {
+    return {"init.exists", path.string(), "there is such a file already", "choose another name: nothing is written over"};
+}
+
 Result<void> write_new(const fs::path& path, const std::string& text) {
-    if (fs::exists(path))
-        return Error{"init.exists", path.string(), "there is such a file already", "choose another name: nothing is written over"};
+    if (is_there(path)) return there_already(path);
     std::error_code ignored;
     if (path.has_parent_path()) fs::create_directories(path.parent_path(), ignored);
     std::ofstream file(path, std::ios::binary);
@@ -135,7 +143,14 @@ private:
     std::vector<std::string> written_;
 };
 
-int write_machine(const InitOptions& options, const ecat::Survey& survey, const EsiFolder* vendors) {
+/// The bus as the file names it: as it was looked at here.
+std::string interface_lines(const BusSession& session) {
+    auto lines = fmt::format("  interface: {}\n", session.interface());
+    if (const auto second = session.second_interface(); !second.empty()) lines += fmt::format("  ring: {{ interface2: {} }}\n", second);
+    return lines;
+}
+
+int write_machine(const InitOptions& options, const BusSession& session, const ecat::Survey& survey, const EsiFolder* vendors) {
     Recognition recognition(options.output, vendors);
     std::vector<RecognisedSlave> slaves;
     std::size_t unknown = 0;
@@ -147,8 +162,7 @@ int write_machine(const InitOptions& options, const ecat::Survey& survey, const 
         return fail(*options.bus, Error{"init.nothing_known", "bus", "no file describes any of its slaves",
                                         "give the folder with the vendors' files: --esi DIR"});
     const auto name = config::device_file_name(fs::path(options.output).stem().string());
-    const auto interface = options.bus->nic.empty() ? std::string("simulated") : options.bus->nic;
-    if (const auto done = write_new(options.output, machine_skeleton(name, interface, survey, slaves)); !done) {
+    if (const auto done = write_new(options.output, machine_skeleton(name, interface_lines(session), survey, slaves)); !done) {
         fail(*options.bus, done.error());
         return exit_bad_file;
     }
@@ -180,10 +194,14 @@ void add_bus_init(CLI::App& bus, Action& action) {
                 }
                 vendors = std::move(*found);
             }
+            if (is_there(options->output)) {  // before anything is asked of the bus, or written beside it
+                fail(*options->bus, there_already(options->output));
+                return exit_bad_file;
+            }
             return with_bus(*options->bus, [&](BusSession& session) {
                 const auto survey = session.look();
                 if (!survey) return fail(*options->bus, survey.error());
-                return write_machine(*options, *survey, vendors ? &*vendors : nullptr);
+                return write_machine(*options, session, *survey, vendors ? &*vendors : nullptr);
             });
         };
     });

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "ecat/esi/text_encoding.hpp"
+
 namespace taktwerk::apps {
 
 namespace {
@@ -38,7 +40,7 @@ std::string slaves_text(const ecat::Survey& survey, const std::vector<Recognised
     for (std::size_t n = 0; n < slaves.size(); ++n) {
         const auto& slave = slaves[n];
         const auto& id = survey.slaves[n].found.identity;
-        if (!slave.remark.empty()) out += fmt::format("    # {}\n", slave.remark);
+        if (!slave.remark.empty()) out += fmt::format("    # {}\n", ecat::esi::on_one_line(slave.remark));
         if (slave.kind == Kind::unknown) {
             out += fmt::format("    # position {}: vendor {:08X}h product {:08X}h revision {:08X}h: no file describes it\n", n, id.vendor,
                                id.product, id.revision);
@@ -98,14 +100,14 @@ std::string axes_text(const std::vector<RecognisedSlave>& slaves) {
 
 }  // namespace
 
-std::string machine_skeleton(const std::string& name, const std::string& interface, const ecat::Survey& survey,
+std::string machine_skeleton(const std::string& name, const std::string& interfaces, const ecat::Survey& survey,
                              const std::vector<RecognisedSlave>& slaves) {
     const bool complete = std::none_of(slaves.begin(), slaves.end(), [](const RecognisedSlave& one) { return one.kind == Kind::unknown; });
     auto out = fmt::format(
         "# Made by `taktwerk bus init` of what is on the bus. Units, limits and homing of axes are guesses: fill them in before a drive is "
         "enabled.\n"
-        "version: 1\nname: {}\ncycle: 1 ms\nbus:\n  interface: {}\n",
-        name, interface);
+        "version: 1\nname: {}\ncycle: 1 ms\nbus:\n{}",
+        name, interfaces);
     if (!complete) out += "  extra_slaves: ignore     # those that no file describes stay in INIT\n";
     out += "  slaves:\n" + slaves_text(survey, slaves, complete);
     const auto inputs = points_text(slaves, IoDirection::input), outputs = points_text(slaves, IoDirection::output);

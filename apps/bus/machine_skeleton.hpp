@@ -18,8 +18,8 @@ struct RecognisedSlave {
     std::string remark;  ///< what a person should look at; may be empty
 };
 
-/// YAML that `check` accepts: one for each slave in the order of the cable. Names are made of the types: `el3104_4`, axes are `axis1`, ... .
-[[nodiscard]] std::string machine_skeleton(const std::string& name, const std::string& interface, const ecat::Survey& survey,
+/// `interfaces`: the lines of the bus that name them. YAML that `check` accepts: one for each slave in the order of the cable. Names are made of the types: `el3104_4`, axes are `axis1`, ... .
+[[nodiscard]] std::string machine_skeleton(const std::string& name, const std::string& interfaces, const ecat::Survey& survey,
                                            const std::vector<RecognisedSlave>& slaves);
 
 }  // namespace taktwerk::apps

@@ -41,6 +41,12 @@ public:
     [[nodiscard]] const std::string& where() const noexcept { return where_; }
     [[nodiscard]] Instant now() const { return clock_->now(); }
     [[nodiscard]] bool simulated() const noexcept { return world_ != nullptr; }
+    /// As a machine file names them. The second one: empty where the bus is looked at as a line.
+    [[nodiscard]] std::string interface() const { return simulated() ? "simulated" : nic_->first().interface(); }
+    [[nodiscard]] std::string second_interface() const {
+        if (!configured_.ring || !options_.nic.empty()) return {};
+        return simulated() ? "simulated" : configured_.ring->interface2;
+    }
     /// What the machine file says; empty without one.
     [[nodiscard]] const ecat::BusConfig& configured() const noexcept { return configured_; }
     [[nodiscard]] ecat::BusProbe& probe() noexcept { return *probe_; }

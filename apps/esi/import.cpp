@@ -23,7 +23,8 @@ using config::EsiImport;
 using ecat::esi::EsiFile;
 
 Result<void> write(const std::string& path, const std::string& text, bool replace) {
-    if (!replace && fs::exists(path))
+    std::error_code ignored;  // such a place cannot be written to either
+    if (!replace && fs::exists(path, ignored))
         return Error{"esi.exists", path, "there is such a file already", "choose another name, or say --replace"};
     auto* file = std::fopen(path.c_str(), "w");
     if (file == nullptr)
@@ -41,7 +42,13 @@ std::string heading_of(const EsiImport& import) {
 }
 
 int import_device(const EsiOptions& options, const EsiFile& file, const ecat::esi::EsiReading& reading) {
-    const auto name = options.output.empty() ? std::string{} : fs::path(options.output).stem().string();
+    const fs::path output = options.output;
+    if (!output.empty() && output.extension() != ".yaml") {
+        print_error({"esi.name", options.output, "machines look for a device in a file that ends with .yaml",
+                     fmt::format("say -o {}", fs::path(output).replace_extension(".yaml").string())});
+        return exit_usage;
+    }
+    const auto name = output.stem().string();
     const auto import = config::import_device(reading, file.vendor_name(), fs::path(options.file).filename().string(), name);
     if (!import) {
         print_error(import.error());

@@ -84,7 +84,7 @@ std::string device_file_name(const std::string& type) {
     if (out.empty() || std::isalpha(static_cast<unsigned char>(out.front())) == 0) out = "device-" + out;
     out.resize(std::min(out.size(), longest_name));
     while (!out.empty() && (out.back() == '-' || out.back() == '_')) out.pop_back();
-    return out;
+    return out == "null" ? "device-null" : out;  // which is no word in YAML
 }
 
 Result<EsiImport> import_device(const EsiReading& reading, const std::string& vendor, const std::string& source, const std::string& name) {

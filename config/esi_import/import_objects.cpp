@@ -66,6 +66,7 @@ std::string snake(const std::string& words) {
     }
     while (!out.empty() && out.back() == '_') out.pop_back();
     if (!out.empty() && std::isdigit(static_cast<unsigned char>(out.front())) != 0) out = "ch_" + out;
+    if (out == "null") out = "ch_null";  // which is no word in YAML
     return out;
 }
 
@@ -142,6 +143,7 @@ void import_objects(const EsiDevice& from, EsiImport& to) {
 
 void import_channels(const EsiDevice& from, EsiImport& to) {
     constexpr std::uint32_t most_bits = 64;
+    constexpr std::size_t longest_channel = 80;
     struct Named {
         Address address;
         std::string of_entry, of_both, doc;
@@ -162,6 +164,7 @@ void import_channels(const EsiDevice& from, EsiImport& to) {
     for (const auto& one : all) {
         auto name = one.of_entry.empty() || uses[one.of_entry] > 1 ? one.of_both : one.of_entry;
         if (name.empty()) name = one.rx ? "out" : "in";
+        name.resize(std::min(name.size(), longest_channel));  // YAML takes keys of up to 1024
         if (taken.count(name) != 0) name += fmt::format("_{:04x}_{:02x}", one.address.first, one.address.second);
         if (!taken.insert(name).second) name += one.rx ? "_out" : "_in";  // the same object in both directions
         taken.insert(name);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "ecat/esi/esi_number.hpp"
+#include "ecat/esi/text_encoding.hpp"
 
 namespace taktwerk::ecat::esi {
 
@@ -32,7 +33,7 @@ int language(pugi::xml_node node) {
 std::string step(pugi::xml_node node) {
     const std::string name = node.name();
     if (name == "Device" || name == "Module") {
-        const std::string type{trimmed(node.child("Type").child_value())};
+        const auto type = on_one_line(trimmed(node.child("Type").child_value()));
         if (!type.empty()) return fmt::format("{} '{}'", name, type);
     }
     std::size_t before = 0;
@@ -91,8 +92,10 @@ std::string Element::text() const {
     std::string out;
     for (const auto& part : node_.children())
         if (part.type() == pugi::node_pcdata || part.type() == pugi::node_cdata) out += part.value();
-    return std::string{trimmed(out)};
+    return std::string{trimmed(on_one_line(out))};
 }
+
+std::string Element::attribute(const char* name) const { return on_one_line(node_.attribute(name).value()); }
 
 std::string Element::in_english(const char* name) const {
     const auto all = children(name);
@@ -116,12 +119,12 @@ std::string Element::in_chinese(const char* name) const {
 std::optional<std::int64_t> Element::checked(std::string_view text, const std::string& what, std::int64_t low, std::int64_t high) const {
     const auto value = parse_number(text);
     if (!value) {
-        const auto shown = text.substr(0, 40);
+        const auto shown = on_one_line(text.substr(0, 40));
         problem("esi.number", fmt::format("{} is '{}', which is no number", what, shown), "write a number such as 16 or #x10");
         return std::nullopt;
     }
     if (*value < low || *value > high) {
-        problem("esi.number", fmt::format("{} is {}, beyond {} to {}", what, trimmed(text), low, high),
+        problem("esi.number", fmt::format("{} is {}, beyond {} to {}", what, on_one_line(trimmed(text)), low, high),
                 "correct it, or ask the vendor for a newer file");
         return std::nullopt;
     }
@@ -162,8 +165,7 @@ bool Element::flag(const char* name, bool otherwise) const {
     const auto found = node_.attribute(name);
     if (!found) return otherwise;
     if (const auto value = parse_flag(found.value())) return *value;
-    problem("esi.number", fmt::format("{} is '{}', which is neither 0 nor 1", name, std::string_view(found.value()).substr(0, 40)),
-            "write 0 or 1");
+    problem("esi.number", fmt::format("{} is '{}', which is neither 0 nor 1", name, attribute(name).substr(0, 40)), "write 0 or 1");
     return otherwise;
 }
 

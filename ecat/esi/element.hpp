@@ -50,10 +50,10 @@ public:
 
     [[nodiscard]] Element child(const char* name) const { return {node_.child(name), *source_, *findings_, grave_}; }
     [[nodiscard]] std::vector<Element> children(const char* name) const;
-    /// Its own text, comments left out, without blanks at the ends.
+    /// Its own text on one line, comments left out, without blanks at the ends.
     [[nodiscard]] std::string text() const;
     [[nodiscard]] std::string text_of(const char* child) const { return this->child(child).text(); }
-    [[nodiscard]] std::string attribute(const char* name) const { return node_.attribute(name).value(); }
+    [[nodiscard]] std::string attribute(const char* name) const;
     /// Of several elements with an LcId the English one (1033, then any English), then one without a language, Chinese (2052), the first.
     [[nodiscard]] std::string in_english(const char* child) const;
     [[nodiscard]] std::string in_chinese(const char* child) const;

@@ -1,6 +1,7 @@
 #include "ecat/esi/esi_file.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -18,6 +19,10 @@ namespace taktwerk::ecat::esi {
 namespace {
 
 constexpr std::size_t most_bytes = 256u << 20u;  // the largest file in the field has 30 MB
+
+Error too_large(const std::string& file, std::uintmax_t bytes) {
+    return {"esi.too_large", file, fmt::format("it has {} bytes; ESI files have some megabytes", bytes), "give the vendor's XML file"};
+}
 
 Error not_esi(const SourceText& source, pugi::xml_node root) {
     const std::string name = root.name();
@@ -108,9 +113,7 @@ EsiFile& EsiFile::operator=(EsiFile&&) noexcept = default;
 EsiFile::~EsiFile() = default;
 
 Result<EsiFile> EsiFile::parse(std::span<const std::byte> bytes, std::string name) {
-    if (bytes.size() > most_bytes)
-        return Error{"esi.too_large", name, fmt::format("it has {} bytes; ESI files have some megabytes", bytes.size()),
-                     "give the vendor's XML file"};
+    if (bytes.size() > most_bytes) return too_large(name, bytes.size());
     auto text = decode_text(bytes, name);
     if (!text) return text.error();
     auto content = std::make_unique<Content>();
@@ -140,6 +143,12 @@ Result<EsiFile> EsiFile::parse(std::span<const std::byte> bytes, std::string nam
 }
 
 Result<EsiFile> EsiFile::open(const std::string& path) {
+    // A folder throws when it is read, a pipe waits for ever, a device has no end.
+    std::error_code problem;
+    const auto status = std::filesystem::status(path, problem);
+    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+        return Error{"esi.file", path, "this is not a regular file", "give the vendor's XML file"};
+    if (const auto size = std::filesystem::file_size(path, problem); !problem && size > most_bytes) return too_large(path, size);
     std::ifstream file(path, std::ios::binary);
     std::vector<char> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
     if (!file.is_open() || file.bad())

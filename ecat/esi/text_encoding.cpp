@@ -100,7 +100,28 @@ DecodedText as_utf8(std::string_view text) {
     return out;
 }
 
+/// C0, C1 and DEL; U+2028, U+2029; U+FEFF, the byte order mark.
+bool is_control(std::string_view character) noexcept {
+    const auto first = static_cast<unsigned char>(character.front());
+    if (character.size() == 1) return first < 0x20 || first == 0x7F;
+    if (character.size() == 2) return first == 0xC2 && static_cast<unsigned char>(character[1]) < 0xA0;
+    return character == "\xE2\x80\xA8" || character == "\xE2\x80\xA9" || character == "\xEF\xBB\xBF";
+}
+
 }  // namespace
+
+std::string on_one_line(std::string_view utf8) {
+    std::string out;
+    for (std::size_t at = 0; at < utf8.size();) {
+        const auto length = utf8_length(utf8, at);
+        const auto character = utf8.substr(at, std::max<std::size_t>(length, 1));
+        at += character.size();
+        if (length == 0) continue;
+        if (is_control(character)) out += ' ';
+        else out += character;
+    }
+    return out;
+}
 
 Result<DecodedText> decode_text(std::span<const std::byte> bytes, const std::string& file) {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());  // NOLINT: bytes as text

@@ -230,6 +230,54 @@ TEST_F(EsiImportCommand, AFileThatIsThereIsNotWrittenOver) {
     EXPECT_EQ(esi({"import", works, "--device", "DI2", "-o", device("di2"), "--replace"}).code, exit_ok);
 }
 
+// Not even device files beside it.
+TEST_F(EsiImportCommand, InitOverAFileThatIsThereWritesNothing) {
+    std::filesystem::copy(source / "config/drives", folder / "drives");
+    ASSERT_EQ(esi({"import", works, "--device", "AI1", "-o", device("ai1")}).code, exit_ok);
+    const auto bus = machine("    - { name: x, profile: sv33-e }\n    - { name: ai, device: ai1 }\n");
+    std::filesystem::create_directories(folder / "vendors");
+    std::filesystem::copy(works, folder / "vendors");
+    const auto cell = folder / "cell/machines/cell.yaml";
+    std::filesystem::create_directories(cell.parent_path());
+    std::ofstream(cell) << "mine\n";
+    const auto init =
+        in_process({"bus", "init", "--machine", bus, "--simulate", "--esi", (folder / "vendors").string(), "-o", cell.string()});
+    EXPECT_EQ(init.code, exit_bad_file);
+    EXPECT_THAT(init.err, HasSubstr("there is such a file already"));
+    EXPECT_EQ(text_of(cell), "mine\n");
+    EXPECT_FALSE(std::filesystem::exists(folder / "cell/devices"));
+}
+
+TEST_F(EsiImportCommand, InitKeepsTheRing) {
+    std::filesystem::copy(source / "config/drives", folder / "drives");
+    const auto bus = (folder / "machines" / "ring.yaml").string(), made = (folder / "machines" / "made.yaml").string();
+    std::ofstream(bus) << "version: 1\nname: m\ncycle: 1 ms\nbus:\n  interface: simulated\n  ring: { interface2: simulated }\n  slaves:\n"
+                          "    - { name: x, profile: sv33-e }\n    - { name: y, profile: sv33-e }\n";
+    EXPECT_EQ(in_process({"bus", "init", "--machine", bus, "--simulate", "-o", made}).code, exit_ok);
+    EXPECT_THAT(text_of(made), HasSubstr("  interface: simulated\n  ring: { interface2: simulated }\n"));
+    EXPECT_EQ(in_process({"check", made}).code, exit_ok);
+}
+
+TEST_F(EsiImportCommand, APlaceThatCannotBeIsAnErrorAndNoCrash) {
+    const auto bus = machine("    - { name: coupler, device: ek1100 }\n");
+    const auto long_name = (folder / (std::string(300, 'x') + ".yaml")).string();
+    const auto init = in_process({"bus", "init", "--machine", bus, "--simulate", "-o", long_name});
+    EXPECT_EQ(init.code, exit_bad_file);
+    EXPECT_THAT(init.err, HasSubstr("the file cannot be written"));
+    const auto here = (std::filesystem::path(long_name).parent_path() / std::string(300, 'y') / "di2.yaml").string();
+    EXPECT_EQ(esi({"import", works, "--device", "DI2", "-o", here}).code, exit_bad_file);
+}
+
+TEST_F(EsiImportCommand, AFileThatNoMachineWouldFindIsRefused) {
+    for (const char* name : {"di2.yml", "di2"}) {
+        const auto path = (folder / "devices" / name).string();
+        const auto import = esi({"import", works, "--device", "DI2", "-o", path});
+        EXPECT_EQ(import.code, exit_usage);
+        EXPECT_THAT(import.err, HasSubstr("say -o " + device("di2")));
+        EXPECT_FALSE(std::filesystem::exists(path));
+    }
+}
+
 TEST_F(EsiImportCommand, WhatCannotBeUsedWritesNothing) {
     const auto torn = esi({"import", works, "--device", "TORN", "-o", device("torn")});
     EXPECT_EQ(torn.code, exit_bad_file);

@@ -4,8 +4,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
 
 #include "ecat/esi/choose_device.hpp"
+#include "ecat/esi/esi_folder.hpp"
 #include "tests/ecat/esi/esi_text.hpp"
 
 namespace taktwerk::ecat::esi {
@@ -116,6 +121,32 @@ TEST(EsiFile, AFileThatIsNotThereIsSaid) {
     const auto file = EsiFile::open("/nowhere/box.xml");
     ASSERT_FALSE(file);
     EXPECT_EQ(file.error().text(), "/nowhere/box.xml: the file cannot be read. check its name, and that you may read it");
+}
+
+TEST(EsiFile, AFolderAPipeAndADeviceAreNoFiles) {
+    const auto folder = testing::TempDir() + "esi-kinds-" + std::to_string(::getpid());
+    std::filesystem::create_directories(folder + "/a.xml");
+    ASSERT_EQ(::mkfifo((folder + "/b.xml").c_str(), 0600), 0);
+    for (const auto& path : {folder, folder + "/a.xml", folder + "/b.xml", std::string("/dev/zero")}) {
+        const auto file = EsiFile::open(path);
+        ASSERT_FALSE(file);
+        EXPECT_EQ(file.error().code, "esi.file") << path;
+        EXPECT_EQ(file.error().what, "this is not a regular file") << path;
+    }
+    const auto all = EsiFolder::open(folder);
+    EXPECT_FALSE(all) << "a folder and a pipe among its files hold nothing up";
+    std::filesystem::remove_all(folder);
+}
+
+// What a person reads, in tables, comments and on terminals, stays on its line, whatever references hide in it.
+TEST(EsiFile, NamesAreOnOneLine) {
+    const auto file =
+        parsed(file_with("<Device Physics=\"Y&#27;Y\"><Type ProductCode=\"1\">B&#13;X&#10;\n1&#27;[31m</Type>"
+                         "<Name>one&#x2028;two&#xD800;&#x85;three&#127;</Name></Device>"));
+    ASSERT_TRUE(file);
+    EXPECT_EQ(file->devices()[0].type, "B X  1 [31m");
+    EXPECT_EQ(file->devices()[0].name, "one two three");
+    EXPECT_EQ(file->read(0).device.physics, "Y Y");
 }
 
 class EsiChoice : public testing::Test {
