@@ -285,7 +285,7 @@ std::string furthest_clock(const Bus& bus) {
 
 std::string ring_text(const Bus& bus) {
     const RingState ring = bus.link.ring.load();
-    return ring.broken() ? break_text(bus, ring) : "it is closed again";
+    return ring.needs_mending() ? break_text(bus, ring) : "it is closed again";
 }
 
 std::string with_outcome(std::string text, const std::string& outcome) { return outcome.empty() ? text : text + "; " + outcome; }

@@ -97,7 +97,7 @@ Json port_json(const Survey& survey, std::size_t position, unsigned p) {
 std::string scan_text(const std::string& where, const Survey& survey, Colours colours, const ecat::esi::EsiFolder* vendors) {
     std::string out = toned(where, Tone::strong, colours) + ": " + count_text(survey.slaves.size(), "slave") +
                       (survey.ring.shape == ecat::RingShape::closed ? ", a closed ring"
-                       : survey.ring.broken()                       ? ", a broken ring"
+                       : survey.ring.needs_mending()                ? ", a broken ring"
                                                                     : "") +
                       "\n\n";
     const auto levels = branch_levels(survey);

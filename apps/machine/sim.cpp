@@ -170,9 +170,38 @@ std::vector<CableEnd> open_ends(const SimOptions& options, runtime::World& world
     };
     if (!open(options.nic, &world.transport())) return {};
     if (options.nic2.empty()) world.set_ring_cable(false);
-    else if (!open(options.nic2, world.second_transport())) return {};
+    else if (world.second_transport() == nullptr) {
+        print_error(
+            Error{"usage", options.nic2, "no slave of the machine file can be the last one of a ring", "add slaves, or leave out --nic2"});
+        return {};
+    } else if (!open(options.nic2, world.second_transport())) return {};
     return ends;
 }
+
+/// Of a ring: a cable that is really out is out for the simulated slave at its end, too, which closes its port.
+class Carriers {
+public:
+    Carriers(const std::vector<CableEnd>& ends, runtime::World& world) : ends_(ends), world_(world) {}
+    void step(Instant now) {
+        constexpr Duration period = std::chrono::milliseconds{20};
+        if (ends_.size() < there_.size() || now < next_) return;
+        next_ = now + period;
+        for (std::size_t i = 0; i < there_.size(); ++i) {
+            ends_[i].nic->refresh();
+            const bool there = ends_[i].nic->link_up();
+            if (there == there_[i]) continue;
+            there_[i] = there;
+            if (i == 0) world_.set_cable(world_.network().slave(0).options().name, there);
+            else world_.set_ring_cable(there);
+        }
+    }
+
+private:
+    const std::vector<CableEnd>& ends_;
+    runtime::World& world_;
+    std::array<bool, 2> there_{true, true};
+    Instant next_{};
+};
 
 int play(const SimOptions& options) {
     auto loaded = load_without_programs(options.file, true);
@@ -204,6 +233,7 @@ int play(const SimOptions& options) {
             return exit_usage;
         }
     LineInput input{STDIN_FILENO};
+    Carriers carriers{ends, world};
     for (const auto& line : (*lines)->lines()) fmt::print("serial line '{}' is {}\n", line.name, line.path);
     fmt::print("{} of '{}' on {}; `help` lists what can go wrong; Ctrl-C ends\n", count_text(network.size(), "slave"), loaded->machine.name,
                options.nic + (options.nic2.empty() ? "" : " and " + options.nic2));
@@ -225,6 +255,7 @@ int play(const SimOptions& options) {
         ::ppoll(ready.data(), ready.size(), &timeout, nullptr);
         now = clock.now();
         world.apply_events(now);
+        carriers.step(now);
         commands.step(now);
         network.advance(now);
         const auto return_all = [&] {

@@ -114,8 +114,9 @@ Script<Result<void>> climb(Bus& bus) {
     if (!plan) co_return plan.error();
     bus.plan = std::move(*plan);
     done = co_await setup_clocks(bus);
-    co_await make_ring(bus);
-    if (!done) co_return done;
+    if (!done) done = co_await named_break(bus, done.error());
+    const Result<void> whole = co_await make_ring(bus);
+    if (!done || !whole) co_return done ? whole : done;
     done = co_await for_each_slave(bus, &program_process_data);
     if (!done) co_return done;
     for (auto& slave : bus.slaves) slave->in_line = true;
@@ -161,7 +162,8 @@ Script<Result<void>> down_to(Bus& bus, BusSlave& slave) {
 Script<Result<void>> bring_up(Bus& bus) {
     bus.link.supervise.store(false);
     bus.link.good_in_a_row.store(0);
-    const Result<void> done = co_await climb(bus);
+    Result<void> done = co_await climb(bus);
+    if (!done) done = co_await named_break(bus, done.error());
     bus.phase.store(done ? BusPhase::operational : BusPhase::failed);
     bus.progress = done ? std::string{"operational"} : done.error().text();
     co_return done;

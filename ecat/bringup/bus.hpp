@@ -77,7 +77,8 @@ struct Bus {
     std::vector<std::unique_ptr<BusSlave>> slaves;  ///< configuration order
     std::vector<FoundSlave> found;                  ///< all on the cable, by position; also those that nobody configured
     Topology topology;                              ///< of `found`
-    std::optional<RingEnd> ring_end;                ///< of a ring; known from the scan on
+    std::optional<RingEnd> ring_end;                ///< of a ring, while it is a line (ring_line.hpp)
+    std::uint16_t line_of = 0;                      ///< so many slaves answered when it became one
     ProcessDataPlan plan;
     std::optional<std::size_t> reference;  ///< the slave whose clock is the bus' clock
     std::optional<std::int64_t> dc_phase;  ///< system time of a cycle start, modulo the cycle; fixed at the first SYNC0

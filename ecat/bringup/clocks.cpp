@@ -161,6 +161,34 @@ Script<Result<void>> setup_clocks(Bus& bus) {
     co_return co_await for_each_slave(bus, &write_clock_if_any);
 }
 
+namespace {
+
+/// Local time of the reference less that of the slave, both when one frame passed them. Of a ring one half may miss the frame that latches, and
+/// somebody else's recovery may latch in between: then the two times are not of one frame.
+Script<Result<std::uint64_t>> ahead_of(Bus& bus, const BusSlave& reference, const BusSlave& slave) {
+    constexpr int attempts = 4;
+    for (int attempt = 0; attempt < attempts; ++attempt) {
+        const Result<LatchedTimes> master_before = co_await read_latched(bus, reference.found.station, reference.subject);
+        if (!master_before) co_return master_before.error();
+        const Result<LatchedTimes> own_before = co_await read_latched(bus, slave.found.station, slave.subject);
+        if (!own_before) co_return own_before.error();
+        const Reply latch = co_await bus.port.bwr(reg::dc_receive_times, std::uint32_t{0});
+        if (latch.lost) co_return unanswered(slave.subject, "the latch of the receive times (0900h)", latch);
+        const Result<LatchedTimes> master = co_await read_latched(bus, reference.found.station, reference.subject);
+        if (!master) co_return master.error();
+        const Result<LatchedTimes> own = co_await read_latched(bus, slave.found.station, slave.subject);
+        if (!own) co_return own.error();
+        const Result<LatchedTimes> master_after = co_await read_latched(bus, reference.found.station, reference.subject);
+        if (!master_after) co_return master_after.error();
+        if (master->unit != master_before->unit && own->unit != own_before->unit && master->unit == master_after->unit)
+            co_return master->unit - own->unit;
+    }
+    co_return Error{"bus.clock", slave.subject, "its receive time (0918h) and that of the reference are never of one frame",
+                    "frames get lost: check the cables; it is tried again by itself"};
+}
+
+}  // namespace
+
 Script<Result<void>> restore_clock(Bus& bus, BusSlave& slave) {
     if (!slave.dc || !bus.reference) co_return Result<void>{};
     auto& reference = *bus.slaves[*bus.reference];
@@ -184,13 +212,9 @@ Script<Result<void>> restore_clock(Bus& bus, BusSlave& slave) {
         hold.emplace(bus);
         co_await pause(frames_under_way * bus.config.cycle);
     }
-    const Reply latch = co_await bus.port.bwr(reg::dc_receive_times, std::uint32_t{0});
-    if (latch.lost) co_return unanswered(slave.subject, "the latch of the receive times (0900h)", latch);
-    const Result<LatchedTimes> master = co_await read_latched(bus, reference.found.station, reference.subject);
-    if (!master) co_return master.error();
-    const Result<LatchedTimes> own = co_await read_latched(bus, slave.found.station, slave.subject);
-    if (!own) co_return own.error();
-    slave.dc_offset = master->unit + reference.dc_offset + std::uint64_t{slave.dc_delay} - reference.dc_delay - own->unit;
+    const Result<std::uint64_t> ahead = co_await ahead_of(bus, reference, slave);
+    if (!ahead) co_return ahead.error();
+    slave.dc_offset = *ahead + reference.dc_offset + std::uint64_t{slave.dc_delay} - reference.dc_delay;
     const Result<void> written = co_await write_clock(bus, slave);
     if (!written || slave.found.position > reference.found.position) co_return written;
     co_return co_await serve_as_reference(bus, slave);

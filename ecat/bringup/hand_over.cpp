@@ -21,7 +21,8 @@ std::vector<FaultSlave> fault_slaves(const Bus& bus) {
         const Duration watchdog = sm_watchdog(bus.config, *slave->config) - bus.config.cycle;  // a frame had just come when the gap began
         const auto cycles = static_cast<std::uint32_t>(std::max<std::int64_t>(2, watchdog / bus.config.cycle));
         slaves.push_back({slave->index, FaultSlave::none, slave->config->on_loss, bus.reference == slave->index,
-                          slave->config->dc && slave->dc, slave->found.position, exchanged_alone(bus, slave->index), cycles, watchdog});
+                          slave->config->dc && slave->dc, slave->found.position, exchanged_alone(bus, slave->index), cycles, watchdog,
+                          slave->found.station});
     }
     const auto position = [&](const FaultSlave& s) { return std::size_t{bus.slaves[s.index]->found.position}; };
     std::sort(slaves.begin(), slaves.end(), [&](const FaultSlave& a, const FaultSlave& b) { return position(a) < position(b); });

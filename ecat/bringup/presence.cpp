@@ -30,6 +30,15 @@ std::size_t reached_from_first(const RingState& ring, std::size_t slaves) noexce
     }
 }
 
+std::vector<std::uint16_t> positions_now(const RingState& ring, std::uint16_t answering) {
+    const auto before = std::min<std::size_t>(reached_from_first(ring, answering), answering);
+    const std::size_t behind = answering - before;
+    const std::size_t second = ring.whole >= answering ? ring.whole - behind : before;
+    std::vector<std::uint16_t> positions;
+    for (std::size_t i = 0; i < answering; ++i) positions.push_back(static_cast<std::uint16_t>(i < before ? i : second + (i - before)));
+    return positions;
+}
+
 std::vector<std::optional<std::size_t>> places_now(const Topology& known, const Topology& now) {
     std::vector<std::optional<std::size_t>> places(known.slaves.size());
     if (known.slaves.empty() || now.slaves.empty()) return places;
@@ -62,9 +71,10 @@ Script<void> take_census(Bus& bus) {
     if (count.lost || count.wkc == 0) co_return;
     bus.counted = count.wkc;
 
+    const auto positions = positions_now(bus.link.ring.load(), count.wkc);
     std::vector<std::optional<std::uint16_t>> answers(count.wkc);
     std::vector<Script<void>> scripts;
-    for (std::uint16_t position = 0; position < count.wkc; ++position) scripts.push_back(read_ports(bus, position, answers[position]));
+    for (std::size_t i = 0; i < positions.size(); ++i) scripts.push_back(read_ports(bus, positions[i], answers[i]));
     co_await all(std::move(scripts), DatagramPort::slaves_at_once);
     std::vector<std::uint16_t> dl_status;
     for (const auto& answer : answers) {
@@ -76,7 +86,7 @@ Script<void> take_census(Bus& bus) {
     const auto places = places_now(bus.topology, *now);
     for (auto& slave : bus.slaves) {
         const std::size_t position = slave->found.position;
-        if (position < places.size() && places[position]) slave->position_now = static_cast<std::uint16_t>(*places[position]);
+        if (position < places.size() && places[position]) slave->position_now = positions[*places[position]];
     }
     bus.census_wanted = false;
     ++bus.census;
@@ -102,6 +112,9 @@ std::string subject_at(const Bus& bus, std::size_t position) {
 std::string break_text(const Bus& bus, const RingState& ring) {
     const auto& places = bus.topology.slaves;
     if (places.empty()) return {};
+    if (ring.shape == RingShape::one_way)
+        return "closed, but nothing comes back of what the second interface sends: the next break takes slaves away";
+    if (ring.shape == RingShape::exchanged) return "closed, but the plugs of the two interfaces are exchanged";
     const std::size_t all = places.size();
     if (ring.shape == RingShape::first_silent)
         return fmt::format("between the first interface and {} port {}", subject_at(bus, 0), places[0].entry_port);

@@ -19,6 +19,10 @@ namespace taktwerk::ecat {
 /// How many of the slaves that answer the first interface reaches: all of them as long as the ring is closed.
 [[nodiscard]] std::size_t reached_from_first(const RingState& ring, std::size_t slaves) noexcept;
 
+/// The positions of the slaves that answer, in their order. Of a broken ring those behind the break count from its far end
+/// (RingState::second_half): between the halves some may be missing.
+[[nodiscard]] std::vector<std::uint16_t> positions_now(const RingState& ring, std::uint16_t answering);
+
 /// Counts the slaves, reads their ports and sets BusSlave::position_now. When the bus changes meanwhile, or no frame comes back,
 /// nobody has a place, and bus.census_wanted stays set.
 [[nodiscard]] Script<void> take_census(Bus& bus);

@@ -4,6 +4,7 @@
 
 #include "ecat/bringup/al_control.hpp"
 #include "ecat/bringup/clocks.hpp"
+#include "ecat/bringup/presence.hpp"
 #include "ecat/bringup/scan.hpp"
 #include "ecat/bringup/slave_match.hpp"
 #include "ecat/bringup/slave_setup.hpp"
@@ -25,7 +26,7 @@ Script<Result<void>> write_address(Bus& bus, BusSlave& slave, std::uint16_t posi
 
 /// Takes the slave's station address from everybody who has it and does not stand in its place.
 Script<void> free_address(Bus& bus, BusSlave& slave) {
-    for (std::uint16_t position = 0; position < bus.counted; ++position) {
+    for (const std::uint16_t position : positions_now(bus.link.ring.load(), bus.counted)) {
         if (position == slave.position_now) continue;
         const Reply address = co_await bus.port.aprd(position, reg::station_address, 2);
         if (address.ok() && address.u16() == slave.found.station) (void)co_await write_address(bus, slave, position, 0);

@@ -14,10 +14,18 @@ Script<void> read_ports_at(Bus& bus, std::uint16_t position, std::optional<std::
     if (reply.ok()) dl_status = reply.u16();
 }
 
-Error ring_broken(const RingState& ring) {
+/// `slaves`: that answer.
+Error ring_broken(const RingState& ring, std::uint16_t slaves) {
+    if (ring.shape == RingShape::exchanged)
+        return Error{"bus.ring_exchanged", "bus",
+                     "the plugs of the two interfaces are exchanged: the first slave's cable is in the second interface",
+                     "exchange the plugs, or `interface` and `interface2` in the machine file"};
+    if (ring.shape == RingShape::one_way)
+        return Error{"bus.ring_broken", "bus", "nothing comes back of what the second interface sends, although the ring is closed",
+                     "check that interface: the next break would take slaves away"};
     const std::string where = ring.shape == RingShape::first_silent ? "in front of the first slave"
                               : ring.shape == RingShape::second_silent
-                                  ? "behind the last slave"
+                                  ? fmt::format("behind slave {}, the last that answers", slaves - 1)
                                   : fmt::format("between slave {} and slave {}", ring.before_break - 1, ring.before_break);
     return Error{
         "bus.ring_broken", "bus", "the ring is broken " + where,
@@ -31,7 +39,7 @@ Script<Result<void>> make_line(Bus& bus, std::uint16_t slaves) {
     if (!bus.config.ring) co_return Result<void>{};
     bus.progress = "measuring the ring";
     const RingState ring = bus.link.ring.load();
-    if (ring.shape != RingShape::closed) co_return ring_broken(ring);
+    if (ring.shape != RingShape::closed) co_return ring_broken(ring, slaves);
     std::vector<std::optional<std::uint16_t>> answers(slaves);
     std::vector<Script<void>> scripts;
     for (std::uint16_t position = 0; position < slaves; ++position) scripts.push_back(read_ports_at(bus, position, answers[position]));
@@ -46,7 +54,8 @@ Script<Result<void>> make_line(Bus& bus, std::uint16_t slaves) {
     const Result<Topology> tree = build_ring_topology(dl_status, slaves);
     if (!tree) co_return tree.error();
     bus.ring_end = tree->ring_end;
-    if (!bus.ring_end) co_return ring_broken({RingShape::second_silent, slaves, 0, 0});
+    bus.line_of = slaves;
+    if (!bus.ring_end) co_return ring_broken({RingShape::second_silent, slaves, 0, 0}, slaves);
     const auto position = static_cast<std::uint16_t>(bus.ring_end->slave);
     const Reply shut =
         co_await bus.port.apwr(position, reg::dl_control_loops, static_cast<std::uint8_t>(closed << (2 * bus.ring_end->port)));
@@ -56,10 +65,23 @@ Script<Result<void>> make_line(Bus& bus, std::uint16_t slaves) {
     co_return Result<void>{};
 }
 
-Script<void> make_ring(Bus& bus) {
-    if (!bus.ring_end) co_return;
+Script<Result<void>> make_ring(Bus& bus) {
+    if (!bus.ring_end) co_return Result<void>{};
+    const auto position = static_cast<std::uint16_t>(bus.ring_end->slave);
+    const Reply opened = co_await bus.port.apwr(position, reg::dl_control_loops, std::uint8_t{0});
+    // A port that stays closed is a break that no cable mends.
+    if (!opened.ok()) co_return unanswered(fmt::format("slave {}", position), "its port to the second interface (0101h)", opened);
     bus.topology.ring_end = bus.ring_end;
-    co_await bus.port.apwr(static_cast<std::uint16_t>(bus.ring_end->slave), reg::dl_control_loops, std::uint8_t{0});
+    bus.ring_end.reset();
+    co_return Result<void>{};
+}
+
+Script<Error> named_break(Bus& bus, Error failure) {
+    if (!bus.ring_end) co_return failure;
+    const Reply count = co_await bus.port.brd(reg::type, 1);
+    if (count.lost) co_return ring_broken({RingShape::first_silent, 0, 0, 0}, bus.line_of);
+    if (count.wkc == 0 || count.wkc >= bus.line_of) co_return failure;
+    co_return ring_broken({RingShape::open, count.wkc, 0, 0}, bus.line_of);
 }
 
 }  // namespace taktwerk::ecat

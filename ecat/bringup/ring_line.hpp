@@ -11,7 +11,10 @@ namespace taktwerk::ecat {
 /// Before positions, tree and clocks are read. Does nothing on a bus with one interface. Error: bus.ring_broken names the break: a machine
 /// starts with a whole ring.
 [[nodiscard]] Script<Result<void>> make_line(Bus& bus, std::uint16_t slaves);
+/// What a bring-up says that failed while the ring was a line: a slave that did not answer then may stand behind a cable that broke. Error:
+/// bus.ring_broken, or `failure` where all slaves answer.
+[[nodiscard]] Script<Error> named_break(Bus& bus, Error failure);
 /// Afterwards.
-[[nodiscard]] Script<void> make_ring(Bus& bus);
+[[nodiscard]] Script<Result<void>> make_ring(Bus& bus);
 
 }  // namespace taktwerk::ecat

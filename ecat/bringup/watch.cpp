@@ -63,6 +63,7 @@ Presence presence_of(const Result<std::uint16_t>& status) {
 Script<void> read_difference(Bus& bus, BusSlave& slave) {
     const Reply reply = co_await bus.port.fprd(slave.found.station, reg::dc_difference, 4);
     if (reply.ok()) slave.dc_difference = std::abs(static_cast<std::int64_t>(dc_difference_ns(reply.u32())));
+    if (bus.reference) bus.slaves[*bus.reference]->dc_difference = 0;  // its register holds what it was before it served
     std::int64_t worst = 0;
     for (const auto& other : bus.slaves) worst = std::max(worst, other->dc_difference);
     bus.link.dc_difference_ns.store(worst);

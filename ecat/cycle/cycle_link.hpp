@@ -53,14 +53,15 @@ private:
 class SeenRing {
 public:
     void store(const RingState& ring) noexcept {
-        word_.store(
-            static_cast<std::uint64_t>(ring.shape) | std::uint64_t{ring.before_break} << 16 | std::uint64_t{ring.behind_break} << 32,
-            std::memory_order_relaxed);
+        word_.store(static_cast<std::uint64_t>(ring.shape) | std::uint64_t{ring.before_break} << 16 |
+                        std::uint64_t{ring.behind_break} << 32 | std::uint64_t{ring.whole} << 48,
+                    std::memory_order_relaxed);
     }
     /// Without the count of openings.
     [[nodiscard]] RingState load() const noexcept {
         const std::uint64_t word = word_.load(std::memory_order_relaxed);
-        return {static_cast<RingShape>(word & 0xFF), static_cast<std::uint16_t>(word >> 16), static_cast<std::uint16_t>(word >> 32), 0};
+        return {static_cast<RingShape>(word & 0xFF), static_cast<std::uint16_t>(word >> 16), static_cast<std::uint16_t>(word >> 32), 0,
+                static_cast<std::uint16_t>(word >> 48)};
     }
 
 private:

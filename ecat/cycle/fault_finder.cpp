@@ -78,7 +78,7 @@ void FaultFinder::look(const BusCondition& bus) noexcept {
 }
 
 void FaultFinder::look_at_ring(const BusCondition& bus) noexcept {
-    if (!bus.ring.broken()) {
+    if (!bus.ring.needs_mending()) {
         broken_for_ = 0;
         return;
     }
@@ -88,11 +88,15 @@ void FaultFinder::look_at_ring(const BusCondition& bus) noexcept {
     const bool first = ring.shape == RingShape::first_silent, second = ring.shape == RingShape::second_silent;
     const std::uint16_t before = first ? std::uint16_t{0} : ring.before_break, behind = second ? std::uint16_t{0} : ring.behind_break;
     raise(BusAlarm::ring_broken, AlarmSource::bus, 0, before, behind);
-    const auto reference = std::find_if(slaves_.begin(), slaves_.end(), [](const FaultSlave& slave) { return slave.reference; });
+    const auto reference = std::find_if(slaves_.begin(), slaves_.end(), [&](const FaultSlave& slave) {
+        return bus.reference_station != 0 ? slave.station == bus.reference_station : slave.reference;
+    });
     if (!bus.ramp_down || reference == slaves_.end()) return;
-    const bool at_home = reference->position < before;
+    // Each half counts those that answer, from its own end: who is gone stands between them.
+    const auto from_first = [&](const FaultSlave& slave) { return slave.position < before; };
+    const auto from_second = [&](const FaultSlave& slave) { return slave.position + behind >= expected_; };
     for (const auto& slave : slaves_)
-        if (slave.synchronised && (slave.position < before) != at_home)
+        if (slave.synchronised && ((from_first(*reference) && from_second(slave)) || (from_second(*reference) && from_first(slave))))
             raise(BusAlarm::cut_off_from_reference, AlarmSource::slave, slave.index);
 }
 

@@ -67,7 +67,8 @@ struct BusCondition {
     bool out_of_lock = false;    ///< some slave runs SYNC0, and the cycle is not locked to the reference clock
     std::int64_t dc_phase_error_ns = 0;
     RingState ring{};
-    bool ramp_down = false;  ///< slaves that a broken ring cuts off from the reference count as unsynchronised
+    std::uint16_t reference_station = 0;  ///< whose clock is the bus' now; 0: that of FaultSlave::reference
+    bool ramp_down = false;               ///< slaves that a broken ring cuts off from the reference count as unsynchronised
 };
 
 /// A slave as it was configured and found. In the order of positions, so that parents come before their children.
@@ -82,6 +83,7 @@ struct FaultSlave {
     bool alone = true;                  ///< no other slave's process data is valid or not together with its own
     std::uint32_t watchdog_cycles = 2;  ///< without a frame until its watchdog of process data trips
     Duration watchdog{};                ///< the same as a time
+    std::uint16_t station = 0;
 };
 
 class FaultFinder {

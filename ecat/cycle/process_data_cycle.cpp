@@ -128,6 +128,7 @@ void ProcessDataCycle::find_faults(CyclePlan& cycle, Instant now) noexcept {
     };
     if (const auto* link = link_.load(std::memory_order_acquire)) {
         bus.seen = link->seen.load();
+        bus.reference_station = static_cast<std::uint16_t>(link->reference.load(std::memory_order_relaxed) & 0xFFFFu);
         bus.stall = recent_stall(*link, now);
         bus.gap = recent_gap(*link, now);
         bus.states = static_cast<std::uint16_t>(link->states_seen.load(std::memory_order_relaxed));
@@ -180,7 +181,7 @@ void ProcessDataCycle::collect_first_frame(CyclePlan& cycle, SlotId slot) noexce
         measure_margin(cycle, slot);
     }
     auto* link = link_.load(std::memory_order_acquire);
-    if (!answered || link == nullptr) return;
+    if (!answered || link == nullptr || exchange_.half(slot)) return;
     const auto states = exchange_.data(slot, cycle.state_number);
     statistics_.slaves_answering = exchange_.wkc(slot, cycle.state_number);
     link->slaves_answering.store(statistics_.slaves_answering, std::memory_order_relaxed);
@@ -306,10 +307,12 @@ void ProcessDataCycle::steer_ring(const CyclePlan& cycle) noexcept {
     const RingState& ring = statistics_.ring;
     const auto& delays = cycle.ring_delays;
     RingClocks clocks;
-    const bool cut_off = ring.shape == RingShape::open && cycle.reference_position < ring.before_break && ring.before_break < delays.size();
+    // Counted from the far end: at the break slaves may be missing.
+    const bool cut_off = ring.shape == RingShape::open && cycle.reference_position < ring.before_break && ring.behind_break > 0 &&
+                         ring.behind_break <= delays.size();
     if (cut_off && config_.ring && config_.ring->behind_break == BehindBreak::hand_time_on) {
         clocks.hand_on = true;
-        clocks.ahead = CycleClock::mark.count() + delays.back() - 2 * delays[ring.before_break];
+        clocks.ahead = CycleClock::mark.count() + delays.back() - 2 * delays[delays.size() - ring.behind_break];
     }
     ring_->set_clocks(clocks);
 }

@@ -134,6 +134,12 @@ std::string Survey::subject(std::size_t position) const {
 
 std::optional<Error> ring_remark(const Survey& survey) {
     const RingState& ring = survey.ring;
+    if (ring.shape == RingShape::exchanged)
+        return Error{"bus.ring_exchanged", "bus", "the plugs of the two interfaces are exchanged: positions count from the second one",
+                     "exchange the plugs, or `interface` and `interface2` in the machine file"};
+    if (ring.shape == RingShape::one_way)
+        return Error{"bus.ring_broken", "bus", "nothing comes back of what the second interface sends, although the ring is closed",
+                     "check that interface: the next break would take slaves away"};
     if (!ring.broken() || survey.slaves.empty()) return std::nullopt;
     const std::size_t last = survey.slaves.size() - 1;
     const std::size_t behind = std::min<std::size_t>(ring.before_break, last);

@@ -238,6 +238,7 @@ void AcyclicChannel::collect(Instant now) noexcept {
             exchange_.expire(flight.slot);
             state = exchange_.state(flight.slot);
         }
+        if (exchange_.half(flight.slot)) state = SlotState::lost;  // asked again: who did not answer may never have been asked
         for (std::size_t i = 0; i < flight.count; ++i) {
             auto& entry = (*entries_)[flight.entries[i]];
             if (state == SlotState::answered) {

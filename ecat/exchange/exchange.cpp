@@ -31,7 +31,7 @@ struct Exchange::Slot {
     std::uint32_t generation = 0;
     SlotState state = SlotState::free;
     FrameKind kind = FrameKind::cyclic;
-    bool echoed = false;
+    bool echoed = false, half = false;
     Instant sent_at{}, departed_at{}, arrived_at{};
 
     [[nodiscard]] bool fits_answer(FrameReader& reader, Datagram datagram) noexcept;
@@ -87,7 +87,7 @@ std::optional<SlotId> Exchange::begin(FrameKind kind) noexcept {
     slot->count = 0;
     slot->end = ethernet_header_size + ecat_header_size;
     slot->size = 0;
-    slot->echoed = false;
+    slot->echoed = slot->half = false;
     slot->builder.emplace(slot->bytes, source_);
     slot_of_[first_index(generation_)] = static_cast<std::uint8_t>(slot - slots_->begin());
     return SlotId{static_cast<std::uint8_t>(slot - slots_->begin()), generation_};
@@ -133,7 +133,7 @@ std::size_t Exchange::receive(Instant now) noexcept {
         if (!received) break;
         const auto frame = std::span<const std::byte>{*scratch_}.first(std::min(received->size, scratch_->size()));
         if (tap_ != nullptr) tap_(tap_context_, frame, received->at, false);
-        if (match(frame, received->at)) ++answered;
+        if (match(frame, *received)) ++answered;
     }
     return answered;
 }
@@ -155,7 +155,7 @@ bool Exchange::Slot::fits_answer(FrameReader& reader, Datagram datagram) noexcep
     }
 }
 
-bool Exchange::match(std::span<const std::byte> frame, Instant at) noexcept {
+bool Exchange::match(std::span<const std::byte> frame, const ReceivedFrame& received) noexcept {
     FrameReader reader{frame};
     const auto first = reader.next();
     if (!first) {
@@ -182,12 +182,14 @@ bool Exchange::match(std::span<const std::byte> frame, Instant at) noexcept {
         std::equal(slot->bytes.begin(), slot->bytes.begin() + static_cast<std::ptrdiff_t>(slot->size), frame.begin())) {
         ++statistics_.echoes;
         slot->echoed = true;
-        slot->arrived_at = at;
+        slot->half = received.half;
+        slot->arrived_at = received.at;
         return false;
     }
     std::copy_n(frame.begin(), std::min(frame.size(), slot->end), slot->bytes.begin());
     slot->state = SlotState::answered;
-    slot->arrived_at = at;
+    slot->half = received.half;
+    slot->arrived_at = received.at;
     past = Past::answered;
     ++statistics_.received;
     return true;
@@ -282,6 +284,11 @@ Instant Exchange::departed_at(SlotId id) const noexcept {
 std::size_t Exchange::frame_size(SlotId id) const noexcept {
     const auto* slot = find(id);
     return slot != nullptr ? slot->size : 0;
+}
+
+bool Exchange::half(SlotId id) const noexcept {
+    const auto* slot = find(id);
+    return slot != nullptr && slot->half;
 }
 
 Instant Exchange::sent_at(SlotId id) const noexcept {

@@ -106,6 +106,8 @@ public:
     [[nodiscard]] Instant departed_at(SlotId id) const noexcept;
     /// Bytes of the finished frame, without FCS; 0 before send().
     [[nodiscard]] std::size_t frame_size(SlotId id) const noexcept;
+    /// The answer is of one half of a broken ring alone (ReceivedFrame::half): a counter that is too low says nothing.
+    [[nodiscard]] bool half(SlotId id) const noexcept;
     /// From send() to arrival; 0 unless answered.
     [[nodiscard]] Duration round_trip(SlotId id) const noexcept;
     /// Frees the slot. A frame that was sent and not answered counts as lost; its answer will count as late.
@@ -123,7 +125,7 @@ private:
     enum class Past : std::uint8_t { never, in_flight, answered, lost, quarantined };
     struct Slot;
     [[nodiscard]] Slot* find(SlotId id) const noexcept;
-    bool match(std::span<const std::byte> frame, Instant at) noexcept;
+    bool match(std::span<const std::byte> frame, const ReceivedFrame& received) noexcept;
     void count_stray(Past& past) noexcept;
     [[nodiscard]] bool is_ours(std::span<const std::byte> frame) const noexcept;
     /// The slot that carries this index now.

@@ -14,6 +14,8 @@ constexpr std::uint8_t twin = 0x80;  // in the last byte of the source address
 
 constexpr std::size_t most_at_once = 128;  ///< frames a call: bounds the cycle when the wire is flooded
 constexpr unsigned believed_silent = 8;    ///< frames in a row
+constexpr std::int64_t lost_within = 8;    ///< patiences, two cycles: a side that is missing for longer is gone, not its frame lost
+constexpr unsigned believed_one_way = 50;  ///< the same, of the second interface: no hurry, and a twin may be late
 
 void copy(std::span<const std::byte> from, std::span<std::byte> to) noexcept { std::copy(from.begin(), from.end(), to.begin()); }
 
@@ -41,9 +43,10 @@ struct RingTransport::Flight {
         std::size_t at = first;  ///< ... at this interface
         Instant arrival{};
     };
-    std::size_t size = 0;   ///< 0: free
-    std::size_t clock = 0;  ///< offset of the datagram with the reference time; 0: none
-    std::byte index{};      ///< of the first datagram
+    std::size_t size = 0;           ///< 0: free
+    std::size_t clock = 0;          ///< offset of the datagram with the reference time; 0: none
+    std::byte index{};              ///< of the first datagram
+    std::uint16_t second_half = 0;  ///< position of the first slave there, as it was believed
     Instant sent_at{};
     std::array<Fate, copies> fate{};
     std::unique_ptr<std::array<Copy, copies>> copy = std::make_unique<std::array<Copy, copies>>();
@@ -53,6 +56,8 @@ struct RingTransport::Flight {
         return {sent, fate[n].back && fate[n].touched ? std::span<const std::byte>{(*copy)[n].came}.first(size) : sent};
     }
     [[nodiscard]] bool went_round(std::size_t n) const noexcept { return fate[n].back && fate[n].at != n; }
+    /// It needs no twin: it went round, and somebody was there.
+    [[nodiscard]] bool enough(std::size_t n) const noexcept { return went_round(n) && fate[n].touched; }
 };
 
 RingTransport::RingTransport(Transport& one, Transport& other, Duration patience)
@@ -100,6 +105,7 @@ void RingTransport::prepare(Flight& flight, std::span<const std::byte> frame) no
     flight.size = frame.size();
     flight.clock = 0;
     flight.index = frame[index_at];
+    flight.second_half = state_.second_half();
     auto& [one, other] = *flight.copy;
     copy(frame, one.sent);
     copy(frame, other.sent);
@@ -109,7 +115,7 @@ void RingTransport::prepare(Flight& flight, std::span<const std::byte> frame) no
     while (const auto at = walk.next()) {
         if (goes_by_position(static_cast<Command>(frame[*at]))) {
             const auto adp = load_le<std::uint16_t>(frame, *at + frame_field::adp);
-            store_le(std::span{other.sent}, *at + frame_field::adp, static_cast<std::uint16_t>(adp + state_.before_break));
+            store_le(std::span{other.sent}, *at + frame_field::adp, static_cast<std::uint16_t>(adp + flight.second_half));
         }
         if (static_cast<Command>(frame[*at]) == Command::FRMW &&
             load_le<std::uint16_t>(frame, *at + frame_field::ado) == reg::dc_system_time)
@@ -142,11 +148,13 @@ std::optional<ReceivedFrame> RingTransport::receive(std::span<std::byte> buffer,
         if (!ours) return received;  // whoever matches answers says what it is
         if (complete == nullptr) continue;
         const Instant arrival = std::max(complete->fate[first].arrival, complete->fate[second].arrival);
-        return ReceivedFrame{give_back(*complete, buffer), arrival};
+        const bool missed = missed_its_aim(*complete);
+        return ReceivedFrame{give_back(*complete, buffer), arrival, missed};
     }
     if (Flight* single = overdue(now)) {
         const Instant arrival = single->fate[single->fate[first].back ? first : second].arrival;
-        return ReceivedFrame{give_back(*single, buffer), arrival};
+        const bool half = is_half(*single) || missed_its_aim(*single);
+        return ReceivedFrame{give_back(*single, buffer), arrival, half};
     }
     asked_ = first;
     return std::nullopt;
@@ -159,6 +167,8 @@ RingTransport::Flight* RingTransport::take(std::span<const std::byte> frame, std
     const auto found =
         std::find_if(flights_->begin(), flights_->end(), [&](const Flight& f) { return f.size != 0 && f.index == frame[index_at]; });
     ours = true;
+    heard_[n] = std::max(heard_[n], at);
+    if (is_twin) twins_missed_ = 0;
     if (found == flights_->end() || found->fate[n].back) {
         ++statistics_.late_copies;
         return nullptr;
@@ -175,7 +185,7 @@ RingTransport::Flight* RingTransport::take(std::span<const std::byte> frame, std
     };
     found->fate[n] = {.left = true, .back = true, .touched = marked(sent) || marked(frame), .at = end, .arrival = at};
     if (found->fate[n].touched) copy(frame.first(found->size), came);
-    const bool complete = found->went_round(first) || (found->fate[first].back && found->fate[second].back);
+    const bool complete = found->enough(first) || (found->fate[first].back && found->fate[second].back);
     return complete ? &*found : nullptr;
 }
 
@@ -183,9 +193,31 @@ RingTransport::Flight* RingTransport::overdue(Instant now) noexcept {
     for (auto& flight : *flights_) {
         if (flight.size == 0 || (!flight.fate[first].back && !flight.fate[second].back)) continue;
         const auto& missing = flight.fate[flight.fate[first].back ? second : first];
-        if (!missing.left || now - flight.sent_at >= patience_) return &flight;
+        if (missing.left && now - flight.sent_at < patience_) continue;
+        if (flight.fate[first].back || !flight.went_round(second)) return &flight;
+        flight.size = 0;  // nobody has met the twin, and the frame itself got lost
     }
     return nullptr;
+}
+
+bool RingTransport::is_half(const Flight& flight) const noexcept {
+    const std::size_t missing = flight.fate[first].back ? second : first;
+    return !flight.fate[missing].back && flight.fate[missing].left && !flight.went_round(first) &&
+           flight.sent_at - heard_[missing] < lost_within * patience_;
+}
+
+bool RingTransport::missed_its_aim(const Flight& flight) const noexcept {
+    if (!flight.fate[second].back || flight.went_round(second) || flight.went_round(first)) return false;
+    const auto half = flight.half(second);
+    DatagramWalk walk{half.sent};
+    while (const auto at = walk.next()) {
+        if (!goes_by_position(static_cast<Command>(half.sent[*at]))) continue;
+        RingState then = state_;
+        then.before_break = flight.fate[first].back ? slaves_passed(flight.half(first)).value_or(0) : state_.before_break;
+        then.behind_break = slaves_passed(half).value_or(0);
+        return then.second_half() != flight.second_half;
+    }
+    return false;
 }
 
 std::size_t RingTransport::give_back(Flight& flight, std::span<std::byte> buffer) noexcept {
@@ -203,10 +235,13 @@ std::size_t RingTransport::give_back(Flight& flight, std::span<std::byte> buffer
 
 void RingTransport::learn(const Flight& flight) noexcept {
     const auto& [one, other] = flight.fate;
-    if (!one.back && flight.went_round(second)) return;  // the frame itself got lost: that says nothing
     const RingShape before = state_.shape;
     if (flight.went_round(first)) {
-        state_.shape = RingShape::closed;
+        // Counted here, and set back by each twin that comes, be it too late for its frame.
+        if (!other.back) twins_missed_ = std::min(twins_missed_ + 1, believed_one_way);
+        if (const auto met = slaves_passed(flight.half(first)))
+            exchanged_ = *met == 0 && flight.went_round(second) && slaves_passed(flight.half(second)).value_or(0) > 0;
+        state_.shape = exchanged_ ? RingShape::exchanged : twins_missed_ == believed_one_way ? RingShape::one_way : RingShape::closed;
         ++statistics_.round;
     } else {
         state_.shape = !one.back ? RingShape::first_silent : !other.back ? RingShape::second_silent : RingShape::open;
@@ -218,7 +253,8 @@ void RingTransport::learn(const Flight& flight) noexcept {
         silent_frames_ = one.back ? 0 : std::min(silent_frames_ + 1, believed_silent);
         if (one.back) state_.before_break = *passed;
         else if (silent_frames_ == believed_silent) state_.before_break = 0;
-        if (flight.went_round(first)) state_.behind_break = 0;
+        if (state_.shape == RingShape::closed || state_.shape == RingShape::one_way) state_.whole = *passed;
+        if (flight.went_round(first) && !exchanged_) state_.behind_break = 0;
         else if (other.back) state_.behind_break = slaves_passed(flight.half(second)).value_or(0);
     }
     if (flight.clock == 0) return;

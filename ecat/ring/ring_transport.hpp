@@ -5,12 +5,14 @@
 //                twin runs the other way, past every processing unit, and tells nothing.
 //   broken       each copy comes back to where it left, processed by the half that it reached. Both together are the answer (frame_merge).
 //   half silent  the copy that came back is the answer, once the other one has had its time.
+//   one way      closed, but of the twins none comes back: the next break would take slaves away, and somebody has to know before.
+//   exchanged    closed, but it is the twin that passes the slaves from the first one on: the plugs are in each other's place.
 //
 // Nobody has to notice a break for the frames behind it to be right: both copies always leave, so a break costs the frames that are just
 // passing it. Each frame that is sent is given back once at most, and receive() waits for nobody.
 //
 // What the second copy says differently, since its slaves are counted from the break on and would believe whoever sends a time:
-//   auto-increment addresses   less the slaves that the first copy passes, so that positions count through the break;
+//   auto-increment addresses   less the slaves in front of the second half, counted from the far end: whoever is missing moves nobody;
 //   reference time (FRMW 0910h)  distributed only in the half that has the reference; the other half reads, or is handed the time on.
 // The twin is told by its source address: the first interface's with the last byte changed.
 // Source: ETG.1000.3 (order of processing, closed ports), ETG.1000.4; docs/ring.md.
@@ -74,17 +76,24 @@ private:
     [[nodiscard]] std::size_t give_back(Flight& flight, std::span<std::byte> buffer) noexcept;
     void learn(const Flight& flight) noexcept;
     [[nodiscard]] Flight* overdue(Instant now) noexcept;
+    /// The second half was another one than the positions in it were meant for: whoever was asked may not have been.
+    [[nodiscard]] bool missed_its_aim(const Flight& flight) const noexcept;
+    /// Its other copy was under way when that end was still heard: it got lost.
+    [[nodiscard]] bool is_half(const Flight& flight) const noexcept;
 
     std::array<Transport*, copies> ends_;
     Duration patience_;
     std::array<MacAddress, copies> sources_;  ///< of the two copies
     std::unique_ptr<std::array<Flight, most_under_way>> flights_;
-    RingState state_{.shape = RingShape::unknown, .before_break = 0, .behind_break = 0, .opened = 0};
+    RingState state_{.shape = RingShape::unknown};
     RingStatistics statistics_;
     RingClocks clocks_;
     std::size_t home_of_reference_ = first;  ///< which copy meets the reference clock
     std::size_t asked_ = 0;                  ///< the interface that receive() asks next; behind the last: singles
     unsigned silent_frames_ = 0;             ///< that did not come back of what the first interface sent, in a row
+    std::array<Instant, copies> heard_{};    ///< a copy of each came back last
+    unsigned twins_missed_ = 0;              ///< of frames that went round, in a row
+    bool exchanged_ = false;
     bool first_took_ = true;
 };
 

@@ -14,6 +14,7 @@ namespace taktwerk::ecat {
 struct ReceivedFrame {
     std::size_t size = 0;  ///< bytes written to the caller's buffer
     Instant at{};          ///< when it arrived (kernel stamp where there is one)
+    bool half = false;     ///< of a broken ring, and the other half's copy got lost: who was not met may be there all the same
 };
 
 class RingTransport;

@@ -34,6 +34,11 @@ public:
     Cable(const Cable&) = delete;
     Cable& operator=(const Cable&) = delete;
 
+    /// A second one beside it, twk2 at the master and twk3 at the slaves: two interfaces, a ring.
+    [[nodiscard]] bool lay_second() const {
+        return run({"ip", "link", "add", "twk2", "netns", master_, "type", "veth", "peer", "name", "twk3", "netns", slaves_}) == 0 &&
+               quiet(master_, "twk2") && quiet(slaves_, "twk3");
+    }
     [[nodiscard]] const std::string& master_end() const { return master_; }
     [[nodiscard]] bool laid() const { return laid_; }
     [[nodiscard]] std::vector<std::string> at_master(std::vector<std::string> words) const { return in(master_, std::move(words)); }

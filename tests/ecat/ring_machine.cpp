@@ -115,6 +115,32 @@ TEST_F(RingBus, ASlaveComesBackIntoABrokenRing) {
     }
 }
 
+// It serves again, and what its own register says of the time in which it did not is no difference.
+TEST_F(RingBus, TheReferenceComesBackIntoTheRing) {
+    start("ssss");
+    for (std::size_t s = 0; s < 4; ++s) bus->network.slave(s).controller().set_clock_drift(s % 2 == 0 ? 40 : -40, bus->now);
+    bus->network.set_power(0, false);
+    bus->run_for(3s);
+    bus->network.set_power(0, true);
+    EXPECT_TRUE(bus->run_until([&] { return all_fresh() && bus->faults().empty(); }, 10s)) << bus->why();
+    bus->run_for(5s);
+    EXPECT_THAT(bus->faults(), IsEmpty());
+}
+
+// Whatever got lost on one side alone: nobody is silent for it.
+TEST_F(RingBus, FramesThatGetLostOnOneSideAccuseNobody) {
+    start("ststss");
+    for (const bool broken : {false, true}) {
+        if (broken) bus->set_ring_cable(3, false);
+        for (int i = 0; i < 3000; ++i) {
+            auto& faults = (i % 2 == 0 ? bus->transport : *bus->second).faults;
+            if (i % 7 == 0) (i % 3 == 0 ? faults.drop_requests : faults.drop_answers) = 1;
+            bus->cycle_once();
+            for (const auto& fact : bus->facts()) ASSERT_NE(fact.source, AlarmSource::slave) << fact.id << " of slave " << fact.index;
+        }
+    }
+}
+
 TEST_F(RingBus, DoesNotStartWithABrokenRing) {
     for (std::size_t place = 1; place < 4; ++place) {
         TestBus broken{"ssss"};
@@ -126,6 +152,26 @@ TEST_F(RingBus, DoesNotStartWithABrokenRing) {
         broken.set_ring_cable(place, true);
         EXPECT_TRUE(broken.bring_up()) << broken.why();
     }
+}
+
+TEST_F(RingBus, DoesNotStartWithExchangedPlugs) {
+    TestBus exchanged{"stss"};
+    exchanged.make_ring();
+    exchanged.ring = std::make_unique<RingTransport>(*exchanged.second, exchanged.transport, exchanged.config.cycle / 4);
+    EXPECT_FALSE(exchanged.bring_up());
+    EXPECT_EQ(exchanged.master->failure().code, "bus.ring_exchanged");
+}
+
+// Nothing is wrong with the motion then, but the next break would take slaves away.
+TEST_F(RingBus, ASecondInterfaceThatSendsNothingIsSaidBeforeItIsNeeded) {
+    start("stsss");
+    bus->second->faults.drop_requests = 1'000'000;
+    EXPECT_EQ(cycles_missed(200ms), 0u);
+    EXPECT_THAT(bus->faults(), ElementsAre(id(BusAlarm::ring_broken)));
+    EXPECT_THAT(said(BusAlarm::ring_broken), HasSubstr("nothing comes back of what the second interface sends"));
+    bus->second->faults.drop_requests = 0;
+    EXPECT_EQ(cycles_missed(20ms), 0u);
+    EXPECT_THAT(bus->faults(), IsEmpty());
 }
 
 // --- clocks behind the break ------------------------------------------------------------------------------------------------------
@@ -159,6 +205,21 @@ TEST_F(RingBus, TimeIsHandedOnBehindABreak) {
         bus->run_for(1s);
         for (std::size_t s = 1; s < 6; ++s) EXPECT_LT(std::abs(clock_error(*bus, s, 0)), 200) << s;
     }
+}
+
+// Slaves without power are a break, too: the next slave behind it stands further away.
+TEST_F(RingBus, TimeIsHandedOnPastSlavesWithoutPower) {
+    constexpr std::int64_t drive_supervises = 3000;  // ns, SV33-E P0A.32
+    start("ssssssssss");
+    bus->run_for(2s);
+    for (const std::size_t off : {2u, 3u, 4u, 5u, 6u, 7u}) bus->network.set_power(off, false);
+    bus->run_for(10ms);
+    std::int64_t worst = 0;
+    for (int i = 0; i < 2000; ++i) {
+        bus->cycle_once();
+        for (const std::size_t s : {8u, 9u}) worst = std::max(worst, std::abs(clock_error(*bus, s, 0)));
+    }
+    EXPECT_LT(worst, drive_supervises);
 }
 
 // 10 and 20 ppm are 30 and 60 us in three seconds.

@@ -16,7 +16,12 @@ using WalkCounts = std::map<std::string, long, std::less<>>;
 class MachineWalk {
 public:
     MachineWalk(unsigned seed, WalkCounts& counts)
-        : counts_(counts), dice_(seed), by_program_(seed % 3 != 0), m_(machine()), any_(dice_, axis_count, views(), tables_) {}
+        : counts_(counts),
+          dice_(seed),
+          by_program_(seed % 3 != 0),
+          ring_(seed % 4 == 1),
+          m_(machine()),
+          any_(dice_, axis_count, views(), tables_) {}
     MachineWalk(const MachineWalk&) = delete;
     MachineWalk& operator=(const MachineWalk&) = delete;
 
@@ -67,7 +72,9 @@ private:
         tables_.positions.resize(2);
         tables_.velocities.resize(2);
         tables_.accelerations.resize(2);
-        return walk_machine(dice_, by_program_ ? &entry_of<Walker> : nullptr);
+        auto config = walk_machine(dice_, by_program_ ? &entry_of<Walker> : nullptr);
+        if (ring_) config.bus.ring = ecat::RingConfig{"", ecat::BehindBreak::hand_time_on};
+        return config;
     }
     [[nodiscard]] axes::test::AnyCommand::Views views() {
         return [this](std::size_t i) -> const axes::AxisView& { return seen_.empty() ? nobody_ : seen_[i]; };
@@ -229,7 +236,7 @@ private:
 
     WalkCounts& counts_;
     axes::test::Dice dice_;
-    bool by_program_;
+    bool by_program_, ring_;  // of a ring a pulled cable costs nobody anything
     axes::test::WalkTables tables_;
     TestMachine m_;
     std::span<const axes::AxisView> seen_;

@@ -431,14 +431,16 @@ TEST(FaultFinder, WhoIsCutOffFromTheReferenceIsSaidWhereItIsToRampDown) {
         slaves[i].position = static_cast<std::uint16_t>(i);
         slaves[i].synchronised = i != 0 && i != 3;
         slaves[i].reference = i == 1;
+        slaves[i].station = static_cast<std::uint16_t>(100 + i);
     }
-    const auto cut_off = [&](const RingState& ring, bool ramp_down) {
+    const auto cut_off = [&](const RingState& ring, bool ramp_down, std::uint16_t reference_station = 0) {
         FaultFinder finder{slaves, 5, limit};
         for (std::size_t i = 0; i < slaves.size(); ++i) finder.condition(i).al_state = AlState::op;
         BusCondition bus;
         bus.slaves_answering = 5;
         bus.ring = ring;
         bus.ramp_down = ramp_down;
+        bus.reference_station = reference_station;
         finder.look(bus);
         finder.look(bus);
         std::vector<int> who;
@@ -452,6 +454,10 @@ TEST(FaultFinder, WhoIsCutOffFromTheReferenceIsSaidWhereItIsToRampDown) {
     EXPECT_THAT(cut_off({RingShape::first_silent, 5, 5, 1}, true), IsEmpty());
     EXPECT_THAT(cut_off({RingShape::second_silent, 5, 0, 1}, true), IsEmpty());
     EXPECT_THAT(cut_off({RingShape::open, 2, 3, 1}, false), IsEmpty());
+    EXPECT_THAT(cut_off({RingShape::open, 2, 1, 1}, true), ElementsAre(4)) << "2 and 3 do not answer: that is said of them";
+    EXPECT_THAT(cut_off({RingShape::open, 3, 1, 1}, true), ElementsAre(4)) << "one in a branch in front of the break does not";
+    EXPECT_THAT(cut_off({RingShape::one_way, 5, 0, 1}, true), IsEmpty());
+    EXPECT_THAT(cut_off({RingShape::open, 2, 3, 1}, true, 104), ElementsAre(1)) << "4 serves as the reference now";
 }
 
 }  // namespace

@@ -103,6 +103,75 @@ TEST(RingTransport, ALostFrameDoesNotMoveThePositions) {
     EXPECT_EQ(written->wkc, 1);
 }
 
+// Each half counts from its own end: who is missing, in front of them or between them, moves nobody to another position.
+TEST(RingTransport, PositionsBehindABreakStayWhereOthersVanish) {
+    RingProbe bus{slaves};
+    ASSERT_TRUE(bus.count());
+    bus.cable(3, false);
+    ASSERT_TRUE(bus.count());
+    bus.cable(0, false);  // 0 to 2 are gone
+    for (int frames = 0; frames < 20; ++frames) {
+        const auto written = bus.ask(Command::APWR, Address::position(4, reg::station_address), bytes_of(std::uint16_t{0x1234}));
+        ASSERT_TRUE(written);
+        EXPECT_EQ(written->wkc, 1);
+    }
+    for (std::uint16_t s = 0; s < slaves; ++s) EXPECT_EQ(bus.network.slave(s).controller().station_address(), s == 4 ? 0x1234 : 0) << s;
+}
+
+// A twin that went round has met nobody: it says nothing of who is there.
+TEST(RingTransport, ALostFrameIsNotAnsweredByItsTwin) {
+    RingProbe bus{slaves};
+    ASSERT_TRUE(bus.count());
+    bus.first.faults.drop_requests = 1;
+    EXPECT_FALSE(bus.count());
+    ASSERT_TRUE(bus.count());
+    EXPECT_EQ(bus.count()->wkc, slaves);
+}
+
+struct RingHalves : ::testing::Test {
+    RingProbe bus{slaves};
+    void SetUp() override {
+        ASSERT_TRUE(bus.count());
+        bus.cable(3, false);
+        ASSERT_TRUE(bus.count());
+    }
+    std::optional<ReceivedFrame> answer_to(Command command, Address address) {
+        bus.send(command, address, Bytes(2));
+        bus.now += 1ms;
+        const auto received = bus.ring.receive(bus.frame, bus.now);
+        EXPECT_FALSE(bus.ring.receive(bus.frame, bus.now));
+        return received;
+    }
+};
+
+TEST_F(RingHalves, AnAnswerWhoseOtherHalfGotLostSaysSo) {
+    EXPECT_FALSE(answer_to(Command::BRD, Address::physical(0, reg::type))->half);
+    for (auto* end : {&bus.first, &bus.second}) {
+        end->faults.drop_answers = 1;
+        EXPECT_TRUE(answer_to(Command::BRD, Address::physical(0, reg::type))->half);
+        EXPECT_FALSE(answer_to(Command::BRD, Address::physical(0, reg::type))->half);
+    }
+}
+
+TEST_F(RingHalves, AHalfThatIsGoneIsNotWaitedFor) {
+    bus.cable(slaves, false);
+    int lost = 0;
+    for (int frames = 0; frames < 10; ++frames) lost += answer_to(Command::BRD, Address::physical(0, reg::type))->half ? 1 : 0;
+    EXPECT_LE(lost, 2) << "two cycles";
+    bus.second.faults.link_down = true;
+    EXPECT_FALSE(answer_to(Command::BRD, Address::physical(0, reg::type))->half);
+}
+
+TEST_F(RingHalves, APositionThatWasMeantForAnotherBreakIsToBeAskedAgain) {
+    bus.cable(3, true);
+    bus.cable(2, false);
+    EXPECT_TRUE(answer_to(Command::APRD, Address::position(4, reg::type))->half);
+    EXPECT_FALSE(answer_to(Command::APRD, Address::position(4, reg::type))->half);
+    bus.cable(2, true);
+    bus.cable(4, false);
+    EXPECT_FALSE(answer_to(Command::BRD, Address::physical(0, reg::type))->half) << "no position in it";
+}
+
 TEST(RingTransport, ABreakCostsTheFramesUnderWayAndNoOther) {
     for (std::size_t place = 0; place <= slaves; ++place) {
         RingProbe bus{slaves};
@@ -209,6 +278,52 @@ TEST(RingTransport, WhatWentRoundHasMetEverybodyAndItsTwinDoesNotCount) {
     ASSERT_TRUE(answer);
     EXPECT_EQ(answer->wkc, slaves);
     EXPECT_EQ(answer->adp, slaves);
+}
+
+// As long as the ring is closed nobody needs the twin; without it the next break would take slaves away, and nobody would know before.
+TEST(RingTransport, ASecondInterfaceThatSendsNothingIsSeenWhileTheRingIsClosed) {
+    RingProbe bus{slaves};
+    bus.second.faults.drop_requests = 1'000'000;
+    for (int i = 0; i < 49; ++i) ASSERT_EQ(bus.count()->wkc, slaves);
+    EXPECT_EQ(bus.ring.state().shape, RingShape::closed) << "some frames may be lost";
+    ASSERT_EQ(bus.count()->wkc, slaves);
+    EXPECT_EQ(bus.ring.state().shape, RingShape::one_way);
+    EXPECT_TRUE(bus.ring.state().needs_mending());
+    EXPECT_EQ(bus.ring.state().before_break, slaves);
+    EXPECT_EQ(bus.ring.state().behind_break, 0);
+    bus.second.faults.drop_requests = 0;
+    ASSERT_EQ(bus.count()->wkc, slaves);
+    EXPECT_EQ(bus.ring.state().shape, RingShape::closed);
+}
+
+TEST(RingTransport, TwinsThatAreAlwaysLateAreTwinsAllTheSame) {
+    RingProbe bus{slaves};
+    bus.second.faults.delay_answers = 1'000'000;
+    bus.second.faults.delay = 3ms;
+    for (int i = 0; i < 200; ++i) {
+        ASSERT_EQ(bus.count()->wkc, slaves);
+        ASSERT_EQ(bus.ring.state().shape, RingShape::closed) << i;
+    }
+}
+
+// The first slave's cable in the second interface, the last one's in the first.
+TEST(RingTransport, ExchangedPlugsAreSeen) {
+    RingProbe bus{slaves};
+    RingTransport ring{bus.second, bus.first, 250us};
+    for (std::uint8_t i = 1; i < 60; ++i) {
+        std::array<std::byte, max_frame_size> frame{};
+        FrameBuilder builder{frame, ring.mac()};
+        builder.add(Command::BRD, i, Address::physical(0, reg::type), 1);
+        ASSERT_TRUE(ring.send(builder.finish(), bus.now));
+        bus.now += 1ms;
+        const auto received = ring.receive(frame, bus.now);
+        ASSERT_TRUE(received);
+        FrameReader reader{std::span<const std::byte>{frame}.first(received->size)};
+        EXPECT_EQ(reader.next()->working_counter(), slaves) << "each is reached";
+        EXPECT_EQ(ring.state().shape, RingShape::exchanged);
+        EXPECT_EQ(ring.state().behind_break, slaves);
+        EXPECT_FALSE(ring.receive(frame, bus.now));
+    }
 }
 
 TEST(RingTransport, FramesOfOthersPassAsTheyAre) {
