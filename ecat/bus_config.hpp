@@ -26,12 +26,22 @@ struct StartupSdo {
     std::int64_t value = 0;
     bool verify = true;       ///< read back and compare; set false for write-only objects
     bool if_changed = false;  ///< read first, write only a different value (spares the EEPROM)
+    bool if_there = false;    ///< a slave that has it not, or refuses the value, comes up all the same; a note says so
     std::string origin;       ///< where it was asked for ("demo.yaml:31:7", "homing of axis x"), for messages
 };
 
 /// PDO selection of one direction; empty `assigned` keeps the slave's own default.
 struct PdoSelection {
     std::vector<PdoDescription> assigned;  ///< written to 16xxh/1Axxh (unless fixed) and 1C12h/1C13h
+    /// Of a slave whose PDOs nobody stated: `assigned` is a wish, most important objects first, and of them it must have these. Empty:
+    /// `assigned` holds as it stands.
+    std::vector<PdoEntry> required{};
+};
+
+/// An object that the slave is asked for while it comes up, in PREOP and behind its start-up SDOs. See Master::told().
+struct AskedObject {
+    std::uint16_t index = 0;
+    std::uint8_t sub = 0;
 };
 
 /// What the loss of a slave means to the machine.
@@ -54,6 +64,7 @@ struct SlaveConfig {
     PdoSelection rx, tx;
     std::vector<ModuleSelection> modules;
     std::vector<StartupSdo> startup;
+    std::vector<AskedObject> asked;
     bool dc = false;                ///< run SYNC0 on it
     Duration sync0_shift{};         ///< SYNC0 after the start of the bus cycle; 0 = the master's default
     std::optional<Duration> sync1;  ///< run SYNC1, this long after SYNC0 (0 .. below the cycle)

@@ -6,6 +6,7 @@
 
 #include "ecat/bringup/al_control.hpp"
 #include "ecat/bringup/clocks.hpp"
+#include "ecat/bringup/own_word.hpp"
 #include "ecat/bringup/recovery.hpp"
 #include "ecat/bringup/ring_line.hpp"
 #include "ecat/bringup/scan.hpp"
@@ -100,6 +101,7 @@ Script<Result<void>> climb(Bus& bus) {
     Result<void> done = co_await scan(bus);
     if (!done) co_return done;
 
+    for (auto& slave : bus.slaves) take_own_word(bus, *slave);
     remark_late_sync0(bus);
     bus.phase.store(BusPhase::preop);
     done = co_await for_each_slave(bus, &enter_preop);

@@ -45,11 +45,13 @@ struct BusSlave {
     std::size_t index = 0;  ///< in the configuration
     std::string subject;    ///< "slave 3 'y_drive' (sv33-e)"
     FoundSlave found;
+    std::optional<DeviceDescription> own;  ///< where nobody stated all of the configured one: with the slave's own word in it
     MailboxEndpoint mailbox;
-    std::vector<PdoDescription> rx, tx;  ///< as the slave maps them now
-    std::string last_abort;              ///< for the diagnosis of a refused state
-    std::optional<Refusal> refusal;      ///< why it did not take the state asked last; none: it did
-    bool in_line = false;                ///< the bring-up gave it a place and a plan: recovery is possible
+    std::vector<PdoDescription> rx, tx;                 ///< as the slave maps them now
+    std::vector<std::optional<std::uint32_t>> answers;  ///< to config->asked; none: it has no such object
+    std::string last_abort;                             ///< for the diagnosis of a refused state
+    std::optional<Refusal> refusal;                     ///< why it did not take the state asked last; none: it did
+    bool in_line = false;                               ///< the bring-up gave it a place and a plan: recovery is possible
 
     bool dc = false;                 ///< has a clock
     std::uint32_t dc_delay = 0;      ///< 0928h
@@ -63,9 +65,9 @@ struct BusSlave {
 
     SlaveLink link;
 
-    [[nodiscard]] const DeviceDescription& device() const noexcept { return *config->device; }
-    [[nodiscard]] bool has_mailbox() const noexcept { return config->device->mailbox.has_value(); }
-    [[nodiscard]] bool has_coe() const noexcept { return config->device->mailbox && config->device->mailbox->coe; }
+    [[nodiscard]] const DeviceDescription& device() const noexcept { return own ? *own : *config->device; }
+    [[nodiscard]] bool has_mailbox() const noexcept { return device().mailbox.has_value(); }
+    [[nodiscard]] bool has_coe() const noexcept { return device().mailbox && device().mailbox->coe; }
 };
 
 struct Bus {

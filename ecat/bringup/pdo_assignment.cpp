@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "ecat/bringup/effective_pdos.hpp"
+#include "ecat/bringup/pdo_objects.hpp"
+#include "ecat/bringup/pdo_search.hpp"
 #include "ecat/bringup/slave_objects.hpp"
 #include "ecat/description/module_pdos.hpp"
 
@@ -17,6 +19,7 @@ struct Direction {
     SmUse use = SmUse::outputs;
     const char* name = "outputs";
     std::vector<PdoDescription> known, wanted, by_default, eeprom;
+    std::vector<PdoEntry> required;           ///< not empty: nobody stated its PDOs
     std::vector<std::uint8_t> sync_managers;  ///< of this direction
     [[nodiscard]] std::uint8_t sync_manager_of(const PdoDescription& pdo) const {
         const auto* own = find_pdo(known, pdo.index);
@@ -43,6 +46,7 @@ Direction direction_of(const BusSlave& slave, SmUse use) {
     d.known = outputs ? pdos.rx : pdos.tx;
     d.by_default = assigned_by_default(d.known, outputs ? pdos.rx_assigned : pdos.tx_assigned);
     d.wanted = (outputs ? config.rx : config.tx).assigned;
+    if (!slave.device().stated.process_data) d.required = (outputs ? config.rx : config.tx).required;
     if (d.wanted.empty() && !config.modules.empty()) d.wanted = d.by_default;  // a module is chosen with all its PDOs
     d.eeprom = assigned_in_eeprom(outputs ? slave.found.sii.rx_pdos : slave.found.sii.tx_pdos);
     if (!lists_all_pdos(slave.found.sii) && !d.by_default.empty()) d.eeprom.clear();
@@ -50,18 +54,6 @@ Direction direction_of(const BusSlave& slave, SmUse use) {
     for (std::size_t n = 0; n < managers.size(); ++n)
         if (managers[n].use == use) d.sync_managers.push_back(static_cast<std::uint8_t>(n));
     return d;
-}
-
-Script<Result<void>> write_mapping(Bus& bus, BusSlave& slave, const PdoDescription& pdo) {
-    Result<void> written = co_await write_number(bus, slave, pdo.index, 0, 0, 1);
-    if (!written) co_return written;
-    std::uint8_t sub = 0;
-    for (const auto& entry : pdo.entries) {
-        const std::uint32_t value = (std::uint32_t{entry.index} << 16) | (std::uint32_t{entry.sub} << 8) | entry.bits;
-        written = co_await write_number(bus, slave, pdo.index, ++sub, value, 4);
-        if (!written) co_return written;
-    }
-    co_return co_await write_number(bus, slave, pdo.index, 0, static_cast<std::uint32_t>(pdo.entries.size()), 1);
 }
 
 Script<Result<void>> write_assignment(Bus& bus, BusSlave& slave, const Direction& direction, std::uint16_t assignment,
@@ -74,40 +66,16 @@ Script<Result<void>> write_assignment(Bus& bus, BusSlave& slave, const Direction
         written = co_await write_mapping(bus, slave, pdo);
         if (!written) co_return written;
     }
-    std::uint8_t sub = 0;
-    for (const auto& pdo : wanted) {
-        written = co_await write_number(bus, slave, assignment, ++sub, pdo.index, 2);
-        if (!written) co_return written;
-    }
-    co_return co_await write_number(bus, slave, assignment, 0, static_cast<std::uint32_t>(wanted.size()), 1);
-}
-
-Script<Result<PdoDescription>> read_mapping(Bus& bus, BusSlave& slave, std::uint16_t index) {
-    PdoDescription pdo;
-    pdo.index = index;
-    const Result<std::uint32_t> entries = co_await read_number(bus, slave, index, 0);
-    if (!entries) co_return entries.error();
-    for (std::uint32_t k = 1; k <= (*entries & 0xFFu); ++k) {
-        const Result<std::uint32_t> entry = co_await read_number(bus, slave, index, static_cast<std::uint8_t>(k));
-        if (!entry) co_return entry.error();
-        pdo.entries.push_back(
-            {static_cast<std::uint16_t>(*entry >> 16), static_cast<std::uint8_t>(*entry >> 8), static_cast<std::uint8_t>(*entry)});
-    }
-    co_return pdo;
+    co_return co_await write_assigned(bus, slave, assignment, wanted);
 }
 
 /// Which PDOs the slave has assigned, and which entries they have, in its own words. A PDO whose mapping object it does not
 /// show has the entries that EEPROM or profile give it.
 Script<Result<std::vector<PdoDescription>>> read_assigned(Bus& bus, BusSlave& slave, const Direction& direction, std::uint16_t assignment) {
-    bus.note(slave, fmt::format("reading the PDOs of {:04X}h", assignment));
     std::vector<PdoDescription> pdos;
-    const Result<std::uint32_t> count = co_await read_number(bus, slave, assignment, 0);
-    if (!count) co_return count.error();
-    for (std::uint32_t i = 1; i <= (*count & 0xFFu); ++i) {
-        const Result<std::uint32_t> index = co_await read_number(bus, slave, assignment, static_cast<std::uint8_t>(i));
-        if (!index) co_return index.error();
-        const auto number = static_cast<std::uint16_t>(*index);
-        if (number == 0) continue;  // an empty place of a fixed list
+    const Result<std::vector<std::uint16_t>> numbers = co_await read_assignment(bus, slave, assignment);
+    if (!numbers) co_return numbers.error();
+    for (const std::uint16_t number : *numbers) {
         Result<PdoDescription> pdo = co_await read_mapping(bus, slave, number);
         if (!pdo && is_absent(pdo.error())) {
             const auto* known = find_pdo(direction.eeprom, number);
@@ -135,8 +103,15 @@ std::vector<PdoDescription> without_assignment(Bus& bus, const BusSlave& slave, 
 /// One sync manager: written where something is wanted, read back, compared.
 Script<Result<std::vector<PdoDescription>>> assign_sync_manager(Bus& bus, BusSlave& slave, const Direction& direction,
                                                                 std::uint8_t sync_manager) {
-    const auto assignment = static_cast<std::uint16_t>(0x1C10 + sync_manager);
+    const std::uint16_t assignment = assignment_of(sync_manager);
     const std::vector<PdoDescription> wanted = direction.of(direction.wanted, sync_manager);
+    if (!direction.required.empty() && !wanted.empty()) {
+        const PdoWish wish{wanted.front(), direction.required};
+        Result<std::vector<PdoDescription>> found = co_await search_pdos(bus, slave, sync_manager, wish);
+        if (!found) co_return found.error();
+        for (auto& pdo : *found) pdo.sync_manager = sync_manager;
+        co_return found;
+    }
     std::string refused;
     if (!wanted.empty()) {
         const Result<void> written = co_await write_assignment(bus, slave, direction, assignment, wanted);

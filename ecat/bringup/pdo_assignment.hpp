@@ -9,6 +9,7 @@
 //     CoE with assignment objects      written (where a selection or modules ask for it), read back, compared
 //     CoE, assignment fixed or absent  read where it can be read, else EEPROM, else configuration; compared with the selection
 //     no CoE (terminals, FoE, EoE)     EEPROM, else configuration
+//     PDOs that nobody stated          given as far as the slave takes them, else found among those it has (pdo_search.hpp)
 
 #include "ecat/bringup/bus.hpp"
 

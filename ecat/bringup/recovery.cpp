@@ -74,7 +74,9 @@ Script<Result<void>> readdress(Bus& bus, BusSlave& slave) {
     const Result<void> given = co_await give_address(bus, slave, position);
     if (!given) co_return given;
     const FoundSlave found = co_await read_slave(bus.port, slave.found.position, slave.subject);
-    const Result<void> identity = found.error ? Result<void>{*found.error} : check_identity(slave.subject, *slave.config, found.identity);
+    const Result<void> identity = found.error ? Result<void>{*found.error}
+                                  : slave.own ? check_identity(slave.subject, *slave.own, found.identity)
+                                              : check_identity(slave.subject, *slave.config, found.identity);
     if (!identity) {
         (void)co_await write_address(bus, slave, position, 0);  // whatever stands there must not be taken for this slave
         co_return identity;

@@ -23,8 +23,9 @@ bool fits(const Identity& wanted, RevisionRule rule, const Identity& found) {
 }
 
 bool fits(const DeviceDescription& device, RevisionRule rule, const Identity& found) {
-    return fits(device.identity, rule, found) || std::any_of(device.also_accepted.begin(), device.also_accepted.end(),
-                                                             [&](const Identity& other) { return fits(other, rule, found); });
+    return !device.stated.identity || fits(device.identity, rule, found) ||
+           std::any_of(device.also_accepted.begin(), device.also_accepted.end(),
+                       [&](const Identity& other) { return fits(other, rule, found); });
 }
 
 RevisionRule rule_of(const SlaveConfig& slave) { return slave.revision_rule.value_or(slave.device->revision_rule); }

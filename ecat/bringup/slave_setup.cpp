@@ -6,6 +6,7 @@
 
 #include "ecat/bringup/effective_pdos.hpp"
 #include "ecat/bringup/modules.hpp"
+#include "ecat/bringup/own_word.hpp"
 #include "ecat/bringup/watchdogs.hpp"
 
 namespace taktwerk::ecat {
@@ -38,6 +39,8 @@ Script<Result<void>> prepare_process_data(Bus& bus, BusSlave& slave) {
     if (!modules) co_return modules;
     const Result<void> written = co_await write_startup_safeop(bus, slave);
     if (!written) co_return written;
+    const Result<void> asked = co_await ask(bus, slave);
+    if (!asked) co_return asked;
     co_return co_await assign_pdos(bus, slave);
 }
 

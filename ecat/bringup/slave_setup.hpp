@@ -10,7 +10,7 @@
 
 namespace taktwerk::ecat {
 
-/// In PREOP: modules, start-up SDOs, then PDO assignment and mapping. Afterwards the planner can be asked.
+/// In PREOP: modules, start-up SDOs, what is asked of it, then PDO assignment and mapping. Afterwards the planner can be asked.
 [[nodiscard]] Script<Result<void>> prepare_process_data(Bus& bus, BusSlave& slave);
 
 /// Sync managers, FMMUs and watchdogs from bus.plan.

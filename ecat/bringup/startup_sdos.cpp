@@ -51,7 +51,13 @@ Script<Result<void>> write_one(Bus& bus, BusSlave& slave, const StartupSdo& sdo)
 Script<Result<void>> write_startup(Bus& bus, BusSlave& slave, Transition transition) {
     for (const auto& sdo : slave.config->startup) {
         if (sdo.at != transition) continue;
+        const std::string abort_before = slave.last_abort;
         const Result<void> written = co_await write_one(bus, slave, sdo);
+        if (!written && sdo.if_there && (written.error().code == "sdo.abort" || written.error().code == "bus.startup_verify")) {
+            bus.remember(fmt::format("{}: {}; it goes on without", slave.subject, written.error().what));
+            slave.last_abort = abort_before;
+            continue;
+        }
         if (!written) co_return written.error();
     }
     co_return Result<void>{};

@@ -127,6 +127,14 @@ struct ModuleSelection {
     std::string module;     ///< name of a ModuleDescription of the device
 };
 
+/// What of a description somebody stated of this very device. The rest is what devices of its kind mostly have: the simulator plays it, and
+/// on a bus the slave's own word goes before it (ecat/bringup/own_word.hpp, pdo_search.hpp).
+struct StatedParts {
+    bool identity = true;      ///< false: whoever stands in the place is taken
+    bool controller = true;    ///< mailbox and sync managers; false: those of the EEPROM
+    bool process_data = true;  ///< false: what the slave lets itself be given, else what it has
+};
+
 struct DeviceDescription {
     std::string name;                     ///< "sv33-e"
     std::string device_name;              ///< 1008h
@@ -141,6 +149,7 @@ struct DeviceDescription {
     std::vector<ObjectEntry> objects;  ///< without 1018h, 16xxh.., 1C00h..: those follow from the fields above
     DcDescription dc;
     SlotDescription slots;
+    StatedParts stated;
     std::uint8_t fmmus = 8, sync_manager_count = 8;
     std::uint16_t process_ram = 0x1000;          ///< bytes from 1000h
     std::optional<std::int16_t> ebus_current{};  ///< mA that it takes from the E-bus; negative: it supplies so much; none: not known
