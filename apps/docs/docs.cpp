@@ -78,6 +78,7 @@ int write_drives(const std::string& name, const std::string& folder) {
                     {"docs.no_drive", each, "there is no such drive file", fmt::format("Known: {}.", fmt::join(library.names(), ", "))});
             return exit_bad_file;
         }
+        if (name.empty() && !drive->profile->assumptions.empty()) continue;  // no manual, no page
         if (const int code = write_drive(*drive, folder); code != exit_ok) return code;
     }
     return exit_ok;

@@ -213,6 +213,24 @@ void print_assumptions(const MachineConfig& config) {
     }
 }
 
+/// Of drives that nobody described: each slave has its own, as far as the machine states nothing.
+void print_undescribed(const MachineConfig& config) {
+    for (const auto& binding : config.axes) {
+        if (!binding.profile || binding.profile->assumptions.empty() || binding.drive_axis != 0) continue;
+        fmt::print("\nAssumed about slave '{}' ({}), because nobody described it:\n", binding.slave, binding.profile->name);
+        for (const auto& assumption : binding.profile->assumptions)
+            fmt::print("  {}: {}\n      otherwise: {}\n", assumption.text, assumption.why, assumption.otherwise);
+    }
+}
+
+Json undescribed_json(const axes::DriveProfile* profile) {
+    auto out = Json::array();
+    if (profile != nullptr)
+        for (const auto& assumption : profile->assumptions)
+            out.push_back(Json{{"what", assumption.text}, {"why", assumption.why}, {"otherwise", assumption.otherwise}});
+    return out;
+}
+
 const axes::DriveProfile& profile_of(const MachineConfig& config, const std::string& axis) {
     return *std::find_if(config.axes.begin(), config.axes.end(), [&](const auto& b) { return b.axis.name == axis; })->profile;
 }
@@ -273,7 +291,8 @@ Json summary_json(const MachineConfig& config, const runtime::MachineLayout& lay
                             {"gantry", gantry_sentence(binding)},
                             {"load_encoder", load_sentence(binding)},
                             {"master_gone", master_gone(config, binding)},
-                            {"assumed", binding.profile ? binding.profile->assumed : std::vector<std::string>{}}});
+                            {"assumed", binding.profile ? binding.profile->assumed : std::vector<std::string>{}},
+                            {"undescribed", undescribed_json(binding.profile.get())}});
     }
     out["programs"] = layout.programs;
     out["tasks"] = layout.tasks;
@@ -327,6 +346,7 @@ int check(const CheckOptions& options) {
                    config.emergency_stop.input, to_seconds(config.emergency_stop.power_off_after) * 1e3);
     print_hazards(config);
     print_assumptions(config);
+    print_undescribed(config);
     return exit_ok;
 }
 

@@ -47,6 +47,9 @@ bool AxisPower::run() noexcept {
         case PowerSequence::Event::timeout:
             if (turns_by_itself())
                 conduct_.fail(AxisAlarm::motor_turns, body_.shown.actual_velocity, turning_by_itself * body_.config.limits.velocity);
+            else if (measured_.feedback.power == PowerState::switched_on && measured_.feedback.mode != modes_.wanted())
+                conduct_.fail(AxisAlarm::drive_mode_mismatch, static_cast<double>(measured_.feedback.mode),
+                              static_cast<double>(modes_.wanted()));
             else
                 conduct_.fail(AxisAlarm::enable_timeout, to_seconds(body_.config.patience.enable),
                               static_cast<double>(measured_.feedback.power));

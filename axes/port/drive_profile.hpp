@@ -2,11 +2,13 @@
 // What a drive type means to an axis: modes, homing, units, timing, quirks, alarms. Filled from a drive YAML by config/.
 // The bus half of the same YAML is ecat::DeviceDescription. Plain data.
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "axes/port/drive_alarm_kind.hpp"
+#include "axes/port/drive_assumption.hpp"
 #include "axes/port/drive_hazard.hpp"
 #include "axes/port/drive_parameter.hpp"
 #include "axes/port/drive_port.hpp"
@@ -161,9 +163,13 @@ struct DriveProfile {
     ScaleObjects scale;
     BehaviourObjects behaviour;
     DriveStorage storage;
-    std::vector<std::string> questions;  ///< what only the vendor or a real drive can answer
-    std::vector<std::string> assumed;    ///< what the manual leaves open and we took, in words
+    std::vector<std::string> questions;        ///< what only the vendor or a real drive can answer
+    std::vector<std::string> assumed;          ///< what the manual leaves open and we took, in words
+    std::vector<DriveAssumption> assumptions;  ///< of a drive without a manual: what nobody stated so far
 
+    [[nodiscard]] bool assumes(AssumedPart part) const noexcept {
+        return std::any_of(assumptions.begin(), assumptions.end(), [&](const auto& a) { return a.part == part; });
+    }
     [[nodiscard]] bool has(Quirk quirk) const noexcept {
         for (const auto q : quirks)
             if (q == quirk) return true;

@@ -81,20 +81,7 @@ Table<DeviceFile> device_file_table() {
     f.push_back(required(field("vendor", &F::vendor, text(), "for people")));
     f.push_back(required(field("title", &F::title, text(), "for people")));
     f.push_back(required(field("source", &F::source, text(), "where these facts come from")));
-    f.push_back(required(field(
-        "checked", &F::checked,
-        [] {
-            auto c = text();
-            c.shape.kind = Shape::Kind::choice;
-            c.shape.choices = {"unit", "vendor_file", "project", "inferred"};
-            c.read = [words = c.shape.choices](Reader& reader, const Node& node, std::string& out) {
-                const auto index = read_choice(reader, node, words);
-                if (index) out = words[*index];
-                return index.has_value();
-            };
-            return c;
-        }(),
-        "against what: read from a real unit · the vendor's ESI · what one project configured · inferred, see `source`")));
+    f.push_back(required(field("checked", &F::checked, checked_against(), checked_doc)));
     include_fields(
         f, [](F& d) -> ecat::DeviceDescription& { return d.device; }, Table<ecat::DeviceDescription>{{}, {}, controller_fields(), {}, {}});
     f.push_back(with_default(field_at<F>(

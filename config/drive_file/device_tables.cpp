@@ -352,6 +352,18 @@ Codec<ecat::PdoEntry> pdo_entry() {
     return c;
 }
 
+Codec<std::string> checked_against() {
+    auto c = text();
+    c.shape.kind = Shape::Kind::choice;
+    c.shape.choices = {"unit", "vendor_file", "project", "inferred"};
+    c.read = [words = c.shape.choices](Reader& reader, const Node& node, std::string& out) {
+        const auto index = read_choice(reader, node, words);
+        if (index) out = words[*index];
+        return index.has_value();
+    };
+    return c;
+}
+
 Codec<ecat::RevisionRule> revision_rule() {
     using R = ecat::RevisionRule;
     return choice<R>({{"any", R::any}, {"at_least", R::at_least}, {"exact", R::exact}});

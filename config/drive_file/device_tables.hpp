@@ -29,5 +29,9 @@ struct ObjectRow {
 /// An object in a PDO; its bits are looked up later unless given.
 [[nodiscard]] Codec<ecat::PdoEntry> pdo_entry();
 [[nodiscard]] Codec<ecat::RevisionRule> revision_rule();
+/// How far a file's facts are to be trusted.
+[[nodiscard]] Codec<std::string> checked_against();
+inline constexpr const char* checked_doc =
+    "against what: read from a real unit · the vendor's ESI · what one project configured · inferred, see `source`";
 
 }  // namespace taktwerk::config

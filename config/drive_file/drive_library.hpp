@@ -12,7 +12,8 @@ namespace taktwerk::config {
 
 class DriveLibrary : public FileLibrary<LoadedDrive> {
 public:
-    explicit DriveLibrary(std::vector<std::string> folders) : FileLibrary(std::move(folders), load_drive) {}
+    explicit DriveLibrary(const std::vector<std::string>& folders)
+        : FileLibrary(folders, [folders](const std::string& path) { return load_drive(path, folders); }) {}
 };
 
 }  // namespace taktwerk::config

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "config/drive_file/based_on.hpp"
 #include "config/drive_file/drive_tables.hpp"
 #include "config/drive_file/pdo_selection.hpp"
 #include "ecat/description/module_pdos.hpp"
@@ -39,6 +40,7 @@ ecat::PdoSelection chosen(const std::vector<PdoChoice>& choices, const std::vect
             if (pdo.index == choice.pdo.index) {
                 out.assigned.push_back(pdo);
                 if (!choice.objects.empty()) out.assigned.back().entries = choice.objects;
+                out.required.insert(out.required.end(), choice.required.begin(), choice.required.end());
             }
     return out;
 }
@@ -57,14 +59,21 @@ std::vector<ecat::ModuleSelection> in_every_slot(Reader& reader, const DriveFile
 
 }  // namespace
 
-std::variant<LoadedDrive, std::vector<Error>> load_drive(const std::string& path) {
-    auto document = read_document(path);
+std::variant<LoadedDrive, std::vector<Error>> load_drive(const std::string& path, const std::vector<std::string>& folders) {
+    auto document = read_drive_document(path, folders);
     Reader reader(path);
     reader.errors() = std::move(document.errors);
     DriveFile file;
     const bool serial = document.root.find("carried_by") != nullptr;
     if (document.root.kind != Node::Kind::null) read_table(reader, document.root, serial ? serial_drive_table() : drive_table(), file);
-    const auto beside = [&](const std::string& name) { return (std::filesystem::path(path).parent_path() / name).string(); };
+    // A file that is based on another may use what lies beside that one.
+    const auto beside = [&](const std::string& name) {
+        const auto here = std::filesystem::path(path).parent_path() / name;
+        if (std::filesystem::exists(here)) return here.string();
+        for (const auto& folder : folders)
+            if (const auto there = std::filesystem::path(folder) / name; std::filesystem::exists(there)) return there.string();
+        return here.string();
+    };
     if (!file.object_file.empty()) load_objects(beside(file.object_file), file, reader.errors());
     const auto modules = in_every_slot(reader, file);
     const auto startup = resolve_startup(reader, path, file.startup, file.device);
@@ -76,7 +85,11 @@ std::variant<LoadedDrive, std::vector<Error>> load_drive(const std::string& path
         drive.profile = std::make_shared<const axes::DriveProfile>(std::move(file.profile));
         return drive;
     }
+    drive.source = file.source, drive.checked = file.checked;
     file.device.name = file.profile.name;
+    using Part = axes::AssumedPart;
+    file.device.stated = {!file.profile.assumes(Part::identity), !file.profile.assumes(Part::controller),
+                          !file.profile.assumes(Part::process_data)};
     drive.rx = chosen(file.rx, file.device.rx_pdos);
     drive.tx = chosen(file.tx, file.device.tx_pdos);
     drive.modules = modules;

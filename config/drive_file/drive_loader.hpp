@@ -18,9 +18,12 @@ struct LoadedDrive {
     ecat::PdoSelection rx, tx;                     ///< the runtime's own mapping
     std::vector<ecat::StartupSdo> startup;         ///< before those of the machine
     std::vector<ecat::ModuleSelection> modules{};  ///< of a modular drive, one in each slot
+    std::string source{},
+        checked{};  ///< where its facts come from, and against what they were checked; empty: the manual that its head names
 };
 
-/// All problems at once, each with file, line and column.
-[[nodiscard]] std::variant<LoadedDrive, std::vector<Error>> load_drive(const std::string& path);
+/// All problems at once, each with file, line and column. `folders`: where the file that it is based on may stand, besides beside it.
+[[nodiscard]] std::variant<LoadedDrive, std::vector<Error>> load_drive(const std::string& path,
+                                                                       const std::vector<std::string>& folders = {});
 
 }  // namespace taktwerk::config

@@ -25,6 +25,8 @@ Table<PdoChoice> choice_table() {
             {
                 required(field("pdo", &P::pdo, object_address(), "one of the available PDOs")),
                 with_default(field("objects", &P::objects, list(pdo_entry()), "what is mapped into it"), "as the drive has it"),
+                field("required", &P::required, list(pdo_entry()),
+                      "of a drive whose process data is assumed: what it must take, while the rest of `objects` is a wish, best first"),
             },
             {},
             {}};
@@ -78,16 +80,47 @@ Codec<std::int64_t> version_number() {
 
 namespace {
 
+Table<axes::DriveAssumption> assumption_table() {
+    using A = axes::DriveAssumption;
+    using P = axes::AssumedPart;
+    return {"assumptions",
+            "What is taken for granted of a drive that nobody described; `taktwerk check` tells.",
+            {
+                field("part", &A::part,
+                      choice<P>({{"other", P::other},
+                                 {"identity", P::identity},
+                                 {"controller", P::controller},
+                                 {"process_data", P::process_data},
+                                 {"modes", P::modes}}),
+                      "where the drive's own word goes before this file's (axes/port/drive_assumption.hpp)"),
+                required(field("text", &A::text, text(), "what is assumed")),
+                required(field("why", &A::why, text(), "where that comes from")),
+                required(field("otherwise", &A::otherwise, text(), "what to write where it is not so")),
+                field("unless", &A::unless, list(text()), "keys of a drive file based on this one, or of the slave, that state it"),
+            },
+            {},
+            {}};
+}
+
 /// Who it is: the first lines of every drive file.
 void add_identity_fields(std::vector<Field<DriveFile>>& f) {
     using F = DriveFile;
     f.push_back(version_field(&F::version));
+    f.push_back(with_default(
+        field("based_on", &F::based_on, config::name(), "another drive file, which holds for all that this one does not say"), "none"));
     f.push_back(required(field_at<F>(
         "name", [](F & d) -> auto& { return d.profile.name; }, name(), "as machines name it: `profile: sv33-e`")));
     f.push_back(required(field_at<F>(
         "vendor", [](F & d) -> auto& { return d.profile.vendor; }, text(), "for people")));
     f.push_back(required(field_at<F>(
         "title", [](F & d) -> auto& { return d.profile.title; }, text(), "for people")));
+}
+
+/// How far it may be trusted, where no manual was at hand: the words of device files.
+void add_source_fields(std::vector<Field<DriveFile>>& f) {
+    using F = DriveFile;
+    f.push_back(with_default(field("source", &F::source, text(), "where these facts come from"), "the manual that its head names"));
+    f.push_back(with_default(field("checked", &F::checked, checked_against(), checked_doc), "the manual"));
 }
 
 /// What it means to an axis and to people, whatever carries it.
@@ -142,6 +175,9 @@ void add_profile_fields(std::vector<Field<DriveFile>>& f) {
     f.push_back(field_at<F>(
         "assumed", [](F & d) -> auto& { return d.profile.assumed; }, list(text()),
         "what the manual leaves open and this file took, in words"));
+    f.push_back(field_at<F>(
+        "assumptions", [](F & d) -> auto& { return d.profile.assumptions; }, list(section(assumption_table())),
+        "of a drive that nobody described: what is taken for granted, and how a machine says otherwise"));
 }
 
 }  // namespace
@@ -152,6 +188,7 @@ Table<DriveFile> drive_table() {
     Table<F> table{"drive file", "What one drive type is (for master and simulator) and what it means to an axis.", {}, {}, {}};
     auto& f = table.fields;
     add_identity_fields(f);
+    add_source_fields(f);
     include_fields(f, device, Table<DeviceDescription>{{}, {}, device_fields(), {}, {}});
     f.push_back(required(field("objects", &F::objects, list(section(object_table())),
                                "of the dictionary: all that is mapped or that the runtime writes; the others may stand in `object_file`")));

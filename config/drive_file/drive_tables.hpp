@@ -14,7 +14,7 @@ namespace taktwerk::config {
 /// A PDO that the runtime wants; no objects = the PDO's own mapping.
 struct PdoChoice {
     ObjectAddress pdo;
-    std::vector<ecat::PdoEntry> objects;
+    std::vector<ecat::PdoEntry> objects, required;
 };
 
 /// What speaks to a drive on a serial line.
@@ -30,6 +30,8 @@ struct DriveFile {
     std::vector<ObjectRow> objects;
     std::string module;  ///< for every slot of a modular drive
     std::string alarm_file, object_file;
+    std::string based_on;         ///< already merged when the tables read
+    std::string source, checked;  ///< where its facts come from, and against what they were checked; empty: the manual that its head names
 };
 
 struct ObjectFile {

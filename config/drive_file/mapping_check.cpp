@@ -78,10 +78,11 @@ void check_mapping(Reader& reader, DriveFile& file) {
         for (auto& pdo : module.tx_pdos)
             for (auto& entry : pdo.entries) resolver.resolve(entry, false, "slots.modules");
     }
-    for (auto& choice : file.rx)
-        for (auto& entry : choice.objects) resolver.resolve(entry, true, "mapping.rx");
-    for (auto& choice : file.tx)
-        for (auto& entry : choice.objects) resolver.resolve(entry, false, "mapping.tx");
+    for (auto* direction : {&file.rx, &file.tx})
+        for (auto& choice : *direction)
+            for (auto* entries : {&choice.objects, &choice.required})
+                for (auto& entry : *entries)
+                    resolver.resolve(entry, direction == &file.rx, direction == &file.rx ? "mapping.rx" : "mapping.tx");
     check_rules(resolver, file.rx, file.device.rx_pdos, file.device.rx_rules, "mapping.rx");
     check_rules(resolver, file.tx, file.device.tx_pdos, file.device.tx_rules, "mapping.tx");
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "config/drive_file/device_tables.hpp"
+#include "config/drive_file/drive_motion_tables.hpp"
 #include "config/machine_file/machine_tables.hpp"
 #include "config/reading/codecs.hpp"
 
@@ -44,6 +45,19 @@ Table<ecat::ModuleSelection> module_selection_table() {
             {}};
 }
 
+Table<ecat::Identity> identity_table() {
+    using I = ecat::Identity;
+    return {"bus.slaves.identity",
+            "Who a drive is that nobody described: as `taktwerk bus scan` shows it.",
+            {
+                required(field("vendor", &I::vendor, integer<std::uint32_t>(0, 0xFFFFFFFF), "vendor id")),
+                required(field("product", &I::product, integer<std::uint32_t>(0, 0xFFFFFFFF), "product code")),
+                field("revision", &I::revision, integer<std::uint32_t>(0, 0xFFFFFFFF), "for `revision_rule`"),
+            },
+            {},
+            {}};
+}
+
 Codec<ecat::LossPolicy> loss_policy() {
     using L = ecat::LossPolicy;
     return choice<L>({{"stop_machine", L::stop_machine}, {"stop_own_axes", L::stop_own_axes}});
@@ -77,6 +91,12 @@ Table<SlaveEntry> slave_table() {
             with_default(field("profile", &S::profile, config::name(), "drive type: a file in config/drives/"), ""),
             with_default(field("device", &S::device, config::name(), "device type that is no drive: a file in config/devices/"), ""),
             field("terminal", &S::terminal, maybe(section(terminal_table())), "or a digital terminal of no particular make"),
+            with_default(
+                field("identity", &S::identity, maybe(section(identity_table())), "who it is, where its drive file leaves that open"),
+                "whoever stands at its place"),
+            with_default(
+                field("modes", &S::modes, list(drive_mode()), "of operation, where its drive file leaves them open: 6502h is not asked"),
+                "those of 6502h"),
             with_default(of_bus("position", &C::position, maybe(integer<std::uint16_t>(0, 65535)), "place on the cable, from 0"),
                          "its place in this list"),
             of_bus("alias", &C::alias, maybe(integer<std::uint16_t>(1, 65535)), "station alias instead of the position"),
@@ -111,7 +131,7 @@ Table<SlaveEntry> slave_table() {
         {},
         {}};
     for (auto& f : table.fields)
-        if (f.info.key == "pdo" || f.info.key == "startup" || f.info.key == "stored" || f.info.key == "modules")
+        if (f.info.key == "pdo" || f.info.key == "startup" || f.info.key == "stored" || f.info.key == "modules" || f.info.key == "identity")
             f.info.default_text.clear();
     table.after = [](Reader& reader, const Node& node, S& s) {
         reader.also_known_as(fmt::format("slave '{}'", s.slave.name), node.at);  // as the bus calls it

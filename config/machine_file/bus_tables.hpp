@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "axes/port/drive_port.hpp"
 #include "config/drive_file/startup_entry.hpp"
 #include "config/drive_file/stored_settings.hpp"
 #include "ecat/bus_config.hpp"
@@ -23,6 +24,8 @@ struct SlaveEntry {
     std::string profile, device;
     std::optional<Terminal> terminal;
     std::optional<bool> dc;
+    std::optional<ecat::Identity> identity;
+    std::vector<axes::DriveMode> modes;
     std::vector<ObjectAddress> rx, tx;
     std::vector<StartupEntry> startup;
     std::vector<StoredEntry> stored;

@@ -17,6 +17,7 @@
 #include "config/machine_file/floor_checks.hpp"
 #include "config/machine_file/io_points.hpp"
 #include "config/machine_file/machine_tables.hpp"
+#include "config/machine_file/undescribed_drive.hpp"
 #include "core/nearest_name.hpp"
 #include "runtime/check/program_check.hpp"
 #include "runtime/positions/keeps_positions.hpp"
@@ -173,7 +174,8 @@ private:
                     "declare it under `serial.<line>.drives`");
             return;
         }
-        slave.device = drive->device;
+        const auto known = with_statements(*drive, reader_, here, entry.identity, entry.modes);
+        slave.device = known.device;
         // The drive's own choice stands in the slots that the machine says nothing about.
         for (const auto& standard : drive->modules)
             if (std::none_of(slave.modules.begin(), slave.modules.end(), [&](const auto& m) { return m.slot == standard.slot; }))
@@ -181,7 +183,8 @@ private:
         slave.rx = selection(*drive, slave.modules, PdoWay::rx, entry, here + ".pdo.rx");
         slave.tx = selection(*drive, slave.modules, PdoWay::tx, entry, here + ".pdo.tx");
         slave.startup = drive->startup;
-        profiles_.emplace_back(entry.slave.name, drive->profile);
+        suit_to_axes(slave, axes);
+        profiles_.emplace_back(entry.slave.name, known.profile);
     }
 
     void add_device(ecat::SlaveConfig& slave, const LoadedDevice& device) {

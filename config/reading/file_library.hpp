@@ -1,6 +1,7 @@
 #pragma once
 // Finds files by name in some folders; each is read once.
 
+#include <functional>
 #include <map>
 #include <string>
 #include <utility>
@@ -20,7 +21,8 @@ template <class Loaded>
 class FileLibrary {
 public:
     using Answer = std::variant<Loaded, std::vector<Error>>;
-    FileLibrary(std::vector<std::string> folders, Answer (*load)(const std::string& path)) : folders_(std::move(folders)), load_(load) {}
+    using Load = std::function<Answer(const std::string& path)>;
+    FileLibrary(std::vector<std::string> folders, Load load) : folders_(std::move(folders)), load_(std::move(load)) {}
 
     /// nullptr when there is no such file or it has errors (then errors() grew).
     const Loaded* find(const std::string& name) {
@@ -41,7 +43,7 @@ public:
 
 private:
     std::vector<std::string> folders_;
-    Answer (*load_)(const std::string& path);
+    Load load_;
     std::map<std::string, Answer, std::less<>> files_;
     std::vector<Error> errors_;
 };

@@ -136,7 +136,7 @@ private:
             problems_.add("axis.gantry", here,
                           fmt::format("axis {} of slave '{}' already belongs to another axis", follower.drive_axis + 1, follower.slave),
                           "name the drive of the other side");
-        if (follower.profile != binding.profile)
+        if (!follower.profile || !binding.profile || follower.profile->name != binding.profile->name)
             problems_.add("axis.gantry", here, fmt::format("slave '{}' is another type of drive than '{}'", follower.slave, binding.slave),
                           "two types follow differently and rack the portal: use two of the same type");
         else if (follower.drive_axis >= binding.profile->axes)

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "axes/port/drive_port.hpp"
+
 namespace taktwerk::runtime {
 
 namespace {
@@ -40,6 +42,9 @@ std::string fill_in(std::string_view text, double a, double b) {
             i += place.size();
         } else if (known && place.substr(2) == ":ns}") {
             out += time_text(value);
+            i += place.size();
+        } else if (known && place.substr(2) == ":mode}") {
+            out += axes::name(static_cast<axes::DriveMode>(value));
             i += place.size();
         } else if (known && place.size() == 6 && place.substr(2, 2) == ":x") {
             out += fmt::format("{:0{}X}", static_cast<std::uint32_t>(value), place[4] - '0');

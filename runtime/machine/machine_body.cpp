@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "axes/drives/cia402/homing_startup.hpp"
+#include "axes/drives/cia402/own_modes.hpp"
 #include "runtime/present_slaves.hpp"
 #include "runtime/relaxed_supervision.hpp"
 
@@ -21,6 +22,15 @@ ecat::BusConfig bus_of(const MachineConfig& config) {
             if (slave.name != binding.slave) continue;
             const auto more = axes::cia402::homing_startup(binding.axis, *binding.profile, binding.drive_axis);
             slave.startup.insert(slave.startup.end(), more.begin(), more.end());
+        }
+    }
+    for (const auto& side : sides_of(config.axes)) {
+        if (!side.profile || side.axis.disabled) continue;
+        for (auto& slave : bus.slaves) {
+            if (slave.name != side.slave) continue;
+            const auto given = axes::cia402::given_to(side.axis, *side.profile, exchange_period(bus, slave));
+            slave.startup.insert(slave.startup.begin(), given.begin(), given.end());
+            slave.asked = axes::cia402::asked_of(*side.profile);
         }
     }
     // Without real time a stall of the host must not trip the slaves' watchdogs before it is even counted.

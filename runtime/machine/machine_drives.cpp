@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "axes/axis/alarms.hpp"
+#include "axes/drives/cia402/own_modes.hpp"
 #include "axes/sim/virtual_drive.hpp"
 #include "runtime/relaxed_supervision.hpp"
 
@@ -60,9 +61,9 @@ void MachineDrives::build_ports() {
 }
 
 std::unique_ptr<axes::DrivePort> MachineDrives::on_bus_drive(std::size_t slave, const AxisBinding& side) {
-    auto drive = std::make_unique<axes::cia402::Cia402Drive>(body_.bus, slave, side.drive_axis, side.profile,
-                                                             ecat::exchange_period(body_.bus_config, body_.bus.slave(slave)),
-                                                             axes::cia402::AxisWants{side.axis.gearing.counts_per_revolution, side.stored});
+    auto drive = std::make_unique<axes::cia402::Cia402Drive>(
+        body_.bus, slave, side.drive_axis, side.profile, ecat::exchange_period(body_.bus_config, body_.bus.slave(slave)),
+        axes::cia402::AxisWants{side.axis.gearing.counts_per_revolution, side.stored, axes::cia402::own_mode(side.axis)});
     bus_drives_.push_back(drive.get());
     return drive;
 }

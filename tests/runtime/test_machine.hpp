@@ -31,7 +31,10 @@ struct AxisWatch {
 
 class TestMachine {
 public:
-    explicit TestMachine(MachineConfig config) : clock(Instant{} + 1s), world(config, clock.now()), cable(world.network()) {
+    explicit TestMachine(const MachineConfig& config) : TestMachine(config, config) {}
+    /// On the cable stands something else than the machine was told: `there`.
+    TestMachine(MachineConfig config, const MachineConfig& there)
+        : clock(Instant{} + 1s), world(there, clock.now()), cable(world.network()) {
         world.transport().plug_into(cable);
         auto built = Machine::build(std::move(config), world.bus(), world.serial().lines());
         if (auto* errors = std::get_if<1>(&built)) {

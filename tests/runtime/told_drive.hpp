@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "axes/drives/cia402/own_modes.hpp"
 #include "axes/drives/cia402/words.hpp"
 #include "core/process_image.hpp"
 #include "ecat/master.hpp"
@@ -52,6 +53,7 @@ public:
         velocity_offset_ = out(0x60B1, true);
         actual_position_ = in(0x6064);
         shown_mode_ = in(0x6061);
+        if (!mode_.mapped() || !shown_mode_.mapped()) fixed_mode_ = axes::cia402::mode_code(axes::cia402::own_mode(binding.axis));
     }
     [[nodiscard]] ToldDrive told(std::span<const std::byte> outputs) const {
         const auto read = [&](const Signal& signal) {
@@ -59,13 +61,13 @@ public:
         };
         ToldDrive told;
         told.control = read_signal(outputs, control_);
-        told.mode = read_signal(outputs, mode_);
+        told.mode = fixed_mode_ ? *fixed_mode_ : read_signal(outputs, mode_);
         told.position = read(position_);
         told.velocity = read(velocity_);
         told.torque = read(torque_);
         told.velocity_offset = read(velocity_offset_);
         told.actual_position = read_signal(bus_.inputs(), actual_position_);
-        told.shown_mode = read_signal(bus_.inputs(), shown_mode_);
+        told.shown_mode = fixed_mode_ ? *fixed_mode_ : read_signal(bus_.inputs(), shown_mode_);
         return told;
     }
     /// What the slave has of it.
@@ -90,6 +92,7 @@ private:
     const ecat::Master& bus_;
     std::size_t slave_;
     std::uint16_t offset_;
+    std::optional<std::int64_t> fixed_mode_;  ///< given by SDO before, where frames do not carry it
     Signal control_, mode_, position_, velocity_, torque_, velocity_offset_, actual_position_, shown_mode_;
 };
 

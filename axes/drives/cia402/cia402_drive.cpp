@@ -27,6 +27,7 @@ Cia402Drive::Cia402Drive(ecat::Master& bus, std::size_t slave, std::uint8_t axis
       profile_(std::move(profile)),
       interpolation_(profile_->csp_interpolates ? cycle : Duration{}),
       fault_quirk_(profile_->has(Quirk::fault_low_nibble_f)),
+      own_{wants.mode},
       alarm_(*profile_, profile_->alarm_detail_index ? of_axis(profile_->alarm_detail_index, axis, *profile_) : std::uint16_t{0}),
       settings_(*profile_, static_cast<std::uint16_t>(axis * profile_->object_offset), cycle, std::move(wants)) {
     auto& c = capabilities_;
@@ -88,11 +89,14 @@ Result<void> Cia402Drive::resolve() {
     const auto no_input = [&](std::uint16_t index, const char* what) { return missing(index, what, "TxPDO", "tx"); };
 
     if (!find_output(out_.control, 0x6040, 0, false)) return no_output(0x6040, "controlword");
-    if (!find_output(out_.mode, 0x6060, 0, true)) return no_output(0x6060, "modes of operation");
-    if (!find_output(out_.target_position, 0x607A, 0, true) && capabilities_.has(DriveMode::cyclic_position))
+    const bool undescribed = profile_->assumes(AssumedPart::process_data);
+    const bool sends_mode = find_output(out_.mode, 0x6060, 0, true), shows_mode = find_input(in_.mode, 0x6061, 0, true);
+    if (!sends_mode && !undescribed) return no_output(0x6060, "modes of operation");
+    if (!find_output(out_.target_position, 0x607A, 0, true) && capabilities_.has(DriveMode::cyclic_position) && !undescribed)
         return no_output(0x607A, "target position");
     if (!find_input(in_.status, 0x6041, 0, false)) return no_input(0x6041, "statusword");
-    if (!find_input(in_.mode, 0x6061, 0, true)) return no_input(0x6061, "modes of operation display");
+    if (!shows_mode && !undescribed) return no_input(0x6061, "modes of operation display");
+    if (auto taken = take_own_modes(sends_mode, shows_mode); !taken) return taken;
     if (!find_input(in_.position, 0x6064, 0, true)) return no_input(0x6064, "position actual value");
 
     (void)find_output(out_.target_velocity, 0x60FF, 0, true);
@@ -121,6 +125,7 @@ Result<void> Cia402Drive::resolve() {
     find_probes();
     find_homing_setup();
     drop_modes_without_target();
+    if (auto moved = check_own_mode(); !moved) return moved;
     capabilities_.profile_buffer = capabilities_.has(DriveMode::profile_position) ? profile_->profile_buffer : std::uint8_t{0};
     find_ramps();
     collect_starting_values();
@@ -218,6 +223,7 @@ void Cia402Drive::drop_modes_without_target() noexcept {
     const auto needs = [&](DriveMode mode, const MappedOutput& target) {
         if (!target.mapped()) capabilities_.modes = static_cast<std::uint16_t>(capabilities_.modes & ~(1u << static_cast<unsigned>(mode)));
     };
+    needs(DriveMode::cyclic_position, out_.target_position);
     needs(DriveMode::profile_position, out_.target_position);
     needs(DriveMode::profile_velocity, out_.target_velocity);
     needs(DriveMode::cyclic_velocity, out_.target_velocity);

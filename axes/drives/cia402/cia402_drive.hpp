@@ -55,6 +55,10 @@ public:
     [[nodiscard]] std::vector<std::string> setup_problems() const override { return settings_.problems(); }
 
 private:
+    struct OwnMode {
+        DriveMode wanted;                  ///< in which the axis is moved
+        std::optional<DriveMode> fixed{};  ///< the only one: 6060h and 6061h are not both in the process data
+    };
     struct Outputs {
         MappedOutput control, mode, target_position, target_velocity, target_torque, velocity_offset, torque_offset, torque_max,
             torque_positive, torque_negative, digital, digital_mask, probe_function, profile_velocity, profile_acceleration,
@@ -68,6 +72,8 @@ private:
     [[nodiscard]] std::uint16_t object(std::uint16_t base) const noexcept;
     [[nodiscard]] bool find_output(MappedOutput& output, std::uint16_t index, std::uint8_t sub, bool is_signed) const;
     [[nodiscard]] bool find_input(Signal& signal, std::uint16_t index, std::uint8_t sub, bool is_signed) const;
+    [[nodiscard]] Result<void> take_own_modes(bool sends, bool shows);
+    [[nodiscard]] Result<void> check_own_mode() const;
     void find_probes();
     void find_homing_setup();
     void drop_modes_without_target() noexcept;
@@ -94,6 +100,7 @@ private:
     std::shared_ptr<const DriveProfile> profile_;
     Duration interpolation_;
     bool fault_quirk_;
+    OwnMode own_;
     Outputs out_;
     Inputs in_;
     DriveCapabilities capabilities_;

@@ -56,7 +56,7 @@ const DriveFeedback& Cia402Drive::decode(Instant now) noexcept {
 
     // While a drive changes its mode, 6061h and what belongs to the mode may be anything (TSVM 5.4.1).
     if (health.latched >= mode_means_something_from_) {
-        feedback_.mode = mode_of(read_signal(image, in_.mode));
+        feedback_.mode = own_.fixed ? *own_.fixed : mode_of(read_signal(image, in_.mode));
         decode_motion();
     } else {
         feedback_.mode = DriveMode::none;

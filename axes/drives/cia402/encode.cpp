@@ -93,7 +93,7 @@ void Cia402Drive::encode(const DriveCommand& command, Instant now) noexcept {
     } else if (!homing_since_) {
         homing_since_ = now;
     }
-    write_signal(image, out_.mode.signal, mode_code(mode));
+    if (out_.mode.mapped()) write_signal(image, out_.mode.signal, mode_code(mode));
 
     // Until the drive follows in this mode its target is its own actual position: enabling and mode switches never step. From one cyclic
     // mode into another the targets of both are the command's: a motor that turns would feel an actual value, old as it is, as a step. So it

@@ -20,6 +20,7 @@ namespace taktwerk::axes::cia402 {
 struct AxisWants {
     std::int64_t counts_per_revolution = 0;  ///< 0: not compared
     std::vector<StoredSetting> stored{};
+    DriveMode mode = DriveMode::none;  ///< in which it is moved; none: it only measures
 };
 
 class SettingsCheck {
