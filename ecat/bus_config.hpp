@@ -44,6 +44,13 @@ struct AskedObject {
     std::uint8_t sub = 0;
 };
 
+/// An object that goes out with the frames although nobody asked for it, and what the slave had in it before. See Master::found_outputs().
+struct FoundOutput {
+    std::uint16_t index = 0;
+    std::uint8_t sub = 0;
+    std::uint32_t value = 0;  ///< its lowest 32 bits
+};
+
 /// What the loss of a slave means to the machine.
 enum class LossPolicy : std::uint8_t {
     stop_machine,   ///< every axis stops

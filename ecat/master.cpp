@@ -200,13 +200,17 @@ Result<Signal> Master::output(std::size_t slave, std::uint16_t object, std::uint
 bool Master::maps_output(std::size_t slave, std::uint16_t object, std::uint8_t sub) const noexcept {
     return impl_->find(slave, object, sub, true) != nullptr;
 }
+std::span<const FoundOutput> Master::found_outputs(std::size_t slave) const noexcept {
+    if (slave >= impl_->bus->slaves.size()) return {};
+    return impl_->bus->slaves[slave]->kept;
+}
 std::optional<std::uint32_t> Master::told(std::size_t slave, std::uint16_t object, std::uint8_t sub) const noexcept {
+    if (slave >= impl_->bus->slaves.size()) return std::nullopt;
     const auto& of = *impl_->bus->slaves[slave];
     for (std::size_t i = 0; i < of.answers.size(); ++i)
         if (of.config->asked[i].index == object && of.config->asked[i].sub == sub) return of.answers[i];
     return std::nullopt;
 }
-
 bool Master::maps_input(std::size_t slave, std::uint16_t object, std::uint8_t sub) const noexcept {
     return impl_->find(slave, object, sub, false) != nullptr;
 }

@@ -85,6 +85,8 @@ public:
     [[nodiscard]] Result<Signal> output(std::size_t slave, std::uint16_t object, std::uint8_t sub) const;
     [[nodiscard]] bool maps_output(std::size_t slave, std::uint16_t object, std::uint8_t sub) const noexcept;
     [[nodiscard]] bool maps_input(std::size_t slave, std::uint16_t object, std::uint8_t sub) const noexcept;
+    /// Outputs that nobody asked for, of a slave whose PDOs nobody stated: whoever writes its outputs lets them be what they were.
+    [[nodiscard]] std::span<const FoundOutput> found_outputs(std::size_t slave) const noexcept;
     /// What the slave answered to one of SlaveConfig::asked; nothing: it has no such object, or nobody asked.
     [[nodiscard]] std::optional<std::uint32_t> told(std::size_t slave, std::uint16_t object, std::uint8_t sub) const noexcept;
 

@@ -80,13 +80,17 @@ public:
 private:
     RecognisedSlave as_drive(const ecat::Identity& id) {
         RecognisedSlave out;
+        bool best_of_a_manual = false;
         for (const auto& name : drives_.names()) {
             const auto* drive = drives_.find(name);
-            if (drive == nullptr || !drive->device || !ecat::check_identity("", *drive->device, id)) continue;
+            if (drive == nullptr || !drive->device || !ecat::recognises(*drive->device, id)) continue;
+            const bool of_a_manual = drive->profile->assumptions.empty();
             if (out.kind == Kind::drive) {
-                out.remark = fmt::format("it may be {} as well: both have this identity", name);
-                continue;
+                const bool better = of_a_manual && !best_of_a_manual;
+                out.remark = fmt::format("it may be {} as well: both have this identity", better ? out.type : name);
+                if (!better) continue;
             }
+            best_of_a_manual = of_a_manual;
             out.kind = Kind::drive, out.type = name, out.axes = std::max<unsigned>(drive->profile->axes, 1);
         }
         return out;

@@ -85,7 +85,8 @@ void append_error(std::string& page, const axes::ErrorText& error) {
 std::string alarm_reference_markdown() {
     std::string page =
         "# Alarms\n\n"
-        "Generated from the alarm tables (`taktwerk docs alarms`). {a} and {b} stand for the numbers of the occasion ({a:ns}: a time, {a:mode}: a mode of operation). A "
+        "Generated from the alarm tables (`taktwerk docs alarms`). {a} and {b} stand for the numbers of the occasion ({a:ns}: a time, "
+        "{a:mode}: a mode of operation). A "
         "drive's own\n"
         "alarms come with its profile and are shown with `drive_fault` and `drive_warning`; a program's alarms are declared by the "
         "program. What an axis does about its own alarms may be chosen in the machine file (`reactions`), from mild to hard: `warn`,\n"

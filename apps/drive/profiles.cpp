@@ -51,7 +51,7 @@ std::vector<std::string> profiles_of(const DriveOptions& options, const ecat::Su
     std::vector<std::string> out;
     for (const auto& name : library.names()) {
         const auto* drive = library.find(name);
-        if (drive && drive->device && drive->device->stated.identity && ecat::check_identity("", *drive->device, slave.found.identity)) out.push_back(name);
+        if (drive && drive->device && ecat::recognises(*drive->device, slave.found.identity)) out.push_back(name);
     }
     return out;
 }

@@ -122,6 +122,8 @@ Table<PdoDirection> pdo_direction_table() {
             field_at<P>(
                 "max_bytes", [](P & p) -> auto& { return p.rules.max_bytes; }, integer<std::uint16_t>(1, 1486), "bytes of the direction"),
             required(field("assigned", &P::assigned, list(integer<std::uint16_t>(0x1600, 0x1BFF)), "factory assignment (1C12h or 1C13h)")),
+            field_at<P>(
+                "assignment_fixed", [](P & p) -> auto& { return p.rules.assignment_fixed; }, boolean(), "nothing else can be assigned"),
             required(field("available", &P::available, list(section(pdo_table())), "all PDOs")),
         },
         {},

@@ -49,6 +49,7 @@ struct BusSlave {
     MailboxEndpoint mailbox;
     std::vector<PdoDescription> rx, tx;                 ///< as the slave maps them now
     std::vector<std::optional<std::uint32_t>> answers;  ///< to config->asked; none: it has no such object
+    std::vector<FoundOutput> kept;                      ///< outputs of a mapping that nobody stated, beyond what was asked for
     std::string last_abort;                             ///< for the diagnosis of a refused state
     std::optional<Refusal> refusal;                     ///< why it did not take the state asked last; none: it did
     bool in_line = false;                               ///< the bring-up gave it a place and a plan: recovery is possible

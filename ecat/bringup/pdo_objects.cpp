@@ -11,8 +11,7 @@ Script<Result<void>> write_mapping(Bus& bus, BusSlave& slave, const PdoDescripti
     if (!written) co_return written;
     std::uint8_t sub = 0;
     for (const auto& entry : pdo.entries) {
-        const std::uint32_t value = (std::uint32_t{entry.index} << 16) | (std::uint32_t{entry.sub} << 8) | entry.bits;
-        written = co_await write_number(bus, slave, pdo.index, ++sub, value, 4);
+        written = co_await write_number(bus, slave, pdo.index, ++sub, mapped_as(entry), 4);
         if (!written) co_return written;
     }
     co_return co_await write_number(bus, slave, pdo.index, 0, static_cast<std::uint32_t>(pdo.entries.size()), 1);

@@ -11,6 +11,11 @@ namespace taktwerk::ecat {
     return static_cast<std::uint16_t>(0x1C10 + sync_manager);
 }
 
+/// The number by which 16xxh and 1Axxh name an object.
+[[nodiscard]] constexpr std::uint32_t mapped_as(const PdoEntry& entry) noexcept {
+    return (std::uint32_t{entry.index} << 16) | (std::uint32_t{entry.sub} << 8) | entry.bits;
+}
+
 /// Count 0, entries, count. The PDO must not be assigned meanwhile.
 [[nodiscard]] Script<Result<void>> write_mapping(Bus& bus, BusSlave& slave, const PdoDescription& pdo);
 /// PDOs, then their count. It was written 0 before.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "ecat/bringup/effective_pdos.hpp"
 #include "ecat/bringup/pdo_objects.hpp"
 #include "ecat/bringup/slave_objects.hpp"
 #include "ecat/coe/sdo_client.hpp"
@@ -38,6 +39,12 @@ std::vector<PdoEntry> lacking(const Pdos& pdos, const std::vector<PdoEntry>& obj
     return out;
 }
 
+std::vector<PdoEntry> entries_of(const Pdos& pdos) {
+    std::vector<PdoEntry> out;
+    for (const auto& pdo : pdos) out.insert(out.end(), pdo.entries.begin(), pdo.entries.end());
+    return out;
+}
+
 /// What they carry of the wish; an object counts more than all behind it.
 std::uint64_t worth(const Pdos& pdos, const PdoWish& wish) {
     std::uint64_t sum = 0;
@@ -68,7 +75,8 @@ struct Search {
     std::uint16_t assignment;
     PdoWish wish;
     bool assignable = true;  ///< the assignment object can be written
-    std::string refusal;     ///< the last thing that it did not take
+    std::string refusal{};   ///< the last thing that it did not take
+    [[nodiscard]] bool out() const noexcept { return wish.pdo.index < first_tx; }
 };
 
 /// Entry by entry: what is refused is left out. Nothing where the PDO's content cannot be written at all.
@@ -82,9 +90,8 @@ Script<Result<std::optional<PdoDescription>>> fill(Search& search) {
         co_return std::optional<PdoDescription>{};
     }
     for (const auto& entry : search.wish.pdo.entries) {
-        const std::uint32_t value = (std::uint32_t{entry.index} << 16) | (std::uint32_t{entry.sub} << 8) | entry.bits;
         const auto place = static_cast<std::uint8_t>(taken.entries.size() + 1);
-        written = co_await write_number(search.bus, search.slave, taken.index, place, value, 4);
+        written = co_await write_number(search.bus, search.slave, taken.index, place, mapped_as(entry), 4);
         if (written) {
             taken.entries.push_back(entry);
             continue;
@@ -111,6 +118,24 @@ Script<Result<Pdos>> read_all(Search& search, const std::vector<std::uint16_t>& 
         if (pdo && !pdo->entries.empty()) pdos.push_back(std::move(*pdo));
     }
     co_return pdos;
+}
+
+/// What is assigned, in its own words; a PDO whose content it does not show has that of its EEPROM. Nothing: it does not say.
+Script<Result<std::optional<Pdos>>> read_assigned(Search& search) {
+    const Result<std::vector<std::uint16_t>> numbers = co_await read_assignment(search.bus, search.slave, search.assignment);
+    if (!numbers && !refused(numbers.error())) co_return numbers.error();
+    if (!numbers) co_return std::optional<Pdos>{};
+    const Pdos in_eeprom = assigned_in_eeprom(search.out() ? search.slave.found.sii.rx_pdos : search.slave.found.sii.tx_pdos);
+    Pdos pdos;
+    for (const std::uint16_t number : *numbers) {
+        Result<PdoDescription> pdo = co_await read_mapping(search.bus, search.slave, number);
+        if (!pdo && !refused(pdo.error())) co_return pdo.error();
+        const auto* hidden = pdo ? nullptr : find_pdo(in_eeprom, number);
+        if (!pdo && hidden == nullptr) co_return std::optional<Pdos>{};  // it would be left out of the frames
+        if (hidden != nullptr) pdos.push_back(*hidden);
+        else if (!pdo->entries.empty()) pdos.push_back(std::move(*pdo));
+    }
+    co_return std::optional<Pdos>{std::move(pdos)};
 }
 
 /// The fewest of its PDOs that have what is required: one if one has, else one after the other.
@@ -145,23 +170,98 @@ Error nothing_fits(const Search& search, const Pdos& pdos) {
         "look up in its manual how the object is mapped, and say so in a drive file of its own (`based_on`, docs/drives.md)"};
 }
 
-/// Of its own PDOs, where it takes none of ours.
-Script<Result<Pdos>> choose_own(Search& search, const Pdos& now) {
-    if (has_all(now, search.wish.required) && !search.assignable) co_return now;
+/// Written and read back: what it shows then is what is exchanged, whatever it accepted. Nothing: it refuses the assignment.
+Script<Result<std::optional<Pdos>>> assign(Search& search, const Pdos& pdos) {
+    if (search.assignable) {
+        const Result<void> written = co_await write_assigned(search.bus, search.slave, search.assignment, pdos);
+        if (!written) {
+            if (!refused(written.error())) co_return written.error();
+            search.refusal = written.error().what;
+            co_return std::optional<Pdos>{};
+        }
+    }
+    Result<std::optional<Pdos>> shown = co_await read_assigned(search);
+    if (!shown) co_return shown.error();
+    if (!*shown) co_return std::optional<Pdos>{pdos};
+    if (has_all(**shown, search.wish.required)) co_return std::optional<Pdos>{std::move(**shown)};
+    if (search.refusal.empty()) search.refusal = "it accepted another and does not show it";
+    co_return nothing_fits(search, **shown);
+}
+
+/// Of its own PDOs, where it takes none of ours. `but`: the one that it refused to have assigned; 0: none.
+Script<Result<Pdos>> choose_own(Search& search, std::uint16_t but) {
+    if (!search.assignable) {
+        Result<std::optional<Pdos>> now = co_await read_assigned(search);
+        if (!now) co_return now.error();
+        if (!*now || !has_all(**now, search.wish.required)) co_return nothing_fits(search, *now ? **now : Pdos{});
+        co_return std::move(**now);
+    }
     std::vector<std::uint16_t> numbers;
     for (const auto range : ranges)
         for (std::uint16_t n = 0; n < looked_at; ++n)
-            numbers.push_back(static_cast<std::uint16_t>((search.wish.pdo.index < first_tx ? first_rx : first_tx) + range + n));
+            if (const auto number = static_cast<std::uint16_t>((search.out() ? first_rx : first_tx) + range + n); number != but)
+                numbers.push_back(number);
     search.bus.note(search.slave, fmt::format("looking which PDOs it has for {:04X}h", search.assignment));
     Result<Pdos> offered = co_await read_all(search, numbers);
     if (!offered) co_return offered.error();
-    Pdos chosen = search.assignable ? choose(*offered, search.wish) : now;
-    if (!has_all(chosen, search.wish.required) || chosen.empty()) co_return nothing_fits(search, search.assignable ? *offered : now);
-    if (search.assignable) {
-        const Result<void> written = co_await write_assigned(search.bus, search.slave, search.assignment, chosen);
-        if (!written) co_return written.error();
+    const Pdos chosen = choose(*offered, search.wish);
+    if (!has_all(chosen, search.wish.required) || chosen.empty()) co_return nothing_fits(search, *offered);
+    Result<std::optional<Pdos>> assigned = co_await assign(search, chosen);
+    if (!assigned) co_return assigned.error();
+    if (!*assigned) co_return nothing_fits(search, *offered);
+    co_return std::move(**assigned);
+}
+
+/// What was there before a mapping that did not become one.
+Script<Result<void>> restore(Search& search, const Result<PdoDescription>& before) {
+    if (!before) co_return Result<void>{};
+    const Result<void> written = co_await write_mapping(search.bus, search.slave, *before);
+    if (!written && !refused(written.error())) co_return written.error();
+    co_return Result<void>{};
+}
+
+Script<Result<Pdos>> look_for(Search& search) {
+    Result<std::optional<Pdos>> now = co_await read_assigned(search);
+    if (!now) co_return now.error();
+    if (*now && has_all(**now, search.wish.pdo.entries)) co_return std::move(**now);
+
+    const Result<void> cleared = co_await write_number(search.bus, search.slave, search.assignment, 0, 0, 1);
+    if (!cleared) {
+        if (!refused(cleared.error())) co_return cleared.error();
+        search.assignable = false;
+        search.refusal = cleared.error().what;
+        if (*now && (*now)->size() == 1) search.wish.pdo.index = (*now)->front().index;  // its content may be free all the same
     }
-    co_return chosen;
+    const Result<PdoDescription> before = co_await read_mapping(search.bus, search.slave, search.wish.pdo.index);
+    if (!before && !refused(before.error())) co_return before.error();
+    const Result<std::optional<PdoDescription>> filled = co_await fill(search);
+    if (!filled) co_return filled.error();
+    Pdos taken;
+    if (*filled) taken.push_back(**filled);
+    if (has_all(taken, search.wish.required)) {
+        Result<std::optional<Pdos>> assigned = co_await assign(search, taken);
+        if (!assigned) co_return assigned.error();
+        if (*assigned) co_return std::move(**assigned);
+        co_return co_await choose_own(search, search.wish.pdo.index);
+    }
+    const Result<void> restored = co_await restore(search, before);
+    if (!restored) co_return restored.error();
+    co_return co_await choose_own(search, 0);
+}
+
+/// Outputs that nobody asked for go out with every frame all the same: a torque limit or a highest speed of zero would mean "never move". They
+/// begin with what the drive has in them now.
+Script<Result<void>> keep_outputs(Search& search, const Pdos& pdos) {
+    search.slave.kept.clear();
+    const Pdos asked{search.wish.pdo};
+    const std::vector<PdoEntry> others = lacking(asked, entries_of(pdos));
+    for (const auto& object : others) {
+        if (object.index == 0) continue;
+        const Result<std::uint32_t> value = co_await read_number(search.bus, search.slave, object.index, object.sub);
+        if (!value && !refused(value.error())) co_return value.error();
+        if (value) search.slave.kept.push_back({object.index, object.sub, *value});
+    }
+    co_return Result<void>{};
 }
 
 void remark(Search& search, const Pdos& pdos) {
@@ -173,43 +273,17 @@ void remark(Search& search, const Pdos& pdos) {
 }  // namespace
 
 Script<Result<std::vector<PdoDescription>>> search_pdos(Bus& bus, BusSlave& slave, std::uint8_t sync_manager, const PdoWish& wish) {
-    Search search{bus, slave, assignment_of(sync_manager), wish, true, {}};
-    const Result<std::vector<std::uint16_t>> numbers = co_await read_assignment(bus, slave, search.assignment);
-    if (!numbers && !refused(numbers.error())) co_return numbers.error();
-    Pdos now;
-    if (numbers) {
-        Result<Pdos> read = co_await read_all(search, *numbers);
-        if (!read) co_return read.error();
-        now = std::move(*read);
+    const std::string abort_before = slave.last_abort;
+    Search search{bus, slave, assignment_of(sync_manager), wish};
+    Result<Pdos> found = co_await look_for(search);
+    if (!found) co_return found.error();
+    if (search.out()) {
+        const Result<void> kept = co_await keep_outputs(search, *found);
+        if (!kept) co_return kept.error();
     }
-    if (has_all(now, search.wish.pdo.entries)) {
-        remark(search, now);
-        co_return now;
-    }
-    const Result<void> cleared = co_await write_number(bus, slave, search.assignment, 0, 0, 1);
-    if (!cleared) {
-        if (!refused(cleared.error())) co_return cleared.error();
-        search.assignable = false;
-        search.refusal = cleared.error().what;
-        if (now.size() == 1) search.wish.pdo.index = now.front().index;  // its content may be free all the same
-    }
-    const Result<std::optional<PdoDescription>> filled = co_await fill(search);
-    if (!filled) co_return filled.error();
-    Pdos result;
-    if (*filled && has_all({**filled}, search.wish.required)) {
-        result = {**filled};
-        if (search.assignable) {
-            const Result<void> written = co_await write_assigned(bus, slave, search.assignment, result);
-            if (!written) co_return written.error();
-        }
-    } else {
-        Result<Pdos> own = co_await choose_own(search, now);
-        if (!own) co_return own.error();
-        result = std::move(*own);
-    }
-    slave.last_abort.clear();  // what it did not take was a question, and explains nothing that comes later
-    remark(search, result);
-    co_return result;
+    slave.last_abort = abort_before;  // what it did not take was a question, and explains nothing that comes later
+    remark(search, *found);
+    co_return found;
 }
 
 }  // namespace taktwerk::ecat

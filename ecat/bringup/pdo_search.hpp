@@ -13,8 +13,11 @@ struct PdoWish {
 };
 
 /// In this order: the PDOs that are assigned already have all; `wish.pdo` takes it, but for objects that the slave refuses; one of its other
-/// PDOs (16x0h to 16xFh and 17x0h to 17xFh, or 1Axxh and 1Bxxh) has all that is required, or several together have. What was left out is a
-/// note of the bus. Error bus.no_process_data: what is missing, what the slave has, what it refused.
-[[nodiscard]] Script<Result<std::vector<PdoDescription>>> search_pdos(Bus& bus, BusSlave& slave, std::uint8_t sync_manager, const PdoWish& wish);
+/// PDOs (1600h to 160Fh and 1700h to 170Fh, or 1A00h to 1A0Fh and 1B00h to 1B0Fh) has all that is required, or several together have. Where the
+/// assignment cannot be written, it is the assigned PDO that is filled, or taken as it is. What is written is read back, and what the slave shows
+/// then is what is exchanged. What was left out is a note of the bus; outputs beyond the wish are in BusSlave::kept. Error bus.no_process_data:
+/// what is missing, what the slave has, what it refused.
+[[nodiscard]] Script<Result<std::vector<PdoDescription>>> search_pdos(Bus& bus, BusSlave& slave, std::uint8_t sync_manager,
+                                                                      const PdoWish& wish);
 
 }  // namespace taktwerk::ecat

@@ -1,5 +1,7 @@
 #include "ecat/bringup/recovery.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "ecat/bringup/al_control.hpp"
@@ -86,6 +88,11 @@ Script<Result<void>> readdress(Bus& bus, BusSlave& slave) {
     co_return Result<void>{};
 }
 
+/// The same objects at the same bits, whatever PDOs carry them.
+bool same_entries(const std::vector<PdoDescription>& a, const std::vector<PdoDescription>& b) {
+    return std::ranges::equal(a, b, [](const auto& one, const auto& other) { return one.entries == other.entries; });
+}
+
 Script<bool> reads_as(Bus& bus, std::uint16_t station, std::uint16_t address, const std::vector<std::byte>& wanted, bool& changed) {
     const Reply reply = co_await bus.port.fprd(station, address, wanted.size());
     if (reply.ok() && reply.data != wanted) changed = true;
@@ -112,13 +119,17 @@ Script<Result<void>> recover(Bus& bus, BusSlave& slave) {
         if (!done) co_return done;
     }
     if (state != AlState::safeop && state != AlState::op) {
+        const auto rx_before = slave.rx, tx_before = slave.tx;
         done = co_await prepare_process_data(bus, slave);
         if (!done) co_return done;
         const auto& plan = bus.plan.slaves[slave.index];
         const auto mapping = map_slave(plan_input(slave));
         const bool same = mapping && mapping->outputs.bytes == plan.outputs.size && mapping->inputs.bytes == plan.inputs.size;
-        if (slave.has_coe() && !same)
+        const bool same_objects = same_entries(rx_before, slave.rx) && same_entries(tx_before, slave.tx);
+        if (slave.has_coe() && (!same || !same_objects)) {
+            slave.rx = rx_before, slave.tx = tx_before;  // what the next attempt is held against
             co_return Error{"bus.pdo_mismatch", slave.subject, "it came back with other PDOs than before", "restart the machine"};
+        }
         if (bus.reference != slave.index) {
             done = co_await restore_clock(bus, slave);
             if (!done) co_return done;

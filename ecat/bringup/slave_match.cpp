@@ -136,6 +136,10 @@ void hint_at_order(const BusConfig& config, const std::vector<FoundSlave>& found
 
 }  // namespace
 
+bool recognises(const DeviceDescription& device, const Identity& found) {
+    return device.stated.identity && fits(device, device.revision_rule, found);
+}
+
 std::string found_text(const FoundSlave& slave) {
     if (slave.error) return "not readable";
     if (slave.sii.has(SiiDefect::empty)) return "its EEPROM is empty";

@@ -23,6 +23,9 @@ namespace taktwerk::ecat {
 [[nodiscard]] Result<void> check_identity(const std::string& subject, const SlaveConfig& wanted, const Identity& found);
 [[nodiscard]] Result<void> check_identity(const std::string& subject, const DeviceDescription& device, const Identity& found);
 
+/// By who it says it is, whatever else is known: never a description that leaves open whom it means.
+[[nodiscard]] bool recognises(const DeviceDescription& device, const Identity& found);
+
 /// "vendor 000007FBh product 000C0108h revision 00010001h", or that it could not be read.
 [[nodiscard]] std::string found_text(const FoundSlave& slave);
 

@@ -96,6 +96,7 @@ struct PdoRules {
     std::uint8_t max_assigned = 1;  ///< 1C12h:00 / 1C13h:00
     std::uint8_t max_entries = 10;  ///< entries per mapping object
     std::uint16_t max_bytes = 1486;
+    bool assignment_fixed = false;  ///< 1C12h or 1C13h can be read alone
 };
 
 /// How exactly the revision of SII word Ch has to be the description's.

@@ -125,12 +125,13 @@ void ObjectDictionary::add_pdos(const std::vector<PdoDescription>& pdos, const P
 }
 
 void ObjectDictionary::add_assignment(std::uint16_t index, const std::vector<std::uint16_t>& assigned, const PdoRules& rules) {
-    auto count = number(index, 0, DataType::U8, static_cast<std::int64_t>(assigned.size()), count_name, Access::rw);
+    const Access access = rules.assignment_fixed ? Access::ro : Access::rw;
+    auto count = number(index, 0, DataType::U8, static_cast<std::int64_t>(assigned.size()), count_name, access);
     count.maximum = rules.max_assigned;
     add(count, EntryRole::assign_count);
     for (std::size_t n = 0; n < std::max<std::size_t>(assigned.size(), rules.max_assigned); ++n)
         add(number(index, static_cast<std::uint8_t>(n + 1), DataType::U16, n < assigned.size() ? assigned[n] : 0,
-                   "assigned PDO " + std::to_string(n + 1), Access::rw),
+                   "assigned PDO " + std::to_string(n + 1), access),
             EntryRole::assign_entry);
 }
 

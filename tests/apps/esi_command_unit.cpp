@@ -214,6 +214,19 @@ TEST_F(EsiImportCommand, InitWritesAMachineFileOfTheBus) {
     EXPECT_THAT(again.err, HasSubstr("there is such a file already"));
 }
 
+// An IS620N and an SV33-E have the same identity: the file that was written from a manual is named, the other told.
+TEST_F(EsiImportCommand, InitNamesOfTwoDrivesTheOneThatAManualDescribes) {
+    std::filesystem::copy(source / "config/drives", folder / "drives");
+    const auto bus = machine("    - { name: x, profile: is620n }\n");
+    const auto cell = folder / "cell";
+    std::filesystem::create_directories(cell / "machines");
+    std::filesystem::copy(source / "config/drives", cell / "drives");
+    const auto file = (cell / "machines" / "first.yaml").string();
+    const auto init = in_process({"bus", "init", "--machine", bus, "--simulate", "-o", file});
+    ASSERT_EQ(init.code, exit_ok) << init.err;
+    EXPECT_THAT(text_of(file), AllOf(HasSubstr("profile: sv33-e"), HasSubstr("it may be is620n as well"), Not(HasSubstr("cia402"))));
+}
+
 TEST_F(EsiImportCommand, WithoutAFileTheTextGoesOutAndTheReportBesideIt) {
     const auto import = esi({"import", works, "--device", "DI2"});
     EXPECT_EQ(import.code, exit_ok);

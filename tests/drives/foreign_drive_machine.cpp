@@ -7,6 +7,7 @@
 #include "config/drive_file/drive_loader.hpp"
 #include "config/machine_file/machine_loader.hpp"
 #include "config/reading/file_library.hpp"
+#include "ecat/wire/sdo.hpp"
 #include "tests/runtime/test_machine.hpp"
 
 namespace taktwerk::runtime::testing {
@@ -35,7 +36,7 @@ MachineConfig press(const std::string& slave, const std::string& axis = "") {
 
 constexpr const char* unknown = "profile: cia402";
 
-/// The same machine, with that drive of tests/drives/foreign/ on the cable.
+/// The same machine, with that drive of tests/drives/foreign/ on the cable: as a world, and as a machine that knows all of it.
 MachineConfig with_drive(const std::string& name, const std::string& axis = "") {
     auto config = press(unknown, axis);
     const auto folder = std::string(TAKTWERK_SOURCE_DIR) + "/tests/drives/foreign/";
@@ -46,6 +47,8 @@ MachineConfig with_drive(const std::string& name, const std::string& axis = "") 
     }
     const auto& drive = std::get<config::LoadedDrive>(loaded);
     config.bus.slaves[0].device = drive.device;
+    config.bus.slaves[0].rx = drive.rx;
+    config.bus.slaves[0].tx = drive.tx;
     config.axes[0].profile = drive.profile;
     return config;
 }
@@ -158,6 +161,118 @@ TEST(ForeignDrive, WithoutTargetPositionItIsRefusedWithWhatItHas) {
               "look up in its manual how the object is mapped, and say so in a drive file of its own (`based_on`, docs/drives.md)");
 }
 
+// 1C12h and 1C13h cannot be written: the PDOs in them are given what is wished for all the same.
+TEST(ForeignDrive, WhereTheAssignmentIsFixedTheAssignedPdoIsFilled) {
+    TestMachine m{press(unknown), with_drive("fixed-assignment")};
+    expect_it_moves(m);
+    EXPECT_EQ(outputs(m.machine->bus()), "6040h 607Ah 6060h 60FFh 6071h 60B8h ");
+    EXPECT_EQ(inputs(m.machine->bus()), "6041h 6064h 6061h 603Fh 60FDh 6077h 60B9h 60BAh 60BBh ");
+    EXPECT_THAT(notes(m), Contains("slave 0 'press' (cia402): 1601h (6040h 607Ah 6060h 60FFh 6071h 60B8h) exchanged"));
+}
+
+TEST(ForeignDrive, WhereNothingCanBeChangedItIsTakenAsItIs) {
+    TestMachine m{press(unknown), with_drive("fixed-throughout")};
+    expect_it_moves(m);
+    EXPECT_EQ(outputs(m.machine->bus()), "6040h 607Ah 6060h ");
+    EXPECT_THAT(notes(m), Contains("slave 0 'press' (cia402): 1600h (6040h 607Ah 6060h) exchanged; without 60FFh 6071h 60B8h"));
+}
+
+TEST(ForeignDrive, AFixedAssignmentWithoutTargetPositionIsRefusedWithWhatIsInIt) {
+    const auto error = refusal(press(unknown), with_drive("fixed-to-speeds"));
+    EXPECT_EQ(error.code, "bus.no_process_data");
+    EXPECT_EQ(
+        error.what,
+        "607Ah cannot be exchanged: its RxPDOs are 1600h (6040h 60FFh); it takes no other mapping: writing 1600h:00 was refused: abort "
+        "06010002h object is read-only");
+}
+
+// The same as a drive that somebody described: what is wanted is what it has, or the difference is told.
+TEST(ForeignDrive, AFixedAssignmentOfADescribedDriveIsFineWhereItIsWhatIsWanted) {
+    TestMachine m{with_drive("fixed-throughout")};
+    ASSERT_TRUE(m.up());
+    EXPECT_EQ(outputs(m.machine->bus()), "6040h 607Ah 6060h ");
+    auto other = with_drive("fixed-throughout");
+    for (const auto& pdo : other.bus.slaves[0].device->rx_pdos)
+        if (pdo.index == 0x1601) other.bus.slaves[0].rx.assigned = {pdo};
+    const auto error = refusal(other, with_drive("fixed-throughout"));
+    EXPECT_EQ(error.code, "bus.pdo_mismatch");
+    EXPECT_THAT(error.what, HasSubstr("the assignment could not be written"));
+}
+
+// A PDO that is exchanged and does not show what it carries has the content that the EEPROM says; nothing of it is left out of the frames.
+TEST(ForeignDrive, AnAssignedPdoThatDoesNotShowItsContentIsThatOfTheEeprom) {
+    TestMachine m{press(unknown), with_drive("fixed-throughout")};
+    m.world.network().slave(0).abort_object(0x1600, 0, ecat::sdo_abort::no_object);
+    expect_it_moves(m);
+    EXPECT_EQ(outputs(m.machine->bus()), "6040h 607Ah 6060h ");
+}
+
+// The frames carry a limit that nobody asked for: it stays what the drive had in it.
+TEST(ForeignDrive, AnOutputThatNobodyAskedForStaysWhatItWas) {
+    TestMachine m{press(unknown), with_drive("speed-limit")};
+    expect_it_moves(m);
+    EXPECT_EQ(m.world.network().slave(0).dictionary().value(0x607F, 0), 900000);
+}
+
+// It answers that it has taken a mapping of six objects, and has one.
+TEST(ForeignDrive, AMappingThatItAcceptsAndDoesNotTakeIsTold) {
+    TestMachine m{press(unknown)};
+    auto& dictionary = m.world.network().slave(0).dictionary();
+    m.world.also = [&](Instant) {
+        if (auto* count = dictionary.find(0x1600, 0); count != nullptr && count->get() > 1) count->set(1);
+    };
+    const auto ok = m.runner->bring_up();
+    ASSERT_FALSE(ok.ok());
+    EXPECT_EQ(ok.error().code, "bus.no_process_data");
+    EXPECT_EQ(
+        ok.error().what,
+        "607Ah cannot be exchanged: its RxPDOs are 1600h (6040h); it takes no other mapping: it accepted another and does not show it");
+}
+
+// What it did not take was a question: a state that it refuses afterwards is not blamed on that.
+TEST(ForeignDrive, WhatWasAskedOfItIsNoReasonForAnythingElse) {
+    TestMachine m{press(unknown), with_drive("few-objects")};
+    m.world.network().slave(0).refuse_state(ecat::sim::EsmState::safeop, 0x001D);
+    const auto ok = m.runner->bring_up();
+    ASSERT_FALSE(ok.ok());
+    EXPECT_THAT(ok.error().text(), HasSubstr("001D"));
+    EXPECT_THAT(ok.error().text(), ::testing::Not(HasSubstr("last SDO abort")));
+    EXPECT_THAT(ok.error().text(), ::testing::Not(HasSubstr("was refused before")));
+}
+
+// Who was taken at the start is who has to come back; another in its place stays outside, and both are named.
+TEST(ForeignDrive, AnotherThatComesBackInItsPlaceIsTold) {
+    TestMachine m{press(unknown)};
+    ASSERT_TRUE(m.up());
+    // Words 10 and 11 of the EEPROM are the product code (ETG.1000.6 table 16): 00000402h.
+    auto& image = m.world.network().slave(0).controller().eeprom().image();
+    const auto comes_back_with = [&](std::byte low_byte) {
+        m.world.set_slave_power("press", false);
+        EXPECT_TRUE(m.until([&] { return !m.axis(0).online; }, 1s));
+        image[20] = low_byte;
+        m.world.set_slave_power("press", true);
+    };
+    comes_back_with(std::byte{0x03});
+    m.run(10s);
+    EXPECT_FALSE(m.axis(0).online);
+    EXPECT_THAT(notes(m), Contains(HasSubstr("expected vendor 00000000h product 00000402h, found vendor 00000000h product 00000403h")));
+    comes_back_with(std::byte{0x02});
+    EXPECT_TRUE(m.until([&] { return m.axis(0).online; }, 20s)) << m.machine->bus_progress();
+}
+
+// It comes back with its status word where its position was: as many bytes, and none of them what it was.
+TEST(ForeignDrive, WithOtherObjectsInAsManyBytesItIsNotTakenBack) {
+    TestMachine m{press(unknown), with_drive("swapped-pdos")};
+    ASSERT_TRUE(m.up());
+    m.world.set_slave_power("press", false);
+    ASSERT_TRUE(m.until([&] { return !m.axis(0).online; }, 1s));
+    m.world.network().slave(0).abort_object(0x1A00, 0, ecat::sdo_abort::no_object);
+    m.world.set_slave_power("press", true);
+    m.run(10s);
+    EXPECT_FALSE(m.axis(0).online);
+    EXPECT_THAT(notes(m), Contains(HasSubstr("it came back with other PDOs than before")));
+}
+
 // The same drive with the position loop here: then 60FFh is what it must have.
 TEST(ForeignDrive, MovedByVelocitiesItNeedsNoTargetPosition) {
     const std::string loop = "    homing: { kind: set_here }\n    control: { mode: velocity, kv: 20 }\n";
@@ -193,6 +308,22 @@ TEST(ForeignDrive, WithCsvInsteadOfCspTheRemedyIsALoopHere) {
     m.enable(0);
 }
 
+TEST(ForeignDrive, WithStatedModesTheRefusalNamesThose) {
+    const auto error = refusal(press("profile: cia402, modes: [pp, hm]"), with_drive("profile-modes"));
+    EXPECT_EQ(error.code, "drive.no_mode");
+    EXPECT_EQ(error.what, "it has no csp, in which its axis is moved; it has hm, pp");
+    EXPECT_THAT(error.remedy, ::testing::EndsWith("If the drive's manual says that it has csp, add csp to its `modes`"));
+}
+
+// Its frames carry no mode, and 6060h cannot be written either: it stays in profile position.
+TEST(ForeignDrive, AModeThatItCannotBeGivenIsRefusedWithTheOneThatItIsIn) {
+    const auto error = refusal(press(unknown), with_drive("mode-by-hand"));
+    EXPECT_EQ(error.code, "drive.mode_not_taken");
+    EXPECT_EQ(error.subject, "slave 'press' axis 1");
+    EXPECT_EQ(error.what, "6060h is not in its process data, and written by SDO it stays at 1");
+    EXPECT_EQ(error.remedy, "set the mode csp (8) at the drive itself, with its maker's tool");
+}
+
 // 6502h leaves out what the drive has: stated modes go before it.
 TEST(ForeignDrive, StatedModesGoBefore6502h) {
     EXPECT_EQ(refusal(press(unknown), with_drive("wrong-6502h")).code, "drive.no_mode");
@@ -215,6 +346,13 @@ TEST(ForeignDrive, WhatIsNoDriveIsRefused) {
     EXPECT_EQ(error.code, "drive.no_cia402");
     EXPECT_EQ(error.what, "its 1000h is 00030191h, device profile 401: no drive of CiA 402");
     EXPECT_EQ(error.remedy, "check the order of the slaves on the cable; a drive over SoE is not supported");
+}
+
+// 1000h of a modular device is that of ETG.5001; what its modules are stands elsewhere.
+TEST(ForeignDrive, AModularDeviceMayBeADrive) {
+    EXPECT_EQ(axes::cia402::other_device_type(0x00001389), std::nullopt);
+    EXPECT_EQ(axes::cia402::other_device_type(0x00020192), std::nullopt);
+    EXPECT_EQ(axes::cia402::other_device_type(0), "no device profile");
 }
 
 TEST(ForeignDrive, WithoutSync0ItIsRefusedAndRunsByItsFrames) {

@@ -245,6 +245,11 @@ void Cia402Drive::collect_starting_values() {
         if (signal && value != 0) starting_values_.emplace_back(*signal, value);
         if (entry.index == object(0x607F) && entry.sub == 0) velocity_limit_at_start_ = value;
     }
+    for (const auto& found : bus_.found_outputs(slave_)) {
+        const auto signal = bus_.output(slave_, found.index, found.sub);
+        if (signal) starting_values_.emplace_back(*signal, found.value);
+        if (found.index == object(0x607F) && found.sub == 0) velocity_limit_at_start_ = found.value;
+    }
 }
 
 DriveAlarm Cia402Drive::alarm() const noexcept { return alarm_.alarm(); }

@@ -1,5 +1,7 @@
 // What a drive that nobody described said of itself while it came up, held against what the axis needs.
 
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "axes/drives/cia402/cia402_drive.hpp"
@@ -47,17 +49,21 @@ Result<void> Cia402Drive::take_own_modes(bool sends, bool shows) {
 Result<void> Cia402Drive::check_own_mode() const {
     if (own_.wanted == DriveMode::none || capabilities_.has(own_.wanted)) return {};
     if (!profile_->assumes(AssumedPart::modes) && !profile_->assumes(AssumedPart::process_data)) return {};
-    const auto supported = bus_.told(slave_, supported_modes, 0);
+    const bool asked = profile_->assumes(AssumedPart::modes);
+    const auto supported = asked ? bus_.told(slave_, supported_modes, 0) : std::nullopt;
     const bool loop_here = own_.wanted == DriveMode::cyclic_position && capabilities_.has(DriveMode::cyclic_velocity);
     const auto wanted = mode_list(static_cast<std::uint16_t>(1u << static_cast<unsigned>(own_.wanted)));
-    return Error{"drive.no_mode", subject_of(bus_, slave_, axis_),
-                 fmt::format("it has no {}, in which its axis is moved; it has {}{}", wanted, mode_list(capabilities_.modes),
-                             supported ? fmt::format(" (6502h = {:04X}h)", *supported) : std::string{}),
-                 loop_here ? std::string("close the position loop here: `control: {mode: velocity, kv: ...}` of the axis")
-                           : fmt::format("a set-point each cycle needs csp or csv: profile modes alone move no axis over EtherCAT. If the "
-                                         "drive's manual says that it has "
-                                         "{0}, and 6502h is wrong, state `modes: [{0}]` at the slave",
-                                         wanted)};
+    const auto missing = fmt::format("it has no {}, in which its axis is moved; it has {}{}", wanted, mode_list(capabilities_.modes),
+                                     supported ? fmt::format(" (6502h = {:04X}h)", *supported) : std::string{});
+    std::string remedy = "close the position loop here: `control: {mode: velocity, kv: ...}` of the axis";
+    if (!loop_here) {
+        remedy =
+            "a set-point each cycle needs csp or csv: profile modes alone move no axis over EtherCAT. If the drive's manual says that it "
+            "has ";
+        remedy += asked ? fmt::format("{0}, and 6502h is wrong, state `modes: [{0}]` at the slave", wanted)
+                        : fmt::format("{0}, add {0} to its `modes`", wanted);
+    }
+    return Error{"drive.no_mode", subject_of(bus_, slave_, axis_), missing, std::move(remedy)};
 }
 
 }  // namespace taktwerk::axes::cia402

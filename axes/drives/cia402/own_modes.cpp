@@ -31,7 +31,8 @@ std::pair<std::int64_t, std::int64_t> period_and_index(Duration cycle) noexcept 
     return {period, index};
 }
 
-constexpr std::uint32_t profile_of_type = 0xFFFF, cia402_profile = 402;
+/// One with modules says elsewhere (F010h) what they are: ETG.5001.
+constexpr std::uint32_t profile_of_type = 0xFFFF, cia402_profile = 402, modular_profile = 5001;
 
 }  // namespace
 
@@ -83,7 +84,7 @@ std::vector<ecat::StartupSdo> given_to(const AxisConfig& axis, const DriveProfil
 
 std::optional<std::string> other_device_type(std::uint32_t device_type) {
     const auto profile = device_type & profile_of_type;
-    if (profile == cia402_profile) return std::nullopt;
+    if (profile == cia402_profile || profile == modular_profile) return std::nullopt;
     return profile == 0 ? std::string("no device profile") : fmt::format("device profile {}", profile);
 }
 

@@ -155,5 +155,16 @@ TEST(SmWatchdog, IsCountedInTicks) {
     EXPECT_EQ(watchdog_ticks(1min), 0xFFFF);
 }
 
+// A description that leaves open whom it means takes whoever stands in its place, and names nobody by it.
+TEST(Match, WhoIsNotStatedIsTakenAndNotRecognised) {
+    auto open = *device(10);
+    EXPECT_TRUE(recognises(open, {1, 10, 9, 0}));
+    EXPECT_FALSE(recognises(open, {1, 11, 9, 0}));
+    open.stated.identity = false;
+    EXPECT_TRUE(check_identity("", open, {1, 11, 9, 0}).ok());
+    EXPECT_FALSE(recognises(open, {1, 10, 9, 0}));
+    EXPECT_FALSE(recognises(open, {1, 11, 9, 0}));
+}
+
 }  // namespace
 }  // namespace taktwerk::ecat
