@@ -82,7 +82,8 @@ TEST(EepromMade, OfEveryShippedDriveIsUnderstoodAsThatDrive) {
     std::size_t count = 0;
     for (const auto& name : drives.names())
         if (const auto* drive = drives.find(name); drive != nullptr && drive->device) goes_round(*drive->device), ++count;
-    EXPECT_EQ(count, 4u) << "and XP200 is on no bus";
+    EXPECT_EQ(count, drives.names().size() - 1) << "the XP200 alone is on no bus";
+    EXPECT_GT(count, 25u);
 }
 
 class EepromMake : public ::testing::Test {

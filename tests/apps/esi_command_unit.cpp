@@ -273,7 +273,7 @@ TEST_F(EsiImportCommand, InitKeepsTheRing) {
 
 TEST_F(EsiImportCommand, APlaceThatCannotBeIsAnErrorAndNoCrash) {
     const auto bus = machine("    - { name: coupler, device: ek1100 }\n");
-    const auto long_name = (folder / (std::string(300, 'x') + ".yaml")).string();
+    const auto long_name = (folder / "machines" / (std::string(300, 'x') + ".yaml")).string();
     const auto init = in_process({"bus", "init", "--machine", bus, "--simulate", "-o", long_name});
     EXPECT_EQ(init.code, exit_bad_file);
     EXPECT_THAT(init.err, HasSubstr("the file cannot be written"));
