@@ -189,7 +189,8 @@ public:
         for (std::size_t i = 0; i < there_.size(); ++i) {
             ends_[i].nic->refresh();
             const bool there = ends_[i].nic->link_up();
-            if (there == there_[i]) continue;
+            seen_[i] = seen_[i] || there;  // a new interface is told of its carrier up to a second late
+            if (!seen_[i] || there == there_[i]) continue;
             there_[i] = there;
             if (i == 0) world_.set_cable(world_.network().slave(0).options().name, there);
             else world_.set_ring_cable(there);
@@ -199,7 +200,7 @@ public:
 private:
     const std::vector<CableEnd>& ends_;
     runtime::World& world_;
-    std::array<bool, 2> there_{true, true};
+    std::array<bool, 2> there_{true, true}, seen_{};
     Instant next_{};
 };
 

@@ -43,6 +43,7 @@ Result<SimHands::Order> SimHands::understand(const std::string& line) const {
         return Error{"fault.unknown", line, "there is no such word", fmt::format("did you mean '{}'?", near)};
     }
     std::vector<std::string> slaves{"master"};
+    if (machine_.bus.ring) slaves.emplace_back("ring");
     for (const auto& slave : runtime::present_slaves(machine_)) slaves.push_back(slave.name);
     if (!fault->slave.empty() && std::find(slaves.begin(), slaves.end(), fault->slave) == slaves.end()) {
         const auto near = nearest_name(fault->slave, slaves);

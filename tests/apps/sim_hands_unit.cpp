@@ -47,6 +47,18 @@ TEST_F(SimHandsTest, LaterIsCountedFromTheStepThatTookIt) {
     EXPECT_FALSE(world.network().slave(0).powered());
 }
 
+TEST_F(SimHandsTest, TheCableOfTheSecondInterfaceIsPulledWhereThereIsOne) {
+    EXPECT_EQ(code("unplug ring"), "fault.no_slave");
+    config.bus.ring = ecat::RingConfig{};
+    runtime::World ring{config, now};
+    SimHands pulling{ring, config};
+    EXPECT_TRUE(pulling.ask("unplug ring"));
+    pulling.step(now);
+    std::array<std::byte, ecat::min_frame_size> frame{};
+    EXPECT_TRUE(ring.network().process(frame, now));
+    EXPECT_FALSE(ring.network().came_out_elsewhere()) << "comes back to where it left";
+}
+
 TEST_F(SimHandsTest, WhatIsWrongIsSaidToWhoAsks) {
     EXPECT_EQ(code("inpt button 1"), "fault.unknown");
     EXPECT_EQ(hands.ask("inpt button 1").error().remedy, "did you mean 'input'?");
