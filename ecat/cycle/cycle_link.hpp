@@ -134,7 +134,22 @@ enum class ReturnTrouble : std::uint8_t { none, refused, other_device };
 struct CableErrors {
     std::uint8_t port = 0, lost_links = 0;
     std::uint16_t errors = 0;
-    [[nodiscard]] bool any() const noexcept { return lost_links != 0 || errors != 0; }
+};
+
+/// The same, from the scripts to the cycle. One word, so that port and numbers are of one look.
+class SeenCable {
+public:
+    void store(const CableErrors& cable) noexcept {
+        word_.store(std::uint32_t{cable.port} | std::uint32_t{cable.lost_links} << 8 | std::uint32_t{cable.errors} << 16,
+                    std::memory_order_relaxed);
+    }
+    [[nodiscard]] CableErrors load() const noexcept {
+        const std::uint32_t word = word_.load(std::memory_order_relaxed);
+        return {static_cast<std::uint8_t>(word), static_cast<std::uint8_t>(word >> 8), static_cast<std::uint16_t>(word >> 16)};
+    }
+
+private:
+    std::atomic<std::uint32_t> word_{0};
 };
 
 /// Numbers between the cycle and the scripts of one slave, in a cache line of their own.
@@ -145,7 +160,7 @@ struct alignas(64) SlaveLink {
     std::atomic<ReturnTrouble> trouble{ReturnTrouble::none};
     std::atomic<std::uint32_t> attempts{0};  ///< to get it back, in a row
     SeenAlarms seen;
-    std::atomic<CableErrors> cable{};          ///< of the port that counted most
+    SeenCable cable;                           ///< of the port that counted most
     std::atomic<bool> taken_down{false};       ///< to set it up again; until it is back in OP
     std::atomic<std::uint32_t> al{0};          ///< AL status in the low word, status code in the high word
     std::atomic<std::int64_t> sync0_start{0};  ///< an instant of SYNC0 in system time; 0: does not run

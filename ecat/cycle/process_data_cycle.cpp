@@ -107,7 +107,7 @@ void ProcessDataCycle::find_faults(CyclePlan& cycle, Instant now) noexcept {
             .attempts = link.attempts.load(std::memory_order_relaxed),
             .taken_down = link.taken_down.load(std::memory_order_relaxed),
             .seen = link.seen.load(),
-            .cable = link.cable.load(std::memory_order_relaxed),
+            .cable = link.cable.load(),
             .emergency_code = health.emergency_code,
             .error_register = health.error_register,
         };
