@@ -58,7 +58,7 @@ DriveHoming::Result DriveHoming::step(const DriveFeedback& feedback, bool stands
         case Phase::leaving:
             if (feedback.fresh && feedback.mode == back_) go(Phase::settling, now);
             else if (late) {
-                result_ = Result::failed;
+                result_ = feedback.online ? Result::failed : Result::aborted;  // who is gone has not failed: the bus says why
                 go(Phase::settling, now);
             }
             return Result::none;

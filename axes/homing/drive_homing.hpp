@@ -23,7 +23,7 @@ public:
 
     /// `timeout` bounds the search; `mode_delay` is the drive's dwell after a change of mode; `back` the mode it runs in afterwards.
     void start(Instant now, Duration timeout, Duration mode_delay, DriveMode back = DriveMode::cyclic_position) noexcept;
-    /// Ends it early: result `aborted` once the drive stands and is back in cyclic position.
+    /// Ends it early: result `aborted` once the drive stands and is back in cyclic position, or is gone from the bus.
     void abort(Instant now) noexcept;
     /// Forgets it at once: the drive has no power any more.
     void cancel() noexcept { phase_ = Phase::idle; }

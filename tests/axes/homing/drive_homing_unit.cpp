@@ -110,5 +110,20 @@ TEST(DriveHoming, DriveThatNeverComesBackFails) {
     EXPECT_EQ(s.step(), Result::failed);
 }
 
+// A drive that is gone from the bus says nothing: not its failure (a run whose slaves were switched off accused each homing drive).
+TEST(DriveHoming, ADriveThatIsGoneIsNotAccused) {
+    Sequence s;
+    s.drive.mode = DriveMode::homing;
+    s.step();
+    s.step();
+    s.homing.abort(s.now);
+    s.drive.online = s.drive.fresh = false;
+    s.step(2s);
+    EXPECT_EQ(s.homing.phase(), Phase::leaving);
+    s.step(2s);
+    EXPECT_EQ(s.step(), Result::aborted);
+    EXPECT_FALSE(s.homing.busy());
+}
+
 }  // namespace
 }  // namespace taktwerk::axes
