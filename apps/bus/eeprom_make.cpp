@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "apps/bus/eeprom.hpp"
+#include "apps/esi/esi.hpp"
 #include "apps/machine/load.hpp"
 #include "apps/terminal/exit_code.hpp"
 #include "config/device_file/device_loader.hpp"
@@ -14,8 +15,6 @@
 #include "core/bytes.hpp"
 #include "core/nearest_name.hpp"
 #include "ecat/eeprom/sii_fields.hpp"
-#include "ecat/esi/choose_device.hpp"
-#include "ecat/esi/esi_number.hpp"
 #include "ecat/esi/esi_sii.hpp"
 #include "ecat/sim/sii_image.hpp"
 
@@ -38,17 +37,9 @@ struct MadeImage {
 Result<MadeImage> made_of_esi(const MakeOptions& options) {
     const auto file = ecat::esi::EsiFile::open(options.from);
     if (!file) return file.error();
-    std::optional<std::uint32_t> revision;
-    if (!options.revision.empty()) {
-        const auto number = ecat::esi::parse_number(options.revision);
-        if (!number || *number < 0 || *number > ecat::esi::u32)
-            return Error{"usage.number", "--revision", "'" + options.revision + "' is no revision",
-                         "write it like 0x00140000, as `esi list` shows it"};
-        revision = static_cast<std::uint32_t>(*number);
-    }
-    const auto chosen = ecat::esi::choose_device(*file, options.device, revision);
-    if (!chosen) return chosen.error();
-    const auto reading = file->read(*chosen);
+    const auto read = read_esi_device(*file, options.device, options.revision);
+    if (!read) return read.error();
+    const auto& reading = *read;
     if (!reading.problems.empty()) return reading.problems.front();
     auto made = ecat::esi::esi_image(reading.device);
     MadeImage out{std::move(made.bytes), std::move(made.leftovers)};

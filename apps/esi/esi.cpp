@@ -9,24 +9,19 @@
 
 namespace taktwerk::apps {
 
-namespace {
-
-/// Errors of choose_device(), and usage.number for a revision that is none.
-Result<ecat::esi::EsiReading> read_chosen(const EsiOptions& options, const ecat::esi::EsiFile& file) {
-    std::optional<std::uint32_t> revision;
-    if (!options.revision.empty()) {
-        const auto number = ecat::esi::parse_number(options.revision);
-        if (!number || *number < 0 || *number > ecat::esi::u32)
-            return Error{"usage.number", "--revision", "'" + options.revision + "' is no revision",
+Result<ecat::esi::EsiReading> read_esi_device(const ecat::esi::EsiFile& file, const std::string& device, const std::string& revision) {
+    std::optional<std::uint32_t> number;
+    if (!revision.empty()) {
+        const auto read = ecat::esi::parse_number(revision);
+        if (!read || *read < 0 || *read > ecat::esi::u32)
+            return Error{"usage.number", "--revision", "'" + revision + "' is no revision",
                          "write it like 0x00140000, as `esi list` shows it"};
-        revision = static_cast<std::uint32_t>(*number);
+        number = static_cast<std::uint32_t>(*read);
     }
-    const auto chosen = ecat::esi::choose_device(file, options.device, revision);
+    const auto chosen = ecat::esi::choose_device(file, device, number);
     if (!chosen) return chosen.error();
     return file.read(*chosen);
 }
-
-}  // namespace
 
 std::shared_ptr<EsiOptions> add_esi_file(CLI::App& sub) {
     auto options = std::make_shared<EsiOptions>();
@@ -50,7 +45,7 @@ int with_esi_file(const EsiOptions& options, const std::function<int(const ecat:
 
 int with_esi_device(const EsiOptions& options, const std::function<int(const ecat::esi::EsiFile&, const ecat::esi::EsiReading&)>& work) {
     return with_esi_file(options, [&](const ecat::esi::EsiFile& file) {
-        const auto reading = read_chosen(options, file);
+        const auto reading = read_esi_device(file, options.device, options.revision);
         if (reading) return work(file, *reading);
         print_error(reading.error());
         return static_cast<int>(exit_usage);

@@ -29,6 +29,9 @@ void add_esi_import(CLI::App& esi, Action& action);
 /// FILE, and --device and --revision for what is about one device.
 [[nodiscard]] std::shared_ptr<EsiOptions> add_esi_file(CLI::App& sub);
 void add_esi_device(CLI::App& sub, EsiOptions& options);
+/// One device of it, chosen by the words of --device and --revision (see choose_device()). Errors: its, and usage.number.
+[[nodiscard]] Result<ecat::esi::EsiReading> read_esi_device(const ecat::esi::EsiFile& file, const std::string& device,
+                                                            const std::string& revision);
 /// What `work` comes to with the file, or the exit code of a file that cannot be read, which has been said.
 [[nodiscard]] int with_esi_file(const EsiOptions& options, const std::function<int(const ecat::esi::EsiFile&)>& work);
 /// The same with one device of it.

@@ -59,15 +59,10 @@ Result<std::unique_ptr<InterfaceListener>> InterfaceListener::open(std::string_v
     // Without the privilege to pass the system's limit it is the limit.
     if (::setsockopt(socket.get(), SOL_SOCKET, SO_RCVBUFFORCE, &room_in_kernel, sizeof room_in_kernel) != 0)
         (void)::setsockopt(socket.get(), SOL_SOCKET, SO_RCVBUF, &room_in_kernel, sizeof room_in_kernel);
-    sockaddr_ll address{};
-    address.sll_family = AF_PACKET;
-    address.sll_protocol = htons(ETH_P_ALL);
-    address.sll_ifindex = static_cast<int>(found->index);
-    if (::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
-        return socket_error(interface, "binding the packet socket");
+    if (!bind_packet_socket(socket.get(), *found, ETH_P_ALL)) return socket_error(interface, "binding the packet socket");
     // At a tap the frames are addressed to others.
     packet_mreq all{};
-    all.mr_ifindex = address.sll_ifindex;
+    all.mr_ifindex = static_cast<int>(found->index);
     all.mr_type = PACKET_MR_PROMISC;
     if (::setsockopt(socket.get(), SOL_PACKET, PACKET_ADD_MEMBERSHIP, &all, sizeof all) != 0)
         return socket_error(interface, "asking for the frames of others");

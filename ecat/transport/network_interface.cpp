@@ -1,8 +1,10 @@
 #include "ecat/transport/network_interface.hpp"
 
 #include <fmt/format.h>
+#include <linux/if_packet.h>
 #include <net/if.h>
 #include <net/if_arp.h>
+#include <netinet/in.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 
@@ -74,6 +76,14 @@ Result<Descriptor> open_packet_socket(std::string_view interface) {
         return interface_error("transport.no_privilege", interface, "raw Ethernet frames need the privilege CAP_NET_RAW",
                                "run it as a service with AmbientCapabilities=CAP_NET_RAW (docs/bus.md), or as root");
     return socket_error(interface, "opening a packet socket");
+}
+
+bool bind_packet_socket(int socket, const NetworkInterface& to, std::uint16_t ethertype) noexcept {
+    sockaddr_ll address{};
+    address.sll_family = AF_PACKET;
+    address.sll_protocol = htons(ethertype);
+    address.sll_ifindex = static_cast<int>(to.index);
+    return ::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
 }
 
 bool has_carrier(int socket, std::string_view interface) noexcept {

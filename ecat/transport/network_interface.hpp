@@ -1,6 +1,7 @@
 #pragma once
 // A network interface by its name, and a packet socket for it, each with errors that say what to do. Linux only; not real-time.
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -20,8 +21,11 @@ struct NetworkInterface {
 /// transport.interface_down, transport.socket.
 [[nodiscard]] Result<NetworkInterface> find_interface(std::string_view name);
 
-/// Whole frames; receives nothing until it is bound. Errors: transport.no_privilege, transport.socket.
+/// Whole frames; receives nothing until bind_packet_socket(). Errors: transport.no_privilege, transport.socket.
 [[nodiscard]] Result<Descriptor> open_packet_socket(std::string_view interface);
+
+/// From now on it sends by `to` and receives the frames of one ethertype, or all (ETH_P_ALL). False: errno says why.
+[[nodiscard]] bool bind_packet_socket(int socket, const NetworkInterface& to, std::uint16_t ethertype) noexcept;
 
 /// Switched on, with a partner at the other end. `socket`: any. One system call.
 [[nodiscard]] bool has_carrier(int socket, std::string_view interface) noexcept;

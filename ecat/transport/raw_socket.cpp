@@ -114,12 +114,7 @@ Result<std::unique_ptr<RawSocketTransport>> RawSocketTransport::open(std::string
 
     RawSocketReport report = apply(options, socket.get(), interface);
 
-    sockaddr_ll address{};
-    address.sll_family = AF_PACKET;
-    address.sll_protocol = htons(ethertype);
-    address.sll_ifindex = static_cast<int>(found->index);
-    if (::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
-        return socket_error(interface, "binding the packet socket");
+    if (!bind_packet_socket(socket.get(), *found, ethertype)) return socket_error(interface, "binding the packet socket");
 
     Descriptor lock{-1};
     if (options.exclusive) {
