@@ -71,7 +71,7 @@ Result<void> write_eeprom_file(const std::string& path, const EepromImage& image
                      "choose another name: nothing is written over"};
     }
     if (file < 0) return file_error(path, "written");
-    const auto written = write_all(file, path, image);
+    auto written = write_all(file, path, image);
     if (::close(file) != 0 && written) return file_error(path, "written");
     if (!written) ::unlink(path.c_str());
     return written;

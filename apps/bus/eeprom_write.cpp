@@ -28,7 +28,7 @@ struct Change {
 
 /// Nobody else works with these slaves: what was said over another master's head would be half of two things.
 Result<void> may_change_eeprom(BusSession& session, const Survey& survey, std::size_t position) {
-    if (const auto alone = session.must_be_alone("writing to an EEPROM"); !alone) return alone;
+    if (auto alone = session.must_be_alone("writing to an EEPROM"); !alone) return alone;
     if (survey.slaves.at(position).found.error) return *survey.slaves[position].found.error;
     if (survey.highest_state >= ecat::AlState::safeop)
         return Error{

@@ -58,7 +58,7 @@ void AxisReset::end(AxisEvent event) noexcept {
     body_.error = 0;
     conduct_.error_is_over();
     motion_.goal = {};
-    motion_.goal_pending = false;  // the stop out of a mode of the drive's own, which had not begun
+    motion_.goal_pending = false;                                    // the stop out of a mode of the drive's own, which had not begun
     if (body_.slow_line) motion_.setpoint.place(measured_.local());  // where it was stopped: it holds no place of ours
     body_.alarms.clear_all_but(AxisAlarm::drive_warning);
     conduct_.fire(event);

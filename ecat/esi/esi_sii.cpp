@@ -15,9 +15,9 @@ namespace taktwerk::ecat::esi {
 namespace {
 
 constexpr unsigned bytes_per_kbit = 128;
-constexpr unsigned usual_eeprom_bytes = 2048;  ///< where the file does not say
-constexpr std::size_t most_entries = 255;      ///< of a PDO: their number is a byte
-constexpr std::uint32_t most_bits = 255;       ///< of an entry: likewise
+constexpr unsigned usual_eeprom_bytes = 2048;   ///< where the file does not say
+constexpr std::size_t most_entries = 255;       ///< of a PDO: their number is a byte
+constexpr std::uint32_t most_entry_bits = 255;  ///< of an entry: likewise
 
 /// ETG.2010, category 50: flags of a PDO.
 constexpr std::uint16_t pdo_mandatory = 1u << 0, pdo_fixed = 1u << 4, pdo_virtual = 1u << 5, pdo_depends_on_slot = 1u << 9;
@@ -158,15 +158,15 @@ SiiPdo pdo_of(const EsiPdo& from, Sii& sii, std::vector<std::string>& leftovers)
                                           (from.is_virtual ? pdo_virtual : 0u) | (from.depends_on_slot ? pdo_depends_on_slot : 0u));
     for (const auto& entry : from.entries) {
         auto left = entry.bits;
-        if (left > most_bits && entry.index != 0)
-            leftovers.push_back(
-                fmt::format("{:04X}h in PDO {:04X}h has {} bits: an EEPROM says at most {}", entry.index, from.index, left, most_bits));
+        if (left > most_entry_bits && entry.index != 0)
+            leftovers.push_back(fmt::format("{:04X}h in PDO {:04X}h has {} bits: an EEPROM says at most {}", entry.index, from.index, left,
+                                            most_entry_bits));
         // A gap may be said in several parts.
         do {
             SiiPdoEntry one;
             one.index = entry.index;
             one.sub = entry.sub;
-            one.bits = static_cast<std::uint8_t>(std::min(left, most_bits));
+            one.bits = static_cast<std::uint8_t>(std::min(left, most_entry_bits));
             one.data_type = entry.index == 0 ? std::uint8_t{0} : sii_type_of(entry.type);
             one.name = sii.add_string(entry.name);
             to.entries.push_back(one);

@@ -39,7 +39,7 @@ protected:
     }
     /// The image of a slave of the demo, with `change` made to it, as a file.
     std::string changed(const std::string& slave, const std::function<void(EepromImage&)>& change) {
-        const auto path = folder + "/image.bin";
+        auto path = folder + "/image.bin";
         fs::remove(path);
         EXPECT_EQ(eeprom({"read", slave, "-o", path}).code, exit_ok);
         auto image = read_eeprom_file(path).value();

@@ -27,7 +27,7 @@ protected:
     ~UndescribedDrive() override { std::filesystem::remove_all(folder_); }
 
     std::string file(const std::string& name, const std::string& text) {
-        const auto path = (folder_ / (name + ".yaml")).string();
+        auto path = (folder_ / (name + ".yaml")).string();
         std::ofstream(path) << text;
         return path;
     }

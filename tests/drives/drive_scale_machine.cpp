@@ -83,7 +83,7 @@ TEST(DriveScale, WhatAStartUpListWroteAndNobodyStoredIsCaught) {
     ecat::StartupSdo sdo;
     sdo.index = 0x2000, sdo.sub = 2, sdo.type = ecat::DataType::U16, sdo.value = 50000, sdo.verify = true;
     config.bus.slaves[0].startup.push_back(sdo);
-    TestMachine m{std::move(config)};
+    TestMachine m{config};
     ASSERT_TRUE(m.up()) << "it reads back";
     EXPECT_EQ(m.world.drive("x")->counts_per_revolution(), 10000) << "what the simulated drive works with";
     EXPECT_EQ(turns_for_10_mm(m), -1);

@@ -411,7 +411,7 @@ TEST(SimulatedInputs, AnInputOfADriveIsHeldAtWhatTheFieldGives) {
     analog.index = 0x6077;  // torque actual value, signed
     analog.simulated = -321;
     config.io.push_back(analog);
-    TestMachine m{std::move(config)};
+    TestMachine m{config};
     ASSERT_TRUE(m.up());
     const auto load = [&] {
         const auto& names = m.machine->layout().inputs;

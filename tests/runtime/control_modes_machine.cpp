@@ -142,7 +142,7 @@ TEST(VelocityDrive, LagsByVelocityOverGainWithoutFeedForwardAndNotAtAllWithIt) {
         config.axes[0].axis.control.mode = axes::ControlMode::velocity;
         config.axes[0].axis.control.kv = 50;
         config.axes[0].axis.control.feed_forward = feed_forward;
-        TestMachine m{std::move(config)};
+        TestMachine m{config};
         ASSERT_TRUE(m.up());
         ASSERT_TRUE(m.until([&] { return variable(m, "in_target") != 0; }, 5s)) << m.alarms();
         m.run(1s);
@@ -230,7 +230,7 @@ TEST(VelocityDrive, ALagThatGrowsWithTheVelocityIsInsideAWindowThatDoes) {
         axis.limits.stop_deceleration = 5000;
         axis.limits.acceleration = axis.limits.deceleration = 500;  // braking adds 500 / 50^2 = 0.2 mm
         axis.following = {.window = 0.5, .time = 10ms, .per_velocity = per_velocity};
-        TestMachine m{std::move(config)};
+        TestMachine m{config};
         ASSERT_TRUE(m.up());
         const bool runs = m.until([&] { return variable(m, "in_target") != 0; }, 2s);
         EXPECT_EQ(runs, per_velocity > 0ms);
@@ -254,7 +254,7 @@ TEST(VelocityDrive, TheIPartEndsAStandingLag) {
         auto& control = config.axes[0].axis.control;
         control = {.mode = axes::ControlMode::velocity, .kv = 50, .feed_forward = 0.9};
         if (integrates) control.integral = {.time = 200ms, .limit = 20};
-        TestMachine m{std::move(config)};
+        TestMachine m{config};
         ASSERT_TRUE(m.up());
         ASSERT_TRUE(m.until([&] { return variable(m, "in_target") != 0; }, 5s)) << m.alarms();
         m.run(2s);
@@ -278,7 +278,7 @@ TEST(LoadedDrive, FollowsCloserWithItsFrictionFedForward) {
         auto& control = config.axes[0].axis.control;
         control.torque_feed_forward = 1;
         if (fed == 1) control.load = {.coulomb_friction = 0.157, .viscous_friction = 0.000495, .friction_velocity = 0.5};
-        TestMachine m{std::move(config)};
+        TestMachine m{config};
         ASSERT_TRUE(m.up());
         ASSERT_TRUE(m.until([&] { return variable(m, "ready") != 0; }, 5s)) << m.alarms();
         m.on_cycle = [&] { lag[fed] = std::max(lag[fed], std::abs(m.axis(0).following_error)); };
@@ -302,7 +302,7 @@ TEST(LoadedDrive, HoldsAWeightThatIsFedForward) {
         binding.simulation.negative_stop = 50;
         binding.axis.control.torque_feed_forward = 1;
         if (fed == 1) binding.axis.control.load.gravity = 0.315;
-        TestMachine m{std::move(config)};
+        TestMachine m{config};
         ASSERT_TRUE(m.up());
         ASSERT_TRUE(m.until([&] { return variable(m, "ready") != 0; }, 5s)) << m.alarms();
         m.run(300ms);
@@ -321,7 +321,7 @@ TEST(TorqueLimitedDrive, PressesNoHarderThanItsLimit) {
         has_object(config, 0x60E0, ecat::DataType::U16, 3000, mapped);
         has_object(config, 0x60E1, ecat::DataType::U16, 3000, mapped);
         config.axes[0].axis.following.window = std::numeric_limits<double>::infinity();
-        TestMachine m{std::move(config)};
+        TestMachine m{config};
         ASSERT_TRUE(m.up());
         ASSERT_TRUE(m.until([&] { return variable(m, "in_target") != 0; }, 5s)) << m.alarms();
         EXPECT_EQ(m.axis(0).torque_limit_positive, 0.2);
@@ -371,7 +371,7 @@ TEST(TorqueLimitedDrive, IsNamedWhereItHasNone) {
 TEST(TwoWaySpeeds, TheDriveIsToldNoFasterWayDownThanAllowed) {
     auto config = versatile(&entry_of<UpAndDown>);
     config.axes[0].axis.limits.negative = {.velocity = 50, .acceleration = 1000};
-    TestMachine m{std::move(config)};
+    TestMachine m{config};
     ASSERT_TRUE(m.up());
     ASSERT_TRUE(m.until([&] { return variable(m, "ready") != 0; }, 5s)) << m.alarms();
     double up = 0, down = 0;

@@ -210,7 +210,7 @@ TEST_F(Evident, AFolderThatCannotBeIsRefusedBeforeAnythingMoves) {
     auto config = machine_config(1);
     std::ofstream(folder / "file") << "no folder";
     config.evidence.directory = (folder / "file").string();
-    const TestMachine m{std::move(config)};
+    const TestMachine m{config};
     const auto opened = Evidence::open(*m.machine, {});
     ASSERT_FALSE(opened);
     EXPECT_EQ(opened.error().code, "evidence.directory");

@@ -168,7 +168,7 @@ TEST(Points, AFilterFollowsWithItsTimeConstant) {
     auto config = with_analog(machine_config(1));
     auto& pressure = *std::ranges::find(config.io, "pressure", &IoPoint::name);
     pressure.filter = 50ms;
-    TestMachine m{std::move(config)};
+    TestMachine m{config};
     ASSERT_TRUE(m.up());
     EXPECT_DOUBLE_EQ(input(m, "pressure").value, 6.0) << "it begins at the first value, not at 0";
     m.world.set_input_value("pressure", 20000);  // 6 -> 10 bar

@@ -312,7 +312,7 @@ TEST(End, NamesTheSlowTaskThatNeverComesBack) {
     slow.divisor = 2;
     slow.overrun = OverrunReaction::count;
     config.tasks.push_back(slow);
-    TestMachine m{std::move(config)};
+    TestMachine m{config};
     ASSERT_TRUE(m.up());
     // It was released and nobody runs it: to the machine that is a task that does not come back.
     auto now = m.clock.now();

@@ -36,7 +36,7 @@ Sii built(const std::string& eeprom, std::vector<std::string>* leftovers = nullp
     EXPECT_THAT(reading.problems, IsEmpty());
     const auto made = esi_image(reading.device);
     if (leftovers != nullptr) *leftovers = made.leftovers;
-    const auto read = parse_sii(made.bytes);
+    auto read = parse_sii(made.bytes);
     EXPECT_THAT(read.defects, IsEmpty());
     std::vector<std::string> ignored;
     EXPECT_EQ(read, sii_of(reading.device, ignored)) << "an image reads back as what it was made of";

@@ -117,7 +117,7 @@ ErrorId outcome_of(const OneBlock::Task& task) {
     OneBlock::task = &task;
     auto config = with_line(with_program(1, &entry_of<OneBlock>));
     config.serial[0].drives[0].drive.parameters.push_back({4, 5});  // torque control too
-    TestMachine m{std::move(config)};
+    TestMachine m{config};
     if (!m.up() || !m.until([&] { return variable(m, "calls") > 0; }, 10s)) {
         ADD_FAILURE() << task.name << ": never powered and homed; " << m.alarms();
         return ErrorId::none;

@@ -161,7 +161,7 @@ TEST(SerialMachine, ADeadPcStopsTheMotorThroughTheTerminalsWatchdog) {
 TEST(SerialMachine, AMotorWithoutMainsCoastsOnWhileNobodyAsks) {
     auto config = with_line(machine_config(1));
     config.axes[u].simulation.viscous_friction = config.axes[u].simulation.coulomb_friction = 0;
-    TestMachine m{std::move(config)};
+    TestMachine m{config};
     ASSERT_TRUE(ready(m)) << m.alarms();
     m.enable(u);
     ASSERT_EQ(m.command(OperatorAction::jog, u, true, 20).answer, Answer::accepted);
