@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "hmi_bridge/lcm_bus.hpp"
-#include "hmi_bridge/socket_path.hpp"
+#include "hmi_bridge/lcm/lcm_bus.hpp"
+#include "hmi_bridge/socket/socket_path.hpp"
 
 namespace taktwerk::hmi {
 

@@ -15,15 +15,15 @@
 
 #include "core/result.hpp"
 #include "core/time.hpp"
-#include "hmi_bridge/door.hpp"
-#include "hmi_bridge/gateway.hpp"
+#include "hmi_bridge/gateway/gateway.hpp"
 #include "hmi_bridge/hmi_config.hpp"
-#include "hmi_bridge/json_requests.hpp"
-#include "hmi_bridge/lcm_commands.hpp"
+#include "hmi_bridge/lcm/lcm_commands.hpp"
+#include "hmi_bridge/lcm/message_bus.hpp"
+#include "hmi_bridge/lcm/publisher.hpp"
 #include "hmi_bridge/machine_link.hpp"
-#include "hmi_bridge/message_bus.hpp"
-#include "hmi_bridge/publisher.hpp"
-#include "hmi_bridge/socket_server.hpp"
+#include "hmi_bridge/socket/door.hpp"
+#include "hmi_bridge/socket/json_requests.hpp"
+#include "hmi_bridge/socket/socket_server.hpp"
 #include "hmi_bridge/wall_clock.hpp"
 
 namespace taktwerk::hmi {

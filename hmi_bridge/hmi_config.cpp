@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "hmi_bridge/lcm_url.hpp"
+#include "hmi_bridge/lcm/lcm_url.hpp"
 
 namespace taktwerk::hmi {
 

@@ -1,7 +1,7 @@
 #pragma once
 // Commands that an axis refused, or that ended before they were done: facts for people, kept by the cycle. A short list in which the same
 // event stands once with a count, so that a program that asks again in each scan neither floods nor hides anything. The words are made
-// outside the cycle (hmi_bridge/event_text.hpp). Fixed size, real-time safe.
+// outside the cycle (hmi_bridge/words/event_text.hpp). Fixed size, real-time safe.
 
 #include <array>
 #include <cstdint>

@@ -12,7 +12,7 @@
 #include "apps/machine/stop_signal.hpp"
 #include "axes/port/parameter_text.hpp"
 #include "core/clock.hpp"
-#include "hmi_bridge/drive_requests.hpp"
+#include "hmi_bridge/gateway/drive_requests.hpp"
 
 namespace taktwerk::apps {
 

@@ -1,5 +1,5 @@
 #pragma once
-// A drive through the machine that runs: over its local socket, beside its cycle, by its rules (hmi_bridge/drive_requests.hpp). Nobody has to
+// A drive through the machine that runs: over its local socket, beside its cycle, by its rules (hmi_bridge/gateway/drive_requests.hpp). Nobody has to
 // stop a machine to read a parameter.
 
 #include <string>

@@ -15,7 +15,7 @@
 #include "apps/terminal/duration_option.hpp"
 #include "apps/terminal/exit_code.hpp"
 #include "core/clock.hpp"
-#include "hmi_bridge/json_number.hpp"
+#include "hmi_bridge/socket/json_number.hpp"
 
 namespace taktwerk::apps {
 namespace {

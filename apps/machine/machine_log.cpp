@@ -10,7 +10,7 @@
 #include "axes/axis/alarms.hpp"
 #include "ecat/alarms.hpp"
 #include "ecat/bringup/bus.hpp"
-#include "hmi_bridge/event_text.hpp"
+#include "hmi_bridge/words/event_text.hpp"
 #include "runtime/alarms.hpp"
 
 namespace taktwerk::apps {

@@ -7,7 +7,7 @@
 
 #include "apps/terminal/count_text.hpp"
 #include "apps/terminal/terminal_text.hpp"
-#include "hmi_bridge/json_number.hpp"
+#include "hmi_bridge/socket/json_number.hpp"
 
 namespace taktwerk::apps {
 namespace {

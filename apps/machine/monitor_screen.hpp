@@ -15,7 +15,7 @@ struct ScreenSize {
     bool colours = false;
 };
 
-/// `state` and `layout` as the runtime gives them (hmi_bridge/json_state.hpp). What does not fit is left out from the least
+/// `state` and `layout` as the runtime gives them (hmi_bridge/socket/json_state.hpp). What does not fit is left out from the least
 /// important on: details of the axes, further alarms, I/O; a line says so.
 [[nodiscard]] std::vector<std::string> monitor_screen(const nlohmann::ordered_json& state, const nlohmann::ordered_json& layout,
                                                       const ScreenSize& size);

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/result.hpp"
-#include "hmi_bridge/client.hpp"
+#include "hmi_bridge/socket/client.hpp"
 
 namespace taktwerk::apps {
 

@@ -184,7 +184,7 @@ void say_directly(const Error& error) {
     [[maybe_unused]] const auto put = ::write(STDERR_FILENO, text.data(), std::min<std::size_t>(text.size(), 4096));
 }
 
-/// Its own thread, so that nothing which the service side does holds up a stop (hmi_bridge/door.hpp).
+/// Its own thread, so that nothing which the service side does holds up a stop (hmi_bridge/socket/door.hpp).
 class DoorKeeper {
 public:
     /// `priority`: SCHED_FIFO, just below the cycle, or busy clients would take this thread's time; nothing where the system refuses it, which the

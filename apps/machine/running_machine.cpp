@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "hmi_bridge/client.hpp"
-#include "hmi_bridge/socket_path.hpp"
+#include "hmi_bridge/socket/client.hpp"
+#include "hmi_bridge/socket/socket_path.hpp"
 
 namespace taktwerk::apps {
 

@@ -8,10 +8,10 @@
 
 #include "apps/machine/machine_log.hpp"
 #include "apps/machine/monitor_screen.hpp"
-#include "hmi_bridge/json_state.hpp"
-#include "hmi_bridge/memory_bus.hpp"
-#include "hmi_bridge/publisher.hpp"
+#include "hmi_bridge/lcm/memory_bus.hpp"
+#include "hmi_bridge/lcm/publisher.hpp"
 #include "hmi_bridge/runtime_link.hpp"
+#include "hmi_bridge/socket/json_state.hpp"
 #include "taktwerk_lcm/alarm_list_v1_t.hpp"
 #include "tests/runtime/test_machine.hpp"
 

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "hmi_bridge/drive_requests.hpp"
+#include "hmi_bridge/gateway/drive_requests.hpp"
 #include "hmi_bridge/runtime_link.hpp"
 #include "tests/apps/simulated_five_drives.hpp"
 

@@ -14,7 +14,7 @@
 
 #include "apps/terminal/exit_code.hpp"
 #include "apps/terminal/line_writer.hpp"
-#include "hmi_bridge/client.hpp"
+#include "hmi_bridge/socket/client.hpp"
 #include "tests/apps/child.hpp"
 #include "tests/apps/machine_files.hpp"
 

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "hmi_bridge/client.hpp"
+#include "hmi_bridge/socket/client.hpp"
 #include "tests/fuzz/scratch_folder.hpp"
 
 using namespace taktwerk;

@@ -5,8 +5,8 @@
 #include <cstring>
 #include <vector>
 
-#include "hmi_bridge/lcm_commands.hpp"
-#include "hmi_bridge/memory_bus.hpp"
+#include "hmi_bridge/lcm/lcm_commands.hpp"
+#include "hmi_bridge/lcm/memory_bus.hpp"
 #include "taktwerk_lcm/command_v1_t.hpp"
 #include "tests/hmi_bridge/fake_machine.hpp"
 

@@ -2,7 +2,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "hmi_bridge/lcm_url.hpp"
+#include "hmi_bridge/lcm/lcm_url.hpp"
 
 using namespace taktwerk::hmi;
 

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "hmi_bridge/json_requests.hpp"
+#include "hmi_bridge/socket/json_requests.hpp"
 #include "tests/hmi_bridge/fake_machine.hpp"
 
 using namespace taktwerk;

@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "hmi_bridge/answer_line.hpp"
-#include "hmi_bridge/urgent_line.hpp"
+#include "hmi_bridge/socket/answer_line.hpp"
+#include "hmi_bridge/socket/urgent_line.hpp"
 #include "tests/hmi_bridge/fake_machine.hpp"
 
 using namespace taktwerk;

@@ -1,6 +1,6 @@
 // What a refusal says to who gave the command.
 
-#include "hmi_bridge/answer_text.hpp"
+#include "hmi_bridge/words/answer_text.hpp"
 
 #include <gmock/gmock.h>
 

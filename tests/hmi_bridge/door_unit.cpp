@@ -1,7 +1,7 @@
 // The door by itself: the service side behind it stands still (nobody calls pass_on() unless a test says so), and a stop, the end of the
 // run, a jog let go and a lost client get through all the same. Real sockets, no threads, and time is what the test says.
 
-#include "hmi_bridge/door.hpp"
+#include "hmi_bridge/socket/door.hpp"
 
 #include <gmock/gmock.h>
 #include <sys/socket.h>

@@ -1,7 +1,7 @@
 // Parameters of drives while the machine runs: who may, when, what it costs the EEPROM, what the log says. The profile's rows are those
 // of the SV33-E (7.2: P05.10, P05.13) with some made up beside them.
 
-#include "hmi_bridge/drive_requests.hpp"
+#include "hmi_bridge/gateway/drive_requests.hpp"
 
 #include <gmock/gmock.h>
 
@@ -9,7 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "hmi_bridge/json_requests.hpp"
+#include "hmi_bridge/socket/json_requests.hpp"
 #include "tests/hmi_bridge/fake_machine.hpp"
 
 namespace taktwerk::hmi {

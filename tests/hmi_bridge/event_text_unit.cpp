@@ -1,6 +1,6 @@
 // Refused and aborted commands in words: whose, by whom, why, what to do.
 
-#include "hmi_bridge/event_text.hpp"
+#include "hmi_bridge/words/event_text.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "hmi_bridge/gateway.hpp"
+#include "hmi_bridge/gateway/gateway.hpp"
 #include "tests/hmi_bridge/fake_machine.hpp"
 
 namespace taktwerk::hmi {

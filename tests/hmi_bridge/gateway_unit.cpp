@@ -1,5 +1,5 @@
 // The rules of the one gate for commands. Issue: client, sequence, validity, acknowledgement; control authority; jog lease.
-#include "hmi_bridge/gateway.hpp"
+#include "hmi_bridge/gateway/gateway.hpp"
 
 #include <gmock/gmock.h>
 

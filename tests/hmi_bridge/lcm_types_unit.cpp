@@ -7,10 +7,10 @@
 #include <regex>
 #include <sstream>
 
-#include "hmi_bridge/channels.hpp"
 #include "hmi_bridge/command_words.hpp"
 #include "hmi_bridge/hmi_config.hpp"
-#include "hmi_bridge/lcm_url.hpp"
+#include "hmi_bridge/lcm/channels.hpp"
+#include "hmi_bridge/lcm/lcm_url.hpp"
 #include "taktwerk_lcm/acknowledge_v1_t.hpp"
 #include "taktwerk_lcm/alarm_list_v1_t.hpp"
 #include "taktwerk_lcm/axis_holder_v1_t.hpp"

@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "hmi_bridge/hmi_bridge.hpp"
-#include "hmi_bridge/lcm_bus.hpp"
-#include "hmi_bridge/memory_bus.hpp"
+#include "hmi_bridge/lcm/lcm_bus.hpp"
+#include "hmi_bridge/lcm/memory_bus.hpp"
 #include "taktwerk_lcm/acknowledge_v1_t.hpp"
 #include "taktwerk_lcm/alarm_list_v1_t.hpp"
 #include "taktwerk_lcm/axis_holder_v1_t.hpp"

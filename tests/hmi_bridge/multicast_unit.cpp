@@ -16,7 +16,7 @@
 #include <string>
 
 #include "hmi_bridge/hmi_bridge.hpp"
-#include "hmi_bridge/lcm_bus.hpp"
+#include "hmi_bridge/lcm/lcm_bus.hpp"
 #include "taktwerk_lcm/axis_state_v1_t.hpp"
 #include "tests/hmi_bridge/fake_machine.hpp"
 

@@ -1,6 +1,6 @@
 // The socket's language: what is asked, what comes back, and what broken lines get.
-#include "hmi_bridge/json_number.hpp"
-#include "hmi_bridge/json_requests.hpp"
+#include "hmi_bridge/socket/json_number.hpp"
+#include "hmi_bridge/socket/json_requests.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,6 +1,6 @@
 // The local socket with real sockets: server, client, and what broken or rude clients get. The client blocks, so the bridge steps
 // on a thread beside it; nothing here depends on how fast either is.
-#include "hmi_bridge/client.hpp"
+#include "hmi_bridge/socket/client.hpp"
 
 #include <gmock/gmock.h>
 #include <grp.h>
@@ -14,7 +14,7 @@
 #include <thread>
 
 #include "hmi_bridge/hmi_bridge.hpp"
-#include "hmi_bridge/socket_path.hpp"
+#include "hmi_bridge/socket/socket_path.hpp"
 #include "tests/hmi_bridge/fake_machine.hpp"
 #include "tests/patience.hpp"
 

@@ -15,7 +15,6 @@ using namespace fb;
 using axes::AxisState;
 using axes::CommandKind;
 using axes::ErrorId;
-using axes::Owner;
 using What = CommandEvent::What;
 
 std::vector<CommandEvent> events(TestMachine& m) {

@@ -16,7 +16,6 @@
 namespace taktwerk::runtime::testing {
 namespace {
 
-using axes::AxisState;
 
 class Levels : public ::testing::Test {
 protected:

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "apps/terminal/exit_code.hpp"
-#include "hmi_bridge/client.hpp"
+#include "hmi_bridge/socket/client.hpp"
 #include "tests/apps/child.hpp"
 
 namespace taktwerk::apps {

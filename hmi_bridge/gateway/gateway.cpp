@@ -1,0 +1,378 @@
+#include "hmi_bridge/gateway/gateway.hpp"
+
+#include <cmath>
+#include <cstring>
+
+#include <fmt/format.h>
+
+#include "hmi_bridge/words/answer_text.hpp"
+#include "hmi_bridge/words/target_names.hpp"
+
+namespace taktwerk::hmi {
+
+using runtime::Answer;
+using runtime::OperatorAction;
+using runtime::OperatorCommand;
+
+namespace {
+
+/// Stops that wait for their answer; far beyond what people and their retries give.
+constexpr std::size_t most_levels = 1024;
+/// Above this a double skips whole numbers.
+constexpr double largest_exact_integer = 9007199254740992.0;
+
+double milliseconds(Duration d) { return std::chrono::duration<double, std::milli>(d).count(); }
+
+std::string with_unit(double value, std::string_view unit) { return fmt::format("{:g}{}{}", value, unit.empty() ? "" : " ", unit); }
+
+Error bad_value(std::string what, std::string remedy) { return {"command.bad_value", "", std::move(what), std::move(remedy)}; }
+
+bool lets_go(const CommandRequest& request) noexcept { return request.kind == CommandKind::jog && request.value == 0; }
+
+/// Since it was given, as far as anybody knows: by the client's clock, and by how long it has waited here, whichever is longer.
+Duration age_of(const CommandRequest& request, Instant now) {
+    const auto waited = request.arrival.at == Instant{} ? Duration{} : now - request.arrival.at;
+    return std::max({request.age, waited, Duration{}});
+}
+
+/// Bit by bit, so that a repeated NaN is the same NaN.
+bool same(double a, double b) noexcept { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
+
+std::optional<Error> check_jog_velocity(const runtime::MachineLayout::AxisInfo& axis, double velocity) {
+    if (axis.jog_fast > 0 && std::abs(velocity) > axis.jog_fast)
+        return bad_value(fmt::format("{:g} {}/s is faster than this axis may jog", velocity, axis.unit),
+                         fmt::format("Give at most {:g} {}/s.", axis.jog_fast, axis.unit));
+    return std::nullopt;
+}
+
+/// Numbers that mean something for this command, in its range.
+std::optional<Error> check_values(const CommandWord& word, const CommandRequest& request, const OperatorCommand& command,
+                                  const runtime::MachineLayout& layout) {
+    for (const auto& [key, value] : {std::pair{word.value, request.value}, std::pair{word.value2, request.value2}})
+        if (!key.empty() && !std::isfinite(value)) return bad_value(fmt::format("{} is not a finite number", key), "Give a finite number.");
+    switch (word.kind) {
+        case CommandKind::jog:
+            if (request.press && request.value == 0)
+                return bad_value("a jog is pressed with velocity 0", "Give a velocity; 0 is for letting go.");
+            return check_jog_velocity(layout.axes[command.axis], request.value);
+        case CommandKind::move:
+            if (request.value2 <= 0)
+                return bad_value("a move to a position needs a velocity above 0",
+                                 "Give `velocity`; the direction comes from the position.");
+            return std::nullopt;
+        case CommandKind::set_parameter: {
+            const auto& parameter = layout.parameters[command.index];
+            if (request.value < parameter.minimum || request.value > parameter.maximum)
+                return bad_value(fmt::format("{} is outside its range", with_unit(request.value, parameter.unit)),
+                                 fmt::format("Give {:g} to {}.", parameter.minimum, with_unit(parameter.maximum, parameter.unit)));
+            if (!parameter.takes(request.value))
+                return bad_value(fmt::format("{:g} is not a whole number, and the program counts with this parameter", request.value),
+                                 fmt::format("Give {:g} or {:g}.", std::floor(request.value), std::ceil(request.value)));
+            return std::nullopt;
+        }
+        case CommandKind::set_output:
+            if (request.value != std::floor(request.value) || std::abs(request.value) > largest_exact_integer)
+                return bad_value(fmt::format("{:g} is not a whole number", request.value), "Give 0 or 1, or a whole number for a word.");
+            return std::nullopt;
+        default: return std::nullopt;
+    }
+}
+
+}  // namespace
+
+bool CommandRequest::same_as(const CommandRequest& other) const noexcept {
+    return kind == other.kind && target == other.target && press == other.press && commissioning == other.commissioning &&
+           mode == other.mode && same(value, other.value) && same(value2, other.value2);
+}
+
+Gateway::Entry* Gateway::Client::find(std::uint64_t sequence) noexcept {
+    for (auto& entry : entries)
+        if (entry.state != Entry::State::empty && entry.request.sequence == sequence) return &entry;
+    return nullptr;
+}
+
+ClientId Gateway::open(Source source, std::string name, Rights rights) {
+    if (clients_.size() >= max_clients) return 0;
+    while (next_client_ == 0 || clients_.count(next_client_) != 0) ++next_client_;
+    auto& client = clients_[next_client_];
+    client.source = source;
+    client.name = std::move(name);
+    client.rights = rights;
+    return next_client_++;
+}
+
+void Gateway::close(ClientId id) {
+    if (const auto client = clients_.find(id); client != clients_.end()) note_end(id, client->second);
+    hands_.lift_all(id);
+    clients_.erase(id);
+    for (auto jog = jogs_.begin(); jog != jogs_.end();) {
+        if (jog->second.client != id) {
+            ++jog;
+            continue;
+        }
+        machine_.release_jog(jog->first);
+        jog = jogs_.erase(jog);
+    }
+}
+
+std::optional<Gateway::Refusal> Gateway::check_age(const CommandRequest& request, Instant now) const {
+    const auto longest = request.kind == CommandKind::jog ? longest_jog_validity : longest_validity;
+    if (request.valid_for < std::chrono::milliseconds{1} || request.valid_for > longest)
+        return Refusal{Answer::bad_value,
+                       bad_value(fmt::format("a validity of {:g} ms is outside its range", milliseconds(request.valid_for)),
+                                 fmt::format("Give 1 to {:g} ms.", milliseconds(longest)))};
+    if (request.age < -clock_tolerance)
+        return Refusal{
+            Answer::stale,
+            {"command.stale", "", fmt::format("the client's clock is {:g} ms ahead of the runtime's", milliseconds(-request.age)),
+             "Set the clocks right; a command's age cannot be judged."}};
+    if (const auto age = age_of(request, now); age > request.valid_for)
+        return Refusal{Answer::stale,
+                       {"command.stale", "",
+                        fmt::format("the command is {:g} ms old and was valid for {:g} ms; it was not carried out", milliseconds(age),
+                                    milliseconds(request.valid_for)),
+                        "Give it again; if it comes back, the connection or this computer is too slow."}};
+    return std::nullopt;
+}
+
+std::optional<Gateway::Refusal> Gateway::check_jog(const CommandRequest& request, const OperatorCommand& command, Instant now) const {
+    const bool moves = request.kind == CommandKind::move || request.kind == CommandKind::home;
+    if (!moves && (request.kind != CommandKind::jog || request.value == 0)) return std::nullopt;
+    const auto found = jogs_.find(command.axis);
+    const bool mine = found != jogs_.end() && found->second.client == request.client;
+    const bool alive = found != jogs_.end() && now - found->second.renewed <= jog_session;
+    if (alive && !mine) {
+        const auto other = clients_.find(found->second.client);
+        return Refusal{Answer::no_control,
+                       {"command.no_control", "",
+                        fmt::format("{} is jogging this axis", other == clients_.end() ? "another client" : other->second.name),
+                        "Wait until it lets go."}};
+    }
+    if (!moves && !request.press && !(mine && alive)) {
+        runtime::CommandAnswer stale;
+        stale.answer = Answer::stale;
+        return Refusal{Answer::stale, explain(stale, CommandKind::jog, "", {})};
+    }
+    return std::nullopt;
+}
+
+std::optional<Gateway::Refusal> Gateway::translate(const Client& client, const CommandRequest& request, Instant now,
+                                                   OperatorCommand& command) const {
+    const auto* word = find_command(request.kind);
+    if (!word)
+        return Refusal{
+            Answer::unknown_name,
+            {"command.unknown_name", "", fmt::format("there is no command with number {}", static_cast<std::int32_t>(request.kind)),
+             "Use a command of this version; view and runtime may be of different versions."}};
+    command.action = word->action;
+    command.client = request.client;
+    command.sequence = request.sequence;
+    command.flag = request.kind == CommandKind::enable || (request.kind == CommandKind::jog && request.press);
+    command.mode = request.mode;
+    command.value = request.value;
+    command.value2 = request.value2;
+    if (request.commissioning && client.rights != Rights::commissioning)
+        return Refusal{Answer::no_control,
+                       {"command.no_control", "", "commissioning commands are taken from the local socket only",
+                        "Use the command line on this computer."}};
+    if (request.commissioning) command.owner = axes::Owner::commissioning;
+    if (client.source == Source::lcm && (request.kind == CommandKind::shutdown || request.kind == CommandKind::set_output))
+        return Refusal{
+            Answer::no_control,
+            {"command.no_control", "", fmt::format("{} is not taken over LCM, where nobody knows who asks and who is gone", word->word),
+             "Use the local socket."}};
+    if (request.mode > runtime::Mode::automatic)
+        return Refusal{Answer::bad_value, bad_value("there is no such mode", "Give manual, setup or automatic.")};
+
+    const bool all_by_default = request.kind == CommandKind::stop || request.kind == CommandKind::reset;
+    const auto target =
+        find_target(machine_.layout(), word->target, request.target.empty() && all_by_default ? "all" : std::string_view(request.target));
+    if (!target) return Refusal{Answer::unknown_name, target.error()};
+    const bool axis = word->target == TargetKind::axis || word->target == TargetKind::axis_or_all;
+    (axis ? command.axis : command.index) = *target;
+
+    auto refusal = lets_go(request) ? std::nullopt : check_age(request, now);  // that is never too late
+    if (!refusal)
+        if (auto error = check_values(*word, request, command, machine_.layout())) refusal = Refusal{Answer::bad_value, std::move(*error)};
+    if (!refusal) refusal = check_jog(request, command, now);
+    if (const auto stuck = machine_.stuck(); !refusal && !lets_go(request) && stuck)
+        refusal = Refusal{Answer::not_possible_now,
+                          {"command.not_possible_now", "", *stuck, "Use the emergency stop; end the runtime and mend that program."}};
+    if (!refusal && !cycling_)
+        refusal = Refusal{Answer::not_possible_now,
+                          {"command.not_possible_now", "", "the machine is still starting: its bus is not operational yet",
+                           "Wait until it runs (taktwerk monitor shows the progress), then give the command again."}};
+    if (refusal && refusal->error.subject.empty())
+        refusal->error.subject = subject_of(machine_.layout(), word->target, command.axis, command.index);
+    command.expires = now + (request.valid_for - age_of(request, now));
+    command.after = request.arrival.after;
+    return refusal;
+}
+
+void Gateway::settle(Client& client, Entry& entry, Answer answer, axes::ErrorId axis_error, Error error, std::string note) {
+    entry.reply = {entry.request.client, client.source,    entry.request.sequence, entry.request.kind, answer,
+                   axis_error,           std::move(error), std::move(note)};
+    entry.state = answer == Answer::queue_full ? Entry::State::open_again : Entry::State::answered;
+    replies_.push_back(entry.reply);
+}
+
+void Gateway::handle(const CommandRequest& request, Instant now) {
+    const auto found = clients_.find(request.client);
+    if (found == clients_.end()) return;
+    auto& client = found->second;
+    const auto refuse = [&](Answer answer, std::string what, std::string remedy) {
+        replies_.push_back({request.client,
+                            client.source,
+                            request.sequence,
+                            request.kind,
+                            answer,
+                            axes::ErrorId::none,
+                            {std::string(code(answer)), "", std::move(what), std::move(remedy)}});
+    };
+
+    const bool may_shut_down = request.kind == CommandKind::shutdown && client.source != Source::lcm;  // the others are refused below
+    if (request.kind == CommandKind::stop || may_shut_down) {
+        const auto target = request.kind == CommandKind::shutdown || request.target.empty()
+                                ? Result<std::uint16_t>(all_axes)
+                                : find_target(machine_.layout(), TargetKind::axis_or_all, request.target);
+        if (!target) return refuse(Answer::unknown_name, target.error().what, target.error().remedy);
+        client.highest = std::max(client.highest, request.sequence);
+        note(request.client, client, request, now);
+        return raise(client, request, *target, now);
+    }
+    if (lets_go(request)) let_go(request);  // done, whatever the answer will be
+    if (request.sequence == 0) return refuse(Answer::bad_value, "the sequence number is 0", "Count from 1.");
+    Entry* entry = client.find(request.sequence);
+    if (entry && !entry->request.same_as(request))
+        return refuse(Answer::duplicate, fmt::format("sequence {} was used for another command", request.sequence),
+                      "Use a new sequence number for each command.");
+    if (entry && entry->state == Entry::State::waiting) return;  // its answer is on the way
+    if (entry && entry->state == Entry::State::answered) return replies_.push_back(entry->reply);
+    if (!entry && request.sequence <= client.highest)
+        return refuse(Answer::duplicate, fmt::format("sequence {} comes after {}", request.sequence, client.highest),
+                      "Sequence numbers increase; a client that starts anew takes a new client id.");
+    if (!entry) {
+        entry = &client.entries[0];  // the oldest gives way
+        for (auto& candidate : client.entries) {
+            if (candidate.state == Entry::State::empty) {
+                entry = &candidate;
+                break;
+            }
+            if (candidate.request.sequence < entry->request.sequence) entry = &candidate;
+        }
+        if (entry->state == Entry::State::waiting)
+            return refuse(Answer::queue_full, fmt::format("{} commands of this client wait for their answers", remembered),
+                          "Wait for an answer, then give it again.");
+        client.highest = request.sequence;
+    }
+    entry->request = request;
+    entry->submitted = now;
+
+    OperatorCommand command;
+    if (auto refusal = translate(client, request, now, command))
+        return settle(client, *entry, refusal->answer, axes::ErrorId::none, std::move(refusal->error));
+    if (lets_go(request)) {
+        note(request.client, client, request, now);
+        return settle(client, *entry, Answer::accepted, axes::ErrorId::none, {});
+    }
+    if (!machine_.submit(command)) {
+        runtime::CommandAnswer full;
+        full.answer = Answer::queue_full;
+        return settle(client, *entry, Answer::queue_full, axes::ErrorId::none, explain(full, request.kind, "", {}));
+    }
+    entry->state = Entry::State::waiting;
+    client.set_outputs = client.set_outputs || request.kind == CommandKind::set_output;
+    if (request.kind == CommandKind::jog) jogs_[command.axis] = {request.client, now};
+}
+
+void Gateway::let_go(const CommandRequest& request) {
+    const auto axis = find_target(machine_.layout(), TargetKind::axis, request.target);
+    if (!axis) return;
+    const auto jog = jogs_.find(*axis);
+    if (jog == jogs_.end() || jog->second.client != request.client) return;
+    if (!request.arrival.level_raised) machine_.release_jog(*axis);
+    jogs_.erase(jog);
+}
+
+void Gateway::raise(const Client& client, const CommandRequest& request, std::uint16_t axis, Instant now) {
+    const auto ticket = request.kind == CommandKind::stop ? machine_.request_stop(axis) : machine_.request_shutdown();
+    if (levels_.size() >= most_levels) {  // the level stands; only who asks without end is told so before the cycle has said it
+        replies_.push_back({request.client, client.source, request.sequence, request.kind, Answer::accepted, axes::ErrorId::none, {}});
+        return;
+    }
+    levels_.push_back({request.client, request.sequence, request.kind, ticket, now});
+}
+
+void Gateway::settle_levels(Instant now) {
+    for (auto level = levels_.begin(); level != levels_.end();) {
+        const bool taken = machine_.taken(level->ticket);
+        if (!taken && now - level->since <= answer_patience) {
+            ++level;
+            continue;
+        }
+        if (const auto client = clients_.find(level->client); client != clients_.end()) {
+            CommandReply reply{
+                level->client, client->second.source, level->sequence, level->kind, Answer::accepted, axes::ErrorId::none, {}};
+            if (!taken) {
+                reply.answer = Answer::not_possible_now;
+                reply.error = {"command.no_answer", "", machine_.stuck().value_or("the cycle has not taken it yet"),
+                               "It stands and acts in the next cycle, if one comes. Use the emergency stop."};
+            }
+            replies_.push_back(std::move(reply));
+        }
+        level = levels_.erase(level);
+    }
+}
+
+void Gateway::keep_jog_session(const Entry& entry, Answer answer) {
+    if (entry.request.kind != CommandKind::jog || answer == Answer::accepted) return;
+    const auto axis = find_target(machine_.layout(), TargetKind::axis, entry.request.target);
+    if (!axis) return;
+    const auto jog = jogs_.find(*axis);
+    if (jog != jogs_.end() && jog->second.client == entry.request.client) jogs_.erase(jog);
+}
+
+void Gateway::step(Instant now) {
+    now_ = now;
+    release_outputs();
+    settle_levels(now);
+    while (const auto answer = machine_.next_answer()) {
+        const auto client = clients_.find(answer->client);
+        if (client == clients_.end()) continue;
+        auto* entry = client->second.find(answer->sequence);
+        if (!entry || entry->state != Entry::State::waiting) continue;
+        keep_jog_session(*entry, answer->answer);
+        if (answer->answer == Answer::accepted) {
+            note(answer->client, client->second, entry->request, now);
+            const auto axis = find_target(machine_.layout(), TargetKind::axis, entry->request.target);
+            std::string limit;
+            if (answer->limited_to > 0 && axis && *axis < machine_.layout().axes.size())
+                limit = limit_note(*answer, machine_.layout().axes[*axis].unit);
+            settle(client->second, *entry, Answer::accepted, axes::ErrorId::none, {}, std::move(limit));
+            continue;
+        }
+        const auto* word = find_command(entry->request.kind);
+        const auto target = find_target(machine_.layout(), word->target, entry->request.target);
+        const auto index = target ? *target : all_axes;
+        settle(client->second, *entry, answer->answer, answer->error,
+               explain(*answer, entry->request.kind, subject_of(machine_.layout(), word->target, index, index),
+                       machine_.layout().block_at(answer->holder)));
+    }
+    for (auto& [id, client] : clients_)
+        for (auto& entry : client.entries)
+            if (entry.state == Entry::State::waiting && now - entry.submitted > answer_patience)
+                settle(client, entry, Answer::not_possible_now, axes::ErrorId::none,
+                       {"command.no_answer", "",
+                        fmt::format("the cycle gave no answer within {:g} ms; the command may still have been carried out",
+                                    milliseconds(answer_patience)),
+                        "Look at the machine's state before giving it again."});
+}
+
+std::optional<CommandReply> Gateway::next_reply() {
+    if (replies_.empty()) return std::nullopt;
+    auto reply = std::move(replies_.front());
+    replies_.pop_front();
+    return reply;
+}
+
+}  // namespace taktwerk::hmi

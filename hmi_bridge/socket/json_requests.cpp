@@ -1,0 +1,285 @@
+#include "hmi_bridge/socket/json_requests.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "core/nearest_name.hpp"
+#include "hmi_bridge/line_handler.hpp"
+#include "hmi_bridge/socket/answer_line.hpp"
+#include "hmi_bridge/socket/json_state.hpp"
+#include "hmi_bridge/socket/peer_name.hpp"
+#include "hmi_bridge/words/words.hpp"
+
+namespace taktwerk::hmi {
+namespace {
+
+constexpr std::array<std::string_view, 5> questions{"hello", "layout", "state", "alarms", "simulate"};
+struct DriveWord {
+    std::string_view word;
+    DriveRequestKind kind;
+};
+constexpr std::array<DriveWord, 4> drive_words{{
+    {"drive_read", DriveRequestKind::read},
+    {"drive_write", DriveRequestKind::write},
+    {"drive_store", DriveRequestKind::store},
+    {"drive_clear_turns", DriveRequestKind::clear_turns},
+}};
+constexpr std::size_t most_keys = 64;  ///< of one request; no command has ten
+
+std::string_view key_of(TargetKind target) {
+    switch (target) {
+        case TargetKind::none: break;
+        case TargetKind::axis:
+        case TargetKind::axis_or_all: return "axis";
+        case TargetKind::program: return "program";
+        case TargetKind::parameter: return "parameter";
+        case TargetKind::output: return "output";
+    }
+    return "";
+}
+
+Result<nlohmann::json> parse(std::string_view line) {
+    bool too_deep = false;
+    std::vector<std::string> keys;
+    std::optional<std::string> twice;  // the last one would win, and whoever looks at the first sees another request
+    const auto bounded = [&](int depth, nlohmann::json::parse_event_t event, nlohmann::json& value) {
+        too_deep = too_deep || depth > deepest_nesting;
+        if (event == nlohmann::json::parse_event_t::key && depth == 1 && keys.size() < most_keys) {
+            const auto& key = value.get_ref<const std::string&>();
+            if (!twice && std::find(keys.begin(), keys.end(), key) != keys.end()) twice = key;
+            keys.push_back(key);
+        }
+        return !too_deep;
+    };
+    auto json = nlohmann::json::parse(line, bounded, false);
+    if (too_deep)
+        return request_error("too_deep", fmt::format("the request is nested deeper than {} levels", deepest_nesting),
+                             "Send one flat JSON object a line.");
+    if (json.is_discarded())
+        return request_error("not_json", fmt::format("the line is not JSON: {}", shown(line)),
+                             R"(Send one JSON object a line: {"id":1,"cmd":"state"}.)");
+    if (!json.is_object())
+        return request_error("not_an_object", "the request is not a JSON object",
+                             R"(Send one JSON object a line: {"id":1,"cmd":"state"}.)");
+    if (keys.size() >= most_keys)
+        return request_error("unknown_key", fmt::format("the request has {} keys or more", most_keys), "Send the keys of one command.");
+    if (twice)
+        return request_error("duplicate_key",
+                             fmt::format("the key {} stands in the line twice, and nobody can tell which one is meant", shown(*twice)),
+                             "Give each key once. A line that asks for a stop stops all axes all the same.");
+    return json;
+}
+
+std::optional<runtime::Mode> find_mode(std::string_view text) {
+    for (const auto mode : {runtime::Mode::manual, runtime::Mode::setup, runtime::Mode::automatic})
+        if (word(mode) == text) return mode;
+    return std::nullopt;
+}
+
+Error unknown_command(std::string_view cmd) {
+    std::vector<std::string> words(questions.begin(), questions.end());
+    for (const auto& entry : command_words) words.emplace_back(entry.word);
+    for (const auto& entry : drive_words) words.emplace_back(entry.word);
+    const auto near = nearest_name(cmd.substr(0, 64), words);
+    return request_error("unknown_command", fmt::format("there is no command {}", shown(cmd)),
+                         near.empty() ? fmt::format("Use one of: {}.", fmt::join(words, ", ")) : fmt::format("Did you mean \"{}\"?", near));
+}
+
+Result<CommandRequest> read_command(const CommandWord& entry, JsonFields& fields, std::int64_t wall_utime) {
+    CommandRequest request;
+    request.kind = entry.kind;
+    if (entry.target != TargetKind::none) {
+        const bool optional = entry.kind == CommandKind::stop || entry.kind == CommandKind::reset;
+        request.target = fields.text(key_of(entry.target), !optional);
+        // An empty name is a name that somebody forgot to fill in. A stop then stops everything; a reset must not reset everything.
+        if (entry.kind == CommandKind::reset && request.target.empty() && fields.has("axis") && !fields.error())
+            return Error{"command.unknown_name", "", "\"axis\" is empty",
+                         "Name the axis; to reset all axes and the machine leave \"axis\" out."};
+    }
+    if (!entry.value.empty()) request.value = fields.number(entry.value, true);
+    if (!entry.value2.empty()) request.value2 = fields.number(entry.value2, true);
+    if (entry.kind == CommandKind::jog) {
+        request.press = fields.flag("press");
+        request.valid_for = std::chrono::milliseconds{250};
+    }
+    std::optional<Error> mode_error;
+    if (entry.kind == CommandKind::mode) {
+        const auto wanted = fields.text("mode", true);
+        if (const auto mode = find_mode(wanted)) request.mode = *mode;
+        else
+            mode_error =
+                Error{"command.bad_value", "", fmt::format("there is no mode {}", shown(wanted)), "Give manual, setup or automatic."};
+    }
+    request.commissioning = fields.flag("commissioning");
+    // A validity beyond what fits is as wrong as one beyond the gateway's limit.
+    if (const auto ms = fields.maybe_integer("valid_ms"))
+        request.valid_for = std::chrono::milliseconds{std::clamp<std::int64_t>(*ms, -1, 1'000'000)};
+    if (const auto utime = fields.maybe_integer("utime")) {
+        constexpr std::int64_t day = 86'400'000'000;
+        const bool far = *utime < wall_utime - day || *utime > wall_utime + day || *utime < 0;
+        request.age = std::chrono::microseconds{far ? (*utime < wall_utime ? day : -day) : wall_utime - *utime};
+    }
+    fields.finish();
+    if (fields.error()) return *fields.error();
+    if (mode_error) return *mode_error;
+    return request;
+}
+
+}  // namespace
+
+JsonRequests::JsonRequests(Gateway& gateway, MachineLink& machine, std::function<std::int64_t()> wall_utime,
+                           std::function<void(std::string_view)> log)
+    : gateway_(gateway), machine_(machine), drives_(machine, std::move(log), &gateway.hands()), wall_utime_(std::move(wall_utime)) {}
+
+void JsonRequests::on_open(ConnectionId connection, const Peer& peer) {
+    names_[connection] = peer_name(peer);
+    const auto client = gateway_.open(Source::socket, names_[connection], Rights::commissioning);
+    if (client == 0) return;  // questions are still answered
+    clients_[connection] = client;
+    connections_[client] = connection;
+}
+
+void JsonRequests::on_close(ConnectionId connection) {
+    drives_.forget(connection);
+    names_.erase(connection);
+    const auto found = clients_.find(connection);
+    if (found == clients_.end()) return;
+    gateway_.close(found->second);
+    connections_.erase(found->second);
+    clients_.erase(found);
+}
+
+void JsonRequests::refuse(ConnectionId connection, const std::string& id, const Error& error) {
+    lines_.push_back({connection, refusal_line(id, error), id});
+}
+
+void JsonRequests::on_request(ConnectionId connection, std::string_view line, Instant now, const Arrival& arrival) {
+    const auto json = parse(line);
+    if (!json) return refuse(connection, "null", json.error());
+    JsonFields fields(*json);
+    const auto id = fields.integer("id");
+    const auto id_text = id > 0 ? std::to_string(id) : std::string("null");
+    const auto cmd = fields.text("cmd", true);
+    if (fields.error()) return refuse(connection, id_text, *fields.error());
+
+    if (const auto* entry = find_command(cmd)) {
+        if (id <= 0)
+            return refuse(connection, "null",
+                          request_error("missing_key", "a command needs an \"id\" of 1 or more", "Count \"id\" up with each command."));
+        auto request = read_command(*entry, fields, wall_utime_());
+        if (!request) return refuse(connection, id_text, request.error());
+        const auto client = clients_.find(connection);
+        if (client == clients_.end())
+            return refuse(connection, id_text,
+                          {"command.not_possible_now", "", "too many clients give commands", "Close some of them and connect again."});
+        request->client = client->second;
+        request->arrival = arrival;
+        request->sequence = static_cast<std::uint64_t>(id);
+        return gateway_.handle(*request, now);
+    }
+    for (const auto& entry : drive_words)
+        if (entry.word == cmd) return ask_drive(entry.kind, connection, id_text, fields, now);
+    if (std::find(questions.begin(), questions.end(), cmd) == questions.end()) return refuse(connection, id_text, unknown_command(cmd));
+
+    fields.integer("utime");
+    const auto happening = cmd == "simulate" ? fields.text("line", true) : std::string{};
+    fields.finish();
+    if (fields.error()) return refuse(connection, id_text, *fields.error());
+    if (cmd == "simulate") {
+        if (!simulate_)
+            return refuse(
+                connection, id_text,
+                {"simulate.real_machine", machine_.layout().machine, "this machine is not simulated: its inputs and faults are real",
+                 "Start it with `taktwerk run FILE --simulate`."});
+        if (const auto done = simulate_(happening); !done) return refuse(connection, id_text, done.error());
+        return answer(connection, fmt::format(R"({{"id":{},"ok":true}})", id_text));
+    }
+    const auto with = [&](std::string_view key, std::string_view value) {
+        answer(connection, fmt::format(R"({{"id":{},"ok":true,"{}":{}}})", id_text, key, value));
+    };
+    const auto stuck = machine_.stuck();
+    if (cmd == "hello") {
+        const nlohmann::ordered_json hello{{"protocol_version", protocol_version},
+                                           {"machine", machine_.layout().machine},
+                                           {"interface", machine_.layout().interface},
+                                           {"serial_devices", machine_.layout().serial_devices},
+                                           {"pid", ::getpid()},
+                                           {"cycling", snapshot_ != nullptr && !stuck},
+                                           {"progress", stuck ? *stuck : progress_}};
+        return with("hello", hello.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+    }
+    if (cmd == "layout") return with("layout", layout_json(machine_.layout()));
+    if (!snapshot_)
+        return refuse(connection, id_text,
+                      {"state.not_yet", "", "the machine has not executed a cycle yet" + (progress_.empty() ? "" : ": " + progress_),
+                       "Ask again in a moment."});
+    // What the cycle has published last goes on looking alive: nobody may take it for the machine.
+    if (stuck)
+        return refuse(connection, id_text, {"state.stuck", "", *stuck, "Use the emergency stop; end the runtime and mend that program."});
+    if (cmd == "state") return with("state", state_json(*snapshot_, machine_));
+    with("alarms", alarms_json(*snapshot_, machine_));
+}
+
+void JsonRequests::ask_drive(DriveRequestKind kind, ConnectionId connection, const std::string& id, JsonFields& fields, Instant now) {
+    DriveRequest request;
+    request.kind = kind;
+    request.axis = fields.text("axis", true);
+    if (kind == DriveRequestKind::read || kind == DriveRequestKind::write) request.parameter = fields.text("parameter", true);
+    if (kind == DriveRequestKind::write) {
+        request.value = fields.text("value", true);
+        request.store = fields.flag("store");
+    }
+    fields.integer("utime");
+    fields.finish();
+    if (fields.error()) return refuse(connection, id, *fields.error());
+    request.who = names_[connection];
+    if (const auto client = clients_.find(connection); client != clients_.end()) request.client = client->second;
+    request.tag = connection;
+    request.id = id;
+    drives_.handle(std::move(request), snapshot_, now);
+}
+
+void JsonRequests::step(Instant now) {
+    drives_.step(now);
+    while (const auto done = drives_.next_answer()) {
+        if (done->error) {
+            refuse(done->tag, done->id, *done->error);
+            continue;
+        }
+        nlohmann::ordered_json line{{"id", nlohmann::json::parse(done->id)}, {"ok", true}};
+        if (!done->parameter.empty()) line["parameter"] = done->parameter;
+        if (!done->bytes.empty()) {
+            line["shown"] = done->shown;
+            auto& bytes = line["bytes"] = nlohmann::ordered_json::array();
+            for (const auto b : done->bytes) bytes.push_back(std::to_integer<int>(b));
+        }
+        answer(done->tag, line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+    }
+}
+
+void JsonRequests::deliver(const CommandReply& reply) {
+    const auto found = connections_.find(reply.client);
+    if (found == connections_.end()) return;
+    const auto id = std::to_string(reply.sequence);
+    if (reply.accepted() && !reply.note.empty())
+        answer(found->second, fmt::format(R"({{"id":{},"ok":true,"note":{}}})", id, nlohmann::json(reply.note).dump()));
+    else if (reply.accepted()) answer(found->second, accepted_line(id));
+    else refuse(found->second, id, reply.error);
+}
+
+std::optional<JsonRequests::Line> JsonRequests::next_line() {
+    if (lines_.empty()) return std::nullopt;
+    auto line = std::move(lines_.front());
+    lines_.pop_front();
+    return line;
+}
+
+}  // namespace taktwerk::hmi

@@ -1,0 +1,79 @@
+#pragma once
+// The socket's language: one JSON object a line, one answer line for each. Commands go to the gateway, questions are answered
+// from the snapshot. Knows no sockets: lines in, lines out. README.md has the table of requests. One thread, not real-time.
+//
+//   {"id":1,"cmd":"jog","axis":"x","velocity":20,"press":true}   ->  {"id":1,"ok":true}
+//   {"id":2,"cmd":"hoem","axis":"x"}  ->  {"id":2,"ok":false,"error":{"code":"request.unknown_command","what":...,"remedy":...}}
+//
+// Unknown keys are errors: a misspelt "velocity" must not mean "no velocity".
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core/time.hpp"
+#include "hmi_bridge/gateway/drive_requests.hpp"
+#include "hmi_bridge/gateway/gateway.hpp"
+#include "hmi_bridge/line_handler.hpp"
+#include "hmi_bridge/socket/json_fields.hpp"
+
+namespace taktwerk::hmi {
+
+class JsonRequests final : public RequestHandler {
+public:
+    struct Line {
+        ConnectionId connection = 0;
+        std::string text;     ///< without the newline
+        std::string refused;  ///< id of the command that it refuses; empty: none
+    };
+
+    /// `wall_utime`: us since 1970; judges the age of requests that say when they were sent ("utime").
+    /// `log`: lines for the runtime's log; may be empty.
+    JsonRequests(Gateway& gateway, MachineLink& machine, std::function<std::int64_t()> wall_utime,
+                 std::function<void(std::string_view)> log = {});
+
+    /// What "simulate" asks of a simulated machine, done within the next cycles. Errors: what the line has wrong.
+    using Simulate = std::function<Result<void>(const std::string& line)>;
+    /// Without one the machine is real, and the request is refused.
+    void set_simulate(Simulate simulate) { simulate_ = std::move(simulate); }
+
+    /// For questions: the snapshot of this step, nullptr before the first cycle. Until the next call.
+    void observe(const runtime::Snapshot* snapshot) noexcept { snapshot_ = snapshot; }
+    /// One line about how the start is getting on, for "hello" and "state".
+    void set_progress(std::string progress) { progress_ = std::move(progress); }
+
+    void on_open(ConnectionId connection, const Peer& peer) override;
+    void on_line(ConnectionId connection, std::string_view line, Instant now) override { on_request(connection, line, now, {}); }
+    void on_request(ConnectionId connection, std::string_view line, Instant now, const Arrival& arrival) override;
+    void on_close(ConnectionId connection) override;
+
+    /// What drives have answered becomes lines.
+    void step(Instant now);
+    /// A reply of the gateway with Source::socket.
+    void deliver(const CommandReply& reply);
+    std::optional<Line> next_line();
+
+private:
+    void refuse(ConnectionId connection, const std::string& id, const Error& error);
+    void answer(ConnectionId connection, std::string text) { lines_.push_back({connection, std::move(text), {}}); }
+
+    void ask_drive(DriveRequestKind kind, ConnectionId connection, const std::string& id, JsonFields& fields, Instant now);
+
+    Gateway& gateway_;
+    MachineLink& machine_;
+    DriveRequests drives_;
+    std::function<std::int64_t()> wall_utime_;
+    const runtime::Snapshot* snapshot_ = nullptr;
+    std::string progress_;
+    Simulate simulate_;
+    std::map<ConnectionId, ClientId> clients_;
+    std::map<ClientId, ConnectionId> connections_;
+    std::map<ConnectionId, std::string> names_;
+    std::deque<Line> lines_;
+};
+
+}  // namespace taktwerk::hmi

@@ -1,0 +1,176 @@
+#include "hmi_bridge/words/answer_text.hpp"
+
+#include <fmt/format.h>
+
+#include "axes/axis/error_table.hpp"
+#include "hmi_bridge/words/words.hpp"
+
+namespace taktwerk::hmi {
+
+using runtime::Answer;
+
+namespace {
+
+std::string_view spoken(axes::Owner owner) {
+    switch (owner) {
+        case axes::Owner::none: return "nobody";
+        case axes::Owner::program: return "a program";
+        case axes::Owner::operator_panel: return "the operator panel";
+        case axes::Owner::commissioning: return "commissioning";
+    }
+    return "another party";
+}
+
+/// The same refusals in the words of a person at the machine, who has no blocks: cause and remedy. The rest keeps the words of
+/// error_texts.hpp.
+struct OperatorWords {
+    axes::ErrorId error;
+    std::string_view cause, remedy;  ///< {} stands for the axis
+};
+constexpr OperatorWords operator_words[] = {
+    {axes::ErrorId::not_powered, "its drive's power stage is off", "Enable it: `taktwerk enable {}`."},
+    {axes::ErrorId::in_error_stop, "an error of the axis or its drive stopped it",
+     "See its alarm (`taktwerk monitor`), remove the cause, then `taktwerk reset {}`."},
+    {axes::ErrorId::not_homed, "it has not found its zero since it was switched on", "Home it first: `taktwerk home {}`."},
+    {axes::ErrorId::interlocked,
+     "an emergency stop holds, the axis stands on the limit switch of this direction, or a program forbids this direction; with both limit "
+     "switches on their wiring or polarity is wrong",
+     "Release the emergency stop, or move the other way: `taktwerk monitor` shows limit- and limit+ of {}."},
+    {axes::ErrorId::drive_not_ready,
+     "its drive is offline: the bus or the serial line does not reach it, it has no supply, or the file leaves it out (`disabled: true`)",
+     "Check cable and supply, on a serial line also station, baud and format; `taktwerk monitor` shows whether {} is offline, and an alarm "
+     "why."},
+    {axes::ErrorId::state_forbids, "it is stopping or homing, or something holds it",
+     "Wait until it stands; `taktwerk monitor` shows what {} does."},
+    {axes::ErrorId::queue_full, "too many commands wait for it", "Wait until {} stands, then give it again."},
+};
+
+const OperatorWords* words_for_operator(axes::ErrorId error) {
+    for (const auto& words : operator_words)
+        if (words.error == error) return &words;
+    return nullptr;
+}
+
+}  // namespace
+
+std::string_view code(Answer answer) noexcept {
+    switch (answer) {
+        case Answer::accepted: return "";
+        case Answer::unknown_name: return "command.unknown_name";
+        case Answer::bad_value: return "command.bad_value";
+        case Answer::stale: return "command.stale";
+        case Answer::no_control: return "command.no_control";
+        case Answer::wrong_mode: return "command.wrong_mode";
+        case Answer::refused_by_axis: return "command.refused_by_axis";
+        case Answer::not_possible_now: return "command.not_possible_now";
+        case Answer::queue_full: return "command.queue_full";
+        case Answer::duplicate: return "command.duplicate";
+    }
+    return "command.refused";
+}
+
+std::string subject_of(const runtime::MachineLayout& layout, TargetKind target, std::uint16_t axis, std::uint16_t index) {
+    switch (target) {
+        case TargetKind::none: return "";
+        case TargetKind::axis:
+        case TargetKind::axis_or_all: return axis < layout.axes.size() ? "axis " + layout.axes[axis].name : "all axes";
+        case TargetKind::program: return index < layout.programs.size() ? "program " + layout.programs[index] : "";
+        case TargetKind::parameter:
+            return index < layout.parameters.size() ? "parameter " + layout.parameters[index].program + "." + layout.parameters[index].name
+                                                    : "";
+        case TargetKind::output: return index < layout.outputs.size() ? "output " + layout.outputs[index] : "";
+    }
+    return "";
+}
+
+std::string limit_note(const runtime::CommandAnswer& answer, std::string_view unit) {
+    const auto by = answer.limited_in == runtime::Mode::automatic ? std::string("the limit of the axis")
+                                                                  : fmt::format("{} mode", word(answer.limited_in));
+    return fmt::format("limited to {:g} {}/s by {}", answer.limited_to, unit, by);
+}
+
+Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::string subject, std::string_view holder) {
+    Error error{std::string(code(answer.answer)), std::move(subject), "", ""};
+    switch (answer.answer) {
+        case Answer::accepted: break;
+        case Answer::unknown_name:
+            error.what = "the machine does not know the target, or it is disabled by the configuration";
+            error.remedy = "Look at the names the machine has (taktwerk monitor), and at `disabled:` in the configuration.";
+            break;
+        case Answer::bad_value:
+            error.what = "the value is outside its range";
+            error.remedy = "Give a value inside the range.";
+            break;
+        case Answer::stale:
+            if (kind == CommandKind::jog) {
+                error.what = "the jog is over: it was let go, or its lease ran out before the renewal came (then there is an alarm)";
+                error.remedy = "Let go and press again; if its lease runs out again, the connection or this computer is too slow.";
+            } else {
+                error.what = "the command came too late and was not carried out";
+                error.remedy = "Give it again.";
+            }
+            break;
+        case Answer::no_control:
+            error.what = fmt::format("{} has control", spoken(answer.owner));
+            if (!holder.empty()) error.what += fmt::format("; its block '{}' moves or holds the axis", holder);
+            error.remedy = answer.owner == axes::Owner::program
+                               ? "Stop the program or change to manual mode; or take control (the axis stops first)."
+                               : "Wait until it is released, or take control (the axis stops first).";
+            break;
+        case Answer::wrong_mode:
+            error.what = "the mode of the machine does not allow it";
+            error.remedy = kind == CommandKind::program_start ? "Change to automatic mode first." : "Change to manual or setup mode first.";
+            break;
+        case Answer::refused_by_axis:
+            // Neither has a direction: nothing else interlocks them.
+            if (answer.error == axes::ErrorId::interlocked && (kind == CommandKind::enable || kind == CommandKind::reset)) {
+                error.what = "the emergency stop is pressed, or its circuit is open";
+                error.remedy = kind == CommandKind::reset ? "Release it when nobody is in danger, then reset."
+                                                          : "Release it when nobody is in danger, reset, then give the command again.";
+            } else if (const auto* words = words_for_operator(answer.error)) {
+                const auto axis = error.subject.rfind("axis ", 0) == 0 ? error.subject.substr(5) : std::string("the axis");
+                const auto* text = axes::find_error(answer.error);
+                error.what = fmt::format("{} ({}): {}", text->english.text, text->name, words->cause);
+                error.remedy = fmt::format(fmt::runtime(words->remedy), axis);
+            } else if (const auto* text = axes::find_error(answer.error); text && answer.error != axes::ErrorId::none) {
+                error.what = fmt::format("{} ({}): {}", text->english.text, text->name, text->english.cause);
+                error.remedy = fmt::format("{}.", text->english.remedy);
+            } else {
+                error.what = fmt::format("the axis refused it with error {}", static_cast<unsigned>(answer.error));
+                error.remedy = "See the alarms of the axis.";
+            }
+            if (!holder.empty()) error.what += fmt::format("; the block '{}' moves or holds the axis", holder);
+            break;
+        case Answer::not_possible_now:
+            if (answer.error == axes::ErrorId::interlocked) {
+                error.what = "the emergency stop is pressed, or its circuit is open";
+                error.remedy = "Release it when nobody is in danger, reset, then give the command again.";
+            } else if (kind == CommandKind::program_start && answer.error == axes::ErrorId::in_error_stop) {
+                error.what =
+                    "an emergency stop is not reset yet: its alarm waits, or an axis is still in ErrorStop by it, and a start given "
+                    "now would leave the motion to whoever resets later";
+                error.remedy = "When nobody is in danger: `taktwerk reset --wait`, then start again.";
+            } else if (kind == CommandKind::set_output) {
+                error.what = "a program is running, and it drives the outputs";
+                error.remedy = "Stop the programs first.";
+            } else if (kind == CommandKind::program_start) {
+                error.what = "the program is in fault, or the machine is shutting down";
+                error.remedy = "Reset the program, then start it.";
+            } else {
+                error.what = "the machine is shutting down";
+                error.remedy = "Start it again for further commands.";
+            }
+            break;
+        case Answer::queue_full:
+            error.what = "too many commands at once; this one was not taken";
+            error.remedy = "Give it again.";
+            break;
+        case Answer::duplicate:
+            error.what = "the sequence number was used before";
+            error.remedy = "Use a new one for each command.";
+            break;
+    }
+    return error;
+}
+
+}  // namespace taktwerk::hmi
