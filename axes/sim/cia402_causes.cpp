@@ -38,7 +38,7 @@ void Cia402Axis::begin_cause(std::size_t i) noexcept {
 void Cia402Axis::show_cause(const DriveAlarmText& row) noexcept {
     const AlarmCode alarm = alarm_code(row);
     if (row.warning) {
-        if (warnings_.set(alarm)) remember(alarm);
+        alarms_.set_warning(alarm, now_, plant().velocity());
         return;
     }
     if (row.whole_drive) raise_common(alarm);
@@ -50,8 +50,8 @@ void Cia402Axis::show_cause(const DriveAlarmText& row) noexcept {
 void Cia402Axis::end_cause(std::size_t i) noexcept {
     causes_[i] = false;
     const auto& row = profile_->alarms[i];
-    if (row.warning) warnings_.clear(alarm_code(row));
-    else if (row.clears_itself && state_ == State::fault && shows(alarm_code(row))) clear_fault();
+    if (row.warning) alarms_.clear_warning(alarm_code(row));
+    else if (row.clears_itself && state_ == State::fault && alarms_.shows(alarm_code(row))) clear_fault();
 }
 
 void Cia402Axis::show_causes() noexcept {
@@ -61,25 +61,17 @@ void Cia402Axis::show_causes() noexcept {
 
 bool Cia402Axis::cause_lasts() const noexcept {
     for (std::size_t i = 0; i < causes_.size(); ++i)
-        if (causes_[i] && shows(alarm_code(profile_->alarms[i]))) return true;
-    if (battery_low() && !codes_[DriveAlarmKind::battery_low].warning && shows(codes_[DriveAlarmKind::battery_low])) return true;
-    return encoder_failed_ || encoder_complaint_.code != 0 || (!main_power_ && error_code_ == codes_[DriveAlarmKind::undervoltage].code);
-}
-
-bool Cia402Axis::shows(const AlarmCode& alarm) const noexcept { return error_code_ == alarm.code && error_detail_ == alarm.detail; }
-
-void Cia402Axis::remember(const AlarmCode& alarm) noexcept {
-    history_.remember({alarm.detail ? alarm.detail : alarm.code, now_ - powered_at_, plant_.velocity()});
+        if (causes_[i] && alarms_.shows(alarm_code(profile_->alarms[i]))) return true;
+    if (origin_.battery_stops() && alarms_.shows(codes_[DriveAlarmKind::battery_low])) return true;
+    return origin_.complains() || (!supply_.main_power && alarms_.code() == codes_[DriveAlarmKind::undervoltage].code);
 }
 
 void Cia402Axis::clear_fault() noexcept {
-    error_code_ = 0;
-    error_detail_ = 0;
-    if (!uncover_alarm()) enter(State::disabled);
+    if (!alarms_.clear_fault()) enter(State::disabled);
 }
 
 void Cia402Axis::reset_alarm() noexcept {
-    if (state_ == State::fault && error_resettable_ && !cause_lasts()) clear_fault();
+    if (state_ == State::fault && alarms_.shown().resettable && !cause_lasts()) clear_fault();
 }
 
 }  // namespace taktwerk::axes::sim

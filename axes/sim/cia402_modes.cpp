@@ -15,9 +15,7 @@ bool Cia402Axis::may_change_mode() noexcept {
     switch (profile_->mode_rules.violation) {
         case ModeViolation::obeyed: return true;
         case ModeViolation::ignored: break;
-        case ModeViolation::alarm:
-            if (codes_[DriveAlarmKind::mode_change].code) raise(codes_[DriveAlarmKind::mode_change]);
-            break;
+        case ModeViolation::alarm: raise_if_known(DriveAlarmKind::mode_change); break;
     }
     return false;
 }
@@ -26,14 +24,14 @@ bool Cia402Axis::may_change_mode() noexcept {
 bool Cia402Axis::stops_before_mode_change() noexcept {
     const bool position = !mode::of_velocity(mode_) && !mode::of_torque(mode_);
     if (!has(Quirk::ramp_before_mode_change) || state_ != State::enabled || position || stands()) {
-        ramps_out_ = false;
+        stop_.ramp_out(false);
         return false;
     }
-    if (!ramps_out_ && !halted_) {
-        const double ramp = ramp_of(StopBy::ramp);
+    if (!stop_.holds_up()) {
+        const double ramp = stop_ramp(*profile_, StopBy::ramp, mode_, settings_);
         begin_stop({StopBy::ramp, StopThen::lock, ramp, ramp <= 0});
     }
-    ramps_out_ = true;
+    stop_.ramp_out(true);
     return true;
 }
 
@@ -45,33 +43,32 @@ bool Cia402Axis::has_mode(DriveMode mode) const noexcept {
 /// 0 and what the drive does not have leave the mode as it is (TSVM 5.4.1 rule 7).
 void Cia402Axis::select_mode(const AxisInputs& in) noexcept {
     if (in.mode == mode_) {
-        if (ramps_out_) velocity_demand_ = plant_.velocity();  // it stays after all
-        ramps_out_ = false;
+        if (stop_.ramps_out()) velocity_.demand(plant().velocity());  // it stays after all
+        stop_.ramp_out(false);
         return;
     }
     const auto wanted = mode::meaning(in.mode);
     if (wanted == DriveMode::none || !has_mode(wanted)) return;
     if (mode_ == mode::homing && homing_.busy()) return;  // no other while homing runs (SV33-E 3.4.3)
     if (!may_change_mode() || stops_before_mode_change()) return;
-    if (mode::of_torque(mode_)) loop_.take_over(torque_);
+    if (mode::of_torque(mode_)) motor_.keep_torque();
     mode_ = in.mode;
     mode_changed_at_ = now_;
-    end_warning();
-    homing_.cancel();
-    homing_attained_ = homing_error_ = false;
-    halted_ = false;
+    alarms_.end_warning();
+    homing_.forget();
+    stop_.halt(false);
     // A switch never moves: the new mode starts where the axis is.
-    demand_ = {seen_position(), 0, 0};
+    motor_.demand_rest();
     forget_targets();
 }
 
 void Cia402Axis::forget_targets() noexcept {
-    target_ = seen_position();
-    steps_left_ = 0;
-    velocity_demand_ = ramps_velocity() && !stands() ? seen_velocity() : 0;  // a ramp begins at the speed there is
-    velocity_target_ = torque_target_ = torque_demand_ = torque_offset_ = 0;
-    profile_position_.reset(seen_position());
-    limited_ = target_reached_ = false;
+    cyclic_.rest(motor_.position());
+    velocity_.forget(ramps_velocity() && !stands() ? motor_.velocity() : 0);  // a ramp begins at the speed there is
+    torque_.forget();
+    profile_position_.reset(motor_.position());
+    travel_.limited(false);
+    window_.forget();
 }
 
 void Cia402Axis::take_targets(const AxisInputs& in, Duration cycle) noexcept {
@@ -89,31 +86,19 @@ void Cia402Axis::take_targets(const AxisInputs& in, Duration cycle) noexcept {
 }
 
 double Cia402Axis::enabled_torque(double dt) noexcept {
-    if (mode_ == mode::profile_torque) ramp_torque(dt);
-    if (mode::of_torque(mode_)) return ServoLoop::torque_control(plant_, torque_demand_, fastest_, torque_limit());
+    if (mode_ == mode::profile_torque) torque_.ramp(motor_, settings_.torque_slope, dt);
+    if (mode::of_torque(mode_)) return torque_.torque(motor_);
     if (mode::of_velocity(mode_)) {
-        const double before = velocity_demand_;
+        const double before = velocity_.demanded();
         if (ramps_velocity()) ramp_velocity(dt);
-        const double acceleration = ramps_velocity() ? (velocity_demand_ - before) / dt : 0;  // a jump of the master's is none
-        return with_offset(velocity_torque(velocity_demand_, acceleration, torque_limit(), dt));
+        const double wanted = velocity_.demanded();
+        const double acceleration = ramps_velocity() ? (wanted - before) / dt : 0;  // a jump of the master's is none
+        return torque_.with_offset(motor_, motor_.velocity_torque(wanted, acceleration, motor_.torque_limit(), dt));
     }
-    if (mode_ == mode::homing && homing_.state() != HomingRun::State::idle) homing_step(dt);
-    else if (mode_ == mode::profile_position) demand_ = profile_position_.step(dt);
+    if (mode_ == mode::homing && !homing_.idle()) homing_step(dt);
+    else if (mode_ == mode::profile_position) motor_.demand(profile_position_.step(dt));
     else interpolate(dt);
-    return with_offset(position_torque(dt));
-}
-
-double Cia402Axis::position_torque(double dt) noexcept {
-    if (stepper_) return stepper_->torque(plant_, demand_, torque_limit(), dt);
-    return loop_.position_control(plant_, demand_, quantised() + zero_, torque_limit(), dt);
-}
-
-/// Of a motor without an encoder the field turns with that velocity, whatever the rotor does.
-double Cia402Axis::velocity_torque(double velocity, double acceleration, double limit, double dt) noexcept {
-    if (!stepper_) return loop_.velocity_control(plant_, velocity, acceleration, limit, dt);
-    demand_.velocity = velocity;
-    demand_.position += velocity * dt;
-    return stepper_->torque(plant_, demand_, limit, dt);
+    return torque_.with_offset(motor_, motor_.position_torque(origin_.zero(), dt));
 }
 
 }  // namespace taktwerk::axes::sim

@@ -9,58 +9,54 @@ namespace taktwerk::axes::sim {
 void Cia402Axis::power_on(Instant now) noexcept {
     now_ = now;
     mode_ = 0;
-    error_code_ = 0;
-    error_detail_ = 0;
-    error_resettable_ = true;
     last_control_ = 0;
-    encoder_failed_ = winding_down_ = phases_shorted_ = false;
     mode_changed_at_.reset();
-    brake_closed_ = has_brake();
-    brake_closing_ = plant_.config().brake_closing;
-    power_went_ = now;
-    read_switches({});
-    for (auto& probe : probes_) probe.command(0);
+    origin_.power_on();
+    stop_.power_on();
+    brake_.power_on(now);
+    terminals_.power_on(plant());
     homing_.cancel();
-    hidden_alarm_ = {};
-    common_alarm_ = false;
-    overload_lasts_ = {};
+    alarms_.power_on();
+    load_.power_on();
     enter(State::not_ready);
-    self_test_ends_ = now + profile_->self_test;
+    gate_.power_on(now + profile_->self_test);
     end_self_test();
 }
 
 /// TSVM 5.3.1, transitions 1 and 13: an error found while starting leads to Fault at once.
 void Cia402Axis::end_self_test() noexcept {
-    if (!self_test_ends_ || now_ < *self_test_ends_) return;
-    self_test_ends_.reset();
-    warnings_.clear();
-    powered_at_ = now_;
-    heat_ = 0;
-    stalled_ = {};
+    if (!gate_.starts(now_)) return;
+    alarms_.start(now_);
+    load_.start();
     enter(State::disabled);
-    wake_encoder();
+    if (motor_.without_encoder()) motor_.demand({plant().position(), 0, 0});
+    raise_or_warn(origin_.wake(plant().position()));
     show_causes();
 }
 
 void Cia402Axis::enter(State state) noexcept {
     const bool powered = state_ == State::enabled || state_ == State::quick_stop;
-    if (state == State::enabled || state == State::not_ready || state == State::fault_reaction) winding_down_ = false;
+    if (state == State::enabled || state == State::not_ready || state == State::fault_reaction) stop_.wind_no_longer();
     else if (powered && state != State::quick_stop)
         wind_down(state == State::ready ? StopCause::shutdown : state == State::switched_on ? StopCause::disable : StopCause::off);
     if (state == State::enabled && state_ != State::enabled) {
-        brake_opens_ = now_ + profile_->brake.release;
-        commands_from_ = now_ + std::max(profile_->brake.release, profile_->deaf_after_enable);
-        demand_ = {seen_position(), 0, 0};
+        brake_.enabled(now_);
+        gate_.open_at(now_ + std::max(profile_->brake.release, profile_->deaf_after_enable));
+        motor_.demand_rest();
         forget_targets();
-        strikes_ = 0;
-        loop_.reset();
+        cyclic_.enabled();
+        motor_.forget_integral();
     }
     if (state != State::enabled) homing_.cancel();
-    if (state != State::enabled) halted_ = ramps_out_ = false;
-    if (state == State::enabled || state == State::not_ready) phases_shorted_ = false;
+    if (state != State::enabled) stop_.follow_again();
+    if (state == State::enabled || state == State::not_ready) stop_.free_phases();
     if (state == State::quick_stop) begin_stop(stop_for(StopCause::quick_stop));
     if (state == State::fault_reaction) begin_stop(stop_for(StopCause::fault));
     state_ = state;
+}
+
+bool Cia402Axis::energised() const noexcept {
+    return state_ == State::enabled || state_ == State::quick_stop || state_ == State::fault_reaction || stop_.winding_down();
 }
 
 void Cia402Axis::command(const AxisInputs& in) noexcept {
@@ -83,15 +79,15 @@ void Cia402Axis::command(const AxisInputs& in) noexcept {
             break;
         case State::ready:
             if (!voltage || quick) enter(State::disabled);
-            else if (switch_on && main_power_) enter(State::switched_on);
+            else if (switch_on && supply_.main_power) enter(State::switched_on);
             break;
         case State::switched_on:
             if (!voltage || quick) enter(State::disabled);
             else if (shutdown) enter(State::ready);
-            else if (enable && main_power_ && mode_ == mode::none && codes_[DriveAlarmKind::mode_not_set].code)
+            else if (enable && supply_.main_power && mode_ == mode::none && codes_[DriveAlarmKind::mode_not_set].code)
                 raise(codes_[DriveAlarmKind::mode_not_set]);
-            else if (enable && main_power_ && starts_too_fast()) raise(codes_[DriveAlarmKind::start_too_fast]);
-            else if (enable && main_power_) enter(State::enabled);
+            else if (enable && supply_.main_power && motor_.too_fast_to_start()) raise(codes_[DriveAlarmKind::start_too_fast]);
+            else if (enable && supply_.main_power) enter(State::enabled);
             break;
         case State::enabled:
             if (!voltage) enter(State::disabled);
@@ -101,7 +97,7 @@ void Cia402Axis::command(const AxisInputs& in) noexcept {
             break;
         case State::quick_stop:
             if (!voltage) enter(State::disabled);
-            else if (enable && stop_.then != StopThen::free) enter(State::enabled);
+            else if (enable && stop_.order().then != StopThen::free) enter(State::enabled);
             break;
         case State::not_ready:
         case State::fault_reaction:
