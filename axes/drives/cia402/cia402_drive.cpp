@@ -11,24 +11,14 @@
 
 namespace taktwerk::axes::cia402 {
 
-namespace {
-
-std::uint16_t of_axis(std::uint16_t base, std::uint8_t axis, const DriveProfile& profile) noexcept {
-    return object_of_axis(base, static_cast<std::uint16_t>(axis * profile.object_offset));
-}
-
-}  // namespace
-
 Cia402Drive::Cia402Drive(ecat::Master& bus, std::size_t slave, std::uint8_t axis, std::shared_ptr<const DriveProfile> profile,
                          Duration cycle, AxisWants wants)
-    : bus_(bus),
-      slave_(slave),
-      axis_(axis),
+    : place_(bus, slave, axis, profile->object_offset),
       profile_(std::move(profile)),
       interpolation_(profile_->csp_interpolates ? cycle : Duration{}),
-      fault_quirk_(profile_->has(Quirk::fault_low_nibble_f)),
+      status_(*profile_),
       own_{wants.mode},
-      alarm_(*profile_, profile_->alarm_detail_index ? of_axis(profile_->alarm_detail_index, axis, *profile_) : std::uint16_t{0}),
+      alarm_(*profile_, profile_->alarm_detail_index ? place_.object(profile_->alarm_detail_index) : std::uint16_t{0}),
       settings_(*profile_, static_cast<std::uint16_t>(axis * profile_->object_offset), cycle, std::move(wants)) {
     auto& c = capabilities_;
     for (const auto mode : profile_->modes) c.modes = static_cast<std::uint16_t>(c.modes | (1u << static_cast<unsigned>(mode)));
@@ -48,80 +38,50 @@ Cia402Drive::Cia402Drive(ecat::Master& bus, std::size_t slave, std::uint8_t axis
     c.reports_following = !profile_->has(Quirk::csp_bits_12_13_reserved);
 }
 
-std::uint16_t Cia402Drive::object(std::uint16_t base) const noexcept { return of_axis(base, axis_, *profile_); }
-
-bool Cia402Drive::find_output(MappedOutput& output, std::uint16_t index, std::uint8_t sub, bool is_signed) const {
-    output = {};
-    if (!bus_.maps_output(slave_, object(index), sub)) return false;
-    const auto found = bus_.output(slave_, object(index), sub);
-    if (!found) return false;
-    output.signal = *found;
-    output.signal.is_signed = is_signed;
-    output.set_type_range();
-    if (const auto& device = bus_.slave(slave_).device)
-        for (const auto& entry : device->objects) {
-            if (entry.index != object(index) || entry.sub != sub) continue;
-            if (entry.minimum) output.low = std::max(output.low, *entry.minimum);
-            if (entry.maximum) output.high = std::min(output.high, *entry.maximum);
-        }
-    return true;
-}
-
-bool Cia402Drive::find_input(Signal& signal, std::uint16_t index, std::uint8_t sub, bool is_signed) const {
-    signal = {};
-    if (!bus_.maps_input(slave_, object(index), sub)) return false;
-    const auto found = bus_.input(slave_, object(index), sub);
-    if (!found) return false;
-    signal = *found;
-    signal.is_signed = is_signed;
-    return true;
-}
-
 Result<void> Cia402Drive::resolve() {
     const auto missing = [&](std::uint16_t index, const char* what, const char* pdo, const char* list) {
         return Error{
-            "drive.not_mapped", fmt::format("slave '{}' axis {}", bus_.slave(slave_).name, axis_ + 1),
-            fmt::format("object {:04X}h ({}) is not in its {}", object(index), what, pdo),
+            "drive.not_mapped", place_.subject(), fmt::format("object {:04X}h ({}) is not in its {}", place_.object(index), what, pdo),
             fmt::format("map {:04X}h: choose a PDO that has it, or add it to a variable one under `pdo.{}` of the slave (docs/drives.md)",
-                        object(index), list)};
+                        place_.object(index), list)};
     };
     const auto no_output = [&](std::uint16_t index, const char* what) { return missing(index, what, "RxPDO", "rx"); };
     const auto no_input = [&](std::uint16_t index, const char* what) { return missing(index, what, "TxPDO", "tx"); };
 
-    if (!find_output(out_.control, 0x6040, 0, false)) return no_output(0x6040, "controlword");
+    if (!place_.find_output(out_.control, 0x6040, 0, false)) return no_output(0x6040, "controlword");
     const bool undescribed = profile_->assumes(AssumedPart::process_data);
-    const bool sends_mode = find_output(out_.mode, 0x6060, 0, true), shows_mode = find_input(in_.mode, 0x6061, 0, true);
+    const bool sends_mode = place_.find_output(out_.mode, 0x6060, 0, true), shows_mode = place_.find_input(in_.mode, 0x6061, 0, true);
     if (!sends_mode && !undescribed) return no_output(0x6060, "modes of operation");
-    if (!find_output(out_.target_position, 0x607A, 0, true) && capabilities_.has(DriveMode::cyclic_position) && !undescribed)
+    if (!place_.find_output(out_.target_position, 0x607A, 0, true) && capabilities_.has(DriveMode::cyclic_position) && !undescribed)
         return no_output(0x607A, "target position");
-    if (!find_input(in_.status, 0x6041, 0, false)) return no_input(0x6041, "statusword");
+    if (!place_.find_input(in_.status, 0x6041, 0, false)) return no_input(0x6041, "statusword");
     if (!shows_mode && !undescribed) return no_input(0x6061, "modes of operation display");
     if (auto taken = take_own_modes(sends_mode, shows_mode); !taken) return taken;
-    if (!find_input(in_.position, 0x6064, 0, true)) return no_input(0x6064, "position actual value");
+    if (!place_.find_input(in_.position, 0x6064, 0, true)) return no_input(0x6064, "position actual value");
 
-    (void)find_output(out_.target_velocity, 0x60FF, 0, true);
-    (void)find_output(out_.target_torque, 0x6071, 0, true);
-    capabilities_.velocity_feed_forward = find_output(out_.velocity_offset, 0x60B1, 0, true);
-    capabilities_.torque_feed_forward = find_output(out_.torque_offset, 0x60B2, 0, true);
+    (void)place_.find_output(out_.target_velocity, 0x60FF, 0, true);
+    (void)place_.find_output(out_.target_torque, 0x6071, 0, true);
+    capabilities_.velocity_feed_forward = place_.find_output(out_.velocity_offset, 0x60B1, 0, true);
+    capabilities_.torque_feed_forward = place_.find_output(out_.torque_offset, 0x60B2, 0, true);
     find_torque_limits();
-    capabilities_.velocity_limit = find_output(out_.velocity_limit, 0x607F, 0, false);
-    capabilities_.digital_outputs = find_output(out_.digital, 0x60FE, 1, false);
-    const bool mask = find_output(out_.digital_mask, 0x60FE, 2, false);
+    capabilities_.velocity_limit = place_.find_output(out_.velocity_limit, 0x607F, 0, false);
+    capabilities_.digital_outputs = place_.find_output(out_.digital, 0x60FE, 1, false);
+    const bool mask = place_.find_output(out_.digital_mask, 0x60FE, 2, false);
     capabilities_.brake = (profile_->brake.object == BrakeObject::output_bit && capabilities_.digital_outputs) ||
                           (profile_->brake.object == BrakeObject::mask_opens && mask);
-    (void)find_output(out_.profile_velocity, 0x6081, 0, false);
-    (void)find_output(out_.profile_acceleration, 0x6083, 0, false);
-    (void)find_output(out_.profile_deceleration, 0x6084, 0, false);
-    (void)find_output(out_.torque_slope, 0x6087, 0, false);
+    (void)place_.find_output(out_.profile_velocity, 0x6081, 0, false);
+    (void)place_.find_output(out_.profile_acceleration, 0x6083, 0, false);
+    (void)place_.find_output(out_.profile_deceleration, 0x6084, 0, false);
+    (void)place_.find_output(out_.torque_slope, 0x6087, 0, false);
 
-    (void)find_input(in_.velocity, 0x606C, 0, true);
-    (void)find_input(in_.torque, 0x6077, 0, true);
-    (void)find_input(in_.error, 0x603F, 0, false);
-    capabilities_.digital_inputs = find_input(in_.digital, 0x60FD, 0, false);
+    (void)place_.find_input(in_.velocity, 0x606C, 0, true);
+    (void)place_.find_input(in_.torque, 0x6077, 0, true);
+    (void)place_.find_input(in_.error, 0x603F, 0, false);
+    capabilities_.digital_inputs = place_.find_input(in_.digital, 0x60FD, 0, false);
     feedback_.has_inputs = capabilities_.digital_inputs;
     // A clock that nobody synchronises never shows in bit 8.
-    const auto clock_bit = profile_->has(Quirk::clock_bit_8) && !bus_.slave(slave_).dc ? bit_clock : std::uint16_t{0};
-    enable_bits_ = static_cast<std::uint16_t>(profile_->enable_status_bits & ~clock_bit);
+    const auto clock_bit = profile_->has(Quirk::clock_bit_8) && !place_.slave().dc ? bit_clock : std::uint16_t{0};
+    status_.await(static_cast<std::uint16_t>(profile_->enable_status_bits & ~clock_bit));
     find_probes();
     find_homing_setup();
     drop_modes_without_target();
@@ -134,11 +94,11 @@ Result<void> Cia402Drive::resolve() {
 
 void Cia402Drive::find_probes() {
     capabilities_.probes = capabilities_.probe_edges = 0;
-    if (!find_output(out_.probe_function, 0x60B8, 0, false) || !find_input(in_.probe_status, 0x60B9, 0, false)) return;
+    if (!place_.find_output(out_.probe_function, 0x60B8, 0, false) || !place_.find_input(in_.probe_status, 0x60B9, 0, false)) return;
     static constexpr std::uint16_t positions[2][2] = {{0x60BA, 0x60BB}, {0x60BC, 0x60BD}};
     for (std::size_t probe = 0; probe < 2; ++probe) {
-        const bool rising = find_input(in_.probe_position[probe][0], positions[probe][0], 0, true);
-        const bool falling = find_input(in_.probe_position[probe][1], positions[probe][1], 0, true);
+        const bool rising = place_.find_input(in_.probe_position[probe][0], positions[probe][0], 0, true);
+        const bool falling = place_.find_input(in_.probe_position[probe][1], positions[probe][1], 0, true);
         if ((!rising && !falling) || probe >= profile_->probes) continue;
         capabilities_.probes = static_cast<std::uint8_t>(probe + 1);
         capabilities_.probe_edges =
@@ -151,14 +111,14 @@ void Cia402Drive::find_homing_setup() {
     static constexpr std::pair<std::uint16_t, std::uint8_t> wanted[HomingSetup::count] = {
         {0x6098, 0}, {0x6099, 1}, {0x6099, 2}, {0x609A, 0}};
     capabilities_.homing_per_run = false;
-    const auto& slave = bus_.slave(slave_);
+    const auto& slave = place_.slave();
     if (!capabilities_.drive_homing || !slave.device) return;
     std::array<HomingSetup::Object, HomingSetup::count> objects;
     HomingSetup::Values at_start{};
     for (std::size_t i = 0; i < HomingSetup::count; ++i) {
         const auto [base, sub] = wanted[i];
-        const auto index = object(base);
-        if (bus_.maps_output(slave_, index, sub)) return;
+        const auto index = place_.object(base);
+        if (place_.bus().maps_output(place_.number(), index, sub)) return;
         const auto& entries = slave.device->objects;
         const auto entry =
             std::find_if(entries.begin(), entries.end(), [&, s = sub](const auto& e) { return e.index == index && e.sub == s; });
@@ -173,12 +133,12 @@ void Cia402Drive::find_homing_setup() {
 
 /// What of a profile's speed and ramps goes by SDO: the drive has it and it is not mapped.
 void Cia402Drive::find_ramps() {
-    const auto& device = bus_.slave(slave_).device;
+    const auto& device = place_.slave().device;
     if (!device) return;
     const auto use = [&](RampWriter::Ramp ramp, const MappedOutput& mapped, std::uint16_t base) {
         if (mapped.mapped()) return;
         for (const auto& entry : device->objects)
-            if (entry.index == object(base) && entry.sub == 0) ramps_.use(ramp, entry.index, ecat::bit_size(entry.type) / 8u);
+            if (entry.index == place_.object(base) && entry.sub == 0) ramps_.use(ramp, entry.index, ecat::bit_size(entry.type) / 8u);
     };
     use(RampWriter::velocity, out_.profile_velocity, 0x6081);
     use(RampWriter::acceleration, out_.profile_acceleration, 0x6083);
@@ -188,16 +148,16 @@ void Cia402Drive::find_ramps() {
 
 /// Mapped ones go with each frame. Else those that the drive has are written when they change: one for each direction where it has them.
 void Cia402Drive::find_torque_limits() {
-    const bool both_ways = find_output(out_.torque_max, 0x6072, 0, false);
-    const bool positive = find_output(out_.torque_positive, 0x60E0, 0, false);
-    const bool negative = find_output(out_.torque_negative, 0x60E1, 0, false);
+    const bool both_ways = place_.find_output(out_.torque_max, 0x6072, 0, false);
+    const bool positive = place_.find_output(out_.torque_positive, 0x60E0, 0, false);
+    const bool negative = place_.find_output(out_.torque_negative, 0x60E1, 0, false);
     capabilities_.torque_limit_per_direction = positive && negative;
     capabilities_.torque_limits = both_ways || (positive && negative);
-    const auto& slave = bus_.slave(slave_);
+    const auto& slave = place_.slave();
     if (positive || negative || both_ways || !slave.device) return;
     const auto writable = [&](std::uint16_t base) -> std::optional<TorqueLimitWriter::Object> {
         for (const auto& entry : slave.device->objects) {
-            if (entry.index != object(base) || entry.sub != 0 || entry.access == ecat::Access::ro) continue;
+            if (entry.index != place_.object(base) || entry.sub != 0 || entry.access == ecat::Access::ro) continue;
             const std::size_t bytes = std::min<std::size_t>(ecat::bit_size(entry.type) / 8u, 4);
             TorqueLimitWriter::Object limit{entry.index, bytes, (std::int64_t{1} << (8 * bytes)) - 1};
             if (entry.maximum) limit.high = std::min(limit.high, *entry.maximum);
@@ -232,46 +192,47 @@ void Cia402Drive::drop_modes_without_target() noexcept {
 }
 
 void Cia402Drive::collect_starting_values() {
-    starting_values_.clear();
-    started_ = false;
-    const auto& slave = bus_.slave(slave_);
+    starting_.clear();
+    const auto& slave = place_.slave();
     if (!slave.device) return;
     for (const auto& entry : slave.device->objects) {
-        if (!bus_.maps_output(slave_, entry.index, entry.sub)) continue;
+        if (!place_.bus().maps_output(place_.number(), entry.index, entry.sub)) continue;
         auto value = entry.value;
         for (const auto& sdo : slave.startup)
             if (sdo.index == entry.index && sdo.sub == entry.sub) value = sdo.value;
-        const auto signal = bus_.output(slave_, entry.index, entry.sub);
-        if (signal && value != 0) starting_values_.emplace_back(*signal, value);
-        if (entry.index == object(0x607F) && entry.sub == 0) velocity_limit_at_start_ = value;
+        const auto signal = place_.bus().output(place_.number(), entry.index, entry.sub);
+        if (signal && value != 0) starting_.add(*signal, value);
+        if (entry.index == place_.object(0x607F) && entry.sub == 0) starting_.velocity_limit(value);
     }
-    for (const auto& found : bus_.found_outputs(slave_)) {
-        const auto signal = bus_.output(slave_, found.index, found.sub);
-        if (signal) starting_values_.emplace_back(*signal, found.value);
-        if (found.index == object(0x607F) && found.sub == 0) velocity_limit_at_start_ = found.value;
+    for (const auto& found : place_.bus().found_outputs(place_.number())) {
+        const auto signal = place_.bus().output(place_.number(), found.index, found.sub);
+        if (signal) starting_.add(*signal, found.value);
+        if (found.index == place_.object(0x607F) && found.sub == 0) starting_.velocity_limit(found.value);
     }
 }
 
 DriveAlarm Cia402Drive::alarm() const noexcept { return alarm_.alarm(); }
 
 void Cia402Drive::step(Instant) {
-    alarm_.step(bus_, slave_);
-    ramps_.step(bus_, slave_);
-    if (torque_limits_.used()) torque_limits_.step(bus_, slave_);
-    if (capabilities_.homing_per_run) homing_setup_.step(bus_, slave_);
-    settings_.step(bus_, slave_);
+    alarm_.step(place_.bus(), place_.number());
+    ramps_.step(place_.bus(), place_.number());
+    if (torque_limits_.used()) torque_limits_.step(place_.bus(), place_.number());
+    if (capabilities_.homing_per_run) homing_setup_.step(place_.bus(), place_.number());
+    settings_.step(place_.bus(), place_.number());
 }
 
-ServiceTicket Cia402Drive::read_parameter(ParameterAddress address) { return bus_.upload(slave_, object(address.index), address.sub); }
+ServiceTicket Cia402Drive::read_parameter(ParameterAddress address) {
+    return place_.bus().upload(place_.number(), place_.object(address.index), address.sub);
+}
 
 ServiceTicket Cia402Drive::write_parameter(ParameterAddress address, std::vector<std::byte> value) {
     // The next frame would overwrite it, and some drives take that badly (SV33-E 6.2.8, TSVM 5.2.5).
-    if (bus_.maps_output(slave_, object(address.index), address.sub)) return 0;
+    if (place_.bus().maps_output(place_.number(), place_.object(address.index), address.sub)) return 0;
     // Units that change under a moving axis would make its next set-point another one (SV-DA200 2.1 note 1: at once).
     // So would another gear (SV33-E 6091h).
     const auto& units = profile_->units.object;
     if (enabled_.load(std::memory_order_relaxed) && ((units.index != 0 && address == units) || settings_.part_of_scale(address))) return 0;
-    const auto ticket = bus_.download(slave_, object(address.index), address.sub, value);
+    const auto ticket = place_.bus().download(place_.number(), place_.object(address.index), address.sub, value);
     settings_.changed(address);  // read again, behind this write
     return ticket;
 }
@@ -284,9 +245,9 @@ ServiceTicket Cia402Drive::start_service(DriveService service) {
         return TurnClearing::by_control_word;
     }
     std::size_t bytes = 2;
-    if (const auto& device = bus_.slave(slave_).device)
+    if (const auto& device = place_.slave().device)
         for (const auto& entry : device->objects)
-            if (entry.index == object(address.index) && entry.sub == address.sub) bytes = ecat::bit_size(entry.type) / 8;
+            if (entry.index == place_.object(address.index) && entry.sub == address.sub) bytes = ecat::bit_size(entry.type) / 8;
     std::vector<std::byte> value;
     for (std::size_t i = 0; i < bytes; ++i)
         value.push_back(static_cast<std::byte>(static_cast<std::uint64_t>(profile_->encoder.clear_turns_value) >> (8 * i) & 0xFFu));
@@ -300,14 +261,12 @@ std::optional<Result<ServiceAnswer>> Cia402Drive::service_answer(ServiceTicket t
         if (turns_.pulsing()) return std::nullopt;
         return Result<ServiceAnswer>{ServiceAnswer{}};
     }
-    auto answer = bus_.poll(ticket);
+    auto answer = place_.bus().poll(ticket);
     if (!answer) return std::nullopt;
     if (!answer->ok()) return Result<ServiceAnswer>{answer->error()};
     return Result<ServiceAnswer>{std::move(answer->value().data)};
 }
 
-Instant Cia402Drive::setpoint_effective(Instant send_time) const noexcept {
-    return bus_.outputs_effective(slave_, send_time) + interpolation_;
-}
+Instant Cia402Drive::setpoint_effective(Instant send_time) const noexcept { return place_.effective(send_time) + interpolation_; }
 
 }  // namespace taktwerk::axes::cia402

@@ -9,16 +9,23 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "axes/drives/cia402/alarm_reader.hpp"
+#include "axes/drives/cia402/drive_on_bus.hpp"
+#include "axes/drives/cia402/held_target.hpp"
+#include "axes/drives/cia402/homing_answer.hpp"
 #include "axes/drives/cia402/homing_setup.hpp"
 #include "axes/drives/cia402/mapped_output.hpp"
+#include "axes/drives/cia402/mode_request.hpp"
+#include "axes/drives/cia402/position_unwrap.hpp"
 #include "axes/drives/cia402/probe_latch.hpp"
 #include "axes/drives/cia402/profile_handshake.hpp"
 #include "axes/drives/cia402/ramp_writer.hpp"
+#include "axes/drives/cia402/reset_pulse.hpp"
 #include "axes/drives/cia402/settings_check.hpp"
+#include "axes/drives/cia402/starting_values.hpp"
+#include "axes/drives/cia402/status_reading.hpp"
 #include "axes/drives/cia402/torque_limit_writer.hpp"
 #include "axes/drives/cia402/turn_clearing.hpp"
 #include "axes/port/drive_port.hpp"
@@ -69,9 +76,6 @@ private:
         std::array<std::array<Signal, 2>, 2> probe_position;  // [probe][rising, falling]
     };
 
-    [[nodiscard]] std::uint16_t object(std::uint16_t base) const noexcept;
-    [[nodiscard]] bool find_output(MappedOutput& output, std::uint16_t index, std::uint8_t sub, bool is_signed) const;
-    [[nodiscard]] bool find_input(Signal& signal, std::uint16_t index, std::uint8_t sub, bool is_signed) const;
     [[nodiscard]] Result<void> take_own_modes(bool sends, bool shows);
     [[nodiscard]] Result<void> check_own_mode() const;
     void find_probes();
@@ -84,8 +88,6 @@ private:
     void decode_homing(std::uint16_t status, Instant now) noexcept;
     void decode_probes() noexcept;
     [[nodiscard]] std::uint16_t control_word(const DriveCommand& command, bool mode_confirmed) noexcept;
-    [[nodiscard]] std::uint16_t fault_reset_word() noexcept;
-    [[nodiscard]] DriveMode mode_to_send(DriveMode wanted, Instant now) noexcept;
     [[nodiscard]] bool profile_prepared(const DriveCommand& command, bool follows) noexcept;
     void hold_profile_target(DriveCommand& command, bool follows, bool prepared) noexcept;
     void write_targets(std::span<std::byte> image, const DriveCommand& command, bool follows) const noexcept;
@@ -94,42 +96,31 @@ private:
     void write_brake(std::span<std::byte> image, bool open) const noexcept;
     void write_probes(std::span<std::byte> image, const DriveCommand& command) noexcept;
 
-    ecat::Master& bus_;
-    std::size_t slave_;
-    std::uint8_t axis_;
+    DriveOnBus place_;
     std::shared_ptr<const DriveProfile> profile_;
     Duration interpolation_;
-    bool fault_quirk_;
+    StatusReading status_;
     OwnMode own_;
     Outputs out_;
     Inputs in_;
     DriveCapabilities capabilities_;
     DriveFeedback feedback_;
-    std::vector<std::pair<Signal, std::int64_t>> starting_values_;
-    std::int64_t velocity_limit_at_start_ = 0;  // 607Fh raw, 0 = unknown
-    bool started_ = false;
+    StartingValues starting_;
 
-    bool was_online_ = false, position_seeded_ = false;
-    std::int64_t anchor_ = 0, anchor_raw_ = 0;  // unwrapped position and raw value of the last cycle that counted
-    Instant position_at_{};
-
-    DriveMode sent_mode_ = DriveMode::none;
-    std::optional<Instant> mode_sent_at_;
-    Instant mode_means_something_from_{};
-
-    std::uint32_t reset_cycle_ = 0;
-    std::optional<Instant> homing_since_;  // bit 4 was set; attained bits of an earlier homing are ignored
-    bool homing_cleared_ = false;
+    bool was_online_ = false;
+    PositionUnwrap position_;
+    ModeRequest mode_;
+    ResetPulse reset_;
+    HomingAnswer homing_;
     std::array<ProbeLatch, 2> probes_{};
     HomingSetup homing_setup_;
     TurnClearing turns_;
     ProfileHandshake handshake_;
     RampWriter ramps_;
     TorqueLimitWriter torque_limits_;
-    double held_velocity_ = 0, held_torque_ = 0;  // target of PV and PT while ramps for the next are being written
+    HeldTarget held_;
     AlarmReader alarm_;
     SettingsCheck settings_;
-    std::uint16_t enable_bits_ = 0;     // of 6041h, all set before Enable Operation
     std::atomic<bool> enabled_{false};  // for the service side
 };
 

@@ -5,23 +5,8 @@
 
 namespace taktwerk::axes::cia402 {
 
-namespace {
-
-// Attained bits count only after the drive has shown that it took the new start, or after this long: methods such as 35 are over
-// before a frame has passed.
-constexpr Duration homing_settle = std::chrono::milliseconds{50};
-
-/// a - b modulo 2^bits, sign-extended: a raw position may wrap between two samples.
-std::int64_t difference(std::int64_t a, std::int64_t b, unsigned bits) noexcept {
-    const unsigned unused = 64u - bits;
-    const auto wide = static_cast<std::uint64_t>(a) - static_cast<std::uint64_t>(b);
-    return static_cast<std::int64_t>(wide << unused) >> unused;
-}
-
-}  // namespace
-
 const DriveFeedback& Cia402Drive::decode(Instant now) noexcept {
-    const auto& health = bus_.health(slave_);
+    const auto& health = place_.health();
     feedback_.fresh = health.fresh;
     feedback_.age = health.age;
     feedback_.online = health.al_state == ecat::AlState::op && !health.al_error;
@@ -36,15 +21,15 @@ const DriveFeedback& Cia402Drive::decode(Instant now) noexcept {
         turns_.note(PowerState::unknown);
         if (was_online_) ramps_.forget();
         was_online_ = false;
-        position_at_ = {};
+        position_.interrupt();
     }
     if (!health.fresh) return feedback_;
 
-    const auto image = bus_.inputs();
+    const auto image = place_.bus().inputs();
     feedback_.latched = health.latched;
     const auto status = static_cast<std::uint16_t>(read_signal(image, in_.status));
     feedback_.status_word = status;
-    feedback_.power = power_state(status, fault_quirk_);
+    feedback_.power = status_.power(status);
     if (feedback_.online) turns_.note(feedback_.power);
     enabled_.store(feedback_.power == PowerState::enabled, std::memory_order_relaxed);
     feedback_.fault = (status & bit_fault) != 0;
@@ -55,7 +40,7 @@ const DriveFeedback& Cia402Drive::decode(Instant now) noexcept {
     feedback_.error_code = static_cast<std::uint16_t>(read_signal(image, in_.error));
 
     // While a drive changes its mode, 6061h and what belongs to the mode may be anything (TSVM 5.4.1).
-    if (health.latched >= mode_means_something_from_) {
+    if (mode_.valid(health.latched)) {
         feedback_.mode = own_.fixed ? *own_.fixed : mode_of(read_signal(image, in_.mode));
         decode_motion();
     } else {
@@ -78,59 +63,52 @@ const DriveFeedback& Cia402Drive::decode(Instant now) noexcept {
 }
 
 void Cia402Drive::decode_motion() noexcept {
-    const auto image = bus_.inputs();
+    const auto image = place_.bus().inputs();
     const bool returned = feedback_.online && !was_online_;
     if (returned) {
         was_online_ = true;
-        position_at_ = {};
-        if (position_seeded_) ++feedback_.position_epoch;
+        position_.interrupt();
+        if (position_.seeded()) ++feedback_.position_epoch;
     }
     const auto before = feedback_.position;
     const auto raw = read_signal(image, in_.position);
-    feedback_.position = position_seeded_ ? anchor_ + difference(raw, anchor_raw_, in_.position.bits) : raw;
+    feedback_.position = position_.position(raw, in_.position.bits);
     // Only what a drive in OP says moves the anchor: one that restarts may show zeros for a while.
-    if (feedback_.online) {
-        anchor_ = feedback_.position;
-        anchor_raw_ = raw;
-        position_seeded_ = true;
-    }
+    if (feedback_.online) position_.anchor(feedback_.position, raw);
 
     if (in_.velocity.mapped()) {
         feedback_.velocity = static_cast<double>(read_signal(image, in_.velocity)) / settings_.velocity_counts_per_unit();
-    } else if (position_at_ == Instant{}) {
+    } else if (position_.before() == Instant{}) {
         feedback_.velocity = 0;
-    } else if (feedback_.latched > position_at_) {
-        feedback_.velocity = static_cast<double>(feedback_.position - before) / to_seconds(feedback_.latched - position_at_);
+    } else if (feedback_.latched > position_.before()) {
+        feedback_.velocity = static_cast<double>(feedback_.position - before) / to_seconds(feedback_.latched - position_.before());
     }
-    position_at_ = feedback_.online ? feedback_.latched : Instant{};
+    position_.counted(feedback_.online ? feedback_.latched : Instant{});
     feedback_.torque = static_cast<double>(read_signal(image, in_.torque)) / profile_->torque_rated_raw;
 }
 
 void Cia402Drive::decode_homing(std::uint16_t status, Instant now) noexcept {
     const bool attained_before = feedback_.homing_attained;
     feedback_.homing_attained = feedback_.homing_error = false;
-    if (!homing_since_ || feedback_.mode != DriveMode::homing) return;
-    const bool attained = (status & bit_homing_attained) != 0;
-    const bool error = (status & bit_homing_error) != 0;
-    if (!attained && !error) homing_cleared_ = true;
-    if (!homing_cleared_ && now - *homing_since_ < homing_settle) return;
-    feedback_.homing_error = error;
-    feedback_.homing_attained = attained && !error && (status & bit_target_reached) != 0;
+    if (feedback_.mode != DriveMode::homing) return;
+    const auto bits = homing_.read(status, now);
+    feedback_.homing_error = bits.error;
+    feedback_.homing_attained = bits.attained;
     if (feedback_.homing_attained && !attained_before) {
         ++feedback_.position_epoch;
-        position_at_ = {};
+        position_.interrupt();
     }
 }
 
 void Cia402Drive::decode_probes() noexcept {
-    const auto image = bus_.inputs();
+    const auto image = place_.bus().inputs();
     const auto status = static_cast<std::uint16_t>(read_signal(image, in_.probe_status));
     for (std::size_t probe = 0; probe < capabilities_.probes; ++probe) {
         auto& latch = probes_[probe];
         const auto raw = read_signal(image, in_.probe_position[probe][latch.rising() ? 0 : 1]);
         // The latch is a raw position like 6064h: it lies next to the unwrapped actual position.
         if (latch.take(static_cast<std::uint8_t>(status >> (8 * probe)), raw, feedback_.probes[probe]))
-            feedback_.probes[probe].position = feedback_.position + difference(raw, anchor_raw_, in_.position.bits);
+            feedback_.probes[probe].position = feedback_.position + position_.beside(raw, in_.position.bits);
     }
 }
 

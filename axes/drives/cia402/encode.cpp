@@ -10,12 +10,6 @@ namespace taktwerk::axes::cia402 {
 
 namespace {
 
-// A reset edge is held this long, then taken back as long, then tried again while it is still asked for. TSVM and SV33-E
-// ignore every other command while bit 7 stands.
-constexpr std::uint32_t reset_low_cycles = 4;
-constexpr std::uint32_t reset_high_cycles = 4;
-constexpr std::uint32_t reset_wait_cycles = 100;
-
 constexpr std::uint32_t brake_bit = 1;  // of 60FEh
 
 bool position_mode(DriveMode mode) noexcept { return mode == DriveMode::cyclic_position || mode == DriveMode::profile_position; }
@@ -27,22 +21,16 @@ bool torque_mode(DriveMode mode) noexcept { return mode == DriveMode::cyclic_tor
 
 }  // namespace
 
-std::uint16_t Cia402Drive::fault_reset_word() noexcept {
-    const auto phase = reset_cycle_ % (reset_low_cycles + reset_high_cycles + reset_wait_cycles);
-    if (bus_.health(slave_).due) ++reset_cycle_;  // in exchanges: a slower sync unit carries each level as often
-    return phase >= reset_low_cycles && phase < reset_low_cycles + reset_high_cycles ? fault_reset : disable_voltage;
-}
-
 std::uint16_t Cia402Drive::control_word(const DriveCommand& command, bool mode_confirmed) noexcept {
     const bool unknown = feedback_.power == PowerState::unknown;
     if (feedback_.fault || unknown) {
         // A drive that clears this alarm by a power cycle only is not pestered with edges (TSVM 7, note on starred alarms).
-        if (command.reset_fault && alarm_.alarm().resettable) return fault_reset_word();
-        reset_cycle_ = 0;
+        if (command.reset_fault && alarm_.alarm().resettable) return reset_.word(place_.health().due);
+        reset_.end();
         // Whatever it is doing in a state nobody knows: a motor that runs is stopped rather than let go.
         return unknown && !feedback_.fault ? quick_stop : disable_voltage;
     }
-    reset_cycle_ = 0;
+    reset_.end();
 
     switch (command.power) {
         case PowerRequest::off: return towards_off(feedback_.power);
@@ -51,9 +39,8 @@ std::uint16_t Cia402Drive::control_word(const DriveCommand& command, bool mode_c
                                                                                                        : towards_off(feedback_.power);
         case PowerRequest::on: break;
     }
-    const unsigned awaited = enable_bits_ & ~unsigned{settings_.status_hidden()};
-    const bool may_enable =
-        mode_confirmed && (feedback_.status_word & awaited) == awaited && settings_.verdict() == SettingsCheck::Verdict::fits;
+    const bool bits_stand = status_.may_enable(feedback_.status_word, settings_.status_hidden());
+    const bool may_enable = mode_confirmed && bits_stand && settings_.verdict() == SettingsCheck::Verdict::fits;
     std::uint16_t word = towards_enabled(feedback_.power, may_enable);
     if (feedback_.power == PowerState::enabled) {
         if (command.mode == DriveMode::homing && mode_confirmed && command.start_homing) word |= homing_start;
@@ -62,23 +49,10 @@ std::uint16_t Cia402Drive::control_word(const DriveCommand& command, bool mode_c
     return word;
 }
 
-DriveMode Cia402Drive::mode_to_send(DriveMode wanted, Instant now) noexcept {
-    if (wanted == sent_mode_) return sent_mode_;
-    if (mode_sent_at_ && now - *mode_sent_at_ < profile_->mode_rules.change_interval) return sent_mode_;
-    sent_mode_ = wanted;
-    mode_sent_at_ = now;
-    if (profile_->mode_rules.indeterminate > Duration::zero())
-        mode_means_something_from_ = bus_.outputs_effective(slave_, now) + profile_->mode_rules.indeterminate;
-    return sent_mode_;
-}
-
 void Cia402Drive::encode(const DriveCommand& command, Instant now) noexcept {
-    const auto image = bus_.outputs();
-    if (!started_) {
-        started_ = true;
-        for (const auto& [signal, value] : starting_values_) write_signal(image, signal, value);
-    }
-    const auto mode = mode_to_send(command.mode, now);
+    const auto image = place_.bus().outputs();
+    starting_.write_once(image);
+    const auto mode = mode_.send(command.mode, profile_->mode_rules, now, [&] { return place_.effective(now); });
     const bool mode_confirmed = feedback_.mode == command.mode && mode == command.mode;
     if (command.mode != DriveMode::homing) homing_setup_.release();
     const bool set_up = command.mode != DriveMode::homing || homing_setup_.ready(command.homing);
@@ -86,13 +60,7 @@ void Cia402Drive::encode(const DriveCommand& command, Instant now) noexcept {
     auto word = control_word(command, mode_confirmed);
     if (!set_up) word = static_cast<std::uint16_t>(word & ~homing_start);
     if (turns_.bit(now)) word = static_cast<std::uint16_t>(word | profile_->encoder.clear_turns_control);
-    const bool homing_runs = (word & homing_start) != 0 && command.mode == DriveMode::homing;
-    if (!homing_runs) {
-        homing_since_.reset();
-        homing_cleared_ = false;
-    } else if (!homing_since_) {
-        homing_since_ = now;
-    }
+    homing_.started((word & homing_start) != 0 && command.mode == DriveMode::homing, now);
     if (out_.mode.mapped()) write_signal(image, out_.mode.signal, mode_code(mode));
 
     // Until the drive follows in this mode its target is its own actual position: enabling and mode switches never step. From one cyclic
@@ -113,7 +81,7 @@ void Cia402Drive::encode(const DriveCommand& command, Instant now) noexcept {
         write_limits(image, held);
     } else {
         handshake_.reset();
-        if (!follows || !profile_mode(feedback_.mode)) held_velocity_ = held_torque_ = 0;
+        if (!follows || !profile_mode(feedback_.mode)) held_.forget();
         write_targets(image, command, follows);
         write_limits(image, command);
     }
@@ -147,18 +115,16 @@ bool Cia402Drive::profile_prepared(const DriveCommand& command, bool follows) no
 
 /// In PV and PT the target is the set-point: the old one stays until its ramps are there.
 void Cia402Drive::hold_profile_target(DriveCommand& command, bool follows, bool prepared) noexcept {
-    if (!follows) held_velocity_ = held_torque_ = 0;
+    if (!follows) held_.forget();
     if (command.mode == DriveMode::profile_position) {
         feedback_.profile_accepted = handshake_.accepted();
         return;
     }
     if (prepared) {
-        held_velocity_ = command.velocity;
-        held_torque_ = command.torque;
+        held_.take(command);
         feedback_.profile_accepted = command.profile.sequence;
     }
-    command.velocity = held_velocity_;
-    command.torque = held_torque_;
+    held_.put(command);
 }
 
 void Cia402Drive::write_targets(std::span<std::byte> image, const DriveCommand& command, bool follows) const noexcept {
@@ -169,12 +135,14 @@ void Cia402Drive::write_targets(std::span<std::byte> image, const DriveCommand& 
     const bool in_velocity_mode = velocity_mode(command.mode) || feedback_.mode == DriveMode::cyclic_velocity;
     // On the way out of a profile mode its target stays: a zero would begin a ramp before the mode has changed.
     const bool on_the_way_out = profile_mode(feedback_.mode) && !profile_mode(command.mode);
-    const double target_velocity = on_the_way_out ? held_velocity_ * settings_.velocity_counts_per_unit() : in_velocity_mode ? velocity : 0;
+    const double target_velocity = on_the_way_out     ? held_.velocity() * settings_.velocity_counts_per_unit()
+                                   : in_velocity_mode ? velocity
+                                                      : 0;
     out_.target_velocity.write(image, target_velocity);
     out_.velocity_offset.write(image, command.mode == DriveMode::cyclic_position && !on_the_way_out ? velocity : 0);
     const double torque = follows ? command.torque * profile_->torque_rated_raw : 0.0;
     const bool in_torque_mode = torque_mode(command.mode) || feedback_.mode == DriveMode::cyclic_torque;
-    out_.target_torque.write(image, on_the_way_out ? held_torque_ * profile_->torque_rated_raw : in_torque_mode ? torque : 0);
+    out_.target_torque.write(image, on_the_way_out ? held_.torque() * profile_->torque_rated_raw : in_torque_mode ? torque : 0);
     out_.torque_offset.write(image, torque_mode(command.mode) || profile_mode(command.mode) || on_the_way_out ? 0 : torque);
 }
 
@@ -189,8 +157,8 @@ void Cia402Drive::write_limits(std::span<std::byte> image, const DriveCommand& c
     // The rest stays as the start-up list or the last command left it while nothing is asked for: zero would mean "never move".
     if (std::isfinite(command.velocity_limit))
         out_.velocity_limit.write(image, command.velocity_limit * settings_.velocity_counts_per_unit());
-    else if (velocity_limit_at_start_ != 0)  // the limit of a torque command must not slow down what comes after it
-        out_.velocity_limit.write(image, static_cast<double>(velocity_limit_at_start_));
+    else if (starting_.velocity_limit() != 0)  // the limit of a torque command must not slow down what comes after it
+        out_.velocity_limit.write(image, static_cast<double>(starting_.velocity_limit()));
     if (command.acceleration > 0) out_.profile_acceleration.write(image, command.acceleration);
     if (command.deceleration > 0) out_.profile_deceleration.write(image, command.deceleration);
     if (command.torque_slope > 0) out_.torque_slope.write(image, command.torque_slope * profile_->torque_rated_raw);
