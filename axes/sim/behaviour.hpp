@@ -5,14 +5,18 @@
 
 #include <array>
 #include <cstdint>
-#include <vector>
 
 #include "axes/port/drive_profile.hpp"
+#include "axes/sim/analogue_outputs.hpp"
 #include "axes/sim/behaviour_value.hpp"
 #include "axes/sim/cia402_axis.hpp"
-#include "axes/sim/lost_data.hpp"
-#include "axes/sim/sync_watch.hpp"
+#include "axes/sim/communication_watch.hpp"
+#include "axes/sim/limit_switch_fault.hpp"
+#include "axes/sim/mains_watch.hpp"
+#include "axes/sim/output_terminals.hpp"
+#include "axes/sim/position_targets.hpp"
 #include "axes/sim/unit_choice.hpp"
+#include "axes/sim/virtual_inputs.hpp"
 #include "core/time.hpp"
 #include "ecat/sim/device_model.hpp"
 #include "ecat/sim/object_dictionary.hpp"
@@ -25,16 +29,13 @@ public:
 
     void power_on(ecat::sim::ObjectDictionary& dictionary, Instant now);
     /// SYNC0 runs each `cycle`, and the drive's clock is in step with it.
-    void synchronised(bool running, Duration cycle) noexcept {
-        sync0_ = running;
-        sync_watch_.restart(running ? cycle : Duration{});
-    }
-    void exchange_due(const ecat::sim::ExchangeCause& cause, Instant now) noexcept;
-    void operational(bool op, Instant now) noexcept;
+    void synchronised(bool running, Duration cycle) noexcept { communication_.synchronised(running, cycle); }
+    void exchange_due(const ecat::sim::ExchangeCause& cause, Instant now) noexcept { communication_.exchange_due(cause, now); }
+    void operational(bool op, Instant now) noexcept { communication_.operational(op, now); }
     /// For tests of a clock that does not lock.
-    void clock_locks(bool locks) noexcept { clock_locks_ = locks; }
+    void clock_locks(bool locks) noexcept { communication_.clock_locks(locks); }
     /// The mains have all of their phases.
-    void mains_complete(bool complete) noexcept { phase_missing_ = !complete; }
+    void mains_complete(bool complete) noexcept { mains_.complete(complete); }
 
     /// The objects as the axis is to understand them.
     void obey(AxisInputs& in, Cia402Axis& axis) noexcept;
@@ -44,52 +45,26 @@ public:
     void watch(Cia402Axis& axis, Instant now) noexcept;
 
     /// What drives the terminals: bit n is output n + 1; nothing while the drive sets them itself.
-    [[nodiscard]] std::uint32_t digital_outputs() const noexcept;
+    [[nodiscard]] std::uint32_t digital_outputs() const noexcept { return outputs_.driven(); }
 
 private:
-    void obey_position(AxisInputs& in, const Cia402Axis& axis) noexcept;
-    void obey_brake(Cia402Axis& axis) noexcept;
     void obey_limits(AxisInputs& in) const noexcept;
     void obey_probes(AxisInputs& in) const noexcept;
-    void stop_at_limits(const AxisInputs& in, Cia402Axis& axis) noexcept;
-    void watch_enable(const AxisInputs& in, Cia402Axis& axis) noexcept;
-    void watch_data(Cia402Axis& axis, Instant now) noexcept;
-    void watch_sync(Cia402Axis& axis, Instant now) noexcept;
-    void watch_mains(Cia402Axis& axis) noexcept;
-    void set_analogue_outputs() noexcept;
-    [[nodiscard]] bool watches_sync() const noexcept { return sync_type_.present() ? sync_type_.get() == 2 : sync0_; }
-    [[nodiscard]] Duration sync_deviation() const noexcept { return Duration{sync_deviation_.get()}; }
-    [[nodiscard]] bool enabled_by_input() const noexcept;
-
-    struct Analogue {
-        BehaviourValue value, selection, gain;
-        ParameterAddress monitor_object;
-        ecat::sim::Entry* monitor = nullptr;
-    };
 
     // What the drive type is.
-    bool torque_offset_not_in_torque_, limit_stop_is_fault_, clock_bit_8_, standstill_bit_14_;
-    std::int64_t bus_control_value_, servo_enable_function_;
-    AlarmCode lost_data_alarm_, lost_sync_alarm_, negative_limit_alarm_, positive_limit_alarm_;
-    // The objects.
-    BehaviourValue bus_control_, absolute_targets_, limit_masks_, lost_cycles_, lost_time_, sync_type_, output_control_, following_limit_;
-    BehaviourValue sync_losses_, sync_deviation_, phase_detection_, inputs_count_, input_levels_;
+    bool torque_offset_not_in_torque_, clock_bit_8_, standstill_bit_14_;
+    std::int64_t bus_control_value_;
+    // The objects, by what they change.
+    BehaviourValue bus_control_, limit_masks_, following_limit_;
     std::array<BehaviourValue, 2> probe_input_;
-    std::vector<BehaviourValue> input_functions_;
-    std::vector<Analogue> analogue_;
     UnitChoice units_;
-    const ecat::sim::Entry *outputs_ = nullptr, *output_mask_ = nullptr;
-    BrakeObject brake_object_;
-    // What happens.
-    LostData targets_;
-    SyncWatch sync_watch_;
-    std::int64_t increments_ = 0;  ///< sum of the increments, as a position
-    bool following_ = false;       ///< a cyclic position target is followed
-    bool fresh_ = false, sync0_ = false, operational_ = false, clock_locks_ = true;
-    bool at_negative_limit_ = false, at_positive_limit_ = false;
-    bool phase_missing_ = false, phase_fault_ = false, phase_warned_ = false, enabled_twice_ = false;  ///< as the axis was told
-    std::int64_t demand_ = 0;
-    Instant data_at_{}, sync_at_{};
+    CommunicationWatch communication_;
+    PositionTargets targets_;
+    LimitSwitchFault limit_switches_;
+    OutputTerminals outputs_;
+    AnalogueOutputs analogue_;
+    VirtualInputs inputs_;
+    MainsWatch mains_;
 };
 
 }  // namespace taktwerk::axes::sim

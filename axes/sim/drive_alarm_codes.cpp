@@ -30,4 +30,10 @@ DriveAlarmCodes::DriveAlarmCodes(const DriveProfile& profile) {
     at(DriveAlarmKind::left_operational) = {communication.code, communication.resettable, communication_error::general};
 }
 
+AlarmCode first_alarm(const DriveProfile& profile, DriveAlarmKind kind, const AlarmCode& otherwise) noexcept {
+    for (const auto& row : profile.alarms)
+        if (row.kind == kind) return {row.code, row.resettable, row.detail};
+    return otherwise;
+}
+
 }  // namespace taktwerk::axes::sim

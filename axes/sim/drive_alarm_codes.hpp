@@ -21,6 +21,9 @@ struct AlarmCode {
     return {row.code, row.resettable, row.detail, row.warning, row.whole_drive};
 }
 
+/// The profile's first alarm of this kind, as one of this axis that stops it; `otherwise` where it marks none.
+[[nodiscard]] AlarmCode first_alarm(const DriveProfile& profile, DriveAlarmKind kind, const AlarmCode& otherwise) noexcept;
+
 /// A way in which a drive fails at once, whatever it is doing. How it shows and whether it clears is the drive's.
 enum class Failure : std::uint8_t { overspeed, following_error, undervoltage, overload, encoder, communication };
 
