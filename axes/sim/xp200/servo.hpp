@@ -4,16 +4,20 @@
 //
 //   off --mains--> starting (1.5 s) --> ready <--> enabled --> stopping --> ready        alarm: from anywhere, until cleared or switched off
 
-#include <array>
 #include <cstdint>
-#include <vector>
 
 #include "axes/port/drive_profile.hpp"
 #include "axes/sim/plant.hpp"
 #include "axes/sim/servo_loop.hpp"
+#include "axes/sim/xp200/alarm_state.hpp"
+#include "axes/sim/xp200/brake_output.hpp"
+#include "axes/sim/xp200/counting_encoder.hpp"
 #include "axes/sim/xp200/inputs.hpp"
+#include "axes/sim/xp200/motor_load.hpp"
 #include "axes/sim/xp200/options.hpp"
 #include "axes/sim/xp200/parameters.hpp"
+#include "axes/sim/xp200/pulse_command.hpp"
+#include "axes/sim/xp200/saving_run.hpp"
 #include "core/time.hpp"
 
 namespace taktwerk::axes::sim::xp200 {
@@ -44,10 +48,10 @@ public:
     // --- what the port asks ------------------------------------------------------------------------------------------------
     [[nodiscard]] Parameters& parameters() noexcept { return parameters_; }
     [[nodiscard]] const Parameters& parameters() const noexcept { return parameters_; }
-    void enable_by_port(bool on) noexcept { port_enable_ = on; }  ///< 9.6.7
-    void clear_alarm() noexcept;                                  ///< 9.6.8, and ACLR's edge
-    void begin_saving() noexcept;                                 ///< 9.6.6
-    [[nodiscard]] bool saving() const noexcept { return now_ < saving_until_; }
+    void enable_by_port(bool on) noexcept { port_enable_ = on; }             ///< 9.6.7
+    void clear_alarm() noexcept;                                             ///< 9.6.8, and ACLR's edge
+    void begin_saving() noexcept { saving_.begin(now_ + options_.saving); }  ///< 9.6.6
+    [[nodiscard]] bool saving() const noexcept { return saving_.busy(now_); }
     [[nodiscard]] std::uint16_t status(std::uint16_t index) const noexcept;
 
     // --- the world around it -----------------------------------------------------------------------------------------------
@@ -55,18 +59,21 @@ public:
     [[nodiscard]] bool output(int terminal) const noexcept;  ///< DO1 (0) to DO4 (3) conducts
     void raise(std::uint16_t alarm) noexcept;
     /// The cause of an alarm is there until it is released: cleared or switched off and on before, the alarm comes again at once.
-    void provoke(std::uint16_t alarm) noexcept { raise(cause_ = alarm); }
-    void release() noexcept { cause_ = 0; }
+    void provoke(std::uint16_t alarm) noexcept {
+        alarms_.cause(alarm);
+        raise(alarm);
+    }
+    void release() noexcept { alarms_.cause(0); }
     void undervoltage() noexcept { raise(3); }
     /// The encoder shows the same position for ever after, until power_on().
     void break_encoder() noexcept;
     void jam(bool jammed) noexcept { plant_.jam(jammed); }
     /// Command pulses for position mode, before the gear (4.2).
-    void pulses(std::int64_t count) noexcept { pulses_ += count; }
+    void pulses(std::int64_t count) noexcept { pulses_.add(count); }
 
     [[nodiscard]] State state() const noexcept { return state_; }
     [[nodiscard]] Mode mode() const noexcept;
-    [[nodiscard]] std::uint16_t alarm() const noexcept { return alarm_; }
+    [[nodiscard]] std::uint16_t alarm() const noexcept { return alarms_.code(); }
     [[nodiscard]] bool energised() const noexcept { return current_on_; }
     [[nodiscard]] const Plant& plant() const noexcept { return plant_; }
     [[nodiscard]] double speed() const noexcept;                             ///< r/min
@@ -78,7 +85,7 @@ public:
 private:
     [[nodiscard]] std::int64_t p(std::uint16_t number) const noexcept { return parameters_[number]; }
     [[nodiscard]] double counts_per_turn() const noexcept { return 4.0 * static_cast<double>(p(axes::xp200::pr::encoder_lines)); }
-    [[nodiscard]] std::int64_t position() const noexcept;
+    [[nodiscard]] std::int64_t position() const noexcept { return encoder_.position(plant_.position()); }
     [[nodiscard]] bool on(Output function) const noexcept;
     [[nodiscard]] bool limit_used(bool ccw) const noexcept;
     [[nodiscard]] bool allowed(bool ccw) const noexcept;
@@ -96,37 +103,30 @@ private:
     [[nodiscard]] double position_torque() noexcept;
     void take_pulses() noexcept;
     void watch() noexcept;
-    void watch_peaks() noexcept;
 
     Options options_;
-    std::vector<std::pair<std::uint16_t, bool>> clearable_;  // alarm, by 9.6.8
+    AlarmState alarms_;
     Parameters parameters_;
+    SavingRun saving_;
     Inputs inputs_;
     Plant plant_;
     ServoLoop loop_;
     State state_ = State::off;
-    Instant now_{}, ready_at_{}, saving_until_{};
-    bool save_pending_ = false, torn_save_ = false;
+    Instant now_{}, ready_at_{};
     bool port_enable_ = false, current_on_ = false, clear_was_on_ = false;
-    std::uint16_t alarm_ = 0, cause_ = 0;
+    std::uint32_t enabled_in_motion_ = 0;
 
-    double zero_ = 0;    // plant position where the counter is 0
+    CountingEncoder encoder_;
+    PulseCommand pulses_;
     double ramped_ = 0;  // r/min
     double torque_ = 0;  // N m at the shaft
     bool clamped_ = false;
     double clamp_at_ = 0;  // plant position
-    std::int64_t pulses_ = 0, raw_command_ = 0;
-    double command_ = 0;  // counts of the plant
-    bool encoder_broken_ = false, index_seen_ = false;
-    std::int64_t frozen_ = 0;
 
-    bool brake_released_ = false;
-    Instant enabled_at_{}, stop_until_{}, brake_drop_at_{};
+    BrakeOutput brake_;
     bool holds_for_brake_ = false;
-    Instant overload_since_{}, stalled_since_{};
-    double heat_ = 0, peak_ = 0;
-    Instant peak_at_{};
-    std::uint32_t enabled_in_motion_ = 0;
+    Instant stop_until_{};
+    MotorLoad load_;
 };
 
 }  // namespace taktwerk::axes::sim::xp200

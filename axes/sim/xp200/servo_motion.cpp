@@ -125,41 +125,40 @@ double Servo::drive_torque() noexcept {
 
 double Servo::position_torque() noexcept {
     const auto highest = static_cast<double>(p(pr::highest_speed)) * counts_per_turn() / 60;
-    const double wanted = std::clamp(static_cast<double>(p(pr::position_gain)) * (command_ - plant_.position()), -highest, highest);
+    const double wanted = std::clamp(static_cast<double>(p(pr::position_gain)) * (pulses_.at() - plant_.position()), -highest, highest);
     return loop_.velocity_control(plant_, wanted, 0, plant_.config().rated_torque * plant_.config().maximum_torque, step_seconds);
 }
 
-/// Pulses times the gear (4.2.3), the rest carried.
+/// The gear that the inputs choose (4.2.3).
 void Servo::take_pulses() noexcept {
-    if (pulses_ == 0 && !inputs_[Input::clear_deviation]) return;
-    if (inputs_[Input::clear_deviation]) command_ = plant_.position();
+    if (!pulses_.waits() && !inputs_[Input::clear_deviation]) return;
+    if (inputs_[Input::clear_deviation]) pulses_.hold(plant_.position());
     if (current_on_ && mode() == Mode::position && !inputs_[Input::inhibit_pulses]) {
         const bool first = inputs_[Input::gear_1], second = inputs_[Input::gear_2];
         const auto by = p(34) % 10;
         const int numerator = by == 1 ? (first ? 2 : 0) : by == 2 && (first || second) ? 1 + (first ? 1 : 0) + (second ? 2 : 0) : 0;
         const auto n = p(numerator == 0 ? pr::gear_numerator : static_cast<std::uint16_t>(29 + numerator));
-        raw_command_ += pulses_;
-        command_ += static_cast<double>(pulses_) * static_cast<double>(n) / static_cast<double>(p(pr::gear_denominator));
+        pulses_.take(n, p(pr::gear_denominator));
     }
-    pulses_ = 0;
+    pulses_.drop();
 }
 
 // --- what it shows ------------------------------------------------------------------------------------------------------------
 
 bool Servo::on(Output function) const noexcept {
-    const double deviation = std::abs(command_ - plant_.position());
+    const double deviation = std::abs(pulses_.at() - plant_.position());
     const bool positions = mode() == Mode::position && current_on_;
     switch (function) {
         case Output::off: return false;
         case Output::on: return true;
-        case Output::ready: return alarm_ == 0 && state_ != State::off && state_ != State::starting;
-        case Output::no_alarm: return alarm_ == 0 && state_ != State::off;
+        case Output::ready: return alarms_.code() == 0 && state_ != State::off && state_ != State::starting;
+        case Output::no_alarm: return alarms_.code() == 0 && state_ != State::off;
         case Output::zero_speed: return std::abs(speed()) < static_cast<double>(p(pr::zero_speed));
         case Output::in_position: return positions && deviation <= static_cast<double>(p(pr::in_position));
         case Output::at_speed: return std::abs(speed()) > std::abs(static_cast<double>(p(pr::reached_speed)));
         case Output::at_torque:
             return 100 * std::abs(torque_) / plant_.config().rated_torque > std::abs(static_cast<double>(p(pr::reached_torque)));
-        case Output::brake_released: return brake_released_;
+        case Output::brake_released: return brake_.released();
         case Output::running: return current_on_;
         case Output::near_position: return positions && deviation <= static_cast<double>(p(pr::near_range));
         case Output::torque_limited: return current_on_ && std::abs(torque_) >= 0.99 * most_torque(torque_ > 0);
@@ -183,27 +182,24 @@ std::uint16_t Servo::status(std::uint16_t index) const noexcept {
     };
     const auto percent = [&](double torque) { return word(100 * torque / plant_.config().rated_torque); };
     const auto turn = static_cast<std::int64_t>(counts_per_turn());
-    // 0 at the index pulse (3.3 note 6). Before the first one since power-on it counts from where it woke up: not stated.
-    const auto since_zero = index_seen_ && !encoder_broken_
-                                ? static_cast<std::int64_t>(std::floor(plant_.position() - plant_.config().index_pulse))
-                                : position();
+    const auto since_zero = encoder_.since_index(plant_.position(), plant_.config().index_pulse);  // 3.3 note 6
     const auto in_turn = ((since_zero % turn) + turn) % turn;
     const auto rated_current = static_cast<double>(p(204));  // 0.1 A
     switch (index) {
         case s::speed: return word(speed());
         case s::raw_command:
-        case s::raw_command + 1: return half(raw_command_, s::raw_command);
+        case s::raw_command + 1: return half(pulses_.raw(), s::raw_command);
         case s::command:
-        case s::command + 1: return half(static_cast<std::int64_t>(command_ - zero_), s::command);
+        case s::command + 1: return half(static_cast<std::int64_t>(pulses_.at() - encoder_.zero()), s::command);
         case s::position:
         case s::position + 1: return half(position(), s::position);
         case s::deviation:
         case s::deviation + 1:
-            return half(mode() == Mode::position ? static_cast<std::int64_t>(command_ - plant_.position()) : 0, s::deviation);
+            return half(mode() == Mode::position ? static_cast<std::int64_t>(pulses_.at() - plant_.position()) : 0, s::deviation);
         case s::torque: return percent(torque_);
-        case s::peak_torque: return word(100 * peak_);
+        case s::peak_torque: return word(100 * load_.peak());
         case s::current: return word(rated_current * std::abs(torque_) / plant_.config().rated_torque);
-        case s::peak_current: return word(rated_current * peak_);
+        case s::peak_current: return word(rated_current * load_.peak());
         case s::speed_command: return word(mode() == Mode::speed ? wanted_speed() : 0);
         case s::torque_command: return word(mode() == Mode::torque ? 100 * wanted_torque() : 0);
         case s::inputs: {
@@ -220,8 +216,8 @@ std::uint16_t Servo::status(std::uint16_t index) const noexcept {
         }
         case s::single_turn:
         case s::single_turn + 1: return half(in_turn, s::single_turn);
-        case s::average_load: return word(100 * std::sqrt(heat_));
-        case s::alarm: return alarm_;
+        case s::average_load: return word(100 * std::sqrt(load_.heat()));
+        case s::alarm: return alarms_.code();
         case s::fine_speed: return word(std::clamp(10 * speed(), -32768.0, 32767.0));
         case s::absolute:
         case s::absolute + 1: return half(position(), s::absolute);
