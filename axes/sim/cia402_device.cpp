@@ -3,19 +3,11 @@
 #include <algorithm>
 
 #include "axes/port/drive_scale.hpp"
-#include "axes/sim/object_table.hpp"
 #include "axes/sim/set_if_there.hpp"
 
 namespace taktwerk::axes::sim {
 
 namespace {
-
-using ecat::sim::Entry;
-
-void take(std::span<const InputObject> table, const std::vector<Entry*>& entries, AxisInputs& in) {
-    for (std::size_t i = 0; i < entries.size(); ++i)
-        if (entries[i]) table[i].take(in, entries[i]->get());
-}
 
 constexpr std::uint16_t status_fault = 1u << 3;
 
@@ -32,44 +24,24 @@ std::uint8_t error_register(std::uint16_t code) noexcept {
     }
 }
 
-/// Of any mode: the drive does not know yet which one will be asked for.
-Duration shortest_cycle(const DriveProfile& profile) noexcept {
-    Duration shortest{};
-    for (const auto cycle : {profile.minimum_cycle_csp, profile.minimum_cycle_csv, profile.minimum_cycle_cst})
-        if (cycle > Duration::zero() && (shortest == Duration::zero() || cycle < shortest)) shortest = cycle;
-    return shortest;
-}
-
 }  // namespace
 
 Cia402Device::Cia402Device(const DriveProfile& profile, const std::vector<AxisSetup>& axes)
     : parameters_(profile),
       scale_(profile.scale),
-      homing_timeout_(profile.homing_timeout),
-      clear_turns_(profile.encoder.clear_turns),
-      encoder_reset_(profile.encoder.reset),
-      homing_timeout_unit_(to_seconds(profile.homing_timeout_unit)),
-      clear_turns_value_(profile.encoder.clear_turns_value),
-      clear_turns_control_(profile.encoder.clear_turns_control),
       object_offset_(profile.object_offset),
+      alarms_(profile),
+      missed_(profile.missed_frames_allowed),
+      refusal_(profile),
       tunnel_(profile.behaviour.parameter_tunnel),
       display_(profile.behaviour.state, axes.empty() ? std::uint16_t{0} : DriveAlarmCodes{profile}[DriveAlarmKind::communication].code),
-      bus_state_address_(profile.behaviour.bus_state),
-      detail_index_(profile.alarm_detail_index),
-      detail_sub_(profile.alarm_detail_sub),
-      alarms_(profile.alarms),
-      stops_(profile.stops.options),
-      emergency_torque_(profile.stops.emergency_torque),
-      minimum_cycle_(shortest_cycle(profile)),
-      missed_allowed_(profile.missed_frames_allowed) {
+      bus_state_address_(profile.behaviour.bus_state) {
     const DriveAlarmCodes codes{profile};
     if (!axes.empty()) missed_alarm_ = codes[DriveAlarmKind::communication], link_alarm_ = codes[DriveAlarmKind::link_changed];
     const auto shared = std::make_shared<const DriveProfile>(profile);
     for (const auto& setup : axes) {
-        auto& axis = axes_.emplace_back();
-        axis.model = std::make_unique<Cia402Axis>(setup.plant, shared, setup.motor);
-        axis.behaviour = std::make_unique<Behaviour>(profile);
-        axis.motor = std::make_unique<MotorBehaviour>(profile);
+        axes_.push_back({std::make_unique<Cia402Axis>(setup.plant, shared, setup.motor), std::make_unique<Behaviour>(profile),
+                         std::make_unique<MotorBehaviour>(profile), AxisEntries(profile), EncoderOrders(profile.encoder)});
         // The motor has the encoder that the plant was measured with.
         if (scale_.encoder.index != 0) commission(axes_.size() - 1, scale_.encoder, setup.plant.counts_per_revolution);
     }
@@ -93,40 +65,21 @@ void Cia402Device::take_scale() noexcept {
 }
 
 void Cia402Device::power_on(ecat::sim::ObjectDictionary& dictionary, Instant now) {
-    dictionary_ = &dictionary;
-    for (auto& held : held_) held.entry = dictionary.find(held.index, held.sub);
+    held_.power_on(dictionary);
     parameters_.power_on(dictionary);
     take_scale();
     for (std::size_t i = 0; i < axes_.size(); ++i) {
-        const auto at = [&](unsigned index, std::uint8_t sub) {
-            return dictionary.find(static_cast<std::uint16_t>(index + i * object_offset_), sub);
-        };
-        const auto find = [&](auto table) {
-            std::vector<Entry*> found;
-            for (const auto& object : table) found.push_back(at(object.index, object.sub));
-            return found;
-        };
-        axes_[i].commands = find(command_objects());
-        axes_[i].settings = find(setting_objects());
-        axes_[i].answers = find(answer_objects());
-        const auto own = [&](ParameterAddress a) { return a.index ? at(a.index, a.sub) : nullptr; };
-        axes_[i].homing_timeout = own(homing_timeout_);
-        axes_[i].clear_turns = own(clear_turns_);
-        axes_[i].encoder_reset = own(encoder_reset_);
-        axes_[i].stop_values.clear();
-        for (const auto& stop : stops_)
-            axes_[i].stop_values.push_back(stop.object.index ? at(stop.object.index, stop.object.sub) : nullptr);
-        axes_[i].emergency_torque = emergency_torque_.index ? at(emergency_torque_.index, emergency_torque_.sub) : nullptr;
+        const auto offset = static_cast<unsigned>(i * object_offset_);
+        axes_[i].entries.power_on(dictionary, offset);
+        axes_[i].encoder.power_on(dictionary, offset);
         axes_[i].motor->power_on(dictionary, *axes_[i].model);
         axes_[i].model->power_on(now);
         axes_[i].behaviour->power_on(dictionary, now);
         parameters_.check_settings(static_cast<unsigned>(i), *axes_[i].model);
     }
     for (auto& axis : axes_) axis.faulted = false, axis.common = 0;
-    missed_frames_ = dictionary.find(0x1C32, 0x0B);
-    missed_before_ = missed_frames_ ? missed_frames_->get() : 0;
-    missed_in_a_row_ = 0;
-    alarm_detail_ = detail_index_ ? dictionary.find(detail_index_, detail_sub_) : nullptr;
+    missed_.power_on(dictionary);
+    alarms_.power_on(dictionary);
     tunnel_.power_on(dictionary);
     display_.power_on(dictionary);
     bus_state_ = bus_state_address_.index ? dictionary.find(bus_state_address_.index, bus_state_address_.sub) : nullptr;
@@ -146,12 +99,7 @@ void Cia402Device::power_off(Instant now) {
 std::uint16_t Cia402Device::refuse(ecat::sim::EsmState from, ecat::sim::EsmState to, const ecat::sim::SyncSettings& settings) {
     if (settings.sync0_active) cycle_ = settings.sync0_cycle;
     for (auto& axis : axes_) axis.behaviour->synchronised(settings.sync0_active, settings.sync0_cycle);
-    if (refused_code_ != 0 && to == refused_state_) return refused_code_;
-    // 0036h: invalid SYNC0 cycle time (ETG.1000.6 table of AL status codes).
-    if (to == ecat::sim::EsmState::safeop && from == ecat::sim::EsmState::preop && settings.sync0_active &&
-        settings.sync0_cycle < minimum_cycle_)
-        return 0x0036;
-    return 0;
+    return refusal_.code(from, to, settings);
 }
 
 void Cia402Device::entered(ecat::sim::EsmState state, Instant now) {
@@ -189,63 +137,30 @@ void Cia402Device::written(std::uint16_t index, std::uint8_t sub, Instant now) {
 }
 
 void Cia402Device::exchange(Instant now) {
-    count_missed_frames();
+    if (missed_.count(operational_)) raise_in_all(missed_alarm_);
     if (scale_changed_) take_scale();
     share_common_alarm();
     parameters_.step(now, *axes_.front().model);
     for (auto& axis : axes_) {
         axis.behaviour->exchange_due(cause_, now);
         AxisInputs in;
-        if (operational_) take(command_objects(), axis.commands, in);
-        take(setting_objects(), axis.settings, in);
-        if (axis.homing_timeout) in.homing.time_limit = static_cast<double>(axis.homing_timeout->get()) * homing_timeout_unit_;
-        serve_encoder(axis, in.control);
-        for (std::size_t i = 0; i < axis.stop_values.size() && i < most_stop_options; ++i)
-            if (axis.stop_values[i]) in.stop_values[i] = axis.stop_values[i]->get();
-        if (axis.emergency_torque) in.emergency_torque = axis.emergency_torque->get();
+        axis.entries.take(in, operational_);
+        axis.encoder.serve(*axis.model, in.control);
         axis.behaviour->obey(in, *axis.model);
         in.software_limits = parameters_.software_limits();
         AxisOutputs out;
         axis.model->exchange(in, cycle_, out);
         axis.behaviour->show(out, *axis.model);
-        for (std::size_t i = 0; i < axis.answers.size(); ++i) set_if_there(axis.answers[i], answer_objects()[i].value(out));
-        std::int64_t detail = out.error_detail;
-        if (out.error_code && detail == 0)
-            for (const auto& row : alarms_)
-                if (row.code == out.error_code) {
-                    detail = row.detail;
-                    break;
-                }
-        set_if_there(alarm_detail_, detail);
+        axis.entries.show(out);
+        const auto detail = alarms_.show(out);
         if (&axis == &axes_.front()) {
             if ((out.status & status_fault) != 0 && !axis.faulted) display_.remember(out.error_code);
             display_.show(axis.model->powered(), out.error_code, out.error_detail);
         }
         announce(axis, (out.status & status_fault) != 0, out.error_code, static_cast<std::uint32_t>(detail));
     }
-    for (const auto& held : held_) set_if_there(held.entry, held.value);
+    held_.show();
     cause_ = {};
-}
-
-void Cia402Device::hold(std::uint16_t index, std::uint8_t sub, std::int64_t value) {
-    for (auto& held : held_)
-        if (held.index == index && held.sub == sub) {
-            held.value = value;
-            return;
-        }
-    held_.push_back({index, sub, value, dictionary_ ? dictionary_->find(index, sub) : nullptr});
-}
-
-void Cia402Device::serve_encoder(OneAxis& axis, std::uint16_t control) {
-    const bool asked = (control & clear_turns_control_) != 0;
-    if (asked && !axis.clear_asked) axis.model->clear_turns();
-    axis.clear_asked = asked;
-    // PA80 stays as it was written until power goes: it is never stored (TSVM 7.2.1).
-    if (axis.encoder_reset && (axis.encoder_reset->get() & 1) != 0) axis.model->order_encoder_reset();
-    if (!axis.clear_turns || axis.clear_turns->get() == 0) return;
-    if (axis.clear_turns->get() == clear_turns_value_) axis.model->clear_turns();
-    else axis.model->reset_encoder();
-    axis.clear_turns->set(0);
 }
 
 void Cia402Device::announce(OneAxis& axis, bool faulted, std::uint16_t code, std::uint32_t detail) {

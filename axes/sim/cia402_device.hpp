@@ -2,18 +2,23 @@
 // A simulated CiA 402 drive as a device on the simulated bus: one to many axes behind one slave controller. Copies the
 // dictionary's objects to and from axes/sim/cia402_axis.hpp at each exchange.
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
 
 #include "axes/port/drive_profile.hpp"
+#include "axes/sim/alarm_numbers.hpp"
+#include "axes/sim/axis_entries.hpp"
 #include "axes/sim/behaviour.hpp"
 #include "axes/sim/cia402_axis.hpp"
 #include "axes/sim/drive_parameters.hpp"
+#include "axes/sim/encoder_orders.hpp"
+#include "axes/sim/held_inputs.hpp"
+#include "axes/sim/missed_frames.hpp"
 #include "axes/sim/motor_behaviour.hpp"
 #include "axes/sim/parameter_tunnel.hpp"
 #include "axes/sim/state_display.hpp"
+#include "axes/sim/state_refusal.hpp"
 #include "ecat/sim/device_model.hpp"
 #include "ecat/sim/object_dictionary.hpp"
 
@@ -39,14 +44,11 @@ public:
     void written(std::uint16_t index, std::uint8_t sub, Instant now) override;
 
     /// From now on the drive refuses this state with this AL status code; code 0: no more.
-    void refuse_state(ecat::sim::EsmState state, std::uint16_t al_status_code) noexcept {
-        refused_state_ = state;
-        refused_code_ = al_status_code;
-    }
+    void refuse_state(ecat::sim::EsmState state, std::uint16_t al_status_code) noexcept { refusal_.order(state, al_status_code); }
 
     /// From now on this object of the inputs says what a hand gives it, whatever the drive would say: a sensor at a device that is described
     /// as a drive, an analog value.
-    void hold(std::uint16_t index, std::uint8_t sub, std::int64_t value);
+    void hold(std::uint16_t index, std::uint8_t sub, std::int64_t value) { held_.hold(index, sub, value); }
 
     void link_changed(Instant now) override;
     /// The supply of the main circuit, one for all axes.
@@ -79,59 +81,34 @@ private:
         std::unique_ptr<Cia402Axis> model;
         std::unique_ptr<Behaviour> behaviour;
         std::unique_ptr<MotorBehaviour> motor;
-        std::vector<Entry*> commands, settings, answers;  ///< in the order of object_table.hpp; null: this drive has it not
-        Entry *homing_timeout = nullptr, *clear_turns = nullptr, *encoder_reset = nullptr;
-        bool clear_asked = false;         ///< the control word's bit stood in the exchange before
-        bool faulted = false;             ///< as announced
-        std::uint16_t common = 0;         ///< alarm of the whole drive that it shows
-        std::vector<Entry*> stop_values;  ///< in the order of the profile's stops
-        Entry* emergency_torque = nullptr;
+        AxisEntries entries;
+        EncoderOrders encoder;
+        bool faulted = false;      ///< as announced
+        std::uint16_t common = 0;  ///< alarm of the whole drive that it shows
     };
     /// An emergency when an axis enters FAULT (or its reaction) and code 0000h when the last one has left it.
     void announce(OneAxis& axis, bool faulted, std::uint16_t code, std::uint32_t detail);
-    void serve_encoder(OneAxis& axis, std::uint16_t control);
-    [[nodiscard]] AlarmCode alarm_of(std::uint16_t code) const noexcept;
     void raise_in_all(const AlarmCode& alarm) noexcept;
-    void count_missed_frames() noexcept;
     void take_scale() noexcept;
     void share_common_alarm() noexcept;
-    struct Held {
-        std::uint16_t index;
-        std::uint8_t sub;
-        std::int64_t value;
-        Entry* entry;
-    };
+
     std::vector<OneAxis> axes_;
-    std::vector<Held> held_;
-    ecat::sim::ObjectDictionary* dictionary_ = nullptr;
     DriveParameters parameters_;
     ScaleObjects scale_;
     bool scale_changed_ = false;  ///< while the motor had power
-    ParameterAddress homing_timeout_, clear_turns_, encoder_reset_;
-    double homing_timeout_unit_;  ///< s
-    std::int64_t clear_turns_value_;
-    std::uint16_t clear_turns_control_;
     std::uint16_t object_offset_;
+    AlarmNumbers alarms_;
+    AlarmCode missed_alarm_, link_alarm_;
+    MissedFrames missed_;
+    StateRefusal refusal_;
+    HeldInputs held_;
     ParameterTunnel tunnel_;
     StateDisplay display_;  ///< of the first axis
     ParameterAddress bus_state_address_;
-    Entry *alarm_detail_ = nullptr, *bus_state_ = nullptr;
+    Entry* bus_state_ = nullptr;
     ecat::sim::ExchangeCause cause_;
-    std::uint16_t detail_index_;
-    std::uint8_t detail_sub_;
-    std::vector<DriveAlarmText> alarms_;
-    std::vector<StopOption> stops_;
-    ParameterAddress emergency_torque_;
-    Duration minimum_cycle_;
     Duration cycle_{std::chrono::milliseconds{1}};
     bool operational_ = false;
-    Entry* missed_frames_ = nullptr;  ///< 1C32h:0B, SYNC0 that found no new outputs
-    std::int64_t missed_before_ = 0;
-    std::uint32_t missed_in_a_row_ = 0;
-    std::uint8_t missed_allowed_;  ///< 0: not counted
-    AlarmCode missed_alarm_, link_alarm_;
-    ecat::sim::EsmState refused_state_ = ecat::sim::EsmState::op;
-    std::uint16_t refused_code_ = 0;
 };
 
 }  // namespace taktwerk::axes::sim

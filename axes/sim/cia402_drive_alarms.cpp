@@ -4,13 +4,6 @@
 
 namespace taktwerk::axes::sim {
 
-AlarmCode Cia402Device::alarm_of(std::uint16_t code) const noexcept {
-    if (code == 0) return {};
-    for (const auto& row : alarms_)
-        if (row.code == code) return {row.code, row.resettable, row.detail, row.warning, row.whole_drive};
-    return {code};
-}
-
 void Cia402Device::raise_in_all(const AlarmCode& alarm) noexcept {
     if (alarm.code == 0) return;
     for (auto& axis : axes_) {
@@ -20,27 +13,18 @@ void Cia402Device::raise_in_all(const AlarmCode& alarm) noexcept {
 }
 
 void Cia402Device::raise(std::size_t axis, std::uint16_t code) noexcept {
-    const auto alarm = alarm_of(code);
+    const auto alarm = alarms_.alarm(code);
     if (alarm.whole_drive) raise_in_all(alarm);
     else axes_[axis].model->raise(alarm);
 }
 
 void Cia402Device::link_changed(Instant) { raise_in_all(link_alarm_); }
 
-/// TSVM 7.1.1, alarm 21: "in OP more than three bad frames in a row".
-void Cia402Device::count_missed_frames() noexcept {
-    if (missed_allowed_ == 0 || missed_frames_ == nullptr) return;
-    const auto missed = missed_frames_->get();
-    missed_in_a_row_ = operational_ && missed != missed_before_ ? missed_in_a_row_ + 1 : 0;
-    missed_before_ = missed;
-    if (missed_in_a_row_ == missed_allowed_ + 1u) raise_in_all(missed_alarm_);
-}
-
 /// An axis that found an alarm of the whole drive by itself, such as the main power gone, tells the others once. Each leaves Fault by a
 /// reset of its own.
 void Cia402Device::share_common_alarm() noexcept {
     for (auto& axis : axes_) {
-        const auto alarm = alarm_of(axis.model->error_code());
+        const auto alarm = alarms_.alarm(axis.model->error_code());
         if (!alarm.whole_drive) {
             axis.common = 0;
         } else if (axis.common != alarm.code) {
