@@ -30,10 +30,9 @@ CoeServer::CoeServer(const DeviceDescription& description, ObjectDictionary& dic
       info_(dictionary),
       out_sm_(position_of(description, SmUse::mailbox_out, 0)),
       in_sm_(position_of(description, SmUse::mailbox_in, 1)),
-      response_delay_(response_delay) {
-    const std::size_t slots = std::max<std::size_t>(1, description.mailbox ? description.mailbox->max_pending : 1);
-    queue_.resize(slots);
-    for (auto& slot : queue_) slot.bytes.resize(std::max<std::size_t>(mailbox_header_size, size_of(description, out_sm_)));
+      response_delay_(response_delay),
+      queue_(std::max<std::size_t>(1, description.mailbox ? description.mailbox->max_pending : 1),
+             std::max<std::size_t>(mailbox_header_size, size_of(description, out_sm_))) {
     reply_.resize(std::max<std::size_t>(mailbox_header_size, size_of(description, in_sm_)));
     unasked_.resize(reply_.size());
     current_.resize(reply_.size());
@@ -41,7 +40,7 @@ CoeServer::CoeServer(const DeviceDescription& description, ObjectDictionary& dic
 }
 
 void CoeServer::start() noexcept {
-    head_ = count_ = 0;
+    queue_.clear();
     reply_waiting_ = displaced_ = read_valid_ = false;
     in_box_ = InBox::nothing;
     last_counter_ = counter_ = 0;
@@ -49,7 +48,7 @@ void CoeServer::start() noexcept {
     running_ = true;
     sdo_.reset();
     info_.reset();
-    emergency_head_ = emergency_count_ = 0;
+    emergencies_.clear();
 }
 
 void CoeServer::stop() noexcept {
@@ -64,7 +63,7 @@ void CoeServer::step(EsmState state, Instant now) noexcept {
     follow_mailbox();
     deliver();
     take(now);
-    while (count_ > 0 && due_ <= now && !reply_waiting_ && !info_.pending()) {
+    while (queue_.size() > 0 && due_ <= now && !reply_waiting_ && !info_.pending()) {
         answer(state, now);
         deliver();
         take(now);
@@ -73,27 +72,24 @@ void CoeServer::step(EsmState state, Instant now) noexcept {
 
 void CoeServer::take(Instant now) noexcept {
     const auto message = controller_.full_mailbox(out_sm_);
-    if (message.empty() || count_ == queue_.size()) return;
+    if (message.empty() || queue_.full()) return;
     const auto parsed = parse_mailbox(message);
     // A counter seen twice in a row is a repetition of a request that was already taken (0 is never checked).
     const bool repeated = parsed && parsed->header.counter != 0 && parsed->header.counter == last_counter_;
     if (!repeated) {
         if (parsed) last_counter_ = parsed->header.counter;
-        Slot& slot = queue_[(head_ + count_) % queue_.size()];
-        slot.size = std::min(message.size(), slot.bytes.size());
-        std::copy_n(message.begin(), slot.size, slot.bytes.begin());
-        if (count_++ == 0) due_ = now + response_delay_;
+        if (queue_.size() == 0) due_ = now + response_delay_;
+        queue_.push(message);
     }
     controller_.empty_mailbox(out_sm_);
 }
 
 void CoeServer::answer(EsmState state, Instant now) noexcept {
-    const Slot& slot = queue_[head_];
     const std::span<std::byte> out{reply_};
     MailboxType type = MailboxType::error;
-    const std::size_t size = serve({slot.bytes.data(), slot.size}, out.subspan(mailbox_header_size), type, state, now);
-    head_ = (head_ + 1) % queue_.size();
-    due_ = --count_ > 0 ? now + response_delay_ : never;
+    const std::size_t size = serve(queue_.front(), out.subspan(mailbox_header_size), type, state, now);
+    queue_.pop();
+    due_ = queue_.size() > 0 ? now + response_delay_ : never;
     if (size == 0) return;  // an abort from the client needs no answer
     counter_ = next_mailbox_counter(counter_);
     reply_waiting_ = finish_mailbox(out, type, counter_, size);
@@ -132,8 +128,8 @@ std::size_t CoeServer::serve(std::span<const std::byte> bytes, std::span<std::by
 }
 
 void CoeServer::send(const Emergency& emergency) noexcept {
-    if (!running_ || emergency_count_ == emergencies_.size()) return;
-    emergencies_[(emergency_head_ + emergency_count_++) % emergencies_.size()] = emergency;
+    if (!running_ || emergencies_.full()) return;
+    emergencies_.push(emergency);
     if (stuck_) return;
     follow_mailbox();
     deliver();
@@ -166,15 +162,14 @@ bool CoeServer::put(std::vector<std::byte>& message) noexcept {
 }
 
 void CoeServer::deliver() noexcept {
-    if (emergency_count_ > 0) {
+    if (!emergencies_.empty()) {
         // A counter is spent only on what really goes out: the mailbox may still be full.
         const std::span<std::byte> out{unasked_};
-        const std::size_t size = encode_emergency(out.subspan(mailbox_header_size), emergencies_[emergency_head_]);
+        const std::size_t size = encode_emergency(out.subspan(mailbox_header_size), emergencies_.front());
         const std::uint8_t counter = next_mailbox_counter(counter_);
         if (size == 0 || !finish_mailbox(out, MailboxType::coe, counter, size) || !put(unasked_)) return;
         counter_ = counter;
-        emergency_head_ = (emergency_head_ + 1) % emergencies_.size();
-        --emergency_count_;
+        emergencies_.pop();
         return;
     }
     if (!reply_waiting_ && info_.pending()) {

@@ -4,7 +4,6 @@
 // write gets working counter 0. Emergencies of the application go out as soon as the mailbox is free, before an answer that
 // waits. A repeat request brings back the message that was read last, then the one it displaced. Fixed buffers. Source: ETG.1000.4 (mailbox), ETG.1000.6 (CoE), SV33-E manual 6.2.8.
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -12,7 +11,9 @@
 #include "core/time.hpp"
 #include "ecat/description/device_description.hpp"
 #include "ecat/sim/device_model.hpp"
+#include "ecat/sim/emergency_queue.hpp"
 #include "ecat/sim/object_dictionary.hpp"
+#include "ecat/sim/request_queue.hpp"
 #include "ecat/sim/sdo_info_server.hpp"
 #include "ecat/sim/sdo_server.hpp"
 #include "ecat/sim/slave_controller.hpp"
@@ -38,7 +39,7 @@ public:
 
     /// From the application. Dropped before PREOP, and when emergency_limit of them wait already.
     void send(const Emergency& emergency) noexcept override;
-    static constexpr std::size_t emergency_limit = 8;
+    static constexpr std::size_t emergency_limit = EmergencyQueue::limit;
 
     /// Test: the mailbox answers nothing and takes nothing until it is released.
     void stick(bool stuck) noexcept { stuck_ = stuck; }
@@ -47,14 +48,9 @@ public:
     void misstate_lengths(std::uint32_t answers) noexcept { wrong_lengths_ = answers; }
     void abort_object(std::uint16_t index, std::uint8_t sub, std::uint32_t code) { sdo_.abort_object(index, sub, code); }
     void set_response_delay(Duration delay) noexcept { response_delay_ = delay; }
-    [[nodiscard]] std::size_t pending() const noexcept { return count_; }
+    [[nodiscard]] std::size_t pending() const noexcept { return queue_.size(); }
 
 private:
-    struct Slot {
-        std::vector<std::byte> bytes;
-        std::size_t size = 0;
-    };
-
     void take(Instant now) noexcept;
     void answer(EsmState state, Instant now) noexcept;
     /// What the message at the head of the queue gets as answer: its type and payload size; 0: nothing.
@@ -70,19 +66,17 @@ private:
     SdoInfoServer info_;
     unsigned out_sm_ = 0, in_sm_ = 1;
     Duration response_delay_;
-    std::vector<Slot> queue_;  // ring of max_pending messages
-    std::size_t head_ = 0, count_ = 0;
+    RequestQueue queue_;              // of max_pending messages
     std::vector<std::byte> reply_;    // an answer that is built and waits for the mailbox to be free
     std::vector<std::byte> unasked_;  // an emergency
     std::vector<std::byte> current_;  // what is in the mailbox, or was displaced from it by a repetition
     std::vector<std::byte> read_;     // what the master read last, for a repeat request
     enum class InBox : std::uint8_t { nothing, current, repetition } in_box_ = InBox::nothing;
     bool reply_waiting_ = false, displaced_ = false, read_valid_ = false;
-    std::array<Emergency, emergency_limit> emergencies_{};  // ring
-    std::size_t emergency_head_ = 0, emergency_count_ = 0;
+    EmergencyQueue emergencies_;
     std::uint8_t last_counter_ = 0, counter_ = 0;
     std::uint32_t wrong_lengths_ = 0;
-    Instant due_ = never;  // of the message at head_
+    Instant due_ = never;  // of the first message
     bool running_ = false, stuck_ = false;
 };
 

@@ -102,7 +102,7 @@ void SlaveController::exchange_physical(MutableDatagram& datagram, bool addresse
 }
 
 Instant SlaveController::next_event() const noexcept {
-    Instant next = std::min({watchdog_deadline_, pdi_watchdog_deadline_, sync0_due_, sync1_due_, loops_revert_});
+    Instant next = std::min({watchdog_deadline_, pdi_watchdog_deadline_, sync0_due_, sync1_due_, temporary_loops_.until()});
     if (eeprom_.busy()) next = std::min(next, eeprom_.due());
     if (mii_.busy()) next = std::min(next, mii_.due());
     return next;
@@ -123,10 +123,10 @@ void SlaveController::fire(Instant now) noexcept {
         count_error(reg::sm_watchdog_count);
         events_ |= event::watchdog;
     }
-    if (loops_revert_ <= now) {
-        loops_revert_ = never;
-        memory_[reg::dl_control_loops] = static_cast<std::byte>(kept_modes_);
-        move_loops(kept_modes_);
+    if (temporary_loops_.until() <= now) {
+        temporary_loops_.end();
+        memory_[reg::dl_control_loops] = static_cast<std::byte>(temporary_loops_.kept());
+        move_loops(temporary_loops_.kept());
     }
     if (pdi_watchdog_deadline_ <= now) {
         pdi_watchdog_deadline_ = never;

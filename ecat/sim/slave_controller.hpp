@@ -16,9 +16,11 @@
 #include "ecat/sim/dc_clock.hpp"
 #include "ecat/sim/ecat_event.hpp"
 #include "ecat/sim/eeprom_interface.hpp"
+#include "ecat/sim/frame_keys.hpp"
 #include "ecat/sim/mii_interface.hpp"
 #include "ecat/sim/ports.hpp"
 #include "ecat/sim/sync_signals.hpp"
+#include "ecat/sim/temporary_loops.hpp"
 #include "ecat/wire/frame.hpp"
 #include "ecat/wire/registers.hpp"
 
@@ -64,7 +66,7 @@ public:
 
     // --- bus side --------------------------------------------------------------------------------------------------------
     /// A frame begins: what the last one unlocked (0020h, 0030h) is locked again.
-    void begin_frame() noexcept;
+    void begin_frame() noexcept { keys_.begin_frame(); }
     /// One datagram passes; `at` is when the start of its frame arrived here.
     void execute(MutableDatagram& datagram, Instant at) noexcept;
     /// The frame is through: completes the receive time latch. It arrived at port p at `sent` + `arrival[p]` where bit p of
@@ -203,7 +205,6 @@ private:
 
     // slave_controller_registers.cpp
     [[nodiscard]] bool write_allowed(std::uint32_t address) const noexcept;
-    void write_reset(std::byte value) noexcept;
     void start_pdi_watchdog(Instant now) noexcept;
     [[nodiscard]] Duration watchdog_ticks(std::uint16_t ticks_register) const noexcept;
     bool read_registers(std::uint32_t address, std::span<std::byte> out, Instant at) noexcept;
@@ -232,17 +233,14 @@ private:
     std::array<bool, 2> latch_level_{};
     Ports ports_;
     bool loop_changed_ = false;
-    Instant loops_revert_ = never;  // a temporary setting of 0101h ends
-    std::uint8_t kept_modes_ = 0;   // and these return
-    Instant latched_at_{};          // at the processing unit
+    TemporaryLoops temporary_loops_;
+    Instant latched_at_{};  // at the processing unit
     bool latch_pending_ = false;
     Instant watchdog_deadline_ = never;
     Instant pdi_watchdog_deadline_ = never;
     bool application_alive_ = true;
     bool al_control_waits_ = false;
-    bool registers_unlocked_ = false, all_unlocked_ = false;  // by 0020h and 0030h, in this frame
-    std::uint64_t frames_ = 0, reset_frame_ = 0;
-    unsigned reset_step_ = 0;
+    FrameKeys keys_;
     Instant sync0_due_ = never, sync1_due_ = never;
     unsigned events_ = 0;
 };

@@ -44,10 +44,9 @@ void SlaveController::show_ports() noexcept {
 
 void SlaveController::write_dl_control(std::uint8_t modes_before, Instant at) noexcept {
     if ((read16(reg::dl_control) & temporary_loops) != 0) {
-        if (loops_revert_ == never) kept_modes_ = modes_before;
-        loops_revert_ = at + temporary_loops_last;
+        temporary_loops_.begin(modes_before, at + temporary_loops_last);
     } else {
-        loops_revert_ = never;
+        temporary_loops_.end();
     }
     move_loops(static_cast<std::uint8_t>(memory_[reg::dl_control_loops]));
 }

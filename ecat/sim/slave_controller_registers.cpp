@@ -44,13 +44,12 @@ void SlaveController::power_on(Instant now, std::int64_t local, std::int32_t dri
     sync0_due_ = sync1_due_ = watchdog_deadline_ = pdi_watchdog_deadline_ = never;
     application_alive_ = true;
     al_control_waits_ = false;
-    registers_unlocked_ = all_unlocked_ = false;
-    reset_step_ = 0;
+    keys_.power_on();
     latch_pending_ = false;
     events_ = 0;
     ports_.power_on();
     loop_changed_ = true;  // whoever keeps the wiring tells the links anew
-    loops_revert_ = never;
+    temporary_loops_.end();
     clock_.power_on(now, local, drift_ppb);
 
     memory_[reg::type] = std::byte{0x11};  // ET1100-like
@@ -140,9 +139,11 @@ bool SlaveController::write_registers(std::uint32_t address, std::span<const std
     const auto modes_before = ports_.modes();
     store(stored);
     if (hits(reg::dl_control_loops, 1)) write_dl_control(modes_before, at);
-    if (hits(reg::write_register_enable, 1)) registers_unlocked_ = true;
-    if (hits(reg::write_enable, 1)) all_unlocked_ = true;
-    if (hits(reg::reset_ecat, 1)) write_reset(in[reg::reset_ecat - address]);
+    if (hits(reg::write_register_enable, 1)) keys_.unlock_registers();
+    if (hits(reg::write_enable, 1)) keys_.unlock_all();
+    if (hits(reg::reset_ecat, 1)) {
+        if (keys_.reset_key(in[reg::reset_ecat - address])) events_ |= event::reset;
+    }
     if (hits(reg::al_control, 1)) {
         events_ |= event::al_control;
         al_control_waits_ = settings_.application;
@@ -231,26 +232,11 @@ bool SlaveController::take_eeprom(bool take) noexcept {
     return true;
 }
 
-void SlaveController::begin_frame() noexcept {
-    registers_unlocked_ = all_unlocked_ = false;
-    ++frames_;
-}
-
 bool SlaveController::write_allowed(std::uint32_t address) const noexcept {
     const auto protects = [&](std::uint16_t at) { return (memory_[at] & std::byte{protect}) != std::byte{0}; };
-    if (protects(reg::write_protect) && !all_unlocked_ && address != reg::write_enable) return false;
-    return address >= protected_end || !protects(reg::write_register_protect) || registers_unlocked_ ||
+    if (protects(reg::write_protect) && !keys_.all_unlocked() && address != reg::write_enable) return false;
+    return address >= protected_end || !protects(reg::write_register_protect) || keys_.registers_unlocked() ||
            address == reg::write_register_enable || address == reg::write_enable;
-}
-
-void SlaveController::write_reset(std::byte value) noexcept {
-    constexpr std::array keys{std::byte{'R'}, std::byte{'E'}, std::byte{'S'}};
-    const bool next = value == keys[reset_step_] && (reset_step_ == 0 || frames_ == reset_frame_ + 1);
-    reset_step_ = next ? reset_step_ + 1 : value == keys[0] ? 1u : 0u;
-    reset_frame_ = frames_;
-    if (reset_step_ < keys.size()) return;
-    reset_step_ = 0;
-    events_ |= event::reset;
 }
 
 Duration SlaveController::watchdog_ticks(std::uint16_t ticks_register) const noexcept {
