@@ -13,11 +13,9 @@ using namespace std::chrono_literals;
 namespace {
 
 constexpr Duration closed_rest = 500ms;  // between two questions to a drive that does not answer: others use the line
-constexpr Duration enable_again = 1s;    // RUN needs its time (Pr169, Pr166): not more often
 constexpr Duration clear_again = 500ms;
 constexpr Duration settings_period = 2s;        // somebody may turn parameters at the panel (3.4)
 constexpr std::uint16_t echo_pattern = 0x1234;  // 9.6.5
-constexpr std::size_t service_room = 64;
 
 /// Words of Pr122 that select the first and the second of the two internal values that take turns, and those values.
 struct Slots {
@@ -68,10 +66,7 @@ std::optional<modbus::Request> Schedule::next(const Wish& wish, Instant now) {
     if (request && (urgent(wish) || ++commands_in_a_row_ <= 2)) return request;
     commands_in_a_row_ = 0;
     if (!services_.empty() && ++turn_ % 4 == 0) {
-        const auto service = services_.front();
-        services_.pop_front();
-        serving_ = service.ticket;
-        return ask(Asked::service, service.request);
+        return ask(Asked::service, services_.begin());
     }
     return poll(now);
 }
@@ -102,7 +97,7 @@ std::optional<modbus::Request> Schedule::open(Instant now) {
             turn_ = 0;
             raw_.reset();
             index_.forget();
-            enable_sent_ = false;
+            orders_.forget();
             selects_.reset();
             settings_read_ = now;
             ++sample_.epoch;
@@ -127,11 +122,8 @@ std::optional<modbus::Request> Schedule::command(const Wish& wish, Instant now) 
         selects_.reset();
         if (moves_by_itself()) return write(pr::force_3, 0);
     }
-    if (!on && (sample_.running || enable_sent_) && now - disable_tried_ >= enable_again) {
-        disable_tried_ = now;
-        enable_sent_ = false;
+    if (!on && (sample_.running || orders_.enabled()) && orders_.disable(now))
         return ask(Asked::servo, modbus::servo(config_.station, modbus::servo_off));
-    }
     if (!wish.reset) read_again_ = true;
     if (wish.reset && sample_.alarm != 0 && now - clear_tried_ >= clear_again) {
         clear_tried_ = now;
@@ -147,9 +139,7 @@ std::optional<modbus::Request> Schedule::command(const Wish& wish, Instant now) 
     if (!settings_.knows(pr::force_4, mode)) return change_mode(mode);
     if (!sample_.running) {
         // At standstill only (5.5 SON), and not before it had its time.
-        if (!stands() || now - enable_tried_ < enable_again) return std::nullopt;
-        enable_tried_ = now;
-        enable_sent_ = true;
+        if (!stands() || !orders_.enable(now)) return std::nullopt;
         return ask(Asked::servo, modbus::servo(config_.station, modbus::servo_on));
     }
     if (selects_) return write(pr::force_3, *selects_);
@@ -203,14 +193,6 @@ modbus::Request Schedule::poll(Instant now) {
 }
 
 // --- services -----------------------------------------------------------------------------------------------------------------
-
-bool Schedule::queue(const Service& service) {
-    if (services_.size() >= service_room) return false;
-    services_.push_back(service);
-    return true;
-}
-
-std::optional<std::pair<ServiceTicket, modbus::Answer>> Schedule::served() { return std::exchange(served_, std::nullopt); }
 
 bool Schedule::saved_would_be_harmless() const noexcept {
     for (std::uint16_t i = 0; i < 5; ++i)

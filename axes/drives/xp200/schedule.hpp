@@ -15,15 +15,16 @@
 // without looking at the position; parameters that somebody asked for when nothing else waits.
 
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "axes/drives/xp200/drive_config.hpp"
 #include "axes/drives/xp200/drive_mailbox.hpp"
+#include "axes/drives/xp200/enable_orders.hpp"
 #include "axes/drives/xp200/index_pulse.hpp"
 #include "axes/drives/xp200/registers.hpp"
+#include "axes/drives/xp200/service_queue.hpp"
 #include "axes/drives/xp200/settings.hpp"
 #include "modbus/client/client.hpp"
 
@@ -44,14 +45,11 @@ public:
     [[nodiscard]] const std::vector<std::string>& problems() const noexcept { return settings_.problems(); }
 
     // --- parameters and services, one after another -------------------------------------------------------------------------
-    struct Service {
-        ServiceTicket ticket = 0;
-        modbus::Request request;
-    };
+    using Service = xp200::Service;
     /// Full: false.
-    bool queue(const Service& service);
+    bool queue(const Service& service) { return services_.push(service); }
     /// The answer to a service, once.
-    std::optional<std::pair<ServiceTicket, modbus::Answer>> served();
+    std::optional<std::pair<ServiceTicket, modbus::Answer>> served() { return services_.served(); }
     [[nodiscard]] bool saved_would_be_harmless() const noexcept;
 
 private:
@@ -93,15 +91,13 @@ private:
     IndexPulse index_;
     bool rests_ = false;                       // the last two positions are the same
     std::optional<std::int64_t> single_turn_;  // read after the last position
-    Instant disabled_at_{}, latch_since_{}, last_try_{}, enable_tried_{}, disable_tried_{}, clear_tried_{}, alarm_read_{},
-        terminals_read_{}, settings_read_{};
-    bool enable_sent_ = false, look_for_alarm_ = false, read_again_ = false;
+    Instant disabled_at_{}, latch_since_{}, last_try_{}, clear_tried_{}, alarm_read_{}, terminals_read_{}, settings_read_{};
+    EnableOrders orders_;
+    bool look_for_alarm_ = false, read_again_ = false;
     int commands_in_a_row_ = 0, turn_ = 0;
     std::optional<std::uint16_t> selects_;  // Pr122 to be written after the value it selects
 
-    std::deque<Service> services_;
-    std::optional<std::pair<ServiceTicket, modbus::Answer>> served_;
-    ServiceTicket serving_ = 0;
+    ServiceQueue services_;
 };
 
 }  // namespace taktwerk::axes::xp200

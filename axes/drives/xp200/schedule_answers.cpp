@@ -20,10 +20,7 @@ constexpr Duration rest_patience = 2s;  // for a motor that is to rest, so that 
 
 void Schedule::take(const modbus::Answer& answer, Instant now) {
     const auto asked = std::exchange(asked_, Asked::nothing);
-    if (asked == Asked::service) {
-        served_ = {serving_, answer};
-        serving_ = 0;
-    }
+    if (asked == Asked::service) services_.answered(answer);
     if (answer.outcome != Outcome::answered && answer.outcome != Outcome::exception) {
         if (phase_ != Phase::closed && now - sample_.heard >= config_.silence) lost(now);
         return;
@@ -181,7 +178,7 @@ void Schedule::watch_release(Instant now) {
 
 /// Current gone although nobody asked: mostly an alarm. That is read first, so that the axis hears the cause and not the effect.
 void Schedule::take_running(bool running) {
-    look_for_alarm_ = !running && sample_.running && enable_sent_;
+    look_for_alarm_ = !running && sample_.running && orders_.enabled();
     if (!look_for_alarm_) sample_.running = running;
 }
 
