@@ -18,9 +18,34 @@ constexpr double turn = 360;              // deg
 constexpr std::int64_t lost_at_most = 3;  // marks in a row
 constexpr double trim_speed = 20;         // mm/s
 
+/// Two buttons with which a person moves the knife against the web as long as one is held; the way that it has made by then stays.
+class HandTrim {
+    Input<bool> ahead_, back_;
+    MC_PhasingRelative trim_;
+    MC_HaltPhasing end_;
+
+public:
+    void declare(Declaration& d) {
+        ahead_ = d.input("trim_ahead");
+        back_ = d.input("trim_back");
+    }
+    void operator()(TaskContext& ctx, AxisRef web, AxisRef cutter, double length, bool permitted) {
+        const bool ahead = permitted && ctx.get(ahead_), back = permitted && ctx.get(back_);
+        trim_.Master = web;
+        trim_.Slave = end_.Slave = cutter;
+        trim_.PhaseShift = (ahead ? 1 : -1) * length;  // further than anybody wants: letting go ends it
+        trim_.Velocity = trim_speed;
+        trim_.Acceleration = trim_.Deceleration = end_.Deceleration = 200;
+        trim_.Execute = ahead != back;
+        trim_(ctx);
+        end_.Execute = ahead == back && trim_.Busy;
+        end_(ctx);
+    }
+};
+
 class PrintMark final : public Program {
     AxisRef web_, cutter_;
-    Input<bool> run_, ahead_, back_;
+    Input<bool> run_;
     Output<bool> in_register_;
     Parameter length_, speed_, sensor_, window_, step_, good_;
 
@@ -30,8 +55,8 @@ class PrintMark final : public Program {
     MC_Halt halt_;
     MC_GearIn gear_;
     MC_TouchProbe probe_;
-    MC_PhasingRelative correct_, trim_;
-    MC_HaltPhasing trimmed_;
+    MC_PhasingRelative correct_;
+    HandTrim trim_;
 
     bool armed_ = false;    ///< a probe waits, or will from this scan on
     bool locked_ = false;   ///< the next mark is expected at next_mark_
@@ -45,8 +70,7 @@ public:
         web_ = d.axis("web");
         cutter_ = d.axis("cutter");
         run_ = d.input("run");
-        ahead_ = d.input("trim_ahead");
-        back_ = d.input("trim_back");
+        trim_.declare(d);
         in_register_ = d.output("in_register");
         length_ = d.parameter(
             "length", {.value = 297, .minimum = 100, .maximum = 1000, .unit = "mm", .doc = "nominal, from mark to mark; in 0.01 mm"});
@@ -99,7 +123,7 @@ public:
         halt_(ctx);
 
         watch_marks(ctx, run);
-        trim_by_hand(ctx, run && !locked_);
+        trim_(ctx, web_, cutter_, ctx.get(length_), run && !locked_);
 
         ctx.alarm(0, lost_ >= lost_at_most);
         ctx.alarm(1, ready && (gear_.Error || correct_.Error));
@@ -155,20 +179,6 @@ private:
         correct_.Jerk = 60000;
         correct_(ctx);
         if (!correct_.Busy) correct_.Execute = false;
-    }
-
-    /// As long as a button is held; the way that it has made by then stays.
-    void trim_by_hand(TaskContext& ctx, bool permitted) {
-        const bool ahead = permitted && ctx.get(ahead_), back = permitted && ctx.get(back_);
-        trim_.Master = web_;
-        trim_.Slave = trimmed_.Slave = cutter_;
-        trim_.PhaseShift = (ahead ? 1 : -1) * ctx.get(length_);  // further than anybody wants: letting go ends it
-        trim_.Velocity = trim_speed;
-        trim_.Acceleration = trim_.Deceleration = trimmed_.Deceleration = 200;
-        trim_.Execute = ahead != back;
-        trim_(ctx);
-        trimmed_.Execute = ahead == back && trim_.Busy;
-        trimmed_(ctx);
     }
 
     void on_mark(TaskContext& ctx, double mark, double length) {

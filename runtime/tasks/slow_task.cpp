@@ -12,7 +12,7 @@ SlowTask::SlowTask(const ProgramHost::Task& task, Program* program, std::vector<
     : task_(task),
       program_(program),
       divisor_(task.config.divisor),
-      variable_sources_(std::move(variables)),
+      variables_(std::move(variables)),
       requests_(axes),
       objects_(objects),
       tables_(tables),
@@ -21,9 +21,7 @@ SlowTask::SlowTask(const ProgramHost::Task& task, Program* program, std::vector<
       outputs_(outputs),
       outputs_at_release_(outputs),
       input_values_(inputs),
-      parameters_(parameters),
-      variable_values_(variable_sources_.size()),
-      variables_applied_(variable_sources_.size()) {
+      parameters_(parameters) {
     requests_.bind(views_);
 }
 
@@ -35,7 +33,7 @@ void SlowTask::apply(axes::AxisRequests& axes, std::span<std::int64_t> outputs, 
     ++applied_;
     const auto changed = alarms_ ^ alarms_at_release_;
     program_alarms = (program_alarms & ~changed) | (alarms_ & changed);
-    std::copy(variable_values_.begin(), variable_values_.end(), variables_applied_.begin());
+    variables_.apply();
     state_.store(State::idle, std::memory_order_relaxed);
 }
 
@@ -81,7 +79,7 @@ bool SlowTask::run_if_released() noexcept {
     }
     alarms_ = context.alarms;
     undeclared_ = context.undeclared;
-    for (std::size_t i = 0; i < variable_sources_.size(); ++i) variable_values_[i] = ProgramHost::read(variable_sources_[i]);
+    variables_.read();
     run_time_ = Stopwatch{watch}.lap();
     state_.store(State::done, std::memory_order_release);
     return true;

@@ -12,6 +12,7 @@
 #include "runtime/tasks/fault_text.hpp"
 #include "runtime/tasks/latched_requests.hpp"
 #include "runtime/tasks/program_host.hpp"
+#include "runtime/tasks/variable_copy.hpp"
 
 namespace taktwerk::runtime {
 
@@ -46,7 +47,7 @@ public:
     void release(const CycleContext& now, std::span<const axes::AxisView> views, const Inputs& inputs,
                  std::span<const std::int64_t> outputs, std::span<const double> parameters, std::uint64_t program_alarms) noexcept;
     /// Values of the program's variables as the last applied run left them; for programs without a base task.
-    [[nodiscard]] std::span<const double> variables() const noexcept { return variables_applied_; }
+    [[nodiscard]] std::span<const double> variables() const noexcept { return variables_.applied(); }
     /// How many runs have been applied.
     [[nodiscard]] std::uint64_t applied() const noexcept { return applied_; }
     [[nodiscard]] Duration last_run() const noexcept { return run_time_; }
@@ -69,7 +70,7 @@ private:
     ProgramHost::Task task_;
     Program* program_;
     std::uint64_t divisor_;
-    std::vector<ProgramHost::Variable> variable_sources_;
+    VariableCopy variables_;
     std::atomic<State> state_{State::idle};
     LatchedRequests requests_;
     ObjectAccess& objects_;
@@ -79,7 +80,7 @@ private:
     std::vector<PointValue> input_values_;
     std::span<const std::uint8_t> output_bits_;
     std::span<const PointLine> output_lines_;
-    std::vector<double> parameters_, variable_values_, variables_applied_;
+    std::vector<double> parameters_;
     CycleContext context_;
     std::uint64_t runs_ = 0, applied_ = 0, alarms_ = 0, alarms_at_release_ = 0;
     bool threw_ = false;
