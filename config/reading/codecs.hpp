@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "config/reading/collections.hpp"
 #include "config/reading/field_table.hpp"
 #include "core/time.hpp"
 

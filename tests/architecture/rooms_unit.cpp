@@ -28,8 +28,6 @@ const std::vector<Leave> long_headers{
     {"axes/axis/error_texts.hpp", "", 279, "one table"},
     {"axes/axis/axis_config.hpp", "", 256, "to be split: one struct per part of an axis"},
     {"ecat/wire/registers.hpp", "", 261, "to be split: addresses, and views of what lies there"},
-    {"config/reading/field_table.hpp", "", 263, "to be split: kinds of fields, and reading them"},
-    {"programs/api/program.hpp", "", 279, "to be split: what a program declares, and what it sees in a scan"},
     {"ecat/script/script.hpp", "", 285, "to be split: a script, and what it may wait for"},
 };
 
