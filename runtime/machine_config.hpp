@@ -9,6 +9,7 @@
 
 #include "axes/axis/axis_config.hpp"
 #include "axes/port/drive_profile.hpp"
+#include "axes/port/encoder_channel.hpp"
 #include "axes/sim/plant_config.hpp"
 #include "axes/tables/cam_table.hpp"
 #include "core/point_line.hpp"
@@ -44,6 +45,9 @@ struct AxisSimulation {
     axes::sim::Battery battery = axes::sim::Battery::good;  ///< of an absolute encoder
     PrintedMarks marks;
     double clock_drift_ppm = 0;
+    // Of an encoder at a terminal (AxisBinding::encoder): what turns it.
+    std::string turned_by;  ///< axis whose motor does, u for u; empty: it turns by itself
+    double velocity = 0;    ///< u/s, by itself
 };
 
 /// The other side of a portal on two drives (AxisConfig::gantry). Its counts are those of the axis' gearing.
@@ -61,9 +65,10 @@ struct AxisBinding {
     std::string drive;            ///< name of a drive on a serial line, instead of a slave
     std::uint8_t drive_axis = 0;  ///< 0-based axis of a multi-axis drive
     std::shared_ptr<const axes::DriveProfile> profile;
-    std::string load_input;                   ///< input point that counts at the load (AxisConfig::load_encoder)
-    std::string brake_output;                 ///< output point that opens its holding brake (BrakeBy::output)
-    std::vector<axes::StoredSetting> stored;  ///< in the drive's EEPROM once it was commissioned
+    std::optional<axes::EncoderChannel> encoder;  ///< what counts, where the axis only measures and has no drive of its own
+    std::string load_input;                       ///< input point that counts at the load (AxisConfig::load_encoder)
+    std::string brake_output;                     ///< output point that opens its holding brake (BrakeBy::output)
+    std::vector<axes::StoredSetting> stored;      ///< in the drive's EEPROM once it was commissioned
     AxisSimulation simulation;
     GantryFollower follower;
 };

@@ -43,8 +43,9 @@ enum class AxisAlarm : AlarmId {
     gantry_skew = 0x301F,
     gantry_side_lost = 0x3020,
     load_deviation = 0x3021,
+    encoder_invalid = 0x3022,
 };
-inline constexpr std::size_t axis_alarm_count = 33;
+inline constexpr std::size_t axis_alarm_count = 34;
 
 [[nodiscard]] constexpr AlarmId id(AxisAlarm alarm) noexcept { return static_cast<AlarmId>(alarm); }
 
@@ -215,6 +216,11 @@ inline constexpr std::array<AlarmInfo, axis_alarm_count> axis_alarms{{
      "The coupling, belt or gear between them slipped or broke, the load encoder or its cable is defective, or its counts per unit are wrong",
      "Look at coupling and load encoder, compare load_encoder.counts_per_unit with its data sheet; then reset, and home the axis again",
      ResetRule::reset, Reaction::stop_axis, "The drive's communication watchdog stops it; nobody compares motor and load"},
+    {id(AxisAlarm::encoder_invalid), "encoder_invalid",
+     "The encoder's position does not hold, says whoever reads it", "编码器读取装置报告其位置值无效",
+     "A wire of the encoder is broken, it has no supply, or it does not answer; the position shown is the last one that held, and who follows the axis stops",
+     "Check cable, supply and settings of the encoder at its terminal; a counter has lost pulses meanwhile: set its position again",
+     ResetRule::self_clearing, Reaction::warn, ""},
 }};
 // clang-format on
 

@@ -98,6 +98,7 @@ void take_feedback(AxisCore& axis, const DriveFeedback& from_drive) noexcept {
     if (axis.intake.read(from_drive)) axis.writer.setpoint();
     if (FeedbackIntake::as_wanted(axis.body, axis.measured, axis.runs, axis.modes)) return;
     if (axis.body.driven) axis.intake.watch_drive();
+    else if (axis.body.config.encoder) axis.intake.watch_encoder();
     if (!axis.supply.run()) return;
     axis.succession.start_waiting(0);
     axis.writer.setpoint();  // a homing may have begun, and be over

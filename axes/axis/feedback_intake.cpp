@@ -41,6 +41,11 @@ bool FeedbackIntake::read(const DriveFeedback& from_drive) noexcept {
     return placed;
 }
 
+void FeedbackIntake::watch_encoder() noexcept {
+    if (body_.port.alarm().kind == DriveAlarmKind::encoder) conduct_.fail(AxisAlarm::encoder_invalid);
+    else body_.alarms.clear(AxisAlarm::encoder_invalid);
+}
+
 void FeedbackIntake::watch_drive() noexcept {
     const bool asked = body_.power.phase() != PowerSequence::Phase::off;
     if (measured_.seeded && asked && !measured_.online())

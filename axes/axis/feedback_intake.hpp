@@ -29,6 +29,8 @@ public:
     /// True: the set-point has been placed anew.
     [[nodiscard]] bool read(const DriveFeedback& from_drive) noexcept;
     void watch_drive() noexcept;
+    /// Instead, of an axis that only measures: whether its position holds.
+    void watch_encoder() noexcept;
     /// Nothing for watch_drive() and run_power(): power is on and stays on, and the drive says nothing to the contrary.
     [[nodiscard]] static bool as_wanted(const AxisBody& body, const Measured& measured, const HomingRuns& runs,
                                         const ModeState& modes) noexcept {

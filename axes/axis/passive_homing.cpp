@@ -29,7 +29,7 @@ bool passed(MC_SwitchMode mode, const EdgeWatch& edge, double velocity) noexcept
 
 ErrorId PassiveHoming::refuse(const AxisCommand& command) const noexcept {
     if (const auto error = check_numbers(command); error != ErrorId::none) return error;
-    if (body_.state == AxisState::Disabled) return ErrorId::not_powered;
+    if (body_.state == AxisState::Disabled && !body_.config.encoder) return ErrorId::not_powered;
     if (body_.state == AxisState::ErrorStop) return ErrorId::in_error_stop;
     if (body_.state == AxisState::Homing || body_.state == AxisState::Stopping) return ErrorId::state_forbids;
     const auto* step = std::get_if<HomingStepDetails>(&command.details);
@@ -64,7 +64,8 @@ void PassiveHoming::watch() noexcept {
     if (passive_.id == 0) return;
     if (body_.state == AxisState::ErrorStop) return end(Outcome::error, ErrorId::aborted_by_axis_error);
     // What homes the axis actively, and what takes its power, takes this with it.
-    if (body_.state == AxisState::Disabled || body_.state == AxisState::Homing) return end(Outcome::aborted);
+    const bool without_power = body_.state == AxisState::Disabled && !body_.config.encoder;  // what only measures is always Disabled
+    if (without_power || body_.state == AxisState::Homing) return end(Outcome::aborted);
     if (!measured_.feedback.fresh) return;
 
     const auto& step = passive_.step;

@@ -69,6 +69,38 @@ Table<ChannelRow> channel_table() {
     return table;
 }
 
+Table<EncoderLatchRow> encoder_latch_table(const char* which, const char* doc) {
+    using L = EncoderLatchRow;
+    return {which,
+            doc,
+            {
+                required(field("arm", &L::arm, name(), "output: 1 lets it wait")),
+                required(field("latched", &L::latched, name(), "input: 1 from the event on, until `arm` is taken back")),
+            },
+            {},
+            {}};
+}
+
+Table<EncoderRow> encoder_table() {
+    using E = EncoderRow;
+    return {
+        "encoders",
+        "A position that may be an axis (`encoder: true`), by names of channels. While the `error` of its channel shows, it does not hold.",
+        {
+            required(field("position", &E::position, name(), "input that counts")),
+            with_default(field("valid", &E::valid, name(), "input that is 0 while the position does not hold"), "none"),
+            with_default(field("latch", &E::latch, name(), "input with the position at the event: touch probe 1 of the axis"), "none"),
+            field("index", &E::index, maybe(section(encoder_latch_table("index", "Latches at the encoder's index."))),
+                  "latches at the encoder's index"),
+            field("rising", &E::rising, maybe(section(encoder_latch_table("rising", "Latches at the rising edge of its input."))),
+                  "latches at the rising edge of its input"),
+            field("falling", &E::falling, maybe(section(encoder_latch_table("falling", "Latches at the falling edge of its input."))),
+                  "latches at the falling edge of its input"),
+        },
+        {},
+        {}};
+}
+
 }  // namespace
 
 Table<DeviceFile> device_file_table() {
@@ -97,8 +129,10 @@ Table<DeviceFile> device_file_table() {
         field("channels", &F::channels, by_name(section(channel_table()), [](ChannelRow& c) -> std::string& { return c.name; }),
               "its values by name; a machine names them in `io`"),
         "none"));
+    f.push_back(field("encoders", &F::encoders, list(section(encoder_table())),
+                      "counters and encoders that may be axes; an axis says which by `axis`, from 1"));
     for (auto& one : f)
-        if (one.info.key == "objects" || one.info.key == "startup") one.info.default_text.clear();
+        if (one.info.key == "objects" || one.info.key == "startup" || one.info.key == "encoders") one.info.default_text.clear();
     return table;
 }
 

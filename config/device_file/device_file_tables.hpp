@@ -25,6 +25,15 @@ struct ChannelRow {
     std::string doc;
 };
 
+/// Channels by name.
+struct EncoderLatchRow {
+    std::string arm, latched;
+};
+struct EncoderRow {
+    std::string position, valid, latch;
+    std::optional<EncoderLatchRow> index, rising, falling;
+};
+
 struct DeviceFile {
     std::int64_t version = 0;
     std::string name, vendor, title, source, checked;
@@ -33,6 +42,7 @@ struct DeviceFile {
     std::vector<ObjectRow> objects;
     std::vector<StartupEntry> startup;
     std::vector<ChannelRow> channels;
+    std::vector<EncoderRow> encoders;
 };
 
 [[nodiscard]] Table<DeviceFile> device_file_table();

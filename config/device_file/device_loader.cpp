@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "config/device_file/device_file_tables.hpp"
 #include "config/reading/quantity.hpp"
@@ -38,6 +39,7 @@ public:
         add_objects_of_modules();
         LoadedDevice out;
         for (const auto& row : file_.channels) add_channel(out, row);
+        for (std::size_t n = 0; n < file_.encoders.size(); ++n) add_encoder(out, file_.encoders[n], fmt::format("encoders.{}", n));
         out.title = file_.title, out.vendor = file_.vendor, out.source = file_.source, out.checked = file_.checked;
         out.startup = resolve_startup(reader_, reader_.file(), file_.startup, device);
         out.device = std::make_shared<const ecat::DeviceDescription>(std::move(device));
@@ -193,6 +195,38 @@ private:
         out.channels.push_back(std::move(channel));
     }
 
+    void add_encoder(LoadedDevice& out, const EncoderRow& row, const std::string& here) {
+        const auto channel = [&](const std::string& name, IoDirection direction, const std::string& key) -> const DeviceChannel* {
+            if (name.empty()) return nullptr;
+            const auto* found = find_channel(out, direction, name);
+            const auto names = channel_names(out, direction);
+            if (found == nullptr)
+                problem(here + "." + key, fmt::format("it has no {} '{}'", direction == IoDirection::input ? "input" : "output", name),
+                        fmt::format("name one of its channels: {}", fmt::join(names, ", ")));
+            return found;
+        };
+        const auto object = [&](const std::string& name, IoDirection direction, const std::string& key) -> axes::ParameterAddress {
+            const auto* found = channel(name, direction, key);
+            return found != nullptr ? axes::ParameterAddress{found->index, found->sub} : axes::ParameterAddress{};
+        };
+        const auto latch = [&](const std::optional<EncoderLatchRow>& way, const std::string& key) -> axes::EncoderLatch {
+            if (!way) return {};
+            return {object(way->arm, IoDirection::output, key + ".arm"), object(way->latched, IoDirection::input, key + ".latched")};
+        };
+        const auto* position = channel(row.position, IoDirection::input, "position");
+        if (position == nullptr) return;
+        auto encoder = encoder_of(*position);
+        encoder.valid = object(row.valid, IoDirection::input, "valid");
+        encoder.latch = object(row.latch, IoDirection::input, "latch");
+        encoder.index = latch(row.index, "index");
+        encoder.rising = latch(row.rising, "rising");
+        encoder.falling = latch(row.falling, "falling");
+        if (row.latch.empty() == (row.index || row.rising || row.falling))
+            problem(here, "`latch` and what it latches belong together", "give both, or neither");
+        if (row.index && !row.rising) problem(here, "an index without the rising edge of an input is not served", "give `rising` as well");
+        out.encoders.push_back(std::move(encoder));
+    }
+
     Reader& reader_;
     DeviceFile& file_;
 };
@@ -244,6 +278,15 @@ const DeviceChannel* find_channel(const LoadedDevice& device, IoDirection direct
         if (number ? n == *number : channel.name == name) return &channel;
     }
     return nullptr;
+}
+
+axes::EncoderChannel encoder_of(const DeviceChannel& channel) {
+    axes::EncoderChannel encoder;
+    encoder.name = channel.name;
+    encoder.position = {channel.index, channel.sub};
+    for (const auto& status : channel.status)
+        if (status.kind == PointStatus::Kind::error) encoder.errors.push_back({status.index, status.sub});
+    return encoder;
 }
 
 std::vector<std::string> channel_names(const LoadedDevice& device, IoDirection direction) {

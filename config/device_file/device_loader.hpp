@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "axes/port/encoder_channel.hpp"
 #include "config/reading/file_library.hpp"
 #include "ecat/bus_config.hpp"
 #include "runtime/machine_config.hpp"
@@ -32,6 +33,7 @@ struct LoadedDevice {
     std::shared_ptr<const ecat::DeviceDescription> device;
     std::vector<ecat::StartupSdo> startup;
     std::vector<DeviceChannel> channels;
+    std::vector<axes::EncoderChannel> encoders{};  ///< positions that may be axes
 };
 
 /// All problems at once, each with file, line and column.
@@ -51,6 +53,8 @@ public:
 /// The channel that a machine file means: by name, or by number among those of its direction, from 1. nullptr: there is none.
 [[nodiscard]] const DeviceChannel* find_channel(const LoadedDevice& device, runtime::IoDirection direction,
                                                 const std::string& name) noexcept;
+/// An input that counts, as far as its channel says: nothing of a latch.
+[[nodiscard]] axes::EncoderChannel encoder_of(const DeviceChannel& channel);
 /// Their names, for messages.
 [[nodiscard]] std::vector<std::string> channel_names(const LoadedDevice& device, runtime::IoDirection direction);
 

@@ -256,38 +256,42 @@ Table<runtime::PrintedMarks> printed_marks_table() {
 
 Table<AxisSimulation> axis_simulation_table() {
     using S = AxisSimulation;
-    return {"simulation",
-            "The mechanics of the simulated axis. Positions are machine coordinates: 0 is where the homed axis will say 0.",
-            {
-                field("inertia", &S::inertia, quantity(Dimension::inertia, 0), "motor and load, at the motor shaft"),
-                field("viscous_friction", &S::viscous_friction, quantity(Dimension::friction, 0), "friction that grows with speed"),
-                field("coulomb_friction", &S::coulomb_friction, quantity(Dimension::torque, 0), "friction that does not"),
-                field("load_torque", &S::load_torque, quantity(Dimension::torque),
-                      "constant load, such as weight; positive pushes to negative"),
-                field("rated_torque", &S::rated_torque, quantity(Dimension::torque, 0), "of the motor"),
-                field("start", &S::start, quantity(Dimension::position), "where the axis stands at power-on"),
-                field("racked", &S::racked, quantity(Dimension::position), "how far the follower of a gantry is ahead of its leader then"),
-                field_via<S>(
-                    "stops", interval(Dimension::position),
-                    [](S& s, const Interval& v) { s.negative_stop = v.first, s.positive_stop = v.second; }, "hard stops", "none"),
-                field_via<S>(
-                    "limit_switches", interval(Dimension::position),
-                    [](S& s, const Interval& v) { s.negative_limit = v.first, s.positive_limit = v.second; },
-                    "active below the first, above the second", "none"),
-                field_via<S>(
-                    "home_switch", interval(Dimension::position),
-                    [](S& s, const Interval& v) { s.home_from = v.first, s.home_to = v.second; }, "active in between", "none"),
-                field("index_pulse", &S::index_pulse, quantity(Dimension::position),
-                      "where one of the encoder's index pulses stands; there is one each motor turn"),
-                field("battery", &S::battery,
-                      choice<axes::sim::Battery>(
-                          {{"good", axes::sim::Battery::good}, {"low", axes::sim::Battery::low}, {"empty", axes::sim::Battery::empty}}),
-                      "of an absolute encoder; with an empty one the drive has lost its turns at power-on"),
-                field("marks", &S::marks, section(printed_marks_table()), "marks along the axis, seen by a sensor at probe 1 of the drive"),
-                field("clock_drift", &S::clock_drift_ppm, quantity(Dimension::ratio_ppm), "how wrong the drive's clock runs"),
-            },
-            {},
-            {}};
+    return {
+        "simulation",
+        "The mechanics of the simulated axis. Positions are machine coordinates: 0 is where the homed axis will say 0.",
+        {
+            field("inertia", &S::inertia, quantity(Dimension::inertia, 0), "motor and load, at the motor shaft"),
+            field("viscous_friction", &S::viscous_friction, quantity(Dimension::friction, 0), "friction that grows with speed"),
+            field("coulomb_friction", &S::coulomb_friction, quantity(Dimension::torque, 0), "friction that does not"),
+            field("load_torque", &S::load_torque, quantity(Dimension::torque),
+                  "constant load, such as weight; positive pushes to negative"),
+            field("rated_torque", &S::rated_torque, quantity(Dimension::torque, 0), "of the motor"),
+            field("start", &S::start, quantity(Dimension::position), "where the axis stands at power-on"),
+            field("racked", &S::racked, quantity(Dimension::position), "how far the follower of a gantry is ahead of its leader then"),
+            field_via<S>(
+                "stops", interval(Dimension::position),
+                [](S& s, const Interval& v) { s.negative_stop = v.first, s.positive_stop = v.second; }, "hard stops", "none"),
+            field_via<S>(
+                "limit_switches", interval(Dimension::position),
+                [](S& s, const Interval& v) { s.negative_limit = v.first, s.positive_limit = v.second; },
+                "active below the first, above the second", "none"),
+            field_via<S>(
+                "home_switch", interval(Dimension::position), [](S& s, const Interval& v) { s.home_from = v.first, s.home_to = v.second; },
+                "active in between", "none"),
+            field("index_pulse", &S::index_pulse, quantity(Dimension::position),
+                  "where one of the encoder's index pulses stands; there is one each motor turn"),
+            field("battery", &S::battery,
+                  choice<axes::sim::Battery>(
+                      {{"good", axes::sim::Battery::good}, {"low", axes::sim::Battery::low}, {"empty", axes::sim::Battery::empty}}),
+                  "of an absolute encoder; with an empty one the drive has lost its turns at power-on"),
+            field("marks", &S::marks, section(printed_marks_table()), "marks along the axis, seen by a sensor at probe 1 of the drive"),
+            with_default(field("turned_by", &S::turned_by, name(), "of an encoder at a terminal: the axis whose motor turns it, u for u"),
+                         "nobody: it turns by itself"),
+            field("velocity", &S::velocity, quantity(Dimension::velocity), "of an encoder at a terminal that turns by itself"),
+            field("clock_drift", &S::clock_drift_ppm, quantity(Dimension::ratio_ppm), "how wrong the drive's clock runs"),
+        },
+        {},
+        {}};
 }
 
 Table<axes::PositionIntegral> integral_table() {
@@ -404,6 +408,24 @@ Table<axes::ErrorReactions> reactions_table() {
     return table;
 }
 
+/// What counts, of an axis that only measures. The rest of it is its slave's (Assembly::add_encoder).
+void add_counter_fields(std::vector<Field<AxisBinding>>& f) {
+    const auto encoder = [](AxisBinding& b) -> axes::EncoderChannel& { return b.encoder ? *b.encoder : b.encoder.emplace(); };
+    f.push_back(field_via<AxisBinding>(
+        "channel", name(), [encoder](AxisBinding& b, const std::string& channel) { encoder(b).name = channel; },
+        "of an axis that only measures: the input of a terminal that counts, where its file lists no `encoders`",
+        "the encoder of the terminal's file"));
+    f.push_back(field_via<AxisBinding>(
+        "object", object_address(),
+        [encoder](AxisBinding& b, const ObjectAddress& at) {
+            encoder(b).position = {at.index, at.sub};
+        },
+        "or the object that counts, of any slave: 60E4h:01 of a drive that moves another axis"));
+    f.push_back(field_via<AxisBinding>(
+        "counter_bits", integer<std::uint8_t>(8, 64), [encoder](AxisBinding& b, const std::uint8_t& bits) { encoder(b).bits = bits; },
+        "it counts in so many bits and begins anew, such as the 26 of a single-turn encoder", "all of its object"));
+}
+
 /// The axis' own unit, which all its quantities are read in.
 Codec<std::string> axis_unit() {
     Codec<std::string> c;
@@ -434,7 +456,8 @@ Table<AxisBinding> axis_table() {
     f.push_back(field_via<AxisBinding>(
         "axis", integer<std::uint8_t>(1, 64),
         [](AxisBinding& b, const std::uint8_t& n) { b.drive_axis = static_cast<std::uint8_t>(n - 1); },
-        "which axis of a drive that has several, from 1 as its manual counts", "1 where the drive has one"));
+        "which axis of a drive, or encoder of a terminal, that has several; from 1 as its manual counts", "1 where there is one"));
+    add_counter_fields(f);
     std::vector<Field<A>> own{
         required(field("gearing", &A::gearing, section(gearing_table()), "counts and unit")),
         with_default(
@@ -456,7 +479,9 @@ Table<AxisBinding> axis_table() {
         field("require_homed", &A::require_homed, boolean(), "absolute moves need a homed axis"),
         field("disabled", &A::disabled, boolean(), "left out while commissioning: its drive is never enabled"),
         field("encoder", &A::encoder, boolean(),
-              "it only measures (`limits.velocity`: its fastest): never powered, takes no motion, may be the master of other axes"),
+              "it only measures (`limits.velocity`: its fastest): never powered, takes no motion, may be the master of others; `slave`: a "
+              "drive "
+              "or a terminal"),
         field("simulated", &A::simulated, boolean(), "its drive is simulated although the bus is real"),
         field("queue_depth", &A::queue_depth, integer<std::uint8_t>(1, 8), "buffered motions"),
         field_at<A>(

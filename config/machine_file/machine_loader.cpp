@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 #include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -73,6 +74,7 @@ public:
                 if (name == binding.slave) binding.profile = profile;
                 if (name == binding.follower.slave) binding.follower.profile = profile;
             }
+        for (auto& binding : out.machine.axes) add_encoder(binding);
         add_stored(out);
         for (const auto& binding : out.machine.axes) check_axis_is_named(binding);
         for (const auto& entry : file_.serial) add_line(out, entry);
@@ -104,6 +106,52 @@ private:
             add_startup(slave, entry);
         }
         out.machine.bus.slaves.push_back(std::move(slave));
+    }
+
+    /// An axis that only measures: by its place among the encoders of its terminal's file, by a channel, or by an object of any slave. Until here
+    /// `binding.encoder` is what the axis itself says.
+    void add_encoder(runtime::AxisBinding& binding) {
+        const auto here = "axes." + binding.axis.name;
+        const auto own = std::exchange(binding.encoder, std::nullopt).value_or(axes::EncoderChannel{});
+        const auto refuse = [&](const char* key, const char* code, std::string what, std::string remedy) {
+            problem(here + key, code, std::move(what), std::move(remedy));
+            reader_.mark_bad(here + ".slave");
+        };
+        const auto device = devices_of_.find(binding.slave);
+        const bool terminal = device != devices_of_.end(), by_object = own.position.index != 0;
+        const bool says = by_object || !own.name.empty() || own.bits != 0;
+        if (says && (!binding.axis.encoder || (!terminal && !by_object)))
+            return refuse("", "config.no_encoder",
+                          "`channel`, `object` and `counter_bits` are of an axis that only measures, at a terminal",
+                          "write `encoder: true`, and the terminal that counts as its `slave`");
+        if (!binding.axis.encoder || (!terminal && !by_object)) return;
+        if (by_object) {
+            binding.encoder.emplace();
+            binding.encoder->name = show_object(own.position.index, own.position.sub);
+            binding.encoder->position = own.position;
+            binding.profile = nullptr;  // it is no axis of that drive
+        } else if (!own.name.empty()) {
+            const auto* channel = find_channel(device->second, runtime::IoDirection::input, own.name);
+            if (channel == nullptr)
+                return refuse(".channel", "config.no_channel", fmt::format("slave '{}' has no input '{}'", binding.slave, own.name),
+                              fmt::format("name one of {}", names_or_none(channel_names(device->second, runtime::IoDirection::input))));
+            binding.encoder = encoder_of(*channel);
+        } else if (const auto& known = device->second.encoders; known.empty()) {
+            return refuse(".slave", "config.no_encoder", fmt::format("the file of slave '{}' names no encoder", binding.slave),
+                          fmt::format("name the input that counts by `channel` (there is: {})",
+                                      names_or_none(channel_names(device->second, runtime::IoDirection::input))));
+        } else if (known.size() > 1 && !reader_.has(here + ".axis")) {
+            return refuse("", "axis.drive_axis_missing",
+                          fmt::format("slave '{}' has {} encoders: which one is meant?", binding.slave, known.size()),
+                          fmt::format("add `axis:`, 1 to {}", known.size()));
+        } else if (binding.drive_axis >= known.size()) {
+            return refuse(".axis", "axis.drive_axis",
+                          fmt::format("slave '{}' has {} encoders, there is no {}", binding.slave, known.size(), binding.drive_axis + 1),
+                          known.size() == 1 ? "remove `axis`" : fmt::format("choose 1 to {}", known.size()));
+        } else {
+            binding.encoder = known[binding.drive_axis];
+        }
+        binding.encoder->bits = own.bits;
     }
 
     /// Of a drive with several axes each axis of the machine says which one it is.
@@ -263,12 +311,13 @@ private:
             if (slave == slaves.end()) continue;
             for (auto& stored : resolve_stored(reader_, entry.slave.name, entry.stored, slave->startup, *known->second))
                 for (auto& binding : out.machine.axes) {
+                    if (binding.encoder) continue;  // no axis of the drive
                     if (binding.slave == entry.slave.name && binding.drive_axis == stored.axis) binding.stored.push_back(stored.setting);
                     auto& follower = binding.follower;
                     if (follower.slave == entry.slave.name && follower.drive_axis == stored.axis) follower.stored.push_back(stored.setting);
                 }
             for (const auto& binding : out.machine.axes)
-                if (binding.slave == entry.slave.name)
+                if (binding.slave == entry.slave.name && !binding.encoder)
                     refuse_contradictions(
                         reader_, entry.slave.name, entry.stored, entry.startup, *known->second,
                         {binding.axis.name, binding.drive_axis, binding.axis.gearing.counts_per_revolution, out.machine.cycle, slave->dc});
@@ -401,7 +450,7 @@ private:
             if (axis.simulated && !out.machine.bus.interface.empty())
                 warn(here + ".simulated", "config.axis_simulated", fmt::format("axis {} is simulated on a real bus", axis.name),
                      "remove `simulated` when its drive is there");
-            if (std::isinf(axis.following.window) && !(binding.slave.empty() && binding.drive.empty()))
+            if (std::isinf(axis.following.window) && !axis.encoder && !(binding.slave.empty() && binding.drive.empty()))
                 warn(here, "config.no_following_error", fmt::format("the following error of axis {} is not watched", axis.name),
                      "add `following_error: {window: ...}`");
         }

@@ -40,6 +40,7 @@ void suit_to_axes(ecat::SlaveConfig& slave, const std::vector<runtime::AxisBindi
     if (slave.rx.required.empty() || slave.rx.assigned.empty()) return;
     for (const auto& binding : axes) {
         if (binding.slave != slave.name && binding.follower.slave != slave.name) continue;
+        if (binding.encoder) continue;  // it reads an object, and is no axis of the drive
         const bool measures = binding.axis.encoder;
         if (!measures && binding.axis.control.mode == axes::ControlMode::position) continue;
         auto& wished = slave.rx.assigned.front().entries;

@@ -141,9 +141,11 @@ void SimSlave::handle_events(Instant now) noexcept {
         al_.fall_to_safeop(sm_watchdog_expired, now);
     }
     if (!al_.exchanging()) return;
+    // A terminal may have a sync manager for outputs and none to receive: its inputs go by their own event then.
+    const bool receives = std::ranges::any_of(al_.outputs(), [this](unsigned n) { return !coe_ || process_data_.bytes(n) > 0; });
     if (controller_.sync0_runs()) {
         if ((events & event::sync0) != 0) exchange(now);
-    } else if ((events & (al_.outputs().empty() ? event::inputs_read : event::outputs)) != 0) {
+    } else if ((events & (receives ? event::outputs : event::inputs_read)) != 0) {
         exchange(now);
     }
 }

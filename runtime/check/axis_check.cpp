@@ -67,6 +67,7 @@ public:
             if (binding.axis.load_encoder.on) check_load_encoder(binding, subject);
             if (!binding.drive.empty()) continue;  // see check_serial
             if (binding.slave.empty()) check_virtual(binding, subject);
+            else if (binding.encoder) check_encoder(binding, subject);
             else if (has_place(binding, subject)) {
                 check_on_drive(binding, subject);
                 if (binding.axis.gantry.on) check_follower(binding, subject);
@@ -252,8 +253,54 @@ private:
                           "give each axis an `axis` of its own");
         if (!binding.profile)
             problems_.add("axis.no_profile", subject + ".slave", fmt::format("slave '{}' has no drive profile", binding.slave),
-                          "give the slave a `profile:`; a terminal cannot carry an axis");
+                          "give the slave a `profile:`; a terminal can carry an axis that only measures (`encoder: true`)");
         return binding.profile != nullptr;
+    }
+
+    /// A counter or encoder at a terminal: exchanged, of its own, and nothing asked of it that takes a motor.
+    void check_encoder(const AxisBinding& binding, const std::string& subject) {
+        const auto& channel = *binding.encoder;
+        const auto& at = channel.position;
+        if (std::find(slaves_.begin(), slaves_.end(), binding.slave) == slaves_.end())
+            return problems_.unknown("axis.unknown_slave", subject + ".slave", "slave", binding.slave, slaves_);
+        if (!counters_.insert({binding.slave, {at.index, at.sub}}).second)
+            problems_.add("axis.drive_axis_taken", subject + ".slave",
+                          fmt::format("'{}' of slave '{}' already is another axis", channel.name, binding.slave),
+                          "give each axis a position of its own: `axis: 2`");
+        if (!binding.axis.encoder)
+            problems_.add("axis.encoder", subject + ".slave", fmt::format("slave '{}' is a terminal that counts", binding.slave),
+                          "write `encoder: true`");
+        if (binding.axis.homing.kind != axes::HomingKind::none)
+            problems_.add("axis.homing", subject + ".homing", "an axis that only measures moves to no reference",
+                          "remove `homing`; a program sets its position (MC_SetPosition), or where the index passes "
+                          "(MC_StepReferenceFlyingRefPulse)");
+        unsigned bits = 0;
+        for (const auto& slave : config_.bus.slaves) {
+            if (slave.name != binding.slave || !slave.device) continue;
+            const auto offered = ecat::pdos_of(*slave.device, slave.modules);
+            const auto tx = mapped(slave.tx, offered.tx, offered.tx_assigned);
+            for (const auto& entry : tx)
+                if (entry.index == at.index && entry.sub == at.sub) bits = entry.bits;
+            if (bits == 0 && !tx.empty())
+                problems_.add(
+                    "axis.not_mapped", subject + ".slave",
+                    fmt::format("object {:04X}h:{:02X} ({}) is not in the TxPDO of slave '{}'", at.index, at.sub, channel.name, slave.name),
+                    "choose a PDO that has it under `pdo.tx` of the slave");
+        }
+        if (bits == 1 || (bits != 0 && channel.bits > bits))
+            problems_.add("axis.encoder", subject + ".counter_bits", fmt::format("'{}' has {} bits", channel.name, bits),
+                          bits == 1 ? "name an input that counts" : fmt::format("write `counter_bits: {}`, or fewer", bits));
+        check_turned_by(binding, subject);
+    }
+
+    void check_turned_by(const AxisBinding& binding, const std::string& subject) {
+        const auto& by = binding.simulation.turned_by;
+        if (by.empty()) return;
+        std::vector<std::string> motors;
+        for (const auto& other : config_.axes)
+            if (other.profile && !other.slave.empty()) motors.push_back(other.axis.name);
+        if (std::find(motors.begin(), motors.end(), by) == motors.end())
+            problems_.unknown("axis.simulation", subject + ".simulation.turned_by", "axis with a motor", by, motors);
     }
 
     void check_on_drive(const AxisBinding& binding, const std::string& subject) {
@@ -354,6 +401,7 @@ private:
     Problems problems_;
     std::vector<std::string> slaves_;
     std::set<std::pair<std::string, int>> taken_;
+    std::set<std::pair<std::string, std::pair<int, int>>> counters_;
     std::set<std::string> brakes_;
 };
 

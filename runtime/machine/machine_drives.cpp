@@ -48,6 +48,10 @@ void MachineDrives::build_ports() {
             ports_.push_back(std::move(on_line));
         } else if (slave == no_slave) {
             ports_.push_back(std::make_unique<axes::sim::VirtualDrive>(config.cycle));
+        } else if (binding.encoder) {
+            auto encoder = std::make_unique<axes::encoder::EncoderPort>(bus, slave, *binding.encoder, binding.axis.memory.absolute);
+            encoders_.push_back(encoder.get());
+            ports_.push_back(std::move(encoder));
         } else if (binding.axis.gantry.on) {
             const auto sides = sides_of({binding});
             auto both = std::make_unique<axes::gantry::GantryPort>(
@@ -108,6 +112,8 @@ void MachineDrives::step(Instant now) {
 Result<void> MachineDrives::resolve() {
     for (auto* drive : bus_drives_)
         if (auto ok = drive->resolve(); !ok) return ok;
+    for (auto* encoder : encoders_)
+        if (auto ok = encoder->resolve(); !ok) return ok;
     for (auto* gantry : gantries_) gantry->join_capabilities();
     return {};
 }

@@ -1,5 +1,5 @@
 #pragma once
-// What each axis moves by: a drive on the bus, one on a serial line, or none. Who stands on which slave.
+// What each axis moves or is measured by: a drive on the bus, one on a serial line, an encoder, or none. Who stands on which slave.
 
 #include <limits>
 #include <memory>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "axes/drives/cia402/cia402_drive.hpp"
+#include "axes/drives/encoder/encoder_port.hpp"
 #include "axes/drives/gantry/gantry_port.hpp"
 #include "axes/port/drive_port.hpp"
 #include "runtime/machine/machine_body.hpp"
@@ -50,6 +51,7 @@ private:
     SerialDrives serial_;
     std::vector<std::unique_ptr<axes::DrivePort>> ports_;  // per axis
     std::vector<axes::cia402::Cia402Drive*> bus_drives_;   // those of `ports_` that are on the bus
+    std::vector<axes::encoder::EncoderPort*> encoders_;    // those of `ports_` that only measure
     std::vector<axes::gantry::GantryPort*> gantries_;      // those of `ports_` that are two drives
     std::vector<std::size_t> slave_of_;                    // per axis
     struct BrakeOutput {

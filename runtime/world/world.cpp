@@ -67,6 +67,19 @@ bool is_drive(const ecat::DeviceDescription& device) {
     return std::ranges::any_of(device.objects, [](const auto& object) { return object.index == 0x6041; });
 }
 
+unsigned bits_of(const ecat::DeviceDescription& device, const axes::ParameterAddress& object) {
+    for (const auto& pdo : device.tx_pdos)
+        for (const auto& entry : pdo.entries)
+            if (entry.index == object.index && entry.sub == object.sub) return entry.bits;
+    return 32;
+}
+
+double counts_per_unit_of(const MachineConfig& config, const std::string& axis) {
+    for (const auto& binding : config.axes)
+        if (binding.axis.name == axis) return binding.axis.gearing.counts_per_unit();
+    return 1;
+}
+
 bool is_bit(const ecat::DeviceDescription& device, const IoPoint& point) {
     const auto has = [&](const std::vector<ecat::PdoDescription>& pdos) {
         for (const auto& pdo : pdos)
@@ -112,6 +125,9 @@ World::World(const MachineConfig& config, Instant start)
             auto model = std::make_unique<ecat::sim::PlainDevice>(*slave->device);
             auto* device = model.get();
             install(*slave, std::move(model), options);
+            add_encoders(config, *slave,
+                         {[device](axes::ParameterAddress at, std::int64_t value) { device->set(at.index, at.sub, value); },
+                          [device](axes::ParameterAddress at) { return device->get(at.index, at.sub); }});
             for (const auto& point : config.io)
                 if (point.slave == slave->name) points_.push_back({point, device, nullptr, is_bit(*slave->device, point)});
             continue;
@@ -120,14 +136,14 @@ World::World(const MachineConfig& config, Instant start)
         std::vector<std::string> names;
         const axes::DriveProfile* profile = nullptr;
         for (const auto& binding : sides)
-            if (binding.slave == slave->name && binding.profile) profile = binding.profile.get();
-        static const axes::DriveProfile plain;  // a drive no axis uses still answers
+            if (binding.slave == slave->name && binding.profile) profile = binding.profile.get();  // what only reads it has none
+        static const axes::DriveProfile plain;                                                     // a drive no axis uses still answers
         if (!profile) profile = &plain;
         setups.resize(profile->axes);
         names.resize(profile->axes);
         for (auto& setup : setups) setup.motor.counts_per_revolution = setup.plant.counts_per_revolution;
         for (const auto& binding : sides) {
-            if (binding.slave != slave->name || binding.drive_axis >= profile->axes) continue;
+            if (binding.slave != slave->name || binding.encoder || binding.drive_axis >= profile->axes) continue;
             auto& setup = setups[binding.drive_axis];
             setup.plant = plant_of(binding);
             setup.motor.counts_per_revolution = setup.plant.counts_per_revolution;
@@ -150,7 +166,11 @@ World::World(const MachineConfig& config, Instant start)
                 for (const auto& setting : binding.stored) model->commission(binding.drive_axis, setting.object, setting.value);
         for (const auto& point : config.io)
             if (point.slave == slave->name) points_.push_back({point, nullptr, model.get(), false});
+        auto* servo = model.get();
         install(*slave, std::move(model), options);
+        add_encoders(config, *slave,
+                     {[servo](axes::ParameterAddress at, std::int64_t value) { servo->hold(at.index, at.sub, value); },
+                      [](axes::ParameterAddress) { return std::int64_t{0}; }});
     }
     for (const auto& binding : config.axes)
         if (binding.axis.brake.by == axes::BrakeBy::output) brakes_.push_back({binding.axis.name, binding.brake_output});
@@ -254,6 +274,8 @@ void World::happen(const SimulationEvent& event) {
         case Kind::slave_power: set_slave_power(event.target, event.value != 0); break;
         case Kind::drive_fault:
             if (const auto* axis = place(event.target)) axis->device->raise(axis->index, static_cast<std::uint16_t>(event.value));
+            for (auto& place : encoders_)
+                if (place.encoder.axis() == event.target) place.encoder.fail(event.value != 0);
             break;
         case Kind::main_power:
             if (const auto* axis = place(event.target)) axis->device->main_power(event.value != 0);
@@ -270,12 +292,30 @@ void World::slip(std::string_view axis, double u) {
         if (load.axis == axis) load.slipped += u * load.counts_per_unit;
 }
 
+/// Of the slave that was installed last. What counts at a drive and is turned by nothing else is the drive's own.
+void World::add_encoders(const MachineConfig& config, const ecat::SlaveConfig& slave, const TurnedEncoder::Device& device) {
+    for (const auto& binding : config.axes)
+        if (const bool turns = !binding.simulation.turned_by.empty() || binding.simulation.velocity != 0;
+            binding.encoder && binding.slave == slave.name && (turns || !is_drive(*slave.device)))
+            encoders_.push_back({TurnedEncoder(binding, device, bits_of(*slave.device, binding.encoder->position)), slaves_.back().slave,
+                                 counts_per_unit_of(config, binding.simulation.turned_by)});
+}
+
+void World::turn_encoders(Instant now) {
+    for (auto& [encoder, terminal, counts_per_unit] : encoders_) {
+        auto* motor = encoder.turned_by().empty() ? nullptr : drive(encoder.turned_by());
+        const double u = motor != nullptr ? motor->plant().position() / counts_per_unit : encoder.by_itself(now - start_);
+        encoder.turn(u, terminal->powered());
+    }
+}
+
 void World::apply_events(Instant now) {
     for (const auto& brake : brakes_)
         if (auto* motor = drive(brake.axis)) motor->brake_by_bus(output(brake.output));
     for (const auto& load : loads_)
         if (auto* motor = drive(load.axis))
             set_input_value(load.input, std::llround(motor->plant().position() * load.counts_per_count + load.slipped));
+    turn_encoders(now);
     while (next_event_ < events_.size() && start_ + events_[next_event_].at <= now) happen(events_[next_event_++]);
     if (also) also(now);
     serial_.wire([this](const std::string& point) { return output(point); });

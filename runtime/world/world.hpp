@@ -15,6 +15,7 @@
 #include "ecat/transport/loopback.hpp"
 #include "runtime/machine_config.hpp"
 #include "runtime/world/serial_world.hpp"
+#include "runtime/world/turned_encoder.hpp"
 
 namespace taktwerk::runtime {
 
@@ -100,6 +101,14 @@ private:
         double counts_per_count = 0, counts_per_unit = 0, slipped = 0;
     };
     std::vector<LoadPlace> loads_;
+    void add_encoders(const MachineConfig& config, const ecat::SlaveConfig& slave, const TurnedEncoder::Device& device);
+    void turn_encoders(Instant now);
+    struct EncoderPlace {
+        TurnedEncoder encoder;
+        ecat::sim::SimSlave* terminal;
+        double counts_per_unit = 0;  ///< of the axis that turns it
+    };
+    std::vector<EncoderPlace> encoders_;
     /// A holding brake on an output of the machine.
     struct BrakePlace {
         std::string axis, output;

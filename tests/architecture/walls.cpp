@@ -33,7 +33,7 @@ struct OwnedInclude {
 const std::vector<OwnedInclude>& owned_includes() {
     const std::vector<std::string> motion_side{"axes", "fb_library", "programs"};
     static const std::vector<OwnedInclude> rules{
-        {std::regex("^ecat/"), {"axes/drives/cia402", "axes/sim"}, motion_side, "ecat/"},
+        {std::regex("^ecat/"), {"axes/drives/cia402", "axes/drives/encoder", "axes/sim"}, motion_side, "ecat/"},
         {std::regex("^modbus/"), {"axes/drives/xp200", "axes/sim"}, motion_side, "modbus/"},
         {std::regex("^(lcm(/|\\.h)|taktwerk_lcm/)"), {"hmi_bridge", "apps"}, {}, "LCM"},
         {std::regex("^yaml-cpp/"), {"config"}, {}, "yaml-cpp"},
