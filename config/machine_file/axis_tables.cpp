@@ -479,9 +479,8 @@ Table<AxisBinding> axis_table() {
         field("require_homed", &A::require_homed, boolean(), "absolute moves need a homed axis"),
         field("disabled", &A::disabled, boolean(), "left out while commissioning: its drive is never enabled"),
         field("encoder", &A::encoder, boolean(),
-              "it only measures (`limits.velocity`: its fastest): never powered, takes no motion, may be the master of others; `slave`: a "
-              "drive "
-              "or a terminal"),
+              "it only measures (`limits.velocity`: its fastest): never powered, takes no motion, may be the master of others; "
+              "`slave`: a drive or a terminal"),
         field("simulated", &A::simulated, boolean(), "its drive is simulated although the bus is real"),
         field("queue_depth", &A::queue_depth, integer<std::uint8_t>(1, 8), "buffered motions"),
         field_at<A>(

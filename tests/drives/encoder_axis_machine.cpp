@@ -296,7 +296,7 @@ TEST(EncoderAxis, WhatDoesNotFitIsSaid) {
 TEST(EncoderAxis, EachShippedTerminalWithEncodersIsOne) {
     const std::string folder = std::string(TAKTWERK_SOURCE_DIR) + "/config/devices";
     int encoders = 0;
-    for (const auto& name : {"el1502", "el1512", "el5002", "el5032", "el5042", "el5101", "el5102"}) {
+    for (const auto& name : {"el1502", "el1512", "el5002", "el5032", "el5042", "el5101", "el5102", "el5151"}) {
         const auto loaded = config::load_device(folder + "/" + name + ".yaml");
         ASSERT_TRUE(std::holds_alternative<config::LoadedDevice>(loaded)) << name;
         const auto count = std::get<config::LoadedDevice>(loaded).encoders.size();
@@ -315,7 +315,7 @@ TEST(EncoderAxis, EachShippedTerminalWithEncodersIsOne) {
             EXPECT_NEAR(m.axis(0).actual_position - before, 100, 0.2);
         }
     }
-    EXPECT_EQ(encoders, 12) << "one of EL1502 and EL5101, two of each other";
+    EXPECT_EQ(encoders, 13) << "one of EL1502, EL5101 and EL5151, two of each other";
 }
 
 }  // namespace
