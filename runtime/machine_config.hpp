@@ -17,6 +17,7 @@
 #include "core/time.hpp"
 #include "ecat/bus_config.hpp"
 #include "programs/api/program_entry.hpp"
+#include "runtime/analog_axis.hpp"
 #include "runtime/serial_config.hpp"
 
 namespace taktwerk::runtime {
@@ -48,6 +49,7 @@ struct AxisSimulation {
     // Of an encoder at a terminal (AxisBinding::encoder): what turns it.
     std::string turned_by;  ///< axis whose motor does, u for u; empty: it turns by itself
     double velocity = 0;    ///< u/s, by itself
+    AnalogSimulation analog;
 };
 
 /// The other side of a portal on two drives (AxisConfig::gantry). Its counts are those of the axis' gearing.
@@ -65,7 +67,8 @@ struct AxisBinding {
     std::string drive;            ///< name of a drive on a serial line, instead of a slave
     std::uint8_t drive_axis = 0;  ///< 0-based axis of a multi-axis drive
     std::shared_ptr<const axes::DriveProfile> profile;
-    std::optional<axes::EncoderChannel> encoder;  ///< what counts, where the axis only measures and has no drive of its own
+    std::optional<axes::EncoderChannel> encoder;  ///< what counts, where no drive does: the axis only measures, or is `analog`
+    std::optional<AnalogAxis> analog;             ///< its motor, at an amplifier over +-10 V; `encoder` is the motor's
     std::string load_input;                       ///< input point that counts at the load (AxisConfig::load_encoder)
     std::string brake_output;                     ///< output point that opens its holding brake (BrakeBy::output)
     std::vector<axes::StoredSetting> stored;      ///< in the drive's EEPROM once it was commissioned

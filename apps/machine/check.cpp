@@ -125,6 +125,22 @@ std::string load_sentence(const runtime::AxisBinding& binding) {
                        load.shown ? "; the actual position is the load's" : "");
 }
 
+/// The amplifier on wires.
+std::vector<std::string> analog_sentences(const runtime::AxisBinding& binding) {
+    if (!binding.analog) return {};
+    const auto& analog = *binding.analog;
+    const auto& drive = analog.drive;
+    const auto& u = binding.axis.unit;
+    std::string wires;
+    for (const auto& [word, name] :
+         {std::pair{"ready", &analog.ready}, std::pair{"fault", &analog.fault}, std::pair{"reset", &analog.reset}})
+        if (!name->empty()) wires += fmt::format(", {} {}", word, *name);
+    return {fmt::format("set-point {}: 10 V is {:g} {}/s, offset {:g} mV; enable {}{}", analog.setpoint, drive.velocity_at_10v, u,
+                        drive.offset * 1e3, analog.enable, wires),
+            fmt::format("the position loop is closed here; stopped when it runs {:g} {} against its set-point after enabling",
+                        drive.runaway(binding.axis.limits.velocity), u)};
+}
+
 /// The other side of a portal.
 std::string gantry_sentence(const runtime::AxisBinding& binding) {
     const auto& gantry = binding.axis.gantry;
@@ -161,6 +177,7 @@ void print_axis(const MachineConfig& config, const runtime::AxisBinding& binding
     const auto& u = axis.unit;
     fmt::print("  {:<8} {}{}{}\n", axis.name,
                !binding.drive.empty()  ? "drive " + binding.drive + " on a serial line"
+               : binding.analog        ? "analog drive, encoder at " + binding.slave
                : binding.slave.empty() ? "virtual"
                                        : "drive " + binding.slave,
                axis.disabled ? "  LEFT OUT" : "", axis.simulated ? "  SIMULATED" : "");
@@ -175,6 +192,7 @@ void print_axis(const MachineConfig& config, const runtime::AxisBinding& binding
     fmt::print("           range {}, homing: {}, jogging {:g} and {:g} {}/s, one {} = {:g} counts\n", range_text(axis.limits, u),
                homing_text(axis.homing), axis.manual.slow > 0 ? axis.manual.slow : axis.limits.velocity * 0.05,
                axis.manual.fast > 0 ? axis.manual.fast : axis.limits.velocity * 0.25, u, u, axis.gearing.counts_per_unit());
+    for (const auto& sentence : analog_sentences(binding)) fmt::print("           {}\n", sentence);
     for (const auto& sentence : scale_sentences(binding)) fmt::print("           {}\n", sentence);
     for (const auto& sentence : reaction_sentences(axis)) fmt::print("           {}\n", sentence);
     if (const auto load = load_sentence(binding); !load.empty()) fmt::print("           {}\n", load);

@@ -160,6 +160,9 @@ std::vector<std::string> master_gone(const runtime::MachineConfig& config, const
     if (slave == config.bus.slaves.end()) return out;
     out.push_back(fmt::format("after {:g} ms without process data the slave's watchdog takes it out of OP",
                               to_seconds(runtime::sm_watchdog(config, *slave)) * 1e3));
+    if (axis.analog)
+        out.push_back(
+            "the watchdogs of the terminals that tell it set-point and enable take both away: it brakes or coasts as the amplifier is set");
     if (!axis.profile) return out;
     out.push_back(loss_of(*axis.profile));
     const auto shown = [&](std::uint16_t index) {

@@ -5,49 +5,10 @@
 #include <array>
 #include <string_view>
 
+#include "axes/axis/axis_alarm.hpp"
 #include "core/alarm.hpp"
 
 namespace taktwerk::axes {
-
-enum class AxisAlarm : AlarmId {
-    following_error = 0x3001,
-    drive_fault = 0x3002,
-    drive_power_lost = 0x3003,
-    axis_feedback_lost = 0x3004,
-    enable_timeout = 0x3005,
-    software_limit_reached = 0x3006,
-    negative_limit_switch = 0x3007,
-    positive_limit_switch = 0x3008,
-    homing_failed = 0x3009,
-    homing_timeout = 0x300A,
-    jog_lease_expired = 0x300B,
-    drive_unknown_state = 0x300C,
-    drive_mode_mismatch = 0x300D,
-    drive_warning = 0x300E,
-    emergency_stop = 0x300F,
-    stopped_by_machine = 0x3010,
-    planner_refused = 0x3011,
-    master_lost = 0x3012,
-    moved_while_off = 0x3013,
-    retained_gearing_differs = 0x3014,
-    drive_homing_failed = 0x3015,
-    drive_homing_timeout = 0x3016,
-    drive_homing_refused = 0x3017,
-    reference_lost = 0x3018,
-    drive_setup_refused = 0x3019,
-    drive_too_fast = 0x301A,
-    coupling_start_passed = 0x301B,
-    both_limit_switches = 0x301C,
-    motor_turns = 0x301D,
-    gantry_skew_warning = 0x301E,
-    gantry_skew = 0x301F,
-    gantry_side_lost = 0x3020,
-    load_deviation = 0x3021,
-    encoder_invalid = 0x3022,
-};
-inline constexpr std::size_t axis_alarm_count = 34;
-
-[[nodiscard]] constexpr AlarmId id(AxisAlarm alarm) noexcept { return static_cast<AlarmId>(alarm); }
 
 // clang-format off
 inline constexpr std::array<AlarmInfo, axis_alarm_count> axis_alarms{{
@@ -221,6 +182,26 @@ inline constexpr std::array<AlarmInfo, axis_alarm_count> axis_alarms{{
      "A wire of the encoder is broken, it has no supply, or it does not answer; the position shown is the last one that held, and who follows the axis stops",
      "Check cable, supply and settings of the encoder at its terminal; a counter has lost pulses meanwhile: set its position again",
      ResetRule::self_clearing, Reaction::warn, ""},
+    {id(AxisAlarm::drive_polarity), "drive_polarity",
+     "The motor ran {a} u against its set-point: encoder and set-point are wired against each other", "电机逆着速度给定运行了 {a} u：编码器与速度给定的极性相反",
+     "The encoder counts down where a positive set-point turns the motor (two of its lines, or the two of the set-point, are exchanged), analog.velocity_at_10V or gearing.inverted has the wrong sense, or a load dragged the motor along",
+     "Move the axis by hand and watch its position: where that runs the wrong way, change gearing.inverted; where it is right, give analog.velocity_at_10V the other sign (or exchange the wires); then reset",
+     ResetRule::reset, Reaction::stop_axis, "The terminals' watchdogs take set-point and enable away"},
+    {id(AxisAlarm::encoder_lost), "encoder_lost",
+     "The encoder's position does not hold: the position loop was opened at {a} u", "编码器位置值无效：位置环在 {a} u 处断开",
+     "A wire of the encoder is broken, it has no supply, or it does not answer; the amplifier was given 0 V to brake, then its enable was taken away",
+     "Check cable and supply of the encoder at its terminal; reset, and home the axis again: a counter has lost pulses meanwhile",
+     ResetRule::reset, Reaction::stop_axis, "The terminals' watchdogs take set-point and enable away"},
+    {id(AxisAlarm::amplifier_fault), "amplifier_fault",
+     "The amplifier reports a fault by its input", "放大器通过输入信号报告故障",
+     "Overload, overtemperature, a fault of the motor: the amplifier's own display says which; or a wire of that input is broken",
+     "Remove the cause shown at the amplifier, then reset (there, too, where no `reset` output is wired)",
+     ResetRule::reset, Reaction::stop_axis, "The amplifier has stopped by itself"},
+    {id(AxisAlarm::drive_not_ready), "drive_not_ready",
+     "Power was not switched on: the drive's ready input stayed off for {a} s", "未接通动力：驱动器就绪信号在 {a} 秒内未出现",
+     "The amplifier has no main power or a fault, the safety circuit is open, or a wire of its ready input is broken",
+     "Check main power, safety circuit and the amplifier's display, then the input itself; then reset",
+     ResetRule::reset, Reaction::stop_axis, "The drive stays without power"},
 }};
 // clang-format on
 

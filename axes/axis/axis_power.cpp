@@ -50,6 +50,8 @@ bool AxisPower::run() noexcept {
             else if (measured_.feedback.power == PowerState::switched_on && measured_.feedback.mode != modes_.wanted())
                 conduct_.fail(AxisAlarm::drive_mode_mismatch, static_cast<double>(measured_.feedback.mode),
                               static_cast<double>(modes_.wanted()));
+            else if (body_.port.alarm().found == PortFault::not_ready)
+                conduct_.fail(AxisAlarm::drive_not_ready, to_seconds(body_.config.patience.enable));
             else
                 conduct_.fail(AxisAlarm::enable_timeout, to_seconds(body_.config.patience.enable),
                               static_cast<double>(measured_.feedback.power));

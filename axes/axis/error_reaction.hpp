@@ -78,6 +78,10 @@ inline constexpr std::array rows{
     ReactionBound{gantry_side_lost, ramp_stop, "one side has no power: the axis cannot go on"},
     ReactionBound{load_deviation, warn, ""},
     ReactionBound{motor_turns, ramp_stop, "the drive has no power: the axis cannot go on"},
+    ReactionBound{drive_polarity, ramp_stop, "the drive has no power: the axis cannot go on"},
+    ReactionBound{encoder_lost, ramp_stop, "nobody knows where the axis is"},
+    ReactionBound{amplifier_fault, ramp_stop, "the drive has no power: the axis cannot go on"},
+    ReactionBound{drive_not_ready, ramp_stop, "the drive has no power: the axis cannot go on"},
 };
 }  // namespace reaction_bounds
 

@@ -1,5 +1,7 @@
 #include "axes/axis/feedback_intake.hpp"
 
+#include <cmath>
+
 #include "axes/axis/aim.hpp"
 #include "axes/axis/conduct.hpp"
 #include "axes/axis/retained_coordinates.hpp"
@@ -46,6 +48,21 @@ void FeedbackIntake::watch_encoder() noexcept {
     else body_.alarms.clear(AxisAlarm::encoder_invalid);
 }
 
+/// What a port found by itself has words of its own.
+bool FeedbackIntake::tell_found() noexcept {
+    const auto fallen = body_.port.alarm();
+    switch (fallen.found) {
+        case PortFault::encoder: conduct_.fail(AxisAlarm::encoder_lost, body_.shown.actual_position); return true;
+        case PortFault::polarity:
+            conduct_.fail(AxisAlarm::drive_polarity, fallen.detail / std::abs(body_.units.counts_per_unit()));
+            return true;
+        case PortFault::amplifier: conduct_.fail(AxisAlarm::amplifier_fault); return true;
+        case PortFault::none:
+        case PortFault::not_ready: break;
+    }
+    return false;
+}
+
 void FeedbackIntake::watch_drive() noexcept {
     const bool asked = body_.power.phase() != PowerSequence::Phase::off;
     if (measured_.seeded && asked && !measured_.online())
@@ -66,7 +83,7 @@ void FeedbackIntake::watch_drive() noexcept {
     }
 
     if (measured_.faulted()) {
-        announce(AxisAlarm::drive_fault);
+        if (!tell_found()) announce(AxisAlarm::drive_fault);
     } else if (asked && measured_.feedback.setup_refused) conduct_.fail(AxisAlarm::drive_setup_refused);
     else if (asked && measured_.feedback.power == PowerState::unknown)
         conduct_.fail(AxisAlarm::drive_unknown_state, measured_.feedback.status_word);

@@ -42,6 +42,8 @@ public:
     }
 
 private:
+    [[nodiscard]] bool tell_found() noexcept;
+
     AxisBody& body_;
     Measured& measured_;
     AxisMotion& motion_;

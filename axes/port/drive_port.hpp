@@ -24,6 +24,15 @@
 
 namespace taktwerk::axes {
 
+/// What a port finds by itself, of a drive that has no numbers for it.
+enum class PortFault : std::uint8_t {
+    none,
+    encoder,    ///< its position does not hold: the position loop cannot be closed
+    polarity,   ///< the motor ran against its set-point; DriveAlarm::detail: so many counts
+    amplifier,  ///< it says so by a wire
+    not_ready,  ///< it is to be enabled and does not say that it can be; no fault yet
+};
+
 /// A drive alarm with what the profile knows about it; texts are looked up outside the cycle by `entry`.
 struct DriveAlarm {
     std::uint16_t code = 0;    ///< 603Fh or the vendor's number; 0 = none
@@ -34,6 +43,7 @@ struct DriveAlarm {
     bool whole_drive = false;  ///< common to all axes of the drive
     bool warning = false;      ///< announced while the drive goes on
     DriveAlarmKind kind = DriveAlarmKind::other;
+    PortFault found = PortFault::none;
 };
 
 /// A parameter by its number: object index and sub-index, or a register (sub 0). Objects are named as for the first axis of a

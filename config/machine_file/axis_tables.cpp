@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "axes/axis/command_details.hpp"
+#include "config/machine_file/analog_tables.hpp"
 #include "config/machine_file/axis_mechanics_tables.hpp"
 #include "config/reading/codecs.hpp"
 
@@ -288,6 +289,7 @@ Table<AxisSimulation> axis_simulation_table() {
             with_default(field("turned_by", &S::turned_by, name(), "of an encoder at a terminal: the axis whose motor turns it, u for u"),
                          "nobody: it turns by itself"),
             field("velocity", &S::velocity, quantity(Dimension::velocity), "of an encoder at a terminal that turns by itself"),
+            field("analog", &S::analog, section(analog_simulation_table()), "of an `analog` axis: its amplifier"),
             field("clock_drift", &S::clock_drift_ppm, quantity(Dimension::ratio_ppm), "how wrong the drive's clock runs"),
         },
         {},
@@ -505,6 +507,8 @@ Table<AxisBinding> axis_table() {
         "a second drive for the other side of a portal"));
     f.push_back(field_at<AxisBinding>(
         "brake", [](AxisBinding& b) -> AxisBinding& { return b; }, section(brake_table()), "holding brake, where the controller works it"));
+    f.push_back(
+        field("analog", &AxisBinding::analog, maybe(section(analog_table())), "an amplifier over +-10 V, with its encoder at `slave`"));
     f.push_back(field("simulation", &AxisBinding::simulation, section(axis_simulation_table()), "mechanics of the simulated axis"));
     table.before = [](Reader& reader, const Node&, AxisBinding& b) { reader.axis_unit = b.axis.unit; };
     table.after = [](Reader& reader, const Node&, AxisBinding& b) {

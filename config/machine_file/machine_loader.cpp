@@ -108,23 +108,24 @@ private:
         out.machine.bus.slaves.push_back(std::move(slave));
     }
 
-    /// An axis that only measures: by its place among the encoders of its terminal's file, by a channel, or by an object of any slave. Until here
-    /// `binding.encoder` is what the axis itself says.
+    /// What counts, of an axis that only measures or has an analog drive: by its place among the encoders of its terminal's file, by a channel, or by
+    /// an object of any slave. Until here `binding.encoder` is what the axis itself says.
     void add_encoder(runtime::AxisBinding& binding) {
         const auto here = "axes." + binding.axis.name;
         const auto own = std::exchange(binding.encoder, std::nullopt).value_or(axes::EncoderChannel{});
         const auto refuse = [&](const char* key, const char* code, std::string what, std::string remedy) {
             problem(here + key, code, std::move(what), std::move(remedy));
-            reader_.mark_bad(here + ".slave");
+            for (const char* place : {".slave", ".axis"}) reader_.mark_bad(here + place);
         };
         const auto device = devices_of_.find(binding.slave);
         const bool terminal = device != devices_of_.end(), by_object = own.position.index != 0;
         const bool says = by_object || !own.name.empty() || own.bits != 0;
-        if (says && (!binding.axis.encoder || (!terminal && !by_object)))
+        const bool reads = binding.axis.encoder || binding.analog;
+        if (says && (!reads || (!terminal && !by_object)))
             return refuse("", "config.no_encoder",
                           "`channel`, `object` and `counter_bits` are of an axis that only measures, at a terminal",
                           "write `encoder: true`, and the terminal that counts as its `slave`");
-        if (!binding.axis.encoder || (!terminal && !by_object)) return;
+        if (!reads || (!terminal && !by_object)) return;
         if (by_object) {
             binding.encoder.emplace();
             binding.encoder->name = show_object(own.position.index, own.position.sub);

@@ -105,7 +105,7 @@ Scale motion_scale(std::string_view unit, int order, std::string_view axis_unit)
 
 bool is_any_unit(std::string_view unit) {
     if (find(times, unit)) return true;
-    for (const auto* known : {"Hz", "kHz", "MHz", "Nm", "kgm2", "Nms/rad", "ppm", "cycle", "cycles", "%"})
+    for (const auto* known : {"Hz", "kHz", "MHz", "Nm", "kgm2", "Nms/rad", "ppm", "V", "mV", "cycle", "cycles", "%"})
         if (unit == known) return true;
     return motion_scale(unit, 0, "mm").fit != Scale::Fit::not_a_unit;
 }
@@ -124,6 +124,7 @@ Scale plain_scale(std::string_view unit, Dimension dimension) {
         case Dimension::inertia: return either(is("kgm2"), is("kgcm2", 1, 1e4));
         case Dimension::friction: return either(is("Nms/rad"), is("Nms"));
         case Dimension::ratio_ppm: return is("ppm");
+        case Dimension::voltage: return either(is("V"), is("mV", 1, 1e3));
         case Dimension::cycles: return either(is("cycles"), is("cycle"));
         default: return {};
     }
@@ -154,6 +155,7 @@ std::string unit_of(Dimension dimension, std::string_view axis_unit) {
         case Dimension::inertia: return "kg m2";
         case Dimension::friction: return "Nm s/rad";
         case Dimension::ratio_ppm: return "ppm";
+        case Dimension::voltage: return "V";
         case Dimension::cycles: return "cycles";
         default: return std::string(axis_unit) + std::string(per_second[static_cast<std::size_t>(order_of(dimension))]);
     }
@@ -167,6 +169,7 @@ std::string example_of(Dimension dimension, std::string_view axis_unit) {
         case Dimension::inertia: number = "2e-4"; break;
         case Dimension::friction: number = "1e-3"; break;
         case Dimension::ratio_ppm: number = "20"; break;
+        case Dimension::voltage: number = "0.1"; break;
         case Dimension::cycles: number = "4"; break;
         case Dimension::position: number = "10"; break;
         case Dimension::velocity: number = "100"; break;

@@ -21,6 +21,7 @@ enum class Dimension : std::uint8_t {
     inertia,
     friction,
     ratio_ppm,
+    voltage,
     cycles
 };
 
@@ -42,7 +43,7 @@ enum class QuantityProblem : std::uint8_t {
 
 struct Quantity {
     QuantityProblem problem = QuantityProblem::none;
-    double value = 0;  ///< seconds, Hz, u.., N m, kg m2, N m s/rad, ppm, cycles
+    double value = 0;  ///< seconds, Hz, u.., N m, kg m2, N m s/rad, ppm, V, cycles
 };
 
 [[nodiscard]] Quantity parse_quantity(std::string_view text, Dimension dimension, std::string_view axis_unit);

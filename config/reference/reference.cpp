@@ -44,6 +44,7 @@ std::string quantity_pattern(const Shape& shape) {
         case Dimension::inertia: unit = "kg ?c?m\\\\^?(2|²)"; break;
         case Dimension::friction: unit = "Nm ?s(/rad)?"; break;
         case Dimension::ratio_ppm: unit = "ppm"; break;
+        case Dimension::voltage: unit = "m?V"; break;
         case Dimension::cycles: unit = "(cycles?|ns|us|ms|s)"; break;
     }
     return fmt::format("^{} *{}{}$", number, unit, shape.none_allowed ? "|^none" : "");

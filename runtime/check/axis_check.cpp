@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "ecat/description/module_pdos.hpp"
+#include "runtime/check/analog_check.hpp"
+#include "runtime/check/mapped_objects.hpp"
 #include "runtime/stop_time.hpp"
 
 namespace taktwerk::runtime {
@@ -18,24 +20,6 @@ Duration exchange_period_of(const MachineConfig& config, const std::string& name
     for (const auto& slave : bus.slaves)
         if (slave.name == name) return ecat::exchange_period(bus, slave);
     return config.cycle;
-}
-
-/// The objects in a slave's process data as far as they are known without it; empty: they are not.
-std::vector<ecat::PdoEntry> mapped(const ecat::PdoSelection& selection, const std::vector<ecat::PdoDescription>& known,
-                                   const std::vector<std::uint16_t>& assigned) {
-    std::vector<ecat::PdoEntry> out;
-    const auto add = [&](const std::vector<ecat::PdoEntry>& entries) { out.insert(out.end(), entries.begin(), entries.end()); };
-    const auto add_known = [&](std::uint16_t index) {
-        for (const auto& pdo : known)
-            if (pdo.index == index) add(pdo.entries);
-    };
-    for (const auto& pdo : selection.assigned) {
-        if (pdo.entries.empty()) add_known(pdo.index);
-        else add(pdo.entries);
-    }
-    if (selection.assigned.empty())
-        for (const auto index : assigned) add_known(index);
-    return out;
 }
 
 /// What every CiA 402 axis lives by (axes/drives/cia402/ refuses to start without).
@@ -65,8 +49,9 @@ public:
             check_reactions(binding, subject);
             check_brake(binding, subject);
             if (binding.axis.load_encoder.on) check_load_encoder(binding, subject);
-            if (!binding.drive.empty()) continue;  // see check_serial
-            if (binding.slave.empty()) check_virtual(binding, subject);
+            if (!binding.drive.empty() && !binding.analog) continue;  // see check_serial
+            if (binding.analog) check_analog_axis(binding, subject);
+            else if (binding.slave.empty()) check_virtual(binding, subject);
             else if (binding.encoder) check_encoder(binding, subject);
             else if (has_place(binding, subject)) {
                 check_on_drive(binding, subject);
@@ -98,7 +83,7 @@ private:
             if (point.direction == IoDirection::input) inputs.push_back(point.name);
         if (std::find(inputs.begin(), inputs.end(), binding.load_input) == inputs.end())
             problems_.unknown("axis.load_encoder", subject + ".load_encoder.input", "input", binding.load_input, inputs);
-        const auto bits = bits_of(binding.load_input, IoDirection::input);
+        const auto bits = bits_of_point(config_, binding.load_input, IoDirection::input);
         if (bits == 1)
             problems_.add("axis.load_encoder", subject + ".load_encoder.input", fmt::format("input '{}' is one bit", binding.load_input),
                           "name one that counts");
@@ -109,22 +94,6 @@ private:
         if (binding.axis.encoder)
             problems_.add("axis.load_encoder", subject + ".load_encoder", "an axis that only measures has no motor to compare with",
                           "remove one of the two");
-    }
-
-    /// Of an input or output by its name, as far as its slave is known without the bus; 0: it is not.
-    unsigned bits_of(std::string_view name, IoDirection direction) const {
-        for (const auto& point : config_.io) {
-            if (point.name != name || point.direction != direction) continue;
-            for (const auto& slave : config_.bus.slaves) {
-                if (slave.name != point.slave || !slave.device) continue;
-                const auto offered = ecat::pdos_of(*slave.device, slave.modules);
-                const auto entries = direction == IoDirection::input ? mapped(slave.tx, offered.tx, offered.tx_assigned)
-                                                                     : mapped(slave.rx, offered.rx, offered.rx_assigned);
-                for (const auto& entry : entries)
-                    if (entry.index == point.index && entry.sub == point.sub) return entry.bits;
-            }
-        }
-        return 0;
     }
 
     /// The other side of a gantry: a drive of its own, of the same type, exchanged as often.
@@ -201,11 +170,12 @@ private:
             else problems_.unknown("axis.brake", subject + ".brake.output", "output", name, outputs);
             return;
         }
-        if (const auto bits = bits_of(name, IoDirection::output); bits > 1)
+        if (const auto bits = bits_of_point(config_, name, IoDirection::output); bits > 1)
             problems_.add("axis.brake", subject + ".brake.output",
                           fmt::format("output '{}' has {} bits: a brake is opened by one", name, bits), "name a digital output");
-        if (!brakes_.insert(name).second)
-            problems_.add("axis.brake", subject + ".brake.output", "this output already opens another brake", "give each axis its own");
+        if (!outputs_.insert(name).second)
+            problems_.add("axis.brake", subject + ".brake.output", "this output already is another axis' or another wire's",
+                          "give each axis its own");
         for (const auto& point : config_.io)
             if (point.direction == IoDirection::output && point.name == name && (point.safe_value != 0 || point.inverted))
                 problems_.add("axis.brake", fmt::format("io.outputs.{}", name),
@@ -257,8 +227,34 @@ private:
         return binding.profile != nullptr;
     }
 
-    /// A counter or encoder at a terminal: exchanged, of its own, and nothing asked of it that takes a motor.
+    /// An amplifier on wires, with its encoder at a terminal.
+    void check_analog_axis(const AxisBinding& binding, const std::string& subject) {
+        check_analog(config_, binding, subject, outputs_, problems_);
+        if (!config_.emergency_stop.input.empty()) check_stop_time(binding, subject);
+        if (binding.encoder) return check_counter(binding, subject);
+        if (!binding.slave.empty() && std::find(slaves_.begin(), slaves_.end(), binding.slave) == slaves_.end())
+            return problems_.unknown("axis.unknown_slave", subject + ".slave", "slave", binding.slave, slaves_);
+        problems_.add("axis.analog", subject + ".slave",
+                      binding.slave.empty() ? "no `slave` counts where the motor is"
+                                            : fmt::format("slave '{}' is a drive, which closes its own loops", binding.slave),
+                      "name the terminal that reads the motor's encoder, or the slave and the `object` that counts");
+    }
+
+    /// A counter or encoder at a terminal: nothing asked of it that takes a motor.
     void check_encoder(const AxisBinding& binding, const std::string& subject) {
+        check_counter(binding, subject);
+        if (!binding.axis.encoder)
+            problems_.add("axis.encoder", subject + ".slave", fmt::format("slave '{}' is a terminal that counts", binding.slave),
+                          "write `encoder: true`");
+        if (binding.axis.homing.kind != axes::HomingKind::none)
+            problems_.add("axis.homing", subject + ".homing", "an axis that only measures moves to no reference",
+                          "remove `homing`; a program sets its position (MC_SetPosition), or where the index passes "
+                          "(MC_StepReferenceFlyingRefPulse)");
+        check_turned_by(binding, subject);
+    }
+
+    /// It is exchanged, and belongs to one axis.
+    void check_counter(const AxisBinding& binding, const std::string& subject) {
         const auto& channel = *binding.encoder;
         const auto& at = channel.position;
         if (std::find(slaves_.begin(), slaves_.end(), binding.slave) == slaves_.end())
@@ -267,13 +263,6 @@ private:
             problems_.add("axis.drive_axis_taken", subject + ".slave",
                           fmt::format("'{}' of slave '{}' already is another axis", channel.name, binding.slave),
                           "give each axis a position of its own: `axis: 2`");
-        if (!binding.axis.encoder)
-            problems_.add("axis.encoder", subject + ".slave", fmt::format("slave '{}' is a terminal that counts", binding.slave),
-                          "write `encoder: true`");
-        if (binding.axis.homing.kind != axes::HomingKind::none)
-            problems_.add("axis.homing", subject + ".homing", "an axis that only measures moves to no reference",
-                          "remove `homing`; a program sets its position (MC_SetPosition), or where the index passes "
-                          "(MC_StepReferenceFlyingRefPulse)");
         unsigned bits = 0;
         for (const auto& slave : config_.bus.slaves) {
             if (slave.name != binding.slave || !slave.device) continue;
@@ -290,7 +279,6 @@ private:
         if (bits == 1 || (bits != 0 && channel.bits > bits))
             problems_.add("axis.encoder", subject + ".counter_bits", fmt::format("'{}' has {} bits", channel.name, bits),
                           bits == 1 ? "name an input that counts" : fmt::format("write `counter_bits: {}`, or fewer", bits));
-        check_turned_by(binding, subject);
     }
 
     void check_turned_by(const AxisBinding& binding, const std::string& subject) {
@@ -298,7 +286,7 @@ private:
         if (by.empty()) return;
         std::vector<std::string> motors;
         for (const auto& other : config_.axes)
-            if (other.profile && !other.slave.empty()) motors.push_back(other.axis.name);
+            if ((other.profile && !other.slave.empty()) || other.analog) motors.push_back(other.axis.name);
         if (std::find(motors.begin(), motors.end(), by) == motors.end())
             problems_.unknown("axis.simulation", subject + ".simulation.turned_by", "axis with a motor", by, motors);
     }
@@ -402,7 +390,7 @@ private:
     std::vector<std::string> slaves_;
     std::set<std::pair<std::string, int>> taken_;
     std::set<std::pair<std::string, std::pair<int, int>>> counters_;
-    std::set<std::string> brakes_;
+    std::set<std::string> outputs_;  // that axes drive
 };
 
 }  // namespace

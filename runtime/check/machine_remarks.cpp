@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "runtime/check/analog_check.hpp"
 #include "runtime/check/ebus_remarks.hpp"
 #include "runtime/relaxed_supervision.hpp"
 
@@ -217,6 +218,8 @@ std::vector<Error> remarks(const MachineConfig& config, const MachineLayout& lay
         limits(out, binding, here);
         if (simulated || binding.axis.simulated) simulated_switches(out, binding, here);
         simulated_stops(out, binding, here);
+        if (binding.analog)
+            for (auto& remark : analog_remarks(binding, here)) out.found.push_back(std::move(remark));
     }
     for (const auto& point : config.io)
         if (!config.emergency_stop.input.empty() && point.name == config.emergency_stop.input && point.inverted)

@@ -107,6 +107,7 @@ void Machine::Impl::compute(const CycleTick& tick) noexcept {
     done(Step::inbox);
 
     body.io.read(body.bus.inputs(), body.bus);
+    drives.read_wires();
     done(Step::decode);
 
     for (auto& axis : body.axes) axis.update(now);
@@ -129,6 +130,7 @@ void Machine::Impl::compute(const CycleTick& tick) noexcept {
 
     const Instant send_time = body.config.send == SendMode::at_tick ? now + body.config.cycle : now;
     for (auto& axis : body.axes) axis.encode(send_time);
+    drives.write_wires();
     body.io.write(body.bus.outputs());
     done(Step::encode);
 }

@@ -31,7 +31,7 @@ std::vector<std::vector<std::size_t>> drives_of_several_axes(const std::vector<s
 }  // namespace
 
 MachineDrives::MachineDrives(MachineBody& body, const std::vector<modbus::SerialLine*>& lines, std::vector<Error>& errors)
-    : body_(body), serial_(body, lines, errors) {
+    : body_(body), serial_(body, lines, errors), analog_(body) {
     build_ports();
     build_axes();
     shared_ = drives_of_several_axes(slave_of_, body.bus.slave_count());
@@ -49,9 +49,7 @@ void MachineDrives::build_ports() {
         } else if (slave == no_slave) {
             ports_.push_back(std::make_unique<axes::sim::VirtualDrive>(config.cycle));
         } else if (binding.encoder) {
-            auto encoder = std::make_unique<axes::encoder::EncoderPort>(bus, slave, *binding.encoder, binding.axis.memory.absolute);
-            encoders_.push_back(encoder.get());
-            ports_.push_back(std::move(encoder));
+            ports_.push_back(at_encoder(slave, binding));
         } else if (binding.axis.gantry.on) {
             const auto sides = sides_of({binding});
             auto both = std::make_unique<axes::gantry::GantryPort>(
@@ -62,6 +60,14 @@ void MachineDrives::build_ports() {
             ports_.push_back(on_bus_drive(slave, binding));
         }
     }
+}
+
+/// The axis only measures, or its motor hangs on wires.
+std::unique_ptr<axes::DrivePort> MachineDrives::at_encoder(std::size_t slave, const AxisBinding& binding) {
+    auto encoder = std::make_unique<axes::encoder::EncoderPort>(body_.bus, slave, *binding.encoder, binding.axis.memory.absolute);
+    encoders_.push_back(encoder.get());
+    if (!binding.analog) return encoder;
+    return analog_.add(binding, std::move(encoder));
 }
 
 std::unique_ptr<axes::DrivePort> MachineDrives::on_bus_drive(std::size_t slave, const AxisBinding& side) {
@@ -114,6 +120,7 @@ Result<void> MachineDrives::resolve() {
         if (auto ok = drive->resolve(); !ok) return ok;
     for (auto* encoder : encoders_)
         if (auto ok = encoder->resolve(); !ok) return ok;
+    analog_.join_capabilities();
     for (auto* gantry : gantries_) gantry->join_capabilities();
     return {};
 }

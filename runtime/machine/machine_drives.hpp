@@ -1,5 +1,5 @@
 #pragma once
-// What each axis moves or is measured by: a drive on the bus, one on a serial line, an encoder, or none. Who stands on which slave.
+// What each axis moves or is measured by: a drive on the bus, one on a serial line, an amplifier on wires, an encoder, or none. Who stands on which slave.
 
 #include <limits>
 #include <memory>
@@ -10,6 +10,7 @@
 #include "axes/drives/encoder/encoder_port.hpp"
 #include "axes/drives/gantry/gantry_port.hpp"
 #include "axes/port/drive_port.hpp"
+#include "runtime/machine/analog_wires.hpp"
 #include "runtime/machine/machine_body.hpp"
 #include "runtime/machine/serial_drives.hpp"
 
@@ -39,21 +40,26 @@ public:
     [[nodiscard]] Result<void> resolve();
     /// Cycle: an alarm of a whole drive stops all of its axes. Real-time safe.
     void stop_axes_of_faulted_drives() noexcept;
+    /// Cycle: what the wires of analog drives say, before the axes look at their drives; what they are given, when the axes have told them.
+    void read_wires() noexcept { analog_.read(); }
+    void write_wires() noexcept { analog_.write(); }
     /// Cycle: the outputs that open holding brakes are the axes', whatever a program wrote there. Real-time safe.
     void hold_brake_outputs() noexcept;
 
 private:
     void build_ports();
     [[nodiscard]] std::unique_ptr<axes::DrivePort> on_bus_drive(std::size_t slave, const AxisBinding& side);
+    [[nodiscard]] std::unique_ptr<axes::DrivePort> at_encoder(std::size_t slave, const AxisBinding& binding);
     void build_axes();
 
     MachineBody& body_;
     SerialDrives serial_;
     std::vector<std::unique_ptr<axes::DrivePort>> ports_;  // per axis
     std::vector<axes::cia402::Cia402Drive*> bus_drives_;   // those of `ports_` that are on the bus
-    std::vector<axes::encoder::EncoderPort*> encoders_;    // those of `ports_` that only measure
+    std::vector<axes::encoder::EncoderPort*> encoders_;    // of terminals: ports of their own, or within analog ones
     std::vector<axes::gantry::GantryPort*> gantries_;      // those of `ports_` that are two drives
-    std::vector<std::size_t> slave_of_;                    // per axis
+    AnalogWires analog_;
+    std::vector<std::size_t> slave_of_;  // per axis
     struct BrakeOutput {
         std::size_t axis, output;
     };

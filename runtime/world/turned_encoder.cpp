@@ -47,6 +47,7 @@ std::int64_t TurnedEncoder::raw(double counts) const noexcept {
 void TurnedEncoder::turn(double u, bool powered) noexcept {
     const double counts = u * counts_per_unit_;
     if (!powered && !absolute_) zero_ = counts;
+    else if (fails_ && !absolute_ && before_) zero_ += counts - *before_;
     set(channel_.position, raw(counts));
     if (before_) latch(*before_, counts);
     before_ = counts;
@@ -80,6 +81,7 @@ void TurnedEncoder::latch(double from, double to) noexcept {
 }
 
 void TurnedEncoder::fail(bool holds_not) noexcept {
+    fails_ = holds_not;
     for (const auto& error : channel_.errors) set(error, holds_not ? 1 : 0);
     set(channel_.valid, holds_not ? 0 : 1);
 }

@@ -30,7 +30,7 @@ public:
     }
     /// The load is at `u` now. Without power a counter forgets what it counted.
     void turn(double u, bool powered) noexcept;
-    /// The terminal says that the position does not hold, or takes it back.
+    /// The terminal says that the position does not hold, or takes it back. Meanwhile a counter counts nothing.
     void fail(bool holds_not) noexcept;
 
 private:
@@ -46,6 +46,7 @@ private:
     double turn_;  // counts between two index pulses
     bool absolute_;
     unsigned bits_;
+    bool fails_ = false;
     double zero_ = 0;  // counts where the counter is 0
     std::optional<double> before_;
 };

@@ -62,6 +62,9 @@ std::vector<const ecat::SlaveConfig*> cable_order(const std::vector<ecat::SlaveC
     return order;
 }
 
+/// Number of the event `drive_fault` of an analog axis; any other, but 0, is an error of its encoder.
+constexpr std::int64_t analog_amplifier_fault = 1;
+
 /// Whoever has a statusword is played as a drive.
 bool is_drive(const ecat::DeviceDescription& device) {
     return std::ranges::any_of(device.objects, [](const auto& object) { return object.index == 0x6041; });
@@ -175,6 +178,8 @@ World::World(const MachineConfig& config, Instant start)
     for (const auto& binding : config.axes)
         if (binding.axis.brake.by == axes::BrakeBy::output) brakes_.push_back({binding.axis.name, binding.brake_output});
     for (const auto& binding : config.axes)
+        if (binding.analog) analogs_.push_back({binding.axis.name, *binding.analog, binding.brake_output, AnalogMotor(binding)});
+    for (const auto& binding : config.axes)
         if (const auto& load = binding.axis.load_encoder; load.on) {
             const double counts = load.inverted ? -load.counts_per_unit : load.counts_per_unit;
             loads_.push_back({binding.axis.name, binding.load_input, counts / binding.axis.gearing.counts_per_unit(), counts, 0});
@@ -274,15 +279,18 @@ void World::happen(const SimulationEvent& event) {
         case Kind::slave_power: set_slave_power(event.target, event.value != 0); break;
         case Kind::drive_fault:
             if (const auto* axis = place(event.target)) axis->device->raise(axis->index, static_cast<std::uint16_t>(event.value));
-            for (auto& place : encoders_)
-                if (place.encoder.axis() == event.target) place.encoder.fail(event.value != 0);
+            if (auto* motor = analog_motor(event.target)) motor->raise(event.value == analog_amplifier_fault);
+            set_encoder_fault(event.target,
+                              event.value != 0 && (analog_motor(event.target) == nullptr || event.value != analog_amplifier_fault));
             break;
         case Kind::main_power:
+            if (auto* motor = analog_motor(event.target)) motor->main_power(event.value != 0);
             if (const auto* axis = place(event.target)) axis->device->main_power(event.value != 0);
             break;
         case Kind::serial_line: break;
         case Kind::jam:
             if (auto* axis = drive(event.target)) axis->jam(event.value == 0);
+            if (auto* motor = analog_motor(event.target)) motor->jam(event.value == 0);
             break;
     }
 }
@@ -295,7 +303,7 @@ void World::slip(std::string_view axis, double u) {
 /// Of the slave that was installed last. What counts at a drive and is turned by nothing else is the drive's own.
 void World::add_encoders(const MachineConfig& config, const ecat::SlaveConfig& slave, const TurnedEncoder::Device& device) {
     for (const auto& binding : config.axes)
-        if (const bool turns = !binding.simulation.turned_by.empty() || binding.simulation.velocity != 0;
+        if (const bool turns = !binding.simulation.turned_by.empty() || binding.simulation.velocity != 0 || binding.analog;
             binding.encoder && binding.slave == slave.name && (turns || !is_drive(*slave.device)))
             encoders_.push_back({TurnedEncoder(binding, device, bits_of(*slave.device, binding.encoder->position)), slaves_.back().slave,
                                  counts_per_unit_of(config, binding.simulation.turned_by)});
@@ -304,9 +312,50 @@ void World::add_encoders(const MachineConfig& config, const ecat::SlaveConfig& s
 void World::turn_encoders(Instant now) {
     for (auto& [encoder, terminal, counts_per_unit] : encoders_) {
         auto* motor = encoder.turned_by().empty() ? nullptr : drive(encoder.turned_by());
-        const double u = motor != nullptr ? motor->plant().position() / counts_per_unit : encoder.by_itself(now - start_);
+        const auto* own = analog_motor(encoder.axis());
+        const auto* other = analog_motor(encoder.turned_by());
+        const double u = own != nullptr     ? own->shown()
+                         : other != nullptr ? other->position()
+                         : motor != nullptr ? motor->plant().position() / counts_per_unit
+                                            : encoder.by_itself(now - start_);
         encoder.turn(u, terminal->powered());
     }
+}
+
+/// At what it was given in the cycle before, up to now.
+void World::run_analog_motors(Instant now) {
+    const Duration time = now - run_until_.value_or(now);
+    run_until_ = now;
+    for (auto& [axis, wires, brake, motor] : analogs_) {
+        double volts = 0;
+        for (const auto& point : points_)
+            if (point.config.name == wires.setpoint && point.config.direction == IoDirection::output)
+                volts = point.config.line.value_of(output_value(wires.setpoint));
+        if (!wires.reset.empty() && output(wires.reset)) motor.raise(false);
+        motor.run(volts, output(wires.enable), !brake.empty() && !output(brake), time);
+        for (const auto& [name, contact] :
+             {std::pair{&wires.ready, motor.ready()}, std::pair{&wires.fault, motor.fault()},
+              std::pair{&wires.negative_limit, motor.negative_limit()}, std::pair{&wires.positive_limit, motor.positive_limit()},
+              std::pair{&wires.home_switch, motor.home_switch()}})
+            if (!name->empty()) set_wired(*name, contact);
+    }
+}
+
+/// What the machine shall see of it.
+void World::set_wired(const std::string& name, bool seen) {
+    for (const auto& point : points_)
+        if (point.config.name == name && point.config.direction == IoDirection::input) set_input(name, seen != point.config.inverted);
+}
+
+void World::set_encoder_fault(std::string_view axis, bool holds) {
+    for (auto& place : encoders_)
+        if (place.encoder.axis() == axis) place.encoder.fail(holds);
+}
+
+AnalogMotor* World::analog_motor(std::string_view axis) noexcept {
+    for (auto& place : analogs_)
+        if (place.axis == axis) return &place.motor;
+    return nullptr;
 }
 
 void World::apply_events(Instant now) {
@@ -315,6 +364,7 @@ void World::apply_events(Instant now) {
     for (const auto& load : loads_)
         if (auto* motor = drive(load.axis))
             set_input_value(load.input, std::llround(motor->plant().position() * load.counts_per_count + load.slipped));
+    run_analog_motors(now);
     turn_encoders(now);
     while (next_event_ < events_.size() && start_ + events_[next_event_].at <= now) happen(events_[next_event_++]);
     if (also) also(now);

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "ecat/sim/sim_network.hpp"
 #include "ecat/transport/loopback.hpp"
 #include "runtime/machine_config.hpp"
+#include "runtime/world/analog_motor.hpp"
 #include "runtime/world/serial_world.hpp"
 #include "runtime/world/turned_encoder.hpp"
 
@@ -44,6 +46,10 @@ public:
     // --- hands on the machine: tests, demos -----------------------------------------------------------------------------------
     /// nullptr when the axis is not on a simulated drive.
     [[nodiscard]] axes::sim::Cia402Axis* drive(std::string_view axis) noexcept;
+    /// nullptr when the axis is no analog one.
+    [[nodiscard]] AnalogMotor* analog_motor(std::string_view axis) noexcept;
+    /// The terminal of an axis' encoder reports that its position does not hold, or takes it back.
+    void set_encoder_fault(std::string_view axis, bool holds);
     /// The contact of a named input point (before its `inverted`).
     void set_input(std::string_view point, bool value) { set_input_value(point, value ? 1 : 0); }
     /// What the field gives a named input point, of any width: the raw word of its object. A one-bit point takes 0 as FALSE.
@@ -109,6 +115,17 @@ private:
         double counts_per_unit = 0;  ///< of the axis that turns it
     };
     std::vector<EncoderPlace> encoders_;
+    /// An amplifier with its motor, at points of the machine.
+    struct AnalogPlace {
+        std::string axis;
+        AnalogAxis wires;
+        std::string brake;  ///< output that opens it; empty: none
+        AnalogMotor motor;
+    };
+    void run_analog_motors(Instant now);
+    void set_wired(const std::string& name, bool seen);
+    std::vector<AnalogPlace> analogs_;
+    std::optional<Instant> run_until_;
     /// A holding brake on an output of the machine.
     struct BrakePlace {
         std::string axis, output;
