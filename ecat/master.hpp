@@ -29,7 +29,7 @@
 #include "core/result.hpp"
 #include "core/time.hpp"
 #include "ecat/bus_config.hpp"
-#include "ecat/coe/emergency_log.hpp"
+#include "ecat/mailbox/emergency_log.hpp"
 #include "ecat/cycle/bus_health.hpp"
 #include "ecat/cycle/bus_phase.hpp"
 #include "ecat/transport/transport.hpp"

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/result.hpp"
-#include "ecat/coe/mailbox_client.hpp"
+#include "ecat/mailbox/mailbox_client.hpp"
 #include "ecat/script/datagram_port.hpp"
 #include "ecat/wire/sdo.hpp"
 

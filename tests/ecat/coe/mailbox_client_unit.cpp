@@ -1,5 +1,5 @@
 // Conversations with a simulated slave's mailbox and what disturbs them, in virtual time.
-#include "ecat/coe/mailbox_client.hpp"
+#include "ecat/mailbox/mailbox_client.hpp"
 
 #include <gmock/gmock.h>
 

@@ -22,7 +22,7 @@
 #include <vector>
 
 #include "core/result.hpp"
-#include "ecat/coe/emergency_log.hpp"
+#include "ecat/mailbox/emergency_log.hpp"
 #include "ecat/script/datagram_port.hpp"
 #include "ecat/wire/mailbox.hpp"
 

@@ -1,4 +1,4 @@
-#include "ecat/coe/mailbox_client.hpp"
+#include "ecat/mailbox/mailbox_client.hpp"
 
 #include <fmt/format.h>
 
