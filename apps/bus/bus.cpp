@@ -73,6 +73,9 @@ void add_bus(CLI::App& app, Action& action) {
     add_bus_init(*bus, action);
     add_bus_eeprom(*bus, action);
     add_bus_mii(*bus, action);
+    add_bus_file(*bus, action);
+    add_bus_firmware(*bus, action);
+    add_bus_eoe(*bus, action);
 }
 
 }  // namespace taktwerk::apps

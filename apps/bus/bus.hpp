@@ -30,6 +30,9 @@ void add_bus_capture(CLI::App& bus, Action& action);
 void add_bus_init(CLI::App& bus, Action& action);
 void add_bus_eeprom(CLI::App& bus, Action& action);
 void add_bus_mii(CLI::App& bus, Action& action);
+void add_bus_file(CLI::App& bus, Action& action);
+void add_bus_firmware(CLI::App& bus, Action& action);
+void add_bus_eoe(CLI::App& bus, Action& action);
 
 /// The options that every sub-command has.
 [[nodiscard]] std::shared_ptr<BusOptions> add_bus_options(CLI::App& sub);

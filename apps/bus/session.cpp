@@ -274,9 +274,11 @@ int exit_code_for(const Error& error) {
     if (error.code.rfind("drive.", 0) == 0) return exit_usage;
     if (error.code == "bus.no_such_slave" || error.code == "sdo.value" || error.code == "bus.not_confirmed") return exit_usage;
     if (error.code == "sdo.abort" || error.code == "bus.refused_state") return exit_refused;
-    for (const char* usage : {"usage.number", "bus.no_such_port", "eeprom.no_device", "esi.no_device", "esi.which_device"})
+    for (const char* usage : {"usage.number", "bus.no_such_port", "eeprom.no_device", "esi.no_device", "esi.which_device", "foe.name"})
         if (error.code == usage) return exit_usage;
-    for (const char* of_file : {"capture.write", "eeprom.file", "eeprom.exists"})
+    for (const char* refused : {"foe.refused", "foe.not_offered", "foe.no_boot", "eoe.refused", "eoe.not_offered", "firmware.in_operation"})
+        if (error.code == refused) return exit_refused;
+    for (const char* of_file : {"capture.write", "eeprom.file", "eeprom.exists", "foe.file", "foe.exists"})
         if (error.code == of_file) return exit_bad_file;
     if (error.code.rfind("esi.", 0) == 0) return exit_bad_file;
     if (error.code.rfind("eeprom.", 0) == 0) return exit_refused;

@@ -48,6 +48,20 @@ Table<DeviceDescription> identity_table() {
         {}};
 }
 
+Table<ecat::BootstrapDescription> bootstrap_table() {
+    using B = ecat::BootstrapDescription;
+    return {"mailbox.bootstrap",
+            "The mailboxes in BOOT, as words 14h to 17h of the EEPROM say.",
+            {
+                required(field("out_start", &B::out_start, integer<std::uint16_t>(0x1000, u16), "master to slave: address")),
+                required(field("out_size", &B::out_size, integer<std::uint16_t>(16, u16), "and bytes")),
+                required(field("in_start", &B::in_start, integer<std::uint16_t>(0x1000, u16), "slave to master: address")),
+                required(field("in_size", &B::in_size, integer<std::uint16_t>(16, u16), "and bytes")),
+            },
+            {},
+            {}};
+}
+
 Table<ecat::MailboxDescription> mailbox_table() {
     using M = ecat::MailboxDescription;
     return {"mailbox",
@@ -57,6 +71,11 @@ Table<ecat::MailboxDescription> mailbox_table() {
                 field("complete_access", &M::complete_access, boolean(), "whole objects in one SDO"),
                 field("sdo_info", &M::sdo_info, boolean(), "the dictionary can be listed"),
                 field("max_pending", &M::max_pending, integer<std::uint8_t>(1, 255), "messages that the slave buffers"),
+                field("foe", &M::foe, boolean(), "files over EtherCAT; only the simulated slave looks at it"),
+                field("eoe", &M::eoe, boolean(), "Ethernet over EtherCAT; only the simulated slave looks at it"),
+                with_default(field("bootstrap", &M::bootstrap, maybe(section(bootstrap_table())),
+                                   "its mailboxes in BOOT; only the simulated slave looks at it"),
+                             "no BOOT"),
             },
             {},
             {}};

@@ -84,11 +84,20 @@ struct DcDescription {
     std::vector<Duration> cycles{};  ///< the only cycles that the slave knows; empty = any
 };
 
+/// The mailboxes in BOOT (SII words 14h to 17h); their sync managers are those of the others.
+struct BootstrapDescription {
+    std::uint16_t out_start = 0, out_size = 0;  ///< master -> slave
+    std::uint16_t in_start = 0, in_size = 0;
+};
+
 struct MailboxDescription {
     bool coe = true;
     bool complete_access = false;
     bool sdo_info = false;
-    std::uint8_t max_pending = 4;  ///< messages the slave buffers (SV33-E manual 6.2.8.4)
+    std::uint8_t max_pending = 4;                     ///< messages the slave buffers (SV33-E manual 6.2.8.4)
+    bool foe = false;                                 ///< files
+    bool eoe = false;                                 ///< Ethernet
+    std::optional<BootstrapDescription> bootstrap{};  ///< none: the slave has no BOOT
 };
 
 /// Per direction, what CoE lets the master assign and map.

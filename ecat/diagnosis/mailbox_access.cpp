@@ -2,8 +2,11 @@
 
 #include <array>
 
+#include <fmt/format.h>
+
 #include "ecat/bringup/al_control.hpp"
 #include "ecat/bringup/slave_setup.hpp"
+#include "ecat/mailbox/take_over.hpp"
 #include "ecat/wire/registers.hpp"
 
 namespace taktwerk::ecat {
@@ -18,12 +21,21 @@ Script<Result<void>> open_mailbox(Bus& bus, BusSlave& slave) {
     if (!slave.has_coe())
         co_return Error{"sdo.no_mailbox", slave.subject, "has no CoE mailbox: it has no objects to read or write",
                         "its process data is fixed; see `taktwerk bus pdo`"};
+    co_return co_await open_mailbox_for(bus, slave, MailboxType::coe);
+}
+
+Script<Result<void>> open_mailbox_for(Bus& bus, BusSlave& slave, MailboxType protocol) {
+    const char* code = protocol == MailboxType::foe ? "foe.no_mailbox" : protocol == MailboxType::eoe ? "eoe.no_mailbox" : "sdo.no_mailbox";
+    if (!slave.has_mailbox())
+        co_return Error{code, slave.subject, fmt::format("has no mailbox, and so no {}", name(protocol)),
+                        "check that this is the slave you mean: taktwerk bus scan"};
     const Result<std::uint16_t> status = co_await read_al_status(bus, slave);
     if (!status) co_return status.error();
     const AlState state = al_state(*status);
     if (state == AlState::init || state == AlState::unknown) co_return co_await enter_preop(bus, slave);
-    if (state == AlState::boot)
-        co_return Error{"sdo.no_mailbox", slave.subject, "is in BOOT: it takes firmware, not SDOs", "take it to INIT, then try again"};
+    if (state == AlState::boot && protocol != MailboxType::foe)
+        co_return Error{code, slave.subject, fmt::format("is in BOOT: it takes firmware, and speaks no {}", name(protocol)),
+                        "take it to INIT, then try again"};
 
     const Reply reply = co_await bus.port.fprd(slave.found.station, reg::sync_manager, 2 * SyncManager::size);
     if (!reply.ok()) co_return unanswered(slave.subject, "its mailbox sync managers (0800h)", reply);
@@ -31,7 +43,7 @@ Script<Result<void>> open_mailbox(Bus& bus, BusSlave& slave) {
     const SyncManager out = decode_sync_manager(bytes.first<SyncManager::size>());
     const SyncManager in = decode_sync_manager(bytes.subspan<SyncManager::size, SyncManager::size>());
     if (!out.enabled() || !in.enabled() || !out.is_mailbox() || !in.is_mailbox())
-        co_return Error{"sdo.no_mailbox", slave.subject, "its mailbox sync managers are not set up, although it is beyond INIT",
+        co_return Error{code, slave.subject, "its mailbox sync managers are not set up, although it is beyond INIT",
                         "take it to INIT first: taktwerk bus state init"};
     auto& mailbox = slave.mailbox;
     mailbox.subject = slave.subject;
@@ -43,7 +55,8 @@ Script<Result<void>> open_mailbox(Bus& bus, BusSlave& slave) {
     mailbox.out_sm = 0;
     mailbox.in_sm = 1;
     mailbox.repeat_toggle = (in.activate & SyncManager::repeat_request) != 0;
-    co_return Result<void>{};
+    if (protocol == MailboxType::coe) co_return Result<void>{};  // read_object() and write_object() ask twice
+    co_return co_await take_over(bus.port, mailbox);
 }
 
 Script<Result<std::vector<std::byte>>> read_object(Bus& bus, BusSlave& slave, std::uint16_t index, std::uint8_t sub, SdoAccess access) {

@@ -13,6 +13,8 @@ namespace taktwerk::ecat {
 
 /// Errors: sdo.no_mailbox, bus.refused_state, bus.no_slave, ...
 [[nodiscard]] Script<Result<void>> open_mailbox(Bus& bus, BusSlave& slave);
+/// The same for files and Ethernet, whatever the EEPROM says of protocols; for files also in BOOT. Errors: foe.no_mailbox, ...
+[[nodiscard]] Script<Result<void>> open_mailbox_for(Bus& bus, BusSlave& slave, MailboxType protocol);
 
 /// As sdo_upload() and sdo_download(). The mailbox counter of whoever spoke before is not known, and a slave drops a message
 /// with the counter it saw last: a first request without an answer is therefore asked once more with the next counter.

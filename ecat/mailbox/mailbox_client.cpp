@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "ecat/wire/eoe.hpp"
 #include "ecat/wire/registers.hpp"
 #include "ecat/wire/sdo.hpp"
 
@@ -18,6 +19,12 @@ constexpr Duration mapped_status_doubt = std::chrono::milliseconds{20};
 constexpr Duration busy_pause = std::chrono::milliseconds{10};  ///< after "no memory" and "in work"
 constexpr Duration settled = std::chrono::milliseconds{5};      ///< a mapped flag may still show what was just read
 constexpr int drain_limit = 16;                                 ///< messages; a slave that never stops is not waited for
+
+/// "sdo.timeout", "foe.timeout": whose conversation failed.
+std::string code_of(const MailboxRequest& request, const char* what) {
+    const char* protocol = request.type == MailboxType::foe ? "foe" : request.type == MailboxType::eoe ? "eoe" : "sdo";
+    return fmt::format("{}.{}", protocol, what);
+}
 
 std::uint16_t sm_register(std::uint8_t sm, std::uint16_t offset) { return static_cast<std::uint16_t>(reg::sync_manager_at(sm) + offset); }
 
@@ -105,8 +112,8 @@ Script<Result<Bytes>> read_message(DatagramPort& port, MailboxEndpoint& mailbox,
         }
         now = co_await time();
         if (now >= deadline) {
-            co_return Error{"sdo.timeout", mailbox.subject,
-                            fmt::format("{}: no answer within {} ms", request.about, sdo_timeout / std::chrono::milliseconds{1}),
+            co_return Error{code_of(request, "timeout"), mailbox.subject,
+                            fmt::format("{}: no answer within {} ms", request.about, request.patience / std::chrono::milliseconds{1}),
                             "the slave's application is busy or hangs: try again, then power-cycle it"};
         }
         if (mailbox.flag.mapped()) continue;
@@ -117,12 +124,13 @@ Script<Result<Bytes>> read_message(DatagramPort& port, MailboxEndpoint& mailbox,
 
 /// What a message that came out of the mailbox is to a conversation.
 struct Arrival {
-    enum class Kind : std::uint8_t { mangled, refusal, emergency, coe, foreign } kind = Kind::foreign;
+    enum class Kind : std::uint8_t { mangled, refusal, emergency, message, foreign } kind = Kind::foreign;
     MailboxErrorDetail detail = MailboxErrorDetail::none;  ///< of a refusal
-    std::span<const std::byte> payload{};                  ///< of a CoE message
+    MailboxType type = MailboxType::error;                 ///< of a message
+    std::span<const std::byte> payload{};                  ///< likewise
 };
 
-/// Keeps emergencies and the count of pending requests.
+/// Keeps emergencies and the count of pending requests; hands Ethernet on.
 Arrival sort(MailboxEndpoint& mailbox, std::span<const std::byte> message, Instant now) {
     const auto parsed = parse_mailbox(message);
     if (!parsed) return {.kind = Arrival::Kind::mangled};
@@ -135,13 +143,19 @@ Arrival sort(MailboxEndpoint& mailbox, std::span<const std::byte> message, Insta
         if (mailbox.unanswered > 0) --mailbox.unanswered;
         return {.kind = Arrival::Kind::refusal, .detail = parse_mailbox_error(parsed->payload).value_or(MailboxErrorDetail::none)};
     }
-    if (parsed->header.type != MailboxType::coe) return {.kind = Arrival::Kind::foreign};
-    if (const auto emergency = parse_emergency(parsed->payload)) {
+    const MailboxType type = parsed->header.type;
+    if (type == MailboxType::eoe && eoe_type(parsed->payload) == EoeType::fragment) {
+        if (mailbox.ethernet) mailbox.ethernet(parsed->payload);
+        return {.kind = Arrival::Kind::foreign};
+    }
+    if (type != MailboxType::coe && type != MailboxType::foe && type != MailboxType::eoe) return {.kind = Arrival::Kind::foreign};
+    const auto emergency = type == MailboxType::coe ? parse_emergency(parsed->payload) : std::nullopt;
+    if (emergency) {
         keep_emergency(mailbox, *emergency, now);
         return {.kind = Arrival::Kind::emergency};
     }
     if (mailbox.unanswered > 0) --mailbox.unanswered;
-    return {.kind = Arrival::Kind::coe, .payload = parsed->payload};
+    return {.kind = Arrival::Kind::message, .type = type, .payload = parsed->payload};
 }
 
 /// Reads the mailbox empty.
@@ -160,16 +174,16 @@ Script<Result<void>> drain(DatagramPort& port, MailboxEndpoint& mailbox, const s
 }
 
 /// Waits until the slave has room for one more request. Answers that came too late are read out meanwhile.
-Script<Result<void>> await_room(DatagramPort& port, MailboxEndpoint& mailbox, const std::string& about, Instant deadline) {
+Script<Result<void>> await_room(DatagramPort& port, MailboxEndpoint& mailbox, const MailboxRequest& request, Instant deadline) {
     while (mailbox.unanswered > 0) {
-        const Result<void> emptied = co_await drain(port, mailbox, about, deadline);
+        const Result<void> emptied = co_await drain(port, mailbox, request.about, deadline);
         if (!emptied) co_return emptied;
         const Instant now = co_await time();
         if (now - mailbox.last_written >= mailbox_forgets_after) mailbox.unanswered = 0;
         if (mailbox.unanswered < mailbox.max_pending) co_return Result<void>{};
         if (now >= deadline)
-            co_return Error{"sdo.mailbox", mailbox.subject,
-                            fmt::format("{}: not sent, {} earlier requests are still unanswered", about, mailbox.unanswered),
+            co_return Error{code_of(request, "mailbox"), mailbox.subject,
+                            fmt::format("{}: not sent, {} earlier requests are still unanswered", request.about, mailbox.unanswered),
                             "the slave's application is busy or hangs: try again, then power-cycle it"};
         co_await pause(mailbox_longest_poll_period);
     }
@@ -180,32 +194,32 @@ Script<Result<void>> await_room(DatagramPort& port, MailboxEndpoint& mailbox, co
 Result<Bytes> letter(MailboxEndpoint& mailbox, const MailboxRequest& request) {
     Bytes message(mailbox.out_size);
     if (request.payload.size() + mailbox_header_size > message.size())
-        return Error{"sdo.protocol", mailbox.subject,
+        return Error{code_of(request, "protocol"), mailbox.subject,
                      fmt::format("{}: the request does not fit into a mailbox of {} bytes", request.about, message.size()),
                      "check the mailbox sizes in its profile"};
     mailbox.counter = next_mailbox_counter(mailbox.counter);
     std::copy(request.payload.begin(), request.payload.end(), message.begin() + mailbox_header_size);
-    finish_mailbox(message, MailboxType::coe, mailbox.counter, request.payload.size());
+    finish_mailbox(message, request.type, mailbox.counter, request.payload.size());
     return message;
 }
 
 Error not_taken(const MailboxEndpoint& mailbox, const MailboxRequest& request, const Reply& written) {
     if (written.lost) return unanswered(mailbox.subject, request.about, written);
-    return Error{"sdo.mailbox", mailbox.subject,
+    return Error{code_of(request, "mailbox"), mailbox.subject,
                  fmt::format("{}: the slave does not take mailbox messages (its mailbox stays full)", request.about),
                  "the slave's application hangs or left PREOP: power-cycle it"};
 }
 
 bool answers(const MailboxRequest& request, const Bytes& message) {
     const auto parsed = parse_mailbox(message);
-    return parsed && parsed->header.type == MailboxType::coe && request.answered_by(parsed->payload);
+    return parsed && parsed->header.type == request.type && request.answered_by(parsed->payload);
 }
 
 /// Puts the request into the slave's mailbox and sends the reading of the answer after it without waiting in between: where
 /// the status is mapped it leaves when the mailbox is full, else in the next frame (a read of an empty mailbox changes
 /// nothing). The message that came with it; no bytes: none yet.
 Script<Result<Bytes>> post(DatagramPort& port, MailboxEndpoint& mailbox, const MailboxRequest& request, Instant deadline) {
-    const Result<void> room = co_await await_room(port, mailbox, request.about, deadline);
+    const Result<void> room = co_await await_room(port, mailbox, request, deadline);
     if (!room) co_return room.error();
     const Result<Bytes> message = letter(mailbox, request);
     if (!message) co_return message.error();
@@ -240,13 +254,14 @@ Script<Result<Bytes>> post(DatagramPort& port, MailboxEndpoint& mailbox, const M
 }
 
 Error refused(const MailboxEndpoint& mailbox, const MailboxRequest& request, MailboxErrorDetail detail) {
-    return Error{"sdo.mailbox", mailbox.subject,
-                 fmt::format("{}: mailbox error {} {}", request.about, static_cast<unsigned>(detail), text(detail)),
-                 "the slave does not understand CoE requests: check the mailbox protocol and size in its profile"};
+    return Error{
+        code_of(request, "mailbox"), mailbox.subject,
+        fmt::format("{}: mailbox error {} {}", request.about, static_cast<unsigned>(detail), text(detail)),
+        fmt::format("the slave does not understand {} requests: check the mailbox protocol and size in its profile", name(request.type))};
 }
 
 struct Answer {
-    Bytes payload;           ///< CoE message
+    Bytes payload;           ///< without mailbox header
     bool try_again = false;  ///< the slave has no room now
 };
 
@@ -261,7 +276,7 @@ Script<Result<Answer>> await_answer(DatagramPort& port, MailboxEndpoint& mailbox
         const Arrival arrival = sort(mailbox, *read, now);
         switch (arrival.kind) {
             case Arrival::Kind::mangled:
-                co_return Error{"sdo.protocol", mailbox.subject,
+                co_return Error{code_of(request, "protocol"), mailbox.subject,
                                 fmt::format("{}: the mailbox holds a message longer than itself", request.about),
                                 "the slave's firmware is defective, or the mailbox size in its profile is wrong"};
             case Arrival::Kind::refusal: {
@@ -271,8 +286,8 @@ Script<Result<Answer>> await_answer(DatagramPort& port, MailboxEndpoint& mailbox
                 if (!passes || now >= deadline) co_return refused(mailbox, request, arrival.detail);
                 co_return Answer{{}, true};
             }
-            case Arrival::Kind::coe:
-                if (!request.answered_by(arrival.payload)) break;  // of a request that was given up
+            case Arrival::Kind::message:
+                if (arrival.type != request.type || !request.answered_by(arrival.payload)) break;  // of a request that was given up
                 co_return Answer{Bytes(arrival.payload.begin(), arrival.payload.end()), false};
             case Arrival::Kind::emergency:
             case Arrival::Kind::foreign: break;
@@ -284,7 +299,7 @@ Script<Result<Answer>> await_answer(DatagramPort& port, MailboxEndpoint& mailbox
 
 Script<Result<std::vector<std::byte>>> ask(DatagramPort& port, MailboxEndpoint& mailbox, const MailboxRequest& request) {
     const Instant started = co_await time();
-    const Instant deadline = started + sdo_timeout;
+    const Instant deadline = started + request.patience;
     for (;;) {
         Result<Bytes> first = co_await post(port, mailbox, request, deadline);
         if (!first) co_return first.error();
@@ -304,7 +319,7 @@ Script<Result<std::vector<std::byte>>> ask(DatagramPort& port, MailboxEndpoint& 
 Script<Result<std::vector<std::byte>>> await_more(DatagramPort& port, MailboxEndpoint& mailbox, const MailboxRequest& request) {
     const Instant now = co_await time();
     Result<Bytes> none = Bytes{};
-    Result<Answer> answer = co_await await_answer(port, mailbox, request, std::move(none), now + sdo_timeout);
+    Result<Answer> answer = co_await await_answer(port, mailbox, request, std::move(none), now + request.patience);
     if (!answer) co_return answer.error();
     if (answer->try_again) co_return refused(mailbox, request, mailbox.last_refusal);
     co_return std::move(answer->payload);
@@ -312,7 +327,7 @@ Script<Result<std::vector<std::byte>>> await_more(DatagramPort& port, MailboxEnd
 
 Script<Result<void>> tell(DatagramPort& port, MailboxEndpoint& mailbox, const MailboxRequest& request) {
     const Instant now = co_await time();
-    const Result<Bytes> written = co_await post(port, mailbox, request, now + sdo_timeout);
+    const Result<Bytes> written = co_await post(port, mailbox, request, now + request.patience);
     if (!written) co_return written.error();
     co_return Result<void>{};
 }

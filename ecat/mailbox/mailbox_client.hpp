@@ -1,17 +1,18 @@
 #pragma once
-// One slave's mailbox as the master uses it: a CoE request goes in, its answer comes out, whatever comes between. What the
-// messages mean is the business of sdo_client.hpp and object_info.hpp. Scripts; service side only. Source: ETG.1000.4
-// (mailbox), ETG.1000.6 (CoE), SV33-E manual 6.2.8, reference/ethercat-masters.md section 5.
+// One slave's mailbox as the master uses it: a request goes in, its answer comes out, whatever comes between. What the
+// messages mean is the business of ecat/coe/, ecat/foe/ and ecat/eoe/. Scripts; service side only. Source: ETG.1000.4
+// (mailbox), ETG.1000.6 (CoE, FoE, EoE), SV33-E manual 6.2.8, reference/ethercat-masters.md section 5.
 //
 // One conversation at a time (the lock). What disturbs one:
 //   lost while writing a request    it is written again with the same counter: a slave that already has it drops the repeat
 //   lost while reading an answer    repeat request (SM activate bit 1) until the slave acknowledges, then read again; a slave
 //                                   may repeat what was read before that: known by its counter and skipped
 //   emergency                       kept with slave and time; the conversation goes on waiting
+//   Ethernet of the slave (EoE)     handed on; the conversation goes on waiting
 //   answer of an abandoned request  skipped
 //   mailbox error 7 or 9            (no memory, in work) the mailbox is read empty and the request is made again
 // A request that got no answer stays in the slave: at most max_pending of them, then a further one waits.
-// Errors: sdo.timeout, sdo.mailbox, sdo.protocol, bus.no_frame, bus.no_slave.
+// Errors: sdo.timeout, sdo.mailbox, sdo.protocol (of other protocols: foe.timeout, eoe.timeout, ...), bus.no_frame, bus.no_slave.
 
 #include <atomic>
 #include <cstddef>
@@ -56,6 +57,8 @@ struct MailboxEndpoint {
     MailboxErrorDetail last_refusal = MailboxErrorDetail::none;  ///< the mailbox error in the last conversation
     ScriptLock lock;
 
+    std::function<void(std::span<const std::byte>)> ethernet{};  ///< takes each EoE fragment that comes; empty: nobody does
+
     std::size_t slave = 0;                    ///< its name in the log
     EmergencyLog* log = nullptr;              ///< where its emergencies go; null: nowhere
     std::atomic<std::uint32_t> emergency{0};  ///< the last one for whoever asks from the cycle: code, register << 16; 0: none, or gone
@@ -81,19 +84,21 @@ inline constexpr Duration mailbox_forgets_after = std::chrono::seconds{10};
 
 struct MailboxRequest {
     std::string about;               ///< for messages: "reading 1C12h:00"
-    std::vector<std::byte> payload;  ///< the CoE message
-    /// Whether a CoE message is the answer; others are skipped. Empty: there will be none.
-    std::function<bool(std::span<const std::byte>)> answered_by;
+    std::vector<std::byte> payload;  ///< the message without mailbox header
+    /// Whether a message of the same protocol is the answer; others are skipped. Empty: there will be none.
+    std::function<bool(std::span<const std::byte>)> answered_by{};
+    MailboxType type = MailboxType::coe;
+    Duration patience = sdo_timeout;  ///< until the answer must be there
 };
 
 // For whoever holds mailbox.lock. `request` outlives the script.
 
-/// The answer: a CoE message without mailbox header.
+/// The answer: a message without mailbox header.
 [[nodiscard]] Script<Result<std::vector<std::byte>>> ask(DatagramPort& port, MailboxEndpoint& mailbox, const MailboxRequest& request);
-/// The next message that answers the same request: fragments of an SDO information answer.
+/// The next message that answers the same request: fragments of an SDO information answer, a file's packet.
 [[nodiscard]] Script<Result<std::vector<std::byte>>> await_more(DatagramPort& port, MailboxEndpoint& mailbox,
                                                                 const MailboxRequest& request);
-/// A CoE message that gets no answer (an SDO abort).
+/// A message that gets no answer (an SDO abort, an Ethernet fragment).
 [[nodiscard]] Script<Result<void>> tell(DatagramPort& port, MailboxEndpoint& mailbox, const MailboxRequest& request);
 
 /// Takes the lock and reads out what waits in the mailbox although nobody asked: emergencies, answers that came too late.

@@ -9,7 +9,8 @@ namespace taktwerk::ecat::sim {
 namespace {
 
 // AL status codes (ETG.1000.6 table 11; texts in ecat/wire/al_status.cpp).
-constexpr std::uint16_t invalid_state_change = 0x0011, unknown_state = 0x0012, no_bootstrap = 0x0013, invalid_mailbox = 0x0016;
+constexpr std::uint16_t invalid_state_change = 0x0011, unknown_state = 0x0012, no_bootstrap = 0x0013;
+constexpr std::uint16_t invalid_boot_mailbox = 0x0015, invalid_mailbox = 0x0016;
 constexpr std::uint16_t invalid_sync_manager = 0x0017, invalid_outputs = 0x001D, invalid_inputs = 0x001E, invalid_watchdog = 0x001F;
 constexpr std::uint16_t no_sync = 0x002D, invalid_sync0_cycle = 0x0036;
 
@@ -82,9 +83,12 @@ void AlStateMachine::request(std::uint16_t al_control, Instant now) {
         show(0);
     }
     if (wanted == AlState::unknown) return refuse(unknown_state);
-    if (wanted == AlState::boot) return refuse(no_bootstrap);
+    if (wanted == AlState::boot && !boots()) return refuse(no_bootstrap);
     const auto to = static_cast<EsmState>(wanted);
     if (to == state_) return show(0);
+    // Between BOOT and everything else lies INIT.
+    const bool to_or_from_boot = to == EsmState::boot || state_ == EsmState::boot;
+    if (to_or_from_boot && to != EsmState::init && state_ != EsmState::init) return refuse(invalid_state_change);
     if (rank(to) < rank(state_)) return move_to(to, now);
     if (rank(to) > rank(state_) + 1) return refuse(invalid_state_change);
     if (const auto code = check_upwards(to); code != 0) return refuse(code);
@@ -106,7 +110,7 @@ void AlStateMachine::move_to(EsmState to, Instant now) {
         // Whatever was written to the mailboxes before nobody will read.
         controller_.lock_sync_manager(coe_->out_sm(), false);
         controller_.lock_sync_manager(coe_->in_sm(), false);
-        coe_->start();
+        coe_->start(to);
     }
     if (rank(to) <= 1) lock_process_data(true);
     if (from == EsmState::preop && to == EsmState::safeop) lock_process_data(false);
@@ -123,19 +127,21 @@ void AlStateMachine::lock_process_data(bool locked) {
 }
 
 void AlStateMachine::check_running(Instant now) {
-    if (error_ || state_ == EsmState::init || state_ == EsmState::boot) return;
+    if (error_ || state_ == EsmState::init) return;
     const auto fall = [&](EsmState to, std::uint16_t code) {
         move_to(to, now);
         refuse(code);
     };
-    if (const auto code = coe_ != nullptr ? check_mailbox() : std::uint16_t{0}; code != 0) return fall(EsmState::init, code);
+    if (const auto code = coe_ != nullptr ? check_mailbox(state_) : std::uint16_t{0}; code != 0) return fall(EsmState::init, code);
     if (!exchanging()) return;
     if (const auto code = check_sync_managers(); code != 0) fall(EsmState::preop, code);
 }
 
 std::uint16_t AlStateMachine::check_upwards(EsmState to) {
     std::uint16_t code = 0;
-    if (coe_ != nullptr) code = check_mailbox();
+    if (coe_ != nullptr) code = check_mailbox(to);
+    if (code == 0 && to == EsmState::boot) return model_.refuse(state_, to, {});
+    if (code == 0) code = firmware_fault_;
     if (code == 0 && to == EsmState::safeop) code = check_process_data();
     if (code == 0 && to == EsmState::op) code = check_sync_managers();
     if (code == 0 && to != EsmState::preop) code = check_watchdog();
@@ -146,15 +152,24 @@ std::uint16_t AlStateMachine::check_upwards(EsmState to) {
     return model_.refuse(state_, to, sync_settings());
 }
 
-std::uint16_t AlStateMachine::check_mailbox() const {
-    const auto good = [&](unsigned n, std::uint8_t direction) {
+std::uint16_t AlStateMachine::check_mailbox(EsmState state) const {
+    const auto good = [&](unsigned n, std::uint8_t direction, std::uint16_t start, std::uint16_t size) {
         if (n >= description_.sync_managers.size()) return false;
         const SyncManager& sm = controller_.sync_manager(n);
-        const auto& wanted = description_.sync_managers[n];
-        return sm.enabled() && sm.is_mailbox() && (sm.control & SyncManager::direction_mask) == direction && sm.start == wanted.start &&
-               sm.length == wanted.size;
+        return sm.enabled() && sm.is_mailbox() && (sm.control & SyncManager::direction_mask) == direction && sm.start == start &&
+               sm.length == size;
     };
-    return good(coe_->out_sm(), SyncManager::master_writes) && good(coe_->in_sm(), 0) ? std::uint16_t{0} : invalid_mailbox;
+    const auto described = [&](unsigned n, std::uint8_t direction) {
+        return n < description_.sync_managers.size() &&
+               good(n, direction, description_.sync_managers[n].start, description_.sync_managers[n].size);
+    };
+    if (state == EsmState::boot) {
+        const auto& boot = *description_.mailbox->bootstrap;
+        const bool fits = good(coe_->out_sm(), SyncManager::master_writes, boot.out_start, boot.out_size) &&
+                          good(coe_->in_sm(), 0, boot.in_start, boot.in_size);
+        return fits ? std::uint16_t{0} : invalid_boot_mailbox;
+    }
+    return described(coe_->out_sm(), SyncManager::master_writes) && described(coe_->in_sm(), 0) ? std::uint16_t{0} : invalid_mailbox;
 }
 
 std::uint16_t AlStateMachine::check_process_data() {

@@ -44,6 +44,9 @@ public:
     /// 001Eh for process data.
     void check_running(Instant now);
 
+    /// Why the slave is nothing but its boot loader (0014h: no valid firmware); 0: its application runs. Then only INIT and BOOT are left.
+    void set_firmware_fault(std::uint16_t code) noexcept { firmware_fault_ = code; }
+
     /// Whether a slave whose description requires SYNC0 refuses SAFEOP without it (002Dh).
     void require_sync0(SyncRequirement requirement) noexcept { sync_requirement_ = requirement; }
 
@@ -55,7 +58,7 @@ private:
     void refuse(std::uint16_t code);
     void show(std::uint16_t code);
     [[nodiscard]] std::uint16_t check_upwards(EsmState to);
-    [[nodiscard]] std::uint16_t check_mailbox() const;
+    [[nodiscard]] std::uint16_t check_mailbox(EsmState state) const;
     [[nodiscard]] std::uint16_t check_process_data();
     [[nodiscard]] std::uint16_t check_sync_managers() const;
     [[nodiscard]] std::uint16_t check_watchdog() const;
@@ -64,6 +67,7 @@ private:
     [[nodiscard]] std::uint16_t check_dc() const;
     [[nodiscard]] SyncSettings sync_settings() const;
     void lock_process_data(bool locked);
+    [[nodiscard]] bool boots() const noexcept { return coe_ != nullptr && description_.mailbox->bootstrap.has_value(); }
 
     const DeviceDescription& description_;
     SlaveController& controller_;
@@ -71,6 +75,7 @@ private:
     CoeServer* coe_;
     ProcessData* process_data_;
     std::vector<unsigned> outputs_, inputs_;
+    std::uint16_t firmware_fault_ = 0;
     std::optional<std::uint16_t> device_id_;
     bool id_requested_ = false;
     EsmState state_ = EsmState::init;

@@ -16,6 +16,10 @@ unsigned position_of(const DeviceDescription& description, SmUse use, unsigned o
     return otherwise;
 }
 
+BootstrapDescription boot_of(const DeviceDescription& description) {
+    return description.mailbox && description.mailbox->bootstrap ? *description.mailbox->bootstrap : BootstrapDescription{};
+}
+
 std::size_t size_of(const DeviceDescription& description, unsigned n) {
     return n < description.sync_managers.size() ? description.sync_managers[n].size : 0;
 }
@@ -28,18 +32,21 @@ CoeServer::CoeServer(const DeviceDescription& description, ObjectDictionary& dic
       controller_(controller),
       sdo_(description, dictionary, model),
       info_(dictionary),
-      out_sm_(position_of(description, SmUse::mailbox_out, 0)),
-      in_sm_(position_of(description, SmUse::mailbox_in, 1)),
+      boxes_{position_of(description, SmUse::mailbox_out, 0), position_of(description, SmUse::mailbox_in, 1), mailbox_header_size},
       response_delay_(response_delay),
       queue_(std::max<std::size_t>(1, description.mailbox ? description.mailbox->max_pending : 1),
-             std::max<std::size_t>(mailbox_header_size, size_of(description, out_sm_))) {
-    reply_.resize(std::max<std::size_t>(mailbox_header_size, size_of(description, in_sm_)));
+             std::max<std::size_t>({mailbox_header_size, size_of(description, out_sm()), boot_of(description).out_size})) {
+    reply_.resize(std::max<std::size_t>({mailbox_header_size, size_of(description, in_sm()), boot_of(description).in_size}));
     unasked_.resize(reply_.size());
     current_.resize(reply_.size());
     read_.resize(reply_.size());
 }
 
-void CoeServer::start() noexcept {
+void CoeServer::start(EsmState state) noexcept {
+    const bool boot = state == EsmState::boot;
+    const std::size_t out = boot ? boot_of(description_).out_size : size_of(description_, out_sm());
+    boxes_.in_size = std::max<std::size_t>(mailbox_header_size, boot ? boot_of(description_).in_size : size_of(description_, in_sm()));
+    services_.start(std::max(mailbox_header_size, out) - mailbox_header_size, boxes_.in_size - mailbox_header_size);
     queue_.clear();
     reply_waiting_ = displaced_ = read_valid_ = false;
     in_box_ = InBox::nothing;
@@ -56,14 +63,14 @@ void CoeServer::stop() noexcept {
     due_ = never;
 }
 
-Instant CoeServer::next_event() const noexcept { return running_ && !stuck_ && !reply_waiting_ && !info_.pending() ? due_ : never; }
+Instant CoeServer::next_event() const noexcept { return running_ && !stuck_ && !reply_waiting_ && !more_pending() ? due_ : never; }
 
 void CoeServer::step(EsmState state, Instant now) noexcept {
     if (!running_ || stuck_) return;
     follow_mailbox();
     deliver();
     take(now);
-    while (queue_.size() > 0 && due_ <= now && !reply_waiting_ && !info_.pending()) {
+    while (queue_.size() > 0 && due_ <= now && !reply_waiting_ && !more_pending()) {
         answer(state, now);
         deliver();
         take(now);
@@ -71,7 +78,7 @@ void CoeServer::step(EsmState state, Instant now) noexcept {
 }
 
 void CoeServer::take(Instant now) noexcept {
-    const auto message = controller_.full_mailbox(out_sm_);
+    const auto message = controller_.full_mailbox(boxes_.out_sm);
     if (message.empty() || queue_.full()) return;
     const auto parsed = parse_mailbox(message);
     // A counter seen twice in a row is a repetition of a request that was already taken (0 is never checked).
@@ -81,11 +88,11 @@ void CoeServer::take(Instant now) noexcept {
         if (queue_.size() == 0) due_ = now + response_delay_;
         queue_.push(message);
     }
-    controller_.empty_mailbox(out_sm_);
+    controller_.empty_mailbox(boxes_.out_sm);
 }
 
 void CoeServer::answer(EsmState state, Instant now) noexcept {
-    const std::span<std::byte> out{reply_};
+    const std::span<std::byte> out = std::span{reply_}.first(boxes_.in_size);
     MailboxType type = MailboxType::error;
     const std::size_t size = serve(queue_.front(), out.subspan(mailbox_header_size), type, state, now);
     queue_.pop();
@@ -109,6 +116,11 @@ std::size_t CoeServer::serve(std::span<const std::byte> bytes, std::span<std::by
     const auto message = parse_mailbox(bytes);
     if (!message) return error(MailboxErrorDetail::invalid_size);
     if (message->header.type == MailboxType::error) return error(MailboxErrorDetail::invalid_header);
+    if (state == EsmState::boot && message->header.type != MailboxType::foe) return error(MailboxErrorDetail::unsupported_protocol);
+    if (MailboxService* other = services_.find(message->header.type)) {
+        type = message->header.type;
+        return other->serve(message->payload, out, state, now);
+    }
     if (message->header.type != MailboxType::coe || !description_.mailbox || !description_.mailbox->coe)
         return error(MailboxErrorDetail::unsupported_protocol);
     const auto service = coe_service(message->payload);
@@ -136,26 +148,26 @@ void CoeServer::send(const Emergency& emergency) noexcept {
 }
 
 void CoeServer::follow_mailbox() noexcept {
-    if (in_box_ != InBox::nothing && controller_.full_mailbox(in_sm_).empty()) {
+    if (in_box_ != InBox::nothing && controller_.full_mailbox(boxes_.in_sm).empty()) {
         if (in_box_ == InBox::current) std::swap(read_, current_), read_valid_ = true;
         in_box_ = InBox::nothing;
     }
-    if (controller_.repeat_requested(in_sm_)) {
+    if (controller_.repeat_requested(boxes_.in_sm)) {
         if (read_valid_) {
             displaced_ = displaced_ || in_box_ == InBox::current;
-            controller_.empty_mailbox(in_sm_);
-            if (controller_.fill_mailbox(in_sm_, read_)) in_box_ = InBox::repetition;
+            controller_.empty_mailbox(boxes_.in_sm);
+            if (controller_.fill_mailbox(boxes_.in_sm, std::span{read_}.first(boxes_.in_size))) in_box_ = InBox::repetition;
         }
-        controller_.acknowledge_repeat(in_sm_);
+        controller_.acknowledge_repeat(boxes_.in_sm);
     }
-    if (displaced_ && in_box_ == InBox::nothing && controller_.fill_mailbox(in_sm_, current_)) {
+    if (displaced_ && in_box_ == InBox::nothing && controller_.fill_mailbox(boxes_.in_sm, std::span{current_}.first(boxes_.in_size))) {
         displaced_ = false;
         in_box_ = InBox::current;
     }
 }
 
-bool CoeServer::put(std::vector<std::byte>& message) noexcept {
-    if (in_box_ != InBox::nothing || displaced_ || !controller_.fill_mailbox(in_sm_, message)) return false;
+bool CoeServer::put(std::span<const std::byte> message) noexcept {
+    if (in_box_ != InBox::nothing || displaced_ || !controller_.fill_mailbox(boxes_.in_sm, message)) return false;
     std::copy(message.begin(), message.end(), current_.begin());
     in_box_ = InBox::current;
     return true;
@@ -164,21 +176,25 @@ bool CoeServer::put(std::vector<std::byte>& message) noexcept {
 void CoeServer::deliver() noexcept {
     if (!emergencies_.empty()) {
         // A counter is spent only on what really goes out: the mailbox may still be full.
-        const std::span<std::byte> out{unasked_};
+        const std::span<std::byte> out = std::span{unasked_}.first(boxes_.in_size);
         const std::size_t size = encode_emergency(out.subspan(mailbox_header_size), emergencies_.front());
         const std::uint8_t counter = next_mailbox_counter(counter_);
-        if (size == 0 || !finish_mailbox(out, MailboxType::coe, counter, size) || !put(unasked_)) return;
+        if (size == 0 || !finish_mailbox(out, MailboxType::coe, counter, size) || !put(out)) return;
         counter_ = counter;
         emergencies_.pop();
         return;
     }
-    if (!reply_waiting_ && info_.pending()) {
-        const std::span<std::byte> out{reply_};
-        const std::size_t size = info_.next(out.subspan(mailbox_header_size));
-        counter_ = next_mailbox_counter(counter_);
-        reply_waiting_ = size > 0 && finish_mailbox(out, MailboxType::coe, counter_, size);
-    }
-    if (reply_waiting_ && put(reply_)) reply_waiting_ = false;
+    if (!reply_waiting_ && more_pending()) fetch_more();
+    if (reply_waiting_ && put(std::span{reply_}.first(boxes_.in_size))) reply_waiting_ = false;
+}
+
+void CoeServer::fetch_more() noexcept {
+    const std::span<std::byte> out = std::span{reply_}.first(boxes_.in_size);
+    const bool objects = info_.pending();
+    const std::size_t size =
+        objects ? info_.next(out.subspan(mailbox_header_size)) : services_.ethernet->next(out.subspan(mailbox_header_size));
+    counter_ = next_mailbox_counter(counter_);
+    reply_waiting_ = size > 0 && finish_mailbox(out, objects ? MailboxType::coe : MailboxType::eoe, counter_, size);
 }
 
 }  // namespace taktwerk::ecat::sim

@@ -1,8 +1,9 @@
 #pragma once
-// The mailbox of a simulated slave and the CoE servers behind it. Messages are queued (at most max_pending), answered one
+// The mailbox of a simulated slave, the CoE servers behind it and the services beside them (files, Ethernet). Messages are queued (at most max_pending), answered one
 // after the other, each after the response delay of machine time. A full queue leaves the mailbox full: the master's next
 // write gets working counter 0. Emergencies of the application go out as soon as the mailbox is free, before an answer that
-// waits. A repeat request brings back the message that was read last, then the one it displaced. Fixed buffers. Source: ETG.1000.4 (mailbox), ETG.1000.6 (CoE), SV33-E manual 6.2.8.
+// waits. A repeat request brings back the message that was read last, then the one it displaced. In BOOT nothing but files is served.
+// Fixed buffers. Source: ETG.1000.4 (mailbox), ETG.1000.6 (CoE), SV33-E manual 6.2.8.
 
 #include <cstdint>
 #include <span>
@@ -12,6 +13,7 @@
 #include "ecat/description/device_description.hpp"
 #include "ecat/sim/device_model.hpp"
 #include "ecat/sim/emergency_queue.hpp"
+#include "ecat/sim/mailbox_service.hpp"
 #include "ecat/sim/object_dictionary.hpp"
 #include "ecat/sim/request_queue.hpp"
 #include "ecat/sim/sdo_info_server.hpp"
@@ -27,11 +29,14 @@ public:
               Duration response_delay);
 
     /// Mailbox sync managers of the description: out (master writes), in.
-    [[nodiscard]] unsigned out_sm() const noexcept { return out_sm_; }
-    [[nodiscard]] unsigned in_sm() const noexcept { return in_sm_; }
+    [[nodiscard]] unsigned out_sm() const noexcept { return boxes_.out_sm; }
+    [[nodiscard]] unsigned in_sm() const noexcept { return boxes_.in_sm; }
 
-    /// PREOP was entered from below: nothing pending, counters forgotten.
-    void start() noexcept;
+    /// Who answers this protocol; it outlives the server. Before the first start().
+    void attach(MailboxType type, MailboxService& service) noexcept { services_.attach(type, service); }
+
+    /// PREOP or BOOT was entered from INIT: nothing pending, counters forgotten.
+    void start(EsmState state) noexcept;
     void stop() noexcept;
     /// Takes waiting messages into the queue and answers what is due; serves repeat requests.
     void step(EsmState state, Instant now) noexcept;
@@ -58,13 +63,20 @@ private:
     /// Notices what the master has read, serves a repeat request.
     void follow_mailbox() noexcept;
     void deliver() noexcept;
-    bool put(std::vector<std::byte>& message) noexcept;
+    bool put(std::span<const std::byte> message) noexcept;
+    /// More goes out before the next message is answered.
+    [[nodiscard]] bool more_pending() const noexcept { return info_.pending() || services_.pending(); }
+    void fetch_more() noexcept;
 
     const DeviceDescription& description_;
     SlaveController& controller_;
     SdoServer sdo_;
     SdoInfoServer info_;
-    unsigned out_sm_ = 0, in_sm_ = 1;
+    MailboxServices services_;
+    struct Boxes {
+        unsigned out_sm = 0, in_sm = 1;
+        std::size_t in_size = 0;  ///< to the master, in this state
+    } boxes_;
     Duration response_delay_;
     RequestQueue queue_;              // of max_pending messages
     std::vector<std::byte> reply_;    // an answer that is built and waits for the mailbox to be free

@@ -74,10 +74,23 @@ std::vector<std::byte> sii_image(const DeviceDescription& description, std::uint
     general.ebus_current = description.ebus_current.value_or(0);
     general.flags = general_flags;
     if (description.mailbox && description.mailbox->coe) {
-        sii.mailbox_protocols = sii_protocol::coe;
+        sii.mailbox_protocols |= sii_protocol::coe;
         general.coe_details = sii_coe::sdo | sii_coe::pdo_assign | sii_coe::pdo_configuration;
         if (description.mailbox->sdo_info) general.coe_details |= sii_coe::sdo_info;
         if (description.mailbox->complete_access) general.coe_details |= sii_coe::complete_access;
+    }
+    if (description.mailbox && description.mailbox->foe) {
+        sii.mailbox_protocols |= sii_protocol::foe;
+        general.foe_details = 1;
+    }
+    if (description.mailbox && description.mailbox->eoe) {
+        sii.mailbox_protocols |= sii_protocol::eoe;
+        general.eoe_details = 1;
+    }
+    if (description.mailbox && description.mailbox->bootstrap) {
+        const auto& boot = *description.mailbox->bootstrap;
+        sii.boot_mailbox_out = {boot.out_start, boot.out_size};
+        sii.boot_mailbox_in = {boot.in_start, boot.in_size};
     }
     sii.general = general;
 

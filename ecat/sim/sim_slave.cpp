@@ -4,14 +4,16 @@
 #include <cmath>
 #include <utility>
 
+#include "core/bytes.hpp"
 #include "ecat/description/module_pdos.hpp"
 #include "ecat/sim/sii_image.hpp"
+#include "ecat/wire/sii.hpp"
 
 namespace taktwerk::ecat::sim {
 
 namespace {
 
-constexpr std::uint16_t sm_watchdog_expired = 0x001B;
+constexpr std::uint16_t no_valid_firmware = 0x0014, sm_watchdog_expired = 0x001B;
 
 ControllerSettings settings_of(const DeviceDescription& description, const SlaveOptions& options) {
     ControllerSettings settings;
@@ -54,6 +56,11 @@ SimSlave::SimSlave(std::shared_ptr<const DeviceDescription> description, std::un
           description_->mailbox ? &process_data_ : nullptr) {
     if (options_.name.empty()) options_.name = description_->name;
     model_->connect(coe_ ? &*coe_ : nullptr);
+    if (coe_ && description_->mailbox->foe) {
+        foe_.emplace(files_.emplace(description_->identity, options_.firmware));
+        coe_->attach(MailboxType::foe, *foe_);
+    }
+    if (coe_ && description_->mailbox->eoe) coe_->attach(MailboxType::eoe, ethernet_.emplace(options_.ethernet));
     missed_entry_ = dictionary_.find(0x1C32, 0x0B);
     al_.set_device_id(options_.device_id);
     raw_.resize(description_->process_ram);
@@ -68,9 +75,33 @@ void SimSlave::power_on(Instant now) {
     al_due_ = never;
     settled_ = now;
     missed_outputs_ = 0;
+    ready_at_ = now;
+    if (files_) boot_application();
     model_->power_on(dictionary_, now);
     al_.power_on(now);
     schedule();
+}
+
+/// What the boot loader finds sound says who the device is; where it finds nothing only the way to BOOT is left.
+void SimSlave::boot_application() {
+    files_->flash().boot();
+    const auto& running = files_->flash().running();
+    al_.set_firmware_fault(running ? std::uint16_t{0} : no_valid_firmware);
+    if (!running) return;
+    const std::uint32_t revision = running->identity.revision;
+    auto& eeprom = controller_.eeprom().image();
+    constexpr std::size_t revision_at = std::size_t{2} * sii_word::revision;
+    if (eeprom.size() >= revision_at + sizeof revision) store_le(std::span{eeprom}, revision_at, revision);
+    if (Entry* entry = dictionary_.find(0x1018, 3)) entry->set(revision);
+    if (Entry* entry = dictionary_.find(0x100A, 0); entry != nullptr && entry->type() == DataType::STRING)
+        entry->set_text(running->version);
+}
+
+/// BOOT was left: from here on the boot loader decides.
+void SimSlave::restart(Instant now) {
+    power_off(now);
+    power_on(now);
+    ready_at_ = now + options_.firmware.restart_time;
 }
 
 void SimSlave::set_links(std::uint8_t links) noexcept {
@@ -104,8 +135,9 @@ void SimSlave::fire(Instant now) noexcept {
     if (al_due_ <= now) {
         al_due_ = never;
         settle(now);
-        const bool exchanged = al_.exchanging();
+        const bool exchanged = al_.exchanging(), was_in_boot = al_.state() == EsmState::boot;
         al_.request(controller_.take_al_control(), now);
+        if (was_in_boot && al_.state() == EsmState::init && files_) return restart(now);
         if (!exchanged && al_.exchanging()) {
             outputs_valid_ = false;
             if (Entry* cycle = dictionary_.find(0x1C32, 0x02); cycle != nullptr && controller_.sync0_runs())
@@ -130,7 +162,7 @@ void SimSlave::handle_events(Instant now) noexcept {
         power_off(now);
         return power_on(now);
     }
-    if ((events & event::al_control) != 0 && al_due_ == never) al_due_ = now + options_.transition_time;
+    if ((events & event::al_control) != 0 && al_due_ == never) al_due_ = std::max(now, ready_at_) + options_.transition_time;
     if ((events & event::sync_manager_switched) != 0) al_.check_running(now);
     if (coe_ && (events & (event::mailbox_written | event::mailbox_read | event::repeat_request)) != 0) coe_->step(al_.state(), now);
     if ((events & event::watchdog) != 0 && al_.state() == EsmState::op) {

@@ -14,9 +14,12 @@
 #include "ecat/sim/al_state_machine.hpp"
 #include "ecat/sim/coe_server.hpp"
 #include "ecat/sim/device_model.hpp"
+#include "ecat/sim/ethernet_node.hpp"
+#include "ecat/sim/foe_server.hpp"
 #include "ecat/sim/object_dictionary.hpp"
 #include "ecat/sim/process_data.hpp"
 #include "ecat/sim/slave_controller.hpp"
+#include "ecat/sim/slave_files.hpp"
 
 namespace taktwerk::ecat::sim {
 
@@ -33,6 +36,8 @@ struct SlaveOptions {
     Duration eeprom_read_time = std::chrono::microseconds{100};
     Duration eeprom_write_time = std::chrono::milliseconds{2};
     bool eeprom_reads_8_bytes = true;  ///< a read command delivers 8 bytes; else 4
+    FirmwareOptions firmware{};        ///< of a slave with FoE
+    EthernetOptions ethernet{};        ///< of a slave with EoE
 };
 
 class SimSlave {
@@ -67,6 +72,11 @@ public:
     /// Slaves without mailbox have an empty one.
     [[nodiscard]] ObjectDictionary& dictionary() noexcept { return dictionary_; }
     [[nodiscard]] const SlaveOptions& options() const noexcept { return options_; }
+    /// nullptr: a slave without FoE. What is in them, and what of it runs, survives a power cut.
+    [[nodiscard]] SlaveFiles* files() noexcept { return files_ ? &*files_ : nullptr; }
+    [[nodiscard]] FoeServer* foe() noexcept { return foe_ ? &*foe_ : nullptr; }
+    /// nullptr: a slave without EoE.
+    [[nodiscard]] const EthernetNode* ethernet() const noexcept { return ethernet_ ? &*ethernet_ : nullptr; }
     /// The next mailbox answers claim a length that is not theirs.
     void answer_with_wrong_lengths(std::uint32_t answers) noexcept {
         if (coe_) coe_->misstate_lengths(answers);
@@ -95,6 +105,8 @@ private:
     void load_outputs() noexcept;
     void store_inputs() noexcept;
     void schedule() noexcept;
+    void boot_application();
+    void restart(Instant now);
 
     std::shared_ptr<const DeviceDescription> description_;
     std::unique_ptr<DeviceModel> model_;
@@ -103,6 +115,9 @@ private:
     ObjectDictionary dictionary_;
     ProcessData process_data_;
     std::optional<CoeServer> coe_;
+    std::optional<SlaveFiles> files_;
+    std::optional<FoeServer> foe_;
+    std::optional<EthernetNode> ethernet_;
     AlStateMachine al_;
     Entry* missed_entry_ = nullptr;  // 1C32h:0Bh
     std::vector<std::byte> raw_;     // of a slave without dictionary, all its sync managers of one direction in a row
@@ -111,6 +126,7 @@ private:
     std::optional<std::uint8_t> links_;  // known since power-on
     bool outputs_valid_ = false;         // outputs arrived since SAFEOP was entered
     Instant al_due_ = never;
+    Instant ready_at_{};  // until then the application starts and asks for nothing
     Instant settled_{};
     Instant next_event_ = never;
     std::uint32_t missed_outputs_ = 0;

@@ -124,6 +124,7 @@ World::World(const MachineConfig& config, Instant start)
         options.name = slave->name;
         options.alias = slave->alias.value_or(0);
         options.device_id = slave->device_id;
+        options.ethernet.mac.back() = static_cast<std::byte>(slaves_.size() + 1);
         if (!is_drive(*slave->device)) {
             auto model = std::make_unique<ecat::sim::PlainDevice>(*slave->device);
             auto* device = model.get();
