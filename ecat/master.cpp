@@ -285,6 +285,17 @@ std::string outcome(const Bus& bus, const BusSlave* first) {
     return away == all ? "" : fmt::format("slaves still away: {}", away);
 }
 
+/// Who was sent out of OP, and by whom.
+std::string foreign_text(const Bus& bus) {
+    const std::string slaves = fallen_text(bus);
+    if (bus.link.foreign_frames.load() == 0) return slaves;
+    return (slaves.empty() ? "" : slaves + "; ") + "of whom frames were heard: " + sender_text(bus.link);
+}
+
+std::string reference_clock(const Bus& bus) {
+    return bus.reference ? "the reference clock is that of " + bus.slaves[*bus.reference]->subject : std::string{};
+}
+
 /// Whose clock it is.
 std::string furthest_clock(const Bus& bus) {
     const BusSlave* furthest = nullptr;
@@ -309,8 +320,7 @@ std::string Master::detail(const AlarmFact& fact) const {
     switch (BusAlarm{fact.id}) {
         case BusAlarm::foreign_master: return sender_text(link);
         case BusAlarm::foreign_command:
-        case BusAlarm::foreign_command_tolerated:
-            return fallen_text(*impl_->bus) + (link.foreign_frames.load() > 0 ? "; of whom frames were heard: " + sender_text(link) : "");
+        case BusAlarm::foreign_command_tolerated: return foreign_text(*impl_->bus);
         case BusAlarm::starved_slave_left_op:
         case BusAlarm::starved_slave_dropped_out: return fallen_text(*impl_->bus);
         case BusAlarm::link_down:
@@ -318,6 +328,7 @@ std::string Master::detail(const AlarmFact& fact) const {
             return fact.b > 0 ? with_outcome(fmt::format("{:.0f} slave{} fell by it", fact.b, fact.b == 1 ? "" : "s"),
                                              outcome(*impl_->bus, nullptr))
                               : std::string{};
+        case BusAlarm::reference_clock_lost: return reference_clock(*impl_->bus);
         case BusAlarm::dc_out_of_sync: return furthest_clock(*impl_->bus);
         case BusAlarm::ring_broken: return ring_text(*impl_->bus);
         default: break;

@@ -96,6 +96,15 @@ void remark_late_sync0(Bus& bus) {
     }
 }
 
+/// Nothing fails by it: lists take longer. Who wonders why the start is slow finds it here.
+void remark_complete_access(Bus& bus) {
+    for (const auto& slave : bus.slaves)
+        if (slave->has_coe() && slave->device().mailbox->complete_access && !slave->mailbox.complete_access)
+            bus.remember(slave->subject +
+                         ": its firmware refuses complete access, which its profile promises: lists are written entry by entry; "
+                         "set `complete_access: false` in its profile");
+}
+
 Script<Result<void>> climb(Bus& bus) {
     bus.phase.store(BusPhase::scanning);
     Result<void> done = co_await scan(bus);
@@ -112,6 +121,7 @@ Script<Result<void>> climb(Bus& bus) {
     if (!done) co_return done;
     done = co_await for_each_slave(bus, &prepare_process_data);
     if (!done) co_return done;
+    remark_complete_access(bus);
     Result<ProcessDataPlan> plan = plan_bus(bus);
     if (!plan) co_return plan.error();
     bus.plan = std::move(*plan);

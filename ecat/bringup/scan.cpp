@@ -7,6 +7,7 @@
 #include "ecat/bringup/presence.hpp"
 #include "ecat/bringup/ring_line.hpp"
 #include "ecat/bringup/sii_reader.hpp"
+#include "ecat/bringup/slave_match.hpp"
 #include "ecat/topology/topology.hpp"
 #include "ecat/wire/sii.hpp"
 
@@ -42,12 +43,18 @@ Script<void> open_ports(Bus& bus) {
     }
 }
 
+/// Of the very first frame nothing came back.
+Error nobody_answers() {
+    return Error{"bus.no_frame", "bus", "no frame came back: no EtherCAT slave answers at the other end of the cable",
+                 "check that the cable goes to the IN port of the first slave, and that it is an EtherCAT device with power"};
+}
+
 /// Every slave to INIT and its sync managers, FMMUs and clocks to rest, whatever they were before.
 Script<Result<std::uint16_t>> reset_all(Bus& bus) {
     auto& port = bus.port;
     co_await open_ports(bus);
     const Reply first = co_await port.brd(reg::type, 1);
-    if (first.lost) co_return unanswered("bus", "the count of slaves", first);
+    if (first.lost) co_return nobody_answers();
     if (first.wkc == 0)
         co_return Error{"bus.empty", "bus", "frames come back, but no slave answered",
                         "check the power of the slaves and that the cable goes to the IN port of the first"};
@@ -130,9 +137,21 @@ void note_defects(Bus& bus) {
             if (defect != SiiDefect::empty) bus.remember(fmt::format("slave {}: {}", slave.position, text(defect)));
 }
 
+/// Its position is not its place in the file: named as the configured slave that it is, where there is but one of its kind.
+Error known_by_kind(const Bus& bus, Error error) {
+    const auto& there = bus.found.back();
+    const SlaveConfig* only = nullptr;
+    std::size_t fitting = 0;
+    for (const auto& wanted : bus.config.slaves)
+        if (check_identity({}, wanted, there.identity)) only = &wanted, ++fitting;
+    error.subject = fitting == 1 ? fmt::format("slave '{}' ({})", only->name, only->device->name)
+                                 : fmt::format("slave {} ({})", there.position, found_text(there));
+    return error;
+}
+
 /// The tree, from the ports as the slaves report them; asked again once where they contradict each other: a cable may just
 /// have been plugged. Process data needs no tree, so the bring-up goes on without.
-Script<void> find_topology(Bus& bus) {
+Script<Result<void>> find_topology(Bus& bus) {
     for (int attempt = 0; attempt < 2; ++attempt) {
         const bool again = attempt > 0;
         std::vector<std::uint16_t> dl_status;
@@ -146,11 +165,13 @@ Script<void> find_topology(Bus& bus) {
         Result<Topology> tree = build_topology(dl_status);
         if (tree) {
             bus.topology = std::move(*tree);
-            co_return;
+            co_return Result<void>{};
         }
+        if (again && tree.error().code == "bus.plugs_exchanged") co_return known_by_kind(bus, tree.error());
         if (again) bus.remember(tree.error().text());
     }
     bus.topology = {};
+    co_return Result<void>{};
 }
 
 }  // namespace
@@ -225,7 +246,8 @@ Script<Result<void>> scan(Bus& bus) {
         scripts.push_back(find_one(bus, position, wants_id, bus.found[position]));
     co_await all(std::move(scripts), DatagramPort::slaves_at_once);
     note_defects(bus);
-    co_await find_topology(bus);
+    const Result<void> tree = co_await find_topology(bus);
+    if (!tree) co_return tree;
     co_return match(bus.config, bus.found, bus.slaves);
 }
 

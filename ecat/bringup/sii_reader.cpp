@@ -23,6 +23,16 @@ Error sii_error(const std::string& subject, std::size_t word, std::string what) 
                  "power-cycle the slave; if it stays, its EEPROM is empty or defective"};
 }
 
+/// `owner`: 0500h in the low byte says what a master has granted, 0501h in the high one that the processor is at it.
+Error taken_by_processor(const std::string& subject, std::uint16_t owner) {
+    const bool granted = (owner & 1u) != 0;
+    return Error{"bus.sii_taken", subject,
+                 fmt::format("its EEPROM is in the hands of its own processor (0500h = {:02X}h, 0501h = {:02X}h): no master can read it",
+                             owner & 0xFFu, owner >> 8),
+                 granted ? "another master left it so; `taktwerk bus state init` or a bring-up takes it back"
+                         : "power-cycle the slave; if it stays so its firmware keeps the EEPROM to itself"};
+}
+
 /// What one command delivered.
 struct Words {
     std::array<std::uint16_t, 4> words{};
@@ -64,12 +74,7 @@ Script<Result<Words>> read_words(DatagramPort& port, std::uint16_t station, std:
         }
         if (asked && ++refusals > sii_retries && !refused) {
             const Reply owner = co_await port.fprd(station, reg::eeprom_configuration, 2);
-            if (owner.ok() && (owner.u16() & 0x0101u) != 0)
-                co_return Error{"bus.sii_taken", subject,
-                                fmt::format("its EEPROM is in the hands of its own processor (0500h = {:02X}h, 0501h = {:02X}h): no master "
-                                            "can read it",
-                                            owner.u16() & 0xFFu, owner.u16() >> 8),
-                                "another master left it so; `taktwerk bus state init` or a bring-up takes it back"};
+            if (owner.ok() && (owner.u16() & 0x0101u) != 0) co_return taken_by_processor(subject, owner.u16());
             co_return sii_error(subject, word, fmt::format("the controller does not carry out the command (0502h = {:04X}h)", control));
         }
         if (asked && refusals > sii_retries)

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <functional>
 
+#include "ecat/bringup/shifted_slaves.hpp"
+
 namespace taktwerk::ecat {
 
 namespace {
@@ -67,10 +69,10 @@ Place place_of(const SlaveConfig& wanted) {
 }
 
 Error missing(const BusConfig& config, const std::vector<FoundSlave>& found, const SlaveConfig& wanted, const Place& place) {
-    Error error{
-        "bus.missing_slave", fmt::format("slave '{}' ({})", wanted.name, wanted.device->name),
-        fmt::format("there is no slave at {}: the bus has {} of {} configured slaves", place.text, found.size(), config.slaves.size()), ""};
+    Error error{"bus.missing_slave", fmt::format("slave '{}' ({})", wanted.name, wanted.device->name),
+                fmt::format("there is no slave at {}", place.text), ""};
     if (wanted.position) {
+        error.what += fmt::format(": the bus has {} of {} configured slaves", found.size(), config.slaves.size());
         const std::string last =
             found.empty() ? std::string{"the master"} : fmt::format("slave {} ({})", found.back().position, found_text(found.back()));
         error.remedy = fmt::format("check power and cable behind {}", last);
@@ -120,12 +122,14 @@ void hint_at_order(const BusConfig& config, const std::vector<FoundSlave>& found
     for (std::size_t other = 0; other < config.slaves.size(); ++other) {
         const auto& peer = config.slaves[other];
         if (other == wrong || !slave.position || !peer.position || *peer.position >= found.size() || found[*peer.position].error) continue;
+        if (fits(*peer.device, rule_of(peer), found[*peer.position].identity)) continue;  // who is in his place is nobody's swapped twin
         if (!fits(*slave.device, rule_of(slave), found[*peer.position].identity) || !fits(*peer.device, rule_of(peer), found[at].identity))
             continue;
         error.remedy = fmt::format("slaves '{}' and '{}' look swapped: exchange their cables, or their positions in the configuration",
                                    slave.name, peer.name);
         return;
     }
+    if (fits(*slave.device, RevisionRule::any, found[at].identity)) return;  // the right device: its revision is the matter
     if (const auto where = another_order(config, found)) {
         std::string order;
         for (std::size_t s = 0; s < where->size(); ++s)
@@ -156,6 +160,7 @@ Result<void> check_identity(const std::string& subject, const DeviceDescription&
 
 Result<void> match(const BusConfig& config, const std::vector<FoundSlave>& found, std::vector<std::unique_ptr<BusSlave>>& slaves) {
     slaves.clear();
+    if (auto shifted = shifted_slaves(config, found)) return std::move(*shifted);
     std::vector<bool> used(found.size(), false);
     for (const auto& wanted : config.slaves) {
         const Place place = place_of(wanted);

@@ -7,6 +7,7 @@
 
 #include "ecat/bringup/presence.hpp"
 #include "ecat/bringup/scan.hpp"
+#include "ecat/bringup/shifted_slaves.hpp"
 #include "ecat/bringup/sii_reader.hpp"
 #include "ecat/wire/registers.hpp"
 
@@ -215,6 +216,12 @@ Script<Result<void>> read_device_ids(DatagramPort& port, Survey& survey) {
 }
 
 void compare_with(const BusConfig& config, Survey& survey) {
+    std::vector<FoundSlave> there;
+    for (const auto& slave : survey.slaves) there.push_back(slave.found);
+    if (auto shifted = shifted_slaves(config, there)) {
+        survey.remarks.push_back(std::move(*shifted));  // who stands behind it is no wrong device
+        return;
+    }
     std::set<std::size_t> named;
     for (const auto& wanted : config.slaves) {
         const auto at = std::find_if(survey.slaves.begin(), survey.slaves.end(), [&](const SurveyedSlave& slave) {

@@ -112,8 +112,11 @@ Script<Result<Bytes>> read_message(DatagramPort& port, MailboxEndpoint& mailbox,
         }
         now = co_await time();
         if (now >= deadline) {
+            const Reply out = co_await port.fprd(mailbox.station, sm_register(mailbox.out_sm, sm_status_offset), 1);
+            const bool lies = out.ok() && (static_cast<std::uint8_t>(out.data[0]) & SyncManager::mailbox_full) != 0;
             co_return Error{code_of(request, "timeout"), mailbox.subject,
-                            fmt::format("{}: no answer within {} ms", request.about, request.patience / std::chrono::milliseconds{1}),
+                            fmt::format("{}: no answer within {} ms{}", request.about, request.patience / std::chrono::milliseconds{1},
+                                        lies ? "; the request still lies in its mailbox, which stays full" : ""),
                             "the slave's application is busy or hangs: try again, then power-cycle it"};
         }
         if (mailbox.flag.mapped()) continue;

@@ -95,10 +95,31 @@ private:
 
 }  // namespace
 
+namespace {
+
+/// A slave in the line whose cable from the master is in an OUT socket: the frame goes on through its port 0 before it is processed there, so
+/// it comes last, behind slaves that are a whole tree without it, and has a way in and a way on.
+std::optional<Error> plugs_exchanged(const TreeBuilder& others, std::size_t position, std::uint16_t dl_status) {
+    std::vector<unsigned> open;
+    for (unsigned port = 0; port < ports_per_slave; ++port)
+        if (dl_port_open(dl_status, port)) open.push_back(port);
+    if (position == 0 || others.complete() || open.size() != 2 || open[0] != 0) return std::nullopt;
+    return Error{"bus.plugs_exchanged", fmt::format("slave {}", position),
+                 fmt::format("its plugs are exchanged: the cable from the master is in its port {} (OUT), and port 0 (IN) leads on; so it "
+                             "processes frames last, and positions are not the order of the cable",
+                             open[1]),
+                 "exchange the two plugs at this slave"};
+}
+
+}  // namespace
+
 Result<Topology> build_topology(std::span<const std::uint16_t> dl_status) {
     TreeBuilder tree;
-    for (std::size_t position = 0; position < dl_status.size(); ++position)
+    for (std::size_t position = 0; position < dl_status.size(); ++position) {
+        const bool last = position + 1 == dl_status.size();
+        if (auto exchanged = last ? plugs_exchanged(tree, position, dl_status[position]) : std::nullopt) return *exchanged;
         if (auto error = tree.add(dl_status[position], position == 0)) return *error;
+    }
     if (auto error = tree.complete()) return *error;
     return tree.take();
 }

@@ -126,6 +126,68 @@ TEST(Match, SlavesInAnotherOrderAreToldWhereTheyAre) {
     EXPECT_THAT(wrong.error().remedy, HasSubstr("in another order: the cable fits 'a' at 1, 'b' at 2, 'c' at 0"));
 }
 
+BusConfig line_of(std::initializer_list<std::uint32_t> products) {
+    BusConfig config;
+    for (const auto product : products) {
+        config.slaves.push_back(wanted("x", product));
+        config.slaves.back().name = std::string(1, static_cast<char>('a' + config.slaves.size() - 1));
+        config.slaves.back().position = static_cast<std::uint16_t>(config.slaves.size() - 1);
+    }
+    return config;
+}
+
+std::vector<FoundSlave> cable_of(std::initializer_list<std::uint32_t> products) {
+    std::vector<FoundSlave> all;
+    for (const auto product : products) all.push_back(found(static_cast<std::uint16_t>(all.size()), product));
+    return all;
+}
+
+Error refusal_of(const BusConfig& config, const std::vector<FoundSlave>& there) {
+    std::vector<std::unique_ptr<BusSlave>> slaves;
+    const auto matched = match(config, there, slaves);
+    return matched ? Error{} : matched.error();
+}
+
+// Left out in the middle: those behind it stand one place nearer, and none of them is a wrong device.
+TEST(Match, ASlaveLeftOutInTheMiddleIsNamedAndNobodyBehindIt) {
+    const auto error = refusal_of(line_of({10, 20, 30, 40}), cable_of({10, 30, 40}));
+    EXPECT_EQ(error.code, "bus.missing_slave");
+    EXPECT_EQ(error.subject, "slave 'b' (dev)");
+    EXPECT_THAT(error.what, HasSubstr("3 of 4 configured slaves"));
+    EXPECT_THAT(error.remedy, HasSubstr("between slave 0 and slave 1"));
+    EXPECT_EQ(refusal_of(line_of({10, 20, 30}), cable_of({20, 30})).subject, "slave 'a' (dev)") << "the first";
+    EXPECT_EQ(refusal_of(line_of({10, 20, 30}), cable_of({10, 20})).subject, "slave 'c' (dev)") << "the last";
+}
+
+// a and b are alike, and one of them is gone: which, the bus cannot tell.
+TEST(Match, OfSlavesThatAreAlikeNoneIsPickedOut) {
+    const auto error = refusal_of(line_of({5, 10, 10, 30}), cable_of({5, 10, 30}));
+    EXPECT_EQ(error.code, "bus.missing_slave");
+    EXPECT_EQ(error.subject, "bus");
+    EXPECT_THAT(error.what, HasSubstr("1 of slave 'b' (dev), slave 'c' (dev) not on the cable"));
+}
+
+TEST(Match, SeveralLeftOutInARowAreNamed) {
+    const auto error = refusal_of(line_of({10, 20, 30, 40}), cable_of({10, 40}));
+    EXPECT_EQ(error.subject, "bus");
+    EXPECT_THAT(error.what, HasSubstr("slave 'b' (dev), slave 'c' (dev) are not on the cable"));
+}
+
+TEST(Match, ASlaveTooManyInTheMiddleIsNamedAndNobodyBehindIt) {
+    const auto error = refusal_of(line_of({10, 20, 30}), cable_of({10, 99, 20, 30}));
+    EXPECT_EQ(error.code, "bus.unexpected_slave");
+    EXPECT_EQ(error.subject, "slave 1");
+    EXPECT_THAT(error.what, HasSubstr("product 00000063h"));
+    EXPECT_EQ(refusal_of(line_of({10, 20}), cable_of({99, 10, 20})).subject, "slave 0") << "in front of all";
+}
+
+// One missing and another one wrong is no shift: the plain comparison says what it sees first.
+TEST(Match, WhatIsNoShiftIsComparedPlaceByPlace) {
+    const auto error = refusal_of(line_of({10, 20, 30, 40}), cable_of({10, 99, 40}));
+    EXPECT_EQ(error.code, "bus.wrong_identity");
+    EXPECT_EQ(error.subject, "slave 1 'b' (dev)");
+}
+
 TEST(Match, AForeignDeviceIsNoQuestionOfOrder) {
     BusConfig config;
     config.slaves = {wanted("a", 10), wanted("b", 20)};

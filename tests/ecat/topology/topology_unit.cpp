@@ -84,6 +84,19 @@ TEST(Topology, EntryThroughAnotherPort) {
     EXPECT_EQ(tree->slaves[1].entry_port, 1u);
 }
 
+// master -- A -- 1[B]0 -- C -- D: the frame leaves B through its port 0 before B processes it. So B comes last, behind a line A C D.
+TEST(Topology, ASlaveInTheLineWithItsPlugsExchangedIsNamed) {
+    const auto tree = build_topology(std::vector{ports({0, 1}), ports({0, 1}), ports({0}), ports({0, 1})});
+    ASSERT_FALSE(tree);
+    EXPECT_EQ(tree.error().code, "bus.plugs_exchanged");
+    EXPECT_EQ(tree.error().subject, "slave 3");
+    EXPECT_THAT(tree.error().what, HasSubstr("in its port 1 (OUT)"));
+    // Two of them, or one that leads nowhere, are something else.
+    EXPECT_EQ(build_topology(std::vector{ports({0}), ports({0, 1}), ports({0, 1})}).error().code, "bus.topology");
+    EXPECT_EQ(build_topology(std::vector{ports({0}), ports({0})}).error().code, "bus.topology");
+    EXPECT_EQ(build_topology(std::vector{ports({0}), ports({1, 2})}).error().code, "bus.topology");
+}
+
 TEST(Topology, OpenPortWithoutSlaveIsNamed) {
     const auto tree = build_topology(std::vector{ports({0, 1, 3}), ports({0})});
     ASSERT_FALSE(tree);
