@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "axes/axis/error_reaction.hpp"
+#include "axes/axis/load_config.hpp"
 #include "axes/homing/coded_marks.hpp"
 #include "core/result.hpp"
 #include "core/time.hpp"
@@ -187,27 +188,6 @@ struct BrakeConfig {
     Duration release{};                  ///< from the word to open it until it is open: motion waits for it
     Duration engage{};                   ///< from the word to close it until it holds: power waits for it
     bool release_without_power = false;  ///< MC_SetBrake may open it while nothing else holds the load
-};
-
-/// Two drives that move one portal: how far they may be apart.
-struct GantryConfig {
-    bool on = false;
-    double warning = 0;          ///< u of skew: shown; 0 = never
-    double error = 0;            ///< u of skew, > 0: the axis stops
-    double square_velocity = 0;  ///< u/s at which homing squares the portal by the sides' switches; 0 = it does not
-    double square_offset = 0;    ///< u that the follower's switch lies further than the leader's where the portal is square
-};
-
-/// A second encoder, at the load: an input of the machine says its counts.
-struct LoadEncoderConfig {
-    bool on = false;
-    std::uint16_t input = 0xFFFF;                   ///< index of the input point; the machine puts it in
-    double counts_per_unit = 0;                     ///< > 0
-    bool inverted = false;                          ///< it counts against the axis' sense
-    std::uint8_t bits = 32;                         ///< of its counter, which begins anew beyond them; 8 to 64
-    double tolerance = 0;                           ///< u, > 0: motor and load may differ by it
-    Duration time = std::chrono::milliseconds{10};  ///< longer than this: alarm
-    bool shown = false;                             ///< the axis' actual position is the load's
 };
 
 /// How long an axis waits for what it needs.

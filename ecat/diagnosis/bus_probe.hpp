@@ -14,6 +14,7 @@
 #include "ecat/bringup/bus.hpp"
 #include "ecat/master.hpp"
 #include "ecat/script/script.hpp"
+#include "ecat/script/waits.hpp"
 
 namespace taktwerk::ecat {
 

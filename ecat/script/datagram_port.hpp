@@ -19,6 +19,7 @@
 #include "core/result.hpp"
 #include "ecat/exchange/acyclic_channel.hpp"
 #include "ecat/script/script.hpp"
+#include "ecat/script/waits.hpp"
 
 namespace taktwerk::ecat {
 

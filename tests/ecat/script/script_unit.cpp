@@ -1,4 +1,5 @@
 #include "ecat/script/script.hpp"
+#include "ecat/script/waits.hpp"
 
 #include <gtest/gtest.h>
 
