@@ -29,9 +29,9 @@
 #include "core/result.hpp"
 #include "core/time.hpp"
 #include "ecat/bus_config.hpp"
-#include "ecat/mailbox/emergency_log.hpp"
 #include "ecat/cycle/bus_health.hpp"
 #include "ecat/cycle/bus_phase.hpp"
+#include "ecat/mailbox/emergency_log.hpp"
 #include "ecat/transport/transport.hpp"
 
 namespace taktwerk::ecat {

@@ -78,10 +78,10 @@ Result<Descriptor> open_packet_socket(std::string_view interface) {
     return socket_error(interface, "opening a packet socket");
 }
 
-bool bind_packet_socket(int socket, const NetworkInterface& to, std::uint16_t ethertype) noexcept {
+bool bind_packet_socket(int socket, const NetworkInterface& to, std::uint16_t protocol) noexcept {
     sockaddr_ll address{};
     address.sll_family = AF_PACKET;
-    address.sll_protocol = htons(ethertype);
+    address.sll_protocol = htons(protocol);
     address.sll_ifindex = static_cast<int>(to.index);
     return ::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
 }

@@ -24,8 +24,8 @@ struct NetworkInterface {
 /// Whole frames; receives nothing until bind_packet_socket(). Errors: transport.no_privilege, transport.socket.
 [[nodiscard]] Result<Descriptor> open_packet_socket(std::string_view interface);
 
-/// From now on it sends by `to` and receives the frames of one ethertype, or all (ETH_P_ALL). False: errno says why.
-[[nodiscard]] bool bind_packet_socket(int socket, const NetworkInterface& to, std::uint16_t ethertype) noexcept;
+/// From now on it sends by `to` and receives the frames of one protocol, an ethertype, or all (ETH_P_ALL). False: errno says why.
+[[nodiscard]] bool bind_packet_socket(int socket, const NetworkInterface& to, std::uint16_t protocol) noexcept;
 
 /// Switched on, with a partner at the other end. `socket`: any. One system call.
 [[nodiscard]] bool has_carrier(int socket, std::string_view interface) noexcept;

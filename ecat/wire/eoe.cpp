@@ -13,9 +13,8 @@ namespace {
 constexpr unsigned type_mask = 0x000F, port_shift = 4, last_fragment = 1u << 8, time_appended = 1u << 9, time_request = 1u << 10;
 constexpr unsigned number_mask = 0x3F, blocks_shift = 6, frame_shift = 12;
 
-// What of a Set IP request is given.
-constexpr std::uint32_t has_mac = 1u << 0, has_ip = 1u << 1, has_subnet = 1u << 2, has_gateway = 1u << 3, has_dns = 1u << 4,
-                        has_name = 1u << 5;
+// What of a Set IP request is given: MAC, then IP, subnet, gateway and DNS in a row, then the name.
+constexpr std::uint32_t has_mac = 1u << 0, has_ip = 1u << 1, has_name = 1u << 5;
 constexpr std::size_t flags_at = eoe_header_size, mac_at = flags_at + 4, ip_at = mac_at + 6, name_at = ip_at + 16, name_size = 32;
 
 std::uint16_t head(EoeType type, std::uint8_t port) noexcept {

@@ -117,7 +117,7 @@ TEST(BusCommandOnACable, ManySlavesReachOp) {
         for (int i = 0; i < count; ++i)
             slaves_of_file += fmt::format("    - {{ name: t{}, terminal: {{ inputs: 32, outputs: 32 }} }}\n", i);
         std::ofstream(file) << "version: 1\nname: long\ncycle: " << (count > 200 ? 10 : 4) << " ms\nbus:\n  interface: twk0\n  slaves:\n"
-                            << slaves_of_file << "simulation: { supervision: relaxed }\n";
+                            << slaves_of_file << "simulation: { supervision: relaxed }\nhmi: { socket: '" << file << ".socket' }\n";
         Child slaves(cable.at_slaves({taktwerk, "sim", file, "--nic", "twk1"}));
         ASSERT_TRUE(slaves.says("slaves of 'long'", 20s)) << slaves.text();
         std::string said;

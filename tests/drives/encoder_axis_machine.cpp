@@ -283,9 +283,10 @@ TEST(EncoderAxis, WhatDoesNotFitIsSaid) {
               "axis.drive_axis_missing: slave 'both' has 2 encoders: which one is meant?. add `axis:`, 1 to 2");
     EXPECT_EQ(wheel_problem("    slave: both\n    axis: 3\n"),
               "axis.drive_axis: slave 'both' has 2 encoders, there is no 3. choose 1 to 2");
-    EXPECT_THAT(wheel_problem("    slave: saw_drive\n    channel: ai1\n"),
-                HasSubstr("`channel`, `object` and `counter_bits` are of an axis that only measures, at a terminal. write `encoder: true`, and "
-                          "the terminal that counts as its `slave`"));
+    EXPECT_THAT(
+        wheel_problem("    slave: saw_drive\n    channel: ai1\n"),
+        HasSubstr("`channel`, `object` and `counter_bits` are of an axis that only measures, at a terminal. write `encoder: true`, and "
+                  "the terminal that counts as its `slave`"));
     EXPECT_THAT(wheel_problem("    slave: saw_drive\n    object: 60E4h:01\n"), HasSubstr("object 60E4h:01 (60E4h:01) is not in the TxPDO"));
     EXPECT_THAT(wheel_problem(turning + "    counter_bits: 24\n"),
                 HasSubstr("'position1' has 16 bits. write `counter_bits: 16`, or fewer"));
