@@ -50,6 +50,31 @@ Result<void> locate_mailbox(Bus& bus, BusSlave& slave) {
 
 }  // namespace
 
+void place_mailboxes(BusSlave& slave, SiiMailbox out, SiiMailbox in) {
+    auto& mailbox = slave.mailbox;
+    mailbox.subject = slave.subject;
+    mailbox.station = slave.found.station;
+    mailbox.slave = slave.index;
+    mailbox.out_start = out.start;
+    mailbox.out_size = out.size;
+    mailbox.in_start = in.start;
+    mailbox.in_size = in.size;
+    mailbox.out_sm = 0;
+    mailbox.in_sm = 1;
+}
+
+Script<Result<bool>> find_mailboxes(Bus& bus, BusSlave& slave) {
+    const Reply reply = co_await bus.port.fprd(slave.found.station, reg::sync_manager, 2 * SyncManager::size);
+    if (!reply.ok()) co_return unanswered(slave.subject, "its mailbox sync managers (0800h)", reply);
+    const std::span<const std::byte> bytes{reply.data};
+    const SyncManager out = decode_sync_manager(bytes.first<SyncManager::size>());
+    const SyncManager in = decode_sync_manager(bytes.subspan<SyncManager::size, SyncManager::size>());
+    if (!out.enabled() || !in.enabled() || !out.is_mailbox() || !in.is_mailbox()) co_return false;
+    place_mailboxes(slave, {out.start, out.length}, {in.start, in.length});
+    slave.mailbox.repeat_toggle = (in.activate & SyncManager::repeat_request) != 0;
+    co_return true;
+}
+
 Script<Result<void>> write_sync_manager(Bus& bus, BusSlave& slave, std::uint8_t number, SyncManager registers) {
     std::vector<std::byte> bytes(SyncManager::size);
     encode(registers, std::span<std::byte, SyncManager::size>{bytes});

@@ -13,6 +13,11 @@ namespace taktwerk::ecat {
 /// bus.notes, never an error.
 [[nodiscard]] Script<Result<void>> compare_identity(Bus& bus, BusSlave& slave);
 
+/// Its mailboxes are sync managers 0 and 1, at `out` and `in`: nothing is written to the slave.
+void place_mailboxes(BusSlave& slave, SiiMailbox out, SiiMailbox in);
+/// As the slave's own sync managers 0 and 1 say, whoever set them up; false: they are no mailboxes. Error bus.no_slave, bus.no_frame.
+[[nodiscard]] Script<Result<bool>> find_mailboxes(Bus& bus, BusSlave& slave);
+
 /// Writes one sync manager. Error bus.no_slave, bus.no_frame.
 [[nodiscard]] Script<Result<void>> write_sync_manager(Bus& bus, BusSlave& slave, std::uint8_t number, SyncManager registers);
 

@@ -1,13 +1,10 @@
 #include "ecat/diagnosis/mailbox_access.hpp"
 
-#include <array>
-
 #include <fmt/format.h>
 
 #include "ecat/bringup/al_control.hpp"
-#include "ecat/bringup/slave_setup.hpp"
+#include "ecat/bringup/mailbox_setup.hpp"
 #include "ecat/mailbox/take_over.hpp"
-#include "ecat/wire/registers.hpp"
 
 namespace taktwerk::ecat {
 
@@ -37,26 +34,13 @@ Script<Result<void>> open_mailbox_for(Bus& bus, BusSlave& slave, MailboxType pro
         co_return Error{code, slave.subject, fmt::format("is in BOOT: it takes firmware, and speaks no {}", name(protocol)),
                         "take it to INIT, then try again"};
 
-    const Reply reply = co_await bus.port.fprd(slave.found.station, reg::sync_manager, 2 * SyncManager::size);
-    if (!reply.ok()) co_return unanswered(slave.subject, "its mailbox sync managers (0800h)", reply);
-    const std::span<const std::byte> bytes{reply.data};
-    const SyncManager out = decode_sync_manager(bytes.first<SyncManager::size>());
-    const SyncManager in = decode_sync_manager(bytes.subspan<SyncManager::size, SyncManager::size>());
-    if (!out.enabled() || !in.enabled() || !out.is_mailbox() || !in.is_mailbox())
+    const Result<bool> found = co_await find_mailboxes(bus, slave);
+    if (!found) co_return found.error();
+    if (!*found)
         co_return Error{code, slave.subject, "its mailbox sync managers are not set up, although it is beyond INIT",
                         "take it to INIT first: taktwerk bus state init"};
-    auto& mailbox = slave.mailbox;
-    mailbox.subject = slave.subject;
-    mailbox.station = slave.found.station;
-    mailbox.out_start = out.start;
-    mailbox.out_size = out.length;
-    mailbox.in_start = in.start;
-    mailbox.in_size = in.length;
-    mailbox.out_sm = 0;
-    mailbox.in_sm = 1;
-    mailbox.repeat_toggle = (in.activate & SyncManager::repeat_request) != 0;
     if (protocol == MailboxType::coe) co_return Result<void>{};  // read_object() and write_object() ask twice
-    co_return co_await take_over(bus.port, mailbox);
+    co_return co_await take_over(bus.port, slave.mailbox);
 }
 
 Script<Result<std::vector<std::byte>>> read_object(Bus& bus, BusSlave& slave, std::uint16_t index, std::uint8_t sub, SdoAccess access) {

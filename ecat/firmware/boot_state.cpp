@@ -15,20 +15,6 @@ namespace {
 
 constexpr Duration return_poll = std::chrono::milliseconds{20};
 
-/// Its mailbox as sync managers 0 and 1 say.
-void take_mailboxes(BusSlave& slave, SiiMailbox out, SiiMailbox in) {
-    auto& mailbox = slave.mailbox;
-    mailbox.subject = slave.subject;
-    mailbox.station = slave.found.station;
-    mailbox.slave = slave.index;
-    mailbox.out_start = out.start;
-    mailbox.out_size = out.size;
-    mailbox.in_start = in.start;
-    mailbox.in_size = in.size;
-    mailbox.out_sm = 0;
-    mailbox.in_sm = 1;
-}
-
 Script<Result<void>> set_up_mailbox(Bus& bus, BusSlave& slave, std::uint8_t number, SiiMailbox where, std::uint8_t control) {
     SyncManager sm;
     sm.activate = SyncManager::enable;
@@ -40,16 +26,11 @@ Script<Result<void>> set_up_mailbox(Bus& bus, BusSlave& slave, std::uint8_t numb
 
 /// Left in BOOT by an update that broke off: its mailboxes stand in its sync managers.
 Script<Result<void>> stay_in_boot(Bus& bus, BusSlave& slave) {
-    const Reply reply = co_await bus.port.fprd(slave.found.station, reg::sync_manager, 2 * SyncManager::size);
-    if (!reply.ok()) co_return unanswered(slave.subject, "its mailbox sync managers (0800h)", reply);
-    const std::span<const std::byte> bytes{reply.data};
-    const SyncManager out = decode_sync_manager(bytes.first<SyncManager::size>());
-    const SyncManager in = decode_sync_manager(bytes.subspan<SyncManager::size, SyncManager::size>());
-    if (!out.enabled() || !in.enabled() || !out.is_mailbox() || !in.is_mailbox())
-        co_return Error{"foe.no_boot", slave.subject, "is in BOOT without mailboxes", "take it to INIT first: taktwerk bus state init"};
     slave.mailbox.reset();
-    take_mailboxes(slave, {out.start, out.length}, {in.start, in.length});
-    slave.mailbox.repeat_toggle = (in.activate & SyncManager::repeat_request) != 0;
+    const Result<bool> found = co_await find_mailboxes(bus, slave);
+    if (!found) co_return found.error();
+    if (!*found)
+        co_return Error{"foe.no_boot", slave.subject, "is in BOOT without mailboxes", "take it to INIT first: taktwerk bus state init"};
     co_return co_await take_over(bus.port, slave.mailbox);
 }
 
@@ -85,7 +66,7 @@ Script<Result<void>> enter_boot(Bus& bus, BusSlave& slave) {
     const Result<void> down = co_await set_state(bus, slave, AlState::init);
     if (!down) co_return down;
     slave.mailbox.reset();
-    take_mailboxes(slave, out, in);
+    place_mailboxes(slave, out, in);
     Result<void> written = co_await clear_mailboxes(bus, slave);
     if (!written) co_return written;
     written = co_await set_up_mailbox(bus, slave, 0, out, SyncManager::usual_mailbox_out);

@@ -16,6 +16,7 @@
 #include "hmi_bridge/socket/answer_line.hpp"
 #include "hmi_bridge/socket/json_state.hpp"
 #include "hmi_bridge/socket/peer_name.hpp"
+#include "hmi_bridge/words/target_names.hpp"
 #include "hmi_bridge/words/words.hpp"
 
 namespace taktwerk::hmi {
@@ -33,18 +34,6 @@ constexpr std::array<DriveWord, 4> drive_words{{
     {"drive_clear_turns", DriveRequestKind::clear_turns},
 }};
 constexpr std::size_t most_keys = 64;  ///< of one request; no command has ten
-
-std::string_view key_of(TargetKind target) {
-    switch (target) {
-        case TargetKind::none: break;
-        case TargetKind::axis:
-        case TargetKind::axis_or_all: return "axis";
-        case TargetKind::program: return "program";
-        case TargetKind::parameter: return "parameter";
-        case TargetKind::output: return "output";
-    }
-    return "";
-}
 
 Result<nlohmann::json> parse(std::string_view line) {
     bool too_deep = false;
@@ -98,7 +87,7 @@ Result<CommandRequest> read_command(const CommandWord& entry, JsonFields& fields
     request.kind = entry.kind;
     if (entry.target != TargetKind::none) {
         const bool optional = entry.kind == CommandKind::stop || entry.kind == CommandKind::reset;
-        request.target = fields.text(key_of(entry.target), !optional);
+        request.target = fields.text(noun(entry.target), !optional);
         // An empty name is a name that somebody forgot to fill in. A stop then stops everything; a reset must not reset everything.
         if (entry.kind == CommandKind::reset && request.target.empty() && fields.has("axis") && !fields.error())
             return Error{"command.unknown_name", "", "\"axis\" is empty",

@@ -12,18 +12,6 @@
 namespace taktwerk::hmi {
 namespace {
 
-std::string_view noun(TargetKind kind) {
-    switch (kind) {
-        case TargetKind::none: break;
-        case TargetKind::axis:
-        case TargetKind::axis_or_all: return "axis";
-        case TargetKind::program: return "program";
-        case TargetKind::parameter: return "parameter";
-        case TargetKind::output: return "output";
-    }
-    return "target";
-}
-
 std::vector<std::string> names(const runtime::MachineLayout& layout, TargetKind kind) {
     std::vector<std::string> out;
     switch (kind) {
@@ -63,6 +51,18 @@ Error unknown(TargetKind kind, std::string_view name, const std::vector<std::str
 }
 
 }  // namespace
+
+std::string_view noun(TargetKind kind) {
+    switch (kind) {
+        case TargetKind::none: break;
+        case TargetKind::axis:
+        case TargetKind::axis_or_all: return "axis";
+        case TargetKind::program: return "program";
+        case TargetKind::parameter: return "parameter";
+        case TargetKind::output: return "output";
+    }
+    return "";
+}
 
 Result<std::uint16_t> find_target(const runtime::MachineLayout& layout, TargetKind kind, std::string_view name) {
     if (kind == TargetKind::none) return all_axes;

@@ -53,6 +53,16 @@ std::string wheel_problem(const std::string& wheel) {
                                : std::to_string(errors->size()) + " errors, first: " + errors->front().text();
 }
 
+/// The saw, axis 1, is enabled and goes 300 mm on. Where the wheel and it stood before.
+std::pair<double, double> saw_runs_300(TestMachine& m) {
+    m.enable(1);
+    const double wheel = m.axis(0).actual_position, saw = m.axis(1).actual_position;
+    EXPECT_EQ(m.command(OperatorAction::move_absolute, 1, false, saw + 300, 200).answer, Answer::accepted);
+    EXPECT_TRUE(m.until([&] { return std::abs(m.axis(1).actual_position - saw - 300) < 0.05 && m.axis(1).in_position; }, 10s))
+        << m.alarms();
+    return {wheel, saw};
+}
+
 // 800 mm/s are 32768 counts/s: the 16 bits of the counter begin anew each two seconds.
 TEST(EncoderAxis, CountsOnWhereTheCounterBeginsAnew) {
     auto config = wheel_machine(turning);
@@ -92,11 +102,7 @@ TEST(EncoderAxis, MayBeTurnedByAnotherAxis) {
     config.start_mode = Mode::manual;
     TestMachine m{config};
     ASSERT_TRUE(m.up());
-    m.enable(1);
-    const double wheel = m.axis(0).actual_position, saw = m.axis(1).actual_position;
-    ASSERT_EQ(m.command(OperatorAction::move_absolute, 1, false, saw + 300, 200).answer, Answer::accepted);
-    ASSERT_TRUE(m.until([&] { return std::abs(m.axis(1).actual_position - saw - 300) < 0.05 && m.axis(1).in_position; }, 10s))
-        << m.alarms();
+    const auto [wheel, saw] = saw_runs_300(m);
     EXPECT_NEAR(m.axis(0).actual_position - wheel, 300, 0.06);
 }
 
@@ -106,11 +112,7 @@ TEST(EncoderAxis, MayBeAnObjectOfADriveThatMovesAnother) {
     config.start_mode = Mode::manual;
     TestMachine m{config};
     ASSERT_TRUE(m.up());
-    m.enable(1);
-    const double wheel = m.axis(0).actual_position, saw = m.axis(1).actual_position;
-    ASSERT_EQ(m.command(OperatorAction::move_absolute, 1, false, saw + 300, 200).answer, Answer::accepted);
-    ASSERT_TRUE(m.until([&] { return std::abs(m.axis(1).actual_position - saw - 300) < 0.05 && m.axis(1).in_position; }, 10s))
-        << m.alarms();
+    const auto [wheel, saw] = saw_runs_300(m);
     EXPECT_NEAR(m.axis(0).actual_position - wheel, 320 * (m.axis(1).actual_position - saw), 0.05);
 }
 
