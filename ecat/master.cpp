@@ -287,7 +287,7 @@ std::string outcome(const Bus& bus, const BusSlave* first) {
 
 /// Who was sent out of OP, and by whom.
 std::string foreign_text(const Bus& bus) {
-    const std::string slaves = fallen_text(bus);
+    std::string slaves = fallen_text(bus);
     if (bus.link.foreign_frames.load() == 0) return slaves;
     return (slaves.empty() ? "" : slaves + "; ") + "of whom frames were heard: " + sender_text(bus.link);
 }

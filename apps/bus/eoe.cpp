@@ -34,8 +34,8 @@ Result<void> offers_ethernet(const ecat::BusSlave& slave, const BusOptions& opti
 /// Its mailbox is open, and it has its address.
 Result<void> prepare(BusSession& session, ecat::BusSlave& slave, const EoeOptions& options,
                      const std::optional<ecat::IpAndSubnet>& address) {
-    if (const auto offered = offers_ethernet(slave, *options.bus); !offered) return offered;
-    if (const auto opened = session.probe().run(ecat::open_mailbox_for(session.bus(), slave, ecat::MailboxType::eoe)); !opened)
+    if (auto offered = offers_ethernet(slave, *options.bus); !offered) return offered;
+    if (auto opened = session.probe().run(ecat::open_mailbox_for(session.bus(), slave, ecat::MailboxType::eoe)); !opened)
         return opened;
     if (!address) return {};
     ecat::EoeAddress settings;

@@ -23,7 +23,7 @@ using ecat::FirmwareStage;
 
 /// Nobody else works with these slaves: the one that is written is gone for a while, and so may be what is behind it.
 Result<void> may_write_firmware(BusSession& session, const ecat::Survey& survey, std::size_t position) {
-    if (const auto alone = session.must_be_alone("writing firmware"); !alone) return alone;
+    if (auto alone = session.must_be_alone("writing firmware"); !alone) return alone;
     if (survey.slaves.at(position).found.error) return *survey.slaves[position].found.error;
     if (survey.highest_state >= ecat::AlState::safeop)
         return Error{

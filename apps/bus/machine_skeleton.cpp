@@ -53,6 +53,17 @@ std::string slaves_text(const ecat::Survey& survey, const std::vector<Recognised
     return out;
 }
 
+/// Does the axis of an encoder use it? Then it is nobody else's.
+bool is_of_an_encoder(const config::LoadedDevice& device, const config::DeviceChannel& channel) {
+    const auto arms = [&](const axes::EncoderLatch& latch) {
+        return latch.there() && latch.arm.index == channel.index && latch.arm.sub == channel.sub;
+    };
+    return channel.direction == IoDirection::output &&
+           std::any_of(device.encoders.begin(), device.encoders.end(), [&](const axes::EncoderChannel& encoder) {
+               return arms(encoder.index) || arms(encoder.rising) || arms(encoder.falling);
+           });
+}
+
 std::string points_text(const std::vector<RecognisedSlave>& slaves, IoDirection direction) {
     std::string out;
     std::set<std::string> taken;
@@ -61,7 +72,7 @@ std::string points_text(const std::vector<RecognisedSlave>& slaves, IoDirection 
         if (slaves[n].kind != Kind::device || device == nullptr) continue;
         std::size_t count = 0;
         for (const auto& channel : device->channels) {
-            if (channel.direction != direction || !is_exchanged(*device->device, channel)) continue;
+            if (channel.direction != direction || !is_exchanged(*device->device, channel) || is_of_an_encoder(*device, channel)) continue;
             const auto of_slave = slave_name(slaves[n], n);
             if (++count > most_points) {
                 out += fmt::format("    # {}: has more channels, see its device file\n", of_slave);
@@ -77,23 +88,34 @@ std::string points_text(const std::vector<RecognisedSlave>& slaves, IoDirection 
     return out;
 }
 
+constexpr std::string_view drive_guesses =
+    "    unit: mm                                                                      # FILL IN: mm, deg, ...\n"
+    "    gearing: { counts_per_revolution: 131072, feed: 10 mm }                       # FILL IN: encoder, and way of one turn\n"
+    "    limits: { velocity: 10 mm/s, acceleration: 100 mm/s2, jerk: 1000 mm/s3 }      # slow on purpose; and position: [a, b]\n"
+    "    following_error: { window: 1 mm }                                             # FILL IN\n"
+    "    homing: { kind: set_here }                                                    # FILL IN: docs/motion\n";
+constexpr std::string_view encoder_guesses =
+    "    encoder: true                                                                 # it is read, and moves nothing\n"
+    "    unit: mm                                                                      # FILL IN: mm, deg, ...\n"
+    "    gearing: { counts_per_revolution: 4096, feed: 10 mm }                         # FILL IN: four edges a line; way of one turn\n"
+    "    limits: { velocity: 1000 mm/s, acceleration: 10000 mm/s2, jerk: 100000 mm/s3 }      # velocity: twice of it is no motion\n";
+
+/// Drives first, as they stand on the bus, then encoders.
 std::string axes_text(const std::vector<RecognisedSlave>& slaves) {
     std::string out;
     unsigned number = 0;
+    const auto add = [&](std::size_t n, std::size_t of_slave, std::size_t which, std::string_view guesses) {
+        out += fmt::format("  axis{}:\n    slave: {}\n", ++number, slave_name(slaves[n], n));
+        if (of_slave > 1) out += fmt::format("    axis: {}\n", which);
+        out += guesses;
+    };
+    for (std::size_t n = 0; n < slaves.size(); ++n)
+        if (slaves[n].kind == Kind::drive)
+            for (std::size_t axis = 1; axis <= slaves[n].axes; ++axis) add(n, slaves[n].axes, axis, drive_guesses);
     for (std::size_t n = 0; n < slaves.size(); ++n) {
-        if (slaves[n].kind != Kind::drive) continue;
-        for (unsigned axis = 1; axis <= slaves[n].axes; ++axis) {
-            out += fmt::format("  axis{}:\n    slave: {}\n", ++number, slave_name(slaves[n], n));
-            if (slaves[n].axes > 1) out += fmt::format("    axis: {}\n", axis);
-            out +=
-                "    unit: mm                                                                      # FILL IN: mm, deg, ...\n"
-                "    gearing: { counts_per_revolution: 131072, feed: 10 mm }                       # FILL IN: encoder, and way of one "
-                "turn\n"
-                "    limits: { velocity: 10 mm/s, acceleration: 100 mm/s2, jerk: 1000 mm/s3 }      # slow on purpose; and position: [a, "
-                "b]\n"
-                "    following_error: { window: 1 mm }                                             # FILL IN\n"
-                "    homing: { kind: set_here }                                                    # FILL IN: docs/motion\n";
-        }
+        if (slaves[n].kind != Kind::device || slaves[n].device == nullptr) continue;
+        const auto encoders = slaves[n].device->encoders.size();
+        for (std::size_t encoder = 1; encoder <= encoders; ++encoder) add(n, encoders, encoder, encoder_guesses);
     }
     return out;
 }

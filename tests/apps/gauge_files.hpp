@@ -57,7 +57,7 @@ bus:
     GaugeFiles& operator=(const GaugeFiles&) = delete;
 
     [[nodiscard]] std::string keep(const std::string& name, std::string_view bytes) const {
-        const auto path = folder + "/" + name;
+        auto path = folder + "/" + name;
         std::ofstream(path, std::ios::binary) << bytes;
         return path;
     }

@@ -16,7 +16,6 @@
 namespace taktwerk::runtime::testing {
 namespace {
 
-
 class Levels : public ::testing::Test {
 protected:
     void SetUp() override {
