@@ -179,8 +179,14 @@ void print_axis(const MachineConfig& config, const runtime::AxisBinding& binding
                !binding.drive.empty()  ? "drive " + binding.drive + " on a serial line"
                : binding.analog        ? "analog drive, encoder at " + binding.slave
                : binding.slave.empty() ? "virtual"
+               : binding.encoder       ? "encoder " + binding.slave
                                        : "drive " + binding.slave,
                axis.disabled ? "  LEFT OUT" : "", axis.simulated ? "  SIMULATED" : "");
+    if (binding.encoder && !binding.analog) {
+        fmt::print("           it is read, and moves nothing; one {} = {:g} counts; faster than {:g} {}/s is taken for no motion\n", u,
+                   axis.gearing.counts_per_unit(), 2 * axis.limits.velocity, u);
+        return;
+    }
     fmt::print("           velocity {:g} {}/s, acceleration {:g} {}/s2, deceleration {:g} {}/s2, jerk {}\n", axis.limits.velocity, u,
                axis.limits.acceleration, u, axis.limits.deceleration, u,
                std::isinf(axis.limits.jerk) ? std::string("unlimited") : fmt::format("{:g} {}/s3", axis.limits.jerk, u));
