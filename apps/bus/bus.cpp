@@ -36,26 +36,35 @@ bool has_problems(const ecat::Survey& survey) {
     });
 }
 
-std::string remarks_text(const ecat::Survey& survey, Colours colours) {
+namespace {
+
+std::string remark_paragraph(const std::string& subject, const std::string& what, Tone tone, Colours colours) {
+    const std::string text = wrapped(subject + ": " + what, 2);
+    return "\n" + toned(text.substr(0, subject.size()), tone, colours) + text.substr(subject.size()) + "\n";
+}
+
+}  // namespace
+
+std::string errors_text(std::span<const Error> errors, Tone tone, Colours colours) {
     std::string out;
-    const auto paragraph = [&](const std::string& subject, const std::string& what, Tone tone) {
-        const std::string text = wrapped(subject + ": " + what, 2);
-        out += "\n" + toned(text.substr(0, subject.size()), tone, colours) + text.substr(subject.size()) + "\n";
-    };
-    const auto add = [&](const Error& error, Tone tone) {
-        paragraph(error.subject.empty() ? "bus" : error.subject, error.what, tone);
+    for (const auto& error : errors) {
+        out += remark_paragraph(error.subject.empty() ? "bus" : error.subject, error.what, tone, colours);
         if (!error.remedy.empty()) out += "  -> " + wrapped(error.remedy, 5) + "\n";
-    };
-    for (const auto& error : survey.remarks) add(error, Tone::warning);
+    }
+    return out;
+}
+
+std::string remarks_text(const ecat::Survey& survey, Colours colours) {
+    std::string out = errors_text(survey.remarks, Tone::warning, colours);
     for (const auto& slave : survey.slaves) {
         if (slave.found.error) {
             Error error = *slave.found.error;
             error.subject = survey.subject(slave.found.position);
-            add(error, Tone::bad);
+            out += errors_text({&error, 1}, Tone::bad, colours);
         }
-        if (slave.mismatch) add(*slave.mismatch, Tone::bad);
+        if (slave.mismatch) out += errors_text({&*slave.mismatch, 1}, Tone::bad, colours);
     }
-    for (const auto& finding : ecat::port_findings(survey)) paragraph("cable", finding.text, Tone::warning);
+    for (const auto& finding : ecat::port_findings(survey)) out += remark_paragraph("cable", finding.text, Tone::warning, colours);
     return out;
 }
 

@@ -2,6 +2,7 @@
 // The sub-commands of `taktwerk bus`, one file each; what they share is in bus_session.hpp. Their texts are made by pure
 // functions, so that tests read them.
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -58,6 +59,8 @@ void add_operational(CLI::App& sub, BusOptions& options);
 
 /// The state as it is shown everywhere: green in OP, red with an error.
 [[nodiscard]] Cell state_cell(ecat::AlState state, bool error);
+/// One paragraph each, with the remedy.
+[[nodiscard]] std::string errors_text(std::span<const Error> errors, Tone tone, Colours colours);
 /// What is wrong with the bus as a whole and with single slaves, one paragraph each; empty: nothing.
 [[nodiscard]] std::string remarks_text(const ecat::Survey& survey, Colours colours);
 [[nodiscard]] bool has_problems(const ecat::Survey& survey);

@@ -20,6 +20,8 @@
 #include "core/clock.hpp"
 #include "ecat/bringup/presence.hpp"
 #include "ecat/diagnosis/derived_config.hpp"
+#include "ecat/diagnosis/physical_remarks.hpp"
+#include "ecat/transport/link_speed.hpp"
 
 namespace taktwerk::apps {
 
@@ -184,6 +186,9 @@ Result<ecat::Survey> BusSession::look() {
         if (auto asked = probe_->run(ecat::read_device_ids(probe_->port(), *found)); !asked) return asked.error();
     ecat::compare_with(configured_, *found);
     if (auto broken = ecat::ring_remark(*found)) found->remarks.push_back(std::move(*broken));
+    for (auto& overload : ecat::ebus_overloads(*found)) found->remarks.push_back(std::move(overload));
+    if (nic_)
+        if (auto speed = ecat::link_speed_trouble(nic_->first().interface())) found->remarks.push_back(std::move(*speed));
     if (foreign_frames_ > 0)
         found->remarks.push_back(Error{"bus.foreign_master", where_,
                                        fmt::format("another master is sending on this cable ({} frames in {} ms): {}", foreign_frames_,

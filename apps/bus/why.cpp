@@ -1,10 +1,14 @@
 // taktwerk bus why: brings the bus up as the machine would and explains, slave by slave, why it does not reach OP.
 
+#include <algorithm>
+#include <iterator>
+
 #include <fmt/format.h>
 
 #include "apps/bus/bus.hpp"
 #include "apps/terminal/count_text.hpp"
 #include "apps/terminal/exit_code.hpp"
+#include "ecat/diagnosis/physical_remarks.hpp"
 
 namespace taktwerk::apps {
 
@@ -39,11 +43,34 @@ Json facts_json(const ecat::Refusal& facts) {
     return json;
 }
 
-int explain_failure(BusSession& session, const Error& failure, const BusOptions& options) {
+/// What is wrong with the copper: a bus may reach OP with it, and fall later. The PHYs of a bus that somebody works with are not asked.
+std::vector<Error> wrong_copper(BusSession& session, const Survey& found) {
+    std::vector<Error> remarks;
+    std::copy_if(found.remarks.begin(), found.remarks.end(), std::back_inserter(remarks),
+                 [](const Error& remark) { return remark.code == "bus.ebus_overload" || remark.code == "transport.link_speed"; });
+    if (!session.must_be_alone("asking the PHYs") || found.highest_state >= ecat::AlState::safeop) return remarks;
+    const auto links = session.probe().run(ecat::wrong_links(session.probe().port(), found));
+    if (links) remarks.insert(remarks.end(), links->begin(), links->end());
+    return remarks;
+}
+
+Json errors_json(const std::vector<Error>& errors) {
+    Json all = Json::array();
+    for (const auto& error : errors) all.push_back(error_json(error));
+    return all;
+}
+
+int explain_failure(BusSession& session, const Error& failure, const std::vector<Error>& copper, const BusOptions& options) {
     Result<WhyReport> report = session.probe().run(ecat::explain(session.bus(), failure));
     if (!report) return fail(options, report.error());
-    if (options.json) print_json(why_json(*report));
-    else fmt::print("{}", why_text(session.where(), *report, colours_of_output()));
+    if (options.json) {
+        Json json = why_json(*report);
+        json["remarks"] = errors_json(copper);
+        print_json(json);
+    } else {
+        fmt::print("{}{}", why_text(session.where(), *report, colours_of_output()),
+                   errors_text(copper, Tone::warning, colours_of_output()));
+    }
     return exit_bus;
 }
 
@@ -93,11 +120,12 @@ int find_out_why(BusSession& session, const BusOptions& options) {
         if (!options.json) fmt::print("{}: the bus does not reach OP\n\n", session.where());
         return fail(options, found.error());
     }
+    const std::vector<Error> copper = wrong_copper(session, *found);
     if (auto up = session.bring_up(*found); !up) {
         const Error& failure = up.error();
         if (failure.code == "bus.not_confirmed" || failure.code == "bus.foreign_master" || failure.code == "bus.interrupted")
             return fail(options, failure);
-        return explain_failure(session, failure, options);
+        return explain_failure(session, failure, copper, options);
     }
     constexpr Duration proof = std::chrono::seconds{1};
     if (auto ran = session.probe().run_for(proof); !ran) return fail(options, ran.error());
@@ -109,15 +137,17 @@ int find_out_why(BusSession& session, const BusOptions& options) {
                         {"slaves", session.probe().master().slave_count()},
                         {"frames_sent", seen.frames_sent},
                         {"frames_lost", seen.frames_lost},
-                        {"working_counter_errors", seen.working_counter_errors}});
+                        {"working_counter_errors", seen.working_counter_errors},
+                        {"remarks", errors_json(copper)}});
     } else {
-        fmt::print("{}: the bus reaches OP with {}; there is nothing to explain.\n", session.where(),
-                   count_text(session.probe().master().slave_count(), "slave"));
+        fmt::print("{}: the bus reaches OP with {}{}\n", session.where(), count_text(session.probe().master().slave_count(), "slave"),
+                   copper.empty() ? "; there is nothing to explain." : ", but not all is well.");
         fmt::print("{} frames sent, {} lost, {} with a wrong working counter\n", seen.frames_sent, seen.frames_lost,
                    seen.working_counter_errors);
         for (const auto& note : session.probe().master().notes()) fmt::print("{}\n", wrapped(note, 2));
+        fmt::print("{}", errors_text(copper, Tone::warning, colours_of_output()));
     }
-    return exit_ok;
+    return copper.empty() ? exit_ok : exit_bus;
 }
 
 }  // namespace

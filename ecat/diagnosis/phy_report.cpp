@@ -116,19 +116,29 @@ Script<Result<std::vector<PhyReport>>> read_phys(DatagramPort& port, const Surve
     co_return reports;
 }
 
-std::string phy_finding(const PhyReport& report) {
+std::optional<Error> phy_trouble(const PhyReport& report, const std::string& subject) {
     const PhyLink link = report.link();
-    if (!report.phy || !link.up) return {};
+    if (!report.phy || !link.up || (link.megabits == 100 && link.full_duplex)) return std::nullopt;
     if (link.megabits == 0)
-        return fmt::format("port {}: a link, but the two ends have not agreed on anything: EtherCAT needs 100 Mbit full duplex at both",
-                           report.port);
-    if (link.megabits == 100 && link.full_duplex) return {};
-    std::string why;
-    if (link.negotiates && !link.agreed) why = "; the other end does not negotiate: switch its auto-negotiation on";
-    else if (!link.negotiates) why = "; auto-negotiation is off at this PHY: that is how the slave was built or strapped";
-    else why = "; the other end offers no more: what is plugged in there is no EtherCAT device, or a cable has two pairs broken";
-    return fmt::format("port {}: {} Mbit {} duplex, and EtherCAT needs 100 Mbit full duplex: frames are lost{}", report.port, link.megabits,
-                       link.full_duplex ? "full" : "half", why);
+        return Error{
+            "bus.wrong_link", subject,
+            fmt::format("port {}: a link, but the two ends have not agreed on anything: EtherCAT needs 100 Mbit full duplex at both",
+                        report.port),
+            "look what is plugged in at its other end, and at the cable"};
+    std::string remedy;
+    if (link.negotiates && !link.agreed) remedy = "the other end does not negotiate: switch its auto-negotiation on";
+    else if (!link.negotiates) remedy = "auto-negotiation is off at this PHY: that is how the slave was built or strapped";
+    else remedy = "the other end offers no more: what is plugged in there is no EtherCAT device, or a cable has two pairs broken";
+    return Error{"bus.wrong_link", subject,
+                 fmt::format("port {}: {} Mbit {} duplex, and EtherCAT needs 100 Mbit full duplex: frames are lost", report.port,
+                             link.megabits, link.full_duplex ? "full" : "half"),
+                 std::move(remedy)};
+}
+
+std::string phy_finding(const PhyReport& report) {
+    const auto trouble = phy_trouble(report, {});
+    if (!trouble) return {};
+    return report.link().megabits == 0 ? trouble->what : trouble->what + "; " + trouble->remedy;
 }
 
 }  // namespace taktwerk::ecat

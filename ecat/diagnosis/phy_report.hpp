@@ -27,7 +27,9 @@ struct PhyReport {
 [[nodiscard]] Script<Result<std::vector<PhyReport>>> read_phys(DatagramPort& port, const SurveyedSlave& slave, std::optional<unsigned> only,
                                                                std::string subject);
 
-/// What is wrong with a link for EtherCAT; empty: nothing, or there is no link. Pure.
+/// What is wrong with a link for EtherCAT (bus.wrong_link); nothing: it is well, or there is none. Pure.
+[[nodiscard]] std::optional<Error> phy_trouble(const PhyReport& report, const std::string& subject);
+/// The same in one sentence; empty: nothing.
 [[nodiscard]] std::string phy_finding(const PhyReport& report);
 
 }  // namespace taktwerk::ecat

@@ -82,6 +82,12 @@ RingTransport::Flight& RingTransport::free_flight() noexcept {
     return *oldest;
 }
 
+std::optional<Error> RingTransport::link_trouble() const {
+    for (const Transport* end : ends_)
+        if (auto trouble = end->link_trouble()) return trouble;
+    return std::nullopt;
+}
+
 bool RingTransport::send(std::span<const std::byte> frame, Instant now) noexcept {
     if (frame.size() <= index_at || frame.size() > max_frame_size) return false;
     for (auto& flight : *flights_)  // an index that is used again: nobody waits for the frame before

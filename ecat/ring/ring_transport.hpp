@@ -54,6 +54,7 @@ public:
     [[nodiscard]] MacAddress mac() const noexcept override { return ends_[0]->mac(); }
     /// One is enough.
     [[nodiscard]] bool link_up() const noexcept override { return ends_[0]->link_up() || ends_[1]->link_up(); }
+    [[nodiscard]] std::optional<Error> link_trouble() const override;
     [[nodiscard]] RingTransport* ring() noexcept override { return this; }
 
     // --- of the cycle's thread --------------------------------------------------------------------------------------------

@@ -52,6 +52,7 @@ public:
     /// one byte short, none.
     void misstate_lengths(std::uint32_t answers) noexcept { wrong_lengths_ = answers; }
     void abort_object(std::uint16_t index, std::uint8_t sub, std::uint32_t code) { sdo_.abort_object(index, sub, code); }
+    void never_toggle() noexcept { sdo_.never_toggle(); }
     void set_response_delay(Duration delay) noexcept { response_delay_ = delay; }
     [[nodiscard]] std::size_t pending() const noexcept { return queue_.size(); }
 

@@ -89,7 +89,8 @@ std::size_t SdoServer::upload_segment(const SdoMessage& request, std::span<std::
     if (request.toggle != toggle_) return abort(out, index_, sub_, sdo_abort::toggle);
     const std::size_t part = std::min(total_ - done_, out.size() - std::min(out.size(), sdo_segment_header_size));
     const bool last = done_ + part == total_;
-    const std::size_t size = encode_upload_segment_response(out, toggle_, last, std::span<const std::byte>{value_}.subspan(done_, part));
+    const auto segment = std::span<const std::byte>{value_}.subspan(done_, part);
+    const std::size_t size = encode_upload_segment_response(out, toggle_ && toggles_, last, segment);
     done_ += part;
     toggle_ = !toggle_;
     if (last) reset();

@@ -20,6 +20,8 @@ public:
 
     /// Test: every transfer of this object is aborted with `code` until it is 0 again.
     void abort_object(std::uint16_t index, std::uint8_t sub, std::uint32_t code);
+    /// Test: segments that are read all carry the toggle bit of the first.
+    void never_toggle() noexcept { toggles_ = false; }
     /// Forgets a transfer in progress.
     void reset() noexcept;
     /// `request` and `out` without the mailbox header, `out` as long as the mailbox allows. Bytes written to `out`; 0: nothing to answer.
@@ -63,7 +65,7 @@ private:
     Transfer transfer_ = Transfer::none;
     std::uint16_t index_ = 0;
     std::uint8_t sub_ = 0;
-    bool toggle_ = false;
+    bool toggle_ = false, toggles_ = true;
     bool complete_ = false;         // the download in progress
     std::vector<std::byte> value_;  // of a segmented transfer
     std::size_t done_ = 0, total_ = 0;

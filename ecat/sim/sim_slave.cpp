@@ -26,6 +26,9 @@ ControllerSettings settings_of(const DeviceDescription& description, const Slave
     settings.read_write = options.read_write;
     settings.bitwise_fmmu = options.bitwise_fmmu;
     settings.application = description.mailbox.has_value();
+    // Who takes a current from the E-bus is on it with all ports; who supplies it has its cable from the master in an RJ45.
+    constexpr std::uint8_t all_ports = 0b1111, all_but_in = 0b1110;
+    if (description.ebus_current) settings.ebus = *description.ebus_current < 0 ? all_but_in : all_ports;
     return settings;
 }
 
@@ -117,6 +120,12 @@ void SimSlave::power_off(Instant now) {
     powered_ = false;
     next_event_ = never;
     model_->power_off(now);
+}
+
+void SimSlave::leave_op(std::uint16_t al_status_code, Instant now) {
+    settle(now);
+    al_.fall_to_safeop(al_status_code, now);
+    schedule();
 }
 
 void SimSlave::process(std::span<MutableDatagram> datagrams, Instant at) noexcept {

@@ -81,6 +81,14 @@ public:
     void answer_with_wrong_lengths(std::uint32_t answers) noexcept {
         if (coe_) coe_->misstate_lengths(answers);
     }
+    /// From now on a mailbox request is answered so much later.
+    void answer_after(Duration delay) noexcept {
+        if (coe_) coe_->set_response_delay(delay);
+    }
+    /// Its firmware forgets to toggle: all segments of an SDO carry the bit of the first.
+    void never_toggle() noexcept {
+        if (coe_) coe_->never_toggle();
+    }
     /// Every SDO to this object is aborted with `code` until it is 0 again.
     void abort_object(std::uint16_t index, std::uint8_t sub, std::uint32_t code) {
         if (coe_) coe_->abort_object(index, sub, code);
@@ -95,6 +103,8 @@ public:
     [[nodiscard]] bool runs_without_required_sync0() const noexcept { return description_->dc.required && !controller_.sync0_active(); }
     /// Entering `to` from below fails with this AL status code until it is 0 again.
     void refuse_state(EsmState to, std::uint16_t al_status_code) { al_.refuse_state(to, al_status_code); }
+    /// Its application takes it from OP to SAFEOP with this AL status code.
+    void leave_op(std::uint16_t al_status_code, Instant now);
     /// SYNC0 pulses in OP that found no new outputs.
     [[nodiscard]] std::uint32_t missed_outputs() const noexcept { return missed_outputs_; }
 

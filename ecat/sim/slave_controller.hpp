@@ -37,6 +37,7 @@ struct ControllerSettings {
     bool bitwise_fmmu = true;       ///< FMMUs map bits; without, their bit fields are ignored: whole bytes
     bool application = true;        ///< a processor behind it serves the PDI and feeds the PDI watchdog
     std::uint8_t sockets = 0b0011;  ///< bit p: port p exists; IN and OUT
+    std::uint8_t ebus = 0;          ///< bit p: port p is an E-bus connector, without a PHY
 };
 
 /// What happened since the application last asked.

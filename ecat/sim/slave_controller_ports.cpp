@@ -9,7 +9,7 @@ namespace taktwerk::ecat::sim {
 
 namespace {
 
-constexpr unsigned mii = 3;                                         // port descriptor 0007h, two bits a port; 0: the port does not exist
+constexpr unsigned mii = 3, ebus = 2;                               // port descriptor 0007h, two bits a port; 0: the port does not exist
 constexpr std::uint16_t temporary_loops = 1u << 1;                  // of 0100h
 constexpr Duration temporary_loops_last = std::chrono::seconds{1};  // ETG.1000.4: about one second
 
@@ -23,7 +23,7 @@ void SlaveController::add_socket(unsigned p) noexcept {
 void SlaveController::show_sockets() noexcept {
     unsigned descriptor = 0;
     for (unsigned p = 0; p < ports_per_slave; ++p)
-        if ((settings_.sockets & (1u << p)) != 0) descriptor |= mii << (2 * p);
+        if ((settings_.sockets & (1u << p)) != 0) descriptor |= ((settings_.ebus & (1u << p)) != 0 ? ebus : mii) << (2 * p);
     memory_[reg::port_descriptor] = static_cast<std::byte>(descriptor);
 }
 

@@ -75,7 +75,7 @@ void SlaveController::power_on(Instant now, std::int64_t local, std::int32_t dri
     eeprom_.power_on();
     if (eeprom_.checksum_ok()) load_configuration_words();
     show_eeprom();
-    mii_.power_on(settings_.sockets);
+    mii_.power_on(static_cast<std::uint8_t>(settings_.sockets & ~settings_.ebus));
     show_mii();
 }
 

@@ -63,7 +63,8 @@ struct Topology {
 /// `dl_status`: 0110h of each slave, in the order of their positions. A slave's entry port is port 0 where that is open, else
 /// its lowest open port in the processing order (the cable goes into the wrong socket: order of positions is then not the
 /// wiring's, and the delays are still right).
-/// Errors: bus.topology (a slave has no open port, more slaves than open ports, or open ports without a slave behind them: the
+/// Errors: bus.plugs_exchanged (the last to process frames has a way in and a way on, and the others are a whole tree without it: one
+/// slave in the line is entered through its OUT socket), bus.topology (a slave has no open port, more slaves than open ports, or open ports without a slave behind them: the
 /// bus changed while it was read, or a cable is half plugged). Names the position.
 [[nodiscard]] Result<Topology> build_topology(std::span<const std::uint16_t> dl_status);
 

@@ -184,6 +184,12 @@ void RawSocketTransport::refresh() noexcept {
 
 void RawSocketTransport::read_carrier() noexcept { link_up_.store(has_carrier(socket_, interface_), std::memory_order_relaxed); }
 
+std::optional<Error> RawSocketTransport::link_trouble() const {
+    if (link_up()) return std::nullopt;
+    const auto found = find_interface(interface_);
+    return found ? std::nullopt : std::optional{found.error()};
+}
+
 void RawSocketTransport::read_drops() noexcept {
     tpacket_stats counted{};  // since the last call
     socklen_t size = sizeof counted;

@@ -56,6 +56,8 @@ public:
     /// As of the last refresh().
     [[nodiscard]] bool link_up() const noexcept override { return link_up_.load(std::memory_order_relaxed); }
 
+    [[nodiscard]] std::optional<Error> link_trouble() const override;
+
     /// Asks the kernel for carrier, clock distance and statistics. From one thread, not the cycle's: it makes system calls
     /// that the cycle may not make.
     void refresh() noexcept;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "core/result.hpp"
 #include "core/time.hpp"
 #include "ecat/wire/frame.hpp"
 
@@ -32,6 +33,8 @@ public:
     [[nodiscard]] virtual MacAddress mac() const noexcept = 0;
     /// False: no carrier. Cheap, real-time safe.
     [[nodiscard]] virtual bool link_up() const noexcept = 0;
+    /// Why there is no link, where the interface itself is the reason and no cable: switched off, renamed, gone. Not real-time.
+    [[nodiscard]] virtual std::optional<Error> link_trouble() const { return std::nullopt; }
     /// Itself where two interfaces are one ring (ecat/ring/), for whoever has to know; nullptr otherwise.
     [[nodiscard]] virtual RingTransport* ring() noexcept { return nullptr; }
 };
