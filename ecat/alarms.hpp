@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "core/alarm.hpp"
 
@@ -36,6 +37,8 @@ enum class BusAlarm : AlarmId {
     cut_off_from_reference = 0x1023,
     cable_errors = 0x1024,
     cable_loses_link = 0x1025,
+    sync_unit_not_exchanged = 0x1028,
+    sync_unit_dropped_out = 0x1029,
     foreign_master = 0x1030,
     slave_emergency = 0x1040,
 };
@@ -52,21 +55,37 @@ inline constexpr std::array bus_alarms{
               "drives stay without power: they never reached OP"},
     AlarmInfo{id(BusAlarm::link_down), "link_down", "No link on the EtherCAT port", "EtherCAT 网口无连接",
               "cable pulled, first slave without power, or network port disabled",
-              "check the cable between the controller and the first slave", ResetRule::acknowledge, Reaction::stop_machine,
-              "drives stop by their SM watchdog"},
+              "read what stands with the port, where it is the reason; else check the cable between the controller and the first slave",
+              ResetRule::acknowledge, Reaction::stop_machine, "drives stop by their SM watchdog"},
     AlarmInfo{id(BusAlarm::frames_lost), "frames_lost", "{a} bus cycles in a row without an answer", "连续 {a} 个总线周期无应答",
-              "this computer is too late for the cycle, another master disturbs, a cable or connector is defect, or a slave lost power",
-              "look for late_wakeups and foreign_master first; then check cables and the slaves' error counters", ResetRule::acknowledge,
-              Reaction::stop_machine, "drives stop by their SM watchdog or SYNC0 supervision"},
+              "a cable or connector is defect, a slave lost power, or answers come back after their cycle",
+              "check cables and the slaves' error counters; where another alarm of the machine or the bus stands beside it, that one first",
+              ResetRule::acknowledge, Reaction::stop_machine, "drives stop by their SM watchdog or SYNC0 supervision"},
     AlarmInfo{id(BusAlarm::ring_broken), "ring_broken", "The ring is broken: {a} slaves are reached from one end, {b} from the other",
               "环网断开：一端可达 {a} 个从站，另一端可达 {b} 个从站",
               "a cable is pulled or broken, or a slave lost power; all slaves that have power run on",
               "mend the cable at the place named before a second one breaks: that one would take slaves away", ResetRule::acknowledge,
               Reaction::warn, ""},
     AlarmInfo{id(BusAlarm::working_counter_wrong), "working_counter_wrong", "Process data of the slave was not exchanged for {a} cycles",
-              "从站过程数据已 {a} 个周期未交换", "the slave, or one that shares its sync unit, does not take part",
-              "look for another alarm of the slave; check its power and state", ResetRule::acknowledge, Reaction::stop_machine,
-              "the drive stops by its SM watchdog"},
+              "从站过程数据已 {a} 个周期未交换",
+              "the slave answers and does not take part: its sync managers or FMMUs are not as they were written, or its application "
+              "holds them",
+              "read what stands behind this text: it is set up again by itself; when it comes again power-cycle the slave",
+              ResetRule::acknowledge, Reaction::stop_machine, "the drive stops by its SM watchdog"},
+    AlarmInfo{id(BusAlarm::sync_unit_not_exchanged), "sync_unit_not_exchanged",
+              "Process data of {a} slaves that share a sync unit was not exchanged for {b} cycles",
+              "共用同步单元的 {a} 个从站过程数据已 {b} 个周期未交换",
+              "one of them does not take part, and their working counter does not say which: each is being asked",
+              "read the alarm that follows; where none does, take `sync_unit` away from the slaves that are named: then each has a working "
+              "counter of its own",
+              ResetRule::self_clearing, Reaction::stop_machine, "the drives stop by their SM watchdogs"},
+    AlarmInfo{id(BusAlarm::sync_unit_dropped_out), "sync_unit_dropped_out",
+              "Process data of {a} slaves that share a sync unit was not exchanged for {b} cycles; the others run on",
+              "共用同步单元的 {a} 个从站过程数据已 {b} 个周期未交换，其余从站继续运行",
+              "one of them does not take part, and their working counter does not say which: each is being asked",
+              "read the alarm that follows; where none does, take `sync_unit` away from the slaves that are named: then each has a working "
+              "counter of its own",
+              ResetRule::self_clearing, Reaction::warn, "the drives stop by their SM watchdogs"},
     AlarmInfo{id(BusAlarm::slave_lost), "slave_lost", "The slave fell silent", "从站失去应答",
               "power lost, cable pulled, or its controller was reset",
               "check its power and cable; it is taken back to OP by itself when it returns", ResetRule::acknowledge, Reaction::stop_machine,
@@ -139,8 +158,9 @@ inline constexpr std::array bus_alarms{
               "the slave was replaced, or cables were swapped; its configuration says on_loss: stop_own_axes", "put the right device there",
               ResetRule::acknowledge, Reaction::warn, "the slave is gone: its drive stopped by its SM watchdog"},
     AlarmInfo{id(BusAlarm::dc_out_of_sync), "dc_out_of_sync", "Distributed clocks differ by {a:ns}", "分布式时钟偏差 {a:ns}",
-              "reference times are lost, or a slave's clock is defective", "check the reference slave and lost frames",
-              ResetRule::self_clearing, Reaction::warn, "drives supervise SYNC0 themselves"},
+              "the clock of the slave that is named is defective or jumped, or reference times are lost",
+              "power-cycle the slave that is named; where it comes again and no frames are lost, replace it", ResetRule::self_clearing,
+              Reaction::warn, "drives supervise SYNC0 themselves"},
     AlarmInfo{id(BusAlarm::dc_not_locked), "dc_not_locked", "The cycle is not locked to the reference clock ({a:ns} off)",
               "控制周期未与参考时钟同步（偏差 {a:ns}）", "the reference clock does not answer or jumped, or the cycle runs unevenly",
               "check the reference slave, lost frames and the cycle's lateness", ResetRule::self_clearing, Reaction::warn,
@@ -174,6 +194,29 @@ inline constexpr std::array bus_alarms{
               "look the code up in the device's manual; goes when the slave says that the error is gone, or starts anew",
               ResetRule::self_clearing, Reaction::warn, "the drive reacts by its own fault reaction"},
 };
+
+/// What was said of the same slave, or of any where the bus speaks, before it was known better: as long as it has no reason of its own (`a` is 0)
+/// its place is taken, so that one trouble stays one alarm.
+[[nodiscard]] constexpr std::optional<BusAlarm> said_before(AlarmId known_now) noexcept {
+    switch (BusAlarm{known_now}) {
+        case BusAlarm::other_device: return BusAlarm::slave_lost;
+        case BusAlarm::other_device_tolerated: return BusAlarm::slave_dropped_out;
+        case BusAlarm::slave_lost:
+        case BusAlarm::foreign_command:
+        case BusAlarm::starved_slave_left_op: return BusAlarm::slave_left_op;
+        default: return std::nullopt;
+    }
+}
+/// It may be over because it is known better: then another alarm of the bus has taken its place, and who stopped by it stopped by that.
+[[nodiscard]] constexpr bool is_followed(AlarmId alarm) noexcept {
+    switch (BusAlarm{alarm}) {
+        case BusAlarm::slaves_missing:
+        case BusAlarm::sync_unit_not_exchanged:
+        case BusAlarm::slave_lost:
+        case BusAlarm::slave_left_op: return true;
+        default: return false;
+    }
+}
 
 /// Some of them: a bit for each row of the table.
 class BusAlarmSet {

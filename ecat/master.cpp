@@ -58,7 +58,7 @@ bool signed_object(const DeviceDescription& device, const MappedEntry& entry) {
 }  // namespace
 
 struct Master::Impl {
-    Impl(Transport& transport, BusConfig configuration) : config(std::move(configuration)), cycle(transport, config) { new_bus(); }
+    Impl(Transport& port, BusConfig configuration) : transport(port), config(std::move(configuration)), cycle(port, config) { new_bus(); }
 
     /// Every start has a bus of its own: the cycle may still read slaves of the one before.
     void new_bus() {
@@ -72,6 +72,7 @@ struct Master::Impl {
     [[nodiscard]] const MappedEntry* find(std::size_t slave, std::uint16_t object, std::uint8_t sub, bool output) const noexcept;
     [[nodiscard]] Result<Signal> resolve(std::size_t slave, std::uint16_t object, std::uint8_t sub, bool output) const;
 
+    Transport& transport;
     BusConfig config;
     ProcessDataCycle cycle;
     std::vector<std::unique_ptr<Bus>> buses;
@@ -242,6 +243,12 @@ namespace {
 
 std::string code_text(std::uint16_t code) { return fmt::format("AL status code {:04X}h {}", code, al_status_info(code).text); }
 
+/// With what is to be done about it.
+std::string reason_text(std::uint16_t code) {
+    const auto remedy = al_status_info(code).remedy;
+    return remedy.empty() ? code_text(code) : fmt::format("{}: {}", code_text(code), remedy);
+}
+
 /// Who is out of OP, and the reason of the first who gave one.
 std::string fallen_text(const Bus& bus) {
     constexpr std::size_t named = 3;
@@ -312,6 +319,21 @@ std::string ring_text(const Bus& bus) {
 
 std::string with_outcome(std::string text, const std::string& outcome) { return outcome.empty() ? text : text + "; " + outcome; }
 
+/// How many slaves fell by it, and what has become of them.
+std::string victims(const Bus& bus, const AlarmFact& fact) {
+    if (fact.b <= 0) return {};
+    return with_outcome(fmt::format("{:.0f} slave{} fell by it", fact.b, fact.b == 1 ? "" : "s"), outcome(bus, nullptr));
+}
+
+/// The sync unit that this slave shares: its name, and who is in it.
+std::string unit_text(const Bus& bus, const BusSlave& first) {
+    if (first.index >= bus.plan.slaves.size() || !bus.plan.slaves[first.index].unit) return {};
+    std::string names;
+    for (const std::size_t slave : bus.plan.units[*bus.plan.slaves[first.index].unit].slaves)
+        names += (names.empty() ? "" : ", ") + bus.slaves[slave]->subject;
+    return fmt::format("sync unit '{}': {}", first.config->sync_unit, names);
+}
+
 }  // namespace
 
 std::string Master::detail(const AlarmFact& fact) const {
@@ -324,13 +346,16 @@ std::string Master::detail(const AlarmFact& fact) const {
         case BusAlarm::starved_slave_left_op:
         case BusAlarm::starved_slave_dropped_out: return fallen_text(*impl_->bus);
         case BusAlarm::link_down:
-        case BusAlarm::frames_lost:
-            return fact.b > 0 ? with_outcome(fmt::format("{:.0f} slave{} fell by it", fact.b, fact.b == 1 ? "" : "s"),
-                                             outcome(*impl_->bus, nullptr))
-                              : std::string{};
+            if (const auto trouble = impl_->transport.link_trouble())
+                return with_outcome(fmt::format("{}: {}; {}", trouble->subject, trouble->what, trouble->remedy),
+                                    victims(*impl_->bus, fact));
+            return victims(*impl_->bus, fact);
+        case BusAlarm::frames_lost: return victims(*impl_->bus, fact);
         case BusAlarm::reference_clock_lost: return reference_clock(*impl_->bus);
         case BusAlarm::dc_out_of_sync: return furthest_clock(*impl_->bus);
         case BusAlarm::ring_broken: return ring_text(*impl_->bus);
+        case BusAlarm::sync_unit_not_exchanged:
+        case BusAlarm::sync_unit_dropped_out: return fact.index < slaves.size() ? unit_text(*impl_->bus, *slaves[fact.index]) : "";
         default: break;
     }
     if (fact.source != AlarmSource::slave || fact.index >= slaves.size()) return {};
@@ -339,13 +364,15 @@ std::string Master::detail(const AlarmFact& fact) const {
         case BusAlarm::slave_left_op:
         case BusAlarm::slave_dropped_out:
             if (fact.a != 0)
-                return fmt::format("{}; it is {}", code_text(static_cast<std::uint16_t>(fact.b)),
+                return fmt::format("{}; it is {}", reason_text(static_cast<std::uint16_t>(fact.b)),
                                    is_back(*impl_->bus, slave)
                                        ? std::string{"back in OP"}
                                        : fmt::format("in {}", name(static_cast<AlState>(static_cast<std::uint8_t>(fact.a)))));
             if (fact.id == id(BusAlarm::slave_left_op))
                 return is_back(*impl_->bus, slave) ? "it is back in OP" : "its reason is being read";
             return with_outcome(connection_text(*impl_->bus, slave), is_back(*impl_->bus, slave) ? "it is back in OP" : "");
+        case BusAlarm::working_counter_wrong:
+            return with_outcome(slave.not_exchanged, is_back(*impl_->bus, slave) ? "it is back in OP" : "");
         case BusAlarm::slave_lost:
             return with_outcome(connection_text(*impl_->bus, slave), is_back(*impl_->bus, slave) ? "it is back in OP" : "");
         case BusAlarm::cable_errors:

@@ -63,6 +63,7 @@ struct BusSlave {
     std::optional<std::uint16_t> position_now;  ///< by the last census; none: not on the cable
     bool identified = true;                     ///< its EEPROM was read since it was last missed
     std::string last_trouble;                   ///< why the last attempt to get it back failed
+    std::string not_exchanged;                  ///< why its process data was not, when it was asked last; empty: it never was
 
     SlaveLink link;
 

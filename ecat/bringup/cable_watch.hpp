@@ -1,6 +1,9 @@
 #pragma once
 // Looks at the error counters of every port while the bus runs, so that a bad cable is known before it takes slaves away: what rose within the last
 // minute, and at which port. A slave that fell or came back, and a cable that was pulled, count nothing: those have alarms of their own.
+//
+// A cable that breaks raises the counters at once, and the cycle sees it with its next frame: so what a look finds counts only when some
+// frames have come back behind it, and nobody came, went or began anew since the look before.
 
 #include <array>
 #include <cstddef>
@@ -24,28 +27,36 @@ struct CableRise {
     friend bool operator==(const CableRise&, const CableRise&) = default;
 };
 
-/// What rose at one slave's ports lately. Pure.
+/// What rose at one slave's ports within a minute. Pure.
 class CableHistory {
 public:
-    static constexpr std::size_t looks = 12;      ///< that are remembered
-    static constexpr unsigned nearly_full = 200;  ///< counters stop at 255
+    static constexpr Duration span = std::chrono::seconds{5};  ///< what rises within so long is forgotten together
+    static constexpr std::size_t spans = 12;                   ///< that are remembered
+    static constexpr unsigned nearly_full = 200;               ///< counters stop at 255
 
-    /// The next look: what is more than at the last one.
-    void add(const SlaveCounters& now) noexcept;
+    /// The next look: what is more than at the last one. Times never go backwards.
+    void add(const SlaveCounters& now, Instant at) noexcept;
     /// The next look shows what is no matter of the cables: it only says where the counters stand.
-    void forget_base() noexcept { based_ = false; }
+    void forget_base() noexcept { based_ = links_based_ = false; }
+    /// The same of lost links alone.
+    void forget_links() noexcept { links_based_ = false; }
     /// They are to be cleared.
     [[nodiscard]] bool full() const noexcept;
-    [[nodiscard]] CableRise lately(unsigned port) const noexcept;
+    [[nodiscard]] CableRise lately(unsigned port, Instant now) const noexcept;
 
 private:
     struct Rise {
-        std::uint8_t lost_links = 0, errors = 0;
+        std::uint16_t lost_links = 0, errors = 0;
     };
+    struct Span {
+        std::int64_t number = -1;  ///< of the five seconds that it is about; -1: of none yet
+        std::array<Rise, ports_per_slave> ports{};
+    };
+    [[nodiscard]] Span& span_of(Instant at) noexcept;
+
     SlaveCounters base_{};
-    bool based_ = false;
-    std::array<std::array<Rise, ports_per_slave>, looks> rises_{};
-    std::size_t next_ = 0;
+    bool based_ = false, links_based_ = false;
+    std::array<Span, spans> spans_{};
 };
 
 /// Runs until it is destroyed.

@@ -7,6 +7,7 @@
 
 #include "ecat/bringup/reference_role.hpp"
 #include "ecat/dc/propagation.hpp"
+#include "ecat/dc/reference_clock.hpp"
 
 namespace taktwerk::ecat {
 
@@ -23,7 +24,7 @@ constexpr unsigned frames_per_round = 8;                       ///< reference ti
 std::int64_t nanoseconds(Instant t) noexcept { return t.time_since_epoch().count(); }
 
 /// Machine time -> system time.
-std::int64_t system_time(const Bus& bus, Instant now) noexcept { return nanoseconds(now) + bus.link.dc_offset_ns.load(); }
+std::int64_t system_time(const Bus& bus, Instant now) noexcept { return nanoseconds(now) + bus.link.dc_time.offset_ns.load(); }
 
 /// System time of a cycle start in which the slave's sync unit is exchanged, modulo its period: SYNC0 then comes at the same
 /// distance behind the frame as in every cycle.
@@ -31,7 +32,7 @@ Duration unit_phase(const Bus& bus, const BusSlave& slave, std::int64_t dc_phase
     const std::int64_t cycle = bus.config.cycle.count();
     const auto unit = bus.plan.slaves[slave.index].unit;
     const std::int64_t exchanged =
-        bus.link.first_send_ns.load() + bus.link.dc_offset_ns.load() + (unit ? bus.plan.units[*unit].phase : 0) * cycle;
+        bus.link.first_send_ns.load() + bus.link.dc_time.offset_ns.load() + (unit ? bus.plan.units[*unit].phase : 0) * cycle;
     const std::int64_t whole_cycles = (exchanged - dc_phase + cycle / 2) / cycle;
     return Duration{(dc_phase + whole_cycles * cycle) % exchange_period(bus.config, *slave.config).count()};
 }
@@ -97,7 +98,7 @@ Result<void> learn_topology(Bus& bus) {
 void fix_phase(Bus& bus) {
     if (bus.dc_phase) return;
     const std::int64_t cycle = bus.config.cycle.count();
-    bus.dc_phase = (((bus.link.send_phase_ns.load() + bus.link.dc_offset_ns.load()) % cycle) + cycle) % cycle;
+    bus.dc_phase = (((bus.link.send_phase_ns.load() + bus.link.dc_time.offset_ns.load()) % cycle) + cycle) % cycle;
     bus.link.dc_phase_ns.store(*bus.dc_phase);
 }
 
@@ -220,12 +221,27 @@ Script<Result<void>> restore_clock(Bus& bus, BusSlave& slave) {
     co_return co_await serve_as_reference(bus, slave);
 }
 
+namespace {
+
+constexpr Duration wrong_quartz_shows = std::chrono::seconds{1};
+
+/// The estimate is limited to what two quartzes cannot be apart. Where it stays there no lock will come, and the cycle is not to blame.
+Error wrong_quartz(const Bus& bus, std::int64_t drift_ppb) {
+    return Error{"bus.dc_not_locked", bus.slaves[*bus.reference]->subject,
+                 fmt::format("its clock, the reference of the bus, runs {} by {} ppm and more: two quartzes differ by 200 ppm at most",
+                             drift_ppb > 0 ? "fast" : "slow", std::abs(drift_ppb) / 1000),
+                 "replace it, or put another slave with a clock in front of it on the cable"};
+}
+
+}  // namespace
+
 Script<Result<void>> await_clocks(Bus& bus) {
     if (!bus.reference) co_return Result<void>{};
     bus.progress = "waiting for the clocks to agree";
     const std::vector<BusSlave*> clocks = slaves_with_clock(bus);
     const std::uint16_t reference = bus.slaves[*bus.reference]->found.station;
     const Instant started = co_await time();
+    Instant believable = started;
     for (;;) {
         for (unsigned i = 0; i < frames_per_round; ++i) co_await bus.port.frmw(reference, reg::dc_system_time, 8);
         const BusSlave* worst = nullptr;
@@ -244,11 +260,15 @@ Script<Result<void>> await_clocks(Bus& bus) {
         }
         bus.link.dc_difference_ns.store(worst_ns);
         const Instant now = co_await time();
-        const bool measured = bus.link.cycles.load() == 0 || bus.link.dc_measured.load();
+        const bool measured = bus.link.cycles.load() == 0 || bus.link.dc_time.measured.load();
         if (measured && worst_ns <= clock_limit.count()) {
             fix_phase(bus);
             co_return Result<void>{};
         }
+        // A reference that runs wild leaves the others behind: they are not to blame.
+        const std::int64_t drift = bus.link.dc_time.drift_ppb.load();
+        if (std::abs(drift) < ReferenceClock::largest_drift_ppb) believable = now;
+        if (now - believable >= wrong_quartz_shows) co_return wrong_quartz(bus, drift);
         if (now - started > settle_time) {
             if (worst == nullptr)
                 co_return Error{"bus.clock", bus.slaves[*bus.reference]->subject,
@@ -269,10 +289,14 @@ Script<Result<void>> await_lock(Bus& bus) {
     if (!required) co_return Result<void>{};
     bus.progress = "waiting for the cycle to lock to the reference clock";
     const Instant started = co_await time();
+    Instant believable = started;
     for (;;) {
         const DcLock lock = bus.link.dc_lock.load();
         if (lock == DcLock::locked || lock == DcLock::coasting) co_return Result<void>{};
         const Instant now = co_await pause(bus.config.cycle);
+        const std::int64_t drift = bus.link.dc_time.drift_ppb.load();
+        if (std::abs(drift) < ReferenceClock::largest_drift_ppb) believable = now;
+        if (now - believable >= wrong_quartz_shows) co_return wrong_quartz(bus, drift);
         if (now - started < lock_patience) continue;
         const std::int64_t error = bus.link.dc_phase_error_ns.load();
         const std::string what = fmt::format("the master's cycle does not lock to it: {}, {} ns off in phase", name(lock), error);

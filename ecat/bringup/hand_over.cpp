@@ -9,9 +9,10 @@ namespace taktwerk::ecat {
 
 namespace {
 
-bool exchanged_alone(const Bus& bus, std::size_t slave) {
-    if (slave >= bus.plan.slaves.size() || !bus.plan.slaves[slave].unit) return false;
-    return bus.plan.units[*bus.plan.slaves[slave].unit].slaves.size() == 1;
+std::size_t shared_unit(const Bus& bus, std::size_t slave) {
+    if (slave >= bus.plan.slaves.size() || !bus.plan.slaves[slave].unit) return FaultSlave::none;
+    const std::size_t unit = *bus.plan.slaves[slave].unit;
+    return bus.plan.units[unit].slaves.size() > 1 ? unit : FaultSlave::none;
 }
 
 /// In the order of positions, so that parents come before their children.
@@ -21,7 +22,7 @@ std::vector<FaultSlave> fault_slaves(const Bus& bus) {
         const Duration watchdog = sm_watchdog(bus.config, *slave->config) - bus.config.cycle;  // a frame had just come when the gap began
         const auto cycles = static_cast<std::uint32_t>(std::max<std::int64_t>(2, watchdog / bus.config.cycle));
         slaves.push_back({slave->index, FaultSlave::none, slave->config->on_loss, bus.reference == slave->index,
-                          slave->config->dc && slave->dc, slave->found.position, exchanged_alone(bus, slave->index), cycles, watchdog,
+                          slave->config->dc && slave->dc, slave->found.position, shared_unit(bus, slave->index), cycles, watchdog,
                           slave->found.station});
     }
     const auto position = [&](const FaultSlave& s) { return std::size_t{bus.slaves[s.index]->found.position}; };

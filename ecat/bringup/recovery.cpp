@@ -93,10 +93,11 @@ bool same_entries(const std::vector<PdoDescription>& a, const std::vector<PdoDes
     return std::ranges::equal(a, b, [](const auto& one, const auto& other) { return one.entries == other.entries; });
 }
 
-Script<bool> reads_as(Bus& bus, std::uint16_t station, std::uint16_t address, const std::vector<std::byte>& wanted, bool& changed) {
+/// Nothing: it does not answer.
+Script<std::optional<bool>> reads_as(Bus& bus, std::uint16_t station, std::uint16_t address, const std::vector<std::byte>& wanted) {
     const Reply reply = co_await bus.port.fprd(station, address, wanted.size());
-    if (reply.ok() && reply.data != wanted) changed = true;
-    co_return reply.ok();
+    if (!reply.ok()) co_return std::nullopt;
+    co_return reply.data == wanted;
 }
 
 }  // namespace
@@ -152,26 +153,28 @@ Script<Result<void>> recover(Bus& bus, BusSlave& slave) {
     co_return co_await set_state(bus, slave, AlState::op);
 }
 
-Script<Result<bool>> settings_intact(Bus& bus, BusSlave& slave) {
+Script<Result<std::string>> changed_setting(Bus& bus, BusSlave& slave) {
     const auto& plan = bus.plan.slaves[slave.index];
     const std::uint16_t station = slave.found.station;
-    bool changed = false;
+    std::string changed;
     // What the master writes of a sync manager: start, length, control; status and the slave's own bits change by themselves.
     constexpr std::size_t settings_of_sm = 5;
     for (const auto& sm : plan.sync_managers) {
         std::vector<std::byte> bytes(SyncManager::size);
         encode(sm.registers, std::span<std::byte, SyncManager::size>{bytes});
         bytes.resize(settings_of_sm);
-        const bool read = co_await reads_as(bus, station, reg::sync_manager_at(sm.number), bytes, changed);
-        if (!read) co_return not_there(slave);
+        const std::optional<bool> same = co_await reads_as(bus, station, reg::sync_manager_at(sm.number), bytes);
+        if (!same) co_return not_there(slave);
+        if (!*same && changed.empty()) changed = fmt::format("SM{}", sm.number);
     }
     for (std::size_t n = 0; n < plan.fmmus.size(); ++n) {
         std::vector<std::byte> bytes(Fmmu::size);
         encode(plan.fmmus[n], std::span<std::byte, Fmmu::size>{bytes});
-        const bool read = co_await reads_as(bus, station, reg::fmmu_at(static_cast<unsigned>(n)), bytes, changed);
-        if (!read) co_return not_there(slave);
+        const std::optional<bool> same = co_await reads_as(bus, station, reg::fmmu_at(static_cast<unsigned>(n)), bytes);
+        if (!same) co_return not_there(slave);
+        if (!*same && changed.empty()) changed = fmt::format("FMMU{}", n);
     }
-    co_return !changed;
+    co_return changed;
 }
 
 }  // namespace taktwerk::ecat

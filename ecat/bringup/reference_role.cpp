@@ -28,7 +28,7 @@ Script<bool> shows_system_time(Bus& bus, const BusSlave& slave) {
     constexpr std::int64_t believable_ns = 50'000;
     const Reply reply = co_await bus.port.fprd(slave.found.station, reg::dc_system_time, 8);
     if (!reply.ok()) co_return false;
-    const std::int64_t expected = reply.sent_at.time_since_epoch().count() + bus.link.dc_offset_ns.load();
+    const std::int64_t expected = reply.sent_at.time_since_epoch().count() + bus.link.dc_time.offset_ns.load();
     co_return std::abs(static_cast<std::int64_t>(reply.u64()) - expected) < believable_ns + bus.config.cycle.count();
 }
 

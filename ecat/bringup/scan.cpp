@@ -43,8 +43,11 @@ Script<void> open_ports(Bus& bus) {
     }
 }
 
-/// Of the very first frame nothing came back.
-Error nobody_answers() {
+/// Of the very first frame nothing came back. What else is known is whether the port has a link.
+Error nobody_answers(const Bus& bus) {
+    if (!bus.link.line.link_up.load())
+        return Error{"bus.no_link", "bus", "the network port has no link",
+                     "check the cable and that the first slave has power; its IN port shows a light when it has"};
     return Error{"bus.no_frame", "bus", "no frame came back: no EtherCAT slave answers at the other end of the cable",
                  "check that the cable goes to the IN port of the first slave, and that it is an EtherCAT device with power"};
 }
@@ -54,7 +57,7 @@ Script<Result<std::uint16_t>> reset_all(Bus& bus) {
     auto& port = bus.port;
     co_await open_ports(bus);
     const Reply first = co_await port.brd(reg::type, 1);
-    if (first.lost) co_return nobody_answers();
+    if (first.lost) co_return nobody_answers(bus);
     if (first.wkc == 0)
         co_return Error{"bus.empty", "bus", "frames come back, but no slave answered",
                         "check the power of the slaves and that the cable goes to the IN port of the first"};

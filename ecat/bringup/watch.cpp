@@ -165,9 +165,14 @@ Script<void> SlaveWatch::check_settings(Instant now) {
     const bool stale = slave_.link.age.load() > 0 && bus_.link.lost_in_a_row.load() == 0;
     if (!stale || now - settings_at_ < settings_period) co_return;
     settings_at_ = now;
-    const Result<bool> intact = co_await settings_intact(bus_, slave_);
-    if (!intact || *intact) co_return;
-    bus_.remember(slave_.subject + " has other sync managers or FMMUs than it was given: it is set up again");
+    const Result<std::string> changed = co_await changed_setting(bus_, slave_);
+    if (!changed) co_return;
+    if (changed->empty()) {
+        slave_.not_exchanged = "it is in OP, and its sync managers and FMMUs are as they were written";
+        co_return;
+    }
+    slave_.not_exchanged = *changed + " is not as it was written: something wrote to it";
+    bus_.remember(slave_.subject + ": " + slave_.not_exchanged + "; it is set up again");
     slave_.link.taken_down.store(true);
     const Reply down = co_await bus_.port.fpwr(slave_.found.station, reg::al_control, static_cast<std::uint16_t>(AlState::init));
     if (!down.ok()) co_return;

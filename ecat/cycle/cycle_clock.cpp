@@ -38,8 +38,8 @@ void CycleClock::steer(Instant now, CycleLink* link) noexcept {
     missing_ = fresh ? 0 : std::min(missing_ + 1, std::numeric_limits<std::uint32_t>::max() - 1);
     if (link == nullptr) return;
     link->dc_missing.store(missing_, std::memory_order_relaxed);
-    link->dc_offset_ns.store(reference_.offset_at(now), std::memory_order_relaxed);
-    link->dc_measured.store(reference_.measured(), std::memory_order_release);
+    link->dc_time.offset_ns.store(reference_.offset_at(now), std::memory_order_relaxed);
+    link->dc_time.measured.store(reference_.measured(), std::memory_order_release);
     link->send_phase_ns.store(*phase_, std::memory_order_relaxed);
     const std::int64_t target = link->dc_phase_ns.load(std::memory_order_relaxed);
     if (target < 0 || !reference_.settled()) {

@@ -68,15 +68,28 @@ private:
     std::atomic<std::uint64_t> word_{0};
 };
 
+/// The reference clock against machine time.
+struct ReferenceTime {
+    std::atomic<std::int64_t> offset_ns{0};  ///< reference minus machine time, at sending; smoothed
+    std::atomic<std::int64_t> drift_ppb{0};  ///< how much faster the reference runs
+    std::atomic<bool> measured{false};       ///< offset_ns is
+};
+
+/// What happened to the line as a whole: each count says that something did, also when it is over again.
+struct LineEvents {
+    std::atomic<bool> link_up{true};          ///< of the network port, now
+    std::atomic<std::uint32_t> upheavals{0};  ///< how often slaves came, went or began anew, or a ring opened or closed (Upheavals)
+    std::atomic<std::uint32_t> silences{0};   ///< how often so many frames in a row were lost that it was an alarm
+};
+
 /// Numbers between the cycle and the scripts.
 struct CycleLink {
     // Written by the cycle.
-    std::atomic<std::uint64_t> cycles{0};            ///< process data sent
-    std::atomic<std::uint32_t> good_in_a_row{0};     ///< cycles in which every datagram had its working counter
-    std::atomic<std::int64_t> send_phase_ns{0};      ///< of send(), modulo the bus cycle, smoothed
-    std::atomic<std::int64_t> first_send_ns{0};      ///< when send() was cycle 0 of the plan, had no cycle been missed since
-    std::atomic<std::int64_t> dc_offset_ns{0};       ///< reference clock minus machine time, at sending; smoothed
-    std::atomic<bool> dc_measured{false};            ///< dc_offset_ns is
+    std::atomic<std::uint64_t> cycles{0};         ///< process data sent
+    std::atomic<std::uint32_t> good_in_a_row{0};  ///< cycles in which every datagram had its working counter
+    std::atomic<std::int64_t> send_phase_ns{0};   ///< of send(), modulo the bus cycle, smoothed
+    std::atomic<std::int64_t> first_send_ns{0};   ///< when send() was cycle 0 of the plan, had no cycle been missed since
+    ReferenceTime dc_time;
     std::atomic<std::int64_t> dc_phase_error_ns{0};  ///< of the servo
     std::atomic<DcLock> dc_lock{DcLock::none};
     std::atomic<std::uint32_t> dc_missing{0};           ///< cycles since the reference's time came
@@ -92,6 +105,7 @@ struct CycleLink {
     std::atomic<std::int64_t> stall_ended_ns{0};     ///< and when it sent again; 0: it never was
     std::atomic<std::uint32_t> gap_cycles{0};        ///< so many cycles in a row were not answered when two or more last were
     std::atomic<std::int64_t> gap_ended_ns{0};       ///< and when the last of them was missed; 0: never
+    LineEvents line;
     SeenRing ring;
     // Written by the scripts.
     std::atomic<bool> supervise{false};             ///< slaves are in SAFEOP or above: wrong working counters count

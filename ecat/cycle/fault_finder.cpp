@@ -54,6 +54,20 @@ FaultFinder::FaultFinder(std::vector<FaultSlave> slaves, std::uint16_t expected,
       silence_(BusAlarm::frames_lost) {
     for (std::size_t i = 0; i < slaves_.size(); ++i) order_[slaves_[i].index] = i;
     facts_.reserve(facts_of_bus + facts_of_slave * slaves_.size());
+    std::vector<std::size_t> numbers;
+    for (std::size_t i = 0; i < slaves_.size(); ++i) {
+        auto& slave = slaves_[i];
+        if (slave.alone()) continue;
+        const auto known = std::find(numbers.begin(), numbers.end(), slave.unit);
+        const auto number = static_cast<std::size_t>(known - numbers.begin());
+        if (known == numbers.end()) {
+            numbers.push_back(slave.unit);
+            units_.emplace_back();
+        }
+        slave.unit = number;
+        units_[number].members.push_back(i);
+        units_[number].stops_machine = units_[number].stops_machine || slave.on_loss == LossPolicy::stop_machine;
+    }
 }
 
 void FaultFinder::raise(BusAlarm alarm, AlarmSource source, std::size_t index, double a, double b) noexcept {
@@ -124,6 +138,7 @@ void FaultFinder::look_at_slaves(const BusCondition& bus) noexcept {
     raise_falls(bus);
     raise_groups();
     raise_unnamed(unnamed);
+    raise_units();
     bool reference_gone = false;
     for (std::size_t i = 0; i < slaves_.size(); ++i) {
         if (slaves_[i].reference) reference_gone = states_[i].fall.now();
@@ -143,7 +158,8 @@ void FaultFinder::note_falls(const BusCondition& bus) noexcept {
     for (std::size_t i = 0; i < slaves_.size(); ++i) {
         const auto& seen = states_[i].seen;
         Fall& fall = states_[i].fall;
-        const bool unread = in_op(seen) && somebody_fell && slaves_[i].alone && stale(states_[i]) && seen.age < limit_ + naming_cycles;
+        states_[i].stale_in_op = stale(states_[i]) && (states_[i].stale_in_op || (in_op(seen) && bus.states == all_in_op));
+        const bool unread = in_op(seen) && somebody_fell && slaves_[i].alone() && stale(states_[i]) && seen.age < limit_ + naming_cycles;
         if (in_op(seen) && !unread) {
             fall = {};
             continue;
@@ -215,8 +231,9 @@ void FaultFinder::raise_falls(const BusCondition& bus) noexcept {
         if (group->count == 0) *group = {};
         group->most = std::max(group->most, group->count);
     }
+    // Who commands slaves is named with them: he is not told twice.
     const bool commanded = commanded_[0].count + commanded_[1].count > 0;
-    if (bus.seen.has<BusAlarm::foreign_master>() || (commanded && bus.foreign_heard)) raise(BusAlarm::foreign_master, AlarmSource::bus, 0);
+    if (bus.seen.has<BusAlarm::foreign_master>() && !commanded) raise(BusAlarm::foreign_master, AlarmSource::bus, 0);
     constexpr std::array starved_alarms{BusAlarm::starved_slave_left_op, BusAlarm::starved_slave_dropped_out};
     constexpr std::array commanded_alarms{BusAlarm::foreign_command, BusAlarm::foreign_command_tolerated};
     for (std::size_t policy = 0; policy < 2; ++policy) {
@@ -261,7 +278,7 @@ void FaultFinder::form_groups() noexcept {
         if (state.lost) {
             const std::size_t parent = slaves_[i].parent;
             state.gone_with = parent != FaultSlave::none && states_[parent].lost ? states_[parent].gone_with : i;
-        } else if ((in_op(state.seen) && !stale(state)) || stuck(state.seen)) {
+        } else if ((in_op(state.seen) && !stale(state)) || stuck(state.seen) || replaced(state)) {
             state.gone_with = FaultSlave::none;
         }
         if (state.gone_with == FaultSlave::none) continue;
@@ -319,14 +336,47 @@ void FaultFinder::raise_slave(std::size_t at, bool counted_out) noexcept {
         if (seen.age == 0) raise(BusAlarm::station_address_lost, AlarmSource::slave, slave.index);
         else if (stale(state) && !naming_)
             raise(tolerated ? BusAlarm::slave_dropped_out : BusAlarm::slave_lost, AlarmSource::slave, slave.index);
+    } else if (seen.presence == Presence::answers && seen.taken_down && (state.fall.now() || stale(state))) {
+        raise_not_exchanged(at);
+    } else if (seen.presence == Presence::answers && fell_unexchanged(state)) {
+        raise_not_exchanged(at);
     } else if (seen.presence == Presence::answers && state.fall.restarted) {
         raise(tolerated ? BusAlarm::slave_dropped_out : BusAlarm::slave_lost, AlarmSource::slave, slave.index);  // until it is back in OP
     } else if (seen.presence == Presence::answers && state.fall.now()) {
         raise_left_op(at);
-    } else if (stale(state) && !waits) {
-        if (tolerated) raise_left_op(at);
-        else raise(BusAlarm::working_counter_wrong, AlarmSource::slave, slave.index, seen.age);
+    } else if (stale(state) && !waits && slave.alone()) {
+        raise_not_exchanged(at);
     }
+}
+
+bool FaultFinder::fell_unexchanged(const State& state) noexcept {
+    return state.stale_in_op && state.fall.now() && (!state.fall.read || for_want_of_frames(state.fall.code));
+}
+
+bool FaultFinder::is_out(const State& state) const noexcept {
+    const auto& seen = state.seen;
+    return state.gone_with != FaultSlave::none || state.fall.now() || seen.presence == Presence::silent || seen.taken_down || stuck(seen);
+}
+
+void FaultFinder::raise_units() noexcept {
+    if (naming_) return;  // somebody is missing: probably one of them
+    for (const auto& unit : units_) {
+        std::uint32_t age = 0;
+        bool known = false;
+        for (const std::size_t at : unit.members) {
+            age = std::max(age, states_[at].seen.age);
+            known = known || is_out(states_[at]);
+        }
+        if (known || age < limit_) continue;
+        raise(unit.stops_machine ? BusAlarm::sync_unit_not_exchanged : BusAlarm::sync_unit_dropped_out, AlarmSource::bus,
+              slaves_[unit.members.front()].index, static_cast<double>(unit.members.size()), age);
+    }
+}
+
+void FaultFinder::raise_not_exchanged(std::size_t at) noexcept {
+    const auto& slave = slaves_[at];
+    if (slave.on_loss == LossPolicy::stop_own_axes) return raise_left_op(at);
+    raise(BusAlarm::working_counter_wrong, AlarmSource::slave, slave.index, states_[at].seen.age);
 }
 
 void FaultFinder::raise_left_op(std::size_t at) noexcept {

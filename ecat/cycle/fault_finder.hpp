@@ -10,6 +10,7 @@
 //   the same after frames that did not come back, although for less than the limit                 frames_lost, one for all
 //   slaves leave OP without an error of their own: somebody sent them there                       foreign_command, one for all
 //   a slave answers, but not as it should    slave_left_op, working_counter_wrong, station_address_lost, other_device, ...
+//   slaves that share a sync unit are not exchanged    sync_unit_not_exchanged, until it is known who of them is out: that one's alarm, alone
 //
 // In this order suspicion falls: on this computer, on another master, on the cable, and only then on the slave. The broadcast says at
 // once that somebody left OP and whether an error is why; who it was and the code of the error the watch reads some milliseconds later.
@@ -59,12 +60,11 @@ struct BusCondition {
     std::uint16_t slaves_answering = 0;
     std::uint32_t reference_times_missing = 0;  ///< in a row
     std::int64_t dc_difference_ns = 0;
-    BusAlarmSet seen{};          ///< what the scripts see
-    Duration stall{};            ///< so long this computer sent nothing a moment ago; 0: it was in time
-    std::uint32_t gap = 0;       ///< so many cycles in a row were not answered a moment ago; 0: no two
-    bool foreign_heard = false;  ///< a frame of another sender came in lately, be it a single one
-    std::uint16_t states = 0;    ///< OR of the AL states of all slaves, with the error bit; 0: not all of them answered
-    bool out_of_lock = false;    ///< some slave runs SYNC0, and the cycle is not locked to the reference clock
+    BusAlarmSet seen{};        ///< what the scripts see
+    Duration stall{};          ///< so long this computer sent nothing a moment ago; 0: it was in time
+    std::uint32_t gap = 0;     ///< so many cycles in a row were not answered a moment ago; 0: no two
+    std::uint16_t states = 0;  ///< OR of the AL states of all slaves, with the error bit; 0: not all of them answered
+    bool out_of_lock = false;  ///< some slave runs SYNC0, and the cycle is not locked to the reference clock
     std::int64_t dc_phase_error_ns = 0;
     RingState ring{};
     std::uint16_t reference_station = 0;  ///< whose clock is the bus' now; 0: that of FaultSlave::reference
@@ -80,10 +80,11 @@ struct FaultSlave {
     bool reference = false;             ///< its clock is the bus' clock
     bool synchronised = false;          ///< it runs SYNC0
     std::uint16_t position = 0;         ///< on the cable
-    bool alone = true;                  ///< no other slave's process data is valid or not together with its own
+    std::size_t unit = none;            ///< the sync unit that it shares with others, by any number; none: it has its own
     std::uint32_t watchdog_cycles = 2;  ///< without a frame until its watchdog of process data trips
     Duration watchdog{};                ///< the same as a time
     std::uint16_t station = 0;
+    [[nodiscard]] bool alone() const noexcept { return unit == none; }
 };
 
 class FaultFinder {
@@ -120,10 +121,16 @@ private:
     struct State {
         SlaveCondition seen;
         bool lost = false;
+        bool stale_in_op = false;                  ///< it was not exchanged while everybody was in OP: for want of frames it falls by that
         std::size_t gone_with = FaultSlave::none;  ///< the first slave behind the break that took it away; until it is back in OP
         Fall fall;
         std::size_t group = 0, largest_group = 0;  ///< slaves gone with this one, now and at most
         bool group_stops_machine = false;
+    };
+    /// Slaves whose process data is valid or not together: the working counter does not say whose is missing.
+    struct SharedUnit {
+        std::vector<std::size_t> members;  ///< in slaves_
+        bool stops_machine = false;        ///< the loss of one of them does
     };
     void raise(BusAlarm alarm, AlarmSource source, std::size_t index, double a = 0, double b = 0) noexcept;
     /// Frames, cables, slaves and the reference clock.
@@ -136,11 +143,18 @@ private:
     void form_groups() noexcept;
     void raise_groups() noexcept;
     void raise_slave(std::size_t at, bool counted_out) noexcept;
+    void raise_units() noexcept;
+    /// It fell because its process data did not reach it, although frames came back: or nothing is known that says otherwise.
+    [[nodiscard]] static bool fell_unexchanged(const State& state) noexcept;
+    /// Why the slave is not exchanged is known, and said of it.
+    [[nodiscard]] bool is_out(const State& state) const noexcept;
     void note_falls(const BusCondition& bus) noexcept;
     /// What many slaves fell by is said once.
     void raise_falls(const BusCondition& bus) noexcept;
     /// A slave that answers, but not from OP, and nothing outside of it explains that.
     void raise_left_op(std::size_t at) noexcept;
+    /// A slave that has all it needs, and does not take part; also while this master sets it up again.
+    void raise_not_exchanged(std::size_t at) noexcept;
     [[nodiscard]] Fallen* fallen_with(std::size_t at) noexcept;
     /// So many cycles without an answer, and so long without a frame of ours, explain that this slave fell.
     [[nodiscard]] std::uint32_t explaining_gap(std::size_t at) const noexcept;
@@ -149,12 +163,17 @@ private:
     [[nodiscard]] static bool lost_synchronisation(const Fall& fall) noexcept;
     /// Its way back has ended: it answers, and nothing between it and the master is the reason.
     [[nodiscard]] static bool stuck(const SlaveCondition& slave) noexcept;
+    /// Another device stands in its place, without an address: nobody is missing.
+    [[nodiscard]] bool replaced(const State& state) const noexcept {
+        return state.seen.trouble == ReturnTrouble::other_device && missing_ == 0;
+    }
     void raise_unnamed(std::size_t unnamed) noexcept;
     [[nodiscard]] bool stale(const State& state) const noexcept { return state.seen.age >= limit_; }
 
     std::vector<FaultSlave> slaves_;
     std::vector<State> states_;       ///< as slaves_
     std::vector<std::size_t> order_;  ///< configuration index -> place in slaves_
+    std::vector<SharedUnit> units_;   ///< FaultSlave::unit numbers them
     std::vector<AlarmFact> facts_;    ///< capacity for all there can be
     std::uint16_t expected_;
     std::uint32_t limit_;

@@ -14,9 +14,6 @@ namespace {
 constexpr std::int64_t bringup_share = 4;
 constexpr Duration longest_frame = std::chrono::microseconds{124};  ///< 1518 bytes, preamble and gap at 100 Mbit/s
 
-/// A command of another master shows in the states with the next cycle; the watch may take some more to read them.
-constexpr Duration foreign_remembered = std::chrono::seconds{1};
-
 }  // namespace
 
 ProcessDataCycle::ProcessDataCycle(Transport& transport, const BusConfig& config)
@@ -46,10 +43,12 @@ void ProcessDataCycle::copy_statistics() noexcept {
     if (ring_ != nullptr) statistics_.ring = ring_->state();
     if (auto* link = link_.load(std::memory_order_acquire)) {
         if (ring_ != nullptr) link->ring.store(statistics_.ring);
+        link->line.link_up.store(transport_.link_up(), std::memory_order_relaxed);
         std::uint64_t source = 0;
         for (const std::uint8_t byte : s.foreign_source) source = source << 8 | byte;
         link->foreign_source.store(source, std::memory_order_relaxed);
         link->foreign_frames.store(s.foreign, std::memory_order_relaxed);
+        link->dc_time.drift_ppb.store(statistics_.dc_drift_ppb, std::memory_order_relaxed);
         statistics_.dc_difference_ns = link->dc_difference_ns.load(std::memory_order_relaxed);
     }
 }
@@ -112,8 +111,6 @@ void ProcessDataCycle::find_faults(CyclePlan& cycle, Instant now) noexcept {
             .error_register = health.error_register,
         };
     }
-    if (statistics_.frames_foreign != foreign_before_) foreign_at_ = now;
-    foreign_before_ = statistics_.frames_foreign;
     const bool in_time = statistics_.dc_lock == DcLock::locked || statistics_.dc_lock == DcLock::coasting;
     BusCondition bus{
         .link_up = transport_.link_up(),
@@ -121,7 +118,6 @@ void ProcessDataCycle::find_faults(CyclePlan& cycle, Instant now) noexcept {
         .slaves_answering = statistics_.slaves_answering,
         .reference_times_missing = clock_.reference().rejected_in_a_row(),
         .dc_difference_ns = statistics_.dc_difference_ns,
-        .foreign_heard = foreign_at_ && now - *foreign_at_ <= foreign_remembered,
         .dc_phase_error_ns = statistics_.dc_phase_error_ns,
         .ring = statistics_.ring,
         .ramp_down = config_.ring && config_.ring->behind_break == BehindBreak::ramp_down,
@@ -153,7 +149,12 @@ void ProcessDataCycle::collect_frames(CyclePlan& cycle) noexcept {
     give_up_frames(cycle);
 
     statistics_.lost_in_a_row = any_lost_ ? statistics_.lost_in_a_row + 1 : 0;
-    if (auto* link = link_.load(std::memory_order_acquire)) link->lost_in_a_row.store(statistics_.lost_in_a_row, std::memory_order_relaxed);
+    if (auto* link = link_.load(std::memory_order_acquire)) {
+        link->lost_in_a_row.store(statistics_.lost_in_a_row, std::memory_order_relaxed);
+        if (statistics_.lost_in_a_row == config_.lost_frames_limit) link->line.silences.fetch_add(1, std::memory_order_relaxed);
+        if (ring_ != nullptr) upheavals_.see_ring(ring_->state());
+        link->line.upheavals.store(upheavals_.count(), std::memory_order_relaxed);
+    }
     for (std::size_t s = 0; s < cycle.slaves.size(); ++s) {
         auto& health = cycle.health[s];
         const std::uint32_t al = cycle.slaves[s].link->al.load(std::memory_order_relaxed);
@@ -186,7 +187,9 @@ void ProcessDataCycle::collect_first_frame(CyclePlan& cycle, SlotId slot) noexce
     statistics_.slaves_answering = exchange_.wkc(slot, cycle.state_number);
     link->slaves_answering.store(statistics_.slaves_answering, std::memory_order_relaxed);
     const bool all_answered = statistics_.slaves_answering == cycle.state_wkc;
-    link->states_seen.store(all_answered && states.size() == 2 ? load_le<std::uint16_t>(states) & 0x1Fu : 0u, std::memory_order_relaxed);
+    const auto all_states = static_cast<std::uint16_t>(states.size() == 2 ? load_le<std::uint16_t>(states) & 0x1Fu : 0u);
+    link->states_seen.store(all_answered ? all_states : 0u, std::memory_order_relaxed);
+    upheavals_.see_slaves(statistics_.slaves_answering, all_states);
     if (cycle.plan.mailbox.size > 0)
         link->mailbox.publish(exchange_.data(slot, cycle.state_number + 1),
                               exchange_.wkc(slot, cycle.state_number + 1) == cycle.plan.mailbox.expected_wkc);

@@ -15,6 +15,7 @@
 #include "ecat/cycle/cycle_clock.hpp"
 #include "ecat/cycle/cycle_link.hpp"
 #include "ecat/cycle/cycle_plan.hpp"
+#include "ecat/cycle/upheavals.hpp"
 #include "ecat/exchange/acyclic_channel.hpp"
 #include "ecat/exchange/exchange.hpp"
 #include "ecat/layout/frame_schedule.hpp"
@@ -89,8 +90,7 @@ private:
         std::int64_t offset = 0;
     } mutable next_send_;                    // the same when the next frames leave: asked for by every axis
     std::optional<Instant> last_departure_;  // of process data
-    std::optional<Instant> foreign_at_;      // a frame of another sender came
-    std::uint64_t foreign_before_ = 0;
+    Upheavals upheavals_;
     bool all_good_ = true;
     bool any_lost_ = false;
     bool margin_known_ = false;

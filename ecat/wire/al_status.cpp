@@ -61,12 +61,12 @@ constexpr auto table = std::to_array<AlStatusInfo>({
     {0x0035, "invalid DC sync cycle time", "this drive does not accept the cycle time: see its list of multiples"},
     {0x0036, "invalid DC SYNC0 cycle time", "this drive does not accept the SYNC0 cycle: see its list of multiples"},
     {0x0037, "invalid DC SYNC1 cycle time", "this drive does not accept the SYNC1 cycle"},
-    {0x0041, "mailbox error: AoE", ""},
-    {0x0042, "mailbox error: EoE", ""},
+    {0x0041, "mailbox error: AoE", "the slave could not handle an ADS message: another tool or its own configuration sent it"},
+    {0x0042, "mailbox error: EoE", "the slave could not handle a piece of an Ethernet frame: end the bridge and start it again"},
     {0x0043, "mailbox error: CoE", "the slave could not handle a CoE message: check the start-up list"},
-    {0x0044, "mailbox error: FoE", ""},
-    {0x0045, "mailbox error: SoE", ""},
-    {0x004F, "mailbox error: VoE", ""},
+    {0x0044, "mailbox error: FoE", "the slave could not handle a file message: repeat the transfer from its beginning"},
+    {0x0045, "mailbox error: SoE", "the slave could not handle an IDN: check the list of its vendor"},
+    {0x004F, "mailbox error: VoE", "the slave could not handle a message of its vendor's own protocol: ask the vendor"},
     {0x0050, "EEPROM: no access", "the master must hand the EEPROM to the slave (0500h) before PREOP"},
     {0x0051, "EEPROM: error", "the slave's EEPROM is empty or damaged"},
     {0x0052, "external hardware not ready", "power stage or external device is not ready: check its supply"},
@@ -77,7 +77,7 @@ constexpr auto table = std::to_array<AlStatusInfo>({
     {0x0081, "supply voltage too high", "check the supply"},
     {0x0082, "temperature too low", "wait until the device is warm"},
     {0x0083, "temperature too high", "check load and ventilation"},
-    {0x00F0, "application controller available", ""},
+    {0x00F0, "application controller available", "no error: the slave's processor has started; ask for the state again"},
 });
 
 constexpr bool ascending() {

@@ -55,6 +55,15 @@ void AlarmLog::raise(const AlarmFact& fact, Reaction reaction, ResetRule reset, 
     rules_[at] = {reset, true, false};
 }
 
+void AlarmLog::withdraw(AlarmId id, const AlarmFact& better) noexcept {
+    for (std::size_t i = 0; i < count_;) {
+        const auto& fact = alarms_[i].fact;
+        const bool same = better.source == AlarmSource::bus || fact.index == better.index;
+        if (fact.id == id && fact.source == AlarmSource::slave && same && fact.a == 0 && !rules_[i].raised) remove(i);
+        else ++i;
+    }
+}
+
 bool AlarmLog::make_room(Reaction reaction) noexcept {
     std::size_t others = 0, weakest = count_;
     for (std::size_t i = 0; i < count_; ++i) {

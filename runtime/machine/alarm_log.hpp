@@ -23,6 +23,9 @@ public:
     /// The condition holds in this cycle. `reaction` and `reset` come from the table of the fact's floor. The two numbers are those of the
     /// newest cycle in which it held: they may follow the condition, and a drive tells the detail of an alarm later.
     void raise(const AlarmFact& fact, Reaction reaction, ResetRule reset, Instant now) noexcept;
+    /// `better` says what those with this id said of its slave (or of any, where it is the bus') before there was a reason: those of them that do
+    /// not hold any more go, whatever their rule.
+    void withdraw(AlarmId id, const AlarmFact& better) noexcept;
     void end_cycle(Instant now) noexcept;
 
     /// Marks all as seen; those whose rule is `acknowledge` and that do not hold any more go. One that still holds needs another

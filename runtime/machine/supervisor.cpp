@@ -58,6 +58,8 @@ void Supervisor::raise_bus_alarms() noexcept {
     for (std::size_t i = 0; i < count; ++i)
         if (facts[i].id != ecat::id(ecat::BusAlarm::slave_emergency) || !drive_emergencies_.told_by_an_axis(facts[i]))
             body_.raise(facts[i], ecat::bus_alarms);
+    for (std::size_t i = 0; i < count; ++i)
+        if (const auto before = ecat::said_before(facts[i].id)) body_.log.withdraw(ecat::id(*before), facts[i]);
     drive_emergencies_.end_cycle();
 }
 
@@ -119,6 +121,7 @@ bool Supervisor::follows_from_another(const AlarmFact& fact) noexcept {
     bool explained = stopped && body_.log.find(cause) != nullptr;
     for (const auto& alarm : body_.log.alarms()) {
         const bool bus_alarm = alarm_range::bus.has(alarm.fact.id) && alarm.reaction >= Reaction::stop_machine;
+        explained = explained || (stopped && bus_alarm && ecat::is_followed(cause));
         const bool same_slave = alarm.fact.source != AlarmSource::slave || alarm.fact.id == ecat::id(ecat::BusAlarm::cable_broken) ||
                                 alarm.fact.index == drives_.slave_of(fact.index);
         explained = explained || (!stopped && drives_.on_bus(fact.index) && bus_alarm && same_slave);

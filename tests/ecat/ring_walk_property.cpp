@@ -59,6 +59,8 @@ public:
         for (std::size_t s = 0; s < devices_.size(); ++s)
             bus_.network.slave(s).controller().set_clock_drift(std::uniform_real_distribution{-60.0, 60.0}(random_), bus_.now);
         slaves_.resize(devices_.size());
+        broken_in_.resize(world_.cable.size(), -1);
+        blinked_.resize(world_.cable.size());
     }
 
     std::string run(int cycles) {
@@ -154,6 +156,8 @@ private:
             while (world_.cable[c]) c = (c + 1) % world_.cable.size();
         if (world_.cable[c] && world_.broken_cables() > 1) return;
         world_.cable[c] = !world_.cable[c];
+        if (!world_.cable[c]) broken_in_[c] = cycle_;
+        else if (broken_in_[c] == cycle_) blinked_[c] = true;
         tell(fmt::format("cable {} {}", c, world_.cable[c] ? "healed" : "broken"));
         ++counts_[world_.cable[c] ? "healed" : world_.broken_cables() > 1 ? "two breaks" : "broken"];
         if (c < devices_.size()) bus_.network.set_cable(c, world_.cable[c]);
@@ -201,6 +205,10 @@ private:
         look_at_data();
         if (watching_) look_at_bus(facts);
     }
+    /// Rightly told: it has lost its link, and no frame has met that.
+    [[nodiscard]] bool loose_plug(const AlarmFact& fact) const {
+        return fact.id == id(BusAlarm::cable_loses_link) && blinked_[fact.index + (fact.b == 0 ? 0u : 1u)];
+    }
     void look_at(std::size_t s, const std::vector<AlarmFact>& facts) {
         auto& slave = slaves_[s];
         const auto& health = bus_.master->health(s);
@@ -208,6 +216,7 @@ private:
         const bool others_away = std::any_of(slaves_.begin(), slaves_.end(), [](const Watched& other) { return other.excused; });
         const bool accused = std::any_of(facts.begin(), facts.end(), [&](const AlarmFact& fact) {
             if (fact.id == id(BusAlarm::cable_broken) && others_away) return false;
+            if (loose_plug(fact)) return false;
             return fact.source == AlarmSource::slave && fact.index == s && fact.id != id(BusAlarm::cut_off_from_reference);
         });
         if (!world_.reached(s)) slave.excused = true;
@@ -307,7 +316,8 @@ private:
         const auto well = [&] {
             for (std::size_t s = 0; s < slaves_.size(); ++s)
                 if (!bus_.master->health(s).fresh || bus_.network.slave(s).state() != sim::EsmState::op) return false;
-            return bus_.facts().empty();
+            const auto facts = bus_.facts();
+            return std::all_of(facts.begin(), facts.end(), [&](const AlarmFact& fact) { return loose_plug(fact); });
         };
         if (!bus_.run_until([&] { return !wrong_.empty() || well(); }, std::chrono::seconds{20})) {
             complain("not all come back although nothing is broken any more");
@@ -334,6 +344,8 @@ private:
     RingWorld world_;
     bool ramp_down_ = false, noisy_ = false, watching_ = false, lost_ = false, was_closed_ = true;
     std::vector<Watched> slaves_;
+    std::vector<int> broken_in_;  // by cable: the cycle
+    std::vector<bool> blinked_;   // and whole again before any frame met it: a loose plug, and told as one
     int cycle_ = 0, since_event_ = 1000, quiet_ = 300, noise_left_ = 0, changed_for_ = 1000;
     std::int32_t value_ = 0;
     std::string wrong_, log_;

@@ -99,6 +99,26 @@ TEST_F(Log, AnAcknowledgedOneStaysWhileItHoldsAndWantsAnotherAcknowledgementWhen
     EXPECT_TRUE(log.alarms().empty());
 }
 
+// A slave fell silent, and then it is known that another device stands there: one trouble, one alarm.
+TEST_F(Log, WhatIsKnownBetterTakesThePlaceOfWhatWasSaidBefore) {
+    const auto of_slave = [](AlarmId id, std::uint16_t slave, double reason = 0) {
+        return AlarmFact{id, AlarmSource::slave, slave, reason, 0};
+    };
+    cycle({of_slave(1, 5), of_slave(1, 6), of_slave(1, 7, 4)}, ResetRule::acknowledge);
+    cycle({of_slave(2, 5), of_slave(1, 6)}, ResetRule::acknowledge);
+    log.withdraw(1, of_slave(2, 5));
+    ASSERT_EQ(log.alarms().size(), 3u) << "its own, although nobody has acknowledged it";
+    log.withdraw(1, of_slave(2, 6));
+    EXPECT_EQ(log.alarms().size(), 3u) << "what holds stays";
+    cycle({}, ResetRule::acknowledge);
+    log.begin_cycle();
+    log.withdraw(1, {3, AlarmSource::bus, 0, 0, 0});
+    log.end_cycle(now);
+    ASSERT_EQ(log.alarms().size(), 2u) << "the bus speaks for all";
+    EXPECT_EQ(log.alarms()[0].fact.index, 7) << "that one has a reason of its own";
+    EXPECT_EQ(log.alarms()[1].fact.id, 2);
+}
+
 TEST_F(Log, AResetAlarmNeedsAResetAfterTheCauseIsGone) {
     cycle({fact(1)}, ResetRule::reset);
     log.reset();

@@ -4,6 +4,7 @@
 #include "axes/axis/alarms.hpp"
 #include "ecat/alarms.hpp"
 #include "ecat/sim/sim_slave.hpp"
+#include "ecat/wire/sii.hpp"
 #include "runtime/alarms.hpp"
 #include "tests/runtime/test_machine.hpp"
 
@@ -124,6 +125,28 @@ TEST_F(Fault, WhoMayDropOutStopsOnlyItsOwnAxes) {
     m().world.set_slave_power("y_drive", true);
     EXPECT_TRUE(m().until([&] { return m().axis(1).online; }, 20s)) << m().machine->bus_progress();
     EXPECT_TRUE(m().until([&] { return m().axis(0).in_position; }, 10s)) << "x has gone all its way";
+    m().expect_no_jump();
+}
+
+// It is missed first, and then known: the list shows one alarm, and what the axes stopped by is explained by it.
+TEST_F(Fault, AnotherDeviceInASlavesPlaceIsOneAlarm) {
+    auto config = machine_config(2);
+    config.bus.slaves[1].position = 2;
+    config.bus.slaves[2].position = 1;
+    start(std::move(config));
+    m().world.set_slave_power("y_drive", false);
+    ASSERT_TRUE(m().until([&] { return m().has_alarm(ecat::id(ecat::BusAlarm::slave_lost)); }, 100ms));
+    m().run(200ms);
+    auto& network = m().world.network();
+    std::size_t y = 0;
+    while (network.slave(y).options().name != "y_drive") ++y;
+    network.slave(y).controller().eeprom().image()[std::size_t{2} * ecat::sii_word::product] ^= std::byte{0x55};
+    m().world.set_slave_power("y_drive", true);
+    ASSERT_TRUE(m().until([&] { return m().has_alarm(ecat::id(ecat::BusAlarm::other_device)); }, 2s)) << m().alarms();
+    EXPECT_EQ(m().axis(0).state, AxisState::ErrorStop);
+    m().run(3s);
+    EXPECT_EQ(m().state().alarm_count, 1u) << m().alarms();
+    EXPECT_TRUE(m().has_alarm(ecat::id(ecat::BusAlarm::other_device))) << m().alarms();
     m().expect_no_jump();
 }
 

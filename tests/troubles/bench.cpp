@@ -7,6 +7,7 @@
 
 #include "ecat/alarms.hpp"
 #include "ecat/bringup/bus.hpp"
+#include "ecat/diagnosis/physical_remarks.hpp"
 #include "ecat/diagnosis/survey.hpp"
 #include "ecat/diagnosis/why_not_op.hpp"
 #include "runtime/machine/alarm_text.hpp"
@@ -19,6 +20,13 @@ using namespace ecat;
 namespace {
 
 constexpr Duration listened = 2s;
+
+/// Holds until it is known who it is: "will be known in a moment".
+bool goes_by_itself_when_known(const std::string& name) {
+    return std::any_of(bus_alarms.begin(), bus_alarms.end(), [&](const AlarmInfo& info) {
+        return info.name == name && info.reset == ResetRule::self_clearing && is_followed(info.id);
+    });
+}
 
 Said said_of(const Error& error, Duration after = {}) { return {error.code, error.subject, error.what, error.remedy, after}; }
 
@@ -97,6 +105,19 @@ std::vector<Said> Bench::what_check_says() const {
     return said;
 }
 
+std::vector<Said> Bench::wrong_links_said() {
+    const Instant began = now;
+    auto probe = looking();
+    auto found = probe.run(survey(probe.port()));
+    if (!found) return {};
+    compare_with(config, *found);
+    const auto wrong = probe.run(wrong_links(probe.port(), *found));
+    std::vector<Said> said;
+    if (wrong)
+        for (const auto& error : *wrong) said.push_back(said_of(error, now - began));
+    return said;
+}
+
 std::vector<Said> Bench::what_scan_says() {
     const Instant began = now;
     auto probe = looking();
@@ -104,6 +125,7 @@ std::vector<Said> Bench::what_scan_says() {
     if (!found) return {said_of(found.error(), now - began)};
     compare_with(config, *found);
     std::vector<Said> said;
+    for (const auto& overload : ebus_overloads(*found)) said.push_back(said_of(overload, now - began));
     for (const auto& remark : found->remarks) said.push_back(said_of(remark, now - began));
     for (const auto& slave : found->slaves)
         if (const auto& wrong = slave.found.error ? slave.found.error : slave.mismatch) said.push_back(said_of(*wrong, now - began));
@@ -122,7 +144,7 @@ std::vector<Said> Bench::notes_said(Instant began) const {
 }
 
 std::vector<Said> Bench::what_why_says() {
-    std::vector<Said> said;
+    std::vector<Said> said = wrong_links_said();
     const Instant began = now;
     if (bring_up()) {
         for (auto& note : notes_said(began)) said.push_back(std::move(note));
@@ -145,13 +167,26 @@ std::vector<Said> Bench::what_why_says() {
     return said;
 }
 
-/// The newest words of each alarm: who it is may come some cycles after that there is one.
+/// As the machine's list of alarms takes them (runtime/machine/supervisor.cpp): the newest words of each, because who it is may come some cycles
+/// after that there is one; and what is known better takes the place of what was said before.
 void Bench::hear(std::vector<Said>& said, Instant since) {
-    for (const auto& fact : facts()) {
-        if (fact.id == id(BusAlarm::slaves_missing)) continue;  // "who it is will be known in a moment"
+    const auto now_holding = facts();
+    const auto holds = [&](const Said& one) {
+        return std::any_of(now_holding.begin(), now_holding.end(),
+                           [&](const AlarmFact& fact) { return find_alarm(bus_alarms, fact.id)->name == one.id; });
+    };
+    std::erase_if(said, [&](const Said& one) { return goes_by_itself_when_known(one.id) && !holds(one); });
+    for (const auto& fact : now_holding) {
+        if (const auto before = said_before(fact.id)) {
+            const auto of_slave = fact.source == AlarmSource::slave ? fmt::format("slave {} ", fact.index) : std::string{"slave "};
+            std::erase_if(said, [&](const Said& one) {
+                const bool has_a_reason = one.place.find(": AL status code") != std::string::npos;
+                return one.id == find_alarm(bus_alarms, ecat::id(*before))->name && one.place.starts_with(of_slave) && !has_a_reason &&
+                       !holds(one);
+            });
+        }
         const AlarmInfo& info = *find_alarm(bus_alarms, fact.id);
         const std::string place = place_of(*master, fact);
-        if (place.ends_with("its reason is being read")) continue;
         const auto same = [&](const Said& s) {
             return s.id == info.name && s.place.substr(0, s.place.find(':')) == place.substr(0, place.find(':'));
         };

@@ -5,6 +5,7 @@
 //   s  servo with CoE and a clock, refuses SAFEOP without SYNC0      v  the same of another vendor
 //   t  terminal, 8 inputs and 8 outputs, without a mailbox           p  the same type, another product
 //   m  modular slave with two slots                                  r  the same product in another revision
+//   k  coupler, gives 500 mA to the E-bus                            e  terminal on the E-bus, takes 300 mA
 //
 // Servos that are not what their type says:
 //   n  its controller has no clock                                   x  its mailboxes are of 256 bytes
@@ -26,6 +27,7 @@ using namespace std::chrono_literals;
 class Bench : public ecat::test::TestBus {
 public:
     Bench(std::string_view configured, std::string_view there);
+    ~Bench() { master.reset(); }  // before its port
 
     /// Of the file: slave 'b'.
     [[nodiscard]] ecat::SlaveConfig& file(char name) { return config.slaves[place(name)]; }
@@ -45,9 +47,13 @@ public:
     /// Of the two seconds from now on, and of what a standard gives the slave before.
     [[nodiscard]] std::vector<Said> what_alarms_say(Duration patience);
 
+    std::unique_ptr<ecat::Transport> port;  ///< of the kernel, in the place of the plain cable (own_network.hpp)
+
 private:
     [[nodiscard]] static std::size_t place(char name) noexcept { return static_cast<std::size_t>(name - 'a'); }
     [[nodiscard]] ecat::BusProbe looking();
+    /// As the commands do before they begin.
+    [[nodiscard]] std::vector<Said> wrong_links_said();
     [[nodiscard]] std::vector<Said> notes_said(Instant began) const;
     void hear(std::vector<Said>& said, Instant since);
 };

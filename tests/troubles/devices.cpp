@@ -73,7 +73,12 @@ std::shared_ptr<DeviceDescription> played_modular() {
 }  // namespace
 
 std::shared_ptr<DeviceDescription> device_of(char kind) {
-    if (kind == 't') return test::terminal_description();
+    if (kind == 't' || kind == 'k' || kind == 'e') {
+        auto d = test::terminal_description();
+        if (kind == 'k') d->name = "coupler", d->identity.product = 0x00000500, d->ebus_current = std::int16_t{-500};
+        if (kind == 'e') d->name = "valves", d->identity.product = 0x00000300, d->ebus_current = std::int16_t{300};
+        return d;
+    }
     if (kind == 'm') return modular();
     auto d = test::servo_description();
     if (kind == 'v') d->identity.vendor = 0x00000666;
@@ -93,7 +98,7 @@ std::shared_ptr<DeviceDescription> played(char kind) {
 }
 
 std::unique_ptr<sim::DeviceModel> model_of(char kind) {
-    if (kind == 't') return std::make_unique<test::InvertingTerminal>();
+    if (kind == 't' || kind == 'k' || kind == 'e') return std::make_unique<test::InvertingTerminal>();
     if (kind == 'm' || kind == 'n') return std::make_unique<StillDevice>();
     if (kind == 'l') return std::make_unique<LimitingDevice>();
     return std::make_unique<test::EchoServo>();

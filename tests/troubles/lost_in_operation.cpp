@@ -24,6 +24,16 @@ void restart(Bench& bench) {
     bench.network.set_power(bench.there('c'), true);
 }
 
+void share_one_sync_unit(Bench& bench) {
+    for (auto& slave : bench.config.slaves) slave.sync_unit = "cell";
+}
+
+/// Its watchdog of 100 ms is shorter than what this machine bears.
+void patient_machine(Bench& bench) {
+    bench.config.lost_frames_limit = 300;
+    for (auto& slave : bench.config.slaves) slave.sm_watchdog = 100ms;
+}
+
 void replaced(Bench& bench) {
     bench.network.set_power(bench.there('c'), false);
     bench.run_for(200ms);
@@ -73,6 +83,31 @@ Chapter lost_in_operation() {
               .place = "bus",
               .cause = "No link on the EtherCAT port",
               .remedy = "check the cable between the controller and the first slave"},
+             {.name = "No frame comes back, with a link",
+              .staged = "the cable behind a media converter is out",
+              .teller = Teller::alarm,
+              .strikes = [](Bench& bench) { bench.network.set_cable(0, false); },
+              .id = "frames_lost",
+              .place = "bus",
+              .cause = "bus cycles in a row without an answer",
+              .remedy = "check cables"},
+             {.name = "Five frames lost in a row",
+              .staged = "they never reach the slaves",
+              .teller = Teller::alarm,
+              .strikes = [](Bench& bench) { bench.transport.faults.drop_requests = 5; },
+              .id = "frames_lost",
+              .place = "bus",
+              .cause = "bus cycles in a row without an answer",
+              .remedy = "check cables"},
+             {.name = "Watchdogs shorter than what the machine bears",
+              .staged = "150 frames lost, 300 are allowed, the slaves' watchdogs are 100 ms",
+              .teller = Teller::alarm,
+              .before = patient_machine,
+              .strikes = [](Bench& bench) { bench.transport.faults.drop_requests = 150; },
+              .id = "frames_lost",
+              .place = "3 slaves fell by it",
+              .cause = "bus cycles in a row without an answer",
+              .remedy = "check cables"},
              {.name = "A slave restarts by itself",
               .staged = "its power is away for a millisecond",
               .teller = Teller::alarm,
@@ -110,8 +145,17 @@ Chapter lost_in_operation() {
               .place = "slave 2 'c'",
               .cause = "Another device stands in the slave's place",
               .remedy = "put the right device there",
-              .named = "bc",
-              .beside = "slave_lost"}}};
+              .named = "bc"},
+             {.name = "The last slave of a shared sync unit loses its power",
+              .staged = "all three are exchanged with one working counter; the third is switched off",
+              .teller = Teller::alarm,
+              .before = share_one_sync_unit,
+              .strikes = [](Bench& bench) { bench.network.set_power(bench.there('c'), false); },
+              .id = "slave_lost",
+              .place = "slave 2 'c'",
+              .cause = "The slave fell silent",
+              .remedy = "check its power and cable",
+              .named = "bc"}}};
 }
 
 }  // namespace taktwerk::troubles

@@ -3,8 +3,10 @@
 #include <sched.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <fstream>
+#include <thread>
 
 namespace taktwerk::troubles {
 
@@ -33,6 +35,18 @@ bool own_network_possible() {
 void lay_cable() {
     for (const char* left : {"port0", "enp3s0"}) shell(std::string{"ip link del "} + left);
     shell("ip link add port0 type veth peer name port1 && ip link set port0 up && ip link set port1 up");
+}
+
+void put_behind_port(Bench& bench) {
+    lay_cable();
+    auto opened = ecat::RawSocketTransport::open("port0", {.exclusive = false});
+    if (!opened) return;
+    for (int i = 0; i < 1000 && !(*opened)->link_up(); ++i) {  // the kernel reports carrier a moment later
+        std::this_thread::sleep_for(std::chrono::milliseconds{1});
+        (*opened)->refresh();
+    }
+    bench.port = std::make_unique<NamedPort>(bench.transport, std::move(*opened));
+    bench.master = std::make_unique<ecat::Master>(*bench.port, bench.config);
 }
 
 }  // namespace taktwerk::troubles

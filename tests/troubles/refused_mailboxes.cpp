@@ -106,6 +106,18 @@ Chapter refused_mailboxes() {
               .cause = "its firmware refuses complete access",
               .remedy = "set `complete_access: false` in its profile",
               .named = "b"},
+             {.name = "Toggle bit that stands",
+              .staged = "the segments of an object of 300 bytes all carry the same toggle bit",
+              .configured = "sst",
+              .before =
+                  [](Bench& bench) {
+                      bench.file('b').asked.push_back({0x2000, 1}), bench.there('b').never_toggle();
+                  },
+              .id = "sdo.protocol",
+              .place = "slave 1 'b'",
+              .cause = "reading 2000h:01: a segment came twice or was skipped (toggle bit)",
+              .remedy = "the slave's firmware is defective",
+              .named = "b"},
              {.name = "Mailbox that stays full",
               .staged = "the slave takes nothing out of it",
               .configured = "sst",
@@ -114,6 +126,16 @@ Chapter refused_mailboxes() {
               .place = "slave 1 'b'",
               .cause = "the request still lies in its mailbox, which stays full",
               .remedy = "power-cycle it",
+              .named = "b",
+              .patience = 2s},
+             {.name = "Mailbox without an answer",
+              .staged = "the slave takes each request and answers none",
+              .configured = "sst",
+              .before = [](Bench& bench) { bench.write_startup('b', 0x6085, 5000), bench.there('b').answer_after(10s); },
+              .id = "sdo.timeout",
+              .place = "slave 1 'b'",
+              .cause = "no answer within 2000 ms",
+              .remedy = "try again, then power-cycle it",
               .named = "b",
               .patience = 2s}}};
 }

@@ -49,7 +49,7 @@ std::vector<Trouble> all_troubles() {
 }
 
 bool can_be_staged(const Trouble& trouble) {
-    const bool needs_network = trouble.opens != nullptr;
+    const bool needs_network = trouble.opens != nullptr || trouble.before == put_behind_port;
     return !needs_network || own_network_possible();
 }
 

@@ -45,8 +45,7 @@ struct Trouble {
     std::string_view cause = {}, remedy = {};  ///< have to stand in the text
     std::string_view named = {};               ///< the slaves that may be named, by their letters; who else is named is accused
     Culprit culprit = Culprit::bus;
-    std::string_view beside = {};  ///< an alarm that says more about the same culprit, and stands with it
-    Duration patience{};           ///< how long a standard gives the slave before anything can be said; two seconds more are allowed
+    Duration patience{};  ///< how long a standard gives the slave before anything can be said; two seconds more are allowed
 };
 
 [[nodiscard]] std::vector<Trouble> all_troubles();

@@ -38,10 +38,8 @@ class TroubleOf : public ::testing::TestWithParam<Trouble> {};
 TEST_P(TroubleOf, IsNamedOnceWithItsCauseItsPlaceAndItsRemedy) {
     const Trouble& trouble = GetParam();
     if (!can_be_staged(trouble)) GTEST_SKIP() << "this system lets nobody make network namespaces or veth pairs";
-    auto said = said_of(trouble);
+    const auto& said = said_of(trouble);
     for (const auto& one : said) EXPECT_THAT(accused(trouble, one), IsEmpty()) << one.place << " | " << one.cause << " | " << one.remedy;
-    const auto beside = std::erase_if(said, [&](const Said& one) { return !trouble.beside.empty() && one.id == trouble.beside; });
-    EXPECT_EQ(beside, trouble.beside.empty() ? 0u : 1u);
     ASSERT_THAT(said, SizeIs(1)) << "one trouble, one message";
     EXPECT_EQ(said[0].id, trouble.id);
     EXPECT_THAT(said[0].place, HasSubstr(trouble.place));
@@ -72,7 +70,7 @@ TEST(Troubles, AreManyAndEachHasANameAnIdAPlaceAndARemedy) {
             << trouble.name;
         EXPECT_EQ(trouble.teller == Teller::alarm, trouble.strikes != nullptr) << trouble.name;
     }
-    EXPECT_GE(names.size(), 75u);
+    EXPECT_GE(names.size(), 95u);
 }
 
 // The test of the test: a slave whose name does not stand in the row, and a computer that was in time.

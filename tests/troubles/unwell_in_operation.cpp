@@ -40,6 +40,27 @@ void loose_plug(Bench& bench) {
     }
 }
 
+void exchange_together(Bench& bench) {
+    for (auto& slave : bench.config.slaves) slave.sync_unit = "together";
+}
+
+template <std::uint16_t code>
+void falls(Bench& bench) {
+    bench.there('c').leave_op(code, bench.now);
+}
+
+Trouble leaves_op(std::string_view name, std::string_view staged, void (*strikes)(Bench&), std::string_view place) {
+    return {.name = name,
+            .staged = staged,
+            .teller = Teller::alarm,
+            .strikes = strikes,
+            .id = "slave_left_op",
+            .place = place,
+            .cause = "The slave left OP",
+            .remedy = "read the text behind the code",
+            .named = "c"};
+}
+
 void clock_jumps(Bench& bench) { bench.there('c').controller().step_clock(400us, bench.now); }
 
 }  // namespace
@@ -55,8 +76,7 @@ Chapter unwell_in_operation() {
               .place = "the cable between slave 1 'b' (dio8) port 1 and slave 2 'c'",
               .cause = "frames were damaged on the cable",
               .remedy = "replace the cable that is named",
-              .named = "bc",
-              .patience = 5s},
+              .named = "bc"},
              {.name = "A plug that is loose",
               .staged = "the link between the second and the third slave goes three times, for less than a frame",
               .teller = Teller::alarm,
@@ -65,8 +85,7 @@ Chapter unwell_in_operation() {
               .place = "the cable between slave 1 'b' (dio8) port 1 and slave 2 'c'",
               .cause = "lost its link",
               .remedy = "look at the plugs and the cable that is named",
-              .named = "bc",
-              .patience = 5s},
+              .named = "bc"},
              {.name = "A clock that jumps",
               .staged = "that of the third slave, by 400 us",
               .teller = Teller::alarm,
@@ -74,7 +93,7 @@ Chapter unwell_in_operation() {
               .id = "dc_out_of_sync",
               .place = "most of all slave 2 'c' (sv33-e) from slave 0 'a'",
               .cause = "Distributed clocks differ by",
-              .remedy = "check",
+              .remedy = "power-cycle the slave that is named",
               .named = "ac"},
              {.name = "A clock that drifts away",
               .staged = "the quartz of the third slave runs 0.2 % fast from now on",
@@ -83,7 +102,7 @@ Chapter unwell_in_operation() {
               .id = "dc_out_of_sync",
               .place = "most of all slave 2 'c' (sv33-e) from slave 0 'a'",
               .cause = "Distributed clocks differ by",
-              .remedy = "check",
+              .remedy = "power-cycle the slave that is named",
               .named = "ac"},
              {.name = "A reference clock that stands",
               .staged = "every reading gives the same time",
@@ -99,11 +118,10 @@ Chapter unwell_in_operation() {
               .teller = Teller::alarm,
               .strikes = [](Bench& bench) { somebody_writes(bench, Address::position(1, reg::fmmu_at(0) + 4), 0); },
               .id = "working_counter_wrong",
-              .place = "slave 1 'b'",
+              .place = "slave 1 'b' (dio8): FMMU0 is not as it was written: something wrote to it",
               .cause = "Process data of the slave was not exchanged",
-              .remedy = "check its power and state",
-              .named = "b",
-              .beside = "slave_left_op"},
+              .remedy = "it is set up again by itself; when it comes again power-cycle the slave",
+              .named = "b"},
              {.name = "A station address lost",
               .staged = "somebody has written 0 to it",
               .teller = Teller::alarm,
@@ -132,8 +150,42 @@ Chapter unwell_in_operation() {
               .cause = "Somebody else took slaves out of OP (1)",
               .remedy = "connect the bus to this controller only",
               .named = "b",
-              .culprit = Culprit::other_master,
-              .beside = "foreign_master"},
+              .culprit = Culprit::other_master},
+             {.name = "A slave of a shared sync unit leaves OP",
+              .staged = "all three are exchanged with one working counter; the second leaves OP with 001Dh",
+              .teller = Teller::alarm,
+              .before = exchange_together,
+              .strikes = [](Bench& bench) { bench.there('b').leave_op(0x001D, bench.now); },
+              .id = "slave_left_op",
+              .place = "slave 1 'b' (dio8): AL status code 001Dh invalid output configuration",
+              .cause = "The slave left OP",
+              .remedy = "read the text behind the code",
+              .named = "b"},
+             {.name = "A slave of a shared sync unit with settings that somebody changed",
+              .staged = "all three are exchanged with one working counter; the FMMU of the second one's outputs maps nothing any more",
+              .teller = Teller::alarm,
+              .before = exchange_together,
+              .strikes = [](Bench& bench) { somebody_writes(bench, Address::position(1, reg::fmmu_at(0) + 4), 0); },
+              .id = "working_counter_wrong",
+              .place = "slave 1 'b' (dio8): FMMU0 is not as it was written: something wrote to it",
+              .cause = "Process data of the slave was not exchanged",
+              .remedy = "it is set up again by itself; when it comes again power-cycle the slave",
+              .named = "b"},
+             {.name = "A working counter of a shared sync unit that nobody explains",
+              .staged = "something on the cable counts one less; all three are in OP with their settings",
+              .teller = Teller::alarm,
+              .before = exchange_together,
+              .strikes = [](Bench& bench) { bench.cable.working_counter_offset = -1; },
+              .id = "sync_unit_not_exchanged",
+              .place = "bus: sync unit 'together': slave 0 'a' (sv33-e), slave 1 'b' (dio8), slave 2 'c' (sv33-e)",
+              .cause = "Process data of 3 slaves that share a sync unit was not exchanged",
+              .remedy = "take `sync_unit` away from the slaves that are named",
+              .named = "abc"},
+             leaves_op("Synchronisation error of one slave", "it leaves OP with 001Ah, and no frame was lost", &falls<0x001A>,
+                       "AL status code 001Ah synchronization error"),
+             leaves_op("Process data watchdog of one slave", "it leaves OP with 001Bh, and no frame was lost", &falls<0x001B>,
+                       "AL status code 001Bh sync manager watchdog"),
+             leaves_op("An error of the vendor's own", "it leaves OP with 8123h", &falls<0x8123>, "AL status code 8123h"),
              {.name = "A mailbox that falls silent",
               .staged = "its application stands; process data goes on",
               .teller = Teller::alarm,

@@ -40,6 +40,12 @@ void line_with_exchanged_plugs(Bench& bench) {
     bench.plug_in('m');
 }
 
+void half_duplex(Bench& bench) {
+    auto& phy = bench.there('b').controller().phys().phy(0);
+    phy.partner = 0x0080;  // 100 Mbit, seen by parallel detection: its duplex is not, and half is assumed (IEEE 802.3, 28.2.3.1)
+    phy.partner_negotiates = false;
+}
+
 /// Reads the AL states of all slaves, as every master does.
 void somebody_works_here(Bench& bench) {
     bench.on_cycle = [&bench, n = 0]() mutable {
@@ -58,7 +64,14 @@ void somebody_works_here(Bench& bench) {
 Chapter wrong_cables() {
     return {"The cables before the start",
             "Nobody is up yet. What can be told of a cable are the frames that come back, and who answers in them.",
-            {{.name = "A link without slaves",
+            {{.name = "No link at the start",
+              .staged = "the cable is not in",
+              .before = [](Bench& bench) { bench.transport.faults.link_down = true; },
+              .id = "bus.no_link",
+              .place = "bus",
+              .cause = "the network port has no link",
+              .remedy = "check the cable and that the first slave has power"},
+             {.name = "A link without slaves",
               .staged = "a link, and nothing comes back: a switch, a PC, the OUT socket of a slave that ends the line",
               .before = [](Bench& bench) { bench.network.set_cable(0, false); },
               .id = "bus.no_frame",
@@ -97,6 +110,23 @@ Chapter wrong_cables() {
               .cause = "the cable from the master is in its port 1 (OUT)",
               .remedy = "exchange the two plugs at this slave",
               .named = "b"},
+             {.name = "Half-duplex port",
+              .staged = "what stands at the other end of its IN socket does not negotiate",
+              .before = half_duplex,
+              .id = "bus.wrong_link",
+              .place = "slave 1 'b'",
+              .cause = "port 0: 100 Mbit half duplex, and EtherCAT needs 100 Mbit full duplex",
+              .remedy = "switch its auto-negotiation on",
+              .named = "b"},
+             {.name = "E-bus overload",
+              .staged = "a coupler that gives 500 mA and two terminals that take 300 mA each",
+              .teller = Teller::scan,
+              .configured = "kee",
+              .id = "bus.ebus_overload",
+              .place = "slave 2 'c'",
+              .cause = "up to here the terminals take 600 mA from the E-bus, and slave 0 'a' supplies 500 mA",
+              .remedy = "put a feed terminal before it",
+              .named = "ac"},
              {.name = "A second master at the start",
               .staged = "it sends a hundred frames a second",
               .before = somebody_works_here,

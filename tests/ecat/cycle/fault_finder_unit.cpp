@@ -151,13 +151,14 @@ TEST(FaultFinder, WithoutAnErrorOfItsOwnSomebodyElseSentIt) {
     for (std::size_t i = 0; i < 3; ++i) f.finder.condition(i).age = limit;
     ASSERT_THAT(f.look(), ElementsAre(id(BusAlarm::foreign_command))) << "known before the watch has asked";
     EXPECT_EQ(f.finder.facts()[0].a, 3);
-    f.bus.foreign_heard = true;
+    f.bus.seen.set<BusAlarm::foreign_master>();
     for (std::size_t i = 0; i < 3; ++i) f.finder.condition(i) = {.al_state = AlState::preop, .age = 30};
-    EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::foreign_master), id(BusAlarm::foreign_command)))
-        << "a single frame is enough then, and it stands first";
+    EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::foreign_command))) << "it names whose frames were heard: one trouble, one alarm";
     f.finder.condition(1) = {.al_state = AlState::safeop, .al_error = true, .al_status_code = 0x1B, .age = 40};
-    EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::foreign_master), id(BusAlarm::foreign_command)))
-        << "errors of the way back change nothing";
+    EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::foreign_command))) << "errors of the way back change nothing";
+    for (std::size_t i = 0; i < 3; ++i) f.finder.condition(i) = {.al_state = AlState::op};
+    f.bus.states = 0x08;
+    EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::foreign_master))) << "he sends on";
 
     Finder own{{-1, 0}};
     own.bus.states = 0x1C;  // one in SAFEOP, error
@@ -165,9 +166,137 @@ TEST(FaultFinder, WithoutAnErrorOfItsOwnSomebodyElseSentIt) {
     ASSERT_THAT(own.look(), ElementsAre(id(BusAlarm::slave_left_op)));
     EXPECT_EQ(own.finder.facts()[0].a, 0) << "not read yet";
 
-    Finder down{{-1}};  // this master itself took it down, to set it up again
-    down.finder.condition(0) = {.al_state = AlState::init, .age = 30, .taken_down = true};
-    EXPECT_THAT(down.look(), ElementsAre(id(BusAlarm::slave_left_op)));
+    Finder down{{-1}};  // this master itself took it down, to set it up again: its trouble is what it was
+    down.finder.condition(0).age = limit;
+    EXPECT_THAT(down.look(), ElementsAre(id(BusAlarm::working_counter_wrong)));
+    down.bus.states = 0x01;
+    down.finder.condition(0).taken_down = true;
+    EXPECT_THAT(down.look(), ElementsAre(id(BusAlarm::working_counter_wrong))) << "the broadcast knows it first";
+    for (const auto state : {AlState::init, AlState::preop, AlState::safeop}) {
+        down.finder.condition(0) = {.al_state = state, .age = 30, .taken_down = true};
+        EXPECT_THAT(down.look(), ElementsAre(id(BusAlarm::working_counter_wrong)));
+    }
+    down.finder.condition(0) = {.al_state = AlState::op, .taken_down = true};
+    down.bus.states = 0x08;
+    EXPECT_THAT(down.look(), IsEmpty());
+    down.finder.condition(0) = {.al_state = AlState::safeop, .al_error = true, .al_status_code = 0x1D, .age = 30};
+    EXPECT_THAT(down.look(), ElementsAre(id(BusAlarm::slave_left_op))) << "the next time it falls by itself";
+}
+
+// Its outputs do not reach it any more, although frames come back: its watchdog trips by that, and that is no other trouble.
+TEST(FaultFinder, AWatchdogThatTripsByWhatIsSaidAlreadySaysNothingNew) {
+    Finder f{{-1, 0}};
+    f.bus.states = 0x08;
+    auto& slave = f.finder.condition(1);
+    slave.age = limit;
+    ASSERT_THAT(f.look(), ElementsAre(id(BusAlarm::working_counter_wrong)));
+    f.bus.states = 0x1C;
+    slave.age = 10;
+    EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::working_counter_wrong))) << "not read yet";
+    slave = {.al_state = AlState::safeop, .al_error = true, .al_status_code = 0x1B, .age = 20};
+    EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::working_counter_wrong)));
+    slave.al_status_code = 0x1D;
+    EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::slave_left_op))) << "that is an error of its own";
+
+    Finder first{{-1, 0}};  // it fell, and is not exchanged for that
+    first.bus.states = 0x1C;
+    first.finder.condition(1) = {.al_state = AlState::safeop, .al_error = true, .al_status_code = 0x1B, .age = limit};
+    EXPECT_THAT(first.look(), ElementsAre(id(BusAlarm::slave_left_op)));
+}
+
+// It has no address, because it must not be taken for the slave: it does not answer there, and nobody is missing all the same.
+TEST(FaultFinder, AnotherDeviceInItsPlaceIsNoLostSlave) {
+    Finder f{{-1, 0}};
+    f.vanish({1});
+    ASSERT_THAT(f.look(), ElementsAre(id(BusAlarm::slave_lost)));
+    f.bus.slaves_answering = 2;
+    f.finder.condition(1).presence = Presence::silent;
+    f.finder.condition(1).trouble = ReturnTrouble::other_device;
+    EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::other_device)));
+    f.bus.slaves_answering = 1;  // taken away again
+    EXPECT_THAT(f.look(), ::testing::Contains(id(BusAlarm::slave_lost)));
+}
+
+// --- slaves that share a sync unit: none of them is exchanged when one is out --------------------------------------------------------
+
+/// Slaves 1, 2 and 3 share one; 0 has its own.
+struct SharedUnit {
+    explicit SharedUnit(LossPolicy policy = LossPolicy::stop_machine) : finder(slaves(policy), 4, limit) {
+        for (std::size_t i = 0; i < 4; ++i) finder.condition(i).al_state = AlState::op;
+        bus.slaves_answering = 4;
+        bus.states = 0x08;
+    }
+    static std::vector<FaultSlave> slaves(LossPolicy policy) {
+        std::vector<FaultSlave> all(4);
+        for (std::size_t i = 0; i < 4; ++i) {
+            all[i].index = i;
+            if (i > 0) all[i].parent = i - 1, all[i].unit = 7, all[i].on_loss = policy;
+        }
+        return all;
+    }
+    std::vector<std::pair<AlarmId, std::size_t>> look() {
+        finder.look(bus);
+        std::vector<std::pair<AlarmId, std::size_t>> said;
+        for (const auto& fact : finder.facts()) said.emplace_back(fact.id, fact.index);
+        return said;
+    }
+    void nobody_is_exchanged(std::uint32_t cycles = limit) {
+        for (std::size_t i = 1; i < 4; ++i) finder.condition(i).age = cycles;
+    }
+    static std::pair<AlarmId, std::size_t> of(BusAlarm alarm, std::size_t index) { return {id(alarm), index}; }
+    FaultFinder finder;
+    BusCondition bus;
+};
+
+TEST(FaultFinder, ASharedUnitNamesTheOneThatLeftOpAndNobodyElse) {
+    SharedUnit unit;
+    unit.nobody_is_exchanged();
+    unit.bus.states = 0x1C;
+    EXPECT_THAT(unit.look(), ElementsAre(SharedUnit::of(BusAlarm::sync_unit_not_exchanged, 1)))
+        << "who it is has not been asked yet: the machine stops";
+    EXPECT_EQ(unit.finder.facts()[0].source, AlarmSource::bus) << "no slave is accused";
+    EXPECT_EQ(unit.finder.facts()[0].a, 3);
+    unit.nobody_is_exchanged(30);
+    unit.finder.condition(2) = {.al_state = AlState::safeop, .al_error = true, .al_status_code = 0x1D, .age = 30};
+    EXPECT_THAT(unit.look(), ElementsAre(SharedUnit::of(BusAlarm::slave_left_op, 2)));
+    unit.nobody_is_exchanged(30000);
+    EXPECT_THAT(unit.look(), ElementsAre(SharedUnit::of(BusAlarm::slave_left_op, 2))) << "however long it takes";
+    for (std::size_t i = 1; i < 4; ++i) unit.finder.condition(i) = {.al_state = AlState::op};
+    unit.bus.states = 0x08;
+    EXPECT_THAT(unit.look(), IsEmpty());
+}
+
+TEST(FaultFinder, ASharedUnitNamesTheOneThatIsGone) {
+    SharedUnit unit;
+    unit.nobody_is_exchanged();
+    unit.bus.slaves_answering = 3;
+    EXPECT_THAT(unit.look(), ElementsAre(SharedUnit::of(BusAlarm::slaves_missing, 0)));
+    unit.finder.condition(3).presence = Presence::silent;
+    EXPECT_THAT(unit.look(), ElementsAre(SharedUnit::of(BusAlarm::slave_lost, 3)));
+    unit.nobody_is_exchanged(30000);
+    EXPECT_THAT(unit.look(), ElementsAre(SharedUnit::of(BusAlarm::slave_lost, 3)));
+}
+
+TEST(FaultFinder, ASharedUnitNamesTheOneThatIsSetUpAgain) {
+    SharedUnit unit;
+    unit.nobody_is_exchanged();
+    ASSERT_THAT(unit.look(), ElementsAre(SharedUnit::of(BusAlarm::sync_unit_not_exchanged, 1)));
+    unit.finder.condition(1).taken_down = true;
+    EXPECT_THAT(unit.look(), ElementsAre(SharedUnit::of(BusAlarm::working_counter_wrong, 1)));
+}
+
+TEST(FaultFinder, ASharedUnitOfWhichNobodyIsKnownToBeOutSpeaksForItself) {
+    SharedUnit unit;
+    unit.nobody_is_exchanged(30000);
+    for (int i = 0; i < 300; ++i) ASSERT_THAT(unit.look(), ElementsAre(SharedUnit::of(BusAlarm::sync_unit_not_exchanged, 1)));
+}
+
+TEST(FaultFinder, ASharedUnitThatMayDropOutStopsOnlyItsOwnAxes) {
+    SharedUnit unit{LossPolicy::stop_own_axes};
+    unit.nobody_is_exchanged();
+    EXPECT_THAT(unit.look(), ElementsAre(SharedUnit::of(BusAlarm::sync_unit_dropped_out, 1)));
+    unit.finder.condition(2) = {.al_state = AlState::safeop, .al_error = true, .al_status_code = 0x1D, .age = 30};
+    EXPECT_THAT(unit.look(), ElementsAre(SharedUnit::of(BusAlarm::slave_dropped_out, 2)));
 }
 
 // Gone for less than it takes to miss it, then back from INIT without its address: it had no power.
