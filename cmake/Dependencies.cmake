@@ -20,3 +20,10 @@ find_program(LCM_GEN lcm-gen REQUIRED)
 add_library(lcm_imported INTERFACE)
 target_include_directories(lcm_imported SYSTEM INTERFACE "${LCM_INCLUDE_DIR}")
 target_link_libraries(lcm_imported INTERFACE "${LCM_LIBRARY}")
+
+# libmodbus: a pkg-config file only, as LCM.
+find_path(LIBMODBUS_INCLUDE_DIR modbus/modbus.h REQUIRED)  # libmodbus-dev
+find_library(LIBMODBUS_LIBRARY modbus REQUIRED)
+add_library(libmodbus_imported INTERFACE)
+target_include_directories(libmodbus_imported SYSTEM INTERFACE "${LIBMODBUS_INCLUDE_DIR}")
+target_link_libraries(libmodbus_imported INTERFACE "${LIBMODBUS_LIBRARY}")

@@ -38,6 +38,7 @@ const std::vector<OwnedInclude>& owned_includes() {
         {std::regex("^(lcm(/|\\.h)|taktwerk_lcm/)"), {"hmi_bridge", "apps"}, {}, "LCM"},
         {std::regex("^yaml-cpp/"), {"config"}, {}, "yaml-cpp"},
         {std::regex("^pugixml"), {"ecat/esi"}, {}, "pugixml"},
+        {std::regex("^modbus/modbus"), {"modbus/tcp", "tests"}, {}, "libmodbus"},
         {std::regex("^nlohmann/"), {"hmi_bridge", "apps"}, {}, "nlohmann-json"},
         {std::regex("^CLI/"), {"apps"}, {}, "CLI11"},
         {std::regex("^(gtest|gmock|benchmark)/"), {"tests"}, {}, "a test library"},
