@@ -12,12 +12,13 @@
 #include "axes/port/encoder_channel.hpp"
 #include "axes/sim/plant_config.hpp"
 #include "axes/tables/cam_table.hpp"
-#include "core/point_line.hpp"
 #include "core/result.hpp"
 #include "core/time.hpp"
 #include "ecat/bus_config.hpp"
+#include "modbus/tcp/device_config.hpp"
 #include "programs/api/program_entry.hpp"
 #include "runtime/analog_axis.hpp"
+#include "runtime/io_point.hpp"
 #include "runtime/serial_config.hpp"
 
 namespace taktwerk::runtime {
@@ -78,39 +79,6 @@ struct AxisBinding {
 
 /// Each drive on the bus as a binding of its own: those of the axes, then the followers of gantries as "<axis>.follower".
 [[nodiscard]] std::vector<AxisBinding> sides_of(const std::vector<AxisBinding>& axes);
-
-enum class IoDirection : std::uint8_t { input, output };
-
-/// What a terminal says of one of its inputs beside the value: an object of the same process data that is not 0.
-struct PointStatus {
-    enum class Kind : std::uint8_t { error, underrange, overrange } kind = Kind::error;
-    std::uint16_t index = 0;
-    std::uint8_t sub = 0;
-};
-
-/// Between which values an input is right, in its unit; outside it raises an alarm.
-struct PointLimits {
-    double low = 0, high = 0;
-};
-
-/// A named point that programs, commands and the HMI use.
-struct IoPoint {
-    std::string name;
-    IoDirection direction = IoDirection::input;
-    std::string slave;
-    std::uint16_t index = 0;  ///< mapped object
-    std::uint8_t sub = 0;
-    bool inverted = false;                ///< 1-bit points: TRUE when the terminal says 0
-    std::string unit{};                   ///< of its value; empty: the number itself
-    PointLine line{};                     ///< from the number of the object to that unit; what its bits hold is found out on the bus
-    std::optional<PointLimits> limits{};  ///< inputs
-    Duration filter{};                    ///< inputs: time constant of a first-order filter on the value; 0 = none
-    std::vector<PointStatus> status{};    ///< inputs
-    /// Outputs: from the bus' first frames on, while no program drives it, and at the end. Not when the master is gone or the
-    /// cable is cut: then the terminal's own watchdog sets its outputs to zero, whatever stands here.
-    std::int64_t safe_value = 0;
-    std::optional<std::int64_t> simulated{};  ///< inputs: value the simulated terminal starts with
-};
 
 /// What happens when a slower task has not finished at its next release.
 enum class OverrunReaction : std::uint8_t { count, stop_machine };
@@ -219,6 +187,7 @@ struct MachineConfig {
     Mode start_mode = Mode::manual;
     ecat::BusConfig bus;
     std::vector<SerialLineConfig> serial;
+    std::vector<modbus::tcp::DeviceConfig> modbus;  ///< their points have `beside`
     std::vector<AxisBinding> axes;
     std::vector<IoPoint> io;
     std::vector<TaskConfig> tasks;

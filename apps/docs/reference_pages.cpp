@@ -11,6 +11,7 @@
 #include "axes/axis/error_table.hpp"
 #include "axes/axis/parameters.hpp"
 #include "ecat/alarms.hpp"
+#include "modbus/tcp/alarms.hpp"
 #include "runtime/alarms.hpp"
 
 namespace taktwerk::apps {
@@ -94,6 +95,7 @@ std::string alarm_reference_markdown() {
         "605Ah,\n"
         "then power off), `power_off` (at once: the motor coasts, or its brake holds it).\n";
     append_table(page, "Bus", "EtherCAT, 1xxxh.", ecat::bus_alarms);
+    append_table(page, "Modbus devices", "Modbus TCP, 2xxxh.", modbus::tcp::device_alarms);
     append_table(page, "Axes", "3xxxh; also the error of an axis in ErrorStop (MC_ReadAxisError).", axes::axis_alarms);
     append_table(page, "Machine", "6xxxh.", runtime::machine_alarms);
     return page;

@@ -343,7 +343,7 @@ int check(const CheckOptions& options) {
     // Building the machine loads the programs and compares what they declare; nothing is started, and what a running machine keeps stays its.
     loaded.machine.retain.clear();
     runtime::World world{config, Instant{}};
-    auto built = runtime::Machine::build(std::move(loaded.machine), world.bus(), world.serial().lines());
+    auto built = runtime::Machine::build(std::move(loaded.machine), world.bus(), world.serial().lines(), world.modbus().exchanges());
     if (const auto* errors = std::get_if<std::vector<Error>>(&built)) return fail(options, *errors);
     const auto& layout = std::get<0>(built)->layout();
     const auto remarks = runtime::remarks(config, layout, std::thread::hardware_concurrency());

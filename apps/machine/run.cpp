@@ -33,6 +33,7 @@
 #include "hmi_bridge/hmi_bridge.hpp"
 #include "hmi_bridge/runtime_link.hpp"
 #include "modbus/line/tty_line.hpp"
+#include "modbus/tcp/tcp_exchange.hpp"
 #include "runtime/alarms.hpp"
 #include "runtime/positions/keeps_positions.hpp"
 #include "runtime/run/realtime_runner.hpp"
@@ -106,8 +107,9 @@ void say_evidence(const MachineLog& log, Instant now, const Result<Evidence::Fil
     else if (const auto text = evidence_text(*file); !text.empty()) log.say(now, "evidence", text);
 }
 
-std::unique_ptr<Machine> build(MachineConfig config, ecat::Transport& transport, std::vector<modbus::SerialLine*> lines) {
-    auto built = Machine::build(std::move(config), transport, std::move(lines));
+std::unique_ptr<Machine> build(MachineConfig config, ecat::Transport& transport, std::vector<modbus::SerialLine*> lines,
+                               std::vector<modbus::tcp::Exchange*> exchanges) {
+    auto built = Machine::build(std::move(config), transport, std::move(lines), std::move(exchanges));
     if (auto* errors = std::get_if<1>(&built)) {
         print_errors(*errors);
         return nullptr;
@@ -120,7 +122,7 @@ int run_virtual(LoadedFile loaded, const RunOptions& options) {
     VirtualClock clock{Instant{}};
     World world{loaded.machine, clock.now()};
     RunFiles files{options.pcap, options.trace, {}, {}, {}};
-    auto machine = build(std::move(loaded.machine), world.bus(), world.serial().lines());
+    auto machine = build(std::move(loaded.machine), world.bus(), world.serial().lines(), world.modbus().exchanges());
     if (!machine) return exit_bad_file;
     if (auto ok = files.open(*machine, Duration{}); !ok) {
         print_error(ok.error());
@@ -379,7 +381,14 @@ int run_real(LoadedFile loaded, const RunOptions& options) {
         lines[i] = opened->get();
         ports.push_back(std::move(*opened));
     }
-    auto machine = build(std::move(loaded.machine), transport, std::move(lines));
+    auto exchanges = world ? world->modbus().exchanges() : std::vector<modbus::tcp::Exchange*>(loaded.machine.modbus.size());
+    std::vector<std::unique_ptr<modbus::tcp::TcpExchange>> devices;
+    for (std::size_t i = 0; i < exchanges.size(); ++i) {
+        if (loaded.machine.modbus[i].host.empty()) continue;  // likewise
+        devices.push_back(std::make_unique<modbus::tcp::TcpExchange>(loaded.machine.modbus[i]));
+        exchanges[i] = devices.back().get();
+    }
+    auto machine = build(std::move(loaded.machine), transport, std::move(lines), std::move(exchanges));
     if (!machine) return exit_bad_file;
     if (auto ok = files.open(*machine, calendar_minus_machine_time()); !ok) {
         print_error(ok.error());

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "runtime/check/axis_check.hpp"
+#include "runtime/check/modbus_check.hpp"
 #include "runtime/check/problems.hpp"
 #include "runtime/check/serial_check.hpp"
 
@@ -20,6 +21,7 @@ class MachineCheck {
 public:
     MachineCheck(const MachineConfig& config, std::vector<Error>& errors) : config_(config), errors_(errors), problems_(errors) {
         for (const auto& slave : config.bus.slaves) slaves_.push_back(slave.name);
+        for (const auto& device : config.modbus) modbus_.push_back(device.name);
         for (const auto& axis : config.axes) axes_.push_back(axis.axis.name);
         for (const auto& point : config.io) (point.direction == IoDirection::input ? inputs_ : outputs_).push_back(point.name);
         for (const auto& program : config.programs) programs_.push_back(program.name);
@@ -31,6 +33,7 @@ public:
         check_bus();
         check_serial(config_, errors_);
         check_axes(config_, errors_);
+        check_modbus(config_, errors_);
         check_io();
         check_tasks();
         if (!config_.emergency_stop.input.empty()) check_emergency_stop();
@@ -74,7 +77,10 @@ private:
     void check_io() {
         for (const auto& point : config_.io) {
             const auto subject = fmt::format("io.{}.{}", point.direction == IoDirection::input ? "inputs" : "outputs", point.name);
-            if (!has(slaves_, point.slave)) problems_.unknown("io.unknown_slave", subject + ".slave", "slave", point.slave, slaves_);
+            if (point.beside && has(modbus_, point.slave)) continue;
+            auto known = slaves_;
+            known.insert(known.end(), modbus_.begin(), modbus_.end());
+            if (!has(slaves_, point.slave)) problems_.unknown("io.unknown_slave", subject + ".slave", "slave", point.slave, known);
         }
     }
 
@@ -102,10 +108,12 @@ private:
     void check_events() {
         std::vector<std::string> lines;
         for (const auto& line : config_.serial) lines.push_back(line.name);
+        auto powered = slaves_;
+        powered.insert(powered.end(), modbus_.begin(), modbus_.end());
         for (const auto& event : config_.simulation.events) {
             using Kind = SimulationEvent::Kind;
             const auto& known = event.kind == Kind::input || event.kind == Kind::input_fault ? inputs_
-                                : event.kind == Kind::slave_power                            ? slaves_
+                                : event.kind == Kind::slave_power                            ? powered
                                 : event.kind == Kind::serial_line                            ? lines
                                                                                              : axes_;
             const auto point = std::ranges::find(config_.io, event.target, &IoPoint::name);
@@ -121,7 +129,7 @@ private:
     const MachineConfig& config_;
     std::vector<Error>& errors_;
     Problems problems_;
-    std::vector<std::string> slaves_, axes_, inputs_, outputs_, programs_;
+    std::vector<std::string> slaves_, modbus_, axes_, inputs_, outputs_, programs_;
 };
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "axes/homing/index_doubt.hpp"
 #include "axes/port/find_alarm.hpp"
 #include "ecat/alarms.hpp"
+#include "modbus/tcp/alarms.hpp"
 #include "runtime/machine/alarm_ranges.hpp"
 #include "runtime/machine/alarm_text.hpp"
 #include "runtime/machine/drive_alarm_words.hpp"
@@ -20,7 +21,7 @@ namespace {
 const AlarmInfo* row_of(AlarmId id) {
     for (const std::span<const AlarmInfo> table :
          {std::span<const AlarmInfo>(machine_alarms), std::span<const AlarmInfo>(axes::axis_alarms),
-          std::span<const AlarmInfo>(ecat::bus_alarms)})
+          std::span<const AlarmInfo>(ecat::bus_alarms), std::span<const AlarmInfo>(modbus::tcp::device_alarms)})
         if (const auto* info = find_alarm(table, id)) return info;
     return nullptr;
 }
@@ -73,6 +74,7 @@ std::string AlarmWords::source(const AlarmFact& fact) const {
     const auto named = [&](const std::vector<std::string>& names, std::string_view kind) {
         return fmt::format("{} {}", kind, fact.index < names.size() ? names[fact.index] : "?");
     };
+    if (ModbusDevices::is_alarm(fact.id)) return modbus_.source(fact);
     switch (fact.source) {
         case AlarmSource::axis: return fact.index < layout_.axes.size() ? "axis " + layout_.axes[fact.index].name : "axis ?";
         case AlarmSource::slave:
@@ -127,6 +129,7 @@ AlarmText AlarmWords::describe(const AlarmFact& fact) const {
     tell_row(out, fact, *row);
     tell_more_of_bus(out, fact);
     tell_more_of_machine(out, fact);
+    tell_more_of_modbus(out, fact);
     tell_more_of_input(out, fact);
     tell_more_of_programs(out, fact);
     tell_more_of_axis(out, fact);
@@ -154,7 +157,8 @@ void AlarmWords::tell_more_of_input(AlarmText& out, const AlarmFact& fact) const
                                   point.unit);
         out.chinese = fmt::format("输入值为 {} {},超出限值 {} {}", number_text(fact.a), point.unit, number_text(fact.b), point.unit);
     }
-    out.remedy += fmt::format(" (slave '{}', {:04X}h:{:02X})", point.slave, point.index, point.sub);
+    if (point.beside) out.remedy += fmt::format(" (Modbus device '{}')", point.slave);
+    else out.remedy += fmt::format(" (slave '{}', {:04X}h:{:02X})", point.slave, point.index, point.sub);
 }
 
 void AlarmWords::tell_more_of_machine(AlarmText& out, const AlarmFact& fact) const {
@@ -177,6 +181,15 @@ void AlarmWords::tell_more_of_machine(AlarmText& out, const AlarmFact& fact) con
         out.cause = task.cause;
         out.remedy = task.remedy;
     }
+}
+
+void AlarmWords::tell_more_of_modbus(AlarmText& out, const AlarmFact& fact) const {
+    if (!ModbusDevices::is_alarm(fact.id)) return;
+    const auto where = modbus_.detail(fact);
+    out.english += where;
+    out.chinese += where;
+    if (fact.id != modbus::tcp::id(modbus::tcp::DeviceAlarm::exception)) return;
+    if (const auto why = ModbusDevices::words_of_exception(fact.a); !why.empty()) out.cause = why;
 }
 
 void AlarmWords::tell_more_of_programs(AlarmText& out, const AlarmFact& fact) const {

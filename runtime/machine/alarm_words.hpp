@@ -7,6 +7,7 @@
 #include "runtime/machine/machine.hpp"
 #include "runtime/machine/machine_body.hpp"
 #include "runtime/machine/machine_drives.hpp"
+#include "runtime/machine/modbus_devices.hpp"
 #include "runtime/machine/program_runner.hpp"
 #include "runtime/machine/supervisor.hpp"
 
@@ -14,9 +15,9 @@ namespace taktwerk::runtime {
 
 class AlarmWords {
 public:
-    AlarmWords(const MachineBody& body, const MachineDrives& drives, const ProgramRunner& programs, const Supervisor& supervisor,
-               const MachineLayout& layout)
-        : body_(body), drives_(drives), programs_(programs), supervisor_(supervisor), layout_(layout) {}
+    AlarmWords(const MachineBody& body, const MachineDrives& drives, const ModbusDevices& modbus, const ProgramRunner& programs,
+               const Supervisor& supervisor, const MachineLayout& layout)
+        : body_(body), drives_(drives), modbus_(modbus), programs_(programs), supervisor_(supervisor), layout_(layout) {}
 
     [[nodiscard]] AlarmText describe(const AlarmFact& fact) const;
 
@@ -30,6 +31,7 @@ private:
     void tell_more_of_bus(AlarmText& out, const AlarmFact& fact) const;
     void tell_more_of_input(AlarmText& out, const AlarmFact& fact) const;
     void tell_more_of_machine(AlarmText& out, const AlarmFact& fact) const;
+    void tell_more_of_modbus(AlarmText& out, const AlarmFact& fact) const;
     void tell_more_of_programs(AlarmText& out, const AlarmFact& fact) const;
     void tell_more_of_axis(AlarmText& out, const AlarmFact& fact) const;
     void tell_chosen_reaction(AlarmText& out, const AlarmFact& fact) const;
@@ -37,6 +39,7 @@ private:
 
     const MachineBody& body_;
     const MachineDrives& drives_;
+    const ModbusDevices& modbus_;
     const ProgramRunner& programs_;
     const Supervisor& supervisor_;
     const MachineLayout& layout_;

@@ -13,7 +13,8 @@ Machine::Machine(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Machine::~Machine() = default;
 
 std::variant<std::unique_ptr<Machine>, std::vector<Error>> Machine::build(MachineConfig config, ecat::Transport& transport,
-                                                                          std::vector<modbus::SerialLine*> lines) {
+                                                                          std::vector<modbus::SerialLine*> lines,
+                                                                          std::vector<modbus::tcp::Exchange*> exchanges) {
     auto errors = check(config);
     if (!errors.empty()) {
         // What the programs have wrong is told in the same breath: nobody wants to mend a file twice.
@@ -21,7 +22,7 @@ std::variant<std::unique_ptr<Machine>, std::vector<Error>> Machine::build(Machin
         errors.insert(errors.end(), of_programs.begin(), of_programs.end());
         return errors;
     }
-    auto impl = std::make_unique<Impl>(std::move(config), transport, lines, errors);
+    auto impl = std::make_unique<Impl>(std::move(config), transport, lines, exchanges, errors);
     if (!errors.empty()) return errors;
     return std::unique_ptr<Machine>(new Machine(std::move(impl)));
 }
@@ -37,6 +38,7 @@ void Machine::service(Instant now) {
     service_bus(now);
     service_programs();
     service_disk(now);
+    for (std::size_t i = 0; i < modbus_count(); ++i) service_modbus(i, now);
 }
 void Machine::service_bus(Instant now) {
     impl_->body.bus.step(now);
@@ -48,6 +50,9 @@ void Machine::service_programs() { impl_->programs.call_hooks(); }
 void Machine::service_disk(Instant now) {
     if (impl_->positions) impl_->positions->step(now);
 }
+std::size_t Machine::modbus_count() const noexcept { return impl_->modbus.count(); }
+void Machine::service_modbus(std::size_t device, Instant now) { impl_->modbus.step(device, now); }
+bool Machine::end_modbus(std::size_t device, Instant now) { return impl_->modbus.finish(device, now); }
 Result<void> Machine::arm() { return impl_->arm(); }
 bool Machine::bus_operational() const noexcept { return bus().phase() == ecat::Master::Phase::operational; }
 std::optional<Error> Machine::bus_failure() const {

@@ -18,6 +18,7 @@
 #include "core/time.hpp"
 #include "ecat/transport/transport.hpp"
 #include "modbus/line/serial_line.hpp"
+#include "modbus/tcp/exchange.hpp"
 #include "runtime/cycle_tick.hpp"
 #include "runtime/machine_config.hpp"
 #include "runtime/operator_command.hpp"
@@ -39,8 +40,10 @@ public:
     /// Checks everything, loads the programs, takes all memory. `transport` outlives the machine. All problems at once.
     /// `lines`: one for each of `config.serial`, in its order; they outlive the machine too and are used on the service side only. nullptr:
     /// none, which is an error (serial.no_line) unless every axis on it is simulated.
+    /// `exchanges`: one for each of `config.modbus`, likewise; each is used on the thread of service_modbus().
     static std::variant<std::unique_ptr<Machine>, std::vector<Error>> build(MachineConfig config, ecat::Transport& transport,
-                                                                            std::vector<modbus::SerialLine*> lines = {});
+                                                                            std::vector<modbus::SerialLine*> lines = {},
+                                                                            std::vector<modbus::tcp::Exchange*> exchanges = {});
     ~Machine();
     Machine(const Machine&) = delete;
     Machine& operator=(const Machine&) = delete;
@@ -49,7 +52,7 @@ public:
     void start_bus();
     /// Takes the bus down in order. After phase() is `stopped`; service() and cycle() go on until the bus says stopped.
     void stop_bus();
-    /// Bus scripts, drive services, slow work. Call often (each millisecond or after each virtual cycle). The three parts of it that follow
+    /// Bus scripts, drive services, slow work. Call often (each millisecond or after each virtual cycle). Its parts that follow
     /// one after the other, for one thread; in real time each has a thread of its own, so that what may wait holds up nobody else.
     void service(Instant now);
     /// Nothing in it waits: bus scripts, serial lines, services of the drives.
@@ -58,6 +61,11 @@ public:
     void service_programs();
     /// Positions onto the disk: it waits until they are there.
     void service_disk(Instant now);
+    /// Modbus TCP devices: one thread for each. A step takes the device's `timeout` at most; end_modbus() likewise: when the cycle has
+    /// ended it writes outputs that changed, until it says false.
+    [[nodiscard]] std::size_t modbus_count() const noexcept;
+    void service_modbus(std::size_t device, Instant now);
+    [[nodiscard]] bool end_modbus(std::size_t device, Instant now);
     /// After the bus is operational: signals resolved, image layout known. Once. Then cycle() may run programs.
     [[nodiscard]] Result<void> arm();
     [[nodiscard]] bool bus_operational() const noexcept;

@@ -28,17 +28,18 @@ std::unique_ptr<PositionKeeper> kept_positions(MachineBody& body, std::vector<Er
 }  // namespace
 
 Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, const std::vector<modbus::SerialLine*>& lines,
-                    std::vector<Error>& errors)
+                    const std::vector<modbus::tcp::Exchange*>& exchanges, std::vector<Error>& errors)
     : body(std::move(machine), transport),
       drives(body, lines, errors),
+      modbus(body, exchanges, errors),
       positions(kept_positions(body, errors)),
       hands(body),
       programs(body, hands, errors),
       desk(body, hands, programs),
-      supervisor(body, drives, programs, desk, positions.get()),
+      supervisor(body, drives, modbus, programs, desk, positions.get()),
       snapshots(body, programs),
       layout(layout_of(body, drives, programs.host())),
-      words(body, drives, programs, supervisor, layout),
+      words(body, drives, modbus, programs, supervisor, layout),
       steps(measured_steps()) {
     // Now the programs have declared their tables.
     for (auto& axis : body.axes) axis.bind({body.axes.data(), body.axes.size(), &body.tables, body.io.inputs()});
@@ -106,6 +107,7 @@ void Machine::Impl::compute(const CycleTick& tick) noexcept {
     desk.drain_inbox(now);
     done(Step::inbox);
 
+    modbus.read();
     body.io.read(body.bus.inputs(), body.bus);
     drives.read_wires();
     done(Step::decode);
@@ -132,6 +134,7 @@ void Machine::Impl::compute(const CycleTick& tick) noexcept {
     for (auto& axis : body.axes) axis.encode(send_time);
     drives.write_wires();
     body.io.write(body.bus.outputs());
+    modbus.write();
     done(Step::encode);
 }
 

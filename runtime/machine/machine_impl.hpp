@@ -11,6 +11,7 @@
 #include "runtime/machine/machine.hpp"
 #include "runtime/machine/machine_body.hpp"
 #include "runtime/machine/machine_drives.hpp"
+#include "runtime/machine/modbus_devices.hpp"
 #include "runtime/machine/operator_desk.hpp"
 #include "runtime/machine/program_runner.hpp"
 #include "runtime/machine/snapshot_writer.hpp"
@@ -20,7 +21,8 @@
 namespace taktwerk::runtime {
 
 struct Machine::Impl {
-    Impl(MachineConfig machine, ecat::Transport& transport, const std::vector<modbus::SerialLine*>& lines, std::vector<Error>& errors);
+    Impl(MachineConfig machine, ecat::Transport& transport, const std::vector<modbus::SerialLine*>& lines,
+         const std::vector<modbus::tcp::Exchange*>& exchanges, std::vector<Error>& errors);
 
     void cycle(const CycleTick& tick) noexcept;
     /// Steps 2 to 8: what only an armed machine does.
@@ -37,6 +39,7 @@ struct Machine::Impl {
 
     MachineBody body;
     MachineDrives drives;
+    ModbusDevices modbus;
     std::unique_ptr<PositionKeeper> positions;  // nullptr: nothing is kept
     HandMotion hands;
     ProgramRunner programs;

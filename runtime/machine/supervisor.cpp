@@ -15,10 +15,11 @@ constexpr Duration reset_takes = std::chrono::seconds{1};
 
 }  // namespace
 
-Supervisor::Supervisor(MachineBody& body, MachineDrives& drives, ProgramRunner& programs, OperatorDesk& desk,
+Supervisor::Supervisor(MachineBody& body, MachineDrives& drives, ModbusDevices& modbus, ProgramRunner& programs, OperatorDesk& desk,
                        const PositionKeeper* positions)
     : body_(body),
       drives_(drives),
+      modbus_(modbus),
       programs_(programs),
       desk_(desk),
       positions_(positions),
@@ -38,6 +39,7 @@ void Supervisor::step(const CycleTick& tick) noexcept {
     programs_.raise_alarms();
     raise_bus_alarms();
     drives_.serial().watch();
+    modbus_.watch();
     raise_rivals();
     raise_positions();
     raise_inputs();

@@ -10,6 +10,7 @@
 #include "runtime/machine/late_cycles.hpp"
 #include "runtime/machine/machine_body.hpp"
 #include "runtime/machine/machine_drives.hpp"
+#include "runtime/machine/modbus_devices.hpp"
 #include "runtime/machine/operator_desk.hpp"
 #include "runtime/machine/program_runner.hpp"
 #include "runtime/machine/shutdown.hpp"
@@ -20,7 +21,8 @@ namespace taktwerk::runtime {
 class Supervisor {
 public:
     /// `positions`: nullptr where none are kept.
-    Supervisor(MachineBody& body, MachineDrives& drives, ProgramRunner& programs, OperatorDesk& desk, const PositionKeeper* positions);
+    Supervisor(MachineBody& body, MachineDrives& drives, ModbusDevices& modbus, ProgramRunner& programs, OperatorDesk& desk,
+               const PositionKeeper* positions);
 
     void step(const CycleTick& tick) noexcept;
 
@@ -41,6 +43,7 @@ private:
 
     MachineBody& body_;
     MachineDrives& drives_;
+    ModbusDevices& modbus_;
     ProgramRunner& programs_;
     OperatorDesk& desk_;
     const PositionKeeper* positions_;

@@ -9,6 +9,8 @@
 //            u32 client, u64 sequence, i64 expires ns, u64 after                               52 bytes
 //            A level (stop_levels.hpp) is a stop, a jog with velocity 0 or a shutdown of client 0; its number stands as sequence.
 //   sample   u16 drive on a serial line, what it said (see record_sample)                      72 bytes
+//   request  u16 Modbus device, u16 request, u8 fault, u8 exception, u8 ever succeeded, i64 sent ns   15 bytes
+//   channel  u16 Modbus device, u16 channel, i64 word: of the request before                     12 bytes
 //   object   u16 program, u16 place, u8 outcome, u32 abort code                                9 bytes, then the value read
 
 #include <algorithm>
@@ -21,13 +23,14 @@
 #include "axes/drives/xp200/drive_mailbox.hpp"
 #include "core/object_access.hpp"
 #include "core/recorder.hpp"
+#include "modbus/tcp/device_poller.hpp"
 #include "runtime/cycle_tick.hpp"
 #include "runtime/operator_command.hpp"
 
 namespace taktwerk::runtime {
 
 inline constexpr RecordChannel tick_channel = 1, frame_channel = 2, command_channel = 3, object_channel = 4, departure_channel = 5,
-                               sample_channel = 6;
+                               sample_channel = 6, modbus_request_channel = 7, modbus_word_channel = 8;
 
 namespace inbox_record {
 template <std::size_t Size>
@@ -111,6 +114,26 @@ inline void record_sample(Recorder& recorder, Instant at, std::uint16_t drive, c
     bytes.put(s.latch_at);
     bytes.put(s.acknowledged);
     recorder.append(sample_channel, at, bytes.all());
+}
+
+inline void record_request(Recorder& recorder, Instant at, std::uint16_t device, std::uint16_t request,
+                           const modbus::tcp::DevicePoller::RequestState& state) noexcept {
+    inbox_record::Bytes<15> bytes;
+    bytes.put(device);
+    bytes.put(request);
+    bytes.put(static_cast<std::uint8_t>(state.fault.kind));
+    bytes.put(state.fault.exception);
+    bytes.put(static_cast<std::uint8_t>(state.ever ? 1 : 0));
+    bytes.put(state.done);
+    recorder.append(modbus_request_channel, at, bytes.all());
+}
+
+inline void record_channel(Recorder& recorder, Instant at, std::uint16_t device, std::uint16_t channel, std::int64_t word) noexcept {
+    inbox_record::Bytes<12> bytes;
+    bytes.put(device);
+    bytes.put(channel);
+    bytes.put(word);
+    recorder.append(modbus_word_channel, at, bytes.all());
 }
 
 /// For ecat::Master::set_tap; `context` is the Recorder. What the master sends follows from what it received; only when is news.

@@ -13,6 +13,8 @@ namespace {
 constexpr Duration service_period = std::chrono::milliseconds{1};
 constexpr Duration bring_up_patience = std::chrono::seconds{30};
 constexpr Duration bus_down_patience = std::chrono::seconds{5};
+/// With the request before and the last one of these (2 s each at most, `timeout`) less than the watch waits for threads.
+constexpr Duration last_outputs = std::chrono::milliseconds{500};
 constexpr Duration watch_period = std::chrono::milliseconds{20};
 
 }  // namespace
@@ -65,6 +67,13 @@ void RealtimeRunner::beside(const std::function<void(Instant)>& work) {
     } while (!ending);
 }
 
+// Its last round comes after the cycle has ended, too: then the outputs have their safe values.
+void RealtimeRunner::modbus_thread(std::size_t device) {
+    beside([this, device](Instant now) { machine_.service_modbus(device, now); });
+    const auto until = clock_.now() + last_outputs;
+    while (clock_.now() < until && machine_.end_modbus(device, clock_.now())) {}
+}
+
 void RealtimeRunner::watch_thread() {
     bool was_stuck = false, given_up = false;
     while (!all_home_.load(std::memory_order_acquire)) {
@@ -92,6 +101,7 @@ Result<RealtimeReport> RealtimeRunner::start() {
     for (std::size_t i = 0; i < machine_.slow_task_count(); ++i) tasks_.emplace_back([this, i] { task_thread(i); });
     beside_.emplace_back([this] { beside([this](Instant) { machine_.service_programs(); }); });
     beside_.emplace_back([this] { beside([this](Instant now) { machine_.service_disk(now); }); });
+    for (std::size_t i = 0; i < machine_.modbus_count(); ++i) beside_.emplace_back([this, i] { modbus_thread(i); });
     watch_ = std::thread{[this] { watch_thread(); }};
     return whole;
 }

@@ -6,6 +6,7 @@
 //   service    the caller's of serve(): bus scripts, drives' services, and what the caller does in keep_on; nothing there may wait
 //   programs   start() and stop() of programs: foreign code
 //   disk       positions, until they are on the disk
+//   modbus     one for each Modbus TCP device: connecting, asking, waiting for its answer
 //   watch      looks whether the cycle advances and whether an end that was asked for comes (end_watch.hpp)
 
 #include <atomic>
@@ -54,6 +55,7 @@ public:
 private:
     void cycle_thread();
     void task_thread(std::size_t index);
+    void modbus_thread(std::size_t device);
     void beside(const std::function<void(Instant)>& work);
     void watch_thread();
     void service();

@@ -53,6 +53,8 @@ void VirtualRunner::shut_down() {
     run_until([&] { return machine_.phase() == MachinePhase::stopped; }, std::chrono::seconds{10});
     machine_.stop_bus();
     run_until([&] { return machine_.bus().phase() == ecat::Master::Phase::stopped; }, std::chrono::seconds{5});
+    for (std::size_t i = 0; i < machine_.modbus_count(); ++i)
+        while (machine_.end_modbus(i, clock_.now())) {}
 }
 
 }  // namespace taktwerk::runtime

@@ -56,10 +56,10 @@ IoImage::Trouble trouble_of(PointStatus::Kind kind) noexcept {
 IoImage::IoImage(const std::vector<IoPoint>& points, Duration cycle) : cycle_s_(to_seconds(cycle)) {
     for (const auto& point : points) {
         if (point.direction == IoDirection::input) {
-            input_points_.push_back({point, {}, 0, {}, false});
+            input_points_.push_back({point, {}, 0, {}, false, {}});
             inputs_.push_back(0);
         } else {
-            output_points_.push_back({point, {}, 0, {}, false});
+            output_points_.push_back({point, {}, 0, {}, false, {}});
             outputs_.push_back(point.safe_value);
             output_lines_.push_back(point.line);
         }
@@ -76,26 +76,34 @@ Result<Signal> IoImage::signal_of(const ecat::Master& bus, const Point& point, s
     return error;
 }
 
-Result<void> IoImage::resolve(const ecat::Master& bus) {
-    for (auto* points : {&input_points_, &output_points_}) {
-        for (auto& point : *points) {
-            point.slave = 0;
-            while (point.slave < bus.slave_count() && bus.slave(point.slave).name != point.config.slave) ++point.slave;
-            if (point.slave == bus.slave_count())
-                return Error{"io.unknown_slave", fmt::format("io point '{}'", point.config.name),
-                             fmt::format("there is no slave '{}' on the bus", point.config.slave), "correct `slave:` of the point"};
-            const auto signal = signal_of(bus, point, point.config.index, point.config.sub);
-            if (!signal) return signal.error();
-            point.signal = *signal;
-            point.config.line = line_of(point.config, point.signal);
-            point.status.clear();
-            for (const auto& status : point.config.status) {
-                const auto bit = signal_of(bus, point, status.index, status.sub);
-                if (!bit) return bit.error();
-                point.status.push_back({status.kind, *bit});
-            }
-        }
+Result<void> IoImage::resolve(const ecat::Master& bus, Point& point) const {
+    if (point.config.beside) {
+        point.signal = *point.config.beside;
+        point.config.line = line_of(point.config, point.signal);
+        return {};
     }
+    point.slave = 0;
+    while (point.slave < bus.slave_count() && bus.slave(point.slave).name != point.config.slave) ++point.slave;
+    if (point.slave == bus.slave_count())
+        return Error{"io.unknown_slave", fmt::format("io point '{}'", point.config.name),
+                     fmt::format("there is no slave '{}' on the bus", point.config.slave), "correct `slave:` of the point"};
+    const auto signal = signal_of(bus, point, point.config.index, point.config.sub);
+    if (!signal) return signal.error();
+    point.signal = *signal;
+    point.config.line = line_of(point.config, point.signal);
+    point.status.clear();
+    for (const auto& status : point.config.status) {
+        const auto bit = signal_of(bus, point, status.index, status.sub);
+        if (!bit) return bit.error();
+        point.status.push_back({status.kind, *bit});
+    }
+    return {};
+}
+
+Result<void> IoImage::resolve(const ecat::Master& bus) {
+    for (auto* points : {&input_points_, &output_points_})
+        for (auto& point : *points)
+            if (auto ok = resolve(bus, point); !ok) return ok;
     output_bits_.clear();
     output_lines_.clear();
     for (const auto& point : output_points_) {
@@ -108,18 +116,32 @@ Result<void> IoImage::resolve(const ecat::Master& bus) {
 void IoImage::read(std::span<const std::byte> image, const ecat::Master& bus) noexcept {
     for (std::size_t i = 0; i < input_points_.size(); ++i) {
         const auto& p = input_points_[i];
+        if (p.config.beside) {
+            inputs_[i] = logical(p.beside.word, p.config, *p.config.beside);
+            judge(i, image, p.beside.fresh, p.beside.fresh);
+            continue;
+        }
         inputs_[i] = logical(read_signal(image, p.signal), p.config, p.signal);
-        if (p.slave < bus.slave_count()) judge(i, image, bus.health(p.slave));
+        if (p.slave >= bus.slave_count()) continue;
+        const auto& slave = bus.health(p.slave);
+        judge(i, image, slave.fresh, slave.age == 0);
     }
 }
 
-void IoImage::judge(std::size_t input, std::span<const std::byte> image, const ecat::SlaveHealth& slave) noexcept {
+void IoImage::take_beside(std::size_t input, std::int64_t word, bool fresh) noexcept { input_points_[input].beside = {word, fresh}; }
+
+std::int64_t IoImage::beside(std::size_t output) const noexcept {
+    const auto& point = output_points_[output].config;
+    return logical(carried(outputs_[output], *point.beside), point, *point.beside);
+}
+
+void IoImage::judge(std::size_t input, std::span<const std::byte> image, bool fresh, bool young) noexcept {
     auto& p = input_points_[input];
     auto& shown = input_values_[input];
     const double value = p.config.line.value_of(inputs_[input]);
     const bool filtered = p.config.filter > Duration::zero() && p.seen && std::isfinite(shown.value);
     shown.value = filtered ? shown.value + (value - shown.value) * cycle_s_ / (cycle_s_ + to_seconds(p.config.filter)) : value;
-    if (slave.fresh) {
+    if (fresh) {
         p.seen = true;
         auto trouble = Trouble::none;
         for (const auto& status : p.status)
@@ -128,14 +150,14 @@ void IoImage::judge(std::size_t input, std::span<const std::byte> image, const e
         troubles_[input] = trouble;
     }
     // A real number that is none (NaN, infinite) is no value. Between the turns of a slower sync unit it stays so.
-    shown.good = p.seen && slave.age == 0 && troubles_[input] == Trouble::none && std::isfinite(value);
+    shown.good = p.seen && young && troubles_[input] == Trouble::none && std::isfinite(value);
 }
 
 void IoImage::write(std::span<std::byte> image) noexcept {
     for (std::size_t i = 0; i < output_points_.size(); ++i) {
         const auto& p = output_points_[i];
         outputs_[i] = carried(outputs_[i], p.signal);
-        write_signal(image, p.signal, logical(outputs_[i], p.config, p.signal));
+        if (!p.config.beside) write_signal(image, p.signal, logical(outputs_[i], p.config, p.signal));
     }
 }
 

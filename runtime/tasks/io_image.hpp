@@ -25,6 +25,11 @@ public:
     /// Output values -> process image (step 8). Real-time safe.
     /// An output keeps no more than its terminal has: what traces and programs read of it is what the wire carries.
     void write(std::span<std::byte> image) noexcept;
+    /// Of points beside the bus, for who carries them: what an input's device said last, and whether that is young enough; the word that an
+    /// output shall have there. Real-time safe.
+    void take_beside(std::size_t input, std::int64_t word, bool fresh) noexcept;
+    [[nodiscard]] std::int64_t beside(std::size_t output) const noexcept;
+
     /// Every output to its configured safe value.
     void make_safe() noexcept;
     void make_safe(std::size_t output) noexcept { outputs_[output] = output_points_[output].config.safe_value; }
@@ -64,9 +69,15 @@ private:
         std::size_t slave = 0;
         std::vector<Status> status;
         bool seen = false;  ///< the filter has begun
+        struct Beside {
+            std::int64_t word = 0;
+            bool fresh = false;
+        } beside{};
     };
+    [[nodiscard]] Result<void> resolve(const ecat::Master& bus, Point& point) const;
     [[nodiscard]] Result<Signal> signal_of(const ecat::Master& bus, const Point& point, std::uint16_t index, std::uint8_t sub) const;
-    void judge(std::size_t input, std::span<const std::byte> image, const ecat::SlaveHealth& slave) noexcept;
+    /// `fresh`: its device was heard in this cycle; `young`: not too long ago.
+    void judge(std::size_t input, std::span<const std::byte> image, bool fresh, bool young) noexcept;
 
     double cycle_s_;
     std::vector<Point> input_points_, output_points_;

@@ -96,7 +96,7 @@ bool is_bit(const ecat::DeviceDescription& device, const IoPoint& point) {
 }  // namespace
 
 World::World(const MachineConfig& config, Instant start)
-    : network_(start), transport_(network_), start_(start), events_(config.simulation.events) {
+    : modbus_(config), network_(start), transport_(network_), start_(start), events_(config.simulation.events) {
     std::stable_sort(events_.begin(), events_.end(), [](const auto& a, const auto& b) { return a.at < b.at; });
     const auto sides = sides_of(config.axes);
     std::vector<axes::sim::PlantConfig> plants;
@@ -227,12 +227,14 @@ axes::sim::Cia402Axis* World::drive(std::string_view axis) noexcept {
 }
 
 bool World::is_single_bit(std::string_view input) const noexcept {
+    if (modbus_.is_single_bit(input)) return true;
     for (const auto& point : points_)
         if (point.config.name == input && point.config.direction == IoDirection::input) return point.single_bit;
     return false;
 }
 
 void World::set_input_value(std::string_view name, std::int64_t value) {
+    if (modbus_.set_input(name, value)) return;
     for (auto& point : points_) {
         if (point.config.name != name || point.config.direction != IoDirection::input) continue;
         if (point.device) point.device->set(point.config.index, point.config.sub, point.single_bit ? value != 0 : value);
@@ -251,6 +253,7 @@ void World::set_input_fault(std::string_view name, bool holds) {
 }
 
 std::int64_t World::output_value(std::string_view name) const {
+    if (const auto word = modbus_.output(name)) return *word;
     for (const auto& point : points_)
         if (point.device && point.config.name == name && point.config.direction == IoDirection::output)
             return point.device->get(point.config.index, point.config.sub);
@@ -258,6 +261,7 @@ std::int64_t World::output_value(std::string_view name) const {
 }
 
 void World::set_slave_power(std::string_view slave, bool on) {
+    if (auto* device = modbus_.device(slave)) device->set_power(on);
     if (auto* there = find(slave)) network_.set_power(*there, on);
 }
 

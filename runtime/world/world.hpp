@@ -16,6 +16,7 @@
 #include "ecat/transport/loopback.hpp"
 #include "runtime/machine_config.hpp"
 #include "runtime/world/analog_motor.hpp"
+#include "runtime/world/modbus_world.hpp"
 #include "runtime/world/serial_world.hpp"
 #include "runtime/world/turned_encoder.hpp"
 
@@ -35,6 +36,9 @@ public:
     [[nodiscard]] ecat::sim::SimNetwork& network() noexcept { return network_; }
     /// The serial lines; serial().lines() is for Machine::build.
     [[nodiscard]] SerialWorld& serial() noexcept { return serial_; }
+
+    /// The Modbus TCP devices; modbus().exchanges() is for Machine::build.
+    [[nodiscard]] ModbusWorld& modbus() noexcept { return modbus_; }
 
     /// Lets the configured events happen that are due. Called by whoever runs the cycle, before it.
     void apply_events(Instant now);
@@ -90,6 +94,7 @@ private:
     };
     [[nodiscard]] const AxisPlace* place(std::string_view axis) const noexcept;
     SerialWorld serial_;
+    ModbusWorld modbus_;
     ecat::sim::SimNetwork network_;
     ecat::LoopbackTransport transport_;
     std::unique_ptr<ecat::LoopbackTransport> second_;  // of a ring

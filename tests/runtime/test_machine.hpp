@@ -36,7 +36,7 @@ public:
     TestMachine(MachineConfig config, const MachineConfig& there)
         : clock(Instant{} + 1s), world(there, clock.now()), cable(world.network()) {
         world.transport().plug_into(cable);
-        auto built = Machine::build(std::move(config), world.bus(), world.serial().lines());
+        auto built = Machine::build(std::move(config), world.bus(), world.serial().lines(), world.modbus().exchanges());
         if (auto* errors = std::get_if<1>(&built)) {
             for (const auto& error : *errors) ADD_FAILURE() << error.text();
             return;
