@@ -1,10 +1,12 @@
 #include "config/machine_file/io_points.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "core/nearest_name.hpp"
+#include "modbus/tcp/channel_words.hpp"
 
 namespace taktwerk::config {
 
@@ -26,7 +28,7 @@ public:
 
     runtime::IoPoint build(const std::vector<runtime::IoPoint>& others) {
         find();
-        if (channel_) expect_free(others);
+        if (good_ && (channel_ || point_.beside)) expect_free(others);
         scale();
         limit();
         if (entry_.safe) point_.safe_value = word(*entry_.safe, "safe").value_or(0);
@@ -43,6 +45,7 @@ private:
     }
 
     void find() {
+        if (place_.modbus) return find_register();
         if (entry_.object) {
             point_.index = entry_.object->index, point_.sub = entry_.object->sub;
             adopt_number();
@@ -60,6 +63,33 @@ private:
         point_.line = channel_->line;
         point_.unit = channel_->unit;
         point_.status = channel_->status;
+    }
+
+    void find_register() {
+        const auto& device = *place_.modbus;
+        point_.beside = Signal{};
+        point_.index = 0xFFFF;  // none, so far
+        if (entry_.object)
+            return problem("object", "config.no_channel", fmt::format("'{}' is a Modbus device: it has no objects", device.name),
+                           "name one of its `registers` as `channel`");
+        std::vector<std::string> names;
+        for (const auto& one : device.channels) names.push_back(one.name);
+        const auto found = std::ranges::find(names, entry_.channel);
+        if (found == names.end()) {
+            std::string list;
+            for (const auto& one : names) list += (list.empty() ? "" : ", ") + one;
+            const auto near = nearest_name(entry_.channel, names);
+            return problem("channel", "config.no_channel",
+                           fmt::format("Modbus device '{}' has no register '{}' (there is: {})", device.name, entry_.channel,
+                                       list.empty() ? "none" : list),
+                           near.empty() ? fmt::format("add it under `modbus_tcp.{}.registers`", device.name)
+                                        : fmt::format("did you mean `{}`?", near));
+        }
+        const auto place = static_cast<std::size_t>(found - names.begin());
+        const auto type = device.channels[place].type;
+        point_.index = static_cast<std::uint16_t>(place);
+        point_.beside = modbus::tcp::signal_of(type);
+        if (type == modbus::tcp::NumberType::float32) point_.line.number = PointLine::Number::real32;
     }
 
     /// Of an object that no channel names: a real number is one all the same.

@@ -12,6 +12,7 @@ namespace taktwerk::config {
 struct PointPlace {
     bool known = false;                                    ///< it is in the file, and nothing was wrong with it
     const LoadedDevice* device = nullptr;                  ///< nullptr: a drive
+    const modbus::tcp::DeviceConfig* modbus = nullptr;     ///< no slave at all, but a Modbus device
     bool is_terminal = false;                              ///< of the shorthand `terminal`
     const ecat::DeviceDescription* description = nullptr;  ///< of any slave
 };

@@ -51,6 +51,7 @@ public:
         if (options_.simulate) {
             out.machine.bus.interface.clear();
             if (out.machine.bus.ring) out.machine.bus.ring->interface2.clear();
+            for (auto& device : out.machine.modbus) device.host.clear();
         }
         // Simulated drives forget where they were, and what a real machine keeps is none of theirs.
         for (auto* kept : {&out.machine.retain, &out.machine.evidence.directory}) {
@@ -336,7 +337,22 @@ private:
             const auto configured = std::ranges::find(out.machine.bus.slaves, slave->slave.name, &ecat::SlaveConfig::name);
             if (configured != out.machine.bus.slaves.end()) place.description = configured->device.get();
         }
+        const auto device = std::ranges::find(out.machine.modbus, entry.point.slave, &modbus::tcp::DeviceConfig::name);
+        if (slave == file_.slaves.end() && device != out.machine.modbus.end()) place.modbus = &*device;
         out.machine.io.push_back(make_point(reader_, entry, direction, place, out.machine.io));
+        if (place.modbus && out.machine.io.back().index < device->channels.size()) use_channel(*device, out.machine.io.back());
+    }
+
+    /// A channel goes one way.
+    void use_channel(modbus::tcp::DeviceConfig& device, const runtime::IoPoint& point) {
+        using Use = modbus::tcp::Channel::Use;
+        auto& channel = device.channels[point.index];
+        const bool input = point.direction == runtime::IoDirection::input;
+        if (!input && channel.use == Use::read)
+            problem(fmt::format("io.outputs.{}.channel", point.name), "config.channel_taken",
+                    fmt::format("register '{}' of '{}' is read as an input already", channel.name, device.name),
+                    "name the same address a second time under `registers`, to read back what is written");
+        channel.use = input ? Use::read : Use::written;
     }
 
     void add_program(LoadedMachine& out, const ProgramFile& entry) {
@@ -418,6 +434,7 @@ private:
         for (const auto& point : machine.io)
             if (point.direction == runtime::IoDirection::input) inputs.push_back(point.name);
         for (const auto& slave : machine.bus.slaves) slaves.push_back(slave.name);
+        for (const auto& device : machine.modbus) slaves.push_back(device.name);
         for (const auto& binding : machine.axes) axes.push_back(binding.axis.name);
         for (std::size_t i = 0; i < machine.simulation.events.size(); ++i) {
             const auto& event = machine.simulation.events[i];

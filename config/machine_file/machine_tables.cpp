@@ -7,6 +7,7 @@
 #include "config/drive_file/drive_tables.hpp"
 #include "config/machine_file/axis_tables.hpp"
 #include "config/machine_file/bus_tables.hpp"
+#include "config/machine_file/modbus_tables.hpp"
 #include "config/reading/codecs.hpp"
 #include "config/reading/quantity.hpp"
 #include "config/reading/unit_text.hpp"
@@ -51,9 +52,10 @@ std::vector<Field<IoEntry>> io_fields() {
     using E = IoEntry;
     return {
         required(field_at<E>(
-            "slave", [](E & e) -> auto& { return e.point.slave; }, name(), "slave that has it")),
+            "slave", [](E & e) -> auto& { return e.point.slave; }, name(), "slave that has it, or device of `modbus_tcp`")),
         field("channel", &E::channel, channel_name(),
-              "of a terminal: its name in the device file, or its number among those of the direction, from 1"),
+              "of a terminal: its name in the device file, or its number among those of the direction, from 1; of a Modbus device: its "
+              "name among `registers`"),
         field("object", &E::object, maybe(object_address()), "or an object in the process data, such as 60FDh"),
         field_at<E>(
             "inverted", [](E & e) -> auto& { return e.point.inverted; }, boolean(), "TRUE while the terminal says 0"),
@@ -498,6 +500,7 @@ Table<MachineFile> machine_table() {
     f.push_back(field("serial", &F::serial,
                       by_name(section(serial_line_table()), [](SerialLineEntry& l) -> std::string& { return l.line.name; }),
                       "serial lines, beside the bus or alone"));
+    f.push_back(modbus_field());
     f.push_back(io_field());
     f.push_back(field_at<F>(
         "axes", [](F & m) -> auto& { return m.machine.axes; },
