@@ -10,6 +10,7 @@
 
 #include "core/result.hpp"
 #include "core/time.hpp"
+#include "ecat/bus_transport.hpp"
 #include "ecat/description/device_description.hpp"
 
 namespace taktwerk::ecat {
@@ -113,6 +114,7 @@ struct RingConfig {
 
 struct BusConfig {
     std::string interface;  ///< NIC; empty: simulated
+    BusTransport transport = BusTransport::packet;
     std::optional<RingConfig> ring;
     Duration cycle = std::chrono::milliseconds{1};
     Duration sync0_shift{};           ///< default shift; 0 = half a cycle

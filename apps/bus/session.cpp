@@ -87,7 +87,8 @@ private:
             const bool as_ring = options.nic.empty() && s.configured_.ring;
             if (as_ring) s.where_ += " and " + s.configured_.ring->interface2;
             auto opened =
-                ecat::BusInterfaces::open(nic, as_ring ? s.configured_.ring->interface2 : std::string{}, ring_patience(s.configured_));
+                ecat::BusInterfaces::open(nic, as_ring ? s.configured_.ring->interface2 : std::string{}, ring_patience(s.configured_),
+                                          options.nic.empty() ? s.configured_.transport : ecat::BusTransport::packet);
             if (!opened) return fail(options, in_other_words(opened.error(), nic));
             s.nic_ = std::move(*opened);
         }

@@ -42,7 +42,7 @@ public:
     [[nodiscard]] Instant now() const { return clock_->now(); }
     [[nodiscard]] bool simulated() const noexcept { return world_ != nullptr; }
     /// As a machine file names them. The second one: empty where the bus is looked at as a line.
-    [[nodiscard]] std::string interface() const { return simulated() ? "simulated" : nic_->first().interface(); }
+    [[nodiscard]] std::string interface() const { return simulated() ? "simulated" : nic_->first(); }
     [[nodiscard]] std::string second_interface() const {
         if (!configured_.ring || !options_.nic.empty()) return {};
         return simulated() ? "simulated" : configured_.ring->interface2;

@@ -72,6 +72,8 @@ void print_slaves(const MachineConfig& config) {
         interfaces += ring->behind_break == ecat::BehindBreak::ramp_down ? "; axes cut off from the reference clock by a break stop"
                                                                          : "; behind a break clocks are handed the reference's time";
     }
+    if (!config.bus.interface.empty() && config.bus.transport != ecat::BusTransport::packet)
+        interfaces += config.bus.transport == ecat::BusTransport::xdp ? "; by AF_XDP" : "; by AF_XDP where the driver has it";
     fmt::print("\nBus: {}\n", interfaces);
     for (const auto& slave : config.bus.slaves) {
         const auto where = slave.position ? fmt::format("position {}", *slave.position) : fmt::format("alias {}", slave.alias.value_or(0));

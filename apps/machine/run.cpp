@@ -307,7 +307,10 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
     int code = exit_ok;
     bool said_stop = false, time_up = false;
     auto served = runner.serve([&](Instant now) {
-        if (nic) nic->refresh();
+        if (nic) {
+            nic->refresh();
+            for (const auto& said : nic->news()) log.say(now, "bus", said);
+        }
         (*bridge)->set_progress(machine.bus_progress());
         (*bridge)->step(now);
         judge((*bridge)->snapshot(), code);
@@ -357,14 +360,14 @@ int run_real(LoadedFile loaded, const RunOptions& options) {
     } else {
         const auto& bus = loaded.machine.bus;
         auto opened = ecat::BusInterfaces::open(bus.interface, bus.ring ? bus.ring->interface2 : std::string{}, ecat::ring_patience(bus),
-                                                {.clock = &clock});
+                                                bus.transport, {.clock = &clock});
         if (!opened) {
             print_error(opened.error());
             return exit_bus;
         }
         nic = std::move(*opened);
         if (!options.quiet && !options.json)
-            for (const auto& refused : nic->refused()) fmt::print("{}\n", refused);
+            for (const auto& remark : nic->remarks()) fmt::print("{}\n", remark);
     }
     ecat::Transport& transport = world ? world->bus() : nic->bus();
     RunFiles files{options.pcap, options.trace, {}, {}, {}};

@@ -177,6 +177,11 @@ Codec<ecat::BehindBreak> behind_break() {
     return choice<B>({{"hand_time_on", B::hand_time_on}, {"ramp_down", B::ramp_down}});
 }
 
+Codec<ecat::BusTransport> bus_transport() {
+    using B = ecat::BusTransport;
+    return choice<B>({{"packet", B::packet}, {"xdp", B::xdp}, {"auto", B::automatic}});
+}
+
 Table<ecat::RingConfig> ring_table() {
     using R = ecat::RingConfig;
     return {
@@ -215,6 +220,9 @@ Field<MachineFile> bus_field() {
             required(field_at<F>(
                 "interface", [](F & f) -> auto& { return f.machine.bus.interface; }, interface_name(),
                 "`simulated`, or the name of the network interface (`ip link`)")),
+            field_at<F>(
+                "transport", [](F & f) -> auto& { return f.machine.bus.transport; }, bus_transport(),
+                "AF_PACKET; AF_XDP, and no start without it; or AF_XDP where the port's driver has it, else AF_PACKET (bus.md)"),
             with_default(field_at<F>(
                              "ring", [](F & f) -> auto& { return f.machine.bus.ring; }, maybe(section(ring_table())),
                              "two interfaces, with the slaves in line between them"),

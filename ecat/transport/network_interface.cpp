@@ -92,4 +92,10 @@ bool has_carrier(int socket, std::string_view interface) noexcept {
     return ::ioctl(socket, SIOCGIFFLAGS, &ifr) == 0 && (ifr.ifr_flags & both) == both;
 }
 
+std::optional<std::size_t> mtu_of(int socket, std::string_view interface) noexcept {
+    auto ifr = request(interface);
+    if (::ioctl(socket, SIOCGIFMTU, &ifr) != 0 || ifr.ifr_mtu <= 0) return std::nullopt;
+    return static_cast<std::size_t>(ifr.ifr_mtu);
+}
+
 }  // namespace taktwerk::ecat

@@ -1,7 +1,9 @@
 #pragma once
 // A network interface by its name, and a packet socket for it, each with errors that say what to do. Linux only; not real-time.
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -29,6 +31,8 @@ struct NetworkInterface {
 
 /// Switched on, with a partner at the other end. `socket`: any. One system call.
 [[nodiscard]] bool has_carrier(int socket, std::string_view interface) noexcept;
+/// What it sends at most, in bytes behind the Ethernet header; nothing: it is gone. `socket`: any. One system call.
+[[nodiscard]] std::optional<std::size_t> mtu_of(int socket, std::string_view interface) noexcept;
 
 /// "network interface eth1: ..."
 [[nodiscard]] Error interface_error(std::string_view code, std::string_view interface, std::string what, std::string remedy);

@@ -1,6 +1,6 @@
 #pragma once
 // Moves whole Ethernet frames with time stamps. Knows nothing of datagrams. Implementations: raw_socket.hpp (AF_PACKET),
-// loopback.hpp (in-process, to simulated slaves).
+// xdp_transport.hpp (AF_XDP), loopback.hpp (in-process, to simulated slaves).
 
 #include <cstddef>
 #include <optional>

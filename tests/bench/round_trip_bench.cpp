@@ -6,13 +6,11 @@
 #include <poll.h>
 #include <sched.h>
 #include <sys/utsname.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <thread>
 
 #include <fmt/format.h>
@@ -22,6 +20,7 @@
 #include "ecat/master.hpp"
 #include "ecat/transport/raw_socket.hpp"
 #include "tests/bench/plain_bus.hpp"
+#include "tests/ecat/transport/veth_pair.hpp"
 
 namespace {
 
@@ -30,23 +29,6 @@ using namespace std::chrono_literals;
 using Stopwatch = std::chrono::steady_clock;
 
 double us(Duration d) { return static_cast<double>(d.count()) / 1000.0; }
-
-bool shell(const char* command) { return std::system(command) == 0; }
-
-/// Leaves the machine's network for an empty one with a veth pair.
-bool own_network() {
-    const auto uid = ::getuid();
-    const auto gid = ::getgid();
-    if (::unshare(CLONE_NEWNET) != 0) {
-        if (::unshare(CLONE_NEWUSER | CLONE_NEWNET) != 0) return false;
-        std::ofstream{"/proc/self/setgroups"} << "deny";
-        std::ofstream{"/proc/self/uid_map"} << "0 " << uid << " 1";
-        std::ofstream{"/proc/self/gid_map"} << "0 " << gid << " 1";
-    }
-    return shell("ip link add ecat0 type veth peer name ecat1") &&
-           shell("sysctl -q -w net.ipv6.conf.ecat0.disable_ipv6=1 net.ipv6.conf.ecat1.disable_ipv6=1 >/dev/null 2>&1; true") &&
-           shell("ip link set ecat0 up && ip link set ecat1 up");
-}
 
 /// Priority as the runtime asks for; whether it was granted belongs to the figures.
 bool realtime(int priority) {
@@ -141,8 +123,8 @@ void run(std::size_t slaves, int seconds) {
 int main(int argc, char** argv) {
     const int given = argc > 1 ? std::atoi(argv[1]) : 0;
     const int seconds = given > 0 ? given : 30;
-    if (!own_network()) {
-        fmt::print("round trip: skipped, network namespaces or veth pairs are not permitted here\n");
+    if (const auto& problem = ecat::test::veth_network(); !problem.empty()) {
+        fmt::print("round trip: skipped, {}\n", problem);
         return 0;
     }
     utsname system{};

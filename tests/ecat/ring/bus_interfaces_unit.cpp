@@ -12,6 +12,7 @@
 #include <fstream>
 #include <thread>
 
+#include "ecat/transport/network_interface.hpp"
 #include "tests/ecat/ring/ring_probe.hpp"
 
 namespace taktwerk::ecat::test {
@@ -41,13 +42,14 @@ const std::string& two_cables() {
     return problem;
 }
 
-struct RealRing : ::testing::Test {
+struct RealRing : ::testing::TestWithParam<BusTransport> {
     static constexpr std::size_t count = 5;
     void SetUp() override {
         if (!two_cables().empty()) GTEST_SKIP() << two_cables();
         ASSERT_TRUE(shell("ip link set slaves_b up"));
         for (std::size_t i = 0; i < count; ++i) network.add(bare_slave(), std::make_unique<Idle>());
-        auto opened = BusInterfaces::open("master_a", "master_b", 20ms);
+        auto opened = BusInterfaces::open("master_a", "master_b", 20ms, GetParam());
+        if (!opened && opened.error().what.find("lacks a privilege") != std::string::npos) GTEST_SKIP() << opened.error().text();
         ASSERT_TRUE(opened.ok()) << opened.error().text();
         master = std::move(*opened);
         for (auto* end : {&near, &far}) {
@@ -96,8 +98,9 @@ struct RealRing : ::testing::Test {
     std::uint8_t index = 0;
     Instant now{1s};
 };
+INSTANTIATE_TEST_SUITE_P(Doors, RealRing, ::testing::Values(BusTransport::packet, BusTransport::xdp));
 
-TEST_F(RealRing, AllSlavesAnswerAtEveryBreak) {
+TEST_P(RealRing, AllSlavesAnswerAtEveryBreak) {
     ASSERT_EQ(brd(), count);
     EXPECT_EQ(shape(), RingShape::closed);
     for (std::size_t place = 1; place < count; ++place) {
@@ -111,7 +114,7 @@ TEST_F(RealRing, AllSlavesAnswerAtEveryBreak) {
     }
 }
 
-TEST_F(RealRing, OneInterfaceWithoutCarrierIsABrokenRing) {
+TEST_P(RealRing, OneInterfaceWithoutCarrierIsABrokenRing) {
     ASSERT_EQ(brd(), count);
     ASSERT_TRUE(shell("ip link set slaves_b down"));
     network.set_ring_cable(false);
@@ -125,10 +128,40 @@ TEST_F(RealRing, OneInterfaceWithoutCarrierIsABrokenRing) {
     EXPECT_EQ(shape(), RingShape::second_silent);
 }
 
-TEST_F(RealRing, BothInterfacesAreTheMasters) {
+TEST_P(RealRing, BothInterfacesAreTheMasters) {
     EXPECT_EQ(RawSocketTransport::open("master_b").error().code, "transport.in_use");
     EXPECT_EQ(BusInterfaces::open("slaves_a", "master_b", 20ms).error().code, "transport.in_use");
     EXPECT_EQ(BusInterfaces::open("lo", "master_b", 20ms).error().code, "transport.not_ethernet");
+}
+
+TEST_P(RealRing, ItIsSaidByWhichDoorFramesGo) {
+    const auto said = master->remarks();
+    if (GetParam() == BusTransport::packet) EXPECT_THAT(said, ::testing::Not(::testing::Contains(::testing::HasSubstr("AF_XDP"))));
+    else
+        EXPECT_THAT(said, ::testing::IsSupersetOf({::testing::StartsWith("master_a: AF_XDP in the driver"),
+                                                   ::testing::StartsWith("master_b: AF_XDP in the driver")}));
+    EXPECT_THAT(master->news(), ::testing::IsEmpty());
+}
+
+// Somebody's own program is on the port. Who leaves the choice gets a packet socket and is told; who insists is refused.
+TEST_P(RealRing, WhereAfXdpIsNotToBeHadTheWordSaysWhyAndWhatIsUsedInstead) {
+    master.reset();
+    auto theirs = XdpProgram::load("master_a");
+    if (!theirs) GTEST_SKIP() << theirs.error().text();
+    ASSERT_TRUE(theirs->attach(find_interface("master_a")->index, XdpProgram::Places::driver_or_stack).ok());
+
+    const auto refused = BusInterfaces::open("master_a", "master_b", 20ms, BusTransport::xdp);
+    ASSERT_FALSE(refused.ok());
+    EXPECT_EQ(refused.error().code, "transport.xdp_taken");
+
+    auto opened = BusInterfaces::open("master_a", "master_b", 20ms, BusTransport::automatic);
+    ASSERT_TRUE(opened.ok()) << opened.error().text();
+    master = std::move(*opened);
+    EXPECT_THAT(master->remarks(),
+                ::testing::ElementsAre("master_a: no AF_XDP: another XDP program is on it; a packet socket (AF_PACKET) is used instead",
+                                       ::testing::StartsWith("master_b: AF_XDP in the driver")));
+    master->refresh();
+    EXPECT_EQ(brd(), count) << "one half by each";
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <linux/capability.h>
 #include <netinet/in.h>
-#include <sched.h>
 #include <sys/socket.h>
 #include <sys/syscall.h>
 #include <sys/un.h>
@@ -13,11 +12,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
-#include <cstdlib>
-#include <fstream>
 #include <thread>
 
 #include "core/clock.hpp"
+#include "tests/ecat/transport/veth_pair.hpp"
 
 namespace taktwerk::ecat {
 namespace {
@@ -25,39 +23,11 @@ namespace {
 using ::testing::HasSubstr;
 using namespace std::chrono_literals;
 
-bool run(const std::string& command) { return std::system((command + " >/dev/null 2>&1").c_str()) == 0; }
-
-/// Leaves the machine's network for an empty one: as root, or as root of a user namespace of our own.
-bool enter_own_network() {
-    if (::unshare(CLONE_NEWNET) == 0) return true;
-    const auto uid = ::getuid();
-    const auto gid = ::getgid();
-    if (::unshare(CLONE_NEWUSER | CLONE_NEWNET) != 0) return false;
-    std::ofstream{"/proc/self/setgroups"} << "deny";
-    std::ofstream{"/proc/self/uid_map"} << "0 " << uid << " 1";
-    std::ofstream{"/proc/self/gid_map"} << "0 " << gid << " 1";
-    return true;
-}
-
-/// One namespace for all tests of this binary; made at the first test.
-const std::string& network() {
-    static const std::string problem = [] {
-        if (!enter_own_network()) return std::string{"network namespaces are not permitted here"};
-        if (!run("ip link add ecat0 address 02:00:00:00:00:01 type veth peer name ecat1 address 02:00:00:00:00:02"))
-            return std::string{"veth pairs are not permitted here, or `ip` is missing"};
-        // Without IPv6 nothing but the test's frames is on the pair.
-        run("sysctl -w net.ipv6.conf.ecat0.disable_ipv6=1 net.ipv6.conf.ecat1.disable_ipv6=1");
-        run("ip link set lo up");
-        return std::string{};
-    }();
-    return problem;
-}
-
 class RawSocket : public ::testing::Test {
 protected:
     void SetUp() override {
-        if (!network().empty()) GTEST_SKIP() << network();
-        ASSERT_TRUE(run("ip link set ecat0 up") && run("ip link set ecat1 up"));
+        if (!test::veth_network().empty()) GTEST_SKIP() << test::veth_network();
+        ASSERT_TRUE(test::shell("ip link set ecat0 up") && test::shell("ip link set ecat1 up"));
     }
     const Instant now{1s};
     std::array<std::byte, max_frame_size> buffer{};
@@ -133,7 +103,7 @@ TEST_F(RawSocket, LinkStateFollowsTheCableWhenRefreshed) {
         return (*master)->link_up() == up;
     };
     EXPECT_TRUE(follows(true));
-    ASSERT_TRUE(run("ip link set ecat1 down"));
+    ASSERT_TRUE(test::shell("ip link set ecat1 down"));
     EXPECT_TRUE(follows(false));
 }
 
@@ -170,7 +140,7 @@ TEST_F(RawSocket, ErrorsSayWhatToDo) {
     EXPECT_EQ(RawSocketTransport::open("a_name_longer_than_sixteen").error().code, "transport.no_such_interface");
     EXPECT_EQ(RawSocketTransport::open("lo").error().code, "transport.not_ethernet");
 
-    ASSERT_TRUE(run("ip link set ecat0 down"));
+    ASSERT_TRUE(test::shell("ip link set ecat0 down"));
     const auto down = RawSocketTransport::open("ecat0");
     ASSERT_FALSE(down.ok());
     EXPECT_EQ(down.error().code, "transport.interface_down");
