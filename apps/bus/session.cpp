@@ -189,7 +189,7 @@ Result<ecat::Survey> BusSession::look() {
     if (auto broken = ecat::ring_remark(*found)) found->remarks.push_back(std::move(*broken));
     for (auto& overload : ecat::ebus_overloads(*found)) found->remarks.push_back(std::move(overload));
     if (nic_)
-        if (auto speed = ecat::link_speed_trouble(nic_->first().interface())) found->remarks.push_back(std::move(*speed));
+        if (auto speed = ecat::link_speed_trouble(nic_->first())) found->remarks.push_back(std::move(*speed));
     if (foreign_frames_ > 0)
         found->remarks.push_back(Error{"bus.foreign_master", where_,
                                        fmt::format("another master is sending on this cable ({} frames in {} ms): {}", foreign_frames_,

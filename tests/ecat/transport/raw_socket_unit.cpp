@@ -121,13 +121,13 @@ TEST_F(RawSocket, ALinkThatTheInterfaceItselfHasTakenAwayIsToldFromACable) {
         return trouble ? trouble->code : std::string{"none"};
     };
     EXPECT_EQ(trouble_when(true), "none");
-    ASSERT_TRUE(run("ip link set ecat1 down"));
+    ASSERT_TRUE(shell("ip link set ecat1 down"));
     EXPECT_EQ(trouble_when(false), "none") << "the other end: a cable";
-    ASSERT_TRUE(run("ip link set ecat1 up && ip link set ecat0 down"));
+    ASSERT_TRUE(shell("ip link set ecat1 up && ip link set ecat0 down"));
     EXPECT_EQ(trouble_when(false), "transport.interface_down");
-    ASSERT_TRUE(run("ip link set ecat0 name ecat9"));
+    ASSERT_TRUE(shell("ip link set ecat0 name ecat9"));
     EXPECT_EQ(trouble_when(false), "transport.no_such_interface");
-    ASSERT_TRUE(run("ip link set ecat9 name ecat0"));
+    ASSERT_TRUE(shell("ip link set ecat9 name ecat0"));
 }
 
 TEST_F(RawSocket, ErrorsSayWhatToDo) {
