@@ -39,6 +39,7 @@ public:
     std::optional<ReceivedFrame> receive(std::span<std::byte> buffer, Instant now) noexcept override;
     [[nodiscard]] MacAddress mac() const noexcept override { return beside_.mac(); }
     [[nodiscard]] bool link_up() const noexcept override { return beside_.link_up(); }
+    [[nodiscard]] std::optional<Error> link_trouble() const override { return beside_.link_trouble(); }
 
     /// As RawSocketTransport has it, and for that one, too.
     void refresh() noexcept;

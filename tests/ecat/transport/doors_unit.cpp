@@ -140,6 +140,23 @@ TEST_P(AnyDoor, ARenamedPortHasNoLink) {
     EXPECT_TRUE(link_becomes(false));
 }
 
+// No cable is to blame where somebody switched the interface off, or renamed it: the socket stays bound to it, its name leads nowhere.
+TEST_P(AnyDoor, ALinkThatTheInterfaceItselfHasTakenAwayIsToldFromACable) {
+    const auto trouble_when = [&](bool up) {
+        EXPECT_TRUE(link_becomes(up));
+        const auto trouble = master.transport().link_trouble();
+        return trouble ? trouble->code : std::string{"none"};
+    };
+    EXPECT_EQ(trouble_when(true), "none");
+    ASSERT_TRUE(shell("ip link set ecat1 down"));
+    EXPECT_EQ(trouble_when(false), "none") << "the other end: a cable";
+    ASSERT_TRUE(shell("ip link set ecat1 up && ip link set ecat0 down"));
+    EXPECT_EQ(trouble_when(false), "transport.interface_down");
+    ASSERT_TRUE(shell("ip link set ecat0 name ecat9"));
+    EXPECT_EQ(trouble_when(false), "transport.no_such_interface");
+    ASSERT_TRUE(shell("ip link set ecat9 name ecat0"));
+}
+
 TEST_P(AnyDoor, APortThatIsGoneTakesNothingAndGivesNothing) {
     ASSERT_TRUE(slaves->send(frame(), now));
     ASSERT_TRUE(shell("ip link del ecat0"));

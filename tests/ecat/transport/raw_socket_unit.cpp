@@ -107,29 +107,6 @@ TEST_F(RawSocket, LinkStateFollowsTheCableWhenRefreshed) {
     EXPECT_TRUE(follows(false));
 }
 
-// No cable is to blame where somebody switched the interface off, or renamed it: the socket stays bound to it, its name leads nowhere.
-TEST_F(RawSocket, ALinkThatTheInterfaceItselfHasTakenAwayIsToldFromACable) {
-    auto master = RawSocketTransport::open("ecat0");
-    ASSERT_TRUE(master.ok()) << master.error().text();
-    const auto trouble_when = [&](bool up) {
-        for (int i = 0; i < 1000 && (*master)->link_up() != up; ++i) {
-            (*master)->refresh();
-            std::this_thread::sleep_for(1ms);
-        }
-        EXPECT_EQ((*master)->link_up(), up);
-        const auto trouble = (*master)->link_trouble();
-        return trouble ? trouble->code : std::string{"none"};
-    };
-    EXPECT_EQ(trouble_when(true), "none");
-    ASSERT_TRUE(shell("ip link set ecat1 down"));
-    EXPECT_EQ(trouble_when(false), "none") << "the other end: a cable";
-    ASSERT_TRUE(shell("ip link set ecat1 up && ip link set ecat0 down"));
-    EXPECT_EQ(trouble_when(false), "transport.interface_down");
-    ASSERT_TRUE(shell("ip link set ecat0 name ecat9"));
-    EXPECT_EQ(trouble_when(false), "transport.no_such_interface");
-    ASSERT_TRUE(shell("ip link set ecat9 name ecat0"));
-}
-
 TEST_F(RawSocket, ErrorsSayWhatToDo) {
     const auto missing = RawSocketTransport::open("ecat7");
     ASSERT_FALSE(missing.ok());
