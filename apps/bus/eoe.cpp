@@ -35,8 +35,7 @@ Result<void> offers_ethernet(const ecat::BusSlave& slave, const BusOptions& opti
 Result<void> prepare(BusSession& session, ecat::BusSlave& slave, const EoeOptions& options,
                      const std::optional<ecat::IpAndSubnet>& address) {
     if (auto offered = offers_ethernet(slave, *options.bus); !offered) return offered;
-    if (auto opened = session.probe().run(ecat::open_mailbox_for(session.bus(), slave, ecat::MailboxType::eoe)); !opened)
-        return opened;
+    if (auto opened = session.probe().run(ecat::open_mailbox_for(session.bus(), slave, ecat::MailboxType::eoe)); !opened) return opened;
     if (!address) return {};
     ecat::EoeAddress settings;
     settings.ip = address->ip;

@@ -42,7 +42,7 @@ struct DeviceConfig {
     std::uint8_t unit = 1;                          ///< 1..247 behind a gateway; 255 where there is none
     Duration poll = std::chrono::milliseconds{20};  ///< from one reading of all channels to the next
     static constexpr Duration longest_timeout = std::chrono::seconds{2};  ///< or the end of a run would wait for too long
-    Duration timeout = std::chrono::milliseconds{200};  ///< for a connection, and for each answer as a whole
+    Duration timeout = std::chrono::milliseconds{200};                    ///< for a connection, and for each answer as a whole
     Duration max_age = std::chrono::milliseconds{100};  ///< of an input; older ones are not good any more, and an alarm says why
     Duration refresh = std::chrono::milliseconds{500};  ///< outputs are written so often although nothing changed
     std::uint16_t gap = 8;                              ///< addresses that nobody named and one read may span
