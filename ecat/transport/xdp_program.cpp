@@ -126,7 +126,7 @@ Result<XdpProgram> XdpProgram::load(std::string_view interface) {
     map.max_entries = queues;
     name(map.map_name);
     Descriptor sockets{bpf(BPF_MAP_CREATE, map)};
-    if (sockets.get() < 0) return no_xdp(interface, "making the map of sockets", errno);
+    if (sockets.get() < 0) return no_xdp(interface, "making the map of sockets", errno == EINVAL ? ENOSYS : errno);  // it knows no such map
 
     const auto code = program_for(sockets.get());
     auto loading = nothing_asked();

@@ -62,7 +62,7 @@ struct BusByDoor : ::testing::TestWithParam<Door> {
         if (!veth_network().empty()) GTEST_SKIP() << veth_network();
         ASSERT_TRUE(lay_veth_pair());
         door = open_door(GetParam());
-        if (not_permitted(door)) GTEST_SKIP() << door.why;
+        if (not_to_be_had(door)) GTEST_SKIP() << door.why;
         ASSERT_EQ(door.why, "");
         auto other = RawSocketTransport::open("ecat1");
         ASSERT_TRUE(other.ok()) << other.error().text();

@@ -30,7 +30,7 @@ struct AnyDoor : ::testing::TestWithParam<Door> {
     }
     void open() {
         master = open_door(GetParam());
-        if (not_permitted(master)) GTEST_SKIP() << master.why;
+        if (not_to_be_had(master)) GTEST_SKIP() << master.why;
         ASSERT_EQ(master.why, "");
         auto other = RawSocketTransport::open("ecat1");
         ASSERT_TRUE(other.ok()) << other.error().text();
