@@ -47,7 +47,7 @@ void add_eeprom_make(CLI::App& eeprom, Action& action);
 [[nodiscard]] Result<EepromImage> eeprom_with_alias(const std::string& subject, const EepromImage& before, std::uint16_t alias, bool force);
 
 // --- eeprom_files.cpp ----------------------------------------------------------------------------------------------------------
-/// Error eeprom.file.
+/// Binary, or Intel HEX. Errors: eeprom.file, eeprom.hex.
 [[nodiscard]] Result<EepromImage> read_eeprom_file(const std::string& path);
 /// On the disk when it returns. Where such a file is there already it must have this content. Errors: eeprom.file, eeprom.exists.
 [[nodiscard]] Result<void> write_eeprom_file(const std::string& path, const EepromImage& image);

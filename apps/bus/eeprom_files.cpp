@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "apps/bus/eeprom.hpp"
+#include "apps/bus/intel_hex.hpp"
 #include "apps/bus/kept_file.hpp"
 #include "ecat/wire/sii.hpp"
 
@@ -14,16 +15,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t most_eeprom_bytes = 512 * 1024;  ///< 4096 kbit: the largest that word 3Eh can sensibly say
-constexpr unsigned most_backups = 1000;                ///< of one slave in one folder
+constexpr std::size_t most_eeprom_bytes = 512 * 1024;            ///< 4096 kbit: the largest that word 3Eh can sensibly say
+constexpr std::size_t most_eeprom_text = 3 * most_eeprom_bytes;  ///< Intel HEX with 16 bytes a line takes 2.8 characters a byte
+constexpr unsigned most_backups = 1000;                          ///< of one slave in one folder
 
 }  // namespace
 
 Result<EepromImage> read_eeprom_file(const std::string& path) {
-    auto image = read_whole_file(path, most_eeprom_bytes, "eeprom.file");
+    auto image = read_whole_file(path, most_eeprom_text, "eeprom.file");
+    if (image && is_intel_hex(*image)) image = parse_intel_hex(*image, most_eeprom_bytes, path);
+    if (image && image->size() > most_eeprom_bytes)
+        return Error{"eeprom.file", path, fmt::format("{} bytes: more than the largest EEPROM has ({})", image->size(), most_eeprom_bytes),
+                     "is it the file you mean?"};
     if (image && (image->size() % 2 != 0 || image->empty()))
         return Error{"eeprom.file", path, fmt::format("{} bytes are no EEPROM: it has words", image->size()),
-                     "give a binary image, such as `bus eeprom read -o` writes"};
+                     "give a binary image, such as `bus eeprom read -o` writes, or one in Intel HEX"};
     return image;
 }
 

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "ecat/esi/text_encoding.hpp"
+#include "core/one_line.hpp"
 
 namespace taktwerk::apps {
 
@@ -40,7 +40,7 @@ std::string slaves_text(const ecat::Survey& survey, const std::vector<Recognised
     for (std::size_t n = 0; n < slaves.size(); ++n) {
         const auto& slave = slaves[n];
         const auto& id = survey.slaves[n].found.identity;
-        if (!slave.remark.empty()) out += fmt::format("    # {}\n", ecat::esi::on_one_line(slave.remark));
+        if (!slave.remark.empty()) out += fmt::format("    # {}\n", on_one_line(slave.remark));
         if (slave.kind == Kind::unknown) {
             out += fmt::format("    # position {}: vendor {:08X}h product {:08X}h revision {:08X}h: no file describes it\n", n, id.vendor,
                                id.product, id.revision);

@@ -284,7 +284,7 @@ int exit_code_for(const Error& error) {
         if (error.code == usage) return exit_usage;
     for (const char* refused : {"foe.refused", "foe.not_offered", "foe.no_boot", "eoe.refused", "eoe.not_offered", "firmware.in_operation"})
         if (error.code == refused) return exit_refused;
-    for (const char* of_file : {"capture.write", "eeprom.file", "eeprom.exists", "foe.file", "foe.exists"})
+    for (const char* of_file : {"capture.write", "eeprom.file", "eeprom.hex", "eeprom.exists", "foe.file", "foe.exists"})
         if (error.code == of_file) return exit_bad_file;
     if (error.code.rfind("esi.", 0) == 0) return exit_bad_file;
     if (error.code.rfind("eeprom.", 0) == 0) return exit_refused;

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "apps/terminal/terminal_text.hpp"
+#include "core/one_line.hpp"
 
 namespace taktwerk::apps {
 
@@ -36,6 +37,11 @@ Colours colours_of_output() {
 std::string toned(std::string_view text, Tone tone, Colours colours) {
     if (colours == Colours::off || tone == Tone::plain || text.empty()) return std::string{text};
     return std::string{escape(tone)} + std::string{text} + "\033[0m";
+}
+
+void TextTable::add(std::vector<Cell> row) {
+    for (auto& cell : row) cell.text = on_one_line(cell.text);
+    rows_.push_back(std::move(row));
 }
 
 std::string TextTable::text(Colours colours, std::size_t indent) const {

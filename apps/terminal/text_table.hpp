@@ -33,8 +33,8 @@ public:
     };
     explicit TextTable(std::vector<Column> columns) : columns_(std::move(columns)) {}
 
-    /// Missing cells are empty.
-    void add(std::vector<Cell> row) { rows_.push_back(std::move(row)); }
+    /// Missing cells are empty. Control characters, which names of foreign devices may have, become blanks.
+    void add(std::vector<Cell> row);
     [[nodiscard]] bool empty() const noexcept { return rows_.empty(); }
     /// Lines ending with a newline, `indent` spaces before each; no trailing spaces.
     [[nodiscard]] std::string text(Colours colours, std::size_t indent = 0) const;

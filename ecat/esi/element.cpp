@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "core/one_line.hpp"
 #include "ecat/esi/esi_number.hpp"
-#include "ecat/esi/text_encoding.hpp"
 
 namespace taktwerk::ecat::esi {
 

@@ -11,6 +11,8 @@
 
 #include <fmt/format.h>
 
+#include "core/one_line.hpp"
+
 namespace taktwerk::ecat::esi {
 
 namespace {
@@ -26,21 +28,20 @@ std::string upper(std::string_view text) {
     return out;
 }
 
-/// Bytes of one well-formed UTF-8 character at `at`; 0: it is none.
-std::size_t utf8_length(std::string_view text, std::size_t at) noexcept {
-    const auto byte = [&](std::size_t n) { return at + n < text.size() ? static_cast<unsigned char>(text[at + n]) : 0u; };
-    const auto tail = [&](std::size_t n) { return (byte(n) & 0xC0u) == 0x80u; };
-    const unsigned first = byte(0);
-    if (first < 0x80) return 1;
-    if (first >= 0xC2 && first < 0xE0) return tail(1) ? 2 : 0;
-    if (first >= 0xE0 && first < 0xF0)
-        return tail(1) && tail(2) && !(first == 0xE0 && byte(1) < 0xA0) && !(first == 0xED && byte(1) >= 0xA0) ? 3 : 0;
-    if (first >= 0xF0 && first < 0xF5)
-        return tail(1) && tail(2) && tail(3) && !(first == 0xF0 && byte(1) < 0x90) && !(first == 0xF4 && byte(1) >= 0x90) ? 4 : 0;
-    return 0;
+/// The registered name of an encoding that people spell otherwise, too ("ISO8859-1", "iso_8859-1", "latin1", "utf8").
+std::string registered_name(std::string name) {
+    name = upper(name);
+    std::replace(name.begin(), name.end(), '_', '-');
+    if (name == "SHIFT-JIS") return "SHIFT_JIS";
+    if (name == "LATIN1" || name == "LATIN-1") return "ISO-8859-1";
+    if (name == "UTF8") return "UTF-8";
+    for (const std::string_view family : {"ISO", "WINDOWS"})
+        if (name.size() > family.size() && name.rfind(family, 0) == 0 && std::isdigit(static_cast<unsigned char>(name[family.size()])) != 0)
+            name.insert(family.size(), "-");
+    return name;
 }
 
-/// The value of `encoding` in the declaration, in capitals; empty: there is none.
+/// The value of `encoding` in the declaration, by its registered name; empty: there is none.
 std::string declared_encoding(std::string_view text) {
     const auto start = text.find("<?xml");
     if (start > 64) return {};  // npos too
@@ -51,7 +52,7 @@ std::string declared_encoding(std::string_view text) {
     at = head.find_first_of("\"'", at);
     if (at == std::string_view::npos) return {};
     const auto close = head.find(head[at], at + 1);
-    return close == std::string_view::npos ? std::string{} : upper(head.substr(at + 1, close - at - 1));
+    return close == std::string_view::npos ? std::string{} : registered_name(std::string{head.substr(at + 1, close - at - 1)});
 }
 
 Result<std::string> converted(std::string_view text, const std::string& encoding, const std::string& file) {
@@ -100,28 +101,7 @@ DecodedText as_utf8(std::string_view text) {
     return out;
 }
 
-/// C0, C1 and DEL; U+2028, U+2029; U+FEFF, the byte order mark.
-bool is_control(std::string_view character) noexcept {
-    const auto first = static_cast<unsigned char>(character.front());
-    if (character.size() == 1) return first < 0x20 || first == 0x7F;
-    if (character.size() == 2) return first == 0xC2 && static_cast<unsigned char>(character[1]) < 0xA0;
-    return character == "\xE2\x80\xA8" || character == "\xE2\x80\xA9" || character == "\xEF\xBB\xBF";
-}
-
 }  // namespace
-
-std::string on_one_line(std::string_view utf8) {
-    std::string out;
-    for (std::size_t at = 0; at < utf8.size();) {
-        const auto length = utf8_length(utf8, at);
-        const auto character = utf8.substr(at, std::max<std::size_t>(length, 1));
-        at += character.size();
-        if (length == 0) continue;
-        if (is_control(character)) out += ' ';
-        else out += character;
-    }
-    return out;
-}
 
 Result<DecodedText> decode_text(std::span<const std::byte> bytes, const std::string& file) {
     const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());  // NOLINT: bytes as text
@@ -137,7 +117,7 @@ Result<DecodedText> decode_text(std::span<const std::byte> bytes, const std::str
     else encoding = declared_encoding(text);
     // An 8-bit file that calls itself UTF-16 was saved anew by something that left the declaration.
     if (body.size() == text.size() && encoding.rfind("UTF-16", 0) == 0 && text.find('\0') == std::string_view::npos) encoding = "UTF-8";
-    if (encoding.empty() || encoding == "UTF-8" || encoding == "UTF8") return as_utf8(text);
+    if (encoding.empty() || encoding == "UTF-8") return as_utf8(text);
     if (std::find(known_encodings.begin(), known_encodings.end(), encoding) == known_encodings.end())
         return Error{"esi.encoding", file, fmt::format("it is written in '{}', an encoding that is not known here", encoding),
                      "save the file as UTF-8"};

@@ -21,8 +21,4 @@ struct DecodedText {
 /// Errors: esi.encoding (an encoding that nobody here knows, or bytes that are not of it).
 [[nodiscard]] Result<DecodedText> decode_text(std::span<const std::byte> bytes, const std::string& file);
 
-/// Words as people read them on one line: control characters and line separators are blanks, what is no UTF-8 character is left out
-/// (references such as &#27; and &#xD800; get past the decoding).
-[[nodiscard]] std::string on_one_line(std::string_view utf8);
-
 }  // namespace taktwerk::ecat::esi

@@ -5,8 +5,11 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+
+#include <fmt/format.h>
 
 #include "apps/bus/eeprom.hpp"
 #include "apps/terminal/exit_code.hpp"
@@ -94,6 +97,50 @@ TEST_F(EepromCommand, ShowTakesAnyBytes) {
     EXPECT_THAT(in_process({"bus", "eeprom", "show", folder + "/empty.bin"}).out, HasSubstr("it is empty"));
     std::ofstream(folder + "/short.bin") << "abcd";
     EXPECT_THAT(in_process({"bus", "eeprom", "show", folder + "/short.bin"}).out, HasSubstr("shorter than its 64-word header"));
+}
+
+TEST_F(EepromCommand, AnImageInIntelHexIsTheSameImage) {
+    const auto binary = folder + "/x.bin", hex = folder + "/x.hex";
+    ASSERT_EQ(eeprom({"read", "x_drive", "-o", binary}).code, exit_ok);
+    const auto image = read_eeprom_file(binary).value();
+    std::ofstream text(hex);
+    for (std::size_t at = 0; at < image.size(); at += 16) {
+        auto sum = static_cast<unsigned>(16 + at / 256 + at % 256);
+        text << fmt::format(":10{:04X}00", at);
+        for (std::size_t n = 0; n < 16; ++n) {
+            const auto byte = std::to_integer<unsigned>(image[at + n]);
+            text << fmt::format("{:02X}", byte);
+            sum += byte;
+        }
+        text << fmt::format("{:02X}\r\n", (0x100 - sum % 0x100) % 0x100);
+    }
+    text << ":00000001FF\r\n" << std::flush;
+    const auto shown = in_process({"bus", "eeprom", "show", hex, "--json"});
+    ASSERT_EQ(shown.code, exit_ok) << shown.err;
+    EXPECT_EQ(shown.json()["strings"], in_process({"bus", "eeprom", "show", binary, "--json"}).json()["strings"]);
+    EXPECT_EQ(read_eeprom_file(hex).value(), image);
+    EXPECT_EQ(eeprom({"write", "x_drive", hex}).out, "slave 0 'x_drive': its EEPROM holds just that; nothing was written\n");
+
+    std::ofstream(folder + "/cut.hex") << ":020000001122CB\n";
+    const auto cut = in_process({"bus", "eeprom", "show", folder + "/cut.hex"});
+    EXPECT_EQ(cut.code, exit_bad_file);
+    EXPECT_THAT(cut.err, HasSubstr("cut.hex:1: the end record"));
+}
+
+// As found in a public image: a name with NULs in it.
+TEST_F(EepromCommand, NoNameOfASlaveReachesTheTerminalAsAControlCharacter) {
+    const auto path = changed("x_drive", [](EepromImage& image) {
+        const std::string name = "SV33-ECAT";
+        const auto at = std::search(image.begin(), image.end(), name.begin(), name.end(),
+                                    [](std::byte a, char b) { return a == static_cast<std::byte>(b); });
+        ASSERT_NE(at, image.end());
+        at[1] = std::byte{0x1B};
+        at[2] = std::byte{0x00};
+    });
+    const auto shown = in_process({"bus", "eeprom", "show", path});
+    EXPECT_THAT(shown.out, HasSubstr("S  3-ECAT"));
+    EXPECT_EQ(shown.out.find('\0'), std::string::npos);
+    EXPECT_EQ(shown.out.find('\x1B'), std::string::npos);
 }
 
 TEST_F(EepromCommand, BackupKeepsEverySlaveInAFileOfItsOwnAndWritesNothingOver) {

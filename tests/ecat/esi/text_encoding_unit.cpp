@@ -64,6 +64,18 @@ TEST(EsiEncoding, Utf16ThatIsNoneIsReadAsItIs) {
     EXPECT_THAT(text->utf8, HasSubstr("<a>b</a>"));
 }
 
+// Four of the ESI files that are public spell it so.
+TEST(EsiEncoding, AnEncodingMayBeSpeltAsPeopleSpellIt) {
+    for (const char* name : {"ISO8859-1", "iso_8859-1", "ISO-8859-1", "latin1", "Latin-1"}) {
+        const auto text = decoded("<?xml version=\"1.0\" encoding=\"" + std::string{name} + "\"?><a>10\xB5s</a>");
+        ASSERT_TRUE(text) << name << ": " << text.error().what;
+        EXPECT_EQ(text->encoding, "ISO-8859-1");
+        EXPECT_THAT(text->utf8, ::testing::HasSubstr("10\xC2\xB5s"));
+    }
+    for (const char* name : {"UTF8", "utf_8", "Shift_JIS", "windows1252"})
+        EXPECT_TRUE(decoded("<?xml version=\"1.0\" encoding=\"" + std::string{name} + "\"?><a>b</a>")) << name;
+}
+
 TEST(EsiEncoding, AnUnknownOneIsRefused) {
     const auto text = decoded("<?xml version=\"1.0\" encoding=\"KOI9\"?><a/>");
     ASSERT_FALSE(text);
