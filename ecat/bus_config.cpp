@@ -5,9 +5,11 @@
 #include <algorithm>
 
 #include "ecat/bringup/clocks.hpp"
+#include "ecat/bringup/known_pdos.hpp"
 #include "ecat/dc/sync0_budget.hpp"
 #include "ecat/description/factory_mapping.hpp"
 #include "ecat/description/module_pdos.hpp"
+#include "ecat/group_check.hpp"
 #include "ecat/layout/frame_schedule.hpp"
 #include "ecat/layout/process_data_plan.hpp"
 #include "ecat/place_check.hpp"
@@ -22,23 +24,6 @@ constexpr Duration maximum_watchdog = std::chrono::microseconds{100} * 0xFFFF;
 
 std::string micro(Duration d) { return fmt::format("{:.9g} us", to_seconds(d) * 1e6); }
 
-/// The PDOs as far as they are known without the slave: selected, else its factory ones.
-std::vector<PdoDescription> effective(const PdoSelection& selection, const std::vector<PdoDescription>& known,
-                                      const std::vector<std::uint16_t>& assigned) {
-    std::vector<PdoDescription> result;
-    const auto append = [&](std::uint16_t index) {
-        for (const auto& pdo : known)
-            if (pdo.index == index) result.push_back(pdo);
-    };
-    for (const auto& pdo : selection.assigned) {
-        if (pdo.entries.empty()) append(pdo.index);
-        else result.push_back(pdo);
-    }
-    if (selection.assigned.empty())
-        for (const auto index : assigned) append(index);
-    return result;
-}
-
 /// What the planner is told of a slave that nobody has asked: selected PDOs, else its factory ones.
 PlanSlave plan_slave(const SlaveConfig& slave, const std::string& subject) {
     const auto& device = *slave.device;
@@ -47,9 +32,9 @@ PlanSlave plan_slave(const SlaveConfig& slave, const std::string& subject) {
     input.sync_unit = slave.sync_unit;
     input.sync_managers = device.sync_managers;
     input.coe = device.mailbox && device.mailbox->coe;
-    const auto offered = pdos_of(device, slave.modules);
-    input.rx = effective(slave.rx, offered.rx, offered.rx_assigned);
-    input.tx = effective(slave.tx, offered.tx, offered.tx_assigned);
+    auto known = known_pdos(slave);
+    input.rx = std::move(known.rx);
+    input.tx = std::move(known.tx);
     input.fmmus = device.fmmus;
     input.sync_manager_count = device.sync_manager_count;
     const auto mailbox = std::find_if(device.sync_managers.begin(), device.sync_managers.end(),
@@ -77,6 +62,7 @@ public:
         check_ring();
         check_shift("bus", config_.sync0_shift);
         check_places(config_, errors_);
+        check_groups(config_, errors_);
         for (const auto& slave : config_.slaves) check_slave(slave);
         check_load();
         return std::move(errors_);
@@ -319,9 +305,8 @@ Duration estimated_flight(const BusConfig& config) {
     std::size_t bytes = 0;
     for (const auto& slave : config.slaves) {
         if (!slave.device) continue;
-        const auto offered = pdos_of(*slave.device, slave.modules);
-        bytes += datagram_overhead + (mapped_bits(effective(slave.rx, offered.rx, offered.rx_assigned)) + 7) / 8 +
-                 (mapped_bits(effective(slave.tx, offered.tx, offered.tx_assigned)) + 7) / 8;
+        const auto known = known_pdos(slave);
+        bytes += datagram_overhead + (mapped_bits(known.rx) + 7) / 8 + (mapped_bits(known.tx) + 7) / 8;
     }
     bytes += datagram_overhead + 8 + datagram_overhead + 2;  // clock and AL states
     const std::size_t frames = bytes / frame_capacity + 1;

@@ -64,7 +64,7 @@ enum class SyncStart : std::uint8_t { before_safeop, in_safeop };
 struct SlaveConfig {
     std::string name;
     std::shared_ptr<const DeviceDescription> device;
-    std::optional<std::uint16_t> position;      ///< 0-based on the cable; exactly one of position, alias and device_id
+    std::optional<std::uint16_t> position;      ///< 0-based on the cable, groups not counted; exactly one of position, alias and device_id
     std::optional<std::uint16_t> alias;         ///< station alias: register 0012h, loaded from SII word 4
     std::optional<std::uint16_t> device_id;     ///< explicit device identification (AL control bit 5)
     std::optional<RevisionRule> revision_rule;  ///< instead of the description's
@@ -80,6 +80,16 @@ struct SlaveConfig {
     Duration sm_watchdog{};   ///< 0 = three cycles of its sync unit, at least 10 ms
     Duration pdi_watchdog{};  ///< 0 = as the controller has it after power-on
     std::string sync_unit;    ///< slaves of the same name share one datagram and working counter; empty: its own
+    /// The group that it comes and goes with; empty: it is always there. The first of a group, in the order of the list, has an alias or a
+    /// device id; the others stand behind it on the cable, as they are listed, and have no place of their own.
+    std::string hot_connect;
+    [[nodiscard]] bool guest() const noexcept { return !hot_connect.empty(); }
+};
+
+/// Slaves that come and go together: a tool, a trailer. Wherever it is plugged in.
+struct HotConnectGroup {
+    std::string name;
+    std::vector<std::size_t> slaves;  ///< in BusConfig::slaves, as they stand on the cable; the first is who the group is known by
 };
 
 /// A group of slaves that is exchanged together. Named by SlaveConfig::sync_unit; those that are not listed have divisor 1.
@@ -158,6 +168,19 @@ struct BusLoad {
     std::size_t bytes = 0, frames = 0;
 };
 [[nodiscard]] BusLoad bus_load(const BusConfig& config);
+
+/// In the order of their first slaves.
+[[nodiscard]] inline std::vector<HotConnectGroup> hot_connect_groups(const BusConfig& config) {
+    std::vector<HotConnectGroup> groups;
+    for (std::size_t i = 0; i < config.slaves.size(); ++i) {
+        const auto& name = config.slaves[i].hot_connect;
+        if (name.empty()) continue;
+        const auto known = std::find_if(groups.begin(), groups.end(), [&](const HotConnectGroup& group) { return group.name == name; });
+        if (known != groups.end()) known->slaves.push_back(i);
+        else groups.push_back({name, {i}});
+    }
+    return groups;
+}
 
 /// Every problem of a configuration, found without a bus.
 [[nodiscard]] std::vector<Error> check(const BusConfig& config);

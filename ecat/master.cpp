@@ -74,6 +74,7 @@ struct Master::Impl {
 
     Transport& transport;
     BusConfig config;
+    std::vector<HotConnectGroup> groups = hot_connect_groups(config);
     ProcessDataCycle cycle;
     std::vector<std::unique_ptr<Bus>> buses;
     Bus* bus = nullptr;
@@ -136,9 +137,15 @@ SdoTicket Master::Impl::add_job(std::size_t slave, std::uint16_t index, std::uin
     auto& job = *jobs.emplace(ticket, std::make_unique<SdoJob>()).first->second;
     const auto here = bus->phase.load();
     const bool reachable = here == BusPhase::configuring || here == BusPhase::safeop || here == BusPhase::operational;
+    const bool known = slave < bus->slaves.size();
     if (slave >= config.slaves.size()) {
         job.result = Error{"sdo.no_slave", fmt::format("slave {}", slave), "there is no such slave in the configuration", ""};
-    } else if (!reachable || slave >= bus->slaves.size()) {
+    } else if (reachable && known && bus->slaves[slave]->away()) {
+        job.result =
+            Error{"sdo.not_connected", bus->slaves[slave]->subject,
+                  fmt::format("{} {} is not possible: its group is not connected", value ? "writing" : "reading", object_text(index, sub)),
+                  "plug it in, and wait until it has joined"};
+    } else if (!reachable || !known) {
         job.result =
             Error{"sdo.not_ready", fmt::format("slave '{}'", config.slaves[slave].name),
                   fmt::format("{} {} is not possible before the slave is in PREOP", value ? "writing" : "reading", object_text(index, sub)),
@@ -171,6 +178,7 @@ std::optional<Result<SdoResult>> Master::poll(SdoTicket ticket) {
 
 std::size_t Master::slave_count() const noexcept { return impl_->config.slaves.size(); }
 const SlaveConfig& Master::slave(std::size_t index) const { return impl_->config.slaves.at(index); }
+std::span<const HotConnectGroup> Master::groups() const noexcept { return impl_->groups; }
 
 const MappedEntry* Master::Impl::find(std::size_t slave, std::uint16_t object, std::uint8_t sub, bool output) const noexcept {
     if (!cycle.published() || slave >= bus->plan.slaves.size()) return nullptr;
@@ -222,6 +230,16 @@ void Master::send(Instant now) noexcept { impl_->cycle.send(now); }
 std::span<const std::byte> Master::inputs() const noexcept { return impl_->cycle.inputs(); }
 std::span<std::byte> Master::outputs() noexcept { return impl_->cycle.outputs(); }
 const SlaveHealth& Master::health(std::size_t slave) const noexcept { return impl_->cycle.health(slave); }
+GroupPresence Master::group_presence(std::size_t group) const noexcept {
+    if (group >= impl_->groups.size()) return GroupPresence::absent;
+    bool joining = false, there = true;
+    for (const std::size_t slave : impl_->groups[group].slaves) {
+        const Attendance now = impl_->cycle.attendance(slave);
+        joining = joining || now == Attendance::joining;
+        there = there && now == Attendance::there;
+    }
+    return there ? GroupPresence::present : joining ? GroupPresence::joining : GroupPresence::absent;
+}
 const BusStatistics& Master::statistics() const noexcept { return impl_->cycle.statistics(); }
 Duration Master::period_correction() const noexcept { return impl_->cycle.period_correction(); }
 Instant Master::outputs_effective(std::size_t slave, Instant send_time) const noexcept {
@@ -255,6 +273,7 @@ std::string fallen_text(const Bus& bus) {
     std::string names, why;
     std::size_t count = 0;
     for (const auto& slave : bus.slaves) {
+        if (slave->away()) continue;
         const std::uint32_t al = slave->link.al.load();
         const bool in_op = al == static_cast<std::uint32_t>(AlState::op);
         if (in_op && slave->link.age.load() < bus.config.lost_frames_limit) continue;
@@ -266,6 +285,7 @@ std::string fallen_text(const Bus& bus) {
 }
 
 bool is_back(const Bus& bus, const BusSlave& slave) {
+    if (slave.away()) return true;
     return slave.link.al.load() == static_cast<std::uint32_t>(AlState::op) && slave.link.age.load() < bus.config.lost_frames_limit;
 }
 
@@ -354,6 +374,7 @@ std::string Master::detail(const AlarmFact& fact) const {
         case BusAlarm::reference_clock_lost: return reference_clock(*impl_->bus);
         case BusAlarm::dc_out_of_sync: return furthest_clock(*impl_->bus);
         case BusAlarm::ring_broken: return ring_text(*impl_->bus);
+        case BusAlarm::stranger_plugged_in: return impl_->bus->strangers;
         case BusAlarm::sync_unit_not_exchanged:
         case BusAlarm::sync_unit_dropped_out: return fact.index < slaves.size() ? unit_text(*impl_->bus, *slaves[fact.index]) : "";
         default: break;
@@ -381,6 +402,7 @@ std::string Master::detail(const AlarmFact& fact) const {
         case BusAlarm::branch_dropped_out: return with_outcome(connection_text(*impl_->bus, slave), outcome(*impl_->bus, &slave));
         case BusAlarm::other_device:
         case BusAlarm::other_device_tolerated:
+        case BusAlarm::group_does_not_join:
         case BusAlarm::slave_does_not_return: return slave.last_trouble;
         default: return {};
     }

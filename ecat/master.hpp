@@ -81,6 +81,8 @@ public:
     // --- resolved once, after `configuring` -----------------------------------------------------------------------------
     [[nodiscard]] std::size_t slave_count() const noexcept;  ///< configured slaves, in configuration order
     [[nodiscard]] const SlaveConfig& slave(std::size_t index) const;
+    /// Slaves that come and go together; constant.
+    [[nodiscard]] std::span<const HotConnectGroup> groups() const noexcept;
     [[nodiscard]] Result<Signal> input(std::size_t slave, std::uint16_t object, std::uint8_t sub) const;
     [[nodiscard]] Result<Signal> output(std::size_t slave, std::uint16_t object, std::uint8_t sub) const;
     [[nodiscard]] bool maps_output(std::size_t slave, std::uint16_t object, std::uint8_t sub) const noexcept;
@@ -97,6 +99,9 @@ public:
     [[nodiscard]] std::span<const std::byte> inputs() const noexcept;
     [[nodiscard]] std::span<std::byte> outputs() noexcept;
     [[nodiscard]] const SlaveHealth& health(std::size_t slave) const noexcept;
+    /// Of groups()[group]. Goes to `absent` with the third cycle that comes back without its process data, or, of slaves that have none, as soon
+    /// as the watch misses them.
+    [[nodiscard]] GroupPresence group_presence(std::size_t group) const noexcept;
     [[nodiscard]] const BusStatistics& statistics() const noexcept;
     /// After send(): what has to be added to the period before the next cycle, so that the master's cycle stays locked to the
     /// reference clock (ecat/dc/cycle_servo.hpp). 0 without DC. At most a hundredth of the cycle.

@@ -41,6 +41,7 @@ private:
     }
 
     void check_count(const SlaveConfig& slave) {
+        if (slave.guest()) return;  // group_check.hpp
         const int places = slave.position.has_value() + slave.alias.has_value() + slave.device_id.has_value();
         if (places != 1)
             add("bus.place", subject_of(slave),
@@ -55,7 +56,9 @@ private:
             add("bus.duplicate_position", subject_of(slave), fmt::format("position {} is taken by another slave", *slave.position),
                 "positions count from 0 along the cable");
         const bool all_listed = config_.extra_slaves == ExtraSlaves::refuse;
-        const std::size_t limit = all_listed ? config_.slaves.size() : most_slaves;
+        const auto residents = static_cast<std::size_t>(
+            std::count_if(config_.slaves.begin(), config_.slaves.end(), [](const SlaveConfig& one) { return !one.guest(); }));
+        const std::size_t limit = all_listed ? residents : most_slaves;
         if (*slave.position >= limit)
             add("bus.position", subject_of(slave), fmt::format("position {} on a bus of {} slaves", *slave.position, limit),
                 all_listed ? "positions count from 0 along the cable, and every slave is listed; or set `extra_slaves: ignore`"

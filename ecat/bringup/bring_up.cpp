@@ -99,7 +99,7 @@ void remark_late_sync0(Bus& bus) {
 /// Nothing fails by it: lists take longer. Who wonders why the start is slow finds it here.
 void remark_complete_access(Bus& bus) {
     for (const auto& slave : bus.slaves)
-        if (slave->has_coe() && slave->device().mailbox->complete_access && !slave->mailbox.complete_access)
+        if (!slave->away() && slave->has_coe() && slave->device().mailbox->complete_access && !slave->mailbox.complete_access)
             bus.remember(slave->subject +
                          ": its firmware refuses complete access, which its profile promises: lists are written entry by entry; "
                          "set `complete_access: false` in its profile");
@@ -110,7 +110,8 @@ Script<Result<void>> climb(Bus& bus) {
     Result<void> done = co_await scan(bus);
     if (!done) co_return done;
 
-    for (auto& slave : bus.slaves) take_own_word(bus, *slave);
+    for (auto& slave : bus.slaves)
+        if (!slave->away()) take_own_word(bus, *slave);
     remark_late_sync0(bus);
     bus.phase.store(BusPhase::preop);
     done = co_await for_each_slave(bus, &enter_preop);

@@ -40,6 +40,11 @@ struct FoundSlave {
     std::optional<Error> error;  ///< could not be read
 };
 
+/// Where a slave of a group stands, as long as nobody knows, and in the tree of the bring-up, where it counts for nothing.
+inline constexpr std::uint16_t not_on_the_cable = 0xFFFF;
+/// Station addresses of slaves of groups, by their place in the configuration; below are those of the bring-up, by position.
+inline constexpr std::uint16_t first_guest_station = 0x4000;
+
 struct BusSlave {
     const SlaveConfig* config = nullptr;
     std::size_t index = 0;  ///< in the configuration
@@ -68,6 +73,8 @@ struct BusSlave {
     SlaveLink link;
 
     [[nodiscard]] const DeviceDescription& device() const noexcept { return own ? *own : *config->device; }
+    /// It comes and goes, and is not in operation now.
+    [[nodiscard]] bool away() const noexcept { return link.attendance.load() != Attendance::there; }
     [[nodiscard]] bool has_mailbox() const noexcept { return device().mailbox.has_value(); }
     [[nodiscard]] bool has_coe() const noexcept { return device().mailbox && device().mailbox->coe; }
 };
@@ -81,6 +88,8 @@ struct Bus {
     std::vector<std::unique_ptr<BusSlave>> slaves;  ///< configuration order
     std::vector<FoundSlave> found;                  ///< all on the cable, by position; also those that nobody configured
     Topology topology;                              ///< of `found`
+    std::vector<HotConnectGroup> groups = hot_connect_groups(config);
+    std::string strangers;                          ///< who was plugged in and belongs to no group; empty: nobody
     std::optional<RingEnd> ring_end;                ///< of a ring, while it is a line (ring_line.hpp)
     std::uint16_t line_of = 0;                      ///< so many slaves answered when it became one
     ProcessDataPlan plan;
@@ -107,7 +116,7 @@ struct Bus {
 
 /// A step of one slave.
 using SlaveStep = Script<Result<void>> (*)(Bus&, BusSlave&);
-/// Runs a step for all slaves side by side; the first error in configuration order.
+/// Runs a step for all slaves that are there side by side; the first error in configuration order.
 [[nodiscard]] Script<Result<void>> for_each_slave(Bus& bus, SlaveStep step);
 
 }  // namespace taktwerk::ecat

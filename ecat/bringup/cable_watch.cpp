@@ -150,7 +150,7 @@ void CableWatch::forget_what_is_explained() noexcept {
 Script<void> CableWatch::read(std::size_t slave) {
     const auto& of = *bus_.slaves[slave];
     read_[slave].reset();
-    if (of.link.presence.load() == Presence::answers) read_[slave] = co_await read_port_counters(bus_.port, of.found.station);
+    if (!of.away() && of.link.presence.load() == Presence::answers) read_[slave] = co_await read_port_counters(bus_.port, of.found.station);
 }
 
 /// Until a frame has come back that was sent behind everything that was read.

@@ -40,6 +40,7 @@ Duration unit_phase(const Bus& bus, const BusSlave& slave, std::int64_t dc_phase
 std::vector<BusSlave*> slaves_with_clock(Bus& bus) {
     std::vector<BusSlave*> result;
     for (auto& slave : bus.slaves) {
+        if (slave->config->guest()) continue;  // not before it joins (hot_connect.hpp)
         slave->dc = (slave->found.features & feature::dc) != 0;
         if (slave->dc) result.push_back(slave.get());
     }

@@ -21,13 +21,14 @@ std::vector<FaultSlave> fault_slaves(const Bus& bus) {
     for (const auto& slave : bus.slaves) {
         const Duration watchdog = sm_watchdog(bus.config, *slave->config) - bus.config.cycle;  // a frame had just come when the gap began
         const auto cycles = static_cast<std::uint32_t>(std::max<std::int64_t>(2, watchdog / bus.config.cycle));
-        slaves.push_back({slave->index, FaultSlave::none, slave->config->on_loss, bus.reference == slave->index,
-                          slave->config->dc && slave->dc, slave->found.position, shared_unit(bus, slave->index), cycles, watchdog,
-                          slave->found.station});
+        slaves.push_back({slave->index, FaultSlave::none, slave->config->guest() ? LossPolicy::stop_own_axes : slave->config->on_loss,
+                          bus.reference == slave->index, slave->config->dc && slave->dc, slave->found.position,
+                          shared_unit(bus, slave->index), cycles, watchdog, slave->found.station, slave->config->guest()});
     }
     const auto position = [&](const FaultSlave& s) { return std::size_t{bus.slaves[s.index]->found.position}; };
     std::sort(slaves.begin(), slaves.end(), [&](const FaultSlave& a, const FaultSlave& b) { return position(a) < position(b); });
     for (std::size_t i = 0; i < slaves.size(); ++i) {
+        if (slaves[i].guest) continue;
         if (position(slaves[i]) >= bus.topology.slaves.size()) {  // the tree could not be read: take it for a line
             if (i > 0) slaves[i].parent = i - 1;
             continue;
@@ -65,7 +66,9 @@ std::unique_ptr<CyclePlan> cycle_plan(const Bus& bus) {
     std::vector<CycleSlave> slaves;
     for (const auto& slave : bus.slaves)
         slaves.push_back({&slave->link, &slave->mailbox.emergency, exchange_period(bus.config, *slave->config), slave->dc_delay});
-    const auto on_cable = static_cast<std::uint16_t>(std::max(bus.found.size(), bus.slaves.size()));
+    const auto residents = static_cast<std::size_t>(
+        std::count_if(bus.slaves.begin(), bus.slaves.end(), [](const auto& slave) { return !slave->config->guest(); }));
+    const auto on_cable = static_cast<std::uint16_t>(std::max(bus.found.size() - bus.link.guests.load(), residents));
     auto plan =
         std::make_unique<CyclePlan>(bus.plan, std::move(slaves), FaultFinder{fault_slaves(bus), on_cable, bus.config.lost_frames_limit});
     plan->state_wkc = on_cable;

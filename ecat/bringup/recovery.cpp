@@ -75,7 +75,7 @@ Script<Result<void>> readdress(Bus& bus, BusSlave& slave) {
     }
     const Result<void> given = co_await give_address(bus, slave, position);
     if (!given) co_return given;
-    const FoundSlave found = co_await read_slave(bus.port, slave.found.position, slave.subject);
+    const FoundSlave found = co_await read_slave(bus.port, position, slave.found.station, slave.subject);
     const Result<void> identity = found.error ? Result<void>{*found.error}
                                   : slave.own ? check_identity(slave.subject, *slave.own, found.identity)
                                               : check_identity(slave.subject, *slave.config, found.identity);
@@ -129,7 +129,10 @@ Script<Result<void>> recover(Bus& bus, BusSlave& slave) {
         const bool same_objects = same_entries(rx_before, slave.rx) && same_entries(tx_before, slave.tx);
         if (slave.has_coe() && (!same || !same_objects)) {
             slave.rx = rx_before, slave.tx = tx_before;  // what the next attempt is held against
-            co_return Error{"bus.pdo_mismatch", slave.subject, "it came back with other PDOs than before", "restart the machine"};
+            co_return slave.config->guest()
+                ? Error{"bus.pdo_mismatch", slave.subject, "its process data is not what its description says",
+                        "correct the description: `taktwerk bus init` reads what the device has"}
+                : Error{"bus.pdo_mismatch", slave.subject, "it came back with other PDOs than before", "restart the machine"};
         }
         if (bus.reference != slave.index) {
             done = co_await restore_clock(bus, slave);

@@ -18,7 +18,7 @@ constexpr std::uint32_t missing_limit = 10;  ///< cycles without its time until 
 std::vector<BusSlave*> clocks_of(Bus& bus) {
     std::vector<BusSlave*> result;
     for (auto& slave : bus.slaves)
-        if (slave->dc) result.push_back(slave.get());
+        if (slave->dc && !slave->config->guest()) result.push_back(slave.get());
     std::sort(result.begin(), result.end(), [](const BusSlave* a, const BusSlave* b) { return a->found.position < b->found.position; });
     return result;
 }

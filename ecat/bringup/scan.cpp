@@ -93,10 +93,10 @@ Script<Result<std::uint16_t>> reset_all(Bus& bus) {
 }
 
 /// Controller and ports of one slave.
-Script<FoundSlave> read_controller(DatagramPort& port, std::uint16_t position, std::string subject) {
+Script<FoundSlave> read_controller(DatagramPort& port, std::uint16_t position, std::uint16_t station, std::string subject) {
     FoundSlave found;
     found.position = position;
-    found.station = station_at(position);
+    found.station = station;
     const Reply info = co_await port.fprd(found.station, reg::type, 10);
     const Reply alias = co_await port.fprd(found.station, reg::station_alias, 2);
     const Reply dl = co_await port.fprd(found.station, reg::dl_status, 2);
@@ -120,7 +120,7 @@ Script<void> find_one(Bus& bus, std::uint16_t position, bool wants_id, FoundSlav
         found.error = unanswered(subject, "its station address (0010h)", written);
         co_return;
     }
-    found = co_await read_controller(bus.port, position, subject);
+    found = co_await read_controller(bus.port, position, station_at(position), subject);
     if (found.error) co_return;
     Result<Sii> sii = co_await read_whole_sii(bus.port, found.station, subject);
     if (!sii) {
@@ -179,8 +179,8 @@ Script<Result<void>> find_topology(Bus& bus) {
 
 }  // namespace
 
-Script<FoundSlave> read_slave(DatagramPort& port, std::uint16_t position, std::string subject) {
-    FoundSlave found = co_await read_controller(port, position, subject);
+Script<FoundSlave> read_slave(DatagramPort& port, std::uint16_t position, std::uint16_t station, std::string subject) {
+    FoundSlave found = co_await read_controller(port, position, station, subject);
     if (found.error) co_return found;
     std::array<std::uint32_t, 6> values{};
     constexpr std::array<std::uint16_t, 6> words{sii_word::vendor, sii_word::product,     sii_word::revision,
@@ -251,7 +251,10 @@ Script<Result<void>> scan(Bus& bus) {
     note_defects(bus);
     const Result<void> tree = co_await find_topology(bus);
     if (!tree) co_return tree;
-    co_return match(bus.config, bus.found, bus.slaves);
+    const Result<std::size_t> guests = match(bus.config, bus.found, bus.slaves);
+    if (!guests) co_return guests.error();
+    bus.link.guests.store(static_cast<std::uint16_t>(*guests));
+    co_return Result<void>{};
 }
 
 }  // namespace taktwerk::ecat

@@ -20,9 +20,9 @@ inline constexpr Duration device_id_timeout = std::chrono::milliseconds{300};
 /// Errors: bus.no_frame, bus.empty, and those of match().
 [[nodiscard]] Script<Result<void>> scan(Bus& bus);
 
-/// Identity, mailbox and features of the slave that has the station address of this position: the few words that tell who it
-/// is. Problems stand in `error`. `sii` is left as it is: read_whole_sii() takes its time.
-[[nodiscard]] Script<FoundSlave> read_slave(DatagramPort& port, std::uint16_t position, std::string subject);
+/// Identity, mailbox and features of the slave that has this station address: the few words that tell who it is. The position only says
+/// where it stands. Problems stand in `error`. `sii` is left as it is: read_whole_sii() takes its time.
+[[nodiscard]] Script<FoundSlave> read_slave(DatagramPort& port, std::uint16_t position, std::uint16_t station, std::string subject);
 
 /// Where a slave says that its explicit device id stands; 0: it does not say so.
 [[nodiscard]] std::uint16_t id_register(const Sii& sii) noexcept;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "ecat/bringup/known_pdos.hpp"
 #include "ecat/bringup/shifted_slaves.hpp"
 
 namespace taktwerk::ecat {
@@ -158,8 +159,11 @@ Result<void> check_identity(const std::string& subject, const DeviceDescription&
     return check(subject, device, device.revision_rule, found);
 }
 
-Result<void> match(const BusConfig& config, const std::vector<FoundSlave>& found, std::vector<std::unique_ptr<BusSlave>>& slaves) {
-    slaves.clear();
+namespace {
+
+/// Those that are always there.
+Result<void> match_residents(const BusConfig& config, const std::vector<FoundSlave>& found,
+                             std::vector<std::unique_ptr<BusSlave>>& slaves) {
     if (auto shifted = shifted_slaves(config, found)) return std::move(*shifted);
     std::vector<bool> used(found.size(), false);
     for (const auto& wanted : config.slaves) {
@@ -203,6 +207,76 @@ Result<void> match(const BusConfig& config, const std::vector<FoundSlave>& found
                      "add it to the configuration, unplug it, or set `extra_slaves: ignore`"};
     }
     return {};
+}
+
+/// By position: belongs to a group, as far as can be told. Also a second one with the same number, and one whose followers are others.
+std::vector<bool> guests_among(const BusConfig& config, const std::vector<FoundSlave>& found) {
+    std::vector<bool> guest(found.size(), false);
+    for (const auto& group : hot_connect_groups(config))
+        for (std::size_t at = 0; at < found.size(); ++at) {
+            if (!is_head(config.slaves[group.slaves.front()], found[at])) continue;
+            guest[at] = true;
+            for (std::size_t n = 1; n < group.slaves.size() && at + n < found.size(); ++n) {
+                if (!check_identity({}, config.slaves[group.slaves[n]], found[at + n].identity)) break;
+                guest[at + n] = true;
+            }
+        }
+    return guest;
+}
+
+/// Its process data is laid out as its description has it; who it is shows when it comes.
+std::unique_ptr<BusSlave> away_until_it_joins(const SlaveConfig& config, std::size_t index) {
+    auto slave = std::make_unique<BusSlave>();
+    slave->config = &config;
+    slave->index = index;
+    slave->subject = fmt::format("slave '{}' ({}) of group '{}'", config.name, config.device->name, config.hot_connect);
+    slave->found.position = not_on_the_cable;
+    slave->found.station = static_cast<std::uint16_t>(first_guest_station + index);
+    slave->found.fmmus = config.device->fmmus;
+    slave->found.sync_managers = config.device->sync_manager_count;
+    auto known = known_pdos(config);
+    slave->rx = std::move(known.rx);
+    slave->tx = std::move(known.tx);
+    slave->link.attendance.store(Attendance::away);
+    return slave;
+}
+
+}  // namespace
+
+bool is_head(const SlaveConfig& head, const FoundSlave& found) noexcept {
+    return head.alias ? found.alias == *head.alias : head.device_id && found.device_id == head.device_id;
+}
+
+Result<std::size_t> match(const BusConfig& config, const std::vector<FoundSlave>& found, std::vector<std::unique_ptr<BusSlave>>& slaves) {
+    slaves.clear();
+    BusConfig residents = config;
+    std::erase_if(residents.slaves, [](const SlaveConfig& slave) { return slave.guest(); });
+    const auto guest = guests_among(config, found);
+    std::vector<FoundSlave> there;
+    std::vector<std::uint16_t> position;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        if (guest[i]) continue;
+        position.push_back(found[i].position);
+        there.push_back(found[i]);
+        there.back().position = static_cast<std::uint16_t>(there.size() - 1);
+    }
+    std::vector<std::unique_ptr<BusSlave>> matched;
+    if (const auto done = match_residents(residents, there, matched); !done) {
+        slaves = std::move(matched);  // as far as it went
+        return done.error();
+    }
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < config.slaves.size(); ++i) {
+        if (config.slaves[i].guest()) {
+            slaves.push_back(away_until_it_joins(config.slaves[i], i));
+            continue;
+        }
+        slaves.push_back(std::move(matched[next++]));
+        slaves.back()->config = &config.slaves[i];
+        slaves.back()->index = i;
+        slaves.back()->found.position = position[slaves.back()->found.position];
+    }
+    return found.size() - there.size();
 }
 
 }  // namespace taktwerk::ecat

@@ -13,11 +13,16 @@
 
 namespace taktwerk::ecat {
 
-/// Gives every configured slave its place, in the order of the configuration.
+/// Gives every configured slave its place, in the order of the configuration. Those of groups that come and go get none, whether they are
+/// there or not: they join a bus that is in operation (hot_connect.hpp). Positions in messages are those of the configuration, which do
+/// not count groups. Returns how many of those found belong to groups.
 /// Errors: bus.missing_slave, bus.duplicate_alias, bus.duplicate_device_id (both positions), bus.wrong_identity (with a hint
 /// where the slaves only stand in another order), bus.ambiguous, bus.unexpected_slave (ExtraSlaves::refuse), bus.sii.
-[[nodiscard]] Result<void> match(const BusConfig& config, const std::vector<FoundSlave>& found,
-                                 std::vector<std::unique_ptr<BusSlave>>& slaves);
+[[nodiscard]] Result<std::size_t> match(const BusConfig& config, const std::vector<FoundSlave>& found,
+                                        std::vector<std::unique_ptr<BusSlave>>& slaves);
+
+/// Whether this is the slave that a group is known by.
+[[nodiscard]] bool is_head(const SlaveConfig& head, const FoundSlave& found) noexcept;
 
 /// Is this the device the configuration wants? Names expected and found. Error bus.wrong_identity.
 [[nodiscard]] Result<void> check_identity(const std::string& subject, const SlaveConfig& wanted, const Identity& found);

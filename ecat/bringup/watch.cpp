@@ -7,6 +7,7 @@
 
 #include "ecat/bringup/al_control.hpp"
 #include "ecat/bringup/cable_watch.hpp"
+#include "ecat/bringup/hot_connect.hpp"
 #include "ecat/bringup/presence.hpp"
 #include "ecat/bringup/recovery.hpp"
 #include "ecat/bringup/reference_role.hpp"
@@ -120,9 +121,19 @@ Script<void> SlaveWatch::run() {
         if (now - looked < std::max(round, seen != picture ? watch_suspicious : watch_period)) continue;
         looked = now;
         picture = seen;
+        if (slave_.away()) {
+            reported_ = false;
+            back_off_.forget();
+            continue;
+        }
 
         const Result<std::uint16_t> status = co_await read_al_status(bus_, slave_);
         const Presence presence = presence_of(status);
+        if (slave_.away()) continue;  // another of its group was found missing meanwhile
+        if (presence == Presence::silent && slave_.config->guest()) {
+            leave(bus_, slave_);
+            continue;
+        }
         if (presence != slave_.link.presence.exchange(presence)) {
             back_off_.forget();
             slave_.position_now.reset();  // where it was says nothing about where it is, or who it is
@@ -276,6 +287,7 @@ Script<void> keep_alive(Bus& bus) {
         if (slave->has_coe()) scripts.push_back(listen(bus.port, slave->mailbox));
     }
     scripts.push_back(watch_places(bus));
+    scripts.push_back(watch_groups(bus));
     scripts.push_back(watch_mailboxes(bus));
     scripts.push_back(watch_senders(bus));
     scripts.push_back(watch_cables(bus));

@@ -10,6 +10,16 @@
 
 namespace taktwerk::ecat {
 
+/// Slaves that come and go together (hot connect).
+enum class GroupPresence : std::uint8_t {
+    absent,
+    joining,  ///< plugged in and known; its slaves are on their way to OP
+    present,  ///< all of them are in OP, and their process data is exchanged
+};
+[[nodiscard]] constexpr const char* name(GroupPresence presence) noexcept {
+    return presence == GroupPresence::present ? "present" : presence == GroupPresence::joining ? "joining" : "absent";
+}
+
 /// What the cycle knows about a slave's process data. Trivially copyable.
 struct SlaveHealth {
     AlState al_state = AlState::unknown;

@@ -114,7 +114,8 @@ struct CycleLink {
     std::atomic<std::uint32_t> clock_holds{0};      ///< above 0: a reference is being set: read its time, give it to nobody
     std::atomic<std::uint64_t> reference{0};        ///< who serves as reference clock: station + (ns behind the first << 16)
     SeenAlarms seen;
-    std::atomic<bool> runs_sync0{false};  ///< some slave does, so the cycle has to be locked to the reference
+    std::atomic<bool> runs_sync0{false};   ///< some slave does, so the cycle has to be locked to the reference
+    std::atomic<std::uint16_t> guests{0};  ///< slaves on the cable that are not always there, whoever they are
 };
 
 /// What a slave or drive says so soon after this computer sent nothing for a while follows from that: its watchdogs and counters of
@@ -139,6 +140,13 @@ enum class Presence : std::uint8_t {
     answers,
     unheard,  ///< no frame came back: nothing is known
     silent,   ///< frames come back, nobody answered
+};
+
+/// Of a slave that comes and goes with its group; of all others `there`.
+enum class Attendance : std::uint8_t {
+    there,    ///< in OP once: what is wrong with it now is a fault
+    away,     ///< nothing is expected of it
+    joining,  ///< plugged in, on its way to OP
 };
 
 /// Why a slave that is on the cable does not come back to OP.
@@ -171,6 +179,7 @@ struct alignas(64) SlaveLink {
     std::atomic<std::uint32_t> age{0};  ///< written by the cycle: cycles since its process data was exchanged
     // Written by the scripts.
     std::atomic<Presence> presence{Presence::answers};
+    std::atomic<Attendance> attendance{Attendance::there};
     std::atomic<ReturnTrouble> trouble{ReturnTrouble::none};
     std::atomic<std::uint32_t> attempts{0};  ///< to get it back, in a row
     SeenAlarms seen;

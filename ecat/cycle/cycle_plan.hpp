@@ -34,7 +34,7 @@ struct CyclePlan {
     std::optional<std::uint16_t> reference;  ///< station of the reference clock
     std::vector<std::int64_t> ring_delays;   ///< of a ring: ns from the reference clock, by position, guessed where a slave has no clock
     std::uint16_t reference_position = 0;    ///< meaningful with `reference`
-    std::uint16_t state_wkc = 0;             ///< slaves that answer to a broadcast when all is well
+    std::uint16_t state_wkc = 0;             ///< slaves that answer to a broadcast when all is well, besides CycleLink::guests
 
     /// Where a datagram is under way.
     struct Place {

@@ -133,11 +133,12 @@ void FaultFinder::look_at_slaves(const BusCondition& bus) noexcept {
     }
     was_silent_ = false;
     note_falls(bus);
-    const std::size_t unnamed = find_lost(bus.slaves_answering);
+    const auto expected = static_cast<std::uint16_t>(expected_ + bus.guests);
+    const std::size_t unnamed = find_lost(bus.slaves_answering, expected);
     form_groups();
     raise_falls(bus);
     raise_groups();
-    raise_unnamed(unnamed);
+    raise_unnamed(unnamed, expected);
     raise_units();
     bool reference_gone = false;
     for (std::size_t i = 0; i < slaves_.size(); ++i) {
@@ -148,6 +149,7 @@ void FaultFinder::look_at_slaves(const BusCondition& bus) noexcept {
     const bool unasked = bus.lost_in_a_row > 0 || bus.gap >= bus.reference_times_missing;
     if (bus.reference_times_missing >= reference_times_limit && !reference_gone && !unasked)
         raise(BusAlarm::reference_clock_lost, AlarmSource::bus, 0, bus.reference_times_missing);
+    if (bus.seen.has<BusAlarm::stranger_plugged_in>()) raise(BusAlarm::stranger_plugged_in, AlarmSource::bus, 0, bus.guests);
     if (bus.dc_difference_ns > sync_limit_ns)
         raise(BusAlarm::dc_out_of_sync, AlarmSource::bus, 0, static_cast<double>(bus.dc_difference_ns));
 }
@@ -247,8 +249,8 @@ void FaultFinder::raise_falls(const BusCondition& bus) noexcept {
     else if (bus.gap == 0) silence_ = BusAlarm::frames_lost;
 }
 
-std::size_t FaultFinder::find_lost(std::uint16_t answering) noexcept {
-    const std::size_t missing = answering < expected_ ? std::size_t{expected_} - answering : 0;
+std::size_t FaultFinder::find_lost(std::uint16_t answering, std::uint16_t expected) noexcept {
+    const std::size_t missing = answering < expected ? std::size_t{expected} - answering : 0;
     std::size_t silent = 0, suspect = 0;
     for (const auto& state : states_) {
         silent += state.seen.presence == Presence::silent;
@@ -292,7 +294,7 @@ void FaultFinder::form_groups() noexcept {
 void FaultFinder::raise_groups() noexcept {
     for (std::size_t i = 0; i < slaves_.size(); ++i) {
         const State& first = states_[i];
-        if (first.group == 0) continue;
+        if (first.group == 0 || slaves_[i].guest) continue;
         const bool branch = first.largest_group > 1;
         const BusAlarm alarm = branch ? (first.group_stops_machine ? BusAlarm::cable_broken : BusAlarm::branch_dropped_out)
                                       : (first.group_stops_machine ? BusAlarm::slave_lost : BusAlarm::slave_dropped_out);
@@ -301,11 +303,11 @@ void FaultFinder::raise_groups() noexcept {
     }
 }
 
-void FaultFinder::raise_unnamed(std::size_t unnamed) noexcept {
+void FaultFinder::raise_unnamed(std::size_t unnamed, std::uint16_t expected) noexcept {
     if (unnamed == 0) return;
     for (std::size_t i = 0; i < slaves_.size(); ++i)
         if (stale(states_[i]) && states_[i].gone_with == FaultSlave::none && slaves_[i].on_loss == LossPolicy::stop_machine)
-            return raise(BusAlarm::slaves_missing, AlarmSource::bus, 0, static_cast<double>(missing_), expected_);
+            return raise(BusAlarm::slaves_missing, AlarmSource::bus, 0, static_cast<double>(missing_), expected);
 }
 
 void FaultFinder::raise_slave(std::size_t at, bool counted_out) noexcept {
@@ -313,6 +315,8 @@ void FaultFinder::raise_slave(std::size_t at, bool counted_out) noexcept {
     const State& state = states_[at];
     const auto& seen = state.seen;
     const bool tolerated = slave.on_loss == LossPolicy::stop_own_axes;
+    if (seen.seen.has<BusAlarm::group_does_not_join>()) raise(BusAlarm::group_does_not_join, AlarmSource::slave, slave.index);
+    if (slave.guest && (seen.presence == Presence::silent || state.fall.restarted)) return;  // it is gone, or just coming
     if (seen.trouble == ReturnTrouble::other_device) {
         raise(tolerated ? BusAlarm::other_device_tolerated : BusAlarm::other_device, AlarmSource::slave, slave.index);
         return;

@@ -58,6 +58,7 @@ struct BusCondition {
     bool link_up = true;
     std::uint32_t lost_in_a_row = 0;
     std::uint16_t slaves_answering = 0;
+    std::uint16_t guests = 0;                   ///< of them are not always there
     std::uint32_t reference_times_missing = 0;  ///< in a row
     std::int64_t dc_difference_ns = 0;
     BusAlarmSet seen{};        ///< what the scripts see
@@ -84,12 +85,13 @@ struct FaultSlave {
     std::uint32_t watchdog_cycles = 2;  ///< without a frame until its watchdog of process data trips
     Duration watchdog{};                ///< the same as a time
     std::uint16_t station = 0;
+    bool guest = false;  ///< it comes and goes with its group: being gone is no fault
     [[nodiscard]] bool alone() const noexcept { return unit == none; }
 };
 
 class FaultFinder {
 public:
-    /// `expected`: slaves that answer to a broadcast when all is well. `limit`: cycles without exchange until it is a fault.
+    /// `expected`: slaves that answer to a broadcast when all is well, besides BusCondition::guests. `limit`: cycles without exchange until it is a fault.
     FaultFinder(std::vector<FaultSlave> slaves, std::uint16_t expected, std::uint32_t limit);
 
     /// Of the slave with this index in the configuration; written before look().
@@ -139,7 +141,7 @@ private:
     void look_at_ring(const BusCondition& bus) noexcept;
     /// Returns how many slaves are missing that cannot be named yet. As long as there are some nobody new is named: whoever of them is found
     /// first is seldom the one that took the others along.
-    std::size_t find_lost(std::uint16_t answering) noexcept;
+    std::size_t find_lost(std::uint16_t answering, std::uint16_t expected) noexcept;
     void form_groups() noexcept;
     void raise_groups() noexcept;
     void raise_slave(std::size_t at, bool counted_out) noexcept;
@@ -167,7 +169,7 @@ private:
     [[nodiscard]] bool replaced(const State& state) const noexcept {
         return state.seen.trouble == ReturnTrouble::other_device && missing_ == 0;
     }
-    void raise_unnamed(std::size_t unnamed) noexcept;
+    void raise_unnamed(std::size_t unnamed, std::uint16_t expected) noexcept;
     [[nodiscard]] bool stale(const State& state) const noexcept { return state.seen.age >= limit_; }
 
     std::vector<FaultSlave> slaves_;

@@ -96,6 +96,10 @@ void ProcessDataCycle::find_faults(CyclePlan& cycle, Instant now) noexcept {
     for (std::size_t s = 0; s < cycle.slaves.size(); ++s) {
         const auto& health = cycle.health[s];
         const auto& link = *cycle.slaves[s].link;
+        if (link.attendance.load(std::memory_order_relaxed) != Attendance::there) {
+            cycle.faults.condition(s) = {.al_state = AlState::op, .seen = link.seen.load()};  // nothing is expected of it
+            continue;
+        }
         cycle.faults.condition(s) = {
             .al_state = health.al_state,
             .al_error = health.al_error,
@@ -125,6 +129,7 @@ void ProcessDataCycle::find_faults(CyclePlan& cycle, Instant now) noexcept {
     if (const auto* link = link_.load(std::memory_order_acquire)) {
         bus.seen = link->seen.load();
         bus.reference_station = static_cast<std::uint16_t>(link->reference.load(std::memory_order_relaxed) & 0xFFFFu);
+        bus.guests = link->guests.load(std::memory_order_relaxed);
         bus.stall = recent_stall(*link, now);
         bus.gap = recent_gap(*link, now);
         bus.states = static_cast<std::uint16_t>(link->states_seen.load(std::memory_order_relaxed));
@@ -186,7 +191,7 @@ void ProcessDataCycle::collect_first_frame(CyclePlan& cycle, SlotId slot) noexce
     const auto states = exchange_.data(slot, cycle.state_number);
     statistics_.slaves_answering = exchange_.wkc(slot, cycle.state_number);
     link->slaves_answering.store(statistics_.slaves_answering, std::memory_order_relaxed);
-    const bool all_answered = statistics_.slaves_answering == cycle.state_wkc;
+    const bool all_answered = statistics_.slaves_answering == cycle.state_wkc + link->guests.load(std::memory_order_relaxed);
     const auto all_states = static_cast<std::uint16_t>(states.size() == 2 ? load_le<std::uint16_t>(states) & 0x1Fu : 0u);
     link->states_seen.store(all_answered ? all_states : 0u, std::memory_order_relaxed);
     upheavals_.see_slaves(statistics_.slaves_answering, all_states);
@@ -240,6 +245,12 @@ bool ProcessDataCycle::answered_exactly(const CyclePlan& cycle, const UnitPlan& 
     return exact;
 }
 
+bool ProcessDataCycle::away(const CyclePlan& cycle, const UnitPlan& unit) noexcept {
+    return std::any_of(unit.slaves.begin(), unit.slaves.end(), [&](std::size_t s) {
+        return cycle.slaves[s].link->attendance.load(std::memory_order_acquire) != Attendance::there;
+    });
+}
+
 void ProcessDataCycle::take_unit(CyclePlan& cycle, const UnitPlan& unit) noexcept {
     auto& under_way = cycle.under_way[static_cast<std::size_t>(&unit - cycle.plan.units.data())];
     if (!under_way) {
@@ -247,6 +258,15 @@ void ProcessDataCycle::take_unit(CyclePlan& cycle, const UnitPlan& unit) noexcep
         return;
     }
     under_way = 0;
+    if (away(cycle, unit)) {
+        for (const std::size_t s : unit.slaves) {
+            auto& health = cycle.health[s];
+            health.fresh = false;
+            health.due = true;
+            health.age = std::max(health.age, 1u);
+        }
+        return;
+    }
     if (!answered_exactly(cycle, unit)) {
         all_good_ = false;
         for (const std::size_t s : unit.slaves) {
@@ -388,6 +408,16 @@ std::span<std::byte> ProcessDataCycle::outputs() noexcept {
 const SlaveHealth& ProcessDataCycle::health(std::size_t slave) const noexcept {
     const auto* cycle = latest_.load(std::memory_order_acquire);
     return cycle != nullptr && slave < cycle->health.size() ? cycle->health[slave] : nothing_;
+}
+
+Attendance ProcessDataCycle::attendance(std::size_t slave) const noexcept {
+    const auto* cycle = latest_.load(std::memory_order_acquire);
+    if (cycle == nullptr || slave >= cycle->slaves.size()) return Attendance::away;
+    const auto now = cycle->slaves[slave].link->attendance.load(std::memory_order_acquire);
+    // The watch asks now and then; whoever is not exchanged although frames come back is gone, or as good as gone.
+    const bool silent = now == Attendance::there && cycle->plan.slaves[slave].unit && statistics_.lost_in_a_row == 0 &&
+                        cycle->health[slave].age >= config_.lost_frames_limit;
+    return silent ? Attendance::away : now;
 }
 
 std::span<const AlarmFact> ProcessDataCycle::faults(BusPhase phase) const noexcept {

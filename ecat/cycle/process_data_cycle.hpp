@@ -42,6 +42,7 @@ public:
     [[nodiscard]] std::span<const std::byte> inputs() const noexcept;
     [[nodiscard]] std::span<std::byte> outputs() noexcept;
     [[nodiscard]] const SlaveHealth& health(std::size_t slave) const noexcept;
+    [[nodiscard]] Attendance attendance(std::size_t slave) const noexcept;
     /// What is wrong with a bus in this phase; of one in OP as of the last receive().
     [[nodiscard]] std::span<const AlarmFact> faults(BusPhase phase) const noexcept;
     [[nodiscard]] const BusStatistics& statistics() const noexcept { return statistics_; }
@@ -55,6 +56,8 @@ private:
     void measure_margin(CyclePlan& cycle, SlotId slot) noexcept;
     /// All datagrams of the unit or nothing.
     void take_unit(CyclePlan& cycle, const UnitPlan& unit) noexcept;
+    /// Of a group that is not there: its datagrams go round, and nobody is expected to answer them.
+    [[nodiscard]] static bool away(const CyclePlan& cycle, const UnitPlan& unit) noexcept;
     [[nodiscard]] bool answered_exactly(const CyclePlan& cycle, const UnitPlan& unit) noexcept;
     void send_frames(CyclePlan& cycle, Instant now) noexcept;
     void pack_bring_up(Instant now) noexcept;

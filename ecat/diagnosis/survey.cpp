@@ -47,7 +47,7 @@ Script<void> question(DatagramPort& port, SurveyedSlave& slave) {
         co_return;
     }
     const std::string subject = fmt::format("slave {}", position);
-    slave.found = co_await read_slave(port, position, subject);
+    slave.found = co_await read_slave(port, position, station, subject);
     if (slave.found.error) co_return;
     const Reply description = co_await port.fprd(station, reg::port_descriptor, 1);
     for (unsigned p = 0; p < ports_per_slave; ++p) {

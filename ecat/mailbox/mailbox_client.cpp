@@ -349,7 +349,7 @@ Script<void> listen(DatagramPort& port, MailboxEndpoint& mailbox) {
         const Instant now = co_await pause(settled);
         const bool flagged = mailbox.flag.mapped() && mailbox.flag.set();
         const bool ask_now = !mailbox.flag.mapped() && now - asked >= unasked_poll_period;
-        if (mailbox.lock.taken() || !(flagged || ask_now)) continue;
+        if (mailbox.station == 0 || mailbox.lock.taken() || !(flagged || ask_now)) continue;
         asked = now;
         const Result<void> read = co_await read_unasked(port, mailbox);
         (void)read;  // a slave that does not answer is the business of whoever watches its state
