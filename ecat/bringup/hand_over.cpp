@@ -68,7 +68,7 @@ std::unique_ptr<CyclePlan> cycle_plan(const Bus& bus) {
         slaves.push_back({&slave->link, &slave->mailbox.emergency, exchange_period(bus.config, *slave->config), slave->dc_delay});
     const auto residents = static_cast<std::size_t>(
         std::count_if(bus.slaves.begin(), bus.slaves.end(), [](const auto& slave) { return !slave->config->guest(); }));
-    const auto on_cable = static_cast<std::uint16_t>(std::max(bus.found.size() - bus.link.guests.load(), residents));
+    const auto on_cable = static_cast<std::uint16_t>(std::max(bus.found.size() - bus.link.line.guests.load(), residents));
     auto plan =
         std::make_unique<CyclePlan>(bus.plan, std::move(slaves), FaultFinder{fault_slaves(bus), on_cable, bus.config.lost_frames_limit});
     plan->state_wkc = on_cable;

@@ -102,7 +102,7 @@ Script<void> GroupWatch::look() {
         changed_ = co_await time();
         co_return;
     }
-    bus_.link.guests.store(survey_.guests());
+    bus_.link.line.guests.store(survey_.guests());
     std::vector<Newcomer> newcomers;
     for (const std::uint16_t position : survey_.newcomers()) newcomers.emplace_back().found.position = position;
     const Result<void> asked = co_await question(newcomers);
@@ -304,8 +304,8 @@ void leave(Bus& bus, BusSlave& slave) {
         member.last_trouble.clear();
         member.not_exchanged.clear();
     }
-    const auto gone = std::min<std::size_t>(group->slaves.size(), bus.link.guests.load());
-    bus.link.guests.fetch_sub(static_cast<std::uint16_t>(gone));
+    const auto gone = std::min<std::size_t>(group->slaves.size(), bus.link.line.guests.load());
+    bus.link.line.guests.fetch_sub(static_cast<std::uint16_t>(gone));
     bus.remember(fmt::format("group '{}' has left: {} does not answer any more", group->name, slave.subject));
 }
 

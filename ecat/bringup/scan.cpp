@@ -253,7 +253,7 @@ Script<Result<void>> scan(Bus& bus) {
     if (!tree) co_return tree;
     const Result<std::size_t> guests = match(bus.config, bus.found, bus.slaves);
     if (!guests) co_return guests.error();
-    bus.link.guests.store(static_cast<std::uint16_t>(*guests));
+    bus.link.line.guests.store(static_cast<std::uint16_t>(*guests));
     co_return Result<void>{};
 }
 

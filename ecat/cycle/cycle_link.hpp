@@ -9,7 +9,7 @@
 #include <span>
 
 #include "core/time.hpp"
-#include "ecat/alarms.hpp"
+#include "ecat/alarm_set.hpp"
 #include "ecat/dc/cycle_servo.hpp"
 #include "ecat/layout/process_data_plan.hpp"
 #include "ecat/ring/ring_state.hpp"
@@ -79,6 +79,7 @@ struct ReferenceTime {
 struct LineEvents {
     std::atomic<bool> link_up{true};          ///< of the network port, now
     std::atomic<std::uint32_t> upheavals{0};  ///< how often slaves came, went or began anew, or a ring opened or closed (Upheavals)
+    std::atomic<std::uint16_t> guests{0};     ///< slaves on the cable that are not always there, whoever they are; by the scripts
     std::atomic<std::uint32_t> silences{0};   ///< how often so many frames in a row were lost that it was an alarm
 };
 
@@ -114,8 +115,7 @@ struct CycleLink {
     std::atomic<std::uint32_t> clock_holds{0};      ///< above 0: a reference is being set: read its time, give it to nobody
     std::atomic<std::uint64_t> reference{0};        ///< who serves as reference clock: station + (ns behind the first << 16)
     SeenAlarms seen;
-    std::atomic<bool> runs_sync0{false};   ///< some slave does, so the cycle has to be locked to the reference
-    std::atomic<std::uint16_t> guests{0};  ///< slaves on the cable that are not always there, whoever they are
+    std::atomic<bool> runs_sync0{false};  ///< some slave does, so the cycle has to be locked to the reference
 };
 
 /// What a slave or drive says so soon after this computer sent nothing for a while follows from that: its watchdogs and counters of

@@ -28,7 +28,7 @@
 #include <vector>
 
 #include "core/alarm.hpp"
-#include "ecat/alarms.hpp"
+#include "ecat/alarm_set.hpp"
 #include "ecat/bus_config.hpp"
 #include "ecat/cycle/bus_phase.hpp"
 #include "ecat/cycle/cycle_link.hpp"

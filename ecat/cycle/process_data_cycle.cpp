@@ -129,7 +129,7 @@ void ProcessDataCycle::find_faults(CyclePlan& cycle, Instant now) noexcept {
     if (const auto* link = link_.load(std::memory_order_acquire)) {
         bus.seen = link->seen.load();
         bus.reference_station = static_cast<std::uint16_t>(link->reference.load(std::memory_order_relaxed) & 0xFFFFu);
-        bus.guests = link->guests.load(std::memory_order_relaxed);
+        bus.guests = link->line.guests.load(std::memory_order_relaxed);
         bus.stall = recent_stall(*link, now);
         bus.gap = recent_gap(*link, now);
         bus.states = static_cast<std::uint16_t>(link->states_seen.load(std::memory_order_relaxed));
@@ -191,7 +191,7 @@ void ProcessDataCycle::collect_first_frame(CyclePlan& cycle, SlotId slot) noexce
     const auto states = exchange_.data(slot, cycle.state_number);
     statistics_.slaves_answering = exchange_.wkc(slot, cycle.state_number);
     link->slaves_answering.store(statistics_.slaves_answering, std::memory_order_relaxed);
-    const bool all_answered = statistics_.slaves_answering == cycle.state_wkc + link->guests.load(std::memory_order_relaxed);
+    const bool all_answered = statistics_.slaves_answering == cycle.state_wkc + link->line.guests.load(std::memory_order_relaxed);
     const auto all_states = static_cast<std::uint16_t>(states.size() == 2 ? load_le<std::uint16_t>(states) & 0x1Fu : 0u);
     link->states_seen.store(all_answered ? all_states : 0u, std::memory_order_relaxed);
     upheavals_.see_slaves(statistics_.slaves_answering, all_states);
