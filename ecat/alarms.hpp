@@ -41,6 +41,7 @@ enum class BusAlarm : AlarmId {
     sync_unit_not_exchanged = 0x1028,
     sync_unit_dropped_out = 0x1029,
     foreign_master = 0x1030,
+    newcomer_takes_part = 0x1031,
     slave_emergency = 0x1040,
 };
 
@@ -198,6 +199,11 @@ inline constexpr std::array bus_alarms{
               "电缆上存在其他 EtherCAT 主站的报文",
               "a second controller or a configuration tool is connected to the bus, or the cable goes into an office network",
               "connect the bus to this controller only; its address stands behind this text", ResetRule::self_clearing, Reaction::warn, ""},
+    AlarmInfo{id(BusAlarm::newcomer_takes_part), "newcomer_takes_part",
+              "A slave that was plugged in takes part in the process data of others", "刚插入的从站参与了其他从站的过程数据交换",
+              "it had power, and is still set up as another controller left it",
+              "it is reset by itself; switch a tool off before it is plugged in, or let the coupling switch its power",
+              ResetRule::acknowledge, Reaction::stop_machine, ""},
     AlarmInfo{id(BusAlarm::slave_emergency), "slave_emergency", "The slave sent emergency {a:x4}h (error register {b:x2}h)",
               "从站发出紧急报文 {a:x4}h（错误寄存器 {b:x2}h）", "the slave found an error of its own; the code is that of its object 603Fh",
               "look the code up in the device's manual; goes when the slave says that the error is gone, or starts anew",

@@ -102,7 +102,6 @@ Script<void> GroupWatch::look() {
         changed_ = co_await time();
         co_return;
     }
-    bus_.link.line.guests.store(survey_.guests());
     std::vector<Newcomer> newcomers;
     for (const std::uint16_t position : survey_.newcomers()) newcomers.emplace_back().found.position = position;
     const Result<void> asked = co_await question(newcomers);
@@ -111,6 +110,7 @@ Script<void> GroupWatch::look() {
         changed_ = co_await time();
         co_return;
     }
+    bus_.link.line.guests.store(survey_.guests());  // not before they take part in nothing
     for (std::size_t number = 0; number < bus_.groups.size(); ++number) co_await serve(number, newcomers);
     tell_strangers(newcomers);
     const Result<void> measured = co_await survey_.measure_delays(bus_);
@@ -123,10 +123,12 @@ Script<Result<void>> GroupWatch::question(std::vector<Newcomer>& newcomers) {
     const bool wants_id = std::any_of(bus_.groups.begin(), bus_.groups.end(), [&](const HotConnectGroup& group) {
         return bus_.config.slaves[group.slaves.front()].device_id.has_value();
     });
-    // An address that two have is nobody's: take ours from those who bring it along before anybody is asked by address.
+    // Who was set up by another controller and kept its power takes part in nothing any more, and has no address of ours.
     for (const auto& one : newcomers) {
+        const Reply unmapped = co_await bus_.port.apwr(one.found.position, reg::fmmu, std::vector<std::byte>(16 * Fmmu::size));
         const Reply freed = co_await bus_.port.apwr(one.found.position, reg::station_address, std::uint16_t{0});
-        if (!freed.ok()) co_return unanswered("bus", "its station address (0010h)", freed);
+        if (!unmapped.ok() || !freed.ok())
+            co_return unanswered("bus", "its FMMUs (0600h) and its station address (0010h)", unmapped.ok() ? freed : unmapped);
     }
     for (auto& one : newcomers) {
         const std::uint16_t position = one.found.position;
@@ -152,7 +154,14 @@ Result<std::vector<Newcomer*>> GroupWatch::members_of(const HotConnectGroup& gro
     std::vector<std::size_t> heads;
     for (std::size_t i = 0; i < newcomers.size(); ++i)
         if (!newcomers[i].found.error && is_head(head, newcomers[i].found)) heads.push_back(i);
-    for (const std::size_t at : heads) newcomers[at].taken = true;
+    for (const std::size_t at : heads) {
+        newcomers[at].taken = true;
+        for (std::size_t n = 1; n < group.slaves.size() && at + n < newcomers.size(); ++n) {
+            const auto& found = newcomers[at + n].found;
+            if (!check_identity({}, bus_.config.slaves[group.slaves[n]], found.identity)) break;
+            newcomers[at + n].taken = true;
+        }
+    }
     const std::string number = head.alias ? fmt::format("alias {}", *head.alias) : fmt::format("device id {}", head.device_id.value_or(0));
     const bool there = !bus_.slaves[group.slaves.front()]->away();
     if (heads.size() + (there ? 1 : 0) > 1)
@@ -168,8 +177,8 @@ Result<std::vector<Newcomer*>> GroupWatch::members_of(const HotConnectGroup& gro
     for (std::size_t n = 0; n < group.slaves.size(); ++n) {
         const auto& slave = *bus_.slaves[group.slaves[n]];
         const std::size_t at = heads[0] + n;
-        const bool next = at < newcomers.size() && !newcomers[at].found.error && (n == 0 || !newcomers[at].taken) &&
-                          newcomers[at].found.position == newcomers[heads[0]].found.position + n;
+        const bool next =
+            at < newcomers.size() && !newcomers[at].found.error && newcomers[at].found.position == newcomers[heads[0]].found.position + n;
         if (!next)
             return group_error(
                 bus_, group,

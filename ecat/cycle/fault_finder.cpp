@@ -134,6 +134,8 @@ void FaultFinder::look_at_slaves(const BusCondition& bus) noexcept {
     was_silent_ = false;
     note_falls(bus);
     const auto expected = static_cast<std::uint16_t>(expected_ + bus.guests);
+    crowded_ = bus.slaves_answering > expected;
+    uninvited_ = false;
     const std::size_t unnamed = find_lost(bus.slaves_answering, expected);
     form_groups();
     raise_falls(bus);
@@ -145,6 +147,7 @@ void FaultFinder::look_at_slaves(const BusCondition& bus) noexcept {
         if (slaves_[i].reference) reference_gone = states_[i].fall.now();
         raise_slave(i, unnamed > 0);
     }
+    if (uninvited_) raise(BusAlarm::newcomer_takes_part, AlarmSource::bus, 0);
     // What no frame brings back is no fault of the clock.
     const bool unasked = bus.lost_in_a_row > 0 || bus.gap >= bus.reference_times_missing;
     if (bus.reference_times_missing >= reference_times_limit && !reference_gone && !unasked)
@@ -364,6 +367,13 @@ bool FaultFinder::is_out(const State& state) const noexcept {
 
 void FaultFinder::raise_units() noexcept {
     if (naming_) return;  // somebody is missing: probably one of them
+    const auto stale_unit = [this](const SharedUnit& unit) {
+        return std::any_of(unit.members.begin(), unit.members.end(), [this](std::size_t at) { return stale(states_[at]); });
+    };
+    if (crowded_) {
+        uninvited_ = uninvited_ || std::any_of(units_.begin(), units_.end(), stale_unit);
+        return;
+    }
     for (const auto& unit : units_) {
         std::uint32_t age = 0;
         bool known = false;
@@ -378,6 +388,10 @@ void FaultFinder::raise_units() noexcept {
 }
 
 void FaultFinder::raise_not_exchanged(std::size_t at) noexcept {
+    if (crowded_) {
+        uninvited_ = true;
+        return;
+    }
     const auto& slave = slaves_[at];
     if (slave.on_loss == LossPolicy::stop_own_axes) return raise_left_op(at);
     raise(BusAlarm::working_counter_wrong, AlarmSource::slave, slave.index, states_[at].seen.age);

@@ -186,6 +186,8 @@ private:
     bool was_silent_ = false;
     std::uint32_t broken_for_ = 0;  ///< cycles in which the ring was seen broken, in a row
     std::size_t missing_ = 0;       ///< at the last look
+    bool crowded_ = false;          ///< more slaves answer than are known: somebody was plugged in a moment ago
+    bool uninvited_ = false;        ///< and slaves that are in order are not exchanged since
     std::uint32_t naming_for_ = 0;  ///< cycles since that number changed
     bool naming_ = false;           ///< somebody is missing, and not all who are are known
 };

@@ -112,6 +112,9 @@ public:
     [[nodiscard]] Transfer aprd(std::uint16_t position, std::uint16_t address, std::size_t size) {
         return read(Command::APRD, Address::position(position, address), size, default_attempts);
     }
+    [[nodiscard]] Transfer apwr(std::uint16_t position, std::uint16_t address, std::span<const std::byte> data) {
+        return write(Command::APWR, Address::position(position, address), data, default_attempts);
+    }
     template <std::integral T>
     [[nodiscard]] Transfer apwr(std::uint16_t position, std::uint16_t address, T value) {
         return write_value(Command::APWR, Address::position(position, address), value);
