@@ -89,9 +89,11 @@ struct Bus {
     std::vector<FoundSlave> found;                  ///< all on the cable, by position; also those that nobody configured
     Topology topology;                              ///< of `found`
     std::vector<HotConnectGroup> groups = hot_connect_groups(config);
-    std::string strangers;                          ///< who was plugged in and belongs to no group; empty: nobody
-    std::optional<RingEnd> ring_end;                ///< of a ring, while it is a line (ring_line.hpp)
-    std::uint16_t line_of = 0;                      ///< so many slaves answered when it became one
+    unsigned address_holds = 0;       ///< above 0: who does not answer to its address may have it back in a moment
+    bool group_left = false;          ///< since the newcomers were looked at
+    std::string strangers;            ///< who was plugged in and belongs to no group; empty: nobody
+    std::optional<RingEnd> ring_end;  ///< of a ring, while it is a line (ring_line.hpp)
+    std::uint16_t line_of = 0;        ///< so many slaves answered when it became one
     ProcessDataPlan plan;
     std::optional<std::size_t> reference;  ///< the slave whose clock is the bus' clock
     std::optional<std::int64_t> dc_phase;  ///< system time of a cycle start, modulo the cycle; fixed at the first SYNC0
@@ -112,6 +114,18 @@ struct Bus {
         notes.push_back(std::move(text));
         ++remembered;
     }
+};
+
+/// While it lives nobody is missed for want of an answer to its address.
+class AddressHold {
+public:
+    explicit AddressHold(Bus& bus) noexcept : bus_(bus) { ++bus_.address_holds; }
+    ~AddressHold() { --bus_.address_holds; }
+    AddressHold(const AddressHold&) = delete;
+    AddressHold& operator=(const AddressHold&) = delete;
+
+private:
+    Bus& bus_;
 };
 
 /// A step of one slave.

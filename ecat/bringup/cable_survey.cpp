@@ -13,6 +13,20 @@ namespace {
 
 /// Who moved by less is written nothing: measuring again gives a few nanoseconds more or less.
 constexpr std::uint32_t moved_ns = 100;
+/// How long nobody new is spoken to while somebody who is always there is missed: it may have lost its address.
+constexpr Duration patience = std::chrono::seconds{1};
+
+/// Two bytes of a register. Frames get lost in just these moments.
+Script<Reply> heard(Bus& bus, bool by_position, std::uint16_t who, std::uint16_t address) {
+    constexpr int attempts = 10;
+    Reply reply;
+    for (int attempt = 0; attempt < attempts; ++attempt) {
+        if (by_position) reply = co_await bus.port.aprd(who, address, 2);
+        else reply = co_await bus.port.fprd(who, address, 2);
+        if (!reply.lost) break;
+    }
+    co_return reply;
+}
 
 Error changed_meanwhile() {
     return Error{"bus.no_slave", "bus", "slaves came or left while they were counted", "they are counted again by themselves"};
@@ -24,8 +38,9 @@ Script<void> CableSurvey::ask(Bus& bus, std::uint16_t position, Seen& seen) {
     const Reply station = co_await bus.port.aprd(position, reg::station_address, 2);
     const Reply ports = co_await bus.port.aprd(position, reg::dl_status, 2);
     const Reply info = co_await bus.port.aprd(position, reg::features, 2);
-    if (!station.ok() || !ports.ok() || !info.ok()) co_return;
-    seen = {station.u16(), ports.u16(), info.u16(), true, nullptr};
+    const Reply state = co_await bus.port.aprd(position, reg::al_status, 2);
+    if (!station.ok() || !ports.ok() || !info.ok() || !state.ok()) co_return;
+    seen = {station.u16(), ports.u16(), info.u16(), al_state(state.u16()) == AlState::op, true, nullptr};
 }
 
 Script<Result<void>> CableSurvey::take(Bus& bus) {
@@ -41,15 +56,24 @@ Script<Result<void>> CableSurvey::take(Bus& bus) {
 
     recognise(bus);
     const bool somebody_missed = std::any_of(bus.slaves.begin(), bus.slaves.end(), [&](const auto& slave) {
-        return !slave->away() && std::none_of(seen_.begin(), seen_.end(), [&](const Seen& one) { return one.slave == slave.get(); });
+        return !slave->away() && !slave->config->guest() && !is_seen(*slave);
     });
     if (somebody_missed) {
         // Without its address it is known by its place only.
         co_await take_census(bus);
-        for (const auto& slave : bus.slaves)
-            if (!slave->away() && slave->position_now && *slave->position_now < seen_.size() &&
-                seen_[*slave->position_now].slave == nullptr)
-                seen_[*slave->position_now].slave = slave.get();
+        bool unplaced = false;
+        for (const auto& slave : bus.slaves) {
+            if (slave->away() || slave->config->guest() || is_seen(*slave)) continue;
+            const auto place = slave->position_now;
+            if (place && *place < seen_.size() && seen_[*place].slave == nullptr) seen_[*place].slave = slave.get();
+            else unplaced = true;
+        }
+        const Instant now = co_await time();
+        if (!missed_since_) missed_since_ = now;
+        // One of the newcomers may be it: those are set up anew.
+        if (unplaced && now - *missed_since_ < patience) co_return changed_meanwhile();
+    } else {
+        missed_since_.reset();
     }
     newcomers_.clear();
     guests_ = 0;
@@ -61,18 +85,60 @@ Script<Result<void>> CableSurvey::take(Bus& bus) {
     co_return Result<void>{};
 }
 
-/// By address. Of two that have the same one the slave of the bring-up is who stands nearest to its place.
+bool CableSurvey::is_seen(const BusSlave& slave) const noexcept {
+    return std::any_of(seen_.begin(), seen_.end(), [&](const Seen& one) { return one.slave == &slave; });
+}
+
+/// By address. Of two that have the same one it is who is in OP: no newcomer is.
 void CableSurvey::recognise(Bus& bus) {
     for (const auto& slave : bus.slaves) {
         if (slave->away()) continue;
-        const auto distance = [&](const Seen& one) {
-            return slave->config->guest() ? 0 : std::abs((&one - seen_.data()) - std::ptrdiff_t{slave->found.position});
-        };
-        Seen* nearest = nullptr;
+        Seen* known = nullptr;
         for (auto& one : seen_)
-            if (one.station == slave->found.station && (nearest == nullptr || distance(one) < distance(*nearest))) nearest = &one;
-        if (nearest != nullptr) nearest->slave = slave.get();
+            if (one.station == slave->found.station && (known == nullptr || (one.in_op && !known->in_op))) known = &one;
+        if (known != nullptr) known->slave = slave.get();
     }
+}
+
+/// Who would stand in this position if newcomers up to it had left: those behind, as many as there are newcomers.
+Script<bool> CableSurvey::all_there(Bus& bus, std::uint16_t position) {
+    const Reply count = co_await bus.port.brd(reg::type, 1);
+    if (count.lost || count.wkc != seen_.size()) co_return false;
+    std::size_t left = newcomers_.size() + 1;
+    for (std::size_t p = position; p < seen_.size() && left > 0; ++p) {
+        if (seen_[p].slave == nullptr) continue;
+        const Reply own = co_await bus.port.fprd(seen_[p].slave->found.station, reg::station_address, 2);
+        if (own.wkc == 0) co_return false;
+        --left;
+    }
+    co_return true;
+}
+
+/// Who is in OP is no newcomer: both may have got the address, when a frame was sent twice and the newcomer was there for one of them.
+Script<void> CableSurvey::give_back(Bus& bus, std::uint16_t station) {
+    const BusSlave* robbed = nullptr;
+    for (const auto& slave : bus.slaves) {
+        if (slave->away()) continue;
+        const Reply own = co_await heard(bus, false, slave->found.station, reg::station_address);
+        if (!own.lost && own.wkc == 0) robbed = slave.get();
+    }
+    if (robbed == nullptr) co_return;
+    for (std::uint16_t position = 0; position < seen_.size(); ++position) {
+        const Reply held = co_await heard(bus, true, position, reg::station_address);
+        const Reply state = co_await heard(bus, true, position, reg::al_status);
+        if (!held.ok() || held.u16() != station || !state.ok() || al_state(state.u16()) != AlState::op) continue;
+        co_await bus.port.apwr(position, reg::station_address, robbed->found.station);
+        co_return;
+    }
+}
+
+Script<Result<void>> CableSurvey::give_address(Bus& bus, std::uint16_t position, std::uint16_t station) {
+    const AddressHold hold{bus};
+    const Reply written = co_await bus.port.apwr(position, reg::station_address, station);
+    const bool there = co_await all_there(bus, position);
+    if (written.ok() && there) co_return Result<void>{};
+    co_await give_back(bus, station);
+    co_return changed_meanwhile();
 }
 
 Script<void> CableSurvey::read_latched(Bus& bus, std::uint16_t position, std::optional<LatchedTimes>& times) {

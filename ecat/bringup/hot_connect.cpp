@@ -23,7 +23,8 @@ constexpr Duration longest_retry = std::chrono::seconds{8};
 /// Somebody who stands where nobody of the bring-up does, and who it says it is.
 struct Newcomer {
     FoundSlave found;
-    bool taken = false;  ///< it belongs to a group
+    std::uint16_t station = 0;  ///< its own until it joins
+    bool taken = false;         ///< it belongs to a group
 };
 
 Error group_error(const Bus& bus, const HotConnectGroup& group, std::string what, std::string remedy) {
@@ -65,7 +66,15 @@ private:
 
     Bus& bus_;
     std::vector<Try> tries_;
+    /// Different from those that others may have kept from the looks before.
+    [[nodiscard]] std::uint16_t next_station() noexcept {
+        constexpr std::uint16_t first = 0x3000, last = 0x3FFF;
+        station_ = station_ == last ? first : static_cast<std::uint16_t>(station_ + 1);
+        return station_;
+    }
+
     std::uint16_t count_ = 0;
+    std::uint16_t station_ = 0x3000;
     Instant changed_{};
     bool looked_ = false;
     CableSurvey survey_;
@@ -76,7 +85,9 @@ Script<void> GroupWatch::run() {
     for (;;) {
         const Instant now = co_await pause(glance);
         if (bus_.link.lost_in_a_row.load() != 0 || bus_.link.cycles.load() == 0) continue;
-        if (const auto answering = bus_.link.slaves_answering.load(); answering != count_) {
+        // Pulled and plugged in between two glances it is as many as before.
+        if (const auto answering = bus_.link.slaves_answering.load(); answering != count_ || bus_.group_left) {
+            bus_.group_left = false;
             count_ = answering;
             changed_ = now;
             looked_ = false;
@@ -97,7 +108,7 @@ bool GroupWatch::retry_due(Instant now) const {
 Script<void> GroupWatch::look() {
     looked_ = true;
     const Result<void> known = co_await survey_.take(bus_);
-    if (!known) {
+    if (!known || survey_.size() != count_) {
         looked_ = false;  // it changed meanwhile
         changed_ = co_await time();
         co_return;
@@ -117,32 +128,28 @@ Script<void> GroupWatch::look() {
     if (!measured) bus_.remember(measured.error().text());
 }
 
-/// Who they are. They keep no address: each gets the one that is free for strangers, and a group's member its own when it joins.
+/// Who they are. Each gets an address of its own, and keeps it until it joins or is left alone.
 Script<Result<void>> GroupWatch::question(std::vector<Newcomer>& newcomers) {
-    constexpr std::uint16_t stranger_station = 0x3FFF;
     const bool wants_id = std::any_of(bus_.groups.begin(), bus_.groups.end(), [&](const HotConnectGroup& group) {
         return bus_.config.slaves[group.slaves.front()].device_id.has_value();
     });
-    // Who was set up by another controller and kept its power takes part in nothing any more, and has no address of ours.
-    for (const auto& one : newcomers) {
-        const Reply unmapped = co_await bus_.port.apwr(one.found.position, reg::fmmu, std::vector<std::byte>(16 * Fmmu::size));
-        const Reply freed = co_await bus_.port.apwr(one.found.position, reg::station_address, std::uint16_t{0});
-        if (!unmapped.ok() || !freed.ok())
-            co_return unanswered("bus", "its FMMUs (0600h) and its station address (0010h)", unmapped.ok() ? freed : unmapped);
+    for (auto& one : newcomers) {
+        one.station = next_station();
+        const Result<void> given = co_await survey_.give_address(bus_, one.found.position, one.station);
+        if (!given) co_return given;
+        // Who was set up by another controller and kept its power takes part in nothing any more.
+        const Reply unmapped = co_await bus_.port.fpwr(one.station, reg::fmmu, std::vector<std::byte>(16 * Fmmu::size));
+        if (unmapped.lost) co_return unanswered("bus", "its FMMUs (0600h)", unmapped);
     }
     for (auto& one : newcomers) {
         const std::uint16_t position = one.found.position;
         const std::string subject = fmt::format("the slave at place {} of the cable", position);
-        const Reply given = co_await bus_.port.apwr(position, reg::station_address, stranger_station);
-        if (!given.ok()) co_return unanswered(subject, "its station address (0010h)", given);
-        one.found = co_await read_slave(bus_.port, position, stranger_station, subject);
+        one.found = co_await read_slave(bus_.port, position, one.station, subject);
         if (!one.found.error && wants_id) {
-            Result<Sii> sii = co_await read_whole_sii(bus_.port, stranger_station, subject);
+            Result<Sii> sii = co_await read_whole_sii(bus_.port, one.station, subject);
             if (sii) one.found.sii = std::move(*sii);
-            one.found.device_id = co_await read_device_id(bus_.port, stranger_station, id_register(one.found.sii));
+            one.found.device_id = co_await read_device_id(bus_.port, one.station, id_register(one.found.sii));
         }
-        const Reply freed = co_await bus_.port.apwr(position, reg::station_address, std::uint16_t{0});
-        if (!freed.ok()) co_return unanswered(subject, "its station address (0010h)", freed);
         if (one.found.error && (one.found.error->code == "bus.no_slave" || one.found.error->code == "bus.no_frame"))
             co_return *one.found.error;
     }
@@ -228,7 +235,7 @@ Script<void> GroupWatch::serve(std::size_t number, std::vector<Newcomer>& newcom
 Script<Result<void>> GroupWatch::join(const HotConnectGroup& group, std::vector<Newcomer*> members) {
     for (std::size_t n = 0; n < members.size(); ++n) {
         const auto& slave = *bus_.slaves[group.slaves[n]];
-        const Reply given = co_await bus_.port.apwr(members[n]->found.position, reg::station_address, slave.found.station);
+        const Reply given = co_await bus_.port.fpwr(members[n]->station, reg::station_address, slave.found.station);
         if (!given.ok()) co_return unanswered(slave.subject, "its station address (0010h)", given);
     }
     for (std::size_t n = 0; n < members.size(); ++n) {
@@ -315,6 +322,7 @@ void leave(Bus& bus, BusSlave& slave) {
     }
     const auto gone = std::min<std::size_t>(group->slaves.size(), bus.link.line.guests.load());
     bus.link.line.guests.fetch_sub(static_cast<std::uint16_t>(gone));
+    bus.group_left = true;
     bus.remember(fmt::format("group '{}' has left: {} does not answer any more", group->name, slave.subject));
 }
 

@@ -110,7 +110,14 @@ Script<Result<void>> recover(Bus& bus, BusSlave& slave) {
     if (!status) co_return status.error();
 
     // After INIT everything is gone. In SAFEOP (watchdog, synchronisation lost) and PREOP the slave still has its settings.
-    const AlState state = al_state(*status);
+    AlState state = al_state(*status);
+    if (state == AlState::safeop) {
+        const Result<std::string> changed = co_await changed_setting(bus, slave);
+        if (changed && !changed->empty()) {
+            bus.remember(fmt::format("{}: {} is not as it was written: it is set up again", slave.subject, *changed));
+            state = AlState::init;
+        }
+    }
     if (state == AlState::init || state == AlState::boot || state == AlState::unknown) {
         done = co_await set_state(bus, slave, AlState::init);
         if (!done) co_return done;

@@ -127,7 +127,9 @@ Script<void> SlaveWatch::run() {
             continue;
         }
 
+        const unsigned holds = bus_.address_holds;
         const Result<std::uint16_t> status = co_await read_al_status(bus_, slave_);
+        if (!status && (holds > 0 || bus_.address_holds > 0)) continue;
         const Presence presence = presence_of(status);
         if (slave_.away()) continue;  // another of its group was found missing meanwhile
         if (presence == Presence::silent && slave_.config->guest()) {
