@@ -267,7 +267,7 @@ std::string reason_text(std::uint16_t code) {
     return remedy.empty() ? code_text(code) : fmt::format("{}: {}", code_text(code), remedy);
 }
 
-/// Who is out of OP, and the reason of the first who gave one.
+/// Who answers and is out of OP, and the reason of the first who gave one. Who is silent has an alarm of its own.
 std::string fallen_text(const Bus& bus) {
     constexpr std::size_t named = 3;
     std::string names, why;
@@ -277,6 +277,7 @@ std::string fallen_text(const Bus& bus) {
         const std::uint32_t al = slave->link.al.load();
         const bool in_op = al == static_cast<std::uint32_t>(AlState::op);
         if (in_op && slave->link.age.load() < bus.config.lost_frames_limit) continue;
+        if (slave->link.presence.load() == Presence::silent) continue;
         if (count++ < named) names += (names.empty() ? "" : ", ") + slave->subject;
         if (why.empty() && (al & al_status_error) != 0) why = fmt::format(" ({})", code_text(static_cast<std::uint16_t>(al >> 16)));
     }
@@ -323,13 +324,20 @@ std::string reference_clock(const Bus& bus) {
     return bus.reference ? "the reference clock is that of " + bus.slaves[*bus.reference]->subject : std::string{};
 }
 
-/// Whose clock it is.
+/// Whose clock it is: where several are off from the reference and none is not, it is the reference's own.
 std::string furthest_clock(const Bus& bus) {
     const BusSlave* furthest = nullptr;
-    for (const auto& slave : bus.slaves)
+    std::size_t off = 0, others = 0;
+    for (const auto& slave : bus.slaves) {
+        if (!slave->dc || slave->away() || bus.reference == slave->index) continue;
+        ++others;
+        off += slave->dc_difference > clock_is_off_ns ? 1 : 0;
         if (slave->dc_difference > (furthest != nullptr ? furthest->dc_difference : 0)) furthest = slave.get();
-    if (furthest == nullptr || !bus.reference || *bus.reference == furthest->index) return {};
-    return fmt::format("most of all {} from {}, the reference", furthest->subject, bus.slaves[*bus.reference]->subject);
+    }
+    if (furthest == nullptr || !bus.reference) return {};
+    const auto& reference = bus.slaves[*bus.reference]->subject;
+    if (others > 1 && off == others) return fmt::format("{}, the reference: the clocks of all others differ from its own", reference);
+    return fmt::format("most of all {} from {}, the reference", furthest->subject, reference);
 }
 
 std::string ring_text(const Bus& bus) {
@@ -371,6 +379,7 @@ std::string Master::detail(const AlarmFact& fact) const {
                                     victims(*impl_->bus, fact));
             return victims(*impl_->bus, fact);
         case BusAlarm::frames_lost: return victims(*impl_->bus, fact);
+        case BusAlarm::dc_not_locked:
         case BusAlarm::reference_clock_lost: return reference_clock(*impl_->bus);
         case BusAlarm::dc_out_of_sync: return furthest_clock(*impl_->bus);
         case BusAlarm::ring_broken: return ring_text(*impl_->bus);

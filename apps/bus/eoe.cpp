@@ -1,5 +1,6 @@
 // taktwerk bus eoe: the Ethernet of slaves as a network interface of this computer.
 
+#include <algorithm>
 #include <cstdio>
 
 #include <fmt/format.h>
@@ -88,6 +89,9 @@ int join_slaves(BusSession& session, const EoeOptions& options, const std::vecto
         if (!position) return fail(bus, position.error());
         const auto slave = slave_at(session, *found, *position);
         if (!slave) return fail(bus, slave.error());
+        if (std::find(slaves.begin(), slaves.end(), *slave) != slaves.end())
+            return fail(bus, Error{"usage.number", (*slave)->subject, "is named twice: it would get each frame twice",
+                                   "name each slave once, with its address at the same place"});
         if (const auto ready = prepare(session, **slave, options, addresses[n]); !ready) return fail(bus, ready.error());
         slaves.push_back(*slave);
     }

@@ -1,14 +1,18 @@
 // taktwerk bus why: brings the bus up as the machine would and explains, slave by slave, why it does not reach OP.
 
 #include <algorithm>
+#include <array>
 #include <iterator>
+#include <span>
 
 #include <fmt/format.h>
 
 #include "apps/bus/bus.hpp"
 #include "apps/terminal/count_text.hpp"
 #include "apps/terminal/exit_code.hpp"
+#include "ecat/alarms.hpp"
 #include "ecat/diagnosis/physical_remarks.hpp"
+#include "runtime/machine/alarm_text.hpp"
 
 namespace taktwerk::apps {
 
@@ -51,6 +55,20 @@ std::vector<Error> wrong_copper(BusSession& session, const Survey& found) {
     if (!session.must_be_alone("asking the PHYs") || found.highest_state >= ecat::AlState::safeop) return remarks;
     const auto links = session.probe().run(ecat::wrong_links(session.probe().port(), found));
     if (links) remarks.insert(remarks.end(), links->begin(), links->end());
+    return remarks;
+}
+
+/// What holds while the bus is in OP: a machine would show it as an alarm.
+std::vector<Error> standing_alarms(const ecat::Master& master, const ecat::Bus& bus) {
+    std::array<AlarmFact, 32> facts;
+    std::vector<Error> remarks;
+    for (const auto& fact : std::span{facts}.first(master.active_faults(facts))) {
+        const auto& info = *find_alarm(ecat::bus_alarms, fact.id);
+        std::string where = fact.source == AlarmSource::slave && fact.index < bus.slaves.size() ? bus.slaves[fact.index]->subject : "bus";
+        if (const auto more = master.detail(fact); !more.empty()) where += ": " + more;
+        remarks.push_back({std::string{info.name}, std::move(where),
+                           fmt::format("{}: {}", runtime::fill_in(info.english, fact.a, fact.b), info.cause), std::string{info.remedy}});
+    }
     return remarks;
 }
 
@@ -120,7 +138,7 @@ int find_out_why(BusSession& session, const BusOptions& options) {
         if (!options.json) fmt::print("{}: the bus does not reach OP\n\n", session.where());
         return fail(options, found.error());
     }
-    const std::vector<Error> copper = wrong_copper(session, *found);
+    std::vector<Error> copper = wrong_copper(session, *found);
     if (auto up = session.bring_up(*found); !up) {
         const Error& failure = up.error();
         if (failure.code == "bus.not_confirmed" || failure.code == "bus.foreign_master" || failure.code == "bus.interrupted")
@@ -132,6 +150,7 @@ int find_out_why(BusSession& session, const BusOptions& options) {
     const auto& seen = session.probe().master().statistics();
     const std::vector<std::string> fell = fallen(session.bus());
     if (!fell.empty()) return explain_falls(session, fell, options);
+    for (auto& alarm : standing_alarms(session.probe().master(), session.bus())) copper.push_back(std::move(alarm));
     if (options.json) {
         print_json(Json{{"operational", true},
                         {"slaves", session.probe().master().slave_count()},
@@ -158,7 +177,8 @@ std::string why_text(const std::string& where, const WhyReport& report, Colours 
     std::string waiting;
     for (const auto& slave : report.slaves) {
         if (!slave.failed) {
-            waiting += fmt::format("{}{} in {}", waiting.empty() ? "" : ", ", slave.subject, ecat::name(slave.state));
+            waiting += fmt::format("{}{} {}", waiting.empty() ? "" : ", ", slave.subject,
+                                   slave.answers ? fmt::format("in {}", ecat::name(slave.state)) : std::string{"(silent)"});
             continue;
         }
         explained = true;

@@ -6,7 +6,9 @@
 
 #include "ecat/bringup/al_control.hpp"
 #include "ecat/bringup/clocks.hpp"
+#include "ecat/bringup/named_loss.hpp"
 #include "ecat/bringup/own_word.hpp"
+#include "ecat/bringup/presence.hpp"
 #include "ecat/bringup/recovery.hpp"
 #include "ecat/bringup/ring_line.hpp"
 #include "ecat/bringup/scan.hpp"
@@ -19,6 +21,7 @@ namespace taktwerk::ecat {
 namespace {
 
 constexpr Duration valid_outputs_timeout = std::chrono::seconds{3};
+constexpr std::uint64_t foreign_limit = 3;  ///< frames: fewer may be our own with a bit flipped in the address
 
 Script<Result<void>> to_safeop(Bus& bus, BusSlave& slave) { return set_state(bus, slave, AlState::safeop); }
 Script<Result<void>> to_op(Bus& bus, BusSlave& slave) { return set_state(bus, slave, AlState::op); }
@@ -170,13 +173,27 @@ Script<Result<void>> down_to(Bus& bus, BusSlave& slave) {
     co_return Result<void>{};
 }
 
+/// Whoever writes to the slaves beside us makes them fail in many ways: then it is he, and not whom he disturbed. That the slaves are not the
+/// configured ones has no master to do with.
+Error disturbed(const Bus& bus, std::uint64_t foreign_before, Error failure) {
+    const std::uint64_t heard = bus.link.foreign_frames.load() - foreign_before;
+    if (heard < foreign_limit || bus.slaves.empty() || failure.code == "bus.foreign_master") return failure;
+    return Error{"bus.foreign_master", "bus",
+                 fmt::format("another EtherCAT master sent {} frames on this cable while the bus came up: {}; then {}: {}", heard,
+                             sender_text(bus.link), failure.subject, failure.what),
+                 "end that master, or connect the bus to this computer only, and start again"};
+}
+
 }  // namespace
 
 Script<Result<void>> bring_up(Bus& bus) {
     bus.link.supervise.store(false);
     bus.link.good_in_a_row.store(0);
+    const std::uint64_t foreign_before = bus.link.foreign_frames.load();
     Result<void> done = co_await climb(bus);
     if (!done) done = co_await named_break(bus, done.error());
+    if (!done) done = co_await named_loss(bus, done.error());
+    if (!done) done = disturbed(bus, foreign_before, done.error());
     bus.phase.store(done ? BusPhase::operational : BusPhase::failed);
     bus.progress = done ? std::string{"operational"} : done.error().text();
     co_return done;

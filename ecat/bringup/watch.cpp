@@ -61,9 +61,22 @@ Presence presence_of(const Result<std::uint16_t>& status) {
     return status.error().code == "bus.no_frame" ? Presence::unheard : Presence::silent;
 }
 
-Script<void> read_difference(Bus& bus, BusSlave& slave) {
+Script<void> ask_difference(Bus& bus, BusSlave& slave) {
     const Reply reply = co_await bus.port.fprd(slave.found.station, reg::dc_difference, 4);
     if (reply.ok()) slave.dc_difference = std::abs(static_cast<std::int64_t>(dc_difference_ns(reply.u32())));
+}
+
+/// When one clock is off, all are asked before it is said: whether the others are off as well tells whose clock it is.
+Script<void> read_difference(Bus& bus, BusSlave& slave) {
+    const bool was_off = slave.dc_difference > clock_is_off_ns;
+    co_await ask_difference(bus, slave);
+    if (!was_off && slave.dc_difference > clock_is_off_ns) {
+        std::vector<Script<void>> scripts;
+        for (const auto& other : bus.slaves)
+            if (other->dc && other.get() != &slave && other->link.presence.load() == Presence::answers)
+                scripts.push_back(ask_difference(bus, *other));
+        co_await all(std::move(scripts), DatagramPort::slaves_at_once);
+    }
     if (bus.reference) bus.slaves[*bus.reference]->dc_difference = 0;  // its register holds what it was before it served
     std::int64_t worst = 0;
     for (const auto& other : bus.slaves) worst = std::max(worst, other->dc_difference);

@@ -16,6 +16,9 @@
 
 namespace taktwerk::ecat {
 
+/// Above it a clock is off: drives that supervise theirs give up there (SV33-E P0A.32: 3000 ns).
+inline constexpr std::int64_t clock_is_off_ns = 3000;
+
 /// Which slaves have an answer in their mailbox, as the cycle saw it last (SlavePlan::mailbox_bit numbers the bits). A bit
 /// that is set is certain. One that is not says little of a slave whose FMMU is not programmed or that is away: ask such a
 /// slave itself, now and then, while `exact` does not count on.

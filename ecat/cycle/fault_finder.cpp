@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "ecat/alarms.hpp"
+#include "ecat/cycle/cycle_link.hpp"
 
 namespace taktwerk::ecat {
 
@@ -11,7 +12,6 @@ namespace {
 
 /// How long after a slave was first seen out of OP what is then known still counts as what came before it.
 constexpr std::uint8_t cycles_of_a_fall = 3;
-constexpr std::int64_t sync_limit_ns = 3000;  // SV33-E P0A.32 default
 /// Cycles without a reference time until it is said: a single outlier is no news, and a recovery takes a few.
 constexpr std::uint32_t reference_times_limit = 50;
 /// So many cycles the watch has to name who is missing before each slave speaks for itself.
@@ -153,7 +153,7 @@ void FaultFinder::look_at_slaves(const BusCondition& bus) noexcept {
     if (bus.reference_times_missing >= reference_times_limit && !reference_gone && !unasked)
         raise(BusAlarm::reference_clock_lost, AlarmSource::bus, 0, bus.reference_times_missing);
     if (bus.seen.has<BusAlarm::stranger_plugged_in>()) raise(BusAlarm::stranger_plugged_in, AlarmSource::bus, 0, bus.guests);
-    if (bus.dc_difference_ns > sync_limit_ns)
+    if (bus.dc_difference_ns > clock_is_off_ns)
         raise(BusAlarm::dc_out_of_sync, AlarmSource::bus, 0, static_cast<double>(bus.dc_difference_ns));
 }
 

@@ -1,6 +1,9 @@
 #include "ecat/diagnosis/why_not_op.hpp"
 
+#include <algorithm>
+
 #include "ecat/bringup/al_control.hpp"
+#include "ecat/bringup/presence.hpp"
 
 namespace taktwerk::ecat {
 
@@ -19,6 +22,10 @@ AlState next_state(AlState reached) noexcept {
 Script<void> examine(Bus& bus, BusSlave& slave, WhySlave& why, const Error& failure) {
     why.subject = slave.subject;
     why.position = slave.found.position;
+    if (slave.away()) {  // it comes and goes as it likes
+        why.answers = false;
+        co_return;
+    }
     const Result<std::uint16_t> status = co_await read_al_status(bus, slave);
     why.answers = status.ok();
     if (!status) {
@@ -45,6 +52,25 @@ Script<void> examine(Bus& bus, BusSlave& slave, WhySlave& why, const Error& fail
     why.remedy = named ? failure.remedy : why.facts->remedy;
 }
 
+/// Who stands behind a slave that is away is away with it, and to blame for nothing.
+void blame_the_first_silent(const Bus& bus, WhyReport& report) {
+    const auto& places = bus.topology.slaves;
+    const auto silent_at = [&](std::size_t position) {
+        return std::any_of(report.slaves.begin(), report.slaves.end(),
+                           [&](const WhySlave& slave) { return slave.position == position && !slave.answers; });
+    };
+    const bool nobody = std::none_of(report.slaves.begin(), report.slaves.end(), [](const WhySlave& slave) { return slave.answers; });
+    for (std::size_t i = 0; i < report.slaves.size(); ++i) {
+        auto& slave = report.slaves[i];
+        if (slave.answers || bus.slaves[i]->away()) continue;
+        const bool behind = slave.position < places.size() && places[slave.position].parent && silent_at(*places[slave.position].parent);
+        if (behind || (nobody && report.failure.subject == "bus")) slave.failed = false;
+        const bool named = report.failure.subject == slave.subject;
+        if (named) slave.cause = report.failure.what, slave.remedy = report.failure.remedy;
+        else if (const auto cable = connection_text(bus, *bus.slaves[i]); !cable.empty()) slave.cause += "; " + cable;
+    }
+}
+
 }  // namespace
 
 Script<Result<WhyReport>> explain(Bus& bus, Error failure) {
@@ -55,6 +81,9 @@ Script<Result<WhyReport>> explain(Bus& bus, Error failure) {
     std::vector<Script<void>> scripts;
     for (std::size_t i = 0; i < bus.slaves.size(); ++i) scripts.push_back(examine(bus, *bus.slaves[i], report.slaves[i], report.failure));
     co_await all(std::move(scripts), DatagramPort::slaves_at_once);
+    blame_the_first_silent(bus, report);
+    if (report.failure.code == "bus.foreign_master")
+        for (auto& slave : report.slaves) slave.failed = false;  // it is not they
     co_return report;
 }
 

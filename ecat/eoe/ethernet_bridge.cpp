@@ -78,6 +78,9 @@ Script<Result<void>> EthernetBridge::carry(DatagramPort& port, std::optional<Ins
     Instant now = co_await time();
     while (!until || now < *until) {
         poll_host();
+        if (host_.gone())
+            co_return Error{"eoe.tap", "the interface", "somebody deleted it: nobody can reach the slaves through it any more",
+                            "start the command again"};
         for (auto& carrier : carriers) {
             carrier.step(now);
             if (carrier.done()) co_return carrier.result();

@@ -29,7 +29,7 @@ public:
     [[nodiscard]] std::uint64_t to_host() const noexcept { return to_host_; }
     [[nodiscard]] std::uint64_t from_host() const noexcept { return from_host_; }
 
-    /// Carries frames until `until`, or until a slave does not answer any more: that error.
+    /// Carries frames until `until`, or until a slave does not answer any more: that error; eoe.tap: the interface was deleted.
     [[nodiscard]] Script<Result<void>> carry(DatagramPort& port, std::optional<Instant> until);
 
 private:

@@ -19,8 +19,9 @@ namespace {
 Error tap_error(const std::string& name, const char* doing) {
     const int reason = errno;
     return {"eoe.tap", name, fmt::format("the interface cannot be {}: {}", doing, std::strerror(reason)),
-            reason == EPERM || reason == EACCES ? "it needs CAP_NET_ADMIN: sudo taktwerk bus eoe ..."
-                                                : "check its name (at most 15 characters), and that no other program has it"};
+            reason == EPERM || reason == EACCES
+                ? "it needs CAP_NET_ADMIN: sudo taktwerk bus eoe ..."
+                : "check its name (at most 15 characters, no space, / or %), and that no other program has it"};
 }
 
 /// Switches the interface on: what comes in while it is off is lost.
@@ -36,7 +37,8 @@ bool switch_on(const ifreq& request) {
 }  // namespace
 
 Result<HostPort> HostPort::open_tap(const std::string& name) {
-    if (name.empty() || name.size() >= IFNAMSIZ) return errno = EINVAL, tap_error(name, "made");
+    // The kernel would put a number in the place of %d, and the interface would have another name than was said.
+    if (name.empty() || name.size() >= IFNAMSIZ || name.find('%') != std::string::npos) return errno = EINVAL, tap_error(name, "made");
     Descriptor device{::open("/dev/net/tun", O_RDWR | O_NONBLOCK | O_CLOEXEC)};
     if (device.get() < 0) {
         if (errno == EACCES || errno == EPERM) return tap_error(name, "made");
@@ -51,10 +53,14 @@ Result<HostPort> HostPort::open_tap(const std::string& name) {
     return HostPort{std::move(device)};
 }
 
+/// EBADFD of a TAP: its interface was deleted. One that is only switched off gives EIO, and may come back.
+void HostPort::note_end(int reason) noexcept { gone_ = gone_ || reason == EBADFD || reason == ENODEV || reason == EPIPE; }
+
 std::optional<std::size_t> HostPort::receive(std::span<std::byte> buffer) noexcept {
     for (;;) {
         const auto size = ::read(descriptor_.get(), buffer.data(), buffer.size());
         if (size < 0 && errno == EINTR) continue;
+        if (size < 0) note_end(errno);
         if (size <= 0) return std::nullopt;
         return static_cast<std::size_t>(size);
     }
@@ -64,6 +70,7 @@ bool HostPort::send(std::span<const std::byte> frame) noexcept {
     for (;;) {
         const auto size = ::write(descriptor_.get(), frame.data(), frame.size());
         if (size < 0 && errno == EINTR) continue;
+        if (size < 0) note_end(errno);
         return size == static_cast<ssize_t>(frame.size());
     }
 }

@@ -25,9 +25,14 @@ public:
     [[nodiscard]] std::optional<std::size_t> receive(std::span<std::byte> buffer) noexcept;
     /// False: it was not taken (its queue is full), and is dropped as a switch drops.
     bool send(std::span<const std::byte> frame) noexcept;
+    /// Somebody deleted the interface: nothing will ever come or go again.
+    [[nodiscard]] bool gone() const noexcept { return gone_; }
 
 private:
+    void note_end(int reason) noexcept;
+
     Descriptor descriptor_;
+    bool gone_ = false;
 };
 
 }  // namespace taktwerk::ecat

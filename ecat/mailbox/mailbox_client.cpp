@@ -90,6 +90,12 @@ Script<Result<Bytes>> take_message(DatagramPort& port, MailboxEndpoint& mailbox,
     co_return co_await message_in(port, mailbox, about, std::move(reply), deadline);
 }
 
+Error no_answer(const MailboxEndpoint& mailbox, const MailboxRequest& request, std::string_view but) {
+    return Error{code_of(request, "timeout"), mailbox.subject,
+                 fmt::format("{}: no answer within {} ms{}", request.about, request.patience / std::chrono::milliseconds{1}, but),
+                 "the slave's application is busy or hangs: try again, then power-cycle it"};
+}
+
 /// Waits for a message and takes it out.
 Script<Result<Bytes>> read_message(DatagramPort& port, MailboxEndpoint& mailbox, const MailboxRequest& request, Instant deadline) {
     Duration period = mailbox_poll_period;
@@ -114,10 +120,7 @@ Script<Result<Bytes>> read_message(DatagramPort& port, MailboxEndpoint& mailbox,
         if (now >= deadline) {
             const Reply out = co_await port.fprd(mailbox.station, sm_register(mailbox.out_sm, sm_status_offset), 1);
             const bool lies = out.ok() && (static_cast<std::uint8_t>(out.data[0]) & SyncManager::mailbox_full) != 0;
-            co_return Error{code_of(request, "timeout"), mailbox.subject,
-                            fmt::format("{}: no answer within {} ms{}", request.about, request.patience / std::chrono::milliseconds{1},
-                                        lies ? "; the request still lies in its mailbox, which stays full" : ""),
-                            "the slave's application is busy or hangs: try again, then power-cycle it"};
+            co_return no_answer(mailbox, request, lies ? "; the request still lies in its mailbox, which stays full" : "");
         }
         if (mailbox.flag.mapped()) continue;
         co_await pause(period);
@@ -295,6 +298,8 @@ Script<Result<Answer>> await_answer(DatagramPort& port, MailboxEndpoint& mailbox
             case Arrival::Kind::emergency:
             case Arrival::Kind::foreign: break;
         }
+        // One that talks without end and answers nothing.
+        if (now >= deadline) co_return no_answer(mailbox, request, "; it sends other messages all the time");
     }
 }
 

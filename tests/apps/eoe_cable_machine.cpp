@@ -84,6 +84,32 @@ TEST(EthernetOnACable, ASlaveIsPingedThroughItsMailbox) {
     EXPECT_EQ(slaves.wait(10s), exit_ok) << slaves.text();
 }
 
+// Somebody deletes the interface: the command says so and ends, instead of carrying nothing for ever.
+TEST(EthernetOnACable, AnInterfaceThatIsDeletedEndsTheCommand) {
+    if (::geteuid() != 0) GTEST_SKIP() << "network namespaces need root";
+    if (::access("/dev/net/tun", R_OK | W_OK) != 0) GTEST_SKIP() << "this system has no /dev/net/tun: no TAP can be made";
+    const GaugeFiles files;
+    const Cable cable;
+    if (!cable.laid()) GTEST_SKIP() << "this system lets nobody make network namespaces or veth pairs";
+    Child slaves(cable.at_slaves({taktwerk, "sim", files.machine, "--nic", "twk1"}));
+    ASSERT_TRUE(slaves.says("slaves of 'gauges'", 20s)) << slaves.text();
+    std::string said;
+    EXPECT_EQ(
+        run(cable.at_master({taktwerk, "bus", "eoe", "1", "gauge", "--tap", "eoe0", "--nic", "twk0", "--machine", files.machine}), &said),
+        exit_usage);
+    EXPECT_THAT(said, HasSubstr("is named twice"));
+    EXPECT_EQ(run(cable.at_master({taktwerk, "bus", "eoe", "1", "--tap", "eoe%d", "--nic", "twk0", "--for", "1s"}), &said), exit_bus);
+    EXPECT_THAT(said, HasSubstr("check its name"));
+    Child eoe(cable.at_master({taktwerk, "bus", "eoe", "1", "--tap", "eoe0", "--nic", "twk0"}));
+    if (eoe.says("no /dev/net/tun", 0s)) GTEST_SKIP() << "this system has no TAP";
+    ASSERT_TRUE(eoe.says("carries the Ethernet of 1 slave", 20s)) << eoe.text();
+    ASSERT_EQ(run(cable.at_master({"ip", "link", "del", "eoe0"})), 0);
+    EXPECT_EQ(eoe.wait(10s), exit_bus) << eoe.text();
+    EXPECT_THAT(eoe.text(), HasSubstr("somebody deleted it"));
+    slaves.signal(SIGTERM);
+    EXPECT_EQ(slaves.wait(10s), exit_ok) << slaves.text();
+}
+
 TEST(EthernetOnACable, ASlaveWithoutEthernetAndABadAddressAreRefused) {
     const GaugeFiles files;
     std::string said;

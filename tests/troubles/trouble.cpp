@@ -38,8 +38,8 @@ std::string slaves_in(const std::string& text) {
 }  // namespace
 
 std::vector<Chapter> chapters() {
-    return {network_port(),   wrong_slaves(),      wrong_cables(),      wrong_settings(),
-            refused_states(), refused_mailboxes(), lost_in_operation(), unwell_in_operation()};
+    return {network_port(),      wrong_slaves(),    wrong_cables(),      wrong_settings(),     refused_states(),
+            refused_mailboxes(), lost_on_the_way(), lost_in_operation(), unwell_in_operation()};
 }
 
 std::vector<Trouble> all_troubles() {

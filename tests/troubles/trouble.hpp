@@ -63,6 +63,7 @@ struct Chapter {
 [[nodiscard]] Chapter wrong_settings();
 [[nodiscard]] Chapter refused_states();
 [[nodiscard]] Chapter refused_mailboxes();
+[[nodiscard]] Chapter lost_on_the_way();
 [[nodiscard]] Chapter lost_in_operation();
 [[nodiscard]] Chapter unwell_in_operation();
 

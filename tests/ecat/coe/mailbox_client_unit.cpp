@@ -261,5 +261,24 @@ TEST(SdoList, SilenceIsNotARefusal) {
     EXPECT_TRUE(bench.mailbox.complete_access);
 }
 
+// Emergencies without end, and the answer never: the wait for it ends all the same.
+TEST(MailboxClient, ASlaveThatTalksWithoutEndAndAnswersNothingIsGivenUp) {
+    CoeBench bench{sim::small_drive()};
+    bench.slave->answer_after(1h);
+    std::optional<Result<Bytes>> value;
+    Runner reader{keep(sdo_upload(*bench.port, bench.mailbox, 0x1000, 0), value)};
+    const Instant began = bench.now;
+    for (int i = 0; i < 10'000 && !reader.done(); ++i) {
+        bench.model->raise({0x3220, 0x05, {}});
+        bench.step();
+        reader.step(bench.now);
+        bench.pack();
+    }
+    ASSERT_TRUE(value);
+    ASSERT_FALSE(*value);
+    EXPECT_EQ(value->error().code, "sdo.timeout");
+    EXPECT_LE(bench.now - began, sdo_timeout + 100ms);
+}
+
 }  // namespace
 }  // namespace taktwerk::ecat::test
