@@ -345,6 +345,13 @@ std::string ring_text(const Bus& bus) {
     return ring.needs_mending() ? break_text(bus, ring) : "it is closed again";
 }
 
+/// The cable by which slaves are reached that are away. In a ring that is broken there are two, and either of them may be the one.
+std::string way_in(const Bus& bus, const BusSlave& first) {
+    const RingState ring = bus.link.ring.load();
+    const bool between = ring.shape == RingShape::open && std::size_t{ring.before_break} + ring.behind_break < bus.topology.slaves.size();
+    return between ? break_text(bus, ring) : connection_text(bus, first);
+}
+
 std::string with_outcome(std::string text, const std::string& outcome) { return outcome.empty() ? text : text + "; " + outcome; }
 
 /// How many slaves fell by it, and what has become of them.
@@ -394,10 +401,10 @@ std::string Master::detail(const AlarmFact& fact) const {
         case BusAlarm::slave_left_op:
         case BusAlarm::slave_dropped_out:
             if (fact.a != 0)
-                return fmt::format("{}; it is {}", reason_text(static_cast<std::uint16_t>(fact.b)),
-                                   is_back(*impl_->bus, slave)
-                                       ? std::string{"back in OP"}
-                                       : fmt::format("in {}", name(static_cast<AlState>(static_cast<std::uint8_t>(fact.a)))));
+                return fmt::format(
+                    "{}; it is {}", fact.b == 0 ? "it gives no error of its own" : reason_text(static_cast<std::uint16_t>(fact.b)),
+                    is_back(*impl_->bus, slave) ? std::string{"back in OP"}
+                                                : fmt::format("in {}", name(static_cast<AlState>(static_cast<std::uint8_t>(fact.a)))));
             if (fact.id == id(BusAlarm::slave_left_op))
                 return is_back(*impl_->bus, slave) ? "it is back in OP" : "its reason is being read";
             return with_outcome(connection_text(*impl_->bus, slave), is_back(*impl_->bus, slave) ? "it is back in OP" : "");
@@ -408,7 +415,7 @@ std::string Master::detail(const AlarmFact& fact) const {
         case BusAlarm::cable_errors:
         case BusAlarm::cable_loses_link: return cable_text(*impl_->bus, slave, static_cast<unsigned>(fact.b));
         case BusAlarm::cable_broken:
-        case BusAlarm::branch_dropped_out: return with_outcome(connection_text(*impl_->bus, slave), outcome(*impl_->bus, &slave));
+        case BusAlarm::branch_dropped_out: return with_outcome(way_in(*impl_->bus, slave), outcome(*impl_->bus, &slave));
         case BusAlarm::other_device:
         case BusAlarm::other_device_tolerated:
         case BusAlarm::group_does_not_join:

@@ -15,6 +15,11 @@ std::size_t shared_unit(const Bus& bus, std::size_t slave) {
     return bus.plan.units[unit].slaves.size() > 1 ? unit : FaultSlave::none;
 }
 
+/// A coupler has nothing to exchange.
+bool exchanges(const Bus& bus, std::size_t slave) {
+    return slave >= bus.plan.slaves.size() || bus.plan.slaves[slave].outputs.size + bus.plan.slaves[slave].inputs.size > 0;
+}
+
 /// In the order of positions, so that parents come before their children.
 std::vector<FaultSlave> fault_slaves(const Bus& bus) {
     std::vector<FaultSlave> slaves;
@@ -23,7 +28,8 @@ std::vector<FaultSlave> fault_slaves(const Bus& bus) {
         const auto cycles = static_cast<std::uint32_t>(std::max<std::int64_t>(2, watchdog / bus.config.cycle));
         slaves.push_back({slave->index, FaultSlave::none, slave->config->guest() ? LossPolicy::stop_own_axes : slave->config->on_loss,
                           bus.reference == slave->index, slave->config->dc && slave->dc, slave->found.position,
-                          shared_unit(bus, slave->index), cycles, watchdog, slave->found.station, slave->config->guest()});
+                          shared_unit(bus, slave->index), cycles, watchdog, slave->found.station, exchanges(bus, slave->index),
+                          slave->config->guest()});
     }
     const auto position = [&](const FaultSlave& s) { return std::size_t{bus.slaves[s.index]->found.position}; };
     std::sort(slaves.begin(), slaves.end(), [&](const FaultSlave& a, const FaultSlave& b) { return position(a) < position(b); });

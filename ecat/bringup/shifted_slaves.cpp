@@ -53,8 +53,9 @@ Error left_out(const std::vector<const SlaveConfig*>& line, const std::vector<Fo
     Error error{"bus.missing_slave", exact && missing == 1 ? named(first) : std::string{"bus"}, {}, {}};
     if (exact) {
         error.what = fmt::format("{} not on the cable: {}, and those behind are there", missing == 1 ? "is" : names + " are", count);
-        error.remedy = (first == 0 ? "put it in front of slave 0" : fmt::format("put it between slave {} and slave {}", first - 1, first)) +
-                       ", or take it out of the configuration";
+        const char* it = missing == 1 ? "it" : "them";
+        error.remedy = fmt::format("put {} {}, or take {} out of the configuration", it,
+                                   first == 0 ? "in front of slave 0" : fmt::format("between slave {} and slave {}", first - 1, first), it);
         if (first > 0) error.remedy += fmt::format("; the cable goes from {} to {}", found_at(found, first - 1), found_at(found, first));
     } else {
         error.what = fmt::format("{} of {} not on the cable: {}, and all others are in their order", missing, names, count);

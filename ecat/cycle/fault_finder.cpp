@@ -175,7 +175,7 @@ void FaultFinder::note_falls(const BusCondition& bus) noexcept {
             if (fall.stall == Duration{}) fall.stall = bus.stall;
             fall.gap = std::max(fall.gap, bus.gap);
         }
-        if (seen.presence == Presence::silent && seen.age > 0) fall.restarted = true;
+        if (seen.presence == Presence::silent && (slaves_[i].exchanges ? seen.age > 0 : some_in_init(bus.states))) fall.restarted = true;
         if (seen.al_status_code != 0) fall.code = seen.al_status_code;
         if (unread) {
             fall.by_command = (bus.states & al_status_error) == 0 && !some_in_init(bus.states);
@@ -254,9 +254,12 @@ void FaultFinder::raise_falls(const BusCondition& bus) noexcept {
 
 std::size_t FaultFinder::find_lost(std::uint16_t answering, std::uint16_t expected) noexcept {
     const std::size_t missing = answering < expected ? std::size_t{expected} - answering : 0;
+    // Who came back and has no address yet is silent, too, and is not the one who is missing now: unless nobody else turns up.
+    const bool waited = missing == missing_ && naming_for_ >= naming_cycles;
     std::size_t silent = 0, suspect = 0;
-    for (const auto& state : states_) {
-        silent += state.seen.presence == Presence::silent;
+    for (auto& state : states_) {
+        state.counted = state.seen.presence == Presence::silent && (state.counted || missing == 0);
+        silent += state.seen.presence == Presence::silent && (!state.counted || waited);
         suspect += state.seen.presence == Presence::silent || stale(state);
     }
     // When exactly as many are not exchanged as are missing, they are the missing ones: no need to wait for the watch.
@@ -267,7 +270,8 @@ std::size_t FaultFinder::find_lost(std::uint16_t answering, std::uint16_t expect
     missing_ = missing;
     naming_ = unnamed > 0 && naming_for_ < naming_cycles;
     for (auto& state : states_) {
-        const bool gone = missing > 0 && (state.seen.presence == Presence::silent || (suspects_are_missing && stale(state)));
+        const bool silent_now = state.seen.presence == Presence::silent && (!state.counted || waited);
+        const bool gone = missing > 0 && (silent_now || (suspects_are_missing && stale(state)));
         state.lost = gone && (!naming_ || state.gone_with != FaultSlave::none);
     }
     return unnamed;
@@ -340,8 +344,8 @@ void FaultFinder::raise_slave(std::size_t at, bool counted_out) noexcept {
         raise_left_op(at);
     } else if (seen.presence == Presence::silent) {
         // Only who exchanges in this very cycle has power and cable, and lost nothing but its address.
-        if (seen.age == 0) raise(BusAlarm::station_address_lost, AlarmSource::slave, slave.index);
-        else if (stale(state) && !naming_)
+        if (seen.age == 0 && !state.fall.restarted) raise(BusAlarm::station_address_lost, AlarmSource::slave, slave.index);
+        else if ((stale(state) || !slave.exchanges) && !naming_)
             raise(tolerated ? BusAlarm::slave_dropped_out : BusAlarm::slave_lost, AlarmSource::slave, slave.index);
     } else if (seen.presence == Presence::answers && seen.taken_down && (state.fall.now() || stale(state))) {
         raise_not_exchanged(at);
@@ -350,7 +354,7 @@ void FaultFinder::raise_slave(std::size_t at, bool counted_out) noexcept {
     } else if (seen.presence == Presence::answers && state.fall.restarted) {
         raise(tolerated ? BusAlarm::slave_dropped_out : BusAlarm::slave_lost, AlarmSource::slave, slave.index);  // until it is back in OP
     } else if (seen.presence == Presence::answers && state.fall.now()) {
-        raise_left_op(at);
+        if (state.fall.read || !naming_) raise_left_op(at);
     } else if (stale(state) && !waits && slave.alone()) {
         raise_not_exchanged(at);
     }

@@ -85,7 +85,8 @@ struct FaultSlave {
     std::uint32_t watchdog_cycles = 2;  ///< without a frame until its watchdog of process data trips
     Duration watchdog{};                ///< the same as a time
     std::uint16_t station = 0;
-    bool guest = false;  ///< it comes and goes with its group: being gone is no fault
+    bool exchanges = true;  ///< it has process data; else its age says nothing
+    bool guest = false;     ///< it comes and goes with its group: being gone is no fault
     [[nodiscard]] bool alone() const noexcept { return unit == none; }
 };
 
@@ -123,6 +124,7 @@ private:
     struct State {
         SlaveCondition seen;
         bool lost = false;
+        bool counted = false;                      ///< silent at its address, and on the cable: nobody was missing meanwhile
         bool stale_in_op = false;                  ///< it was not exchanged while everybody was in OP: for want of frames it falls by that
         std::size_t gone_with = FaultSlave::none;  ///< the first slave behind the break that took it away; until it is back in OP
         Fall fall;

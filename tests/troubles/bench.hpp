@@ -5,6 +5,7 @@
 //   s  servo with CoE and a clock, refuses SAFEOP without SYNC0      v  the same of another vendor
 //   t  terminal, 8 inputs and 8 outputs, without a mailbox           p  the same type, another product
 //   m  modular slave with two slots                                  r  the same product in another revision
+//   o  coupler without process data
 //   k  coupler, gives 500 mA to the E-bus                            e  terminal on the E-bus, takes 300 mA
 //
 // Servos that are not what their type says:

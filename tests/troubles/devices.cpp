@@ -79,6 +79,12 @@ std::shared_ptr<DeviceDescription> device_of(char kind) {
         if (kind == 'e') d->name = "valves", d->identity.product = 0x00000300, d->ebus_current = std::int16_t{300};
         return d;
     }
+    if (kind == 'o') {
+        auto d = test::terminal_description();
+        d->name = "junction", d->identity.product = 0x00000501;
+        d->sync_managers.clear(), d->rx_pdos.clear(), d->tx_pdos.clear(), d->rx_assigned.clear(), d->tx_assigned.clear();
+        return d;
+    }
     if (kind == 'm') return modular();
     auto d = test::servo_description();
     if (kind == 'v') d->identity.vendor = 0x00000666;
@@ -99,7 +105,7 @@ std::shared_ptr<DeviceDescription> played(char kind) {
 
 std::unique_ptr<sim::DeviceModel> model_of(char kind) {
     if (kind == 't' || kind == 'k' || kind == 'e') return std::make_unique<test::InvertingTerminal>();
-    if (kind == 'm' || kind == 'n') return std::make_unique<StillDevice>();
+    if (kind == 'm' || kind == 'n' || kind == 'o') return std::make_unique<StillDevice>();
     if (kind == 'l') return std::make_unique<LimitingDevice>();
     return std::make_unique<test::EchoServo>();
 }

@@ -62,5 +62,55 @@ TEST(TwoAtOnce, WhoLostItsPowerIsNotNamedAmongThoseThatThisComputerStarved) {
     EXPECT_THAT(place_of(said, "starved_slave_left_op"), AllOf(Not(HasSubstr("'c'")), Not(HasSubstr("'d'")), Not(HasSubstr("'e'"))));
 }
 
+// A ring breaks at a second place: the slaves between the two are not behind the cable that broke first.
+TEST(TwoAtOnce, OfARingThatIsBrokenTwiceBothEndsOfWhatIsCutOffAreNamed) {
+    for (const bool first_is_in_front : {true, false}) {
+        Bench bench{"ststs", ""};
+        bench.make_ring();
+        ASSERT_TRUE(bench.bring_up()) << bench.why();
+        bench.run_for(300ms);
+        bench.set_ring_cable(first_is_in_front ? 2 : 4, false);
+        bench.run_for(500ms);
+        bench.set_ring_cable(first_is_in_front ? 4 : 2, false);
+        EXPECT_THAT(place_of(bench.what_alarms_say({}), "cable_broken"),
+                    AllOf(HasSubstr("between slave 1 'b' (dio8) and slave 4 'e' (sv33-e): who stands between them does not answer"),
+                          Not(HasSubstr("port 1"))));
+    }
+}
+
+// A coupler has no process data: that it is not exchanged says nothing, and that it is in INIT says that it began anew.
+TEST(TwoAtOnce, OfACouplerThatRestartsNobodyElseIsAccused) {
+    for (const Duration away : {Duration{1ms}, Duration{300ms}}) {
+        Bench bench{"otos", ""};
+        static Duration for_so_long{};
+        for_so_long = away;
+        const auto said = heard_after(bench, [](Bench& b) {
+            b.network.set_power(b.there('a'), false);
+            b.run_for(for_so_long);
+            b.network.set_power(b.there('a'), true);
+        });
+        for (const auto& one : said) EXPECT_THAT(one.id, ::testing::AnyOf("slave_lost", "frames_lost")) << one.place;
+        EXPECT_THAT(place_of(said, "slave_lost"), HasSubstr("slave 0 'a' (junction)"));
+    }
+}
+
+TEST(TwoAtOnce, WhoLosesItsPowerWhileAnotherComesBackIsLostAndNothingElse) {
+    Bench bench{"stttt", ""};
+    ASSERT_TRUE(bench.bring_up()) << bench.why();
+    bench.run_for(300ms);
+    for (int after = 0; after < 40; after += 3) {
+        bench.network.set_power(bench.there('c'), false);
+        bench.run_for(300ms);
+        bench.network.set_power(bench.there('c'), true);
+        bench.run_for(Duration{1ms} * after);
+        bench.network.set_power(bench.there('e'), false);
+        for (const auto& one : bench.what_alarms_say({}))
+            EXPECT_THAT(one.id, ::testing::AnyOf("slave_lost", "cable_broken")) << after << " ms: " << one.place;
+        bench.network.set_power(bench.there('e'), true);
+        bench.run_for(12s);
+        ASSERT_THAT(bench.faults(), ::testing::IsEmpty()) << after;
+    }
+}
+
 }  // namespace
 }  // namespace taktwerk::troubles

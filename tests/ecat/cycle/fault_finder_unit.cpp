@@ -589,5 +589,56 @@ TEST(FaultFinder, WhoIsCutOffFromTheReferenceIsSaidWhereItIsToRampDown) {
     EXPECT_THAT(cut_off({RingShape::open, 2, 3, 1}, true, 104), ElementsAre(1)) << "4 serves as the reference now";
 }
 
+// A coupler in front loses its power for a moment: it comes back in INIT and without its address. Nobody wrote to it.
+TEST(FaultFinder, ASlaveWithoutProcessDataThatBeginsAnewWasSentNowhereByAnybody) {
+    FaultSlave coupler, terminal;
+    coupler.exchanges = false;
+    terminal.index = 1, terminal.parent = 0;
+    FaultFinder finder{{coupler, terminal}, 2, limit};
+    finder.condition(0).al_state = finder.condition(1).al_state = AlState::op;
+    BusCondition bus;
+    bus.slaves_answering = 2;
+    bus.states = static_cast<std::uint16_t>(AlState::init) | static_cast<std::uint16_t>(AlState::op);
+    const auto said = [&] {
+        finder.look(bus);
+        std::vector<AlarmId> ids;
+        for (const auto& fact : finder.facts()) ids.push_back(fact.id);
+        return ids;
+    };
+    finder.condition(0).presence = Presence::silent;
+    finder.condition(0).al_state = AlState::unknown;
+    EXPECT_THAT(said(), ElementsAre(id(BusAlarm::slave_lost)));
+    finder.condition(0).presence = Presence::answers;
+    for (const auto state : {AlState::init, AlState::preop, AlState::safeop}) {
+        finder.condition(0).al_state = state;
+        EXPECT_THAT(said(), ElementsAre(id(BusAlarm::slave_lost))) << name(state);
+    }
+    finder.condition(0).al_state = AlState::op;
+    bus.states = static_cast<std::uint16_t>(AlState::op);
+    EXPECT_THAT(said(), IsEmpty());
+    finder.condition(0).presence = Presence::silent;
+    EXPECT_THAT(said(), ElementsAre(id(BusAlarm::station_address_lost))) << "all are in OP: it lost nothing but its address";
+}
+
+// The second slave is back and has no address yet, when the fourth loses its power: the fourth is missing, and its settings are as they were.
+TEST(FaultFinder, WhoVanishesWhileAnotherReturnsIsNotTakenForOneThatDoesNotExchange) {
+    Finder f{{-1, 0, 1, 2}};
+    f.vanish({1, 2, 3});
+    for (const std::size_t s : {1u, 2u, 3u})
+        f.finder.condition(s).presence = Presence::silent, f.finder.condition(s).al_state = AlState::unknown;
+    EXPECT_THAT(f.look(), ElementsAre(id(BusAlarm::cable_broken)));
+    f.bus.slaves_answering = 4;
+    f.bus.states = static_cast<std::uint16_t>(AlState::init) | static_cast<std::uint16_t>(AlState::op);
+    for (const std::size_t s : {2u, 3u}) {
+        f.finder.condition(s).presence = Presence::answers, f.finder.condition(s).al_state = AlState::op, f.finder.condition(s).age = 0;
+    }
+    (void)f.look();
+    f.vanish({3});
+    EXPECT_THAT(f.look(), ::testing::UnorderedElementsAre(id(BusAlarm::cable_broken), id(BusAlarm::slaves_missing)));
+    f.finder.condition(3).presence = Presence::silent, f.finder.condition(3).al_state = AlState::unknown;
+    EXPECT_THAT(f.look(), ::testing::UnorderedElementsAre(id(BusAlarm::cable_broken), id(BusAlarm::slave_lost)));
+    EXPECT_EQ(f.finder.facts().back().index, 3u);
+}
+
 }  // namespace
 }  // namespace taktwerk::ecat
