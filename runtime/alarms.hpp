@@ -29,6 +29,7 @@ enum class MachineAlarm : AlarmId {
     input_faulty = 0x6016,
     input_out_of_limits = 0x6017,
     output_no_number = 0x6018,
+    group_pulled = 0x6019,
 };
 /// First number of input_faulty: what its terminal says.
 inline constexpr double input_error = 0, input_underrange = 1, input_overrange = 2;
@@ -37,7 +38,7 @@ inline constexpr double emergency_stop_unread = 1;
 
 [[nodiscard]] constexpr AlarmId id(MachineAlarm alarm) noexcept { return static_cast<AlarmId>(alarm); }
 
-inline constexpr std::array<AlarmInfo, 20> machine_alarms{{
+inline constexpr std::array<AlarmInfo, 21> machine_alarms{{
     {id(MachineAlarm::emergency_stop), "emergency_stop", "Emergency stop: the axes stop along their ramps, then power goes off",
      "急停:各轴沿减速斜坡停止,随后断开动力", "The emergency stop button is pressed, or its circuit is open",
      "Release the button, `taktwerk reset`, then enable again or `taktwerk start`", ResetRule::acknowledge, Reaction::power_off,
@@ -205,6 +206,13 @@ inline constexpr std::array<AlarmInfo, 20> machine_alarms{{
      ResetRule::self_clearing,
      Reaction::warn,
      {}},
+    {id(MachineAlarm::group_pulled), "group_pulled", "The group of this axis was taken away while {b} of its axes had power",
+     "该轴所在的组在其 {b} 个轴通电时被断开",
+     "Its coupling opened or its cable was pulled before MC_Power was taken away, or the group lost its supply",
+     "Make sure that nothing has fallen; connect the group again or lay it down, then reset. A program takes Enable away and waits for "
+     "Status "
+     "before it uncouples",
+     ResetRule::reset, Reaction::stop_axis, "The drives of the group have lost the bus: they stop by their own watchdogs"},
 }};
 static_assert(alarm_table_is_sound(machine_alarms));
 

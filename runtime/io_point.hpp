@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "axes/words/types.hpp"
 #include "core/point_line.hpp"
 #include "core/process_image.hpp"
 #include "core/time.hpp"
@@ -26,6 +27,12 @@ struct PointLimits {
     double low = 0, high = 0;
 };
 
+/// No object at all: whether a group of hot connect is there.
+struct PresenceInput {
+    std::string group;
+    axes::Presence shows = axes::Presence::present;  ///< TRUE while the group is this
+};
+
 /// A named point that programs, commands and the HMI use.
 struct IoPoint {
     std::string name;
@@ -36,12 +43,13 @@ struct IoPoint {
     /// Of a Modbus device, which is polled beside the cycle: how wide its number is. Then `slave` is the device, `index` the place of the
     /// channel in it.
     std::optional<Signal> beside{};
-    bool inverted = false;                ///< 1-bit points: TRUE when the terminal says 0
-    std::string unit{};                   ///< of its value; empty: the number itself
-    PointLine line{};                     ///< from the number of the object to that unit; what its bits hold is found out on the bus
-    std::optional<PointLimits> limits{};  ///< inputs
-    Duration filter{};                    ///< inputs: time constant of a first-order filter on the value; 0 = none
-    std::vector<PointStatus> status{};    ///< inputs
+    std::optional<PresenceInput> presence{};  ///< then there is no slave
+    bool inverted = false;                    ///< 1-bit points: TRUE when the terminal says 0
+    std::string unit{};                       ///< of its value; empty: the number itself
+    PointLine line{};                         ///< from the number of the object to that unit; what its bits hold is found out on the bus
+    std::optional<PointLimits> limits{};      ///< inputs
+    Duration filter{};                        ///< inputs: time constant of a first-order filter on the value; 0 = none
+    std::vector<PointStatus> status{};        ///< inputs
     /// Outputs: from the bus' first frames on, while no program drives it, and at the end. Not when the master is gone or the
     /// cable is cut: then the terminal's own watchdog sets its outputs to zero, whatever stands here.
     std::int64_t safe_value = 0;

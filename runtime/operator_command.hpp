@@ -24,7 +24,7 @@ enum class OperatorAction : std::uint8_t {
                       ///< by hand go to their safe values [not_possible_now into automatic while the emergency stop holds]
     power,            ///< axis or all; flag = on. Off: ramps down first. On: holds until off, an emergency stop, or an error that takes
                       ///< power away: a reset alone never switches on [interlocked while the emergency stop holds, in_error_stop,
-                      ///< drive_not_ready while its drive is offline]
+                      ///< drive_not_ready while its drive is offline, not_connected while its group is away]
     home,             ///< axis
     jog,              ///< axis; value = velocity u/s, signed; 0 stops. flag = the key was pressed: starts. Without it: a heartbeat, each
                       ///< 50 ms, renews the lease [stale when there is nothing to renew]

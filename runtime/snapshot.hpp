@@ -96,6 +96,7 @@ struct MachineLayout {
         double jog_slow = 0, jog_fast = 0;    ///< u/s
         std::string drive, profile;           ///< slave, or drive on a serial line, and its kind; empty: a virtual axis
         int drive_axis = 0;                   ///< of that drive, from 0
+        std::string group{};                  ///< of hot connect, that the drive is in; empty: always there
         std::vector<std::string> programs{};  ///< those that declare it: only one of them may command it
     };
     struct Block {

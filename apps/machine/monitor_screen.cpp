@@ -147,6 +147,8 @@ private:
               std::pair{"override_factor", "held by the override"}, std::pair{"software_limit", "brakes for a software limit"}})
             if (limiter == word) text += fmt::format("  {}", shown);
         if (axis.at("disabled").get<bool>()) text += "  left out";
+        else if (const auto presence = axis.value("presence", std::string{}); presence == "absent" || presence == "joining")
+            text += fmt::format("  {} {}", axis.at("group").get<std::string>(), presence == "joining" ? "is joining" : "is not connected");
         else if (!axis.at("online").get<bool>()) text += "  offline";
         if (axis.at("simulated").get<bool>() && !state_.at("simulated").get<bool>()) text += "  SIMULATED";
         if (axis.at("negative_limit_switch").get<bool>()) text += "  limit-";

@@ -277,6 +277,17 @@ void Axis::demand_emergency_stop(EmergencyStop level) noexcept {
     core_->body.emergency = level;
 }
 
+bool Axis::connect(Presence presence, AlarmId reason) noexcept {
+    auto& body = core_->body;
+    if (presence == body.presence) return false;
+    core_->plain.disturb();
+    const bool leaves = connected(body.presence) && !connected(presence);
+    body.presence = presence;
+    const bool pulled = leaves && core_->supply.goes_with(reason);
+    core_->writer.publish();
+    return pulled;
+}
+
 void Axis::shut_down() noexcept {
     core_->plain.disturb();
     core_->conduct.shut_down();

@@ -75,6 +75,9 @@ public:
     /// An axis that is Disabled and stays so is left alone.
     void stop_for_error(AlarmId reason, bool then_power_off) noexcept;
     void demand_emergency_stop(EmergencyStop level) noexcept;
+    /// Whether its drive is there. While it is away or comes up the axis is not powered, and refuses with not_connected. True: it goes away, and
+    /// had power or was getting it; then it stops in ErrorStop because of `reason`.
+    bool connect(Presence presence, AlarmId reason) noexcept;
     /// Stops without an error, for ending the run: commands are aborted, power goes off when the axis stands. power() ends it.
     void shut_down() noexcept;
     /// Changes owner and speed cap; stops the axis first when it moves.

@@ -47,6 +47,7 @@ struct AxisBody {
     // what is wanted of it
     OperatingMode mode = OperatingMode::automatic;
     EmergencyStop emergency = EmergencyStop::none;
+    Presence presence = Presence::always;
     bool power_wish = false, permit_positive = true, permit_negative = true;
 
     /// From a word to its effect as the feedback shows it, where that is more than a bus' few cycles.

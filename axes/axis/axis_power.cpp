@@ -20,7 +20,8 @@ constexpr double followed_by_slaves = 1.9;
 bool AxisPower::wanted() const noexcept {
     using Phase = PowerSequence::Phase;
     if (!body_.driven) return false;
-    if (body_.state == AxisState::Disabled) return body_.power_wish && !conduct_.power_dropping() && body_.emergency == EmergencyStop::none;
+    if (body_.state == AxisState::Disabled)
+        return body_.power_wish && connected(body_.presence) && !conduct_.power_dropping() && body_.emergency == EmergencyStop::none;
     if (body_.state != AxisState::ErrorStop) return true;  // these states end in Disabled before power goes
     const bool drive_on = body_.power.phase() == Phase::on || body_.power.phase() == Phase::settling;
     // A slow line stops the motor later than the set-point.
@@ -36,6 +37,7 @@ bool AxisPower::run() noexcept {
                                          .mode_confirmed = measured_.feedback.mode == modes_.wanted() || runs_.drive.busy(),
                                          .drive_stops = conduct_.drive_stops() && body_.emergency != EmergencyStop::power_off_now,
                                          .stands = measured_.stands(),
+                                         .away = !connected(body_.presence),
                                          .at_once = body_.emergency == EmergencyStop::power_off_now || conduct_.off_at_once(),
                                          .drive = measured_.feedback.power,
                                          .now = body_.now});
@@ -98,6 +100,15 @@ void AxisPower::follow_actual(Duration period) noexcept {
     modes_.torque_idle = modes_.waits = false;
     motion_.goal = {};
     motion_.goal_pending = body_.begin_pending = motion_.held = false;
+}
+
+bool AxisPower::goes_with(AlarmId reason) noexcept {
+    const bool powered = body_.driven && (body_.state != AxisState::Disabled || body_.power_wish) &&
+                         (body_.state != AxisState::ErrorStop || body_.error == id(AxisAlarm::axis_feedback_lost));
+    if (powered) (void)conduct_.stop_for_error(reason, true);
+    body_.power_wish = false;
+    if (body_.state == AxisState::Disabled) body_.queue.finish_waiting(Outcome::aborted);
+    return powered;
 }
 
 void AxisPower::give_up() noexcept { conduct_.shut_down(); }

@@ -25,6 +25,10 @@ public:
     void follow_actual(Duration period) noexcept;
     ErrorId request(bool enable, bool positive, bool negative) noexcept {
         if (++body_.power_calls > 1) return ErrorId::power_conflict;
+        if (enable && !connected(body_.presence)) {
+            if (body_.power_wish) give_up();
+            return ErrorId::not_connected;
+        }
         if (enable && !body_.driven) return body_.config.encoder ? ErrorId::not_supported : ErrorId::drive_not_ready;
         body_.permit_positive = positive;
         body_.permit_negative = negative;
@@ -36,6 +40,8 @@ public:
         return enable && body_.emergency != EmergencyStop::none ? ErrorId::interlocked : ErrorId::none;
     }
 
+    /// The drive is taken away with all that was powered. True: it had power, was getting it, or has just stopped for its feedback.
+    bool goes_with(AlarmId reason) noexcept;
     /// A cycle begins: whoever holds MC_Power speaks once in it.
     void begin_cycle() noexcept { body_.power_calls = 0; }
 

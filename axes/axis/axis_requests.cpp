@@ -43,6 +43,7 @@ Submitted take_superimposed(AxisCore& axis, const AxisCommand& command, Owner ow
 
 Submitted answer(AxisCore& axis, const AxisCommand& command, Owner owner) noexcept {
     using enum kind_table::Slot;
+    if (!connected(axis.body.presence)) return {0, ErrorId::not_connected};
     const auto slot = slot_of(command.kind);
     if (slot == probe) return axis.probes.submit(command);  // moves nothing: any party may
     if (!axis.body.may(owner)) return {0, ErrorId::owned_by_other};

@@ -31,8 +31,10 @@ void AxisReset::run() noexcept {
     // A polled drive that was away still carries out what comes first, mostly being disabled: the fault it may have is not known before.
     const bool under_way = measured_.online() && !measured_.feedback.commands_acknowledged;
     if (under_way || conduct_.moves() || body_.power.quick_stops()) since_ = body_.now;  // a ramp is no cause, however long it is
-    const bool cause_present = !measured_.online() || under_way || measured_.faulted() || measured_.feedback.setup_refused ||
-                               body_.power.quick_stops() || body_.emergency != EmergencyStop::none;
+    // What a drive said that is away counts no more: its axis waits for it Disabled.
+    const bool of_the_drive = !measured_.online() || under_way || measured_.faulted() || measured_.feedback.setup_refused;
+    const bool cause_present =
+        (of_the_drive && connected(body_.presence)) || body_.power.quick_stops() || body_.emergency != EmergencyStop::none;
     const bool still_turns = body_.slow_line && body_.power.on() && !measured_.stands();  // it stops later than the set-point
     if (!conduct_.moves() && !cause_present && !still_turns) {
         if (body_.power.on() && body_.power_wish && !conduct_.off_after_error()) {
@@ -45,7 +47,8 @@ void AxisReset::run() noexcept {
         }
         // Power is on its way off (note 3 or 4 holds when it is there).
     }
-    const bool hopeless = measured_.faulted() && !body_.port.alarm().resettable;  // the drive says: power cycle
+    const bool hopeless =
+        connected(body_.presence) && measured_.faulted() && !body_.port.alarm().resettable;  // the drive says: power cycle
     if (hopeless || body_.now - since_ >= reset_patience) {
         resetting_ = false;
         conduct_.reset_error(ErrorId::reset_failed);

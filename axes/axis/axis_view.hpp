@@ -23,8 +23,9 @@ struct AxisView {
     bool powered = false;  ///< operation enabled and the dwell after it has passed: motion is accepted
     bool homed = false;
     bool simulated = false;
-    bool online = false;       ///< feedback is fresh enough
-    bool in_position = false;  ///< actual inside the in-position window of the set-point, standstill
+    bool online = false;                   ///< feedback is fresh enough
+    Presence presence = Presence::always;  ///< of the group that its drive is in
+    bool in_position = false;              ///< actual inside the in-position window of the set-point, standstill
     bool warning = false;
     BrakeState brake = BrakeState::not_controlled;
     std::uint16_t error = 0;              ///< alarm id while in ErrorStop (or ErrorId of the last error); 0 = none

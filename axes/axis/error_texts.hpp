@@ -273,6 +273,10 @@ inline constexpr std::array<ErrorText, error_id_count> error_texts{{
      {"The holding brake is closed", "MC_SetBrake closed it under power, or it has not been opened again",
       "Open it with MC_SetBrake (Release TRUE) and wait for Done, then give the command again"},
      {"抱闸处于闭合状态", "MC_SetBrake 在使能状态下闭合了抱闸，尚未重新释放", "用 MC_SetBrake（Release 为 TRUE）释放抱闸并等待 Done，然后重新发出命令"}},
+    {ErrorId::not_connected, "not_connected",
+     {"The drive of this axis is not connected", "It belongs to a group that joins and leaves (`hot_connect`), and that group is away or still coming up",
+      "Connect the group, wait for its input GROUP.present, then give the command again; before it is laid down take Enable of MC_Power away"},
+     {"该轴的驱动器未连接", "驱动器属于可热插拔的组（`hot_connect`），该组已断开或仍在启动", "连接该组，等待输入 GROUP.present 变为 TRUE 后再发命令；断开之前先撤销 MC_Power 的 Enable"}},
 }};
 // clang-format on
 

@@ -64,7 +64,7 @@ bool FeedbackIntake::tell_found() noexcept {
 }
 
 void FeedbackIntake::watch_drive() noexcept {
-    const bool asked = body_.power.phase() != PowerSequence::Phase::off;
+    const bool asked = body_.power.phase() != PowerSequence::Phase::off && connected(body_.presence);
     if (measured_.seeded && asked && !measured_.online())
         conduct_.fail(AxisAlarm::axis_feedback_lost, static_cast<double>(measured_.stale), static_cast<double>(measured_.stale_limit));
     if (!measured_.feedback.fresh || !measured_.online()) return;

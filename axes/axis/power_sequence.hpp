@@ -26,6 +26,7 @@ public:
         bool mode_confirmed = false;
         bool drive_stops = false;  ///< by itself, before its power goes
         bool stands = false;
+        bool away = false;     ///< taken off the machine: it has none of its power any more
         bool at_once = false;  ///< its power goes without waiting for the brake
         PowerState drive = PowerState::unknown;
         Instant now{};
@@ -70,7 +71,7 @@ public:
                 if (in.online && !enabled) return leave(Phase::off, Event::off);
                 return in.at_once || in.now - since_ >= engage_ ? leave(Phase::switching_off, Event::none) : Event::none;
             case Phase::switching_off:
-                if (enabled || !in.online) return Event::none;  // a silent drive may still be enabled: hold its set-point
+                if (!in.away && (enabled || !in.online)) return Event::none;  // a silent drive may still be enabled: hold its set-point
                 return leave(Phase::off, Event::off);
         }
         return Event::none;

@@ -34,6 +34,7 @@ void ViewWriter::states() noexcept {
     if (view_.state != body.state) resets();
     view_.state = body.state;
     view_.owner = body.owner;
+    view_.presence = body.presence;
     view_.powered = body.power.on() && body.state != AxisState::Disabled;
     view_.homed = body.homed;
     view_.homing_procedure = body.homing_procedure;

@@ -26,4 +26,14 @@ std::string_view name(Owner owner) noexcept {
     return "?";
 }
 
+std::string_view name(Presence presence) noexcept {
+    switch (presence) {
+        case Presence::always: return "always";
+        case Presence::absent: return "absent";
+        case Presence::joining: return "joining";
+        case Presence::present: return "present";
+    }
+    return "?";
+}
+
 }  // namespace taktwerk::axes

@@ -52,6 +52,11 @@ using CommandId = std::uint32_t;
 enum class Owner : std::uint8_t { none, program, operator_panel, commissioning };
 [[nodiscard]] std::string_view name(Owner owner) noexcept;
 
+/// Whether what moves the axis is there, where it may be taken away while the rest runs (a group of hot connect).
+enum class Presence : std::uint8_t { always, absent, joining, present };
+[[nodiscard]] std::string_view name(Presence presence) noexcept;
+[[nodiscard]] constexpr bool connected(Presence presence) noexcept { return presence == Presence::always || presence == Presence::present; }
+
 /// The holding brake, as far as anybody knows: by the time since it was told.
 enum class BrakeState : std::uint8_t { not_controlled, closed, opening, open, closing };
 
@@ -126,7 +131,9 @@ enum class ErrorId : std::uint16_t {
     // The holding brake.
     brake_not_controlled = 0x0037,  ///< the drive works its brake by itself, or the axis has none
     brake_closed = 0x0038,          ///< MC_SetBrake has closed it under power
+    // Groups that join and leave.
+    not_connected = 0x0039,  ///< the group of its drive is away; see AxisView::presence
 };
-inline constexpr std::size_t error_id_count = 0x0039;
+inline constexpr std::size_t error_id_count = 0x003A;
 
 }  // namespace taktwerk::axes

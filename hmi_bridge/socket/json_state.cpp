@@ -30,6 +30,8 @@ Json axis_json(const axes::AxisView& axis, const runtime::MachineLayout& layout,
         {"disabled", info.disabled},
         {"simulated", axis.simulated},
         {"online", axis.online},
+        {"group", info.group},  // of hot connect; empty: always there
+        {"presence", name(axis.presence)},
         {"powered", axis.powered},
         {"homed", axis.homed},
         {"in_position", axis.in_position},

@@ -42,6 +42,8 @@ constexpr OperatorWords operator_words[] = {
      "why."},
     {axes::ErrorId::state_forbids, "it is stopping or homing, or something holds it",
      "Wait until it stands; `taktwerk monitor` shows what {} does."},
+    {axes::ErrorId::not_connected, "the group that its drive is in (`hot_connect`) is away, or still coming up",
+     "Connect it: `taktwerk monitor` shows with {} which group, and its input GROUP.present."},
     {axes::ErrorId::queue_full, "too many commands wait for it", "Wait until {} stands, then give it again."},
 };
 

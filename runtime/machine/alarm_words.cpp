@@ -175,6 +175,13 @@ void AlarmWords::tell_more_of_machine(AlarmText& out, const AlarmFact& fact) con
         if (const auto at = out.english.find(somewhere); at != std::string::npos) out.english.replace(at, somewhere.size(), line);
         out.chinese += line;
     }
+    if (fact.id == id(MachineAlarm::group_pulled)) {
+        const auto group = groups_.group_of(fact.index);
+        const auto more = fact.b > 1 ? fmt::format(" ({} of its axes)", number_text(fact.b)) : std::string{};
+        out.english = fmt::format("Group '{}' was taken away while this axis had power{}", group, more);
+        out.chinese =
+            fmt::format("组 '{}' 在该轴通电时被断开{}", group, fact.b > 1 ? fmt::format("（共 {} 个轴）", number_text(fact.b)) : "");
+    }
     // Not the host, another process or its power saving: a task of the machine's own.
     if (fact.id == id(MachineAlarm::cycle_overrun) && fact.source == AlarmSource::task) {
         const auto& task = *find_alarm(machine_alarms, id(MachineAlarm::base_task_overrun));

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "runtime/machine/hot_connect.hpp"
 #include "runtime/machine/machine.hpp"
 #include "runtime/machine/machine_body.hpp"
 #include "runtime/machine/machine_drives.hpp"
@@ -15,9 +16,9 @@ namespace taktwerk::runtime {
 
 class AlarmWords {
 public:
-    AlarmWords(const MachineBody& body, const MachineDrives& drives, const ModbusDevices& modbus, const ProgramRunner& programs,
-               const Supervisor& supervisor, const MachineLayout& layout)
-        : body_(body), drives_(drives), modbus_(modbus), programs_(programs), supervisor_(supervisor), layout_(layout) {}
+    AlarmWords(const MachineBody& body, const MachineDrives& drives, const HotConnect& groups, const ModbusDevices& modbus,
+               const ProgramRunner& programs, const Supervisor& supervisor, const MachineLayout& layout)
+        : body_(body), drives_(drives), groups_(groups), modbus_(modbus), programs_(programs), supervisor_(supervisor), layout_(layout) {}
 
     [[nodiscard]] AlarmText describe(const AlarmFact& fact) const;
 
@@ -39,6 +40,7 @@ private:
 
     const MachineBody& body_;
     const MachineDrives& drives_;
+    const HotConnect& groups_;
     const ModbusDevices& modbus_;
     const ProgramRunner& programs_;
     const Supervisor& supervisor_;

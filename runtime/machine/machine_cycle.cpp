@@ -31,15 +31,16 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, const std
                     const std::vector<modbus::tcp::Exchange*>& exchanges, std::vector<Error>& errors)
     : body(std::move(machine), transport),
       drives(body, lines, errors),
+      groups(body, drives),
       modbus(body, exchanges, errors),
       positions(kept_positions(body, errors)),
       hands(body),
       programs(body, hands, errors),
       desk(body, hands, programs),
-      supervisor(body, drives, modbus, programs, desk, positions.get()),
+      supervisor(body, drives, groups, modbus, programs, desk, positions.get()),
       snapshots(body, programs),
       layout(layout_of(body, drives, programs.host())),
-      words(body, drives, modbus, programs, supervisor, layout),
+      words(body, drives, groups, modbus, programs, supervisor, layout),
       steps(measured_steps()) {
     // Now the programs have declared their tables.
     for (auto& axis : body.axes) axis.bind({body.axes.data(), body.axes.size(), &body.tables, body.io.inputs()});
@@ -110,6 +111,7 @@ void Machine::Impl::compute(const CycleTick& tick) noexcept {
     modbus.read();
     body.io.read(body.bus.inputs(), body.bus);
     drives.read_wires();
+    groups.step();
     done(Step::decode);
 
     for (auto& axis : body.axes) axis.update(now);

@@ -8,6 +8,7 @@
 #include "core/stopwatch.hpp"
 #include "runtime/machine/alarm_words.hpp"
 #include "runtime/machine/hand_motion.hpp"
+#include "runtime/machine/hot_connect.hpp"
 #include "runtime/machine/machine.hpp"
 #include "runtime/machine/machine_body.hpp"
 #include "runtime/machine/machine_drives.hpp"
@@ -39,6 +40,7 @@ struct Machine::Impl {
 
     MachineBody body;
     MachineDrives drives;
+    HotConnect groups;
     ModbusDevices modbus;
     std::unique_ptr<PositionKeeper> positions;  // nullptr: nothing is kept
     HandMotion hands;

@@ -15,6 +15,7 @@ MachineLayout::AxisInfo axis_info(const MachineBody& body, const MachineDrives& 
     info.jog_slow = body.views[axis].manual_slow;
     info.jog_fast = body.views[axis].manual_fast;
     info.drive_axis = binding.drive_axis;
+    if (drives.on_bus(axis)) info.group = body.bus.slave(drives.slave_of(axis)).hot_connect;
     if (drives.on_bus(axis)) info.drive = binding.slave;
     else if (on_line && drives.serial().has_lines()) info.drive = binding.drive;
     if (!info.drive.empty() && binding.profile) info.profile = binding.profile->name;

@@ -152,6 +152,8 @@ Verdict OperatorDesk::execute_all(const OperatorCommand& command) noexcept {
     Verdict first;
     for (std::size_t i = 0; i < body_.axes.size(); ++i) {
         if (body_.config.axes[i].axis.disabled) continue;
+        if (command.action == OperatorAction::power && command.flag && !connected(body_.views[i].presence))
+            continue;  // none of those that are here
         const auto each = execute_axis(command, i);
         if (first.answer == Answer::accepted) first = each;
     }
@@ -196,6 +198,7 @@ Verdict OperatorDesk::power(const OperatorCommand& command, std::size_t index) n
     if (view.owner != command.owner) return verdict_of(ErrorId::owned_by_other);
     if (command.flag && body_.emergency) return verdict_of(ErrorId::interlocked);
     if (command.flag && view.state == AxisState::ErrorStop) return verdict_of(ErrorId::in_error_stop);
+    if (command.flag && !connected(view.presence)) return verdict_of(ErrorId::not_connected);
     // Else the wish would wait, and the motor be switched on whenever the drive comes. A program's wish waits: it sees what it waits for.
     if (command.flag && !view.online) return verdict_of(ErrorId::drive_not_ready);
     power_held_[index] = command.flag;

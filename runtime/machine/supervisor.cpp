@@ -15,10 +15,11 @@ constexpr Duration reset_takes = std::chrono::seconds{1};
 
 }  // namespace
 
-Supervisor::Supervisor(MachineBody& body, MachineDrives& drives, ModbusDevices& modbus, ProgramRunner& programs, OperatorDesk& desk,
-                       const PositionKeeper* positions)
+Supervisor::Supervisor(MachineBody& body, MachineDrives& drives, HotConnect& groups, ModbusDevices& modbus, ProgramRunner& programs,
+                       OperatorDesk& desk, const PositionKeeper* positions)
     : body_(body),
       drives_(drives),
+      groups_(groups),
       modbus_(modbus),
       programs_(programs),
       desk_(desk),
@@ -39,6 +40,7 @@ void Supervisor::step(const CycleTick& tick) noexcept {
     programs_.raise_alarms();
     raise_bus_alarms();
     drives_.serial().watch();
+    groups_.watch();
     modbus_.watch();
     raise_rivals();
     raise_positions();
@@ -119,6 +121,7 @@ bool Supervisor::follows_from_another(const AlarmFact& fact) noexcept {
     const bool by_emergency = fact.id == axes::id(axes::AxisAlarm::emergency_stop);
     const bool stopped = by_emergency || fact.id == axes::id(axes::AxisAlarm::stopped_by_machine);
     if (!stopped && fact.id != axes::id(axes::AxisAlarm::axis_feedback_lost)) return false;
+    if (!stopped && groups_.speaks_for(fact.index)) return true;
     const auto cause = by_emergency ? id(MachineAlarm::emergency_stop) : static_cast<AlarmId>(fact.a);
     bool explained = stopped && body_.log.find(cause) != nullptr;
     for (const auto& alarm : body_.log.alarms()) {

@@ -7,6 +7,7 @@
 #include "runtime/machine/before_fault.hpp"
 #include "runtime/machine/drive_emergencies.hpp"
 #include "runtime/machine/emergency_inputs.hpp"
+#include "runtime/machine/hot_connect.hpp"
 #include "runtime/machine/late_cycles.hpp"
 #include "runtime/machine/machine_body.hpp"
 #include "runtime/machine/machine_drives.hpp"
@@ -21,8 +22,8 @@ namespace taktwerk::runtime {
 class Supervisor {
 public:
     /// `positions`: nullptr where none are kept.
-    Supervisor(MachineBody& body, MachineDrives& drives, ModbusDevices& modbus, ProgramRunner& programs, OperatorDesk& desk,
-               const PositionKeeper* positions);
+    Supervisor(MachineBody& body, MachineDrives& drives, HotConnect& groups, ModbusDevices& modbus, ProgramRunner& programs,
+               OperatorDesk& desk, const PositionKeeper* positions);
 
     void step(const CycleTick& tick) noexcept;
 
@@ -43,6 +44,7 @@ private:
 
     MachineBody& body_;
     MachineDrives& drives_;
+    HotConnect& groups_;
     ModbusDevices& modbus_;
     ProgramRunner& programs_;
     OperatorDesk& desk_;

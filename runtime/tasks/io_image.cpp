@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/group_presence.hpp"
+
 namespace taktwerk::runtime {
 
 namespace {
@@ -56,10 +58,10 @@ IoImage::Trouble trouble_of(PointStatus::Kind kind) noexcept {
 IoImage::IoImage(const std::vector<IoPoint>& points, Duration cycle) : cycle_s_(to_seconds(cycle)) {
     for (const auto& point : points) {
         if (point.direction == IoDirection::input) {
-            input_points_.push_back({point, {}, 0, {}, false, {}});
+            input_points_.push_back({point, {}, 0, {}, false, -1, false, {}});
             inputs_.push_back(0);
         } else {
-            output_points_.push_back({point, {}, 0, {}, false, {}});
+            output_points_.push_back({point, {}, 0, {}, false, -1, false, {}});
             outputs_.push_back(point.safe_value);
             output_lines_.push_back(point.line);
         }
@@ -82,11 +84,19 @@ Result<void> IoImage::resolve(const ecat::Master& bus, Point& point) const {
         point.config.line = line_of(point.config, point.signal);
         return {};
     }
+    if (point.config.presence) {
+        point.group = group_index(bus, point.config.presence->group);
+        point.signal.bits = 1;
+        point.config.line = line_of(point.config, point.signal);
+        return {};
+    }
     point.slave = 0;
     while (point.slave < bus.slave_count() && bus.slave(point.slave).name != point.config.slave) ++point.slave;
     if (point.slave == bus.slave_count())
         return Error{"io.unknown_slave", fmt::format("io point '{}'", point.config.name),
                      fmt::format("there is no slave '{}' on the bus", point.config.slave), "correct `slave:` of the point"};
+    point.group = group_index(bus, bus.slave(point.slave).hot_connect);
+    point.away = point.group >= 0;
     const auto signal = signal_of(bus, point, point.config.index, point.config.sub);
     if (!signal) return signal.error();
     point.signal = *signal;
@@ -114,6 +124,7 @@ Result<void> IoImage::resolve(const ecat::Master& bus) {
 }
 
 void IoImage::read(std::span<const std::byte> image, const ecat::Master& bus) noexcept {
+    read_presence(bus);
     for (std::size_t i = 0; i < input_points_.size(); ++i) {
         const auto& p = input_points_[i];
         if (p.config.beside) {
@@ -121,11 +132,28 @@ void IoImage::read(std::span<const std::byte> image, const ecat::Master& bus) no
             judge(i, image, p.beside.fresh, p.beside.fresh);
             continue;
         }
+        if (p.group >= 0 && watch_group(i, bus)) continue;
         inputs_[i] = logical(read_signal(image, p.signal), p.config, p.signal);
         if (p.slave >= bus.slave_count()) continue;
         const auto& slave = bus.health(p.slave);
         judge(i, image, slave.fresh, slave.age == 0);
     }
+}
+
+bool IoImage::watch_group(std::size_t input, const ecat::Master& bus) noexcept {
+    auto& p = input_points_[input];
+    const auto presence = presence_of(bus, p.group);
+    auto& shown = input_values_[input];
+    if (p.config.presence) {
+        inputs_[input] = presence == p.config.presence->shows ? 1 : 0;
+        shown = {static_cast<double>(inputs_[input]), true};
+        return true;
+    }
+    if (presence == axes::Presence::present) return false;
+    // The last value stands, and nobody may believe it. What joins begins anew.
+    p.seen = shown.good = false;
+    troubles_[input] = Trouble::none;
+    return true;
 }
 
 void IoImage::take_beside(std::size_t input, std::int64_t word, bool fresh) noexcept { input_points_[input].beside = {word, fresh}; }
@@ -153,11 +181,18 @@ void IoImage::judge(std::size_t input, std::span<const std::byte> image, bool fr
     shown.good = p.seen && young && troubles_[input] == Trouble::none && std::isfinite(value);
 }
 
+void IoImage::read_presence(const ecat::Master& bus) noexcept {
+    for (auto& p : output_points_)
+        if (p.group >= 0) p.away = presence_of(bus, p.group) != axes::Presence::present;
+}
+
 void IoImage::write(std::span<std::byte> image) noexcept {
     for (std::size_t i = 0; i < output_points_.size(); ++i) {
         const auto& p = output_points_[i];
         outputs_[i] = carried(outputs_[i], p.signal);
-        if (!p.config.beside) write_signal(image, p.signal, logical(outputs_[i], p.config, p.signal));
+        if (p.config.beside) continue;
+        const auto word = p.away ? carried(p.config.safe_value, p.signal) : outputs_[i];
+        write_signal(image, p.signal, logical(word, p.config, p.signal));
     }
 }
 

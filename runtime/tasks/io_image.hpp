@@ -23,7 +23,8 @@ public:
     /// Process image -> input values (step 3). Points of a slave that was not exchanged keep their values. Real-time safe.
     void read(std::span<const std::byte> image, const ecat::Master& bus) noexcept;
     /// Output values -> process image (step 8). Real-time safe.
-    /// An output keeps no more than its terminal has: what traces and programs read of it is what the wire carries.
+    /// An output keeps no more than its terminal has: what traces and programs read of it is what the wire carries. Those of a group that is not
+    /// present carry their safe values; what was written counts from the cycle on in which it is.
     void write(std::span<std::byte> image) noexcept;
     /// Of points beside the bus, for who carries them: what an input's device said last, and whether that is young enough; the word that an
     /// output shall have there. Real-time safe.
@@ -69,12 +70,17 @@ private:
         std::size_t slave = 0;
         std::vector<Status> status;
         bool seen = false;  ///< the filter has begun
+        int group = -1;     ///< of hot connect; -1: always there
+        bool away = false;  ///< that group is not present
         struct Beside {
             std::int64_t word = 0;
             bool fresh = false;
         } beside{};
     };
     [[nodiscard]] Result<void> resolve(const ecat::Master& bus, Point& point) const;
+    /// What the bus says of the point's group. True: there is nothing behind it to be read.
+    void read_presence(const ecat::Master& bus) noexcept;
+    bool watch_group(std::size_t input, const ecat::Master& bus) noexcept;
     [[nodiscard]] Result<Signal> signal_of(const ecat::Master& bus, const Point& point, std::uint16_t index, std::uint8_t sub) const;
     /// `fresh`: its device was heard in this cycle; `young`: not too long ago.
     void judge(std::size_t input, std::span<const std::byte> image, bool fresh, bool young) noexcept;

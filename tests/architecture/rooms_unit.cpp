@@ -10,7 +10,7 @@ namespace {
 
 /// Records: values that belong side by side, with at most the questions that they answer by themselves. And what is as large for a reason.
 const std::vector<Leave> large_classes{
-    {"axes/axis/axis_view.hpp", "AxisView", 65, "record: everything that one cycle shows of an axis, in one copy"},
+    {"axes/axis/axis_view.hpp", "AxisView", 66, "record: everything that one cycle shows of an axis, in one copy"},
     {"axes/port/drive_profile.hpp", "DriveProfile", 52, "record: what a drive type is; its rooms are structs in it"},
     {"axes/port/drive_feedback.hpp", "DriveFeedback", 32, "record: what a drive says in one cycle"},
     {"axes/port/drive_capabilities.hpp", "DriveCapabilities", 30, "record: what a drive can"},
@@ -20,12 +20,12 @@ const std::vector<Leave> large_classes{
     {"ecat/cycle/cycle_link.hpp", "CycleLink", 29, "record: plain numbers that cross between two threads, each an atomic of its own"},
     {"axes/axis/axis_core.hpp", "AxisCore", 29,
      "the parts of an axis and nothing else: each is a class, laid out by how often a cycle reads it"},
-    {"axes/axis/axis_body.hpp", "AxisBody", 28,
+    {"axes/axis/axis_body.hpp", "AxisBody", 29,
      "record: what every part of an axis reads in each cycle, side by side in a few cache lines"},
 };
 
 const std::vector<Leave> long_headers{
-    {"axes/axis/error_texts.hpp", "", 279, "one table"},
+    {"axes/axis/error_texts.hpp", "", 283, "one table"},
 };
 
 const std::vector<SourceFile>& all_floors() {
