@@ -150,12 +150,14 @@ enum class Supervision : std::uint8_t {
 
 /// Something that happens to the simulated machine at a given machine time: for demos, rehearsals and tests.
 struct SimulationEvent {
-    enum class Kind : std::uint8_t { input, input_fault, drive_fault, main_power, slave_power, jam, serial_line };
+    enum class Kind : std::uint8_t { input, input_fault, drive_fault, main_power, slave_power, jam, serial_line, group };
     Duration at{};  ///< since start of the run
     Kind kind = Kind::input;
-    std::string target;  ///< input point (input, input_fault), axis (drive_fault, main_power, jam), slave (slave_power), line (serial_line)
+    std::string
+        target;  ///< input point (input, input_fault), axis (drive_fault, main_power, jam), slave (slave_power), line (serial_line),
+                 ///< group (group)
     std::int64_t value =
-        0;  ///< input value, raw; 1 = the terminal reports an error of it; 603Fh code; 1 = power on / free / plugged, 0 = power off / jammed / cut
+        0;  ///< input value, raw; 1 = the terminal reports an error of it; 603Fh code; 1 = power on / free / plugged / connected, 0 = power off / jammed / cut
 };
 
 /// Where a simulated slave hangs, and how good its clock is. Without one a slave hangs behind port 1 of the slave before it.
@@ -167,9 +169,19 @@ struct SlaveSimulation {
     std::optional<double> drift_ppm = {};  ///< of its clock; instead of the axis' clock_drift
 };
 
+/// How a simulated group of hot connect is coupled. Without one: by hand, and connected at the start.
+struct GroupSimulation {
+    std::string group;
+    bool connected = true;      ///< at the start
+    std::string released_by;    ///< output point: lets go when it rises, takes it again when it falls; empty: by hand
+    std::string axis;           ///< that carries the coupling; empty: it couples wherever it is
+    double at = 0, within = 1;  ///< u of that axis: where the group lies, and how near counts
+};
+
 struct SimulationConfig {
     Supervision supervision = Supervision::strict;
     std::vector<SlaveSimulation> slaves;
+    std::vector<GroupSimulation> groups;
     std::vector<SimulationEvent> events;
 };
 

@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "apps/machine/group_summary.hpp"
 #include "apps/machine/load.hpp"
 #include "apps/machine/master_gone.hpp"
 #include "apps/taktwerk.hpp"
@@ -76,11 +77,33 @@ void print_slaves(const MachineConfig& config) {
         interfaces += config.bus.transport == ecat::BusTransport::xdp ? "; by AF_XDP" : "; by AF_XDP where the driver has it";
     fmt::print("\nBus: {}\n", interfaces);
     for (const auto& slave : config.bus.slaves) {
-        const auto where = slave.position ? fmt::format("position {}", *slave.position) : fmt::format("alias {}", slave.alias.value_or(0));
-        fmt::print("  {:<14} {:<22} {:<12} {}{}\n", slave.name, slave.device ? slave.device->name : "?", where,
+        fmt::print("  {:<14} {:<22} {:<12} {}{}\n", slave.name, slave.device ? slave.device->name : "?", place_of(slave),
                    slave.dc ? "distributed clock" : "free running",
                    slave.startup.empty() ? "" : ", " + count_text(slave.startup.size(), "start-up SDO"));
     }
+}
+
+void print_groups(const MachineConfig& config) {
+    for (const auto& group : group_summaries(config)) {
+        fmt::print("\nGroup {}: joins and leaves while the rest runs; known by {}; {} and {} tell whether it is there\n", group.name,
+                   group.known_by, group.name + ".present", group.name + ".joining");
+        fmt::print("  slaves {}{}{}\n", fmt::join(group.slaves, ", "), group.axes.empty() ? "" : "; axes ", fmt::join(group.axes, ", "));
+        fmt::print("  while it is away:\n");
+        for (const auto& sentence : group.when_absent) fmt::print("    {}\n", sentence);
+    }
+}
+
+Json groups_json(const MachineConfig& config) {
+    auto out = Json::array();
+    for (const auto& group : group_summaries(config))
+        out.push_back(Json{{"name", group.name},
+                           {"known_by", group.known_by},
+                           {"slaves", group.slaves},
+                           {"axes", group.axes},
+                           {"inputs", group.inputs},
+                           {"outputs", group.outputs},
+                           {"when_absent", group.when_absent}});
+    return out;
 }
 
 /// What has to fit between the start of a cycle and SYNC0.
@@ -298,7 +321,11 @@ Json summary_json(const MachineConfig& config, const runtime::MachineLayout& lay
     Json out{{"ok", true}, {"machine", config.name}, {"cycle_us", config.cycle.count() / 1000}, {"interface", config.bus.interface}};
     auto& slaves = out["slaves"] = Json::array();
     for (const auto& slave : config.bus.slaves)
-        slaves.push_back(Json{{"name", slave.name}, {"device", slave.device ? slave.device->name : ""}, {"dc", slave.dc}});
+        slaves.push_back(Json{{"name", slave.name},
+                              {"device", slave.device ? slave.device->name : ""},
+                              {"dc", slave.dc},
+                              {"hot_connect", slave.hot_connect}});
+    out["groups"] = groups_json(config);
     auto& axes = out["axes"] = Json::array();
     for (const auto& binding : config.axes) {
         const auto& axis = binding.axis;
@@ -361,6 +388,7 @@ int check(const CheckOptions& options) {
     if (!remarks.empty()) fmt::print("\nRuns, but is it meant?\n");
     for (const auto& remark : remarks) fmt::print("  {}: {}\n      {}\n", remark.subject, remark.what, remark.remedy);
     print_slaves(config);
+    print_groups(config);
     print_clocks(config);
     if (!config.axes.empty()) fmt::print("\nAxes\n");
     for (const auto& binding : config.axes) print_axis(config, binding);

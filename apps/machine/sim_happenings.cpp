@@ -11,6 +11,7 @@
 #include "config/reading/quantity.hpp"
 #include "config/reading/unit_text.hpp"
 #include "core/nearest_name.hpp"
+#include "runtime/group_presence.hpp"
 
 namespace taktwerk::apps {
 
@@ -21,7 +22,7 @@ using Kind = SimulationEvent::Kind;
 
 constexpr double longest_wait_s = 1e6;
 
-constexpr std::array<HappeningWord, 10> all_happenings{{
+constexpr std::array<HappeningWord, 12> all_happenings{{
     {"drive-fault", "AXIS CODE", "the drive raises this alarm (603Fh, or the number of an XP200)", Kind::drive_fault, 0},
     {"main-power-off", "AXIS", "the drive loses its main power", Kind::main_power, 0},
     {"main-power-on", "AXIS", "and gets it back", Kind::main_power, 1},
@@ -30,12 +31,15 @@ constexpr std::array<HappeningWord, 10> all_happenings{{
     {"input", "NAME VALUE", "an input takes this value: 0 or 1, one with a unit such as 7.5bar, else the raw number", Kind::input, 0},
     {"input-fault", "NAME", "the terminal reports an error of this input, such as a broken wire", Kind::input_fault, 1},
     {"input-whole", "NAME", "and takes it back", Kind::input_fault, 0},
+    {"connect", "GROUP", "a group of hot_connect is coupled, with its supply", Kind::group, 1},
+    {"disconnect", "GROUP", "and taken away", Kind::group, 0},
     {"line-cut", "LINE", "a serial line carries nothing any more", Kind::serial_line, 0},
     {"line-plugged", "LINE", "and carries again", Kind::serial_line, 1},
 }};
 
 std::vector<std::string> targets(const runtime::MachineConfig& machine, Kind kind) {
     std::vector<std::string> out;
+    if (kind == Kind::group) return runtime::group_names(machine.bus);
     if (kind == Kind::serial_line)
         for (const auto& line : machine.serial) out.push_back(line.name);
     else if (kind == Kind::input || kind == Kind::input_fault)

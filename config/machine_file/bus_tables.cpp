@@ -105,6 +105,11 @@ Table<SlaveEntry> slave_table() {
             with_default(of_bus("revision_rule", &C::revision_rule, maybe(revision_rule()),
                                 "any · at_least: the drive file's revision or a later one · exact"),
                          "as its drive file says"),
+            with_default(
+                of_bus("hot_connect", &C::hot_connect, config::name(),
+                       "name of the group that it joins and leaves with while the rest runs; the first slave of a group has `alias` or "
+                       "`device_id`, those behind it have no place of their own"),
+                "it is always there"),
             of_bus("on_loss", &C::on_loss, loss_policy(), "when it is gone: every axis stops, or those on this slave alone"),
             with_default(field("dc", &S::dc, maybe(boolean()), "run SYNC0 on it"), "where the drive supports it"),
             with_default(of_bus("sync0_shift", &C::sync0_shift, duration(), "SYNC0 after the start of the bus cycle"), "as the bus"),
@@ -149,6 +154,11 @@ Table<SlaveEntry> slave_table() {
             reader.problem(node.at, "config.conflict",
                            fmt::format("slave '{}' has more than one of `position`, `alias` and `device_id`", s.slave.name),
                            "keep the one that identifies it");
+        if (!s.slave.hot_connect.empty() && node.find("on_loss") != nullptr)
+            reader.problem(node.find("on_loss")->at, "config.conflict",
+                           fmt::format("slave '{}' is of group '{}', which may go: its own axes stop then, and the others run on",
+                                       s.slave.name, s.slave.hot_connect),
+                           "remove `on_loss`");
         s.broken = reader.already_bad(reader.path());
     };
     return table;

@@ -21,7 +21,9 @@
 #include "config/machine_file/undescribed_drive.hpp"
 #include "core/nearest_name.hpp"
 #include "runtime/check/program_check.hpp"
+#include "runtime/group_presence.hpp"
 #include "runtime/positions/keeps_positions.hpp"
+#include "runtime/presence_points.hpp"
 
 namespace taktwerk::config {
 
@@ -81,6 +83,7 @@ public:
         for (const auto& entry : file_.serial) add_line(out, entry);
         for (const auto& entry : file_.inputs) add_point(out, entry, runtime::IoDirection::input);
         for (const auto& entry : file_.outputs) add_point(out, entry, runtime::IoDirection::output);
+        for (auto& point : runtime::presence_points(out.machine.bus)) out.machine.io.push_back(std::move(point));
         for (const auto& entry : file_.programs) add_program(out, entry);
         for (auto& entry : file_.cams) {
             out.machine.cams.push_back(std::move(entry.cam));
@@ -97,7 +100,10 @@ public:
 private:
     void add_slave(LoadedMachine& out, const SlaveEntry& entry, std::size_t place) {
         ecat::SlaveConfig slave = entry.slave;
-        if (!slave.position && !slave.alias && !slave.device_id) slave.position = static_cast<std::uint16_t>(place);
+        if (slave.hot_connect.empty()) {
+            if (!slave.position && !slave.alias && !slave.device_id) slave.position = static_cast<std::uint16_t>(always_there_);
+            ++always_there_;
+        }
         const auto here = fmt::format("bus.slaves.{}", place);
         if (!entry.profile.empty()) add_drive(slave, entry, here, out.machine.axes);
         else if (entry.terminal) add_device(slave, digital_terminal(entry.terminal->inputs, entry.terminal->outputs));
@@ -429,6 +435,7 @@ private:
     /// runtime::check knows the targets too, but not which event it is.
     void check_events(const runtime::MachineConfig& machine) {
         using Kind = runtime::SimulationEvent::Kind;
+        const auto groups = runtime::group_names(machine.bus);
         std::vector<std::string> inputs, slaves, axes, lines;
         for (const auto& line : machine.serial) lines.push_back(line.name);
         for (const auto& point : machine.io)
@@ -441,6 +448,7 @@ private:
             const auto& known = event.kind == Kind::input || event.kind == Kind::input_fault ? inputs
                                 : event.kind == Kind::slave_power                            ? slaves
                                 : event.kind == Kind::serial_line                            ? lines
+                                : event.kind == Kind::group                                  ? groups
                                                                                              : axes;
             if (event.target.empty() || std::find(known.begin(), known.end(), event.target) != known.end()) continue;
             const auto near = nearest_name(event.target, known);
@@ -449,6 +457,7 @@ private:
                                 event.kind == Kind::input || event.kind == Kind::input_fault ? "input"
                                 : event.kind == Kind::slave_power                            ? "slave"
                                 : event.kind == Kind::serial_line                            ? "serial line"
+                                : event.kind == Kind::group                                  ? "group"
                                                                                              : "axis",
                                 event.target, names_or_none(known)),
                     near.empty() ? "correct the name" : fmt::format("did you mean `{}`?", near));
@@ -489,6 +498,7 @@ private:
     const std::string& path_;
     const LoadOptions& options_;
     MachineFile file_;
+    std::size_t always_there_ = 0;  // slaves so far that are in no group: places on the cable count without those that may be away
     DriveLibrary drives_;
     DeviceLibrary devices_;
     std::map<std::string, LoadedDevice, std::less<>> devices_of_;  // by slave

@@ -301,6 +301,8 @@ constexpr EventWord event_words[] = {
     {"main_power_on", EventKind::main_power, 1, "and gets it back"},
     {"slave_power_off", EventKind::slave_power, 0, "this slave falls silent"},
     {"slave_power_on", EventKind::slave_power, 1, "and comes back"},
+    {"connect", EventKind::group, 1, "this group of `hot_connect` is coupled, with its supply"},
+    {"disconnect", EventKind::group, 0, "and taken away"},
     {"line_cut", EventKind::serial_line, 0, "this serial line carries nothing any more"},
     {"line_plugged", EventKind::serial_line, 1, "and carries again"},
     {"jam", EventKind::jam, 0, "the mechanics of this axis do not move any more"},
@@ -328,7 +330,7 @@ Table<SimulationEvent> event_table() {
         if (events != 1)
             reader.problem(node.at, "config.event", events == 0 ? "the event says when, but not what" : "one event holds several",
                            "give exactly one of input, input_fault, input_whole, drive_fault, main_power_off, main_power_on, "
-                           "slave_power_off, slave_power_on, "
+                           "slave_power_off, slave_power_on, connect, disconnect, "
                            "line_cut, line_plugged, jam, free");
         const auto pair = [&](const char* key, const char* value) {
             if ((node.find(key) != nullptr) != (node.find(value) != nullptr))
@@ -358,6 +360,33 @@ Table<runtime::SlaveSimulation> slave_simulation_table() {
         {}};
 }
 
+Table<runtime::GroupSimulation> group_simulation_table() {
+    using G = runtime::GroupSimulation;
+    Table<G> table{
+        "simulation.groups",
+        "How a simulated group of `hot_connect` is coupled: by hand (`taktwerk simulate FILE \"connect GROUP\"`, events), or by an output.",
+        {
+            field("connected", &G::connected, boolean(), "at the start"),
+            with_default(field("released_by", &G::released_by, name(),
+                               "output of the machine that opens the coupling: it lets the group go when it rises; when it falls, the "
+                               "coupling takes what it stands at"),
+                         "by hand alone"),
+            with_default(field("axis", &G::axis, name(), "that carries the coupling: it takes only what it stands at"), "anywhere"),
+            field("at", &G::at, number(-1e9, 1e9), "in the axis' unit: where the group lies"),
+            field("within", &G::within, number(0, 1e9), "in the axis' unit: how near counts"),
+        },
+        {},
+        {}};
+    table.after = [](Reader& reader, const Node& node, G&) {
+        if (node.find("axis") != nullptr && node.find("released_by") == nullptr)
+            reader.problem(node.at, "config.missing_key", "`axis` says where the group is taken, and nothing takes it",
+                           "add `released_by:` with an output, or remove `axis`");
+        if ((node.find("axis") != nullptr) != (node.find("at") != nullptr))
+            reader.problem(node.at, "config.missing_key", "`axis` and `at` belong together", "write both: `axis: x, at: 100`");
+    };
+    return table;
+}
+
 Table<runtime::SimulationConfig> simulation_table() {
     using S = runtime::SimulationConfig;
     using runtime::Supervision;
@@ -370,6 +399,9 @@ Table<runtime::SimulationConfig> simulation_table() {
             field("slaves", &S::slaves,
                   by_name(section(slave_simulation_table()), [](runtime::SlaveSimulation& s) -> std::string& { return s.slave; }),
                   "slaves that do not simply follow the one before them"),
+            field("groups", &S::groups,
+                  by_name(section(group_simulation_table()), [](runtime::GroupSimulation& g) -> std::string& { return g.group; }),
+                  "how groups of `hot_connect` are coupled"),
             with_default(field("events", &S::events, list(section(event_table())), "what happens, and when"), ""),
         },
         {},

@@ -5,9 +5,11 @@
 #include <algorithm>
 
 #include "runtime/check/axis_check.hpp"
+#include "runtime/check/hot_connect_check.hpp"
 #include "runtime/check/modbus_check.hpp"
 #include "runtime/check/problems.hpp"
 #include "runtime/check/serial_check.hpp"
+#include "runtime/group_presence.hpp"
 
 namespace taktwerk::runtime {
 
@@ -34,6 +36,7 @@ public:
         check_serial(config_, errors_);
         check_axes(config_, errors_);
         check_modbus(config_, errors_);
+        check_hot_connect(config_, errors_);
         check_io();
         check_tasks();
         if (!config_.emergency_stop.input.empty()) check_emergency_stop();
@@ -77,7 +80,7 @@ private:
     void check_io() {
         for (const auto& point : config_.io) {
             const auto subject = fmt::format("io.{}.{}", point.direction == IoDirection::input ? "inputs" : "outputs", point.name);
-            if (point.beside && has(modbus_, point.slave)) continue;
+            if (point.presence || (point.beside && has(modbus_, point.slave))) continue;
             auto known = slaves_;
             known.insert(known.end(), modbus_.begin(), modbus_.end());
             if (!has(slaves_, point.slave)) problems_.unknown("io.unknown_slave", subject + ".slave", "slave", point.slave, known);
@@ -106,6 +109,7 @@ private:
     }
 
     void check_events() {
+        const auto groups = group_names(config_.bus);
         std::vector<std::string> lines;
         for (const auto& line : config_.serial) lines.push_back(line.name);
         auto powered = slaves_;
@@ -115,6 +119,7 @@ private:
             const auto& known = event.kind == Kind::input || event.kind == Kind::input_fault ? inputs_
                                 : event.kind == Kind::slave_power                            ? powered
                                 : event.kind == Kind::serial_line                            ? lines
+                                : event.kind == Kind::group                                  ? groups
                                                                                              : axes_;
             const auto point = std::ranges::find(config_.io, event.target, &IoPoint::name);
             if (event.kind == Kind::input_fault && point != config_.io.end() && point->status.empty())

@@ -186,6 +186,7 @@ World::World(const MachineConfig& config, Instant start)
             loads_.push_back({binding.axis.name, binding.load_input, counts / binding.axis.gearing.counts_per_unit(), counts, 0});
         }
     close_ring(config);
+    groups_.build(config);
     for (const auto& point : config.io)
         if (point.direction == IoDirection::input && point.simulated) set_input_value(point.name, *point.simulated);
 }
@@ -293,6 +294,7 @@ void World::happen(const SimulationEvent& event) {
             if (const auto* axis = place(event.target)) axis->device->main_power(event.value != 0);
             break;
         case Kind::serial_line: break;
+        case Kind::group: groups_.connect(event.target, event.value != 0); break;
         case Kind::jam:
             if (auto* axis = drive(event.target)) axis->jam(event.value == 0);
             if (auto* motor = analog_motor(event.target)) motor->jam(event.value == 0);
@@ -371,6 +373,7 @@ void World::apply_events(Instant now) {
             set_input_value(load.input, std::llround(motor->plant().position() * load.counts_per_count + load.slipped));
     run_analog_motors(now);
     turn_encoders(now);
+    groups_.step();
     while (next_event_ < events_.size() && start_ + events_[next_event_].at <= now) happen(events_[next_event_++]);
     if (also) also(now);
     serial_.wire([this](const std::string& point) { return output(point); });

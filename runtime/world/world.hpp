@@ -16,6 +16,7 @@
 #include "ecat/transport/loopback.hpp"
 #include "runtime/machine_config.hpp"
 #include "runtime/world/analog_motor.hpp"
+#include "runtime/world/group_world.hpp"
 #include "runtime/world/modbus_world.hpp"
 #include "runtime/world/serial_world.hpp"
 #include "runtime/world/turned_encoder.hpp"
@@ -137,6 +138,7 @@ private:
     };
     std::vector<BrakePlace> brakes_;
     std::vector<Point> points_;
+    GroupWorld groups_{*this};
     std::vector<SimulationEvent> events_;  // by time
     std::size_t next_event_ = 0;
 };
