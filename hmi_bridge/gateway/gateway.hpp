@@ -37,7 +37,7 @@ namespace taktwerk::hmi {
 
 using ClientId = std::uint32_t;  ///< 0 is nobody
 
-enum class Source : std::uint8_t { socket, lcm };
+enum class Source : std::uint8_t { socket, lcm, modbus };
 
 /// What a client may claim to be.
 enum class Rights : std::uint8_t { operating, commissioning };
@@ -74,7 +74,7 @@ struct CommandReply {
 
 class Gateway {
 public:
-    static constexpr std::size_t max_clients = 32;
+    static constexpr std::size_t max_clients = 48;  ///< of all sources together
     static constexpr std::size_t remembered = 16;  ///< commands per client
     static constexpr Duration answer_patience = std::chrono::seconds{2};
     static constexpr Duration longest_validity = std::chrono::seconds{10};

@@ -259,6 +259,18 @@ TEST_F(GatewayTest, ValuesOutsideTheirRangeAreRefusedWithTheRange) {
     EXPECT_TRUE(machine.submitted.empty());
 }
 
+TEST_F(GatewayTest, AnOutputWithAUnitHasValuesBetweenTheWholeOnes) {
+    machine.its_layout.outputs = {"lamp_run", "valve"};
+    machine.its_layout.output_units = {"", "%"};
+    auto valve = request(CommandKind::set_output, "valve");
+    valve.value = 45.5;
+    EXPECT_TRUE(outcome(valve).accepted());
+    EXPECT_EQ(machine.submitted.back().value, 45.5);
+    auto lamp = request(CommandKind::set_output, "lamp_run");
+    lamp.value = 0.5;
+    EXPECT_EQ(outcome(lamp).answer, Answer::bad_value);
+}
+
 TEST_F(GatewayTest, RefusalsOfTheMachineComeBackInWords) {
     const auto owned = outcome(request(CommandKind::home, "x"), Answer::no_control, axes::ErrorId::owned_by_other, axes::Owner::program);
     EXPECT_EQ(owned.error.code, "command.no_control");
