@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "hmi_bridge/lcm/lcm_bus.hpp"
+#include "hmi_bridge/modbus/offer.hpp"
 #include "hmi_bridge/socket/socket_path.hpp"
 
 namespace taktwerk::hmi {
@@ -28,7 +29,17 @@ Result<std::unique_ptr<HmiBridge>> HmiBridge::open(const HmiConfig& config, Mach
     options.log(fmt::format("commands are taken at {} from {}", *path, (*server)->who_may_connect()));
     if (config.lcm && config.lcm_commands == LcmCommands::local)
         options.log("commands are taken over LCM, too: from every process of every user of this computer");
-    return std::unique_ptr<HmiBridge>(new HmiBridge(config, machine, std::move(options), std::move(server).value(), std::move(problem)));
+    const auto log = options.log;
+    auto bridge =
+        std::unique_ptr<HmiBridge>(new HmiBridge(config, machine, std::move(options), std::move(server).value(), std::move(problem)));
+    if (config.modbus_server) {
+        auto desk = ModbusDesk::open(*config.modbus_server, names_of(machine.layout()), bridge->gateway_,
+                                     [log](std::string_view text) { log(fmt::format("Modbus TCP server: {}", text)); });
+        if (!desk) return desk.error();
+        bridge->modbus_ = std::move(desk).value();
+        log(offered_text(*config.modbus_server));
+    }
+    return bridge;
 }
 
 HmiBridge::HmiBridge(const HmiConfig& config, MachineLink& machine, HmiOptions options, std::unique_ptr<SocketServer> server,
@@ -58,10 +69,13 @@ void HmiBridge::step(Instant now) {
     gateway_.step(now);  // answers to what was asked before
     if (door_thread_ == DoorThread::service) door_.step(now);
     door_.pass_on(requests_, now);
+    if (modbus_ && door_thread_ == DoorThread::service) modbus_->server().step(now);
+    if (modbus_) modbus_->step(snapshot_, now);
     requests_.step(now);
     if (bus_) bus_->poll(lcm_messages_per_step);
     while (const auto reply = gateway_.next_reply()) {
         if (reply->source == Source::socket) requests_.deliver(*reply);
+        else if (reply->source == Source::modbus) modbus_->deliver(*reply);
         else if (bus_) receiver_.deliver(*reply, *bus_, channels_);
     }
     while (auto line = requests_.next_line()) door_.answer(line->connection, std::move(line->text), std::move(line->refused));

@@ -21,6 +21,7 @@
 #include "hmi_bridge/lcm/message_bus.hpp"
 #include "hmi_bridge/lcm/publisher.hpp"
 #include "hmi_bridge/machine_link.hpp"
+#include "hmi_bridge/modbus/modbus_desk.hpp"
 #include "hmi_bridge/socket/door.hpp"
 #include "hmi_bridge/socket/json_requests.hpp"
 #include "hmi_bridge/socket/socket_server.hpp"
@@ -46,12 +47,14 @@ class HmiBridge {
 public:
     static constexpr int lcm_messages_per_step = 64;
 
-    /// `machine` outlives the bridge. Errors: those of check(config), of the socket, and of LCM when it is required. Without
+    /// `machine` outlives the bridge. Errors: those of check(config), of the socket, of the Modbus server, and of LCM when it is required. Without
     /// that, a machine whose LCM does not work runs on: lcm_problem() says why.
     static Result<std::unique_ptr<HmiBridge>> open(const HmiConfig& config, MachineLink& machine, HmiOptions options);
 
     void step(Instant now);
     [[nodiscard]] Door& door() noexcept { return door_; }
+    /// Of the configuration; nullptr: none. Stepped by step(), or where the door has a thread of its own by another of the caller's.
+    [[nodiscard]] modbus::server::Server* modbus_server() noexcept { return modbus_ ? &modbus_->server() : nullptr; }
     /// How the start is getting on, for clients that ask before the first cycle (Machine::bus_progress()).
     void set_progress(std::string progress) { requests_.set_progress(std::move(progress)); }
 
@@ -75,6 +78,7 @@ private:
     std::optional<Publisher> publisher_;
     Door door_;
     DoorThread door_thread_;
+    std::unique_ptr<ModbusDesk> modbus_;
     const runtime::Snapshot* snapshot_ = nullptr;
     Instant now_{};
 };

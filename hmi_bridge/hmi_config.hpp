@@ -2,11 +2,13 @@
 // How the machine's state goes out and commands come in. Plain data; config/ fills it.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/result.hpp"
 #include "core/time.hpp"
+#include "hmi_bridge/modbus_server_config.hpp"
 
 namespace taktwerk::hmi {
 
@@ -24,6 +26,7 @@ struct HmiConfig {
     std::string
         socket_group;    ///< group of the socket: besides the runtime's own user (and root) its members command; empty: the process' group
     std::string socket;  ///< Unix socket of the command line; empty: /run/taktwerk/<machine>.sock or $XDG_RUNTIME_DIR
+    std::optional<ModbusServerConfig> modbus_server;  ///< nothing: no Modbus client is served
 };
 
 [[nodiscard]] std::vector<Error> check(const HmiConfig& config);

@@ -12,6 +12,7 @@
 #include "apps/machine/group_summary.hpp"
 #include "apps/machine/load.hpp"
 #include "apps/machine/master_gone.hpp"
+#include "apps/machine/modbus_offer.hpp"
 #include "apps/taktwerk.hpp"
 #include "apps/terminal/count_text.hpp"
 #include "apps/terminal/exit_code.hpp"
@@ -368,6 +369,7 @@ int check(const CheckOptions& options) {
     if (const auto* errors = std::get_if<std::vector<Error>>(&result)) return fail(options, *errors);
     auto& loaded = std::get<LoadedFile>(result);
     const MachineConfig config = loaded.machine;
+    const auto& served = loaded.hmi.modbus_server;
 
     // Building the machine loads the programs and compares what they declare; nothing is started, and what a running machine keeps stays its.
     loaded.machine.retain.clear();
@@ -375,10 +377,15 @@ int check(const CheckOptions& options) {
     auto built = runtime::Machine::build(std::move(loaded.machine), world.bus(), world.serial().lines(), world.modbus().exchanges());
     if (const auto* errors = std::get_if<std::vector<Error>>(&built)) return fail(options, *errors);
     const auto& layout = std::get<0>(built)->layout();
+    // What programs have is known only now.
+    if (const auto errors = served ? hmi::check(*served, hmi::names_of(layout)) : std::vector<Error>{}; !errors.empty())
+        return fail(options, errors);
     const auto remarks = runtime::remarks(config, layout, std::thread::hardware_concurrency());
 
     if (options.json) {
-        fmt::print("{}\n", summary_json(config, layout, loaded.warnings, remarks).dump(2));
+        auto summary = summary_json(config, layout, loaded.warnings, remarks);
+        if (served) summary["modbus_server"] = modbus_offer_json(*served, hmi::names_of(layout));
+        fmt::print("{}\n", summary.dump(2));
         return exit_ok;
     }
     for (const auto& warning : loaded.warnings) print_warning(warning);
@@ -398,6 +405,7 @@ int check(const CheckOptions& options) {
     else
         fmt::print("\nEmergency stop: input {}; power off when the axes stand, at the latest after {:g} ms. This is no safety function.\n",
                    config.emergency_stop.input, to_seconds(config.emergency_stop.power_off_after) * 1e3);
+    if (served) fmt::print("\n{}", modbus_offer_text(*served, hmi::names_of(layout)));
     print_hazards(config);
     print_assumptions(config);
     print_undescribed(config);

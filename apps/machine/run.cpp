@@ -17,6 +17,7 @@
 #include "apps/machine/file_thread.hpp"
 #include "apps/machine/load.hpp"
 #include "apps/machine/machine_log.hpp"
+#include "apps/machine/modbus_keeper.hpp"
 #include "apps/machine/run_files.hpp"
 #include "apps/machine/sim_hands.hpp"
 #include "apps/machine/stop_signal.hpp"
@@ -247,6 +248,7 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
     const SignalsEndMachine signals{machine};
     const int of_cycle = machine.config().realtime.priority;
     const DoorKeeper door{(*bridge)->door(), clock, of_cycle > 1 ? std::optional<int>{of_cycle - 1} : std::nullopt};
+    const ModbusKeeper modbus_clients{(*bridge)->modbus_server(), clock};
     std::vector<std::unique_ptr<FileThread>> writers;
     const auto write_beside = [&](const char* what, auto file) {
         if (file)

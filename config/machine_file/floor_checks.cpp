@@ -1,5 +1,6 @@
 #include "config/machine_file/floor_checks.hpp"
 
+#include "hmi_bridge/modbus/shown_value.hpp"
 #include "runtime/check/machine_check.hpp"
 
 namespace taktwerk::config {
@@ -7,6 +8,9 @@ namespace taktwerk::config {
 std::vector<Error> check_floors(const LoadedMachine& loaded) {
     auto errors = runtime::check(loaded.machine);  // asks the axes and the bus too
     auto more = hmi::check(loaded.hmi);
+    errors.insert(errors.end(), more.begin(), more.end());
+    if (!loaded.hmi.modbus_server) return errors;
+    more = hmi::check(*loaded.hmi.modbus_server, hmi::names_of(loaded.machine));
     errors.insert(errors.end(), more.begin(), more.end());
     return errors;
 }

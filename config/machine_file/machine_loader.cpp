@@ -20,6 +20,7 @@
 #include "config/machine_file/machine_tables.hpp"
 #include "config/machine_file/undescribed_drive.hpp"
 #include "core/nearest_name.hpp"
+#include "hmi_bridge/modbus/offer.hpp"
 #include "runtime/check/program_check.hpp"
 #include "runtime/group_presence.hpp"
 #include "runtime/positions/keeps_positions.hpp"
@@ -485,6 +486,15 @@ private:
             warn("hmi.lcm.commands", "hmi.anybody_commands",
                  "every process of every user of this computer may move this machine: LCM knows no users and no passwords",
                  "set `commands: disabled` and use the local socket, whose group may command (`hmi.socket_group`)");
+        if (const auto& served = out.hmi.modbus_server; served && reach_of(served->server.listen) != modbus::server::Reach::this_computer) {
+            const auto writable = hmi::writable_count(*served);
+            warn(
+                "modbus_server.listen", "served.open",
+                fmt::format("{} reads {} of this machine{}: Modbus knows no users and no passwords", hmi::reach_text(served->server.listen),
+                            served->points.size() == 1 ? "a value" : fmt::format("{} values", served->points.size()),
+                            writable > 0 ? fmt::format(" and may write {} of them", writable) : ""),
+                "keep that network for machines alone, or listen at 127.0.0.1");
+        }
         if (!out.machine.retain.empty() && !runtime::keeps_positions(out.machine))
             warn("retain", "config.nothing_to_retain", "no axis has an absolute encoder: nothing will be kept",
                  "add `position_memory: {absolute: true}` to the axes that have one, or remove `retain`");

@@ -7,6 +7,7 @@
 #include "config/drive_file/drive_tables.hpp"
 #include "config/machine_file/axis_tables.hpp"
 #include "config/machine_file/bus_tables.hpp"
+#include "config/machine_file/modbus_server_tables.hpp"
 #include "config/machine_file/modbus_tables.hpp"
 #include "config/reading/codecs.hpp"
 #include "config/reading/quantity.hpp"
@@ -533,6 +534,7 @@ Table<MachineFile> machine_table() {
                       by_name(section(serial_line_table()), [](SerialLineEntry& l) -> std::string& { return l.line.name; }),
                       "serial lines, beside the bus or alone"));
     f.push_back(modbus_field());
+    f.push_back(modbus_server_field());
     f.push_back(io_field());
     f.push_back(field_at<F>(
         "axes", [](F & m) -> auto& { return m.machine.axes; },
