@@ -20,10 +20,10 @@ std::optional<std::span<const RegisterMap::Place>> RegisterMap::find(Table table
     auto last = first;
     for (; last != places.end() && last->address < end; ++last) {
         const auto& one = registers_[last->index];
-        if (last->address > covered || end_of(one) > end) return std::nullopt;
+        if (last->address > covered) return std::nullopt;
         covered = std::max(covered, end_of(one));
     }
-    if (covered != end) return std::nullopt;
+    if (covered != end) return std::nullopt;  // too few, or the last one is cut
     return std::span<const Place>(first, last);
 }
 

@@ -5,9 +5,10 @@
 //   thread of the server    wait(), step()             in real time a thread of its own (apps/machine/run.cpp)
 //   service thread          image(), publish(), orders()
 //
-// Not by libmodbus: its server (3.1.6) waits in modbus_receive() for the rest of a frame, so one client's half frame holds up all others; it sleeps for
-// its response time-out before it refuses a quantity; it sends with a call that blocks; its map is one range a table, so it neither knows an
-// address between two others that nobody offers, nor one that may not be written, nor exception 4.
+// Not by libmodbus: its server (3.1.6) waits in modbus_receive() for the rest of a frame, sleeps for its response time-out before it refuses a quantity,
+// and sends with a call that blocks. Measured on loopback, a second client's answer comes after 0.5 s when another has sent half a frame or asked for 200
+// registers, after 4.4 s when it sends a byte each 400 ms, and never when it does not read its own answers. Its map is one range a table: it knows
+// neither an address between two others that nobody offers, nor one that may not be written, nor exception 4.
 
 #include <cstdint>
 #include <functional>

@@ -166,6 +166,17 @@ TEST_F(ModbusDeskTest, AFullInboxAndACycleWithoutAnAnswerAreFailures) {
     EXPECT_EQ(answer_within(300), framed({0x85, 4})) << "after the gateway's 2 s";
 }
 
+// The service side stood still meanwhile: what was meant for then is not done now.
+TEST_F(ModbusDeskTest, AWriteThatHasWaitedTooLongIsNotCarriedOut) {
+    open();
+    step();
+    client->send(framed({5, 0, 0, 0xFF, 0}));
+    for (int i = 0; i < 20; ++i) desk->server().step(now);
+    now += 1100ms;
+    EXPECT_EQ(answer_within(20), framed({0x85, 4}));
+    EXPECT_TRUE(machine.submitted.empty());
+}
+
 // Several at once are several commands: what comes first stands, the first refusal ends it.
 TEST_F(ModbusDeskTest, OfSeveralTheFirstRefusalIsTheAnswer) {
     config.points.clear();

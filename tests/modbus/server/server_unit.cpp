@@ -119,6 +119,22 @@ TEST(ModbusServer, AWriteIsAnsweredWhenTheMachineHasJudgedIt) {
     EXPECT_EQ(rig.ask(client, {}), framed(set_speed, 5)) << "the echo";
 }
 
+TEST(ModbusServer, AVerdictGoesToWhoseOrderItIs) {
+    ServedRig rig;
+    RawClient first{rig.server->port()}, second{rig.server->port()};
+    std::optional<WriteOrder> orders[2];
+    for (auto* client : {&first, &second}) {
+        client->send(framed(set_speed));
+        auto& order = orders[client == &first ? 0 : 1];
+        ASSERT_TRUE(rig.until([&] { return (order = rig.server->orders().next_order()).has_value(); }));
+    }
+    rig.server->orders().judge({orders[1]->id, Exception::illegal_value});
+    EXPECT_EQ(rig.ask(second, {}), refused(6, Exception::illegal_value));
+    EXPECT_THAT(first.take(), IsEmpty());
+    rig.server->orders().judge({orders[0]->id, Exception::none});
+    EXPECT_EQ(rig.ask(first, {}), framed(set_speed));
+}
+
 TEST(ModbusServer, SeveralCoilsAreOneOrder) {
     ServedRig rig;
     RawClient client{rig.server->port()};
@@ -207,10 +223,10 @@ TEST(ModbusServer, MoreThanItsPlacesAreSentAwayAndTheOthersStay) {
     EXPECT_EQ(rig.ask(next, framed(read_position)), position_answer()) << "its place is free";
 }
 
-// What it does not read stays in its own buffers: a few answers, then it is not asked any more.
+// What it does not read stays in its own buffers: some dozens of answers, then it is not asked any more.
 TEST(ModbusServer, AClientThatNeverReadsHoldsUpNobodyAndIsLetGo) {
     ServedRig rig;
-    RawClient greedy{rig.server->port(), 2048}, good{rig.server->port()};
+    RawClient greedy{rig.server->port(), 2048}, late{rig.server->port(), 2048}, good{rig.server->port()};
     RawBytes many;
     for (int i = 0; i < 64; ++i) {
         const auto one = framed({4, 0, 0, 0, 3});
@@ -218,16 +234,32 @@ TEST(ModbusServer, AClientThatNeverReadsHoldsUpNobodyAndIsLetGo) {
     }
     std::size_t taken = 0, quiet = 0;
     for (Patience patience{100'000}; patience.lasts(quiet < 200);) {
-        const auto more = greedy.send(many);
+        const auto more = greedy.send(many) + late.send(many);
         taken += more;
         quiet = more == 0 ? quiet + 1 : 0;
         rig.step();
     }
     EXPECT_EQ(rig.ask(good, framed(read_position)), position_answer());
-    EXPECT_LT(taken, 16u << 20) << "bounded by the two sockets";
-    rig.now += 10s + 1ns;
+    EXPECT_LT(taken, 32u << 20) << "bounded by the sockets";
+
+    // When the second reads at last, what lay there are whole answers, and it is served again.
+    const auto one = framed({4, 6, 0xC1, 0x48, 0, 0, 0, 7});
+    RawBytes heard;
+    rig.now += 6s;
+    rig.publish({-12.5, 7});
+    for (int i = 0; i < 500; ++i) {
+        const auto more = late.take();
+        heard.insert(heard.end(), more.begin(), more.end());
+        rig.step();
+    }
+    EXPECT_GT(heard.size(), 200 * one.size());
+    for (std::size_t i = 0; i < heard.size(); ++i) ASSERT_EQ(heard[i], one[i % one.size()]) << "byte " << i;
+
+    rig.now += 6s;
+    rig.publish({-12.5, 7});
     rig.step();
-    EXPECT_EQ(rig.server->client_count(), 0u) << "the good one asked nothing either";
+    EXPECT_EQ(rig.server->client_count(), 1u) << "the first is gone, and the good one, which was silent";
+    EXPECT_FALSE(late.ended());
 }
 
 TEST(ModbusServer, AFloodLeavesTheOthersTheirTurn) {
@@ -283,7 +315,7 @@ TEST(ModbusServer, TenThousandRandomFramesEachHaveOneAnswer) {
         RawBytes pdu(1 + drawn.byte() % 12u);
         for (auto& byte : pdu) byte = drawn.byte();
         if (drawn.byte() % 2 == 0) pdu[0] = static_cast<std::uint8_t>(1 + pdu[0] % 16);  // a function that is there, mostly
-        if (drawn.byte() % 2 == 0 && pdu.size() > 4) {  // few addresses, few of them
+        if (drawn.byte() % 2 == 0 && pdu.size() > 4) {                                   // few addresses, few of them
             pdu[1] = pdu[3] = 0;
             pdu[2] = static_cast<std::uint8_t>(pdu[2] % 4);
             pdu[4] = static_cast<std::uint8_t>(pdu[4] % 4);
@@ -363,7 +395,76 @@ TEST(ModbusServer, WaitingEndsWhenSomethingComesOrTheTimeHasPassed) {
         rig.server->wait(20s);
         rig.step();
     }
+    RawBytes many, answers;
+    for (int i = 0; i < 40; ++i) {
+        const auto one = framed(read_position);
+        many.insert(many.end(), one.begin(), one.end());
+    }
+    client.send(many);  // more than one step answers: nothing further comes, and all the same nobody waits
+    for (Patience patience; patience.lasts(answers.size() < 40 * position_answer().size());) {
+        rig.server->wait(20s);
+        rig.step();
+        const auto more = client.take();
+        answers.insert(answers.end(), more.begin(), more.end());
+    }
     EXPECT_LT(clock.now() - start, 10s);
+}
+
+// The machine's side, the server and two clients, each on a thread of its own: what is read together is of one cycle, whatever the others do. Its worth
+// is also under the thread sanitizer.
+TEST(ModbusServer, WhatIsReadTogetherIsOfOneCycle) {
+    ServedRig rig;
+    SystemClock clock;
+    std::atomic<bool> ended{false};
+    std::thread machine{[&] {
+        for (std::uint16_t cycle = 0; !ended.load(); ++cycle) {
+            rig.now = clock.now();
+            rig.publish({static_cast<double>(cycle), static_cast<double>(cycle), 0, 0, 0});
+            while (const auto order = rig.server->orders().next_order()) rig.server->orders().judge({order->id, Exception::none});
+            while (rig.server->orders().next_gone()) {}
+        }
+    }};
+    std::thread server{[&] {
+        SystemClock own;
+        while (!ended.load()) {
+            rig.server->wait(20ms);
+            rig.server->step(own.now());
+        }
+    }};
+    const auto ask = [](RawClient& client, const RawBytes& frame) {
+        client.send(frame);
+        RawBytes answer;
+        for (auto patience = Patience::of_threads(); patience.lasts(answer.size() < 7 || answer.size() < 6u + answer[5]);) {
+            const auto more = client.take();
+            answer.insert(answer.end(), more.begin(), more.end());
+            std::this_thread::yield();
+        }
+        return answer;
+    };
+    int different = 0;
+    std::thread writer{[&] {
+        RawClient client{rig.server->port()};
+        for (int i = 0; i < 300; ++i) EXPECT_EQ(ask(client, framed(set_speed)), framed(set_speed));
+    }};
+    {
+        RawClient client{rig.server->port()};
+        std::uint16_t last = 0;
+        for (int i = 0; i < 3000; ++i) {
+            const auto answer = ask(client, framed({4, 0, 0, 0, 3}));
+            ASSERT_EQ(answer.size(), 15u);
+            const auto word = [&](std::size_t at) { return static_cast<std::uint16_t>(answer[at] << 8 | answer[at + 1]); };
+            ServedRegister real;
+            real.type = NumberType::float32;
+            EXPECT_EQ(number_of(real, {word(9), word(11)}), word(13));
+            different += word(13) != last ? 1 : 0;
+            last = word(13);
+        }
+    }
+    writer.join();
+    ended.store(true);
+    machine.join();
+    server.join();
+    EXPECT_GT(different, 100) << "cycles went on meanwhile";
 }
 
 // 8 clients that flood, one that never reads, half frames: the thread ends as soon as it is told to.
