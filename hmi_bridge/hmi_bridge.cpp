@@ -69,8 +69,8 @@ void HmiBridge::step(Instant now) {
     gateway_.step(now);  // answers to what was asked before
     if (door_thread_ == DoorThread::service) door_.step(now);
     door_.pass_on(requests_, now);
-    if (modbus_ && door_thread_ == DoorThread::service) modbus_->server().step(now);
     if (modbus_) modbus_->step(snapshot_, now);
+    if (modbus_ && door_thread_ == DoorThread::service) modbus_->server().step(now);
     requests_.step(now);
     if (bus_) bus_->poll(lcm_messages_per_step);
     while (const auto reply = gateway_.next_reply()) {

@@ -41,6 +41,9 @@ constexpr std::array<std::pair<What, std::string_view>, 19> words{{
     {What::alarms, "alarms"},
 }};
 
+/// Of `max_age`: one that is under way, one that is late, and what the way to the client takes.
+constexpr int least_cycles = 3;
+
 /// The key of a point that names such a value.
 std::string_view key_of(Of of) noexcept {
     switch (of) {
@@ -141,6 +144,12 @@ private:
         if (server.unit == 0 || server.unit > 247)
             errors_.push_back({"served.unit", "modbus_server.unit", fmt::format("{} is no unit of a server", server.unit),
                                "use 1 to 247; 0 and 255 are answered besides"});
+        if (server.max_age < least_cycles * names_.cycle)
+            errors_.push_back(
+                {"served.max_age", "modbus_server.max_age",
+                 fmt::format("a cycle is {:g} ms: what it says would be too old before the next one has said anything",
+                             to_seconds(names_.cycle) * 1e3),
+                 fmt::format("use {:g} ms at least, {} cycles", to_seconds(least_cycles * names_.cycle) * 1e3, least_cycles)});
         if (config_.points.empty())
             errors_.push_back({"served.nothing", "modbus_server.points", "nothing is offered", "name a point, or remove `modbus_server`"});
     }
@@ -306,6 +315,7 @@ std::string text_of(const ShownValue& value) {
 
 ShownNames names_of(const runtime::MachineConfig& config) {
     ShownNames out;
+    out.cycle = config.cycle;
     for (const auto& binding : config.axes) out.axes.push_back({binding.axis.name, binding.axis.unit});
     for (const auto& point : config.io) {
         if (point.direction == runtime::IoDirection::input) out.inputs.push_back({point.name, point.unit});
@@ -322,6 +332,7 @@ ShownNames names_of(const runtime::MachineLayout& layout) {
     for (std::size_t i = 0; i < layout.outputs.size(); ++i) out.outputs.push_back({layout.outputs[i], unit(layout.output_units, i)});
     for (const auto& one : layout.variables) out.variables.push_back({one.program + "." + one.name, one.unit});
     for (const auto& one : layout.parameters) out.parameters.push_back({one.program + "." + one.name, one.unit});
+    out.cycle = layout.cycle;
     out.with_programs = true;
     return out;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/result.hpp"
+#include "core/time.hpp"
 #include "hmi_bridge/modbus_server_config.hpp"
 #include "runtime/machine_config.hpp"
 #include "runtime/snapshot.hpp"
@@ -22,7 +23,8 @@ struct ShownNames {
     };
     std::vector<Named> axes, inputs, outputs;
     std::vector<Named> variables, parameters;  ///< "program.name"
-    bool with_programs = false;                ///< false: what programs have is not known yet, and nothing is said of it
+    Duration cycle{};
+    bool with_programs = false;  ///< false: what programs have is not known yet, and nothing is said of it
 };
 /// As far as a configuration knows them: without what programs declare.
 [[nodiscard]] ShownNames names_of(const runtime::MachineConfig& config);

@@ -1,8 +1,13 @@
 // The machine's side of the Modbus TCP server: what each value shows, and how a write becomes a command and its answer an exception.
 #include "hmi_bridge/modbus/modbus_desk.hpp"
 
+#include <unistd.h>
+
+#include <filesystem>
+
 #include <gmock/gmock.h>
 
+#include "hmi_bridge/hmi_bridge.hpp"
 #include "tests/hmi_bridge/fake_machine.hpp"
 #include "tests/modbus/server/raw_client.hpp"
 
@@ -268,6 +273,47 @@ TEST_F(ModbusDeskTest, AMachineThatDoesNotHaveTheNameDoesNotServe) {
     const auto opened = ModbusDesk::open(config, names_of(machine.its_layout), gateway, {});
     ASSERT_FALSE(opened);
     EXPECT_EQ(opened.error().code, "served.unknown_name");
+}
+
+// Where nobody else steps the server the bridge does.
+TEST_F(ModbusDeskTest, TheBridgeServesWhatItsConfigurationOffers) {
+    HmiConfig hmi;
+    hmi.lcm = false;
+    hmi.socket = (std::filesystem::temp_directory_path() / ("taktwerk-modbus-test-" + std::to_string(::getpid()))).string();
+    {
+        const auto none = HmiBridge::open(hmi, machine, {});
+        ASSERT_TRUE(none) << none.error().text();
+        EXPECT_EQ((*none)->modbus_server(), nullptr);
+    }
+    hmi.modbus_server = config;
+    HmiOptions options;
+    options.log = [this](std::string_view line) { log.emplace_back(line); };
+    auto bridge = HmiBridge::open(hmi, machine, std::move(options));
+    ASSERT_TRUE(bridge) << bridge.error().text();
+    EXPECT_THAT(log, ::testing::Contains(HasSubstr("5 values are offered over Modbus TCP at 127.0.0.1:")));
+    RawClient one{(*bridge)->modbus_server()->port()};
+    const auto served = [&](const RawBytes& pdu) {
+        one.send(framed(pdu));
+        RawBytes answer;
+        for (int i = 0; i < 20 && answer.empty(); ++i) {
+            const auto before = machine.submitted.size();
+            machine.snapshot.cycle += 1, machine.snapshot.at = now;
+            (*bridge)->step(now);
+            if (machine.submitted.size() > before) machine.answer(Answer::accepted);
+            now += 1ms;
+            answer = one.take();
+        }
+        return answer;
+    };
+    EXPECT_EQ(served({3, 0, 0, 0, 1}), framed({3, 2, 0x01, 0xC7}));
+    EXPECT_EQ(served({5, 0, 0, 0xFF, 0}), framed({5, 0, 0, 0xFF, 0}));
+    EXPECT_EQ(machine.submitted.size(), 1u);
+
+    hmi.socket += "-second";
+    hmi.modbus_server->server.listen.port = (*bridge)->modbus_server()->port();
+    const auto second = HmiBridge::open(hmi, machine, {});
+    ASSERT_FALSE(second);
+    EXPECT_EQ(second.error().code, "served.listen");
 }
 
 // --- each value -------------------------------------------------------------------------------------------------------------------------

@@ -384,6 +384,37 @@ TEST(ModbusServerMachine, HostileClientsHoldUpNeitherTheOthersNorTheEnd) {
     });
 }
 
+// While axes ramp down and the bus goes, what is answered is live or exception 4; then the connection ends.
+TEST(ModbusServerMachine, AtTheEndAClientHearsLiveValuesOrNone) {
+    apart([] {
+        ServingMachine machine{with_a_program_that_hangs()};
+        Visualisation view;
+        EXPECT_TRUE(Visualisation::until([&] { return view.heartbeat() > 100; }));
+        machine.run->signal(SIGTERM);
+        std::uint32_t last = 0;
+        int live = 0;
+        auto moved = std::chrono::steady_clock::now();
+        const bool ended = Visualisation::until(
+            [&] {
+                const auto beat = view.heartbeat();
+                if (view.exception == 99) return true;
+                EXPECT_TRUE(view.exception == 0 || view.exception == 4) << view.exception;
+                if (view.exception != 0) return false;
+                ++live;
+                EXPECT_GE(beat, last);
+                const auto now = std::chrono::steady_clock::now();
+                if (beat != last) moved = now;
+                EXPECT_LT(now - moved, 400ms) << "200 ms, and as late as this computer is";
+                last = beat;
+                return false;
+            },
+            30s);
+        EXPECT_TRUE(ended);
+        EXPECT_GT(live, 0);
+        EXPECT_EQ(machine.run->wait(20s), exit_ok) << machine.run->text();
+    });
+}
+
 TEST(ModbusServerMachine, APortThatIsTakenIsSaidBeforeAnythingMoves) {
     apart([] {
         ServingMachine machine{example()};

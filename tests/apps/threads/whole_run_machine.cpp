@@ -1,6 +1,11 @@
 // The built command with every thread that it has, and something to do for each: cycle, slower task, service, door, programs, disk (positions),
-// files (trace, capture), output, watch. Its worth is under the thread sanitizer (preset tsan), which ends a run in which two of them meet
+// files (trace, capture), output, watch, Modbus server. Its worth is under the thread sanitizer (preset tsan), which ends a run in which two of them meet
 // without order with a code of its own. All waits are bounded, and wide.
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <filesystem>
@@ -13,6 +18,7 @@
 #include "apps/terminal/exit_code.hpp"
 #include "hmi_bridge/socket/client.hpp"
 #include "tests/apps/child.hpp"
+#include "tests/modbus/server/raw_client.hpp"
 
 namespace taktwerk::apps {
 namespace {
@@ -38,8 +44,21 @@ public:
     fs::path path;
 };
 
+/// One that nobody listens at: it was free just now.
+std::uint16_t free_port() {
+    const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t length = sizeof address;
+    EXPECT_EQ(::bind(socket, reinterpret_cast<const sockaddr*>(&address), length), 0);
+    EXPECT_EQ(::getsockname(socket, reinterpret_cast<sockaddr*>(&address), &length), 0);
+    ::close(socket);
+    return ntohs(address.sin_port);
+}
+
 /// Program `p` moves x in its slower task, the operator has y.
-std::string machine(const Folder& folder) {
+std::string machine(const Folder& folder, std::uint16_t modbus_port) {
     auto file = folder.at("machines/threads.yaml");
     std::ofstream(file) << R"(version: 1
 name: threads
@@ -62,6 +81,13 @@ realtime: { lock_memory: false }
 simulation: { supervision: relaxed }
 hmi: { socket: ')" << folder.at("socket")
                         << R"(', lcm: { enabled: false } }
+modbus_server:
+  listen: 127.0.0.1:)" << modbus_port
+                        << R"(
+  points:
+    heartbeat: { table: input, address: 0, type: uint32, machine: heartbeat }
+    x: { table: input, address: 2, type: float32, axis: x, shows: position }
+    how: { table: holding, address: 0, parameter: p.how, writable: true }
 programs:
   p:
     library: )" << TAKTWERK_BINARY_DIR
@@ -76,7 +102,8 @@ programs:
 
 TEST(WholeRun, EveryThreadHasSomethingToDoAndTheRunEndsInOrder) {
     const Folder folder;
-    Child run({std::string(TAKTWERK_BINARY_DIR) + "/taktwerk", "run", machine(folder), "--trace", folder.at("trace.csv"), "--pcap",
+    const auto port = free_port();
+    Child run({std::string(TAKTWERK_BINARY_DIR) + "/taktwerk", "run", machine(folder, port), "--trace", folder.at("trace.csv"), "--pcap",
                folder.at("frames.pcap"), "--retain", folder.at("kept")});
     ASSERT_TRUE(run.says("commands are taken", 60s)) << run.text();
     auto first = hmi::Client::connect(folder.at("socket")), second = hmi::Client::connect(folder.at("socket"));
@@ -90,6 +117,9 @@ TEST(WholeRun, EveryThreadHasSomethingToDoAndTheRunEndsInOrder) {
     }
     ASSERT_TRUE(running) << run.text();
     // What is refused is as good: what counts is that each thread is asked while the others work.
+    using modbus::server::testing::framed;
+    modbus::server::testing::RawClient reader{port}, writer{port};
+    std::size_t read = 0, written = 0;
     int answered = 0;
     const auto ask = [&](hmi::Client& client, nlohmann::json request) {
         const auto answer = client.request(std::move(request), 10s);
@@ -97,6 +127,8 @@ TEST(WholeRun, EveryThreadHasSomethingToDoAndTheRunEndsInOrder) {
     };
     constexpr int rounds = 12, asked_a_round = 14;
     for (int round = 0; round < rounds; ++round) {
+        reader.send(framed({4, 0, 0, 0, 4}));
+        writer.send(framed({6, 0, 0, 0, 0}));
         ask(*first, {{"cmd", "enable"}, {"axis", "y"}});
         ask(*first, {{"cmd", "home"}, {"axis", "y"}});
         ask(*second, {{"cmd", "state"}});
@@ -112,7 +144,11 @@ TEST(WholeRun, EveryThreadHasSomethingToDoAndTheRunEndsInOrder) {
         ask(*first, {{"cmd", "nonsense"}});
         ask(*second, {{"cmd", "reset"}});
         run.says("(not said)", 150ms);
+        read += reader.take().size();
+        written += writer.take().size();
     }
+    EXPECT_GT(read, 0u);
+    EXPECT_GT(written, 0u);
     EXPECT_EQ(answered, rounds * asked_a_round);
     run.signal(SIGTERM);
 
