@@ -133,6 +133,8 @@ int run_virtual(LoadedFile loaded, const RunOptions& options) {
     SystemClock wall;
     const auto wall_start = wall.now();
     MachineLog log{*machine, clock.now(), options.json};
+    if (loaded.hmi.modbus_server && !options.quiet)
+        log.say(clock.now(), "gateway", "no Modbus TCP client is served: in virtual time a second is not theirs");
     VirtualRunner runner{*machine, world, clock};
     int code = exit_ok;
     runner.after_cycle = [&](Instant now) {

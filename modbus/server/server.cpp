@@ -99,7 +99,6 @@ Server::Server(const ServerConfig& config, std::vector<ServedRegister> registers
 Server::~Server() { ::close(listener_); }
 
 void Server::wait(Duration most) {
-    if (more_) return;
     std::vector<pollfd> ready;
     ready.reserve(connections_.size() + 1);
     if (accepting_) ready.push_back({listener_, POLLIN, 0});
@@ -112,7 +111,6 @@ void Server::wait(Duration most) {
 
 void Server::step(Instant now) {
     image_ = images_.read().value;
-    more_ = false;
     accept(now);
     take_verdicts();
     const auto count = connections_.size();
@@ -184,8 +182,7 @@ bool Server::serve(Connection& connection, Instant now) {
         answer(connection, frame, now);
         connection.drop(frame);
     }
-    more_ = true;
-    return true;
+    return true;  // its last answer is still to be sent, so wait() does not
 }
 
 void Server::answer(Connection& connection, const Frame& frame, Instant now) {

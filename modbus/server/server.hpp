@@ -79,7 +79,6 @@ private:
     std::uint64_t last_connection_ = 0, last_order_ = 0;
     Instant accept_again_{};
     bool accepting_ = true;
-    bool more_ = false;  // requests that have been read already
     Instant said_{};
     std::uint64_t unsaid_ = 0;
     std::size_t first_ = 0;  // whose turn it is to be first

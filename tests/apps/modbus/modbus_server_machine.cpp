@@ -432,6 +432,13 @@ TEST(ModbusServerMachine, APortThatIsTakenIsSaidBeforeAnythingMoves) {
     });
 }
 
+TEST(ModbusServerMachine, InVirtualTimeNobodyIsServedAndThatIsSaid) {
+    Child run({std::string(TAKTWERK_BINARY_DIR) + "/taktwerk", "run",
+               std::string(TAKTWERK_SOURCE_DIR) + "/config/machines/served-press.yaml", "--virtual-time", "--duration", "2s"});
+    EXPECT_EQ(run.wait(60s), exit_ok) << run.text();
+    EXPECT_THAT(run.text(), HasSubstr("no Modbus TCP client is served"));
+}
+
 TEST(ModbusServerMachine, CheckSaysWhatIsOfferedToWhom) {
     const std::string file = std::string(TAKTWERK_SOURCE_DIR) + "/config/machines/served-press.yaml";
     Child text({std::string(TAKTWERK_BINARY_DIR) + "/taktwerk", "check", file});
