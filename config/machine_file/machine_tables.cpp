@@ -18,7 +18,6 @@ namespace taktwerk::config {
 namespace {
 
 using namespace std::chrono_literals;
-using runtime::MachineConfig;
 using runtime::SimulationEvent;
 
 // --- inputs and outputs ---------------------------------------------------------------------------------------------------

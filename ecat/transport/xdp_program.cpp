@@ -33,9 +33,15 @@ constexpr bpf_insn step(unsigned code, unsigned destination, unsigned source, in
     made.imm = value;
     return made;
 }
+// Op codes whose bits are spelled here: BPF_ADD, BPF_K, BPF_LD and BPF_IMM are 0, each in a field of its own, and put together by name they read as if one of
+// them were written twice. Class in bits 0 to 2, source in bit 3, operation in bits 4 to 7; of loads size and mode in bits 3 to 7.
+constexpr unsigned add_constant = 0x07;   // BPF_ALU64, BPF_ADD, BPF_K
+constexpr unsigned load_constant = 0x18;  // BPF_LD, BPF_IMM, BPF_DW: of 64 bits, in two steps
+static_assert(add_constant == BPF_ALU64 && load_constant == BPF_DW);
+
 constexpr bpf_insn copy(unsigned to, unsigned from) noexcept { return step(BPF_ALU64 | BPF_MOV | BPF_X, to, from, 0, 0); }
 constexpr bpf_insn set(unsigned to, int value) noexcept { return step(BPF_ALU64 | BPF_MOV | BPF_K, to, 0, 0, value); }
-constexpr bpf_insn add(unsigned to, int value) noexcept { return step(BPF_ALU64 | BPF_ADD | BPF_K, to, 0, 0, value); }
+constexpr bpf_insn add(unsigned to, int value) noexcept { return step(add_constant, to, 0, 0, value); }
 constexpr bpf_insn load(unsigned size, unsigned to, unsigned at, std::size_t offset) noexcept {
     return step(BPF_LDX | BPF_MEM | size, to, at, static_cast<int>(offset), 0);
 }
@@ -74,7 +80,7 @@ auto program_for(int sockets) noexcept {
         skip_if_above(4, 3, 1),
         step(BPF_STX | BPF_MEM | BPF_DW, 2, 7, 0, 0),
         // A queue without a socket: on to the stack (r3), where a packet socket hears it.
-        step(BPF_LD | BPF_IMM | BPF_DW, 1, BPF_PSEUDO_MAP_FD, 0, sockets),
+        step(load_constant, 1, BPF_PSEUDO_MAP_FD, 0, sockets),
         step(0, 0, 0, 0, 0),
         load(BPF_W, 2, 6, offsetof(xdp_md, rx_queue_index)),
         set(3, XDP_PASS),
