@@ -13,7 +13,15 @@ struct PointLine {
     enum class Number : std::uint8_t { whole, real32, real64 };
     double factor = 1, offset = 0;  ///< factor is not 0
     Number number = Number::whole;
-    double least = -0x1p63, most = 0x1p63 - 1024;  ///< of a whole number: what the bits of the object hold
+    double least = -0x1p63, most = 0x1p63 - 1024;  ///< of a whole number: what the object holds, or the terminal does with it
+
+    /// Narrower where an object of so many bits holds less. 0, or 64 and more bits: as it was.
+    void fit(unsigned bits, bool is_signed) noexcept {
+        if (bits == 0 || bits >= 64 || number != Number::whole) return;
+        const double span = std::ldexp(1.0, static_cast<int>(bits));
+        least = std::max(least, is_signed ? -span / 2 : 0);
+        most = std::min(most, (is_signed ? span / 2 : span) - 1);
+    }
 
     [[nodiscard]] constexpr bool is_plain() const noexcept { return factor == 1 && offset == 0 && number == Number::whole; }
 
@@ -31,10 +39,13 @@ struct PointLine {
         return static_cast<std::int64_t>(std::clamp(std::round(wanted), least, most));
     }
 
+    /// The number of a value, as a whole one; whatever the object holds.
+    [[nodiscard]] double number_at(double value) const noexcept { return std::round((value - offset) / factor); }
+
     /// Whether a value lies within what the object can hold, so that raw_of() cuts nothing off. False for NaN.
     [[nodiscard]] bool holds(double value) const noexcept {
         if (number != Number::whole) return std::isfinite(value);
-        const double wanted = std::round((value - offset) / factor);
+        const double wanted = number_at(value);
         return wanted >= least && wanted <= most;
     }
 

@@ -46,7 +46,7 @@ struct IoPoint {
     std::optional<PresenceInput> presence{};  ///< then there is no slave
     bool inverted = false;                    ///< 1-bit points: TRUE when the terminal says 0
     std::string unit{};                       ///< of its value; empty: the number itself
-    PointLine line{};                         ///< from the number of the object to that unit; what its bits hold is found out on the bus
+    PointLine line{};                         ///< from the number of the object to that unit; the bits that the bus shows narrow its range
     std::optional<PointLimits> limits{};      ///< inputs
     Duration filter{};                        ///< inputs: time constant of a first-order filter on the value; 0 = none
     std::vector<PointStatus> status{};        ///< inputs

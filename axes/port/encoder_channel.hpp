@@ -22,7 +22,8 @@ struct EncoderChannel {
     ParameterAddress valid{};                ///< 0 while the position does not hold; index 0: there is none
     ParameterAddress latch{};                ///< the position at the event
     EncoderLatch index{}, rising{}, falling{};
-    std::uint8_t bits = 0;  ///< in which it counts before it begins anew, where these are fewer than its object has; 0: all
+    bool incremental = false;  ///< it begins to count at 0 when its terminal gets its supply
+    std::uint8_t bits = 0;     ///< in which it counts before it begins anew, where these are fewer than its object has; 0: all
 };
 
 }  // namespace taktwerk::axes

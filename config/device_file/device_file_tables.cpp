@@ -42,6 +42,9 @@ Table<ChannelRow> channel_table() {
                          "BOOL or unsigned, by its bits"),
             field("counts", &C::counts, maybe(measure_pair()), "two numbers of the object, such as [0, 32767]"),
             field("value", &C::value, maybe(measure_pair()), "what these are, such as [0 V, 10 V]"),
+            with_default(field("range", &C::range, maybe(measure_pair()),
+                               "of an output: between which values the device gives it, such as [0 V, 10 V] where it has no negative ones"),
+                         "what the bits of its object hold"),
             field("error", &C::error, maybe(object_address()), "not 0 while the device cannot measure it: wire break, short circuit"),
             field("underrange", &C::underrange, maybe(object_address()), "not 0 while the signal is below what it measures"),
             field("overrange", &C::overrange, maybe(object_address()), "not 0 while the signal is above what it measures"),
@@ -62,6 +65,11 @@ Table<ChannelRow> channel_table() {
                            "write for instance `counts: [0, 32767]`");
         if (c.value && c.value->unit.empty())
             reader.problem(node.at, "config.unit_missing", "`value` has no unit", "write it with one, such as `value: [0 V, 10 V]`");
+        if (c.range && (!c.output || !c.value || c.range->unit != c.value->unit))
+            reader.problem(node.at, "config.channel", "`range` is of an output with a `value`, and in its unit",
+                           "write for instance `value: [0 V, 10 V], range: [0 V, 10 V]`");
+        if (c.range && !(c.range->first < c.range->second))
+            reader.problem(node.at, "config.channel", "the lower end of `range` is not below the upper one", "write `range: [low, high]`");
         if (c.output && (c.error || c.underrange || c.overrange))
             reader.problem(node.at, "config.channel", "an output has no `error`, `underrange` or `overrange`",
                            "make them channels of their own");
@@ -88,6 +96,7 @@ Table<EncoderRow> encoder_table() {
         "A position that may be an axis (`encoder: true`), by names of channels. While the `error` of its channel shows, it does not hold.",
         {
             required(field("position", &E::position, name(), "input that counts")),
+            field("incremental", &E::incremental, boolean(), "true: it begins to count at 0 when the device gets its supply"),
             with_default(field("valid", &E::valid, name(), "input that is 0 while the position does not hold"), "none"),
             with_default(field("latch", &E::latch, name(), "input with the position at the event: touch probe 1 of the axis"), "none"),
             field("index", &E::index, maybe(section(encoder_latch_table("index", "Latches at the encoder's index."))),

@@ -21,7 +21,7 @@ struct ChannelRow {
     std::string name;
     std::optional<ObjectAddress> input, output, error, underrange, overrange;
     std::optional<ecat::DataType> type;
-    std::optional<MeasurePair> counts, value;
+    std::optional<MeasurePair> counts, value, range;
     std::string doc;
 };
 
@@ -32,6 +32,7 @@ struct EncoderLatchRow {
 struct EncoderRow {
     std::string position, valid, latch;
     std::optional<EncoderLatchRow> index, rising, falling;
+    bool incremental = false;
 };
 
 struct DeviceFile {

@@ -179,10 +179,15 @@ private:
         const auto type = object != nullptr ? object->type : row.type.value_or(DataType::U32);
         if (type == DataType::REAL32) channel.line.number = PointLine::Number::real32;
         if (type == DataType::REAL64) channel.line.number = PointLine::Number::real64;
+        if (object != nullptr) channel.line.fit(ecat::bit_size(type), ecat::is_signed(type));
         if (row.counts && row.value) {
             channel.line.factor = (row.value->second - row.value->first) / (row.counts->second - row.counts->first);
             channel.line.offset = row.value->first - row.counts->first * channel.line.factor;
             channel.unit = row.value->unit;
+            if (row.range) {
+                const auto [low, high] = std::minmax({channel.line.number_at(row.range->first), channel.line.number_at(row.range->second)});
+                channel.line.least = std::max(channel.line.least, low), channel.line.most = std::min(channel.line.most, high);
+            }
         }
         const auto add_status = [&](const std::optional<ObjectAddress>& a, PointStatus::Kind kind) {
             if (!a) return;
@@ -216,6 +221,7 @@ private:
         const auto* position = channel(row.position, IoDirection::input, "position");
         if (position == nullptr) return;
         auto encoder = encoder_of(*position);
+        encoder.incremental = row.incremental;
         encoder.valid = object(row.valid, IoDirection::input, "valid");
         encoder.latch = object(row.latch, IoDirection::input, "latch");
         encoder.index = latch(row.index, "index");

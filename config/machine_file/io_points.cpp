@@ -29,8 +29,10 @@ public:
     runtime::IoPoint build(const std::vector<runtime::IoPoint>& others) {
         find();
         if (good_ && (channel_ || point_.beside)) expect_free(others);
+        measure_width();
         scale();
         limit();
+        if (bits_ != 0) expect_fitting_keys();
         if (entry_.safe) point_.safe_value = word(*entry_.safe, "safe").value_or(0);
         if (entry_.simulated) point_.simulated = word(*entry_.simulated, "simulated");
         return std::move(point_);
@@ -101,6 +103,29 @@ private:
         if (object->type == ecat::DataType::REAL64) point_.line.number = PointLine::Number::real64;
     }
 
+    /// Bits and sign of a slave's object, as far as its description has them.
+    void measure_width() {
+        if (!good_ || place_.description == nullptr || place_.modbus != nullptr) return;
+        const auto* object = find_object(*place_.description, point_.index, point_.sub);
+        if (object == nullptr) return;
+        bits_ = ecat::bit_size(object->type);
+        const auto& pdos = input_ ? place_.description->tx_pdos : place_.description->rx_pdos;
+        for (const auto& pdo : pdos)
+            for (const auto& entry : pdo.entries)
+                if (entry.index == point_.index && entry.sub == point_.sub) bits_ = entry.bits;
+        point_.line.fit(bits_, ecat::is_signed(object->type));
+    }
+
+    /// What does nothing to a bit, or to a number.
+    void expect_fitting_keys() {
+        if (bits_ == 1 && point_.filter > Duration::zero())
+            problem("filter", "config.conflict", "the point is one bit, which has no value between 0 and 1 to filter",
+                    "remove `filter`; a contact that bounces is for the terminal's own filter, or for a TON in the program");
+        if (bits_ > 1 && point_.inverted)
+            problem("inverted", "config.conflict", fmt::format("the point has {} bits, and only one bit can be inverted", bits_),
+                    "remove `inverted`; a number is turned round by a `scale` whose values fall");
+    }
+
     void no_channel() {
         const auto names = channel_names(*place_.device, point_.direction);
         const auto kind = input_ ? "inputs" : "outputs";
@@ -148,7 +173,8 @@ private:
         }
         const double factor = (to.second - to.first) / (from.second - from.first);
         const double offset = to.first - from.first * factor;
-        const auto before = raw ? PointLine{1, 0, point_.line.number} : point_.line;
+        auto before = point_.line;
+        if (raw) before.factor = 1, before.offset = 0;
         point_.line = before;
         point_.line.factor = before.factor * factor;
         point_.line.offset = before.offset * factor + offset;
@@ -175,17 +201,50 @@ private:
             problem("limits", "config.out_of_range", "the lower limit is not below the upper one", "write `limits: [low, high]`");
             return;
         }
+        if (const auto [low, high] = ends();
+            point_.line.number == PointLine::Number::whole && (entry_.limits->first > high || entry_.limits->second < low)) {
+            problem("limits", "config.out_of_range", fmt::format("no value of the input lies between them: it shows {}", range_text()),
+                    "compare `limits` with `scale`, and with what the terminal measures");
+            return;
+        }
         point_.limits = runtime::PointLimits{entry_.limits->first, entry_.limits->second};
+    }
+
+    /// The least and the highest value of a whole number.
+    [[nodiscard]] std::pair<double, double> ends() const {
+        const auto at = [&](double number) { return number * point_.line.factor + point_.line.offset; };
+        return std::minmax({at(point_.line.least), at(point_.line.most)});
+    }
+    [[nodiscard]] std::string range_text() const {
+        const auto [low, high] = ends();
+        return fmt::format("{:.6g}{} to {:.6g}{}", low, point_.unit.empty() ? "" : " " + point_.unit, high,
+                           point_.unit.empty() ? "" : " " + point_.unit);
+    }
+
+    /// Beyond what the object holds it would come out as another value.
+    std::optional<std::int64_t> within(double number, const Measure& written, const char* key) {
+        const auto& line = point_.line;
+        if (line.number != PointLine::Number::whole || (number >= line.least && number <= line.most))
+            return static_cast<std::int64_t>(number);
+        const bool plain = written.unit.empty();
+        problem(key, "config.out_of_range",
+                fmt::format("{:g}{} for `{}` is beyond what the channel {}: {}", written.value, plain ? "" : " " + written.unit, key,
+                            input_ ? "shows" : "gives", plain ? fmt::format("{:.0f} to {:.0f}", line.least, line.most) : range_text()),
+                "give a value within it, or choose another terminal");
+        return std::nullopt;
     }
 
     /// A value with a unit through the line; a bare number is the raw word, as a terminal carries it.
     std::optional<std::int64_t> word(const Measure& written, const char* key) {
         const bool plain = written.unit.empty();
         if (!plain && !in_our_unit(written.unit, key)) return std::nullopt;
-        if (!plain && good_) return point_.line.raw_of(written.value);
+        if (!plain && good_) {
+            if (point_.line.number != PointLine::Number::whole) return point_.line.raw_of(written.value);
+            return within(point_.line.number_at(written.value), written, key);
+        }
         constexpr double widest = 0x1p32;
         if (plain && written.value == std::floor(written.value) && std::abs(written.value) <= widest)
-            return static_cast<std::int64_t>(written.value);
+            return within(written.value, written, key);
         if (good_)
             problem(key, "config.wrong_type", fmt::format("{:g} for `{}` is no whole number", written.value, key),
                     point_.unit.empty() ? "write the raw number, such as 1"
@@ -196,6 +255,7 @@ private:
     Reader& reader_;
     const IoEntry& entry_;
     bool input_, good_ = true;
+    unsigned bits_ = 0;  // of its object; 0: not known
     const PointPlace& place_;
     std::string here_;
     runtime::IoPoint point_;

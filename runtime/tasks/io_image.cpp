@@ -26,10 +26,7 @@ std::int64_t carried(std::int64_t value, const Signal& signal) noexcept {
 /// What the bits of an object hold.
 PointLine line_of(const IoPoint& point, const Signal& signal) noexcept {
     PointLine line = point.line;
-    if (signal.bits == 0 || signal.bits >= 64) return line;
-    const double span = std::ldexp(1.0, signal.bits);
-    line.least = signal.is_signed ? -span / 2 : 0;
-    line.most = (signal.is_signed ? span / 2 : span) - 1;
+    line.fit(signal.bits, signal.is_signed);
     return line;
 }
 

@@ -1,5 +1,6 @@
 // Device files: every one that is shipped loads and can stand on a bus; and what is wrong in one is said with its place.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -122,7 +123,9 @@ LoadResult machine_with(const std::string& io) {
     options.drive_dirs = {tree + "/config/drives"};
     return load_machine_text("probe.yaml",
                              "version: 1\nname: probe\ncycle: 1 ms\nbus:\n  interface: simulated\n  slaves:\n"
-                             "    - { name: ai, device: el3064 }\n    - { name: ao, device: el4034 }\nio:\n" +
+                             "    - { name: ai, device: el3064 }\n    - { name: ao, device: el4034 }\n"
+                             "    - { name: up, device: el4002 }\n    - { name: do, device: el2008 }\n    - { name: di, device: el1008 }\n"
+                             "    - { name: enc, device: el5101 }\nio:\n" +
                                  io,
                              options);
 }
@@ -166,7 +169,7 @@ TEST(PointsOfDevices, RawNumbersMayBeScaledInstead) {
 
 TEST(PointsOfDevices, WhatDoesNotFitIsRefusedWithItsPlace) {
     EXPECT_THAT(problem_of("  inputs:\n    p: { slave: ai, channel: ai7 }\n"),
-                HasSubstr("probe.yaml:11:21: slave 'ai' (el3064) has no input channel 'ai7' (there is: ai1, ai2, ai3, ai4)"));
+                HasSubstr("probe.yaml:15:21: slave 'ai' (el3064) has no input channel 'ai7' (there is: ai1, ai2, ai3, ai4)"));
     EXPECT_THAT(problem_of("  inputs:\n    p: { slave: ai, channel: 7 }\n"), HasSubstr("slave 'ai' has 4 inputs, there is no channel 7"));
     EXPECT_THAT(problem_of("  outputs:\n    p: { slave: ai, channel: ai1 }\n"), HasSubstr("has no output channel 'ai1' (there is: none)"));
     EXPECT_THAT(problem_of("  inputs:\n    p: { slave: ai, channel: ai1, limits: [0 bar, 1 bar] }\n"),
@@ -182,6 +185,53 @@ TEST(PointsOfDevices, WhatDoesNotFitIsRefusedWithItsPlace) {
                 HasSubstr("channel 1 of 'ai' is already 'p'"));
     EXPECT_THAT(problem_of("  inputs:\n    p: { slave: ai, channel: ai1, simulated: 1.5 }\n"),
                 HasSubstr("1.5 for `simulated` is no whole number"));
+}
+
+// 15 V on 16 bits that begin anew beyond 10 V would be -5 V. EL4002: 0 to 10 V.
+TEST(PointsOfDevices, WhatTheChannelCannotGiveIsRefusedWithItsPlace) {
+    EXPECT_THAT(problem_of("  outputs:\n    v: { slave: ao, channel: ao1, safe: 15 V }\n"),
+                HasSubstr("probe.yaml:15:35: 15 V for `safe` is beyond what the channel gives: -10.0003 V to 10 V"));
+    EXPECT_THAT(problem_of("  outputs:\n    v: { slave: ao, channel: ao1, safe: 40000 }\n"),
+                HasSubstr("40000 for `safe` is beyond what the channel gives: -32768 to 32767"));
+    EXPECT_THAT(problem_of("  outputs:\n    v: { slave: up, channel: ao1, safe: -1 V }\n"),
+                HasSubstr("-1 V for `safe` is beyond what the channel gives: 0 V to 10 V"));
+    EXPECT_THAT(problem_of("  outputs:\n    v: { slave: up, channel: ao1, scale: { from: [0 V, 10 V], to: [0 %, 100 %] }, safe: 120 % }\n"),
+                HasSubstr("120 % for `safe` is beyond what the channel gives: 0 % to 100 %"));
+    EXPECT_THAT(problem_of("  outputs:\n    v: { slave: up, channel: ao1, scale: { from: [0, 32767], to: [100 %, 0 %] }, safe: 120 % }\n"),
+                HasSubstr("0 % to 100 %"))
+        << "a line that falls";
+    EXPECT_THAT(problem_of("  outputs:\n    v: { slave: do, channel: out1, safe: 5 }\n"),
+                HasSubstr("5 for `safe` is beyond what the channel gives: 0 to 1"));
+    EXPECT_THAT(problem_of("  outputs:\n    v: { slave: enc, channel: set_value1, safe: -1 }\n"), HasSubstr("0 to 65535"));
+    EXPECT_THAT(problem_of("  inputs:\n    v: { slave: ai, channel: ai1, simulated: 20 V }\n"),
+                HasSubstr("20 V for `simulated` is beyond what the channel shows"));
+    for (const char* most : {"10 V", "-10 V", "32767", "-32768"}) {
+        const auto point = point_of(fmt::format("  outputs:\n    v: {{ slave: ao, channel: ao1, safe: {} }}\n", most));
+        EXPECT_GE(std::abs(point.safe_value), 32767) << most;
+    }
+}
+
+// What a program writes is cut off at what the terminal gives, before the bus is there and after.
+TEST(PointsOfDevices, WhatIsWrittenIsCutOffAtWhatTheChannelGives) {
+    const auto both_ways = point_of("  outputs:\n    v: { slave: ao, channel: ao1 }\n").line;
+    EXPECT_EQ(both_ways.raw_of(15), 32767);
+    EXPECT_EQ(both_ways.raw_of(-15), -32768);
+    const auto upwards = point_of("  outputs:\n    v: { slave: up, channel: ao1 }\n").line;
+    EXPECT_EQ(upwards.raw_of(-5), 0);
+    EXPECT_FALSE(upwards.holds(-0.01));
+    EXPECT_TRUE(upwards.holds(10));
+}
+
+TEST(PointsOfDevices, WhatDoesNothingToABitOrANumberIsRefused) {
+    EXPECT_THAT(problem_of("  inputs:\n    p: { slave: di, channel: in1, filter: 20 ms }\n"),
+                HasSubstr("probe.yaml:15:35: the point is one bit, which has no value between 0 and 1 to filter"));
+    EXPECT_THAT(problem_of("  inputs:\n    p: { slave: ai, channel: ai1, inverted: true }\n"),
+                HasSubstr("probe.yaml:15:35: the point has 16 bits, and only one bit can be inverted"));
+    EXPECT_EQ(
+        problem_of("  inputs:\n    p: { slave: di, channel: in1, inverted: true }\n    q: { slave: ai, channel: ai1, filter: 20 ms }\n"),
+        "");
+    EXPECT_THAT(problem_of("  inputs:\n    p: { slave: ai, channel: ai1, limits: [11 V, 20 V] }\n"),
+                HasSubstr("no value of the input lies between them"));
 }
 
 TEST(PointsOfDevices, AnUnknownDeviceIsSaidWithTheNearest) {
