@@ -7,6 +7,7 @@
 
 #include "axes/drives/xp200/registers.hpp"
 #include "axes/port/parameter_text.hpp"
+#include "runtime/check/position_loop_check.hpp"
 
 namespace taktwerk::apps {
 namespace {
@@ -160,9 +161,14 @@ std::vector<std::string> master_gone(const runtime::MachineConfig& config, const
     if (slave == config.bus.slaves.end()) return out;
     out.push_back(fmt::format("after {:g} ms without process data the slave's watchdog takes it out of OP",
                               to_seconds(runtime::sm_watchdog(config, *slave)) * 1e3));
-    if (axis.analog)
+    if (axis.analog) {
+        const auto setpoint = runtime::watchdog_of_output(config, axis.analog->setpoint);
+        const auto enable = runtime::watchdog_of_output(config, axis.analog->enable);
         out.push_back(
-            "the watchdogs of the terminals that tell it set-point and enable take both away: it brakes or coasts as the amplifier is set");
+            fmt::format("the watchdogs of its terminals take the set-point ('{}') away after {:g} ms and the enable ('{}') after {:g} "
+                        "ms: until then it runs on, then it brakes or coasts as the amplifier is set",
+                        setpoint.slave, to_seconds(setpoint.watchdog) * 1e3, enable.slave, to_seconds(enable.watchdog) * 1e3));
+    }
     if (!axis.profile) return out;
     out.push_back(loss_of(*axis.profile));
     const auto shown = [&](std::uint16_t index) {

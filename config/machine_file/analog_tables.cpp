@@ -1,5 +1,7 @@
 #include "config/machine_file/analog_tables.hpp"
 
+#include <fmt/format.h>
+
 #include "config/reading/codecs.hpp"
 
 namespace taktwerk::config {
@@ -41,6 +43,13 @@ Table<AnalogAxis> analog_table() {
     };
     include_fields(
         f, [](A& a) -> D& { return a.drive; }, Table<D>{{}, {}, std::move(drive), {}, {}});
+    // In the plain data 0 stands for the default: written, it is meant to switch the watch off, or to make it as strict as can be.
+    table.after = [](Reader& reader, const Node& node, A& a) {
+        if (const auto* found = node.find("polarity_distance");
+            found != nullptr && a.drive.polarity_distance == 0 && !reader.already_bad(reader.path() + ".polarity_distance"))
+            reader.problem(found->at, "config.out_of_range", fmt::format("`0` for `{}.polarity_distance` is out of range", reader.path()),
+                           "give some hundred counts of the encoder or more, or leave it out for the way of 10 ms at limits.velocity");
+    };
     return table;
 }
 

@@ -507,8 +507,10 @@ Table<AxisBinding> axis_table() {
         "a second drive for the other side of a portal"));
     f.push_back(field_at<AxisBinding>(
         "brake", [](AxisBinding& b) -> AxisBinding& { return b; }, section(brake_table()), "holding brake, where the controller works it"));
-    f.push_back(
-        field("analog", &AxisBinding::analog, maybe(section(analog_table())), "an amplifier over +-10 V, with its encoder at `slave`"));
+    // Also when something in it is wrong: without it the rest would be judged as the axis of a drive.
+    f.push_back(field_at<AxisBinding>(
+        "analog", [](AxisBinding& b) -> runtime::AnalogAxis& { return b.analog ? *b.analog : b.analog.emplace(); }, section(analog_table()),
+        "an amplifier over +-10 V, with its encoder at `slave`"));
     f.push_back(field("simulation", &AxisBinding::simulation, section(axis_simulation_table()), "mechanics of the simulated axis"));
     table.before = [](Reader& reader, const Node&, AxisBinding& b) { reader.axis_unit = b.axis.unit; };
     table.after = [](Reader& reader, const Node&, AxisBinding& b) {

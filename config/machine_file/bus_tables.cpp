@@ -113,7 +113,7 @@ Table<SlaveEntry> slave_table() {
             of_bus("on_loss", &C::on_loss, loss_policy(), "when it is gone: every axis stops, or those on this slave alone"),
             with_default(field("dc", &S::dc, maybe(boolean()), "run SYNC0 on it"), "where the drive supports it"),
             with_default(of_bus("sync0_shift", &C::sync0_shift, duration(), "SYNC0 after the start of the bus cycle"), "as the bus"),
-            with_default(of_bus("sm_watchdog", &C::sm_watchdog, duration(0ns, 6s), "the slave stops when no outputs come for this long"),
+            with_default(of_bus("sm_watchdog", &C::sm_watchdog, duration(100us, 6s), "the slave stops when no outputs come for this long"),
                          "three periods of its sync unit, at least 10 ms"),
             with_default(
                 of_bus("sync_unit", &C::sync_unit, config::name(), "slaves of one name are exchanged together, and valid or not together"),

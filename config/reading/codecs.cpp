@@ -98,10 +98,14 @@ void report_unknown_key(Reader& reader, const Entry& entry, const std::vector<st
         return;
     }
     const auto near = nearest_name(entry.key, known);
+    const auto* outer = reader.outer_section_with(entry.key);
     reader.problem(entry.at, "config.unknown_key",
                    reader.path().empty() ? fmt::format("there is no key `{}` here", entry.key)
                                          : fmt::format("`{}` has no key `{}`", reader.path(), entry.key),
-                   near.empty() ? "known keys: " + joined(known) : fmt::format("did you mean `{}`?", near));
+                   outer != nullptr && outer->empty() ? fmt::format("`{}` stands at the top of the file: move it there", entry.key)
+                   : outer != nullptr                 ? fmt::format("it is a key of `{}`: move it there", *outer)
+                   : near.empty()                     ? "known keys: " + joined(known)
+                                                      : fmt::format("did you mean `{}`?", near));
 }
 
 void report_missing_key(Reader& reader, const Node& section, std::string_view key, const FieldInfo& info) {

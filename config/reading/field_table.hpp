@@ -152,6 +152,7 @@ bool read_table(Reader& reader, const Node& node, const Table<T>& table, T& obje
     if (table.before) table.before(reader, node, object);
     std::vector<std::string> known;
     for (const auto& f : table.fields) known.push_back(f.info.key);
+    const Reader::Section open(reader, known);
     for (const auto& entry : node.entries) {
         bool found = false;
         for (const auto& key : known) found = found || key == entry.key;

@@ -31,6 +31,13 @@ Position Reader::find(std::string_view path) const {
     }
 }
 
+const std::string* Reader::outer_section_with(std::string_view key) const {
+    for (auto section = sections_.rbegin(); section != sections_.rend(); ++section)
+        if (section->path != path_ && std::find(section->keys->begin(), section->keys->end(), key) != section->keys->end())
+            return &section->path;
+    return nullptr;
+}
+
 Reader::Scope::Scope(Reader& reader, std::string_view key, Position at) : reader_(reader), length_(reader.path_.size()) {
     if (!reader_.path_.empty()) reader_.path_ += '.';
     reader_.path_ += key;

@@ -47,13 +47,34 @@ public:
         std::size_t length_;
     };
 
+    /// A section and its keys, while it is read.
+    class Section {
+    public:
+        Section(Reader& reader, const std::vector<std::string>& keys) : reader_(reader) {
+            reader.sections_.push_back({reader.path_, &keys});
+        }
+        ~Section() { reader_.sections_.pop_back(); }
+        Section(const Section&) = delete;
+        Section& operator=(const Section&) = delete;
+
+    private:
+        Reader& reader_;
+    };
+    /// The nearest section around this one that has such a key, as its path; nullptr: none. Empty: the file itself.
+    [[nodiscard]] const std::string* outer_section_with(std::string_view key) const;
+
     std::string axis_unit = "mm";                                   ///< of the axis being read, and of a cam's slave
     std::string master_unit;                                        ///< of the master of the cam being read
     std::map<std::string, std::string, std::less<>> units_of_axes;  ///< once read
     Duration cycle{};                                               ///< of the machine, once read
 
 private:
+    struct OpenSection {
+        std::string path;
+        const std::vector<std::string>* keys;
+    };
     std::string file_, path_;
+    std::vector<OpenSection> sections_;
     std::vector<Error> errors_;
     std::vector<std::string> bad_paths_;
     std::map<std::string, Position, std::less<>> positions_;

@@ -41,6 +41,7 @@ public:
              {std::pair{"ready", &analog_.ready}, std::pair{"fault", &analog_.fault}, std::pair{"negative_limit", &analog_.negative_limit},
               std::pair{"positive_limit", &analog_.positive_limit}, std::pair{"home_switch", &analog_.home_switch}})
             check_bit(key, *name, IoDirection::input);
+        check_wires_apart();
     }
 
 private:
@@ -141,7 +142,26 @@ private:
         else if (!(std::abs(found->line.value_of(found->safe_value)) < 1e-3))
             problems_.add("axis.analog", fmt::format("io.outputs.{}", found->name), "a motor would turn where nobody drives this output",
                           "leave `safe` out");
+        else if (const double volts = analog_.drive.voltage_limit;
+                 volts <= most_volts && !(found->line.holds(volts) && found->line.holds(-volts)))
+            add(".analog.setpoint",
+                fmt::format("output '{}' gives no {}: the motor would turn one way only", found->name,
+                            found->line.holds(volts)    ? fmt::format("{:g} V", -volts)
+                            : found->line.holds(-volts) ? fmt::format("{:g} V", volts)
+                                                        : fmt::format("{:g} V and no {:g} V", volts, -volts)),
+                "name a channel of a terminal of +-10 V, such as an EL4032 (config/devices/)");
         take("setpoint", found->name);
+    }
+
+    /// What cannot be TRUE together, or not without blocking the axis. A home switch may be a limit switch.
+    void check_wires_apart() {
+        if (!analog_.ready.empty() && analog_.ready == analog_.fault)
+            add(".analog.fault", fmt::format("'{}' is `ready`, too: one of the two would always be against the other", analog_.fault),
+                "an amplifier with one contact has `ready` alone: leave `fault` out");
+        if (!analog_.negative_limit.empty() && analog_.negative_limit == analog_.positive_limit)
+            add(".analog.positive_limit",
+                fmt::format("'{}' is `negative_limit`, too: on either switch the axis could leave it neither way", analog_.positive_limit),
+                "wire each switch to an input of its own");
     }
 
     /// Off must mean: nothing moves.

@@ -6,21 +6,14 @@
 
 #include "ecat/description/module_pdos.hpp"
 #include "runtime/check/analog_check.hpp"
+#include "runtime/check/encoder_check.hpp"
 #include "runtime/check/mapped_objects.hpp"
+#include "runtime/check/position_loop_check.hpp"
 #include "runtime/stop_time.hpp"
 
 namespace taktwerk::runtime {
 
 namespace {
-
-/// How often the slave's process data is exchanged.
-Duration exchange_period_of(const MachineConfig& config, const std::string& name) {
-    auto bus = config.bus;
-    bus.cycle = config.cycle;
-    for (const auto& slave : bus.slaves)
-        if (slave.name == name) return ecat::exchange_period(bus, slave);
-    return config.cycle;
-}
 
 /// What every CiA 402 axis lives by (axes/drives/cia402/ refuses to start without).
 struct NeededObject {
@@ -47,13 +40,17 @@ public:
             const auto subject = fmt::format("axes.{}", binding.axis.name);
             for (auto& error : axes::check(binding.axis)) errors_.push_back(std::move(error));
             check_reactions(binding, subject);
+            check_position_loop(config_, binding, subject, problems_);
             check_brake(binding, subject);
+            if (binding.axis.simulated) check_simulated(binding, subject);
             if (binding.axis.load_encoder.on) check_load_encoder(binding, subject);
             if (!binding.drive.empty() && !binding.analog) continue;  // see check_serial
             if (binding.analog) check_analog_axis(binding, subject);
             else if (binding.slave.empty()) check_virtual(binding, subject);
-            else if (binding.encoder) check_encoder(binding, subject);
-            else if (has_place(binding, subject)) {
+            else if (binding.encoder) {
+                check_counter(config_, binding, subject, counters_, problems_);
+                check_measuring_axis(config_, binding, subject, problems_);
+            } else if (has_place(binding, subject)) {
                 check_on_drive(binding, subject);
                 if (binding.axis.gantry.on) check_follower(binding, subject);
             }
@@ -195,6 +192,19 @@ private:
                           "add it under `pdo.rx` of the slave (docs/drives.md)");
     }
 
+    /// A slave is on the cable, or it is not (present_slaves.hpp): one of its axes alone would be moved in earnest.
+    void check_simulated(const AxisBinding& binding, const std::string& subject) {
+        if (binding.slave.empty()) return;
+        for (const auto& other : config_.axes)
+            if (!other.axis.simulated && (other.slave == binding.slave || other.follower.slave == binding.slave))
+                return problems_.add(
+                    "axis.simulated", subject + ".simulated",
+                    fmt::format("axis {} is on slave '{}', too, and is not simulated: the slave is there, and this axis would "
+                                "be the real one",
+                                other.axis.name, binding.slave),
+                    "write `simulated: true` for all its axes, or `disabled: true` for this one");
+    }
+
     /// What nobody would carry out: there is no drive, or one on a serial line, which always ramps first.
     void check_reactions(const AxisBinding& binding, const std::string& subject) {
         const bool on_line = !binding.drive.empty(), is_virtual = !on_line && binding.slave.empty();
@@ -231,64 +241,13 @@ private:
     void check_analog_axis(const AxisBinding& binding, const std::string& subject) {
         check_analog(config_, binding, subject, outputs_, problems_);
         if (!config_.emergency_stop.input.empty()) check_stop_time(binding, subject);
-        if (binding.encoder) return check_counter(binding, subject);
+        if (binding.encoder) return check_counter(config_, binding, subject, counters_, problems_);
         if (!binding.slave.empty() && std::find(slaves_.begin(), slaves_.end(), binding.slave) == slaves_.end())
             return problems_.unknown("axis.unknown_slave", subject + ".slave", "slave", binding.slave, slaves_);
         problems_.add("axis.analog", subject + ".slave",
                       binding.slave.empty() ? "no `slave` counts where the motor is"
                                             : fmt::format("slave '{}' is a drive, which closes its own loops", binding.slave),
                       "name the terminal that reads the motor's encoder, or the slave and the `object` that counts");
-    }
-
-    /// A counter or encoder at a terminal: nothing asked of it that takes a motor.
-    void check_encoder(const AxisBinding& binding, const std::string& subject) {
-        check_counter(binding, subject);
-        if (!binding.axis.encoder)
-            problems_.add("axis.encoder", subject + ".slave", fmt::format("slave '{}' is a terminal that counts", binding.slave),
-                          "write `encoder: true`");
-        if (binding.axis.homing.kind != axes::HomingKind::none)
-            problems_.add("axis.homing", subject + ".homing", "an axis that only measures moves to no reference",
-                          "remove `homing`; a program sets its position (MC_SetPosition), or where the index passes "
-                          "(MC_StepReferenceFlyingRefPulse)");
-        check_turned_by(binding, subject);
-    }
-
-    /// It is exchanged, and belongs to one axis.
-    void check_counter(const AxisBinding& binding, const std::string& subject) {
-        const auto& channel = *binding.encoder;
-        const auto& at = channel.position;
-        if (std::find(slaves_.begin(), slaves_.end(), binding.slave) == slaves_.end())
-            return problems_.unknown("axis.unknown_slave", subject + ".slave", "slave", binding.slave, slaves_);
-        if (!counters_.insert({binding.slave, {at.index, at.sub}}).second)
-            problems_.add("axis.drive_axis_taken", subject + ".slave",
-                          fmt::format("'{}' of slave '{}' already is another axis", channel.name, binding.slave),
-                          "give each axis a position of its own: `axis: 2`");
-        unsigned bits = 0;
-        for (const auto& slave : config_.bus.slaves) {
-            if (slave.name != binding.slave || !slave.device) continue;
-            const auto offered = ecat::pdos_of(*slave.device, slave.modules);
-            const auto tx = mapped(slave.tx, offered.tx, offered.tx_assigned);
-            for (const auto& entry : tx)
-                if (entry.index == at.index && entry.sub == at.sub) bits = entry.bits;
-            if (bits == 0 && !tx.empty())
-                problems_.add(
-                    "axis.not_mapped", subject + ".slave",
-                    fmt::format("object {:04X}h:{:02X} ({}) is not in the TxPDO of slave '{}'", at.index, at.sub, channel.name, slave.name),
-                    "choose a PDO that has it under `pdo.tx` of the slave");
-        }
-        if (bits == 1 || (bits != 0 && channel.bits > bits))
-            problems_.add("axis.encoder", subject + ".counter_bits", fmt::format("'{}' has {} bits", channel.name, bits),
-                          bits == 1 ? "name an input that counts" : fmt::format("write `counter_bits: {}`, or fewer", bits));
-    }
-
-    void check_turned_by(const AxisBinding& binding, const std::string& subject) {
-        const auto& by = binding.simulation.turned_by;
-        if (by.empty()) return;
-        std::vector<std::string> motors;
-        for (const auto& other : config_.axes)
-            if ((other.profile && !other.slave.empty()) || other.analog) motors.push_back(other.axis.name);
-        if (std::find(motors.begin(), motors.end(), by) == motors.end())
-            problems_.unknown("axis.simulation", subject + ".simulation.turned_by", "axis with a motor", by, motors);
     }
 
     void check_on_drive(const AxisBinding& binding, const std::string& subject) {
@@ -389,7 +348,7 @@ private:
     Problems problems_;
     std::vector<std::string> slaves_;
     std::set<std::pair<std::string, int>> taken_;
-    std::set<std::pair<std::string, std::pair<int, int>>> counters_;
+    TakenCounters counters_;
     std::set<std::string> outputs_;  // that axes drive
 };
 

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "runtime/check/analog_check.hpp"
 #include "runtime/check/ebus_remarks.hpp"
+#include "runtime/check/encoder_check.hpp"
+#include "runtime/check/position_loop_check.hpp"
 #include "runtime/relaxed_supervision.hpp"
 
 namespace taktwerk::runtime {
@@ -162,6 +165,21 @@ void startup_sizes(Remarks& remarks, const MachineConfig& config) {
     }
 }
 
+/// Only what a terminal can show trips a limit.
+void point_limits(Remarks& remarks, const IoPoint& point) {
+    constexpr double no_object = 0x1p62;  // beyond it nothing is known of the object's bits
+    const auto& line = point.line;
+    if (!point.limits || line.number != PointLine::Number::whole || line.most > no_object) return;
+    const auto [low, high] = std::minmax({line.least * line.factor + line.offset, line.most * line.factor + line.offset});
+    for (const auto& [word, limit, beyond] : {std::tuple{"lower", point.limits->low, point.limits->low < low},
+                                              std::tuple{"upper", point.limits->high, point.limits->high > high}})
+        if (beyond)
+            remarks.add("point_limit", fmt::format("io.inputs.{}.limits", point.name),
+                        fmt::format("the {} limit, {:g} {}, is never reached: the input shows {:.6g} to {:.6g} {}", word, limit, point.unit,
+                                    low, high, point.unit),
+                        "compare it with `scale`, and with what the terminal measures");
+}
+
 /// It is copied along with the rest of a file that ran simulated.
 void relaxed_on_a_port(Remarks& remarks, const MachineConfig& config) {
     if (config.bus.interface.empty() || config.simulation.supervision != Supervision::relaxed) return;
@@ -214,13 +232,17 @@ std::vector<Error> remarks(const MachineConfig& config, const MachineLayout& lay
     for (const auto& binding : config.axes) {
         const auto here = "axes." + binding.axis.name;
         const bool virtual_axis = binding.slave.empty() && binding.drive.empty();
+        if (!virtual_axis && binding.axis.encoder && !binding.axis.disabled)
+            for (auto& remark : measuring_remarks(binding, here)) out.found.push_back(std::move(remark));
         if (virtual_axis || binding.axis.encoder || binding.axis.disabled) continue;
+        for (auto& remark : position_loop_remarks(config, binding, here)) out.found.push_back(std::move(remark));
         limits(out, binding, here);
         if (simulated || binding.axis.simulated) simulated_switches(out, binding, here);
         simulated_stops(out, binding, here);
         if (binding.analog)
             for (auto& remark : analog_remarks(binding, here)) out.found.push_back(std::move(remark));
     }
+    for (const auto& point : config.io) point_limits(out, point);
     for (const auto& point : config.io)
         if (!config.emergency_stop.input.empty() && point.name == config.emergency_stop.input && point.inverted)
             out.add("emergency_stop_inverted", "emergency_stop.input",

@@ -36,4 +36,12 @@ unsigned bits_of_point(const MachineConfig& config, std::string_view name, IoDir
     return 0;
 }
 
+Duration exchange_period_of(const MachineConfig& config, std::string_view name) {
+    auto bus = config.bus;
+    bus.cycle = config.cycle;
+    for (const auto& slave : bus.slaves)
+        if (slave.name == name) return ecat::exchange_period(bus, slave);
+    return config.cycle;
+}
+
 }  // namespace taktwerk::runtime

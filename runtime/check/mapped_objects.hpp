@@ -15,4 +15,7 @@ namespace taktwerk::runtime {
 /// Bits of an input or output by its name, as far as its slave is known without the bus; 0: it is not.
 [[nodiscard]] unsigned bits_of_point(const MachineConfig& config, std::string_view name, IoDirection direction);
 
+/// How often the process data of a slave is exchanged; the machine's cycle where there is none of this name.
+[[nodiscard]] Duration exchange_period_of(const MachineConfig& config, std::string_view slave);
+
 }  // namespace taktwerk::runtime

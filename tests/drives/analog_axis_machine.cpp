@@ -1,6 +1,7 @@
 // An axis over +-10 V as config/machines/analog-axis.yaml ships it: amplifier and motor are played at the terminals, the encoder at its counter, everything
 // goes over real frames. 10 V are 500 mm/s, a count is 1 um, kv 20/s, the amplifier lags 8 ms; limits 400 mm/s and 2000 mm/s2.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -10,7 +11,7 @@
 #include "axes/axis/alarms.hpp"
 #include "config/machine_file/machine_loader.hpp"
 #include "fb_library/all_blocks.hpp"
-#include "runtime/check/analog_check.hpp"
+#include "runtime/check/machine_remarks.hpp"
 #include "tests/runtime/test_program.hpp"
 
 namespace taktwerk::runtime::testing {
@@ -427,12 +428,52 @@ TEST(AnalogAxis, WhatDoesNotFitIsSaid) {
     EXPECT_THAT(analog_problem({{"    slave: counter ", "    slave: volts "}}), HasSubstr("names no encoder"));
     EXPECT_THAT(analog_problem({{"position: [-10 mm, 600 mm] }", "position: [-10 mm, 600 mm], torque: 1 }"}}),
                 HasSubstr("is told no torque"));
+    EXPECT_THAT(analog_problem({{"device: el4032", "device: el4002"}}),
+                HasSubstr("axis.analog: axes.x.analog.setpoint: output 'x_speed' gives no -10 V: the motor would turn one way only"));
+    EXPECT_THAT(analog_problem({{"fault: x_healthy", "fault: x_ready"}}), HasSubstr("'x_ready' is `ready`, too"));
+    EXPECT_THAT(analog_problem({{"positive_limit: x_high", "positive_limit: x_low"}}), HasSubstr("'x_low' is `negative_limit`, too"));
+    EXPECT_EQ(analog_problem({{"home_switch: x_home", "home_switch: x_low"}}), "none") << "a limit switch may be the home switch";
+    EXPECT_THAT(analog_problem({{"polarity_distance: 2 mm", "polarity_distance: 0 mm"}}),
+                HasSubstr("`0` for `axes.x.analog.polarity_distance` is out of range"));
+    EXPECT_THAT(analog_problem({{"kv: 20", "kv: 5000"}}),
+                HasSubstr("5000/s with a position and a set-point each 1 ms: this loop cannot be stable"));
+    EXPECT_THAT(analog_problem({{"device: el4032 }", "device: el4032, sm_watchdog: 0 ms }"}}), HasSubstr("sm_watchdog"));
+    EXPECT_THAT(analog_problem({{"    homing:", "    position_memory: { absolute: true }\n    homing:"}}),
+                HasSubstr("'position1' of slave 'counter' is an incremental counter"));
+    EXPECT_THAT(analog_problem({{"    homing:", "    simulated: true\n    homing:"}}), HasSubstr("simulated with its whole bus only"));
+}
+
+// A sync unit of 50 cycles closes the loop each 50 ms, and keeps the watchdog of its terminal three times as long.
+TEST(AnalogAxis, ASlowSetpointTerminalIsNotTakenInSilence) {
+    const std::pair<std::string, std::string> slow{"device: el4032 }", "device: el4032, sync_unit: slow }"};
+    const auto units = [](int divisor) {
+        return std::pair<std::string, std::string>{"bus:\n", fmt::format("bus:\n  sync_units: [{{ name: slow, divisor: {} }}]\n", divisor)};
+    };
+    EXPECT_THAT(analog_problem({slow, units(50)}),
+                HasSubstr("20/s with a position and a set-point each 50 ms: this loop cannot be stable"));
+    EXPECT_EQ(analog_problem({slow, units(10)}), "none");
+}
+
+// One wrong key is one error, at its place, and where it belongs is said.
+TEST(AnalogAxis, AWrongKeyIsOneError) {
+    const auto place = [](const Changes& changes) {
+        auto loaded = load_analog(changes);
+        const auto* errors = std::get_if<std::vector<Error>>(&loaded);
+        if (errors == nullptr || errors->size() != 1) return std::string("not one error: ") + analog_problem(changes);
+        return errors->front().text();
+    };
+    EXPECT_THAT(place({{"      ready: x_ready", "      redy: x_ready"}}), HasSubstr("did you mean `ready`?"));
+    EXPECT_THAT(place({{"      ready: x_ready", "      enable_timeout: 5 s\n      ready: x_ready"}}),
+                HasSubstr("`axes.x.analog` has no key `enable_timeout`"));
+    EXPECT_THAT(place({{"      ready: x_ready", "      enable_timeout: 5 s\n      ready: x_ready"}}),
+                HasSubstr("it is a key of `axes.x`: move it there"));
+    EXPECT_THAT(place({{"      setpoint: x_speed\n", ""}}), HasSubstr("`axes.x.analog` lacks its key `setpoint`"));
 }
 
 TEST(AnalogAxis, WhatIsHardlyMeantIsRemarked) {
     const auto remarked = [](const Changes& changes) {
         std::string out;
-        for (const auto& remark : analog_remarks(analog_machine(changes).axes.front(), "axes.x")) out += remark.code + " ";
+        for (const auto& remark : remarks(analog_machine(changes), {}, 0)) out += remark.code + " ";
         return out;
     };
     EXPECT_EQ(remarked({}), "");
@@ -440,6 +481,10 @@ TEST(AnalogAxis, WhatIsHardlyMeantIsRemarked) {
     EXPECT_EQ(remarked({{"offset: -20 mV", "offset: 200 mV"}}), "remark.analog_offset ");
     EXPECT_EQ(remarked({{"      ready: x_ready\n      fault: x_healthy\n", ""}}), "remark.analog_unwatched ");
     EXPECT_EQ(remarked({{"polarity_distance: 2 mm", "polarity_distance: 9 mm"}}), "remark.analog_polarity ");
+    EXPECT_EQ(remarked({{"kv: 20", "kv: 150"}}), "remark.position_loop ");
+    EXPECT_EQ(remarked({{"device: el4032 }", "device: el4032, sm_watchdog: 5 s }"}}), "remark.analog_watchdog ");
+    EXPECT_EQ(remarked({{"device: el2008 }", "device: el2008, sm_watchdog: 5 s }"}}), "remark.analog_watchdog ");
+    EXPECT_EQ(remarked({{"device: el4032 }", "device: el4032, sm_watchdog: 50 ms }"}}), "");
 }
 
 }  // namespace

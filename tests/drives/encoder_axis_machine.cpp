@@ -3,17 +3,21 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "axes/axis/alarms.hpp"
 #include "config/device_file/device_loader.hpp"
 #include "config/machine_file/machine_loader.hpp"
 #include "fb_library/all_blocks.hpp"
+#include "runtime/check/machine_check.hpp"
+#include "runtime/check/machine_remarks.hpp"
 #include "tests/runtime/test_program.hpp"
 
 namespace taktwerk::runtime::testing {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 /// A measuring wheel of 100 mm, 4096 counts a turn, at an EL5101, and a servo. `wheel`: further keys of the axis.
@@ -294,6 +298,81 @@ TEST(EncoderAxis, WhatDoesNotFitIsSaid) {
                 HasSubstr("'position1' has 16 bits. write `counter_bits: 16`, or fewer"));
     EXPECT_THAT(wheel_problem(turning + "    homing: { kind: set_here }\n"), HasSubstr("an axis that only measures moves to no reference"));
     EXPECT_THAT(wheel_problem("    slave: enc\n    simulation: { turned_by: sow }\n"), HasSubstr("did you mean 'saw'?"));
+    EXPECT_THAT(wheel_problem("    slave: enc\n    simulation: { turned_by: saw, velocity: 5 mm/s }\n"),
+                HasSubstr("axis saw turns it (`turned_by`), not a velocity"));
+    EXPECT_THAT(wheel_problem(turning + "    position_memory: { absolute: true }\n"),
+                HasSubstr("'position1' of slave 'enc' is an incremental counter: it begins at 0 with each supply"));
+    EXPECT_EQ(wheel_problem("    slave: biss\n    axis: 2\n    position_memory: { absolute: true }\n"), "none");
+    // 8 bits: 128 counts of 4096 to 100 mm in 1 ms are 3125 mm/s.
+    const std::string narrow = "    slave: enc\n    counter_bits: 8\n";
+    EXPECT_EQ(wheel_problem(narrow + "    simulation: { velocity: -3100 mm/s }\n"), "none");
+    EXPECT_THAT(
+        wheel_problem(narrow + "    simulation: { velocity: -3200 mm/s }\n"),
+        HasSubstr("at 3200 mm/s it counts 131 from one exchange to the next (1 ms), and beyond half of its 8 bits (128) nobody knows"));
+    auto fast = wheel_machine(narrow);
+    fast.axes[0].axis.limits.velocity = 3200;
+    const auto errors = check(fast);
+    ASSERT_EQ(errors.size(), 1u);
+    EXPECT_EQ(errors[0].subject, "axes.wheel.limits.velocity");
+}
+
+// While a machine is put together: the cable goes past the terminal, and what follows the wheel can be tried.
+TEST(EncoderAxis, WhoseTerminalIsNotThereYetStandsAtZero) {
+    auto config = wheel_machine(turning + "    simulated: true\n");
+    config.start_mode = Mode::manual;
+    TestMachine m{config};
+    ASSERT_TRUE(m.up());
+    const auto [wheel, saw] = saw_runs_300(m);
+    EXPECT_EQ(wheel, 0);
+    EXPECT_EQ(m.axis(0).actual_position, 0);
+    EXPECT_TRUE(m.axis(0).simulated);
+    EXPECT_EQ(m.alarms(), "");
+}
+
+// One of two encoders of a terminal cannot be left out alone: it would be the real one, and called simulated.
+TEST(EncoderAxis, OneOfTwoAtATerminalIsNotSimulatedAlone) {
+    auto text = wheel_text("    slave: both\n    axis: 1\n    simulated: true\n");
+    const std::string second =
+        "  belt:\n    unit: mm\n    encoder: true\n    slave: both\n    axis: 2\n    gearing: { counts_per_revolution: 4096, feed: 100 mm "
+        "}\n"
+        "    limits: { velocity: 2000 mm/s, acceleration: 10000 mm/s2, jerk: 100000 mm/s3 }\n";
+    const auto load = [&](const std::string& more) {
+        return config::load_machine_text(std::string(TAKTWERK_SOURCE_DIR) + "/config/machines/wheel.yaml", text + second + more, {});
+    };
+    const auto alone = load("");
+    const auto* errors = std::get_if<std::vector<Error>>(&alone);
+    ASSERT_TRUE(errors != nullptr && errors->size() == 1);
+    EXPECT_THAT(errors->front().text(), HasSubstr("axis belt is on slave 'both', too, and is not simulated"));
+    EXPECT_EQ(load("    simulated: true\n").index(), 0u);
+}
+
+// The axis arms the latches of its encoder; an output on the same bit would latch in between.
+TEST(EncoderAxis, ItsLatchIsItsOwn) {
+    for (const char* latch : {"latch_index1", "latch_rising1", "latch_falling1"}) {
+        auto text = wheel_text(turning);
+        text.replace(text.find("axes:"), 0, std::string("io:\n  outputs:\n    l: { slave: enc, channel: ") + latch + " }\n");
+        const auto loaded = config::load_machine_text(std::string(TAKTWERK_SOURCE_DIR) + "/config/machines/wheel.yaml", text, {});
+        const auto* errors = std::get_if<std::vector<Error>>(&loaded);
+        ASSERT_TRUE(errors != nullptr && errors->size() == 1) << latch;
+        EXPECT_THAT(errors->front().text(), AllOf(HasSubstr("wheel.yaml:16:5"), HasSubstr("axis wheel works this latch of its encoder")));
+    }
+}
+
+// What does nothing on an axis that only measures is asked about: the file of one whose motor is left alone for a while may have it.
+TEST(EncoderAxis, WhatItIsToldInVainIsRemarked) {
+    const auto remarked = [](const std::string& wheel) {
+        std::string out;
+        for (const auto& remark : remarks(wheel_machine(wheel), {}, 0))
+            if (remark.subject.find("wheel") != std::string::npos) out += remark.code + " " + remark.subject + "\n";
+        return out;
+    };
+    EXPECT_EQ(remarked(turning), "");
+    EXPECT_EQ(remarked(turning + "    control: { mode: velocity, kv: 20 }\n"), "remark.encoder_in_vain axes.wheel.control\n");
+    EXPECT_EQ(remarked(turning + "    following_error: { window: 5 mm }\n"), "remark.encoder_in_vain axes.wheel.following_error\n");
+    auto limited = wheel_machine(turning);
+    limited.axes[0].axis.limits.position_max = 100;
+    const auto found = remarks(limited, {}, 0);
+    EXPECT_TRUE(std::ranges::any_of(found, [](const Error& one) { return one.subject == "axes.wheel.limits.position"; }));
 }
 
 TEST(EncoderAxis, EachShippedTerminalWithEncodersIsOne) {

@@ -74,6 +74,36 @@ TEST(MachineCheck, AnAxisOnASlaveWithoutProfile) {
     EXPECT_EQ(problem([](MachineConfig& m) { m.axes[0].profile = nullptr; }).code, "axis.no_profile");
 }
 
+// z^2 - z + kv T = 0, the loop of an integrator that acts one sample later, has poles outside the unit circle from kv T = 1 on.
+TEST(MachineCheck, AGainWithWhichNoLoopIsStable) {
+    const auto error = problem([](MachineConfig& m) {
+        m.axes[0].axis.control.mode = axes::ControlMode::velocity;
+        m.axes[0].axis.control.kv = 1000;  // 1 ms
+    });
+    EXPECT_EQ(error.code, "axis.position_loop");
+    EXPECT_EQ(error.subject, "axes.x.control.kv");
+}
+
+// A slave is there or it is not: its other axis would be moved in earnest, and called simulated.
+TEST(MachineCheck, OneOfTwoAxesOfADriveIsNotSimulatedAlone) {
+    const auto two_on_one = [](MachineConfig& m) {
+        auto profile = std::make_shared<axes::DriveProfile>(*m.axes[0].profile);
+        profile->axes = 2;
+        profile->object_offset = 0;  // the second axis has the objects of the first: enough for a check
+        m.axes[0].profile = m.axes[1].profile = profile;
+        m.axes[1].slave = m.axes[0].slave;
+        m.axes[1].drive_axis = 1;
+        m.axes[0].axis.simulated = true;
+    };
+    const auto error = problem(two_on_one);
+    EXPECT_EQ(error.code, "axis.simulated");
+    EXPECT_TRUE(contains(error.what, "axis y is on slave 'x_drive', too, and is not simulated")) << error.what;
+    auto both = machine_config(2);
+    two_on_one(both);
+    both.axes[1].axis.simulated = true;
+    EXPECT_TRUE(check(both).empty());
+}
+
 TEST(MachineCheck, AVirtualAxisHasNoSwitches) {
     EXPECT_EQ(problem([](MachineConfig& m) { m.axes[0].slave.clear(); }).code, "axis.homing");
 }
@@ -270,6 +300,19 @@ TEST(MachineRemarks, EachThingThatIsHardlyMeantIsAsked) {
               }).code,
               "remark.emergency_stop_inverted");
     EXPECT_EQ(remark([](MachineConfig& m) { m.realtime.cpus = {99}; }).code, "remark.cpu");
+    const auto upper_limit = [](double limit) {
+        return remark([limit](MachineConfig& m) {
+            m.io[0].line.fit(16, true);
+            m.io[0].limits = PointLimits{0, limit};
+        });
+    };
+    EXPECT_EQ(upper_limit(32767).code, "") << "the most of 16 bits with sign";
+    EXPECT_EQ(upper_limit(32768).code, "remark.point_limit");
+    EXPECT_EQ(of_axis([](AxisBinding& b) {
+                  b.axis.control.mode = axes::ControlMode::velocity;
+                  b.axis.control.kv = 101;  // a tenth of the rate is 100
+              }).subject,
+              "axes.x.control.kv");
     EXPECT_EQ(remark([](MachineConfig& m) { m.bus.lost_frames_limit = 11; }).code, "remark.watchdog_below_limit") << "10 ms";
     EXPECT_EQ(remark([](MachineConfig& m) {
                   ProgramConfig program;
