@@ -142,6 +142,23 @@ std::vector<std::string> scale_sentences(const runtime::AxisBinding& binding) {
     return out;
 }
 
+/// What holds in one direction only.
+std::vector<std::string> direction_sentences(const axes::AxisConfig& axis) {
+    std::vector<std::string> out;
+    for (const auto& [word, limits] : {std::pair{"positive", axis.limits.positive}, std::pair{"negative", axis.limits.negative}}) {
+        std::vector<std::string> tighter;
+        const auto add = [&tighter](const char* what, double value, const std::string& unit) {
+            if (value > 0) tighter.push_back(fmt::format("{} {:g}{}", what, value, unit));
+        };
+        add("velocity", limits.velocity, fmt::format(" {}/s", axis.unit));
+        add("acceleration", limits.acceleration, fmt::format(" {}/s2", axis.unit));
+        add("deceleration", limits.deceleration, fmt::format(" {}/s2", axis.unit));
+        add("torque", limits.torque, " of the rated one");
+        if (!tighter.empty()) out.push_back(fmt::format("in {} direction at most: {}", word, fmt::join(tighter, ", ")));
+    }
+    return out;
+}
+
 /// The second encoder.
 std::string load_sentence(const runtime::AxisBinding& binding) {
     const auto& load = binding.axis.load_encoder;
@@ -211,11 +228,14 @@ void print_axis(const MachineConfig& config, const runtime::AxisBinding& binding
     if (binding.encoder && !binding.analog) {
         fmt::print("           it is read, and moves nothing; one {} = {:g} counts; faster than {:g} {}/s is taken for no motion\n", u,
                    axis.gearing.counts_per_unit(), 2 * axis.limits.velocity, u);
+        if (axis.simulated)
+            fmt::print("           simulated: slave '{}' is taken as not there yet, and the axis stands at 0\n", binding.slave);
         return;
     }
     fmt::print("           velocity {:g} {}/s, acceleration {:g} {}/s2, deceleration {:g} {}/s2, jerk {}\n", axis.limits.velocity, u,
                axis.limits.acceleration, u, axis.limits.deceleration, u,
                std::isinf(axis.limits.jerk) ? std::string("unlimited") : fmt::format("{:g} {}/s3", axis.limits.jerk, u));
+    for (const auto& sentence : direction_sentences(axis)) fmt::print("           {}\n", sentence);
     if (!binding.slave.empty() || !binding.drive.empty()) {
         const auto stroke = runtime::stroke_seconds(axis);
         fmt::print("           at full velocity the motor turns at {:.0f} r/min{}\n", runtime::motor_rpm(axis, axis.limits.velocity),
@@ -254,10 +274,14 @@ void print_programs(const MachineConfig& config, const runtime::MachineLayout& l
 void print_assumptions(const MachineConfig& config) {
     std::vector<std::string> seen;
     for (const auto& binding : config.axes) {
-        if (!binding.profile || binding.profile->assumed.empty() ||
+        if (binding.axis.encoder || !binding.profile || binding.profile->assumed.empty() ||
             std::find(seen.begin(), seen.end(), binding.profile->name) != seen.end())
             continue;
-        fmt::print("\nAssumed about {}, because its manual leaves it open:\n", binding.profile->name);
+        std::vector<std::string> axes;
+        for (const auto& other : config.axes)
+            if (!other.axis.encoder && other.profile && other.profile->name == binding.profile->name) axes.push_back(other.axis.name);
+        fmt::print("\nAssumed about {} ({} {}), because its manual leaves it open:\n", binding.profile->name,
+                   axes.size() == 1 ? "axis" : "axes", fmt::join(axes, ", "));
         for (const auto& sentence : binding.profile->assumed) fmt::print("  {}\n", sentence);
         seen.push_back(binding.profile->name);
     }
@@ -337,6 +361,7 @@ Json summary_json(const MachineConfig& config, const runtime::MachineLayout& lay
                             {"simulated", axis.simulated},
                             {"velocity", axis.limits.velocity},
                             {"acceleration", axis.limits.acceleration},
+                            {"direction_limits", direction_sentences(axis)},
                             {"motor_rpm", runtime::motor_rpm(axis, axis.limits.velocity)},
                             {"homing", homing_text(axis.homing)},
                             {"scale", scale_sentences(binding)},

@@ -126,6 +126,34 @@ TEST_F(CommandLine, CheckSaysWhatADriveDoesWhenTheMasterIsGone) {
                 AllOf(HasSubstr("if the master is gone"), HasSubstr("605Ah"), HasSubstr("Assumed about sv33-e"), HasSubstr("speed")));
 }
 
+// A shipped file with something of it exchanged, where its drives and devices are.
+TEST_F(CommandLine, CheckSaysWhatHoldsInOneDirectionAndHowLongAnAnalogAxisRunsOn) {
+    std::filesystem::create_directories(folder_ + "/machines");
+    for (const char* kind : {"/drives", "/devices"})
+        std::filesystem::create_directory_symlink(std::filesystem::path(machines) / ".." / (kind + 1), folder_ + kind);
+    const auto check_of = [&](const std::string& name, const std::string& from, const std::string& to) {
+        auto text = text_of(machines + name);
+        text.replace(text.find(from), from.size(), to);
+        return command({"check", file("machines/" + name, text)});
+    };
+    const auto belt = check_of("measuring-wheel.yaml", "jerk: 5000 mm/s3 }",
+                               "jerk: 5000 mm/s3, positive: { velocity: 250 mm/s, torque: 0.5 }, negative: { deceleration: 300 mm/s2 } }");
+    EXPECT_EQ(belt.code, exit_ok) << belt.text;
+    EXPECT_THAT(belt.text, AllOf(HasSubstr("in positive direction at most: velocity 250 mm/s, torque 0.5 of the rated one\n"),
+                                 HasSubstr("in negative direction at most: deceleration 300 mm/s2\n")));
+    EXPECT_THAT(belt.text, HasSubstr("Assumed about sv33-e (axis belt), because"));
+    const auto plain = command({"check", machines + "measuring-wheel.yaml"});
+    EXPECT_THAT(plain.text, Not(HasSubstr("direction at most")));
+    // The object of a drive that moves nothing here: what its manual leaves open concerns nobody.
+    const auto watched = check_of("measuring-wheel.yaml", "    following_error: { window: 5 mm }", "    encoder: true");
+    EXPECT_EQ(watched.code, exit_ok) << watched.text;
+    EXPECT_THAT(watched.text, Not(HasSubstr("Assumed about")));
+    const auto analog = check_of("analog-axis.yaml", "device: el4032 }", "device: el4032, sm_watchdog: 5 s }");
+    EXPECT_EQ(analog.code, exit_ok) << analog.text;
+    EXPECT_THAT(analog.text, AllOf(HasSubstr("when the master is gone, 'volts' keeps it for 5000 ms: at full velocity 2000 mm"),
+                                   HasSubstr("take the set-point ('volts') away after 5000 ms and the enable ('do') after 10 ms")));
+}
+
 TEST_F(CommandLine, TwoRunsInVirtualTimeWriteTheSameBytes) {
     for (const char* name : {"one.csv", "two.csv"}) {
         const auto run = command({"run", machines + "demo.yaml", "--virtual-time", "--duration", "6s", "--trace", path(name)});
