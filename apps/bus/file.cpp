@@ -124,6 +124,10 @@ void add_bus_file(CLI::App& bus, Action& action) {
         action = [options]() -> int {
             const auto password = password_of(options->password);
             if (!password) return fail(*options->bus, password.error());
+            if (const auto named = check_slave_file_name(options->name, "NAME"); !named) return fail(*options->bus, named.error());
+            if (!options->file.empty())
+                if (const auto free = expect_no_file(options->file, "foe.file", "foe.exists"); !free)
+                    return fail(*options->bus, free.error());
             return with_bus(*options->bus, [&](BusSession& session) { return read_from_slave(session, *options, *password); });
         };
     });
@@ -134,6 +138,7 @@ void add_bus_file(CLI::App& bus, Action& action) {
         action = [options]() -> int {
             const auto password = password_of(options->password);
             if (!password) return fail(*options->bus, password.error());
+            if (const auto named = check_slave_file_name(options->name, "NAME"); !named) return fail(*options->bus, named.error());
             const auto content = read_whole_file(options->file, ecat::largest_slave_file, "foe.file");
             if (!content) return fail(*options->bus, content.error());
             return with_bus(*options->bus, [&](BusSession& session) { return write_to_slave(session, *options, *password, *content); });

@@ -33,8 +33,9 @@ Result<void> may_write_firmware(BusSession& session, const ecat::Survey& survey,
     return {};
 }
 
-Result<void> confirm_firmware(BusSession& session, const FoeOptions& options, const std::string& subject, std::size_t bytes) {
-    if (session.simulated() || options.bus->yes) return {};
+/// Of simulated slaves, too: a rehearsal goes as the thing itself.
+Result<void> confirm_firmware(const FoeOptions& options, const std::string& subject, std::size_t bytes) {
+    if (options.bus->yes) return {};
     const std::string what = fmt::format("{} ({} bytes) goes into {} as '{}'", options.file, bytes, subject, options.name);
     if (::isatty(STDIN_FILENO) == 0)
         return Error{"bus.not_confirmed", subject, fmt::format("{}; nobody was there to say yes, and nothing was written", what),
@@ -99,7 +100,7 @@ int write_firmware(BusSession& session, const FoeOptions& options, std::uint32_t
     if (!slave) return fail(bus, slave.error());
     const std::string& subject = (*slave)->subject;
     if (const auto offered = offers_files(**slave, bus); !offered) return fail(bus, offered.error());
-    if (const auto confirmed = confirm_firmware(session, options, subject, content.size()); !confirmed) return fail(bus, confirmed.error());
+    if (const auto confirmed = confirm_firmware(options, subject, content.size()); !confirmed) return fail(bus, confirmed.error());
     session.finish_undisturbed();
     FoeProgressLine line{bus};
     ecat::FirmwareSettings settings;
@@ -148,18 +149,19 @@ void add_bus_firmware(CLI::App& bus, Action& action) {
     sub->get_option("--force")->description("also where its EEPROM says that it has no FoE (never beside another master)");
     sub->add_option("SLAVE", options->slave, "position or name")->required();
     sub->add_option("FILE", options->file, "on this computer, as the slave's maker delivers it")->required();
-    sub->add_option("--name", options->name, "what the slave calls it; default: the file's name without its ending");
+    const auto* name = sub->add_option("--name", options->name, "what the slave calls it; default: the file's name without its ending");
     add_foe_options(*sub, *options);
     sub->add_flag("--yes", options->bus->yes, "do not ask before it is written");
-    sub->callback([&action, options] {
+    sub->callback([&action, options, name] {
+        if (name->count() == 0) options->name = std::filesystem::path(options->file).stem().string();
         action = [options]() -> int {
             const auto password = password_of(options->password);
             if (!password) return fail(*options->bus, password.error());
+            if (const auto named = check_slave_file_name(options->name, "--name"); !named) return fail(*options->bus, named.error());
             // All of it, before the slave is spoken to: a disk that cannot be read leaves no slave without firmware.
             const auto content = read_whole_file(options->file, ecat::largest_slave_file, "foe.file");
             if (!content) return fail(*options->bus, content.error());
             if (content->empty()) return fail(*options->bus, Error{"foe.file", options->file, "is empty", "give the firmware's file"});
-            if (options->name.empty()) options->name = std::filesystem::path(options->file).stem().string();
             return with_bus(*options->bus, [&](BusSession& session) { return write_firmware(session, *options, *password, *content); });
         };
     });

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 
@@ -26,6 +27,20 @@ Result<std::uint32_t> password_of(const std::string& text) {
     if (problem == std::errc{} && last == end && begin != end) return value;
     return Error{"usage.number", "--password", "'" + text + "' is no password: in FoE it is a number of 32 bits",
                  "write it as 1234 or 0x12345678"};
+}
+
+Result<void> check_slave_file_name(const std::string& name, const char* option) {
+    if (name.empty())
+        return Error{"foe.name", option, "is empty: no slave has a file without a name", "give the name that the slave's maker writes"};
+    const auto control = std::find_if(name.begin(), name.end(), [](char c) {
+        const auto code = static_cast<unsigned char>(c);
+        return code < 0x20 || code == 0x7F;
+    });
+    if (control == name.end()) return {};
+    return Error{"foe.name", option,
+                 fmt::format("has the control character {:02X}h at place {}", static_cast<unsigned>(static_cast<unsigned char>(*control)),
+                             control - name.begin() + 1),
+                 "give the name as the slave's maker prints it (in a shell, $'...' and a pasted line end make such characters)"};
 }
 
 std::string progress_text(const ecat::FoeProgress& progress) {

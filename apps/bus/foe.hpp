@@ -22,6 +22,9 @@ void add_foe_options(CLI::App& sub, FoeOptions& options);
 /// Decimal, or hexadecimal after 0x. Error usage.number.
 [[nodiscard]] Result<std::uint32_t> password_of(const std::string& text);
 
+/// What a slave may be asked for: not empty, and nothing in it that no screen shows. Error foe.name, about `option`.
+[[nodiscard]] Result<void> check_slave_file_name(const std::string& name, const char* option);
+
 /// A line on standard error that says how far it is: on a terminal one that changes, elsewhere one each tenth. None with --json.
 class FoeProgressLine {
 public:

@@ -63,10 +63,19 @@ Result<std::vector<std::byte>> read_whole_file(const std::string& path, std::siz
     }
 }
 
+Result<void> expect_no_file(const std::string& path, const char* code, const char* exists) {
+    struct stat facts {};
+    if (::lstat(path.c_str(), &facts) != 0) return {};  // what else is wrong with the place, writing says
+    if (S_ISDIR(facts.st_mode)) return Error{code, path, "is a folder", "give the name of the file in it, too"};
+    return Error{exists, path, "there is such a file already", "choose another name: nothing is written over"};
+}
+
 Result<void> write_new_file(const std::string& path, std::span<const std::byte> bytes, const char* code, const char* exists) {
     const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
-    if (file < 0 && errno == EEXIST)
-        return Error{exists, path, "there is such a file already, with another content", "choose another name: nothing is written over"};
+    if (file < 0 && errno == EEXIST) {
+        const auto there = expect_no_file(path, code, exists);
+        return there ? Error{exists, path, "there was such a file a moment ago", "give the command again"} : there.error();
+    }
     if (file < 0) return kept_file_error(path, code, "written");
     const bool written = write_through(file, bytes);
     Error error = written ? Error{} : kept_file_error(path, code, "written");

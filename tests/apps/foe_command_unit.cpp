@@ -25,11 +25,16 @@ protected:
         words.insert(words.end(), {"--machine", files.machine, "--simulate"});
         return in_process(std::move(words));
     }
+    Outcome firmware(std::vector<std::string> words) const {
+        words.insert(words.begin(), {"firmware", "gauge"});
+        words.emplace_back("--yes");
+        return gauge(std::move(words));
+    }
     const GaugeFiles files;
 };
 
 TEST_F(FoeCommand, FirmwareIsWrittenAndWhatDiffersIsSaid) {
-    const auto written = gauge({"firmware", "gauge", files.firmware("firmware.bin", "2.1", 0x00020001)});
+    const auto written = firmware({files.firmware("firmware.bin", "2.1", 0x00020001)});
     ASSERT_EQ(written.code, exit_ok) << written.err;
     EXPECT_THAT(written.out, AllOf(HasSubstr("slave 1 'gauge'"), HasSubstr("12032 bytes written; it is back, in PREOP")));
     EXPECT_THAT(written.out, AllOf(HasSubstr("revision 00010000h -> 00020001h"), HasSubstr("software '1.0' -> '2.1'")));
@@ -37,7 +42,7 @@ TEST_F(FoeCommand, FirmwareIsWrittenAndWhatDiffersIsSaid) {
 }
 
 TEST_F(FoeCommand, FirmwareAnswersScriptsInJson) {
-    const auto written = gauge({"firmware", "gauge", files.firmware("firmware.bin", "2.1", 0x00020001), "--json"});
+    const auto written = firmware({files.firmware("firmware.bin", "2.1", 0x00020001), "--json"});
     ASSERT_EQ(written.code, exit_ok) << written.out;
     const auto json = written.json();
     EXPECT_EQ(json["ok"], true);
@@ -49,13 +54,13 @@ TEST_F(FoeCommand, FirmwareAnswersScriptsInJson) {
 }
 
 TEST_F(FoeCommand, ARefusalSaysWhatTheSlaveIsLeftWithAndTheWayBack) {
-    const auto other = gauge({"firmware", "gauge", files.firmware("firmware.bin", "2.1", 1, 0x9999)});
+    const auto other = firmware({files.firmware("firmware.bin", "2.1", 1, 0x9999)});
     EXPECT_EQ(other.code, exit_refused);
     EXPECT_THAT(other.err, AllOf(HasSubstr("800Dh"), HasSubstr("is in BOOT"), HasSubstr("give the same command again")));
-    const auto named = gauge({"firmware", "gauge", files.firmware("x.bin", "2.1", 1)});
+    const auto named = firmware({files.firmware("x.bin", "2.1", 1)});
     EXPECT_EQ(named.code, exit_refused);
     EXPECT_THAT(named.err, AllOf(HasSubstr("8009h"), HasSubstr("is in INIT"), HasSubstr("its firmware is what it was")));
-    const auto json = gauge({"firmware", "gauge", files.firmware("x.bin", "2.1", 1), "--json"}).json();
+    const auto json = firmware({files.firmware("x.bin", "2.1", 1), "--json"}).json();
     EXPECT_EQ(json["ok"], false);
     EXPECT_EQ(json["firmware"], "untouched");
     EXPECT_EQ(json["error"]["code"], "foe.refused");
@@ -64,7 +69,7 @@ TEST_F(FoeCommand, ARefusalSaysWhatTheSlaveIsLeftWithAndTheWayBack) {
 // /proc/self/mem can be opened and not read: EIO, as a disk that fails.
 TEST_F(FoeCommand, AFileThatCannotBeReadIsAnEndBeforeTheBeginning) {
     for (const std::string& path : {files.folder + "/nothing", files.folder, std::string{"/proc/self/mem"}, files.keep("empty", "")}) {
-        const auto outcome = gauge({"firmware", "gauge", path, "--json"});
+        const auto outcome = firmware({path, "--json"});
         EXPECT_EQ(outcome.code, exit_bad_file) << path;
         EXPECT_EQ(outcome.json()["error"]["code"], "foe.file") << path;
     }
@@ -75,7 +80,7 @@ TEST_F(FoeCommand, AFileThatCannotBeReadIsAnEndBeforeTheBeginning) {
 
 TEST_F(FoeCommand, WhoHasNoFilesIsNotAsked) {
     const auto drive =
-        in_process({"bus", "firmware", "x_drive", files.firmware("firmware.bin", "2.1", 1), "--machine", demo, "--simulate"});
+        in_process({"bus", "firmware", "x_drive", files.firmware("firmware.bin", "2.1", 1), "--machine", demo, "--simulate", "--yes"});
     EXPECT_EQ(drive.code, exit_refused);
     EXPECT_THAT(drive.err, HasSubstr("its EEPROM says that it has no FoE"));
     EXPECT_EQ(gauge({"file", "read", "io", "firmware"}).code, exit_refused);
@@ -95,6 +100,37 @@ TEST_F(FoeCommand, FilesAreReadIntoFilesAndNothingIsWrittenOver) {
     EXPECT_EQ(gauge({"file", "read", "gauge", "firmware", "-o", path}).code, exit_bad_file);
     EXPECT_THAT(gauge({"file", "read", "gauge", "firmware"}).err, HasSubstr("-o FILE")) << "no text";
     EXPECT_THAT(gauge({"file", "read", "gauge", "nothing"}).err, HasSubstr("8001h file not found"));
+}
+
+// Nobody is there to say yes (standard input of a test is no terminal): the rehearsal on simulated slaves wants what the real thing wants.
+TEST_F(FoeCommand, WithoutAYesNoFirmwareIsWrittenInASimulationNeither) {
+    const auto image = files.firmware("firmware.bin", "2.1", 0x00020001);
+    const auto asked = gauge({"firmware", "gauge", image});
+    EXPECT_EQ(asked.code, exit_usage);
+    EXPECT_THAT(asked.err, AllOf(HasSubstr("nothing was written"), HasSubstr("say --yes"), Not(HasSubstr("to BOOT"))));
+    EXPECT_EQ(firmware({image}).code, exit_ok);
+}
+
+TEST_F(FoeCommand, ANameThatIsNoneDoesNotReachTheSlave) {
+    const auto image = files.firmware("firmware.bin", "2.1", 0x00020001);
+    for (const std::string bad : {"", "firm\nware", "firmware\x7f", "\x1b[2Jfirmware"}) {
+        for (const auto& outcome :
+             {firmware({image, "--name", bad}), gauge({"file", "read", "gauge", bad}), gauge({"file", "write", "gauge", bad, image})}) {
+            EXPECT_EQ(outcome.code, exit_usage) << bad;
+            EXPECT_THAT(outcome.err, bad.empty() ? HasSubstr("is empty") : HasSubstr("control character")) << bad;
+            EXPECT_THAT(outcome.err, AllOf(Not(HasSubstr("refused")), Not(HasSubstr("to BOOT")))) << bad;
+        }
+    }
+    EXPECT_THAT(firmware({files.firmware("firm\tware.bin", "2.1", 1)}).err, HasSubstr("control character 09h at place 5"))
+        << "the name that the file lends it";
+}
+
+TEST_F(FoeCommand, WhereItGoesIsLookedAtBeforeTheSlaveIsRead) {
+    const auto folder = gauge({"file", "read", "gauge", "nothing", "-o", files.folder});
+    EXPECT_EQ(folder.code, exit_bad_file);
+    EXPECT_THAT(folder.err, AllOf(HasSubstr("is a folder"), Not(HasSubstr("8001h"))));
+    const auto taken = gauge({"file", "read", "gauge", "nothing", "-o", files.keep("taken", "text")});
+    EXPECT_THAT(taken.err, AllOf(HasSubstr("there is such a file already"), Not(HasSubstr("8001h"))));
 }
 
 TEST_F(FoeCommand, FilesAreWritten) {
