@@ -71,7 +71,7 @@ std::optional<Error> check_values(const CommandWord& word, const CommandRequest&
             return std::nullopt;
         }
         case CommandKind::set_output:
-            // One with a unit has values between the whole ones; what its terminal can hold the cycle knows.
+            // What has a unit is no word: the machine knows how far its line goes (IoImage::fits).
             if (command.index < layout.output_units.size() && !layout.output_units[command.index].empty()) return std::nullopt;
             if (request.value != std::floor(request.value) || std::abs(request.value) > largest_exact_integer)
                 return bad_value(fmt::format("{:g} is not a whole number", request.value), "Give 0 or 1, or a whole number for a word.");

@@ -100,8 +100,10 @@ Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::strin
             error.remedy = "Look at the names the machine has (taktwerk monitor), and at `disabled:` in the configuration.";
             break;
         case Answer::bad_value:
-            error.what = "the value is outside its range";
-            error.remedy = "Give a value inside the range.";
+            error.what = kind == CommandKind::set_output ? "the value is beyond what its channel gives" : "the value is outside its range";
+            error.remedy = kind == CommandKind::set_output
+                               ? "Give a value that its terminal has (docs/reference/devices.md), through its `scale`."
+                               : "Give a value inside the range.";
             break;
         case Answer::stale:
             if (kind == CommandKind::jog) {

@@ -259,13 +259,20 @@ TEST_F(GatewayTest, ValuesOutsideTheirRangeAreRefusedWithTheRange) {
     EXPECT_TRUE(machine.submitted.empty());
 }
 
-TEST_F(GatewayTest, AnOutputWithAUnitHasValuesBetweenTheWholeOnes) {
+// An output with a unit takes any number of it; how far it goes the machine knows, and what is beyond is not called a broken number.
+TEST_F(GatewayTest, AnOutputWithAUnitTakesAnyNumberThatItsChannelGives) {
     machine.its_layout.outputs = {"lamp_run", "valve"};
     machine.its_layout.output_units = {"", "%"};
     auto valve = request(CommandKind::set_output, "valve");
-    valve.value = 45.5;
+    valve.value = 12.5;
     EXPECT_TRUE(outcome(valve).accepted());
-    EXPECT_EQ(machine.submitted.back().value, 45.5);
+    ASSERT_EQ(machine.submitted.size(), 1u);
+    EXPECT_EQ(machine.submitted[0].value, 12.5);
+    auto beyond = request(CommandKind::set_output, "valve");
+    beyond.value = 1e308;
+    const auto refused = outcome(beyond, Answer::bad_value);
+    EXPECT_EQ(refused.error.what, "the value is beyond what its channel gives");
+    EXPECT_THAT(refused.error.remedy, HasSubstr("`scale`"));
     auto lamp = request(CommandKind::set_output, "lamp_run");
     lamp.value = 0.5;
     EXPECT_EQ(outcome(lamp).answer, Answer::bad_value);
