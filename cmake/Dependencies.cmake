@@ -27,3 +27,9 @@ find_library(LIBMODBUS_LIBRARY modbus REQUIRED)
 add_library(libmodbus_imported INTERFACE)
 target_include_directories(libmodbus_imported SYSTEM INTERFACE "${LIBMODBUS_INCLUDE_DIR}")
 target_link_libraries(libmodbus_imported INTERFACE "${LIBMODBUS_LIBRARY}")
+
+# Boost: headers of Asio and Beast for the page's server; nothing to link.
+find_path(BOOST_BEAST_INCLUDE_DIR boost/beast.hpp REQUIRED)  # libboost-dev
+add_library(boost_imported INTERFACE)
+target_include_directories(boost_imported SYSTEM INTERFACE "${BOOST_BEAST_INCLUDE_DIR}")
+target_link_libraries(boost_imported INTERFACE Threads::Threads)

@@ -39,6 +39,7 @@ const std::vector<OwnedInclude>& owned_includes() {
         {std::regex("^yaml-cpp/"), {"config"}, {}, "yaml-cpp"},
         {std::regex("^pugixml"), {"ecat/esi"}, {}, "pugixml"},
         {std::regex("^modbus/modbus"), {"modbus/tcp", "tests"}, {}, "libmodbus"},
+        {std::regex("^boost/"), {"hmi_bridge/web", "tests/hmi_bridge/web"}, {}, "Boost"},
         {std::regex("^nlohmann/"), {"hmi_bridge", "apps"}, {}, "nlohmann-json"},
         {std::regex("^CLI/"), {"apps"}, {}, "CLI11"},
         {std::regex("^(gtest|gmock|benchmark)/"), {"tests"}, {}, "a test library"},

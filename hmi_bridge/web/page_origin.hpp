@@ -1,0 +1,29 @@
+#pragma once
+// Whether a request is meant for this server and comes from its own page. The name in `Host` is compared with a list (DNS rebinding brings a foreign
+// name to a local address), and a WebSocket's `Origin` with that name (a foreign page may open a WebSocket to anywhere). RFC 6454, RFC 6455 section 10.2.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace taktwerk::hmi::web {
+
+/// "127.0.0.1", "::1" (without brackets) and the rest of 127.0.0.0/8.
+[[nodiscard]] bool is_loopback(std::string_view address);
+
+class PageOrigin {
+public:
+    /// `address`: where the server listens. On loopback its names are localhost, 127.0.0.1, [::1] and the address; elsewhere the address.
+    PageOrigin(std::string_view address, std::uint16_t port);
+
+    /// `host`: the header as it came, with or without a port (80 then). Letters in either case.
+    [[nodiscard]] bool knows_host(std::string_view host) const;
+    /// Of a WebSocket: known host, and `origin` is there and is http:// or https:// and that same host.
+    [[nodiscard]] bool is_own(std::string_view origin, std::string_view host) const;
+
+private:
+    std::vector<std::string> hosts_;  ///< in small letters, with port; without, too, when it is 80
+};
+
+}  // namespace taktwerk::hmi::web
