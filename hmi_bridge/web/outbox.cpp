@@ -15,7 +15,12 @@ bool Outbox::put(std::string message) {
     return true;
 }
 
-Outbox::Text Outbox::next() {
+void Outbox::put_state(Text rest, Instant got) {
+    state_ = std::move(rest);
+    got_ = got;
+}
+
+Outbox::Text Outbox::next(Instant now) {
     if (!queue_.empty()) {
         auto message = std::make_shared<const std::string>(std::move(queue_.front()));
         queue_.pop_front();
@@ -24,7 +29,10 @@ Outbox::Text Outbox::next() {
     }
     if (missed_ > 0)
         return std::make_shared<const std::string>(R"({"type":"gap","missed":)" + std::to_string(std::exchange(missed_, 0)) + "}");
-    return std::exchange(state_, nullptr);
+    const auto rest = std::exchange(state_, nullptr);
+    if (!rest) return nullptr;
+    const auto age = std::chrono::duration_cast<std::chrono::milliseconds>(now - got_).count();
+    return std::make_shared<const std::string>(R"({"type":"state","age_ms":)" + std::to_string(age) + "," + *rest);
 }
 
 }  // namespace taktwerk::hmi::web

@@ -7,6 +7,8 @@
 #include <memory>
 #include <string>
 
+#include "core/time.hpp"
+
 namespace taktwerk::hmi::web {
 
 class Outbox {
@@ -18,10 +20,12 @@ public:
 
     /// False: dropped and counted; `gap` comes next.
     bool put(std::string message);
-    /// Takes the place of one that has not gone out yet.
-    void put_state(Text state) { state_ = std::move(state); }
+    /// Takes the place of one that has not gone out yet. `rest`: the keys behind `age_ms`, with the closing brace; `got`: when it came from the machine.
+    void put_state(Text rest, Instant got);
+    /// Nothing of before is sent any more: another machine is watched, or its values are stale.
+    void drop_state() { state_ = nullptr; }
     /// What to send next, null when nothing waits: messages in order, where some are missing their number, then the state.
-    [[nodiscard]] Text next();
+    [[nodiscard]] Text next(Instant now);
     [[nodiscard]] bool empty() const { return queue_.empty() && !state_ && missed_ == 0; }
 
 private:
@@ -29,6 +33,7 @@ private:
     std::size_t bytes_ = 0;
     std::uint64_t missed_ = 0;
     Text state_;
+    Instant got_{};
 };
 
 }  // namespace taktwerk::hmi::web
