@@ -53,6 +53,7 @@ int run(int argc, char** argv) {
     add_run(app, action);
     add_check(app, action);
     add_monitor(app, action);
+    add_hmi(app, action);
     add_operate(app, action);
     add_bus(app, action);
     add_drive(app, action);

@@ -30,6 +30,7 @@ set(doc_folder "${CMAKE_INSTALL_DATAROOTDIR}/doc/taktwerk")  # Debian's name for
 install(FILES "${PROJECT_SOURCE_DIR}/README.md" "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${doc_folder}" COMPONENT runtime)
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/docs" DESTINATION "${doc_folder}" COMPONENT runtime)
 install(FILES "${PROJECT_SOURCE_DIR}/hmi_bridge/README.md" DESTINATION "${doc_folder}/hmi_bridge" COMPONENT runtime)
+install(FILES "${PROJECT_SOURCE_DIR}/hmi_bridge/web/README.md" DESTINATION "${doc_folder}/hmi_bridge/web" COMPONENT runtime)
 get_property(examples GLOBAL PROPERTY TAKTWERK_EXAMPLE_PROGRAMS)
 if(examples)
   install(TARGETS ${examples} LIBRARY DESTINATION "${programs_folder}" COMPONENT runtime)

@@ -1,0 +1,103 @@
+// taktwerk hmi: serves the page of the machines of this host. A process of its own, without privileges.
+
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "apps/taktwerk.hpp"
+#include "apps/terminal/exit_code.hpp"
+#include "apps/terminal/print_error.hpp"
+#include "hmi_bridge/web/web_server.hpp"
+#include "programs/api/abi.hpp"
+
+namespace taktwerk::apps {
+namespace {
+
+struct HmiOptions {
+    std::string listen = "127.0.0.1:8080", page, audit, role = "engineer";
+    std::vector<std::string> machines;
+};
+
+/// "127.0.0.1:8080", "[::1]:8080".
+Result<std::pair<std::string, std::uint16_t>> listen_address(const std::string& text) {
+    const auto wrong = Error{"usage.listen", text, "this is no address and port", "Write it like 127.0.0.1:8080 or [::1]:8080."};
+    const auto colon = text.rfind(':');
+    if (colon == std::string::npos) return wrong;
+    auto address = text.substr(0, colon);
+    const auto port = text.substr(colon + 1);
+    if (port.empty() || port.size() > 5 || port.find_first_not_of("0123456789") != std::string::npos || std::stoi(port) > 65535) return wrong;
+    if (address.size() > 2 && address.front() == '[' && address.back() == ']') address = address.substr(1, address.size() - 2);
+    else if (address.find(':') != std::string::npos) return wrong;
+    if (address == "localhost") address = "127.0.0.1";
+    return std::pair{address, static_cast<std::uint16_t>(std::stoi(port))};
+}
+
+/// Beside the command in a build tree, in share/taktwerk where it is installed.
+std::string page_folder() {
+    std::error_code ignored;
+    const auto here = std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path();
+    for (const auto& folder : {here / "hmi" / "page", here.parent_path() / "share" / "taktwerk" / "hmi"})
+        if (std::filesystem::exists(folder / "index.html", ignored)) return folder.string();
+    return (here.parent_path() / "share" / "taktwerk" / "hmi").string();
+}
+
+int serve(const HmiOptions& options) {
+    const auto listen = listen_address(options.listen);
+    if (!listen) {
+        print_error(listen.error());
+        return exit_usage;
+    }
+    auto site = hmi::web::SiteFiles::load(options.page.empty() ? page_folder() : options.page);
+    if (!site) {
+        print_error(site.error());
+        return exit_bad_file;
+    }
+    auto audit = std::make_shared<std::ofstream>();
+    if (!options.audit.empty()) {
+        audit->open(options.audit, std::ios::app);
+        if (!*audit) {
+            print_error(Error{"web.audit", options.audit, "the file cannot be written", "Name a file in a folder of this user with --audit."});
+            return exit_bad_file;
+        }
+    }
+    hmi::web::ServerOptions server_options;
+    server_options.address = listen->first;
+    server_options.port = listen->second;
+    server_options.machines = options.machines;
+    server_options.role = hmi::web::role_of(options.role).value_or(hmi::web::Role::viewer);
+    server_options.version = sdk_version;
+    server_options.audit = [audit](const std::string& line) { (audit->is_open() ? *audit : std::cout) << line << std::endl; };
+    auto server = hmi::web::WebServer::open(std::move(server_options), std::move(*site));
+    if (!server) {
+        print_error(server.error());
+        return server.error().code == "web.no_users" ? exit_usage : exit_bad_file;
+    }
+    fmt::print("the page: http://{}:{}/  (Ctrl-C ends)\n", listen->first.find(':') == std::string::npos ? listen->first : "[" + listen->first + "]",
+               (*server)->port());
+    std::fflush(stdout);
+    (*server)->run();
+    return exit_ok;
+}
+
+}  // namespace
+
+void add_hmi(CLI::App& app, Action& action) {
+    auto* sub = app.add_subcommand("hmi", "serve the page of the machines of this host, for a browser");
+    auto options = std::make_shared<HmiOptions>();
+    sub->add_option("--listen", options->listen, "ADDRESS:PORT, an address of this host's loopback; port 0: any free one")->capture_default_str();
+    sub->add_option("-s,--socket,--machine", options->machines, "a machine's name or its socket, several times; default: all that run");
+    sub->add_option("--role", options->role, "what the page may: viewer, operator, engineer, admin")
+        ->check(CLI::IsMember({"viewer", "operator", "engineer", "admin"}))
+        ->capture_default_str();
+    sub->add_option("--page", options->page, "the folder of the page's files");
+    sub->add_option("--audit", options->audit, "each command is written to the end of this file; default: standard output");
+    sub->callback([&action, options] { action = [options] { return serve(*options); }; });
+}
+
+}  // namespace taktwerk::apps

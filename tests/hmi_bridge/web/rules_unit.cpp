@@ -1,0 +1,178 @@
+// What the page's server decides without a socket: roles, origin, age, what waits for a page, what a page may say.
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "hmi_bridge/web/message_age.hpp"
+#include "hmi_bridge/web/outbox.hpp"
+#include "hmi_bridge/web/page_message.hpp"
+#include "hmi_bridge/web/page_origin.hpp"
+#include "hmi_bridge/web/site_files.hpp"
+
+namespace taktwerk::hmi::web {
+namespace {
+
+using namespace std::chrono_literals;
+using ::testing::HasSubstr;
+
+// Written apart from the table in roles.hpp, from what each command does (hmi_bridge/README.md): viewer, operator, engineer, admin.
+TEST(PageRoles, EveryCellOfRoleAndCommand) {
+    const std::map<std::string, std::string> expected{
+        {"hello", "yyyy"},         {"layout", "yyyy"},        {"state", "yyyy"},         {"alarms", "yyyy"},       {"drive_read", "yyyy"},
+        {"stop", "yyyy"},          {"take_control", "nyyy"},  {"release_control", "nyyy"}, {"mode", "nyyy"},       {"enable", "nyyy"},
+        {"disable", "nyyy"},       {"home", "nyyy"},          {"jog", "nyyy"},           {"move", "nyyy"},         {"reset", "nyyy"},
+        {"program_start", "nyyy"}, {"program_stop", "nyyy"},  {"program_reset", "nyyy"}, {"acknowledge", "nyyy"},  {"set_parameter", "nnyy"},
+        {"set_output", "nnyy"},    {"simulate", "nnyy"},      {"drive_write", "nnyy"},   {"drive_store", "nnyy"},  {"shutdown", "nnny"}};
+    EXPECT_EQ(command_rules.size(), expected.size());
+    for (const auto& row : expected) {
+        const auto* rule = find_rule(row.first);
+        ASSERT_NE(rule, nullptr) << row.first;
+        std::string cells;
+        for (const char* role : {"viewer", "operator", "engineer", "admin"}) cells += may(role_of(role).value(), *rule) ? 'y' : 'n';
+        EXPECT_EQ(cells, row.second) << row.first;
+    }
+    EXPECT_EQ(find_rule("format_disk"), nullptr);
+    EXPECT_FALSE(role_of("root"));
+}
+
+TEST(PageOriginRule, OnlyItsOwnNamesAndItsOwnPage) {
+    const PageOrigin origin("127.0.0.1", 8080);
+    for (const char* host : {"127.0.0.1:8080", "localhost:8080", "LocalHost:8080", "[::1]:8080"}) EXPECT_TRUE(origin.knows_host(host)) << host;
+    for (const char* host : {"", "127.0.0.1", "127.0.0.1:80", "evil.example:8080", "localhost.evil.example:8080", "localhost:8080 "})
+        EXPECT_FALSE(origin.knows_host(host)) << host;
+    EXPECT_TRUE(origin.is_own("http://localhost:8080", "localhost:8080"));
+    EXPECT_TRUE(origin.is_own("https://127.0.0.1:8080", "127.0.0.1:8080"));
+    for (const char* foreign : {"", "null", "http://evil.example", "http://evil.example:8080", "http://localhost:8081", "file://localhost:8080",
+                                "http://127.0.0.1:8080", "http://localhost:8080.evil.example", "http://localhost:8080/"})
+        EXPECT_FALSE(origin.is_own(foreign, "localhost:8080")) << foreign;
+    // A foreign name that was made to point here: page and host agree, and both are unknown.
+    EXPECT_FALSE(origin.is_own("http://evil.example:8080", "evil.example:8080"));
+    EXPECT_TRUE(PageOrigin("127.0.0.1", 80).knows_host("localhost"));
+}
+
+TEST(PageOriginRule, LoopbackIsLoopbackAlone) {
+    for (const char* address : {"127.0.0.1", "127.9.8.7", "::1"}) EXPECT_TRUE(is_loopback(address)) << address;
+    for (const char* address : {"0.0.0.0", "::", "192.168.1.2", "128.0.0.1", "localhost", "", "::ffff:10.0.0.1"})
+        EXPECT_FALSE(is_loopback(address)) << address;
+}
+
+TEST(MessageAgeRule, WhatWaitedIsOldByAsLongAsItWaited) {
+    MessageAge age;
+    const Instant start{100s};
+    EXPECT_EQ(age.of(5000, start), 0ms);                // the clocks' difference, and the way
+    EXPECT_LE(age.of(5050, start + 50ms), 1ms);
+    // The network stalls for 400 ms, then hands on what was sent each 50 ms.
+    EXPECT_GT(age.of(5100, start + 500ms), 390ms);
+    EXPECT_GT(age.of(5150, start + 500ms), 340ms);
+    EXPECT_LE(age.of(5500, start + 500ms), 1ms);
+    // A message that was quicker than the first one: that was the way's length.
+    EXPECT_EQ(age.of(6010, start + 1000ms), 0ms);
+    EXPECT_GE(age.of(6050, start + 1050ms), 9ms);
+}
+
+TEST(MessageAgeRule, APageWhoseQuartzIsSlowStaysYoungAllDay) {
+    MessageAge age;
+    for (int minute = 0; minute < 24 * 60; ++minute)
+        ASSERT_LT(age.of(minute * 60'000.0 * (1 - 100e-6), Instant{minute * 60s}), 1ms) << minute;
+}
+
+TEST(MessageAgeRule, AClockThatJumpedIsOldNotOverflown) {
+    MessageAge age;
+    (void)age.of(1e300, Instant{1s});
+    EXPECT_GT(age.of(0, Instant{2s}), MessageAge::longest);
+}
+
+TEST(PageOutbox, OfValuesOnlyTheNewestWaits) {
+    Outbox out;
+    for (int i = 0; i < 1000; ++i) out.put_state(std::make_shared<const std::string>("\"n\":" + std::to_string(i) + "}"), Instant{1s});
+    EXPECT_EQ(*out.next(Instant{1s} + 70ms), R"({"type":"state","age_ms":70,"n":999})");
+    EXPECT_EQ(out.next(Instant{2s}), nullptr);
+    EXPECT_TRUE(out.empty());
+}
+
+TEST(PageOutbox, WhatDoesNotFitIsCountedWhereItIsMissing) {
+    Outbox out;
+    for (std::size_t i = 0; i < Outbox::most_messages + 3; ++i) EXPECT_EQ(out.put(std::to_string(i)), i < Outbox::most_messages);
+    for (std::size_t i = 0; i < Outbox::most_messages; ++i) EXPECT_EQ(*out.next(Instant{}), std::to_string(i));
+    EXPECT_EQ(*out.next(Instant{}), R"({"type":"gap","missed":3})");
+    EXPECT_TRUE(out.put("again"));
+    EXPECT_FALSE(out.put(std::string(Outbox::most_bytes, 'x')));
+}
+
+PageMessage message_of(const std::string& text) {
+    auto read = read_page_message(text);
+    if (const auto* unread = std::get_if<UnreadMessage>(&read)) ADD_FAILURE() << text << ": " << unread->error.text();
+    return std::holds_alternative<PageMessage>(read) ? std::get<PageMessage>(read) : PageMessage{};
+}
+
+std::string code_of(const std::string& text) {
+    const auto read = read_page_message(text);
+    return std::holds_alternative<UnreadMessage>(read) ? std::get<UnreadMessage>(read).error.code : "";
+}
+
+TEST(PageMessages, ACommandIsTheSocketsOwn) {
+    const auto jog = message_of(R"({"type":"command","id":7,"machine":"demo","cmd":"jog","axis":"x","velocity":-2.5,"press":true,"sent_ms":12.5})");
+    EXPECT_EQ(jog.id, 7);
+    EXPECT_EQ(jog.machine, "demo");
+    EXPECT_EQ(jog.sent_ms, 12.5);
+    EXPECT_TRUE(jog.may_move());
+    EXPECT_EQ(jog.request.dump(), R"({"cmd":"jog","axis":"x","velocity":-2.5,"press":true})");
+    EXPECT_FALSE(message_of(R"({"type":"command","id":8,"cmd":"jog","axis":"x","velocity":0})").may_move());
+    // A velocity that is no number must not pass as a jog let go.
+    EXPECT_TRUE(message_of(R"({"type":"command","id":8,"cmd":"jog","axis":"x","velocity":"0"})").may_move());
+    EXPECT_TRUE(message_of(R"({"type":"command","id":8,"cmd":"jog","axis":"x"})").may_move());
+    EXPECT_FALSE(message_of(R"({"type":"command","id":9,"cmd":"stop"})").may_move());
+    EXPECT_EQ(message_of(R"({"type":"watch","machine":"saw"})").kind, PageMessage::Kind::watch);
+}
+
+TEST(PageMessages, HostileOnesAreRefusedByName) {
+    EXPECT_EQ(code_of(""), "web.not_json");
+    EXPECT_EQ(code_of("{"), "web.not_json");
+    EXPECT_EQ(code_of("[1]"), "web.not_an_object");
+    EXPECT_EQ(code_of("{}"), "web.type");
+    EXPECT_EQ(code_of(R"({"type":7})"), "web.key");
+    EXPECT_EQ(code_of(R"({"type":"command","cmd":"stop"})"), "web.id");
+    EXPECT_EQ(code_of(R"({"type":"command","id":1.5,"cmd":"stop"})"), "web.id");
+    EXPECT_EQ(code_of(R"({"type":"command","id":0,"cmd":"stop"})"), "web.id");
+    EXPECT_EQ(code_of(R"({"type":"command","id":18446744073709551615,"cmd":"stop"})"), "web.id");
+    EXPECT_EQ(code_of(R"({"type":"command","id":1,"cmd":"format"})"), "web.unknown_command");
+    EXPECT_EQ(code_of(R"({"type":"command","id":1,"cmd":"move","utime":5})"), "web.key");
+    EXPECT_EQ(code_of(R"({"type":"command","id":1,"cmd":"move","valid_ms":10000})"), "web.key");
+    EXPECT_EQ(code_of(R"({"type":"command","id":1,"cmd":"move","commissioning":true})"), "web.key");
+    EXPECT_EQ(code_of(R"({"type":"command","id":1,"cmd":"move","sent_ms":"now"})"), "web.key");
+    EXPECT_EQ(code_of(R"({"type":"command","id":1,"cmd":"stop","cmd":"move"})"), "web.duplicate_key");
+    EXPECT_EQ(code_of("{\"type\":\"command\",\"id\":1,\"cmd\":\"\xff\xfe\"}"), "web.not_json");
+    EXPECT_EQ(code_of(std::string(60'000, '[')), "web.too_deep");
+    EXPECT_EQ(code_of(std::string(PageMessage::longest + 1, ' ')), "web.too_long");
+    // Its id comes back where one stood.
+    const auto read = read_page_message(R"({"type":"command","id":12,"cmd":"format"})");
+    EXPECT_EQ(std::get<UnreadMessage>(read).id, 12);
+}
+
+TEST(PageFiles, OnlyWhatLiesInTheFolderItself) {
+    auto pattern = (std::filesystem::temp_directory_path() / "taktwerk-page-XXXXXX").string();
+    const std::filesystem::path folder = ::mkdtemp(pattern.data());
+    EXPECT_EQ(SiteFiles::load(folder.string()).error().code, "web.no_page");
+    std::ofstream(folder / "index.html") << "<p>page";
+    std::ofstream(folder / "page.js") << "1";
+    std::ofstream(folder / "users.yaml") << "secret";
+    std::filesystem::create_directory(folder / "inner.js");
+    std::filesystem::create_symlink("/etc/hostname", folder / "link.html");
+    const auto site = SiteFiles::load(folder.string());
+    std::filesystem::remove_all(folder);
+    ASSERT_TRUE(site.ok()) << site.error().text();
+    EXPECT_EQ(site->size(), 2u);
+    ASSERT_NE(site->find("/"), nullptr);
+    EXPECT_EQ(site->find("/")->content, "<p>page");
+    EXPECT_THAT(std::string(site->find("/page.js")->type), HasSubstr("javascript"));
+    for (const char* target : {"", "page.js", "/users.yaml", "/link.html", "/inner.js", "/../etc/passwd", "/page.js?x", "//page.js", "/%2e%2e/"})
+        EXPECT_EQ(site->find(target), nullptr) << target;
+}
+
+}  // namespace
+}  // namespace taktwerk::hmi::web
