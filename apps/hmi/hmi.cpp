@@ -31,7 +31,8 @@ Result<std::pair<std::string, std::uint16_t>> listen_address(const std::string& 
     if (colon == std::string::npos) return wrong;
     auto address = text.substr(0, colon);
     const auto port = text.substr(colon + 1);
-    if (port.empty() || port.size() > 5 || port.find_first_not_of("0123456789") != std::string::npos || std::stoi(port) > 65535) return wrong;
+    if (port.empty() || port.size() > 5 || port.find_first_not_of("0123456789") != std::string::npos || std::stoi(port) > 65535)
+        return wrong;
     if (address.size() > 2 && address.front() == '[' && address.back() == ']') address = address.substr(1, address.size() - 2);
     else if (address.find(':') != std::string::npos) return wrong;
     if (address == "localhost") address = "127.0.0.1";
@@ -62,7 +63,8 @@ int serve(const HmiOptions& options) {
     if (!options.audit.empty()) {
         audit->open(options.audit, std::ios::app);
         if (!*audit) {
-            print_error(Error{"web.audit", options.audit, "the file cannot be written", "Name a file in a folder of this user with --audit."});
+            print_error(
+                Error{"web.audit", options.audit, "the file cannot be written", "Name a file in a folder of this user with --audit."});
             return exit_bad_file;
         }
     }
@@ -78,8 +80,8 @@ int serve(const HmiOptions& options) {
         print_error(server.error());
         return server.error().code == "web.no_users" ? exit_usage : exit_bad_file;
     }
-    fmt::print("the page: http://{}:{}/  (Ctrl-C ends)\n", listen->first.find(':') == std::string::npos ? listen->first : "[" + listen->first + "]",
-               (*server)->port());
+    fmt::print("the page: http://{}:{}/  (Ctrl-C ends)\n",
+               listen->first.find(':') == std::string::npos ? listen->first : "[" + listen->first + "]", (*server)->port());
     std::fflush(stdout);
     (*server)->run();
     return exit_ok;
@@ -90,7 +92,8 @@ int serve(const HmiOptions& options) {
 void add_hmi(CLI::App& app, Action& action) {
     auto* sub = app.add_subcommand("hmi", "serve the page of the machines of this host, for a browser");
     auto options = std::make_shared<HmiOptions>();
-    sub->add_option("--listen", options->listen, "ADDRESS:PORT, an address of this host's loopback; port 0: any free one")->capture_default_str();
+    sub->add_option("--listen", options->listen, "ADDRESS:PORT, an address of this host's loopback; port 0: any free one")
+        ->capture_default_str();
     sub->add_option("-s,--socket,--machine", options->machines, "a machine's name or its socket, several times; default: all that run");
     sub->add_option("--role", options->role, "what the page may: viewer, operator, engineer, admin")
         ->check(CLI::IsMember({"viewer", "operator", "engineer", "admin"}))

@@ -95,7 +95,8 @@ std::variant<PageMessage, Error> read_object(const Json& object) {
     for (const char* key : own_keys)
         if (object.contains(key)) return web_error("key", fmt::format("'{}' is the server's to say", key), "Leave it out.");
     if (const auto sent = object.find("sent_ms"); sent != object.end()) {
-        if (!sent->is_number() || !std::isfinite(sent->get<double>())) return web_error("key", "'sent_ms' is not a number", "Reload the page.");
+        if (!sent->is_number() || !std::isfinite(sent->get<double>()))
+            return web_error("key", "'sent_ms' is not a number", "Reload the page.");
         message.sent_ms = sent->get<double>();
     }
     message.request = object;
@@ -118,7 +119,8 @@ std::variant<PageMessage, UnreadMessage> read_page_message(std::string_view text
     if (too_deep(text)) return unread(web_error("too_deep", "a message has at most 8 levels", "Reload the page."));
     const auto parsed = parse_once(text);
     if (parsed.json.is_discarded()) return unread(web_error("not_json", "the message is no JSON", "Reload the page."));
-    if (parsed.duplicate) return unread(web_error("duplicate_key", "a key stands twice: nobody can tell which one is meant", "Reload the page."));
+    if (parsed.duplicate)
+        return unread(web_error("duplicate_key", "a key stands twice: nobody can tell which one is meant", "Reload the page."));
     if (!parsed.json.is_object()) return unread(web_error("not_an_object", "the message is no JSON object", "Reload the page."));
     auto read = read_object(parsed.json);
     if (auto* error = std::get_if<Error>(&read)) return UnreadMessage{whole_number(parsed.json, "id"), std::move(*error)};
@@ -131,7 +133,7 @@ Json error_json(const Error& error) {
 
 std::string refusal(std::int64_t id, const Error& error) {
     return Json{{"type", "answer"}, {"id", id}, {"ok", false}, {"error", error_json(error)}}.dump(-1, ' ', false,
-                                                                                               Json::error_handler_t::replace);
+                                                                                                  Json::error_handler_t::replace);
 }
 
 }  // namespace taktwerk::hmi::web

@@ -23,9 +23,9 @@ struct PageMessage {
     Kind kind = Kind::command;
     std::string machine;  ///< empty: the watched one
     std::int64_t id = 0;
-    const CommandRule* rule = nullptr;   ///< of a command
-    std::optional<double> sent_ms;       ///< finite
-    nlohmann::ordered_json request;      ///< of a command: the socket's own, without id and time
+    const CommandRule* rule = nullptr;  ///< of a command
+    std::optional<double> sent_ms;      ///< finite
+    nlohmann::ordered_json request;     ///< of a command: the socket's own, without id and time
 
     /// A renewal, a press, or (false) a jog let go and everything that moves nothing.
     [[nodiscard]] bool may_move() const;

@@ -21,30 +21,18 @@ struct CommandRule {
 
 /// Every command of the local socket; what does not stand here comes from no page.
 inline constexpr std::array command_rules{
-    CommandRule{"hello", Role::viewer, false},
-    CommandRule{"layout", Role::viewer, false},
-    CommandRule{"state", Role::viewer, false},
-    CommandRule{"alarms", Role::viewer, false},
-    CommandRule{"drive_read", Role::viewer, false},
-    CommandRule{"stop", Role::viewer, false},  // anybody may, always
-    CommandRule{"take_control", Role::operates, true},
-    CommandRule{"release_control", Role::operates, true},
-    CommandRule{"mode", Role::operates, true},
-    CommandRule{"enable", Role::operates, true},
-    CommandRule{"disable", Role::operates, true},
-    CommandRule{"home", Role::operates, true},
-    CommandRule{"jog", Role::operates, true},
-    CommandRule{"move", Role::operates, true},
-    CommandRule{"reset", Role::operates, true},
-    CommandRule{"program_start", Role::operates, true},
-    CommandRule{"program_stop", Role::operates, true},
-    CommandRule{"program_reset", Role::operates, true},
-    CommandRule{"acknowledge", Role::operates, true},
-    CommandRule{"set_parameter", Role::engineer, true},
-    CommandRule{"set_output", Role::engineer, true},
-    CommandRule{"simulate", Role::engineer, true},
-    CommandRule{"drive_write", Role::engineer, true},
-    CommandRule{"drive_store", Role::engineer, true},
+    CommandRule{"hello", Role::viewer, false},         CommandRule{"layout", Role::viewer, false},
+    CommandRule{"state", Role::viewer, false},         CommandRule{"alarms", Role::viewer, false},
+    CommandRule{"drive_read", Role::viewer, false},    CommandRule{"stop", Role::viewer, false},  // anybody may, always
+    CommandRule{"take_control", Role::operates, true}, CommandRule{"release_control", Role::operates, true},
+    CommandRule{"mode", Role::operates, true},         CommandRule{"enable", Role::operates, true},
+    CommandRule{"disable", Role::operates, true},      CommandRule{"home", Role::operates, true},
+    CommandRule{"jog", Role::operates, true},          CommandRule{"move", Role::operates, true},
+    CommandRule{"reset", Role::operates, true},        CommandRule{"program_start", Role::operates, true},
+    CommandRule{"program_stop", Role::operates, true}, CommandRule{"program_reset", Role::operates, true},
+    CommandRule{"acknowledge", Role::operates, true},  CommandRule{"set_parameter", Role::engineer, true},
+    CommandRule{"set_output", Role::engineer, true},   CommandRule{"simulate", Role::engineer, true},
+    CommandRule{"drive_write", Role::engineer, true},  CommandRule{"drive_store", Role::engineer, true},
     CommandRule{"shutdown", Role::admin, true},
 };
 

@@ -8,11 +8,11 @@
 #include <set>
 #include <utility>
 
+#include <fmt/format.h>
 #include <boost/asio.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "core/clock.hpp"
@@ -36,16 +36,16 @@ using local = asio::local::stream_protocol;
 using Json = nlohmann::ordered_json;
 using namespace std::chrono_literals;
 
-constexpr Duration tick = 50ms;             // of values, and of everything that has a time-out
+constexpr Duration tick = 50ms;  // of values, and of everything that has a time-out
 constexpr Duration looks_for_machines = 1s;
 constexpr Duration stale_after = 500ms;
-constexpr Duration page_patience = 2s;      // a page that takes nothing for so long is dropped
-constexpr Duration answer_patience = 3s;    // longer than the gateway waits for the cycle
-constexpr Duration drive_patience = 12s;    // a drive's EEPROM
-constexpr std::size_t most_waiting = 32;    // commands of one page without an answer
+constexpr Duration page_patience = 2s;    // a page that takes nothing for so long is dropped
+constexpr Duration answer_patience = 3s;  // longer than the gateway waits for the cycle
+constexpr Duration drive_patience = 12s;  // a drive's EEPROM
+constexpr std::size_t most_waiting = 32;  // commands of one page without an answer
 constexpr int most_messages_a_second = 200;
 constexpr std::size_t longest_answer = 4 * 1024 * 1024;
-constexpr int send_buffer = 64 * 1024;      // the kernel must not hide for long that a page takes nothing
+constexpr int send_buffer = 64 * 1024;  // the kernel must not hide for long that a page takes nothing
 
 Instant now() { return SystemClock{}.now(); }
 
@@ -79,7 +79,8 @@ public:
     }
     void ask(Json request, Duration patience, Answer answer) {
         if (closed_)
-            return answer(failed(Error{"web.no_machine", path_, "there is no connection to the machine", "Start it with `taktwerk run FILE`."}));
+            return answer(
+                failed(Error{"web.no_machine", path_, "there is no connection to the machine", "Start it with `taktwerk run FILE`."}));
         const auto id = next_id_++;
         request["id"] = id;
         waiting_[id] = Waiting{std::move(answer), now() + patience};
@@ -221,7 +222,10 @@ public:
         if (stale && at - stale_told_ >= stale_after) {
             stale_told_ = at;
             out_.drop_state();
-            put(text_of(Json{{"type", "stale"}, {"machine", feed_->name}, {"age_ms", feed_->fresh == Instant{} ? Json{} : Json((at - feed_->fresh) / 1ms)}, {"why", feed_->why}}));
+            put(text_of(Json{{"type", "stale"},
+                             {"machine", feed_->name},
+                             {"age_ms", feed_->fresh == Instant{} ? Json{} : Json((at - feed_->fresh) / 1ms)},
+                             {"why", feed_->why}}));
         }
     }
     void give_values(Instant got) {
@@ -337,15 +341,19 @@ private:
                                            : unknown(message.machine);
         if (command == "stop") return std::nullopt;
         if (!may(role(), *message.rule))
-            return Error{"web.role", command, fmt::format("{} needs the role {}, this is {}", command, word(message.rule->least), word(role())),
+            return Error{"web.role", command,
+                         fmt::format("{} needs the role {}, this is {}", command, word(message.rule->least), word(role())),
                          "Log in as somebody who may."};
         if (named != feed_)
-            return Error{"web.other_machine", message.machine, "the page shows another machine", "Look at the machine first, then command it."};
+            return Error{"web.other_machine", message.machine, "the page shows another machine",
+                         "Look at the machine first, then command it."};
         if (message.may_move() && !message.sent_ms)
-            return Error{"web.no_time", command, "a command that can move something says when it was given", "Add sent_ms; reload the page."};
+            return Error{"web.no_time", command, "a command that can move something says when it was given",
+                         "Add sent_ms; reload the page."};
         if (message.may_move() && waited_ > (message.is_jog() ? MessageAge::longest_of_jog : MessageAge::longest)) {
             if (message.is_jog()) let_go();
-            return Error{"web.too_old", command, fmt::format("it took {} ms to arrive: nobody knows whether it is still wanted", waited_ / 1ms),
+            return Error{"web.too_old", command,
+                         fmt::format("it took {} ms to arrive: nobody knows whether it is still wanted", waited_ / 1ms),
                          "Give it again; if this stays, reload the page and look at the network."};
         }
         if (line_ && line_->waiting() >= most_waiting && message.may_move())
@@ -414,7 +422,8 @@ using Pages = std::set<std::shared_ptr<Page>>;
 /// One HTTP connection, until it becomes a page or ends.
 class Connection : public std::enable_shared_from_this<Connection> {
 public:
-    Connection(tcp::socket&& socket, std::shared_ptr<Site> site, Pages& pages) : stream_(std::move(socket)), site_(std::move(site)), pages_(pages) {
+    Connection(tcp::socket&& socket, std::shared_ptr<Site> site, Pages& pages)
+        : stream_(std::move(socket)), site_(std::move(site)), pages_(pages) {
         ++site_->connections;
         error_code ignored;
         const auto from = stream_.socket().remote_endpoint(ignored);
@@ -434,7 +443,8 @@ public:
 private:
     void answer(error_code failure) {
         if (failure == http::error::header_limit) return say(http::status::request_header_fields_too_large, "too large");
-        if (failure == http::error::body_limit || failure == http::error::unexpected_body) return say(http::status::payload_too_large, "no body");
+        if (failure == http::error::body_limit || failure == http::error::unexpected_body)
+            return say(http::status::payload_too_large, "no body");
         if (failure) return;  // the destructor closes
         const auto& request = parser_->get();
         const std::string host(request[http::field::host]), origin(request[http::field::origin]), target(request.target());
@@ -453,7 +463,9 @@ private:
         if (file == nullptr) return say(http::status::not_found, "no such file");
         send(http::status::ok, file->type, file->content, request.keep_alive(), request.method() == http::verb::head);
     }
-    void say(http::status status, std::string_view text) { send(status, "text/plain; charset=utf-8", std::string(text) + "\n", false, false); }
+    void say(http::status status, std::string_view text) {
+        send(status, "text/plain; charset=utf-8", std::string(text) + "\n", false, false);
+    }
     void send(http::status status, std::string_view type, const std::string& content, bool keep, bool head) {
         reply_ = {};
         reply_.result(status);
@@ -593,7 +605,8 @@ struct WebServer::Impl {
             feed->cycle = cycle;
             feed->fresh = now();
             feed->why = "the machine does not answer";
-            feed->values = std::make_shared<const std::string>("\"machine\":" + text_of(Json(feed->name)) + ",\"state\":" + text_of(state) + "}");
+            feed->values =
+                std::make_shared<const std::string>("\"machine\":" + text_of(Json(feed->name)) + ",\"state\":" + text_of(state) + "}");
             for (const auto& page : pages)
                 if (page->feed() == feed) page->give_values(feed->fresh);
         });
@@ -623,7 +636,8 @@ Result<std::unique_ptr<WebServer>> WebServer::open(ServerOptions options, SiteFi
     if (!failure) impl->acceptor.bind(endpoint, failure);
     if (!failure) impl->acceptor.listen(16, failure);
     if (failure)
-        return Error{"web.listen", where, "cannot listen: " + failure.message(), "Choose another port: `taktwerk hmi --listen 127.0.0.1:8081`."};
+        return Error{"web.listen", where, "cannot listen: " + failure.message(),
+                     "Choose another port: `taktwerk hmi --listen 127.0.0.1:8081`."};
     impl->site = std::make_shared<Site>(Site{impl->io, impl->options, impl->files, impl->feeds, nullptr});
     impl->site->origin = std::make_unique<PageOrigin>(impl->options.address, impl->acceptor.local_endpoint().port());
     return std::unique_ptr<WebServer>(new WebServer(std::move(impl)));

@@ -16,16 +16,16 @@ namespace taktwerk::hmi::web {
 
 struct ServerOptions {
     std::string address = "127.0.0.1";
-    std::uint16_t port = 8080;                 ///< 0: any free one
-    std::vector<std::string> machines;         ///< names or paths of sockets; empty: all that are found on this host, also later
-    Role role = Role::engineer;                ///< of every page: on loopback nobody logs in
+    std::uint16_t port = 8080;          ///< 0: any free one
+    std::vector<std::string> machines;  ///< names or paths of sockets; empty: all that are found on this host, also later
+    Role role = Role::engineer;         ///< of every page: on loopback nobody logs in
     std::string version;
     std::function<void(const std::string&)> audit;  ///< one JSON object a line: who, from where, what, the answer
 };
 
 class WebServer {
 public:
-    static constexpr std::size_t most_pages = 6;         ///< the machine's socket takes 8: one is the server's, one stays for the command line
+    static constexpr std::size_t most_pages = 6;  ///< the machine's socket takes 8: one is the server's, one stays for the command line
     static constexpr std::size_t most_connections = 64;  ///< HTTP included
 
     /// Listens when it returns. Errors: web.no_users (an address beyond loopback), web.listen.

@@ -23,11 +23,13 @@ using ::testing::HasSubstr;
 // Written apart from the table in roles.hpp, from what each command does (hmi_bridge/README.md): viewer, operator, engineer, admin.
 TEST(PageRoles, EveryCellOfRoleAndCommand) {
     const std::map<std::string, std::string> expected{
-        {"hello", "yyyy"},         {"layout", "yyyy"},        {"state", "yyyy"},         {"alarms", "yyyy"},       {"drive_read", "yyyy"},
-        {"stop", "yyyy"},          {"take_control", "nyyy"},  {"release_control", "nyyy"}, {"mode", "nyyy"},       {"enable", "nyyy"},
-        {"disable", "nyyy"},       {"home", "nyyy"},          {"jog", "nyyy"},           {"move", "nyyy"},         {"reset", "nyyy"},
-        {"program_start", "nyyy"}, {"program_stop", "nyyy"},  {"program_reset", "nyyy"}, {"acknowledge", "nyyy"},  {"set_parameter", "nnyy"},
-        {"set_output", "nnyy"},    {"simulate", "nnyy"},      {"drive_write", "nnyy"},   {"drive_store", "nnyy"},  {"shutdown", "nnny"}};
+        {"hello", "yyyy"},        {"layout", "yyyy"},        {"state", "yyyy"},        {"alarms", "yyyy"},
+        {"drive_read", "yyyy"},   {"stop", "yyyy"},          {"take_control", "nyyy"}, {"release_control", "nyyy"},
+        {"mode", "nyyy"},         {"enable", "nyyy"},        {"disable", "nyyy"},      {"home", "nyyy"},
+        {"jog", "nyyy"},          {"move", "nyyy"},          {"reset", "nyyy"},        {"program_start", "nyyy"},
+        {"program_stop", "nyyy"}, {"program_reset", "nyyy"}, {"acknowledge", "nyyy"},  {"set_parameter", "nnyy"},
+        {"set_output", "nnyy"},   {"simulate", "nnyy"},      {"drive_write", "nnyy"},  {"drive_store", "nnyy"},
+        {"shutdown", "nnny"}};
     EXPECT_EQ(command_rules.size(), expected.size());
     for (const auto& row : expected) {
         const auto* rule = find_rule(row.first);
@@ -42,13 +44,15 @@ TEST(PageRoles, EveryCellOfRoleAndCommand) {
 
 TEST(PageOriginRule, OnlyItsOwnNamesAndItsOwnPage) {
     const PageOrigin origin("127.0.0.1", 8080);
-    for (const char* host : {"127.0.0.1:8080", "localhost:8080", "LocalHost:8080", "[::1]:8080"}) EXPECT_TRUE(origin.knows_host(host)) << host;
+    for (const char* host : {"127.0.0.1:8080", "localhost:8080", "LocalHost:8080", "[::1]:8080"})
+        EXPECT_TRUE(origin.knows_host(host)) << host;
     for (const char* host : {"", "127.0.0.1", "127.0.0.1:80", "evil.example:8080", "localhost.evil.example:8080", "localhost:8080 "})
         EXPECT_FALSE(origin.knows_host(host)) << host;
     EXPECT_TRUE(origin.is_own("http://localhost:8080", "localhost:8080"));
     EXPECT_TRUE(origin.is_own("https://127.0.0.1:8080", "127.0.0.1:8080"));
-    for (const char* foreign : {"", "null", "http://evil.example", "http://evil.example:8080", "http://localhost:8081", "file://localhost:8080",
-                                "http://127.0.0.1:8080", "http://localhost:8080.evil.example", "http://localhost:8080/"})
+    for (const char* foreign :
+         {"", "null", "http://evil.example", "http://evil.example:8080", "http://localhost:8081", "file://localhost:8080",
+          "http://127.0.0.1:8080", "http://localhost:8080.evil.example", "http://localhost:8080/"})
         EXPECT_FALSE(origin.is_own(foreign, "localhost:8080")) << foreign;
     // A foreign name that was made to point here: page and host agree, and both are unknown.
     EXPECT_FALSE(origin.is_own("http://evil.example:8080", "evil.example:8080"));
@@ -64,7 +68,7 @@ TEST(PageOriginRule, LoopbackIsLoopbackAlone) {
 TEST(MessageAgeRule, WhatWaitedIsOldByAsLongAsItWaited) {
     MessageAge age;
     const Instant start{100s};
-    EXPECT_EQ(age.of(5000, start), 0ms);                // the clocks' difference, and the way
+    EXPECT_EQ(age.of(5000, start), 0ms);  // the clocks' difference, and the way
     EXPECT_LE(age.of(5050, start + 50ms), 1ms);
     // The network stalls for 400 ms, then hands on what was sent each 50 ms.
     EXPECT_GT(age.of(5100, start + 500ms), 390ms);
@@ -116,7 +120,8 @@ std::string code_of(const std::string& text) {
 }
 
 TEST(PageMessages, ACommandIsTheSocketsOwn) {
-    const auto jog = message_of(R"({"type":"command","id":7,"machine":"demo","cmd":"jog","axis":"x","velocity":-2.5,"press":true,"sent_ms":12.5})");
+    const auto jog =
+        message_of(R"({"type":"command","id":7,"machine":"demo","cmd":"jog","axis":"x","velocity":-2.5,"press":true,"sent_ms":12.5})");
     EXPECT_EQ(jog.id, 7);
     EXPECT_EQ(jog.machine, "demo");
     EXPECT_EQ(jog.sent_ms, 12.5);
@@ -170,7 +175,8 @@ TEST(PageFiles, OnlyWhatLiesInTheFolderItself) {
     ASSERT_NE(site->find("/"), nullptr);
     EXPECT_EQ(site->find("/")->content, "<p>page");
     EXPECT_THAT(std::string(site->find("/page.js")->type), HasSubstr("javascript"));
-    for (const char* target : {"", "page.js", "/users.yaml", "/link.html", "/inner.js", "/../etc/passwd", "/page.js?x", "//page.js", "/%2e%2e/"})
+    for (const char* target :
+         {"", "page.js", "/users.yaml", "/link.html", "/inner.js", "/../etc/passwd", "/page.js?x", "//page.js", "/%2e%2e/"})
         EXPECT_EQ(site->find(target), nullptr) << target;
 }
 
