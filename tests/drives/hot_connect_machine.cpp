@@ -88,10 +88,17 @@ struct ToolMachine : TestMachine {
     }
 };
 
+runtime::GroupSimulation away(const std::string& group) {
+    runtime::GroupSimulation out;
+    out.group = group;
+    out.connected = false;
+    return out;
+}
+
 // A tool that lies in its rack when the machine starts is no trouble to anybody.
 TEST(HotConnect, TheMachineComesUpWithoutItsTools) {
     auto config = tools();
-    config.simulation.groups = {{.group = "tool_a", .connected = false}, {.group = "tool_b", .connected = false}};
+    config.simulation.groups = {away("tool_a"), away("tool_b")};
     ToolMachine m{config};
     ASSERT_TRUE(m.up());
     m.run(1s);
@@ -113,7 +120,7 @@ TEST(HotConnect, TheMachineComesUpWithoutItsTools) {
 // Joined and left again, five times each, under an axis that runs: no alarm, no jump, nobody resets anything.
 TEST(HotConnect, ToolsComeAndGoWhileTheRestRuns) {
     auto config = tools();
-    config.simulation.groups = {{.group = "tool_a", .connected = false}, {.group = "tool_b", .connected = false}};
+    config.simulation.groups = {away("tool_a"), away("tool_b")};
     ToolMachine m{config};
     ASSERT_TRUE(m.up());
     m.enable(x);
