@@ -114,7 +114,9 @@ Script<Result<void>> recover(Bus& bus, BusSlave& slave) {
     if (state == AlState::safeop) {
         const Result<std::string> changed = co_await changed_setting(bus, slave);
         if (changed && !changed->empty()) {
-            bus.remember(fmt::format("{}: {} is not as it was written: it is set up again", slave.subject, *changed));
+            slave.not_exchanged = *changed + " is not as it was written: something wrote to it";
+            slave.link.taken_down.store(true);
+            bus.remember(slave.subject + ": " + slave.not_exchanged + "; it is set up again");
             state = AlState::init;
         }
     }

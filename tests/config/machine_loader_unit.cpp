@@ -88,7 +88,9 @@ TEST_P(BadFile, IsRefusedWithEveryProblemAtItsPlace) {
     const auto expected = expectations(path);
     ASSERT_FALSE(expected.empty());
 
-    const auto errors = must_fail(path);
+    auto options = without_programs();
+    options.device_dirs = {source + "/config/devices"};
+    const auto errors = must_fail(path, options);
 
     EXPECT_EQ(errors.size(), expected.size()) << one_a_line(errors);
     for (const auto& expectation : expected) {
