@@ -1,0 +1,89 @@
+// What the pages share: the connection, giving a command and telling its answer, buttons that know when they may be pressed.
+import { Answer, Link, Request } from './link';
+import { JogHold } from './jog';
+import { AxisLayout, AxisState, MachineState } from './state';
+import { Key, say } from './texts';
+import { element, mark, write } from './view';
+
+export interface Page {
+    root: HTMLElement;
+    update(state: MachineState): void;
+}
+
+export class Desk {
+    readonly notice = element('div', { class: 'notice', role: 'status', 'aria-live': 'polite' });
+
+    constructor(readonly link: Link, readonly hold: JogHold) {}
+
+    /** Gives the command and tells what came of it. */
+    async give(request: Request): Promise<Answer> {
+        const answer = await this.link.request(request);
+        if (!answer.ok) this.refused(answer);
+        else if (answer.note) this.tell('note', answer.note);
+        else if (this.notice.dataset['kind'] === 'refused') this.hush();
+        return answer;
+    }
+    refused(answer: Answer): void {
+        const { code = '', subject = '', what = '', remedy = '' } = answer.error ?? {};
+        if (code === 'page.no_connection') this.tell('refused', say('no_connection'));
+        else if (code === 'page.no_answer') this.tell('refused', say('no_answer'));
+        else this.tell('refused', `${say('refused')}: ${subject ? subject + ': ' : ''}${what}${remedy ? ' – ' + remedy : ''}`);
+    }
+    tell(kind: 'refused' | 'note', text: string): void {
+        this.notice.dataset['kind'] = kind;
+        this.notice.replaceChildren(element('span', {}, (kind === 'refused' ? '⚠ ' : 'ⓘ ') + text),
+            element('button', { type: 'button', class: 'small', onclick: () => this.hush() }, say('close')));
+    }
+    hush(): void {
+        delete this.notice.dataset['kind'];
+        this.notice.replaceChildren();
+    }
+
+    /** A button that gives one command; grey while the values are old or the role may not. */
+    button(key: Key, request: () => Request, kind = ''): HTMLButtonElement {
+        const cmd = request().cmd;
+        return element('button', { type: 'button', class: kind, 'data-cmd': cmd, onclick: () => void this.give(request()) }, say(key));
+    }
+    /** Whether a button may be pressed now, by its own reason and by everybody's. */
+    permit(button: HTMLButtonElement | HTMLInputElement | HTMLSelectElement, cmd: string, possible = true): void {
+        const allowed = possible && !this.link.stale && this.link.allowed(cmd);
+        if (button.disabled === allowed) button.disabled = !allowed;
+    }
+    axis_layout(name: string): AxisLayout | undefined {
+        return this.link.layout?.axes.find((axis) => axis.name === name);
+    }
+}
+
+const signs: Record<string, string> = { Disabled: '○', Standstill: '●', Homing: '⌂', Stopping: '◼', ErrorStop: '⚠' };
+
+/** A state as sign and word, coloured: never by colour alone. */
+export function write_state(to: HTMLElement, axis: AxisState, text: string): void {
+    write(to, `${signs[axis.state] ?? '▶'} ${text}`);
+    const tone = axis.state === 'ErrorStop' ? 'bad' : axis.state === 'Disabled' ? 'idle' : axis.state === 'Stopping' ? 'warn' : 'good';
+    mark(to, 'data-tone', tone);
+}
+export function write_lamp(to: HTMLElement, on: boolean, text: string, tone = 'good'): void {
+    write(to, `${on ? '●' : '○'} ${text}`);
+    mark(to, 'data-tone', on ? tone : 'idle');
+}
+
+/** Rows of a name and a value. */
+export class Values {
+    readonly root = element('dl', { class: 'values' });
+    private readonly cells_ = new Map<string, HTMLElement>();
+    add(key: Key): HTMLElement {
+        const cell = element('dd', { 'data-value': key });
+        this.root.append(element('dt', {}, say(key)), cell);
+        this.cells_.set(key, cell);
+        return cell;
+    }
+    set(key: Key, text: string): void {
+        write(this.cells_.get(key) ?? this.add(key), text);
+    }
+}
+
+export const panel = (title: Key, ...children: (Node | string)[]): HTMLElement =>
+    element('section', { class: 'panel' }, element('h2', {}, say(title)), ...children);
+export function table(keys: Key[], body: HTMLElement): HTMLElement {
+    return element('table', {}, element('thead', {}, element('tr', {}, ...keys.map((key) => element('th', { scope: 'col' }, say(key))))), body);
+}

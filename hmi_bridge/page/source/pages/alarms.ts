@@ -1,0 +1,53 @@
+// What stands, in words, with cause and remedy; and what the machine refused.
+import { Desk, Page, panel } from '../desk';
+import { duration } from '../numbers';
+import { Alarm, CommandEvent, MachineState } from '../state';
+import { current_language, say, word } from '../texts';
+import { element, mark, Rows, write } from '../view';
+
+export const in_words = (alarm: Alarm): string => (current_language() === 'zh' && alarm.chinese ? alarm.chinese : alarm.english);
+export const key_of = (alarm: Alarm): string => `${alarm.id}/${alarm.source}/${alarm.name}/${alarm.english}`;
+
+export function alarms(desk: Desk): Page {
+    const acknowledge = desk.button('acknowledge', () => ({ cmd: 'acknowledge' }), 'primary');
+    const reset = desk.button('reset_all', () => ({ cmd: 'reset' }));
+    const none = element('p', { class: 'calm' }, `✓ ${say('no_alarms')}`);
+    const list = element('div', { class: 'alarm-list' });
+    const rows = new Rows(list, key_of, (alarm) => {
+        const status = element('span', { class: 'alarm-status' }), since = element('span', { class: 'alarm-since' });
+        const root = element('article', { class: 'alarm', 'data-alarm': alarm.name },
+            element('header', {}, status, element('strong', {}, alarm.source), since),
+            element('p', { class: 'alarm-text' }, in_words(alarm)),
+            element('dl', { class: 'values' }, element('dt', {}, say('cause')), element('dd', {}, alarm.cause), element('dt', {}, say('remedy')),
+                element('dd', {}, alarm.remedy), element('dt', {}, say('how_to_reset')), element('dd', {}, alarm.reset),
+                element('dt', {}, say('reaction')), element('dd', {}, `${word('reaction', alarm.reaction)} · ${alarm.name}`)));
+        return { root, status, since };
+    }, (row, alarm) => {
+        write(row.status, alarm.standing ? `⚠ ${say('standing')}` : `○ ${say('gone')}`);
+        mark(row.root, 'data-tone', alarm.standing ? (alarm.reaction === 'warn' || alarm.reaction === 'none' ? 'warn' : 'bad') : 'idle');
+        const age = ((desk.link.state?.time_ns ?? 0) - alarm.since_ns) / 1e9;
+        write(row.since, say('ago', { age: duration(Math.max(0, age)) }) + (alarm.count > 1 ? ` · ${say('count')} ${alarm.count}` : ''));
+    });
+    const calm = element('p', { class: 'hint' }, say('no_refusals'));
+    const events = element('div', { class: 'event-list' });
+    const event_rows = new Rows(events, (event: CommandEvent) => String(event.number), () => {
+        const when = element('span', { class: 'alarm-since' }), what = element('span'), remedy = element('small');
+        return { root: element('div', { class: 'event' }, when, what, remedy), when, what, remedy };
+    }, (row, event) => {
+        write(row.when, say('ago', { age: duration(Math.max(0, ((desk.link.state?.time_ns ?? 0) - event.time_ns) / 1e9)) }) + (event.times > 1 ? ` ×${event.times}` : ''));
+        write(row.what, `${event.axis ? event.axis + ': ' : ''}${event.english}`);
+        write(row.remedy, event.remedy);
+    });
+    return {
+        root: element('div', { class: 'page alarms' }, element('div', { class: 'buttons' }, acknowledge, reset), none, list, panel('refusals', calm, events)),
+        update(state: MachineState) {
+            const known = [...state.alarms].sort((a, b) => Number(b.standing) - Number(a.standing) || b.since_ns - a.since_ns);
+            rows.update(known);
+            event_rows.update([...state.events].reverse());
+            none.hidden = known.length > 0;
+            calm.hidden = state.events.length > 0;
+            desk.permit(acknowledge, 'acknowledge', known.length > 0);
+            desk.permit(reset, 'reset');
+        },
+    };
+}

@@ -1,0 +1,87 @@
+// All axes at a glance, a row each; programs; whether the cycle keeps time.
+import { Desk, Page, panel, table, Values, write_lamp, write_state } from '../desk';
+import { fixed, microseconds } from '../numbers';
+import { AxisState, MachineState } from '../state';
+import { say, word } from '../texts';
+import { element, Rows, write } from '../view';
+
+export function overview(desk: Desk): Page {
+    const cells = ['state', 'position', 'velocity', 'power', 'homed', 'owner'] as const;
+    const body = element('tbody');
+    const axes = new Rows(body, (axis: AxisState) => axis.name, (axis) => {
+        const link = element('a', { href: `#axis/${encodeURIComponent(axis.name)}`, class: 'row-link' }, axis.name);
+        const cell = (name: (typeof cells)[number], kind = '') => element('td', { 'data-value': name, class: kind });
+        const made = { state: cell('state'), position: cell('position', 'number'), velocity: cell('velocity', 'number'), power: cell('power'), homed: cell('homed'), owner: cell('owner') };
+        const root = element('tr', { 'data-axis': axis.name, onclick: () => link.click() }, element('th', { scope: 'row' }, link), ...cells.map((name) => made[name]));
+        return { root, ...made };
+    }, (row, axis) => {
+        write_state(row.state, axis, word('axis', axis.state));
+        write(row.position, `${fixed(axis.actual_position)} ${axis.unit}`);
+        write(row.velocity, `${fixed(axis.actual_velocity)} ${axis.unit}/s`);
+        write_lamp(row.power, axis.powered, say(axis.powered ? 'power_on_state' : 'power_off_state'));
+        write_lamp(row.homed, axis.homed, say(axis.homed ? 'homed' : 'not_homed'));
+        write(row.owner, word('owner', axis.owner));
+    });
+
+    const power = desk.button('power_all', () => ({ cmd: 'enable', axis: 'all' }));
+    const no_power = desk.button('power_off_all', () => ({ cmd: 'disable', axis: 'all' }));
+    const reset = desk.button('reset_all', () => ({ cmd: 'reset' }));
+    const programs = program_rows(desk);
+    const health = new Values();
+    const root = element('div', { class: 'page overview' },
+        panel('axis', table(['name', ...cells], body), element('div', { class: 'buttons' }, power, no_power, reset)),
+        element('div', { class: 'columns' }, panel('programs', programs.root), panel('cycle_health', health.root)));
+    return {
+        root,
+        update(state: MachineState) {
+            axes.update(state.axes);
+            programs.update(state);
+            desk.permit(power, 'enable', !state.emergency_stop);
+            desk.permit(no_power, 'disable');
+            desk.permit(reset, 'reset');
+            write_cycle(health, state, desk);
+        },
+    };
+}
+
+export function write_cycle(to: Values, state: MachineState, desk: Desk): void {
+    const s = state.statistics;
+    const of = (name: string) => s[name] ?? 0;
+    to.set('cycle_time', `${microseconds(desk.link.layout?.cycle_ns ?? 0)} µs`);
+    to.set('compute', `${microseconds(of('compute_ns'))} / ${microseconds(of('compute_max_ns'))} µs`);
+    to.set('lateness', `${microseconds(of('lateness_ns'))} / ${microseconds(of('lateness_max_ns'))} µs`);
+    to.set('overruns', String(of('overruns')));
+    to.set('missed_ticks', String(of('missed_ticks')));
+    to.set('bus_state', word('bus', String(state.bus['phase'] ?? '')));
+    to.set('frames_lost', String(state.bus['frames_lost'] ?? 0));
+}
+
+/** Programs with their buttons; on the overview and on their own page. */
+export function program_rows(desk: Desk): Page {
+    const body = element('tbody');
+    const hint = element('p', { class: 'hint' });
+    const rows = new Rows(body, (program: { name: string; state: string }) => program.name, (program) => {
+        const state = element('td', { 'data-value': 'state' });
+        const start = desk.button('start', () => ({ cmd: 'program_start', program: program.name }));
+        const stop = desk.button('stop', () => ({ cmd: 'program_stop', program: program.name }));
+        const reset = desk.button('reset', () => ({ cmd: 'program_reset', program: program.name }));
+        const root = element('tr', { 'data-program': program.name }, element('th', { scope: 'row' }, program.name), state,
+            element('td', { class: 'buttons' }, start, stop, reset));
+        return { root, state, start, stop, reset };
+    }, (row, program) => {
+        write(row.state, `${program.state === 'running' ? '▶' : program.state === 'fault' ? '⚠' : '◼'} ${word('program', program.state)}`);
+        row.state.dataset['tone'] = program.state === 'running' ? 'good' : program.state === 'fault' ? 'bad' : 'idle';
+        const mode = desk.link.state?.mode;
+        desk.permit(row.start, 'program_start', mode === 'automatic' && program.state !== 'fault' && !desk.link.state?.emergency_stop);
+        desk.permit(row.stop, 'program_stop', program.state === 'running');
+        desk.permit(row.reset, 'program_reset', program.state !== 'running');
+    });
+    const root = element('div', {}, element('table', {}, body), hint);
+    return {
+        root,
+        update(state) {
+            rows.update(state.programs);
+            write(hint, state.programs.length === 0 ? say('no_programs') : state.mode === 'automatic' ? '' : say('needs_automatic'));
+        },
+    };
+}

@@ -1,0 +1,126 @@
+// What the machine says of itself: the JSON of its local socket (hmi_bridge/socket/json_state.cpp), as it comes.
+
+/** JSON has no NaN and no infinity; such a value comes as the text "NaN", "Infinity" or "-Infinity". Read it by value(). */
+export type Real = number | string;
+export const value = (real: Real | undefined): number => (real === undefined ? NaN : Number(real));
+
+export interface AxisState {
+    name: string;
+    unit: string;
+    state: string;
+    owner: string;
+    disabled: boolean;
+    simulated: boolean;
+    online: boolean;
+    powered: boolean;
+    homed: boolean;
+    in_position: boolean;
+    has_job: boolean;
+    command: string;
+    block: string;
+    held_by_stop: boolean;
+    queued: number;
+    resetting: boolean;
+    warning: boolean;
+    error: number;
+    drive_error: number;
+    actual_position: Real;
+    actual_velocity: Real;
+    actual_torque: Real;
+    set_position: Real;
+    set_velocity: Real;
+    set_acceleration: Real;
+    set_jerk: Real;
+    target_position: Real;
+    following_error: Real;
+    following_window: Real;
+    velocity_limiter: string;
+    override: Real;
+    turns: number;
+    drive_state: string;
+    drive_mode: string;
+    status_word: number;
+    negative_limit_switch: boolean;
+    positive_limit_switch: boolean;
+    home_switch: boolean;
+}
+
+export interface Alarm {
+    id: number;
+    name: string;
+    source: string;
+    since_ns: number;
+    count: number;
+    standing: boolean;
+    acknowledged: boolean;
+    reaction: string;
+    english: string;
+    chinese: string;
+    cause: string;
+    remedy: string;
+    reset: string;
+}
+
+export interface CommandEvent {
+    number: number;
+    time_ns: number;
+    event: string;
+    axis: string;
+    times: number;
+    english: string;
+    remedy: string;
+}
+
+export interface MachineState {
+    machine: string;
+    cycle: number;
+    time_ns: number;
+    phase: string;
+    mode: string;
+    emergency_stop: boolean;
+    simulated: boolean;
+    statistics: Record<string, number>;
+    bus: Record<string, number | string>;
+    slaves: { name: string; state: string; al_status_code: number; fresh: boolean; age: number }[];
+    axes: AxisState[];
+    programs: { name: string; state: string }[];
+    tasks: { name: string; releases: number; overruns: number; run_ns: number; run_max_ns: number }[];
+    input_units: Record<string, string>;
+    output_units: Record<string, string>;
+    inputs: Record<string, Real>;
+    outputs: Record<string, Real>;
+    doubtful_inputs: string[];
+    variables: { program: string; name: string; unit: string; value: Real }[];
+    parameters: { program: string; name: string; unit: string; value: Real }[];
+    alarms: Alarm[];
+    events: CommandEvent[];
+}
+
+export interface AxisLayout {
+    name: string;
+    unit: string;
+    disabled: boolean;
+    simulated: boolean;
+    jog_slow: Real;
+    jog_fast: Real;
+    /** Software limits, in force once homed; absent from an older runtime. */
+    position_min?: Real;
+    position_max?: Real;
+    velocity?: Real;
+    drive: string;
+    profile: string;
+    drive_axis: number;
+}
+
+export interface MachineLayout {
+    machine: string;
+    cycle_ns: number;
+    axes: AxisLayout[];
+    slaves: string[];
+    inputs: string[];
+    outputs: string[];
+    programs: string[];
+    tasks: string[];
+    variables: { program: string; name: string; unit: string; doc: string; type: string }[];
+    parameters: { program: string; name: string; unit: string; doc: string; minimum: Real; maximum: Real; whole: boolean; value: Real }[];
+}
