@@ -39,15 +39,24 @@ void DevicePoller::step(Instant now) {
     for (std::size_t k = 0; k < first_read_ && !(wrote_last_ && to_read); ++k) {
         const auto i = (next_write_ + k) % first_read_;
         if (!to_write(i, now)) continue;
-        wrote_last_ = true;
-        next_write_ = i + 1;
-        return note(i, now, write(i, now));
+        const auto fault = write(i, now);
+        wrote_last_ = !answers_once(fault);
+        next_write_ = answers_once(fault) ? i : i + 1;
+        return note(i, now, fault);
     }
     wrote_last_ = false;
     if (!to_read) return;
     const auto request = next_read_++;
-    note(request, now, read(request));
+    const auto fault = read(request);
+    if (answers_once(fault)) {
+        wrote_last_ = true;
+        next_read_ = request;
+    }
+    note(request, now, fault);
 }
+
+/// Some end the connection behind each answer: what came to nothing has the first turn in the next one.
+bool DevicePoller::answers_once(Fault fault) const noexcept { return fault.ends_connection() && answered_ == 1; }
 
 bool DevicePoller::finish(Instant now) {
     for (std::size_t i = 0; i < first_read_ && exchange_.connected(); ++i) {
@@ -74,7 +83,8 @@ void DevicePoller::connect(Instant now) {
     }
     // Who was away may have lost everything: outputs first, all of them.
     for (auto& progress : progress_) progress.written.clear(), progress.due = now;
-    next_read_ = requests_.size();
+    if (answered_ != 1) next_read_ = requests_.size();
+    answered_ = 0;
     next_poll_ = now;
 }
 
@@ -125,6 +135,7 @@ void DevicePoller::note(std::size_t request, Instant now, Fault fault) {
     if (!fault) {
         state.done = now;
         state.ever = true;
+        ++answered_;
         pause_ = shortest_pause;
     }
     if (fault.ends_connection()) {

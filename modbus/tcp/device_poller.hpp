@@ -61,6 +61,7 @@ private:
     [[nodiscard]] Fault write(std::size_t request, Instant now);
     [[nodiscard]] Fault read(std::size_t request);
     void note(std::size_t request, Instant now, Fault fault);
+    [[nodiscard]] bool answers_once(Fault fault) const noexcept;
     void publish();
 
     DeviceConfig device_;
@@ -71,6 +72,7 @@ private:
     std::vector<std::int64_t> words_;
     LatestValue<Report> reports_;
     LatestValue<std::vector<std::int64_t>> outputs_;
+    std::size_t answered_ = 0;  ///< requests that succeeded in this connection
     bool wrote_last_ = false;
     std::size_t next_write_ = 0, first_read_ = 0, next_read_ = 0;  // next_read_ == requests_.size(): all were read in this poll
     Instant next_poll_{}, next_attempt_{};

@@ -1,5 +1,6 @@
 #include "modbus/tcp/tcp_exchange.hpp"
 
+#include <arpa/inet.h>
 #include <modbus/modbus.h>
 #include <netdb.h>
 #include <netinet/in.h>
@@ -36,7 +37,7 @@ Fault fault_of(int error) noexcept {
         default: break;
     }
     constexpr int last_exception = MODBUS_EXCEPTION_GATEWAY_TARGET;
-    if (error > MODBUS_ENOBASE && error <= MODBUS_ENOBASE + last_exception)
+    if (error >= MODBUS_ENOBASE && error <= MODBUS_ENOBASE + last_exception)
         return {Kind::exception, static_cast<std::uint8_t>(error - MODBUS_ENOBASE)};
     if (error > MODBUS_ENOBASE) return {Kind::bad_answer};
     return {Kind::unreachable};  // EHOSTUNREACH, ENETUNREACH, ENETDOWN, ...
@@ -47,12 +48,22 @@ struct Address {
     socklen_t length = 0;
 };
 
+/// What the system takes for an IPv4 address besides four plain numbers: octal ones with leading zeros, three numbers, one.
+bool is_plain(const std::string& host) {
+    in_addr four{};
+    if (host.find(':') != std::string::npos) return true;
+    if (::inet_pton(AF_INET, host.c_str(), &four) != 1) return false;
+    const auto address = ntohl(four.s_addr);
+    return address != INADDR_ANY && address != INADDR_BROADCAST && !IN_MULTICAST(address);
+}
+
 Address address_of(const std::string& host, std::uint16_t port) {
     addrinfo wanted{};
     wanted.ai_flags = AI_NUMERICHOST | AI_NUMERICSERV;
     wanted.ai_socktype = SOCK_STREAM;
     addrinfo* found = nullptr;
     Address out;
+    if (!is_plain(host)) return out;
     if (::getaddrinfo(host.c_str(), std::to_string(port).c_str(), &wanted, &found) != 0 || found == nullptr) return out;
     if (found->ai_addrlen <= sizeof out.bytes) {
         auto* to = reinterpret_cast<char*>(&out.bytes);

@@ -26,6 +26,7 @@ public:
                               "choose different names");
             names.push_back(device.name);
             check_device(device);
+            check_twin(device);
         }
         check_users();
     }
@@ -47,6 +48,18 @@ private:
             problems_.add("modbus.max_age", here + ".max_age", "inputs would be too old before they are read again",
                           "make it several times `poll`, such as `poll: 20 ms, max_age: 100 ms`");
         for (const auto& channel : device.channels) check_channel(device, channel);
+    }
+
+    /// Two that ask one unit overwrite each other, and many devices serve one client only.
+    void check_twin(const DeviceConfig& device) {
+        if (device.host.empty()) return;
+        for (const auto& other : config_.modbus) {
+            if (&other == &device) break;
+            if (other.host == device.host && other.port == device.port && other.unit == device.unit)
+                problems_.add("modbus.same_device", "modbus_tcp." + device.name + ".host",
+                              fmt::format("'{}' asks unit {} at {} port {} already", other.name, other.unit, other.host, other.port),
+                              "list all registers under one of them, or correct `host`, `port` or `unit`");
+        }
     }
 
     void check_channel(const DeviceConfig& device, const Channel& channel) {

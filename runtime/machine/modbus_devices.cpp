@@ -166,7 +166,7 @@ std::string_view ModbusDevices::words_of_exception(double code) {
         case 8: return "Exception 8, memory parity error";
         case 10: return "Exception 10, gateway path unavailable: the gateway is not set up for this unit";
         case 11: return "Exception 11, gateway target device failed to respond: nobody behind the gateway has this unit";
-        default: return {};
+        default: return "An exception that the specification does not have";
     }
 }
 

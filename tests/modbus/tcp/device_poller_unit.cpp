@@ -182,6 +182,20 @@ TEST(DevicePoller, OutputsComeFirstWhenTheDeviceIsBack) {
 }
 
 // A thing that takes connections and ends them is not asked a thousand times a second.
+// Some devices end the connection behind each answer: one request a connection, and each of them has its turn.
+TEST(DevicePoller, WhoAnswersOnceInEachConnectionIsWrittenAndRead) {
+    PollerRig rig;
+    rig.device.registers[{Table::input, 0}] = 77;
+    rig.device.answers_before_closing = 1;
+    rig.run(4s);
+    EXPECT_GT(rig.logged("write coil 3+1"), 3u);
+    EXPECT_GT(rig.logged("write holding 20+2"), 3u);
+    EXPECT_GT(rig.logged("read holding 5+1"), 3u);
+    EXPECT_GT(rig.logged("read input 0+1"), 3u);
+    EXPECT_EQ(rig.report().words[pressure], 77);
+    for (const auto& request : rig.report().requests) EXPECT_TRUE(request.ever);
+}
+
 TEST(DevicePoller, WhoLetsItselfBeConnectedAndSaysNothingIsLeftAloneLongerEachTime) {
     PollerRig rig;
     rig.device.answering = {Kind::closed};

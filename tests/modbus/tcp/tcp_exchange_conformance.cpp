@@ -107,6 +107,16 @@ TEST(TcpExchange, TellsExceptionsByTheirCode) {
     }
 }
 
+// An exception is the device's word, also where it has no number.
+TEST(TcpExchange, TellsAnExceptionWithoutANumber) {
+    RawDevice device{answers({0x83, 0})};
+    TcpExchange exchange{at_port(device.port())};
+    ASSERT_EQ(exchange.connect(), Fault{});
+    std::vector<std::uint16_t> values(1);
+    EXPECT_EQ(exchange.read(Table::holding, 0, values), (Fault{Kind::exception, 0}));
+    EXPECT_TRUE(exchange.connected());
+}
+
 TEST(TcpExchange, TakesNoAnswerThatIsNotItsOwn) {
     const RawBytes right{3, 6, 2, 0x2B, 0, 0, 0, 0x64};
     const std::vector<std::pair<const char*, RawDevice::Answer>> wrong{
@@ -186,6 +196,8 @@ TEST(TcpExchange, TakesAddressesAndNoNames) {
     EXPECT_FALSE(is_address("valves"));
     EXPECT_FALSE(is_address("localhost"));
     EXPECT_FALSE(is_address("192.168.1.500"));
+    for (const char* host : {"192.168.001.050", "127.1", "2130706433", "0x7f.0.0.1", "0.0.0.0", "255.255.255.255", "224.0.0.1"})
+        EXPECT_FALSE(is_address(host)) << host;
     EXPECT_FALSE(is_address(""));
 }
 
