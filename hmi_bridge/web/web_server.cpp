@@ -553,7 +553,6 @@ struct WebServer::Impl {
             if (const auto path = find_socket(machine)) paths.push_back(*path);
         if (options.machines.empty())
             for (const auto& folder : socket_folders()) {
-                error_code ignored;
                 std::error_code failure;
                 for (std::filesystem::directory_iterator entry(folder, failure), last; !failure && entry != last; entry.increment(failure))
                     if (entry->path().extension() == ".sock") paths.push_back(entry->path().string());
