@@ -60,7 +60,9 @@ std::string modbus_offer_text(const hmi::ModbusServerConfig& config, const hmi::
                            hmi::text_of(point->shows), scale_text(*point, unit), point->place.writable ? "; MAY BE WRITTEN" : "");
     }
     if (hmi::writable_count(config) > 0)
-        out += "  Whoever reaches that address may write them: Modbus knows no users. An output becomes safe when the client goes that has set it.\n";
+        out +=
+            "  Whoever reaches that address may write them: Modbus knows no users. An output becomes safe when the client goes that has "
+            "set it.\n";
     return out;
 }
 

@@ -75,7 +75,7 @@ struct CommandReply {
 class Gateway {
 public:
     static constexpr std::size_t max_clients = 48;  ///< of all sources together
-    static constexpr std::size_t remembered = 16;  ///< commands per client
+    static constexpr std::size_t remembered = 16;   ///< commands per client
     static constexpr Duration answer_patience = std::chrono::seconds{2};
     static constexpr Duration longest_validity = std::chrono::seconds{10};
     static constexpr Duration longest_jog_validity = std::chrono::milliseconds{500};

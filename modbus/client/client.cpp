@@ -10,7 +10,7 @@ namespace {
 bool may_repeat(Function function) noexcept { return function != Function::save; }
 
 /// Bytes reach us through a driver and a thread that look in from time to time (a USB adapter gathers up to 16 ms): a pause that long inside
-/// a frame is not the drive's.
+/// a frame is not the drive's. One in all: bytes that trickle in, each within its pause, are no answer either and hold nobody up.
 constexpr Duration pause = std::chrono::milliseconds{20};
 
 }  // namespace
@@ -112,7 +112,11 @@ std::optional<Answer> Client::step(Instant now) {
     }
     if (length.known == LengthKnown::never) return again_or_end(Outcome::damaged, now);
     if (heard_.size == 0) return now - sent_at_ > config_.answer_timeout ? again_or_end(Outcome::silent, now) : std::nullopt;
-    return now - last_byte_ > line_.settings().frame_gap() + pause ? again_or_end(Outcome::damaged, now) : std::nullopt;
+    const auto& settings = line_.settings();
+    const bool paused = now - last_byte_ > settings.frame_gap() + pause;
+    const auto whole = settings.duration(std::max<std::size_t>(length.bytes, heard_.size));
+    const bool trickles = now - sent_at_ > config_.answer_timeout + whole + settings.frame_gap() + pause;
+    return paused || trickles ? again_or_end(Outcome::damaged, now) : std::nullopt;
 }
 
 std::optional<Answer> Client::again_or_end(Outcome outcome, Instant now) {

@@ -125,17 +125,16 @@ TEST(OwnedIncludes, OnTheMotionSideOnlyDriveCodeAndSimulationSeeABus) {
 }
 
 TEST(OwnedIncludes, LibrariesStayWhereTheyAreWrapped) {
-    EXPECT_THAT(
-        check_owned_includes({
-            {"runtime/snapshot.cpp", "#include <lcm/lcm-cpp.hpp>\n"},
-            {"apps/run.cpp", "#include <yaml-cpp/yaml.h>\n"},
-            {"ecat/coe/sdo.cpp", "#include <pugixml.hpp>\n"},
-            {"runtime/cycle.cpp", "#include <modbus/modbus-tcp.h>\n"},
-            {"hmi_bridge/socket/door.cpp", "#include <boost/asio.hpp>\n"},
-            {"core/ring.hpp", "#include <gtest/gtest_prod.h>\n"},
-        }),
-        ElementsAre(HasSubstr("LCM"), HasSubstr("yaml-cpp"), HasSubstr("pugixml"), HasSubstr("libmodbus"), HasSubstr("Boost"),
-                    HasSubstr("a test library")));
+    EXPECT_THAT(check_owned_includes({
+                    {"runtime/snapshot.cpp", "#include <lcm/lcm-cpp.hpp>\n"},
+                    {"apps/run.cpp", "#include <yaml-cpp/yaml.h>\n"},
+                    {"ecat/coe/sdo.cpp", "#include <pugixml.hpp>\n"},
+                    {"runtime/cycle.cpp", "#include <modbus/modbus-tcp.h>\n"},
+                    {"hmi_bridge/socket/door.cpp", "#include <boost/asio.hpp>\n"},
+                    {"core/ring.hpp", "#include <gtest/gtest_prod.h>\n"},
+                }),
+                ElementsAre(HasSubstr("LCM"), HasSubstr("yaml-cpp"), HasSubstr("pugixml"), HasSubstr("libmodbus"), HasSubstr("Boost"),
+                            HasSubstr("a test library")));
     EXPECT_NO_VIOLATIONS(check_owned_includes({
         {"hmi_bridge/lcm/publisher.cpp", "#include <lcm/lcm-cpp.hpp>\n"},
         {"config/load.cpp", "#include <yaml-cpp/yaml.h>\n"},
