@@ -87,8 +87,8 @@ public:
     ServingMachine(const ServingMachine&) = delete;
     ServingMachine& operator=(const ServingMachine&) = delete;
 
-    bool command(Json request) {
-        const auto answer = client->request(std::move(request), 10s);
+    bool command(const Json& request) {
+        const auto answer = client->request(request, 10s);
         if (!answer) ADD_FAILURE() << answer.error().text();
         return answer.ok();
     }
