@@ -77,8 +77,8 @@ Script<Result<void>> CableSurvey::take(Bus& bus) {
     }
     newcomers_.clear();
     guests_ = 0;
-    const auto count = static_cast<std::uint16_t>(seen_.size());
-    for (std::uint16_t position = 0; position < count; ++position) {
+    const auto places = static_cast<std::uint16_t>(seen_.size());
+    for (std::uint16_t position = 0; position < places; ++position) {
         const auto* slave = seen_[position].slave;
         if (slave == nullptr) newcomers_.push_back(position);
         guests_ = static_cast<std::uint16_t>(guests_ + (slave == nullptr || slave->config->guest() ? 1 : 0));
@@ -124,8 +124,8 @@ Script<void> CableSurvey::give_back(Bus& bus, std::uint16_t station) {
         if (!own.lost && own.wkc == 0) robbed = slave.get();
     }
     if (robbed == nullptr) co_return;
-    const auto count = static_cast<std::uint16_t>(seen_.size());
-    for (std::uint16_t position = 0; position < count; ++position) {
+    const auto places = static_cast<std::uint16_t>(seen_.size());
+    for (std::uint16_t position = 0; position < places; ++position) {
         const Reply held = co_await heard(bus, true, position, reg::station_address);
         const Reply state = co_await heard(bus, true, position, reg::al_status);
         if (!held.ok() || held.u16() != station || !state.ok() || al_state(state.u16()) != AlState::op) continue;
