@@ -51,7 +51,7 @@ private:
     }
 
     void check_position(const SlaveConfig& slave) {
-        if (!slave.position) return;
+        if (!slave.position || slave.guest()) return;  // of a group: group_check.hpp
         if (!positions_.insert(*slave.position).second)
             add("bus.duplicate_position", subject_of(slave), fmt::format("position {} is taken by another slave", *slave.position),
                 "positions count from 0 along the cable");

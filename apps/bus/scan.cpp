@@ -144,6 +144,7 @@ std::string scan_text(const std::string& where, const Survey& survey, Colours co
                          colours) +
                    "\n";
     }
+    for (const auto& group : survey.absent_groups) out += fmt::format("\ngroup '{}' is not plugged in\n", group);
     return out + remarks_text(survey, colours);
 }
 
@@ -190,7 +191,10 @@ Json scan_json(const Survey& survey, const ecat::esi::EsiFolder* vendors) {
     }
     Json remarks = Json::array();
     for (const auto& remark : survey.remarks) remarks.push_back(error_json(remark));
-    return Json{{"slaves", std::move(slaves)}, {"ring", ecat::name(survey.ring.shape)}, {"remarks", std::move(remarks)}};
+    return Json{{"slaves", std::move(slaves)},
+                {"ring", ecat::name(survey.ring.shape)},
+                {"absent_groups", survey.absent_groups},
+                {"remarks", std::move(remarks)}};
 }
 
 namespace {

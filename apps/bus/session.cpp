@@ -31,12 +31,18 @@ using namespace std::chrono_literals;
 
 constexpr Duration listening_time = 25ms;  // a master that is there sends at least every 10 ms
 constexpr Duration refresh_period = 100ms;
+constexpr Duration joining_glance = 10ms;
 
 std::string outputs_text(const ecat::Survey& survey, const ecat::BusConfig& config) {
     std::string text;
     for (const auto& slave : config.slaves) {
         if (!slave.device || (slave.device->rx_pdos.empty() && !slave.device->mailbox)) continue;
-        text += (text.empty() ? "" : ", ") + (slave.position ? survey.subject(*slave.position) : "'" + slave.name + "'");
+        const auto at = std::find_if(survey.slaves.begin(), survey.slaves.end(), [&](const auto& one) { return one.name == slave.name; });
+        const bool there = !slave.name.empty() && at != survey.slaves.end();
+        text += (text.empty() ? "" : ", ") + (there            ? survey.subject(at->found.position)
+                                              : slave.guest()  ? fmt::format("'{}' (once plugged in)", slave.name)
+                                              : slave.position ? survey.subject(*slave.position)
+                                                               : "'" + slave.name + "'");
     }
     return text;
 }
@@ -170,9 +176,11 @@ Result<ecat::Survey> BusSession::look() {
             foreign_sender_ = foreign_frames_ > 0 ? ecat::sender_text(probe_->bus().link) : std::string{};
         }
     }
+    const auto may = up_                   ? ecat::SurveyMay::as_brought_up
+                     : foreign_frames_ > 0 ? ecat::SurveyMay::only_look
+                                           : ecat::SurveyMay::give_addresses;
     Result<ecat::Survey> found =
-        probe_->run(ecat::survey(probe_->port(), foreign_frames_ > 0 ? ecat::SurveyMay::only_look : ecat::SurveyMay::give_addresses,
-                                 transport().ring() != nullptr ? &probe_->bus().link.ring : nullptr));
+        probe_->run(ecat::survey(probe_->port(), may, transport().ring() != nullptr ? &probe_->bus().link.ring : nullptr));
     if (!found) {
         Error error = found.error();
         if (error.code == "bus.no_frame")
@@ -255,7 +263,15 @@ Result<void> BusSession::bring_up(const ecat::Survey& survey) {
     up_ = true;
     auto done = probe_->bring_up();
     if (!done && done.error().code == "bus.foreign_master") up_ = false;  // it has touched nothing: close() must not take theirs down
-    return done;
+    return done ? let_groups_join() : done;
+}
+
+/// Who is plugged in joins after the bus is in operation. Whoever looks at it wants to see it as it will be.
+Result<void> BusSession::let_groups_join() {
+    constexpr Duration longest = 10s;
+    for (Duration waited{}; !bus().groups.empty() && !bus().groups_at_rest && waited < longest; waited += joining_glance)
+        if (auto ran = probe_->run_for(joining_glance); !ran) return ran;
+    return {};
 }
 
 Result<void> BusSession::close() {
@@ -332,7 +348,9 @@ Result<std::size_t> find_slave(const ecat::Survey& survey, const std::string& wo
 
 Result<ecat::BusSlave*> slave_at(BusSession& session, const ecat::Survey& survey, std::size_t position) {
     for (auto& slave : session.bus().slaves)
-        if (slave->found.position == position) return slave.get();
+        if (slave->found.position == position ||
+            (slave->config->guest() && !slave->away() && slave->config->name == survey.slaves.at(position).name))
+            return slave.get();
     if (survey.slaves.at(position).found.error) return *survey.slaves[position].found.error;
     return Error{"bus.not_configured", survey.subject(position), "is not in the machine file, which brought the bus up",
                  "leave --operational away, or add it to the file"};

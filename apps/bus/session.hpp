@@ -73,6 +73,7 @@ private:
     friend struct BusOpening;
     explicit BusSession(BusOptions options);
     [[nodiscard]] std::optional<Instant> next_round(Duration period);
+    [[nodiscard]] Result<void> let_groups_join();
     void new_probe(ecat::BusConfig config);
     [[nodiscard]] ecat::Transport& transport() noexcept { return world_ ? world_->bus() : nic_->bus(); }
 

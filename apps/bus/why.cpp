@@ -96,6 +96,7 @@ int explain_failure(BusSession& session, const Error& failure, const std::vector
 std::vector<std::string> fallen(const ecat::Bus& bus) {
     std::vector<std::string> fell;
     for (const auto& slave : bus.slaves) {
+        if (slave->away()) continue;  // a group that comes and goes as it likes
         const std::uint32_t al = slave->link.al.load();
         const auto code = static_cast<std::uint16_t>(al >> 16);
         const bool out = al != static_cast<std::uint32_t>(ecat::AlState::op);
@@ -131,6 +132,20 @@ int explain_falls(BusSession& session, const std::vector<std::string>& fell, con
     return exit_bus;
 }
 
+struct Attendants {
+    std::size_t there = 0;
+    std::vector<std::string> absent_groups;  ///< by name
+};
+
+Attendants attendants(const ecat::Bus& bus) {
+    Attendants all;
+    all.there =
+        static_cast<std::size_t>(std::count_if(bus.slaves.begin(), bus.slaves.end(), [](const auto& slave) { return !slave->away(); }));
+    for (const auto& group : bus.groups)
+        if (bus.slaves[group.slaves.front()]->away()) all.absent_groups.push_back(group.name);
+    return all;
+}
+
 int find_out_why(BusSession& session, const BusOptions& options) {
     const Result<Survey> found = session.look();
     if (!found) {
@@ -151,18 +166,21 @@ int find_out_why(BusSession& session, const BusOptions& options) {
     const std::vector<std::string> fell = fallen(session.bus());
     if (!fell.empty()) return explain_falls(session, fell, options);
     for (auto& alarm : standing_alarms(session.probe().master(), session.bus())) copper.push_back(std::move(alarm));
+    const auto [there, absent] = attendants(session.bus());
     if (options.json) {
         print_json(Json{{"operational", true},
-                        {"slaves", session.probe().master().slave_count()},
+                        {"slaves", there},
+                        {"absent_groups", absent},
                         {"frames_sent", seen.frames_sent},
                         {"frames_lost", seen.frames_lost},
                         {"working_counter_errors", seen.working_counter_errors},
                         {"remarks", errors_json(copper)}});
     } else {
-        fmt::print("{}: the bus reaches OP with {}{}\n", session.where(), count_text(session.probe().master().slave_count(), "slave"),
+        fmt::print("{}: the bus reaches OP with {}{}\n", session.where(), count_text(there, "slave"),
                    copper.empty() ? "; there is nothing to explain." : ", but not all is well.");
         fmt::print("{} frames sent, {} lost, {} with a wrong working counter\n", seen.frames_sent, seen.frames_lost,
                    seen.working_counter_errors);
+        for (const auto& group : absent) fmt::print("group '{}' is not plugged in\n", group);
         for (const auto& note : session.probe().master().notes()) fmt::print("{}\n", wrapped(note, 2));
         fmt::print("{}", errors_text(copper, Tone::warning, colours_of_output()));
     }

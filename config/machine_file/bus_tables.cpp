@@ -153,7 +153,8 @@ Table<SlaveEntry> slave_table() {
         if (s.slave.position.has_value() + s.slave.alias.has_value() + s.slave.device_id.has_value() > 1)
             reader.problem(node.at, "config.conflict",
                            fmt::format("slave '{}' has more than one of `position`, `alias` and `device_id`", s.slave.name),
-                           "keep the one that identifies it");
+                           s.slave.hot_connect.empty() ? "keep the one that identifies it"
+                                                       : "keep the alias or the device id: a group may be plugged in anywhere");
         if (!s.slave.hot_connect.empty() && node.find("on_loss") != nullptr)
             reader.problem(node.find("on_loss")->at, "config.conflict",
                            fmt::format("slave '{}' is of group '{}', which may go: its own axes stop then, and the others run on",

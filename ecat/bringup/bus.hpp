@@ -91,6 +91,7 @@ struct Bus {
     std::vector<HotConnectGroup> groups = hot_connect_groups(config);
     unsigned address_holds = 0;       ///< above 0: who does not answer to its address may have it back in a moment
     bool group_left = false;          ///< since the newcomers were looked at
+    bool groups_at_rest = false;      ///< all newcomers were asked, and have joined, or were left alone
     std::string strangers;            ///< who was plugged in and belongs to no group; empty: nobody
     std::optional<RingEnd> ring_end;  ///< of a ring, while it is a line (ring_line.hpp)
     std::uint16_t line_of = 0;        ///< so many slaves answered when it became one

@@ -7,6 +7,7 @@
 #include "ecat/bringup/al_control.hpp"
 #include "ecat/bringup/cable_survey.hpp"
 #include "ecat/bringup/clocks.hpp"
+#include "ecat/bringup/guests.hpp"
 #include "ecat/bringup/recovery.hpp"
 #include "ecat/bringup/scan.hpp"
 #include "ecat/bringup/sii_reader.hpp"
@@ -91,10 +92,12 @@ Script<void> GroupWatch::run() {
             count_ = answering;
             changed_ = now;
             looked_ = false;
+            bus_.groups_at_rest = false;
             for (auto& one : tries_) one = {};
         }
         if (looked_ ? !retry_due(now) : now - changed_ < settled) continue;
         co_await look();
+        bus_.groups_at_rest = looked_;
     }
 }
 
@@ -160,7 +163,7 @@ Result<std::vector<Newcomer*>> GroupWatch::members_of(const HotConnectGroup& gro
     const auto& head = bus_.config.slaves[group.slaves.front()];
     std::vector<std::size_t> heads;
     for (std::size_t i = 0; i < newcomers.size(); ++i)
-        if (!newcomers[i].found.error && is_head(head, newcomers[i].found)) heads.push_back(i);
+        if (is_head(head, newcomers[i].found)) heads.push_back(i);
     for (const std::size_t at : heads) {
         newcomers[at].taken = true;
         for (std::size_t n = 1; n < group.slaves.size() && at + n < newcomers.size(); ++n) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "ecat/bringup/guests.hpp"
 #include "ecat/bringup/known_pdos.hpp"
 #include "ecat/bringup/shifted_slaves.hpp"
 
@@ -209,21 +210,6 @@ Result<void> match_residents(const BusConfig& config, const std::vector<FoundSla
     return {};
 }
 
-/// By position: belongs to a group, as far as can be told. Also a second one with the same number, and one whose followers are others.
-std::vector<bool> guests_among(const BusConfig& config, const std::vector<FoundSlave>& found) {
-    std::vector<bool> guest(found.size(), false);
-    for (const auto& group : hot_connect_groups(config))
-        for (std::size_t at = 0; at < found.size(); ++at) {
-            if (!is_head(config.slaves[group.slaves.front()], found[at])) continue;
-            guest[at] = true;
-            for (std::size_t n = 1; n < group.slaves.size() && at + n < found.size(); ++n) {
-                if (!check_identity({}, config.slaves[group.slaves[n]], found[at + n].identity)) break;
-                guest[at + n] = true;
-            }
-        }
-    return guest;
-}
-
 /// Its process data is laid out as its description has it; who it is shows when it comes.
 std::unique_ptr<BusSlave> away_until_it_joins(const SlaveConfig& config, std::size_t index) {
     auto slave = std::make_unique<BusSlave>();
@@ -243,25 +229,11 @@ std::unique_ptr<BusSlave> away_until_it_joins(const SlaveConfig& config, std::si
 
 }  // namespace
 
-bool is_head(const SlaveConfig& head, const FoundSlave& found) noexcept {
-    return head.alias ? found.alias == *head.alias : head.device_id && found.device_id == head.device_id;
-}
-
 Result<std::size_t> match(const BusConfig& config, const std::vector<FoundSlave>& found, std::vector<std::unique_ptr<BusSlave>>& slaves) {
     slaves.clear();
-    BusConfig residents = config;
-    std::erase_if(residents.slaves, [](const SlaveConfig& slave) { return slave.guest(); });
-    const auto guest = guests_among(config, found);
-    std::vector<FoundSlave> there;
-    std::vector<std::uint16_t> position;
-    for (std::size_t i = 0; i < found.size(); ++i) {
-        if (guest[i]) continue;
-        position.push_back(found[i].position);
-        there.push_back(found[i]);
-        there.back().position = static_cast<std::uint16_t>(there.size() - 1);
-    }
+    const WithoutGuests rest = without_guests(config, found);
     std::vector<std::unique_ptr<BusSlave>> matched;
-    if (const auto done = match_residents(residents, there, matched); !done) {
+    if (const auto done = match_residents(rest.config, rest.found, matched); !done) {
         slaves = std::move(matched);  // as far as it went
         return done.error();
     }
@@ -274,9 +246,9 @@ Result<std::size_t> match(const BusConfig& config, const std::vector<FoundSlave>
         slaves.push_back(std::move(matched[next++]));
         slaves.back()->config = &config.slaves[i];
         slaves.back()->index = i;
-        slaves.back()->found.position = position[slaves.back()->found.position];
+        slaves.back()->found.position = rest.place[slaves.back()->found.position];
     }
-    return found.size() - there.size();
+    return found.size() - rest.found.size();
 }
 
 }  // namespace taktwerk::ecat

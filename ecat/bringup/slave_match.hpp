@@ -21,9 +21,6 @@ namespace taktwerk::ecat {
 [[nodiscard]] Result<std::size_t> match(const BusConfig& config, const std::vector<FoundSlave>& found,
                                         std::vector<std::unique_ptr<BusSlave>>& slaves);
 
-/// Whether this is the slave that a group is known by.
-[[nodiscard]] bool is_head(const SlaveConfig& head, const FoundSlave& found) noexcept;
-
 /// Is this the device the configuration wants? Names expected and found. Error bus.wrong_identity.
 [[nodiscard]] Result<void> check_identity(const std::string& subject, const SlaveConfig& wanted, const Identity& found);
 [[nodiscard]] Result<void> check_identity(const std::string& subject, const DeviceDescription& device, const Identity& found);

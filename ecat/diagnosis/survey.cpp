@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "ecat/bringup/guests.hpp"
 #include "ecat/bringup/presence.hpp"
 #include "ecat/bringup/scan.hpp"
 #include "ecat/bringup/shifted_slaves.hpp"
@@ -37,10 +38,10 @@ Script<void> greet(DatagramPort& port, std::uint16_t position, SurveyedSlave& sl
 }
 
 /// Everything else, by station address.
-Script<void> question(DatagramPort& port, SurveyedSlave& slave) {
+Script<void> question(DatagramPort& port, SurveyedSlave& slave, SurveyMay may) {
     if (slave.found.error) co_return;
     const std::uint16_t position = slave.found.position, station = slave.found.station;
-    if (station != station_at(position)) {
+    if (may != SurveyMay::as_brought_up && station != station_at(position)) {
         slave.found.error = Error{"bus.foreign_address", fmt::format("slave {}", position),
                                   fmt::format("has the station address {:04X}h of another master and is {}", station, name(slave.state)),
                                   "end that master, then scan again"};
@@ -99,6 +100,48 @@ bool addresses_are_ours(const Survey& survey) {
     return std::all_of(survey.slaves.begin(), survey.slaves.end(), [](const SurveyedSlave& slave) {
         return slave.found.error || slave.found.station == station_at(slave.found.position);
     });
+}
+
+/// Says which configured one it is; whether it is the right device shows then.
+void name_it(Survey& survey, SurveyedSlave& slave, const SlaveConfig& wanted) {
+    slave.name = wanted.name;
+    slave.expected = wanted.device->name;
+    if (slave.found.error) return;
+    const Result<void> same = check_identity(survey.subject(slave.found.position), wanted, slave.found.identity);
+    if (!same) slave.mismatch = same.error();
+}
+
+/// Of groups: who is there by name, who is not plugged in, and what hinders those that are from joining.
+void compare_groups(const BusConfig& config, const std::vector<FoundSlave>& found, Survey& survey) {
+    const auto guest = guests_among(config, found);
+    for (const auto& group : hot_connect_groups(config)) {
+        const std::size_t head = group.slaves.front();
+        const auto at = static_cast<std::size_t>(std::find(guest.begin(), guest.end(), head) - guest.begin());
+        if (at == guest.size()) {
+            survey.absent_groups.push_back(group.name);
+            continue;
+        }
+        const auto subject = [&](std::size_t index) {
+            return fmt::format("slave '{}' ({}) of group '{}'", config.slaves[index].name, config.slaves[index].device->name, group.name);
+        };
+        if (const auto twin = std::find(guest.begin() + static_cast<std::ptrdiff_t>(at) + 1, guest.end(), head); twin != guest.end())
+            survey.remarks.push_back(Error{"bus.hot_connect", subject(head),
+                                           fmt::format("its number is set in two slaves, at positions {} and {}", at, twin - guest.begin()),
+                                           "unplug one of them, or give it another number and power-cycle it"});
+        for (std::size_t n = 0; n < group.slaves.size(); ++n) {
+            const std::size_t wanted = group.slaves[n];
+            if (at + n < guest.size() && guest[at + n] == wanted) {
+                name_it(survey, survey.slaves[at + n], config.slaves[wanted]);
+                continue;
+            }
+            const std::string there = at + n < found.size() ? found_text(found[at + n]) : std::string{"nobody"};
+            survey.remarks.push_back(Error{"bus.hot_connect", subject(wanted),
+                                           fmt::format("{} of the {} slaves of its group are there: behind '{}' stands {}", n,
+                                                       group.slaves.size(), config.slaves[group.slaves[n - 1]].name, there),
+                                           "check its power and its cable inside the group"});
+            break;
+        }
+    }
 }
 
 }  // namespace
@@ -188,7 +231,7 @@ Script<Result<Survey>> survey(DatagramPort& port, SurveyMay may, const SeenRing*
     }
 
     std::vector<Script<void>> questions;
-    for (auto& slave : result.slaves) questions.push_back(question(port, slave));
+    for (auto& slave : result.slaves) questions.push_back(question(port, slave, may));
     co_await all(std::move(questions), DatagramPort::slaves_at_once);
     co_await ask_device_ids(port, result, may == SurveyMay::give_addresses && result.highest_state < AlState::safeop);
 
@@ -216,42 +259,40 @@ Script<Result<void>> read_device_ids(DatagramPort& port, Survey& survey) {
 }
 
 void compare_with(const BusConfig& config, Survey& survey) {
-    std::vector<FoundSlave> there;
-    for (const auto& slave : survey.slaves) there.push_back(slave.found);
-    if (auto shifted = shifted_slaves(config, there)) {
+    std::vector<FoundSlave> all;
+    for (const auto& slave : survey.slaves) all.push_back(slave.found);
+    compare_groups(config, all, survey);
+    const WithoutGuests cable = without_guests(config, all);
+    if (auto shifted = shifted_slaves(cable.config, cable.found)) {
         survey.remarks.push_back(std::move(*shifted));  // who stands behind it is no wrong device
         return;
     }
     std::set<std::size_t> named;
-    for (const auto& wanted : config.slaves) {
-        const auto at = std::find_if(survey.slaves.begin(), survey.slaves.end(), [&](const SurveyedSlave& slave) {
-            if (wanted.position) return slave.found.position == *wanted.position;
-            if (wanted.alias) return !slave.found.error && slave.found.alias == *wanted.alias;
-            return wanted.device_id && slave.found.device_id == wanted.device_id;
+    for (const auto& wanted : cable.config.slaves) {
+        const auto at = std::find_if(cable.found.begin(), cable.found.end(), [&](const FoundSlave& there) {
+            if (wanted.position) return there.position == *wanted.position;
+            if (wanted.alias) return !there.error && there.alias == *wanted.alias;
+            return wanted.device_id && there.device_id == wanted.device_id;
         });
-        if (at == survey.slaves.end()) {
+        if (at == cable.found.end()) {
             const std::string where = wanted.position ? fmt::format("at position {}", *wanted.position)
                                       : wanted.alias  ? fmt::format("with alias {}", *wanted.alias)
                                                       : fmt::format("with device id {}", wanted.device_id.value_or(0));
-            survey.remarks.push_back(Error{
-                "bus.missing_slave", fmt::format("slave '{}' ({})", wanted.name, wanted.device->name),
-                fmt::format("there is no slave {}: the cable has {}, configured are {}", where, survey.slaves.size(), config.slaves.size()),
-                wanted.position ? fmt::format("check power and cable behind slave {}", survey.slaves.size() - 1)
-                                : "set it in the slave and power-cycle it, or address it by position"});
+            survey.remarks.push_back(Error{"bus.missing_slave", fmt::format("slave '{}' ({})", wanted.name, wanted.device->name),
+                                           fmt::format("there is no slave {}: the cable has {}, configured are {}", where,
+                                                       cable.found.size(), cable.config.slaves.size()),
+                                           wanted.position ? fmt::format("check power and cable behind slave {}", survey.slaves.size() - 1)
+                                                           : "set it in the slave and power-cycle it, or address it by position"});
             continue;
         }
-        auto& slave = *at;
-        named.insert(slave.found.position);
-        slave.name = wanted.name;
-        slave.expected = wanted.device->name;
-        if (slave.found.error) continue;
-        const Result<void> same = check_identity(survey.subject(slave.found.position), wanted, slave.found.identity);
-        if (!same) slave.mismatch = same.error();
+        const std::size_t place = cable.place[static_cast<std::size_t>(at - cable.found.begin())];
+        named.insert(place);
+        name_it(survey, survey.slaves[place], wanted);
     }
     if (config.slaves.empty()) return;
-    for (const auto& slave : survey.slaves)
-        if (!named.contains(slave.found.position))
-            survey.remarks.push_back(Error{"bus.unexpected_slave", fmt::format("slave {}", slave.found.position),
+    for (const std::size_t place : cable.place)
+        if (!named.contains(place))
+            survey.remarks.push_back(Error{"bus.unexpected_slave", fmt::format("slave {}", place),
                                            "is on the cable but not in the configuration",
                                            config.extra_slaves == ExtraSlaves::ignore ? "it stays as it is: extra slaves are ignored"
                                                                                       : "add it to the configuration or unplug it"});

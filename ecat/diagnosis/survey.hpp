@@ -58,16 +58,21 @@ struct SurveyedSlave {
 struct Survey {
     std::vector<SurveyedSlave> slaves;  ///< by position
     std::optional<Topology> topology;
-    RingState ring;                         ///< of two interfaces
-    std::vector<Error> remarks;             ///< what is wrong with the bus as a whole: cables, a foreign master, configured slaves missing
-    AlState highest_state = AlState::init;  ///< over all slaves
+    RingState ring;                          ///< of two interfaces
+    std::vector<Error> remarks;              ///< what is wrong with the bus as a whole: cables, a foreign master, configured slaves missing
+    AlState highest_state = AlState::init;   ///< over all slaves
+    std::vector<std::string> absent_groups;  ///< filled by compare_with(): those of the configuration that are not plugged in
 
     /// "slave 2 'y'": how a message names it.
     [[nodiscard]] std::string subject(std::size_t position) const;
 };
 
-/// What it may write: station addresses (and who holds the EEPROM) of slaves below SAFEOP, or, beside another master, nothing at all.
-enum class SurveyMay : std::uint8_t { give_addresses, only_look };
+/// What it may write.
+enum class SurveyMay : std::uint8_t {
+    give_addresses,  ///< station addresses (and who holds the EEPROM) of slaves below SAFEOP
+    only_look,       ///< nothing at all: beside another master
+    as_brought_up,   ///< nothing: who asks has brought the bus up, and the addresses are his, those of groups too
+};
 
 /// Errors: bus.no_frame, bus.empty. What is wrong with single slaves stands in their FoundSlave::error.
 /// `ring`: of a bus with two interfaces, as the frames of the survey themselves show it.

@@ -82,6 +82,8 @@ Script<Result<WhyReport>> explain(Bus& bus, Error failure) {
     for (std::size_t i = 0; i < bus.slaves.size(); ++i) scripts.push_back(examine(bus, *bus.slaves[i], report.slaves[i], report.failure));
     co_await all(std::move(scripts), DatagramPort::slaves_at_once);
     blame_the_first_silent(bus, report);
+    // Nobody waits for a group that is not plugged in.
+    std::erase_if(report.slaves, [](const WhySlave& slave) { return slave.position == not_on_the_cable && !slave.answers; });
     if (report.failure.code == "bus.foreign_master")
         for (auto& slave : report.slaves) slave.failed = false;  // it is not they
     co_return report;

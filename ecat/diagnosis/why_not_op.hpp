@@ -24,7 +24,7 @@ struct WhySlave {
 
 struct WhyReport {
     Error failure;                 ///< what the bring-up said
-    std::vector<WhySlave> slaves;  ///< configured slaves, in their order; empty when the scan itself failed
+    std::vector<WhySlave> slaves;  ///< configured slaves, in their order, without groups that are away; empty when the scan failed
     std::vector<std::string> notes;
 };
 

@@ -8,6 +8,7 @@
 #include "ecat/diagnosis/clock_report.hpp"
 #include "ecat/diagnosis/port_errors.hpp"
 #include "tests/ecat/diagnosis/probed_bus.hpp"
+#include "tests/ecat/hot_connect_bus.hpp"
 
 namespace taktwerk::ecat {
 namespace {
@@ -157,6 +158,63 @@ TEST(CompareWith, NamesWhoIsMissingAndWhoIsAnother) {
     ASSERT_THAT(found.remarks, SizeIs(1));
     EXPECT_EQ(found.remarks[0].code, "bus.missing_slave");
     EXPECT_THAT(found.remarks[0].text(), HasSubstr("position 2"));
+}
+
+/// Residents 'a' (servo) and 'b' (terminal); group "tool" of terminal 'd', known by its alias, and servo 'e' behind it.
+BusConfig with_a_tool() {
+    ProbedBus residents{"st"};
+    BusConfig config = residents.config;
+    config.slaves.push_back(test::HotConnectBus::slave("d", test::terminal_description(), "tool"));
+    config.slaves.back().alias = test::tool_alias;
+    config.slaves.push_back(test::HotConnectBus::slave("e", test::servo_description(), "tool"));
+    return config;
+}
+
+std::vector<std::string> names(const Survey& found) {
+    std::vector<std::string> all;
+    for (const auto& slave : found.slaves) all.push_back(slave.name);
+    return all;
+}
+
+TEST(CompareWith, AGroupThatIsNotPluggedInIsNobodyMissing) {
+    ProbedBus bus{"st"};
+    Survey found = bus.look();
+    compare_with(with_a_tool(), found);
+    EXPECT_THAT(found.remarks, IsEmpty());
+    EXPECT_THAT(found.absent_groups, ElementsAre("tool"));
+    EXPECT_THAT(names(found), ElementsAre("a", "b"));
+}
+
+// Plugged in between the residents: positions in the configuration do not count it.
+TEST(CompareWith, AGroupIsNamedWhereverItIsPluggedIn) {
+    ProbedBus bus{"stst"};
+    Survey found = bus.look();
+    found.slaves[1].found.alias = test::tool_alias;
+    compare_with(with_a_tool(), found);
+    EXPECT_THAT(found.remarks, IsEmpty());
+    EXPECT_THAT(found.absent_groups, IsEmpty());
+    EXPECT_THAT(names(found), ElementsAre("a", "d", "e", "b"));
+    for (const auto& slave : found.slaves) EXPECT_FALSE(slave.mismatch) << slave.name;
+}
+
+TEST(CompareWith, AGroupThatIsNotWholeSaysBehindWhomItEnds) {
+    ProbedBus bus{"stt"};
+    Survey found = bus.look();
+    found.slaves[2].found.alias = test::tool_alias;
+    compare_with(with_a_tool(), found);
+    ASSERT_THAT(found.remarks, SizeIs(1));
+    EXPECT_EQ(found.remarks[0].code, "bus.hot_connect");
+    EXPECT_THAT(found.remarks[0].text(), testing::AllOf(HasSubstr("'e'"), HasSubstr("1 of the 2"), HasSubstr("behind 'd' stands nobody")));
+    EXPECT_THAT(names(found), ElementsAre("a", "b", "d"));
+}
+
+TEST(CompareWith, TwoHeadsOfOneGroupAreTold) {
+    ProbedBus bus{"sttsts"};
+    Survey found = bus.look();
+    found.slaves[2].found.alias = found.slaves[4].found.alias = test::tool_alias;
+    compare_with(with_a_tool(), found);
+    ASSERT_THAT(found.remarks, SizeIs(1));
+    EXPECT_THAT(found.remarks[0].text(), testing::AllOf(HasSubstr("'d'"), HasSubstr("positions 2 and 4")));
 }
 
 TEST(PortFindings, NameTheCableBetweenTwoSlaves) {
