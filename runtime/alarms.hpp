@@ -32,7 +32,7 @@ enum class MachineAlarm : AlarmId {
     group_pulled = 0x6019,
 };
 /// First number of input_faulty: what its terminal says.
-inline constexpr double input_error = 0, input_underrange = 1, input_overrange = 2;
+inline constexpr double input_error = 0, input_underrange = 1, input_overrange = 2, input_no_number = 3;
 /// First number of emergency_stop: nobody pressed it, the slave with its input is not exchanged.
 inline constexpr double emergency_stop_unread = 1;
 

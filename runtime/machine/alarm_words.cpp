@@ -144,7 +144,12 @@ void AlarmWords::tell_more_of_bus(AlarmText& out, const AlarmFact& fact) const {
 void AlarmWords::tell_more_of_input(AlarmText& out, const AlarmFact& fact) const {
     if (fact.source != AlarmSource::io || fact.index >= layout_.inputs.size()) return;
     const auto& point = body_.io.point(IoDirection::input, fact.index);
-    if (fact.id == id(MachineAlarm::input_faulty) && fact.a != input_error) {
+    if (fact.id == id(MachineAlarm::input_faulty) && fact.a == input_no_number) {
+        out.english = "What comes for this input is no number (NaN or infinite): it is not good";
+        out.chinese = "该输入收到的不是有效数值(NaN 或无穷大):其数值无效";
+        out.cause = "The device has no measured value (sensor off or broken), or the type or word order of the channel is wrong";
+        out.remedy = "Look at the sensor; compare type and word order with the device's manual";
+    } else if (fact.id == id(MachineAlarm::input_faulty) && fact.a != input_error) {
         const bool under = fact.a == input_underrange;
         out.english = fmt::format("The signal of this input is {} what its terminal measures: its value cannot be believed",
                                   under ? "below" : "above");

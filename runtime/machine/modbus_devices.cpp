@@ -112,7 +112,8 @@ void ModbusDevices::watch() noexcept {
         for (std::size_t r = 0; r < requests.size(); ++r) {
             if (!too_old(device, r)) continue;
             const auto& fault = device.report->requests[r].fault;
-            const bool of_request = !fault.ends_connection();
+            // Who does not answer at all is asked in no particular order: only an exception is of one request.
+            const bool of_request = fault.kind == Fault::Kind::exception;
             body_.raise({modbus::tcp::id(alarm_of(fault)), AlarmSource::machine, static_cast<std::uint16_t>(d),
                          static_cast<double>(fault.exception), of_request ? static_cast<double>(r) : -1},
                         modbus::tcp::device_alarms);

@@ -95,6 +95,7 @@ void Supervisor::raise_inputs() noexcept {
             body_.raise(MachineAlarm::input_faulty, AlarmSource::io, index,
                         trouble == Trouble::underrange  ? input_underrange
                         : trouble == Trouble::overrange ? input_overrange
+                        : trouble == Trouble::no_number ? input_no_number
                                                         : input_error);
         }
     }

@@ -36,7 +36,7 @@ constexpr double limit_hysteresis = 0.01;  // of the width between the limits
 IoImage::Trouble beyond(const PointLimits& limits, double value, IoImage::Trouble before) noexcept {
     using Trouble = IoImage::Trouble;
     const double inside = limit_hysteresis * (limits.high - limits.low);
-    if (!(value >= limits.low + (before == Trouble::below_limit ? inside : 0))) return Trouble::below_limit;  // NaN, too
+    if (value < limits.low + (before == Trouble::below_limit ? inside : 0)) return Trouble::below_limit;
     if (value > limits.high - (before == Trouble::above_limit ? inside : 0)) return Trouble::above_limit;
     return Trouble::none;
 }
@@ -171,6 +171,7 @@ void IoImage::judge(std::size_t input, std::span<const std::byte> image, bool fr
         auto trouble = Trouble::none;
         for (const auto& status : p.status)
             if (trouble != Trouble::error && read_signal(image, status.signal) != 0) trouble = trouble_of(status.kind);
+        if (trouble == Trouble::none && !std::isfinite(value)) trouble = Trouble::no_number;
         if (trouble == Trouble::none && p.config.limits) trouble = beyond(*p.config.limits, shown.value, troubles_[input]);
         troubles_[input] = trouble;
     }

@@ -44,7 +44,7 @@ public:
     [[nodiscard]] double output_value(std::size_t output) const noexcept { return output_lines_[output].value_of(outputs_[output]); }
 
     /// What is wrong with an input in this cycle.
-    enum class Trouble : std::uint8_t { none, error, underrange, overrange, below_limit, above_limit };
+    enum class Trouble : std::uint8_t { none, error, underrange, overrange, no_number, below_limit, above_limit };
     [[nodiscard]] Trouble trouble(std::size_t input) const noexcept { return troubles_[input]; }
     /// Bits of each output point.
     [[nodiscard]] const std::vector<std::uint8_t>& output_bits() const noexcept { return output_bits_; }

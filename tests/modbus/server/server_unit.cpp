@@ -450,17 +450,27 @@ TEST(ModbusServer, WhatIsReadTogetherIsOfOneCycle) {
         }
         return answer;
     };
-    int different = 0;
+    // On a busy computer the machine may get no time for longer than its numbers stay fresh: then nothing is told, but exception 4.
+    const auto too_late = [](const RawBytes& answer) { return answer.size() == 9 && (answer[7] & 0x80) != 0 && answer[8] == 4; };
+    int different = 0, told = 0, taken = 0;
     std::thread writer{[&] {
         RawClient client{rig.server->port()};
-        for (int i = 0; i < 300; ++i) EXPECT_EQ(ask(client, framed(set_speed)), framed(set_speed));
+        for (int i = 0; i < 300; ++i) {
+            const auto answer = ask(client, framed(set_speed));
+            if (too_late(answer)) continue;
+            EXPECT_EQ(answer, framed(set_speed));
+            ++taken;
+        }
     }};
     {
         RawClient client{rig.server->port()};
         std::uint16_t last = 0;
         for (int i = 0; i < 3000; ++i) {
             const auto answer = ask(client, framed({4, 0, 0, 0, 3}));
-            ASSERT_EQ(answer.size(), 15u);
+            if (too_late(answer)) continue;
+            EXPECT_EQ(answer.size(), 15u);
+            if (answer.size() != 15u) break;  // the threads want to be joined
+            ++told;
             const auto word = [&](std::size_t at) { return static_cast<std::uint16_t>(answer[at] << 8 | answer[at + 1]); };
             ServedRegister real;
             real.type = NumberType::float32;
@@ -473,6 +483,8 @@ TEST(ModbusServer, WhatIsReadTogetherIsOfOneCycle) {
     ended.store(true);
     machine.join();
     server.join();
+    EXPECT_GT(told, 1500);
+    EXPECT_GT(taken, 150);
     EXPECT_GT(different, 100) << "cycles went on meanwhile";
 }
 

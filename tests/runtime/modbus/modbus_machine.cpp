@@ -9,6 +9,7 @@
 #include "modbus/tcp/tcp_exchange.hpp"
 #include "runtime/run/realtime_runner.hpp"
 #include "tests/modbus/tcp/raw_device.hpp"
+#include "runtime/alarms.hpp"
 #include "tests/runtime/modbus/modbus_rig.hpp"
 
 namespace taktwerk::runtime::testing {
@@ -41,6 +42,54 @@ TEST(ModbusMachine, LimitsHoldAsForEveryInput) {
     rig.device.registers[{Table::input, 0}] = 950;
     ASSERT_TRUE(rig.up());
     EXPECT_FALSE(rig.input("pressure").good) << "95 bar, limit 90";
+}
+
+// A transmitter whose sensor is off says NaN: that is told, with limits or without, and goes with the first number.
+TEST(ModbusMachine, ARealInputThatIsNoNumberIsTold) {
+    ModbusRig rig;
+    rig.device.registers[{Table::holding, 10}] = 0x7FC0;
+    ASSERT_TRUE(rig.up());
+    rig.run(100ms);
+    EXPECT_FALSE(rig.input("force").good);
+    ASSERT_EQ(rig.standing_alarms(), 1u);
+    const auto fact = rig.state().alarms[0].fact;
+    EXPECT_EQ(fact.id, id(MachineAlarm::input_faulty));
+    const auto words = rig.machine->describe(fact);
+    EXPECT_THAT(words.english, HasSubstr("no number"));
+    EXPECT_THAT(words.cause, HasSubstr("word order"));
+    EXPECT_THAT(words.remedy, HasSubstr("press"));
+
+    rig.device.registers[{Table::holding, 10}] = 0x4120;
+    rig.run(100ms);
+    EXPECT_EQ(rig.standing_alarms(), 0u);
+    EXPECT_TRUE(rig.input("force").good);
+    EXPECT_DOUBLE_EQ(rig.input("force").value, 10.0);
+}
+
+// Whose answers are late is told as who does not answer at all: a stall that begins with the one and goes on with the other is one alarm.
+TEST(ModbusMachine, WhoIsLateAndThenSilentIsToldOnce) {
+    auto config = with_press(machine_config(1));
+    config.modbus[0].poll = config.modbus[0].max_age = 100ms;  // a write that comes between makes a reading late, without any fault
+    ModbusRig rig{config};
+    ASSERT_TRUE(rig.up());
+    std::vector<AlarmFact> told;
+    const auto watch = [&](Duration time) {
+        for (Duration past{}; past < time; past += 1ms) {
+            rig.run(1ms);
+            for (const auto& fact : rig.modbus_alarms()) told.push_back(fact);
+        }
+    };
+    watch(3s);
+    ASSERT_FALSE(told.empty()) << "late";
+    const auto late = told.size();
+    rig.device.connecting = rig.device.answering = {Kind::timeout};
+    watch(600ms);
+    ASSERT_GT(told.size(), late + 300) << "and silent";
+    for (const auto& fact : told) {
+        EXPECT_EQ(fact.id, modbus::tcp::id(DeviceAlarm::silent));
+        EXPECT_EQ(fact.b, told[0].b);
+    }
+    EXPECT_EQ(rig.machine->describe(told[0]).english.find("function"), std::string::npos) << "no request is to blame";
 }
 
 TEST(ModbusMachine, OutputsHaveTheirSafeValuesFirstAndThenWhatIsGiven) {
