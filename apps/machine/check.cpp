@@ -12,6 +12,7 @@
 #include "apps/machine/group_summary.hpp"
 #include "apps/machine/load.hpp"
 #include "apps/machine/master_gone.hpp"
+#include "apps/machine/modbus_asked.hpp"
 #include "apps/machine/modbus_offer.hpp"
 #include "apps/taktwerk.hpp"
 #include "apps/terminal/count_text.hpp"
@@ -409,6 +410,7 @@ int check(const CheckOptions& options) {
 
     if (options.json) {
         auto summary = summary_json(config, layout, loaded.warnings, remarks);
+        if (!config.modbus.empty()) summary["modbus_tcp"] = modbus_asked_json(config.modbus);
         if (served) summary["modbus_server"] = modbus_offer_json(*served, hmi::names_of(layout));
         fmt::print("{}\n", summary.dump(2));
         return exit_ok;
@@ -430,6 +432,7 @@ int check(const CheckOptions& options) {
     else
         fmt::print("\nEmergency stop: input {}; power off when the axes stand, at the latest after {:g} ms. This is no safety function.\n",
                    config.emergency_stop.input, to_seconds(config.emergency_stop.power_off_after) * 1e3);
+    fmt::print("{}", modbus_asked_text(config.modbus));
     if (served) fmt::print("\n{}", modbus_offer_text(*served, hmi::names_of(layout)));
     print_hazards(config);
     print_assumptions(config);

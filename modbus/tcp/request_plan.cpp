@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include <fmt/format.h>
+
 namespace taktwerk::modbus::tcp {
 
 namespace {
@@ -22,6 +24,17 @@ bool joins(const Request& request, const Channel& channel, unsigned gap) {
 }
 
 }  // namespace
+
+std::string text_of(const Request& request) {
+    const char* table = request.table == Table::coil             ? "coils"
+                        : request.table == Table::discrete_input ? "discrete inputs"
+                        : request.table == Table::holding        ? "holding registers"
+                                                                 : "input registers";
+    const unsigned last = request.address + 0u + request.count - 1;
+    auto out = fmt::format("function {}, {} {}", function_of(request), table, request.address);
+    if (last != request.address) out += fmt::format(" to {}", last);
+    return out;
+}
 
 int function_of(const Request& request) noexcept {
     switch (request.table) {

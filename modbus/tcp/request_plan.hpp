@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "modbus/tcp/device_config.hpp"
@@ -21,6 +22,8 @@ struct Request {
 
 /// The function code of a request (chapter 6).
 [[nodiscard]] int function_of(const Request& request) noexcept;
+/// "function 3, holding registers 10 to 11".
+[[nodiscard]] std::string text_of(const Request& request);
 
 /// The used channels of the device. Reads span up to `gap` addresses that nobody named; writes span none, and carry nothing twice. No
 /// channel is cut in two. Writes come first, then by table and address. Channels end at address 65535.

@@ -29,16 +29,6 @@ DeviceAlarm alarm_of(const Fault& fault) noexcept {
     return DeviceAlarm::silent;
 }
 
-std::string_view table_text(modbus::tcp::Table table) {
-    switch (table) {
-        case modbus::tcp::Table::coil: return "coils";
-        case modbus::tcp::Table::discrete_input: return "discrete inputs";
-        case modbus::tcp::Table::holding: return "holding registers";
-        case modbus::tcp::Table::input: break;
-    }
-    return "input registers";
-}
-
 }  // namespace
 
 ModbusDevices::ModbusDevices(MachineBody& body, const std::vector<modbus::tcp::Exchange*>& exchanges, std::vector<Error>& errors)
@@ -147,12 +137,7 @@ std::string ModbusDevices::detail(const AlarmFact& fact) const {
     auto out = device.host.empty() ? std::string(" (simulated") : fmt::format(" ({} port {}", device.host, device.port);
     out += fmt::format(", unit {}", device.unit);
     const auto r = static_cast<std::size_t>(fact.b);
-    if (fact.b >= 0 && r < poller.requests().size()) {
-        const auto& request = poller.requests()[r];
-        const unsigned last = request.address + 0u + request.count - 1;
-        out += fmt::format("; function {}, {} {}", modbus::tcp::function_of(request), table_text(request.table), request.address);
-        if (last != request.address) out += fmt::format(" to {}", last);
-    }
+    if (fact.b >= 0 && r < poller.requests().size()) out += "; " + modbus::tcp::text_of(poller.requests()[r]);
     return out + ")";
 }
 
