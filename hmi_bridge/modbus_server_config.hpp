@@ -51,7 +51,8 @@ struct ModbusPoint {
     bool scaled = false;  ///< with a `scale`, whose `from` is in `unit`
     std::string unit{};   ///< empty: without one
     double factor = 1, offset = 0;
-    std::string where{};  ///< "machine.yaml:12:5", for what is found out when its program has been loaded
+    double register_low = 0, register_high = 0;  ///< with a `scale`: the ends of its `to`, in this order or the other
+    std::string where{};                         ///< "machine.yaml:12:5", for what is found out when its program has been loaded
 };
 
 struct ModbusServerConfig {

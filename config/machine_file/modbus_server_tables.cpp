@@ -144,6 +144,7 @@ Table<ModbusPoint> served_table() {
                                         [](P& p, const PointScale& s) {
                                             p.scaled = true;
                                             p.unit = s.from.unit;
+                                            p.register_low = s.to.first, p.register_high = s.to.second;
                                             p.factor = (s.to.second - s.to.first) / (s.from.second - s.from.first);
                                             p.offset = s.to.first - s.from.first * p.factor;
                                         },

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -116,6 +117,20 @@ std::string_view name_of(modbus::server::Table table) noexcept {
     return "input register";
 }
 
+/// What a register of this type tells apart.
+std::pair<double, double> range_of(NumberType type) noexcept {
+    switch (type) {
+        case NumberType::boolean: return {0, 1};
+        case NumberType::uint16: return {0, 0xFFFF};
+        case NumberType::int16: return {-0x8000, 0x7FFF};
+        case NumberType::uint32: return {0, 0xFFFF'FFFF};
+        case NumberType::int32: return {-0x8000'0000LL, 0x7FFF'FFFF};
+        case NumberType::float32: break;
+    }
+    constexpr double most = std::numeric_limits<float>::max();
+    return {-most, most};
+}
+
 class PointCheck {
 public:
     PointCheck(const ModbusServerConfig& config, const ShownNames& names) : config_(config), names_(names) {}
@@ -170,7 +185,7 @@ private:
         const auto& place = point.place;
         if (!place.writable) return;
         if (!is_writable(place.table))
-            add("served.read_only", point, "writable", fmt::format("a client cannot write a {}", name_of(place.table)),
+            add("served.read_only", point, "writable", fmt::format("clients cannot write {}s", name_of(place.table)),
                 is_bits(place.table) ? "use `table: coil`" : "use `table: holding`");
         if (place.type == NumberType::boolean && !is_bits(place.table))
             add("served.bit_written", point, "writable",
@@ -228,6 +243,12 @@ private:
                                    : fmt::format("write `from` in {0}, such as `from: [0 {0}, 100 {0}]`", bound.unit));
         if (!std::isfinite(point.factor) || point.factor == 0 || !std::isfinite(point.offset))
             add("served.scale", point, "scale", "the scale is no finite line", "give two different values in `from` and in `to`");
+        const auto held = range_of(point.place.type);
+        if (std::min(point.register_low, point.register_high) < held.first ||
+            std::max(point.register_low, point.register_high) > held.second)
+            add("served.scale", point, "scale",
+                fmt::format("`to` goes beyond what the register holds: {:.0f} to {:.0f}", held.first, held.second),
+                "choose a wider type, such as int32 or float32, or a narrower `to`");
     }
 
     const ModbusServerConfig& config_;

@@ -19,6 +19,14 @@ std::optional<in6_addr> v6(const std::string& host) {
     return ::inet_pton(AF_INET6, host.c_str(), &address) == 1 ? std::optional{address} : std::nullopt;
 }
 
+/// No computer has an address that is for many.
+bool is_own(const std::optional<in_addr>& address) {
+    if (!address) return false;
+    const auto number = ntohl(address->s_addr);
+    return number != INADDR_BROADCAST && !IN_MULTICAST(number);
+}
+bool is_own(const std::optional<in6_addr>& address) { return address && !IN6_IS_ADDR_MULTICAST(&*address); }
+
 }  // namespace
 
 std::optional<ListenAddress> parse_listen_address(std::string_view text) {
@@ -30,7 +38,7 @@ std::optional<ListenAddress> parse_listen_address(std::string_view text) {
     if (port.empty() || read.ec != std::errc{} || read.ptr != port.data() + port.size() || out.port == 0) return std::nullopt;
     const bool brackets = host.size() > 2 && host.front() == '[' && host.back() == ']';
     out.host = std::string(brackets ? host.substr(1, host.size() - 2) : host);
-    const bool good = brackets ? v6(out.host).has_value() : v4(out.host).has_value();
+    const bool good = brackets ? is_own(v6(out.host)) : is_own(v4(out.host));
     return good ? std::optional{out} : std::nullopt;
 }
 

@@ -8,8 +8,9 @@ namespace {
 TEST(ListenAddress, IsANumericAddressAndAPort) {
     EXPECT_EQ(parse_listen_address("127.0.0.1:502"), (ListenAddress{"127.0.0.1", 502}));
     EXPECT_EQ(parse_listen_address("[::1]:1502"), (ListenAddress{"::1", 1502}));
-    for (const char* text : {"", "502", ":502", "localhost:502", "127.0.0.1", "127.0.0.1:", "127.0.0.1:0", "127.0.0.1:65536",
-                             "127.0.0.1:5o2", "::1:502", "[127.0.0.1]:502", "[]:502", "127.1:502", "127.0.0.1:+502", "127.0.0.1: 502"})
+    for (const char* text : {"224.0.0.1:502", "255.255.255.255:502", "[ff02::1]:502", "", "502", ":502", "localhost:502", "127.0.0.1",
+                             "127.0.0.1:", "127.0.0.1:0", "127.0.0.1:65536", "127.0.0.1:5o2", "::1:502", "[127.0.0.1]:502", "[]:502",
+                             "127.1:502", "127.0.0.1:+502", "127.0.0.1: 502"})
         EXPECT_FALSE(parse_listen_address(text)) << text;
     for (const char* text : {"127.0.0.1:502", "[fe80::1]:7", "0.0.0.0:65535"}) EXPECT_EQ(text_of(*parse_listen_address(text)), text);
 }
