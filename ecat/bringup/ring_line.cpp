@@ -33,6 +33,13 @@ Error ring_broken(const RingState& ring, std::uint16_t slaves) {
         "so that one interface reaches all slaves"};
 }
 
+/// The ports contradict each other, or somebody is silent: it broke while they were read.
+Script<Error> broken_meanwhile(Bus& bus, std::uint16_t slaves, Error failure) {
+    co_await bus.port.brd(reg::type, 1);
+    const RingState ring = bus.link.ring.load();
+    co_return ring.shape == RingShape::closed ? std::move(failure) : ring_broken(ring, slaves);
+}
+
 }  // namespace
 
 Script<Result<void>> make_line(Bus& bus, std::uint16_t slaves) {
@@ -47,12 +54,14 @@ Script<Result<void>> make_line(Bus& bus, std::uint16_t slaves) {
     std::vector<std::uint16_t> dl_status;
     for (std::uint16_t position = 0; position < slaves; ++position) {
         if (!answers[position])
-            co_return Error{"bus.no_slave", fmt::format("slave {}", position), "did not answer when its ports were asked for",
-                            "the bus changed while it was read: start again"};
+            co_return co_await broken_meanwhile(
+                bus, slaves,
+                Error{"bus.no_slave", fmt::format("slave {}", position), "did not answer when its ports were asked for",
+                      "the bus changed while it was read: start again"});
         dl_status.push_back(*answers[position]);
     }
     const Result<Topology> tree = build_ring_topology(dl_status, slaves);
-    if (!tree) co_return tree.error();
+    if (!tree) co_return co_await broken_meanwhile(bus, slaves, tree.error());
     bus.ring_end = tree->ring_end;
     bus.line_of = slaves;
     if (!bus.ring_end) co_return ring_broken({RingShape::second_silent, slaves, 0, 0}, slaves);

@@ -78,6 +78,32 @@ TEST(RingBringUps, BearABreakOrNameIt) {
     EXPECT_GT(named, 10u);
 }
 
+// The ports of all slaves are read one after the other: whatever they say while it breaks, it is the break that is told, and no slave.
+TEST(RingBringUps, ABreakWhileTheRingIsMeasuredIsTheBreak) {
+    std::size_t named = 0;
+    for (std::size_t cable = 0; cable <= RingStart::slaves; ++cable)
+        for (Duration at = 50ms; at < 80ms; at += 250us) {
+            SCOPED_TRACE(fmt::format("cable {} after {} us", cable, at / 1us));
+            RingStart start;
+            auto& bus = start.bus;
+            bus.start();
+            bus.run_for(at);
+            bus.set_ring_cable(cable, false);
+            ASSERT_TRUE(bus.run_until([&] { return start.done(); }, 60s)) << bus.why();
+            if (start.up()) {  // the last cable, when all slaves were a line already: nobody is missing
+                bus.run_for(500ms);
+                ASSERT_EQ(bus.facts().size(), 1u) << start.faults();
+                EXPECT_EQ(bus.facts().front().id, id(BusAlarm::ring_broken));
+                continue;
+            }
+            ++named;
+            EXPECT_EQ(bus.master->failure().code, "bus.ring_broken") << bus.why();
+            EXPECT_NE(bus.why().find(place_of(cable)), std::string::npos) << bus.why();
+            if (testing::Test::HasFailure()) return;
+        }
+    EXPECT_GT(named, 120 * RingStart::slaves);
+}
+
 // Links are up, and one interface takes frames and sends none: nobody's slave is to blame.
 TEST(RingBringUps, BlameNoSlaveForAnInterfaceThatSendsNothing) {
     RingStart start;
