@@ -87,7 +87,7 @@ void Gateway::note_end(ClientId id, const Client& client) {
         jog = told_jogs_.erase(jog);
     }
     if (!client.set_outputs) return;
-    deeds_.say(client.name, "is gone: outputs that it has set go to their safe values", now_);
+    deeds_.say(client.name, "is gone: outputs that it was the last to set go to their safe values", now_);
     leave_outputs_.push_back(id);
     release_outputs();
 }

@@ -94,6 +94,12 @@ bool is_flag(What what) noexcept {
            what == What::emergency_stop;
 }
 
+/// Of the machine and its axes: what has more than two values. A heartbeat may be a bit that changes.
+bool is_number(const ShownValue& value) noexcept {
+    return value.what == What::state || value.what == What::error || value.what == What::phase || value.what == What::mode ||
+           value.what == What::alarms || value.what == What::torque;
+}
+
 std::string unit_of(What what, const std::string& unit) {
     if (what == What::velocity || what == What::set_velocity) return unit.empty() ? unit : unit + "/s";
     if (what == What::value || what == What::position || what == What::set_position || what == What::following_error) return unit;
@@ -210,7 +216,11 @@ private:
         if (!bound) return unknown(point, key);
         scale(point, *bound);
         const auto& place = point.place;
-        if (place.type == NumberType::boolean && !bound->unit.empty())
+        if (place.type == NumberType::boolean && is_number(point.shows))
+            add("served.type", point, is_bits(place.table) ? "table" : "type",
+                fmt::format("{} is a number: of a bit all but 0 would be the same", text_of(point.shows)),
+                "use a table of registers, and a type such as uint16");
+        else if (place.type == NumberType::boolean && !bound->unit.empty())
             add("served.type", point, is_bits(place.table) ? "table" : "type",
                 fmt::format("{} is a number in {}: a bit does not hold it", text_of(point.shows), bound->unit),
                 "use a table of registers, and a type such as float32");

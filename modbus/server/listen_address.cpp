@@ -19,13 +19,16 @@ std::optional<in6_addr> v6(const std::string& host) {
     return ::inet_pton(AF_INET6, host.c_str(), &address) == 1 ? std::optional{address} : std::nullopt;
 }
 
-/// No computer has an address that is for many.
+/// No computer has an address that is for many, or of the network 0; an IPv4 address is written as one.
 bool is_own(const std::optional<in_addr>& address) {
     if (!address) return false;
     const auto number = ntohl(address->s_addr);
-    return number != INADDR_BROADCAST && !IN_MULTICAST(number);
+    const bool of_no_network = number != INADDR_ANY && number >> 24 == 0;
+    return number != INADDR_BROADCAST && !IN_MULTICAST(number) && !of_no_network;
 }
-bool is_own(const std::optional<in6_addr>& address) { return address && !IN6_IS_ADDR_MULTICAST(&*address); }
+bool is_own(const std::optional<in6_addr>& address) {
+    return address && !IN6_IS_ADDR_MULTICAST(&*address) && !IN6_IS_ADDR_V4MAPPED(&*address);
+}
 
 }  // namespace
 

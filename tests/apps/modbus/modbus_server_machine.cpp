@@ -242,7 +242,7 @@ TEST(ModbusServerMachine, AVisualisationWritesWhatAPersonMay) {
             EXPECT_TRUE(Visualisation::until([&] { return other.coil(0) == 1; }));
         }
         EXPECT_TRUE(Visualisation::until([&] { return other.coil(0) == 0; })) << "it is gone, and the lamp with it";
-        EXPECT_TRUE(machine.run->says("is gone: outputs that it has set go to their safe values", 10s)) << machine.run->text();
+        EXPECT_TRUE(machine.run->says("is gone: outputs that it was the last to set go to their safe values", 10s)) << machine.run->text();
         EXPECT_THAT(machine.run->text(), ContainsRegex("Modbus client 127.0.0.1:[0-9]+: set_output output lamp = 1"));
     });
 }
