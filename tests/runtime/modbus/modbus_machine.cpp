@@ -7,9 +7,9 @@
 #include <gmock/gmock.h>
 
 #include "modbus/tcp/tcp_exchange.hpp"
+#include "runtime/alarms.hpp"
 #include "runtime/run/realtime_runner.hpp"
 #include "tests/modbus/tcp/raw_device.hpp"
-#include "runtime/alarms.hpp"
 #include "tests/runtime/modbus/modbus_rig.hpp"
 
 namespace taktwerk::runtime::testing {
