@@ -5,7 +5,7 @@ import { join } from 'node:path';
 import test from 'node:test';
 import { gzipSync } from 'node:zlib';
 import { fixed, typed } from '@page/numbers';
-import { texts } from '@page/texts';
+import { rooms, texts } from '@page/texts';
 
 const source = process.env['TAKTWERK_SOURCE'] ?? '';
 const places = (text: string): string[] => [...text.matchAll(/\{(\w+)\}/g)].map((m) => m[1] ?? '').sort();
@@ -17,6 +17,12 @@ test('each text has both languages and the same places', () => {
         if (key !== 'other_language' && key !== 'io') assert.match(chinese, /[\u4e00-\u9fff]/, `${key}: no Chinese`);
         if (key !== 'other_language') assert.doesNotMatch(english, /[\u4e00-\u9fff]/, `${key}: Chinese among the English`);
     }
+});
+
+test('no key stands in two rooms, and each file is a room', () => {
+    const keys = Object.values(rooms).flatMap((room) => Object.keys(room));
+    assert.deepEqual(keys.filter((key, i) => keys.indexOf(key) !== i), []);
+    assert.deepEqual(readdirSync(join(source, 'hmi_bridge/page/source/texts')).sort(), Object.keys(rooms).map((room) => `${room}.ts`).sort());
 });
 
 // Group of the page's words, the file and the function that says them.
@@ -43,9 +49,10 @@ for (const [group, file, where] of groups)
     });
 
 test('no text stands in the pages themselves', () => {
-    const files = ['page.ts', 'desk.ts', ...readdirSync(join(source, 'hmi_bridge/page/source/pages')).map((f) => 'pages/' + f)];
+    const folder = join(source, 'hmi_bridge/page/source');
+    const files = (readdirSync(folder, { recursive: true }) as string[]).filter((file) => file.endsWith('.ts') && !file.startsWith('texts'));
     for (const file of files) {
-        const text = readFileSync(join(source, 'hmi_bridge/page/source', file), 'utf8');
+        const text = readFileSync(join(folder, file), 'utf8');
         // A child of an element that is a literal with a word in it.
         for (const found of text.matchAll(/element\('\w+', \{[^{}]*\}, '([^']*[A-Za-z]{2}[^']*)'/g)) assert.fail(`${file}: ${found[1]}`);
     }

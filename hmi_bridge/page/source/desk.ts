@@ -8,6 +8,8 @@ import { element, mark, write } from './view';
 export interface Page {
     root: HTMLElement;
     update(state: MachineState): void;
+    /** It is shown no more, and will not be again: ends what it asks for. */
+    leave?(): void;
 }
 
 export class Desk {

@@ -3,18 +3,11 @@ import { Desk, Page } from './desk';
 import { JogHold, watch_page } from './jog';
 import { Link } from './link';
 import { duration } from './numbers';
-import { alarms, in_words } from './pages/alarms';
-import { axis_page } from './pages/axis';
-import { bus } from './pages/bus';
-import { io } from './pages/io';
-import { overview } from './pages/overview';
-import { programs } from './pages/programs';
-import { system } from './pages/system';
+import { in_words } from './pages/alarms';
+import { Entry, pages } from './pages/list';
 import { choose_language, current_language, Key, Language, say, texts, word } from './texts';
 import { element, mark, write } from './view';
 
-const page_names = ['overview', 'axis', 'alarms', 'io', 'programs', 'bus', 'system'] as const;
-type PageName = (typeof page_names)[number];
 const modes = ['manual', 'setup', 'automatic'] as const;
 
 const link = new Link(`${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/ws`);
@@ -42,27 +35,14 @@ let frame: Frame;
 let shown: Page | undefined;
 let shown_as = '';
 
-function route(): { page: PageName; axis: string } {
-    const [name = '', rest = ''] = location.hash.slice(1).split('/');
-    const page = page_names.find((known) => known === name) ?? 'overview';
-    let axis = '';
+/** `#axis/x` is the page `axis` with the rest `x`; what nobody knows is the first page. */
+function route(): { entry: Entry; rest: string[] } {
+    const [name, ...parts] = location.hash.slice(1).split('/');
+    const entry = pages.find((known) => known.name === name) ?? (pages[0] as Entry);
     try {
-        axis = decodeURIComponent(rest);
-    } catch { /* an address typed by hand */ }
-    const known = link.layout?.axes ?? [];
-    return { page, axis: known.some((a) => a.name === axis) ? axis : known[0]?.name ?? '' };
-}
-
-function make_page(): Page {
-    const { page, axis } = route();
-    switch (page) {
-        case 'overview': return overview(desk);
-        case 'axis': return axis_page(desk, axis);
-        case 'alarms': return alarms(desk);
-        case 'io': return io(desk);
-        case 'programs': return programs(desk);
-        case 'bus': return bus(desk);
-        case 'system': return system(desk);
+        return { entry, rest: parts.map(decodeURIComponent) };
+    } catch {
+        return { entry, rest: [] };  // an address typed by hand
     }
 }
 
@@ -84,7 +64,8 @@ function make_frame(): Frame {
     const emergency = element('div', { class: 'banner emergency', role: 'alert', hidden: true }, `⚠ ${say('emergency_stop')}`);
     const strip_text = element('span'), strip_more = element('span', { class: 'strip-more' });
     const strip = element('a', { class: 'banner strip', href: '#alarms', hidden: true }, strip_text, strip_more);
-    const tabs = page_names.map((page) => element('a', { href: `#${page}`, 'data-page': page }, say(page)));
+    const offered = pages.filter((entry) => entry.under === undefined);
+    const tabs = offered.map((entry) => element('a', { href: `#${entry.name}`, 'data-page': entry.name }, say(entry.title)));
     const main = element('main', { tabindex: '-1' });
     document.body.replaceChildren(
         element('header', { class: 'top' }, name, machines, phase, element('div', { class: 'segments', role: 'group', 'aria-label': say('mode') }, ...mode_buttons), element('span', { class: 'space' }), live, language, theme, stop),
@@ -130,27 +111,35 @@ function make_frame(): Frame {
                 write(strip_text, `⚠ ${first.source}: ${in_words(first)}`);
                 write(strip_more, standing.length > 1 ? say('more_alarms', { count: String(standing.length) }) : '');
             }
-            const { page } = route();
-            for (const tab of tabs) {
-                mark(tab, 'aria-current', tab.dataset['page'] === page ? 'page' : false);
-                if (tab.dataset['page'] === 'alarms') write(tab, say('alarms') + (standing.length > 0 ? ` (${standing.length})` : ''));
-            }
+            const { entry } = route();
+            offered.forEach((offer, i) => {
+                const tab = tabs[i];
+                if (!tab) return;
+                tab.hidden = offer.offered?.(desk) === false;
+                mark(tab, 'aria-current', offer.name === (entry.under ?? entry.name) ? 'page' : false);
+                if (offer.name === 'alarms') write(tab, say('alarms') + (standing.length > 0 ? ` (${standing.length})` : ''));
+            });
         },
     };
 }
 
 function show(): void {
-    const { page, axis } = route();
-    const as = `${current_language()}/${page}/${page === 'axis' ? axis : ''}/${link.machine}`;
+    const { entry, rest } = route();
+    const as = [current_language(), link.machine, entry.name, ...rest].join('\n');
     if (!link.layout) {
-        shown = undefined;
+        leave();
         frame.main.replaceChildren(element('p', { class: 'hint' }, say('never_banner')));
     } else if (!shown || as !== shown_as) {
         hold.end('blur');
-        shown = make_page();
+        leave();
+        shown = entry.make(desk, rest);
         frame.main.replaceChildren(shown.root);
     }
     shown_as = as;
+}
+function leave(): void {
+    shown?.leave?.();
+    shown = undefined;
 }
 function refresh(): void {
     frame.update();
@@ -185,7 +174,7 @@ function rebuild(): void {
     hold.end('blur');
     document.documentElement.lang = current_language() === 'zh' ? 'zh-CN' : 'en';
     desk.hush();
-    shown = undefined;
+    leave();
     frame = make_frame();
     refresh();
 }

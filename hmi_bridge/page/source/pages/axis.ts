@@ -10,12 +10,15 @@ import { why } from '../why';
 
 const step_sizes = [0.01, 0.1, 1, 10, 100];
 
-export function axis_page(desk: Desk, name: string): Page {
+/** `#axis/NAME`; the first one where there is none of that name. */
+export function axis_page(desk: Desk, [wanted = '']: readonly string[]): Page {
+    const known = desk.link.layout?.axes ?? [];
+    const name = (known.find((axis) => axis.name === wanted) ?? known[0])?.name ?? '';
     const layout = desk.axis_layout(name);
     const unit = layout?.unit ?? 'u';
     const axis_of = (): AxisState | undefined => desk.link.state?.axes.find((axis) => axis.name === name);
 
-    const tabs = element('nav', { class: 'tabs', 'aria-label': say('axis') }, ...(desk.link.layout?.axes ?? []).map((axis) => {
+    const tabs = element('nav', { class: 'tabs', 'aria-label': say('axis') }, ...known.map((axis) => {
         const tab = element('a', { href: `#axis/${encodeURIComponent(axis.name)}` }, axis.name);
         if (axis.name === name) mark(tab, 'aria-current', 'page');
         return tab;

@@ -1,0 +1,22 @@
+// Texts of programs, tasks, variables, parameters: English, Chinese.
+export const programs = {
+    program: ['Program', '程序'],
+    program_running: ['running', '运行'],
+    program_stopped: ['stopped', '已停止'],
+    program_fault: ['fault', '故障'],
+    start: ['Start', '启动'],
+    stop: ['Stop', '停止'],
+    needs_automatic: ['Programs start in automatic mode.', '程序在自动模式下启动。'],
+    no_programs: ['The machine has no programs.', '该机器没有程序。'],
+    variables: ['Variables', '变量'],
+    parameters: ['Parameters', '参数'],
+    parameter_range: ['Range', '范围'],
+    meaning: ['Meaning', '含义'],
+    tasks: ['Tasks', '任务'],
+    task: ['Task', '任务'],
+    releases: ['Runs', '执行次数'],
+    overruns: ['Overruns', '超时'],
+    run_time: ['Run time µs', '执行时间 µs'],
+    run_time_max: ['Longest µs', '最长 µs'],
+    filter: ['Filter', '筛选'],
+} as const satisfies Record<string, readonly [string, string]>;
