@@ -38,6 +38,9 @@ export class Rows<T, R extends { root: Element }> {
     private readonly made_ = new Map<string, R>();
     constructor(private readonly parent_: Element, private readonly key_: (item: T) => string, private readonly make_: (item: T) => R,
                 private readonly update_: (row: R, item: T) => void) {}
+    row(key: string): R | undefined {
+        return this.made_.get(key);
+    }
     update(items: readonly T[]): void {
         const present = new Set<string>();
         let before: Element | null = this.parent_.firstElementChild;

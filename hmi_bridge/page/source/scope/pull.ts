@@ -1,0 +1,137 @@
+// How samples come: the page asks for what it does not have, so nothing queues behind it; a page that was slow sees a gap, and fills it while the machine still has it.
+import { Answer, Request } from '../link';
+import { Doubles } from './base64';
+import { Span, Spans } from './spans';
+import { Store } from './store';
+
+export type Ask = (request: Request) => Promise<Answer>;
+
+/** The protocol's bounds: signals and numbers of one answer. */
+const most_signals = 64;
+const most_numbers = 200_000;
+
+export interface Extent {
+    first: number;
+    last: number;
+}
+
+/** Reads stretches of every sample into a store. */
+export class Reader {
+    /** What the source has, as it last said. */
+    extent: Extent | undefined;
+    /** Why the last answer was none. */
+    refusal: Answer['error'] | undefined;
+    /** The source counts lower than before: it began anew. */
+    on_restart: () => void = () => undefined;
+    /** Machine time of cycle 0: ns. */
+    zero_ns = 0;
+    private readonly doubles_ = new Doubles();
+
+    constructor(private readonly ask_: Ask, private readonly recording_: string | undefined, readonly store: Store, private readonly cycle_ns_: number) {}
+
+    /** Cycles that one question may be about, for so many signals. */
+    static longest(signals: number): number {
+        return Math.floor(most_numbers / Math.max(1, Math.min(signals, most_signals)));
+    }
+
+    /** Every sample of [from, to) that the source has, of any number of signals; what came, or undefined where no answer came. */
+    async read(names: readonly string[], from: number, to: number): Promise<Span | undefined> {
+        let got: Span | undefined;
+        for (let at = 0; at < names.length; at += most_signals) {
+            const signals = names.slice(at, at + most_signals);
+            const range = got ?? { from, to };  // all signals to the same cycle
+            const answer = await this.ask_({
+                ...(this.recording_ === undefined ? { cmd: 'scope_read' } : { cmd: 'recording_read', recording: this.recording_ }), signals, points: Reader.longest(signals.length), from: range.from, to: range.to,
+            });
+            if (!answer.ok) {
+                this.refusal = answer.error;
+                return got;
+            }
+            this.refusal = undefined;
+            const before = this.extent;
+            const first = Number(answer['first']), last = Number(answer['last']);
+            if (Number.isFinite(first) && Number.isFinite(last)) this.extent = { first, last };
+            if (before && this.extent && this.extent.last < before.last - 1) {
+                this.on_restart();
+                return undefined;
+            }
+            const begin = Number(answer['from']), end = Number(answer['to']);
+            if (answer['per'] !== undefined && Number(answer['per']) !== 1) return got;  // asked for every sample
+            if (answer['time_ns'] !== undefined) this.zero_ns = Number(answer['time_ns']) - begin * this.cycle_ns_;
+            const data = answer['data'] as string[];
+            signals.forEach((name, i) => {
+                const values = this.doubles_.decode(data[i] ?? '');
+                this.store.put(name, begin, values.subarray(0, end - begin));
+            });
+            got ??= { from: begin, to: end };
+        }
+        return got;
+    }
+}
+
+/** Follows a machine that runs: each step brings what is new, and one stretch of what is older and missing. */
+export class Live {
+    names: readonly string[] = [];
+    /** The cycle behind the newest that came. */
+    private next_: number | undefined;
+    /** What the machine does not have any more; asked for once. */
+    private readonly lost_ = new Spans();
+
+    constructor(private readonly reader_: Reader) {}
+
+    get next(): number | undefined {
+        return this.next_;
+    }
+    restart(): void {
+        this.next_ = undefined;
+        this.reader_.extent = undefined;
+        this.reader_.store.clear();
+        this.lost_.cut(Infinity);
+    }
+
+    /** True where something came. The source's extent has to be known. */
+    async step(): Promise<boolean> {
+        const extent = this.reader_.extent;
+        if (this.names.length === 0 || !extent || extent.last < extent.first) return false;
+        const from = this.next_ ?? extent.last;  // begins with the newest; what was before is fetched behind it
+        const got = await this.reader_.read(this.names, from, from + Reader.longest(this.names.length));
+        if (got) this.next_ = got.to;
+        const filled = await this.fill();
+        return got !== undefined || filled;
+    }
+
+    private async fill(): Promise<boolean> {
+        const extent = this.reader_.extent;
+        if (!extent || this.next_ === undefined) return false;
+        const store = this.reader_.store;
+        const from = Math.max(extent.first, store.oldest), to = this.next_;
+        // The newest hole first: it is nearest to what is looked at.
+        let newest: Span | undefined;
+        for (const name of this.names)
+            for (const hole of store.tracks.get(name)?.have.holes(from, to) ?? [{ from, to }]) {
+                const open = this.lost_.holes(hole.from, hole.to).pop();
+                if (open && (!newest || open.to > newest.to)) newest = open;
+            }
+        if (!newest) return false;
+        const hole = newest;
+        const lacking = this.names.filter((name) => !store.has(name, hole.to - 1)).slice(0, most_signals);
+        const begin = Math.max(hole.from, hole.to - Reader.longest(lacking.length));
+        const got = await this.reader_.read(lacking, begin, hole.to);
+        if (this.reader_.refusal) return false;
+        const there = got && got.to > got.from ? got : { from: hole.to, to: hole.to };
+        this.lost_.add(begin, Math.min(there.from, hole.to));
+        this.lost_.add(Math.max(there.to, begin), hole.to);
+        return got !== undefined;
+    }
+}
+
+/** All of a recording, for these signals. */
+export async function load(reader: Reader, names: readonly string[], from: number, to: number): Promise<boolean> {
+    const lacking = names.filter((name) => !reader.store.has(name, from, to)).slice(0);
+    for (let at = 0; at < lacking.length; at += most_signals) {
+        const some = lacking.slice(at, at + most_signals);
+        const step = Reader.longest(some.length);
+        for (let begin = from; begin < to; begin += step) if (!(await reader.read(some, begin, Math.min(to, begin + step)))) return false;
+    }
+    return true;
+}
