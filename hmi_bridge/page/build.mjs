@@ -15,6 +15,7 @@ await esbuild.build({
     outdir: join(out, 'page'),
     bundle: true,
     minify: true,
+    nodePaths: [resolve(out, 'node_modules')],
     format: 'esm',
     target: ['chrome100', 'firefox100', 'safari15'],
     charset: 'utf8',

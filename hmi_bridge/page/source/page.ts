@@ -126,7 +126,7 @@ function make_frame(): Frame {
 function show(): void {
     const { entry, rest } = route();
     const as = [current_language(), link.machine, entry.name, ...rest].join('\n');
-    if (!link.layout) {
+    if (!link.layout && !entry.alone) {
         leave();
         frame.main.replaceChildren(element('p', { class: 'hint' }, say('never_banner')));
     } else if (!shown || as !== shown_as) {

@@ -6,6 +6,7 @@ import { bus } from './texts/bus';
 import { frame } from './texts/frame';
 import { io } from './texts/io';
 import { programs } from './texts/programs';
+import { scope } from './texts/scope';
 import { system } from './texts/system';
 import { why } from './texts/why';
 
@@ -18,6 +19,7 @@ export const rooms = {
     frame,
     io,
     programs,
+    scope,
     system,
     why,
 };

@@ -7,6 +7,7 @@ import { bus } from './bus';
 import { io } from './io';
 import { overview } from './overview';
 import { programs } from './programs';
+import { scope } from './scope';
 import { system } from './system';
 
 export interface Entry {
@@ -16,6 +17,8 @@ export interface Entry {
     make(desk: Desk, rest: readonly string[]): Page;
     /** No tab of its own: it is reached from another page, whose tab is marked instead. */
     readonly under?: string;
+    /** Shown without a machine as well. */
+    readonly alone?: boolean;
     /** Whether it has a tab just now; always where it is left out. */
     offered?(desk: Desk): boolean;
 }
@@ -24,6 +27,7 @@ export interface Entry {
 export const pages: readonly Entry[] = [
     { name: 'overview', title: 'overview', make: overview },
     { name: 'axis', title: 'axis', make: axis_page },
+    { name: 'scope', title: 'scope', make: scope, alone: true },
     { name: 'alarms', title: 'alarms', make: alarms },
     { name: 'io', title: 'io', make: io },
     { name: 'programs', title: 'programs', make: programs },

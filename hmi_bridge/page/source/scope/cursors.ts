@@ -25,8 +25,8 @@ export function measured(cursors: Cursors, from: number, to: number): { from: nu
 export function time_text(seconds: number, cycle_ns: number): string {
     const size = Math.abs(seconds);
     const decimals = Math.max(0, Math.ceil(-Math.log10(cycle_ns / 1e9) - 1e-9));
-    if (size >= 1 || size === 0) return `${seconds.toFixed(decimals)} s`;
-    return `${(seconds * 1e3).toFixed(Math.max(0, decimals - 3))} ms`;
+    const text = size >= 1 || size === 0 ? `${seconds.toFixed(decimals)} s` : `${(seconds * 1e3).toFixed(Math.max(0, decimals - 3))} ms`;
+    return text.replace('-', '−');
 }
 /** All the digits that the number has. */
 export const value_text = (value: number): string => (Number.isNaN(value) ? '–' : !Number.isFinite(value) ? (value > 0 ? '∞' : '−∞') : String(value).replace('-', '−'));

@@ -30,7 +30,7 @@ export class ValueTable {
         const titles = ['', 'scope_curve', 'unit', 'scope_newest', 'scope_at_a', 'scope_at_b', 'scope_difference', ...figure_keys] as const;
         this.head_ = titles.map((key) => element('th', { scope: 'col' }, key ? say(key) : ''));
         const body = element('tbody');
-        this.rows_ = new Rows(body, (channel) => `${key_of(channel)} ${channel.colour} ${session_.scene?.title ?? ''}`, (channel) => {
+        this.rows_ = new Rows<Channel, Line>(body, (channel) => `${key_of(channel)} ${channel.colour} ${session_.scene?.title ?? ''}`, (channel) => {
             const key = key_of(channel), signal = session_.signal(channel.name);
             const show = element('button', { type: 'button', class: 'scope-show', 'data-show': key, onclick: () => {
                 channel.hidden = !channel.hidden;
