@@ -1,14 +1,16 @@
-// A machine that runs, the relay in front of it, a browser that looks at it.
+// A machine that runs, the server of its page, the network in front of it, a browser that looks at it.
 import { ChildProcess, spawn } from 'node:child_process';
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { Browser, chromium, Page } from 'playwright-core';
-import { Machine, Relay } from './relay';
+import { Browser, BrowserContext, chromium, Page } from 'playwright-core';
+import { Line } from './line';
+import { Json, Machine } from './machine';
 
 export interface Axis {
     name: string;
     state: string;
+    owner: string;
     powered: boolean;
     homed: boolean;
     unit: string;
@@ -16,10 +18,12 @@ export interface Axis {
     actual_velocity: number;
     set_position: number;
     set_velocity: number;
+    override: number;
 }
 
 const build = process.env['TAKTWERK_BUILD'] ?? '';
 const source = process.env['TAKTWERK_SOURCE'] ?? '';
+const command = process.env['TAKTWERK_COMMAND'] ?? join(build, 'taktwerk');
 const patience = 20_000;
 
 export async function until(what: string, holds: () => Promise<boolean> | boolean, ms = patience): Promise<void> {
@@ -28,54 +32,114 @@ export async function until(what: string, holds: () => Promise<boolean> | boolea
 }
 export const pause = (ms: number): Promise<void> => new Promise((resolve) => setTimeout(resolve, ms));
 
+export interface CellOptions {
+    /** What is changed in the demo's machine file. */
+    machine?: (yaml: string) => string;
+    /** Of `taktwerk hmi`. */
+    role?: string;
+}
+
+export interface Taste {
+    theme?: 'light' | 'dark';
+    language?: 'en' | 'zh';
+}
+
+/** The demo without its programs and happenings: an operator alone with three axes. */
+export const quiet = (yaml: string): string => yaml.replace(/^programs:[\s\S]*?(?=^# --- Safety)/m, '').replace('start_mode: automatic', 'start_mode: manual').replace(/^  events:[\s\S]*$/m, '');
+
 export class Cell {
-    relay!: Relay;
+    line!: Line;
     machine!: Machine;
     browser!: Browser;
     page!: Page;
     address = '';
+    port = 0;
+    /** What the browser's console said. */
     readonly complaints: string[] = [];
-    private runtime_: ChildProcess | undefined;
-    private readonly folder_ = mkdtempSync(join(tmpdir(), 'hmi-page-'));
+    /** Messages of the page to the server, as they left the page. */
+    sent: Json[] = [];
+    readonly folder = mkdtempSync(join(tmpdir(), 'hmi-page-'));
+    readonly socket = join(this.folder, 'demo.sock');
+    private readonly children_: ChildProcess[] = [];
+    private server_: ChildProcess | undefined;
+    private role_ = 'engineer';
 
-    /** The demo without its programs and happenings: an operator alone with three axes. */
-    async start(): Promise<void> {
+    async start(options: CellOptions = {}): Promise<void> {
         const demo = readFileSync(join(source, 'config/machines/demo.yaml'), 'utf8');
-        const path = join(this.folder_, 'demo.sock');
-        const quiet = demo.replace(/^programs:[\s\S]*?(?=^# --- Safety)/m, '').replace('start_mode: automatic', 'start_mode: manual')
-            .replace(/^  events:[\s\S]*$/m, '').replace('enabled: true, required: false', 'enabled: false').replace(/^hmi:$/m, `hmi:\n  socket: ${path}`)
-            .replace('\nhmi:', '\nhmi:');
-        const file = join(this.folder_, 'demo.yaml');
-        writeFileSync(file, quiet.includes('socket:') ? quiet : quiet + `\nsocket: ${path}\n`);
-        let said = '';
-        this.runtime_ = spawn(join(build, 'taktwerk'), ['run', file], { stdio: ['ignore', 'pipe', 'pipe'], cwd: source });
-        for (const stream of [this.runtime_.stdout, this.runtime_.stderr]) stream?.on('data', (text) => (said += String(text)));
+        const file = join(this.folder, 'demo.yaml');
+        writeFileSync(file, (options.machine ?? quiet)(demo).replace(/^hmi:$/m, `hmi:\n  socket: ${this.socket}`));
+        this.role_ = options.role ?? this.role_;
+        const runtime = this.child([command, 'run', file], source);
         await until('the machine runs', async () => {
-            if (this.runtime_?.exitCode != null) throw new Error(`taktwerk run ended:\n${said}`);
+            if (runtime.process.exitCode !== null) throw new Error(`taktwerk run ended:\n${runtime.said()}`);
             try {
-                this.machine ??= await Machine.open(path);
+                this.machine ??= await Machine.open(this.socket);
                 return (await this.machine.state())['phase'] === 'running';
             } catch {
                 return false;
             }
         });
-        this.relay = new Relay(join(build, 'hmi_page/page'), path);
-        this.address = await this.relay.listen();
+        await this.serve();
+        this.line = new Line(this.port);
+        await this.line.open();
+        this.address = `http://127.0.0.1:${this.port}/`;
         this.browser = await chromium.launch({
             executablePath: '/usr/bin/chromium', headless: true,
             args: ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync'],
         });
         await this.look();
     }
+    /** The server, or a new one at the same place. It listens beside the browser's address: the line goes between. */
+    async serve(): Promise<void> {
+        const server = this.child([command, 'hmi', '--listen', `127.0.0.2:${this.port}`, '--socket', this.socket, '--role', this.role_,
+            '--page', join(build, 'hmi_page/page'), '--audit', join(this.folder, 'audit')], this.folder);
+        this.server_ = server.process;
+        await until('the server listens', () => {
+            if (server.process.exitCode !== null) throw new Error(`taktwerk hmi ended:\n${server.said()}`);
+            this.port = Number(/http:\/\/[^\s/]*:(\d+)\//.exec(server.said())?.[1] ?? 0);
+            return this.port !== 0;
+        });
+    }
+    signal_server(signal: NodeJS.Signals): void {
+        this.server_?.kill(signal);
+    }
+    /** To the processes that draw pages, of this browser alone. */
+    signal_renderers(signal: NodeJS.Signals): number {
+        const parents = new Map<number, number>(), renderers: number[] = [];
+        for (const name of readdirSync('/proc')) {
+            const pid = Number(name);
+            if (!Number.isInteger(pid)) continue;
+            try {
+                parents.set(pid, Number(/\) \S (\d+)/.exec(readFileSync(`/proc/${pid}/stat`, 'utf8'))?.[1]));
+                if (readFileSync(`/proc/${pid}/cmdline`, 'utf8').includes('--type=renderer')) renderers.push(pid);
+            } catch { /* it has just ended */ }
+        }
+        const mine = renderers.filter((pid) => {
+            for (let up: number | undefined = pid; up; up = parents.get(up)) if (up === process.pid) return true;
+            return false;
+        });
+        for (const pid of mine) process.kill(pid, signal);
+        return mine.length;
+    }
     /** A fresh page, as of somebody who comes for the first time. */
-    async look(hash = ''): Promise<void> {
+    async look(hash = '', taste: Taste = {}): Promise<void> {
         await this.page?.context().close();
-        const context = await this.browser.newContext({ viewport: { width: 1280, height: 800 }, locale: 'en-GB', hasTouch: true });
-        this.page = await context.newPage();
-        this.page.on('console', (message) => message.type() === 'error' && !message.text().includes('WebSocket') && this.complaints.push(message.text()));
-        this.page.on('pageerror', (error) => this.complaints.push(String(error)));
-        await this.page.goto(this.address + hash);
-        await this.page.locator('body:not([data-stale])').waitFor({ timeout: patience });
+        this.sent = [];
+        this.page = await this.another(hash, taste, this.sent);
+    }
+    /** One more browser window, of another person. */
+    async another(hash = '', taste: Taste = {}, sent: Json[] = []): Promise<Page> {
+        const context: BrowserContext = await this.browser.newContext({ viewport: { width: 1280, height: 800 }, locale: 'en-GB', hasTouch: true });
+        await context.addInitScript((kept) => {
+            for (const [key, text] of Object.entries(kept)) if (localStorage.getItem(key) === null) localStorage.setItem(key, text);
+        }, { theme: taste.theme ?? 'light', language: taste.language ?? 'en' });
+        const page = await context.newPage();
+        page.on('console', (message) => message.type() === 'error' && !message.text().includes('WebSocket') && this.complaints.push(message.text()));
+        page.on('pageerror', (error) => this.complaints.push(String(error)));
+        page.on('websocket', (socket) => socket.on('framesent', ({ payload }) => void sent.push(JSON.parse(String(payload)) as Json)));
+        await page.goto(this.address + hash);
+        await page.locator('body:not([data-stale]) .page').waitFor({ timeout: patience });
+        return page;
     }
     async axis(name: string): Promise<Axis> {
         return ((await this.machine.state())['axes'] as Axis[]).find((axis) => axis.name === name) as Axis;
@@ -92,13 +156,22 @@ export class Cell {
     }
     async end(): Promise<void> {
         await this.browser?.close();
-        await this.relay?.close();
+        await this.line?.close();
         this.machine?.close();
-        if (this.runtime_ && this.runtime_.exitCode === null) {
-            const gone = new Promise((resolve) => this.runtime_?.once('exit', resolve));
-            this.runtime_.kill('SIGTERM');
+        for (const child of this.children_.reverse()) {
+            if (child.exitCode !== null || child.signalCode !== null) continue;
+            const gone = new Promise((resolve) => child.once('exit', resolve));
+            child.kill('SIGCONT');
+            child.kill('SIGTERM');
             await gone;
         }
-        rmSync(this.folder_, { recursive: true, force: true });
+        rmSync(this.folder, { recursive: true, force: true });
+    }
+    private child([program = '', ...words]: string[], cwd: string): { process: ChildProcess; said: () => string } {
+        let said = '';
+        const child = spawn(program, words, { stdio: ['ignore', 'pipe', 'pipe'], cwd });
+        for (const stream of [child.stdout, child.stderr]) stream?.on('data', (text) => (said += String(text)));
+        this.children_.push(child);
+        return { process: child, said: () => said };
     }
 }

@@ -1,72 +1,14 @@
-// A person at the page, a machine that runs: what is shown is so, what is pressed happens, and every ending of a jog ends it.
+// A person looks at the page of a machine that runs: what is shown is so.
 import assert from 'node:assert/strict';
 import { after, before, beforeEach, test } from 'node:test';
-import { Cell, pause, until } from './cell';
+import { Cell } from './cell';
 
 const cell = new Cell();
 before(() => cell.start(), { timeout: 120_000 });
 after(() => cell.end());
-beforeEach(() => { cell.relay.frozen = false; });
+beforeEach(() => cell.line.flow());
 
-const jog = (sign: string) => cell.page.locator(`[data-jog="${sign}"]`);
 const shown = (value: string) => cell.page.locator(`[data-value="${value}"]`);
-// The lease (250 ms), the ramp from 20 mm/s (under 50 ms), and what two busy cores are late.
-const lease_and_ramp = 1500;
-
-async function hold_x(): Promise<void> {
-    await cell.look('#axis/x');
-    await jog('+').waitFor();
-    await until('the button may be pressed', () => jog('+').isEnabled());
-    const box = await jog('+').boundingBox();
-    assert.ok(box);
-    await cell.page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
-    await cell.page.mouse.down();
-    await until('x moves', async () => (await cell.axis('x')).set_velocity > 19);
-}
-async function no_more_motion(): Promise<void> {
-    await cell.stands('x', lease_and_ramp);
-    const before = (await cell.axis('x')).set_position;
-    await pause(400);
-    assert.equal((await cell.axis('x')).set_position, before, 'it began again by itself');
-}
-
-test('by keyboard alone: power, home, jog, move, stop', { timeout: 90_000 }, async () => {
-    await cell.look('#axis/x');
-    const press = async (selector: string, key = 'Enter') => {
-        const wanted = cell.page.locator(selector);
-        await until(`${selector} may be pressed`, () => wanted.isEnabled());
-        for (let i = 0; i < 60; i++) {
-            if (await wanted.evaluate((element) => element === document.activeElement)) break;
-            await cell.page.keyboard.press('Tab');
-        }
-        assert.ok(await wanted.evaluate((element) => element === document.activeElement), `${selector} is not reached by Tab`);
-        if (key) await cell.page.keyboard.press(key);
-    };
-    await press('[data-cmd="enable"]');
-    await until('power', async () => (await cell.axis('x')).powered);
-    await press('[data-cmd="home"]');
-    await until('homed', async () => (await cell.axis('x')).homed && (await cell.axis('x')).state === 'Standstill', 40_000);
-
-    await press('[data-jog="+"]', '');
-    await cell.page.keyboard.down(' ');
-    await until('x moves', async () => (await cell.axis('x')).set_velocity > 19);
-    await cell.page.keyboard.up(' ');
-    await no_more_motion();
-
-    await press('[data-input="to"]', '');
-    await cell.page.keyboard.type('40');
-    await cell.page.keyboard.press('Enter');
-    await until('x is at 40 mm', async () => Math.abs((await cell.axis('x')).actual_position - 40) < 0.01);
-
-    await press('[data-input="to"]', '');
-    await cell.page.keyboard.press('Control+a');
-    await cell.page.keyboard.type('300');
-    await cell.page.keyboard.press('Enter');
-    await until('x moves', async () => (await cell.axis('x')).set_velocity > 15);
-    await press('[data-do="stop"]');
-    await cell.stands('x', 3000);
-    assert.ok((await cell.axis('x')).actual_position < 290);
-});
 
 test('values on the screen are the machine\'s, to the last digit', async () => {
     await cell.powered_and_homed('x');
@@ -75,7 +17,7 @@ test('values on the screen are the machine\'s, to the last digit', async () => {
     const axis = await cell.axis('x');
     const said = async (value: string) => (await shown(value).textContent())?.replace('−', '-');
     assert.equal(await said('big_position'), axis.actual_position.toFixed(3).replace('-0.000', '0.000'));
-    assert.equal(await said('set_position'), `${axis.set_position.toFixed(3).replace('-0.000', '0.000')} mm`);
+    assert.equal(await said('head_set_position'), `${axis.set_position.toFixed(3).replace('-0.000', '0.000')} mm`);
     await cell.look('#overview');
     for (const name of ['x', 'y', 'z']) {
         const { actual_position, unit } = await cell.axis(name);
@@ -84,40 +26,12 @@ test('values on the screen are the machine\'s, to the last digit', async () => {
     }
 });
 
-const endings: [string, () => Promise<void>][] = [
-    ['the button let go', () => cell.page.mouse.up()],
-    ['pointercancel', () => jog('+').evaluate((button) => button.dispatchEvent(new PointerEvent('pointercancel', { pointerId: 1, bubbles: true })))],
-    ['the capture lost', () => jog('+').evaluate((button) => button.releasePointerCapture(1))],
-    ['the window\'s blur', () => cell.page.evaluate(() => window.dispatchEvent(new Event('blur')))],
-    ['a hidden page', () => cell.page.evaluate(() => {
-        Object.defineProperty(document, 'visibilityState', { value: 'hidden', configurable: true });
-        document.dispatchEvent(new Event('visibilitychange'));
-    })],
-    ['a second finger', () => cell.page.touchscreen.tap(700, 300)],
-    ['another page of it', () => cell.page.evaluate(() => { location.hash = '#overview'; })],
-    ['the STOP button', () => cell.page.locator('[data-do="stop"]').dispatchEvent('pointerdown', { pointerId: 7 })],
-    ['a server that freezes', async () => { cell.relay.frozen = true; }],
-    ['a server that is killed', async () => cell.relay.drop()],
-    ['a page that freezes', () => cell.page.evaluate(() => { setTimeout(() => { const end = Date.now() + 1200; while (Date.now() < end); }, 0); })],
-    ['a page that is closed', () => cell.page.close()],
-];
-for (const [name, happens] of endings)
-    test(`a jog ends by: ${name}`, { timeout: 60_000 }, async () => {
-        await cell.powered_and_homed('x');
-        await hold_x();
-        const before = cell.relay.commands.filter((c) => c['press'] === true).length;
-        await happens();
-        await no_more_motion();
-        assert.equal(cell.relay.commands.filter((c) => c['press'] === true).length, before, 'it pressed anew');
-        cell.relay.frozen = false;
-    });
-
 test('values of a server that is silent are grey, with the time since; only STOP stays', async () => {
     await cell.look('#axis/x');
     const banner = cell.page.locator('.stale');
     assert.ok(await banner.isHidden());
     assert.ok(await cell.page.locator('main [data-cmd="reset"]').isEnabled());
-    cell.relay.frozen = true;
+    cell.line.hold();
     const at = Date.now();
     await banner.waitFor({ timeout: 3000 });
     assert.ok(Date.now() - at > 350, 'too early');
@@ -125,7 +39,7 @@ test('values of a server that is silent are grey, with the time since; only STOP
     assert.notEqual(await cell.page.locator('main').evaluate((main) => getComputedStyle(main).filter), 'none');
     for (const button of await cell.page.locator('main button:not([data-cmd="stop"])').all()) assert.ok(await button.isDisabled(), (await button.textContent()) ?? '');
     assert.ok(await cell.page.locator('[data-do="stop"]').isEnabled());
-    cell.relay.frozen = false;
+    cell.line.flow();
     await cell.page.locator('body:not([data-stale])').waitFor({ timeout: 3000 });
     assert.ok(await banner.isHidden());
 });
@@ -151,12 +65,9 @@ test('one click makes it Chinese, on every page', async () => {
 
 // WCAG 2.1, 1.4.3: 4.5 to 1, for large letters (24 px, or 18.66 px bold) 3 to 1. Disabled controls are exempt.
 test('letters stand out from their ground in both themes, and STOP and SIMULATED are on the screen', async () => {
-    for (const theme of ['light', 'dark'])
+    for (const theme of ['light', 'dark'] as const)
         for (const page of ['overview', 'axis/x', 'alarms', 'io', 'programs', 'bus', 'system']) {
-            await cell.look();
-            await cell.page.evaluate((t) => localStorage.setItem('theme', t), theme);
-            await cell.page.goto(`${cell.address}?#${page}`);
-            await cell.page.locator('body:not([data-stale]) .page').waitFor();
+            await cell.look(`#${page}`, { theme });
             await cell.page.waitForTimeout(150);
             assert.equal(await cell.page.locator('html').getAttribute('data-theme'), theme);
             assert.ok(await cell.page.locator('.simulated').isVisible());

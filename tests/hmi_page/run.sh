@@ -20,7 +20,6 @@ major=$(node -p 'process.versions.node.split(".")[0]')
 
 start=()
 if [[ $kind == browser ]]; then
-    ((major >= 20)) || skip "the page in a browser: playwright-core needs node 20, here is $major"
     [[ -x /usr/bin/chromium ]] || skip "the page in a browser: no chromium (Debian package chromium, ./dev setup browser)"
     unshare --user --map-root-user --net true 2>/dev/null || skip "the page in a browser: no network namespaces here (unshare --user --net)"
     # shellcheck disable=SC2016 # $@ is the inner shell's

@@ -2,7 +2,7 @@
 import { Answer, Link, Request } from './link';
 import { JogHold } from './jog';
 import { AxisLayout, AxisState, MachineState } from './state';
-import { Key, say } from './texts';
+import { Key, say, word } from './texts';
 import { element, mark, write } from './view';
 
 export interface Page {
@@ -12,14 +12,27 @@ export interface Page {
     leave?(): void;
 }
 
+export interface Given {
+    at: Date;
+    request: Request;
+    answer: Answer;
+}
+const most_given = 50;
+
 export class Desk {
     readonly notice = element('div', { class: 'notice', role: 'status', 'aria-live': 'polite' });
 
     constructor(readonly link: Link, readonly hold: JogHold) {}
 
+    /** What this page has commanded, newest first. */
+    readonly given: Given[] = [];
+
     /** Gives the command and tells what came of it. */
     async give(request: Request): Promise<Answer> {
+        const at = new Date();
         const answer = await this.link.request(request);
+        this.given.unshift({ at, request, answer });
+        this.given.length = Math.min(this.given.length, most_given);
         if (!answer.ok) this.refused(answer);
         else if (answer.note) this.tell('note', answer.note);
         else if (this.notice.dataset['kind'] === 'refused') this.hush();
@@ -46,10 +59,23 @@ export class Desk {
         const cmd = request().cmd;
         return element('button', { type: 'button', class: kind, 'data-cmd': cmd, onclick: () => void this.give(request()) }, say(key));
     }
-    /** Whether a button may be pressed now, by its own reason and by everybody's. */
-    permit(button: HTMLButtonElement | HTMLInputElement | HTMLSelectElement, cmd: string, possible = true): void {
-        const allowed = possible && !this.link.stale && this.link.allowed(cmd);
+    /** Whether a button may be pressed now, by its own reason and by everybody's. `why`: its own reason, told when a grey button is touched. */
+    permit(button: HTMLButtonElement | HTMLInputElement | HTMLSelectElement, cmd: string, possible = true, why = ''): void {
+        const may = this.link.allowed(cmd);
+        const allowed = possible && !this.link.stale && may;
         if (button.disabled === allowed) button.disabled = !allowed;
+        const reason = allowed ? '' : this.link.stale ? say('grey_stale') : !may ? say('grey_role', { role: word('role', this.link.role) }) : why;
+        mark(button, 'data-denied', !may);
+        mark(button, 'data-reason', reason || false);
+    }
+    /** A grey button takes no click; so the page looks what lies under the finger, and says why. */
+    tell_reasons(): void {
+        document.addEventListener('pointerdown', ({ clientX: x, clientY: y }) => {
+            for (const button of document.querySelectorAll<HTMLElement>(':disabled[data-reason]')) {
+                const box = button.getBoundingClientRect();
+                if (x >= box.left && x < box.right && y >= box.top && y < box.bottom) this.tell('note', button.dataset['reason'] ?? '');
+            }
+        });
     }
     axis_layout(name: string): AxisLayout | undefined {
         return this.link.layout?.axes.find((axis) => axis.name === name);
@@ -89,3 +115,6 @@ export const panel = (title: Key, ...children: (Node | string)[]): HTMLElement =
 export function table(keys: Key[], body: HTMLElement): HTMLElement {
     return element('table', {}, element('thead', {}, element('tr', {}, ...keys.map((key) => element('th', { scope: 'col' }, say(key))))), body);
 }
+/** Links between the parts of a page; each with where it leads and its text. */
+export const sub_tabs = (name: Key, parts: readonly (readonly [string, Key])[], shown: string): HTMLElement =>
+    element('nav', { class: 'tabs', 'aria-label': say(name) }, ...parts.map(([where, key]) => element('a', { href: `#${where}`, 'aria-current': where === shown ? 'page' : 'false' }, say(key))));

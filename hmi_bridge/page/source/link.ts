@@ -19,11 +19,16 @@ export type Request = { cmd: string } & Record<string, unknown>;
 export const stale_after = 500;
 const reconnect_after = 500;
 const answer_within = 3000;
+const most_counted = 200;
 
 export class Link {
     layout: MachineLayout | undefined;
     state: MachineState | undefined;
     role = '';
+    /** Who has logged in; empty: nobody, or the server knows no users. */
+    user = '';
+    /** The server knows users: one may log in. */
+    login = false;
     /** The commands that the role may give; undefined: not told yet. */
     may: string[] | undefined;
     machines: { machine: string; online: boolean; why: string }[] = [];
@@ -31,6 +36,14 @@ export class Link {
     /** Why the server has nothing new, in its words. */
     why_stale = '';
     version = '';
+    /** How the server gets the values: `lcm` or `socket`. */
+    source = '';
+    /** States that came in the last second. */
+    get rate(): number {
+        const now = performance.now();
+        while (this.came_.length > 0 && (this.came_[0] ?? now) < now - 1000) this.came_.shift();
+        return this.came_.length;
+    }
     opened = false;
     /** performance.now() when the machine's cycle was last seen to advance; 0: never. */
     fresh_at = 0;
@@ -39,6 +52,7 @@ export class Link {
     on_change: () => void = () => undefined;
     on_closed: () => void = () => undefined;
 
+    private readonly came_: number[] = [];
     private socket_: WebSocket | undefined;
     private next_id_ = 1;
     private readonly waiting_ = new Map<number, { resolve: (answer: Answer) => void; timer: number }>();
@@ -85,6 +99,10 @@ export class Link {
         });
     }
 
+    /** Anew, as another user: what the server knows of a page it knows from the beginning of its connection. */
+    reopen(): void {
+        this.socket_?.close();
+    }
     watch(machine: string): void {
         if (this.socket_?.readyState === WebSocket.OPEN) this.socket_.send(JSON.stringify({ type: 'watch', machine }));
     }
@@ -104,6 +122,9 @@ export class Link {
             this.layout = (message['layout'] as MachineLayout | null) ?? undefined;
             this.role = String(message['role'] ?? '');
             this.may = Array.isArray(message['may']) ? (message['may'] as string[]) : undefined;
+            this.user = String(message['user'] ?? '');
+            this.login = message['login'] === true;
+            this.source = String(message['source'] ?? '');
             this.version = String(message['version'] ?? '');
             this.machines = (message['machines'] as typeof this.machines | undefined) ?? [];
             this.machine = String(message['machine'] ?? '');
@@ -114,6 +135,8 @@ export class Link {
         } else if (message['type'] === 'state') {
             if (message['machine'] !== undefined && message['machine'] !== this.machine) return;
             const state = message['state'] as MachineState;
+            this.came_.push(performance.now());
+            if (this.came_.length > most_counted) this.came_.shift();
             this.why_stale = '';
             if (this.state?.cycle !== state.cycle) {
                 const age = Number(message['age_ms'] ?? 0);

@@ -2,7 +2,7 @@
 import { Real, value } from './state';
 
 /** Three decimals, a real minus sign, no "-0.000". What is no number is a dash. */
-export function fixed(real: Real | undefined, decimals = 3): string {
+export function fixed(real: Real | null | undefined, decimals = 3): string {
     const number = value(real);
     if (Number.isNaN(number)) return '–';
     if (!Number.isFinite(number)) return number > 0 ? '∞' : '−∞';

@@ -2,7 +2,7 @@
 
 /** JSON has no NaN and no infinity; such a value comes as the text "NaN", "Infinity" or "-Infinity". Read it by value(). */
 export type Real = number | string;
-export const value = (real: Real | undefined): number => (real === undefined ? NaN : Number(real));
+export const value = (real: Real | null | undefined): number => (real === undefined || real === null ? NaN : Number(real));
 
 export interface AxisState {
     name: string;
@@ -43,6 +43,26 @@ export interface AxisState {
     negative_limit_switch: boolean;
     positive_limit_switch: boolean;
     home_switch: boolean;
+    // What an older runtime does not say.
+    enable?: boolean;
+    enable_positive?: boolean;
+    enable_negative?: boolean;
+    /** Least and greatest of all cycles since the start, or since somebody began anew. */
+    following_error_min?: Real;
+    following_error_max?: Real;
+    operators_override?: Real;
+    brake?: string;
+    master?: string;
+    drive_error_text?: string;
+    drive_error_text_zh?: string;
+    drive_error_manual?: string;
+}
+
+export interface ForcedPoint {
+    point: string;
+    direction: 'input' | 'output';
+    value: Real;
+    by: string;
 }
 
 export interface Alarm {
@@ -59,6 +79,10 @@ export interface Alarm {
     cause: string;
     remedy: string;
     reset: string;
+    /** The section of the manual that treats it. */
+    manual?: string;
+    /** The name of what was recorded around it. */
+    recording?: string;
 }
 
 export interface CommandEvent {
@@ -94,6 +118,7 @@ export interface MachineState {
     parameters: { program: string; name: string; unit: string; value: Real }[];
     alarms: Alarm[];
     events: CommandEvent[];
+    forced?: ForcedPoint[];
 }
 
 export interface AxisLayout {
@@ -103,10 +128,15 @@ export interface AxisLayout {
     simulated: boolean;
     jog_slow: Real;
     jog_fast: Real;
-    /** Software limits, in force once homed; absent from an older runtime. */
-    position_min?: Real;
-    position_max?: Real;
-    velocity?: Real;
+    /** Software limits, in force once homed; null: none; absent from an older runtime. So are the others. */
+    position_min?: Real | null;
+    position_max?: Real | null;
+    velocity_limit?: Real;
+    acceleration_limit?: Real;
+    jerk_limit?: Real | null;
+    following_window?: Real | null;
+    /** u; 0: a line. */
+    modulo?: Real;
     drive: string;
     profile: string;
     drive_axis: number;

@@ -1,30 +1,44 @@
 // What stands, in words, with cause and remedy; and what the machine refused.
-import { Desk, Page, panel } from '../desk';
+import { Desk, Page, panel, sub_tabs } from '../desk';
 import { duration } from '../numbers';
 import { Alarm, CommandEvent, MachineState } from '../state';
 import { current_language, say, word } from '../texts';
 import { element, mark, Rows, write } from '../view';
+import { alarm_history } from './alarm_history';
 
 export const in_words = (alarm: Alarm): string => (current_language() === 'zh' && alarm.chinese ? alarm.chinese : alarm.english);
 export const key_of = (alarm: Alarm): string => `${alarm.id}/${alarm.source}/${alarm.name}/${alarm.english}`;
 
-export function alarms(desk: Desk): Page {
+export const alarm_tabs = (shown: 'standing' | 'history'): HTMLElement => sub_tabs('alarms', [['alarms', 'alarms_standing'], ['alarms/history', 'alarms_history']], shown === 'standing' ? 'alarms' : 'alarms/history');
+/** One click opens what was recorded around the alarm, in the scope. */
+export function recording_link(name: string | undefined): HTMLElement {
+    return name ? element('a', { class: 'row-link', href: `#scope/recording/${encodeURIComponent(name)}`, 'data-recording': name }, say('open_recording')) : element('span', {}, '–');
+}
+
+/** `#alarms`: what stands; `#alarms/history`: what stood. */
+export function alarms(desk: Desk, [kind = '']: readonly string[]): Page {
+    return kind === 'history' ? alarm_history(desk) : standing_alarms(desk);
+}
+
+function standing_alarms(desk: Desk): Page {
     const acknowledge = desk.button('acknowledge', () => ({ cmd: 'acknowledge' }), 'primary');
     const reset = desk.button('reset_all', () => ({ cmd: 'reset' }));
     const none = element('p', { class: 'calm' }, `✓ ${say('no_alarms')}`);
     const list = element('div', { class: 'alarm-list' });
     const rows = new Rows(list, key_of, (alarm) => {
-        const status = element('span', { class: 'alarm-status' }), since = element('span', { class: 'alarm-since' });
+        const status = element('span', { class: 'alarm-status' }), since = element('span', { class: 'alarm-since' }), recorded = element('p', { class: 'recorded' });
         const root = element('article', { class: 'alarm', 'data-alarm': alarm.name },
             element('header', {}, status, element('strong', {}, alarm.source), since),
             element('p', { class: 'alarm-text' }, in_words(alarm)),
             element('dl', { class: 'values' }, element('dt', {}, say('cause')), element('dd', {}, alarm.cause), element('dt', {}, say('remedy')),
                 element('dd', {}, alarm.remedy), element('dt', {}, say('how_to_reset')), element('dd', {}, alarm.reset),
-                element('dt', {}, say('reaction')), element('dd', {}, `${word('reaction', alarm.reaction)} · ${alarm.name}`)));
-        return { root, status, since };
+                element('dt', {}, say('reaction')), element('dd', {}, `${word('reaction', alarm.reaction)} · ${alarm.name}`),
+                ...(alarm.manual ? [element('dt', {}, say('manual')), element('dd', {}, alarm.manual)] : [])), recorded);
+        return { root, status, since, recorded };
     }, (row, alarm) => {
         write(row.status, alarm.standing ? `⚠ ${say('standing')}` : `○ ${say('gone')}`);
         mark(row.root, 'data-tone', alarm.standing ? (alarm.reaction === 'warn' || alarm.reaction === 'none' ? 'warn' : 'bad') : 'idle');
+        if (alarm.recording && row.recorded.childElementCount === 0) row.recorded.append(recording_link(alarm.recording));
         const age = ((desk.link.state?.time_ns ?? 0) - alarm.since_ns) / 1e9;
         write(row.since, say('ago', { age: duration(Math.max(0, age)) }) + (alarm.count > 1 ? ` · ${say('count')} ${alarm.count}` : ''));
     });
@@ -39,7 +53,7 @@ export function alarms(desk: Desk): Page {
         write(row.remedy, event.remedy);
     });
     return {
-        root: element('div', { class: 'page alarms' }, element('div', { class: 'buttons' }, acknowledge, reset), none, list, panel('refusals', calm, events)),
+        root: element('div', { class: 'page alarms' }, element('div', { class: 'bar' }, alarm_tabs('standing'), element('span', { class: 'space' }), acknowledge, reset), none, list, panel('refusals', calm, events)),
         update(state: MachineState) {
             const known = [...state.alarms].sort((a, b) => Number(b.standing) - Number(a.standing) || b.since_ns - a.since_ns);
             rows.update(known);

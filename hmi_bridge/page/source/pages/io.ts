@@ -1,63 +1,99 @@
-// Inputs and outputs by the names that programs use. Outputs are set where the machine allows it: while no program runs.
+// Inputs and outputs by the names that programs use. Outputs are set where the machine allows it: while no program runs. Forcing holds a point against
+// program and terminal; what is forced says so on every page (frame.ts).
 import { Desk, Page, panel, write_lamp } from '../desk';
 import { plain, typed } from '../numbers';
-import { MachineState, Real } from '../state';
+import { ForcedPoint, MachineState, Real } from '../state';
 import { say } from '../texts';
-import { element, Rows, write } from '../view';
+import { element, mark, Rows, write } from '../view';
 
+type Direction = 'input' | 'output';
 interface Point {
     name: string;
     value: Real;
     unit: string;
     doubtful: boolean;
+    forced: ForcedPoint | undefined;
 }
 
-function points(values: Record<string, Real>, units: Record<string, string>, doubtful: string[] = []): Point[] {
-    return Object.entries(values).map(([name, value]) => ({ name, value, unit: units[name] ?? '', doubtful: doubtful.includes(name) }));
+function points(direction: Direction, state: MachineState, wanted: string): Point[] {
+    const [values, units] = direction === 'input' ? [state.inputs, state.input_units] : [state.outputs, state.output_units];
+    return Object.entries(values).filter(([name]) => name.toLowerCase().includes(wanted)).map(([name, value]) => ({
+        name, value, unit: units[name] ?? '', doubtful: direction === 'input' && state.doubtful_inputs.includes(name),
+        forced: state.forced?.find((point) => point.point === name && point.direction === direction),
+    }));
 }
-function write_point(to: HTMLElement, point: Point): void {
-    if (point.unit === '' && (point.value === 0 || point.value === 1)) write_lamp(to, point.value === 1, say(point.value === 1 ? 'on' : 'off'));
+function write_point(to: HTMLElement, { value, unit, doubtful }: Point): void {
+    if (unit === '' && (value === 0 || value === 1)) write_lamp(to, value === 1, say(value === 1 ? 'on' : 'off'));
     else {
-        write(to, `${plain(point.value)}${point.unit ? ' ' + point.unit : ''}`);
-        delete to.dataset['tone'];
+        write(to, `${plain(value)}${unit ? ' ' + unit : ''}`);
+        mark(to, 'data-tone', false);
     }
-    if (point.doubtful) {
+    if (doubtful) {
         write(to, `⚠ ${to.textContent} (${say('doubtful')})`);
-        to.dataset['tone'] = 'warn';
+        mark(to, 'data-tone', 'warn');
     }
+}
+
+/** The table of one direction. `forcing()`: the buttons force instead of setting. */
+function point_rows(desk: Desk, direction: Direction, forcing: () => boolean, locked: () => string) {
+    const body = element('tbody');
+    const rows = new Rows(body, (point: Point) => `${point.name}/${point.unit}`, (point) => {
+        const { name, unit } = point;
+        const shown = element('td', { 'data-value': 'value', class: unit ? 'number' : '' }), badge = element('span', { class: 'badge', hidden: true });
+        const given = element('input', { type: 'text', inputmode: 'decimal', 'aria-label': `${name} ${say('value')}`, placeholder: unit, 'data-input': 'point' });
+        const send = (value: number): void => {
+            if (forcing()) void desk.give({ cmd: 'force', [direction]: name, value });
+            else void desk.give({ cmd: 'set_output', output: name, value });
+        };
+        const send_given = (): void => {
+            const value = typed(given.value);
+            if (Number.isNaN(value)) desk.tell('refused', say('not_a_number', { text: given.value }));
+            else send(value);
+        };
+        const buttons = unit ? [element('button', { type: 'button', 'data-set': 'value', onclick: send_given }, say('set'))]
+            : ([1, 0] as const).map((to) => element('button', { type: 'button', 'data-set': String(to), 'aria-label': `${name} ${say(to ? 'on' : 'off')}`, onclick: () => send(to) }, say(to ? 'on' : 'off')));
+        const release = element('button', { type: 'button', 'data-do': 'release', 'aria-label': `${name} ${say('release')}`, onclick: () => void desk.give({ cmd: 'force', [direction]: name }) }, say('release'));
+        const hand = element('td', { class: 'buttons' }, ...(unit ? [given] : []), ...buttons, release);
+        const root = element('tr', { [`data-${direction}-point`]: name }, element('th', { scope: 'row' }, name, badge), shown, hand);
+        return { root, shown, badge, given, buttons, release };
+    }, (row, point) => {
+        const force = forcing();
+        write_point(row.shown, point);
+        row.badge.hidden = !point.forced;
+        if (point.forced) write(row.badge, say('forced_by', { by: point.forced.by }));
+        mark(row.root, 'data-forced', point.forced !== undefined);
+        const settable = force || direction === 'output';
+        row.given.hidden = !settable;
+        for (const button of row.buttons) {
+            button.hidden = !settable;
+            desk.permit(button, force ? 'force' : 'set_output', force || locked() === '', locked());
+            mark(button, 'data-forces', force);
+        }
+        row.release.hidden = !force && !point.forced;
+        desk.permit(row.release, 'force', point.forced !== undefined, say('not_forced'));
+    });
+    return { root: element('table', { class: 'points' }, body), update: (list: Point[]) => rows.update(list) };
 }
 
 export function io(desk: Desk): Page {
-    let settable = false;
-    const input_body = element('tbody'), output_body = element('tbody');
-    const inputs = new Rows(input_body, (point: Point) => point.name, (point) => {
-        const shown = element('td', { 'data-value': 'value' });
-        return { root: element('tr', { 'data-input-point': point.name }, element('th', { scope: 'row' }, point.name), shown), shown };
-    }, (row, point) => write_point(row.shown, point));
-    const outputs = new Rows(output_body, (point: Point) => point.name, (point) => {
-        const shown = element('td', { 'data-value': 'value' });
-        const given = element('input', { type: 'text', inputmode: 'decimal', 'aria-label': `${point.name} ${say('value')}` });
-        const send = (value: number) => void desk.give({ cmd: 'set_output', output: point.name, value });
-        const buttons = point.unit
-            ? [element('button', { type: 'button', onclick: () => (Number.isNaN(typed(given.value)) ? desk.tell('refused', say('not_a_number', { text: given.value })) : send(typed(given.value))) }, say('set'))]
-            : [element('button', { type: 'button', 'data-set': '1', 'aria-label': `${point.name} ${say('on')}`, onclick: () => send(1) }, say('on')),
-               element('button', { type: 'button', 'data-set': '0', 'aria-label': `${point.name} ${say('off')}`, onclick: () => send(0) }, say('off'))];
-        const hand = element('td', { class: 'buttons' }, ...(point.unit ? [given] : []), ...buttons);
-        return { root: element('tr', { 'data-output-point': point.name }, element('th', { scope: 'row' }, point.name), shown, hand), shown, buttons };
-    }, (row, point) => {
-        write_point(row.shown, point);
-        for (const button of row.buttons) desk.permit(button, 'set_output', settable);
-    });
+    let why_locked = '';
+    const force = element('input', { type: 'checkbox', role: 'switch', 'data-do': 'forcing' });
+    const filter = element('input', { type: 'search', 'aria-label': say('filter'), placeholder: say('filter'), 'data-input': 'filter' });
+    const inputs = point_rows(desk, 'input', () => force.checked, () => ''), outputs = point_rows(desk, 'output', () => force.checked, () => why_locked);
     const hint = element('p', { class: 'hint' }), none = element('p', { class: 'hint' }, say('no_points'));
+    const bar = element('div', { class: 'bar' }, filter, element('label', { class: 'switch' }, force, element('span', {}, say('forcing'))), element('span', { class: 'hint' }, say('forcing_hint')));
     return {
-        root: element('div', { class: 'page io' }, none, element('div', { class: 'columns' }, panel('inputs', element('table', {}, input_body)),
-            panel('outputs', hint, element('table', {}, output_body)))),
+        root: element('div', { class: 'page io' }, bar, none, element('div', { class: 'columns' }, panel('inputs', inputs.root), panel('outputs', hint, outputs.root))),
         update(state: MachineState) {
             const running = state.programs.some((program) => program.state === 'running');
-            settable = !running && !state.emergency_stop;
-            write(hint, say(running ? 'outputs_locked' : state.emergency_stop ? 'outputs_locked_estop' : 'outputs_hint'));
-            inputs.update(points(state.inputs, state.input_units, state.doubtful_inputs));
-            outputs.update(points(state.outputs, state.output_units));
+            why_locked = running ? say('outputs_locked') : state.emergency_stop ? say('outputs_locked_estop') : '';
+            desk.permit(force, 'force', state.forced !== undefined, say('not_known'));
+            if (force.disabled) force.checked = false;
+            mark(bar, 'data-forcing', force.checked);
+            write(hint, force.checked ? '' : why_locked || say('outputs_hint'));
+            const wanted = filter.value.trim().toLowerCase();
+            inputs.update(points('input', state, wanted));
+            outputs.update(points('output', state, wanted));
             none.hidden = Object.keys(state.inputs).length + Object.keys(state.outputs).length > 0;
         },
     };

@@ -1,26 +1,19 @@
-// Programs: their variables as a watch table, their parameters with range and meaning, their tasks.
+// Programs: start and stop, their parameters with range and meaning, their variables as a watch table, their tasks with how long they run.
 import { Desk, Page, panel, table } from '../desk';
+import { Histograms } from '../histograms';
 import { microseconds, plain, typed } from '../numbers';
 import { MachineState } from '../state';
 import { say } from '../texts';
 import { element, Rows, write } from '../view';
+import { full, Watch } from '../watch';
 import { program_rows } from './overview';
 
-const full = (of: { program: string; name: string }): string => `${of.program}.${of.name}`;
-
-export function programs(desk: Desk): Page {
-    const control = program_rows(desk);
-    const filter = element('input', { type: 'search', 'aria-label': say('filter'), placeholder: say('filter') });
-    const variable_body = element('tbody'), parameter_body = element('tbody'), task_body = element('tbody');
-    const variables = new Rows(variable_body, full, (variable: MachineState['variables'][number]) => {
-        const doc = desk.link.layout?.variables.find((v) => full(v) === full(variable))?.doc ?? '';
-        const shown = element('td', { class: 'number', 'data-value': 'value' });
-        return { root: element('tr', { 'data-variable': full(variable) }, element('th', { scope: 'row', title: doc }, full(variable)), shown, element('td', {}, variable.unit), element('td', { class: 'doc' }, doc)), shown };
-    }, (row, variable) => write(row.shown, plain(variable.value)));
-    const parameters = new Rows(parameter_body, full, (parameter: MachineState['parameters'][number]) => {
+function parameter_rows(desk: Desk) {
+    const body = element('tbody');
+    const rows = new Rows(body, full, (parameter: MachineState['parameters'][number]) => {
         const info = desk.link.layout?.parameters.find((p) => full(p) === full(parameter));
         const shown = element('td', { class: 'number', 'data-value': 'value' });
-        const given = element('input', { type: 'text', inputmode: 'decimal', 'aria-label': full(parameter) });
+        const given = element('input', { type: 'text', inputmode: 'decimal', 'aria-label': full(parameter), 'data-input': 'parameter' });
         const set = element('button', { type: 'submit' }, say('set'));
         const form = element('form', {
             class: 'line',
@@ -32,28 +25,44 @@ export function programs(desk: Desk): Page {
             },
         }, given, set);
         const range = info ? `${plain(info.minimum)} … ${plain(info.maximum)}` : '';
-        return { root: element('tr', { 'data-parameter': full(parameter) }, element('th', { scope: 'row', title: info?.doc ?? '' }, full(parameter)), shown, element('td', {}, parameter.unit),
-            element('td', {}, range), element('td', {}, form), element('td', { class: 'doc' }, info?.doc ?? '')), shown, set };
+        const root = element('tr', { 'data-parameter': full(parameter) }, element('th', { scope: 'row' }, parameter.name, element('small', { class: 'doc' }, info?.doc ?? '')), shown,
+            element('td', { class: 'unit' }, parameter.unit), element('td', { class: 'range' }, range), element('td', {}, form));
+        return { root, shown, set, given };
     }, (row, parameter) => {
         write(row.shown, plain(parameter.value));
         desk.permit(row.set, 'set_parameter');
     });
+    const none = element('p', { class: 'hint' }, say('no_parameters'));
+    return {
+        root: element('div', {}, none, element('div', { class: 'scroll' }, element('table', {}, body))),
+        update(state: MachineState) {
+            rows.update(state.parameters);
+            none.hidden = state.parameters.length > 0;
+        },
+    };
+}
+
+export function programs(desk: Desk): Page {
+    const control = program_rows(desk), parameters = parameter_rows(desk), watch = new Watch(desk), histograms = new Histograms(desk);
+    const task_body = element('tbody');
     const tasks = new Rows(task_body, (task: MachineState['tasks'][number]) => task.name, (task) => {
         const cells = [0, 1, 2, 3].map(() => element('td', { class: 'number' }));
-        return { root: element('tr', {}, element('th', { scope: 'row' }, task.name), ...cells), cells };
+        return { root: element('tr', { 'data-task': task.name }, element('th', { scope: 'row' }, task.name), ...cells), cells };
     }, (row, task) => {
         const texts = [String(task.releases), String(task.overruns), microseconds(task.run_ns), microseconds(task.run_max_ns)];
         row.cells.forEach((cell, i) => write(cell, texts[i] ?? ''));
     });
+    const task_panel = panel('tasks', table(['task', 'releases', 'overruns', 'run_time', 'run_time_max'], task_body));
     return {
-        root: element('div', { class: 'page programs' }, panel('programs', control.root), panel('parameters', table(['name', 'value', 'unit', 'parameter_range', 'set', 'meaning'], parameter_body)),
-            panel('variables', filter, table(['name', 'value', 'unit', 'meaning'], variable_body)), panel('tasks', table(['task', 'releases', 'overruns', 'run_time', 'run_time_max'], task_body))),
+        root: element('div', { class: 'page programs' }, element('div', { class: 'columns' }, element('div', { class: 'stack' }, panel('programs', control.root), panel('parameters', parameters.root)),
+            element('div', { class: 'stack' }, panel('variables', watch.root))), element('div', { class: 'columns' }, task_panel, histograms.root)),
         update(state: MachineState) {
             control.update(state);
-            const wanted = filter.value.trim().toLowerCase();
-            variables.update(state.variables.filter((variable) => full(variable).toLowerCase().includes(wanted)));
-            parameters.update(state.parameters);
+            watch.update(state);
+            parameters.update(state);
             tasks.update(state.tasks);
+            histograms.step();
         },
+        leave: () => histograms.leave(),
     };
 }

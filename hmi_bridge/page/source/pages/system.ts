@@ -1,26 +1,104 @@
-// What runs here, since when, and who looks at it.
-import { Desk, Page, panel, Values } from '../desk';
+// What runs here, since when, how far away it is; what this page has commanded; what was recorded; whose work is used.
+import { Desk, Given, Page, panel, table, Values } from '../desk';
+import { Inquiry } from '../inquiry';
+import { licences } from '../licences';
 import { duration } from '../numbers';
+import { local_time } from '../save';
 import { MachineState } from '../state';
 import { say, word } from '../texts';
-import { element } from '../view';
+import { element, mark, Rows, write } from '../view';
 import { write_cycle } from './overview';
 
-export function system(desk: Desk): Page {
-    const machine = new Values(), cycle = new Values();
+interface Recorded {
+    name: string;
+    alarm: string;
+    source: string;
+    utime: number;
+    bytes: number;
+    complete: boolean;
+}
+const latency_ms = 1000;
+const recordings_ms = 5000;
+
+function recordings(desk: Desk) {
+    const body = element('tbody'), none = element('p', { class: 'hint' });
+    const rows = new Rows(body, (recorded: Recorded) => recorded.name, (recorded) => {
+        const size = element('td', { class: 'number' });
+        return { root: element('tr', { 'data-recorded': recorded.name }, element('td', { class: 'number' }, local_time(recorded.utime)), element('td', {}, recorded.source), element('td', {}, recorded.alarm), size,
+            element('td', {}, element('a', { class: 'row-link', href: `#scope/recording/${encodeURIComponent(recorded.name)}` }, say('open_recording')))), size };
+    }, (row, recorded) => write(row.size, recorded.complete ? `${(recorded.bytes / 1024).toFixed(0)} kB` : say('being_recorded')));
+    const inquiry = new Inquiry(desk, () => ({ cmd: 'recordings' }), recordings_ms, (answer) => {
+        const list = (answer['recordings'] as Recorded[] | undefined) ?? [];
+        rows.update(list);
+        write(none, list.length === 0 ? say('no_recordings') : '');
+    });
     return {
-        root: element('div', { class: 'page system' }, element('div', { class: 'columns' }, panel('system', machine.root), panel('cycle_health', cycle.root)),
-            panel('safety', element('p', {}, say('safety_text')))),
+        root: panel('recordings', none, element('div', { class: 'scroll' }, table(['since', 'source', 'alarms', 'size', 'recording'], body))),
+        step() {
+            inquiry.step();
+            if (inquiry.unknown) write(none, say('not_known'));
+        },
+        leave: () => inquiry.leave(),
+    };
+}
+
+function commands(desk: Desk) {
+    const body = element('tbody'), none = element('p', { class: 'hint' }, say('nothing_commanded'));
+    const rows = new Rows(body, (given: Given) => String(given.at.getTime()) + JSON.stringify(given.request), ({ at, request, answer }) => {
+        const { cmd, ...rest } = request;
+        const said = element('td', {}, answer.ok ? `✓ ${say('done')}` : `⚠ ${answer.error?.what || say('no_answer')}`);
+        mark(said, 'data-tone', answer.ok ? 'good' : 'bad');
+        return { root: element('tr', {}, element('td', { class: 'number' }, at.toLocaleTimeString('en-GB')), element('td', {}, `${cmd} ${Object.values(rest).join(' ')}`), said) };
+    }, () => undefined);
+    return {
+        root: panel('commanded_here', none, element('div', { class: 'scroll' }, element('table', { 'data-list': 'given' }, body))),
+        step() {
+            rows.update(desk.given);
+            none.hidden = desk.given.length > 0;
+        },
+    };
+}
+
+export function system(desk: Desk): Page {
+    const machine = new Values(), cycle = new Values(), page = new Values();
+    const recorded = recordings(desk), given = commands(desk);
+    let asked = 0, latency = NaN, worst = 0;
+    const ping = new Inquiry(desk, () => {
+        asked = performance.now();
+        return { cmd: 'hello' };
+    }, latency_ms, (answer) => {
+        if (!answer.ok) return;
+        latency = performance.now() - asked;
+        worst = Math.max(worst, latency);
+    });
+    const licence_body = element('tbody', {}, ...licences.map(({ name, licence, used }) => element('tr', {}, element('th', { scope: 'row' }, name), element('td', {}, licence), element('td', { class: 'doc' }, say(used)))));
+    return {
+        root: element('div', { class: 'page system' },
+            element('div', { class: 'columns three' }, panel('system', machine.root), panel('cycle_health', cycle.root), panel('this_page', page.root)),
+            element('div', { class: 'columns' }, element('div', { class: 'stack' }, recorded.root, given.root),
+                element('div', { class: 'stack' }, panel('licences', element('div', { class: 'scroll' }, element('table', { class: 'dense' }, licence_body))), panel('safety', element('p', {}, say('safety_text')))))),
         update(state: MachineState) {
+            ping.step();
+            recorded.step();
+            given.step();
             machine.set('machine_name', state.machine);
             machine.set('runtime_version', desk.link.version);
-            machine.set('role', word('role', desk.link.role));
             machine.set('phase', word('phase', state.phase));
-            machine.set('running_for', duration(state.time_ns / 1e9));
+            machine.set('running_for', duration(((desk.link.layout?.cycle_ns ?? 0) * state.cycle) / 1e9));
             machine.set('cycles', String(state.cycle));
             machine.set('commands_refused', String(state.statistics['commands_refused'] ?? 0));
             machine.set('snapshots_dropped', String(state.statistics['snapshots_dropped'] ?? 0));
             write_cycle(cycle, state, desk);
+            page.set('user', desk.link.user || '–');
+            page.set('role', word('role', desk.link.role));
+            page.set('server', location.host);
+            page.set('latency', Number.isNaN(latency) ? '–' : `${latency.toFixed(1)} / ${worst.toFixed(1)} ms`);
+            page.set('states_a_second', desk.link.rate.toFixed(0));
+            page.set('values_from', desk.link.source || '–');
+        },
+        leave() {
+            ping.leave();
+            recorded.leave();
         },
     };
 }

@@ -1,6 +1,6 @@
 // Why an axis does not move, or why at this velocity: whole sentences, the nearest reason first. Pure: a test goes through the reasons.
-import { AxisState, MachineState, value } from './state';
-import { say, word } from './texts';
+import { AxisState, MachineState, value } from '../state';
+import { say, word } from '../texts';
 
 export interface Why {
     title: string;
@@ -16,6 +16,14 @@ export function why(axis: AxisState, machine: MachineState): Why {
     if (axis.positive_limit_switch) sentences.push(say('why_switch', { side: say('limit_positive') }));
     if (!axis.homed && !axis.disabled) sentences.push(say('why_not_homed'));
     return { title: say(moving(axis) ? 'why_velocity' : 'why_still'), sentences };
+}
+
+/** Why a hand may not command it now, in general; empty: it may. */
+export function why_not_by_hand(axis: AxisState, machine: MachineState): string {
+    if (axis.disabled) return say('why_disabled');
+    if (machine.emergency_stop) return say('why_emergency');
+    if (machine.mode === 'automatic') return say('why_automatic');
+    return axis.owner === 'program' ? say('why_program') : '';
 }
 
 const behind = (block: string): string => (block ? ` (${block})` : '');

@@ -1,11 +1,12 @@
 // The travel of an axis drawn to scale: software limits, the carriage where it is, the target as a hollow mark.
-import { fixed } from './numbers';
-import { AxisLayout, AxisState, value } from './state';
-import { drawing, mark } from './view';
+import { fixed } from '../numbers';
+import { AxisLayout, AxisState, value } from '../state';
+import { drawing, mark } from '../view';
 
 /** What the ruler shows: the software limits and a little beyond; without limits, what lies around the axis. */
 export function range_of(layout: AxisLayout, position: number): { from: number; to: number; low: number; high: number } {
-    const low = value(layout.position_min), high = value(layout.position_max);
+    const low = value(layout.position_min), high = value(layout.position_max), modulo = value(layout.modulo);
+    if (modulo > 0) return { from: 0, to: modulo, low: -Infinity, high: Infinity };
     if (Number.isFinite(low) && Number.isFinite(high) && high > low) {
         const beyond = (high - low) * 0.06;
         return { from: low - beyond, to: high + beyond, low, high };

@@ -1,0 +1,104 @@
+// A hand on the page: what is pressed happens, and every ending of a jog ends it.
+import assert from 'node:assert/strict';
+import { after, before, beforeEach, test } from 'node:test';
+import { Cell, pause, until } from './cell';
+
+const cell = new Cell();
+before(() => cell.start(), { timeout: 120_000 });
+after(() => cell.end());
+beforeEach(() => cell.line.flow());
+
+const jog = (sign: string) => cell.page.locator(`[data-jog="${sign}"]`);
+// The lease (250 ms), the ramp from 20 mm/s (under 50 ms), and what two busy cores are late.
+const lease_and_ramp = 1500;
+
+async function hold_x(): Promise<void> {
+    await cell.look('#axis/x');
+    await jog('+').waitFor();
+    await until('the button may be pressed', () => jog('+').isEnabled());
+    const box = await jog('+').boundingBox();
+    assert.ok(box);
+    await cell.page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+    await cell.page.mouse.down();
+    await until('x moves', async () => (await cell.axis('x')).set_velocity > 19);
+}
+async function no_more_motion(): Promise<void> {
+    await cell.stands('x', lease_and_ramp);
+    const before = (await cell.axis('x')).set_position;
+    await pause(400);
+    assert.equal((await cell.axis('x')).set_position, before, 'it began again by itself');
+}
+
+test('by keyboard alone: power, home, jog, move, stop', { timeout: 90_000 }, async () => {
+    await cell.look('#axis/x');
+    const press = async (selector: string, key = 'Enter') => {
+        const wanted = cell.page.locator(selector);
+        await until(`${selector} may be pressed`, () => wanted.isEnabled());
+        for (let i = 0; i < 60; i++) {
+            if (await wanted.evaluate((element) => element === document.activeElement)) break;
+            await cell.page.keyboard.press('Tab');
+        }
+        assert.ok(await wanted.evaluate((element) => element === document.activeElement), `${selector} is not reached by Tab`);
+        if (key) await cell.page.keyboard.press(key);
+    };
+    await press('[data-cmd="enable"]');
+    await until('power', async () => (await cell.axis('x')).powered);
+    await press('[data-cmd="home"]');
+    await until('homed', async () => (await cell.axis('x')).homed && (await cell.axis('x')).state === 'Standstill', 40_000);
+
+    await press('[data-jog="+"]', '');
+    await cell.page.keyboard.down(' ');
+    await until('x moves', async () => (await cell.axis('x')).set_velocity > 19);
+    await cell.page.keyboard.up(' ');
+    await no_more_motion();
+
+    await press('[data-input="to"]', '');
+    await cell.page.keyboard.type('40');
+    await cell.page.keyboard.press('Enter');
+    await until('x is at 40 mm', async () => Math.abs((await cell.axis('x')).actual_position - 40) < 0.01);
+
+    await press('[data-input="to"]', '');
+    await cell.page.keyboard.press('Control+a');
+    await cell.page.keyboard.type('300');
+    await cell.page.keyboard.press('Enter');
+    await until('x moves', async () => (await cell.axis('x')).set_velocity > 15);
+    await press('[data-do="stop"]');
+    await cell.stands('x', 3000);
+    assert.ok((await cell.axis('x')).actual_position < 290);
+});
+
+const endings: [string, () => Promise<unknown> | void, (() => Promise<void> | void)?][] = [
+    ['the button let go', () => cell.page.mouse.up()],
+    ['pointercancel', () => jog('+').evaluate((button) => button.dispatchEvent(new PointerEvent('pointercancel', { pointerId: 1, bubbles: true })))],
+    ['the capture lost', () => jog('+').evaluate((button) => button.releasePointerCapture(1))],
+    ['the window\'s blur', () => cell.page.evaluate(() => window.dispatchEvent(new Event('blur')))],
+    ['a hidden page', () => cell.page.evaluate(() => {
+        Object.defineProperty(document, 'visibilityState', { value: 'hidden', configurable: true });
+        document.dispatchEvent(new Event('visibilitychange'));
+    })],
+    ['a second finger', () => cell.page.touchscreen.tap(700, 300)],
+    ['another page of it', () => cell.page.evaluate(() => { location.hash = '#overview'; })],
+    ['the STOP button', () => cell.page.locator('[data-do="stop"]').dispatchEvent('pointerdown', { pointerId: 7 })],
+    ['a page that stands still', () => cell.page.evaluate(() => { setTimeout(() => { const end = Date.now() + 1200; while (Date.now() < end); }, 0); })],
+    ['a frozen renderer', () => assert.ok(cell.signal_renderers('SIGSTOP') > 0), () => void cell.signal_renderers('SIGCONT')],
+    ['a page that is closed', () => cell.page.close()],
+    ['a network that stalls', () => cell.line.hold(), () => cell.line.flow()],
+    ['a connection that ends', () => cell.line.cut()],
+    ['a frozen server', () => cell.signal_server('SIGSTOP'), () => cell.signal_server('SIGCONT')],
+    ['a killed server', () => cell.signal_server('SIGKILL'), () => cell.serve()],
+];
+for (const [name, happens, afterwards] of endings)
+    test(`a jog ends by: ${name}`, { timeout: 60_000 }, async () => {
+        await cell.powered_and_homed('x');
+        await hold_x();
+        const presses = () => cell.sent.filter((message) => message['press'] === true).length;
+        assert.equal(presses(), 1);
+        try {
+            await happens();
+            await no_more_motion();
+        } finally {
+            await afterwards?.();
+        }
+        await no_more_motion();  // what comes late begins nothing
+        assert.equal(presses(), 1, 'it pressed anew');
+    });
