@@ -1,7 +1,9 @@
 #!/usr/bin/env bash
 # The demo machine in real time on simulated drives, with a second hand on the command line: ./dev demo.
 #
-#   apps/demo.sh BUILD_DIR [OUT_DIR]      leaves demo.csv, demo.svg and run.log in OUT_DIR (default demo-out)
+#   apps/demo.sh BUILD_DIR [--no-hmi] [OUT_DIR]      leaves demo.csv, demo.svg and run.log in OUT_DIR (default demo-out)
+#
+# Then the machine starts once more and its page is served until Ctrl-C: where somebody sits at a terminal. In a script or CI the page is asked for once.
 #
 # What happens to the machine from outside (start button, emergency stop, drive fault) stands in config/machines/demo.yaml under
 # `simulation: events:`; what the operator does is here. Both go by the time since the start.
@@ -9,7 +11,10 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 taktwerk=$1/taktwerk
-out=${2:-demo-out}
+shift
+hmi=yes
+[[ ${1:-} != --no-hmi ]] || { hmi= && shift; }
+out=${1:-demo-out}
 log=$out/run.log
 runtime=
 shown=0
@@ -157,3 +162,46 @@ say "What happened"
     fail "the plot failed"
 note "the picture: $out/demo.svg      every cycle: $out/demo.csv      the log: $log"
 note "next: docs/commissioning.md"
+[[ -n $hmi ]] || exit 0
+
+# GET / of the address $1, without a tool: the first line of the answer.
+first_line_of_page() {
+    local host=${1#http://} line
+    host=${host%/}
+    exec 3<>"/dev/tcp/${host%:*}/${host##*:}" || return 1
+    printf 'GET / HTTP/1.1\r\nHost: %s\r\nConnection: close\r\n\r\n' "$host" >&3
+    IFS= read -r -t 5 line <&3
+    exec 3>&-
+    printf '%s' "${line%$'\r'}"
+}
+
+say "The page: the same machine, for a browser"
+log=$out/page.log shown=0
+"$taktwerk" run config/machines/demo.yaml --simulate --no-events --hmi >"$log" 2>&1 &
+runtime=$!
+address='' begin=$(now_ms)
+until [[ -n $address ]] && "$taktwerk" monitor --once -s demo >/dev/null 2>&1; do
+    kill -0 "$runtime" 2>/dev/null || fail "the machine did not start"
+    address=$(sed -n 's!.*the page: \(http://[^ ]*\).*!\1!p' "$log")
+    if grep -q "the page's server is gone" "$log"; then
+        note "$(grep -m 1 -e 'web\.' -e 'no index.html' "$log" || echo "the page's server did not start: $log")"
+        exit 0
+    fi
+    (($(now_ms) - begin < 15000)) || fail "the machine was not up within 15 s"
+    sleep 0.1
+done
+note "open $address      the log: $log"
+if [[ -t 0 && -t 1 && -z ${CI:-} ]]; then
+    trap 'exit 0' INT TERM
+    note "Ctrl-C ends the machine and the page"
+    wait "$runtime" || true
+    exit 0
+fi
+answer=$(first_line_of_page "$address") || fail "nobody answers at $address"
+[[ $answer == *' 200 '* ]] || fail "the page's server answers '$answer'"
+note "nobody sits at a terminal: asked once, it answers \"$answer\""
+operate shutdown
+code=0
+wait "$runtime" || code=$?
+runtime=
+((code == 0)) || fail "the machine ended with exit code $code"

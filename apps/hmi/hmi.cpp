@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/hmi/drop_privileges.hpp"
 #include "apps/taktwerk.hpp"
 #include "apps/terminal/exit_code.hpp"
 #include "apps/terminal/print_error.hpp"
@@ -20,8 +21,9 @@ namespace taktwerk::apps {
 namespace {
 
 struct HmiOptions {
-    std::string listen = "127.0.0.1:8080", page, audit, role = "engineer";
+    std::string listen, page, audit, role = "engineer";
     std::vector<std::string> machines;
+    bool end_with_input = false;
 };
 
 /// "127.0.0.1:8080", "[::1]:8080".
@@ -43,13 +45,26 @@ Result<std::pair<std::string, std::uint16_t>> listen_address(const std::string& 
 std::string page_folder() {
     std::error_code ignored;
     const auto here = std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path();
-    for (const auto& folder : {here / "hmi" / "page", here.parent_path() / "share" / "taktwerk" / "hmi"})
+    for (const auto& folder : {here / "hmi_page" / "page", here.parent_path() / "share" / "taktwerk" / "hmi"})
         if (std::filesystem::exists(folder / "index.html", ignored)) return folder.string();
     return (here.parent_path() / "share" / "taktwerk" / "hmi").string();
 }
 
+constexpr std::uint16_t first_port = 8080, last_port = 8099;
+
+/// Where nobody said which port: the first that is free.
+Result<std::unique_ptr<hmi::web::WebServer>> open_server(const hmi::web::ServerOptions& options, const hmi::web::SiteFiles& site,
+                                                         bool any_port) {
+    auto tried = options;
+    for (;; ++tried.port) {
+        auto server = hmi::web::WebServer::open(tried, site);
+        if (server || !any_port || server.error().code != "web.in_use" || tried.port >= last_port) return server;
+    }
+}
+
 int serve(const HmiOptions& options) {
-    const auto listen = listen_address(options.listen);
+    drop_privileges();
+    const auto listen = listen_address(options.listen.empty() ? fmt::format("127.0.0.1:{}", first_port) : options.listen);
     if (!listen) {
         print_error(listen.error());
         return exit_usage;
@@ -74,8 +89,9 @@ int serve(const HmiOptions& options) {
     server_options.machines = options.machines;
     server_options.role = hmi::web::role_of(options.role).value_or(hmi::web::Role::viewer);
     server_options.version = sdk_version;
+    server_options.end_with_input = options.end_with_input;
     server_options.audit = [audit](const std::string& line) { (audit->is_open() ? *audit : std::cout) << line << std::endl; };
-    auto server = hmi::web::WebServer::open(std::move(server_options), std::move(*site));
+    auto server = open_server(server_options, *site, options.listen.empty());
     if (!server) {
         print_error(server.error());
         return server.error().code == "web.no_users" ? exit_usage : exit_bad_file;
@@ -92,14 +108,16 @@ int serve(const HmiOptions& options) {
 void add_hmi(CLI::App& app, Action& action) {
     auto* sub = app.add_subcommand("hmi", "serve the page of the machines of this host, for a browser");
     auto options = std::make_shared<HmiOptions>();
-    sub->add_option("--listen", options->listen, "ADDRESS:PORT, an address of this host's loopback; port 0: any free one")
-        ->capture_default_str();
+    sub->add_option(
+        "--listen", options->listen,
+        "ADDRESS:PORT, an address of this host's loopback; port 0: any free one; default: 127.0.0.1 and port 8080 or the next free one");
     sub->add_option("-s,--socket,--machine", options->machines, "a machine's name or its socket, several times; default: all that run");
     sub->add_option("--role", options->role, "what the page may: viewer, operator, engineer, admin")
         ->check(CLI::IsMember({"viewer", "operator", "engineer", "admin"}))
         ->capture_default_str();
     sub->add_option("--page", options->page, "the folder of the page's files");
     sub->add_option("--audit", options->audit, "each command is written to the end of this file; default: standard output");
+    sub->add_flag("--end-with-input", options->end_with_input, "end when standard input ends: whoever started it is gone then");
     sub->callback([&action, options] { action = [options] { return serve(*options); }; });
 }
 

@@ -18,6 +18,7 @@
 #include "apps/machine/load.hpp"
 #include "apps/machine/machine_log.hpp"
 #include "apps/machine/modbus_keeper.hpp"
+#include "apps/machine/page_server.hpp"
 #include "apps/machine/run_files.hpp"
 #include "apps/machine/sim_hands.hpp"
 #include "apps/machine/stop_signal.hpp"
@@ -47,8 +48,8 @@ namespace {
 using namespace runtime;
 
 struct RunOptions {
-    std::string file, trace, pcap, retain, evidence;
-    bool simulate = false, virtual_time = false, json = false, quiet = false;
+    std::string file, trace, pcap, retain, evidence, hmi;
+    bool simulate = false, virtual_time = false, json = false, quiet = false, with_hmi = false, without_events = false;
     double duration_s = 0;
 };
 
@@ -278,6 +279,14 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
         return worst;
     };
 
+    std::unique_ptr<PageServer> page;
+    if (options.with_hmi) {
+        auto begun =
+            PageServer::start((*bridge)->socket_path(), options.hmi, [&](const std::string& line) { log.say(clock.now(), "page", line); });
+        if (begun) page = std::move(*begun);
+        else log.say(clock.now(), "page", begun.error().text());
+    }
+
     RealtimeRunner runner{machine, world};
     bool said_stuck = false;
     runner.on_stuck = [&](const StuckCycle* stuck) {
@@ -317,6 +326,7 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
         }
         (*bridge)->set_progress(machine.bus_progress());
         (*bridge)->step(now);
+        if (page) page->step();
         judge((*bridge)->snapshot(), code);
         if (!options.quiet) log.step(now, (*bridge)->snapshot());
         if (const auto* snapshot = (*bridge)->snapshot(); files.evidence && snapshot != nullptr) files.evidence->look(*snapshot);
@@ -329,6 +339,7 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
         return !time_up && !stop_requested();
     });
     runner.finish();
+    page.reset();
     const auto written = files_written();
     if (written == FileThread::End::hangs) {
         // Its thread hangs in the kernel and holds what it writes from: nothing of this process can be taken down any more.
@@ -419,12 +430,23 @@ void add_run(CLI::App& app, Action& action) {
     sub->add_option("--pcap", options->pcap, "write every frame of the bus to this file, for Wireshark and tshark");
     sub->add_option("--evidence", options->evidence,
                     "write what was on the bus around each alarm that stops something into this directory, also on a simulated bus");
+    auto* hmi = sub->add_flag(
+        "--hmi{}", options->hmi,
+        "serve the page as well, by a process of its own: --hmi=ADDRESS:PORT, default 127.0.0.1 and port 8080 or the next free one");
+    sub->add_flag("--no-events", options->without_events, "what stands under `simulation: events` does not happen");
     sub->add_flag("--json", options->json, "events as one JSON object a line");
     sub->add_flag("--quiet", options->quiet, "say only errors and what clients change");
-    sub->callback([&action, options] {
+    sub->callback([&action, options, hmi] {
+        options->with_hmi = hmi->count() > 0;
         action = [options] {
+            if (options->with_hmi && options->virtual_time) {
+                print_error(Error{"usage.hmi", "--hmi", "a machine in virtual time has no page: its seconds are nobody's",
+                                  "Leave out --virtual-time."});
+                return static_cast<int>(exit_usage);
+            }
             auto loaded = load(options->file, options->simulate || options->virtual_time);
             if (!loaded) return static_cast<int>(exit_bad_file);
+            if (options->without_events) loaded->machine.simulation.events.clear();
             if (!options->retain.empty()) loaded->machine.retain = options->retain;
             if (!options->evidence.empty()) loaded->machine.evidence.directory = options->evidence;
             if (!options->retain.empty() && !runtime::keeps_positions(loaded->machine))

@@ -1,6 +1,9 @@
 #include "hmi_bridge/web/web_server.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <array>
 #include <deque>
 #include <filesystem>
 #include <map>
@@ -528,6 +531,17 @@ struct WebServer::Impl {
             beat();
         });
     }
+    void wait_for_end_of_input() {
+        if (!input.is_open()) {
+            error_code failure;
+            input.assign(::dup(STDIN_FILENO), failure);
+            if (failure) return io.stop();
+        }
+        input.async_read_some(asio::buffer(unread), [this](error_code failure, std::size_t) {
+            if (failure) return io.stop();
+            wait_for_end_of_input();
+        });
+    }
     void step(Instant at) {
         if (at - looked >= looks_for_machines) {
             looked = at;
@@ -616,6 +630,8 @@ struct WebServer::Impl {
     asio::io_context io{1};
     tcp::acceptor acceptor{io};
     asio::steady_timer ticker{io};
+    asio::posix::stream_descriptor input{io};
+    std::array<char, 64> unread{};
     Feeds feeds;
     Pages pages;
     std::shared_ptr<Site> site;
@@ -635,7 +651,7 @@ Result<std::unique_ptr<WebServer>> WebServer::open(ServerOptions options, SiteFi
     if (!failure) impl->acceptor.bind(endpoint, failure);
     if (!failure) impl->acceptor.listen(16, failure);
     if (failure)
-        return Error{"web.listen", where, "cannot listen: " + failure.message(),
+        return Error{failure == asio::error::address_in_use ? "web.in_use" : "web.listen", where, "cannot listen: " + failure.message(),
                      "Choose another port: `taktwerk hmi --listen 127.0.0.1:8081`."};
     impl->site = std::make_shared<Site>(Site{impl->io, impl->options, impl->files, impl->feeds, nullptr});
     impl->site->origin = std::make_unique<PageOrigin>(impl->options.address, impl->acceptor.local_endpoint().port());
@@ -652,6 +668,7 @@ void WebServer::run() {
     signals.async_wait([this](error_code failure, int) {
         if (!failure) impl_->io.stop();
     });
+    if (impl_->options.end_with_input) impl_->wait_for_end_of_input();
     impl_->accept();
     impl_->beat();
     impl_->io.run();

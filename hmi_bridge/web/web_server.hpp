@@ -20,6 +20,7 @@ struct ServerOptions {
     std::vector<std::string> machines;  ///< names or paths of sockets; empty: all that are found on this host, also later
     Role role = Role::engineer;         ///< of every page: on loopback nobody logs in
     std::string version;
+    bool end_with_input = false;                    ///< ends when standard input does
     std::function<void(const std::string&)> audit;  ///< one JSON object a line: who, from where, what, the answer
 };
 
@@ -28,7 +29,7 @@ public:
     static constexpr std::size_t most_pages = 6;  ///< the machine's socket takes 8: one is the server's, one stays for the command line
     static constexpr std::size_t most_connections = 64;  ///< HTTP included
 
-    /// Listens when it returns. Errors: web.no_users (an address beyond loopback), web.listen.
+    /// Listens when it returns. Errors: web.no_users (an address beyond loopback), web.in_use (the port), web.listen.
     static Result<std::unique_ptr<WebServer>> open(ServerOptions options, SiteFiles site);
     ~WebServer();
 

@@ -69,6 +69,7 @@ public:
         read();
         return WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_);
     }
+    [[nodiscard]] pid_t pid() const { return pid_; }
     [[nodiscard]] const std::string& text() const { return text_; }
 
 private:

@@ -1,0 +1,26 @@
+# cmake -DNODE= -DNPM= -DSOURCE= -DTESTS= -DOUT= -P build_page.cmake: tools by the lock file where they are not there yet, types checked, bundle made.
+# A network that is not there is no mistake of this tree: it is said, and the rest builds on. A page that does not compile is one.
+file(MAKE_DIRECTORY "${OUT}")
+file(SHA256 "${SOURCE}/package-lock.json" pinned)
+set(installed "")
+if(EXISTS "${OUT}/installed")
+  file(READ "${OUT}/installed" installed)
+endif()
+if(NOT installed STREQUAL pinned)
+  file(REMOVE "${OUT}/installed")
+  file(COPY "${SOURCE}/package.json" "${SOURCE}/package-lock.json" "${SOURCE}/.npmrc" DESTINATION "${OUT}")
+  execute_process(COMMAND "${NPM}" ci --no-audit --no-fund --loglevel=error WORKING_DIRECTORY "${OUT}" RESULT_VARIABLE failed)
+  if(failed)
+    file(REMOVE_RECURSE "${OUT}/page")  # of another time: not this tree's
+    message(NOTICE "The page of the HMI is not built: `npm ci` could not get its tools (above). It needs a registry of npm packages (npm config get registry) "
+      "or a full cache. The next build tries again; -DTAKTWERK_PAGE=OFF builds all but the page.")
+    return()
+  endif()
+  file(WRITE "${OUT}/installed" "${pinned}")
+endif()
+foreach(step IN ITEMS "${OUT}/node_modules/typescript/bin/tsc;--noEmit;-p;${OUT}" "${SOURCE}/build.mjs;${OUT};${TESTS}")
+  execute_process(COMMAND "${NODE}" ${step} WORKING_DIRECTORY "${OUT}" RESULT_VARIABLE failed)
+  if(failed)
+    message(FATAL_ERROR "The page of the HMI does not build (above)")
+  endif()
+endforeach()
