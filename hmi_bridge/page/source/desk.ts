@@ -112,8 +112,9 @@ export class Values {
 
 export const panel = (title: Key, ...children: (Node | string)[]): HTMLElement =>
     element('section', { class: 'panel' }, element('h2', {}, say(title)), ...children);
-export function table(keys: Key[], body: HTMLElement): HTMLElement {
-    return element('table', {}, element('thead', {}, element('tr', {}, ...keys.map((key) => element('th', { scope: 'col' }, say(key))))), body);
+/** `numbers`: columns whose heads stand to the right, over numbers. */
+export function table(keys: Key[], body: HTMLElement, numbers: Key[] = []): HTMLElement {
+    return element('table', {}, element('thead', {}, element('tr', {}, ...keys.map((key) => element('th', { scope: 'col', class: numbers.includes(key) ? 'number' : '' }, say(key))))), body);
 }
 /** Links between the parts of a page; each with where it leads and its text. */
 export const sub_tabs = (name: Key, parts: readonly (readonly [string, Key])[], shown: string): HTMLElement =>

@@ -2,7 +2,7 @@
 import { Account } from './account';
 import { Desk } from './desk';
 import { duration } from './numbers';
-import { in_words } from './pages/alarms';
+import { in_words, stops } from './pages/alarms';
 import { Entry, pages } from './pages/list';
 import { MachineState } from './state';
 import { current_language, say, word } from './texts';
@@ -103,9 +103,10 @@ export class Frame {
                 write(forced_text, `⚠ ${say('forced_banner', { count: String(points.length), names })}`);
                 desk.permit(release, 'release_forces');
             }
-            const standing = standing_alarms(state), first = standing[0];
+            const standing = standing_alarms(state), first = standing.find(stops) ?? standing[0];
             strip.hidden = !first;
             if (first) {
+                mark(strip, 'data-tone', stops(first) ? 'bad' : 'warn');
                 write(strip_text, `⚠ ${first.source}: ${in_words(first)}`);
                 write(strip_more, standing.length > 1 ? say('more_alarms', { count: String(standing.length) }) : '');
             }

@@ -1,22 +1,15 @@
-// What the page and the `taktwerk` command are made with, beside their own source; read by people who must know.
+// What the page is made with, beside what the machine lists of itself; read by people who must know.
 import { Key } from './texts';
 
 export interface Licence {
     name: string;
+    version: string;
     licence: string;
     used: Key;
 }
 
-export const licences: readonly Licence[] = [
-    { name: 'Taktwerk', licence: 'Apache-2.0', used: 'licence_itself' },
-    { name: 'CLI11', licence: 'BSD-3-Clause', used: 'licence_command' },
-    { name: 'Eigen', licence: 'MPL-2.0', used: 'licence_command' },
-    { name: 'fmt', licence: 'MIT', used: 'licence_command' },
-    { name: 'JSON for Modern C++', licence: 'MIT', used: 'licence_command' },
-    { name: 'LCM, GLib', licence: 'LGPL-2.1-or-later', used: 'licence_command' },
-    { name: 'libmodbus', licence: 'LGPL-2.1-or-later', used: 'licence_command' },
-    { name: 'pugixml', licence: 'MIT', used: 'licence_command' },
-    { name: 'yaml-cpp', licence: 'MIT', used: 'licence_command' },
-    { name: 'Boost (Asio, Beast)', licence: 'BSL-1.0', used: 'licence_server' },
-    { name: 'esbuild, TypeScript', licence: 'MIT, Apache-2.0', used: 'licence_build' },
+export const page_licences: readonly Licence[] = [
+    { name: 'uPlot', version: '1.6.32', licence: 'MIT', used: 'licence_page' },
+    { name: 'esbuild', version: '', licence: 'MIT', used: 'licence_build' },
+    { name: 'TypeScript', version: '', licence: 'Apache-2.0', used: 'licence_build' },
 ];

@@ -149,6 +149,9 @@ export interface MachineLayout {
     slaves: string[];
     inputs: string[];
     outputs: string[];
+    /** Points that nobody may force, and why. */
+    kept_inputs?: Record<string, string>;
+    kept_outputs?: Record<string, string>;
     programs: string[];
     tasks: string[];
     variables: { program: string; name: string; unit: string; doc: string; type: string }[];

@@ -19,7 +19,7 @@ export function drive_page(desk: Desk, layout: AxisLayout): Page {
     const bits = status_bits.map(([bit]) => element('li', { 'data-bit': String(bit) }));
     const parameters = new DriveParameters(desk, layout);
     const root = element('div', { class: 'page axis drive' }, axis_tabs(desk, layout.name, 'drive'),
-        element('div', { class: 'columns narrow' }, element('div', { class: 'stack' }, panel('drive', status.root), panel('status_word', element('ul', { class: 'bits' }, ...bits))), parameters.root));
+        element('div', { class: 'columns' }, element('div', { class: 'stack' }, panel('drive', status.root), panel('status_word', element('ul', { class: 'bits' }, ...bits))), parameters.root));
     const write_status = (axis: AxisState): void => {
         status.set('drive', layout.drive || '–');
         status.set('profile', layout.profile || '–');

@@ -1,26 +1,39 @@
 // The parameters of a drive by the manual's names: filtered, read, compared, written one at a time and only after it has been confirmed.
 import { Desk, panel } from '../desk';
 import { Inquiry } from '../inquiry';
+import { plain } from '../numbers';
 import { file_time, save_file } from '../save';
 import { AxisLayout, AxisState } from '../state';
-import { current_language, say } from '../texts';
+import { current_language, say, word } from '../texts';
 import { element, mark, Rows, write } from '../view';
 
+/** As the machine says it (hmi_bridge/README.md, `drive_parameters`). */
 export interface DriveParameter {
-    /** As drive_read takes it: `P05.13`, `6084h`, `2000h:02`. */
-    name: string;
+    /** As drive_read takes it: `P05.13`, `6084h`. */
+    id: string;
+    object: string;
     english: string;
     chinese: string;
     unit: string;
-    range: string;
-    factory: string;
+    minimum: number | null;
+    maximum: number | null;
+    /** How drive_read would show it; empty: unknown. */
+    factory_shown: string;
+    factory_is: string;
+    /** What the values mean, in the manual's words. */
+    meaning: string;
+    readable: boolean;
     writable: boolean;
+    change: string;
     effective: string;
     manual: string;
 }
 
 /** More are not shown at once: a filter is there. */
 const most_shown = 200;
+
+export const range_text = ({ minimum, maximum }: DriveParameter): string => (minimum === null && maximum === null ? '' : `${minimum === null ? '' : plain(minimum)} … ${maximum === null ? '' : plain(maximum)}`);
+const factory_text = (parameter: DriveParameter): string => (parameter.factory_shown ? `${parameter.factory_shown}${parameter.factory_is === 'assumed' ? ` (${say('assumed')})` : ''}` : say('factory_unknown'));
 
 /** Whether two texts of a value say the same: "250 ms" and "250.0 ms". */
 export function same_value(a: string, b: string): boolean {
@@ -51,18 +64,18 @@ export class DriveParameters {
 
     constructor(private readonly desk_: Desk, private readonly layout_: AxisLayout) {
         this.inquiry_ = new Inquiry(desk_, () => ({ cmd: 'drive_parameters', axis: layout_.name }), Infinity, (answer) => {
-            if (answer.ok) this.all_ = (answer['parameters'] as DriveParameter[] | undefined) ?? [];
+            if (answer.ok) this.all_ = (answer['drive_parameters'] as { parameters: DriveParameter[] }).parameters;
             else this.desk_.refused(answer);
         });
-        this.rows_ = new Rows(this.body_, (parameter: DriveParameter) => parameter.name, (parameter) => {
+        this.rows_ = new Rows(this.body_, (parameter: DriveParameter) => parameter.id, (parameter) => {
             const shown = element('td', { class: 'number', 'data-value': 'value' }), other = element('td', { class: 'number' });
-            const read = element('button', { type: 'button', class: 'small', 'data-cmd': 'drive_read', 'aria-label': `${say('read')} ${parameter.name}`, onclick: () => void this.read(parameter.name) }, say('read'));
-            const change = element('button', { type: 'button', class: 'small', 'data-cmd': 'drive_write', 'aria-label': `${say('change')} ${parameter.name}`, onclick: () => this.ask(parameter) }, say('change'));
-            const root = element('tr', { 'data-parameter': parameter.name }, element('th', { scope: 'row' }, parameter.name, element('small', { class: 'doc' }, this.title(parameter))), shown, other,
-                element('td', { class: 'range' }, parameter.range, element('small', { class: 'doc' }, parameter.effective)), element('td', { class: 'buttons' }, read, ...(parameter.writable ? [change] : [])));
+            const read = element('button', { type: 'button', class: 'small', 'data-cmd': 'drive_read', 'aria-label': `${say('read')} ${parameter.id}`, onclick: () => void this.read(parameter.id) }, say('read'));
+            const change = element('button', { type: 'button', class: 'small', 'data-cmd': 'drive_write', 'aria-label': `${say('change')} ${parameter.id}`, onclick: () => this.ask(parameter) }, say('change'));
+            const root = element('tr', { 'data-parameter': parameter.id }, element('th', { scope: 'row' }, parameter.id, element('small', { class: 'doc' }, this.title(parameter))), shown, other,
+                element('td', { class: 'range' }, range_text(parameter), element('small', { class: 'doc' }, word('effective', parameter.effective))), element('td', { class: 'buttons' }, ...(parameter.readable ? [read] : []), ...(parameter.writable ? [change] : [])));
             return { root, shown, other, change, read };
         }, (row, parameter) => {
-            const value = this.read_.get(parameter.name), other = this.other(parameter);
+            const value = this.read_.get(parameter.id), other = this.other(parameter);
             const differs = value !== undefined && other !== undefined && !same_value(value, other);
             write(row.shown, value ?? '–');
             write(row.other, other === undefined ? '' : differs ? `≠ ${other}` : other);
@@ -94,13 +107,13 @@ export class DriveParameters {
         return parameter.manual ? `${text} (${parameter.manual})` : text;
     }
     private other(parameter: DriveParameter): string | undefined {
-        return this.against_.value === 'compare_factory' ? parameter.factory || undefined : this.against_.value === 'compare_saved' ? this.saved_?.get(parameter.name) : undefined;
+        return this.against_.value === 'compare_factory' ? parameter.factory_shown || undefined : this.against_.value === 'compare_saved' ? this.saved_?.get(parameter.id) : undefined;
     }
     private shown(): DriveParameter[] {
         const wanted = this.filter_.value.trim().toLowerCase();
-        return this.all_.filter((parameter) => [parameter.name, parameter.english, parameter.chinese].some((text) => text.toLowerCase().includes(wanted))).filter((parameter) => {
+        return this.all_.filter((parameter) => [parameter.id, parameter.object, parameter.english, parameter.chinese].some((text) => text.toLowerCase().includes(wanted))).filter((parameter) => {
             if (!this.different_.checked) return true;
-            const value = this.read_.get(parameter.name), other = this.other(parameter);
+            const value = this.read_.get(parameter.id), other = this.other(parameter);
             return value !== undefined && other !== undefined && !same_value(value, other);
         });
     }
@@ -111,28 +124,28 @@ export class DriveParameters {
     }
     /** One after the other: a drive answers one mailbox at a time. Ends when the page is left. */
     private async read_shown(): Promise<void> {
-        const names = this.shown().slice(0, most_shown).map((parameter) => parameter.name);
+        const names = this.shown().filter((parameter) => parameter.readable).slice(0, most_shown).map((parameter) => parameter.id);
         for (this.reading_ = names.length; this.reading_ > 0 && !this.left_ && this.desk_.link.opened; this.reading_--) await this.read(names[names.length - this.reading_] ?? '');
         this.reading_ = 0;
     }
     private ask(parameter: DriveParameter): void {
-        const given = element('input', { type: 'text', 'data-input': 'value', value: this.read_.get(parameter.name) ?? '', 'aria-label': say('value') });
+        const given = element('input', { type: 'text', 'data-input': 'value', value: this.read_.get(parameter.id) ?? '', 'aria-label': say('value') });
         const store = element('input', { type: 'checkbox', 'data-input': 'store' });
         const form = element('form', {
             method: 'dialog',
             onsubmit: (event: Event) => {
                 event.preventDefault();
                 this.dialog_.close();
-                void this.desk_.give({ cmd: 'drive_write', axis: this.layout_.name, parameter: parameter.name, value: given.value.trim(), ...(store.checked ? { store: true } : {}) }).then((answer) => {
-                    if (answer.ok) void this.read(parameter.name);
+                void this.desk_.give({ cmd: 'drive_write', axis: this.layout_.name, parameter: parameter.id, value: given.value.trim(), ...(store.checked ? { store: true } : {}) }).then((answer) => {
+                    if (answer.ok) void this.read(parameter.id);
                 });
             },
-        }, element('p', {}, this.title(parameter)), element('dl', { class: 'values' }, element('dt', {}, say('now')), element('dd', {}, this.read_.get(parameter.name) ?? say('not_read')), element('dt', {}, say('parameter_range')), element('dd', {}, parameter.range || '–'),
-            element('dt', {}, say('factory')), element('dd', {}, parameter.factory || '–'), element('dt', {}, say('effective')), element('dd', {}, parameter.effective || '–')),
+        }, element('p', {}, this.title(parameter)), element('dl', { class: 'values' }, element('dt', {}, say('now')), element('dd', {}, this.read_.get(parameter.id) ?? say('not_read')), element('dt', {}, say('parameter_range')), element('dd', {}, range_text(parameter) || '–'),
+            element('dt', {}, say('factory')), element('dd', {}, factory_text(parameter)), ...(parameter.meaning ? [element('dt', {}, say('meaning')), element('dd', { class: 'long' }, parameter.meaning)] : []), element('dt', {}, say('effective')), element('dd', {}, `${word('change', parameter.change)}; ${word('effective', parameter.effective)}`)),
             element('label', { class: 'line' }, element('span', {}, say('new_value')), given), element('label', { class: 'switch' }, store, element('span', {}, say('into_eeprom'))),
             element('p', { class: 'hint' }, say('write_warning')), element('div', { class: 'buttons' }, element('button', { type: 'submit', class: 'primary', 'data-do': 'confirm' }, say('write_now')),
                 element('button', { type: 'button', onclick: () => this.dialog_.close() }, say('cancel'))));
-        this.dialog_.replaceChildren(element('h2', {}, `${this.layout_.name}: ${parameter.name}`), form);
+        this.dialog_.replaceChildren(element('h2', {}, `${this.layout_.name}: ${parameter.id}`), form);
         this.dialog_.showModal();
         given.select();
     }

@@ -23,11 +23,12 @@ function buttons(desk: Desk, name: string, axis_now: () => AxisState | undefined
     const control = desk.button('take_control', () => ({ cmd: axis_now()?.owner === 'operator' ? 'release_control' : 'take_control', axis: name }));
     const stop = desk.button('stop_axis', () => ({ cmd: 'stop', axis: name }), 'stop');
     return {
-        root: element('section', { class: 'panel' }, element('div', { class: 'buttons wide' }, power, home, reset, control, stop)),
+        root: element('div', { class: 'buttons wide' }, power, home, reset, control, stop),
         update(axis, machine) {
             const reason = why_not_by_hand(axis, machine);
             const resting = axis.powered && axis.state === 'Standstill';
             write(power, say(axis.powered ? 'power_off' : 'power_on'));
+            mark(power, 'class', axis.powered ? '' : 'primary');
             desk.permit(power, axis.powered ? 'disable' : 'enable', axis.powered || reason === '', reason);
             desk.permit(home, 'home', reason === '' && resting, reason || say(axis.powered ? 'needs_standstill' : 'needs_power'));
             desk.permit(reset, 'reset', !axis.disabled, reason);
@@ -46,7 +47,7 @@ function jogging(desk: Desk, name: string, unit: string, slow: () => number, fas
     };
     const jogs = [button('−−', 'jog_fast_negative', () => -fast()), button('−', 'jog_slow_negative', () => -slow()), button('+', 'jog_slow_positive', slow), button('++', 'jog_fast_positive', fast)];
     return {
-        root: element('div', {}, element('div', { class: 'jogs' }, ...jogs), element('p', { class: 'hint' }, say('jog_hint'))),
+        root: element('div', { class: 'jogs', role: 'group', 'aria-label': say('jog_hint'), title: say('jog_hint') }, ...jogs),
         update(axis, machine) {
             const reason = why_not_by_hand(axis, machine);
             for (const jog of jogs) {
@@ -69,8 +70,8 @@ function moving(desk: Desk, name: string, unit: string, slow: () => number, axis
         else void desk.give({ cmd: 'move', axis: name, position: to, velocity });
     };
     const step = (sense: number) => () => move(value(axis_now()?.set_position) + sense * Number(size.value), slow());
-    const steps = [element('button', { type: 'button', 'data-step': '-', onclick: step(-1), 'aria-label': say('step_negative') }, `− ${say('step')}`),
-        element('button', { type: 'button', 'data-step': '+', onclick: step(1), 'aria-label': say('step_positive') }, `+ ${say('step')}`)] as const;
+    const steps = [element('button', { type: 'button', 'data-step': '-', onclick: step(-1), 'aria-label': say('step_negative') }, '−'),
+        element('button', { type: 'button', 'data-step': '+', onclick: step(1), 'aria-label': say('step_positive') }, '+')] as const;
     const to = element('input', { type: 'text', inputmode: 'decimal', 'aria-label': say('move_to'), 'data-input': 'to' });
     const at = element('input', { type: 'text', inputmode: 'decimal', 'aria-label': say('velocity'), value: Number.isFinite(slow()) ? String(slow()) : '', 'data-input': 'at' });
     const go = element('button', { type: 'submit', class: 'go', 'data-cmd': 'move' }, say('go'));
@@ -86,7 +87,7 @@ function moving(desk: Desk, name: string, unit: string, slow: () => number, axis
         },
     }, element('span', { class: 'label' }, say('move_to')), to, element('span', { class: 'unit' }, unit), element('span', {}, say('at_velocity')), at, element('span', { class: 'unit' }, `${unit}/s`), go);
     return {
-        root: element('div', {}, element('div', { class: 'line' }, element('span', { class: 'label' }, say('step')), steps[0], size, steps[1]), form),
+        root: element('div', { class: 'hands' }, element('div', { class: 'line' }, element('span', { class: 'label' }, say('step')), steps[0], size, steps[1]), form),
         update(axis, machine) {
             const reason = why_not_by_hand(axis, machine), resting = axis.powered && axis.state === 'Standstill';
             for (const button of steps) desk.permit(button, 'move', reason === '' && resting, reason || say(axis.powered ? 'needs_standstill' : 'needs_power'));
@@ -126,10 +127,9 @@ export function hands(desk: Desk, name: string): Hands {
     const layout = desk.axis_layout(name), unit = layout?.unit ?? 'u';
     const slow = () => value(layout?.jog_slow), fast = () => value(layout?.jog_fast);
     const axis_now = () => desk.link.state?.axes.find((axis) => axis.name === name);
-    const first = buttons(desk, name, axis_now);
-    const parts = [first, jogging(desk, name, unit, slow, fast), moving(desk, name, unit, slow, axis_now), overriding(desk, name)];
+    const parts = [buttons(desk, name, axis_now), jogging(desk, name, unit, slow, fast), moving(desk, name, unit, slow, axis_now), overriding(desk, name)];
     return {
-        root: element('div', { class: 'stack' }, first.root, panel('jog', ...parts.slice(1).map((part) => part.root))),
+        root: panel('axis_hand', element('div', { class: 'hands' }, ...parts.map((part) => part.root))),
         update: (axis, machine) => parts.forEach((part) => part.update(axis, machine)),
     };
 }

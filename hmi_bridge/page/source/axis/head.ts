@@ -20,7 +20,7 @@ export function lit(axis: AxisState): Record<Lamp, boolean> {
 }
 const bad: readonly Lamp[] = ['limit_negative', 'limit_positive'];
 const text_of: Record<Lamp, Key> = {
-    powered: 'powered', homed: 'homed', in_position: 'in_position', has_job: 'has_job', moving_negative: 'moving_negative', moving_positive: 'moving_positive',
+    powered: 'powered', homed: 'lamp_homed', in_position: 'lamp_in_position', has_job: 'has_job', moving_negative: 'moving_negative', moving_positive: 'moving_positive',
     constant_velocity: 'constant_velocity', coupled: 'coupled', limit_negative: 'limit_negative', home_switch: 'home_switch', limit_positive: 'limit_positive',
 };
 

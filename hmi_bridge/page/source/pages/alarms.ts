@@ -7,6 +7,8 @@ import { element, mark, Rows, write } from '../view';
 import { alarm_history } from './alarm_history';
 
 export const in_words = (alarm: Alarm): string => (current_language() === 'zh' && alarm.chinese ? alarm.chinese : alarm.english);
+/** It stops something, so it comes first. */
+export const stops = (alarm: Alarm): boolean => alarm.reaction !== 'warn' && alarm.reaction !== 'none';
 export const key_of = (alarm: Alarm): string => `${alarm.id}/${alarm.source}/${alarm.name}/${alarm.english}`;
 
 export const alarm_tabs = (shown: 'standing' | 'history'): HTMLElement => sub_tabs('alarms', [['alarms', 'alarms_standing'], ['alarms/history', 'alarms_history']], shown === 'standing' ? 'alarms' : 'alarms/history');
@@ -37,7 +39,7 @@ function standing_alarms(desk: Desk): Page {
         return { root, status, since, recorded };
     }, (row, alarm) => {
         write(row.status, alarm.standing ? `⚠ ${say('standing')}` : `○ ${say('gone')}`);
-        mark(row.root, 'data-tone', alarm.standing ? (alarm.reaction === 'warn' || alarm.reaction === 'none' ? 'warn' : 'bad') : 'idle');
+        mark(row.root, 'data-tone', alarm.standing ? (stops(alarm) ? 'bad' : 'warn') : 'idle');
         if (alarm.recording && row.recorded.childElementCount === 0) row.recorded.append(recording_link(alarm.recording));
         const age = ((desk.link.state?.time_ns ?? 0) - alarm.since_ns) / 1e9;
         write(row.since, say('ago', { age: duration(Math.max(0, age)) }) + (alarm.count > 1 ? ` · ${say('count')} ${alarm.count}` : ''));

@@ -52,7 +52,7 @@ function point_rows(desk: Desk, direction: Direction, forcing: () => boolean, lo
         };
         const buttons = unit ? [element('button', { type: 'button', 'data-set': 'value', onclick: send_given }, say('set'))]
             : ([1, 0] as const).map((to) => element('button', { type: 'button', 'data-set': String(to), 'aria-label': `${name} ${say(to ? 'on' : 'off')}`, onclick: () => send(to) }, say(to ? 'on' : 'off')));
-        const release = element('button', { type: 'button', 'data-do': 'release', 'aria-label': `${name} ${say('release')}`, onclick: () => void desk.give({ cmd: 'force', [direction]: name }) }, say('release'));
+        const release = element('button', { type: 'button', 'data-do': 'release', 'aria-label': `${name} ${say('release')}`, onclick: () => void desk.give({ cmd: 'unforce', [direction]: name }) }, say('release'));
         const hand = element('td', { class: 'buttons' }, ...(unit ? [given] : []), ...buttons, release);
         const root = element('tr', { [`data-${direction}-point`]: name }, element('th', { scope: 'row' }, name, badge), shown, hand);
         return { root, shown, badge, given, buttons, release };
@@ -62,15 +62,16 @@ function point_rows(desk: Desk, direction: Direction, forcing: () => boolean, lo
         row.badge.hidden = !point.forced;
         if (point.forced) write(row.badge, say('forced_by', { by: point.forced.by }));
         mark(row.root, 'data-forced', point.forced !== undefined);
+        const kept = (direction === 'input' ? desk.link.layout?.kept_inputs : desk.link.layout?.kept_outputs)?.[point.name] ?? '';
         const settable = force || direction === 'output';
         row.given.hidden = !settable;
         for (const button of row.buttons) {
             button.hidden = !settable;
-            desk.permit(button, force ? 'force' : 'set_output', force || locked() === '', locked());
+            desk.permit(button, force ? 'force' : 'set_output', force ? kept === '' : locked() === '', force ? say('kept_point', { why: kept }) : locked());
             mark(button, 'data-forces', force);
         }
         row.release.hidden = !force && !point.forced;
-        desk.permit(row.release, 'force', point.forced !== undefined, say('not_forced'));
+        desk.permit(row.release, 'unforce', point.forced !== undefined, say('not_forced'));
     });
     return { root: element('table', { class: 'points' }, body), update: (list: Point[]) => rows.update(list) };
 }

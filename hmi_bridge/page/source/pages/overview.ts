@@ -1,23 +1,28 @@
 // All axes at a glance, a row each; programs; whether the cycle keeps time.
 import { Desk, Page, panel, table, Values, write_lamp, write_state } from '../desk';
 import { fixed, microseconds } from '../numbers';
-import { AxisState, MachineState } from '../state';
+import { AxisLayout, AxisState, MachineState, value } from '../state';
 import { say, word } from '../texts';
 import { element, Rows, write } from '../view';
 
 export function overview(desk: Desk): Page {
-    const cells = ['state', 'position', 'velocity', 'power', 'homed', 'owner'] as const;
+    const cells = ['state', 'position', 'travel', 'velocity', 'power', 'homed', 'owner'] as const;
     const body = element('tbody');
     const axes = new Rows(body, (axis: AxisState) => axis.name, (axis) => {
         const link = element('a', { href: `#axis/${encodeURIComponent(axis.name)}`, class: 'row-link' }, axis.name);
         const cell = (name: (typeof cells)[number], kind = '') => element('td', { 'data-value': name, class: kind });
-        const made = { state: cell('state'), position: cell('position', 'number'), velocity: cell('velocity', 'number'), power: cell('power'), homed: cell('homed'), owner: cell('owner') };
+        const made = { state: cell('state'), position: cell('position', 'number'), velocity: cell('velocity', 'number'), travel: cell('travel'), power: cell('power'), homed: cell('homed'), owner: cell('owner') };
         const root = element('tr', { 'data-axis': axis.name, onclick: () => link.click() }, element('th', { scope: 'row' }, link), ...cells.map((name) => made[name]));
-        return { root, ...made };
+        const carriage = element('i'), travel = element('div', { class: 'travel' }, carriage);
+        made.travel.append(travel);
+        return { root, ...made, travel, carriage };
     }, (row, axis) => {
         write_state(row.state, axis, word('axis', axis.state));
         write(row.position, `${fixed(axis.actual_position)} ${axis.unit}`);
         write(row.velocity, `${fixed(axis.actual_velocity)} ${axis.unit}/s`);
+        const part = part_of_travel(desk.axis_layout(axis.name), axis);
+        row.travel.hidden = Number.isNaN(part);
+        row.carriage.style.left = `${(part * 100).toFixed(1)}%`;
         write_lamp(row.power, axis.powered, say(axis.powered ? 'power_on_state' : 'power_off_state'));
         write_lamp(row.homed, axis.homed, say(axis.homed ? 'homed' : 'not_homed'));
         write(row.owner, word('owner', axis.owner));
@@ -29,7 +34,7 @@ export function overview(desk: Desk): Page {
     const programs = program_rows(desk);
     const health = new Values();
     const root = element('div', { class: 'page overview' },
-        panel('axis', table(['name', ...cells], body), element('div', { class: 'buttons' }, power, no_power, reset)),
+        panel('axes', table(['name', ...cells], body, ['position', 'velocity']), element('div', { class: 'buttons' }, power, no_power, reset)),
         element('div', { class: 'columns' }, panel('programs', programs.root), panel('cycle_health', health.root)));
     return {
         root,
@@ -42,6 +47,12 @@ export function overview(desk: Desk): Page {
             write_cycle(health, state, desk);
         },
     };
+}
+
+/** 0 at the negative software limit, 1 at the positive one; NaN where there are none. */
+export function part_of_travel(layout: AxisLayout | undefined, axis: AxisState): number {
+    const modulo = value(layout?.modulo), low = modulo > 0 ? 0 : value(layout?.position_min), high = modulo > 0 ? modulo : value(layout?.position_max);
+    return high > low && axis.homed ? Math.min(1, Math.max(0, (value(axis.actual_position) - low) / (high - low))) : NaN;
 }
 
 export function write_cycle(to: Values, state: MachineState, desk: Desk): void {

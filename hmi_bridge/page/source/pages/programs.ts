@@ -52,7 +52,7 @@ export function programs(desk: Desk): Page {
         const texts = [String(task.releases), String(task.overruns), microseconds(task.run_ns), microseconds(task.run_max_ns)];
         row.cells.forEach((cell, i) => write(cell, texts[i] ?? ''));
     });
-    const task_panel = panel('tasks', table(['task', 'releases', 'overruns', 'run_time', 'run_time_max'], task_body));
+    const task_panel = panel('tasks', table(['task', 'releases', 'overruns', 'run_time', 'run_time_max'], task_body, ['releases', 'overruns', 'run_time', 'run_time_max']));
     return {
         root: element('div', { class: 'page programs' }, element('div', { class: 'columns' }, element('div', { class: 'stack' }, panel('programs', control.root), panel('parameters', parameters.root)),
             element('div', { class: 'stack' }, panel('variables', watch.root))), element('div', { class: 'columns' }, task_panel, histograms.root)),

@@ -1,7 +1,7 @@
 // What runs here, since when, how far away it is; what this page has commanded; what was recorded; whose work is used.
 import { Desk, Given, Page, panel, table, Values } from '../desk';
 import { Inquiry } from '../inquiry';
-import { licences } from '../licences';
+import { Licence, page_licences } from '../licences';
 import { duration } from '../numbers';
 import { local_time } from '../save';
 import { MachineState } from '../state';
@@ -19,6 +19,7 @@ interface Recorded {
 }
 const latency_ms = 1000;
 const recordings_ms = 5000;
+const log_ms = 1000, most_lines = 500;
 
 function recordings(desk: Desk) {
     const body = element('tbody'), none = element('p', { class: 'hint' });
@@ -37,6 +38,34 @@ function recordings(desk: Desk) {
         step() {
             inquiry.step();
             if (inquiry.unknown) write(none, say('not_known'));
+        },
+        leave: () => inquiry.leave(),
+    };
+}
+
+interface LogLine {
+    number: number;
+    text: string;
+}
+function log(desk: Desk) {
+    let last = 0, lines: LogLine[] = [];
+    const list = element('pre', { class: 'log scroll', tabindex: '0' }), none = element('p', { class: 'hint' });
+    const inquiry = new Inquiry(desk, () => ({ cmd: 'log', after: last, limit: most_lines }), log_ms, (answer) => {
+        if (!answer.ok) return;
+        const log = answer['log'] as { last: number; lines: LogLine[] };
+        if (log.last < last) lines = [];  // another run of the machine
+        last = log.last;
+        if (log.lines.length === 0) return;
+        const at_end = list.scrollTop + list.clientHeight >= list.scrollHeight - 4;
+        lines = [...lines, ...log.lines].slice(-most_lines);
+        list.textContent = lines.map((line) => line.text).join('\n');
+        if (at_end) list.scrollTop = list.scrollHeight;
+    });
+    return {
+        root: panel('log', none, list),
+        step() {
+            inquiry.step();
+            write(none, inquiry.unknown ? say('not_known') : desk.link.allowed('log') ? '' : say('grey_role', { role: word('role', desk.link.role) }));
         },
         leave: () => inquiry.leave(),
     };
@@ -61,30 +90,37 @@ function commands(desk: Desk) {
 
 export function system(desk: Desk): Page {
     const machine = new Values(), cycle = new Values(), page = new Values();
-    const recorded = recordings(desk), given = commands(desk);
-    let asked = 0, latency = NaN, worst = 0;
+    const recorded = recordings(desk), given = commands(desk), logged = log(desk);
+    let asked = 0, latency = NaN, worst = 0, uptime = NaN;
     const ping = new Inquiry(desk, () => {
         asked = performance.now();
         return { cmd: 'hello' };
     }, latency_ms, (answer) => {
         if (!answer.ok) return;
+        uptime = Number(answer['uptime_s'] ?? NaN);
+        const libraries = answer['libraries'] as { name: string; version: string; licence: string }[] | undefined;
+        if (libraries) licence_rows.update([...libraries.map((library): Licence => ({ name: library.name, version: library.version, licence: library.licence, used: 'licence_command' })), ...page_licences]);
         latency = performance.now() - asked;
         worst = Math.max(worst, latency);
     });
-    const licence_body = element('tbody', {}, ...licences.map(({ name, licence, used }) => element('tr', {}, element('th', { scope: 'row' }, name), element('td', {}, licence), element('td', { class: 'doc' }, say(used)))));
+    const licence_body = element('tbody');
+    const licence_rows = new Rows(licence_body, (of: Licence) => of.name, ({ name, version, licence, used }) =>
+        ({ root: element('tr', {}, element('th', { scope: 'row' }, name), element('td', {}, version), element('td', {}, licence), element('td', { class: 'doc' }, say(used))) }), () => undefined);
+    licence_rows.update(page_licences);
     return {
         root: element('div', { class: 'page system' },
             element('div', { class: 'columns three' }, panel('system', machine.root), panel('cycle_health', cycle.root), panel('this_page', page.root)),
-            element('div', { class: 'columns' }, element('div', { class: 'stack' }, recorded.root, given.root),
-                element('div', { class: 'stack' }, panel('licences', element('div', { class: 'scroll' }, element('table', { class: 'dense' }, licence_body))), panel('safety', element('p', {}, say('safety_text')))))),
+            element('div', { class: 'columns' }, element('div', { class: 'stack' }, logged.root, recorded.root),
+                element('div', { class: 'stack' }, given.root, panel('licences', element('div', { class: 'scroll' }, element('table', { class: 'dense' }, licence_body))), panel('safety', element('p', {}, say('safety_text')))))),
         update(state: MachineState) {
             ping.step();
             recorded.step();
+            logged.step();
             given.step();
             machine.set('machine_name', state.machine);
             machine.set('runtime_version', desk.link.version);
             machine.set('phase', word('phase', state.phase));
-            machine.set('running_for', duration(((desk.link.layout?.cycle_ns ?? 0) * state.cycle) / 1e9));
+            machine.set('running_for', Number.isNaN(uptime) ? duration(((desk.link.layout?.cycle_ns ?? 0) * state.cycle) / 1e9) : duration(uptime));
             machine.set('cycles', String(state.cycle));
             machine.set('commands_refused', String(state.statistics['commands_refused'] ?? 0));
             machine.set('snapshots_dropped', String(state.statistics['snapshots_dropped'] ?? 0));
@@ -99,6 +135,7 @@ export function system(desk: Desk): Page {
         leave() {
             ping.leave();
             recorded.leave();
+            logged.leave();
         },
     };
 }

@@ -11,6 +11,7 @@ export const io = {
     forced_by: ['FORCED by {by}', '由 {by} 强制'],
     release: ['Release', '解除'],
     not_forced: ['It is not forced.', '该点未被强制。'],
+    kept_point: ['Nobody may force it: {why}', '不可强制:{why}'],
     not_known: ['The machine is older than this page and does not know this.', '机器版本较旧,不支持此功能。'],
     set: ['Set', '设置'],
     value: ['Value', '值'],
