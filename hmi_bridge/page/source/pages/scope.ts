@@ -5,11 +5,13 @@ import { curve_panel } from '../scope/curve_panel';
 import { FilesPanel } from '../scope/files_panel';
 import { Picker } from '../scope/picker';
 import { Session } from '../scope/session';
-import { SavedSetups } from '../scope/setup';
+import { SavedSetups, setup_views } from '../scope/setup';
 import { key_of } from '../scope/signals';
+import { SpectrumView } from '../scope/spectrum_view';
 import { Stack } from '../scope/stack';
 import { TriggerPanel } from '../scope/trigger_panel';
 import { ValueTable } from '../scope/value_table';
+import { XyView } from '../scope/xy_view';
 import { Key, say } from '../texts';
 import { element, mark, write } from '../view';
 
@@ -27,7 +29,7 @@ export function scope(desk: Desk, rest: readonly string[]): Page {
 
     const button = (key: Key, tag: string, what: () => void, sign = ''): HTMLButtonElement => element('button', { type: 'button', 'data-do': tag, title: say(key), onclick: what }, sign || say(key));
     const changed = (): void => {
-        stack.draw();
+        draw();
         update();
     };
     const open = (which: Side): void => {
@@ -41,6 +43,7 @@ export function scope(desk: Desk, rest: readonly string[]): Page {
         open('curve');
     };
     const stack = new Stack(session, () => update(), choose);
+    const others = { xy: new XyView(session, () => session.changed()), spectrum: new SpectrumView(session, () => session.changed()) };
     const table = new ValueTable(session, changed, choose);
     const picker = new Picker(session, changed), trigger = new TriggerPanel(desk, session, changed), files = new FilesPanel(session, stack, changed);
 
@@ -62,6 +65,11 @@ export function scope(desk: Desk, rest: readonly string[]): Page {
         changed();
     });
     const sides = { signals: button('scope_signals', 'signals', () => open('signals')), trigger: button('scope_trigger', 'trigger', () => open('trigger')), files: button('scope_files', 'files', () => open('files')) };
+    const views = setup_views.map((view) => element('button', { type: 'button', 'data-view': view, onclick: () => {
+        session.setup.view = view;
+        session.changed();
+        changed();
+    } }, say(`scope_view_${view}`)));
     const what = element('strong', { class: 'scope-what', 'data-value': 'scene' });
     const back = element('a', { class: 'scope-back', href: '#scope', onclick: () => {
         session.show_live();
@@ -70,10 +78,10 @@ export function scope(desk: Desk, rest: readonly string[]): Page {
     const hint = element('p', { class: 'hint scope-hint', role: 'status' });
     const panel = element('aside', { class: 'scope-side' });
     const bar = element('div', { class: 'scope-bar', role: 'toolbar', 'aria-label': say('scope') }, run, span, button('scope_zoom_in', 'zoom_in', () => { stack.remember(); stack.zoom(0.5); }, '+'),
-        button('scope_zoom_out', 'zoom_out', () => { stack.remember(); stack.zoom(2); }, '−'), box, button('scope_back', 'back', () => stack.back(), '↶'), button('scope_all', 'all', () => stack.all()), cursors,
-        element('span', { class: 'space' }), trigger.status, sides.signals, sides.trigger, sides.files);
+        button('scope_zoom_out', 'zoom_out', () => { stack.remember(); stack.zoom(2); }, '−'), box, button('scope_back', 'back', () => stack.back(), '↶'), button('scope_all', 'all', () => stack.all(), '↔'), cursors,
+        element('div', { class: 'segments', role: 'group', 'aria-label': say('scope_view') }, ...views), element('span', { class: 'space' }), trigger.status, sides.signals, sides.trigger, sides.files);
     const strip = element('div', { class: 'scope-strip' }, what, back);
-    const middle = element('div', { class: 'scope-middle' }, element('div', { class: 'scope-main' }, hint, stack.root, table.root), panel);
+    const middle = element('div', { class: 'scope-middle' }, element('div', { class: 'scope-main' }, hint, stack.root, table.root, others.xy.root, others.spectrum.root), panel);
     const root = element('div', { class: 'page scope' }, bar, strip, middle);
 
     function toggle_run(): void {
@@ -105,6 +113,15 @@ export function scope(desk: Desk, rest: readonly string[]): Page {
         panel.hidden = side === '';
         for (const [name, b] of Object.entries(sides)) mark(b, 'aria-expanded', side === name ? 'true' : 'false');
     }
+    function draw(): void {
+        const { view } = session.setup;
+        stack.root.hidden = table.root.hidden = view !== 'time';
+        others.xy.root.hidden = view !== 'xy';
+        others.spectrum.root.hidden = view !== 'spectrum';
+        setup_views.forEach((one, i) => mark(views[i] as Element, 'aria-pressed', one === view ? 'true' : 'false'));
+        if (view === 'time') stack.draw();
+        else others[view].draw();
+    }
     function update(): void {
         const { scene, trouble } = session, now = performance.now();
         const live = scene?.kind === 'live', follow = live && scene.view.follow;
@@ -123,16 +140,17 @@ export function scope(desk: Desk, rest: readonly string[]): Page {
         const text = !scene && trouble ? say(trouble) : scene && session.setup.channels.length === 0 ? say('scope_no_curve') : '';
         write(hint, text);
         trigger.update();
+        trigger.status.hidden = session.trigger === undefined;
         if (side === 'signals') picker.update();
         if (side === 'files') files.update(now);
         const { a, b } = session.cursors;
-        table.update(now, (cycle) => stack.time_of(cycle), scene ? hertz(rate_between(a, b, scene.cycle_ns)) : '');
+        if (session.setup.view === 'time') table.update(now, (cycle) => stack.time_of(cycle), scene ? hertz(rate_between(a, b, scene.cycle_ns)) : '');
     }
     async function beat(): Promise<void> {
         if (left) return;
         await session.step(performance.now());
         if (left || !root.isConnected) return;
-        stack.draw();
+        draw();
         update();
     }
     fill_side();

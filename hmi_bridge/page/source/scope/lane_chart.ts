@@ -9,9 +9,9 @@ import { Store } from './store';
 import { Columns, runs, thin } from './thin';
 
 export const scale_width = 66;
-export const right_room = 14;
+export const right_room = 24;
 export const band_height = 26;
-const time_height = 28;
+const time_height = 26;
 
 export interface Look {
     dark: boolean;
@@ -46,20 +46,20 @@ export class LaneChart {
     private readonly columns_: Columns[];
     private size_ = '';
 
-    constructor(readonly lane: Lane, readonly look: Look, private readonly with_time_: boolean, host: HTMLElement, time_text: (seconds: number, step: number) => string) {
+    constructor(readonly lane: Lane, readonly look: Look, with_time: boolean, host: HTMLElement, time_text: (seconds: number, step: number) => string) {
         this.columns_ = lane.channels.map(() => new Columns());
         const axis = { stroke: look.quiet, font: look.font, grid: { stroke: look.grid, width: 1 }, ticks: { stroke: look.grid, width: 1, size: 4 } };
         this.plot = new uPlot({
-            width: 100, height: 60, legend: { show: false }, cursor: { show: false }, padding: [4, right_room, with_time_ ? 0 : 4, 0], pxAlign: 1,
+            width: 200, height: 60, legend: { show: false }, cursor: { show: false }, padding: [with_time ? 0 : 4, right_room, with_time ? 0 : 4, 0], pxAlign: 1,
             scales: {
                 x: { time: false, auto: false, range: () => this.times() },
                 y: { auto: false, range: () => [this.range.min, this.range.max] },
             },
             axes: [
-                { ...axis, size: with_time_ ? time_height : 0, gap: 3, space: 90, ticks: { ...axis.ticks, show: with_time_ },
-                    values: (_plot, splits, _axis, _space, step) => splits.map((s) => (with_time_ ? time_text(s, step) : '')) },
+                { ...axis, size: with_time ? time_height : 0, gap: 3, space: 90, ticks: { ...axis.ticks, show: with_time },
+                    values: (_plot, splits, _axis, _space, step) => splits.map((s) => (with_time ? time_text(s, step) : '')) },
                 lane.digital ? { ...axis, size: scale_width, grid: { show: false }, ticks: { show: false }, values: (_plot, splits) => splits.map(() => '') }
-                    : { ...axis, size: scale_width, gap: 4, space: 26, values: (_plot, splits) => splits.map((s) => String(Number(s.toPrecision(10))).replace('-', '−')) },
+                    : { ...axis, size: scale_width, gap: 4, space: 18, values: (_plot, splits) => splits.map((s) => String(Number(s.toPrecision(10))).replace('-', '−')) },
             ],
             series: [{}, ...lane.channels.map((channel, i) => ({
                 scale: 'y', show: !lane.digital && !channel.hidden, stroke: colour_of(channel.colour, look.dark), width: 1.5, dash: [...dash_of(channel.colour)], points: { show: false },
@@ -77,7 +77,7 @@ export class LaneChart {
     }
     /** Height that the lane wants; undefined: what is left. */
     get own_height(): number | undefined {
-        return this.lane.digital ? this.lane.channels.length * band_height + 8 + (this.with_time_ ? time_height : 0) : undefined;
+        return this.lane.digital ? this.lane.channels.length * band_height + 8 : undefined;
     }
 
     draw(shot: Shot): void {
@@ -195,7 +195,7 @@ export class LaneChart {
             ctx.font = `bold ${11 * px}px system-ui, sans-serif`;
             ctx.textAlign = 'center';
             ctx.textBaseline = 'middle';
-            const taken: number[] = [];
+            const tags: { x: number; y: number; text: string; width: number; colour: string }[] = [];
             this.lane.channels.forEach((channel, i) => {
                 const columns = this.columns_[i] as Columns;
                 if (channel.hidden) return;
@@ -203,17 +203,21 @@ export class LaneChart {
                 while (k >= 0 && Number.isNaN(columns.low[k])) k--;
                 if (k < 0) return;
                 const text = String(shot.number(key_of(channel))), width = ctx.measureText(text).width + 6 * px;
-                const at_x = Math.min(frame.left + frame.width - width / 2 - px, x(columns.start + k * columns.per) - width / 2);
                 const value = ((columns.low[k] as number) + (columns.high[k] as number)) / 2 + channel.offset;
-                let at_y = frame.top + ((frame.max - value) * frame.height) / (frame.max - frame.min);
-                at_y = Math.min(frame.top + frame.height - 8 * px, Math.max(frame.top + 8 * px, at_y));
-                while (taken.some((y) => Math.abs(y - at_y) < 13 * px) && at_y > frame.top) at_y -= 14 * px;  // beside one another
-                taken.push(at_y);
-                ctx.fillStyle = colour_of(channel.colour, this.look.dark);
-                ctx.fillRect(at_x - width / 2, at_y - 7 * px, width, 14 * px);
-                ctx.fillStyle = this.look.ground;
-                ctx.fillText(text, at_x, at_y + 0.5 * px);
+                const y = frame.top + ((frame.max - value) * frame.height) / (frame.max - frame.min);
+                tags.push({ x: Math.min(frame.left + frame.width - width / 2 - px, x(columns.start + k * columns.per) - width / 2), y, text, width, colour: colour_of(channel.colour, this.look.dark) });
             });
+            // Below one another, all inside.
+            tags.sort((a, b) => a.y - b.y);
+            const deep = 14 * px, bottom = frame.top + frame.height - deep / 2;
+            tags.forEach((tag, i) => (tag.y = Math.max(tag.y, frame.top + deep / 2, (tags[i - 1]?.y ?? -Infinity) + deep)));
+            for (let i = tags.length - 1; i >= 0; i--) (tags[i] as { y: number }).y = Math.min((tags[i] as { y: number }).y, i === tags.length - 1 ? bottom : (tags[i + 1] as { y: number }).y - deep);
+            for (const tag of tags) {
+                ctx.fillStyle = tag.colour;
+                ctx.fillRect(tag.x - tag.width / 2, tag.y - deep / 2, tag.width, deep - px);
+                ctx.fillStyle = this.look.ground;
+                ctx.fillText(tag.text, tag.x, tag.y);
+            }
         });
     }
     private draw_bands(shot: Shot): void {

@@ -147,7 +147,7 @@ export class Session {
         };
         this.live = scene;
         this.scene ??= scene;
-        if (this.setup.channels.length === 0) for (const name of first_choice([...scene.signals.values()])) this.add(name);
+        if (this.setup.channels.length === 0) this.choose_first(scene);
     }
 
     // --- what is shown ---------------------------------------------------------------------------------------------------------
@@ -198,10 +198,16 @@ export class Session {
         const fits = this.setup.channels.some((channel) => scene.signals.has(channel.name) && (axis === '' || scene.signals.get(channel.name)?.of === axis));
         if (!fits) {
             this.setup.channels = [];
-            for (const name of first_choice([...scene.signals.values()], axis)) this.add(name);
+            this.choose_first(scene, axis);
         }
     }
 
+    private choose_first(scene: Scene, axis = ''): void {
+        for (const name of first_choice([...scene.signals.values()], axis)) {
+            const channel = this.add(name);
+            if (channel && name.endsWith('.following_error')) channel.apart = true;  // beside positions it would be a flat line
+        }
+    }
     add(name: string, bit?: number): Channel | undefined {
         const key = key_of({ name, bit });
         const found = this.setup.channels.find((channel) => key_of(channel) === key);
@@ -248,6 +254,7 @@ export class Session {
             if (this.live) {
                 delete this.live.marker;
                 this.live.view.follow = true;
+                this.cursors.shown = false;
             }
         }
         return answer;
@@ -263,6 +270,9 @@ export class Session {
         const event = next_event(this.trigger, this.shown_event_), scene = this.live;
         if (!event || !scene || this.scene !== scene || scene.store.newest < event.to) return;  // its samples are on their way
         this.shown_event_ = event.cycle;
+        // Cursors stay where they were about the trigger.
+        if (scene.marker) for (const which of ['a', 'b'] as const) this.cursors[which] += event.cycle - scene.marker.cycle;
+        else this.cursors.shown = false;
         scene.marker = { cycle: event.cycle, kind: event.automatic ? 'automatic' : 'trigger', text: this.trigger_text_ };
         scene.view.follow = false;
         scene.view.show(event.from, event.to);

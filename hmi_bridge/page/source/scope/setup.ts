@@ -1,4 +1,5 @@
 // A set-up: what is shown and how, as it is saved in the browser and in files. What comes from a file is a stranger's: each key is looked at.
+import { Window, windows } from './fft';
 import { Range } from './lanes';
 import { Channel } from './signals';
 import { first_trigger, Trigger, trigger_kinds, trigger_modes } from './trigger';
@@ -9,10 +10,15 @@ export interface Setup {
     scales: Record<string, Range>;
     span_s: number;
     trigger: Trigger;
+    view: SetupView;
+    xy: { x: string; y: string; square: boolean };
+    spectrum: { lane: string; window: Window; decibel: boolean };
 }
+export const setup_views = ['time', 'xy', 'spectrum'] as const;
+export type SetupView = (typeof setup_views)[number];
 
 export const most_channels = 256;
-export const empty_setup = (): Setup => ({ channels: [], scales: {}, span_s: 10, trigger: first_trigger() });
+export const empty_setup = (): Setup => ({ channels: [], scales: {}, span_s: 10, trigger: first_trigger(), view: 'time', xy: { x: '', y: '', square: false }, spectrum: { lane: '', window: 'hann', decibel: false } });
 
 export const to_text = (setup: Setup): string => JSON.stringify({ taktwerk_scope: 1, ...setup }, null, 1);
 
@@ -49,6 +55,10 @@ export function from_text(given: string): Setup | undefined {
     mine.signal = text(trigger['signal']);
     mine.alarm = text(trigger['alarm']);
     for (const key of ['level', 'level2', 'bit', 'length_s', 'before_percent', 'holdoff_s'] as const) mine[key] = real(trigger[key], mine[key]);
+    setup.view = setup_views.find((v) => v === all['view']) ?? 'time';
+    const xy = object(all['xy']), lines = object(all['spectrum']);
+    setup.xy = { x: text(xy['x']), y: text(xy['y']), square: xy['square'] === true };
+    setup.spectrum = { lane: text(lines['lane']), window: windows.find((w) => w === lines['window']) ?? 'hann', decibel: lines['decibel'] === true };
     return setup;
 }
 

@@ -3,14 +3,15 @@ import { say } from '../texts';
 import { element, mark, write } from '../view';
 import { colour_of, dash_of, is_dark } from './colours';
 import { time_text } from './cursors';
-import { LaneChart, Look, right_room, scale_width, band_height } from './lane_chart';
+import { band_height, LaneChart, Look, right_room, scale_width } from './lane_chart';
 import { Lane, lanes_of, Range } from './lanes';
 import { Channel, key_of } from './signals';
 import { Scene, Session } from './session';
 
 export const gutter_width = 176;
 const left_room = gutter_width + scale_width;
-const lane_least = 84;
+const lane_least = 58;
+const time_height = 26;
 
 interface Row {
     root: HTMLElement;
@@ -46,6 +47,9 @@ export class Stack {
     private readonly select_ = element('div', { class: 'scope-select', hidden: true });
     private readonly marker_ = element('div', { class: 'scope-marker', hidden: true }, element('span'));
     private readonly lines_ = { a: this.cursor_line('a'), b: this.cursor_line('b') };
+    private readonly scroll_ = element('div', { class: 'scope-scroll-lanes' });
+    private readonly time_ = element('div', { class: 'scope-time' });
+    private time_chart_: LaneChart | undefined;
     private rows_: Row[] = [];
     private made_of_ = '';
     private drawn_ = '';
@@ -57,7 +61,8 @@ export class Stack {
 
     constructor(private readonly session_: Session, private readonly changed_: () => void, private readonly chosen_: (key: string) => void) {
         this.surface.append(this.select_, this.marker_, this.lines_.a, this.lines_.b);
-        this.root.append(this.lanes_, this.surface);
+        this.scroll_.append(this.lanes_, this.surface);
+        this.root.append(this.scroll_, this.time_);
         this.listen();
         new ResizeObserver(() => this.draw(true)).observe(this.root);
     }
@@ -66,9 +71,9 @@ export class Stack {
     private make(lanes: Lane[]): void {
         const old = new Map(this.rows_.map((row) => [row.chart.lane.key, row.chart]));
         const style = look(), scene = this.session_.scene;
-        const rows = lanes.map((lane, i) => {
+        const rows = lanes.map((lane) => {
             const host = element('div', { class: 'scope-host' });
-            const chart = new LaneChart(lane, style, i === lanes.length - 1, host, (s, step) => this.tick_text(s, step));
+            const chart = new LaneChart(lane, style, false, host, (s, step) => this.tick_text(s, step));
             const names = lane.channels.map((channel) => {
                 const key = key_of(channel), signal = scene?.signals.get(channel.name), number = this.session_.setup.channels.indexOf(channel) + 1;
                 return element('button', { type: 'button', class: 'scope-name', 'data-channel': key, title: `${key} ${signal?.unit ?? ''}`, onclick: () => this.chosen_(key) },
@@ -87,21 +92,24 @@ export class Stack {
         for (const row of this.rows_) row.chart.destroy();
         this.rows_ = rows;
         this.lanes_.replaceChildren(...rows.map((row) => row.root));
+        // The time stays in sight when there are more lanes than room.
+        this.time_chart_?.destroy();
+        this.time_chart_ = new LaneChart({ key: 'time', unit: '', digital: true, channels: [] }, style, true, this.time_, (s, step) => this.tick_text(s, step));
     }
     private size(): void {
-        const width = this.root.clientWidth - gutter_width, height = this.root.clientHeight;
+        const width = this.scroll_.clientWidth - gutter_width, height = this.root.clientHeight - time_height - 1;
         const own = this.rows_.reduce((sum, row) => sum + (row.chart.own_height ?? 0), 0);
         const shared = this.rows_.filter((row) => row.chart.own_height === undefined);
-        const time = this.rows_[this.rows_.length - 1]?.chart.own_height === undefined ? 28 : 0;
-        const each = Math.max(lane_least, (height - own - time) / Math.max(1, shared.length));
+        const each = Math.max(lane_least, (height - own) / Math.max(1, shared.length));
         let total = 0;
-        this.rows_.forEach((row, i) => {
-            const tall = row.chart.own_height ?? each + (i === this.rows_.length - 1 ? time : 0);
+        for (const row of this.rows_) {
+            const tall = row.chart.own_height ?? each;
             total += tall;
             row.root.style.height = `${tall}px`;
             row.chart.set_size(Math.max(120, width), tall);
-        });
-        this.surface.style.height = `${Math.max(height, total)}px`;
+        }
+        this.time_chart_?.set_size(Math.max(120, width), time_height);
+        this.surface.style.height = `${Math.max(height, Math.floor(total))}px`;
     }
 
     /** Draws what has changed; cheap where nothing has. */
@@ -125,11 +133,13 @@ export class Stack {
             this.drawn_ = drawn;
             this.size();
             const origin = scene.marker ? scene.marker.cycle : -scene.seconds(0) / (scene.cycle_ns / 1e9);
+            const shot = { store: scene.store, from: view.from, to: view.to, cycle_s: scene.cycle_ns / 1e9, origin, signal: known, newest: scene.store.newest,
+                number: (key: string) => setup.channels.findIndex((c) => key_of(c) === key) + 1 };
             for (const row of this.rows_) {
                 row.chart.manual = setup.scales[row.chart.lane.key];
-                row.chart.draw({ store: scene.store, from: view.from, to: view.to, cycle_s: scene.cycle_ns / 1e9, origin, signal: known, newest: scene.store.newest,
-                    number: (key) => setup.channels.findIndex((c) => key_of(c) === key) + 1 });
+                row.chart.draw(shot);
             }
+            this.time_chart_?.draw(shot);
         }
         this.place(this.marker_, scene.marker?.cycle);
         if (scene.marker) {
@@ -150,10 +160,11 @@ export class Stack {
         line.style.transform = `translateX(${(part * this.width).toFixed(1)}px)`;
     }
     get width(): number {
-        return this.root.clientWidth - left_room - right_room;
+        return this.scroll_.clientWidth - left_room - right_room;
     }
+    /** From above to below, the time last. */
     get charts(): readonly LaneChart[] {
-        return this.rows_.map((row) => row.chart);
+        return [...this.rows_.map((row) => row.chart), ...(this.time_chart_ ? [this.time_chart_] : [])];
     }
     time_of(cycle: number): string {
         const scene = this.session_.scene;

@@ -13,7 +13,7 @@ const many_samples = 4e6;
 
 interface Line {
     root: HTMLElement;
-    show: HTMLButtonElement;
+    show: HTMLInputElement;
     number: HTMLElement;
     cells: HTMLElement[];
 }
@@ -32,29 +32,34 @@ export class ValueTable {
         const body = element('tbody');
         this.rows_ = new Rows<Channel, Line>(body, (channel) => `${key_of(channel)} ${channel.colour} ${session_.scene?.title ?? ''}`, (channel) => {
             const key = key_of(channel), signal = session_.signal(channel.name);
-            const show = element('button', { type: 'button', class: 'scope-show', 'data-show': key, onclick: () => {
-                channel.hidden = !channel.hidden;
+            const show = element('input', { type: 'checkbox', 'data-show': key, onchange: () => {
+                channel.hidden = !show.checked;
                 changed();
-            } }, sample_of(channel));
+            } });
             const number = element('b');
             const cells = titles.slice(3).map((_, i) => element('td', { class: 'number', 'data-value': ['newest', 'a', 'b', 'difference', 'min', 'max', 'mean', 'rms', 'pp', 'deviation'][i] ?? '' }));
             const name = element('button', { type: 'button', class: 'scope-link', title: signal ? meaning(signal, current_language()) : say('scope_unknown'), onclick: () => this.chosen_(key) }, key);
-            return { root: element('tr', { 'data-row': key }, element('td', {}, show), element('th', { scope: 'row' }, number, ' ', name), element('td', {}, signal?.unit ?? ''), ...cells), show, number, cells };
+            return { root: element('tr', { 'data-row': key }, element('td', {}, element('label', { class: 'scope-show' }, show, sample_of(channel))), element('th', { scope: 'row' }, number, ' ', name), element('td', {}, signal?.unit ?? ''), ...cells), show, number, cells };
         }, (row, channel) => {
             const offset = channel.offset === 0 ? '' : ` (${channel.offset > 0 ? '+' : '−'}${Math.abs(channel.offset)})`;
             write(row.number, String(session_.setup.channels.indexOf(channel) + 1) + offset);
-            mark(row.show, 'aria-pressed', channel.hidden ? 'false' : 'true');
-            mark(row.show, 'aria-label', say(channel.hidden ? 'scope_show' : 'scope_hide', { name: key_of(channel) }));
+            if (row.show.checked === channel.hidden) row.show.checked = !channel.hidden;
+            mark(row.show, 'aria-label', say('scope_show', { name: key_of(channel) }));
             mark(row.root, 'data-off', channel.hidden);
         });
         const scroll = element('div', { class: 'scope-scroll', tabindex: '0', 'aria-label': say('scope_values') }, element('table', {}, element('thead', {}, element('tr', {}, ...this.head_)), body));
-        this.root = element('section', { class: 'scope-values' }, this.between_, scroll);
+        const fold = element('button', { type: 'button', class: 'scope-fold', 'aria-expanded': 'true', 'aria-label': say('scope_values'), title: say('scope_values'), onclick: () => {
+            scroll.hidden = !scroll.hidden;
+            write(fold, scroll.hidden ? '▴' : '▾');
+            mark(fold, 'aria-expanded', scroll.hidden ? 'false' : 'true');
+        } }, '▾');
+        this.root = element('section', { class: 'scope-values' }, fold, this.between_, scroll);
     }
 
     update(now: number, time_of: (cycle: number) => string, rate: string): void {
         const { scene, cursors, setup } = this.session_;
         this.rows_.update(setup.channels);
-        for (let i = 4; i <= 6; i++) (this.head_[i] as HTMLElement).hidden = !cursors.shown;
+        this.head_.forEach((head, i) => (head.hidden = i >= 3 && i <= 6 && cursors.shown === (i === 3)));
         if (!scene) return;
         const view = scene.view, range = measured(cursors, view.from, view.to);
         const newest = Math.min(scene.store.newest - 1, view.follow ? Infinity : Math.floor(view.to));
@@ -78,10 +83,11 @@ export class ValueTable {
             scene.store.each(channel.name, range.from, range.to, (piece) => figures.add(piece, channel.offset, channel.bit));
             const { min, max, mean, rms, peak_to_peak, deviation, missing } = figures.of(range.to - range.from);
             const a = at(cursors.a), b = at(cursors.b);
-            const texts = [shown(signal, channel, at(newest)), shown(signal, channel, a), shown(signal, channel, b), figure_text(b - a), ...[min, max].map(value_text), ...[mean, rms, peak_to_peak, deviation].map(figure_text)];
+            const texts = [shown(signal, channel, at(newest)), shown(signal, channel, a), shown(signal, channel, b), figure_text(b - a), ...[min, max, mean, rms, peak_to_peak, deviation].map(figure_text)];
             line.cells.forEach((cell, k) => {
                 write(cell, texts[k] ?? '');
-                if (k >= 1 && k <= 3) cell.hidden = !cursors.shown;
+                if (k === 4 || k === 5) mark(cell, 'title', value_text(k === 4 ? min : max));
+                if (k <= 3) cell.hidden = cursors.shown === (k === 0);
             });
             mark(line.root, 'data-missing', missing > 0);
             mark(line.root, 'title', missing > 0 ? say('scope_missing', { count: String(missing) }) : false);

@@ -24,13 +24,13 @@ export const scope = {
     scope_view: ['View', '视图'],
     scope_view_time: ['Time', '时间'],
     scope_view_xy: ['XY', 'XY 图'],
-    scope_view_spectrum: ['Spectrum', '频谱'],
+    scope_view_spectrum: ['FFT', '频谱'],
     scope_values: ['Values', '数值'],
     scope_more: ['More', '更多'],
 
     // the list
     scope_curve: ['Curve', '曲线'],
-    scope_newest: ['Newest', '最新值'],
+    scope_newest: ['Value', '当前值'],
     scope_at_a: ['At A', 'A 处'],
     scope_at_b: ['At B', 'B 处'],
     scope_difference: ['B − A', 'B − A 差值'],
@@ -44,7 +44,6 @@ export const scope = {
     scope_over_view: ['Figures: every sample shown, {from} to {to}', '统计:显示范围内的每个采样,{from} 至 {to}'],
     scope_missing: ['{count} cycles are missing in this range', '该范围内缺少 {count} 个周期'],
     scope_show: ['Show {name}', '显示 {name}'],
-    scope_hide: ['Hide {name}', '隐藏 {name}'],
     scope_unknown: ['This machine has no such signal', '该机器没有此信号'],
     scope_cursor: ['Cursor {which}', '游标 {which}'],
 
@@ -131,7 +130,7 @@ export const scope = {
     scope_frequency: ['Frequency', '频率'],
     scope_amplitude: ['Amplitude', '幅值'],
     scope_largest: ['Largest', '最大峰'],
-    scope_spectrum_hint: ['{count} samples, a line each {line} Hz. Click or arrow keys: frequency cursor.', '{count} 个采样,谱线间隔 {line} Hz。点击或方向键:频率游标。'],
+    scope_spectrum_hint: ['{count} samples, a line each {line} Hz. Click or arrow keys: frequency cursor; wheel: zoom; double click: all.', '{count} 个采样,谱线间隔 {line} Hz。点击或方向键:频率游标;滚轮:缩放;双击:全部。'],
     scope_spectrum_gap: ['{name}: samples are missing in this range, so there is no spectrum of it.', '{name}:该范围缺少采样,无法计算频谱。'],
     scope_spectrum_long: ['More than {count} samples: the newest of them are looked at.', '超过 {count} 个采样:仅分析其中最新的部分。'],
     scope_two_needed: ['Choose two signals.', '请选择两个信号。'],
