@@ -26,7 +26,7 @@ export function csv_of(session: Session): string {
     const { scene, cursors, setup } = session;
     if (!scene) return '';
     const range = measured(cursors, scene.view.from, scene.view.to);
-    const names = [...new Set(setup.channels.map((c) => c.name))].filter((name) => scene.signals.has(name));
+    const names = [...new Set(setup.channels.map((c) => c.name))].filter((name) => scene.signals.has(name) && name !== 'time_s');  // that column is there anyway
     const from = Math.max(range.from, Math.min(...names.map((name) => scene.store.tracks.get(name)?.have.list[0]?.from ?? Infinity)));
     return write_csv(scene.store, names.map((name) => ({ name, unit: scene.signals.get(name)?.unit ?? '' })), from, Math.min(range.to, scene.store.newest), (cycle) => scene.seconds(cycle));
 }

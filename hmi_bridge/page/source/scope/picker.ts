@@ -64,7 +64,7 @@ export class Picker {
             return element('label', { class: bit === undefined ? 'scope-line' : 'scope-line bit' }, tick, element('span', {}, text),
                 element('small', {}, bit === undefined ? `${signal.unit ? `[${signal.unit}] ` : ''}${meaning(signal, current_language())}` : ''));
         };
-        const short = signal.of && signal.name.startsWith(signal.of + '.') ? signal.name.slice(signal.of.length + 1) : signal.name;
+        const short = signal.group !== 'task' && signal.name.includes('.') ? signal.name.slice(signal.name.indexOf('.') + 1) : signal.name;
         const lines = [one(signal.name, short)];
         if (signal.kind === 'word') {
             const open = this.open_.has(signal.name);
@@ -74,7 +74,7 @@ export class Picker {
             } }, say('scope_bits'));
             mark(bits, 'aria-expanded', open ? 'true' : 'false');
             (lines[0] as HTMLElement).append(bits);
-            if (open) for (let bit = 0; bit < 16; bit++) lines.push(one(`${signal.name}.${bit}`, `${short}.${bit}`, bit));
+            if (open) for (let bit = 0; bit < 32; bit++) lines.push(one(`${signal.name}.${bit}`, `${short}.${bit}`, bit));
         }
         return lines;
     }

@@ -15,6 +15,16 @@ export interface Extent {
     last: number;
 }
 
+/** Stretches without a NaN. */
+function for_each_run(values: Float64Array, take: (run: Float64Array, at: number) => void): void {
+    for (let at = 0; at < values.length;) {
+        let end = at;
+        while (end < values.length && !Number.isNaN(values[end])) end++;
+        if (end > at) take(values.subarray(at, end), at);
+        at = end + 1;
+    }
+}
+
 /** Reads stretches of every sample into a store. */
 export class Reader {
     /** What the source has, as it last said. */
@@ -57,11 +67,14 @@ export class Reader {
             }
             const begin = Number(answer['from']), end = Number(answer['to']);
             if (answer['per'] !== undefined && Number(answer['per']) !== 1) return got;  // asked for every sample
-            if (answer['time_ns'] !== undefined) this.zero_ns = Number(answer['time_ns']) - begin * this.cycle_ns_;
+            if (end > begin) this.zero_ns = Number(answer['time_ns'] ?? begin * this.cycle_ns_) - begin * this.cycle_ns_;
+            // More missing than what lies outside: some were overwritten while they were read, and came as NaN.
+            const lost = Number(answer['missing'] ?? 0) > range.to - range.from - (end - begin);
             const data = answer['data'] as string[];
             signals.forEach((name, i) => {
-                const values = this.doubles_.decode(data[i] ?? '');
-                this.store.put(name, begin, values.subarray(0, end - begin));
+                const values = this.doubles_.decode(data[i] ?? '').subarray(0, end - begin);
+                if (!lost) this.store.put(name, begin, values);
+                else for_each_run(values, (run, at) => this.store.put(name, begin + at, run));
             });
             got ??= { from: begin, to: end };
         }

@@ -8,7 +8,7 @@ export interface Signal {
     unit: string;
     kind: Kind;
     group: string;
-    /** The axis, program or slave that it belongs to. */
+    /** The axis, program, point or task that it belongs to. */
     of: string;
     states?: Record<string, string>;
     en: string;
@@ -53,9 +53,10 @@ export function tree(signals: readonly Signal[], search: string): Branch[] {
     const branches = new Map<string, Branch>();
     for (const signal of signals) {
         if (!matches(signal, search)) continue;
-        const key = `${signal.group}/${signal.of}`;
+        // Points and tasks are one signal each.
+        const of = ['input', 'output', 'task'].includes(signal.group) ? '' : signal.of, key = `${signal.group}/${of}`;
         let branch = branches.get(key);
-        if (!branch) branches.set(key, (branch = { group: signal.group, of: signal.of, signals: [] }));
+        if (!branch) branches.set(key, (branch = { group: signal.group, of, signals: [] }));
         branch.signals.push(signal);
     }
     const place = (group: string): number => (group_order.indexOf(group) + group_order.length + 1) % (group_order.length + 1);
