@@ -155,6 +155,7 @@ export function scope(desk: Desk, rest: readonly string[]): Page {
     }
     fill_side();
     const timer = setInterval(() => void beat(), 33);
+    if (rest[0] === 'axis' && rest[1] !== undefined) session.show_axis(rest[1]);
     if (rest[0] === 'recording' && rest[1] !== undefined && session.scene?.title !== rest[1]) {
         const name = rest[1];
         void session.show_recording(name).then((refused) => {

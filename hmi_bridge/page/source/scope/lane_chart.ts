@@ -103,6 +103,18 @@ export class LaneChart {
             this.plot.redraw(true, true);
         });
     }
+    /** One curve before the others; undefined: all alike. */
+    point_at(key: string | undefined): void {
+        const mine = key !== undefined && this.lane.channels.some((channel) => key_of(channel) === key);
+        this.lane.channels.forEach((channel, i) => {
+            const series = this.plot.series[i + 1];
+            if (!series) return;
+            const first = key_of(channel) === key;
+            series.width = mine && first ? 3 : 1.5;
+            series.alpha = mine && !first ? 0.25 : 1;
+        });
+        this.plot.redraw(false);
+    }
     forget_range(): void {
         this.automatic_ = undefined;
     }
@@ -209,6 +221,7 @@ export class LaneChart {
             });
             // Below one another, all inside.
             tags.sort((a, b) => a.y - b.y);
+            if (tags.length * 14 * px > frame.height) return;  // a wall of numbers: pointing at a name tells which curve it is
             const deep = 14 * px, bottom = frame.top + frame.height - deep / 2;
             tags.forEach((tag, i) => (tag.y = Math.max(tag.y, frame.top + deep / 2, (tags[i - 1]?.y ?? -Infinity) + deep)));
             for (let i = tags.length - 1; i >= 0; i--) (tags[i] as { y: number }).y = Math.min((tags[i] as { y: number }).y, i === tags.length - 1 ? bottom : (tags[i + 1] as { y: number }).y - deep);

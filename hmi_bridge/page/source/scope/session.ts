@@ -61,6 +61,7 @@ export class Session {
     trigger: TriggerState | undefined;
     private trigger_text_ = '';
     private shown_event_ = -1;
+    private wanted_axis_ = '';
     private machine_ = '';
     private busy_ = false;
     private pulled_at_ = -1e9;
@@ -89,11 +90,20 @@ export class Session {
                 this.asked_at_ = now;
                 await this.begin();
             }
-            if (this.scene && now - this.pulled_at_ >= pull_every) {
+            if (this.wanted_axis_ && this.live) {
+                const axis = this.wanted_axis_;
+                this.wanted_axis_ = '';
+                this.show_live();
+                if (first_choice([...this.live.signals.values()], axis).every((n) => this.live?.signals.get(n)?.of === axis)) {
+                    this.setup.channels = [];
+                    this.choose_first(this.live, axis);
+                }
+            }
+            if (now - this.pulled_at_ >= pull_every) {
                 this.pulled_at_ = now;
-                const names = this.names.filter((name) => this.scene?.signals.has(name));
-                await this.scene.fetch(names);
-                if (this.scene.kind === 'live') this.scene.view.tie(this.scene.store.newest);
+                // The machine goes on being read while a file is looked at: coming back, nothing is missing.
+                for (const scene of new Set([this.live, this.scene])) if (scene) await scene.fetch(this.names.filter((name) => scene.signals.has(name)));
+                this.live?.view.tie(this.live.store.newest);
             }
             if (this.trigger && now - this.trigger_at_ >= look_for_trigger_every) {
                 this.trigger_at_ = now;
@@ -202,6 +212,10 @@ export class Session {
         }
     }
 
+    /** How one axis follows; as soon as its machine is there. */
+    show_axis(name: string): void {
+        this.wanted_axis_ = name;
+    }
     private choose_first(scene: Scene, axis = ''): void {
         for (const name of first_choice([...scene.signals.values()], axis)) {
             const channel = this.add(name);
@@ -267,6 +281,10 @@ export class Session {
         const answer = await this.link_.request({ cmd: 'scope_state' });
         if (!answer.ok || !this.trigger) return;
         this.trigger = answer['scope'] as TriggerState;
+        if (!this.trigger.armed && this.trigger.events.length === 0) {  // it ended with a connection that is no more
+            this.trigger = undefined;
+            return;
+        }
         const event = next_event(this.trigger, this.shown_event_), scene = this.live;
         if (!event || !scene || this.scene !== scene || scene.store.newest < event.to) return;  // its samples are on their way
         this.shown_event_ = event.cycle;

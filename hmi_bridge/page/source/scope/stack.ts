@@ -76,7 +76,8 @@ export class Stack {
             const chart = new LaneChart(lane, style, false, host, (s, step) => this.tick_text(s, step));
             const names = lane.channels.map((channel) => {
                 const key = key_of(channel), signal = scene?.signals.get(channel.name), number = this.session_.setup.channels.indexOf(channel) + 1;
-                return element('button', { type: 'button', class: 'scope-name', 'data-channel': key, title: `${key} ${signal?.unit ?? ''}`, onclick: () => this.chosen_(key) },
+                return element('button', { type: 'button', class: 'scope-name', 'data-channel': key, title: `${key} ${signal?.unit ?? ''}`, onclick: () => this.chosen_(key),
+                    onpointerenter: () => chart.point_at(key), onpointerleave: () => chart.point_at(undefined), onfocus: () => chart.point_at(key), onblur: () => chart.point_at(undefined) },
                     sample_of(channel), element('b', {}, String(number)), element('span', {}, key));
             });
             names.forEach((name, k) => {

@@ -81,7 +81,7 @@ export class ValueTable {
             };
             const figures = new Figures();
             scene.store.each(channel.name, range.from, range.to, (piece) => figures.add(piece, channel.offset, channel.bit));
-            const { min, max, mean, rms, peak_to_peak, deviation, missing } = figures.of(range.to - range.from);
+            const { min, max, mean, rms, peak_to_peak, deviation, missing } = figures.of(Math.max(0, Math.min(range.to, scene.store.newest) - Math.max(range.from, scene.store.tracks.get(channel.name)?.have.list[0]?.from ?? 0)));
             const a = at(cursors.a), b = at(cursors.b);
             const texts = [shown(signal, channel, at(newest)), shown(signal, channel, a), shown(signal, channel, b), figure_text(b - a), ...[min, max, mean, rms, peak_to_peak, deviation].map(figure_text)];
             line.cells.forEach((cell, k) => {
