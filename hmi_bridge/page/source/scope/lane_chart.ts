@@ -13,6 +13,9 @@ export const right_room = 24;
 export const band_height = 26;
 const time_height = 26;
 
+/** 1, 2, 5: nothing that a label of few digits would have to round. */
+const steps = Array.from({ length: 25 }, (_, i) => [1, 2, 5].map((n) => Number(`${n}e${i - 12}`))).flat();
+
 export interface Look {
     dark: boolean;
     text: string;
@@ -48,7 +51,7 @@ export class LaneChart {
 
     constructor(readonly lane: Lane, readonly look: Look, with_time: boolean, host: HTMLElement, time_text: (seconds: number, step: number) => string) {
         this.columns_ = lane.channels.map(() => new Columns());
-        const axis = { stroke: look.quiet, font: look.font, grid: { stroke: look.grid, width: 1 }, ticks: { stroke: look.grid, width: 1, size: 4 } };
+        const axis = { incrs: steps, stroke: look.quiet, font: look.font, grid: { stroke: look.grid, width: 1 }, ticks: { stroke: look.grid, width: 1, size: 4 } };
         this.plot = new uPlot({
             width: 200, height: 60, legend: { show: false }, cursor: { show: false }, padding: [with_time ? 0 : 4, right_room, with_time ? 0 : 4, 0], pxAlign: 1,
             scales: {
