@@ -64,7 +64,7 @@ export class Desk {
         const may = this.link.allowed(cmd);
         const allowed = possible && !this.link.stale && may;
         if (button.disabled === allowed) button.disabled = !allowed;
-        const reason = allowed ? '' : this.link.stale ? say('grey_stale') : !may ? say('grey_role', { role: word('role', this.link.role) }) : why;
+        const reason = allowed ? '' : this.link.stale ? say('grey_stale') : !may ? (this.link.role === 'admin' ? say('not_known') : say('grey_role', { role: word('role', this.link.role) })) : why;
         mark(button, 'data-denied', !may);
         mark(button, 'data-reason', reason || false);
     }

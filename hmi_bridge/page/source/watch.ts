@@ -35,7 +35,7 @@ export class Watch {
             const name = full(variable), doc = desk.link.layout?.variables.find((v) => full(v) === name)?.doc ?? '';
             const box = element('input', { type: 'checkbox', 'aria-label': name, onchange: () => this.keep(name, box.checked) });
             const boxed = element('td', { class: 'box' }, box), shown = element('td', { class: 'number', 'data-value': 'value' });
-            const root = element('tr', { 'data-variable': name }, boxed, element('th', { scope: 'row', title: doc }, name), shown, element('td', { class: 'unit' }, variable.unit), element('td', { class: 'doc' }, doc));
+            const root = element('tr', { 'data-variable': name }, boxed, element('th', { scope: 'row', title: doc }, name), shown, element('td', { class: 'unit' }, variable.unit), element('td', { class: 'doc', lang: 'en' }, doc));
             return { root, shown, box, boxed };
         }, (row, variable) => {
             write(row.shown, plain(variable.value));

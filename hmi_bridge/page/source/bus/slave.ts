@@ -9,7 +9,7 @@ export class SlaveDetails {
     private readonly title_ = element('h2');
     private readonly values_ = new Values();
     private readonly body_ = element('tbody');
-    private readonly said_ = element('p', { class: 'hint' });
+    private readonly said_ = element('p', { class: 'hint', lang: 'en' });
     private readonly ports_ = new Rows(this.body_, (port: Port & { number: number }) => String(port.number), (port) => {
         const cells = [0, 1, 2, 3, 4].map((i) => element('td', { class: i === 0 ? '' : 'number' }));
         return { root: element('tr', {}, element('th', { scope: 'row' }, String(port.number)), ...cells), cells };

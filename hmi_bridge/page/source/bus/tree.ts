@@ -74,8 +74,8 @@ export class BusTree {
     constructor(private readonly chosen_: (slave: BusSlave) => void, private readonly is_chosen_: (slave: BusSlave) => boolean) {
         this.rows_ = new Rows(this.root, (slave: BusSlave) => `${slave.position ?? 'away'}/${slave.name}`, (slave) => {
             const cable = drawing('svg', { class: 'cable', 'aria-hidden': 'true' });
-            const where = element('span', { class: 'number place' }), name = element('strong', {}), device = element('span', { class: 'doc' });
-            const state = element('span', { class: 'slave-state' }), ports = element('span', { class: 'ports' }), trouble = element('span', { class: 'slave-trouble' });
+            const where = element('span', { class: 'number place' }), name = element('strong', {}), device = element('span', { class: 'doc', lang: 'en' });
+            const state = element('span', { class: 'slave-state' }), ports = element('span', { class: 'ports' }), trouble = element('span', { class: 'slave-trouble', lang: 'en' });
             const box = element('button', { type: 'button', class: 'slave', 'data-slave': slave.name, onclick: () => {
                 const now = this.shown_.find((other) => other.position === slave.position && other.name === slave.name);
                 if (now) this.chosen_(now);

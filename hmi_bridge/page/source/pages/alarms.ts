@@ -32,9 +32,9 @@ function standing_alarms(desk: Desk): Page {
         const root = element('article', { class: 'alarm', 'data-alarm': alarm.name },
             element('header', {}, status, element('strong', {}, alarm.source), since),
             element('p', { class: 'alarm-text' }, in_words(alarm)),
-            element('dl', { class: 'values' }, element('dt', {}, say('cause')), element('dd', {}, alarm.cause), element('dt', {}, say('remedy')),
-                element('dd', {}, alarm.remedy), element('dt', {}, say('how_to_reset')), element('dd', {}, alarm.reset),
-                element('dt', {}, say('reaction')), element('dd', {}, `${word('reaction', alarm.reaction)} · ${alarm.name}`),
+            element('dl', { class: 'values' }, element('dt', {}, say('cause')), element('dd', { lang: 'en' }, alarm.cause), element('dt', {}, say('remedy')),
+                element('dd', { lang: 'en' }, alarm.remedy), element('dt', {}, say('how_to_reset')), element('dd', { lang: 'en' }, alarm.reset),
+                element('dt', {}, say('reaction')), element('dd', {}, word('reaction', alarm.reaction), ' · ', element('span', { lang: 'en' }, alarm.name)),
                 ...(alarm.manual ? [element('dt', {}, say('manual')), element('dd', {}, alarm.manual)] : [])), recorded);
         return { root, status, since, recorded };
     }, (row, alarm) => {
@@ -47,7 +47,7 @@ function standing_alarms(desk: Desk): Page {
     const calm = element('p', { class: 'hint' }, say('no_refusals'));
     const events = element('div', { class: 'event-list' });
     const event_rows = new Rows(events, (event: CommandEvent) => String(event.number), () => {
-        const when = element('span', { class: 'alarm-since' }), what = element('span'), remedy = element('small');
+        const when = element('span', { class: 'alarm-since' }), what = element('span', { lang: 'en' }), remedy = element('small', { lang: 'en' });
         return { root: element('div', { class: 'event' }, when, what, remedy), when, what, remedy };
     }, (row, event) => {
         write(row.when, say('ago', { age: duration(Math.max(0, ((desk.link.state?.time_ns ?? 0) - event.time_ns) / 1e9)) }) + (event.times > 1 ? ` ×${event.times}` : ''));

@@ -19,8 +19,9 @@ export function axis_page(desk: Desk, [wanted = '', part = '']: readonly string[
 
     const head = new AxisHead(desk, layout), values = new AxisValues(desk, name, layout.unit), hand = hands(desk, name);
     const why_title = element('h2'), why_text = element('ul', { class: 'why', 'data-value': 'why' });
+    const refusal = element('span'), refused = element('span', { lang: 'en', 'data-value': 'last_refusal' });
     const root = element('div', { class: 'page axis' }, axis_tabs(desk, name, 'hand'), head.root,
-        element('div', { class: 'columns' }, hand.root, element('div', { class: 'stack' }, element('section', { class: 'panel' }, why_title, why_text), values.root)));
+        element('div', { class: 'columns' }, hand.root, element('div', { class: 'stack' }, element('section', { class: 'panel' }, why_title, why_text, element('p', { class: 'refusal' }, refusal, refused)), values.root)));
     return {
         root,
         update(machine: MachineState) {
@@ -32,7 +33,9 @@ export function axis_page(desk: Desk, [wanted = '', part = '']: readonly string[
             const reason = why(axis, machine);
             write(why_title, reason.title);
             const last = machine.events.filter((event) => event.axis === name).at(-1);
-            const sentences = last ? [...reason.sentences, say('why_last_refusal', { what: last.english })] : reason.sentences;
+            write(refusal, last ? say('why_last_refusal') : '');
+            write(refused, last?.english ?? '');
+            const sentences = reason.sentences;
             if (why_text.dataset['shown'] !== sentences.join('\n')) {
                 why_text.dataset['shown'] = sentences.join('\n');
                 why_text.replaceChildren(...sentences.map((sentence) => element('li', {}, sentence)));

@@ -46,9 +46,9 @@ export function bus(desk: Desk): Page {
     const details = new SlaveDetails();
     const said_list = element('div', { class: 'said' }), calm = element('p', { class: 'calm' }, `✓ ${say('bus_calm')}`), old = element('p', { class: 'hint' });
     const said = new Rows(said_list, (item: Said) => item.text, (item) => {
-        const text = element('strong', {}, `${item.tone === 'idle' ? 'ⓘ' : '⚠'} ${item.text}`);
+        const text = element('strong', item.tone === 'bad' ? {} : { lang: 'en' }, `${item.tone === 'idle' ? 'ⓘ' : '⚠'} ${item.text}`);
         mark(text, 'data-tone', item.tone);
-        return { root: element('div', { class: 'event-line' }, text, element('small', {}, item.remedy)) };
+        return { root: element('div', { class: 'event-line' }, text, element('small', { lang: 'en' }, item.remedy)) };
     }, () => undefined);
     const inquiry = new Inquiry(desk, () => ({ cmd: 'bus' }), refresh_ms, (answer) => {
         if (answer.ok) known = answer['bus'] as BusAnswer;

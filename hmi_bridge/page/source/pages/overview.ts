@@ -1,9 +1,13 @@
 // All axes at a glance, a row each; programs; whether the cycle keeps time.
 import { Desk, Page, panel, table, Values, write_lamp, write_state } from '../desk';
 import { fixed, microseconds } from '../numbers';
-import { AxisLayout, AxisState, MachineState, value } from '../state';
+import { Alarm, AxisLayout, AxisState, MachineState, value } from '../state';
 import { say, word } from '../texts';
-import { element, Rows, write } from '../view';
+import { element, mark, Rows, write } from '../view';
+import { in_words, key_of, stops } from './alarms';
+
+/** More than these are left to their own page. */
+const most_standing = 3;
 
 export function overview(desk: Desk): Page {
     const cells = ['state', 'position', 'travel', 'velocity', 'power', 'homed', 'owner'] as const;
@@ -32,10 +36,10 @@ export function overview(desk: Desk): Page {
     const no_power = desk.button('power_off_all', () => ({ cmd: 'disable', axis: 'all' }));
     const reset = desk.button('reset_all', () => ({ cmd: 'reset' }));
     const programs = program_rows(desk);
-    const health = new Values();
-    const root = element('div', { class: 'page overview' },
+    const health = new Values(), share = share_of_cycle(), standing = standing_list();
+    const root = element('div', { class: 'page overview' }, standing.root,
         panel('axes', table(['name', ...cells], body, ['position', 'velocity']), element('div', { class: 'buttons' }, power, no_power, reset)),
-        element('div', { class: 'columns' }, panel('programs', programs.root), panel('cycle_health', health.root)));
+        element('div', { class: 'columns' }, panel('programs', programs.root), panel('cycle_health', share.root, health.root)));
     return {
         root,
         update(state: MachineState) {
@@ -45,6 +49,8 @@ export function overview(desk: Desk): Page {
             desk.permit(no_power, 'disable');
             desk.permit(reset, 'reset');
             write_cycle(health, state, desk);
+            share.update(state, desk.link.layout?.cycle_ns ?? 0);
+            standing.update(state);
         },
     };
 }
@@ -59,12 +65,46 @@ export function write_cycle(to: Values, state: MachineState, desk: Desk): void {
     const s = state.statistics;
     const of = (name: string) => s[name] ?? 0;
     to.set('cycle_time', `${microseconds(desk.link.layout?.cycle_ns ?? 0)} µs`);
-    to.set('compute', `${microseconds(of('compute_ns'))} / ${microseconds(of('compute_max_ns'))} µs`);
-    to.set('lateness', `${microseconds(of('lateness_ns'))} / ${microseconds(of('lateness_max_ns'))} µs`);
+    to.set('compute_worst', `${microseconds(of('compute_ns'))} / ${microseconds(of('compute_max_ns'))} µs`);
+    to.set('lateness_worst', `${microseconds(of('lateness_ns'))} / ${microseconds(of('lateness_max_ns'))} µs`);
     to.set('overruns', String(of('overruns')));
     to.set('missed_ticks', String(of('missed_ticks')));
     to.set('bus_state', word('bus', String(state.bus['phase'] ?? '')));
     to.set('frames_lost', String(state.bus['frames_lost'] ?? 0));
+}
+
+/** How much of the cycle the last one took, and the worst one. */
+function share_of_cycle() {
+    const now = element('i', { class: 'share-now' }), worst = element('i', { class: 'share-worst' });
+    const root = element('div', { class: 'share', role: 'img' }, worst, now);
+    return {
+        root,
+        update(state: MachineState, cycle_ns: number) {
+            const part = (ns: number | undefined): number => Math.min(100, ((ns ?? 0) / Math.max(1, cycle_ns)) * 100);
+            const [is, was] = [part(state.statistics['compute_ns']), part(state.statistics['compute_max_ns'])];
+            now.style.width = `${is.toFixed(1)}%`;
+            worst.style.left = `${was.toFixed(1)}%`;
+            mark(root, 'aria-label', say('share_of_cycle', { now: is.toFixed(1), worst: was.toFixed(1) }));
+            mark(root, 'title', say('share_of_cycle', { now: is.toFixed(1), worst: was.toFixed(1) }));
+        },
+    };
+}
+
+/** What stands, in a line each, with what to do about it. */
+function standing_list() {
+    const list = element('div', { class: 'standing' });
+    const rows = new Rows(list, key_of, (alarm: Alarm) => {
+        const tone = stops(alarm) ? 'bad' : 'warn';
+        return { root: element('a', { class: 'standing-alarm', href: '#alarms', 'data-tone': tone }, element('strong', {}, `⚠ ${alarm.source}: ${in_words(alarm)}`), element('span', { lang: 'en' }, alarm.remedy)) };
+    }, () => undefined);
+    return {
+        root: list,
+        update(state: MachineState) {
+            const standing = state.alarms.filter((alarm) => alarm.standing).sort((a, b) => Number(stops(b)) - Number(stops(a)));
+            rows.update(standing.slice(0, most_standing));
+            list.hidden = standing.length === 0;
+        },
+    };
 }
 
 /** Programs with their buttons; on the overview and on their own page. */

@@ -25,7 +25,7 @@ function parameter_rows(desk: Desk) {
             },
         }, given, set);
         const range = info ? `${plain(info.minimum)} … ${plain(info.maximum)}` : '';
-        const root = element('tr', { 'data-parameter': full(parameter) }, element('th', { scope: 'row' }, parameter.name, element('small', { class: 'doc' }, info?.doc ?? '')), shown,
+        const root = element('tr', { 'data-parameter': full(parameter) }, element('th', { scope: 'row' }, parameter.name, element('small', { class: 'doc', lang: 'en' }, info?.doc ?? '')), shown,
             element('td', { class: 'unit' }, parameter.unit), element('td', { class: 'range' }, range), element('td', {}, form));
         return { root, shown, set, given };
     }, (row, parameter) => {

@@ -25,7 +25,7 @@ function recordings(desk: Desk) {
     const body = element('tbody'), none = element('p', { class: 'hint' });
     const rows = new Rows(body, (recorded: Recorded) => recorded.name, (recorded) => {
         const size = element('td', { class: 'number' });
-        return { root: element('tr', { 'data-recorded': recorded.name }, element('td', { class: 'number' }, local_time(recorded.utime)), element('td', {}, recorded.source), element('td', {}, recorded.alarm), size,
+        return { root: element('tr', { 'data-recorded': recorded.name }, element('td', { class: 'number' }, local_time(recorded.utime)), element('td', {}, recorded.source), element('td', { lang: 'en' }, recorded.alarm), size,
             element('td', {}, element('a', { class: 'row-link', href: `#scope/recording/${encodeURIComponent(recorded.name)}` }, say('open_recording')))), size };
     }, (row, recorded) => write(row.size, recorded.complete ? `${(recorded.bytes / 1024).toFixed(0)} kB` : say('being_recorded')));
     const inquiry = new Inquiry(desk, () => ({ cmd: 'recordings' }), recordings_ms, (answer) => {
@@ -75,9 +75,9 @@ function commands(desk: Desk) {
     const body = element('tbody'), none = element('p', { class: 'hint' }, say('nothing_commanded'));
     const rows = new Rows(body, (given: Given) => String(given.at.getTime()) + JSON.stringify(given.request), ({ at, request, answer }) => {
         const { cmd, ...rest } = request;
-        const said = element('td', {}, answer.ok ? `✓ ${say('done')}` : `⚠ ${answer.error?.what || say('no_answer')}`);
+        const said = element('td', answer.ok ? {} : { lang: 'en' }, answer.ok ? `✓ ${say('done')}` : `⚠ ${answer.error?.what || say('no_answer')}`);
         mark(said, 'data-tone', answer.ok ? 'good' : 'bad');
-        return { root: element('tr', {}, element('td', { class: 'number' }, at.toLocaleTimeString('en-GB')), element('td', {}, `${cmd} ${Object.values(rest).join(' ')}`), said) };
+        return { root: element('tr', {}, element('td', { class: 'number' }, at.toLocaleTimeString('en-GB')), element('td', { lang: 'en' }, `${cmd} ${Object.values(rest).join(' ')}`), said) };
     }, () => undefined);
     return {
         root: panel('commanded_here', none, element('div', { class: 'scroll' }, element('table', { 'data-list': 'given' }, body))),

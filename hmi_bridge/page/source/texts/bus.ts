@@ -44,7 +44,7 @@ export const bus = {
     frames_received: ['received', '已接收'],
     frames_late: ['late', '迟到'],
     frames_rejected: ['rejected', '被拒'],
-    working_counter_errors: ['working counter errors', '工作计数器错误'],
+    working_counter_errors: ['working counter', '工作计数器错误'],
     send_errors: ['send errors', '发送错误'],
     round_trip: ['round trip', '往返时间'],
     clocks: ['Distributed clocks', '分布式时钟'],

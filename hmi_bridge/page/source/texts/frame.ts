@@ -49,7 +49,7 @@ export const frame = {
     mode_manual: ['Manual', '手动'],
     mode_setup: ['Set-up', '调试'],
     mode_automatic: ['Automatic', '自动'],
-    phase: ['Machine', '机器'],
+    phase: ['State', '状态'],
     phase_starting: ['starting', '启动中'],
     phase_running: ['running', '运行'],
     phase_stopping: ['stopping', '停止中'],
