@@ -154,8 +154,8 @@ test('figures, against a calculation by hand', () => {
 });
 
 test('cursors: difference, rate, what the figures are about, times with as many digits as a cycle has', () => {
-    assert.equal(rate_between(100, 350, 1e6), 4);
-    assert.equal(rate_between(5, 5, 1e6), Infinity);
+    assert.equal(rate_between(1, 1.25), 4);
+    assert.equal(rate_between(5, 5), Infinity);
     assert.deepEqual(measured({ shown: true, a: 20, b: 10 }, 0, 100), { from: 10, to: 21 });
     assert.deepEqual(measured({ shown: false, a: 20, b: 10 }, 0.5, 100.5), { from: 1, to: 100 });
     assert.equal(time_text(12.3456, 1e6), '12.346 s');
@@ -238,7 +238,7 @@ test('more than 64 signals are asked for in several questions, all up to the sam
     }
     for (const request of machine.asked) {
         const cycles = Number(request['to']) - Number(request['from']), signals = (request['signals'] as string[]).length;
-        assert.ok(signals <= 64 && cycles * signals <= 200_000);
+        assert.ok(signals <= 64 && cycles * signals <= 24_000);
     }
 });
 

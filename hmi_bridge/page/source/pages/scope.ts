@@ -143,8 +143,7 @@ export function scope(desk: Desk, rest: readonly string[]): Page {
         trigger.status.hidden = session.trigger === undefined;
         if (side === 'signals') picker.update();
         if (side === 'files') files.update(now);
-        const { a, b } = session.cursors;
-        if (session.setup.view === 'time') table.update(now, (cycle) => stack.time_of(cycle), scene ? hertz(rate_between(a, b, scene.cycle_ns)) : '');
+        if (session.setup.view === 'time') table.update(now, (cycle) => stack.time_of(cycle), (a, b) => hertz(rate_between(a, b)));
     }
     async function beat(): Promise<void> {
         if (left) return;

@@ -12,8 +12,8 @@ export function place_cursors(cursors: Cursors, from: number, to: number): void 
     cursors.b = Math.round(from + ((to - from) * 2) / 3);
     cursors.shown = true;
 }
-/** Hz; infinite where both stand on one cycle. */
-export const rate_between = (a: number, b: number, cycle_ns: number): number => 1e9 / (Math.abs(b - a) * cycle_ns);
+/** Hz, of two times in s; infinite where they are one. */
+export const rate_between = (a: number, b: number): number => 1 / Math.abs(b - a);
 
 /** The range that figures are about: between the cursors, both included, or what is seen. */
 export function measured(cursors: Cursors, from: number, to: number): { from: number; to: number } {

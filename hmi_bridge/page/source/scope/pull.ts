@@ -6,9 +6,9 @@ import { Store } from './store';
 
 export type Ask = (request: Request) => Promise<Answer>;
 
-/** The protocol's bounds: signals and numbers of one answer. */
+/** The protocol's bound, and what comes in one answer: a quarter of a megabyte, so that what comes between the answers is not late. */
 const most_signals = 64;
-const most_numbers = 200_000;
+const most_numbers = 24_000;
 
 export interface Extent {
     first: number;
@@ -102,7 +102,7 @@ export class Live {
         this.lost_.cut(Infinity);
     }
 
-    /** True where something came. The source's extent has to be known. */
+    /** True where there is more to be had at once. The source's extent has to be known. */
     async step(): Promise<boolean> {
         const extent = this.reader_.extent;
         if (this.names.length === 0 || !extent || extent.last < extent.first) return false;
@@ -110,7 +110,7 @@ export class Live {
         const got = await this.reader_.read(this.names, from, from + Reader.longest(this.names.length));
         if (got) this.next_ = got.to;
         const filled = await this.fill();
-        return got !== undefined || filled;
+        return filled || (got !== undefined && got.to - from >= Reader.longest(this.names.length));
     }
 
     private async fill(): Promise<boolean> {

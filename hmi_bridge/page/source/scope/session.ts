@@ -28,8 +28,8 @@ export interface Scene {
     marker?: Marker;
     /** Machine time of a cycle: s. */
     seconds(cycle: number): number;
-    /** Brings samples of what is shown. */
-    fetch(names: readonly string[]): Promise<void>;
+    /** Brings samples of what is shown; true: there are more to be had at once. */
+    fetch(names: readonly string[]): Promise<boolean>;
 }
 
 export interface Recording {
@@ -51,6 +51,14 @@ const look_for_trigger_every = 200;
 const again_after = 1000;
 
 const described = (scope: Record<string, unknown>): Map<string, Signal> => new Map((scope['signals'] as Signal[]).map((signal) => [signal.name, signal]));
+
+/** A cycle that was late has its own time: it comes with the samples. */
+const time_signal = 'time_s';
+const with_time = (names: readonly string[], signals: Map<string, Signal>): string[] => (names.length > 0 && signals.has(time_signal) && !names.includes(time_signal) ? [...names, time_signal] : [...names]);
+function seconds_of(store: Store, reader: Reader, cycle_ns: number, cycle: number): number {
+    const known = store.at(time_signal, cycle);
+    return Number.isNaN(known) ? (cycle * cycle_ns + reader.zero_ns) / 1e9 : known;
+}
 
 export class Session {
     setup: Setup;
@@ -102,7 +110,7 @@ export class Session {
             if (now - this.pulled_at_ >= pull_every) {
                 this.pulled_at_ = now;
                 // The machine goes on being read while a file is looked at: coming back, nothing is missing.
-                for (const scene of new Set([this.live, this.scene])) if (scene) await scene.fetch(this.names.filter((name) => scene.signals.has(name)));
+                for (const scene of new Set([this.live, this.scene])) if (scene && (await scene.fetch(this.names.filter((name) => scene.signals.has(name))))) this.pulled_at_ = -1e9;
                 this.live?.view.tie(this.live.store.newest);
             }
             if (this.trigger && now - this.trigger_at_ >= look_for_trigger_every) {
@@ -140,12 +148,12 @@ export class Session {
         const live = new Live(reader);
         const scene: Scene = {
             kind: 'live', title: this.machine_, cycle_ns, signals: described(scope), store, view: new View(cycle_ns, this.setup.span_s),
-            seconds: (cycle) => (cycle * cycle_ns + reader.zero_ns) / 1e9,
+            seconds: (cycle) => seconds_of(store, reader, cycle_ns, cycle),
             fetch: async (names) => {
-                const capacity = capacity_for(names.length, cycle_ns);
-                store.keep(names, capacity);
-                live.names = names;
-                await live.step();
+                const all = with_time(names, scene.signals), capacity = capacity_for(all.length, cycle_ns);
+                store.keep(all, capacity);
+                live.names = all;
+                return live.step();
             },
         };
         reader.on_restart = () => {  // another run of the machine: other cycles, perhaps other signals
@@ -174,7 +182,7 @@ export class Session {
         view.follow = false;
         view.show(0, file.to);
         this.enter({ kind: 'file', title: name, cycle_ns: file.cycle_ns, signals: new Map(file.signals.map((s) => [s.name, s])), store: file.store, view,
-            seconds: (cycle) => file.start_s + (cycle * file.cycle_ns) / 1e9, fetch: () => Promise.resolve() });
+            seconds: (cycle) => file.start_s + (cycle * file.cycle_ns) / 1e9, fetch: () => Promise.resolve(false) });
     }
     async recordings(): Promise<Answer> {
         return this.link_.request({ cmd: 'recordings' });
@@ -194,10 +202,11 @@ export class Session {
         view.show(about.from, about.to);
         let failed_at = -1e9;
         this.enter({ kind: 'recording', title: name, cycle_ns, signals: described(scope), store, view, marker: { cycle: about.alarm_cycle, kind: 'alarm', text: about.alarm },
-            seconds: (cycle) => (cycle * cycle_ns + reader.zero_ns) / 1e9,
+            seconds: (cycle) => seconds_of(store, reader, cycle_ns, cycle),
             fetch: async (names) => {
-                if (performance.now() - failed_at < again_after) return;
-                if (!(await load(reader, names, about.from, about.to))) failed_at = performance.now();
+                if (performance.now() - failed_at < again_after) return false;
+                if (!(await load(reader, with_time(names, this.scene?.signals ?? new Map()), about.from, about.to))) failed_at = performance.now();
+                return false;
             } }, about.source);
         return undefined;
     }

@@ -133,7 +133,8 @@ export class Stack {
         if (force || drawn !== this.drawn_) {
             this.drawn_ = drawn;
             this.size();
-            const origin = scene.marker ? scene.marker.cycle : -scene.seconds(0) / (scene.cycle_ns / 1e9);
+            const edge = Math.min(Math.floor(view.to), scene.store.newest - 1);  // where the eye is
+            const origin = scene.marker ? scene.marker.cycle : edge - scene.seconds(edge) / (scene.cycle_ns / 1e9);
             const shot = { store: scene.store, from: view.from, to: view.to, cycle_s: scene.cycle_ns / 1e9, origin, signal: known, newest: scene.store.newest,
                 number: (key: string) => setup.channels.findIndex((c) => key_of(c) === key) + 1 };
             for (const row of this.rows_) {
@@ -170,8 +171,7 @@ export class Stack {
     time_of(cycle: number): string {
         const scene = this.session_.scene;
         if (!scene) return '';
-        const cycle_s = scene.cycle_ns / 1e9;
-        return scene.marker ? time_text((cycle - scene.marker.cycle) * cycle_s, scene.cycle_ns) : time_text(scene.seconds(cycle), scene.cycle_ns);
+        return time_text(scene.seconds(cycle) - (scene.marker ? scene.seconds(scene.marker.cycle) : 0), scene.cycle_ns);
     }
     private tick_text(seconds: number, step: number): string {
         const decimals = Math.max(0, Math.min(9, Math.ceil(-Math.log10(step) - 1e-9)));

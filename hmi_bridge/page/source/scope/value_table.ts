@@ -56,7 +56,7 @@ export class ValueTable {
         this.root = element('section', { class: 'scope-values' }, fold, this.between_, scroll);
     }
 
-    update(now: number, time_of: (cycle: number) => string, rate: string): void {
+    update(now: number, time_of: (cycle: number) => string, rate: (a: number, b: number) => string): void {
         const { scene, cursors, setup } = this.session_;
         this.rows_.update(setup.channels);
         this.head_.forEach((head, i) => (head.hidden = i >= 3 && i <= 6 && cursors.shown === (i === 3)));
@@ -69,7 +69,7 @@ export class ValueTable {
         this.last_ = state;
         this.computed_at_ = now;
         write(this.between_, cursors.shown
-            ? `A ${time_of(cursors.a)}   B ${time_of(cursors.b)}   Δt ${((cursors.b - cursors.a) * scene.cycle_ns / 1e6).toString().replace('-', '−')} ms   1/Δt ${rate}   ${say('scope_between')}`
+            ? `A ${time_of(cursors.a)}   B ${time_of(cursors.b)}   Δt ${value_text(Number(((scene.seconds(cursors.b) - scene.seconds(cursors.a)) * 1e3).toFixed(6)))} ms   1/Δt ${rate(scene.seconds(cursors.a), scene.seconds(cursors.b))}   ${say('scope_between')}`
             : say('scope_over_view', { from: time_of(range.from), to: time_of(range.to) }));
         for (const [i, channel] of setup.channels.entries()) {
             const line = this.rows_.row(`${key_of(channel)} ${channel.colour} ${scene.title}`);
