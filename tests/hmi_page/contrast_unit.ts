@@ -3,6 +3,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import test from 'node:test';
+import { colour_of, dash_of, most_colours } from '@page/scope/colours';
 
 const css = readFileSync(join(process.env['TAKTWERK_SOURCE'] ?? '', 'hmi_bridge/page/source/page.css'), 'utf8');
 function palette(selector: string): Record<string, string> {
@@ -47,3 +48,9 @@ for (const [theme, colours] of [['light', light], ['dark', dark]] as const) {
         for (const drawn of ['accent', 'bad', 'quiet', 'good']) assert.ok(contrast(at(drawn), at('panel')) >= 3, `${drawn}: ${contrast(at(drawn), at('panel')).toFixed(2)}`);
     });
 }
+
+test('curves of the scope stand out from their ground, and the ninth has another dash', () => {
+    for (const on_dark of [false, true])
+        for (let place = 0; place < most_colours; place++) assert.ok(contrast(colour_of(place, on_dark), (on_dark ? dark : light)['panel'] ?? '') >= 4.5, `${colour_of(place, on_dark)}`);
+    assert.equal(new Set(Array.from({ length: 4 * most_colours }, (_, i) => `${colour_of(i, false)} ${dash_of(i).join()}`)).size, 4 * most_colours);
+});

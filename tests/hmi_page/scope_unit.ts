@@ -136,6 +136,8 @@ test('an automatic scale grows at once and does not tremble', () => {
     assert.ok(next_range(first, 0, 200).max > 200);
     assert.ok(next_range(first, 40, 60).max < 70);
     assert.ok(next_range(undefined, 5, 5).max > 5);
+    const trembling = next_range(undefined, 1000, 1000 + 1e-9);
+    assert.ok(trembling.max - trembling.min > 0.009 && trembling.max - trembling.min < 0.011);
 });
 
 test('figures, against a calculation by hand', () => {

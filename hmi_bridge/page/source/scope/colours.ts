@@ -5,6 +5,7 @@ const light = ['#0067ad', '#b84300', '#00735a', '#96307a', '#6f5a00', '#1c2833',
 const dark = ['#62b8f0', '#ff9d57', '#43d3a8', '#f0a5d5', '#f0e25a', '#f3f6f8', '#b0a5ff', '#ff8a92'];
 const dashes: readonly number[][] = [[], [8, 4], [2, 3], [10, 3, 2, 3]];
 
+export const most_colours = light.length;
 export const is_dark = (): boolean => document.documentElement.dataset['theme'] === 'dark';
 export const colour_of = (place: number, on_dark: boolean): string => (on_dark ? dark : light)[place % light.length] ?? '';
 export const dash_of = (place: number): readonly number[] => dashes[Math.floor(place / light.length) % dashes.length] ?? [];

@@ -3,12 +3,13 @@ import uPlot from 'uplot';
 import { colour_of, dash_of } from './colours';
 import { draw_curve, extremes, Frame } from './curve';
 import { Lane, next_range, Range } from './lanes';
-import { key_of, Signal, state_name } from './signals';
+import { key_of, Signal } from './signals';
 import { Spans } from './spans';
+import { state_text } from './state_words';
 import { Store } from './store';
 import { Columns, runs, thin } from './thin';
 
-export const scale_width = 66;
+export const scale_width = 74;
 export const right_room = 24;
 export const band_height = 26;
 const time_height = 26;
@@ -255,7 +256,7 @@ export class LaneChart {
                 for (const run of runs(shot.store.tracks.get(channel.name), shot.store.capacity, shot.from, Math.min(shot.to + 1, shot.newest), least, channel.bit)) {
                     if (Number.isNaN(run.value)) continue;
                     const a = x(run.from), b = Math.max(x(run.to), a + px);
-                    if (state || run.many) this.band(ctx, a, top, b - a, deep, colour, run.many ? '' : state_name(signal, run.value), run.many, frame.left);
+                    if (state || run.many) this.band(ctx, a, top, b - a, deep, colour, run.many ? '' : state_text(signal, run.value), run.many, frame.left);
                     else {
                         const y = run.value !== 0 ? top + px : top + deep;
                         if (run.value !== 0) {

@@ -30,10 +30,14 @@ export interface Range {
     max: number;
 }
 
+/** Of the value itself: what lies nearer together is the last digit trembling, and no scale has labels for it. */
+const least_part = 1e-5;
+
 /** Room around what is shown; a flat curve gets a little of its own size. */
 export function range_around(low: number, high: number): Range {
     if (!(low <= high) || !Number.isFinite(low) || !Number.isFinite(high)) return { min: -1, max: 1 };
-    const room = high > low ? (high - low) * 0.06 : Math.max(Math.abs(high) * 0.05, 1e-3);
+    const size = Math.max(Math.abs(high), Math.abs(low));
+    const room = high > low ? Math.max((high - low) * 0.06, (size * least_part - (high - low)) / 2) : Math.max(size * 0.05, 1e-3);
     return { min: low - room, max: high + room };
 }
 

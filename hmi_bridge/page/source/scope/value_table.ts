@@ -3,8 +3,9 @@ import { current_language, say } from '../texts';
 import { element, mark, Rows, write } from '../view';
 import { figure_text, measured, value_text } from './cursors';
 import { Session } from './session';
-import { bit_of, Channel, key_of, meaning, Signal, state_name } from './signals';
+import { bit_of, Channel, key_of, meaning, Signal } from './signals';
 import { sample_of } from './stack';
+import { state_text } from './state_words';
 import { Figures } from './statistics';
 
 const figure_keys = ['scope_min', 'scope_max', 'scope_mean', 'scope_rms', 'scope_pp', 'scope_deviation'] as const;
@@ -96,7 +97,7 @@ export class ValueTable {
 }
 
 function shown(signal: Signal | undefined, channel: Channel, value: number): string {
-    if (signal?.kind === 'state' && channel.bit === undefined) return Number.isNaN(value) ? '–' : state_name(signal, value);
+    if (signal?.kind === 'state' && channel.bit === undefined) return Number.isNaN(value) ? '–' : state_text(signal, value);
     if (signal?.kind === 'word' && channel.bit === undefined && Number.isInteger(value)) return `${value < 0 ? '−' : ''}${Math.abs(value).toString(16).toUpperCase().padStart(4, '0')}h`;
     return value_text(value);
 }
