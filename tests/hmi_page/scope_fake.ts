@@ -11,6 +11,8 @@ export class FakeScope {
     /** The newest cycle that is there. */
     last = 0;
     depth = 20_000;
+    /** Machine time of cycle 0. */
+    zero_ns = 0;
     readonly asked: Request[] = [];
     constructor(readonly signals: Signal[], readonly values: Record<string, Value>, readonly cycle_ns = 1_000_000) {}
 
@@ -31,6 +33,6 @@ export class FakeScope {
         const to = Math.max(from, Math.min(wanted_to, this.last + 1, from + Math.floor(200_000 / names.length)));
         const missing = Math.max(0, Math.min(from, wanted_to) - wanted_from);
         const data = names.map((name) => base64(Array.from({ length: to - from }, (_, i) => (this.values[name] as Value)(from + i))));
-        return { ok: true, from, to, per: 1, first: this.first, last: this.last, time_ns: from * this.cycle_ns, missing, data };
+        return { ok: true, from, to, per: 1, first: this.first, last: this.last, time_ns: this.zero_ns + from * this.cycle_ns, missing, data };
     }
 }

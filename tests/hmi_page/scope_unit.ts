@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { Doubles } from '@page/scope/base64';
-import { digits, CsvError, read_csv, write_csv } from '@page/scope/csv';
+import { csv_pieces, CsvError, digits, read_csv } from '@page/scope/csv';
 import { measured, rate_between, time_text, value_text } from '@page/scope/cursors';
 import { draw_curve } from '@page/scope/curve';
 import { lanes_of, next_range } from '@page/scope/lanes';
@@ -215,6 +215,13 @@ test('a machine that began anew is told, and nothing of it is mixed with the old
     await live.step();
     assert.equal(told, 1);
     assert.equal(store.newest, 1001);
+    // One that has run as long meanwhile is told by its time.
+    machine.last = 2000;
+    machine.zero_ns = 60e9;
+    reader.extent = { first: 0, last: 1000 };
+    await live.step();
+    assert.equal(told, 2);
+    assert.equal(store.newest, 1001);
 });
 
 test('what was overwritten while it was read came as NaN, and is a gap; a NaN that the machine has is none', async () => {
@@ -255,7 +262,7 @@ test('CSV: written and read again it is the same, gaps included', () => {
     store.put('x.p', 10, Float64Array.from([0.1, 1 / 3, NaN]));
     store.put('x.p', 15, Float64Array.from([4, 5e-9]));
     store.put('bit', 10, Float64Array.from([0, 1, 1]));
-    const text = write_csv(store, [{ name: 'x.p', unit: 'mm' }, { name: 'bit', unit: '' }], 10, 17, (cycle) => cycle / 1000);
+    const text = [...csv_pieces(store, [{ name: 'x.p', unit: 'mm' }, { name: 'bit', unit: '' }], 10, 17, (cycle) => cycle / 1000)].join('');
     assert.equal(text, 'time_s,x.p[mm],bit\n0.01,0.1,0\n0.011,0.3333333333333333,1\n0.012,nan,1\n0.015,4,nan\n0.016,5e-09,nan\n');
     const file = read_csv(text, () => undefined);
     assert.deepEqual([file.cycle_ns, file.to, file.start_s], [1e6, 7, 0.01]);

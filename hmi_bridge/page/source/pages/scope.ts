@@ -45,7 +45,7 @@ export function scope(desk: Desk, rest: readonly string[]): Page {
     const stack = new Stack(session, () => update(), choose);
     const others = { xy: new XyView(session, () => session.changed()), spectrum: new SpectrumView(session, () => session.changed()) };
     const table = new ValueTable(session, changed, choose);
-    const picker = new Picker(session, changed), trigger = new TriggerPanel(desk, session, changed), files = new FilesPanel(session, stack, changed);
+    const picker = new Picker(session, changed), trigger = new TriggerPanel(desk, session, changed), files = new FilesPanel(session, stack, () => (session.setup.view === 'time' ? undefined : others[session.setup.view].canvas()), changed);
 
     const run = button('scope_freeze', 'freeze', () => toggle_run());
     const span = element('select', { 'aria-label': say('scope_shown_time'), 'data-field': 'span', onchange: () => {

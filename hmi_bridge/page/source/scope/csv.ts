@@ -1,5 +1,6 @@
 // Files of numbers: the same columns and digits as `taktwerk run --trace` writes, and such a file read again.
 import { Signal } from './signals';
+import { Spans } from './spans';
 import { Store } from './store';
 
 /** As the trace writes it: the shortest digits that give the same double again. */
@@ -17,15 +18,23 @@ export interface CsvColumn {
     unit: string;
 }
 
-/** Every cycle of [from, to) that one of the columns has; a cell without a number is "nan", a cycle that no column has is no line. */
-export function write_csv(store: Store, columns: readonly CsvColumn[], from: number, to: number, seconds: (cycle: number) => number): string {
-    const lines = [['time_s', ...columns.map((c) => (c.unit ? `${c.name}[${c.unit}]` : c.name))].join()];
-    const samples = columns.map((c) => store.copy(c.name, from, to));
-    for (let cycle = from; cycle < to; cycle++) {
-        if (!columns.some((c) => store.has(c.name, cycle))) continue;
-        lines.push([digits(seconds(cycle)), ...samples.map((s) => digits(s[cycle - from] as number))].join());
+const block = 4096;  // cycles: ten minutes of many signals are never one text
+
+/** Every cycle of [from, to) that one of the columns has, in pieces; a cell without a number is "nan", a cycle that no column has is no line. */
+export function* csv_pieces(store: Store, columns: readonly CsvColumn[], from: number, to: number, seconds: (cycle: number) => number): Generator<string> {
+    yield ['time_s', ...columns.map((c) => (c.unit ? `${c.name}[${c.unit}]` : c.name))].join() + '\n';
+    for (let begin = from; begin < to; begin += block) {
+        const end = Math.min(to, begin + block), samples = columns.map((c) => store.copy(c.name, begin, end)), there = new Spans();
+        for (const { name } of columns) for (const span of store.tracks.get(name)?.have.list ?? []) there.add(Math.max(begin, span.from), Math.min(end, span.to));
+        let text = '';
+        for (const span of there.list)
+            for (let cycle = span.from; cycle < span.to; cycle++) {
+                text += digits(seconds(cycle));
+                for (const column of samples) text += ',' + digits(column[cycle - begin] as number);
+                text += '\n';
+            }
+        if (text !== '') yield text;
     }
-    return lines.join('\n') + '\n';
 }
 
 export interface CsvFile {

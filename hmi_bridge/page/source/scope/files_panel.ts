@@ -2,9 +2,9 @@
 import { Answer } from '../link';
 import { Key, say } from '../texts';
 import { element, Rows, write } from '../view';
-import { CsvError, read_csv, write_csv } from './csv';
+import { CsvError, csv_pieces, read_csv } from './csv';
 import { measured } from './cursors';
-import { picture } from './picture';
+import { on_ground, picture } from './picture';
 import { Recording, Session } from './session';
 import { from_text, to_text } from './setup';
 import { Stack } from './stack';
@@ -22,13 +22,13 @@ export function download(name: string, content: Blob): void {
 const stamp = (): string => new Date().toISOString().slice(0, 19).replace(/[:T]/g, '-');
 
 /** Every cycle between the cursors, or of what is shown. */
-export function csv_of(session: Session): string {
+function csv_of(session: Session): string[] {
     const { scene, cursors, setup } = session;
-    if (!scene) return '';
+    if (!scene) return [];
     const range = measured(cursors, scene.view.from, scene.view.to);
     const names = [...new Set(setup.channels.map((c) => c.name))].filter((name) => scene.signals.has(name) && name !== 'time_s');  // that column is there anyway
     const from = Math.max(range.from, Math.min(...names.map((name) => scene.store.tracks.get(name)?.have.list[0]?.from ?? Infinity)));
-    return write_csv(scene.store, names.map((name) => ({ name, unit: scene.signals.get(name)?.unit ?? '' })), from, Math.min(range.to, scene.store.newest), (cycle) => scene.seconds(cycle));
+    return [...csv_pieces(scene.store, names.map((name) => ({ name, unit: scene.signals.get(name)?.unit ?? '' })), from, Math.min(range.to, scene.store.newest), (cycle) => scene.seconds(cycle))];
 }
 
 export class FilesPanel {
@@ -42,7 +42,7 @@ export class FilesPanel {
     private readonly setup_file_ = element('input', { type: 'file', accept: '.json,application/json', hidden: true, 'data-file': 'setup', onchange: () => void this.import_setups() });
     private asked_at_ = -1e9;
 
-    constructor(private readonly session_: Session, private readonly stack_: Stack, private readonly changed_: () => void) {
+    constructor(private readonly session_: Session, private readonly stack_: Stack, private readonly other_: () => HTMLCanvasElement | undefined, private readonly changed_: () => void) {
         this.rows_ = new Rows<Recording, { root: HTMLElement; text: HTMLElement }>(this.recordings_, (r) => r.name, (recording) => {
             const text = element('small');
             return { root: element('a', { class: 'scope-recording', href: `#scope/recording/${encodeURIComponent(recording.name)}`, 'data-recording': recording.name }, element('b', {}, `${recording.source}: ${recording.alarm}`), text), text };
@@ -79,10 +79,11 @@ export class FilesPanel {
     }
 
     private save_csv(): void {
-        download(`taktwerk-${stamp()}.csv`, new Blob([csv_of(this.session_)], { type: 'text/csv' }));
+        download(`taktwerk-${stamp()}.csv`, new Blob(csv_of(this.session_), { type: 'text/csv' }));
     }
     private save_png(): void {
-        picture(this.session_, this.stack_).toBlob((blob) => blob && download(`taktwerk-${stamp()}.png`, blob), 'image/png');
+        const other = this.other_();
+        (other ? on_ground(other) : picture(this.session_, this.stack_)).toBlob((blob) => blob && download(`taktwerk-${stamp()}.png`, blob), 'image/png');
     }
     private async open(): Promise<void> {
         const file = this.file_.files?.[0];

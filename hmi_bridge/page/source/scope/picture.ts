@@ -63,3 +63,15 @@ export function picture(session: Session, stack: Stack): HTMLCanvasElement {
     }
     return canvas;
 }
+
+/** A canvas that has no ground of its own. */
+export function on_ground(from: HTMLCanvasElement): HTMLCanvasElement {
+    const canvas = document.createElement('canvas'), ctx = canvas.getContext('2d');
+    canvas.width = from.width;
+    canvas.height = from.height;
+    if (!ctx) return canvas;
+    ctx.fillStyle = look().ground;
+    ctx.fillRect(0, 0, canvas.width, canvas.height);
+    ctx.drawImage(from, 0, 0);
+    return canvas;
+}

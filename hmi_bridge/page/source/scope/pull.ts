@@ -9,6 +9,8 @@ export type Ask = (request: Request) => Promise<Answer>;
 /** The protocol's bound, and what comes in one answer: a quarter of a megabyte, so that what comes between the answers is not late. */
 const most_signals = 64;
 const most_numbers = 24_000;
+/** Lateness that no run survives. */
+const another_run_ns = 2e9;
 
 export interface Extent {
     first: number;
@@ -31,10 +33,10 @@ export class Reader {
     extent: Extent | undefined;
     /** Why the last answer was none. */
     refusal: Answer['error'] | undefined;
-    /** The source counts lower than before: it began anew. */
+    /** The machine began anew. */
     on_restart: () => void = () => undefined;
-    /** Machine time of cycle 0: ns. */
-    zero_ns = 0;
+    /** Machine time of cycle 0: ns. Cycles that were late make it a little more with time. */
+    zero_ns: number | undefined;
     private readonly doubles_ = new Doubles();
 
     constructor(private readonly ask_: Ask, private readonly recording_: string | undefined, readonly store: Store, private readonly cycle_ns_: number) {}
@@ -61,13 +63,16 @@ export class Reader {
             const before = this.extent;
             const first = Number(answer['first']), last = Number(answer['last']);
             if (Number.isFinite(first) && Number.isFinite(last)) this.extent = { first, last };
-            if (before && this.extent && this.extent.last < before.last - 1) {
+            const begin = Number(answer['from']), end = Number(answer['to']);
+            if (answer['per'] !== undefined && Number(answer['per']) !== 1) return got;  // asked for every sample
+            const zero_ns = end > begin ? Number(answer['time_ns'] ?? begin * this.cycle_ns_) - begin * this.cycle_ns_ : this.zero_ns;
+            // Cycles count from the start of a run: another run is told by fewer of them, or by another time of the same cycle.
+            const fewer = before && this.extent && this.extent.last < before.last - 1, other = this.zero_ns !== undefined && zero_ns !== undefined && Math.abs(zero_ns - this.zero_ns) > another_run_ns;
+            if (this.recording_ === undefined && (fewer || other)) {
                 this.on_restart();
                 return undefined;
             }
-            const begin = Number(answer['from']), end = Number(answer['to']);
-            if (answer['per'] !== undefined && Number(answer['per']) !== 1) return got;  // asked for every sample
-            if (end > begin) this.zero_ns = Number(answer['time_ns'] ?? begin * this.cycle_ns_) - begin * this.cycle_ns_;
+            this.zero_ns = zero_ns;
             // More missing than what lies outside: some were overwritten while they were read, and came as NaN.
             const lost = Number(answer['missing'] ?? 0) > range.to - range.from - (end - begin);
             const data = answer['data'] as string[];
