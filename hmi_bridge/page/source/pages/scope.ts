@@ -115,9 +115,9 @@ export function scope(desk: Desk, rest: readonly string[]): Page {
     }
     function draw(): void {
         const { view } = session.setup;
-        stack.root.hidden = table.root.hidden = view !== 'time';
-        others.xy.root.hidden = view !== 'xy';
-        others.spectrum.root.hidden = view !== 'spectrum';
+        stack.root.hidden = table.root.hidden = view !== 'time' || !session.scene;
+        others.xy.root.hidden = view !== 'xy' || !session.scene;
+        others.spectrum.root.hidden = view !== 'spectrum' || !session.scene;
         setup_views.forEach((one, i) => mark(views[i] as Element, 'aria-pressed', one === view ? 'true' : 'false'));
         if (view === 'time') stack.draw();
         else others[view].draw();
