@@ -8,6 +8,7 @@
 #include "axes/port/drive_profile.hpp"
 #include "runtime/machine/machine.hpp"
 #include "runtime/operator_command.hpp"
+#include "runtime/recording/signal_rows.hpp"
 #include "runtime/snapshot.hpp"
 
 namespace taktwerk::hmi {
@@ -29,6 +30,8 @@ public:
     /// Of an axis of the layout. Lives as long as the machine.
     [[nodiscard]] virtual Drive drive(std::uint16_t axis) = 0;
     // --- any thread (layout(), too) ---
+    /// Every signal of the newest cycles; nullptr: this machine keeps none. Lives as long as the machine.
+    [[nodiscard]] virtual const runtime::SignalRows* signals() const { return nullptr; }
     /// Levels, never queued, never refused: they work before the first cycle too (runtime/stop_levels.hpp). `axis`: all_axes, or of the layout.
     virtual runtime::StopLevels::Ticket request_stop(std::uint16_t axis) = 0;
     virtual runtime::StopLevels::Ticket release_jog(std::uint16_t axis) = 0;

@@ -22,6 +22,7 @@ public:
         auto* port = machine_.drive_port(axis);
         return {port, port ? machine_.config().axes[axis].profile.get() : nullptr};
     }
+    [[nodiscard]] const runtime::SignalRows* signals() const override { return &machine_.signals(); }
     runtime::StopLevels::Ticket request_stop(std::uint16_t axis) override { return machine_.request_stop(axis); }
     runtime::StopLevels::Ticket release_jog(std::uint16_t axis) override { return machine_.release_jog(axis); }
     runtime::StopLevels::Ticket request_shutdown() override { return machine_.request_shutdown(); }

@@ -192,6 +192,15 @@ struct EvidenceConfig {
     std::uint16_t megabytes = 16;  ///< of memory for the last frames, taken twice
 };
 
+/// The memory of the scope, and what is kept of it around each alarm that stops something (docs/recording.md).
+struct RecordingConfig {
+    Duration depth = std::chrono::seconds{20};   ///< of every signal, each cycle, in memory
+    std::string directory;                       ///< of the recordings around alarms; empty: none is kept
+    std::uint16_t files = 20;                    ///< so many are kept, the newest; 0: all
+    Duration before = std::chrono::seconds{10};  ///< what a recording shows before its alarm ...
+    Duration after = std::chrono::seconds{2};    ///< ... and behind it
+};
+
 struct MachineConfig {
     std::string name = "machine";
     Duration cycle = std::chrono::milliseconds{1};
@@ -213,6 +222,7 @@ struct MachineConfig {
     /// the process, so a run on a simulated bus wants none or one of its own.
     std::string retain;
     EvidenceConfig evidence;
+    RecordingConfig recording;
     std::uint8_t commands_per_cycle = 4;  ///< K operator commands drained per cycle
 };
 

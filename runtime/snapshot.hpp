@@ -41,7 +41,8 @@ struct CycleStatistics {
     std::uint64_t cycles = 0, overruns = 0, missed_ticks = 0;
     Duration lateness{}, lateness_max{};  ///< of the wake-up
     Duration compute{}, compute_max{};    ///< steps 1 to 10
-    std::uint64_t snapshots_dropped = 0, commands_refused = 0;
+    std::uint64_t snapshots_dropped = 0;  ///< rows that a trace came too late for
+    std::uint64_t commands_refused = 0;
 };
 
 struct TaskStatistics {

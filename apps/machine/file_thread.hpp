@@ -1,6 +1,6 @@
 #pragma once
 // A file that is written while the machine runs (trace, capture), on a thread of its own: a slow or full disk holds up this file and
-// nothing else. What does not fit meanwhile is dropped and counted where it is handed over (TraceRing, FrameCapture).
+// nothing else. What does not fit meanwhile is dropped and counted where it is handed over (SignalRing, FrameCapture).
 
 #include <functional>
 #include <memory>

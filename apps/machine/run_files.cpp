@@ -11,8 +11,6 @@ namespace taktwerk::apps {
 
 namespace {
 
-constexpr std::size_t trace_rows = 8192;
-
 /// The bus has one tap. Real-time safe.
 void tap(void* context, std::span<const std::byte> frame, Instant at, bool outgoing) noexcept {
     const auto& files = *static_cast<const RunFiles*>(context);
@@ -35,7 +33,7 @@ Result<void> RunFiles::open(runtime::Machine& machine, Duration epoch) {
     }
     if (capture || evidence) machine.bus().set_tap(&tap, this);
     if (!trace_csv.empty()) {
-        auto created = TraceCsv::create(trace_csv, machine.enable_trace(trace_rows), machine.layout());
+        auto created = TraceCsv::create(trace_csv, machine.signals(), machine.layout());
         if (!created) return created.error();
         trace = std::move(*created);
     }

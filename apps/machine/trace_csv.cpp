@@ -26,7 +26,12 @@ std::string unit_of(std::string_view column, const runtime::MachineLayout& layou
 
 }  // namespace
 
-Result<std::unique_ptr<TraceCsv>> TraceCsv::create(const std::string& path, runtime::TraceRing& ring,
+TraceCsv::TraceCsv(std::string path, std::FILE* file, runtime::SignalRing& ring) : path_(std::move(path)), file_(file), rows_(ring) {
+    for (const auto& signal : ring.signals())
+        if (signal.in_trace) columns_.push_back(signal.cell);
+}
+
+Result<std::unique_ptr<TraceCsv>> TraceCsv::create(const std::string& path, runtime::SignalRing& ring,
                                                    const runtime::MachineLayout& layout) {
     std::FILE* file = std::fopen(path.c_str(), "w");
     if (!file)
@@ -35,7 +40,8 @@ Result<std::unique_ptr<TraceCsv>> TraceCsv::create(const std::string& path, runt
     std::setvbuf(file, nullptr, _IOFBF, 1 << 20);
     auto trace = std::unique_ptr<TraceCsv>(new TraceCsv(path, file, ring));
     std::string header;
-    for (const auto& column : ring.columns()) header += (header.empty() ? "" : ",") + column + unit_of(column, layout);
+    for (const auto& signal : ring.signals())
+        if (signal.in_trace) header += (header.empty() ? "" : ",") + signal.name + unit_of(signal.name, layout);
     header += '\n';
     std::fwrite(header.data(), 1, header.size(), file);
     return trace;
@@ -47,12 +53,12 @@ TraceCsv::~TraceCsv() {
 
 Result<void> TraceCsv::drain() {
     const bool was_broken = broken_.has_value();
-    for (auto row = ring_.front(); !row.empty(); row = ring_.front()) {
+    for (auto row = rows_.next(); !row.empty(); row = rows_.next()) {
         line_.clear();
         auto out = std::back_inserter(line_);
-        for (std::size_t i = 0; i < row.size(); ++i) {
+        for (std::size_t i = 0; i < columns_.size(); ++i) {
             if (i > 0) line_ += ',';
-            const double value = i == 0 ? row[i] - start_s_ : row[i];
+            const double shown = columns_[i].value_of(row[columns_[i].word]), value = i == 0 ? shown - start_s_ : shown;
             // Whole numbers (states, switches, bits) are most of a trace: the short way is also the fast one.
             if (value > -1e15 && value < 1e15 && value == static_cast<double>(static_cast<long long>(value)))
                 out = fmt::format_to(out, "{}", static_cast<long long>(value));
@@ -60,7 +66,6 @@ Result<void> TraceCsv::drain() {
         }
         line_ += '\n';
         if (!broken_ && std::fwrite(line_.data(), 1, line_.size(), file_) != line_.size()) broken_ = failure();
-        ring_.release();
     }
     if (broken_ && !was_broken) return *broken_;
     return {};

@@ -6,10 +6,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/result.hpp"
 #include "core/time.hpp"
-#include "runtime/recording/trace_ring.hpp"
+#include "runtime/recording/row_cursor.hpp"
 #include "runtime/snapshot.hpp"
 
 namespace taktwerk::apps {
@@ -17,7 +18,7 @@ namespace taktwerk::apps {
 class TraceCsv {
 public:
     /// `layout` gives the units of the axes: "x.set_position[mm]".
-    static Result<std::unique_ptr<TraceCsv>> create(const std::string& path, runtime::TraceRing& ring,
+    static Result<std::unique_ptr<TraceCsv>> create(const std::string& path, runtime::SignalRing& ring,
                                                     const runtime::MachineLayout& layout);
     ~TraceCsv();
 
@@ -29,11 +30,12 @@ public:
     [[nodiscard]] Result<void> finish();
 
 private:
-    TraceCsv(std::string path, std::FILE* file, runtime::TraceRing& ring) : path_(std::move(path)), file_(file), ring_(ring) {}
+    TraceCsv(std::string path, std::FILE* file, runtime::SignalRing& ring);
     [[nodiscard]] Error failure() const;
     std::string path_;
     std::FILE* file_;
-    runtime::TraceRing& ring_;
+    runtime::RowCursor rows_;
+    std::vector<runtime::SignalCell> columns_;
     std::string line_;
     std::optional<Error> broken_;
     double start_s_ = 0;

@@ -48,6 +48,31 @@ std::optional<std::int64_t> JsonFields::maybe_integer(std::string_view key) {
     return wrong(key, "a whole number"), std::nullopt;
 }
 
+std::vector<std::string> JsonFields::texts(std::string_view key, std::size_t most) {
+    std::vector<std::string> out;
+    const auto* value = find(key, true);
+    if (!value) return out;
+    const auto wanted = fmt::format("a list of 1 to {} texts", most);
+    if (!value->is_array() || value->empty() || value->size() > most) return wrong(key, wanted), out;
+    for (const auto& text : *value) {
+        if (!text.is_string()) return wrong(key, wanted), std::vector<std::string>{};
+        out.push_back(text.get<std::string>());
+    }
+    return out;
+}
+
+std::optional<std::uint64_t> JsonFields::maybe_count(std::string_view key) {
+    const auto number = maybe_integer(key);
+    if (number && *number < 0) return wrong(key, "a whole number of 0 or more"), std::nullopt;
+    return number ? std::optional{static_cast<std::uint64_t>(*number)} : std::nullopt;
+}
+
+const nlohmann::json* JsonFields::object(std::string_view key, bool required) {
+    const auto* value = find(key, required);
+    if (value && !value->is_object()) return wrong(key, "an object"), nullptr;
+    return value;
+}
+
 void JsonFields::finish() {
     for (const auto& [key, value] : json_.items()) {
         if (error_ || std::find(known_.begin(), known_.end(), key) != known_.end()) continue;

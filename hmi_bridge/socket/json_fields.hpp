@@ -2,6 +2,7 @@
 // The keys of one request of the local socket, read by their types. Unknown keys are errors: a misspelt "velocity" must not mean
 // "no velocity". Not real-time.
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -27,6 +28,12 @@ public:
     std::int64_t integer(std::string_view key) { return maybe_integer(key).value_or(0); }
     /// Where 0 means something else than nothing.
     std::optional<std::int64_t> maybe_integer(std::string_view key);
+    /// A list of 1 to `most` texts.
+    std::vector<std::string> texts(std::string_view key, std::size_t most);
+    /// A whole number of 0 or more.
+    std::optional<std::uint64_t> maybe_count(std::string_view key);
+    /// An object, for JsonFields of its own; its errors are the caller's to look at. nullptr when it is absent or none.
+    const nlohmann::json* object(std::string_view key, bool required);
     /// The key is there, whatever its value.
     [[nodiscard]] bool has(std::string_view key) const { return json_.contains(std::string(key)); }
     /// Keys that nobody asked for.

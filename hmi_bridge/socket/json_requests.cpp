@@ -77,6 +77,7 @@ Error unknown_command(std::string_view cmd) {
     std::vector<std::string> words(questions.begin(), questions.end());
     for (const auto& entry : command_words) words.emplace_back(entry.word);
     for (const auto& entry : drive_words) words.emplace_back(entry.word);
+    for (const auto entry : ScopeRequests::words()) words.emplace_back(entry);
     const auto near = nearest_name(cmd.substr(0, 64), words);
     return request_error("unknown_command", fmt::format("there is no command {}", shown(cmd)),
                          near.empty() ? fmt::format("Use one of: {}.", fmt::join(words, ", ")) : fmt::format("Did you mean \"{}\"?", near));
@@ -126,7 +127,11 @@ Result<CommandRequest> read_command(const CommandWord& entry, JsonFields& fields
 
 JsonRequests::JsonRequests(Gateway& gateway, MachineLink& machine, std::function<std::int64_t()> wall_utime,
                            std::function<void(std::string_view)> log)
-    : gateway_(gateway), machine_(machine), drives_(machine, std::move(log), &gateway.hands()), wall_utime_(std::move(wall_utime)) {}
+    : gateway_(gateway),
+      machine_(machine),
+      drives_(machine, std::move(log), &gateway.hands()),
+      scope_(machine.signals()),
+      wall_utime_(std::move(wall_utime)) {}
 
 void JsonRequests::on_open(ConnectionId connection, const Peer& peer) {
     names_[connection] = peer_name(peer);
@@ -138,6 +143,7 @@ void JsonRequests::on_open(ConnectionId connection, const Peer& peer) {
 
 void JsonRequests::on_close(ConnectionId connection) {
     drives_.forget(connection);
+    scope_.forget(connection);
     names_.erase(connection);
     const auto found = clients_.find(connection);
     if (found == clients_.end()) return;
@@ -176,6 +182,11 @@ void JsonRequests::on_request(ConnectionId connection, std::string_view line, In
     }
     for (const auto& entry : drive_words)
         if (entry.word == cmd) return ask_drive(entry.kind, connection, id_text, fields, now);
+    if (ScopeRequests::knows(cmd)) {
+        fields.integer("utime");
+        if (const auto begun = scope_.handle(connection, id_text, cmd, fields); !begun) refuse(connection, id_text, begun.error());
+        return;
+    }
     if (std::find(questions.begin(), questions.end(), cmd) == questions.end()) return refuse(connection, id_text, unknown_command(cmd));
 
     fields.integer("utime");
@@ -237,6 +248,8 @@ void JsonRequests::ask_drive(DriveRequestKind kind, ConnectionId connection, con
 }
 
 void JsonRequests::step(Instant now) {
+    scope_.step();
+    while (auto done = scope_.next_answer()) answer(done->connection, std::move(done->text));
     drives_.step(now);
     while (const auto done = drives_.next_answer()) {
         if (done->error) {

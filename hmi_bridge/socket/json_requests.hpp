@@ -20,6 +20,7 @@
 #include "hmi_bridge/gateway/gateway.hpp"
 #include "hmi_bridge/line_handler.hpp"
 #include "hmi_bridge/socket/json_fields.hpp"
+#include "hmi_bridge/socket/scope_requests.hpp"
 
 namespace taktwerk::hmi {
 
@@ -66,6 +67,7 @@ private:
     Gateway& gateway_;
     MachineLink& machine_;
     DriveRequests drives_;
+    ScopeRequests scope_;
     std::function<std::int64_t()> wall_utime_;
     const runtime::Snapshot* snapshot_ = nullptr;
     std::string progress_;

@@ -236,9 +236,13 @@ void SocketServer::read(Connection& connection, Instant now, LineHandler& handle
 
 void SocketServer::flush(Connection& connection) {
     while (!connection.out.empty()) {
-        const auto sent = ::send(connection.socket, connection.out.data(), connection.out.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+        const auto rest = std::string_view(connection.out).substr(connection.sent);
+        const auto sent = ::send(connection.socket, rest.data(), rest.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
         if (sent > 0) {
-            connection.out.erase(0, static_cast<std::size_t>(sent));
+            connection.sent += static_cast<std::size_t>(sent);
+            if (connection.sent < connection.out.size()) continue;
+            connection.out.clear();
+            connection.sent = 0;
             continue;
         }
         if (sent < 0 && errno == EINTR) continue;
@@ -250,6 +254,10 @@ void SocketServer::flush(Connection& connection) {
 void SocketServer::send(ConnectionId id, std::string_view line) {
     const auto found = std::find_if(connections_.begin(), connections_.end(), [&](const auto& c) { return c.id == id; });
     if (found == connections_.end() || found->dead) return;
+    if (found->sent > 0) {
+        found->out.erase(0, found->sent);
+        found->sent = 0;
+    }
     if (found->out.size() + line.size() + 1 > max_unread) {
         log_("command socket: a client does not read its answers; dropped");
         found->dead = true;

@@ -22,7 +22,8 @@ class SocketServer {
 public:
     static constexpr std::size_t max_connections = 8;
     static constexpr std::size_t max_line = 64 * 1024;
-    static constexpr std::size_t max_unread = 1024 * 1024;             ///< a client that does not read its answers is dropped
+    static constexpr std::size_t max_unread =
+        4 * 1024 * 1024;  ///< a client that does not read its answers is dropped; the longest one (scope_read) fits
     static constexpr std::size_t bytes_per_step = 256 * 1024;          ///< of one connection
     static constexpr std::size_t reserve = 4;                          ///< further connections, while all places are taken
     static constexpr Duration idle = std::chrono::seconds{5};          ///< so long without a line: may go for another
@@ -54,7 +55,8 @@ private:
         ConnectionId id = 0;
         int socket = -1;
         std::string in, out;
-        Instant heard{};  ///< of its last line, or of its coming
+        std::size_t sent = 0;  // of out
+        Instant heard{};       ///< of its last line, or of its coming
         bool in_reserve = false;
         bool skips = false;  ///< the rest of a line that is too long
         bool dead = false;

@@ -33,7 +33,8 @@ inline constexpr std::array command_rules{
     CommandRule{"acknowledge", Role::operates, true},  CommandRule{"set_parameter", Role::engineer, true},
     CommandRule{"set_output", Role::engineer, true},   CommandRule{"simulate", Role::engineer, true},
     CommandRule{"drive_write", Role::engineer, true},  CommandRule{"drive_store", Role::engineer, true},
-    CommandRule{"shutdown", Role::admin, true},
+    CommandRule{"shutdown", Role::admin, true},        CommandRule{"scope_signals", Role::viewer, false},
+    CommandRule{"scope_read", Role::viewer, false},
 };
 
 /// Null: no such command.

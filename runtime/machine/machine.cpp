@@ -103,7 +103,8 @@ void Machine::record(Recorder& recorder) noexcept {
     impl_->body.recorder = &recorder;
     impl_->body.bus.set_tap(&record_frame, &recorder);
 }
-TraceRing& Machine::enable_trace(std::size_t rows) { return impl_->snapshots.enable_trace(rows, impl_->layout); }
+SignalRing& Machine::signals() noexcept { return impl_->rows.ring(); }
+const SignalRing& Machine::signals() const noexcept { return impl_->rows.ring(); }
 const StepStatistics<step_count - 1>& Machine::step_statistics() const noexcept { return impl_->steps; }
 void Machine::reset_step_statistics() noexcept { impl_->steps.reset(); }
 const MachineConfig& Machine::config() const noexcept { return impl_->body.config; }

@@ -22,7 +22,7 @@
 #include "runtime/cycle_tick.hpp"
 #include "runtime/machine_config.hpp"
 #include "runtime/operator_command.hpp"
-#include "runtime/recording/trace_ring.hpp"
+#include "runtime/recording/signal_ring.hpp"
 #include "runtime/snapshot.hpp"
 #include "runtime/stop_levels.hpp"
 
@@ -119,8 +119,10 @@ public:
     /// The positions are being written: one call of the disk that has not come back yet. Any thread.
     [[nodiscard]] bool disk_at_work() const noexcept;
     [[nodiscard]] MachinePhase phase() const noexcept;
-    /// Before arm(): each cycle becomes a row of `columns()`; `rows` is how far a reader may fall behind.
-    TraceRing& enable_trace(std::size_t rows);
+    /// Every signal of every cycle since arm(), the newest of them: for any number of readers, each on any thread (signal_ring.hpp). Its
+    /// cycles count as Snapshot::cycle.
+    [[nodiscard]] SignalRing& signals() noexcept;
+    [[nodiscard]] const SignalRing& signals() const noexcept;
     /// Before start_bus(): everything that comes from outside goes into `recorder` (runtime/recording/inbox_record.hpp says how), written by
     /// the cycle thread. `recorder` outlives the machine. Off unless called; real-time safe.
     void record(Recorder& recorder) noexcept;

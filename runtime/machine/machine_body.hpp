@@ -43,7 +43,7 @@ struct MachineBody {
     // the cycle's
     Instant now{};                                            // Machine
     std::uint64_t cycles = 0;                                 // Machine: those that are over
-    CycleStatistics statistics;                               // Machine; refused commands: OperatorDesk; dropped rows: SnapshotWriter
+    CycleStatistics statistics;                               // Machine; refused commands: OperatorDesk
     Mode mode;                                                // OperatorDesk
     bool emergency = false;                                   // EmergencyInputs: pressed, or its wire is broken
     bool shutting_down = false;                               // Shutdown: has begun

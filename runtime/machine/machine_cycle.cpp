@@ -40,6 +40,7 @@ Machine::Impl::Impl(MachineConfig machine, ecat::Transport& transport, const std
       supervisor(body, drives, groups, modbus, programs, desk, positions.get()),
       snapshots(body, programs),
       layout(layout_of(body, drives, programs.host())),
+      rows(body, programs, layout),
       words(body, drives, groups, modbus, programs, supervisor, layout),
       steps(measured_steps()) {
     // Now the programs have declared their tables.
@@ -148,7 +149,9 @@ void Machine::Impl::tell(const CycleTick& tick) noexcept {
     statistics.lateness = tick.woken - tick.scheduled;
     statistics.lateness_max = std::max(statistics.lateness_max, statistics.lateness);
     programs.read_variables();
+    statistics.snapshots_dropped = rows.ring().lost();
     snapshots.step();
+    rows.step();
     if (positions) positions->watch(body.axes, body.now, body.shutting_down);
 }
 

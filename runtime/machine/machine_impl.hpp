@@ -15,6 +15,7 @@
 #include "runtime/machine/modbus_devices.hpp"
 #include "runtime/machine/operator_desk.hpp"
 #include "runtime/machine/program_runner.hpp"
+#include "runtime/machine/row_writer.hpp"
 #include "runtime/machine/snapshot_writer.hpp"
 #include "runtime/machine/supervisor.hpp"
 #include "runtime/positions/position_keeper.hpp"
@@ -49,6 +50,7 @@ struct Machine::Impl {
     Supervisor supervisor;
     SnapshotWriter snapshots;
     MachineLayout layout;
+    RowWriter rows;
     AlarmWords words;
     StepStatistics<step_count - 1> steps;
     std::atomic<bool> outputs_laid_out{false};  // the cycle may write them although nothing runs yet

@@ -4,48 +4,6 @@
 
 namespace taktwerk::runtime {
 
-namespace {
-
-using axes::AxisView;
-
-/// What a trace shows of each axis, in the order of its columns.
-struct AxisColumn {
-    const char* name;
-    double (*value)(const AxisView& view);
-};
-constexpr AxisColumn axis_columns[] = {
-    {"state", [](const AxisView& v) { return static_cast<double>(v.state); }},
-    {"set_position", [](const AxisView& v) { return v.set_position; }},
-    {"set_velocity", [](const AxisView& v) { return v.set_velocity; }},
-    {"set_acceleration", [](const AxisView& v) { return v.set_acceleration; }},
-    {"set_jerk", [](const AxisView& v) { return v.set_jerk; }},
-    {"actual_position", [](const AxisView& v) { return v.actual_position; }},
-    {"actual_velocity", [](const AxisView& v) { return v.actual_velocity; }},
-    {"actual_torque", [](const AxisView& v) { return v.actual_torque; }},
-    {"following_error", [](const AxisView& v) { return v.following_error; }},
-    {"target_position", [](const AxisView& v) { return v.target_position; }},
-    {"active", [](const AxisView& v) { return static_cast<double>(v.active); }},
-    {"drive_state", [](const AxisView& v) { return static_cast<double>(v.drive_state); }},
-    {"homed", [](const AxisView& v) { return v.homed ? 1.0 : 0.0; }},
-    {"error", [](const AxisView& v) { return static_cast<double>(v.error); }},
-    {"owner", [](const AxisView& v) { return static_cast<double>(v.owner); }},
-    {"velocity_limiter", [](const AxisView& v) { return static_cast<double>(v.limiter); }},
-    {"held_by_stop", [](const AxisView& v) { return v.lock != 0 ? 1.0 : 0.0; }},
-    {"command", [](const AxisView& v) { return static_cast<double>(v.active_kind); }},
-};
-
-std::vector<std::string> trace_columns(const MachineLayout& layout) {
-    std::vector<std::string> columns{"time_s", "emergency_stop", "alarms"};
-    for (const auto& axis : layout.axes)
-        for (const auto& column : axis_columns) columns.push_back(axis.name + "." + column.name);
-    for (const auto& input : layout.inputs) columns.push_back("in." + input);
-    for (const auto& output : layout.outputs) columns.push_back("out." + output);
-    for (const auto& variable : layout.variables) columns.push_back(variable.program + "." + variable.name);
-    return columns;
-}
-
-}  // namespace
-
 void SnapshotWriter::prepare() {
     Snapshot prototype;
     prototype.slaves.resize(body_.bus.slave_count());
@@ -67,22 +25,12 @@ void SnapshotWriter::prepare() {
     }
 }
 
-TraceRing& SnapshotWriter::enable_trace(std::size_t rows, const MachineLayout& layout) {
-    trace_ = std::make_unique<TraceRing>(trace_columns(layout), rows);
-    return *trace_;
-}
-
 const Snapshot* SnapshotWriter::latest() noexcept {
     const auto reading = snapshots_.read();
     return reading.value->cycle > 0 ? reading.value : nullptr;
 }
 
 void SnapshotWriter::step() noexcept {
-    take_snapshot();
-    if (trace_) take_row();
-}
-
-void SnapshotWriter::take_snapshot() noexcept {
     auto& s = snapshots_.back();
     s.cycle = body_.cycles;
     s.at = body_.now;
@@ -115,25 +63,6 @@ void SnapshotWriter::take_snapshot() noexcept {
         std::ranges::copy(events.events(), s.events.begin());
     }
     snapshots_.publish();
-}
-
-void SnapshotWriter::take_row() noexcept {
-    auto row = trace_->begin();
-    if (row.empty()) {
-        ++body_.statistics.snapshots_dropped;
-        return;
-    }
-    std::size_t n = 0;
-    const auto put = [&](double value) { row[n++] = value; };
-    put(to_seconds(body_.now.time_since_epoch()));
-    put(body_.emergency ? 1 : 0);
-    put(static_cast<double>(body_.log.alarms().size()));
-    for (const auto& axis : body_.axes)
-        for (const auto& column : axis_columns) put(column.value(axis.view()));
-    for (const auto& input : body_.io.input_values()) put(input.value);
-    for (std::size_t i = 0; i < body_.io.outputs().size(); ++i) put(body_.io.output_value(i));
-    for (const auto value : programs_.variables()) put(value);
-    trace_->commit();
 }
 
 }  // namespace taktwerk::runtime

@@ -29,7 +29,7 @@ TEST(PageRoles, EveryCellOfRoleAndCommand) {
         {"jog", "nyyy"},          {"move", "nyyy"},          {"reset", "nyyy"},        {"program_start", "nyyy"},
         {"program_stop", "nyyy"}, {"program_reset", "nyyy"}, {"acknowledge", "nyyy"},  {"set_parameter", "nnyy"},
         {"set_output", "nnyy"},   {"simulate", "nnyy"},      {"drive_write", "nnyy"},  {"drive_store", "nnyy"},
-        {"shutdown", "nnny"}};
+        {"shutdown", "nnny"},     {"scope_signals", "yyyy"}, {"scope_read", "yyyy"}};
     EXPECT_EQ(command_rules.size(), expected.size());
     for (const auto& row : expected) {
         const auto* rule = find_rule(row.first);
