@@ -47,6 +47,9 @@ export interface Taste {
 /** The demo without its programs and happenings: an operator alone with three axes. */
 export const quiet = (yaml: string): string => yaml.replace(/^programs:[\s\S]*?(?=^# --- Safety)/m, '').replace('start_mode: automatic', 'start_mode: manual').replace(/^  events:[\s\S]*$/m, '');
 
+/** The demo with its program, its axes by hand, on a computer that is late at times: that is not what is looked at. */
+export const unhurried = (yaml: string): string => yaml.replace('start_mode: automatic', 'start_mode: manual').replace(/^  events:[\s\S]*$/m, '').replace('overruns_allowed: 10', 'overruns_allowed: 1000, lateness_warning: 900 ms');
+
 export class Cell {
     line!: Line;
     machine!: Machine;
@@ -99,6 +102,15 @@ export class Cell {
             this.port = Number(/http:\/\/[^\s/]*:(\d+)\//.exec(server.said())?.[1] ?? 0);
             return this.port !== 0;
         });
+    }
+    /** Another server in its place, for another role. */
+    async serve_as(role: string): Promise<void> {
+        const old = this.server_;
+        const gone = new Promise((resolve) => old?.once('exit', resolve));
+        old?.kill('SIGTERM');
+        await gone;
+        this.role_ = role;
+        await this.serve();
     }
     signal_server(signal: NodeJS.Signals): void {
         this.server_?.kill(signal);

@@ -2,6 +2,7 @@
 import assert from 'node:assert/strict';
 import { after, before, beforeEach, test } from 'node:test';
 import { Cell, pause, until } from './cell';
+import { newest, recorded } from './recorded';
 
 const cell = new Cell();
 before(() => cell.start(), { timeout: 120_000 });
@@ -9,8 +10,11 @@ after(() => cell.end());
 beforeEach(() => cell.line.flow());
 
 const jog = (sign: string) => cell.page.locator(`[data-jog="${sign}"]`);
-// The lease (250 ms), the ramp from 20 mm/s (under 50 ms), and what two busy cores are late.
-const lease_and_ramp = 1500;
+// ms: what two busy cores are late before a test looks.
+const patience = 1500;
+// Cycles of 1 ms from the ending to standstill: the lease (250 ms), the ramp from 20 mm/s at 5000 mm/s2 and 100 m/s3 (under 50 ms), and how long the
+// ending itself may take from this process to the browser, or the machine's word of its newest cycle to this process.
+const lease = 250, ramp = 50, on_the_way = 150;
 
 async function hold_x(): Promise<void> {
     await cell.look('#axis/x');
@@ -23,7 +27,7 @@ async function hold_x(): Promise<void> {
     await until('x moves', async () => (await cell.axis('x')).set_velocity > 19);
 }
 async function no_more_motion(): Promise<void> {
-    await cell.stands('x', lease_and_ramp);
+    await cell.stands('x', patience);
     const before = (await cell.axis('x')).set_position;
     await pause(400);
     assert.equal((await cell.axis('x')).set_position, before, 'it began again by itself');
@@ -93,12 +97,22 @@ for (const [name, happens, afterwards] of endings)
         await hold_x();
         const presses = () => cell.sent.filter((message) => message['press'] === true).length;
         assert.equal(presses(), 1);
+        const before = await newest(cell.machine);
         try {
             await happens();
+            const ended = await newest(cell.machine);
             await no_more_motion();
+            const last = await newest(cell.machine);
+            const velocity = await recorded(cell.machine, 'x.set_velocity', before, last);
+            assert.ok((velocity[0] ?? 0) > 19, 'it did not move when it ended');
+            const stood = velocity.findIndex((v) => v === 0);
+            assert.ok(stood >= 0 && stood + before <= ended + lease + ramp + on_the_way, `it stood ${stood + before - ended} cycles after the ending`);
+            assert.ok(velocity.slice(stood).every((v) => v === 0), 'it moved again');
         } finally {
             await afterwards?.();
         }
+        const recovered = await newest(cell.machine);
         await no_more_motion();  // what comes late begins nothing
+        assert.ok((await recorded(cell.machine, 'x.set_velocity', recovered, await newest(cell.machine))).every((v) => v === 0), 'it moved when all was well again');
         assert.equal(presses(), 1, 'it pressed anew');
     });

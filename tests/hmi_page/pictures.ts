@@ -1,33 +1,54 @@
-// node pictures.mjs FOLDER: a picture of each page, as docs/hmi.md shows them.
-import { mkdirSync } from 'node:fs';
+// node pictures.mjs FOLDER: a picture of each page as docs/hmi.md shows it (./dev pictures): in English and light, the axis once more in Chinese and dark.
+import { mkdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { Cell, pause, Taste } from './cell';
+import { Cell, pause, Taste, unhurried, until } from './cell';
+import { small_png } from './small_png';
 
 const folder = process.argv[2] ?? '.';
 mkdirSync(folder, { recursive: true });
 const cell = new Cell();
+const take = async (name: string, hash: string, taste: Taste = {}, settled: () => Promise<void> = () => pause(900)): Promise<void> => {
+    await cell.look(`#${hash}`, taste);
+    await settled();
+    const picture = small_png(await cell.page.screenshot());
+    writeFileSync(join(folder, `${name}.png`), picture);
+    console.log(`${name}.png ${(picture.length / 1024).toFixed(0)} kB`);
+};
+const shuttle = async (to: number): Promise<void> => void (await cell.machine.ask({ cmd: 'move', axis: 'x', position: to, velocity: 90 }));
+
 try {
-    await cell.start({ machine: (yaml) => yaml.replace('start_mode: automatic', 'start_mode: manual').replace(/^  events:[\s\S]*$/m, '').replace('overruns_allowed: 10', 'overruns_allowed: 1000, lateness_warning: 900 ms') });
+    await cell.start({ machine: unhurried });
     for (const axis of ['x', 'y', 'z']) await cell.powered_and_homed(axis);
-    await cell.machine.ask({ cmd: 'move', axis: 'x', position: 600, velocity: 100 });
-    const take = async (name: string, hash: string, taste: Taste = {}) => {
-        await cell.look(`#${hash}`, taste);
-        await pause(700);
-        await cell.page.screenshot({ path: join(folder, `${name}.png`) });
-    };
+    await cell.machine.ask({ cmd: 'reset_peaks', axis: 'all' });
+    for (const [axis, position] of [['y', 160], ['z', 55]] as const) await cell.machine.ask({ cmd: 'move', axis, position, velocity: 100 });
+    await shuttle(610);
+    await pause(1500);
     await take('axis', 'axis/x');
-    await cell.machine.ask({ cmd: 'move', axis: 'x', position: 60, velocity: 100 });
-    await take('axis-dark-zh', 'axis/x', { theme: 'dark', language: 'zh' });
-    await take('drive', 'axis/x/drive');
     await take('overview', 'overview');
-    await take('io', 'io');
-    await take('programs', 'programs');
-    await take('bus', 'bus');
-    await take('system', 'system');
+    await until('x is there', async () => Math.abs((await cell.axis('x')).actual_position - 610) < 0.1);
+    await shuttle(90);
+    await pause(1000);
+    await take('axis-zh', 'axis/x', { theme: 'dark', language: 'zh' });
+    await take('drive', 'axis/x/drive', {}, async () => {
+        await cell.page.locator('[data-input="filter"]').fill('P05');
+        await pause(600);
+        if (await cell.page.locator('[data-do="read_all"]').isEnabled()) await cell.page.locator('[data-do="read_all"]').click();
+        await pause(2500);
+    });
+    await take('bus', 'bus', {}, () => pause(2500));
+    await take('programs', 'programs', {}, () => pause(2500));
+    await take('system', 'system', {}, () => pause(2500));
+    await take('io', 'io', {}, async () => {
+        const force = cell.page.locator('[data-do="forcing"]');
+        if (!(await force.isEnabled())) return;
+        await force.check();
+        await cell.page.locator('[data-input-point="part_present"] [data-set="0"]').click();
+        await pause(800);
+    });
     await cell.machine.ask({ cmd: 'simulate', line: 'drive-fault y 0x3130' });
-    await pause(500);
+    await pause(3000);  // the recording goes on for two seconds
     await take('alarms', 'alarms');
-    await take('alarms-history', 'alarms/history');
+    await take('history', 'alarms/history');
 } finally {
     await cell.end();
 }

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # run.sh unit|browser BUILD SOURCE: the page's tests of a kind. What cannot be tried here is skipped, and said.
+# run.sh pictures BUILD SOURCE FOLDER: pictures of the pages.
 set -euo pipefail
 kind=$1 build=$2 source=$3
 report=${GTEST_OUTPUT:-}
@@ -19,12 +20,13 @@ major=$(node -p 'process.versions.node.split(".")[0]')
 [[ -f $build/hmi_page/page/page.js ]] || skip "the page is not built (no npm, or TAKTWERK_PAGE=OFF)"
 
 start=()
-if [[ $kind == browser ]]; then
+if [[ $kind != unit ]]; then
     [[ -x /usr/bin/chromium ]] || skip "the page in a browser: no chromium (Debian package chromium, ./dev setup browser)"
     unshare --user --map-root-user --net true 2>/dev/null || skip "the page in a browser: no network namespaces here (unshare --user --net)"
     # shellcheck disable=SC2016 # $@ is the inner shell's
     start=(unshare --user --map-root-user --net bash -c 'ip link set lo up && exec "$@"' run)
 fi
+[[ $kind != pictures ]] || exec "${start[@]}" node "$build/hmi_page/tests/pictures.mjs" "$4"
 "${start[@]}" node --test --test-concurrency=1 --test-reporter=spec --test-reporter-destination=stdout \
     --test-reporter="$source/tests/hmi_page/gtest_report.mjs" --test-reporter-destination="${TAKTWERK_REPORT:-/dev/null}" \
     "$build/hmi_page/tests/"*"_$kind.mjs"
