@@ -1,29 +1,33 @@
 // A person looks at the page of a machine that runs: what is shown is so.
 import assert from 'node:assert/strict';
 import { after, before, beforeEach, test } from 'node:test';
-import { Cell } from './cell';
+import { Cell, pause, until } from './cell';
+import { recorded } from './recorded';
 
 const cell = new Cell();
 before(() => cell.start(), { timeout: 120_000 });
 after(() => cell.end());
 beforeEach(() => cell.line.flow());
 
-const shown = (value: string) => cell.page.locator(`[data-value="${value}"]`);
-
-test('values on the screen are the machine\'s, to the last digit', async () => {
+test('values on the screen are those that the machine has recorded of the same cycle, to the last digit', { timeout: 90_000 }, async () => {
     await cell.powered_and_homed('x');
+    await cell.machine.told({ cmd: 'move', axis: 'x', position: 300, velocity: 60 });
+    await until('x moves', async () => (await cell.axis('x')).set_velocity > 50);
     await cell.look('#axis/x');
-    await cell.page.waitForTimeout(300);
-    const axis = await cell.axis('x');
-    const said = async (value: string) => (await shown(value).textContent())?.replace('−', '-');
-    assert.equal(await said('big_position'), axis.actual_position.toFixed(3).replace('-0.000', '0.000'));
-    assert.equal(await said('head_set_position'), `${axis.set_position.toFixed(3).replace('-0.000', '0.000')} mm`);
-    await cell.look('#overview');
-    for (const name of ['x', 'y', 'z']) {
-        const { actual_position, unit } = await cell.axis(name);
-        assert.equal((await cell.page.locator(`tr[data-axis="${name}"] [data-value="position"]`).textContent())?.replace('−', '-'),
-            `${actual_position.toFixed(3).replace('-0.000', '0.000')} ${unit}`);
+    const signals: [string, string, string, number][] = [['big_position', 'x.actual_position', '', 3], ['head_set_position', 'x.set_position', ' mm', 3], ['head_actual_velocity', 'x.actual_velocity', ' mm/s', 3],
+        ['head_following_error', 'x.following_error', ' mm', 3], ['set_velocity', 'x.set_velocity', ' mm/s', 3], ['set_acceleration', 'x.set_acceleration', ' mm/s²', 1]];
+    const seen = new Set<string>();
+    for (let look = 0; look < 12; look++) {
+        await pause(150);
+        const [cycle, said] = await cell.page.evaluate((names) => [Number(document.body.dataset['cycle']), names.map((name) => document.querySelector(`[data-value="${name}"]`)?.textContent ?? '')] as const, signals.map(([name]) => name));
+        for (const [i, [name, signal, unit, decimals]] of signals.entries()) {
+            const [value] = await recorded(cell.machine, signal, cycle, cycle + 1);
+            assert.equal(said[i]?.replace('−', '-'), `${value?.toFixed(decimals).replace(/^-(0\.?0*)$/, '$1')}${unit}`, `${name} of cycle ${cycle}`);
+        }
+        seen.add(said[0] ?? '');
     }
+    assert.ok(seen.size >= 8, 'the values stood still');
+    assert.ok((await cell.axis('x')).set_velocity > 50, 'it did not move while it was looked at');
 });
 
 test('values of a server that is silent are grey, with the time since; only STOP stays', async () => {

@@ -6,7 +6,7 @@ import { Link } from './link';
 import { Entry, pages } from './pages/list';
 import { remember, remembered } from './remembered';
 import { choose_language, current_language, Key, say, texts } from './texts';
-import { element } from './view';
+import { element, mark } from './view';
 
 const link = new Link(`${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/ws`);
 const hold = new JogHold({
@@ -62,7 +62,9 @@ function leave(): void {
 function refresh(): void {
     frame.update();
     show();
-    if (link.state) shown?.update(link.state);
+    if (!link.state) return;
+    mark(document.body, 'data-cycle', String(link.state.cycle));  // whose numbers these are
+    shown?.update(link.state);
 }
 
 const dark = (): boolean => document.documentElement.dataset['theme'] === 'dark';

@@ -24,9 +24,9 @@ function parameter_rows(desk: Desk) {
                 else void desk.give({ cmd: 'set_parameter', parameter: full(parameter), value }).then((answer) => { if (answer.ok) given.value = ''; });
             },
         }, given, set);
-        const range = info ? `${plain(info.minimum)} … ${plain(info.maximum)}` : '';
-        const root = element('tr', { 'data-parameter': full(parameter) }, element('th', { scope: 'row' }, parameter.name, element('small', { class: 'doc', lang: 'en' }, info?.doc ?? '')), shown,
-            element('td', { class: 'unit' }, parameter.unit), element('td', { class: 'range' }, range), element('td', {}, form));
+        const range = info ? `${plain(info.minimum)} … ${plain(info.maximum)} ${parameter.unit}` : '';
+        const root = element('tr', { 'data-parameter': full(parameter) }, element('th', { scope: 'row' }, parameter.name, element('small', { class: 'doc', lang: 'en' }, info?.doc ?? ''), element('small', { class: 'doc' }, range)), shown,
+            element('td', { class: 'unit' }, parameter.unit), element('td', {}, form));
         return { root, shown, set, given };
     }, (row, parameter) => {
         write(row.shown, plain(parameter.value));
@@ -54,8 +54,8 @@ export function programs(desk: Desk): Page {
     });
     const task_panel = panel('tasks', table(['task', 'releases', 'overruns', 'run_time', 'run_time_max'], task_body, ['releases', 'overruns', 'run_time', 'run_time_max']));
     return {
-        root: element('div', { class: 'page programs' }, element('div', { class: 'columns' }, element('div', { class: 'stack' }, panel('programs', control.root), panel('parameters', parameters.root)),
-            element('div', { class: 'stack' }, panel('variables', watch.root))), element('div', { class: 'columns' }, task_panel, histograms.root)),
+        root: element('div', { class: 'page programs' }, element('div', { class: 'columns' }, element('div', { class: 'stack' }, panel('programs', control.root), panel('parameters', parameters.root), task_panel),
+            element('div', { class: 'stack' }, panel('variables', watch.root), histograms.root))),
         update(state: MachineState) {
             control.update(state);
             watch.update(state);
