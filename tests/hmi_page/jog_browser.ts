@@ -71,6 +71,17 @@ test('by keyboard alone: power, home, jog, move, stop', { timeout: 90_000 }, asy
     assert.ok((await cell.axis('x')).actual_position < 290);
 });
 
+test('held, and nothing happens: it goes on, in every cycle', { timeout: 60_000 }, async () => {
+    await cell.powered_and_homed('x');
+    await hold_x();
+    const from = await newest(cell.machine);
+    await pause(1500);
+    const velocity = await recorded(cell.machine, 'x.set_velocity', from, await newest(cell.machine));
+    await cell.page.mouse.up();
+    assert.ok(velocity.length > 500 && velocity.every((v) => v > 19), 'it stopped by itself: no ending below shows anything');
+    await no_more_motion();
+});
+
 const endings: [string, () => Promise<unknown> | void, (() => Promise<void> | void)?][] = [
     ['the button let go', () => cell.page.mouse.up()],
     ['pointercancel', () => jog('+').evaluate((button) => button.dispatchEvent(new PointerEvent('pointercancel', { pointerId: 1, bubbles: true })))],
