@@ -84,6 +84,7 @@ test('held, and nothing happens: it goes on, in every cycle', { timeout: 60_000 
 
 const endings: [string, () => Promise<unknown> | void, (() => Promise<void> | void)?][] = [
     ['the button let go', () => cell.page.mouse.up()],
+    ['the finger beside the button', () => cell.page.mouse.move(700, 700)],
     ['pointercancel', () => jog('+').evaluate((button) => button.dispatchEvent(new PointerEvent('pointercancel', { pointerId: 1, bubbles: true })))],
     ['the capture lost', () => jog('+').evaluate((button) => button.releasePointerCapture(1))],
     ['the window\'s blur', () => cell.page.evaluate(() => window.dispatchEvent(new Event('blur')))],

@@ -1,8 +1,8 @@
 // What stands around every page: the head line with STOP, the banners that no page may hide, the tabs.
 import { Account } from './account';
+import { in_words, stops } from './alarm_words';
 import { Desk } from './desk';
 import { duration } from './numbers';
-import { in_words, stops } from './pages/alarms';
 import { Entry, pages } from './pages/list';
 import { MachineState } from './state';
 import { current_language, say, word } from './texts';

@@ -2,7 +2,7 @@
 // what holds when this page itself is gone (hmi_bridge/README.md).
 
 export type Ending =
-    | 'released' | 'cancelled' | 'capture_lost' | 'blur' | 'hidden' | 'second_pointer' | 'socket' | 'late' | 'unanswered' | 'refused' | 'stale' | 'gone' | 'stopped';
+    | 'released' | 'slid_off' | 'cancelled' | 'capture_lost' | 'blur' | 'hidden' | 'second_pointer' | 'socket' | 'late' | 'unanswered' | 'refused' | 'stale' | 'gone' | 'stopped';
 
 export interface JogWire {
     /** One jog request; press at the first. Resolves to whether it was accepted. */
@@ -23,6 +23,9 @@ export const renewal = 50;
 export const latest_renewal = 200;
 /** Renewals without an answer: a server that hangs. */
 export const most_unanswered = 4;
+
+/** px: a finger is broad, and rolls. */
+const slack = 12;
 
 export class JogHold {
     /** Who is told that it ended, and why. */
@@ -105,6 +108,11 @@ export function hold_to_jog(button: HTMLButtonElement, hold: JogHold, axis: () =
         hold.end(ending);
     };
     button.addEventListener('pointerup', leave('released'));
+    // The capture keeps the pointer's messages coming, so the button sees that the finger is on it no more.
+    button.addEventListener('pointermove', (event) => {
+        const box = button.getBoundingClientRect();
+        if (event.clientX < box.left - slack || event.clientX > box.right + slack || event.clientY < box.top - slack || event.clientY > box.bottom + slack) leave('slid_off')(event);
+    });
     button.addEventListener('pointercancel', leave('cancelled'));
     button.addEventListener('lostpointercapture', leave('capture_lost'));
     button.addEventListener('contextmenu', (event) => event.preventDefault());  // a long press on a touch screen

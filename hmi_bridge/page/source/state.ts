@@ -53,9 +53,6 @@ export interface AxisState {
     operators_override?: Real;
     brake?: string;
     master?: string;
-    drive_error_text?: string;
-    drive_error_text_zh?: string;
-    drive_error_manual?: string;
 }
 
 export interface ForcedPoint {

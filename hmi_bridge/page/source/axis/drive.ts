@@ -1,9 +1,10 @@
 // The drive of an axis: its state by the manual's words, its status word bit by bit, its parameters.
+import { alarms_of_axis, in_words } from '../alarm_words';
 import { Desk, Page, panel, Values, write_lamp } from '../desk';
 import { hex } from '../numbers';
 import { AxisLayout, AxisState, MachineState } from '../state';
-import { current_language, Key, say, word } from '../texts';
-import { element } from '../view';
+import { Key, say, word } from '../texts';
+import { element, write } from '../view';
 import { DriveParameters } from './drive_parameters';
 import { axis_tabs } from './tabs';
 
@@ -17,9 +18,11 @@ const bad_bits = [3, 7, 11];
 export function drive_page(desk: Desk, layout: AxisLayout): Page {
     const status = new Values();
     const bits = status_bits.map(([bit]) => element('li', { 'data-bit': String(bit) }));
+    const fault_text = element('strong', { 'data-tone': 'bad' }), fault_remedy = element('small', { lang: 'en' });
+    const fault = element('div', { class: 'event-line', hidden: true, 'data-part': 'fault' }, fault_text, fault_remedy);
     const parameters = new DriveParameters(desk, layout);
     const root = element('div', { class: 'page axis drive' }, axis_tabs(desk, layout.name, 'drive'),
-        element('div', { class: 'columns' }, element('div', { class: 'stack' }, panel('drive', status.root), panel('status_word', element('ul', { class: 'bits' }, ...bits))), parameters.root));
+        element('div', { class: 'columns' }, element('div', { class: 'stack' }, panel('drive', status.root, fault), panel('status_word', element('ul', { class: 'bits' }, ...bits))), parameters.root));
     const write_status = (axis: AxisState): void => {
         status.set('drive', layout.drive || '–');
         status.set('profile', layout.profile || '–');
@@ -27,8 +30,7 @@ export function drive_page(desk: Desk, layout: AxisLayout): Page {
         status.set('drive_state', word('drive', axis.drive_state));
         status.set('drive_mode', word('drivemode', axis.drive_mode));
         status.set('status_word', hex(axis.status_word));
-        const text = current_language() === 'zh' ? axis.drive_error_text_zh || axis.drive_error_text : axis.drive_error_text;
-        status.set('drive_error', axis.drive_error === 0 ? say('none_of_these') : `${hex(axis.drive_error)}${text ? ' ' + text : ''}${axis.drive_error_manual ? ` (${axis.drive_error_manual})` : ''}`);
+        status.set('drive_error', axis.drive_error === 0 ? say('none_of_these') : hex(axis.drive_error));
         if (axis.brake && axis.brake !== 'none') status.set('brake', word('brake', axis.brake));
         status_bits.forEach(([bit, key], i) => {
             const item = bits[i];
@@ -43,6 +45,12 @@ export function drive_page(desk: Desk, layout: AxisLayout): Page {
             const axis = machine.axes.find((a) => a.name === layout.name);
             if (!axis) return;
             write_status(axis);
+            const [alarm] = alarms_of_axis(machine, layout.name);
+            fault.hidden = !alarm;
+            if (alarm) {
+                write(fault_text, `⚠ ${in_words(alarm)}`);
+                write(fault_remedy, `${alarm.cause}. ${alarm.remedy}${alarm.manual ? ` (${alarm.manual})` : ''}`);
+            }
             parameters.update(axis);
         },
         leave: () => parameters.leave(),

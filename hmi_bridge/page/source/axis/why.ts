@@ -1,4 +1,5 @@
 // Why an axis does not move, or why at this velocity: whole sentences, the nearest reason first. Pure: a test goes through the reasons.
+import { alarms_of_axis, in_words } from '../alarm_words';
 import { AxisState, MachineState, value } from '../state';
 import { say, word } from '../texts';
 
@@ -39,7 +40,7 @@ function why_still(axis: AxisState, machine: MachineState): string[] {
     if (axis.disabled) return [say('why_disabled')];
     if (machine.emergency_stop) return [say('why_emergency')];
     if (!axis.online) return [say('why_offline')];
-    if (axis.state === 'ErrorStop') return [say('why_error')];
+    if (axis.state === 'ErrorStop') return [say('why_error'), ...alarms_of_axis(machine, axis.name).map(in_words)];
     if (axis.held_by_stop) return [say('why_held', { block: behind(axis.block) })];
     const sentences: string[] = [];
     if (!axis.powered) {

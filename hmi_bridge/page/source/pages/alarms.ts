@@ -1,15 +1,11 @@
 // What stands, in words, with cause and remedy; and what the machine refused.
+import { in_words, key_of, stops } from '../alarm_words';
 import { Desk, Page, panel, sub_tabs } from '../desk';
 import { duration } from '../numbers';
-import { Alarm, CommandEvent, MachineState } from '../state';
-import { current_language, say, word } from '../texts';
+import { CommandEvent, MachineState } from '../state';
+import { say, word } from '../texts';
 import { element, mark, Rows, write } from '../view';
 import { alarm_history } from './alarm_history';
-
-export const in_words = (alarm: Alarm): string => (current_language() === 'zh' && alarm.chinese ? alarm.chinese : alarm.english);
-/** It stops something, so it comes first. */
-export const stops = (alarm: Alarm): boolean => alarm.reaction !== 'warn' && alarm.reaction !== 'none';
-export const key_of = (alarm: Alarm): string => `${alarm.id}/${alarm.source}/${alarm.name}/${alarm.english}`;
 
 export const alarm_tabs = (shown: 'standing' | 'history'): HTMLElement => sub_tabs('alarms', [['alarms', 'alarms_standing'], ['alarms/history', 'alarms_history']], shown === 'standing' ? 'alarms' : 'alarms/history');
 /** One click opens what was recorded around the alarm, in the scope. */

@@ -1,4 +1,5 @@
 // The bus: its tree as it is cabled, what was lost, its clocks, and what is wrong with it in words.
+import { in_words } from '../alarm_words';
 import { BusSlave, BusTree } from '../bus/tree';
 import { SlaveDetails } from '../bus/slave';
 import { Desk, Page, panel, Values } from '../desk';
@@ -7,7 +8,6 @@ import { microseconds } from '../numbers';
 import { Alarm, MachineState } from '../state';
 import { say, word } from '../texts';
 import { element, mark, Rows, write } from '../view';
-import { in_words } from './alarms';
 
 interface BusAnswer {
     phase: string;

@@ -1,10 +1,10 @@
 // All axes at a glance, a row each; programs; whether the cycle keeps time.
+import { in_words, key_of, stops } from '../alarm_words';
 import { Desk, Page, panel, table, Values, write_lamp, write_state } from '../desk';
 import { fixed, microseconds } from '../numbers';
 import { Alarm, AxisLayout, AxisState, MachineState, value } from '../state';
 import { say, word } from '../texts';
 import { element, mark, Rows, write } from '../view';
-import { in_words, key_of, stops } from './alarms';
 
 /** More than these are left to their own page. */
 const most_standing = 3;

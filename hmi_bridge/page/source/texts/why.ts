@@ -18,6 +18,7 @@ export const why = {
     why_not_homed: ['Not homed: software limits are not in force.', '未回零:软限位未生效。'],
     why_switch: ['The limit switch {side} is active.', '{side}已触发。'],
     why_last_refusal: ['Last: ', '最近一次:'],
+    jog_ended_slid_off: ['Jog ended: the finger left the button.', '点动结束:手指离开按键。'],
     jog_ended_second_pointer: ['Jog ended: a second finger or key.', '点动结束:第二个触点或按键。'],
     jog_ended_blur: ['Jog ended: the window lost the focus.', '点动结束:窗口失去焦点。'],
     jog_ended_hidden: ['Jog ended: the page was hidden.', '点动结束:页面被隐藏。'],
