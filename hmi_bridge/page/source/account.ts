@@ -1,7 +1,7 @@
 // Who is at the page: the button in the head line, the form to log in. The server keeps the session in a cookie that no script reads.
 import { Desk } from './desk';
 import { say, word } from './texts';
-import { element, mark, write } from './view';
+import { element, mark, small_window, write } from './view';
 
 export class Account {
     readonly button = element('button', { type: 'button', class: 'small account', 'data-do': 'account', 'aria-haspopup': 'dialog', onclick: () => this.open() });
@@ -13,7 +13,7 @@ export class Account {
     private readonly who_ = element('p', {});
     private readonly form_ = element('form', { class: 'login', onsubmit: (event: Event) => { event.preventDefault(); void this.log_in(); } },
         element('label', {}, element('span', {}, say('user')), this.user_), element('label', {}, element('span', {}, say('password')), this.password_), this.said_, this.submit_);
-    readonly dialog = element('dialog', { class: 'dialog', 'aria-label': say('log_in') }, element('h2', {}, say('who_are_you')), this.who_, this.form_,
+    readonly dialog = small_window({ 'aria-label': say('log_in') }, element('h2', {}, say('who_are_you')), this.who_, this.form_,
         element('div', { class: 'buttons' }, this.leave_, element('button', { type: 'button', class: 'small', onclick: () => this.dialog.close() }, say('close'))));
     private offered_ = false;
 
@@ -25,6 +25,7 @@ export class Account {
         write(this.button, user ? `${user} · ${word('role', role)}` : login ? `${say('log_in')} · ${word('role', role || 'nobody')}` : word('role', role));
         mark(this.button, 'title', say(login ? 'account_hint' : 'account_no_users'));
         this.button.disabled = !login;
+        if (role !== '') this.offered_ = false;
         if (login && role === '' && !this.offered_) this.open();  // without a name there is nothing to see
     }
     private open(): void {
@@ -34,7 +35,7 @@ export class Account {
         this.form_.hidden = user !== '';
         this.leave_.hidden = user === '';
         write(this.said_, '');
-        this.dialog.showModal();
+        this.dialog.show();
         if (!user) this.user_.focus();
     }
     private async log_in(): Promise<void> {

@@ -118,7 +118,8 @@ export class Frame {
                 if (link.stale) {
                     const age = duration((performance.now() - link.fresh_at) / 1000);
                     const why = link.opened ? link.why_stale : say('no_connection');
-                    write(stale, '⚠ ' + (link.fresh_at === 0 ? say('never_banner') : say('stale_banner', { time: link.fresh_since.toLocaleTimeString('en-GB'), age })) + (why ? ` (${why})` : ''));
+                    if (link.login && link.role === '') write(stale, say('login_first'));
+                    else write(stale, '⚠ ' + (link.fresh_at === 0 ? say('never_banner') : say('stale_banner', { time: link.fresh_since.toLocaleTimeString('en-GB'), age })) + (why ? ` (${why})` : ''));
                 }
                 write_state(link.state);
             },

@@ -45,7 +45,7 @@ function show(): void {
     const as = [current_language(), link.machine, entry.name, ...rest].join('\n');
     if (!link.layout && !entry.alone) {
         leave();
-        frame.main.replaceChildren(element('p', { class: 'hint' }, say('never_banner')));
+        frame.main.replaceChildren(element('p', { class: 'hint' }, say(link.login && link.role === '' ? 'login_first' : 'never_banner')));
     } else if (!shown || as !== shown_as) {
         hold.end('blur');
         leave();

@@ -61,3 +61,12 @@ export class Rows<T, R extends { root: Element }> {
             }
     }
 }
+
+/** A small window over the page that leaves everything else as it is: STOP stays in reach. Escape closes it. */
+export function small_window(attributes: Attributes, ...children: (Node | string)[]): HTMLDialogElement {
+    const made = element('dialog', { class: 'dialog', ...attributes }, ...children);
+    made.addEventListener('keydown', (event) => {
+        if (event.key === 'Escape') made.close();
+    });
+    return made;
+}

@@ -5,7 +5,7 @@ import { plain } from '../numbers';
 import { file_time, save_file } from '../save';
 import { AxisLayout, AxisState } from '../state';
 import { current_language, say, word } from '../texts';
-import { element, mark, Rows, write } from '../view';
+import { element, mark, Rows, small_window, write } from '../view';
 
 /** As the machine says it (hmi_bridge/README.md, `drive_parameters`). */
 export interface DriveParameter {
@@ -57,7 +57,7 @@ export class DriveParameters {
     private readonly load_ = element('button', { type: 'button', 'data-do': 'load', onclick: () => this.file_.click() }, say('load_set'));
     private readonly said_ = element('p', { class: 'hint', role: 'status' });
     private readonly body_ = element('tbody');
-    private readonly dialog_ = element('dialog', { class: 'dialog' });
+    private readonly dialog_ = small_window({});
     private readonly inquiry_: Inquiry;
     private readonly rows_: { update(items: readonly DriveParameter[]): void };
     readonly root: HTMLElement;
@@ -146,7 +146,7 @@ export class DriveParameters {
             element('p', { class: 'hint' }, say('write_warning')), element('div', { class: 'buttons' }, element('button', { type: 'submit', class: 'primary', 'data-do': 'confirm' }, say('write_now')),
                 element('button', { type: 'button', onclick: () => this.dialog_.close() }, say('cancel'))));
         this.dialog_.replaceChildren(element('h2', {}, `${this.layout_.name}: ${parameter.id}`), form);
-        this.dialog_.showModal();
+        this.dialog_.show();
         given.select();
     }
     private save(): void {

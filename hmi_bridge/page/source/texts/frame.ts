@@ -34,6 +34,7 @@ export const frame = {
     account_hint: ['Log in or out', '登录或退出'],
     account_no_users: ['The server has no users: everybody at this computer has this role.', '服务器未配置用户:本机所有人都是此角色。'],
     logged_in_as: ['Logged in as {user} ({role}).', '已登录:{user}({role})。'],
+    login_first: ['Log in to see the machine.', '请登录以查看机器。'],
     login_wrong: ['The name or the password is wrong.', '用户名或密码错误。'],
     login_too_often: ['Too many tries. Wait a minute.', '尝试过多,请稍候一分钟。'],
     close: ['Close', '关闭'],
