@@ -44,11 +44,10 @@ export interface Taste {
     language?: 'en' | 'zh';
 }
 
-/** The demo without its programs and happenings: an operator alone with three axes. */
-export const quiet = (yaml: string): string => yaml.replace(/^programs:[\s\S]*?(?=^# --- Safety)/m, '').replace('start_mode: automatic', 'start_mode: manual').replace(/^  events:[\s\S]*$/m, '');
-
 /** The demo with its program, its axes by hand, on a computer that is late at times: that is not what is looked at. */
 export const unhurried = (yaml: string): string => yaml.replace('start_mode: automatic', 'start_mode: manual').replace(/^  events:[\s\S]*$/m, '').replace('overruns_allowed: 10', 'overruns_allowed: 1000, lateness_warning: 900 ms');
+/** Without programs as well: an operator alone with three axes. */
+export const quiet = (yaml: string): string => unhurried(yaml).replace(/^programs:[\s\S]*?(?=^# --- Safety)/m, '');
 
 export class Cell {
     line!: Line;
@@ -157,6 +156,7 @@ export class Cell {
         return ((await this.machine.state())['axes'] as Axis[]).find((axis) => axis.name === name) as Axis;
     }
     async powered_and_homed(name: string): Promise<void> {
+        if ((await this.axis(name)).state === 'ErrorStop') await this.machine.ask({ cmd: 'reset', axis: name });
         await this.machine.ask({ cmd: 'enable', axis: name });
         await until(`${name} has power`, async () => (await this.axis(name)).powered && (await this.axis(name)).state === 'Standstill');
         if ((await this.axis(name)).homed) return;
