@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 import { Doubles } from '@page/scope/base64';
 import { draw_curve } from '@page/scope/curve';
-import { Live, load, Reader } from '@page/scope/pull';
+import { another_run, Live, load, Reader } from '@page/scope/pull';
 import { bit_of, Kind, Signal } from '@page/scope/signals';
 import { Spans } from '@page/scope/spans';
 import { capacity_for, Store } from '@page/scope/store';
@@ -162,16 +162,26 @@ test('a machine that began anew is told, and nothing of it is mixed with the old
     reader.on_restart = () => told++;
     machine.last = 10;
     machine.first = 0;
+    machine.zero_ns = 2e9;
     await live.step();
     assert.equal(told, 1);
     assert.equal(store.newest, 1001);
-    // One that has run as long meanwhile is told by its time.
+    // One that has run as long meanwhile is told by its start.
     machine.last = 2000;
-    machine.zero_ns = 60e9;
-    reader.extent = { first: 0, last: 1000 };
     await live.step();
     assert.equal(told, 2);
     assert.equal(store.newest, 1001);
+});
+
+test('a machine that is late is no other one', () => {
+    const ms = 1e6;
+    // 20 s, each tenth cycle skipped a millisecond; the past is fetched behind the present.
+    assert.ok(!another_run({ cycle: 18_000, zero_ns: 2000 * ms }, { cycle: 100, zero_ns: 10 * ms }, ms));
+    assert.ok(!another_run({ cycle: 100, zero_ns: 10 * ms }, { cycle: 18_000, zero_ns: 99 * ms }, ms));
+    assert.ok(!another_run({ cycle: 0, zero_ns: 0 }, { cycle: 500, zero_ns: 1e15 }, ms));
+    // Ran for 18 s from 0 to 20 s, started again at 21 s.
+    assert.ok(another_run({ cycle: 18_000, zero_ns: 2000 * ms }, { cycle: 5, zero_ns: 21_000 * ms }, ms));
+    assert.ok(another_run({ cycle: 18_000, zero_ns: 2000 * ms }, { cycle: 18_100, zero_ns: 21_000 * ms }, ms));
 });
 
 test('what was overwritten while it was read came as NaN, and is a gap; a NaN that the machine has is none', async () => {

@@ -9,8 +9,16 @@ export type Ask = (request: Request) => Promise<Answer>;
 /** The protocol's bound, and what comes in one answer: a quarter of a megabyte, so that what comes between the answers is not late. */
 const most_signals = 64;
 const most_numbers = 24_000;
-/** Lateness that no run survives. */
-const another_run_ns = 2e9;
+
+/** A cycle and the machine time that cycle 0 would have had, counted back from it: ns. Cycles that are late make it more and more. */
+interface Dated {
+    cycle: number;
+    zero_ns: number;
+}
+/** Cycles count from the start of a run. Another run is told by fewer of them; or, when it has run as long meanwhile, by its start, which lies behind all that the other was seen to do. */
+export function another_run(before: Dated, now: Dated, cycle_ns: number): boolean {
+    return before.cycle > 0 && now.zero_ns - before.zero_ns > 0.9 * before.cycle * cycle_ns + 0.5e9;
+}
 
 export interface Extent {
     first: number;
@@ -35,10 +43,13 @@ export class Reader {
     refusal: Answer['error'] | undefined;
     /** The machine began anew. */
     on_restart: () => void = () => undefined;
-    /** Machine time of cycle 0: ns. Cycles that were late make it a little more with time. */
-    zero_ns: number | undefined;
+    private newest_ = { cycle: 0, zero_ns: 0 };
     private readonly doubles_ = new Doubles();
 
+    /** Of cycle 0: ns. */
+    get zero_ns(): number {
+        return this.newest_.zero_ns;
+    }
     constructor(private readonly ask_: Ask, private readonly recording_: string | undefined, readonly store: Store, private readonly cycle_ns_: number) {}
 
     /** Cycles that one question may be about, for so many signals. */
@@ -60,19 +71,16 @@ export class Reader {
                 return got;
             }
             this.refusal = undefined;
-            const before = this.extent;
             const first = Number(answer['first']), last = Number(answer['last']);
             if (Number.isFinite(first) && Number.isFinite(last)) this.extent = { first, last };
             const begin = Number(answer['from']), end = Number(answer['to']);
             if (answer['per'] !== undefined && Number(answer['per']) !== 1) return got;  // asked for every sample
-            const zero_ns = end > begin ? Number(answer['time_ns'] ?? begin * this.cycle_ns_) - begin * this.cycle_ns_ : this.zero_ns;
-            // Cycles count from the start of a run: another run is told by fewer of them, or by another time of the same cycle.
-            const fewer = before && this.extent && this.extent.last < before.last - 1, other = this.zero_ns !== undefined && zero_ns !== undefined && Math.abs(zero_ns - this.zero_ns) > another_run_ns;
-            if (this.recording_ === undefined && (fewer || other)) {
+            const zero_ns = Number(answer['time_ns'] ?? begin * this.cycle_ns_) - begin * this.cycle_ns_;
+            if (this.recording_ === undefined && (last < this.newest_.cycle || (end > begin && another_run(this.newest_, { cycle: end - 1, zero_ns }, this.cycle_ns_)))) {
                 this.on_restart();
                 return undefined;
             }
-            this.zero_ns = zero_ns;
+            if (end > begin && end > this.newest_.cycle) this.newest_ = { cycle: end - 1, zero_ns };
             // More missing than what lies outside: some were overwritten while they were read, and came as NaN.
             const lost = Number(answer['missing'] ?? 0) > range.to - range.from - (end - begin);
             const data = answer['data'] as string[];

@@ -57,7 +57,7 @@ const time_signal = 'time_s';
 const with_time = (names: readonly string[], signals: Map<string, Signal>): string[] => (names.length > 0 && signals.has(time_signal) && !names.includes(time_signal) ? [...names, time_signal] : [...names]);
 function seconds_of(store: Store, reader: Reader, cycle_ns: number, cycle: number): number {
     const known = store.at(time_signal, cycle);
-    return Number.isNaN(known) ? (cycle * cycle_ns + (reader.zero_ns ?? 0)) / 1e9 : known;
+    return Number.isNaN(known) ? (cycle * cycle_ns + reader.zero_ns) / 1e9 : known;
 }
 
 export class Session {
