@@ -30,7 +30,7 @@ export function trouble(trigger: Trigger, known: (name: string) => boolean): 'sc
     if (trigger.kind !== 'alarm' && !known(trigger.signal)) return 'scope_trigger_no_signal';
     if (has_level(trigger.kind) && (!Number.isFinite(trigger.level) || (has_window(trigger.kind) && !Number.isFinite(trigger.level2)))) return 'scope_trigger_no_number';
     if (has_window(trigger.kind) && !(trigger.level < trigger.level2)) return 'scope_trigger_order';
-    if (trigger.kind === 'bit' && !(Number.isInteger(trigger.bit) && trigger.bit >= 0 && trigger.bit <= 31)) return 'scope_trigger_bit_range';
+    if (trigger.kind === 'bit' && !(Number.isInteger(trigger.bit) && trigger.bit >= 0 && trigger.bit <= 52)) return 'scope_trigger_bit_range';
     if (!(trigger.length_s > 0) || !(trigger.before_percent >= 0 && trigger.before_percent <= 100) || !(trigger.holdoff_s >= 0)) return 'scope_trigger_length';
     return undefined;
 }

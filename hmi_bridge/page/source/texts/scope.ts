@@ -113,7 +113,7 @@ export const scope = {
     scope_trigger_no_signal: ['This machine has no such signal.', '该机器没有此信号。'],
     scope_trigger_no_number: ['A level is no number.', '阈值不是数字。'],
     scope_trigger_order: ['The upper level has to be greater than the level.', '上阈值必须大于阈值。'],
-    scope_trigger_bit_range: ['The bit is a whole number from 0 to 31.', '位必须是 0 到 31 的整数。'],
+    scope_trigger_bit_range: ['The bit is a whole number from 0 to 52.', '位必须是 0 到 52 的整数。'],
     scope_trigger_length: ['The recorded time has to be greater than 0, the part before 0 to 100 %, the hold-off 0 or more.', '记录时长须大于 0,触发前部分为 0 至 100 %,抑制时间不小于 0。'],
     scope_automatic: ['no trigger', '无触发'],
 
