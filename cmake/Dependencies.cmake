@@ -33,3 +33,10 @@ find_path(BOOST_BEAST_INCLUDE_DIR boost/beast.hpp REQUIRED)  # libboost-dev
 add_library(boost_imported INTERFACE)
 target_include_directories(boost_imported SYSTEM INTERFACE "${BOOST_BEAST_INCLUDE_DIR}")
 target_link_libraries(boost_imported INTERFACE Threads::Threads)
+
+# libsodium: a pkg-config file only. Argon2id and random tokens for the page's users.
+find_path(SODIUM_INCLUDE_DIR sodium.h REQUIRED)  # libsodium-dev
+find_library(SODIUM_LIBRARY sodium REQUIRED)
+add_library(sodium_imported INTERFACE)
+target_include_directories(sodium_imported SYSTEM INTERFACE "${SODIUM_INCLUDE_DIR}")
+target_link_libraries(sodium_imported INTERFACE "${SODIUM_LIBRARY}")

@@ -1,8 +1,7 @@
 // taktwerk hmi: serves the page of the machines of this host. A process of its own, without privileges.
 
+#include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <iostream>
 #include <memory>
 #include <string>
 #include <utility>
@@ -11,18 +10,21 @@
 #include <fmt/format.h>
 
 #include "apps/hmi/drop_privileges.hpp"
+#include "apps/hmi/users.hpp"
 #include "apps/taktwerk.hpp"
 #include "apps/terminal/exit_code.hpp"
 #include "apps/terminal/print_error.hpp"
-#include "hmi_bridge/web/web_server.hpp"
+#include "hmi_bridge/web/audit_log.hpp"
+#include "hmi_bridge/web/page_origin.hpp"
+#include "hmi_bridge/web/server/web_server.hpp"
 #include "programs/api/abi.hpp"
 
 namespace taktwerk::apps {
 namespace {
 
 struct HmiOptions {
-    std::string listen, page, audit, role = "engineer";
-    std::vector<std::string> machines;
+    std::string listen, page, audit, users, role = "engineer";
+    std::vector<std::string> machines, names, proxies;
     bool end_with_input = false;
 };
 
@@ -50,6 +52,14 @@ std::string page_folder() {
     return (here.parent_path() / "share" / "taktwerk" / "hmi").string();
 }
 
+Result<std::shared_ptr<hmi::web::AuditLog>> open_audit(const std::string& wanted) {
+    const auto path = wanted.empty() ? hmi::web::default_audit_path() : Result<std::string>(wanted);
+    if (!path) return path.error();
+    auto file = hmi::web::AuditFile::open(*path);
+    if (!file) return std::move(file).error();
+    return std::make_shared<hmi::web::AuditLog>(std::move(*file), [](const Error& error) { print_error(error); });
+}
+
 constexpr std::uint16_t first_port = 8080, last_port = 8099;
 
 /// Where nobody said which port: the first that is free.
@@ -74,14 +84,10 @@ int serve(const HmiOptions& options) {
         print_error(site.error());
         return exit_bad_file;
     }
-    auto audit = std::make_shared<std::ofstream>();
-    if (!options.audit.empty()) {
-        audit->open(options.audit, std::ios::app);
-        if (!*audit) {
-            print_error(
-                Error{"web.audit", options.audit, "the file cannot be written", "Name a file in a folder of this user with --audit."});
-            return exit_bad_file;
-        }
+    const auto audit = open_audit(options.audit);
+    if (!audit) {
+        print_error(audit.error());
+        return exit_bad_file;
     }
     hmi::web::ServerOptions server_options;
     server_options.address = listen->first;
@@ -90,12 +96,19 @@ int serve(const HmiOptions& options) {
     server_options.role = hmi::web::role_of(options.role).value_or(hmi::web::Role::viewer);
     server_options.version = sdk_version;
     server_options.end_with_input = options.end_with_input;
-    server_options.audit = [audit](const std::string& line) { (audit->is_open() ? *audit : std::cout) << line << std::endl; };
+    server_options.users = options.users;
+    server_options.names = options.names;
+    server_options.proxies = options.proxies;
+    server_options.audit = [audit = *audit](const std::string& line) { audit->put(line); };
+    server_options.say = [](const Error& error) { print_error(error); };
     auto server = open_server(server_options, *site, options.listen.empty());
     if (!server) {
         print_error(server.error());
         return server.error().code == "web.no_users" ? exit_usage : exit_bad_file;
     }
+    if (!hmi::web::is_loopback(listen->first) && options.proxies.empty())
+        print_warning(Error{"web.no_tls", options.listen, "passwords and sessions cross the network as they are",
+                            "Put a proxy with TLS before it (docs/hmi-security.md)."});
     fmt::print("the page: http://{}:{}/  (Ctrl-C ends)\n",
                listen->first.find(':') == std::string::npos ? listen->first : "[" + listen->first + "]", (*server)->port());
     std::fflush(stdout);
@@ -112,13 +125,23 @@ void add_hmi(CLI::App& app, Action& action) {
         "--listen", options->listen,
         "ADDRESS:PORT, an address of this host's loopback; port 0: any free one; default: 127.0.0.1 and port 8080 or the next free one");
     sub->add_option("-s,--socket,--machine", options->machines, "a machine's name or its socket, several times; default: all that run");
-    sub->add_option("--role", options->role, "what the page may: viewer, operator, engineer, admin")
+    sub->add_option("--role", options->role, "what the page may where nobody logs in: viewer, operator, engineer, admin")
         ->check(CLI::IsMember({"viewer", "operator", "engineer", "admin"}))
         ->capture_default_str();
     sub->add_option("--page", options->page, "the folder of the page's files");
-    sub->add_option("--audit", options->audit, "each command is written to the end of this file; default: standard output");
+    sub->add_option(
+        "--audit", options->audit,
+        "each command is written to the end of this file; default: hmi-audit.jsonl in /var/log/taktwerk or ~/.local/state/taktwerk");
+    sub->add_option("--users", options->users, "the file of who may log in (`taktwerk hmi user`); default: nobody has to");
+    sub->add_option("--name", options->names,
+                    "another name of this server, as browsers write it: hmi.example, hmi.example:8443; several times");
+    sub->add_option("--proxy", options->proxies,
+                    "the address of a proxy whose X-Forwarded-For and X-Forwarded-Proto are believed; several times");
+    add_hmi_users(*sub, action);
     sub->add_flag("--end-with-input", options->end_with_input, "end when standard input ends: whoever started it is gone then");
-    sub->callback([&action, options] { action = [options] { return serve(*options); }; });
+    sub->callback([&action, options, sub] {
+        if (sub->get_subcommands().empty()) action = [options] { return serve(*options); };
+    });
 }
 
 }  // namespace taktwerk::apps

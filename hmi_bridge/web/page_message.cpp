@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <set>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 
 #include "hmi_bridge/socket/json_fields.hpp"
+#include "hmi_bridge/web/json_text.hpp"
 
 namespace taktwerk::hmi::web {
 namespace {
@@ -18,42 +17,6 @@ using Json = nlohmann::ordered_json;
 
 Error web_error(std::string code, std::string what, std::string remedy) {
     return Error{"web." + std::move(code), "", std::move(what), std::move(remedy)};
-}
-
-/// Before the parser, whose calls nest as the text does.
-bool too_deep(std::string_view text) {
-    int depth = 0;
-    bool quoted = false;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const char c = text[i];
-        if (quoted) {
-            if (c == '\\') ++i;
-            else if (c == '"') quoted = false;
-        } else if (c == '"') quoted = true;
-        else if ((c == '{' || c == '[') && ++depth > PageMessage::deepest) return true;
-        else if (c == '}' || c == ']') --depth;
-    }
-    return false;
-}
-
-struct Parsed {
-    Json json;
-    bool duplicate = false;
-};
-
-Parsed parse_once(std::string_view text) {
-    Parsed parsed;
-    std::vector<std::set<std::string>> keys;
-    parsed.json = Json::parse(
-        text,
-        [&](int, Json::parse_event_t event, Json& value) {
-            if (event == Json::parse_event_t::object_start) keys.emplace_back();
-            else if (event == Json::parse_event_t::object_end) keys.pop_back();
-            else if (event == Json::parse_event_t::key && !keys.back().insert(value.get<std::string>()).second) parsed.duplicate = true;
-            return true;
-        },
-        false);
-    return parsed;
 }
 
 std::optional<std::int64_t> whole_number(const Json& object, const char* key) {
@@ -116,14 +79,11 @@ bool PageMessage::may_move() const {
 std::variant<PageMessage, UnreadMessage> read_page_message(std::string_view text) {
     const auto unread = [](Error error) { return UnreadMessage{std::nullopt, std::move(error)}; };
     if (text.size() > PageMessage::longest) return unread(web_error("too_long", "a message is at most 64 KiB", "Reload the page."));
-    if (too_deep(text)) return unread(web_error("too_deep", "a message has at most 8 levels", "Reload the page."));
-    const auto parsed = parse_once(text);
-    if (parsed.json.is_discarded()) return unread(web_error("not_json", "the message is no JSON", "Reload the page."));
-    if (parsed.duplicate)
-        return unread(web_error("duplicate_key", "a key stands twice: nobody can tell which one is meant", "Reload the page."));
-    if (!parsed.json.is_object()) return unread(web_error("not_an_object", "the message is no JSON object", "Reload the page."));
-    auto read = read_object(parsed.json);
-    if (auto* error = std::get_if<Error>(&read)) return UnreadMessage{whole_number(parsed.json, "id"), std::move(*error)};
+    const auto parsed = read_json(text, PageMessage::deepest);
+    if (!parsed) return unread(parsed.error());
+    if (!parsed->is_object()) return unread(web_error("not_an_object", "the message is no JSON object", "Reload the page."));
+    auto read = read_object(*parsed);
+    if (auto* error = std::get_if<Error>(&read)) return UnreadMessage{whole_number(*parsed, "id"), std::move(*error)};
     return std::get<PageMessage>(std::move(read));
 }
 

@@ -23,6 +23,8 @@ const CommandRule* find_rule(std::string_view command) {
     return found == command_rules.end() ? nullptr : &*found;
 }
 
+bool answers_long(std::string_view command) { return std::find(long_answers.begin(), long_answers.end(), command) != long_answers.end(); }
+
 bool may(Role role, const CommandRule& rule) { return static_cast<int>(role) >= static_cast<int>(rule.least); }
 
 }  // namespace taktwerk::hmi::web

@@ -37,6 +37,12 @@ inline constexpr std::array command_rules{
     CommandRule{"scope_read", Role::viewer, false},
 };
 
+/// Whose answers may be long: they come over a connection of their own, so that they delay neither a stop nor the renewal of a jog.
+inline constexpr std::array<std::string_view, 12> long_answers{
+    "layout",     "scope_signals", "scope_read", "recordings", "recording_signals", "recording_read",
+    "histograms", "bus",           "views",      "view_image", "alarm_history",     "drive_parameters"};
+[[nodiscard]] bool answers_long(std::string_view command);
+
 /// Null: no such command.
 [[nodiscard]] const CommandRule* find_rule(std::string_view command);
 [[nodiscard]] bool may(Role role, const CommandRule& rule);

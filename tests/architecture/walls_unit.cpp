@@ -131,15 +131,20 @@ TEST(OwnedIncludes, LibrariesStayWhereTheyAreWrapped) {
                     {"ecat/coe/sdo.cpp", "#include <pugixml.hpp>\n"},
                     {"runtime/cycle.cpp", "#include <modbus/modbus-tcp.h>\n"},
                     {"hmi_bridge/socket/door.cpp", "#include <boost/asio.hpp>\n"},
+                    {"hmi_bridge/web/page_message.cpp", "#include <boost/beast.hpp>\n"},
+                    {"apps/hmi/hmi.cpp", "#include \"hmi_bridge/web/server/feed.hpp\"\n"},
+                    {"hmi_bridge/web/audit_log.cpp", "#include <sodium.h>\n"},
                     {"core/ring.hpp", "#include <gtest/gtest_prod.h>\n"},
                 }),
                 ElementsAre(HasSubstr("LCM"), HasSubstr("yaml-cpp"), HasSubstr("pugixml"), HasSubstr("libmodbus"), HasSubstr("Boost"),
-                            HasSubstr("a test library")));
+                            HasSubstr("Boost"), HasSubstr("Boost"), HasSubstr("libsodium"), HasSubstr("a test library")));
     EXPECT_NO_VIOLATIONS(check_owned_includes({
         {"hmi_bridge/lcm/publisher.cpp", "#include <lcm/lcm-cpp.hpp>\n"},
         {"config/load.cpp", "#include <yaml-cpp/yaml.h>\n"},
         {"ecat/esi/read.cpp", "#include <pugixml.hpp>\n"},
         {"modbus/tcp/tcp_exchange.cpp", "#include <modbus/modbus.h>\n"},
+        {"hmi_bridge/web/server/feed.hpp", "#include <boost/asio.hpp>\n"},
+        {"apps/hmi/hmi.cpp", "#include \"hmi_bridge/web/server/web_server.hpp\"\n"},
     }));
 }
 

@@ -112,6 +112,8 @@ public:
     }
     bool open_as(std::uint16_t port, const std::string& host, const std::string& origin, const std::string& headers = {},
                  int receive_buffer = 0) {
+        in_.clear();
+        closed_ = false;
         if (!end_.open(port, receive_buffer)) return false;
         end_.write("GET /ws HTTP/1.1\r\nHost: " + host + "\r\nOrigin: " + origin +
                    "\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"

@@ -108,6 +108,25 @@ TEST(PageOutbox, WhatDoesNotFitIsCountedWhereItIsMissing) {
     EXPECT_FALSE(out.put(std::string(Outbox::most_bytes, 'x')));
 }
 
+TEST(PageOutbox, ALongAnswerIsOvertakenByWhatIsShortAndTakesTurnsWithTheValues) {
+    Outbox out;
+    const std::string first(Outbox::long_from, 'a'), second(Outbox::most_long_bytes - Outbox::long_from, 'b');
+    EXPECT_TRUE(out.put_answer(first));
+    EXPECT_TRUE(out.put_answer(second));
+    EXPECT_TRUE(out.put_answer("short"));
+    const auto values = std::make_shared<const std::string>("}");
+    out.put_state(values, Instant{});
+    EXPECT_EQ(*out.next(Instant{}), "short");
+    EXPECT_EQ(*out.next(Instant{}), R"({"type":"state","age_ms":0,})");
+    out.put_state(values, Instant{});
+    EXPECT_EQ(*out.next(Instant{}), first);
+    EXPECT_EQ(*out.next(Instant{}), R"({"type":"state","age_ms":0,})");
+    EXPECT_FALSE(out.put_answer(std::string(Outbox::most_long_bytes, 'c'))) << "beside the second it does not fit, nor among the short";
+    EXPECT_EQ(*out.next(Instant{}), R"({"type":"gap","missed":1})");
+    EXPECT_EQ(*out.next(Instant{}), second);
+    EXPECT_TRUE(out.empty());
+}
+
 PageMessage message_of(const std::string& text) {
     auto read = read_page_message(text);
     if (const auto* unread = std::get_if<UnreadMessage>(&read)) ADD_FAILURE() << text << ": " << unread->error.text();

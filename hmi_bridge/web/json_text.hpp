@@ -1,0 +1,17 @@
+#pragma once
+// JSON from a stranger: bounded in depth before the parser, whose calls nest as the text does; a key that stands twice is an error. Nothing throws.
+
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+#include "core/result.hpp"
+
+namespace taktwerk::hmi::web {
+
+/// Errors: web.too_deep, web.not_json, web.duplicate_key.
+[[nodiscard]] Result<nlohmann::ordered_json> read_json(std::string_view text, int deepest);
+/// RFC 3629: no surrogates, nothing overlong.
+[[nodiscard]] bool is_utf8(std::string_view text);
+
+}  // namespace taktwerk::hmi::web

@@ -1,0 +1,32 @@
+#pragma once
+// What a page is told first, and again when something of it has changed (../README.md). Included by web_server.cpp alone.
+
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "hmi_bridge/web/server/site.hpp"
+
+namespace taktwerk::hmi::web {
+
+/// `feed`: the machine that the page watches, null: none. `role`: nothing, where people log in and nobody has.
+inline std::string hello_text(const Site& site, const Feed* feed, std::optional<Role> role, const std::string& user) {
+    auto may_give = Json::array();
+    for (const auto& rule : command_rules)
+        if (role && may(*role, rule)) may_give.push_back(rule.command);
+    const Json known{{"type", "hello"},
+                     {"protocol", 1},
+                     {"version", site.options.version},
+                     {"role", role ? word(*role) : std::string_view{}},
+                     {"user", user},
+                     {"login", site.accounts.needed()},
+                     {"may", std::move(may_give)},
+                     {"machines", role ? site.feeds.list() : Json::array()},
+                     {"machine", feed != nullptr ? feed->name() : std::string{}},
+                     {"source", "socket"}};
+    auto text = text_of(known);
+    text.pop_back();
+    return text + ",\"layout\":" + (feed != nullptr ? feed->layout() : std::string("null")) + "}";
+}
+
+}  // namespace taktwerk::hmi::web

@@ -1,0 +1,46 @@
+#pragma once
+// What all connections of the server share. Included by web_server.cpp alone.
+
+#include <functional>
+#include <list>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "hmi_bridge/web/account/accounts.hpp"
+#include "hmi_bridge/web/page_origin.hpp"
+#include "hmi_bridge/web/server/feeds.hpp"
+#include "hmi_bridge/web/server/web_server.hpp"
+#include "hmi_bridge/web/site_files.hpp"
+
+namespace taktwerk::hmi::web {
+
+class PageSession;
+class HttpConnection;
+
+/// From where somebody comes, told apart from what he says of it.
+struct Visitor {
+    std::string from;     ///< address and port, for people
+    std::string address;  ///< for the login gate
+    std::string arrived;  ///< the address of this host that he used
+    bool secure = false;  ///< a trusted proxy says that he came over TLS
+};
+
+struct Site {
+    asio::io_context& io;
+    const ServerOptions& options;
+    const SiteFiles& files;
+    Feeds& feeds;
+    Accounts& accounts;
+    PageOrigin origin;
+    std::string cookie;  ///< its name: cookies know no ports, and a host may serve several
+    std::set<std::shared_ptr<PageSession>> pages{};
+    std::list<std::weak_ptr<HttpConnection>> connections{};  ///< HTTP, the one heard of last at the end
+
+    void audit(Json line) const {
+        if (options.audit) options.audit(text_of(line));
+    }
+};
+
+}  // namespace taktwerk::hmi::web
