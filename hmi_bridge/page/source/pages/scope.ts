@@ -57,7 +57,7 @@ export function scope(desk: Desk, rest: readonly string[]): Page {
     } }, ...spans_s.map((s) => element('option', { value: String(s) }, s < 1 ? `${s * 1000} ms` : `${s} s`)), element('option', { value: '', hidden: true }, ''));
     const own_span = span.lastElementChild as HTMLOptionElement;
     const box = button('scope_box', 'box', () => {
-        stack.box_zoom = !stack.box_zoom;
+        stack.hands.box_zoom = !stack.hands.box_zoom;
         update();
     }, '⬚');
     const cursors = button('scope_cursors', 'cursors', () => {
@@ -77,8 +77,8 @@ export function scope(desk: Desk, rest: readonly string[]): Page {
     } }, say('scope_back_to_live'));
     const hint = element('p', { class: 'hint scope-hint', role: 'status' });
     const panel = element('aside', { class: 'scope-side' });
-    const bar = element('div', { class: 'scope-bar', role: 'toolbar', 'aria-label': say('scope') }, run, span, button('scope_zoom_in', 'zoom_in', () => { stack.remember(); stack.zoom(0.5); }, '+'),
-        button('scope_zoom_out', 'zoom_out', () => { stack.remember(); stack.zoom(2); }, '−'), box, button('scope_back', 'back', () => stack.back(), '↶'), button('scope_all', 'all', () => stack.all(), '↔'), cursors,
+    const bar = element('div', { class: 'scope-bar', role: 'toolbar', 'aria-label': say('scope') }, run, span, button('scope_zoom_in', 'zoom_in', () => { stack.hands.remember(); stack.hands.zoom(0.5); }, '+'),
+        button('scope_zoom_out', 'zoom_out', () => { stack.hands.remember(); stack.hands.zoom(2); }, '−'), box, button('scope_back', 'back', () => stack.hands.back(), '↶'), button('scope_all', 'all', () => stack.hands.all(), '↔'), cursors,
         element('div', { class: 'segments', role: 'group', 'aria-label': say('scope_view') }, ...views), element('span', { class: 'space' }), trigger.status, sides.signals, sides.trigger, sides.files);
     const strip = element('div', { class: 'scope-strip' }, what, back);
     const middle = element('div', { class: 'scope-middle' }, element('div', { class: 'scope-main' }, hint, stack.root, table.root, others.xy.root, others.spectrum.root), panel);
@@ -95,8 +95,8 @@ export function scope(desk: Desk, rest: readonly string[]): Page {
         const target = event.target as HTMLElement;
         if (target.closest('input, select, button, a, .scope-side') || event.altKey || event.metaKey) return;
         const keys: Record<string, () => void> = {
-            ' ': toggle_run, ArrowLeft: () => stack.move(-0.1), ArrowRight: () => stack.move(0.1), PageUp: () => stack.move(-0.9), PageDown: () => stack.move(0.9), '+': () => stack.zoom(0.5), '=': () => stack.zoom(0.5), '-': () => stack.zoom(2),
-            End: () => { session.show_live(); changed(); }, c: () => { session.toggle_cursors(); changed(); }, a: () => stack.all(), Backspace: () => stack.back(),
+            ' ': toggle_run, ArrowLeft: () => stack.hands.move(-0.1), ArrowRight: () => stack.hands.move(0.1), PageUp: () => stack.hands.move(-0.9), PageDown: () => stack.hands.move(0.9), '+': () => stack.hands.zoom(0.5), '=': () => stack.hands.zoom(0.5), '-': () => stack.hands.zoom(2),
+            End: () => { session.show_live(); changed(); }, c: () => { session.toggle_cursors(); changed(); }, a: () => stack.hands.all(), Backspace: () => stack.hands.back(),
         };
         const act = keys[event.key];
         if (!act) return;
@@ -129,7 +129,7 @@ export function scope(desk: Desk, rest: readonly string[]): Page {
         run.hidden = scene !== undefined && !live;
         mark(run, 'data-frozen', live && !follow);
         mark(cursors, 'aria-pressed', session.cursors.shown ? 'true' : 'false');
-        mark(box, 'aria-pressed', stack.box_zoom ? 'true' : 'false');
+        mark(box, 'aria-pressed', stack.hands.box_zoom ? 'true' : 'false');
         if (scene && document.activeElement !== span) {
             const shown = scene.view.seconds(scene.view.span), known = spans_s.find((s) => Math.abs(s / shown - 1) < 1e-6);
             write(own_span, time_text(shown, scene.cycle_ns));

@@ -1,8 +1,9 @@
-// The lanes above one another with one time below them, the cursors across, and the hands: wheel, drag, fingers, keys.
+// The lanes above one another with one time below them, the cursors and the marker across.
 import { say } from '../texts';
 import { element, mark, write } from '../view';
 import { colour_of, dash_of, is_dark } from './colours';
 import { time_text } from './cursors';
+import { Hands } from './hands';
 import { band_height, LaneChart, Look, right_room, scale_width } from './lane_chart';
 import { Lane, lanes_of, Range } from './lanes';
 import { Channel, key_of } from './signals';
@@ -42,11 +43,9 @@ export function sample_of(channel: Channel): HTMLCanvasElement {
 
 export class Stack {
     readonly root = element('div', { class: 'scope-stack' });
-    readonly surface = element('div', { class: 'scope-surface', tabindex: '0', role: 'application', 'aria-label': say('scope_picture') });
+    readonly hands: Hands;
     private readonly lanes_ = element('div', { class: 'scope-lanes' });
-    private readonly select_ = element('div', { class: 'scope-select', hidden: true });
     private readonly marker_ = element('div', { class: 'scope-marker', hidden: true }, element('span'));
-    private readonly lines_ = { a: this.cursor_line('a'), b: this.cursor_line('b') };
     private readonly scroll_ = element('div', { class: 'scope-scroll-lanes' });
     private readonly time_ = element('div', { class: 'scope-time' });
     private time_chart_: LaneChart | undefined;
@@ -54,14 +53,14 @@ export class Stack {
     private made_of_ = '';
     private drawn_ = '';
     private scene_: Scene | undefined;
-    /** A drag draws a box to zoom into, instead of moving the time. */
-    box_zoom = false;
-    /** Views to come back to. */
-    private readonly past_: { from: number; to: number; follow: boolean }[] = [];
 
     constructor(private readonly session_: Session, private readonly changed_: () => void, private readonly chosen_: (key: string) => void) {
-        this.surface.append(this.select_, this.marker_, this.lines_.a, this.lines_.b);
-        this.scroll_.append(this.lanes_, this.surface);
+        this.hands = new Hands(session_, () => this.width, () => {
+            this.changed_();
+            this.draw();
+        });
+        this.hands.surface.append(this.marker_);
+        this.scroll_.append(this.lanes_, this.hands.surface);
         this.root.append(this.scroll_, this.time_);
         this.listen();
         new ResizeObserver(() => this.draw(true)).observe(this.root);
@@ -110,7 +109,7 @@ export class Stack {
             row.chart.set_size(Math.max(120, width), tall);
         }
         this.time_chart_?.set_size(Math.max(120, width), time_height);
-        this.surface.style.height = `${Math.max(height, Math.floor(total))}px`;
+        this.hands.surface.style.height = `${Math.max(height, Math.floor(total))}px`;
     }
 
     /** Draws what has changed; cheap where nothing has. */
@@ -119,7 +118,7 @@ export class Stack {
         const known = (name: string) => scene?.signals.get(name);
         const made_of = JSON.stringify([setup.channels, scene?.kind, scene?.title, is_dark(), setup.channels.map((c) => known(c.name)?.unit)]);
         if (made_of !== this.made_of_ || scene !== this.scene_) {
-            if (scene !== this.scene_) this.past_.length = 0;
+            if (scene !== this.scene_) this.hands.forget();
             this.made_of_ = made_of;
             this.scene_ = scene;
             this.make(lanes_of(setup.channels, known));
@@ -149,7 +148,7 @@ export class Stack {
             write(this.marker_.firstElementChild as Element, `${scene.marker.kind === 'alarm' ? '⚠' : 'T'} ${scene.marker.kind === 'automatic' ? say('scope_automatic') : scene.marker.text}`);
         }
         for (const which of ['a', 'b'] as const) {
-            const line = this.lines_[which];
+            const line = this.hands.lines[which];
             this.place(line, cursors.shown ? cursors[which] : undefined);
             mark(line, 'aria-valuenow', String(cursors[which]));
             mark(line, 'aria-valuetext', `${which.toUpperCase()} ${this.time_of(cursors[which])}`);
@@ -161,7 +160,7 @@ export class Stack {
         line.hidden = part < 0 || part > 1;
         line.style.transform = `translateX(${(part * this.width).toFixed(1)}px)`;
     }
-    get width(): number {
+    private get width(): number {
         return this.scroll_.clientWidth - left_room - right_room;
     }
     /** From above to below, the time last. */
@@ -179,141 +178,7 @@ export class Stack {
         return (this.session_.scene?.marker && seconds > 0 ? '+' : '') + (Number(text) === 0 ? text.replace('-', '') : text.replace('-', '−')) + ' s';
     }
 
-    // --- hands -----------------------------------------------------------------------------------------------------------------
-    private get view() {
-        return this.session_.scene?.view;
-    }
-    remember(): void {
-        const view = this.view;
-        if (!view) return;
-        this.past_.push({ from: view.from, to: view.to, follow: view.follow });
-        if (this.past_.length > 50) this.past_.shift();
-    }
-    back(): void {
-        const was = this.past_.pop(), view = this.view;
-        if (!was || !view) return;
-        view.follow = was.follow;
-        view.show(was.from, was.to);
-        view.tie(this.session_.scene?.store.newest ?? 0);
-        this.moved();
-    }
-    zoom(factor: number, part = 0.5): void {
-        this.view?.zoom(factor, part);
-        this.moved();
-    }
-    move(part: number): void {
-        this.view?.move(part);
-        this.moved();
-    }
-    /** All that is there. */
-    all(): void {
-        const scene = this.session_.scene;
-        if (!scene) return;
-        this.remember();
-        const firsts = [...scene.store.tracks.values()].map((t) => t.have.list[0]?.from ?? Infinity);
-        const first = Math.min(...firsts);
-        if (!Number.isFinite(first)) return;
-        scene.view.show(first, scene.store.newest);
-        this.moved();
-    }
-    private moved(): void {
-        this.session_.changed();
-        this.changed_();
-        this.draw();
-    }
-    private part(client_x: number): number {
-        const box = this.surface.getBoundingClientRect();
-        return Math.min(1, Math.max(0, (client_x - box.left) / Math.max(1, this.width)));
-    }
-    private cycle_at(client_x: number): number {
-        const view = this.view;
-        return view ? Math.round(view.from + view.span * this.part(client_x)) : 0;
-    }
-    private cursor_line(which: 'a' | 'b'): HTMLElement {
-        const line = element('div', { class: `scope-cursor ${which}`, role: 'slider', tabindex: '0', hidden: true, 'data-cursor': which, 'aria-label': say('scope_cursor', { which: which.toUpperCase() }),
-            onkeydown: (event: KeyboardEvent) => {
-                const step = event.key === 'ArrowLeft' ? -1 : event.key === 'ArrowRight' ? 1 : 0;
-                if (step === 0) return;
-                event.preventDefault();
-                event.stopPropagation();
-                this.session_.cursors[which] += step * (event.shiftKey ? 10 : 1) * (event.ctrlKey ? 100 : 1);
-                this.moved();
-            },
-            onpointerdown: (event: PointerEvent) => {
-                event.preventDefault();
-                event.stopPropagation();
-                line.focus();
-                line.setPointerCapture(event.pointerId);
-            },
-            onpointermove: (event: PointerEvent) => {
-                if (!line.hasPointerCapture(event.pointerId)) return;
-                event.stopPropagation();
-                this.session_.cursors[which] = this.cycle_at(event.clientX);
-                this.changed_();
-                this.draw();
-            },
-        }, element('span', {}, which.toUpperCase()));
-        return line;
-    }
-
     private listen(): void {
-        const surface = this.surface;
-        surface.addEventListener('wheel', (event) => {
-            event.preventDefault();
-            if (event.shiftKey || Math.abs(event.deltaX) > Math.abs(event.deltaY)) this.move(((event.deltaX || event.deltaY) / 100) * 0.1);
-            else this.zoom(1.25 ** (event.deltaY / 100), this.part(event.clientX));
-        }, { passive: false });
-        const fingers = new Map<number, number>();
-        let start: { x: number; from: number; to: number; box: boolean } | undefined;
-        surface.addEventListener('pointerdown', (event) => {
-            if (event.button !== 0) return;
-            event.preventDefault();
-            surface.focus({ preventScroll: true });
-            surface.setPointerCapture(event.pointerId);
-            fingers.set(event.pointerId, event.clientX);
-            const view = this.view;
-            if (!view) return;
-            if (fingers.size === 1) {
-                this.remember();
-                start = { x: event.clientX, from: view.from, to: view.to, box: this.box_zoom || event.shiftKey };
-            } else start = undefined;
-        });
-        surface.addEventListener('pointermove', (event) => {
-            const view = this.view, before = fingers.get(event.pointerId);
-            if (before === undefined || !view) return;
-            if (fingers.size === 2) {  // pinch
-                const other = [...fingers].find(([id]) => id !== event.pointerId)?.[1] ?? 0;
-                const now = Math.abs(event.clientX - other), was = Math.abs(before - other);
-                if (now > 10 && was > 10) this.zoom(was / now, this.part((event.clientX + other) / 2));
-            } else if (start?.box) {
-                const box = surface.getBoundingClientRect();
-                this.select_.hidden = false;
-                this.select_.style.left = `${Math.max(0, Math.min(start.x, event.clientX) - box.left)}px`;
-                this.select_.style.width = `${Math.abs(event.clientX - start.x)}px`;
-            } else if (start && Math.abs(event.clientX - start.x) > 3) {
-                const by = ((start.x - event.clientX) / this.width) * (start.to - start.from);
-                view.follow = false;
-                view.show(start.from + by, start.to + by);
-                this.moved();
-            }
-            fingers.set(event.pointerId, event.clientX);
-        });
-        const end = (event: PointerEvent): void => {
-            if (!fingers.delete(event.pointerId)) return;
-            const view = this.view;
-            if (start?.box && view && Math.abs(event.clientX - start.x) > 6) {
-                const a = this.part(Math.min(start.x, event.clientX)), b = this.part(Math.max(start.x, event.clientX));
-                const { from, span } = view;
-                view.follow = false;
-                view.show(from + span * a, from + span * b);
-                this.moved();
-            } else if (start && Math.abs(event.clientX - start.x) <= 3) this.past_.pop();
-            this.select_.hidden = true;
-            start = undefined;
-        };
-        surface.addEventListener('pointerup', end);
-        surface.addEventListener('pointercancel', end);
-        surface.addEventListener('dblclick', () => this.back());
         // Over the numbers of a scale the wheel zooms the values.
         this.lanes_.addEventListener('wheel', (event) => {
             const row = this.rows_.find((r) => r.root.contains(event.target as Node));
@@ -335,7 +200,9 @@ export class Stack {
             delete this.session_.setup.scales[key];
             this.rows_.find((row) => row.chart.lane.key === key)?.chart.forget_range();
         }
-        this.moved();
+        this.session_.changed();
+        this.changed_();
+        this.draw();
     }
     range_of(key: string): Range | undefined {
         return this.rows_.find((row) => row.chart.lane.key === key)?.chart.range;
