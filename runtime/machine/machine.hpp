@@ -19,6 +19,7 @@
 #include "ecat/transport/transport.hpp"
 #include "modbus/line/serial_line.hpp"
 #include "modbus/tcp/exchange.hpp"
+#include "runtime/cycle_histograms.hpp"
 #include "runtime/cycle_tick.hpp"
 #include "runtime/machine_config.hpp"
 #include "runtime/operator_command.hpp"
@@ -129,6 +130,8 @@ public:
     /// Times per step (Step order), for benchmarks and the monitor. Read by the cycle thread, or when it stands.
     [[nodiscard]] const StepStatistics<step_count - 1>& step_statistics() const noexcept;
     void reset_step_statistics() noexcept;
+    /// Any thread.
+    [[nodiscard]] MachineTimes times() const noexcept;
 
     [[nodiscard]] const MachineConfig& config() const noexcept;
     [[nodiscard]] const MachineLayout& layout() const noexcept;
