@@ -131,6 +131,7 @@ void put_alarms(JsonWriter& json, const runtime::Snapshot& snapshot, const Machi
         json.field("cause", words.cause);
         json.field("remedy", words.remedy);
         json.field("reset", words.reset);
+        json.field("manual", words.manual);
         json.close('}');
     }
 }

@@ -34,6 +34,7 @@ struct AlarmText {
     std::string source;  ///< "axis x", "slave 2 'y_drive'", "machine"
     std::string name, english, chinese, cause, remedy;
     std::string reaction, reset;
+    std::string manual{};  ///< of a drive's own alarm: its profile and the section of its manual, "sv33-e 5.4"
 };
 
 class Machine {
