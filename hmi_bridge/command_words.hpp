@@ -31,10 +31,16 @@ enum class CommandKind : std::int32_t {
     set_output,
     acknowledge,
     shutdown,
+    force,
+    unforce,
+    release_forces,
+    override_velocity,
+    reset_peaks,
+    reset_statistics,
 };
 
-/// What a command acts on. `_or_all`: also "all".
-enum class TargetKind : std::uint8_t { none, axis, axis_or_all, program, parameter, output };
+/// What a command acts on. `_or_all`: also "all". point: an input or an output, as its request says.
+enum class TargetKind : std::uint8_t { none, axis, axis_or_all, program, parameter, output, input, point };
 
 struct CommandWord {
     CommandKind kind;
@@ -45,7 +51,7 @@ struct CommandWord {
     std::string_view doc;
 };
 
-inline constexpr std::array<CommandWord, 17> command_words{{
+inline constexpr std::array<CommandWord, 23> command_words{{
     {CommandKind::take_control, "take_control", runtime::OperatorAction::take_control, TargetKind::axis_or_all, "", "",
      "become the owner; an axis that moves for another stops first"},
     {CommandKind::release_control, "release_control", runtime::OperatorAction::release_control, TargetKind::axis_or_all, "", "",
@@ -69,6 +75,17 @@ inline constexpr std::array<CommandWord, 17> command_words{{
      "only while no program runs, not in automatic mode"},
     {CommandKind::acknowledge, "acknowledge", runtime::OperatorAction::acknowledge_alarms, TargetKind::none, "", "", "all alarms"},
     {CommandKind::shutdown, "shutdown", runtime::OperatorAction::shutdown, TargetKind::none, "", "", "stop the axes, power off, end"},
+    {CommandKind::force, "force", runtime::OperatorAction::force, TargetKind::point, "value", "",
+     "put a value in place of an input's or an output's, until it is released or the client goes"},
+    {CommandKind::unforce, "unforce", runtime::OperatorAction::unforce, TargetKind::point, "", "", "that one shows its own value again"},
+    {CommandKind::release_forces, "release_forces", runtime::OperatorAction::release_forces, TargetKind::none, "", "",
+     "all of them, whoever forced them"},
+    {CommandKind::override_velocity, "override", runtime::OperatorAction::override_velocity, TargetKind::axis_or_all, "value", "",
+     "0 to 1, the operator's factor on every commanded velocity; 0 halts"},
+    {CommandKind::reset_peaks, "reset_peaks", runtime::OperatorAction::reset_peaks, TargetKind::axis_or_all, "", "",
+     "the peaks of the following error begin anew"},
+    {CommandKind::reset_statistics, "reset_statistics", runtime::OperatorAction::reset_statistics, TargetKind::none, "", "",
+     "maxima and histograms of cycle and tasks begin anew"},
 }};
 
 namespace command_word_check {
@@ -76,7 +93,7 @@ namespace command_word_check {
 consteval bool sound() {
     for (std::size_t i = 0; i < command_words.size(); ++i)
         if (static_cast<std::size_t>(command_words[i].kind) != i + 1 || command_words[i].word.empty()) return false;
-    return static_cast<std::size_t>(CommandKind::shutdown) == command_words.size();
+    return static_cast<std::size_t>(CommandKind::reset_statistics) == command_words.size();
 }
 static_assert(sound());
 }  // namespace command_word_check

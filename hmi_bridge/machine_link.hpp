@@ -29,9 +29,13 @@ public:
     };
     /// Of an axis of the layout. Lives as long as the machine.
     [[nodiscard]] virtual Drive drive(std::uint16_t axis) = 0;
+    /// For diagnosis: its scripts may be asked to carry more. nullptr: there is none.
+    [[nodiscard]] virtual ecat::Master* bus() { return nullptr; }
     // --- any thread (layout(), too) ---
     /// Every signal of the newest cycles; nullptr: this machine keeps none. Lives as long as the machine.
     [[nodiscard]] virtual const runtime::SignalRows* signals() const { return nullptr; }
+    /// Of the cycle and the tasks; empty where there are none.
+    [[nodiscard]] virtual runtime::MachineTimes times() const { return {}; }
     /// Levels, never queued, never refused: they work before the first cycle too (runtime/stop_levels.hpp). `axis`: all_axes, or of the layout.
     virtual runtime::StopLevels::Ticket request_stop(std::uint16_t axis) = 0;
     virtual runtime::StopLevels::Ticket release_jog(std::uint16_t axis) = 0;

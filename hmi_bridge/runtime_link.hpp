@@ -23,6 +23,8 @@ public:
         return {port, port ? machine_.config().axes[axis].profile.get() : nullptr};
     }
     [[nodiscard]] const runtime::SignalRows* signals() const override { return &machine_.signals(); }
+    [[nodiscard]] ecat::Master* bus() override { return &machine_.bus(); }
+    [[nodiscard]] runtime::MachineTimes times() const override { return machine_.times(); }
     runtime::StopLevels::Ticket request_stop(std::uint16_t axis) override { return machine_.request_stop(axis); }
     runtime::StopLevels::Ticket release_jog(std::uint16_t axis) override { return machine_.release_jog(axis); }
     runtime::StopLevels::Ticket request_shutdown() override { return machine_.request_shutdown(); }

@@ -30,6 +30,7 @@ enum class MachineAlarm : AlarmId {
     input_out_of_limits = 0x6017,
     output_no_number = 0x6018,
     group_pulled = 0x6019,
+    points_forced = 0x601A,
 };
 /// First number of input_faulty: what its terminal says.
 inline constexpr double input_error = 0, input_underrange = 1, input_overrange = 2, input_no_number = 3;
@@ -38,7 +39,7 @@ inline constexpr double emergency_stop_unread = 1;
 
 [[nodiscard]] constexpr AlarmId id(MachineAlarm alarm) noexcept { return static_cast<AlarmId>(alarm); }
 
-inline constexpr std::array<AlarmInfo, 21> machine_alarms{{
+inline constexpr std::array<AlarmInfo, 22> machine_alarms{{
     {id(MachineAlarm::emergency_stop), "emergency_stop", "Emergency stop: the axes stop along their ramps, then power goes off",
      "急停:各轴沿减速斜坡停止,随后断开动力", "The emergency stop button is pressed, or its circuit is open",
      "Release the button, `taktwerk reset`, then enable again or `taktwerk start`", ResetRule::acknowledge, Reaction::power_off,
@@ -213,6 +214,15 @@ inline constexpr std::array<AlarmInfo, 21> machine_alarms{{
      "Status "
      "before it uncouples",
      ResetRule::reset, Reaction::stop_axis, "The drives of the group have lost the bus: they stop by their own watchdogs"},
+    {id(MachineAlarm::points_forced),
+     "points_forced",
+     "Points are forced: {a} inputs, {b} outputs do not show or do what the machine and its programs say",
+     "有点被强制:{a} 个输入、{b} 个输出与机器和程序的实际状态不符",
+     "Somebody put values in place of theirs (`taktwerk force`, the page of inputs and outputs)",
+     "`taktwerk unforce`, or let who forced them end his session; `state` tells which points and who",
+     ResetRule::self_clearing,
+     Reaction::warn,
+     {}},
 }};
 static_assert(alarm_table_is_sound(machine_alarms));
 

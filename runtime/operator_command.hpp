@@ -45,6 +45,15 @@ enum class OperatorAction : std::uint8_t {
     acknowledge_alarms,
     shutdown,         ///< stop axes, power off, end
     release_outputs,  ///< those that this client has set go to their safe values: it is gone
+    force,            ///< index = point, flag = an output; value, as set_output. In every mode, also while programs run. Holds until it is
+                      ///< released, the client goes, the run ends; of an output also until the emergency stop is pressed [bad_value;
+                      ///< not_possible_now (interlocked): an output while the emergency stop holds; not_possible_now (not_supported): the
+                      ///< point is kept (kept_points.hpp); not_possible_now (queue_full): max_forces are in force]
+    unforce,          ///< index = point, flag = an output; whoever forced it
+    release_forces,   ///< all; flag: those of this client alone, it is gone
+    override_velocity,  ///< axis or all; value = 0 to 1, whoever owns it; stays until it is changed [bad_value]
+    reset_peaks,        ///< axis or all: the peaks of its following error begin anew
+    reset_statistics,   ///< of the cycle and the tasks: maxima and histograms begin anew
 };
 
 /// One command. Trivially copyable: goes through a ring.

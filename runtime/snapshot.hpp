@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "axes/axis/axis_view.hpp"
@@ -14,6 +16,7 @@
 #include "ecat/master.hpp"
 #include "programs/api/program.hpp"
 #include "runtime/command_events.hpp"
+#include "runtime/forced_point.hpp"
 #include "runtime/machine_config.hpp"
 #include "runtime/passed_alarms.hpp"
 
@@ -50,6 +53,11 @@ struct TaskStatistics {
     Duration run{}, run_max{};
 };
 
+/// Of an axis' following error over all cycles since the start, or since people have begun anew. u; both 0: none so far.
+struct FollowingPeak {
+    double minimum = 0, maximum = 0;
+};
+
 struct Snapshot {
     std::uint64_t cycle = 0;
     Instant at{};  ///< scan time of that cycle
@@ -62,9 +70,12 @@ struct Snapshot {
     CycleStatistics statistics;
     std::vector<ecat::SlaveHealth> slaves;
     std::vector<axes::AxisView> axes;
-    std::vector<std::int64_t> inputs, outputs;  ///< one per I/O point, in configuration order of that direction: raw words
-    std::vector<PointValue> input_values;       ///< the same in their units
+    std::vector<FollowingPeak> following_peaks;  ///< one per axis
+    std::vector<std::int64_t> inputs, outputs;   ///< one per I/O point, in configuration order of that direction: raw words
+    std::vector<PointValue> input_values;        ///< the same in their units
     std::vector<double> output_values;
+    std::array<ForcedPoint, max_forces> forces{};  ///< the first force_count are valid, oldest first
+    std::size_t force_count = 0;
     std::vector<double> parameters;
     std::vector<double> variables;  ///< monitored variables of all programs
     std::vector<ProgramState> programs;
@@ -99,6 +110,14 @@ struct MachineLayout {
         int drive_axis = 0;                   ///< of that drive, from 0
         std::string group{};                  ///< of hot connect, that the drive is in; empty: always there
         std::vector<std::string> programs{};  ///< those that declare it: only one of them may command it
+        // As configured: u, u/s, u/s2, u/s3; infinity = none. What holds now is in the axis' parameters.
+        double position_min = -std::numeric_limits<double>::infinity(), position_max = std::numeric_limits<double>::infinity();
+        double velocity_limit = 0, acceleration_limit = 0, deceleration = 0;
+        double jerk_limit = std::numeric_limits<double>::infinity();
+        double following_window = std::numeric_limits<double>::infinity();
+        double in_position_window = 0;
+        double modulo = 0;  ///< 0 = a linear axis
+        axes::HomingKind homing = axes::HomingKind::none;
     };
     struct Block {
         std::string name;  ///< program.block
@@ -116,6 +135,7 @@ struct MachineLayout {
     std::vector<Block> blocks;
     std::vector<std::string> slaves, inputs, outputs, programs, tasks;
     std::vector<std::string> input_units, output_units;  ///< one per point; empty: the number itself
+    std::vector<std::string> kept_inputs, kept_outputs;  ///< one per point: why nobody may force it; empty: may be forced
     std::vector<Variable> variables;
     std::vector<ParameterInfo> parameters;
 };

@@ -146,6 +146,7 @@ private:
              {std::pair{"axis_limit", "at the axis' limit"}, std::pair{"manual_speed", "held to manual speed"},
               std::pair{"override_factor", "held by the override"}, std::pair{"software_limit", "brakes for a software limit"}})
             if (limiter == word) text += fmt::format("  {}", shown);
+        if (const double factor = axis.value("operators_override", 1.0); factor < 1) text += fmt::format("  override {:g} %", 100 * factor);
         if (axis.at("disabled").get<bool>()) text += "  left out";
         else if (const auto presence = axis.value("presence", std::string{}); presence == "absent" || presence == "joining")
             text += fmt::format("  {} {}", axis.at("group").get<std::string>(), presence == "joining" ? "is joining" : "is not connected");
@@ -227,7 +228,8 @@ private:
             const bool inputs = std::string_view(key) == "inputs";
             const auto units = state_.value(inputs ? "input_units" : "output_units", Json::object());
             for (const auto& [name, value] : state_.at(key).items())
-                words.push_back(point(name, value, units) + (inputs && is_doubtful(name) ? "?" : ""));
+                words.push_back(point(name, value, units) + (inputs && is_doubtful(name) ? "?" : "") +
+                                (is_forced(name, inputs ? "input" : "output") ? " FORCED" : ""));
             if (!words.empty()) wrap(out, title, words);
         }
         return out;
@@ -242,6 +244,12 @@ private:
     bool is_doubtful(const std::string& input) const {
         const auto names = state_.value("doubtful_inputs", Json::array());
         return std::find(names.begin(), names.end(), Json(input)) != names.end();
+    }
+
+    bool is_forced(const std::string& name, std::string_view direction) const {
+        for (const auto& force : state_.value("forced", Json::array()))
+            if (force.at("point") == name && force.at("direction") == direction) return true;
+        return false;
     }
 
     static std::string value(const char* before, const Json& variable) {

@@ -1,8 +1,9 @@
-// taktwerk enable | disable | home | reset | stop | start | mode | set | output | ack | shutdown | control: one command to a running
+// taktwerk enable | disable | home | reset | stop | start | mode | set | output | force | override | ack | shutdown | control: one command to a running
 // machine, one answer. Jogging is in jog.cpp.
 
 #include <algorithm>
 #include <cstdio>
+#include <cstring>
 #include <thread>
 
 #include <fmt/format.h>
@@ -177,25 +178,72 @@ int set(const Order& order, hmi::Client& client) {
     return send(order, client, {{"cmd", "set_parameter"}, {"parameter", order.target}, {"value", *value}},
                 fmt::format("{} = {:g}", order.target, *value));
 }
-/// It is safe again when its client goes: so this one stays.
-int output(const Order& order, hmi::Client& client) {
-    const auto state = state_of(client);
-    const auto unit = state ? state->value("output_units", nlohmann::ordered_json::object()).value(order.target, "") : std::string{};
-    const auto value = config::value_in(order.value, unit);
-    if (!value) return report(order.remote, value.error());
-    const auto answer = client.request({{"cmd", "set_output"}, {"output", order.target}, {"value", *value}});
-    if (!answer) return report(order.remote, answer.error());
+/// What ends with its client: so this one stays.
+int hold(const Order& order, hmi::Client& client, const std::string& what, const std::string& done) {
     watch_stop_signals();
     SystemClock clock;
     const auto start = clock.now();
-    if (order.hold_s <= 0 && !order.remote.json)
-        fmt::print("output {} = {:g}{}{} until Ctrl-C\n", order.target, *value, unit.empty() ? "" : " ", unit);
+    if (order.hold_s <= 0 && !order.remote.json) fmt::print("{} until Ctrl-C\n", what);
     std::fflush(stdout);
     while (!stop_requested() && (order.hold_s <= 0 || clock.now() - start < from_seconds(order.hold_s))) {
         if (const auto alive = client.request({{"cmd", "hello"}}); !alive) return report(order.remote, alive.error());
         std::this_thread::sleep_for(50ms);
     }
-    return report(order.remote, fmt::format("output {} goes back to its safe value", order.target));
+    return report(order.remote, done);
+}
+/// A point's value as written, in its unit; and that as people read it.
+struct PointText {
+    double value = 0;
+    std::string text;
+};
+Result<PointText> point_value(const Order& order, hmi::Client& client, const char* units) {
+    const auto state = state_of(client);
+    const auto unit = state ? state->value(units, nlohmann::ordered_json::object()).value(order.target, "") : std::string{};
+    const auto value = config::value_in(order.value, unit);
+    if (!value) return value.error();
+    return PointText{*value, fmt::format("{:g}{}{}", *value, unit.empty() ? "" : " ", unit)};
+}
+int output(const Order& order, hmi::Client& client) {
+    const auto value = point_value(order, client, "output_units");
+    if (!value) return report(order.remote, value.error());
+    const auto answer = client.request({{"cmd", "set_output"}, {"output", order.target}, {"value", value->value}});
+    if (!answer) return report(order.remote, answer.error());
+    return hold(order, client, fmt::format("output {} = {}", order.target, value->text),
+                fmt::format("output {} goes back to its safe value", order.target));
+}
+/// An input, or an output where no input has that name.
+Result<std::string> direction_of(const Order& order, hmi::Client& client) {
+    const auto layout = layout_of(client);
+    if (!layout) return layout.error();
+    for (const auto* key : {"inputs", "outputs"})
+        for (const auto& name : layout->at(key))
+            if (name == order.target && (order.mode.empty() || order.mode + "s" == key))
+                return std::string(key).substr(0, std::strlen(key) - 1);
+    return order.mode.empty() ? std::string("input") : order.mode;  // the machine says which names there are
+}
+int force(const Order& order, hmi::Client& client) {
+    const auto direction = direction_of(order, client);
+    if (!direction) return report(order.remote, direction.error());
+    const auto value = point_value(order, client, *direction == "input" ? "input_units" : "output_units");
+    if (!value) return report(order.remote, value.error());
+    const auto answer = client.request({{"cmd", "force"}, {*direction, order.target}, {"value", value->value}});
+    if (!answer) return report(order.remote, answer.error());
+    return hold(order, client, fmt::format("{} {} is forced to {}", *direction, order.target, value->text),
+                fmt::format("{} {} is its own again", *direction, order.target));
+}
+int unforce(const Order& order, hmi::Client& client) {
+    if (order.target.empty()) return send(order, client, {{"cmd", "release_forces"}}, "no point is forced any more");
+    const auto direction = direction_of(order, client);
+    if (!direction) return report(order.remote, direction.error());
+    return send(order, client, {{"cmd", "unforce"}, {*direction, order.target}},
+                fmt::format("{} {} is its own again", *direction, order.target));
+}
+int set_override(const Order& order, hmi::Client& client) {
+    const auto percent = config::value_in(order.value, "%");
+    if (!percent) return report(order.remote, percent.error());
+    const auto axis = order.target.empty() ? std::string("all") : order.target;
+    return send(order, client, {{"cmd", "override"}, {"axis", axis}, {"value", *percent / 100}},
+                fmt::format("override of {}: {:g} %", axis, *percent));
 }
 int acknowledge(const Order& order, hmi::Client& client) { return send(order, client, {{"cmd", "acknowledge"}}, "alarms acknowledged"); }
 int shut_down(const Order& order, hmi::Client& client) {
@@ -285,6 +333,22 @@ void add_operate(CLI::App& app, Action& action) {
     add_duration(output_sub, "--for", adder.order->hold_s, "let go after this time; default: at Ctrl-C");
     output_sub.add_option("NAME", adder.order->target, "output point")->required();
     output_sub.add_option("VALUE", adder.order->value, "0 or 1; a number for wider points")->required();
+    auto& force_sub =
+        adder.add("force", "put a value in place of an input's or an output's while this command lives, whatever programs do", force);
+    add_duration(force_sub, "--for", adder.order->hold_s, "let go after this time; default: at Ctrl-C");
+    force_sub.add_option("POINT", adder.order->target, "input or output point")->required();
+    force_sub.add_option("VALUE", adder.order->value, "0 or 1; a number for wider points")->required();
+    const auto which = [&](CLI::App& sub) {
+        sub.add_option("--direction", adder.order->mode, "where an input and an output have that name")
+            ->check(CLI::IsMember({"input", "output"}));
+    };
+    which(force_sub);
+    auto& unforce_sub = adder.add("unforce", "let a point be its own again, whoever forced it", unforce);
+    unforce_sub.add_option("POINT", adder.order->target, "input or output point; default: all");
+    which(unforce_sub);
+    auto& override_sub = adder.add("override", "the operator's factor on commanded velocities: stays until it is changed", set_override);
+    override_sub.add_option("PERCENT", adder.order->value, "0 (halt) to 100 (as commanded)")->required();
+    override_sub.add_option("AXIS", adder.order->target, "axis; default all");
     adder.add("ack", "acknowledge all alarms", acknowledge);
     adder.add("shutdown", "stop the axes, power off, end the runtime", shut_down);
 

@@ -13,6 +13,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/machine/about.hpp"
 #include "apps/machine/crash_line.hpp"
 #include "apps/machine/file_thread.hpp"
 #include "apps/machine/load.hpp"
@@ -226,15 +227,21 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
                    }};
     const auto put = [&out](std::string lines) { out.put(std::move(lines)); };
     MachineLog log{machine, start, options.json, put};
+    // For the page: in text, also what is not printed.
+    const auto tail = std::make_shared<hmi::LogTail>();
+    MachineLog kept{machine, start, false, [tail](const std::string& lines) { tail->add(lines); }};
 
     hmi::RuntimeLink link{machine};
     hmi::HmiOptions bridge_options;
     bridge_options.door = hmi::DoorThread::own;
     bridge_options.log = [&](std::string_view text) {
+        kept.say(clock.now(), "gateway", std::string(text));
         const bool of_the_house = text.ends_with(" connected") || text.starts_with("commands are taken");
         if (options.quiet && of_the_house) return;
         log.say(clock.now(), "gateway", std::string(text));
     };
+    bridge_options.about = about();
+    bridge_options.log_tail = tail;
     std::optional<SimHands> hands;
     if (world) {
         hands.emplace(*world, machine.config());
@@ -329,6 +336,7 @@ int serve_real(Machine& machine, World* world, ecat::BusInterfaces* nic, RunFile
         if (page) page->step();
         judge((*bridge)->snapshot(), code);
         if (!options.quiet) log.step(now, (*bridge)->snapshot());
+        kept.step(now, (*bridge)->snapshot());
         if (const auto* snapshot = (*bridge)->snapshot(); files.evidence && snapshot != nullptr) files.evidence->look(*snapshot);
         time_up = options.duration_s > 0 && to_seconds(now - start) >= options.duration_s;
         if (stop_requested() && !said_stop) {

@@ -85,6 +85,9 @@ public:
     /// The new owner has the axis at once, but it stops before it takes motion. Returning it gives it to the mode's default owner.
     void take_control(Owner owner) noexcept;
     void release_control(Owner owner) noexcept;
+    /// The operator's factor on the velocity, 0 to 1 [invalid_override], whoever owns the axis. It stays until it is changed, and multiplies what
+    /// MC_SetOverride says; it counts where that counts (README.md). 0 halts the axis in its motion, which goes on with more.
+    ErrorId set_operators_override(double factor) noexcept;
 
     /// What must be kept for the next time power comes; `homed` is false where nothing can be.
     [[nodiscard]] RetainedPosition retained() const noexcept;

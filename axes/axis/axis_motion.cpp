@@ -11,13 +11,29 @@ ErrorId AxisMotion::take_override(const Override& wanted, bool& changed) noexcep
     if (wanted.acceleration < least_share || wanted.jerk < least_share) return ErrorId::invalid_override;
     auto taken = wanted;
     if (taken.velocity < least_share) taken.velocity = 0;  // the end of a filter that never reaches it
-    changed = !(taken == factors);                         // called each scan
+    changed = !(taken == asked);                           // called each scan
     if (!changed) return ErrorId::none;
-    factors = taken;
+    asked = taken;
+    join_overrides();
+    return ErrorId::none;
+}
+
+ErrorId AxisMotion::take_operators_override(double wanted, bool& changed) noexcept {
+    if (!(wanted >= 0 && wanted <= 1)) return ErrorId::invalid_override;
+    const double taken = wanted < least_share ? 0 : wanted;
+    changed = taken != operators;
+    if (!changed) return ErrorId::none;
+    operators = taken;
+    join_overrides();
+    return ErrorId::none;
+}
+
+void AxisMotion::join_overrides() noexcept {
+    const double velocity = asked.velocity * operators;
+    factors = {velocity < least_share ? 0 : velocity, asked.acceleration, asked.jerk};
     goal.kept = false;
     // A coupling that has just been commanded may have to wait.
     if (override_counts() && (!body.begin_pending || couples(body.queue.active().command.kind))) goal_pending = true;
-    return ErrorId::none;
 }
 
 /// Not where the axis follows a master (P1-208) or a table over time (P1-211), stops, or searches its reference with velocities of its own; nor

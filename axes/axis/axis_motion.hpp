@@ -35,7 +35,9 @@ struct AxisMotion {
     double wants_speed = 0;      ///< u/s, signed, that the base will have once what is superimposed has made room; 0: it waits for nothing
     SetpointGenerator setpoint;  ///< what is read in every cycle stands at its beginning
     double folded_jerk = 0;      ///< u/s3 of an addition that ended in motion, until the goal after it has its profile
-    Override factors;
+    Override factors;            ///< in effect: what a program has set, times what the operator has
+    Override asked;              ///< MC_SetOverride
+    double operators = 1;        ///< 0..1, on the velocity alone
     // The running command's start, for its relative inputs; and the last target of a motion to a position, for MC_MoveAdditive.
     double origin = 0;               ///< local
     bool started_backwards = false;  ///< sense of motion there
@@ -44,6 +46,8 @@ struct AxisMotion {
 
     /// MC_SetOverride: factors on what commands ask for. They act at once, by planning anew from the present state. True: they are others.
     [[nodiscard]] ErrorId take_override(const Override& wanted, bool& changed) noexcept;
+    /// The operator's, beside them; likewise.
+    [[nodiscard]] ErrorId take_operators_override(double wanted, bool& changed) noexcept;
     [[nodiscard]] bool override_counts() const noexcept;
     /// Ramps only: what a velocity means depends on the kind of motion.
     [[nodiscard]] MotionLimits with_override(const MotionLimits& limits) const noexcept;
@@ -57,6 +61,9 @@ struct AxisMotion {
     [[nodiscard]] bool halts_alone() const noexcept {
         return body.state == AxisState::DiscreteMotion && goal.kind == Goal::Kind::stop && !body.queue.has_active();
     }
+
+private:
+    void join_overrides() noexcept;
 };
 
 }  // namespace taktwerk::axes

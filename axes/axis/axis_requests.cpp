@@ -155,6 +155,13 @@ void Axis::take_control(Owner owner) noexcept {
     core_->writer.publish();
 }
 
+ErrorId Axis::set_operators_override(double factor) noexcept {
+    core_->plain.disturb();
+    const auto error = core_->settings.set_operators_override(factor);
+    if (core_->settings.changed()) core_->writer.publish();
+    return error;
+}
+
 void Axis::release_control(Owner owner) noexcept {
     if (owner != core_->body.owner) return;
     take_control(core_->body.mode == OperatingMode::automatic ? Owner::program : Owner::operator_panel);

@@ -100,10 +100,20 @@ ErrorId AxisSettings::feed_in(const SetpointFeed& fed) noexcept {
 ErrorId AxisSettings::set_override(const Override& factors) noexcept {
     bool others = false;
     const auto error = motion_.take_override(factors, others);
-    if (!others) return error;
+    if (others) override_changed();
+    return error;
+}
+
+ErrorId AxisSettings::set_operators_override(double factor) noexcept {
+    bool others = false;
+    const auto error = motion_.take_operators_override(factor, others);
+    if (others) override_changed();
+    return error;
+}
+
+void AxisSettings::override_changed() noexcept {
     if (body_.queue.beside(SideSlot::superimposed) != 0) addition_.plan_anew();
     changed_ = true;
-    return error;
 }
 
 }  // namespace taktwerk::axes

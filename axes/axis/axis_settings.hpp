@@ -36,6 +36,8 @@ public:
     /// A motion without end lets pass what waits behind it once it is at its velocity, and goes on.
     void carry_out_due() noexcept;
     ErrorId apply(const AxisSetting& setting, Owner owner) noexcept;
+    /// Whoever owns the axis.
+    ErrorId set_operators_override(double factor) noexcept;
 
     /// Once: something was set that the whole view shows.
     [[nodiscard]] bool changed() noexcept { return std::exchange(changed_, false); }
@@ -44,6 +46,7 @@ private:
     ErrorId set_position(const SetPosition& wanted) noexcept;
     ErrorId feed_in(const SetpointFeed& fed) noexcept;
     ErrorId set_override(const Override& factors) noexcept;
+    void override_changed() noexcept;
     ErrorId set_brake(const SetBrake& wanted) noexcept;
 
     AxisBody& body_;

@@ -20,7 +20,9 @@ enum class VelocityLimiter : std::uint8_t { none, command, axis_limit, manual_sp
 struct AxisView {
     AxisState state = AxisState::Disabled;
     Owner owner = Owner::none;
-    bool powered = false;  ///< operation enabled and the dwell after it has passed: motion is accepted
+    bool powered = false;                                 ///< operation enabled and the dwell after it has passed: motion is accepted
+    bool enable = false;                                  ///< power is wanted ...
+    bool enable_positive = true, enable_negative = true;  ///< ... and whoever wants it permits these ways
     bool homed = false;
     bool simulated = false;
     bool online = false;                   ///< feedback is fresh enough
@@ -59,7 +61,8 @@ struct AxisView {
     double modulo = 0;       ///< u; 0 = linear
     std::int64_t turns = 0;  ///< whole moduli of the set position since zero
 
-    Override override_factors;
+    Override override_factors;      ///< of MC_SetOverride
+    double operators_override = 1;  ///< 0..1, beside it: the velocity is multiplied by both
     /// The parameters that are stored: 2..9 and 12..17 by number, then those of the vendor (axes/axis/parameters.hpp reads them and all
     /// others from this view).
     std::array<double, 36> parameters{};

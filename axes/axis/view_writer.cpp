@@ -24,7 +24,8 @@ void ViewWriter::publish() noexcept {
     side(SideSlot::torque_limit, axis_.bounds.id());
     view_.torque_limit_positive = axis_.bounds.range().positive;
     view_.torque_limit_negative = axis_.bounds.range().negative;
-    view_.override_factors = axis_.motion.now.factors;
+    view_.override_factors = axis_.motion.now.asked;
+    view_.operators_override = axis_.motion.now.operators;
     view_.selected_cam = axis_.coupling.links.selected;
     view_.selected_as = axis_.coupling.links.selected_as;
 }
@@ -36,6 +37,9 @@ void ViewWriter::states() noexcept {
     view_.owner = body.owner;
     view_.presence = body.presence;
     view_.powered = body.power.on() && body.state != AxisState::Disabled;
+    view_.enable = body.power_wish;
+    view_.enable_positive = body.permit_positive;
+    view_.enable_negative = body.permit_negative;
     view_.homed = body.homed;
     view_.homing_procedure = body.homing_procedure;
     view_.lock = body.lock;

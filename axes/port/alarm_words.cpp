@@ -52,6 +52,7 @@ void name(AlarmWords& out, const DriveAlarmText& row, std::string_view command) 
     }
     out.cause = row.cause;
     out.remedy = row.remedy;
+    out.section = row.section;
     out.reset = cleared_by(row, command);
 }
 

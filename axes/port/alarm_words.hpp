@@ -14,6 +14,7 @@ struct AlarmWords {
     /// As long as it can be several alarms: "7500h, panel E.011, E.012 or E.013"; not listed: "1234h, not in the drive's alarm list".
     std::string english, chinese;
     std::string cause, remedy;  ///< empty where it is not known which alarm it is, or the manual says nothing
+    std::string section;        ///< of the manual; empty where it is not known which alarm it is, or nobody noted it
     std::string reset;          ///< what a person does to clear it, and the block for a program
 };
 /// `command`: what the operator types to reset this axis or drive, such as "taktwerk reset x".

@@ -45,6 +45,14 @@ std::optional<Error> check_jog_velocity(const runtime::MachineLayout::AxisInfo& 
     return std::nullopt;
 }
 
+/// Of a point. What has a unit is no word: the machine knows how far its line goes (IoImage::fits).
+std::optional<Error> check_whole(const std::vector<std::string>& units, std::uint16_t point, double value) {
+    if (point < units.size() && !units[point].empty()) return std::nullopt;
+    if (value != std::floor(value) || std::abs(value) > largest_exact_integer)
+        return bad_value(fmt::format("{:g} is not a whole number", value), "Give 0 or 1, or a whole number for a word.");
+    return std::nullopt;
+}
+
 /// Numbers that mean something for this command, in its range.
 std::optional<Error> check_values(const CommandWord& word, const CommandRequest& request, const OperatorCommand& command,
                                   const runtime::MachineLayout& layout) {
@@ -70,12 +78,17 @@ std::optional<Error> check_values(const CommandWord& word, const CommandRequest&
                                  fmt::format("Give {:g} or {:g}.", std::floor(request.value), std::ceil(request.value)));
             return std::nullopt;
         }
-        case CommandKind::set_output:
-            // What has a unit is no word: the machine knows how far its line goes (IoImage::fits).
-            if (command.index < layout.output_units.size() && !layout.output_units[command.index].empty()) return std::nullopt;
-            if (request.value != std::floor(request.value) || std::abs(request.value) > largest_exact_integer)
-                return bad_value(fmt::format("{:g} is not a whole number", request.value), "Give 0 or 1, or a whole number for a word.");
+        case CommandKind::override_velocity:
+            if (request.value < 0 || request.value > 1)
+                return bad_value(fmt::format("{:g} is no part of a velocity", request.value), "Give 0 (halt) to 1 (as commanded).");
             return std::nullopt;
+        case CommandKind::force:
+            if (const auto& kept = request.output ? layout.kept_outputs : layout.kept_inputs;
+                command.index < kept.size() && !kept[command.index].empty())
+                return Error{"command.not_possible_now", "", fmt::format("nobody may force it: {}", kept[command.index]),
+                             "Force what a program reads or writes; do this at the machine."};
+            return check_whole(request.output ? layout.output_units : layout.input_units, command.index, request.value);
+        case CommandKind::set_output: return check_whole(layout.output_units, command.index, request.value);
         default: return std::nullopt;
     }
 }
@@ -83,8 +96,18 @@ std::optional<Error> check_values(const CommandWord& word, const CommandRequest&
 }  // namespace
 
 bool CommandRequest::same_as(const CommandRequest& other) const noexcept {
-    return kind == other.kind && target == other.target && press == other.press && commissioning == other.commissioning &&
-           mode == other.mode && same(value, other.value) && same(value2, other.value2);
+    return kind == other.kind && target == other.target && output == other.output && press == other.press &&
+           commissioning == other.commissioning && mode == other.mode && same(value, other.value) && same(value2, other.value2);
+}
+
+TargetKind target_kind(const CommandWord& word, const CommandRequest& request) noexcept {
+    if (word.target != TargetKind::point) return word.target;
+    return request.output ? TargetKind::output : TargetKind::input;
+}
+
+std::string_view Gateway::name_of(ClientId id) const noexcept {
+    const auto client = clients_.find(id);
+    return client == clients_.end() ? std::string_view{} : std::string_view(client->second.name);
 }
 
 Gateway::Entry* Gateway::Client::find(std::uint64_t sequence) noexcept {
@@ -169,7 +192,9 @@ std::optional<Gateway::Refusal> Gateway::translate(const Client& client, const C
     command.action = word->action;
     command.client = request.client;
     command.sequence = request.sequence;
-    command.flag = request.kind == CommandKind::enable || (request.kind == CommandKind::jog && request.press);
+    const bool of_a_point = word->target == TargetKind::point;
+    command.flag =
+        request.kind == CommandKind::enable || (request.kind == CommandKind::jog && request.press) || (of_a_point && request.output);
     command.mode = request.mode;
     command.value = request.value;
     command.value2 = request.value2;
@@ -178,7 +203,7 @@ std::optional<Gateway::Refusal> Gateway::translate(const Client& client, const C
                        {"command.no_control", "", "commissioning commands are taken from the local socket only",
                         "Use the command line on this computer."}};
     if (request.commissioning) command.owner = axes::Owner::commissioning;
-    if (client.source == Source::lcm && (request.kind == CommandKind::shutdown || request.kind == CommandKind::set_output))
+    if (client.source == Source::lcm && (request.kind == CommandKind::shutdown || request.kind == CommandKind::set_output || of_a_point))
         return Refusal{
             Answer::no_control,
             {"command.no_control", "", fmt::format("{} is not taken over LCM, where nobody knows who asks and who is gone", word->word),
@@ -187,15 +212,18 @@ std::optional<Gateway::Refusal> Gateway::translate(const Client& client, const C
         return Refusal{Answer::bad_value, bad_value("there is no such mode", "Give manual, setup or automatic.")};
 
     const bool all_by_default = request.kind == CommandKind::stop || request.kind == CommandKind::reset;
+    const auto kind = target_kind(*word, request);
     const auto target =
-        find_target(machine_.layout(), word->target, request.target.empty() && all_by_default ? "all" : std::string_view(request.target));
+        find_target(machine_.layout(), kind, request.target.empty() && all_by_default ? "all" : std::string_view(request.target));
     if (!target) return Refusal{Answer::unknown_name, target.error()};
-    const bool axis = word->target == TargetKind::axis || word->target == TargetKind::axis_or_all;
+    const bool axis = kind == TargetKind::axis || kind == TargetKind::axis_or_all;
     (axis ? command.axis : command.index) = *target;
 
     auto refusal = lets_go(request) ? std::nullopt : check_age(request, now);  // that is never too late
     if (!refusal)
-        if (auto error = check_values(*word, request, command, machine_.layout())) refusal = Refusal{Answer::bad_value, std::move(*error)};
+        if (auto error = check_values(*word, request, command, machine_.layout()))
+            refusal =
+                Refusal{error->code == code(Answer::not_possible_now) ? Answer::not_possible_now : Answer::bad_value, std::move(*error)};
     if (!refusal) refusal = check_jog(request, command, now);
     if (const auto stuck = machine_.stuck(); !refusal && !lets_go(request) && stuck)
         refusal = Refusal{Answer::not_possible_now,
@@ -205,7 +233,7 @@ std::optional<Gateway::Refusal> Gateway::translate(const Client& client, const C
                           {"command.not_possible_now", "", "the machine is still starting: its bus is not operational yet",
                            "Wait until it runs (taktwerk monitor shows the progress), then give the command again."}};
     if (refusal && refusal->error.subject.empty())
-        refusal->error.subject = subject_of(machine_.layout(), word->target, command.axis, command.index);
+        refusal->error.subject = subject_of(machine_.layout(), kind, command.axis, command.index);
     command.expires = now + (request.valid_for - age_of(request, now));
     command.after = request.arrival.after;
     return refusal;
@@ -284,6 +312,7 @@ void Gateway::handle(const CommandRequest& request, Instant now) {
     }
     entry->state = Entry::State::waiting;
     client.set_outputs = client.set_outputs || request.kind == CommandKind::set_output;
+    client.forces = client.forces || request.kind == CommandKind::force;
     if (request.kind == CommandKind::jog) jogs_[command.axis] = {request.client, now};
 }
 
@@ -336,7 +365,7 @@ void Gateway::keep_jog_session(const Entry& entry, Answer answer) {
 
 void Gateway::step(Instant now) {
     now_ = now;
-    release_outputs();
+    leave_outputs();
     settle_levels(now);
     while (const auto answer = machine_.next_answer()) {
         const auto client = clients_.find(answer->client);
@@ -354,10 +383,11 @@ void Gateway::step(Instant now) {
             continue;
         }
         const auto* word = find_command(entry->request.kind);
-        const auto target = find_target(machine_.layout(), word->target, entry->request.target);
+        const auto kind = target_kind(*word, entry->request);
+        const auto target = find_target(machine_.layout(), kind, entry->request.target);
         const auto index = target ? *target : all_axes;
         settle(client->second, *entry, answer->answer, answer->error,
-               explain(*answer, entry->request.kind, subject_of(machine_.layout(), word->target, index, index),
+               explain(*answer, entry->request.kind, subject_of(machine_.layout(), kind, index, index),
                        machine_.layout().block_at(answer->holder)));
     }
     for (auto& [id, client] : clients_)

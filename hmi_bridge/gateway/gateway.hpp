@@ -11,7 +11,8 @@
 //
 // Other rules: a client's sequence increases; the same command with a sequence of its last 16 is answered again, not executed again.
 // One client jogs an axis at a time, and while it does nobody else moves or homes that axis. A client that closes while jogging stops its
-// axis, whatever moves it; one that just vanishes stops it by letting the lease run out in the cycle; outputs that it has set become safe. What
+// axis, whatever moves it; one that just vanishes stops it by letting the lease run out in the cycle; outputs that it has set become safe, points
+// that it has forced are their own again. What
 // clients do is told to the log by who they are. Over LCM nobody is known and nobody is missed: nothing that ends the run, or that would stand
 // when its sender has gone, is taken from there. One thread, not real-time.
 
@@ -49,6 +50,7 @@ struct CommandRequest {
     CommandKind kind = CommandKind::none;
     std::string target;          ///< name; "all" (or empty for stop and reset) where the table allows it
     bool press = false;          ///< jog: the first one; renewals have false
+    bool output = false;         ///< force, unforce: `target` is an output, not an input
     bool commissioning = false;  ///< commands in the name of commissioning instead of the operator panel
     runtime::Mode mode = runtime::Mode::manual;
     double value = 0, value2 = 0;
@@ -59,6 +61,9 @@ struct CommandRequest {
     /// The same command (when it was sent does not matter).
     [[nodiscard]] bool same_as(const CommandRequest& other) const noexcept;
 };
+
+/// That of the word; of a point what the request says.
+[[nodiscard]] TargetKind target_kind(const CommandWord& word, const CommandRequest& request) noexcept;
 
 struct CommandReply {
     ClientId client = 0;
@@ -92,6 +97,8 @@ public:
     void close(ClientId client);
     [[nodiscard]] std::size_t client_count() const noexcept { return clients_.size(); }
     [[nodiscard]] const Hands& hands() const noexcept { return hands_; }
+    /// "process 812 (taktwerk) of user 1000"; empty: nobody (any more).
+    [[nodiscard]] std::string_view name_of(ClientId client) const noexcept;
 
     /// Before handle(), each service step: commands before the first cycle are refused (there is nobody to carry them out).
     void observe(bool cycling) noexcept { cycling_ = cycling; }
@@ -113,7 +120,7 @@ private:
         Rights rights = Rights::operating;
         std::uint64_t highest = 0;
         std::array<Entry, remembered> entries;
-        bool set_outputs = false;
+        bool set_outputs = false, forces = false;
         Entry* find(std::uint64_t sequence) noexcept;
     };
     struct JogSession {
@@ -136,7 +143,7 @@ private:
     [[nodiscard]] std::string deed(const CommandRequest& request) const;
     void note(ClientId id, const Client& client, const CommandRequest& request, Instant now);
     void note_end(ClientId id, const Client& client);
-    void release_outputs();
+    void leave_outputs();
     void raise(const Client& client, const CommandRequest& request, std::uint16_t axis, Instant now);
     void settle_levels(Instant now);
     void let_go(const CommandRequest& request);
@@ -158,7 +165,7 @@ private:
     DeedLog deeds_;
     Hands hands_;
     std::map<std::uint16_t, ClientId> told_jogs_;  ///< axes whose jog was told to begin, and of whom
-    std::deque<ClientId> leave_outputs_;           ///< clients that are gone; the inbox has not taken it yet
+    std::deque<runtime::OperatorCommand> leave_;   ///< what clients that are gone leave behind; the inbox has not taken it yet
     Instant now_{};
 };
 

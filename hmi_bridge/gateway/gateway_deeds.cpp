@@ -29,9 +29,10 @@ std::string Gateway::deed(const CommandRequest& request) const {
     const auto* word = find_command(request.kind);
     if (word == nullptr) return "something unknown";
     const auto& layout = machine_.layout();
-    const auto target = find_target(layout, word->target, request.target.empty() ? "all" : std::string_view(request.target));
+    const auto kind = target_kind(*word, request);
+    const auto target = find_target(layout, kind, request.target.empty() ? "all" : std::string_view(request.target));
     const auto place = target ? *target : all_axes;
-    const auto subject = subject_of(layout, word->target, place, place);
+    const auto subject = subject_of(layout, kind, place, place);
     std::string text = fmt::format("{}{}{}", word->word, subject.empty() ? "" : " ", subject);
     const auto axis = one_axis(layout, *word, request.target);
     if (request.kind == CommandKind::jog && axis)
@@ -39,7 +40,8 @@ std::string Gateway::deed(const CommandRequest& request) const {
     if (request.kind == CommandKind::move && axis)
         text += fmt::format(" to {:g} {} at {:g} {}/s", request.value, layout.axes[*axis].unit, request.value2, layout.axes[*axis].unit);
     if (request.kind == CommandKind::mode) text += fmt::format(" {}", hmi::word(request.mode));
-    if (request.kind == CommandKind::set_parameter || request.kind == CommandKind::set_output)
+    if (request.kind == CommandKind::override_velocity) text += fmt::format(" {:g} %", 100 * request.value);
+    if (request.kind == CommandKind::set_parameter || request.kind == CommandKind::set_output || request.kind == CommandKind::force)
         text += fmt::format(" = {:g}", request.value);
     if (request.kind == CommandKind::set_parameter && place < layout.parameters.size()) text += " " + layout.parameters[place].unit;
     return request.commissioning ? text + ", as commissioning" : text;
@@ -86,19 +88,26 @@ void Gateway::note_end(ClientId id, const Client& client) {
                    now_);
         jog = told_jogs_.erase(jog);
     }
-    if (!client.set_outputs) return;
-    deeds_.say(client.name, "is gone: outputs that it was the last to set go to their safe values", now_);
-    leave_outputs_.push_back(id);
-    release_outputs();
+    OperatorCommand leave;
+    leave.client = id;
+    leave.flag = true;
+    if (client.set_outputs) {
+        deeds_.say(client.name, "is gone: outputs that it was the last to set go to their safe values", now_);
+        leave.action = OperatorAction::release_outputs;
+        leave_.push_back(leave);
+    }
+    if (client.forces) {
+        deeds_.say(client.name, "is gone: points that it was the last to force are their own again", now_);
+        leave.action = OperatorAction::release_forces;
+        leave_.push_back(leave);
+    }
+    leave_outputs();
 }
 
-void Gateway::release_outputs() {
-    while (!leave_outputs_.empty()) {
-        OperatorCommand release;
-        release.action = OperatorAction::release_outputs;
-        release.client = leave_outputs_.front();
-        if (!machine_.submit(release)) return;  // the inbox is full: again in the next step
-        leave_outputs_.pop_front();
+void Gateway::leave_outputs() {
+    while (!leave_.empty()) {
+        if (!machine_.submit(leave_.front())) return;  // the inbox is full: again in the next step
+        leave_.pop_front();
     }
 }
 

@@ -64,10 +64,6 @@ struct Due {
     }
 };
 
-struct LagPeak {
-    double minimum = 0, maximum = 0;
-};
-
 /// Equal when nobody who reads the list would see a difference.
 struct AlarmMark {
     AlarmId id = 0;
@@ -100,7 +96,6 @@ struct Publisher::Impl {
     Due state, statistics{statistics_period}, alarms{alarm_period}, heartbeat{heartbeat_period}, holders{holder_period};
     std::int64_t sequence = 0, alarm_revision = 0;
     std::uint64_t failed = 0;
-    std::vector<LagPeak> peaks{};
     std::vector<AlarmMark> shown_alarms{}, present_alarms{};
     std::vector<HolderMark> shown_holders{};
     struct ShownEvent {
@@ -130,7 +125,6 @@ struct Publisher::Impl {
         if (!ok) ++failed;
     }
 
-    void watch_peaks(const runtime::Snapshot& s);
     void send_machine(const runtime::Snapshot& s);
     void send_axes(const runtime::Snapshot& s);
     void send_holders(const runtime::Snapshot& s, bool all);
@@ -146,9 +140,7 @@ struct Publisher::Impl {
 Publisher::Publisher(MessageBus& bus, const MachineLink& machine, double rate_hz, bool commands_taken,
                      std::function<std::int64_t()> wall_utime)
     : impl_(new Impl{bus, machine, Channels(machine.layout().machine), commands_taken, std::move(wall_utime),
-                     Due{from_seconds(1 / rate_hz)}}) {
-    impl_->peaks.resize(machine.layout().axes.size());
-}
+                     Due{from_seconds(1 / rate_hz)}}) {}
 
 Publisher::~Publisher() = default;
 
@@ -158,7 +150,6 @@ void Publisher::step(const runtime::Snapshot* snapshot, Instant now) {
     auto& p = *impl_;
     if (p.heartbeat(now)) p.send_heartbeat(snapshot);
     if (!snapshot) return;
-    p.watch_peaks(*snapshot);
     if (p.state(now)) {
         p.send_machine(*snapshot);
         p.send_axes(*snapshot);
@@ -171,13 +162,6 @@ void Publisher::step(const runtime::Snapshot* snapshot, Instant now) {
     p.send_events(*snapshot, all_holders);
     const bool due = p.alarms(now);
     if (p.alarms_changed(*snapshot) || due) p.send_alarms(*snapshot);
-}
-
-void Publisher::Impl::watch_peaks(const runtime::Snapshot& s) {
-    for (std::size_t i = 0; i < s.axes.size() && i < peaks.size(); ++i) {
-        peaks[i].minimum = std::min(peaks[i].minimum, s.axes[i].following_error);
-        peaks[i].maximum = std::max(peaks[i].maximum, s.axes[i].following_error);
-    }
 }
 
 void Publisher::Impl::send_machine(const runtime::Snapshot& s) {
@@ -243,8 +227,9 @@ void Publisher::Impl::send_axes(const runtime::Snapshot& s) {
         m.target_position = axis.target_position;
         m.distance_to_go = axis.active != 0 ? axis.target_position - axis.set_position : 0;
         m.following_error = axis.following_error;
-        m.following_error_min = peaks[i].minimum;
-        m.following_error_max = peaks[i].maximum;
+        const auto peak = i < s.following_peaks.size() ? s.following_peaks[i] : runtime::FollowingPeak{};
+        m.following_error_min = peak.minimum;
+        m.following_error_max = peak.maximum;
         m.manual_slow = axis.manual_slow;
         m.manual_fast = axis.manual_fast;
         m.velocity_limiter = number(axis.limiter);

@@ -78,6 +78,7 @@ Error unknown_command(std::string_view cmd) {
     for (const auto& entry : command_words) words.emplace_back(entry.word);
     for (const auto& entry : drive_words) words.emplace_back(entry.word);
     for (const auto entry : ScopeRequests::words()) words.emplace_back(entry);
+    words.insert(words.end(), MachineQuestions::words.begin(), MachineQuestions::words.end());
     const auto near = nearest_name(cmd.substr(0, 64), words);
     return request_error("unknown_command", fmt::format("there is no command {}", shown(cmd)),
                          near.empty() ? fmt::format("Use one of: {}.", fmt::join(words, ", ")) : fmt::format("Did you mean \"{}\"?", near));
@@ -86,7 +87,12 @@ Error unknown_command(std::string_view cmd) {
 Result<CommandRequest> read_command(const CommandWord& entry, JsonFields& fields, std::int64_t wall_utime) {
     CommandRequest request;
     request.kind = entry.kind;
-    if (entry.target != TargetKind::none) {
+    if (entry.target == TargetKind::point) {
+        request.output = fields.has("output");
+        request.target = fields.text(request.output ? "output" : "input", true);
+        // Without a value the point is its own again.
+        if (entry.kind == CommandKind::force && !fields.has("value")) request.kind = CommandKind::unforce;
+    } else if (entry.target != TargetKind::none) {
         const bool optional = entry.kind == CommandKind::stop || entry.kind == CommandKind::reset;
         request.target = fields.text(noun(entry.target), !optional);
         // An empty name is a name that somebody forgot to fill in. A stop then stops everything; a reset must not reset everything.
@@ -94,7 +100,7 @@ Result<CommandRequest> read_command(const CommandWord& entry, JsonFields& fields
             return Error{"command.unknown_name", "", "\"axis\" is empty",
                          "Name the axis; to reset all axes and the machine leave \"axis\" out."};
     }
-    if (!entry.value.empty()) request.value = fields.number(entry.value, true);
+    if (!entry.value.empty() && request.kind == entry.kind) request.value = fields.number(entry.value, true);
     if (!entry.value2.empty()) request.value2 = fields.number(entry.value2, true);
     if (entry.kind == CommandKind::jog) {
         request.press = fields.flag("press");
@@ -131,6 +137,7 @@ JsonRequests::JsonRequests(Gateway& gateway, MachineLink& machine, std::function
       machine_(machine),
       drives_(machine, std::move(log), &gateway.hands()),
       scope_(machine.signals()),
+      questions_(machine),
       wall_utime_(std::move(wall_utime)) {}
 
 void JsonRequests::on_open(ConnectionId connection, const Peer& peer) {
@@ -144,6 +151,7 @@ void JsonRequests::on_open(ConnectionId connection, const Peer& peer) {
 void JsonRequests::on_close(ConnectionId connection) {
     drives_.forget(connection);
     scope_.forget(connection);
+    questions_.forget(connection);
     names_.erase(connection);
     const auto found = clients_.find(connection);
     if (found == clients_.end()) return;
@@ -187,6 +195,7 @@ void JsonRequests::on_request(ConnectionId connection, std::string_view line, In
         if (const auto begun = scope_.handle(connection, id_text, cmd, fields); !begun) refuse(connection, id_text, begun.error());
         return;
     }
+    if (MachineQuestions::knows(cmd)) return questions_.ask(cmd, connection, id_text, fields, snapshot_, now);
     if (std::find(questions.begin(), questions.end(), cmd) == questions.end()) return refuse(connection, id_text, unknown_command(cmd));
 
     fields.integer("utime");
@@ -206,16 +215,7 @@ void JsonRequests::on_request(ConnectionId connection, std::string_view line, In
         answer(connection, fmt::format(R"({{"id":{},"ok":true,"{}":{}}})", id_text, key, value));
     };
     const auto stuck = machine_.stuck();
-    if (cmd == "hello") {
-        const nlohmann::ordered_json hello{{"protocol_version", protocol_version},
-                                           {"machine", machine_.layout().machine},
-                                           {"interface", machine_.layout().interface},
-                                           {"serial_devices", machine_.layout().serial_devices},
-                                           {"pid", ::getpid()},
-                                           {"cycling", snapshot_ != nullptr && !stuck},
-                                           {"progress", stuck ? *stuck : progress_}};
-        return with("hello", hello.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
-    }
+    if (cmd == "hello") return with("hello", hello(stuck, now));
     if (cmd == "layout") return with("layout", layout_json(machine_.layout()));
     if (!snapshot_)
         return refuse(connection, id_text,
@@ -224,8 +224,24 @@ void JsonRequests::on_request(ConnectionId connection, std::string_view line, In
     // What the cycle has published last goes on looking alive: nobody may take it for the machine.
     if (stuck)
         return refuse(connection, id_text, {"state.stuck", "", *stuck, "Use the emergency stop; end the runtime and mend that program."});
-    if (cmd == "state") return with("state", state_json(*snapshot_, machine_));
+    if (cmd == "state") return with("state", state_json(*snapshot_, machine_, [&](ClientId client) { return gateway_.name_of(client); }));
     with("alarms", alarms_json(*snapshot_, machine_));
+}
+
+std::string JsonRequests::hello(const std::optional<std::string>& stuck, Instant now) const {
+    nlohmann::ordered_json hello{{"protocol_version", protocol_version},
+                                 {"machine", machine_.layout().machine},
+                                 {"interface", machine_.layout().interface},
+                                 {"serial_devices", machine_.layout().serial_devices},
+                                 {"pid", ::getpid()},
+                                 {"cycling", snapshot_ != nullptr && !stuck},
+                                 {"progress", stuck ? *stuck : progress_},
+                                 {"version", about_.version},
+                                 {"uptime_s", began_ ? to_seconds(now - *began_) : 0.0}};
+    auto& libraries = hello["libraries"] = nlohmann::ordered_json::array();
+    for (const auto& part : about_.libraries)
+        libraries.push_back({{"name", part.name}, {"version", part.version}, {"licence", part.licence}});
+    return hello.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 void JsonRequests::ask_drive(DriveRequestKind kind, ConnectionId connection, const std::string& id, JsonFields& fields, Instant now) {
@@ -250,6 +266,12 @@ void JsonRequests::ask_drive(DriveRequestKind kind, ConnectionId connection, con
 void JsonRequests::step(Instant now) {
     scope_.step();
     while (auto done = scope_.next_answer()) answer(done->connection, std::move(done->text));
+    if (!began_) began_ = now;
+    questions_.step(snapshot_, now);
+    while (auto answered = questions_.next_answer()) {
+        if (!answered->body) refuse(answered->connection, answered->id, answered->body.error());
+        else answer(answered->connection, fmt::format(R"({{"id":{},"ok":true,{}}})", answered->id, *answered->body));
+    }
     drives_.step(now);
     while (const auto done = drives_.next_answer()) {
         if (done->error) {

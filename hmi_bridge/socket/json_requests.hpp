@@ -11,15 +11,18 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/time.hpp"
 #include "hmi_bridge/gateway/drive_requests.hpp"
 #include "hmi_bridge/gateway/gateway.hpp"
 #include "hmi_bridge/line_handler.hpp"
 #include "hmi_bridge/socket/json_fields.hpp"
+#include "hmi_bridge/socket/machine_questions.hpp"
 #include "hmi_bridge/socket/scope_requests.hpp"
 
 namespace taktwerk::hmi {
@@ -46,6 +49,17 @@ public:
     void observe(const runtime::Snapshot* snapshot) noexcept { snapshot_ = snapshot; }
     /// One line about how the start is getting on, for "hello" and "state".
     void set_progress(std::string progress) { progress_ = std::move(progress); }
+    /// For "hello": what runs here.
+    struct Part {
+        std::string name, version, licence;
+    };
+    struct About {
+        std::string version;
+        std::vector<Part> libraries;
+    };
+    void set_about(About about) { about_ = std::move(about); }
+    /// For "log"; without one it is empty.
+    void set_log(std::shared_ptr<const LogTail> log) { questions_.set_log(std::move(log)); }
 
     void on_open(ConnectionId connection, const Peer& peer) override;
     void on_line(ConnectionId connection, std::string_view line, Instant now) override { on_request(connection, line, now, {}); }
@@ -62,12 +76,16 @@ private:
     void refuse(ConnectionId connection, const std::string& id, const Error& error);
     void answer(ConnectionId connection, std::string text) { lines_.push_back({connection, std::move(text), {}}); }
 
+    [[nodiscard]] std::string hello(const std::optional<std::string>& stuck, Instant now) const;
     void ask_drive(DriveRequestKind kind, ConnectionId connection, const std::string& id, JsonFields& fields, Instant now);
 
     Gateway& gateway_;
     MachineLink& machine_;
     DriveRequests drives_;
     ScopeRequests scope_;
+    MachineQuestions questions_;
+    About about_;
+    std::optional<Instant> began_;
     std::function<std::int64_t()> wall_utime_;
     const runtime::Snapshot* snapshot_ = nullptr;
     std::string progress_;

@@ -81,6 +81,8 @@ std::string subject_of(const runtime::MachineLayout& layout, TargetKind target, 
             return index < layout.parameters.size() ? "parameter " + layout.parameters[index].program + "." + layout.parameters[index].name
                                                     : "";
         case TargetKind::output: return index < layout.outputs.size() ? "output " + layout.outputs[index] : "";
+        case TargetKind::input: return index < layout.inputs.size() ? "input " + layout.inputs[index] : "";
+        case TargetKind::point: break;
     }
     return "";
 }
@@ -93,6 +95,7 @@ std::string limit_note(const runtime::CommandAnswer& answer, std::string_view un
 
 Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::string subject, std::string_view holder) {
     Error error{std::string(code(answer.answer)), std::move(subject), "", ""};
+    const bool of_a_point = kind == CommandKind::set_output || kind == CommandKind::force;
     switch (answer.answer) {
         case Answer::accepted: break;
         case Answer::unknown_name:
@@ -100,10 +103,11 @@ Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::strin
             error.remedy = "Look at the names the machine has (taktwerk monitor), and at `disabled:` in the configuration.";
             break;
         case Answer::bad_value:
-            error.what = kind == CommandKind::set_output ? "the value is beyond what its channel gives" : "the value is outside its range";
-            error.remedy = kind == CommandKind::set_output
-                               ? "Give a value that its terminal has (docs/reference/devices.md), through its `scale`."
-                               : "Give a value inside the range.";
+            error.what = !of_a_point                  ? "the value is outside its range"
+                         : kind == CommandKind::force ? "the value is beyond what its channel has"
+                                                      : "the value is beyond what its channel gives";
+            error.remedy = of_a_point ? "Give a value that its terminal has (docs/reference/devices.md), through its `scale`."
+                                      : "Give a value inside the range.";
             break;
         case Answer::stale:
             if (kind == CommandKind::jog) {
@@ -154,6 +158,12 @@ Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::strin
                     "an emergency stop is not reset yet: its alarm waits, or an axis is still in ErrorStop by it, and a start given "
                     "now would leave the motion to whoever resets later";
                 error.remedy = "When nobody is in danger: `taktwerk reset --wait`, then start again.";
+            } else if (kind == CommandKind::force && answer.error == axes::ErrorId::queue_full) {
+                error.what = fmt::format("{} points are forced already", runtime::max_forces);
+                error.remedy = "Release those that are not needed any more.";
+            } else if (kind == CommandKind::force && answer.error == axes::ErrorId::not_supported) {
+                error.what = "nobody may force this point";
+                error.remedy = "Look for it in `layout`, which says why.";
             } else if (kind == CommandKind::set_output) {
                 error.what = "a program is running, and it drives the outputs";
                 error.remedy = "Stop the programs first.";

@@ -25,6 +25,8 @@ std::vector<std::string> names(const runtime::MachineLayout& layout, TargetKind 
             for (const auto& parameter : layout.parameters) out.push_back(parameter.program + "." + parameter.name);
             break;
         case TargetKind::output: out = layout.outputs; break;
+        case TargetKind::input: out = layout.inputs; break;
+        case TargetKind::point: break;
     }
     return out;
 }
@@ -60,6 +62,8 @@ std::string_view noun(TargetKind kind) {
         case TargetKind::program: return "program";
         case TargetKind::parameter: return "parameter";
         case TargetKind::output: return "output";
+        case TargetKind::input: return "input";
+        case TargetKind::point: return "point";
     }
     return "";
 }

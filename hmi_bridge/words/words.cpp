@@ -63,6 +63,31 @@ std::string_view word(axes::VelocityLimiter value) noexcept {
 
 std::string_view word(axes::CommandKind value) noexcept { return axes::name(value); }
 
+std::string_view word(axes::BrakeState value) noexcept {
+    switch (value) {
+        case axes::BrakeState::not_controlled: return "not_controlled";
+        case axes::BrakeState::closed: return "closed";
+        case axes::BrakeState::opening: return "opening";
+        case axes::BrakeState::open: return "open";
+        case axes::BrakeState::closing: return "closing";
+    }
+    return "unknown";
+}
+
+std::string_view word(axes::HomingKind value) noexcept {
+    switch (value) {
+        case axes::HomingKind::none: return "none";
+        case axes::HomingKind::drive: return "drive";
+        case axes::HomingKind::home_switch: return "home_switch";
+        case axes::HomingKind::set_here: return "set_here";
+        case axes::HomingKind::limit_switch: return "limit_switch";
+        case axes::HomingKind::block: return "block";
+        case axes::HomingKind::reference_pulse: return "reference_pulse";
+        case axes::HomingKind::absolute: return "absolute";
+    }
+    return "unknown";
+}
+
 std::string_view word(AlarmSource value) noexcept {
     switch (value) {
         case AlarmSource::machine: return "machine";

@@ -3,6 +3,7 @@
 
 #include <string_view>
 
+#include "axes/axis/axis_config.hpp"
 #include "axes/axis/axis_view.hpp"
 #include "core/alarm.hpp"
 #include "ecat/master.hpp"
@@ -17,6 +18,9 @@ namespace taktwerk::hmi {
 [[nodiscard]] std::string_view word(axes::VelocityLimiter limiter) noexcept;
 /// What moves the axis, by the name of its block: "MC_MoveAbsolute"; "" for none.
 [[nodiscard]] std::string_view word(axes::CommandKind kind) noexcept;
+[[nodiscard]] std::string_view word(axes::BrakeState state) noexcept;
+/// As the machine file spells it.
+[[nodiscard]] std::string_view word(axes::HomingKind kind) noexcept;
 [[nodiscard]] std::string_view word(AlarmSource source) noexcept;
 [[nodiscard]] std::string_view word(Reaction reaction) noexcept;
 [[nodiscard]] std::string_view word(VariableType type) noexcept;

@@ -27,6 +27,7 @@ void tell_drive_alarm(AlarmText& text, const AxisBinding& axis, const axes::Show
     if (!words.cause.empty()) text.cause = std::move(words.cause);
     if (!words.remedy.empty()) text.remedy = std::move(words.remedy);
     text.reset = std::move(words.reset);
+    if (!words.section.empty()) text.manual = fmt::format("{} {}", axis.profile->name, words.section);
 }
 
 }  // namespace taktwerk::runtime

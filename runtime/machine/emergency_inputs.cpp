@@ -38,6 +38,7 @@ void EmergencyInputs::watch() noexcept {
     if (pressed) {
         body_.raise(MachineAlarm::emergency_stop, AlarmSource::machine, 0, unread ? emergency_stop_unread : 0);
         desk_.release_outputs();
+        body_.io.release_output_forces();  // whatever the emergency stop switches off, no force holds it
         for (auto& program : programs_.programs()) program.requests.hold();
     }
     watch_restart();

@@ -107,6 +107,7 @@ SignalRing& Machine::signals() noexcept { return impl_->rows.ring(); }
 const SignalRing& Machine::signals() const noexcept { return impl_->rows.ring(); }
 const StepStatistics<step_count - 1>& Machine::step_statistics() const noexcept { return impl_->steps; }
 void Machine::reset_step_statistics() noexcept { impl_->steps.reset(); }
+MachineTimes Machine::times() const noexcept { return {&impl_->times, &impl_->programs.task_times()}; }
 const MachineConfig& Machine::config() const noexcept { return impl_->body.config; }
 const MachineLayout& Machine::layout() const noexcept { return impl_->layout; }
 const ecat::Master& Machine::bus() const noexcept { return impl_->body.bus; }

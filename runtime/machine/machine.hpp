@@ -19,6 +19,7 @@
 #include "ecat/transport/transport.hpp"
 #include "modbus/line/serial_line.hpp"
 #include "modbus/tcp/exchange.hpp"
+#include "runtime/cycle_histograms.hpp"
 #include "runtime/cycle_tick.hpp"
 #include "runtime/machine_config.hpp"
 #include "runtime/operator_command.hpp"
@@ -33,6 +34,7 @@ struct AlarmText {
     std::string source;  ///< "axis x", "slave 2 'y_drive'", "machine"
     std::string name, english, chinese, cause, remedy;
     std::string reaction, reset;
+    std::string manual{};  ///< of a drive's own alarm: its profile and the section of its manual, "sv33-e 5.4"
 };
 
 class Machine {
@@ -129,6 +131,8 @@ public:
     /// Times per step (Step order), for benchmarks and the monitor. Read by the cycle thread, or when it stands.
     [[nodiscard]] const StepStatistics<step_count - 1>& step_statistics() const noexcept;
     void reset_step_statistics() noexcept;
+    /// Any thread.
+    [[nodiscard]] MachineTimes times() const noexcept;
 
     [[nodiscard]] const MachineConfig& config() const noexcept;
     [[nodiscard]] const MachineLayout& layout() const noexcept;

@@ -50,7 +50,9 @@ MachineBody::MachineBody(MachineConfig machine, ecat::Transport& transport)
       bus_config(bus_of(config)),
       bus(transport, bus_config),
       io(config.io, config.cycle),
+      kept(kept_points(config, io)),
       views(config.axes.size()),
+      following_peaks(config.axes.size()),
       mode(config.start_mode) {}
 
 void MachineBody::raise(const AlarmFact& fact, std::span<const AlarmInfo> table) noexcept {

@@ -12,6 +12,7 @@
 #include "ecat/master.hpp"
 #include "runtime/alarms.hpp"
 #include "runtime/machine/alarm_log.hpp"
+#include "runtime/machine/kept_points.hpp"
 #include "runtime/machine_config.hpp"
 #include "runtime/snapshot.hpp"
 #include "runtime/tasks/io_image.hpp"
@@ -33,6 +34,7 @@ struct MachineBody {
     const ecat::BusConfig bus_config;  // config.bus, and what the axes need of the bus beyond it
     ecat::Master bus;
     IoImage io;
+    const KeptPoints kept;
     axes::MotionTables tables;          // declared by the programs
     std::vector<axes::AxisView> views;  // where the axes keep theirs; what programs read
     std::vector<axes::Axis> axes;       // built by MachineDrives
@@ -43,6 +45,7 @@ struct MachineBody {
     // the cycle's
     Instant now{};                                            // Machine
     std::uint64_t cycles = 0;                                 // Machine: those that are over
+    std::vector<FollowingPeak> following_peaks;               // Machine: wider in each cycle; OperatorDesk: begun anew
     CycleStatistics statistics;                               // Machine; refused commands: OperatorDesk
     Mode mode;                                                // OperatorDesk
     bool emergency = false;                                   // EmergencyInputs: pressed, or its wire is broken

@@ -92,7 +92,15 @@ void Machine::Impl::cycle(const CycleTick& tick) noexcept {
     auto& statistics = body.statistics;
     statistics.compute = Stopwatch{whole}.lap();
     statistics.compute_max = std::max(statistics.compute_max, statistics.compute);
+    if (runs) times.record(statistics, steps);
+    if (desk.statistics_reset()) reset_statistics();
     pulse_cycles.fetch_add(1, std::memory_order_relaxed);
+}
+
+void Machine::Impl::reset_statistics() noexcept {
+    body.statistics.lateness_max = body.statistics.compute_max = {};
+    times.reset();
+    programs.reset_statistics();
 }
 
 void Machine::Impl::wait_for_bus(const CycleTick& tick) noexcept {
@@ -148,6 +156,11 @@ void Machine::Impl::tell(const CycleTick& tick) noexcept {
     if (tick.missed > 0) ++statistics.overruns;
     statistics.lateness = tick.woken - tick.scheduled;
     statistics.lateness_max = std::max(statistics.lateness_max, statistics.lateness);
+    for (std::size_t i = 0; i < body.following_peaks.size(); ++i) {
+        auto& peak = body.following_peaks[i];
+        const double error = body.views[i].following_error;
+        peak = {std::min(peak.minimum, error), std::max(peak.maximum, error)};
+    }
     programs.read_variables();
     statistics.snapshots_dropped = rows.ring().lost();
     snapshots.step();

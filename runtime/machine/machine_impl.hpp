@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/stopwatch.hpp"
+#include "runtime/cycle_histograms.hpp"
 #include "runtime/machine/alarm_words.hpp"
 #include "runtime/machine/hand_motion.hpp"
 #include "runtime/machine/hot_connect.hpp"
@@ -33,6 +34,8 @@ struct Machine::Impl {
     void wait_for_bus(const CycleTick& tick) noexcept;
     /// Steps 10 and 11.
     void tell(const CycleTick& tick) noexcept;
+    /// People have asked for it.
+    void reset_statistics() noexcept;
     void done(Step step) noexcept { steps.done(static_cast<std::size_t>(step)); }
 
     Result<void> arm();
@@ -53,6 +56,7 @@ struct Machine::Impl {
     RowWriter rows;
     AlarmWords words;
     StepStatistics<step_count - 1> steps;
+    CycleHistograms times;
     std::atomic<bool> outputs_laid_out{false};  // the cycle may write them although nothing runs yet
     std::atomic<std::uint64_t> pulse_cycles{0};
 };

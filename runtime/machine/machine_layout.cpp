@@ -15,6 +15,16 @@ MachineLayout::AxisInfo axis_info(const MachineBody& body, const MachineDrives& 
     info.jog_slow = body.views[axis].manual_slow;
     info.jog_fast = body.views[axis].manual_fast;
     info.drive_axis = binding.drive_axis;
+    info.position_min = binding.axis.limits.position_min;
+    info.position_max = binding.axis.limits.position_max;
+    info.velocity_limit = binding.axis.limits.velocity;
+    info.acceleration_limit = binding.axis.limits.acceleration;
+    info.deceleration = binding.axis.limits.deceleration;
+    info.jerk_limit = binding.axis.limits.jerk;
+    info.following_window = binding.axis.following.window;
+    info.in_position_window = binding.axis.windows.in_position;
+    info.modulo = binding.axis.modulo;
+    info.homing = binding.axis.homing.kind;
     if (drives.on_bus(axis)) info.group = body.bus.slave(drives.slave_of(axis)).hot_connect;
     if (drives.on_bus(axis)) info.drive = binding.slave;
     else if (on_line && drives.serial().has_lines()) info.drive = binding.drive;
@@ -38,6 +48,8 @@ MachineLayout layout_of(const MachineBody& body, const MachineDrives& drives, co
     layout.outputs = body.io.names(IoDirection::output);
     for (std::size_t i = 0; i < layout.inputs.size(); ++i) layout.input_units.push_back(body.io.point(IoDirection::input, i).unit);
     for (std::size_t i = 0; i < layout.outputs.size(); ++i) layout.output_units.push_back(body.io.point(IoDirection::output, i).unit);
+    layout.kept_inputs = body.kept.inputs;
+    layout.kept_outputs = body.kept.outputs;
     programs.describe(layout);
     return layout;
 }

@@ -47,6 +47,12 @@ Verdict OperatorDesk::execute(const OperatorCommand& command) noexcept {
         case OperatorAction::set_output:
         case OperatorAction::acknowledge_alarms:
         case OperatorAction::release_outputs:
+        case OperatorAction::force:
+        case OperatorAction::unforce:
+        case OperatorAction::release_forces:
+        case OperatorAction::override_velocity:
+        case OperatorAction::reset_peaks:
+        case OperatorAction::reset_statistics:
         case OperatorAction::shutdown: return execute_machine(command);
         case OperatorAction::take_control:
         case OperatorAction::release_control:
@@ -77,6 +83,15 @@ Verdict OperatorDesk::execute_machine(const OperatorCommand& command) noexcept {
         case OperatorAction::set_parameter: return set_parameter(command);
         case OperatorAction::set_output: return set_output(command);
         case OperatorAction::release_outputs: release_outputs_of(command.client); return {};
+        case OperatorAction::force:
+        case OperatorAction::unforce: return force(command);
+        case OperatorAction::release_forces:
+            if (command.flag) body_.io.release_forces_of(command.client);
+            else body_.io.release_forces();
+            return {};
+        case OperatorAction::override_velocity: return override_velocity(command);
+        case OperatorAction::reset_peaks: return reset_peaks(command);
+        case OperatorAction::reset_statistics: statistics_reset_ = true; return {};
         case OperatorAction::acknowledge_alarms:
             body_.log.acknowledge();
             for (auto& axis : body_.axes) axis.acknowledge_alarms();
@@ -106,6 +121,38 @@ Verdict OperatorDesk::set_output(const OperatorCommand& command) noexcept {
     if (programs_.any_runs_or_starts()) return {Answer::not_possible_now};
     io.set_output(command.index, command.value);
     outputs_by_hand_[command.index] = {true, command.client};
+    return {};
+}
+
+Verdict OperatorDesk::force(const OperatorCommand& command) noexcept {
+    auto& io = body_.io;
+    const auto direction = command.flag ? IoDirection::output : IoDirection::input;
+    const auto& kept = command.flag ? body_.kept.outputs : body_.kept.inputs;
+    if (command.index >= kept.size()) return {Answer::unknown_name};
+    if (command.action == OperatorAction::unforce) {
+        io.release_force(direction, command.index);
+        return {};
+    }
+    if (!kept[command.index].empty()) return {Answer::not_possible_now, ErrorId::not_supported};
+    if (!io.can_force(direction, command.index, command.value)) return {Answer::bad_value};
+    if (command.flag && body_.emergency) return {Answer::not_possible_now, ErrorId::interlocked};
+    if (!io.force(direction, command.index, command.value, command.client)) return {Answer::not_possible_now, ErrorId::queue_full};
+    return {};
+}
+
+Verdict OperatorDesk::override_velocity(const OperatorCommand& command) noexcept {
+    if (!(command.value >= 0 && command.value <= 1)) return {Answer::bad_value};
+    if (command.axis != all && (command.axis >= body_.axes.size() || body_.config.axes[command.axis].axis.disabled))
+        return {Answer::unknown_name};
+    for (std::size_t i = 0; i < body_.axes.size(); ++i)
+        if (command.axis == all || command.axis == i) (void)body_.axes[i].set_operators_override(command.value);
+    return {};
+}
+
+Verdict OperatorDesk::reset_peaks(const OperatorCommand& command) noexcept {
+    if (command.axis != all && command.axis >= body_.axes.size()) return {Answer::unknown_name};
+    for (std::size_t i = 0; i < body_.axes.size(); ++i)
+        if (command.axis == all || command.axis == i) body_.following_peaks[i] = {};
     return {};
 }
 

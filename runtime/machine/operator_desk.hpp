@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/spsc_ring.hpp"
@@ -43,6 +44,8 @@ public:
     void release_outputs() noexcept;
     /// A level: it stays.
     [[nodiscard]] bool shutdown_taken() const noexcept { return shutdown_taken_; }
+    /// Since the last call.
+    [[nodiscard]] bool statistics_reset() noexcept { return std::exchange(statistics_reset_, false); }
 
 private:
     struct OutputByHand {
@@ -63,6 +66,9 @@ private:
     Verdict start_program(const OperatorCommand& command) noexcept;
     Verdict set_parameter(const OperatorCommand& command) noexcept;
     Verdict set_output(const OperatorCommand& command) noexcept;
+    Verdict force(const OperatorCommand& command) noexcept;
+    Verdict override_velocity(const OperatorCommand& command) noexcept;
+    Verdict reset_peaks(const OperatorCommand& command) noexcept;
     Verdict power(const OperatorCommand& command, std::size_t axis) noexcept;
     void set_mode(Mode wanted) noexcept;
     void release_outputs_of(std::uint32_t client) noexcept;
@@ -76,6 +82,7 @@ private:
     std::vector<std::uint8_t> power_held_;       // per axis: whoever has manual control of it holds the power wish
     std::vector<OutputByHand> outputs_by_hand_;  // as io.outputs()
     bool shutdown_taken_ = false;
+    bool statistics_reset_ = false;
     std::atomic<bool> shutdown_asked_{false};
 };
 

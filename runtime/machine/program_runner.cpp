@@ -39,6 +39,7 @@ ProgramRunner::ProgramRunner(MachineBody& body, HandMotion& hands, std::vector<E
         programs_.emplace_back(body.requests, claims_, static_cast<std::uint16_t>(p));
     build_tasks();
     task_statistics_.resize(host_.tasks().size());
+    task_times_ = std::vector<SharedHistogram>(host_.tasks().size());
     for (const auto& variable : host_.variables()) variable_values_.push_back(ProgramHost::read(variable));
 }
 

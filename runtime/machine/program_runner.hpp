@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/shared_histogram.hpp"
 #include "runtime/machine/hand_motion.hpp"
 #include "runtime/machine/machine_body.hpp"
 #include "runtime/tasks/object_requests.hpp"
@@ -48,6 +49,10 @@ public:
     [[nodiscard]] std::vector<double>& parameters() noexcept { return host_.parameters(); }
     [[nodiscard]] const std::vector<double>& variables() const noexcept { return variable_values_; }
     [[nodiscard]] const std::vector<TaskStatistics>& task_statistics() const noexcept { return task_statistics_; }
+    /// Runs of each task. Any thread.
+    [[nodiscard]] const std::vector<SharedHistogram>& task_times() const noexcept { return task_times_; }
+    /// Maxima and histograms begin anew. Cycle, real-time safe.
+    void reset_statistics() noexcept;
     struct LongestTask {
         std::size_t place = 0;  ///< in the layout's tasks
         Duration run{};
@@ -95,6 +100,8 @@ private:
     void run_base_task(BaseTask& base) noexcept;
     void release_slow_task(SlowPlace& slow) noexcept;
     void raise_alarms_of(std::size_t program) noexcept;
+    /// A run of a task is over.
+    void book(std::size_t place, Duration run) noexcept;
 
     MachineBody& body_;
     HandMotion& hands_;
@@ -105,6 +112,7 @@ private:
     std::vector<BaseTask> base_tasks_;
     std::vector<SlowPlace> slow_tasks_;
     std::vector<TaskStatistics> task_statistics_;  // as host_.tasks()
+    std::vector<SharedHistogram> task_times_;      // likewise
     LongestTask longest_base_task_;
     std::vector<double> variable_values_;       // as this cycle shows them
     std::atomic<std::int32_t> pulse_task_{-1};  // of host_.tasks()

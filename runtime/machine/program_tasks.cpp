@@ -46,6 +46,19 @@ void ProgramRunner::run_base_task(BaseTask& base) noexcept {
     pulse_task_.store(-1, std::memory_order_relaxed);
 }
 
+void ProgramRunner::book(std::size_t place, Duration run) noexcept {
+    auto& numbers = task_statistics_[place];
+    numbers.run = run;
+    numbers.run_max = std::max(numbers.run_max, run);
+    ++numbers.releases;
+    task_times_[place].record(run, body_.cycles + 1);  // of this cycle, which is not over
+}
+
+void ProgramRunner::reset_statistics() noexcept {
+    for (auto& numbers : task_statistics_) numbers.run_max = {};
+    for (auto& times : task_times_) times.reset();
+}
+
 void ProgramRunner::release_slow_task(SlowPlace& slow) noexcept {
     auto& task = *slow.task;
     const auto p = task.program();
@@ -74,9 +87,7 @@ void ProgramRunner::release_slow_task(SlowPlace& slow) noexcept {
     auto& alarms = host_.programs()[p].alarms;
     auto& io = body_.io;
     task.apply(program.requests, io.outputs(), alarms);
-    numbers.run = task.last_run();
-    numbers.run_max = std::max(numbers.run_max, numbers.run);
-    ++numbers.releases;
+    book(slow.place, task.last_run());
     CycleContext context;
     context.now = body_.now;
     context.period = body_.config.cycle;
@@ -92,9 +103,7 @@ void ProgramRunner::run_tasks() noexcept {
         const Stopwatch watch;
         run_base_task(base);
         auto& numbers = task_statistics_[base.place];
-        numbers.run = Stopwatch{watch}.lap();
-        numbers.run_max = std::max(numbers.run_max, numbers.run);
-        ++numbers.releases;
+        book(base.place, Stopwatch{watch}.lap());
         if (numbers.run > body_.config.cycle) ++numbers.overruns;
         if (numbers.run > longest_base_task_.run) longest_base_task_ = {base.place, numbers.run};
     }

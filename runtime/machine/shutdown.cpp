@@ -24,6 +24,7 @@ void Shutdown::begin() noexcept {
     body_.phase.store(MachinePhase::stopping, std::memory_order_release);
     programs_.stop_all();
     desk_.drop_power();
+    body_.io.release_forces();
     body_.io.make_safe();
     for (auto& axis : body_.axes) axis.shut_down();
 }

@@ -8,6 +8,7 @@ void SnapshotWriter::prepare() {
     Snapshot prototype;
     prototype.slaves.resize(body_.bus.slave_count());
     prototype.axes.resize(body_.axes.size());
+    prototype.following_peaks.resize(body_.following_peaks.size());
     prototype.inputs.resize(body_.io.inputs().size());
     prototype.outputs.resize(body_.io.outputs().size());
     prototype.input_values.resize(prototype.inputs.size());
@@ -43,10 +44,14 @@ void SnapshotWriter::step() noexcept {
     s.statistics = body_.statistics;
     for (std::size_t i = 0; i < s.slaves.size(); ++i) s.slaves[i] = body_.bus.health(i);
     for (std::size_t i = 0; i < s.axes.size(); ++i) s.axes[i] = body_.axes[i].view();
+    std::ranges::copy(body_.following_peaks, s.following_peaks.begin());
     std::ranges::copy(body_.io.inputs(), s.inputs.begin());
-    std::ranges::copy(body_.io.outputs(), s.outputs.begin());
+    for (std::size_t i = 0; i < s.outputs.size(); ++i) s.outputs[i] = body_.io.output_word(i);
     std::ranges::copy(body_.io.input_values(), s.input_values.begin());
     for (std::size_t i = 0; i < s.output_values.size(); ++i) s.output_values[i] = body_.io.output_value(i);
+    const auto forces = body_.io.forces();
+    s.force_count = forces.size();
+    std::ranges::copy(forces, s.forces.begin());
     std::ranges::copy(programs_.host().parameters(), s.parameters.begin());
     std::ranges::copy(programs_.variables(), s.variables.begin());
     std::ranges::transform(programs_.programs(), s.programs.begin(), &ProgramRecord::state);

@@ -1,5 +1,6 @@
 #include "runtime/machine/supervisor.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include "axes/axis/alarms.hpp"
@@ -45,6 +46,7 @@ void Supervisor::step(const CycleTick& tick) noexcept {
     raise_rivals();
     raise_positions();
     raise_inputs();
+    raise_forces();
 
     const auto level = emergency_inputs_.level();
     for (std::size_t i = 0; i < body_.axes.size(); ++i) supervise(i, level);
@@ -89,7 +91,7 @@ void Supervisor::raise_inputs() noexcept {
         const auto index = static_cast<std::uint16_t>(i);
         if (trouble == Trouble::below_limit || trouble == Trouble::above_limit) {
             const auto& limits = *io.point(IoDirection::input, i).limits;
-            body_.raise(MachineAlarm::input_out_of_limits, AlarmSource::io, index, io.input_values()[i].value,
+            body_.raise(MachineAlarm::input_out_of_limits, AlarmSource::io, index, io.measured(i).value,
                         trouble == Trouble::below_limit ? limits.low : limits.high);
         } else {
             body_.raise(MachineAlarm::input_faulty, AlarmSource::io, index,
@@ -99,6 +101,14 @@ void Supervisor::raise_inputs() noexcept {
                                                         : input_error);
         }
     }
+}
+
+void Supervisor::raise_forces() noexcept {
+    const auto forces = body_.io.forces();
+    if (forces.empty()) return;
+    const auto outputs = std::ranges::count(forces, IoDirection::output, &ForcedPoint::direction);
+    body_.raise(MachineAlarm::points_forced, AlarmSource::machine, 0, static_cast<double>(forces.size()) - static_cast<double>(outputs),
+                static_cast<double>(outputs));
 }
 
 void Supervisor::supervise(std::size_t index, axes::EmergencyStop level) noexcept {

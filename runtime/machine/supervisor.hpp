@@ -36,6 +36,7 @@ private:
     void raise_rivals() noexcept;
     void raise_positions() noexcept;
     void raise_inputs() noexcept;
+    void raise_forces() noexcept;
     void supervise(std::size_t axis, axes::EmergencyStop level) noexcept;
     [[nodiscard]] bool follows_from_another(const AlarmFact& fact) noexcept;
     void react() noexcept;

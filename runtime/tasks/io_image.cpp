@@ -55,16 +55,17 @@ IoImage::Trouble trouble_of(PointStatus::Kind kind) noexcept {
 IoImage::IoImage(const std::vector<IoPoint>& points, Duration cycle) : cycle_s_(to_seconds(cycle)) {
     for (const auto& point : points) {
         if (point.direction == IoDirection::input) {
-            input_points_.push_back({point, {}, 0, {}, false, -1, false, {}});
+            input_points_.emplace_back().config = point;
             inputs_.push_back(0);
         } else {
-            output_points_.push_back({point, {}, 0, {}, false, -1, false, {}});
+            output_points_.emplace_back().config = point;
             outputs_.push_back(point.safe_value);
             output_lines_.push_back(point.line);
         }
     }
     input_values_.resize(inputs_.size());
     troubles_.resize(inputs_.size());
+    forces_.reserve(max_forces);
 }
 
 Result<Signal> IoImage::signal_of(const ecat::Master& bus, const Point& point, std::uint16_t index, std::uint8_t sub) const {
@@ -125,12 +126,12 @@ void IoImage::read(std::span<const std::byte> image, const ecat::Master& bus) no
     for (std::size_t i = 0; i < input_points_.size(); ++i) {
         const auto& p = input_points_[i];
         if (p.config.beside) {
-            inputs_[i] = logical(p.beside.word, p.config, *p.config.beside);
+            word_of(i) = logical(p.beside.word, p.config, *p.config.beside);
             judge(i, image, p.beside.fresh, p.beside.fresh);
             continue;
         }
         if (p.group >= 0 && watch_group(i, bus)) continue;
-        inputs_[i] = logical(read_signal(image, p.signal), p.config, p.signal);
+        word_of(i) = logical(read_signal(image, p.signal), p.config, p.signal);
         if (p.slave >= bus.slave_count()) continue;
         const auto& slave = bus.health(p.slave);
         judge(i, image, slave.fresh, slave.age == 0);
@@ -140,10 +141,10 @@ void IoImage::read(std::span<const std::byte> image, const ecat::Master& bus) no
 bool IoImage::watch_group(std::size_t input, const ecat::Master& bus) noexcept {
     auto& p = input_points_[input];
     const auto presence = presence_of(bus, p.group);
-    auto& shown = input_values_[input];
+    auto& shown = value_of(input);
     if (p.config.presence) {
-        inputs_[input] = presence == p.config.presence->shows ? 1 : 0;
-        shown = {static_cast<double>(inputs_[input]), true};
+        word_of(input) = presence == p.config.presence->shows ? 1 : 0;
+        shown = {static_cast<double>(word_of(input)), true};
         return true;
     }
     if (presence == axes::Presence::present) return false;
@@ -157,13 +158,13 @@ void IoImage::take_beside(std::size_t input, std::int64_t word, bool fresh) noex
 
 std::int64_t IoImage::beside(std::size_t output) const noexcept {
     const auto& point = output_points_[output].config;
-    return logical(carried(outputs_[output], *point.beside), point, *point.beside);
+    return logical(carried(output_word(output), *point.beside), point, *point.beside);
 }
 
 void IoImage::judge(std::size_t input, std::span<const std::byte> image, bool fresh, bool young) noexcept {
     auto& p = input_points_[input];
-    auto& shown = input_values_[input];
-    const double value = p.config.line.value_of(inputs_[input]);
+    auto& shown = value_of(input);
+    const double value = p.config.line.value_of(word_of(input));
     const bool filtered = p.config.filter > Duration::zero() && p.seen && std::isfinite(shown.value);
     shown.value = filtered ? shown.value + (value - shown.value) * cycle_s_ / (cycle_s_ + to_seconds(p.config.filter)) : value;
     if (fresh) {
@@ -189,7 +190,7 @@ void IoImage::write(std::span<std::byte> image) noexcept {
         const auto& p = output_points_[i];
         outputs_[i] = carried(outputs_[i], p.signal);
         if (p.config.beside) continue;
-        const auto word = p.away ? carried(p.config.safe_value, p.signal) : outputs_[i];
+        const auto word = p.away ? carried(p.config.safe_value, p.signal) : output_word(i);
         write_signal(image, p.signal, logical(word, p.config, p.signal));
     }
 }

@@ -1,5 +1,6 @@
 #pragma once
-// The machine's named points: signals resolved once, raw words read and written once per cycle, and what they mean in units.
+// The machine's named points: signals resolved once, raw words read and written once per cycle, and what they mean in units. What people force
+// is put in place here: behind the terminal of an input, before that of an output.
 
 #include <cstdint>
 #include <span>
@@ -9,6 +10,7 @@
 #include "core/process_image.hpp"
 #include "core/result.hpp"
 #include "ecat/master.hpp"
+#include "runtime/forced_point.hpp"
 #include "runtime/machine_config.hpp"
 
 namespace taktwerk::runtime {
@@ -31,17 +33,39 @@ public:
     void take_beside(std::size_t input, std::int64_t word, bool fresh) noexcept;
     [[nodiscard]] std::int64_t beside(std::size_t output) const noexcept;
 
+    /// --- forces: people put a value in place of what the terminal says (input) or of what is written (output). Real-time safe ---
+    /// A forced input is what everybody reads, and good; what its terminal says goes on being supervised (trouble()). What is written to a forced
+    /// output is kept, and goes out again when the force ends. `value` in the unit of the point; it can_force().
+    [[nodiscard]] bool can_force(IoDirection direction, std::size_t index, double value) const noexcept;
+    /// False: max_forces are in force.
+    bool force(IoDirection direction, std::size_t index, double value, std::uint32_t client) noexcept;
+    void release_force(IoDirection direction, std::size_t index) noexcept;
+    void release_forces_of(std::uint32_t client) noexcept;
+    void release_forces() noexcept;
+    void release_output_forces() noexcept;
+    [[nodiscard]] std::span<const ForcedPoint> forces() const noexcept { return {forces_.data(), forces_.size()}; }
+
     /// Every output to its configured safe value.
     void make_safe() noexcept;
     void make_safe(std::size_t output) noexcept { outputs_[output] = output_points_[output].config.safe_value; }
 
     [[nodiscard]] std::vector<std::int64_t>& inputs() noexcept { return inputs_; }
+    /// As written by programs, people and drives; a force stands beside it.
     [[nodiscard]] std::vector<std::int64_t>& outputs() noexcept { return outputs_; }
+    /// As it goes out: for who shows it.
+    [[nodiscard]] std::int64_t output_word(std::size_t output) const noexcept {
+        const auto& point = output_points_[output];
+        return point.forced ? point.forced_word : outputs_[output];
+    }
     /// Each input in its unit, and whether it can be believed.
     [[nodiscard]] const std::vector<PointValue>& input_values() const noexcept { return input_values_; }
+    /// What its terminal says, also while it is forced.
+    [[nodiscard]] const PointValue& measured(std::size_t input) const noexcept {
+        return input_points_[input].forced ? input_points_[input].real : input_values_[input];
+    }
     /// From the raw words of the outputs to their units.
     [[nodiscard]] const std::vector<PointLine>& output_lines() const noexcept { return output_lines_; }
-    [[nodiscard]] double output_value(std::size_t output) const noexcept { return output_lines_[output].value_of(outputs_[output]); }
+    [[nodiscard]] double output_value(std::size_t output) const noexcept { return output_lines_[output].value_of(output_word(output)); }
 
     /// What is wrong with an input in this cycle.
     enum class Trouble : std::uint8_t { none, error, underrange, overrange, no_number, below_limit, above_limit };
@@ -72,6 +96,10 @@ private:
         bool seen = false;  ///< the filter has begun
         int group = -1;     ///< of hot connect; -1: always there
         bool away = false;  ///< that group is not present
+        bool forced = false;
+        std::int64_t forced_word = 0;  ///< output
+        std::int64_t real_word = 0;    ///< input: what its terminal says, while it is forced ...
+        PointValue real{};             ///< ... and in its unit
         struct Beside {
             std::int64_t word = 0;
             bool fresh = false;
@@ -82,6 +110,16 @@ private:
     void read_presence(const ecat::Master& bus) noexcept;
     bool watch_group(std::size_t input, const ecat::Master& bus) noexcept;
     [[nodiscard]] Result<Signal> signal_of(const ecat::Master& bus, const Point& point, std::uint16_t index, std::uint8_t sub) const;
+    /// What its terminal says, whatever is forced.
+    [[nodiscard]] std::int64_t& word_of(std::size_t input) noexcept {
+        return input_points_[input].forced ? input_points_[input].real_word : inputs_[input];
+    }
+    [[nodiscard]] PointValue& value_of(std::size_t input) noexcept {
+        return input_points_[input].forced ? input_points_[input].real : input_values_[input];
+    }
+    void end_force(const ForcedPoint& force) noexcept;
+    template <class Which>
+    void release_those(Which which) noexcept;
     /// `fresh`: its device was heard in this cycle; `young`: not too long ago.
     void judge(std::size_t input, std::span<const std::byte> image, bool fresh, bool young) noexcept;
 
@@ -92,6 +130,7 @@ private:
     std::vector<Trouble> troubles_;
     std::vector<PointLine> output_lines_;
     std::vector<std::uint8_t> output_bits_;
+    std::vector<ForcedPoint> forces_;  ///< has its memory from the start
 };
 
 }  // namespace taktwerk::runtime

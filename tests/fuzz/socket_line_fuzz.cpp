@@ -19,6 +19,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     JsonRequests requests(gateway, machine, [] { return std::int64_t{1'800'000'000'000'000}; });
     gateway.observe(true);
     requests.observe(&machine.snapshot);
+    runtime::CycleHistograms cycle;
+    axes::DriveProfile profile;
+    profile.parameters.resize(2);
+    machine.its_times.cycle = &cycle;
+    machine.drives = {{nullptr, &profile}};
+    const auto log = std::make_shared<LogTail>();
+    log->add("a line\n\xff");
+    requests.set_log(log);
     requests.on_open(1, {});
     Instant now{std::chrono::seconds{1}};
 
@@ -33,11 +41,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             const auto& command = machine.submitted.back();
             if (!std::isfinite(command.value) || !std::isfinite(command.value2)) std::abort();
             if (command.axis != 0xFFFF && command.axis >= machine.its_layout.axes.size()) std::abort();
+            const bool forces = command.action == runtime::OperatorAction::force || command.action == runtime::OperatorAction::unforce;
+            const auto points = command.flag ? machine.its_layout.outputs.size() : machine.its_layout.inputs.size();
+            if (forces && command.index >= points) std::abort();
             if (command.expires <= now - std::chrono::nanoseconds{1}) std::abort();
             machine.answer(runtime::Answer::accepted);
         }
         now += std::chrono::milliseconds{5};
         gateway.step(now);
+        requests.step(now);
         while (const auto reply = gateway.next_reply()) requests.deliver(*reply);
         int answers = 0;
         while (const auto line = requests.next_line()) {

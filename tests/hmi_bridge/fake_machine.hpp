@@ -57,6 +57,7 @@ public:
         return {"axis x", "following_error", "The axis lags behind", "跟随误差过大", "It is blocked", "Free it", "the axis stops", "reset"};
     }
     [[nodiscard]] Drive drive(std::uint16_t axis) override { return axis < drives.size() ? drives[axis] : Drive{}; }
+    [[nodiscard]] runtime::MachineTimes times() const override { return its_times; }
     runtime::StopLevels::Ticket request_stop(std::uint16_t axis) override {
         stops.push_back(axis);
         return {0, ++levels};
@@ -84,6 +85,7 @@ public:
     runtime::Snapshot snapshot;
     runtime::MachineLayout its_layout;
     std::vector<Drive> drives;  ///< by axis; those behind have none
+    runtime::MachineTimes its_times;
     std::size_t inbox_size = 1000;
     bool cycling = true;
     bool shutdown_requested = false;

@@ -76,6 +76,12 @@ TEST_F(Deeds, EachKindIsToldWithWhoAndWhatAndItsNumbers) {
     told(CommandKind::program_reset, "cell", 0, 0, "program_reset program cell");
     told(CommandKind::set_parameter, "speed", 250, 0, "set_parameter parameter cell.speed = 250 mm/s");
     told(CommandKind::set_output, "lamp_run", 1, 0, "set_output output lamp_run = 1");
+    told(CommandKind::force, "start_button", 1, 0, "force input start_button = 1");
+    told(CommandKind::unforce, "start_button", 0, 0, "unforce input start_button");
+    told(CommandKind::release_forces, "", 0, 0, "release_forces");
+    told(CommandKind::override_velocity, "x", 0.5, 0, "override axis x 50 %");
+    told(CommandKind::reset_peaks, "all", 0, 0, "reset_peaks all axes");
+    told(CommandKind::reset_statistics, "", 0, 0, "reset_statistics");
     told(CommandKind::acknowledge, "", 0, 0, "acknowledge");
     told(CommandKind::shutdown, "", 0, 0, "shutdown");
     auto commissioning = request(a, CommandKind::take_control, "x");
@@ -145,12 +151,30 @@ TEST_F(Deeds, OutputsOfAClientThatIsGoneAreTakenBackAlsoWhenTheInboxWasFull) {
     EXPECT_EQ(machine.submitted.size(), before + 1) << "it had set none";
 }
 
+TEST_F(Deeds, WhatAClientHasForcedEndsWithIt) {
+    does(a, CommandKind::force, "start_button", 1);
+    does(a, CommandKind::unforce, "start_button");
+    const auto before = machine.submitted.size();
+    gateway.close(b);
+    gateway.step(now);
+    EXPECT_EQ(machine.submitted.size(), before) << "it had forced none";
+    gateway.close(a);
+    gateway.step(now);
+    ASSERT_EQ(machine.submitted.size(), before + 1) << "once";
+    EXPECT_EQ(machine.submitted.back().action, OperatorAction::release_forces);
+    EXPECT_TRUE(machine.submitted.back().flag) << "its own alone";
+    EXPECT_EQ(machine.submitted.back().client, a);
+    EXPECT_THAT(log, Contains(HasSubstr("is gone: points that it was the last to force are their own again")));
+    EXPECT_EQ(gateway.name_of(a), "");
+}
+
 // Over LCM nobody knows who asks, and nobody misses a sender that has died.
 TEST_F(Deeds, OverLcmNobodyEndsTheRunOrSetsAnOutputButAnybodyStops) {
     const auto lcm = gateway.open(Source::lcm, "LCM client 9", Rights::operating);
     EXPECT_EQ(does(lcm, CommandKind::shutdown), Answer::no_control);
     EXPECT_FALSE(machine.shutdown_requested);
     EXPECT_EQ(does(lcm, CommandKind::set_output, "lamp_run", 1), Answer::no_control);
+    EXPECT_EQ(does(lcm, CommandKind::force, "start_button", 1), Answer::no_control);
     EXPECT_THAT(machine.submitted, IsEmpty());
     EXPECT_EQ(does(lcm, CommandKind::stop), Answer::accepted);
     EXPECT_EQ(does(a, CommandKind::shutdown), Answer::accepted);

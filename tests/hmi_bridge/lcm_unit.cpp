@@ -137,9 +137,9 @@ TEST_F(LcmTest, AnAxisCarriesTheValuesOfAnOnlinePage) {
     y.set_velocity = -20;
     y.target_position = 40;
     y.active = 3;
-    y.following_error = 0.5;
-    step();
     y.following_error = -0.25;
+    machine.snapshot.following_peaks = {{}, {-0.75, 0.5}, {}};
+    step();
     now += 50ms;
     step();
 
@@ -156,7 +156,7 @@ TEST_F(LcmTest, AnAxisCarriesTheValuesOfAnOnlinePage) {
     EXPECT_EQ(m.actual_position, 99.5);
     EXPECT_EQ(m.distance_to_go, -60) << "target minus set position";
     EXPECT_EQ(m.following_error, -0.25);
-    EXPECT_EQ(m.following_error_min, -0.25);
+    EXPECT_EQ(m.following_error_min, -0.75) << "of all cycles, not of those that were published";
     EXPECT_EQ(m.following_error_max, 0.5);
     EXPECT_TRUE(m.negative_direction && m.constant_velocity && m.has_job && m.homed);
     EXPECT_FALSE(m.positive_direction || m.not_moving || m.disabled);
@@ -352,7 +352,7 @@ TEST_F(LcmTest, ValuesOutOfRangeAndUnknownKindsAreRefused) {
     c.value = std::numeric_limits<double>::quiet_NaN();
     c.press = 1;
     send(c);
-    send(command(2, 18, "x"));
+    send(command(2, static_cast<std::int32_t>(command_words.size()) + 1, "x"));
     send(command(3, -1, "x"));
     c = command(4, command_v1_t::KIND_HOME, "x");
     c.valid_for_ms = -1;

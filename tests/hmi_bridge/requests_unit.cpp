@@ -67,6 +67,65 @@ TEST_F(RequestsTest, ACommandIsCarriedOutAndAnsweredWithItsId) {
     EXPECT_TRUE(machine.submitted[0].flag);
 }
 
+TEST_F(RequestsTest, AForceNamesAnInputOrAnOutputAndWithoutAValueReleasesIt) {
+    EXPECT_EQ(ask(R"({"id":1,"cmd":"force","input":"start_button","value":1})")["ok"], true);
+    EXPECT_EQ(ask(R"({"id":2,"cmd":"force","output":"lamp_run","value":0})")["ok"], true);
+    EXPECT_EQ(ask(R"({"id":3,"cmd":"force","output":"lamp_run"})")["ok"], true);
+    ASSERT_EQ(machine.submitted.size(), 3u);
+    EXPECT_EQ(machine.submitted[0].action, OperatorAction::force);
+    EXPECT_FALSE(machine.submitted[0].flag) << "an input";
+    EXPECT_EQ(machine.submitted[0].value, 1);
+    EXPECT_EQ(machine.submitted[1].action, OperatorAction::force);
+    EXPECT_TRUE(machine.submitted[1].flag) << "an output";
+    EXPECT_EQ(machine.submitted[2].action, OperatorAction::unforce);
+    EXPECT_TRUE(machine.submitted[2].flag);
+
+    EXPECT_EQ(code_for(R"({"id":4,"cmd":"force","input":"start_button","output":"lamp_run","value":1})"), "request.unknown_key");
+    EXPECT_EQ(code_for(R"({"id":5,"cmd":"force","value":1})"), "request.missing_key");
+    EXPECT_EQ(code_for(R"({"id":6,"cmd":"force","input":"lamp_run","value":1})"), "command.unknown_name");
+    EXPECT_EQ(code_for(R"({"id":7,"cmd":"force","input":"start_button","value":0.5})"), "command.bad_value");
+    EXPECT_EQ(code_for(R"({"id":8,"cmd":"unforce","input":"start_button","value":0})"), "request.unknown_key");
+    machine.its_layout.kept_inputs = {"", "the emergency stop reads it"};
+    const auto kept = ask(R"({"id":9,"cmd":"force","input":"estop_ok","value":1})");
+    EXPECT_EQ(kept["error"]["code"], "command.not_possible_now");
+    EXPECT_THAT(kept["error"]["what"].get<std::string>(), HasSubstr("the emergency stop reads it"));
+    EXPECT_EQ(machine.submitted.size(), 3u);
+}
+
+TEST_F(RequestsTest, AForceIsShownWithWhoForcedIt) {
+    ask(R"({"id":1,"cmd":"force","output":"lamp_run","value":1})");
+    machine.snapshot.forces[0] = {runtime::IoDirection::output, 0, machine.submitted[0].client, 1};
+    machine.snapshot.force_count = 1;
+    const auto forced = ask(R"({"cmd":"state"})")["state"]["forced"];
+    ASSERT_EQ(forced.size(), 1u);
+    EXPECT_EQ(forced[0]["point"], "lamp_run");
+    EXPECT_EQ(forced[0]["direction"], "output");
+    EXPECT_EQ(forced[0]["value"], 1);
+    EXPECT_THAT(forced[0]["by"].get<std::string>(), HasSubstr("process 100"));
+}
+
+TEST_F(RequestsTest, AnOverrideIsAPartOfTheVelocity) {
+    EXPECT_EQ(ask(R"({"id":1,"cmd":"override","axis":"x","value":0.25})")["ok"], true);
+    EXPECT_EQ(machine.submitted.back().axis, 0);
+    EXPECT_EQ(machine.submitted.back().value, 0.25);
+    EXPECT_EQ(ask(R"({"id":2,"cmd":"override","axis":"all","value":0})")["ok"], true);
+    EXPECT_EQ(machine.submitted.back().axis, 0xFFFF);
+    for (const char* bad : {"1.5", "-0.1"})
+        EXPECT_EQ(code_for(std::string(R"({"id":)") + (bad[0] == '1' ? "3" : "4") + R"(,"cmd":"override","axis":"x","value":)" + bad + "}"),
+                  "command.bad_value");
+    EXPECT_EQ(code_for(R"({"id":5,"cmd":"override","value":1})"), "request.missing_key");
+}
+
+TEST_F(RequestsTest, HelloSaysWhatRunsAndForHowLong) {
+    requests.set_about({"0.1.0", {{"fmt", "9.1.0", "MIT"}}});
+    requests.step(now);
+    now += 90s;
+    const auto hello = ask(R"({"cmd":"hello"})")["hello"];
+    EXPECT_EQ(hello["version"], "0.1.0");
+    EXPECT_EQ(hello["uptime_s"], 90);
+    EXPECT_EQ(hello["libraries"], (json::array({{{"name", "fmt"}, {"version", "9.1.0"}, {"licence", "MIT"}}})));
+}
+
 TEST_F(RequestsTest, EveryCommandOfTheTableHasALine) {
     const std::vector<std::string> lines{R"("cmd":"take_control","axis":"x")",
                                          R"("cmd":"release_control","axis":"all")",
@@ -84,7 +143,13 @@ TEST_F(RequestsTest, EveryCommandOfTheTableHasALine) {
                                          R"("cmd":"set_parameter","parameter":"speed","value":100)",
                                          R"("cmd":"set_output","output":"lamp_run","value":true)",
                                          R"("cmd":"acknowledge")",
-                                         R"("cmd":"shutdown")"};
+                                         R"("cmd":"shutdown")",
+                                         R"("cmd":"force","input":"start_button","value":1)",
+                                         R"("cmd":"unforce","output":"lamp_run")",
+                                         R"("cmd":"release_forces")",
+                                         R"("cmd":"override","axis":"all","value":0.5)",
+                                         R"("cmd":"reset_peaks","axis":"x")",
+                                         R"("cmd":"reset_statistics")"};
     ASSERT_EQ(lines.size(), command_words.size());
     for (std::size_t i = 0; i < lines.size(); ++i) {
         const auto answer = ask("{\"id\":" + std::to_string(i + 1) + "," + lines[i] + "}");

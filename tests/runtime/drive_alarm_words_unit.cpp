@@ -16,7 +16,7 @@ AxisBinding axis() {
     axes::DriveAlarmText interrupt;
     interrupt.code = 0x7500, interrupt.detail = 0x13, interrupt.panel = "E.013", interrupt.english = "interrupt",
     interrupt.chinese = "中断";
-    interrupt.cause = "it is lost", interrupt.remedy = "replace it";
+    interrupt.cause = "it is lost", interrupt.remedy = "replace it", interrupt.section = "5.4";
     axes::DriveAlarmText limit;
     limit.code = 0x5443, limit.panel = "A.220", limit.english = "positive limit", limit.chinese = "正向超程", limit.warning = true;
     axes::DriveAlarmText overload;
@@ -42,6 +42,7 @@ TEST(DriveAlarmWords, NameDrivePanelAlarmInBothLanguagesCauseRemedyAndReset) {
     EXPECT_EQ(text.chinese, "a-1 'x_drive' 报告故障 7500h/13h,面板 E.013:中断");
     EXPECT_EQ(text.cause, "it is lost");
     EXPECT_EQ(text.remedy, "replace it");
+    EXPECT_EQ(text.manual, "a-1 5.4") << "which page to open";
     EXPECT_EQ(text.reset, "once its cause is gone: press reset or `taktwerk reset x`, in a program MC_Reset");
 }
 
@@ -57,6 +58,7 @@ TEST(DriveAlarmWords, NameAllThatItCanBeUntilTheDetailIsRead) {
     auto text = general();
     tell_drive_alarm(text, axis(), {0x7500, std::nullopt, fault});
     EXPECT_EQ(text.english, "a-1 'x_drive' reports fault 7500h, panel E.012 or E.013");
+    EXPECT_EQ(text.manual, "") << "nobody knows yet which it is";
     EXPECT_EQ(text.chinese, "a-1 'x_drive' 报告故障 7500h,面板 E.012 或 E.013");
     EXPECT_EQ(text.cause, "see the manual");
     EXPECT_EQ(text.remedy, "remove it");

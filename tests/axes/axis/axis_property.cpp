@@ -101,6 +101,9 @@ TEST_P(RandomAxis, KeepsItsRules) {
             case 37: rig.axis.set_mode(static_cast<OperatingMode>(random() % 3)); break;
             case 38: rig.drive.refuses_power = random() % 4 == 0; break;
             case 39: rig.drive.refuses_power = false; break;
+            case 40: (void)rig.axis.set_operators_override(static_cast<double>(random() % 4) / 3); break;
+            case 41:
+            case 42: (void)rig.axis.set_operators_override(1); break;
             default: break;
         }
         if (last != 0 && last > highest) {
@@ -141,6 +144,7 @@ TEST_P(RandomAxis, KeepsItsRules) {
     rig.drive.fault_code = 0;
     rig.drive.silent = rig.drive.refuses_power = false;
     rig.enable = true;
+    (void)rig.axis.set_operators_override(1);
     rig.axis.demand_emergency_stop(EmergencyStop::none);
     rig.axis.take_control(Owner::commissioning);
     rig.axis.take_control(Owner::program);

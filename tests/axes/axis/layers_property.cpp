@@ -123,7 +123,10 @@ TEST_P(RandomLayers, KeepTheirRules) {
                 (void)rig.axis.set(Override{stands ? 0 : pick(0.1, 1), pick(0.3, 1), pick(0.3, 1)}, Owner::program);
                 break;
             }
-            case 8: (void)rig.axis.set(Override{}, Owner::program); break;
+            case 8:
+                (void)rig.axis.set(Override{}, Owner::program);
+                (void)rig.axis.set_operators_override(random() % 2 ? 1 : pick(0.1, 1));
+                break;
             case 9:
                 running.velocity = running.kind == CommandKind::move_velocity ? pick(-90, 90) : pick(5, 130);
                 if (random() % 2 && modulo == 0) running.position += pick(-4, 4);
@@ -190,6 +193,7 @@ TEST_P(RandomLayers, KeepTheirRules) {
     }
     // All of it comes to an end: nothing hangs.
     (void)rig.axis.set(Override{}, Owner::program);
+    (void)rig.axis.set_operators_override(1);
     (void)rig.axis.submit(halt(), Owner::program);
     ASSERT_TRUE(rig.run_until([&] { return rig.view().state == AxisState::Standstill || rig.view().state == AxisState::ErrorStop; }, 3000));
 }

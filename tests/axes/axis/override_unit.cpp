@@ -88,6 +88,50 @@ TEST(AxisOverride, InVelocityIsTrueAtTheReducedVelocityAlsoAtZero) {
     EXPECT_EQ(rig.status(id), CommandStatus::in_target);
 }
 
+// The operator's factor stands beside the program's: the velocity has both, and neither side sees its own changed by the other.
+TEST(AxisOverride, TheOperatorsMultipliesTheProgramsAndStays) {
+    OverrideRig rig;
+    rig.accept(at_velocity(100));
+    rig.run(200);
+    ASSERT_EQ(rig.factors(0.5), ErrorId::none);
+    ASSERT_EQ(rig.axis.set_operators_override(0.5), ErrorId::none);
+    rig.run(200);
+    EXPECT_EQ(rig.view().set_velocity, 25);
+    EXPECT_EQ(rig.view().limiter, VelocityLimiter::override_factor);
+    EXPECT_EQ(rig.view().override_factors.velocity, 0.5) << "MC_SetOverride sees what it has set";
+    EXPECT_EQ(rig.view().operators_override, 0.5);
+    ASSERT_EQ(rig.factors(1), ErrorId::none);
+    rig.run(200);
+    EXPECT_EQ(rig.view().set_velocity, 50) << "a program cannot take the operator's back";
+    for (const double bad : {-0.1, 1.1, std::nan("")}) EXPECT_EQ(rig.axis.set_operators_override(bad), ErrorId::invalid_override) << bad;
+    EXPECT_EQ(rig.view().operators_override, 0.5);
+    ASSERT_EQ(rig.axis.set_operators_override(1), ErrorId::none);
+    rig.run(200);
+    EXPECT_EQ(rig.view().set_velocity, 100);
+    EXPECT_EQ(rig.view().limiter, VelocityLimiter::command);
+}
+
+// Whoever owns the axis: it is the operator's. 0 halts in the motion, back goes on to the same target; within the axis' limits all the way.
+TEST(AxisOverride, TheOperatorsZeroHaltsAndTheMotionGoesOn) {
+    OverrideRig rig;
+    const auto id = rig.accept(absolute(100, 50));
+    rig.run(500);
+    ASSERT_EQ(rig.axis.set_operators_override(0), ErrorId::none);
+    rig.run(500);
+    EXPECT_EQ(rig.view().set_velocity, 0);
+    EXPECT_EQ(rig.view().state, AxisState::DiscreteMotion);
+    EXPECT_EQ(rig.status(id), CommandStatus::active);
+    EXPECT_EQ(rig.view().limiter, VelocityLimiter::override_factor);
+    const double halted = rig.view().set_position;
+    rig.run(500);
+    EXPECT_EQ(rig.view().set_position, halted);
+    ASSERT_EQ(rig.axis.set_operators_override(1), ErrorId::none);
+    ASSERT_TRUE(rig.run_to(AxisState::Standstill));
+    EXPECT_EQ(rig.view().set_position, 100);
+    EXPECT_EQ(rig.status(id), CommandStatus::done);
+    EXPECT_LE(rig.largest_velocity, 50 * (1 + 1e-12));
+}
+
 // P1-206: what is allowed; a refused call changes nothing.
 TEST(AxisOverride, RefusesWhatTheStandardForbids) {
     OverrideRig rig;

@@ -22,14 +22,43 @@ using ::testing::HasSubstr;
 
 // Written apart from the table in roles.hpp, from what each command does (hmi_bridge/README.md): viewer, operator, engineer, admin.
 TEST(PageRoles, EveryCellOfRoleAndCommand) {
-    const std::map<std::string, std::string> expected{
-        {"hello", "yyyy"},        {"layout", "yyyy"},        {"state", "yyyy"},        {"alarms", "yyyy"},
-        {"drive_read", "yyyy"},   {"stop", "yyyy"},          {"take_control", "nyyy"}, {"release_control", "nyyy"},
-        {"mode", "nyyy"},         {"enable", "nyyy"},        {"disable", "nyyy"},      {"home", "nyyy"},
-        {"jog", "nyyy"},          {"move", "nyyy"},          {"reset", "nyyy"},        {"program_start", "nyyy"},
-        {"program_stop", "nyyy"}, {"program_reset", "nyyy"}, {"acknowledge", "nyyy"},  {"set_parameter", "nnyy"},
-        {"set_output", "nnyy"},   {"simulate", "nnyy"},      {"drive_write", "nnyy"},  {"drive_store", "nnyy"},
-        {"shutdown", "nnny"},     {"scope_signals", "yyyy"}, {"scope_read", "yyyy"}};
+    const std::map<std::string, std::string> expected{{"hello", "yyyy"},
+                                                      {"layout", "yyyy"},
+                                                      {"state", "yyyy"},
+                                                      {"alarms", "yyyy"},
+                                                      {"drive_read", "yyyy"},
+                                                      {"stop", "yyyy"},
+                                                      {"take_control", "nyyy"},
+                                                      {"release_control", "nyyy"},
+                                                      {"mode", "nyyy"},
+                                                      {"enable", "nyyy"},
+                                                      {"disable", "nyyy"},
+                                                      {"home", "nyyy"},
+                                                      {"jog", "nyyy"},
+                                                      {"move", "nyyy"},
+                                                      {"reset", "nyyy"},
+                                                      {"program_start", "nyyy"},
+                                                      {"program_stop", "nyyy"},
+                                                      {"program_reset", "nyyy"},
+                                                      {"acknowledge", "nyyy"},
+                                                      {"set_parameter", "nnyy"},
+                                                      {"set_output", "nnyy"},
+                                                      {"simulate", "nnyy"},
+                                                      {"drive_write", "nnyy"},
+                                                      {"drive_store", "nnyy"},
+                                                      {"override", "nyyy"},
+                                                      {"reset_peaks", "nyyy"},
+                                                      {"force", "nnyy"},
+                                                      {"unforce", "nnyy"},
+                                                      {"release_forces", "nnyy"},
+                                                      {"reset_statistics", "nnyy"},
+                                                      {"histograms", "yyyy"},
+                                                      {"bus", "yyyy"},
+                                                      {"drive_parameters", "yyyy"},
+                                                      {"log", "nyyy"},
+                                                      {"shutdown", "nnny"},
+                                                      {"scope_signals", "yyyy"},
+                                                      {"scope_read", "yyyy"}};
     EXPECT_EQ(command_rules.size(), expected.size());
     for (const auto& row : expected) {
         const auto* rule = find_rule(row.first);
