@@ -31,6 +31,7 @@ enum class CommandKind : std::int32_t {
     set_output,
     acknowledge,
     shutdown,
+    measure,
 };
 
 /// What a command acts on. `_or_all`: also "all".
@@ -45,7 +46,7 @@ struct CommandWord {
     std::string_view doc;
 };
 
-inline constexpr std::array<CommandWord, 17> command_words{{
+inline constexpr std::array<CommandWord, 18> command_words{{
     {CommandKind::take_control, "take_control", runtime::OperatorAction::take_control, TargetKind::axis_or_all, "", "",
      "become the owner; an axis that moves for another stops first"},
     {CommandKind::release_control, "release_control", runtime::OperatorAction::release_control, TargetKind::axis_or_all, "", "",
@@ -69,6 +70,8 @@ inline constexpr std::array<CommandWord, 17> command_words{{
      "only while no program runs, not in automatic mode"},
     {CommandKind::acknowledge, "acknowledge", runtime::OperatorAction::acknowledge_alarms, TargetKind::none, "", "", "all alarms"},
     {CommandKind::shutdown, "shutdown", runtime::OperatorAction::shutdown, TargetKind::none, "", "", "stop the axes, power off, end"},
+    {CommandKind::measure, "measure", runtime::OperatorAction::measure, TargetKind::axis, "", "",
+     "measure while held: press once with what, renew each 50 ms; stop lets go"},
 }};
 
 namespace command_word_check {
@@ -76,7 +79,7 @@ namespace command_word_check {
 consteval bool sound() {
     for (std::size_t i = 0; i < command_words.size(); ++i)
         if (static_cast<std::size_t>(command_words[i].kind) != i + 1 || command_words[i].word.empty()) return false;
-    return static_cast<std::size_t>(CommandKind::shutdown) == command_words.size();
+    return static_cast<std::size_t>(CommandKind::measure) == command_words.size();
 }
 static_assert(sound());
 }  // namespace command_word_check

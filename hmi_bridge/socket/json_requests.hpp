@@ -18,6 +18,7 @@
 #include "core/time.hpp"
 #include "hmi_bridge/gateway/drive_requests.hpp"
 #include "hmi_bridge/gateway/gateway.hpp"
+#include "hmi_bridge/gateway/measurements.hpp"
 #include "hmi_bridge/line_handler.hpp"
 #include "hmi_bridge/socket/json_fields.hpp"
 #include "hmi_bridge/socket/scope_requests.hpp"
@@ -62,12 +63,15 @@ private:
     void refuse(ConnectionId connection, const std::string& id, const Error& error);
     void answer(ConnectionId connection, std::string text) { lines_.push_back({connection, std::move(text), {}}); }
 
+    /// True: the request asked about a measurement and is answered.
+    bool answer_measure(std::string_view cmd, ConnectionId connection, const std::string& id, JsonFields& fields);
     void ask_drive(DriveRequestKind kind, ConnectionId connection, const std::string& id, JsonFields& fields, Instant now);
 
     Gateway& gateway_;
     MachineLink& machine_;
     DriveRequests drives_;
     ScopeRequests scope_;
+    Measurements measurements_;
     std::function<std::int64_t()> wall_utime_;
     const runtime::Snapshot* snapshot_ = nullptr;
     std::string progress_;

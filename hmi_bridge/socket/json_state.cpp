@@ -90,6 +90,17 @@ Json alarm_array(const runtime::Snapshot& snapshot, const MachineLink& machine) 
     return out;
 }
 
+Json measure_state(const runtime::MeasureState& m, const runtime::MachineLayout& layout) {
+    if (m.run == 0 || m.axis >= layout.axes.size()) return nullptr;
+    return Json{{"run", m.run},
+                {"axis", layout.axes[m.axis].name},
+                {"kind", name(m.plan.order().kind)},
+                {"running", m.running},
+                {"end", name(m.end)},
+                {"elapsed_s", m.elapsed},
+                {"duration_s", m.plan.duration()}};
+}
+
 Json giver_json(const runtime::CommandGiver& giver, const runtime::MachineLayout& layout) {
     return Json{{"command", word(giver.kind)},
                 {"owner", name(giver.owner)},
@@ -217,6 +228,7 @@ std::string state_json(const runtime::Snapshot& s, const MachineLink& machine) {
                                   {"name", layout.parameters[i].name},
                                   {"unit", layout.parameters[i].unit},
                                   {"value", s.parameters[i]}});
+    out["measure"] = measure_state(s.measure, layout);
     out["alarms"] = alarm_array(s, machine);
     out["events"] = event_array(s, layout);
     out["events_dropped"] = s.events_dropped;

@@ -106,7 +106,10 @@ Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::strin
                                : "Give a value inside the range.";
             break;
         case Answer::stale:
-            if (kind == CommandKind::jog) {
+            if (kind == CommandKind::measure) {
+                error.what = "the measurement is over: it was let go or stopped, or its lease ran out before the renewal came";
+                error.remedy = "Ask for its result (measure_result), which says how it ended; press again to begin anew.";
+            } else if (kind == CommandKind::jog) {
                 error.what = "the jog is over: it was let go, or its lease ran out before the renewal came (then there is an alarm)";
                 error.remedy = "Let go and press again; if its lease runs out again, the connection or this computer is too slow.";
             } else {
@@ -154,6 +157,9 @@ Error explain(const runtime::CommandAnswer& answer, CommandKind kind, std::strin
                     "an emergency stop is not reset yet: its alarm waits, or an axis is still in ErrorStop by it, and a start given "
                     "now would leave the motion to whoever resets later";
                 error.remedy = "When nobody is in danger: `taktwerk reset --wait`, then start again.";
+            } else if (kind == CommandKind::measure) {
+                error.what = "another axis or another client is being measured: one at a time";
+                error.remedy = "Wait until it is over.";
             } else if (kind == CommandKind::set_output) {
                 error.what = "a program is running, and it drives the outputs";
                 error.remedy = "Stop the programs first.";
