@@ -83,6 +83,7 @@ std::string sweep(const Json& r, const std::string& unit) {
     text += margin("bandwidth (-3 dB)", r.at("bandwidth_hz"), "Hz", false);
     text += margin("bandwidth (-90 degrees)", r.at("phase_bandwidth_hz"), "Hz", false);
     text += margin("resonance", r.at("resonance_db"), "dB", true);
+    text += margin("valley (what swings behind)", r.at("notch_db"), "dB", true);
     text += margin("phase margin", r.at("phase_margin_deg"), "degrees", true);
     text += margin("gain margin", r.at("gain_margin_db"), "dB", true);
     text += "  the open loop is T / (1 - T): its margins hold only without feed-forward in the drive and here\n";

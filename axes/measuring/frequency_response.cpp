@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include "axes/measuring/least_squares.hpp"
@@ -74,6 +75,19 @@ Curve curve_of(std::span<const FrequencyPoint> points, std::complex<double> Freq
     return out;
 }
 
+/// The deepest point with a rise of 3 dB on both sides.
+std::optional<Margin> notch_of(const Curve& closed) {
+    std::optional<Margin> out;
+    const auto& y = closed.level;
+    for (std::size_t i = 1; i + 1 < y.size(); ++i) {
+        if (!(y[i] < y[i - 1] && y[i] <= y[i + 1]) || (out && y[i] >= out->value)) continue;
+        const double before = *std::max_element(y.begin(), y.begin() + static_cast<std::ptrdiff_t>(i));
+        const double behind = *std::max_element(y.begin() + static_cast<std::ptrdiff_t>(i), y.end());
+        if (std::min(before, behind) - y[i] >= 3) out = Margin{y[i], closed.frequency[i]};
+    }
+    return out;
+}
+
 }  // namespace
 
 std::vector<double> phases_of(std::span<const FrequencyPoint> points, std::complex<double> FrequencyPoint::*which) {
@@ -113,6 +127,7 @@ LoopMargins margins_of(std::span<const FrequencyPoint> points) {
             out.phase_bandwidth = Margin{f, f};
         }
     }
+    out.notch = notch_of(closed);
     const bool inside = top > 0 && top + 1 < closed.frequency.size();
     if (inside && closed.level[top] > 1) {
         // The top of the parabola through three points, over the logarithm of the frequency.

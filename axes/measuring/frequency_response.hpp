@@ -37,6 +37,7 @@ struct LoopMargins {
     std::optional<Margin> bandwidth;        ///< Hz: the first time |T| is below -3 dB
     std::optional<Margin> phase_bandwidth;  ///< Hz: the first time the phase of T is below -90 degrees
     std::optional<Margin> resonance;        ///< dB: the highest |T| above 1 dB, inside the sweep
+    std::optional<Margin> notch;            ///< dB: the deepest valley of |T|, 3 dB or more below both sides: what swings behind the motor
 };
 
 struct FrequencyResponse {

@@ -168,6 +168,7 @@ void put_sweep(Json& out, const AlignedRun& aligned, const axes::ExcitationPlan&
     out["bandwidth_hz"] = margin(f.margins.bandwidth);
     out["phase_bandwidth_hz"] = margin(f.margins.phase_bandwidth);
     out["resonance_db"] = margin(f.margins.resonance);
+    out["notch_db"] = margin(f.margins.notch);
     out["feed_forward"] = config.control.feed_forward;
     const auto closed_phase = axes::measuring::phases_of(f.points, &FrequencyPoint::closed);
     const auto open_phase = axes::measuring::phases_of(f.points, &FrequencyPoint::open);
