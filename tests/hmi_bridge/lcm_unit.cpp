@@ -352,7 +352,7 @@ TEST_F(LcmTest, ValuesOutOfRangeAndUnknownKindsAreRefused) {
     c.value = std::numeric_limits<double>::quiet_NaN();
     c.press = 1;
     send(c);
-    send(command(2, 18, "x"));
+    send(command(2, 99, "x"));
     send(command(3, -1, "x"));
     c = command(4, command_v1_t::KIND_HOME, "x");
     c.valid_for_ms = -1;

@@ -23,13 +23,14 @@ using ::testing::HasSubstr;
 // Written apart from the table in roles.hpp, from what each command does (hmi_bridge/README.md): viewer, operator, engineer, admin.
 TEST(PageRoles, EveryCellOfRoleAndCommand) {
     const std::map<std::string, std::string> expected{
-        {"hello", "yyyy"},        {"layout", "yyyy"},        {"state", "yyyy"},        {"alarms", "yyyy"},
-        {"drive_read", "yyyy"},   {"stop", "yyyy"},          {"take_control", "nyyy"}, {"release_control", "nyyy"},
-        {"mode", "nyyy"},         {"enable", "nyyy"},        {"disable", "nyyy"},      {"home", "nyyy"},
-        {"jog", "nyyy"},          {"move", "nyyy"},          {"reset", "nyyy"},        {"program_start", "nyyy"},
-        {"program_stop", "nyyy"}, {"program_reset", "nyyy"}, {"acknowledge", "nyyy"},  {"set_parameter", "nnyy"},
-        {"set_output", "nnyy"},   {"simulate", "nnyy"},      {"drive_write", "nnyy"},  {"drive_store", "nnyy"},
-        {"shutdown", "nnny"},     {"scope_signals", "yyyy"}, {"scope_read", "yyyy"}};
+        {"hello", "yyyy"},         {"layout", "yyyy"},        {"state", "yyyy"},          {"alarms", "yyyy"},
+        {"drive_read", "yyyy"},    {"stop", "yyyy"},          {"take_control", "nyyy"},   {"release_control", "nyyy"},
+        {"mode", "nyyy"},          {"enable", "nyyy"},        {"disable", "nyyy"},        {"home", "nyyy"},
+        {"jog", "nyyy"},           {"move", "nyyy"},          {"reset", "nyyy"},          {"program_start", "nyyy"},
+        {"program_stop", "nyyy"},  {"program_reset", "nyyy"}, {"acknowledge", "nyyy"},    {"set_parameter", "nnyy"},
+        {"set_output", "nnyy"},    {"simulate", "nnyy"},      {"drive_write", "nnyy"},    {"drive_store", "nnyy"},
+        {"measure", "nnyy"},       {"measure_plan", "yyyy"},  {"measure_result", "yyyy"}, {"shutdown", "nnny"},
+        {"scope_signals", "yyyy"}, {"scope_read", "yyyy"}};
     EXPECT_EQ(command_rules.size(), expected.size());
     for (const auto& row : expected) {
         const auto* rule = find_rule(row.first);
