@@ -74,8 +74,20 @@ void ExcitationPlan::fill_in() noexcept {
 /// From rest to the velocity and back to rest, u.
 double ExcitationPlan::way_of_ramps(double velocity, double acceleration) const noexcept {
     // Without reaching the acceleration where the jerk does not let it.
-    const double peak = std::min(acceleration, std::sqrt(velocity * jerk_));
+    const double peak = std::min(acceleration, math::sqrt(velocity * jerk_));
     return velocity * (velocity / peak + peak / jerk_);
+}
+
+/// s
+double ExcitationPlan::time_of_move(double way, double velocity, double acceleration) const noexcept {
+    if (way_of_ramps(velocity, acceleration) > way) {  // it turns back before it is that fast
+        const double lag = acceleration / jerk_;
+        velocity = acceleration / 2 * (math::sqrt(lag * lag + 4 * way / acceleration) - lag);
+        if (velocity < acceleration * lag) velocity = math::cbrt(way * way / 4 * jerk_);  // and before it accelerates that hard
+    }
+    if (!(velocity > 0)) return 0;
+    const double peak = std::min(acceleration, math::sqrt(velocity * jerk_));
+    return way / velocity + velocity / peak + peak / jerk_;
 }
 
 bool ExcitationPlan::usable() noexcept {
@@ -111,7 +123,7 @@ void ExcitationPlan::measure_path() noexcept {
         } else {
             const auto l = leg(i);
             const double way = std::abs(l.target - (i == 0 ? b.start : leg(i - 1).target));
-            duration_ += way / l.velocity + l.velocity / l.acceleration + l.acceleration / jerk_ + l.rest;
+            duration_ += time_of_move(way, l.velocity, l.acceleration) + l.rest;
         }
     }
     // Wherever it is stopped, the stop must end inside.
@@ -160,7 +172,8 @@ ExcitationTone ExcitationPlan::tone(std::size_t i) const noexcept {
     tone.frequency = order_.from_hz * math::exp(math::log(order_.to_hz / order_.from_hz) * place);
     const double period = 1 / tone.frequency;
     tone.rise = std::max(period, 0.05);
-    tone.hold = std::max(4 * period, 0.2);
+    tone.settle = std::max(2 * period, 0.15);
+    tone.hold = tone.settle + std::max(4 * period, 0.2);
     const double w = 2 * std::numbers::pi * tone.frequency, r = tone.rise;
     const double first = rise_first / r, second = rise_second / (r * r), third = rise_third / (r * r * r);
     tone.amplitude = std::min({order_.distance, order_.velocity / (w + first), order_.acceleration / (w * w + 2 * w * first + second),

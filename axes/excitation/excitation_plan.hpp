@@ -46,6 +46,7 @@ struct ExcitationTone {
     double frequency = 0;  ///< Hz
     double amplitude = 0;  ///< u
     double rise = 0;       ///< s, to the full amplitude, and back
+    double settle = 0;     ///< s, of hold, until the answer has forgotten the rise
     double hold = 0;       ///< s
 };
 
@@ -82,6 +83,7 @@ private:
     void fill_in() noexcept;
     [[nodiscard]] bool usable() noexcept;
     void measure_path() noexcept;
+    [[nodiscard]] double time_of_move(double way, double velocity, double acceleration) const noexcept;
     [[nodiscard]] double way_of_ramps(double velocity, double acceleration) const noexcept;
     [[nodiscard]] double reach(std::size_t pair, double velocity) const noexcept;
 

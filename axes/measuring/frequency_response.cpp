@@ -27,8 +27,8 @@ FrequencyPoint look_at(const AlignedRun& run, LegRange range, double begin, cons
     const double at = run.actual[range.begin];
     double sum = 0, squares = 0;
     for (std::size_t i = range.begin; i < range.end; ++i) {
-        if (!run.holds[i]) continue;
         const double t = run.time[i] - begin, y = run.actual[i] - at;
+        if (!run.holds[i] || t < tone.rise + tone.settle) continue;
         equations.add({std::sin(omega * t), std::cos(omega * t), 1, t - tone.rise}, y);
         sum += y, squares += y * y;
     }

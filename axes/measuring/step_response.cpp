@@ -109,7 +109,8 @@ StepResponse step_response(const AlignedRun& run, const ExcitationPlan& plan, do
         out.lag = out.at_velocity.value / plan.order().velocity;
     }
     out.all_settled = !out.moves.empty() && std::ranges::all_of(out.moves, [](const auto& m) { return m.settled; });
-    if (out.largest_error.value == 0 && out.doubt == Doubt::none) out.doubt = Doubt::nothing_to_see;
+    // What is a millionth of the way is no answer of a drive, but none at all.
+    if (out.largest_error.value <= 1e-6 * std::abs(plan.order().distance) && out.doubt == Doubt::none) out.doubt = Doubt::nothing_to_see;
     return out;
 }
 

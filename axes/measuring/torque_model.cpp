@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <vector>
 
 #include "axes/measuring/least_squares.hpp"
 #include "axes/measuring/step_response.hpp"
@@ -34,27 +32,31 @@ TorqueModel torque_model(const AlignedRun& run, double limit) {
         return out;
     }
     for (const double torque : run.torque) out.highest = std::max(out.highest, std::abs(torque));
-    const auto length = std::max(least_window, static_cast<std::size_t>(std::lround(window_time / run.cycle)));
+    const auto length = std::max(least_window, static_cast<std::size_t>(std::lround(window_time / run.cycle / 2) * 2));
     const double half = static_cast<double>(length) / 2;
     LeastSquares<4> equations;
-    double biggest_acceleration = 0, travelled = 0;
+    double travelled = 0;
     for (std::size_t begin = 0; begin + length < run.size(); begin += length / 4) {
         // Where it stands the friction may be anything below its limit; where it turns round it has two signs.
-        const double at = run.actual[begin], from = run.velocity[begin];
+        // From the middle: there what the sums of a window leave of a constant and of a straight line is nothing.
+        const double at = run.actual[begin + length / 2], from = run.velocity[begin];
         bool moves = run.time[begin + length] - run.time[begin] < (static_cast<double>(length) + 0.5) * run.cycle;
         for (std::size_t i = begin; moves && i <= begin + length; ++i) moves = run.velocity[i] * from > 0;
         if (!moves) continue;
-        double torque = 0, velocity = 0, acceleration = 0, one = 0;
+        // Divided by what the same sums make of s and s^2 / 2: exact for a parabola, however few samples a window has.
+        double torque = 0, velocity = 0, acceleration = 0, one = 0, straight = 0, curved = 0;
         for (std::size_t i = begin; i <= begin + length; ++i) {
-            const auto w = weight((static_cast<double>(i - begin) - half) / half);
+            const double s = (static_cast<double>(i - begin) - half) / half;
+            const auto w = weight(s);
             const double position = run.actual[i] - at;
             one += w.value;
+            straight -= w.first * s;
+            curved += w.second * s * s / 2;
             torque += w.value * run.torque[i];
             velocity -= w.first * position / (half * run.cycle);
             acceleration += w.second * position / (half * half * run.cycle * run.cycle);
         }
-        torque /= one, velocity /= one, acceleration /= one;
-        biggest_acceleration = std::max(biggest_acceleration, std::abs(acceleration));
+        torque /= one, velocity /= straight, acceleration /= curved;
         travelled += std::abs(velocity);
         equations.add({1, velocity > 0 ? 1.0 : -1.0, velocity, acceleration}, torque);
     }

@@ -128,7 +128,9 @@ TEST_F(MeasureRequests, EveryKindHasAResult) {
         EXPECT_FALSE(result["curves"].empty()) << name(kind);
         for (const auto& curve : result["curves"])
             for (const auto& list : curve)
-                if (list.is_array()) EXPECT_LE(list.size(), 800u);
+                if (list.is_array()) {
+                    EXPECT_LE(list.size(), 800u);
+                }
     }
 }
 

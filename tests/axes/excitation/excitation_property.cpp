@@ -82,7 +82,9 @@ TEST(ExcitationProperty, EverySetPointKeepsTheLimitsAndThePathAndIsContinuous) {
                         plan.jerk() * b.cycle + 1e-6 * b.acceleration);
         }
         EXPECT_LE(jerk, plan.jerk() * (1 + 1e-6));
-        if (std::isfinite(b.jerk)) EXPECT_LE(plan.jerk(), b.jerk * ExcitationPlan::share * rounding);
+        if (std::isfinite(b.jerk)) {
+            EXPECT_LE(plan.jerk(), b.jerk * ExcitationPlan::share * rounding);
+        }
         EXPECT_NEAR(now.position, b.start, grain) << "it ends where it began";
         EXPECT_EQ(now.velocity, 0);
         EXPECT_EQ(now.acceleration, 0);

@@ -40,8 +40,8 @@ TEST(AlignedRun, FindsTheDeadTimeBetweenSetPointAndAnswer) {
 
 TEST(AlignedRun, CountsWhatIsMissing) {
     auto run = play(moves(MeasureKind::step), 2, Torques{});
-    run.samples.erase(run.samples.begin() + 100, run.samples.begin() + 130);
-    EXPECT_EQ(align(run).lost, 30u);
+    run.samples.erase(run.samples.begin() + 100, run.samples.begin() + 160);
+    EXPECT_EQ(align(run).lost, 60u);
     EXPECT_EQ(step_response(align(run), run.plan, 0.01).doubt, Doubt::lost_samples);
 }
 
@@ -203,7 +203,9 @@ TEST(Cogging, FindsWavesOfAPeriodWithTheirAmplitude) {
     EXPECT_NEAR(c.harmonics[11].torque, 0.03, 3e-4);
     EXPECT_NEAR(c.harmonics[1].torque, 0.01, 3e-4);
     for (const auto& h : c.harmonics)
-        if (h.order != 12 && h.order != 2) EXPECT_LT(h.torque, 5e-4) << h.order;
+        if (h.order != 12 && h.order != 2) {
+            EXPECT_LT(h.torque, 5e-4) << h.order;
+        }
     EXPECT_NEAR(c.peak_to_peak, 0.08, 0.004) << "0.06 + 0.02 where the crests meet";
     order.distance = 40;
     const auto flat = play(order, 2, Torques{0, 0.05, 0, 0}, 1e-3, 1e-3);
