@@ -22,8 +22,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 using namespace std::chrono_literals;
 
-constexpr auto renewal = 50ms;
-constexpr auto analysis = 30s;  ///< a long sweep's, on a small computer
+constexpr auto measure_renewal = 50ms;
+constexpr auto measure_patience = 30s;  ///< a long sweep's, on a small computer
 
 struct MeasureOptions {
     RemoteOptions remote;
@@ -69,7 +69,7 @@ Result<Json> result_of(hmi::Client& client, const MeasureOptions& options) {
         if (!window) return window.error();
         question["window"] = *window;
     }
-    auto answer = client.request(question, analysis);
+    auto answer = client.request(question, measure_patience);
     if (!answer) return answer.error();
     return (*answer)["measure_result"];
 }
@@ -95,7 +95,7 @@ int measure(const MeasureOptions& options) {
     if (const auto pressed = client->request(request); !pressed) return report(options.remote, pressed.error());
     const bool show = !options.remote.json && ::isatty(STDOUT_FILENO) != 0;
     for (bool over = false; !over && !stop_requested();) {
-        std::this_thread::sleep_for(renewal);
+        std::this_thread::sleep_for(measure_renewal);
         const auto now = result_of(*client, options);
         if (!now) return report(options.remote, now.error());
         over = !now->at("running").get<bool>();
@@ -113,7 +113,7 @@ int measure(const MeasureOptions& options) {
             return report(options.remote, stopped.error());
     auto result = result_of(*client, options);
     for (int i = 0; result && result->at("running").get<bool>() && i < 20; ++i) {
-        std::this_thread::sleep_for(renewal);
+        std::this_thread::sleep_for(measure_renewal);
         result = result_of(*client, options);
     }
     if (!result) return report(options.remote, result.error());

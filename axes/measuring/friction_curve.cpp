@@ -10,8 +10,8 @@ namespace taktwerk::axes::measuring {
 
 namespace {
 
-constexpr double settles = 0.1;  // s at constant velocity before the torque counts, or half of the time there
-constexpr std::size_t least_samples = 10;
+constexpr double stirred = 0.1;  // s at constant velocity before the torque counts, or half of the time there
+constexpr std::size_t least_steady = 10;
 
 struct Steady {
     std::size_t begin = 0, end = 0;
@@ -27,7 +27,7 @@ Steady steady(const AlignedRun& run, LegRange range, double velocity, double per
     }
     if (out.begin == range.end) return {};
     const auto there = out.end - out.begin;
-    out.begin += std::min(there / 2, static_cast<std::size_t>(settles / run.cycle));
+    out.begin += std::min(there / 2, static_cast<std::size_t>(stirred / run.cycle));
     const double way = std::abs(run.actual[out.end - 1] - run.actual[out.begin]);
     if (period > 0 && way >= period) {
         const double whole = std::floor(way / period) * period;
@@ -67,7 +67,7 @@ FrictionCurve friction_curve(const AlignedRun& run, const ExcitationPlan& plan, 
             of[0] += torque, of[1] += 1;
             ++starts;
         }
-        if (part.end - part.begin < least_samples) continue;
+        if (part.end - part.begin < least_steady) continue;
         FrictionPoint point{way * planned.velocity, 0, 0, 0};
         const auto n = static_cast<double>(part.end - part.begin);
         for (std::size_t i = part.begin; i < part.end; ++i)
